@@ -1,0 +1,42 @@
+# Flags of all our own code. No fast-math and no FMA contraction: the same bytes from every compiler.
+function(meshfarm_compile_options target)
+  # g++ 12 reports -Wrestrict falsely on std::string operator+ (GCC bug 105651).
+  target_compile_options(${target} PRIVATE
+    -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion -Werror -ffp-contract=off
+    $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict>)
+  if(MESHFARM_SANITIZE)
+    target_compile_options(${target} PRIVATE -fsanitize=${MESHFARM_SANITIZE} -fno-omit-frame-pointer
+                                             -fno-sanitize-recover=all)
+    target_link_options(${target} PRIVATE -fsanitize=${MESHFARM_SANITIZE})
+  endif()
+  if(MESHFARM_FUZZ)
+    target_compile_options(${target} PRIVATE -fsanitize=fuzzer-no-link)
+  endif()
+endfunction()
+
+# meshfarm_layer(io USES geometry PACKAGES Boost::iostreams)
+# One folder = one layer = one static library meshfarm_<name> = one unit-test program test_<name>.
+function(meshfarm_layer name)
+  cmake_parse_arguments(ARG "" "" "USES;PACKAGES" ${ARGN})
+  file(GLOB sources CONFIGURE_DEPENDS src/${name}/*.cpp)
+  add_library(meshfarm_${name} STATIC ${sources})
+  add_library(meshfarm::${name} ALIAS meshfarm_${name})
+  set_target_properties(meshfarm_${name} PROPERTIES EXPORT_NAME ${name})
+  target_include_directories(meshfarm_${name} PUBLIC
+    $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/include> $<INSTALL_INTERFACE:include>)
+  target_include_directories(meshfarm_${name} PRIVATE ${PROJECT_SOURCE_DIR}/src)
+  list(TRANSFORM ARG_USES PREPEND meshfarm_ OUTPUT_VARIABLE uses)
+  target_link_libraries(meshfarm_${name} PUBLIC ${uses} PRIVATE ${ARG_PACKAGES} Threads::Threads)
+  meshfarm_compile_options(meshfarm_${name})
+
+  file(GLOB tests CONFIGURE_DEPENDS tests/unit/${name}/test_*.cpp)
+  if(MESHFARM_TESTS AND tests)
+    add_executable(test_${name} ${tests} tests/support/doctest_main.cpp)
+    target_include_directories(test_${name} PRIVATE ${PROJECT_SOURCE_DIR}/src
+                                                    ${PROJECT_SOURCE_DIR}/tests)
+    target_link_libraries(test_${name} PRIVATE meshfarm_${name} Threads::Threads)
+    meshfarm_compile_options(test_${name})
+    add_test(NAME unit.${name} COMMAND test_${name})
+    set_tests_properties(unit.${name} PROPERTIES TIMEOUT 300 LABELS unit)
+  endif()
+endfunction()

@@ -1,0 +1,27 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <meshfarm/geometry/mesh.hpp>
+
+namespace meshfarm {
+
+/// Distances from area-weighted samples of one surface to the other, in the mesh's own unit.
+struct Distance {
+  double rms = 0;
+  double mean = 0;
+  double max = 0;
+};
+
+struct DistanceOptions {
+  std::uint64_t samples = 400'000;
+  unsigned threads = 0;  // 0: one a core. The result does not depend on it.
+};
+
+/// Samples the surface of `from` and measures to the nearest point of the surface of `to`
+/// (bounding volume hierarchy; one direction of the Metro measure, Cignoni et al. 1998).
+/// Throws DataError if either mesh has no triangle of positive area.
+Distance measure_distance(const Mesh& from, const Mesh& to, const DistanceOptions& options);
+
+}  // namespace meshfarm

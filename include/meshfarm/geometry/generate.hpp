@@ -1,0 +1,32 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <meshfarm/geometry/mesh.hpp>
+#include <span>
+
+namespace meshfarm {
+
+/// A procedural closed surface of any size, made row by row: a torus with bumps of several
+/// octaves and flat stretches, so that neighbouring regions deserve very different numbers of triangles.
+/// Closed, oriented, one component, Euler characteristic 0.
+class BumpyTorus {
+ public:
+  /// The number of triangles is the nearest that a grid gives: 2 * rows * columns.
+  /// Throws UsageError below 200 triangles.
+  explicit BumpyTorus(std::uint64_t triangles);
+  std::uint64_t vertices() const { return rows_ * columns_; }
+  std::uint64_t triangles() const { return 2 * rows_ * columns_; }
+  /// In order, in batches; coordinates are exact floats.
+  void for_vertices(const std::function<void(std::span<const Vec3>)>& take) const;
+  void for_triangles(
+      const std::function<void(std::span<const std::array<std::uint64_t, 3>>)>& take) const;
+
+ private:
+  std::uint64_t rows_ = 0;
+  std::uint64_t columns_ = 0;
+};
+
+}  // namespace meshfarm

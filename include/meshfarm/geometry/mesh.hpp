@@ -1,0 +1,46 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <meshfarm/geometry/vec.hpp>
+#include <vector>
+
+namespace meshfarm {
+
+/// Three vertex indices, counter-clockwise seen from outside.
+using Triangle = std::array<std::uint32_t, 3>;
+
+/// How positions are kept in files. Coordinates are double in memory; a float32 mesh keeps every
+/// coordinate exactly representable as float, so that writing it loses nothing.
+enum class PositionType : std::uint8_t { float32 = 4, float64 = 8 };
+
+/// A triangle mesh in memory. Local indices are 32-bit: a mesh in memory is a part or a result.
+struct Mesh {
+  std::vector<Vec3> positions;
+  std::vector<Triangle> triangles;
+};
+
+/// The nearest point that `type` can hold.
+inline Vec3 rounded(Vec3 p, PositionType type) {
+  if (type == PositionType::float64) return p;
+  return {static_cast<double>(static_cast<float>(p.x)),
+          static_cast<double>(static_cast<float>(p.y)),
+          static_cast<double>(static_cast<float>(p.z))};
+}
+
+/// An axis-aligned box. Empty (lo > hi) until a point is added.
+struct Box {
+  Vec3 lo{HUGE_VAL, HUGE_VAL, HUGE_VAL};
+  Vec3 hi{-HUGE_VAL, -HUGE_VAL, -HUGE_VAL};
+
+  void add(Vec3 p) {
+    lo = {std::fmin(lo.x, p.x), std::fmin(lo.y, p.y), std::fmin(lo.z, p.z)};
+    hi = {std::fmax(hi.x, p.x), std::fmax(hi.y, p.y), std::fmax(hi.z, p.z)};
+  }
+  bool empty() const { return lo.x > hi.x; }
+  double diagonal() const { return empty() ? 0.0 : length(hi - lo); }
+};
+
+}  // namespace meshfarm

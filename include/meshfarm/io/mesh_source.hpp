@@ -1,0 +1,50 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <meshfarm/geometry/mesh.hpp>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace meshfarm {
+
+/// A triangle of a whole mesh: 64-bit vertex indices.
+using WideTriangle = std::array<std::uint64_t, 3>;
+
+/// What a mesh file's header promises, and what the reader makes of it.
+struct MeshFileInfo {
+  std::string format;       // "PLY ascii", "PLY binary little endian", ...
+  std::string compression;  // "none", "gzip", "zstd"
+  std::uint64_t vertices = 0;
+  std::uint64_t faces = 0;  // polygons or strips, before they are made triangles
+  PositionType positions = PositionType::float32;
+  std::vector<std::string> skipped;  // "vertex.red", "face.flags", "material (5 elements)"
+};
+
+/// A mesh file that is read by scanning, as often as wanted, in memory that does not depend on its
+/// size: plain files are memory-mapped, compressed ones (told by content) decompressed on the way.
+/// Polygons come as fans, tristrips as their triangles.
+/// Malformed input throws DataError with the place: element, index, byte.
+class MeshSource {
+ public:
+  virtual ~MeshSource() = default;
+  virtual const MeshFileInfo& info() const = 0;
+  /// All vertices in file order, in batches. Every coordinate is finite.
+  virtual void scan_vertices(const std::function<void(std::span<const Vec3>)>& take) = 0;
+  /// All triangles in file order, in batches. Every index is below info().vertices.
+  virtual void scan_triangles(const std::function<void(std::span<const WideTriangle>)>& take) = 0;
+};
+
+/// Opens a mesh file by its content. Throws IoError, or DataError for an unknown format.
+std::unique_ptr<MeshSource> open_mesh(const std::filesystem::path& path);
+
+/// Reads a whole mesh into memory. Throws DataError if it has 2^32 vertices or more.
+Mesh read_mesh(MeshSource& source);
+
+}  // namespace meshfarm

@@ -1,0 +1,46 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <meshfarm/util/file.hpp>
+#include <string>
+#include <string_view>
+
+namespace meshfarm {
+
+/// A file that others see only whole: a temporary name in the same folder -> write -> fsync -> close
+/// -> rename, each step checked (a full NFS disk shows only at fsync or close). Only commit()
+/// publishes; the destructor removes what was not published.
+class AtomicFile {
+ public:
+  /// Makes the temporary file. `unique` (process or incarnation) keeps two writers of one name apart.
+  explicit AtomicFile(std::filesystem::path final_path, std::string_view unique = {});
+  ~AtomicFile();
+  AtomicFile(const AtomicFile&) = delete;
+  AtomicFile& operator=(const AtomicFile&) = delete;
+
+  /// Buffered; throws IoError.
+  void write(std::string_view bytes);
+  /// Overwrites bytes already written (a header whose counts are known at the end).
+  void rewrite(std::uint64_t offset, std::string_view bytes);
+  std::uint64_t size() const { return flushed_ + buffer_.size(); }
+  void commit();
+
+ private:
+  void flush();
+
+  std::filesystem::path final_path_;
+  std::filesystem::path temporary_path_;
+  Fd fd_;
+  std::string buffer_;
+  std::uint64_t flushed_ = 0;
+};
+
+/// Renames; where the answer is ENOENT although it was done (NFS server restart), looks at the
+/// target before calling it a failure. Throws IoError.
+void rename_checked(const std::filesystem::path& from, const std::filesystem::path& to,
+                    std::uint64_t size_bytes);
+
+}  // namespace meshfarm

@@ -1,0 +1,51 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <filesystem>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+
+namespace meshfarm {
+
+/// Every error of ours. The subclass says who must act; the message says what failed, where, why
+/// and, where it helps, what to do next. Caught in main, in the worker's job loop, and where a
+/// failure is known to be soft.
+class Error : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/// The caller's arguments are wrong (exit 2).
+class UsageError : public Error {
+ public:
+  using Error::Error;
+};
+
+/// The input or a staged file is malformed, corrupt or out of range (exit 1).
+class DataError : public Error {
+ public:
+  using Error::Error;
+};
+
+/// The system refused: keeps errno and the path (exit 1).
+class IoError : public Error {
+ public:
+  IoError(std::string_view action, const std::filesystem::path& path, int error_number);
+  int error_number() const { return error_number_; }
+
+ private:
+  int error_number_;
+};
+
+/// The run stopped before its end; what is staged is kept and can be taken up again (exit 3).
+class IncompleteError : public Error {
+ public:
+  using Error::Error;
+};
+
+/// Throws IoError with the current errno.
+[[noreturn]] void throw_errno(std::string_view action, const std::filesystem::path& path);
+
+}  // namespace meshfarm

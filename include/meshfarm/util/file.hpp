@@ -1,0 +1,71 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <span>
+#include <string>
+#include <string_view>
+#include <type_traits>
+#include <utility>
+
+namespace meshfarm {
+
+/// Owns a file descriptor.
+class Fd {
+ public:
+  Fd() = default;
+  explicit Fd(int fd) : fd_(fd) {}
+  ~Fd();
+  Fd(Fd&& other) noexcept : fd_(std::exchange(other.fd_, -1)) {}
+  Fd& operator=(Fd&& other) noexcept;
+  int get() const { return fd_; }
+  explicit operator bool() const { return fd_ >= 0; }
+  /// Closes and reports the error that close() may carry (a full NFS disk shows here).
+  /// Returns 0 or an errno.
+  int close();
+
+ private:
+  int fd_ = -1;
+};
+
+/// Opens for reading. Throws IoError.
+Fd open_for_read(const std::filesystem::path& path);
+/// Writes all of it, through short writes and EINTR. Throws IoError.
+void write_all(int fd, std::string_view bytes, const std::filesystem::path& path);
+/// Reads the whole file by read(). Throws IoError.
+std::string read_file(const std::filesystem::path& path);
+std::string read_file(int fd, const std::filesystem::path& path);
+std::uint64_t file_size(int fd, const std::filesystem::path& path);
+
+/// A private file mapped into memory: read-only over an existing file, or a scratch file of a given
+/// size that is unlinked as soon as it is made, so that it never outlives its owner.
+class MappedFile {
+ public:
+  MappedFile() = default;
+  static MappedFile open(const std::filesystem::path& path);
+  static MappedFile scratch(const std::filesystem::path& folder, std::uint64_t size_bytes);
+  ~MappedFile();
+  MappedFile(MappedFile&& other) noexcept;
+  MappedFile& operator=(MappedFile&& other) noexcept;
+
+  std::string_view bytes() const { return {data_, size_}; }
+  /// Tells the kernel that the pages will be read in order.
+  void advise_sequential() const;
+  /// Lets go of the pages of [offset, offset + size): they are read again when touched.
+  void release(std::uint64_t offset, std::uint64_t size) const;
+
+  template <class T>
+    requires std::is_trivially_copyable_v<T>
+  std::span<T> as_span() const {
+    return {reinterpret_cast<T*>(data_), size_ / sizeof(T)};
+  }
+
+ private:
+  char* data_ = nullptr;
+  std::size_t size_ = 0;
+};
+
+}  // namespace meshfarm

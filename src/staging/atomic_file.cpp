@@ -1,0 +1,101 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <meshfarm/staging/atomic_file.hpp>
+#include <meshfarm/util/errors.hpp>
+
+namespace meshfarm {
+namespace {
+
+constexpr std::size_t k_buffer_bytes = std::size_t{1} << 20;
+
+std::filesystem::path temporary_name(const std::filesystem::path& final_path,
+                                     std::string_view unique) {
+  std::string name = "." + final_path.filename().string() + ".";
+  name += unique.empty() ? std::to_string(::getpid()) : std::string(unique);
+  return final_path.parent_path() / (name + ".tmp");
+}
+
+}  // namespace
+
+void rename_checked(const std::filesystem::path& from, const std::filesystem::path& to,
+                    std::uint64_t size_bytes) {
+  if (::rename(from.c_str(), to.c_str()) == 0) return;
+  const int error = errno;
+  struct stat status{};
+  if (error == ENOENT && ::stat(to.c_str(), &status) == 0 &&
+      static_cast<std::uint64_t>(status.st_size) == size_bytes) {
+    return;
+  }
+  throw IoError("cannot rename " + from.string() + " to", to, error);
+}
+
+AtomicFile::AtomicFile(std::filesystem::path final_path, std::string_view unique)
+    : final_path_(std::move(final_path)),
+      temporary_path_(temporary_name(final_path_, unique)) {
+  constexpr int k_flags = O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC;
+  fd_ = Fd(::open(temporary_path_.c_str(), k_flags, 0644));
+  if (!fd_ && errno == EEXIST) {  // left behind by a dead process that had our name
+    ::unlink(temporary_path_.c_str());
+    fd_ = Fd(::open(temporary_path_.c_str(), k_flags, 0644));
+  }
+  if (!fd_) throw_errno("cannot make", temporary_path_);
+}
+
+AtomicFile::~AtomicFile() {
+  if (fd_) ::unlink(temporary_path_.c_str());
+}
+
+void AtomicFile::write(std::string_view bytes) {
+  if (buffer_.size() + bytes.size() > k_buffer_bytes) flush();
+  if (bytes.size() >= k_buffer_bytes) {
+    write_all(fd_.get(), bytes, temporary_path_);
+    flushed_ += bytes.size();
+  } else {
+    buffer_.append(bytes);
+  }
+}
+
+void AtomicFile::rewrite(std::uint64_t offset, std::string_view bytes) {
+  flush();
+  while (!bytes.empty()) {
+    const ssize_t written =
+        ::pwrite(fd_.get(), bytes.data(), bytes.size(), static_cast<off_t>(offset));
+    if (written < 0) {
+      if (errno == EINTR) continue;
+      throw_errno("cannot write", temporary_path_);
+    }
+    bytes.remove_prefix(static_cast<std::size_t>(written));
+    offset += static_cast<std::uint64_t>(written);
+  }
+}
+
+void AtomicFile::flush() {
+  write_all(fd_.get(), buffer_, temporary_path_);
+  flushed_ += buffer_.size();
+  buffer_.clear();
+}
+
+void AtomicFile::commit() {
+  flush();
+  if (::fsync(fd_.get()) != 0) throw_errno("cannot sync", temporary_path_);
+  // From here on the destructor has nothing to close, so a failure must clean up by itself.
+  const int close_error = fd_.close();
+  if (close_error == 0) {
+    try {
+      rename_checked(temporary_path_, final_path_, flushed_);
+      return;
+    } catch (const IoError&) {
+      ::unlink(temporary_path_.c_str());
+      throw;
+    }
+  }
+  ::unlink(temporary_path_.c_str());
+  throw IoError("cannot close", temporary_path_, close_error);
+}
+
+}  // namespace meshfarm

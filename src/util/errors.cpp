@@ -1,0 +1,18 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#include <cerrno>
+#include <meshfarm/util/errors.hpp>
+#include <system_error>
+
+namespace meshfarm {
+
+IoError::IoError(std::string_view action, const std::filesystem::path& path, int error_number)
+    : Error(std::string(action) + " " + path.string() + ": " +
+            std::generic_category().message(error_number)),
+      error_number_(error_number) {}
+
+void throw_errno(std::string_view action, const std::filesystem::path& path) {
+  throw IoError(action, path, errno);
+}
+
+}  // namespace meshfarm

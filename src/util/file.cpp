@@ -1,0 +1,130 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#include <fcntl.h>
+#include <sys/mman.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <meshfarm/util/errors.hpp>
+#include <meshfarm/util/file.hpp>
+
+namespace meshfarm {
+
+Fd::~Fd() {
+  if (fd_ >= 0) ::close(fd_);
+}
+
+Fd& Fd::operator=(Fd&& other) noexcept {
+  if (this != &other) {
+    if (fd_ >= 0) ::close(fd_);
+    fd_ = std::exchange(other.fd_, -1);
+  }
+  return *this;
+}
+
+int Fd::close() {
+  const int fd = std::exchange(fd_, -1);
+  return fd >= 0 && ::close(fd) != 0 ? errno : 0;
+}
+
+Fd open_for_read(const std::filesystem::path& path) {
+  Fd fd(::open(path.c_str(), O_RDONLY | O_CLOEXEC));
+  if (!fd) throw_errno("cannot open", path);
+  return fd;
+}
+
+void write_all(int fd, std::string_view bytes, const std::filesystem::path& path) {
+  while (!bytes.empty()) {
+    const ssize_t written = ::write(fd, bytes.data(), bytes.size());
+    if (written < 0) {
+      if (errno == EINTR) continue;
+      throw_errno("cannot write", path);
+    }
+    bytes.remove_prefix(static_cast<std::size_t>(written));
+  }
+}
+
+std::uint64_t file_size(int fd, const std::filesystem::path& path) {
+  struct stat status{};
+  if (::fstat(fd, &status) != 0) throw_errno("cannot stat", path);
+  return static_cast<std::uint64_t>(status.st_size);
+}
+
+std::string read_file(int fd, const std::filesystem::path& path) {
+  std::string bytes(file_size(fd, path), '\0');
+  std::size_t done = 0;
+  while (done < bytes.size()) {
+    const ssize_t got = ::read(fd, bytes.data() + done, bytes.size() - done);
+    if (got < 0) {
+      if (errno == EINTR) continue;
+      throw_errno("cannot read", path);
+    }
+    if (got == 0) break;  // shorter than fstat said: the caller's size check notices
+    done += static_cast<std::size_t>(got);
+  }
+  bytes.resize(done);
+  return bytes;
+}
+
+std::string read_file(const std::filesystem::path& path) {
+  return read_file(open_for_read(path).get(), path);
+}
+
+MappedFile MappedFile::open(const std::filesystem::path& path) {
+  const Fd fd = open_for_read(path);
+  MappedFile mapped;
+  mapped.size_ = file_size(fd.get(), path);
+  if (mapped.size_ == 0) return mapped;
+  void* data = ::mmap(nullptr, mapped.size_, PROT_READ, MAP_SHARED, fd.get(), 0);
+  if (data == MAP_FAILED) throw_errno("cannot map", path);
+  mapped.data_ = static_cast<char*>(data);
+  return mapped;
+}
+
+MappedFile MappedFile::scratch(const std::filesystem::path& folder, std::uint64_t size_bytes) {
+  std::string name = (folder / "scratch.XXXXXX").string();
+  const Fd fd(::mkostemp(name.data(), O_CLOEXEC));
+  if (!fd) throw_errno("cannot make", name);
+  ::unlink(name.c_str());
+  MappedFile mapped;
+  mapped.size_ = size_bytes;
+  if (size_bytes == 0) return mapped;
+  // Blocks are reserved now where the file system can: a full disk is an error here, not a SIGBUS.
+  int error = ::posix_fallocate(fd.get(), 0, static_cast<off_t>(size_bytes));
+  if (error == EOPNOTSUPP || error == EINVAL) {
+    error = ::ftruncate(fd.get(), static_cast<off_t>(size_bytes)) == 0 ? 0 : errno;
+  }
+  if (error != 0) throw IoError("cannot reserve a scratch file in", folder, error);
+  void* data =
+      ::mmap(nullptr, mapped.size_, PROT_READ | PROT_WRITE, MAP_SHARED, fd.get(), 0);
+  if (data == MAP_FAILED) throw_errno("cannot map a scratch file in", folder);
+  mapped.data_ = static_cast<char*>(data);
+  return mapped;
+}
+
+MappedFile::~MappedFile() {
+  if (data_ != nullptr) ::munmap(data_, size_);
+}
+
+MappedFile::MappedFile(MappedFile&& other) noexcept
+    : data_(std::exchange(other.data_, nullptr)), size_(std::exchange(other.size_, 0)) {}
+
+MappedFile& MappedFile::operator=(MappedFile&& other) noexcept {
+  std::swap(data_, other.data_);
+  std::swap(size_, other.size_);
+  return *this;
+}
+
+void MappedFile::advise_sequential() const {
+  if (data_ != nullptr) ::madvise(data_, size_, MADV_SEQUENTIAL);
+}
+
+void MappedFile::release(std::uint64_t offset, std::uint64_t size) const {
+  constexpr std::uint64_t k_page = 4096;
+  const std::uint64_t first = (offset + k_page - 1) / k_page * k_page;
+  const std::uint64_t end = (offset + size) / k_page * k_page;
+  if (data_ != nullptr && first < end) ::madvise(data_ + first, end - first, MADV_DONTNEED);
+}
+
+}  // namespace meshfarm
