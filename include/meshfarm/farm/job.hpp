@@ -1,0 +1,60 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <meshfarm/staging/stage.hpp>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace meshfarm {
+
+/// Names a job by its content: checksum of kind, inputs and parameters. The same work has the same
+/// key in every run, so an accepted result is found again by a restarted or a repeated run.
+struct JobKey {
+  std::uint64_t value = 0;
+  friend auto operator<=>(const JobKey&, const JobKey&) = default;
+};
+
+/// A unit of work. To the farm `kind` and `parameters` are opaque.
+struct Job {
+  std::string kind;               // "simplify"
+  std::vector<FileRef> inputs;    // in the stage
+  std::string parameters;         // bytes that the job's function decodes
+  std::uint64_t cost = 0;         // estimated work, in triangles
+};
+
+JobKey key_of(const Job& job);
+
+/// What a job made: one staged file, and a few bytes about it that travel with the message.
+struct JobOutput {
+  FileRef file;
+  std::string summary;  // <= 16 KiB, opaque to the farm
+};
+
+/// What a job's function is given beside the job.
+struct JobContext {
+  const Stage& stage;
+  std::uint32_t attempt = 1;
+  std::uint64_t incarnation = 0;  // of the worker: result names carry it
+  /// Counts work done, in triangles; returns false when the job is to be given up.
+  std::function<bool(std::uint64_t done)> progress;
+};
+
+/// Does a job: reads its inputs, publishes its output under a ResultName of the job's key, the
+/// attempt and the incarnation. Doing it twice is harmless. Throws Error on failure.
+using JobFunction = std::function<JobOutput(const Job&, const JobContext&)>;
+
+struct AcceptedJob {
+  JobKey key;
+  JobOutput output;
+};
+
+/// The next round of jobs once all jobs of the rounds before are accepted (their outputs, in the
+/// order in which they were asked for); none when the run's farmed work is complete.
+/// Pure: ventilator and sink each ask their own copy and must get the same answer.
+using JobSource = std::function<std::vector<Job>(std::span<const AcceptedJob> accepted)>;
+
+}  // namespace meshfarm

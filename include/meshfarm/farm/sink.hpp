@@ -1,0 +1,35 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <atomic>
+#include <chrono>
+#include <cstdint>
+#include <functional>
+#include <meshfarm/farm/job.hpp>
+#include <meshfarm/staging/stage.hpp>
+#include <span>
+#include <string>
+
+namespace meshfarm {
+
+struct SinkOptions {
+  std::string bind = "127.0.0.1";
+  std::uint16_t first_port = 0;  // 0: any
+  std::uint16_t last_port = 0;
+  std::uint64_t run = 0;         // must be the ventilator's
+  std::chrono::milliseconds patience{60'000};  // how long to look for a ventilator
+  const std::atomic<bool>* stop = nullptr;
+};
+
+/// Collects results: verifies each file, journals it, tells the ventilator, until every job that
+/// `source` wants is accepted; results accepted by an earlier incarnation or run are taken from the
+/// journals after their files are verified again. Then calls `complete` with the outputs in the
+/// order in which `source` asked for the jobs, while it stays in touch with the ventilator, and
+/// tells the ventilator that the run is over.
+/// Throws IncompleteError when stopped or when the ventilator is lost, DataError when jobs failed
+/// for good.
+void run_sink(const Stage& stage, const JobSource& source, const SinkOptions& options,
+              const std::function<void(std::span<const AcceptedJob>)>& complete);
+
+}  // namespace meshfarm

@@ -1,0 +1,36 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <meshfarm/util/file.hpp>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace meshfarm {
+
+/// An append-only log with one writer, made anew by each incarnation of it.
+class JournalWriter {
+ public:
+  /// Makes the file; it must not exist. Throws IoError.
+  explicit JournalWriter(std::filesystem::path path);
+  /// Returns once the record is on the disk.
+  void append(std::string_view record);
+
+ private:
+  std::filesystem::path path_;
+  Fd fd_;
+};
+
+struct JournalContent {
+  std::vector<std::string> records;
+  std::uint64_t torn_bytes = 0;  // at the end, after the last whole record
+};
+
+/// The whole records in order; a torn or damaged tail is dropped and counted.
+/// Throws DataError if the file is no journal at all.
+JournalContent parse_journal(std::string_view bytes, std::string_view what);
+
+}  // namespace meshfarm

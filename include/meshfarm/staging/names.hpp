@@ -1,0 +1,49 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <variant>
+
+namespace meshfarm {
+
+/// All names in a stage are made and parsed here, relative to the stage's folder:
+///
+///   manifest                          what the cut made; published last, never changed
+///   boundary                          the boundary triangles
+///   parts/000123.part                 a sub-mesh
+///   results/KEY.aATTEMPT.INCARNATION  a job's output; KEY names the job by content, 16 hex digits
+///   journal/000001                    accepted results, one file a sink incarnation
+///   control/000001.endpoint           where a ventilator listens, one file an epoch
+struct ManifestName {};
+struct BoundaryName {};
+struct PartName {
+  std::uint32_t part = 0;
+};
+struct ResultName {
+  std::uint64_t key = 0;
+  std::uint32_t attempt = 0;
+  std::uint64_t incarnation = 0;
+};
+struct JournalName {
+  std::uint32_t number = 0;
+};
+struct EndpointName {
+  std::uint32_t epoch = 0;
+};
+using StagedName =
+    std::variant<ManifestName, BoundaryName, PartName, ResultName, JournalName, EndpointName>;
+
+std::string to_string(const StagedName& name);
+/// The name that to_string made; nothing for any other text.
+std::optional<StagedName> parse_staged_name(std::string_view text);
+
+/// The folders of a stage, all made before a run starts: workers make none.
+inline constexpr std::array<std::string_view, 4> k_stage_folders = {"parts", "results", "journal",
+                                                                    "control"};
+
+}  // namespace meshfarm

@@ -1,0 +1,63 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <meshfarm/staging/names.hpp>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace meshfarm {
+
+/// A staged file as others are told of it: the reader checks size and checksum.
+struct FileRef {
+  std::string name;  // relative to the stage, as made by staging/names.hpp
+  std::uint64_t size = 0;
+  std::uint64_t hash = 0;
+  friend bool operator==(const FileRef&, const FileRef&) = default;
+};
+
+/// How patient a reader is with a file that it was told of but does not see whole (NFS).
+struct ReadPatience {
+  int attempts = 5;
+  int first_wait_ms = 50;  // doubles each time
+};
+
+/// The shared folder of one dataset.
+class Stage {
+ public:
+  /// Makes the folder and its sub-folders where they are missing. Throws IoError.
+  static Stage create(const std::filesystem::path& root);
+  /// An existing stage. Throws DataError if the folder holds no manifest.
+  static Stage open(const std::filesystem::path& root);
+
+  const std::filesystem::path& root() const { return root_; }
+  std::filesystem::path path(const StagedName& name) const { return root_ / to_string(name); }
+  bool has_manifest() const;
+
+  /// Publishes the bytes under a name never used before, whole and synced.
+  /// `unique` (an incarnation) keeps the temporary names of two writers apart.
+  FileRef publish(const StagedName& name, std::string_view bytes, std::string_view unique = {}) const;
+
+  /// Reads a file that a message told of: its name must parse, it is opened beneath the stage only,
+  /// and size and checksum must match; stale NFS answers are tried again. Throws DataError, IoError.
+  std::string read(const FileRef& file, const ReadPatience& patience = {}) const;
+  /// Reads a file known by name only; its seal is the check.
+  std::string read(const StagedName& name) const;
+
+  /// The numbers of the journals or endpoints there are, ascending. Lists the folder, which also
+  /// makes an NFS client look again.
+  std::vector<std::uint32_t> journals() const;
+  std::vector<std::uint32_t> epochs() const;
+
+  void remove(const StagedName& name) const noexcept;
+
+ private:
+  explicit Stage(std::filesystem::path root) : root_(std::move(root)) {}
+  std::filesystem::path root_;
+};
+
+}  // namespace meshfarm

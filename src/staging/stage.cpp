@@ -1,0 +1,152 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#include <fcntl.h>
+#include <linux/openat2.h>
+#include <sys/syscall.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <chrono>
+#include <meshfarm/staging/atomic_file.hpp>
+#include <meshfarm/staging/stage.hpp>
+#include <meshfarm/util/checksum.hpp>
+#include <meshfarm/util/errors.hpp>
+#include <thread>
+
+namespace meshfarm {
+namespace {
+
+/// Opens `name` beneath `root`: no symbolic link and no ".." leads out. Where the kernel has no
+/// openat2 the name's grammar alone, which has neither, must do.
+Fd open_beneath(const std::filesystem::path& root, const std::string& name) {
+  const Fd folder(::open(root.c_str(), O_PATH | O_DIRECTORY | O_CLOEXEC));
+  if (!folder) throw_errno("cannot open", root);
+  open_how how{};
+  how.flags = O_RDONLY | O_CLOEXEC;
+  how.resolve = RESOLVE_BENEATH | RESOLVE_NO_SYMLINKS | RESOLVE_NO_MAGICLINKS;
+  Fd fd(static_cast<int>(
+      ::syscall(SYS_openat2, folder.get(), name.c_str(), &how, sizeof how)));
+  if (!fd && errno == ENOSYS) {
+    fd = Fd(::openat(folder.get(), name.c_str(), O_RDONLY | O_NOFOLLOW | O_CLOEXEC));
+  }
+  if (!fd) throw_errno("cannot open", root / name);
+  return fd;
+}
+
+/// Lists a folder: an NFS client that remembers that a name was not there asks the server again.
+void refresh(const std::filesystem::path& folder) {
+  std::error_code ignored;
+  for (auto entry = std::filesystem::directory_iterator(folder, ignored);
+       !ignored && entry != std::filesystem::directory_iterator(); entry.increment(ignored)) {
+  }
+}
+
+bool may_pass(int error_number) {
+  return error_number == ENOENT || error_number == ESTALE || error_number == EIO;
+}
+
+std::string read_once(const std::filesystem::path& root, const FileRef& file) {
+  const std::filesystem::path path = root / file.name;
+  const Fd fd = open_beneath(root, file.name);
+  const std::uint64_t size = file_size(fd.get(), path);
+  if (size != file.size) {
+    throw DataError(path.string() + ": " + std::to_string(size) + " bytes where " +
+                    std::to_string(file.size) + " were promised");
+  }
+  std::string bytes = read_file(fd.get(), path);
+  if (bytes.size() != file.size || checksum(bytes) != file.hash) {
+    throw DataError(path.string() + ": damaged (its checksum is not the promised one)");
+  }
+  return bytes;
+}
+
+template <class Name, class Number>
+std::vector<std::uint32_t> numbers_in(const std::filesystem::path& root, std::string_view folder,
+                                      Number number) {
+  std::vector<std::uint32_t> found;
+  std::error_code error;
+  for (const auto& entry : std::filesystem::directory_iterator(root / folder, error)) {
+    const auto name =
+        parse_staged_name(std::string(folder) + "/" + entry.path().filename().string());
+    if (name && std::holds_alternative<Name>(*name)) found.push_back(number(std::get<Name>(*name)));
+  }
+  if (error) throw IoError("cannot list", root / folder, error.value());
+  std::sort(found.begin(), found.end());
+  return found;
+}
+
+}  // namespace
+
+Stage Stage::create(const std::filesystem::path& root) {
+  std::error_code error;
+  std::filesystem::create_directories(root, error);
+  for (const std::string_view folder : k_stage_folders) {
+    if (!error) std::filesystem::create_directories(root / folder, error);
+  }
+  if (error) throw IoError("cannot make the stage", root, error.value());
+  return Stage(root);
+}
+
+Stage Stage::open(const std::filesystem::path& root) {
+  Stage stage(root);
+  std::error_code error;
+  if (!std::filesystem::is_directory(root, error)) {
+    throw DataError(root.string() + ": no such folder; make a stage with 'meshfarm cut'");
+  }
+  if (!stage.has_manifest()) {
+    throw DataError(root.string() +
+                    ": holds no manifest, so it is no stage or its cut did not end; "
+                    "make it with 'meshfarm cut'");
+  }
+  return stage;
+}
+
+bool Stage::has_manifest() const {
+  std::error_code error;
+  return std::filesystem::exists(path(ManifestName{}), error);
+}
+
+FileRef Stage::publish(const StagedName& name, std::string_view bytes,
+                       std::string_view unique) const {
+  AtomicFile file(path(name), unique);
+  file.write(bytes);
+  file.commit();
+  return {to_string(name), bytes.size(), checksum(bytes)};
+}
+
+std::string Stage::read(const FileRef& file, const ReadPatience& patience) const {
+  const auto name = parse_staged_name(file.name);
+  if (!name) throw DataError("'" + file.name + "' is not a staged name");
+  int wait_ms = patience.first_wait_ms;
+  for (int attempt = 1;; ++attempt, wait_ms *= 2) {
+    try {
+      return read_once(root_, file);
+    } catch (const IoError& error) {
+      if (!may_pass(error.error_number()) || attempt >= patience.attempts) throw;
+    } catch (const DataError&) {
+      if (attempt >= patience.attempts) throw;
+    }
+    std::this_thread::sleep_for(std::chrono::milliseconds(wait_ms));
+    refresh(path(*name).parent_path());
+  }
+}
+
+std::string Stage::read(const StagedName& name) const {
+  return read_file(open_beneath(root_, to_string(name)).get(), path(name));
+}
+
+std::vector<std::uint32_t> Stage::journals() const {
+  return numbers_in<JournalName>(root_, "journal", [](JournalName n) { return n.number; });
+}
+
+std::vector<std::uint32_t> Stage::epochs() const {
+  return numbers_in<EndpointName>(root_, "control", [](EndpointName n) { return n.epoch; });
+}
+
+void Stage::remove(const StagedName& name) const noexcept {
+  std::error_code ignored;
+  std::filesystem::remove(path(name), ignored);
+}
+
+}  // namespace meshfarm
