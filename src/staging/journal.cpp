@@ -33,10 +33,17 @@ JournalWriter::JournalWriter(std::filesystem::path path) : path_(std::move(path)
 }
 
 void JournalWriter::append(std::string_view record) {
+  const std::string one(record);
+  append_all({&one, 1});
+}
+
+void JournalWriter::append_all(std::span<const std::string> records) {
   ByteWriter out;
-  out.put(static_cast<std::uint32_t>(record.size()));
-  out.put(checksum(record));
-  out.put_array(std::span<const char>(record));
+  for (const std::string& record : records) {
+    out.put(static_cast<std::uint32_t>(record.size()));
+    out.put(checksum(record));
+    out.put_array(std::span<const char>(record));
+  }
   write_all(fd_.get(), out.bytes(), path_);
   if (::fsync(fd_.get()) != 0) throw_errno("cannot sync the journal", path_);
 }

@@ -149,4 +149,22 @@ void Stage::remove(const StagedName& name) const noexcept {
   std::filesystem::remove(path(name), ignored);
 }
 
+void remove_stage(const std::filesystem::path& root) {
+  std::error_code ignored;
+  const auto staged = [](const std::string& name) {
+    const bool temporary = name.find("/.") != std::string::npos && name.ends_with(".tmp");
+    return temporary || parse_staged_name(name).has_value();
+  };
+  for (const std::string_view folder : k_stage_folders) {
+    for (const auto& entry : std::filesystem::directory_iterator(root / folder, ignored)) {
+      const std::string name = std::string(folder) + "/" + entry.path().filename().string();
+      if (staged(name)) std::filesystem::remove(entry.path(), ignored);
+    }
+    std::filesystem::remove(root / folder, ignored);
+  }
+  std::filesystem::remove(root / to_string(ManifestName{}), ignored);
+  std::filesystem::remove(root / to_string(BoundaryName{}), ignored);
+  std::filesystem::remove(root, ignored);
+}
+
 }  // namespace meshfarm

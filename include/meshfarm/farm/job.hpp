@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <functional>
 #include <meshfarm/staging/stage.hpp>
+#include <meshfarm/util/errors.hpp>
 #include <span>
 #include <string>
 #include <vector>
@@ -41,6 +42,13 @@ struct JobContext {
   std::uint64_t incarnation = 0;  // of the worker: result names carry it
   /// Counts work done, in triangles; returns false when the job is to be given up.
   std::function<bool(std::uint64_t done)> progress;
+};
+
+/// Thrown by a job's function when the job's input can never be done, whoever tries: the job is
+/// given up at once. Any other exception fails this attempt only.
+class BadInputError : public DataError {
+ public:
+  using DataError::DataError;
 };
 
 /// Does a job: reads its inputs, publishes its output under a ResultName of the job's key, the

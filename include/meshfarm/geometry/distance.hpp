@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+
 #include <meshfarm/geometry/mesh.hpp>
 
 namespace meshfarm {

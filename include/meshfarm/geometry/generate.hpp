@@ -4,14 +4,15 @@
 
 #include <cstdint>
 #include <functional>
-#include <meshfarm/geometry/mesh.hpp>
 #include <span>
+
+#include <meshfarm/geometry/mesh.hpp>
 
 namespace meshfarm {
 
 /// A procedural closed surface of any size, made row by row: a torus with bumps of several
-/// octaves and flat stretches, so that neighbouring regions deserve very different numbers of triangles.
-/// Closed, oriented, one component, Euler characteristic 0.
+/// octaves and flat stretches, so that neighbouring regions deserve very different numbers of
+/// triangles. Closed, oriented, one component, Euler characteristic 0.
 class BumpyTorus {
  public:
   /// The number of triangles is the nearest that a grid gives: 2 * rows * columns.

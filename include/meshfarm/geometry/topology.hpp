@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+
 #include <meshfarm/geometry/mesh.hpp>
 
 namespace meshfarm {
@@ -11,18 +12,18 @@ namespace meshfarm {
 /// three vertices as an earlier triangle, in any order. Both are left out of the other counts,
 /// except that duplicates still count as faces and towards their edges' valence.
 struct Topology {
-  std::uint64_t vertices = 0;          // all, used or not
-  std::uint64_t used_vertices = 0;     // corners of a non-degenerate triangle
-  std::uint64_t triangles = 0;         // all
+  std::uint64_t vertices = 0;       // all, used or not
+  std::uint64_t used_vertices = 0;  // corners of a non-degenerate triangle
+  std::uint64_t triangles = 0;      // all
   std::uint64_t degenerate = 0;
-  std::uint64_t zero_area = 0;         // not degenerate by index, but of no area
+  std::uint64_t zero_area = 0;  // not degenerate by index, but of no area
   std::uint64_t duplicate = 0;
   std::uint64_t edges = 0;
-  std::uint64_t border_edges = 0;      // one triangle
-  std::uint64_t nonmanifold_edges = 0; // three triangles or more
+  std::uint64_t border_edges = 0;           // one triangle
+  std::uint64_t nonmanifold_edges = 0;      // three triangles or more
   std::uint64_t orientation_conflicts = 0;  // a directed edge used twice
-  std::uint64_t components = 0;        // of used vertices joined by triangles
-  std::int64_t euler = 0;              // used vertices - edges + non-degenerate triangles
+  std::uint64_t components = 0;             // of used vertices joined by triangles
+  std::int64_t euler = 0;                   // used vertices - edges + non-degenerate triangles
 };
 
 /// Measures `mesh`. Memory: about 40 bytes a triangle.

@@ -7,10 +7,11 @@
 #include <filesystem>
 #include <functional>
 #include <memory>
-#include <meshfarm/geometry/mesh.hpp>
 #include <span>
 #include <string>
 #include <vector>
+
+#include <meshfarm/geometry/mesh.hpp>
 
 namespace meshfarm {
 
@@ -29,8 +30,9 @@ struct MeshFileInfo {
 
 /// A mesh file that is read by scanning, as often as wanted, in memory that does not depend on its
 /// size: plain files are memory-mapped, compressed ones (told by content) decompressed on the way.
-/// Polygons come as fans, tristrips as their triangles.
-/// Malformed input throws DataError with the place: element, index, byte.
+/// Polygons come as fans, tristrips as their triangles; a mesh without faces has no triangles.
+/// Malformed input throws DataError with the place: element, index, byte (of the decompressed file)
+/// or line. Only a scan of both vertices and triangles has seen all of the file.
 class MeshSource {
  public:
   virtual ~MeshSource() = default;
@@ -39,9 +41,12 @@ class MeshSource {
   virtual void scan_vertices(const std::function<void(std::span<const Vec3>)>& take) = 0;
   /// All triangles in file order, in batches. Every index is below info().vertices.
   virtual void scan_triangles(const std::function<void(std::span<const WideTriangle>)>& take) = 0;
+  /// How many faces had fewer than three corners and were left out by the last scan_triangles().
+  virtual std::uint64_t small_faces() const { return 0; }
 };
 
-/// Opens a mesh file by its content. Throws IoError, or DataError for an unknown format.
+/// Opens a mesh file by its content. Throws IoError, or DataError for an unknown format, a
+/// malformed header, or one that claims more than the file can hold.
 std::unique_ptr<MeshSource> open_mesh(const std::filesystem::path& path);
 
 /// Reads a whole mesh into memory. Throws DataError if it has 2^32 vertices or more.

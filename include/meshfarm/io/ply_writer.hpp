@@ -5,18 +5,19 @@
 #include <cstdint>
 #include <filesystem>
 #include <memory>
-#include <meshfarm/geometry/mesh.hpp>
-#include <meshfarm/io/mesh_source.hpp>
 #include <span>
 #include <string>
+
+#include <meshfarm/geometry/mesh.hpp>
+#include <meshfarm/io/mesh_source.hpp>
 
 namespace meshfarm {
 
 struct PlyWriterOptions {
-  std::uint64_t vertices = 0;   // exactly as many must be written
+  std::uint64_t vertices = 0;  // exactly as many must be written
   std::uint64_t triangles = 0;
   PositionType positions = PositionType::float32;
-  std::string comment;          // one line, may be empty
+  std::string comment;  // one line, may be empty
 };
 
 /// Writes a binary little endian PLY through a bounded buffer: all vertices, then all triangles.

@@ -60,4 +60,7 @@ class Stage {
   std::filesystem::path root_;
 };
 
+/// Removes what a stage holds, and its folder if nothing else is in it.
+void remove_stage(const std::filesystem::path& root);
+
 }  // namespace meshfarm

@@ -1,0 +1,148 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <meshfarm/farm/plan.hpp>
+#include <meshfarm/farm/protocol.hpp>
+#include <meshfarm/farm/ventilator.hpp>
+#include <optional>
+#include <set>
+#include <string>
+#include <unordered_map>
+#include <utility>
+#include <variant>
+#include <vector>
+
+namespace meshfarm {
+
+/// A peer on the control channel, as its transport names it.
+using PeerId = std::string;
+
+struct SendTo {
+  PeerId peer;
+  Message message;
+};
+/// Answered by lane_opened() or lane_failed().
+struct OpenLane {
+  WorkerId worker;
+};
+struct CloseLane {
+  WorkerId worker;
+};
+struct PushJob {
+  WorkerId worker;
+  Assignment assignment;
+};
+/// The ventilator's work is over; `failure` says why the run could not be completed.
+struct Finish {
+  std::string failure;
+};
+using Action = std::variant<SendTo, OpenLane, CloseLane, PushJob, Finish>;
+using Actions = std::vector<Action>;
+
+struct DispatcherOptions {
+  std::uint64_t run = 0;
+  std::uint32_t epoch = 0;
+  FarmTime heartbeat{1000};
+};
+
+/// The ventilator's mind: who is there, who holds what, who gets what. Pure: fed with messages and
+/// the time, it answers with what to do, in order; the simulator runs the same class.
+/// Holds: a worker is never sent a job beyond its credit, nor one while another holds it.
+class Dispatcher {
+ public:
+  Dispatcher(Plan plan, DispatcherOptions options)
+      : plan_(std::move(plan)), options_(options) {}
+
+  Actions on_message(const PeerId& peer, const Message& message, FarmTime now);
+  Actions lane_opened(WorkerId worker, const std::string& address);
+  Actions lane_failed(WorkerId worker, const std::string& reason);
+  /// To be called about twice a heartbeat, when all messages that are there have been given.
+  Actions tick(FarmTime now);
+  /// Tells everybody that this ventilator leaves before the end.
+  Actions leave();
+
+  const Plan& plan() const { return plan_; }
+  FarmProgress progress() const;
+  std::uint64_t dropped() const { return dropped_; }
+
+ private:
+  struct Held {
+    JobKey key;
+    std::uint32_t attempt = 0;
+  };
+  struct Worker {
+    PeerId peer;
+    std::uint64_t incarnation = 0;
+    std::string host;
+    std::string lane;  // empty until it is open
+    FarmTime heard{0};
+    FarmTime pushed{0};
+    std::uint64_t credit = 0;
+    std::uint64_t sent = 0;
+    std::vector<Held> held;              // as sent; the first is the one in work
+    std::optional<std::size_t> willing;  // its rank in willing_
+  };
+  struct Sink {
+    PeerId peer;
+    std::uint64_t incarnation = 0;
+    std::string results;
+    FarmTime heard{0};
+    bool ready = false;
+    std::map<JobKey, JobOutput> told;
+  };
+  enum class Blame { none, first_held };
+
+  template <class M>
+  void on(const PeerId&, const M&) { ++dropped_; }  // not for the ventilator
+  void on(const PeerId& peer, const Hello& hello);
+  void on(const PeerId& peer, const Heartbeat& beat);
+  void on(const PeerId& peer, const Credit& credit);
+  void on(const PeerId& peer, const Release& release);
+  void on(const PeerId& peer, const Accept& accept);
+  void on(const PeerId& peer, const Reject& reject);
+  void on(const PeerId& peer, const Ready& ready);
+  void on(const PeerId& peer, const Complete& complete);
+  void on(const PeerId& peer, const Failed& failed);
+
+  void worker_joins(const PeerId& peer, const Hello& hello);
+  void sink_joins(const PeerId& peer, const Hello& hello);
+  void welcome(WorkerId id, const Worker& worker);
+  Worker* worker_at(const PeerId& peer, WorkerId id, std::uint32_t epoch);
+  bool from_sink(const PeerId& peer, std::uint32_t epoch);
+  void hear(WorkerId id, Worker& worker);
+  void lose(WorkerId id, const std::string& reason, Blame blame);
+  void lose_sink();
+  void settle(JobKey key, WorkerId reporter);
+  void fail(JobKey key, const std::string& reason, bool for_good);
+  void rank(WorkerId id, Worker& worker);
+  void issue();
+  void look_for_end();
+  void finish(const std::string& failure);
+  void to_workers(const Message& message);
+  void send(const PeerId& peer, Message message) { out_.push_back(SendTo{peer, std::move(message)}); }
+  Actions take() { return std::exchange(out_, {}); }
+
+  Plan plan_;
+  DispatcherOptions options_;
+  FarmTime now_{0};
+  Actions out_;
+  std::uint32_t next_worker_ = 1;
+  std::map<WorkerId, Worker> workers_;
+  std::unordered_map<PeerId, WorkerId> by_peer_;
+  std::unordered_map<std::uint64_t, WorkerId> by_incarnation_;
+  std::set<std::pair<FarmTime, WorkerId>> by_heard_;
+  std::set<std::pair<std::size_t, WorkerId>> willing_;  // may be sent a job; the least laden first
+  std::unordered_map<JobKey, WorkerId, JobKeyHash> holder_;
+  std::optional<Sink> sink_;
+  std::uint64_t last_sink_ = 0;  // incarnation
+  std::set<std::uint64_t> replaced_sinks_;
+  bool over_ = false;
+  bool finished_ = false;
+  std::uint64_t dropped_ = 0;
+  std::uint32_t lost_workers_ = 0;
+};
+
+}  // namespace meshfarm

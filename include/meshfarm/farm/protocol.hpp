@@ -1,0 +1,166 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+//
+// All that ventilator (V), workers (W) and sink (S) say to each other. Version 1.
+//
+//   frame   = "MFMS" | version u16 | type u16 | body      one message a frame, one frame a message
+//   body    = the fields of the struct in the order of their declaration, little endian
+//   text    = length u32 | bytes       list = count u32 | elements       yes/no, choice = u8
+//
+// Channels: control is V's ROUTER with a DEALER in every W and S; a lane is V's PUSH to one W's PULL;
+// results is every W's PUSH to S's PULL. A frame that does not decode, comes from nobody known or
+// from another run or an older epoch is dropped and counted.
+//
+//   joining    W,S -> V  Hello (repeated until answered)     V -> W,S  Welcome | Refused
+//   alive      W,S -> V  Heartbeat                           V -> W,S  Alive
+//   flow       W -> V    Credit, Release                     V -> W    Assignment (on the lane)
+//   results    W -> S    Result (repeated until Done)        S -> V    Accept | Reject
+//              V -> W    Done: the result may be forgotten
+//   sink       S -> V    an Accept for all it has, Ready     V -> W    SinkAt
+//   the end    V -> W,S  Stop       V -> S  JobFailed        S -> V    Complete | Failed
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <meshfarm/farm/job.hpp>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+namespace meshfarm {
+
+inline constexpr std::uint16_t k_protocol_version = 1;
+inline constexpr std::size_t k_max_frame_bytes = 64 * 1024;
+inline constexpr std::size_t k_max_text_bytes = 1024;             // names, addresses, reasons
+inline constexpr std::size_t k_max_summary_bytes = 16 * 1024;     // JobOutput::summary
+inline constexpr std::size_t k_max_parameters_bytes = 32 * 1024;  // Job::parameters
+inline constexpr std::size_t k_max_list = 4096;                   // Job::inputs
+
+/// Time as the farm's state machines see it: since any fixed moment, never going back.
+using FarmTime = std::chrono::milliseconds;
+
+/// Names a worker's membership in one epoch; one that joins again gets another.
+struct WorkerId {
+  std::uint32_t value = 0;
+  friend auto operator<=>(const WorkerId&, const WorkerId&) = default;
+};
+
+enum class Role : std::uint8_t { worker = 1, sink = 2 };
+/// stranger: say Hello again. full: try again later. The others are final.
+enum class Refusal : std::uint8_t { stranger = 1, full = 2, other_run = 3, replaced = 4 };
+/// run_over: all is done (or given up). leaving: the ventilator was stopped; another may come.
+enum class StopReason : std::uint8_t { run_over = 1, leaving = 2 };
+
+struct Hello {
+  Role role = Role::worker;
+  std::uint64_t run = 0;  // 0: a worker takes whichever there is
+  std::uint64_t incarnation = 0;
+  std::uint32_t pid = 0;
+  std::string host;
+  std::string results;  // the sink's address
+};
+struct Welcome {
+  WorkerId worker;  // 0 to the sink
+  std::uint32_t epoch = 0;
+  std::uint64_t run = 0;
+  std::string lane;
+  std::string sink;  // empty as long as there is none
+  std::uint32_t heartbeat_ms = 0;
+};
+struct Refused {
+  Refusal why = Refusal::stranger;
+  std::string reason;
+};
+struct Heartbeat {
+  std::uint32_t epoch = 0;
+  WorkerId worker;
+  std::uint32_t held = 0;      // jobs not yet finished
+  std::uint64_t received = 0;  // the last lane number seen
+  std::uint64_t progress = 0;  // of the compute thread; stands still if that hangs
+};
+struct Alive {
+  std::uint32_t epoch = 0;
+};
+/// "I can hold what the lane brings up to this number": absolute, so loss and repetition do no harm.
+struct Credit {
+  std::uint32_t epoch = 0;
+  WorkerId worker;
+  std::uint64_t up_to = 0;
+};
+/// The worker leaves and gives back all it holds.
+struct Release {
+  std::uint32_t epoch = 0;
+  WorkerId worker;
+};
+struct Assignment {
+  std::uint64_t run = 0;
+  std::uint32_t epoch = 0;
+  std::uint64_t lane_seq = 0;  // 1, 2, 3... on each lane
+  std::uint32_t attempt = 0;
+  Job job;
+};
+struct JobFailure {
+  std::string reason;
+  bool for_good = false;  // no other attempt can do better
+};
+struct Result {
+  std::uint64_t run = 0;
+  std::uint32_t epoch = 0;
+  WorkerId worker;
+  std::uint64_t incarnation = 0;
+  std::uint32_t attempt = 0;
+  JobKey key;
+  std::variant<JobOutput, JobFailure> outcome;
+};
+struct Accept {
+  std::uint32_t epoch = 0;
+  WorkerId worker;  // whose Result this answers, 0: none
+  JobKey key;
+  JobOutput output;
+};
+struct Reject {
+  std::uint32_t epoch = 0;
+  WorkerId worker;
+  std::uint32_t attempt = 0;
+  JobKey key;
+  JobFailure failure;
+};
+/// The sink has told all that it had accepted before.
+struct Ready {
+  std::uint32_t epoch = 0;
+};
+struct Done {
+  JobKey key;
+};
+struct SinkAt {
+  std::string results;  // empty: there is none for now
+};
+struct JobFailed {
+  JobKey key;
+  std::string reason;
+};
+struct Complete {
+  std::uint32_t epoch = 0;
+};
+struct Failed {
+  std::uint32_t epoch = 0;
+  std::string reason;
+};
+struct Stop {
+  StopReason why = StopReason::run_over;
+};
+
+/// The order gives each type its number on the wire, from 1: append only.
+using Message = std::variant<Hello, Welcome, Refused, Heartbeat, Alive, Credit, Release, Assignment,
+                             Result, Accept, Reject, Ready, Done, SinkAt, JobFailed, Complete,
+                             Failed, Stop>;
+
+/// Throws DataError if a field is longer than the protocol allows.
+std::string encode(const Message& message);
+/// The message that is the whole frame. Throws DataError otherwise; nothing else can escape.
+Message decode(std::string_view frame);
+/// Text cut to what a message can carry.
+std::string clipped(std::string_view text);
+
+}  // namespace meshfarm

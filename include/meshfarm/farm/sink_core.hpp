@@ -1,0 +1,93 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <meshfarm/farm/membership.hpp>
+#include <meshfarm/farm/protocol.hpp>
+#include <meshfarm/farm/rounds.hpp>
+#include <span>
+#include <string>
+#include <utility>
+#include <variant>
+#include <vector>
+
+namespace meshfarm {
+
+/// A result whose file is to be verified, and journalled if it is not from a journal.
+struct Check {
+  JobKey key;
+  JobOutput output;
+  WorkerId worker;            // 0: from a journal
+  std::uint32_t attempt = 0;  // 0: from a journal
+  bool from_journal = false;
+};
+/// Make the run's output of Rounds::outputs(); answered by completed().
+struct MakeOutput {};
+/// The end of the sink.
+struct SinkLeaves {
+  enum class Why { complete, incomplete, jobs_failed, output_failed };
+  Why why = Why::complete;
+  std::string message;
+};
+using SinkAction = std::variant<Look, Dial, HangUp, Say, Check, MakeOutput, SinkLeaves>;
+using SinkActions = std::vector<SinkAction>;
+
+/// The sink's mind: what is wanted, what is accepted, what the ventilator has been told. Pure.
+/// Holds: a job is accepted once, and told only after checked() said that it is verified and on disk.
+class SinkCore {
+ public:
+  /// `journal`: what earlier sinks accepted; believed after its files are checked again.
+  SinkCore(MemberOptions member, JobSource source, std::map<JobKey, JobOutput> journal)
+      : member_(std::move(member)), rounds_(std::move(source)), journal_(std::move(journal)) {}
+
+  SinkActions tick(FarmTime now);
+  SinkActions found(std::span<const Endpoint> endpoints, FarmTime now);
+  SinkActions on_control(const Message& message, FarmTime now);
+  SinkActions on_result(const Message& message);
+  /// The answer to a Check: `problem` is empty if the file is whole and the record is on the disk.
+  SinkActions checked(const Check& check, const std::string& problem);
+  /// The answer to MakeOutput.
+  SinkActions completed(const std::string& problem, FarmTime now);
+  /// Tells the ventilator that this sink cannot go on (its journal cannot be written).
+  SinkActions fail(const std::string& problem);
+  SinkActions stop();
+
+  const Rounds& rounds() const { return rounds_; }
+  FarmTime heartbeat() const { return member_.heartbeat(); }
+  std::uint64_t dropped() const { return dropped_; }
+
+ private:
+  enum class Phase { collecting, making_output, saying_complete, saying_failed, left };
+
+  void on(Membership::Event event, FarmTime now);
+  void run_over();
+  void take_result(const Result& result);
+  void want();
+  void tell_all();
+  void tell(JobKey key, WorkerId worker);
+  void leave(SinkLeaves::Why why, std::string message);
+  std::string list_failed() const;
+  template <class A>
+  void act(A action) { out_.push_back(std::move(action)); }
+  void say(Message message) { out_.push_back(Say{std::move(message)}); }
+  SinkActions take();
+
+  Membership member_;
+  Rounds rounds_;
+  std::map<JobKey, JobOutput> journal_;
+  SinkActions out_;
+  Phase phase_ = Phase::collecting;
+  bool begun_ = false;
+  bool told_all_ = false;               // to the ventilator joined now
+  std::map<JobKey, Check> checking_;
+  std::uint64_t checking_journal_ = 0;  // how many of those come from a journal
+  std::vector<JobKey> accepted_;        // in the order of acceptance
+  std::map<JobKey, std::string> failed_;
+  std::string problem_;
+  FarmTime say_until_{0};
+  std::uint64_t dropped_ = 0;
+};
+
+}  // namespace meshfarm

@@ -1,0 +1,23 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include <meshfarm/geometry/vec.hpp>
+
+namespace meshfarm {
+
+/// Which vertices are one point.
+struct WeldResult {
+  std::vector<std::uint32_t> first;  // for each vertex its lowest twin: itself if it has none below
+  std::uint64_t merged = 0;          // vertices that have a lower twin
+};
+
+/// Finds the vertices with exactly the same coordinates; -0.0 is 0.0, and what is not a number
+/// equals what has the same bits. Takes fewer than 2^32 positions. Memory: up to 20 bytes a vertex.
+WeldResult weld(std::span<const Vec3> positions);
+
+}  // namespace meshfarm

@@ -1,0 +1,26 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace meshfarm {
+
+/// A corner of a boundary triangle: a vertex by its part and its index there.
+struct BoundaryCorner {
+  std::uint32_t part = 0;
+  std::uint32_t local = 0;
+  friend auto operator<=>(const BoundaryCorner&, const BoundaryCorner&) = default;
+};
+using BoundaryTriangle = std::array<BoundaryCorner, 3>;
+
+/// The side file: every triangle whose corners lie in two or three parts
+/// (Xiong et al. 2008, 3.1 step 4).
+std::string encode_boundary(const std::vector<BoundaryTriangle>& triangles);
+std::vector<BoundaryTriangle> decode_boundary(std::string_view file, std::string_view what);
+
+}  // namespace meshfarm

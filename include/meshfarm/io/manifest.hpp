@@ -1,0 +1,47 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <meshfarm/geometry/mesh.hpp>
+#include <meshfarm/staging/stage.hpp>
+
+namespace meshfarm {
+
+/// One part as the cut made it.
+struct PartEntry {
+  FileRef file;
+  std::uint64_t vertices = 0;
+  std::uint64_t triangles = 0;
+  std::uint32_t boundary_vertices = 0;
+};
+
+/// What a cut made of one input: everything a run needs to know. Published last, never changed.
+struct Manifest {
+  std::string input;         // the path as it was given, for people
+  std::string input_format;  // "PLY ascii, gzip"
+  PositionType positions = PositionType::float32;
+  Box box;
+  std::uint64_t input_vertices = 0;
+  std::uint64_t input_triangles = 0;  // after fans and strips were made triangles
+  std::uint64_t merged_vertices = 0;  // coincident ones, by --weld exact
+  std::uint64_t dropped_degenerate = 0;
+  std::uint64_t dropped_duplicate = 0;  // boundary triangles only: workers see to the parts
+  std::vector<std::string> skipped;     // properties and elements that were not kept
+  double cut_seconds = 0;
+  std::uint64_t boundary_triangles = 0;
+  FileRef boundary;
+  std::vector<PartEntry> parts;
+
+  /// Triangles that the parts and the boundary hold.
+  std::uint64_t triangles() const;
+};
+
+std::string encode_manifest(const Manifest& manifest);
+Manifest decode_manifest(std::string_view file, std::string_view what);
+
+}  // namespace meshfarm

@@ -1,0 +1,29 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <meshfarm/farm/job.hpp>
+#include <meshfarm/io/manifest.hpp>
+#include <meshfarm/pipeline/run_options.hpp>
+#include <meshfarm/report/summary.hpp>
+#include <span>
+#include <string_view>
+
+namespace meshfarm {
+
+struct AssembleOptions {
+  std::filesystem::path output;
+  std::function<void(std::string_view phase, double done, std::uint64_t triangles)> progress;
+  const std::atomic<bool>* stop = nullptr;
+};
+
+/// The end of a run: reads the chosen rungs, stitches them in the order of the parts, finishes to
+/// the target, and writes the result. Throws IncompleteError when stopped: nothing is written then.
+RunSummary assemble(const Stage& stage, const Manifest& manifest, const RunOptions& run,
+                    std::span<const AcceptedJob> accepted, const AssembleOptions& options);
+
+}  // namespace meshfarm

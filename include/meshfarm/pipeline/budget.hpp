@@ -1,0 +1,38 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <meshfarm/farm/job.hpp>
+#include <meshfarm/io/manifest.hpp>
+#include <meshfarm/io/result_file.hpp>
+#include <meshfarm/pipeline/run_options.hpp>
+#include <span>
+#include <vector>
+
+namespace meshfarm {
+
+/// The jobs of a run, round by round (see JobSource). First every part is simplified to a ladder:
+/// snapshots at rising cost levels that are the same in all parts. From the rungs' counts one level
+/// is chosen for all. A part whose ladder begins above that level was taken too far: it is asked for
+/// again in the next round, with a finer start.
+JobSource make_job_source(const Manifest& manifest, const RunOptions& options);
+
+/// The result of a part that counts, and the rung to stitch.
+struct ChosenRung {
+  FileRef file;
+  std::uint32_t rung = 0;
+};
+
+/// What to stitch, by part, once every job of make_job_source is accepted.
+std::vector<ChosenRung> choose_rungs(const Manifest& manifest, const RunOptions& options,
+                                     std::span<const AcceptedJob> accepted);
+
+/// Of one ladder: the coarsest rung that is not above `level`, else its first.
+std::uint32_t rung_at(std::span<const Rung> ladder, std::int32_t level);
+
+/// The coarsest level at which the ladders together still hold `wanted` free triangles; the finest
+/// there is if none does.
+std::int32_t common_level(std::span<const std::vector<Rung>> ladders, std::uint64_t wanted);
+
+}  // namespace meshfarm

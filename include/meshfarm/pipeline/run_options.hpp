@@ -1,0 +1,37 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <meshfarm/io/manifest.hpp>
+
+namespace meshfarm {
+
+/// How the parts' triangles are shared out.
+enum class Allocation : std::uint8_t {
+  threshold,  // one cost threshold for all parts: flat parts end with fewer triangles
+  uniform,    // the same ratio in every part (Xiong et al. 2008)
+};
+
+/// What the last pass over the stitched mesh may touch.
+enum class Finish : std::uint8_t {
+  global,    // everything, down to the exact count
+  boundary,  // edges at boundary vertices only (Xiong et al. 2008, 3.3)
+};
+
+/// What a run is asked to make of a stage.
+struct RunOptions {
+  double ratio = 0;             // of the input's triangles; used when triangles is 0
+  std::uint64_t triangles = 0;
+  Allocation allocation = Allocation::threshold;
+  Finish finish = Finish::global;
+};
+
+/// The number of triangles that the result shall have. Throws UsageError if the options name
+/// neither a ratio in (0, 1] nor a count.
+std::uint64_t target_triangles(const Manifest& manifest, const RunOptions& options);
+
+/// Tells one run from another on the same stage.
+std::uint64_t run_key(const Manifest& manifest, const RunOptions& options);
+
+}  // namespace meshfarm

@@ -1,0 +1,37 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <meshfarm/farm/job.hpp>
+#include <meshfarm/pipeline/run_options.hpp>
+#include <string>
+#include <string_view>
+
+namespace meshfarm {
+
+inline constexpr std::string_view k_simplify_kind = "simplify";
+
+/// Parameters of a simplify job.
+struct SimplifyParameters {
+  Allocation allocation = Allocation::threshold;
+  std::uint64_t start_triangles = 0;  // the first rung: at most this many triangles
+  std::uint64_t floor_triangles = 0;  // the ladder need not go below
+  double cost_unit = 0;               // cost of level 0
+};
+
+std::string encode_parameters(const SimplifyParameters& parameters);
+SimplifyParameters decode_parameters(std::string_view bytes);
+
+/// Cost levels rise by a factor of four from `unit`; on a smooth surface that is a step of 1.6 in
+/// triangles, as a cost is an area times a squared distance.
+double level_cost(std::int32_t level, double unit);
+/// The lowest level, 0 or above, whose cost is at least `cost`.
+std::int32_t level_of(double cost, double unit);
+/// Level 0 of a mesh with this diagonal: distances of 2^-50 of it.
+double cost_unit(double diagonal);
+
+/// Simplifies one part (the job's input) to a ladder, or with Allocation::uniform to one rung.
+JobOutput simplify_part(const Job& job, const JobContext& context);
+
+}  // namespace meshfarm

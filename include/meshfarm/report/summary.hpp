@@ -1,0 +1,60 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <meshfarm/geometry/distance.hpp>
+#include <meshfarm/geometry/topology.hpp>
+#include <meshfarm/io/manifest.hpp>
+#include <meshfarm/io/mesh_source.hpp>
+#include <optional>
+#include <string>
+
+namespace meshfarm {
+
+enum class Format { text, json };
+
+/// What a run made, for people and for programs.
+struct RunSummary {
+  Manifest manifest;
+  std::string output;              // path of the result
+  std::uint64_t target = 0;        // triangles asked for
+  std::uint64_t triangles = 0;     // triangles made
+  std::uint64_t vertices = 0;
+  std::string why_not_exact;       // empty when triangles == target
+  std::uint64_t stitched = 0;      // triangles of the stitched mesh, before the finish
+  std::uint64_t dropped_degenerate = 0;  // cut, parts and finish together
+  std::uint64_t dropped_duplicate = 0;
+  double farm_seconds = 0;
+  double stitch_seconds = 0;
+  double finish_seconds = 0;
+  double write_seconds = 0;
+};
+
+/// What `info` tells of a mesh file.
+struct FileSummary {
+  std::string path;
+  MeshFileInfo file;
+  Box box;
+  std::uint64_t triangles = 0;
+  std::uint64_t short_faces = 0;  // faces with fewer than three corners, left out
+  std::optional<Topology> topology;
+};
+
+/// What `compare` tells of two meshes.
+struct Comparison {
+  std::string path_a;
+  std::string path_b;
+  double diagonal = 0;   // of A's bounding box; distances are fractions of it
+  Distance a_to_b;
+  Distance b_to_a;
+  Topology topology_a;
+  Topology topology_b;
+};
+
+std::string render(const Manifest& manifest, const std::string& stage, Format format);
+std::string render(const RunSummary& summary, Format format);
+std::string render(const FileSummary& summary, Format format);
+std::string render(const Comparison& comparison, Format format);
+
+}  // namespace meshfarm

@@ -1,0 +1,45 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <boost/program_options.hpp>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace meshfarm {
+
+namespace po = boost::program_options;
+
+/// One command of the program. The members that options are bound to hold the defaults.
+class Command {
+ public:
+  virtual ~Command() = default;
+  virtual std::string_view name() const = 0;
+  virtual std::string_view synopsis() const = 0;  // what follows the name: "INPUT -o OUTPUT"
+  virtual std::string_view summary() const = 0;   // one line for the list of commands
+  /// Declares the options; no work.
+  virtual void setup(po::options_description& options,
+                     po::positional_options_description& positional) = 0;
+  /// Checks what was parsed; throws UsageError; no work.
+  virtual void check() {}
+  /// Does it and returns the exit code.
+  virtual int run() = 0;
+};
+
+/// All commands, in the order in which `help` lists them.
+std::vector<std::unique_ptr<Command>> all_commands();
+
+std::unique_ptr<Command> make_simplify_command();
+std::unique_ptr<Command> make_cut_command();
+std::unique_ptr<Command> make_run_command();
+std::unique_ptr<Command> make_replay_command();
+std::unique_ptr<Command> make_worker_command();
+std::unique_ptr<Command> make_ventilator_command();
+std::unique_ptr<Command> make_sink_command();
+std::unique_ptr<Command> make_generate_command();
+std::unique_ptr<Command> make_info_command();
+std::unique_ptr<Command> make_compare_command();
+
+}  // namespace meshfarm

@@ -1,0 +1,132 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#include <algorithm>
+#include <cstdio>
+#include <fstream>
+#include <iostream>
+#include <meshfarm/cli/command_line.hpp>
+#include <meshfarm/util/errors.hpp>
+#include <meshfarm/util/log.hpp>
+#include <new>
+#include <sstream>
+
+#include "cli/command.hpp"
+#include "cli/version.hpp"
+
+namespace meshfarm {
+namespace {
+
+constexpr int k_done = 0;
+constexpr int k_failed = 1;
+constexpr int k_wrong_usage = 2;
+constexpr int k_incomplete = 3;
+
+std::string list_of_commands() {
+  std::ostringstream out;
+  out << "meshfarm simplifies triangle meshes that are too big for one PC, on the PCs you have.\n\n"
+         "  meshfarm COMMAND [OPTIONS]        meshfarm COMMAND --help tells of one command\n\n";
+  for (const auto& command : all_commands()) {
+    std::string name(command->name());
+    name.resize(12, ' ');
+    out << "  " << name << command->summary() << "\n";
+  }
+  out << "\nExit: 0 done, 1 failed, 2 wrong usage, 3 incomplete but resumable.\n";
+  return out.str();
+}
+
+std::string help_of(const Command& command, const po::options_description& options) {
+  std::ostringstream out;
+  out << "meshfarm " << command.name() << " " << command.synopsis() << "\n  " << command.summary()
+      << "\n\n" << options;
+  return out.str();
+}
+
+std::unique_ptr<Command> find_command(std::string_view name) {
+  for (auto& command : all_commands()) {
+    if (command->name() == name) return std::move(command);
+  }
+  throw UsageError("unknown command '" + std::string(name) +
+                   "'; 'meshfarm help' lists the commands");
+}
+
+/// Options of the config file have the names of the command line; the command line wins.
+void read_config(const std::string& path, const po::options_description& options,
+                 po::variables_map& values) {
+  std::ifstream file(path);
+  if (!file) throw_errno("cannot open", path);
+  po::store(po::parse_config_file(file, options), values);
+}
+
+/// Positional arguments are options without a description: shown in the synopsis, not in the list.
+po::options_description described_only(const po::options_description& all) {
+  po::options_description shown("Options");
+  for (const auto& option : all.options()) {
+    if (!option->description().empty()) shown.add(option);
+  }
+  return shown;
+}
+
+int run_command(Command& command, const std::vector<std::string>& words) {
+  po::options_description options("Options", 100, 50);
+  po::positional_options_description positional;
+  command.setup(options, positional);
+  std::string config;
+  options.add_options()
+      ("config", po::value(&config)->value_name("FILE"), "read options from a file, NAME = VALUE")
+      ("help,h", "this text");
+  po::variables_map values;
+  po::store(po::command_line_parser(words).options(options).positional(positional).run(), values);
+  if (values.count("help") != 0) {
+    std::cout << help_of(command, described_only(options));
+    return k_done;
+  }
+  if (values.count("config") != 0) {
+    read_config(values["config"].as<std::string>(), options, values);
+  }
+  po::notify(values);
+  command.check();
+  return command.run();
+}
+
+int dispatch(const std::vector<std::string>& words) {
+  if (words.empty() || words[0] == "help" || words[0] == "--help" || words[0] == "-h") {
+    if (words.size() > 1) return run_command(*find_command(words[1]), {"--help"});
+    (words.empty() ? std::cerr : std::cout) << list_of_commands();
+    return words.empty() ? k_wrong_usage : k_done;
+  }
+  if (words[0] == "--version") {
+    std::cout << "meshfarm " << k_version << "\n";
+    return k_done;
+  }
+  const auto command = find_command(words[0]);
+  set_log(words[0], LogLevel::info);
+  return run_command(*command, {words.begin() + 1, words.end()});
+}
+
+}  // namespace
+
+int run_command_line(int argc, const char* const* argv) {
+  try {
+    const int code = dispatch({argv + std::min(1, argc), argv + argc});
+    std::cout.flush();
+    if (!std::cout) throw Error("cannot write to standard output");
+    return code;
+  } catch (const UsageError& error) {
+    log_error(error.what());
+    return k_wrong_usage;
+  } catch (const po::error& error) {
+    log_error(error.what());
+    return k_wrong_usage;
+  } catch (const IncompleteError& error) {
+    log_error(error.what());
+    return k_incomplete;
+  } catch (const std::bad_alloc&) {
+    log_error("out of memory; more --parts make smaller parts");
+    return k_failed;
+  } catch (const std::exception& error) {
+    log_error(error.what());
+    return k_failed;
+  }
+}
+
+}  // namespace meshfarm

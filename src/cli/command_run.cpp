@@ -1,0 +1,84 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#include <filesystem>
+#include <meshfarm/util/errors.hpp>
+#include <meshfarm/util/log.hpp>
+
+#include "cli/command.hpp"
+#include "cli/cut_step.hpp"
+#include "cli/local_farm.hpp"
+#include "cli/options.hpp"
+#include "cli/signals.hpp"
+
+namespace meshfarm {
+namespace {
+
+/// `run` serves workers of any host; `replay` brings its own. The rest is the same.
+enum class Workers { of_any_host, own };
+
+class RunCommand : public Command {
+ public:
+  explicit RunCommand(Workers whose)
+      : whose_(whose), workers_(whose == Workers::own ? default_workers() : 0) {}
+  std::string_view name() const override { return whose_ == Workers::own ? "replay" : "run"; }
+  std::string_view synopsis() const override {
+    return "STAGE [-o OUTPUT] (--ratio R | --triangles N)";
+  }
+  std::string_view summary() const override {
+    return whose_ == Workers::own ? "simplify a stage on this machine: nothing is cut again"
+                                  : "simplify a stage: ventilator and sink, for workers to join";
+  }
+  void setup(po::options_description& options,
+             po::positional_options_description& positional) override {
+    options.add_options()("stage", po::value(&stage_)->required(), "")
+        ("output,o", po::value(&output_)->value_name("FILE"),
+         "where the result goes, as PLY (default: STAGE/result.ply)");
+    target_.add(options);
+    options.add_options()("workers", po::value(&workers_)->default_value(workers_)->value_name("N"),
+                          "worker processes started here");
+    if (whose_ == Workers::of_any_host) network_.add(options);
+    talk_.add(options);
+    positional.add("stage", 1);
+  }
+  void check() override {
+    target_.check();
+    if (whose_ == Workers::own) {
+      network_.bind = "127.0.0.1";
+      if (workers_ == 0) throw UsageError("--workers: from 1 to 1000");
+    }
+    if (workers_ > 1000) throw UsageError("--workers: at most 1000");
+    network_.check();
+    if (output_.empty()) output_ = (std::filesystem::path(stage_) / "result.ply").string();
+  }
+  int run() override {
+    const std::atomic<bool>& stop = stop_on_signals();
+    check_writable(output_);
+    const int code =
+        run_local_farm({stage_, output_, target_, network_, talk_, workers_}, stop);
+    if (code == 3) {
+      log_info("stopped; what is done is kept: the same command goes on from there");
+    }
+    return code;
+  }
+
+ private:
+  Workers whose_;
+  std::string stage_;
+  std::string output_;
+  std::uint32_t workers_;
+  TargetOptions target_;
+  NetworkOptions network_;
+  TalkOptions talk_;
+};
+
+}  // namespace
+
+std::unique_ptr<Command> make_run_command() {
+  return std::make_unique<RunCommand>(Workers::of_any_host);
+}
+
+std::unique_ptr<Command> make_replay_command() {
+  return std::make_unique<RunCommand>(Workers::own);
+}
+
+}  // namespace meshfarm

@@ -1,0 +1,83 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#include <filesystem>
+#include <iostream>
+#include <meshfarm/io/mesh_source.hpp>
+#include <meshfarm/partition/cut.hpp>
+#include <meshfarm/staging/stage.hpp>
+#include <meshfarm/util/errors.hpp>
+#include <meshfarm/util/log.hpp>
+
+#include "cli/command.hpp"
+#include "cli/cut_step.hpp"
+#include "cli/local_farm.hpp"
+#include "cli/options.hpp"
+#include "cli/signals.hpp"
+
+namespace meshfarm {
+namespace {
+
+class SimplifyCommand : public Command {
+ public:
+  std::string_view name() const override { return "simplify"; }
+  std::string_view synopsis() const override {
+    return "INPUT -o OUTPUT (--ratio R | --triangles N)";
+  }
+  std::string_view summary() const override {
+    return "simplify a mesh file on this machine: cut, farm, stitch, finish";
+  }
+  void setup(po::options_description& options,
+             po::positional_options_description& positional) override {
+    options.add_options()("input", po::value(&input_)->required(), "")
+        ("output,o", po::value(&output_)->required()->value_name("FILE"), "where the result goes, as PLY");
+    target_.add(options);
+    options.add_options()("workers", po::value(&workers_)->default_value(workers_)->value_name("N"),
+                          "worker processes (default: cores)");
+    cut_.add(options);
+    options.add_options()
+        ("stage", po::value(&stage_)->value_name("FOLDER"), "where parts are staged (default: OUTPUT.stage)")
+        ("keep-stage", po::bool_switch(&keep_stage_), "keep the stage, for replay");
+    talk_.add(options);
+    positional.add("input", 1);
+  }
+  void check() override {
+    target_.check();
+    cut_.check();
+    if (workers_ == 0 || workers_ > 1000) throw UsageError("--workers: from 1 to 1000");
+    if (stage_.empty()) stage_ = output_ + ".stage";
+    network_.bind = "127.0.0.1";
+    network_.check();
+  }
+  int run() override {
+    const std::atomic<bool>& stop = stop_on_signals();
+    check_writable(output_);
+    cut_to_stage({input_, stage_, cut_.cut, talk_, stop});
+    const int code = run_local_farm(
+        {stage_, output_, target_, network_, talk_, workers_}, stop);
+    if (code == 0 && !keep_stage_) remove_stage(stage_);
+    if (code == 3) {
+      log_info("stopped; the parts are kept: 'meshfarm replay " + stage_ + " -o " + output_ +
+               "' with the same options goes on from there");
+    }
+    return code;
+  }
+
+ private:
+  std::string input_;
+  std::string output_;
+  std::string stage_;
+  bool keep_stage_ = false;
+  std::uint32_t workers_ = default_workers();
+  TargetOptions target_;
+  CutWords cut_;
+  NetworkOptions network_;
+  TalkOptions talk_;
+};
+
+}  // namespace
+
+std::unique_ptr<Command> make_simplify_command() {
+  return std::make_unique<SimplifyCommand>();
+}
+
+}  // namespace meshfarm

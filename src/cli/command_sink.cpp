@@ -1,0 +1,83 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#include <chrono>
+#include <iostream>
+#include <meshfarm/farm/sink.hpp>
+#include <meshfarm/pipeline/assemble.hpp>
+#include <meshfarm/pipeline/budget.hpp>
+
+#include "cli/cut_step.hpp"
+#include "cli/farm_command.hpp"
+
+namespace meshfarm {
+namespace {
+
+class SinkCommand : public FarmCommand {
+ public:
+  std::string_view name() const override { return "sink"; }
+  std::string_view synopsis() const override {
+    return "STAGE -o OUTPUT (--ratio R | --triangles N)";
+  }
+  std::string_view summary() const override {
+    return "collect, stitch and finish the parts of a stage ('run' starts this)";
+  }
+  void setup(po::options_description& options,
+             po::positional_options_description& positional) override {
+    add_stage(options, positional);
+    options.add_options()("output,o", po::value(&output_)->required()->value_name("FILE"),
+                          "where the result goes, as PLY");
+    target_.add(options);
+    network_.add(options);
+    options.add_options()("wait", po::value(&wait_s_)->default_value(wait_s_)->value_name("SECONDS"),
+                          "how long to look for a ventilator");
+    talk_.add(options);
+  }
+  void check() override {
+    target_.check();
+    network_.check();
+  }
+
+ protected:
+  void serve(const Stage& stage, const std::atomic<bool>& stop) override {
+    const Manifest manifest = read_manifest(stage);
+    check_writable(output_);
+    SinkOptions options;
+    options.bind = network_.bind;
+    options.first_port = network_.first_port;
+    options.last_port = network_.last_port;
+    options.run = run_key(manifest, target_.run);
+    options.patience = std::chrono::seconds(wait_s_);
+    options.stop = &stop;
+    const auto start = std::chrono::steady_clock::now();
+    RunSummary summary;
+    run_sink(stage, make_job_source(manifest, target_.run), options,
+             [&](std::span<const AcceptedJob> accepted) {
+               const double farm =
+                   std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+               ProgressPrinter printer(talk_.progress());
+               AssembleOptions assembly;
+               assembly.output = output_;
+               assembly.stop = &stop;
+               assembly.progress = [&](std::string_view phase, double done, std::uint64_t made) {
+                 printer.show({.phase = phase, .done = done, .triangles = made});
+               };
+               summary = assemble(stage, manifest, target_.run, accepted, assembly);
+               summary.farm_seconds = farm;
+             });
+    std::cout << render(summary, talk_.format());
+  }
+
+ private:
+  std::string output_;
+  TargetOptions target_;
+  NetworkOptions network_;
+  std::uint32_t wait_s_ = 60;
+};
+
+}  // namespace
+
+std::unique_ptr<Command> make_sink_command() {
+  return std::make_unique<SinkCommand>();
+}
+
+}  // namespace meshfarm

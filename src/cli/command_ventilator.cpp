@@ -1,0 +1,80 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#include <algorithm>
+#include <meshfarm/farm/ventilator.hpp>
+#include <meshfarm/pipeline/budget.hpp>
+#include <meshfarm/util/errors.hpp>
+
+#include "cli/farm_command.hpp"
+
+namespace meshfarm {
+namespace {
+
+class VentilatorCommand : public FarmCommand {
+ public:
+  std::string_view name() const override { return "ventilator"; }
+  std::string_view synopsis() const override { return "STAGE (--ratio R | --triangles N)"; }
+  std::string_view summary() const override {
+    return "hand the parts of a stage to workers ('run' starts this)";
+  }
+  void setup(po::options_description& options,
+             po::positional_options_description& positional) override {
+    add_stage(options, positional);
+    target_.add(options);
+    network_.add(options);
+    options.add_options()("heartbeat-ms", po::value(&heartbeat_ms_)->default_value(heartbeat_ms_)->value_name("N"),
+                          "a worker or sink that is silent three times as long is lost");
+    talk_.add_quiet(options);
+  }
+  void check() override {
+    target_.check();
+    network_.check();
+    if (heartbeat_ms_ < 50 || heartbeat_ms_ > 60'000) {
+      throw UsageError("--heartbeat-ms: from 50 to 60000");
+    }
+  }
+
+ protected:
+  void serve(const Stage& stage, const std::atomic<bool>& stop) override {
+    const Manifest manifest = read_manifest(stage);
+    ProgressPrinter printer(talk_.progress());
+    VentilatorOptions options;
+    options.bind = network_.bind;
+    options.first_port = network_.first_port;
+    options.last_port = network_.last_port;
+    options.run = run_key(manifest, target_.run);
+    options.heartbeat = std::chrono::milliseconds(heartbeat_ms_);
+    options.stop = &stop;
+    options.progress = [&](const FarmProgress& p) { show(printer, p); };
+    run_ventilator(stage, make_job_source(manifest, target_.run), options);
+  }
+
+ private:
+  static void show(ProgressPrinter& printer, const FarmProgress& p) {
+    if (p.jobs_done == p.jobs_known) return printer.end();
+    std::string phase = "farm, " + std::to_string(p.jobs_done) + " of " +
+                        std::to_string(p.jobs_known) + " jobs, ";
+    if (p.workers == 0) {
+      phase += "waiting for workers ('meshfarm worker STAGE' on any host)";
+    } else {
+      phase += std::to_string(p.workers) + (p.workers == 1 ? " worker" : " workers");
+    }
+    if (p.retries > 0) phase += ", " + std::to_string(p.retries) + " given out again";
+    const double all = static_cast<double>(std::max<std::uint64_t>(1, p.cost_known));
+    printer.show({.phase = phase,
+                  .done = static_cast<double>(p.cost_done) / all,
+                  .triangles = p.cost_done});
+  }
+
+  TargetOptions target_;
+  NetworkOptions network_;
+  std::uint32_t heartbeat_ms_ = 1000;
+};
+
+}  // namespace
+
+std::unique_ptr<Command> make_ventilator_command() {
+  return std::make_unique<VentilatorCommand>();
+}
+
+}  // namespace meshfarm

@@ -1,0 +1,49 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#include <chrono>
+#include <meshfarm/farm/worker.hpp>
+#include <meshfarm/pipeline/job_table.hpp>
+#include <meshfarm/util/log.hpp>
+
+#include "cli/farm_command.hpp"
+
+namespace meshfarm {
+namespace {
+
+class WorkerCommand : public FarmCommand {
+ public:
+  std::string_view name() const override { return "worker"; }
+  std::string_view synopsis() const override { return "STAGE"; }
+  std::string_view summary() const override {
+    return "simplify parts for a run, from any host that sees the stage";
+  }
+  void setup(po::options_description& options,
+             po::positional_options_description& positional) override {
+    add_stage(options, positional);
+    options.add_options()("wait", po::value(&wait_s_)->default_value(wait_s_)->value_name("SECONDS"),
+                          "how long to look for a ventilator");
+    talk_.add_quiet(options);
+  }
+
+ protected:
+  void serve(const Stage& stage, const std::atomic<bool>& stop) override {
+    WorkerOptions options;
+    options.patience = std::chrono::seconds(wait_s_);
+    options.stop = &stop;
+    const WorkerReport report = run_worker(stage, do_job, options);
+    if (report.jobs_failed > 0) {
+      log_warning(std::to_string(report.jobs_failed) + " jobs failed here");
+    }
+  }
+
+ private:
+  std::uint32_t wait_s_ = 60;
+};
+
+}  // namespace
+
+std::unique_ptr<Command> make_worker_command() {
+  return std::make_unique<WorkerCommand>();
+}
+
+}  // namespace meshfarm

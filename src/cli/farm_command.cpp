@@ -1,0 +1,33 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#include "cli/farm_command.hpp"
+
+#include <meshfarm/util/errors.hpp>
+
+#include "cli/signals.hpp"
+
+namespace meshfarm {
+
+void FarmCommand::add_stage(po::options_description& options,
+                            po::positional_options_description& positional) {
+  options.add_options()("stage", po::value(&stage_)->required(), "")
+      ("supervised", po::bool_switch(&supervised_), "");
+  positional.add("stage", 1);
+}
+
+int FarmCommand::run() {
+  const std::atomic<bool>& stop = stop_on_signals();
+  try {
+    serve(Stage::open(stage_), stop);
+  } catch (const IncompleteError&) {
+    if (supervised_ && stop) return 3;
+    throw;
+  }
+  return 0;
+}
+
+Manifest FarmCommand::read_manifest(const Stage& stage) {
+  return decode_manifest(stage.read(ManifestName{}), stage.path(ManifestName{}).string());
+}
+
+}  // namespace meshfarm

@@ -1,0 +1,31 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <meshfarm/io/manifest.hpp>
+#include <meshfarm/staging/stage.hpp>
+#include <string>
+
+#include "cli/command.hpp"
+#include "cli/options.hpp"
+
+namespace meshfarm {
+
+/// What the three farm processes share. Under a supervisor, a stop is the supervisor's to report.
+class FarmCommand : public Command {
+ public:
+  int run() final;
+
+ protected:
+  void add_stage(po::options_description& options, po::positional_options_description& positional);
+  virtual void serve(const Stage& stage, const std::atomic<bool>& stop) = 0;
+  static Manifest read_manifest(const Stage& stage);
+
+  std::string stage_;
+  TalkOptions talk_;
+
+ private:
+  bool supervised_ = false;
+};
+
+}  // namespace meshfarm

@@ -1,0 +1,30 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <string>
+
+#include "cli/options.hpp"
+
+namespace meshfarm {
+
+/// What the processes of one run on this machine need.
+struct LocalFarm {
+  std::string stage;
+  std::string output;
+  const TargetOptions& target;
+  const NetworkOptions& network;
+  const TalkOptions& talk;
+  std::uint32_t workers = 0;
+};
+
+/// Starts ventilator, sink and workers on this machine and sees them through.
+/// Returns the exit code of the run.
+int run_local_farm(const LocalFarm& farm, const std::atomic<bool>& stop);
+
+/// One worker a core.
+std::uint32_t default_workers();
+
+}  // namespace meshfarm

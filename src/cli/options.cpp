@@ -1,0 +1,125 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#include "cli/options.hpp"
+
+#include <arpa/inet.h>
+#include <ifaddrs.h>
+#include <net/if.h>
+
+#include <charconv>
+#include <meshfarm/util/errors.hpp>
+
+namespace meshfarm {
+namespace {
+
+std::uint16_t parse_port(std::string_view text) {
+  std::uint16_t port = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), port);
+  if (error != std::errc{} || end != text.data() + text.size() || port == 0) {
+    throw UsageError("--ports takes FIRST-LAST, two port numbers from 1 to 65535");
+  }
+  return port;
+}
+
+}  // namespace
+
+void TalkOptions::add(po::options_description& options) {
+  add_quiet(options);
+  options.add_options()("json", po::bool_switch(&json), "print the result as JSON");
+}
+
+void TalkOptions::add_quiet(po::options_description& options) {
+  options.add_options()("quiet,q", po::bool_switch(&quiet), "no progress, only errors");
+}
+
+ProgressStyle TalkOptions::progress() const {
+  return quiet ? ProgressStyle::none : progress_style_of_stderr();
+}
+
+void TargetOptions::add(po::options_description& options) {
+  options.add_options()
+      ("ratio", po::value(&run.ratio), "share of the input's triangles to keep, as 0.01")
+      ("triangles", po::value(&run.triangles), "number of triangles to keep")
+      ("allocation", po::value(&allocation)->default_value(allocation),
+       "threshold: one cost threshold for all parts; uniform: the same ratio in every part")
+      ("finish", po::value(&finish)->default_value(finish),
+       "global: the last pass may touch everything; boundary: edges at seams only");
+}
+
+void TargetOptions::check() {
+  if ((run.ratio != 0) == (run.triangles != 0)) {
+    throw UsageError("give either --ratio or --triangles, above 0");
+  }
+  if (run.triangles == 0 && !(run.ratio > 0 && run.ratio <= 1)) {
+    throw UsageError("--ratio must be above 0 and not above 1");
+  }
+  if (allocation != "threshold" && allocation != "uniform") {
+    throw UsageError("--allocation is 'threshold' or 'uniform', not '" + allocation + "'");
+  }
+  if (finish != "global" && finish != "boundary") {
+    throw UsageError("--finish is 'global' or 'boundary', not '" + finish + "'");
+  }
+  run.allocation = allocation == "uniform" ? Allocation::uniform : Allocation::threshold;
+  run.finish = finish == "boundary" ? Finish::boundary : Finish::global;
+}
+
+std::vector<std::string> TargetOptions::words(std::uint64_t target) const {
+  return {"--triangles", std::to_string(target), "--allocation", allocation, "--finish", finish};
+}
+
+void CutWords::add(po::options_description& options) {
+  options.add_options()
+      ("parts", po::value(&cut.parts)->value_name("N"),
+       "number of parts (default: about a million triangles each, at least 16 of a large mesh)")
+      ("weld", po::value(&weld)->default_value(weld),
+       "exact: vertices at the same position become one; off: they stay apart")
+      ("threads", po::value(&cut.threads)->value_name("N"), "threads of the cut (default: cores)");
+}
+
+void CutWords::check() {
+  if (weld != "exact" && weld != "off") {
+    throw UsageError("--weld is 'exact' or 'off', not '" + weld + "'");
+  }
+  cut.weld = weld == "off" ? Weld::off : Weld::exact;
+  if (cut.parts > 1'000'000) throw UsageError("--parts: at most 1,000,000");
+}
+
+void NetworkOptions::add(po::options_description& options) {
+  options.add_options()
+      ("bind", po::value(&bind)->value_name("ADDRESS"),
+       "address or interface to listen on (default: this host's first network)")
+      ("ports", po::value(&ports)->value_name("FIRST-LAST"),
+       "ports to listen on, for firewalls (default: any that is free)");
+}
+
+void NetworkOptions::check() {
+  if (bind.empty()) bind = host_address();
+  if (ports.empty()) return;
+  const std::size_t dash = ports.find('-');
+  if (dash == std::string::npos) throw UsageError("--ports takes FIRST-LAST");
+  first_port = parse_port(std::string_view(ports).substr(0, dash));
+  last_port = parse_port(std::string_view(ports).substr(dash + 1));
+  if (first_port > last_port) throw UsageError("--ports: FIRST is above LAST");
+}
+
+std::vector<std::string> NetworkOptions::words() const {
+  std::vector<std::string> words = {"--bind", bind};
+  if (!ports.empty()) words.insert(words.end(), {"--ports", ports});
+  return words;
+}
+
+std::string host_address() {
+  ifaddrs* list = nullptr;
+  if (::getifaddrs(&list) != 0) return "127.0.0.1";
+  const std::unique_ptr<ifaddrs, decltype(&::freeifaddrs)> owner(list, &::freeifaddrs);
+  for (const ifaddrs* at = list; at != nullptr; at = at->ifa_next) {
+    if (at->ifa_addr == nullptr || at->ifa_addr->sa_family != AF_INET) continue;
+    if ((at->ifa_flags & IFF_LOOPBACK) != 0 || (at->ifa_flags & IFF_UP) == 0) continue;
+    char text[INET_ADDRSTRLEN];
+    const auto* address = reinterpret_cast<const sockaddr_in*>(at->ifa_addr);
+    if (::inet_ntop(AF_INET, &address->sin_addr, text, sizeof text) != nullptr) return text;
+  }
+  return "127.0.0.1";
+}
+
+}  // namespace meshfarm

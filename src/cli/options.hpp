@@ -1,0 +1,68 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <boost/program_options.hpp>
+#include <cstdint>
+#include <meshfarm/partition/cut.hpp>
+#include <meshfarm/pipeline/run_options.hpp>
+#include <meshfarm/report/progress.hpp>
+#include <meshfarm/report/summary.hpp>
+#include <string>
+#include <vector>
+
+namespace meshfarm {
+
+namespace po = boost::program_options;
+
+// The option groups that commands share: add() declares, the other functions turn the texts into
+// values and throw UsageError. Defaults stand in the members.
+
+/// --quiet and --json.
+struct TalkOptions {
+  bool quiet = false;
+  bool json = false;
+
+  void add(po::options_description& options);
+  void add_quiet(po::options_description& options);
+  Format format() const { return json ? Format::json : Format::text; }
+  ProgressStyle progress() const;
+};
+
+/// --ratio, --triangles, --allocation, --finish.
+struct TargetOptions {
+  RunOptions run;
+  std::string allocation = "threshold";
+  std::string finish = "global";
+
+  void add(po::options_description& options);
+  void check();
+  /// The same as words for a command line.
+  std::vector<std::string> words(std::uint64_t target) const;
+};
+
+/// --parts, --weld, --threads.
+struct CutWords {
+  CutOptions cut;
+  std::string weld = "exact";
+
+  void add(po::options_description& options);
+  void check();
+};
+
+/// --bind, --ports.
+struct NetworkOptions {
+  std::string bind;
+  std::string ports;
+  std::uint16_t first_port = 0;
+  std::uint16_t last_port = 0;
+
+  void add(po::options_description& options);
+  void check();
+  std::vector<std::string> words() const;
+};
+
+/// The host's address on its first network but loopback; loopback where there is none.
+std::string host_address();
+
+}  // namespace meshfarm

@@ -1,0 +1,151 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#include "cli/supervisor.hpp"
+
+#include <sys/prctl.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <chrono>
+#include <csignal>
+#include <ctime>
+#include <meshfarm/util/errors.hpp>
+#include <meshfarm/util/log.hpp>
+
+namespace meshfarm {
+namespace {
+
+constexpr int k_max_restarts = 20;
+constexpr int k_grace_ms = 10'000;
+constexpr int k_incomplete = 3;
+
+sigset_t child_signal() {
+  sigset_t set;
+  sigemptyset(&set);
+  sigaddset(&set, SIGCHLD);
+  return set;
+}
+
+/// Sleeps until a child ends, a signal comes, or the time is over.
+void wait_for_child(int timeout_ms) {
+  const sigset_t set = child_signal();
+  const timespec timeout{timeout_ms / 1000, (timeout_ms % 1000) * 1'000'000L};
+  ::sigtimedwait(&set, nullptr, &timeout);
+}
+
+[[noreturn]] void become(const std::vector<std::string>& words, pid_t parent) {
+  // A process group of its own: Ctrl-C reaches the parent only, which ends its children in order.
+  ::setpgid(0, 0);
+  ::prctl(PR_SET_PDEATHSIG, SIGTERM);
+  if (::getppid() != parent) ::_exit(1);
+  const sigset_t set = child_signal();
+  ::sigprocmask(SIG_UNBLOCK, &set, nullptr);
+  std::vector<char*> argv;
+  static char program[] = "meshfarm";
+  argv.push_back(program);
+  for (const std::string& word : words) argv.push_back(const_cast<char*>(word.c_str()));
+  argv.push_back(nullptr);
+  ::execv("/proc/self/exe", argv.data());
+  ::_exit(127);
+}
+
+}  // namespace
+
+Supervisor::~Supervisor() {
+  end_all();
+}
+
+void Supervisor::start(std::vector<std::string> words) {
+  const sigset_t set = child_signal();
+  ::sigprocmask(SIG_BLOCK, &set, nullptr);
+  children_.push_back({.words = std::move(words), .pid = -1, .done = false, .restarts = 0});
+  spawn(children_.back());
+}
+
+void Supervisor::spawn(Child& child) {
+  const pid_t parent = ::getpid();
+  child.pid = ::fork();
+  if (child.pid < 0) throw_errno("cannot start a process for", child.words.front());
+  if (child.pid == 0) become(child.words, parent);
+}
+
+int Supervisor::run() {
+  while (!stop_ && failure_ == 0 && !essentials_done()) {
+    reap();
+    if (stop_ || failure_ != 0 || essentials_done()) break;
+    wait_for_child(200);
+  }
+  const bool done = essentials_done();
+  end_all();
+  if (failure_ != 0) return failure_;
+  return done ? 0 : k_incomplete;
+}
+
+void Supervisor::reap() {
+  for (Child& child : children_) {
+    int status = 0;
+    if (child.pid > 0 && ::waitpid(child.pid, &status, WNOHANG) == child.pid) {
+      child.pid = -1;
+      ended(child, status);
+    }
+  }
+}
+
+void Supervisor::ended(Child& child, int status) {
+  if (WIFEXITED(status) && WEXITSTATUS(status) == 0) {
+    child.done = true;
+    return;
+  }
+  if (WIFSIGNALED(status) && child.restarts < k_max_restarts && !stop_) {
+    ++child.restarts;
+    log_warning("the " + child.words.front() + " was ended by signal " +
+                std::to_string(WTERMSIG(status)) + " and is started again");
+    spawn(child);
+    return;
+  }
+  if (!child.worker() || !has_live_worker()) {
+    failure_ = WIFEXITED(status) ? WEXITSTATUS(status) : 1;
+    if (child.worker()) log_error("no worker is left");
+  }
+}
+
+bool Supervisor::has_live_worker() const {
+  return std::any_of(children_.begin(), children_.end(), [](const Child& child) {
+    return child.worker() && (child.pid > 0 || child.done);
+  });
+}
+
+bool Supervisor::essentials_done() const {
+  return std::all_of(children_.begin(), children_.end(),
+                     [](const Child& child) { return child.worker() || child.done; });
+}
+
+bool Supervisor::wait_all(int timeout_ms) {
+  const auto end = std::chrono::steady_clock::now() + std::chrono::milliseconds(timeout_ms);
+  while (true) {
+    bool running = false;
+    for (Child& child : children_) {
+      if (child.pid > 0 && ::waitpid(child.pid, nullptr, WNOHANG) != 0) child.pid = -1;
+      running = running || child.pid > 0;
+    }
+    if (!running) return true;
+    if (std::chrono::steady_clock::now() >= end) return false;
+    wait_for_child(50);
+  }
+}
+
+void Supervisor::end_all() {
+  if (wait_all(0)) return;
+  for (const Child& child : children_) {
+    if (child.pid > 0) ::kill(child.pid, SIGTERM);
+  }
+  if (wait_all(k_grace_ms)) return;
+  for (const Child& child : children_) {
+    if (child.pid > 0) ::kill(child.pid, SIGKILL);
+  }
+  wait_all(k_grace_ms);
+}
+
+}  // namespace meshfarm

@@ -1,0 +1,50 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <sys/types.h>
+
+#include <atomic>
+#include <string>
+#include <vector>
+
+namespace meshfarm {
+
+/// Runs this program's own commands as child processes and sees them through: a ventilator, a sink
+/// and any number of workers. Children that a signal ends are started again; the run goes on from
+/// the stage. Children end when their parent does.
+class Supervisor {
+ public:
+  explicit Supervisor(const std::atomic<bool>& stop) : stop_(stop) {}
+  ~Supervisor();
+  Supervisor(const Supervisor&) = delete;
+  Supervisor& operator=(const Supervisor&) = delete;
+
+  /// The command to run, its name first.
+  void start(std::vector<std::string> words);
+  /// Waits until sink and ventilator are done. Returns the exit code of the run.
+  int run();
+
+ private:
+  struct Child {
+    std::vector<std::string> words;
+    pid_t pid = -1;  // -1: not running
+    bool done = false;
+    int restarts = 0;
+    bool worker() const { return words.front() == "worker"; }
+  };
+
+  void spawn(Child& child);
+  void reap();
+  void ended(Child& child, int status);
+  void end_all();
+  bool wait_all(int timeout_ms);
+  bool essentials_done() const;
+  bool has_live_worker() const;
+
+  const std::atomic<bool>& stop_;
+  std::vector<Child> children_;
+  int failure_ = 0;
+};
+
+}  // namespace meshfarm

@@ -1,0 +1,59 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <meshfarm/farm/endpoint.hpp>
+#include <meshfarm/farm/membership.hpp>
+#include <meshfarm/staging/stage.hpp>
+#include <meshfarm/util/errors.hpp>
+#include <meshfarm/util/log.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <zmq.hpp>
+
+#include "farm/sockets.hpp"
+
+namespace meshfarm {
+
+/// A worker's or sink's end of the control channel: does what Membership asks for.
+class ControlLink {
+ public:
+  ControlLink(zmq::context_t& context, const Stage& stage) : context_(context), stage_(stage) {}
+
+  /// The endpoints that the stage shows now; as before if it cannot be listed (NFS away).
+  const std::vector<Endpoint>& look() {
+    try {
+      endpoints_ = list_.look(stage_);
+    } catch (const IoError& error) {
+      log_debug(error.what());
+    }
+    return endpoints_;
+  }
+  void dial(const std::string& address) {
+    socket_.emplace(make_control_client(context_, random_id()));
+    try {
+      socket_->connect(address);
+    } catch (const zmq::error_t& error) {
+      log_debug("cannot connect to " + address + ": " + error.what());
+    }
+  }
+  void hang_up() {
+    if (socket_) socket_->set(zmq::sockopt::linger, 0);
+    socket_.reset();
+  }
+  void say(const Message& message) {
+    if (socket_) send(*socket_, message);  // what gets lost is said again
+  }
+  zmq::socket_t* socket() { return socket_ ? &*socket_ : nullptr; }
+
+ private:
+  zmq::context_t& context_;
+  const Stage& stage_;
+  EndpointList list_;
+  std::vector<Endpoint> endpoints_;
+  std::optional<zmq::socket_t> socket_;
+};
+
+}  // namespace meshfarm

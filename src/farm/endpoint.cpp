@@ -1,0 +1,85 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+//
+// An endpoint file is sealed (staging/sealed.hpp), kind "ENDP", version 1:
+//   epoch u32 | run u64 | address text | host text | pid u32        text = length u32 | bytes
+#include <cerrno>
+#include <meshfarm/farm/endpoint.hpp>
+#include <meshfarm/staging/sealed.hpp>
+#include <meshfarm/util/bytes.hpp>
+#include <meshfarm/util/errors.hpp>
+#include <meshfarm/util/log.hpp>
+
+namespace meshfarm {
+namespace {
+
+constexpr FileKind k_kind = {'E', 'N', 'D', 'P'};
+constexpr std::uint32_t k_version = 1;
+constexpr std::size_t k_max_text_bytes = 1024;
+
+}  // namespace
+
+std::string encode_endpoint(const Endpoint& endpoint) {
+  ByteWriter out;
+  out.put(endpoint.epoch);
+  out.put(endpoint.run);
+  out.put_string(endpoint.address);
+  out.put_string(endpoint.host);
+  out.put(endpoint.pid);
+  return seal(k_kind, k_version, out.bytes());
+}
+
+Endpoint decode_endpoint(std::string_view file, std::string_view what) {
+  ByteReader in(unseal(file, k_kind, k_version, what), what);
+  Endpoint endpoint;
+  endpoint.epoch = in.get<std::uint32_t>();
+  endpoint.run = in.get<std::uint64_t>();
+  endpoint.address = in.get_string();
+  endpoint.host = in.get_string();
+  if (endpoint.address.size() > k_max_text_bytes || endpoint.host.size() > k_max_text_bytes) {
+    in.fail("an address too long");
+  }
+  endpoint.pid = in.get<std::uint32_t>();
+  in.expect_end();
+  return endpoint;
+}
+
+Endpoint publish_endpoint(const Stage& stage, Endpoint endpoint, std::string_view unique) {
+  for (;;) {
+    const auto epochs = stage.epochs();
+    endpoint.epoch = epochs.empty() ? 1 : epochs.back() + 1;
+    const EndpointName name{endpoint.epoch};
+    const std::string bytes = encode_endpoint(endpoint);
+    try {
+      stage.publish(name, bytes, unique);
+    } catch (const IoError& error) {
+      if (error.error_number() != EEXIST) throw;
+      continue;
+    }
+    // A rename replaces: where two published one number at the same time, the file says who has it.
+    if (stage.read(name) == bytes) return endpoint;
+  }
+}
+
+const std::vector<Endpoint>& EndpointList::look(const Stage& stage) {
+  std::vector<Endpoint> found;
+  auto known = known_.begin();
+  for (const std::uint32_t epoch : stage.epochs()) {
+    while (known != known_.end() && known->epoch < epoch) ++known;
+    if (known != known_.end() && known->epoch == epoch) {
+      found.push_back(*known);
+      continue;
+    }
+    const EndpointName name{epoch};
+    try {
+      Endpoint endpoint = decode_endpoint(stage.read(name), to_string(name));
+      if (endpoint.epoch == epoch) found.push_back(std::move(endpoint));
+    } catch (const Error& error) {
+      log_debug("left out: " + std::string(error.what()));
+    }
+  }
+  known_ = std::move(found);
+  return known_;
+}
+
+}  // namespace meshfarm

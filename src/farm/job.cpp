@@ -1,0 +1,24 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#include <meshfarm/farm/job.hpp>
+#include <meshfarm/util/bytes.hpp>
+#include <meshfarm/util/checksum.hpp>
+
+namespace meshfarm {
+
+JobKey key_of(const Job& job) {
+  // An input counts by its content, not its name: a result that was made again under another name
+  // leads to the same jobs after it. Version 1 of the key's recipe comes first.
+  ByteWriter out;
+  out.put(std::uint32_t{1});
+  out.put_string(job.kind);
+  out.put(static_cast<std::uint64_t>(job.inputs.size()));
+  for (const FileRef& input : job.inputs) {
+    out.put(input.size);
+    out.put(input.hash);
+  }
+  out.put_string(job.parameters);
+  return {checksum(out.bytes())};
+}
+
+}  // namespace meshfarm

@@ -1,0 +1,87 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+//
+// A record of the sink's journal, version 1:
+//   version u32 | key u64 | name text | size u64 | hash u64 | summary text    text = length u32 | bytes
+#include <cerrno>
+#include <meshfarm/farm/ledger.hpp>
+#include <meshfarm/util/bytes.hpp>
+#include <meshfarm/util/errors.hpp>
+#include <meshfarm/util/log.hpp>
+
+namespace meshfarm {
+namespace {
+
+constexpr std::uint32_t k_version = 1;
+
+void read_journal(const Stage& stage, JournalName name, std::map<JobKey, JobOutput>& accepted) {
+  const std::string what = stage.path(name).string();
+  const JournalContent content = parse_journal(stage.read(name), what);
+  if (content.torn_bytes > 0) {
+    log_warning(what + ": its last " + std::to_string(content.torn_bytes) +
+                " bytes are torn and left out (its sink was killed while writing)");
+  }
+  for (const std::string& record : content.records) {
+    AcceptedJob job = decode_accepted(record, what);
+    accepted[job.key] = std::move(job.output);
+  }
+}
+
+}  // namespace
+
+std::string encode_accepted(const AcceptedJob& accepted) {
+  ByteWriter out;
+  out.put(k_version);
+  out.put(accepted.key.value);
+  out.put_string(accepted.output.file.name);
+  out.put(accepted.output.file.size);
+  out.put(accepted.output.file.hash);
+  out.put_string(accepted.output.summary);
+  return out.take();
+}
+
+AcceptedJob decode_accepted(std::string_view record, std::string_view what) {
+  ByteReader in(record, what);
+  if (in.get<std::uint32_t>() != k_version) in.fail("a record of an unknown version");
+  AcceptedJob accepted;
+  accepted.key.value = in.get<std::uint64_t>();
+  accepted.output.file.name = in.get_string();
+  accepted.output.file.size = in.get<std::uint64_t>();
+  accepted.output.file.hash = in.get<std::uint64_t>();
+  accepted.output.summary = in.get_string();
+  in.expect_end();
+  if (!names_result_of(accepted.key, accepted.output.file.name)) in.fail("a forged result name");
+  return accepted;
+}
+
+bool names_result_of(JobKey key, std::string_view name) {
+  const auto parsed = parse_staged_name(name);
+  const auto* result = parsed ? std::get_if<ResultName>(&*parsed) : nullptr;
+  return result != nullptr && result->key == key.value;
+}
+
+std::map<JobKey, JobOutput> read_journals(const Stage& stage) {
+  std::map<JobKey, JobOutput> accepted;
+  for (const std::uint32_t number : stage.journals()) {
+    try {
+      read_journal(stage, {number}, accepted);
+    } catch (const Error& error) {
+      log_warning("a journal is left out: " + std::string(error.what()));
+    }
+  }
+  return accepted;
+}
+
+JournalWriter open_journal(const Stage& stage) {
+  for (;;) {
+    const auto numbers = stage.journals();
+    const JournalName name{numbers.empty() ? 1 : numbers.back() + 1};
+    try {
+      return JournalWriter(stage.path(name));
+    } catch (const IoError& error) {
+      if (error.error_number() != EEXIST) throw;  // else another sink took the number just now
+    }
+  }
+}
+
+}  // namespace meshfarm

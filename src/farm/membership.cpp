@@ -1,0 +1,131 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#include <algorithm>
+#include <meshfarm/farm/membership.hpp>
+#include <utility>
+
+namespace meshfarm {
+namespace {
+
+constexpr int k_silent_heartbeats = 3;
+constexpr FarmTime k_first_look{50};  // the pause doubles, up to the next
+constexpr FarmTime k_look_every{500};
+/// After so many greetings without an answer the connection is made anew: its routing id may be
+/// held by a dead connection that the ventilator has not noticed yet.
+constexpr int k_greetings_per_dial = 10;
+constexpr std::uint32_t k_shortest_heartbeat_ms = 10;
+constexpr std::uint32_t k_longest_heartbeat_ms = 60'000;
+
+}  // namespace
+
+Membership::Event Membership::tick(FarmTime now) {
+  if (joined_) {
+    return heard_ + k_silent_heartbeats * heartbeat_ < now ? lose(now) : Event::none;
+  }
+  if (!alone_since_) alone_since_ = now;
+  if (now - *alone_since_ <= options_.patience) return Event::none;
+  const std::string waited =
+      std::to_string(std::chrono::duration_cast<std::chrono::seconds>(options_.patience).count());
+  reason_ = dialled_ ? "no answer from the ventilator at " + dialled_->address + " (host " +
+                           dialled_->host + ", pid " + std::to_string(dialled_->pid) + ") for "
+                     : "no ventilator announced itself in the stage for ";
+  reason_ += waited + " s; start 'meshfarm run' or 'meshfarm ventilator' on this stage";
+  return Event::expired;
+}
+
+Membership::Event Membership::on_message(const Message& message, FarmTime now) {
+  if (!dialled_) return Event::none;
+  if (const auto* welcome = std::get_if<Welcome>(&message)) return on_welcome(*welcome, now);
+  if (const auto* refused = std::get_if<Refused>(&message)) return on_refused(*refused, now);
+  if (const auto* stop = std::get_if<Stop>(&message)) {
+    return stop->why == StopReason::run_over ? Event::run_over : lose(now);
+  }
+  heard_ = now;
+  return Event::none;
+}
+
+Membership::Event Membership::on_welcome(const Welcome& welcome, FarmTime now) {
+  if (welcome.epoch != dialled_->epoch || welcome.run != dialled_->run) return Event::none;
+  heard_ = now;
+  if (joined_) return Event::none;
+  joined_ = true;
+  welcome_ = welcome;
+  heartbeat_ = FarmTime(
+      std::clamp(welcome.heartbeat_ms, k_shortest_heartbeat_ms, k_longest_heartbeat_ms));
+  next_beat_ = now;
+  alone_since_.reset();
+  greet_ = false;
+  greetings_ = 0;
+  return Event::joined;
+}
+
+Membership::Event Membership::on_refused(const Refused& refused, FarmTime now) {
+  switch (refused.why) {
+    case Refusal::stranger: return joined_ ? lose(now) : Event::none;
+    case Refusal::full: return Event::none;  // greeted again in a while
+    case Refusal::other_run:
+    case Refusal::replaced: break;
+  }
+  reason_ = "the ventilator at " + dialled_->address + " refused: " + refused.reason;
+  return Event::refused;
+}
+
+Membership::Event Membership::found(std::span<const Endpoint> endpoints, FarmTime now) {
+  if (joined_) return Event::none;
+  const Endpoint* newest = nullptr;
+  for (const Endpoint& endpoint : endpoints) {
+    if (options_.run == 0 || endpoint.run == options_.run) newest = &endpoint;
+  }
+  if (newest == nullptr) return Event::none;
+  if (newest->address.empty()) {
+    // Whoever came after the end waits for the next run instead.
+    const bool was_there = dialled_ && dialled_->run == newest->run;
+    return was_there ? Event::run_over : Event::none;
+  }
+  const bool other = !dialled_ || dialled_->epoch != newest->epoch;
+  if (other || greetings_ >= k_greetings_per_dial) {
+    if (other) alone_since_ = now;
+    dialled_ = *newest;
+    dial_ = true;
+    greetings_ = 0;
+  }
+  ++greetings_;
+  greet_ = true;
+  return Event::none;
+}
+
+bool Membership::look_due(FarmTime now) {
+  if (joined_ || (next_look_ && now < *next_look_)) return false;
+  next_look_ = now + look_pause_;
+  look_pause_ = std::min(2 * look_pause_, k_look_every);
+  return true;
+}
+
+std::optional<std::string> Membership::dial() {
+  if (!std::exchange(dial_, false)) return std::nullopt;
+  return dialled_->address;
+}
+
+std::optional<Hello> Membership::hello() {
+  if (!std::exchange(greet_, false)) return std::nullopt;
+  return Hello{options_.role, options_.run,  options_.incarnation,
+               options_.pid,  options_.host, options_.results};
+}
+
+bool Membership::beat_due(FarmTime now) {
+  if (!joined_ || now < next_beat_) return false;
+  next_beat_ = now + heartbeat_;
+  return true;
+}
+
+Membership::Event Membership::lose(FarmTime now) {
+  joined_ = false;
+  alone_since_ = now;
+  next_look_.reset();
+  look_pause_ = k_first_look;
+  // The same endpoint is dialled again, as it may have lost us and not we it.
+  greetings_ = k_greetings_per_dial;
+  return Event::lost;
+}
+
+}  // namespace meshfarm

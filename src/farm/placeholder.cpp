@@ -1,2 +1,0 @@
-// SPDX-FileCopyrightText: 2026 the meshfarm authors
-// SPDX-License-Identifier: MIT

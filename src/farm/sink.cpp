@@ -1,0 +1,195 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#include <unistd.h>
+
+#include <deque>
+#include <exception>
+#include <meshfarm/farm/ledger.hpp>
+#include <meshfarm/farm/sink.hpp>
+#include <meshfarm/farm/sink_core.hpp>
+#include <meshfarm/util/errors.hpp>
+#include <meshfarm/util/log.hpp>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "farm/control_link.hpp"
+#include "farm/sockets.hpp"
+#include "farm/task_thread.hpp"
+
+namespace meshfarm {
+namespace {
+
+constexpr int k_messages_per_turn = 1000;
+/// As many results share one sync of the journal at most.
+constexpr std::size_t k_checks_per_batch = 256;
+
+using Complete = std::function<void(std::span<const AcceptedJob>)>;
+
+/// The sockets and the disk thread round a SinkCore, which decides everything.
+class SinkLoop {
+ public:
+  SinkLoop(const Stage& stage, const JobSource& source, const SinkOptions& options,
+           const Complete& complete)
+      : stage_(stage),
+        options_(options),
+        complete_(complete),
+        context_(make_context()),
+        results_(make_results_server(context_)),
+        link_(context_, stage),
+        core_({Role::sink, options.run, random_id(), static_cast<std::uint32_t>(::getpid()),
+               clipped(host_name()),
+               bind_within(results_, options.bind, {options.first_port, options.last_port}),
+               options.patience},
+              source, read_journals(stage)) {}
+
+  void run() {
+    while (!left_) {
+      if (options_.stop != nullptr && options_.stop->load()) perform(core_.stop());
+      turn();
+    }
+    if (problem_) std::rethrow_exception(problem_);
+    switch (left_->why) {
+      case SinkLeaves::Why::complete:
+        if (!left_->message.empty()) log_warning(left_->message);
+        return;
+      case SinkLeaves::Why::incomplete: throw IncompleteError(left_->message);
+      case SinkLeaves::Why::jobs_failed:
+      case SinkLeaves::Why::output_failed: throw DataError(left_->message);
+    }
+  }
+
+ private:
+  struct Checked {
+    Check check;
+    std::string problem;
+  };
+
+  void turn() {
+    std::vector<zmq::pollitem_t> items = {{nullptr, disk_.fd(), ZMQ_POLLIN, 0},
+                                          {results_.handle(), 0, ZMQ_POLLIN, 0}};
+    if (link_.socket() != nullptr) items.push_back({link_.socket()->handle(), 0, ZMQ_POLLIN, 0});
+    wait_for(items, poll_interval(core_.heartbeat()));
+    const FarmTime now = farm_clock();
+    if (disk_.take_finished()) disk_answers(now);
+    while (link_.socket() != nullptr) {
+      const auto received = receive(*link_.socket());
+      if (!received) break;
+      if (received->message) perform(core_.on_control(*received->message, now));
+    }
+    for (int count = 0; count < k_messages_per_turn; ++count) {
+      const auto received = receive(results_);
+      if (!received) break;
+      if (received->message) perform(core_.on_result(*received->message));
+    }
+    perform(core_.tick(now));
+    use_disk();
+  }
+
+  void perform(const SinkActions& actions) {
+    for (const SinkAction& action : actions) {
+      std::visit([this](const auto& each) { act(each); }, action);
+    }
+  }
+
+  void act(const Look&) { perform(core_.found(link_.look(), farm_clock())); }
+  void act(const Dial& each) { link_.dial(each.address); }
+  void act(const HangUp&) { link_.hang_up(); }
+  void act(const Say& each) { link_.say(each.message); }
+  void act(const Check& each) { to_check_.push_back(each); }
+  void act(const MakeOutput&) { make_output_ = true; }
+  void act(const SinkLeaves& each) { left_ = each; }
+
+  /// Gives the disk thread what waits for it: checks go before the output.
+  void use_disk() {
+    if (!disk_.idle() || left_) return;
+    if (!to_check_.empty()) {
+      while (!to_check_.empty() && batch_.size() < k_checks_per_batch) {
+        batch_.push_back({std::move(to_check_.front()), {}});
+        to_check_.pop_front();
+      }
+      disk_.start([this] { check_batch(); });
+    } else if (std::exchange(make_output_, false)) {
+      making_output_ = true;
+      disk_.start([this] { make_output(); });
+    }
+  }
+
+  void disk_answers(FarmTime now) {
+    if (std::exchange(making_output_, false)) {
+      return perform(core_.completed(problem_ ? what(problem_) : std::string(), now));
+    }
+    if (problem_) return perform(core_.fail(what(problem_)));
+    for (const Checked& each : std::exchange(batch_, {})) {
+      if (!each.problem.empty()) log_warning("not accepted: " + each.problem);
+      perform(core_.checked(each.check, each.problem));
+    }
+  }
+
+  static std::string what(const std::exception_ptr& problem) {
+    try {
+      std::rethrow_exception(problem);
+    } catch (const std::exception& error) {
+      return error.what();
+    } catch (...) {
+      return "an unknown exception";
+    }
+  }
+
+  /// On the disk thread, as is all below.
+  void check_batch() {
+    std::vector<std::string> records;
+    for (Checked& each : batch_) {
+      try {
+        stage_.read(each.check.output.file);
+        const Check& check = each.check;
+        if (!check.from_journal) records.push_back(encode_accepted({check.key, check.output}));
+      } catch (const Error& error) {
+        each.problem = error.what();
+      } catch (const std::bad_alloc&) {
+        each.problem = "out of memory while reading " + each.check.output.file.name;
+      }
+    }
+    if (records.empty()) return;
+    try {
+      if (!journal_) journal_.emplace(open_journal(stage_));
+      journal_->append_all(records);
+    } catch (...) {
+      problem_ = std::current_exception();
+    }
+  }
+
+  void make_output() {
+    try {
+      complete_(core_.rounds().outputs());
+    } catch (...) {
+      problem_ = std::current_exception();
+    }
+  }
+
+  const Stage& stage_;
+  const SinkOptions& options_;
+  const Complete& complete_;
+  zmq::context_t context_;
+  zmq::socket_t results_;
+  ControlLink link_;
+  SinkCore core_;
+  std::deque<Check> to_check_;
+  bool make_output_ = false;
+  bool making_output_ = false;
+  std::optional<SinkLeaves> left_;
+  // The disk thread's while it works:
+  std::vector<Checked> batch_;
+  std::optional<JournalWriter> journal_;
+  std::exception_ptr problem_;
+  TaskThread disk_;  // the last member, so that its thread ends first
+};
+
+}  // namespace
+
+void run_sink(const Stage& stage, const JobSource& source, const SinkOptions& options,
+              const std::function<void(std::span<const AcceptedJob>)>& complete) {
+  SinkLoop(stage, source, options, complete).run();
+}
+
+}  // namespace meshfarm

@@ -1,0 +1,200 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#include <algorithm>
+#include <meshfarm/farm/ledger.hpp>
+#include <meshfarm/farm/sink_core.hpp>
+#include <meshfarm/util/checksum.hpp>
+#include <utility>
+
+namespace meshfarm {
+
+SinkActions SinkCore::tick(FarmTime now) {
+  if (phase_ == Phase::left) return take();
+  if (!std::exchange(begun_, true)) want();
+  const Membership::Event event = member_.tick(now);
+  // While the output is being made nobody needs the ventilator; it may come back meanwhile.
+  const bool busy = phase_ == Phase::making_output;
+  if (event != Membership::Event::expired || !busy) on(event, now);
+  if (member_.look_due(now)) act(Look{});
+  if (member_.beat_due(now)) {
+    const Welcome& joined = member_.welcome();
+    say(Heartbeat{joined.epoch, WorkerId{}, 0, 0, rounds_.jobs_accepted()});
+    if (phase_ == Phase::saying_complete && told_all_) say(Complete{joined.epoch});
+  }
+  if (phase_ == Phase::saying_complete && say_until_ < now) {
+    leave(SinkLeaves::Why::complete, "no ventilator acknowledged the end");
+  }
+  if (phase_ == Phase::saying_failed && say_until_ < now) {
+    leave(SinkLeaves::Why::output_failed, problem_);
+  }
+  return take();
+}
+
+SinkActions SinkCore::found(std::span<const Endpoint> endpoints, FarmTime now) {
+  if (phase_ == Phase::left) return take();
+  on(member_.found(endpoints, now), now);
+  if (auto address = member_.dial()) act(Dial{std::move(*address)});
+  if (auto hello = member_.hello()) act(Say{std::move(*hello)});
+  return take();
+}
+
+SinkActions SinkCore::on_control(const Message& message, FarmTime now) {
+  if (phase_ == Phase::left) return take();
+  on(member_.on_message(message, now), now);
+  if (const auto* failed = std::get_if<JobFailed>(&message)) failed_[failed->key] = failed->reason;
+  return take();
+}
+
+void SinkCore::on(Membership::Event event, FarmTime now) {
+  switch (event) {
+    case Membership::Event::none: return;
+    case Membership::Event::joined:
+      told_all_ = false;
+      failed_.clear();  // this ventilator says anew what it gave up
+      if (phase_ == Phase::saying_complete) say_until_ = now + member_.options().patience;
+      return tell_all();
+    case Membership::Event::lost: told_all_ = false; return act(HangUp{});
+    case Membership::Event::run_over: return run_over();
+    case Membership::Event::refused: return leave(SinkLeaves::Why::incomplete, member_.reason());
+    case Membership::Event::expired:
+      if (phase_ == Phase::collecting) leave(SinkLeaves::Why::incomplete, member_.reason());
+      return;
+  }
+}
+
+void SinkCore::run_over() {
+  switch (phase_) {
+    case Phase::collecting:
+      if (!failed_.empty()) return leave(SinkLeaves::Why::jobs_failed, list_failed());
+      return leave(SinkLeaves::Why::incomplete, "the ventilator ended the run before its end");
+    case Phase::saying_complete: return leave(SinkLeaves::Why::complete, {});
+    case Phase::saying_failed: return leave(SinkLeaves::Why::output_failed, problem_);
+    case Phase::making_output:
+    case Phase::left: return;
+  }
+}
+
+SinkActions SinkCore::on_result(const Message& message) {
+  const auto* result = std::get_if<Result>(&message);
+  const bool ours = result != nullptr && result->run == member_.options().run &&
+                    result->epoch >= member_.epoch() && rounds_.wanted(result->key);
+  if (!ours || phase_ == Phase::left) {
+    ++dropped_;
+  } else {
+    take_result(*result);
+  }
+  return take();
+}
+
+void SinkCore::take_result(const Result& result) {
+  if (rounds_.accepted(result.key) != nullptr) return tell(result.key, result.worker);
+  if (const auto* failure = std::get_if<JobFailure>(&result.outcome)) {
+    if (!told_all_) return;  // the worker says it again
+    return say(
+        Reject{member_.epoch(), result.worker, result.attempt, result.key, *failure});
+  }
+  const JobOutput& output = std::get<JobOutput>(result.outcome);
+  const ResultName name{result.key.value, result.attempt, result.incarnation};
+  if (output.file.name != to_string(name)) {
+    ++dropped_;
+    return;
+  }
+  const Check check{result.key, output, result.worker, result.attempt, false};
+  if (checking_.try_emplace(result.key, check).second) act(check);
+}
+
+SinkActions SinkCore::checked(const Check& check, const std::string& problem) {
+  checking_.erase(check.key);
+  if (check.from_journal) --checking_journal_;
+  if (problem.empty()) {
+    if (rounds_.accept(check.key, check.output)) accepted_.push_back(check.key);
+    failed_.erase(check.key);
+    tell(check.key, check.worker);
+    want();
+  } else if (!check.from_journal && told_all_) {
+    say(Reject{member_.epoch(), check.worker, check.attempt, check.key,
+               {clipped(problem), false}});
+  }
+  tell_all();
+  return take();
+}
+
+/// Asks for the rounds that can be asked for; what a journal knows of them is checked at once.
+void SinkCore::want() {
+  for (const Job& job : rounds_.advance()) {
+    const JobKey key = key_of(job);
+    const auto known = journal_.find(key);
+    if (known == journal_.end()) continue;
+    const Check check{key, known->second, WorkerId{}, 0, true};
+    if (!checking_.try_emplace(key, check).second) continue;
+    ++checking_journal_;
+    act(check);
+  }
+  if (rounds_.complete() && phase_ == Phase::collecting) {
+    phase_ = Phase::making_output;
+    act(MakeOutput{});
+  }
+}
+
+void SinkCore::tell_all() {
+  if (told_all_ || !member_.joined() || !begun_ || checking_journal_ > 0) return;
+  told_all_ = true;
+  for (const JobKey key : accepted_) tell(key, WorkerId{});
+  say(Ready{member_.epoch()});
+  if (phase_ == Phase::saying_complete) say(Complete{member_.epoch()});
+  if (phase_ == Phase::saying_failed) say(Failed{member_.epoch(), problem_});
+}
+
+void SinkCore::tell(JobKey key, WorkerId worker) {
+  if (!told_all_) return;
+  say(Accept{member_.epoch(), worker, key, *rounds_.accepted(key)});
+}
+
+SinkActions SinkCore::completed(const std::string& problem, FarmTime now) {
+  if (phase_ == Phase::left) return take();
+  say_until_ = now + member_.options().patience;
+  phase_ = Phase::saying_complete;
+  if (!problem.empty()) return fail(problem);
+  if (told_all_) say(Complete{member_.epoch()});
+  return take();
+}
+
+SinkActions SinkCore::fail(const std::string& problem) {
+  problem_ = problem;
+  phase_ = Phase::saying_failed;
+  if (told_all_) {
+    say(Failed{member_.epoch(), clipped(problem)});
+  } else {
+    leave(SinkLeaves::Why::output_failed, problem);
+  }
+  return take();
+}
+
+SinkActions SinkCore::stop() {
+  if (phase_ != Phase::left) {
+    leave(SinkLeaves::Why::incomplete,
+          "stopped; what was accepted is kept in the stage, run the same command again to go on");
+  }
+  return take();
+}
+
+void SinkCore::leave(SinkLeaves::Why why, std::string message) {
+  phase_ = Phase::left;
+  act(SinkLeaves{why, std::move(message)});
+}
+
+std::string SinkCore::list_failed() const {
+  std::string list = std::to_string(failed_.size()) + " job(s) failed for good:";
+  std::size_t listed = 0;
+  for (const auto& [key, reason] : failed_) {
+    if (++listed > 10) break;
+    list += "\n  " + to_hex(key.value) + ": " + reason;
+  }
+  return list;
+}
+
+SinkActions SinkCore::take() {
+  return std::exchange(out_, {});
+}
+
+}  // namespace meshfarm

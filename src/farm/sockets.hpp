@@ -1,0 +1,62 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+//
+// Every ZeroMQ socket of the farm is made here, with all its options.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <meshfarm/farm/protocol.hpp>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include <zmq.hpp>
+
+namespace meshfarm {
+
+struct PortRange {
+  std::uint16_t first = 0;  // 0: any
+  std::uint16_t last = 0;
+};
+
+/// Room for as many sockets as there may be workers; raises this process's file limit to its hard one.
+zmq::context_t make_context();
+
+zmq::socket_t make_control_server(zmq::context_t& context);
+/// `routing_id` must be new for each connection.
+zmq::socket_t make_control_client(zmq::context_t& context, std::uint64_t routing_id);
+zmq::socket_t make_lane_server(zmq::context_t& context);
+zmq::socket_t make_lane_client(zmq::context_t& context);
+zmq::socket_t make_results_server(zmq::context_t& context);
+zmq::socket_t make_results_client(zmq::context_t& context);
+
+/// Binds to the interface or address on the first free port of the range. Returns the address for
+/// others to connect to. Throws IoError that names the interface and the ports.
+std::string bind_within(zmq::socket_t& socket, const std::string& interface, PortRange range);
+
+/// A random number that is never 0.
+std::uint64_t random_id();
+std::string host_name();
+
+/// One message from a socket, with the peer's routing id if `socket` is a ROUTER.
+struct Received {
+  std::string peer;
+  std::optional<Message> message;  // none: it was garbage, and is dropped
+};
+/// Takes one message without waiting; nothing if there is none.
+std::optional<Received> receive(zmq::socket_t& socket);
+/// Sends without waiting; false if the message could not be taken.
+bool send(zmq::socket_t& socket, const Message& message);
+/// The same to one peer of a ROUTER; false also if the peer is gone.
+bool send(zmq::socket_t& router, std::string_view peer, const Message& message);
+
+/// Waits until one of the items has something or the time is up; a signal ends it early.
+void wait_for(std::vector<zmq::pollitem_t>& items, std::chrono::milliseconds timeout);
+/// How long to wait for messages before the clock is looked at.
+std::chrono::milliseconds poll_interval(FarmTime heartbeat);
+FarmTime farm_clock();
+
+}  // namespace meshfarm

@@ -1,0 +1,181 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#include <unistd.h>
+
+#include <algorithm>
+#include <deque>
+#include <map>
+#include <meshfarm/farm/dispatcher.hpp>
+#include <meshfarm/farm/endpoint.hpp>
+#include <meshfarm/farm/ventilator.hpp>
+#include <meshfarm/util/checksum.hpp>
+#include <meshfarm/util/errors.hpp>
+#include <meshfarm/util/log.hpp>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "farm/sockets.hpp"
+
+namespace meshfarm {
+namespace {
+
+constexpr int k_messages_per_turn = 1000;
+constexpr FarmTime k_progress_every{500};
+
+/// A job that no message can carry is our caller's mistake: it is found before anything is sent.
+JobSource checked_source(const JobSource& source) {
+  return [source](std::span<const AcceptedJob> accepted) {
+    std::vector<Job> jobs = source(accepted);
+    for (const Job& job : jobs) encode(Assignment{0, 0, 0, 0, job});
+    return jobs;
+  };
+}
+
+/// The sockets round a Dispatcher, which decides everything.
+class VentilatorLoop {
+ public:
+  VentilatorLoop(const Stage& stage, const JobSource& source, const VentilatorOptions& options)
+      : stage_(stage),
+        options_(options),
+        unique_(to_hex(random_id())),
+        context_(make_context()),
+        control_(make_control_server(context_)),
+        endpoint_(announce()),
+        dispatcher_(Plan(checked_source(source), options.max_attempts),
+                    {options.run, endpoint_.epoch, options.heartbeat}) {}
+
+  FarmProgress run() {
+    while (!end_) {
+      if (options_.stop != nullptr && options_.stop->load()) {
+        perform(dispatcher_.leave());
+        throw IncompleteError("stopped; what was accepted is kept in the stage " +
+                              stage_.root().string() + ", run the same command again to go on");
+      }
+      turn();
+    }
+    if (options_.progress) options_.progress(dispatcher_.progress());
+    // Workers that were just about to join, or missed the word, see here that the run is over.
+    publish_endpoint(stage_, {0, options_.run, {}, endpoint_.host, endpoint_.pid}, unique_);
+    if (!end_->failure.empty()) throw DataError(end_->failure);
+    return dispatcher_.progress();
+  }
+
+ private:
+  struct Lane {
+    zmq::socket_t socket;
+    std::deque<Message> waiting;  // until the worker has connected
+  };
+
+  Endpoint announce() {
+    Endpoint endpoint;
+    endpoint.run = options_.run;
+    endpoint.address =
+        bind_within(control_, options_.bind, {options_.first_port, options_.last_port});
+    endpoint.host = host_name();
+    endpoint.pid = static_cast<std::uint32_t>(::getpid());
+    endpoint = publish_endpoint(stage_, endpoint, unique_);
+    log_info("epoch " + std::to_string(endpoint.epoch) + ", listens on " + endpoint.address);
+    return endpoint;
+  }
+
+  void turn() {
+    std::vector<zmq::pollitem_t> items = {{control_.handle(), 0, ZMQ_POLLIN, 0}};
+    for (const WorkerId id : unsent_) {
+      items.push_back({lanes_.at(id).socket.handle(), 0, ZMQ_POLLOUT, 0});
+    }
+    wait_for(items, poll_interval(options_.heartbeat));
+    for (const WorkerId id : std::exchange(unsent_, {})) flush(id);
+    const FarmTime now = farm_clock();
+    int count = 0;
+    for (; count < k_messages_per_turn && !end_; ++count) {
+      const auto received = receive(control_);
+      if (!received) break;
+      if (received->message) {
+        perform(dispatcher_.on_message(received->peer, *received->message, now));
+      }
+    }
+    // Nobody is silent whose words are still to be read.
+    if (count < k_messages_per_turn) perform(dispatcher_.tick(now));
+    report(now);
+  }
+
+  void report(FarmTime now) {
+    if (!options_.progress || now < next_report_) return;
+    next_report_ = now + k_progress_every;
+    options_.progress(dispatcher_.progress());
+  }
+
+  void perform(const Actions& actions) {
+    for (const Action& action : actions) {
+      std::visit([this](const auto& each) { act(each); }, action);
+    }
+  }
+
+  void act(const SendTo& each) {
+    if (!send(control_, each.peer, each.message)) log_debug("a message to a lost peer was dropped");
+  }
+
+  void act(const OpenLane& each) {
+    try {
+      zmq::socket_t socket = make_lane_server(context_);
+      const std::string address =
+          bind_within(socket, options_.bind, {options_.first_port, options_.last_port});
+      lanes_.emplace(each.worker, Lane{std::move(socket), {}});
+      perform(dispatcher_.lane_opened(each.worker, address));
+    } catch (const IoError& error) {
+      refuse(each.worker, error.what());
+    } catch (const zmq::error_t& error) {
+      refuse(each.worker, error.what());
+    }
+  }
+
+  void refuse(WorkerId worker, const std::string& reason) {
+    log_warning("a worker is turned away, no lane can be opened: " + reason);
+    perform(dispatcher_.lane_failed(worker, reason));
+  }
+
+  void act(const CloseLane& each) {
+    std::erase(unsent_, each.worker);
+    lanes_.erase(each.worker);
+  }
+
+  void act(const PushJob& each) {
+    lanes_.at(each.worker).waiting.push_back(each.assignment);
+    flush(each.worker);
+  }
+
+  void act(const Finish& each) { end_ = each; }
+
+  void flush(WorkerId id) {
+    const auto found = lanes_.find(id);
+    if (found == lanes_.end()) return;
+    Lane& lane = found->second;
+    while (!lane.waiting.empty() && send(lane.socket, lane.waiting.front())) {
+      lane.waiting.pop_front();
+    }
+    const bool listed = std::find(unsent_.begin(), unsent_.end(), id) != unsent_.end();
+    if (!lane.waiting.empty() && !listed) unsent_.push_back(id);
+  }
+
+  const Stage& stage_;
+  const VentilatorOptions& options_;
+  std::string unique_;
+  zmq::context_t context_;
+  zmq::socket_t control_;
+  Endpoint endpoint_;
+  Dispatcher dispatcher_;
+  std::map<WorkerId, Lane> lanes_;
+  std::vector<WorkerId> unsent_;  // lanes with something waiting
+  FarmTime next_report_{0};
+  std::optional<Finish> end_;
+};
+
+}  // namespace
+
+FarmProgress run_ventilator(const Stage& stage, const JobSource& source,
+                            const VentilatorOptions& options) {
+  return VentilatorLoop(stage, source, options).run();
+}
+
+}  // namespace meshfarm

@@ -1,0 +1,56 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <vector>
+
+#include <meshfarm/geometry/mesh.hpp>
+
+namespace meshfarm {
+
+/// The squared distance from `p` to the triangle's nearest point. Degenerate triangles are the
+/// segments or points that they are.
+double squared_distance(Vec3 p, Vec3 a, Vec3 b, Vec3 c);
+
+/// A bounding volume hierarchy over the triangles of a mesh, four children a node, split along the
+/// Morton order of the triangles' centres (Lauterbach et al. 2009). About 16 bytes a triangle, and
+/// twice as many again while it is built. The mesh must outlive it and have finite coordinates.
+class Bvh {
+ public:
+  struct Nearest {
+    double squared = std::numeric_limits<double>::infinity();
+    std::uint32_t triangle = 0;
+  };
+
+  Bvh(const Mesh& mesh, unsigned threads);
+  /// The triangle nearest to `p`. A good `guess` saves time.
+  Nearest nearest(Vec3 p, std::uint32_t guess) const;
+
+ private:
+  // Boxes are floats, rounded outwards, in a frame where the mesh's box is centred and its longest
+  // side between 1/2 and 1: far from the origin floats could not tell triangles apart.
+  struct alignas(64) Node {
+    float lo[3][4];
+    float hi[3][4];
+    std::uint32_t child[4];  // a node, or where count > 0 the first of so many triangles of order_
+    std::uint32_t count[4];
+  };
+  struct Query;
+
+  Vec3 to_frame(Vec3 p) const { return (p - center_) * scale_; }
+  void set_frame();
+  void make_nodes(unsigned threads);
+  void set_leaf_boxes(Node& node) const;
+  void set_inner_boxes(Node& node) const;
+  void visit_leaf(Query& query, std::uint32_t first, std::uint32_t count) const;
+
+  const Mesh& mesh_;
+  Vec3 center_;
+  double scale_ = 1;  // a power of two
+  std::vector<std::uint32_t> order_;
+  std::vector<Node> nodes_;
+};
+
+}  // namespace meshfarm

@@ -1,0 +1,156 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cassert>
+#include <cmath>
+#include <span>
+
+#include <meshfarm/util/parallel.hpp>
+
+#include "geometry/bvh.hpp"
+#include "geometry/bvh_morton.hpp"
+
+namespace meshfarm {
+namespace {
+
+constexpr std::uint32_t k_leaf = 4;
+constexpr std::uint64_t k_chunk = 4096;
+constexpr float k_huge = std::numeric_limits<float>::max();
+
+float below(double x) {
+  return std::nextafter(static_cast<float>(x), -k_huge);
+}
+float above(double x) {
+  return std::nextafter(static_cast<float>(x), k_huge);
+}
+
+struct Range {
+  std::uint32_t begin = 0;
+  std::uint32_t end = 0;
+  std::uint32_t size() const { return end - begin; }
+};
+
+/// Where the highest bit in which the codes of the range differ turns to 1; the middle if all are
+/// equal.
+std::uint32_t split_of(std::span<const MortonItem> items, Range range) {
+  const std::uint64_t differing = items[range.begin].code ^ items[range.end - 1].code;
+  if (differing == 0) return range.begin + range.size() / 2;
+  const std::uint64_t bit = std::bit_floor(differing);
+  const auto found =
+      std::partition_point(items.begin() + range.begin, items.begin() + range.end,
+                           [bit](const MortonItem& item) { return (item.code & bit) == 0; });
+  return static_cast<std::uint32_t>(found - items.begin());
+}
+
+struct Split {
+  std::array<Range, 4> parts;
+  std::size_t count = 0;
+};
+
+/// Splits the largest part in two until there are four, or all are leaves.
+Split split_in_four(std::span<const MortonItem> items, Range range) {
+  Split split{{range}, 1};
+  while (split.count < 4) {
+    const auto largest = std::max_element(
+        split.parts.begin(), split.parts.begin() + static_cast<std::ptrdiff_t>(split.count),
+        [](const Range& a, const Range& b) { return a.size() < b.size(); });
+    if (largest->size() <= k_leaf) break;
+    const std::uint32_t at = split_of(items, *largest);
+    split.parts[split.count++] = {at, largest->end};
+    largest->end = at;
+  }
+  return split;
+}
+
+}  // namespace
+
+Bvh::Bvh(const Mesh& mesh, unsigned threads) : mesh_(mesh) {
+  assert(!mesh.triangles.empty());
+  set_frame();
+  make_nodes(threads);
+}
+
+void Bvh::set_frame() {
+  Box box;
+  for (const Triangle& t : mesh_.triangles) {
+    for (const std::uint32_t v : t) box.add(mesh_.positions[v]);
+  }
+  center_ = box.lo * 0.5 + box.hi * 0.5;
+  const Vec3 size = box.hi - box.lo;
+  const double longest = std::max({size.x, size.y, size.z});
+  if (longest > 0) scale_ = std::ldexp(1.0, -std::ilogb(longest) - 1);
+}
+
+void Bvh::make_nodes(unsigned threads) {
+  std::vector<MortonItem> items(mesh_.triangles.size());
+  parallel_for((items.size() + k_chunk - 1) / k_chunk, threads, [&](std::uint64_t chunk) {
+    const std::size_t end = std::min<std::size_t>(items.size(), (chunk + 1) * k_chunk);
+    for (std::size_t i = chunk * k_chunk; i < end; ++i) {
+      const Triangle& t = mesh_.triangles[i];
+      const Vec3 sum = to_frame(mesh_.positions[t[0]]) + to_frame(mesh_.positions[t[1]]) +
+                       to_frame(mesh_.positions[t[2]]);
+      items[i] = {morton_code(sum * (1.0 / 3)), static_cast<std::uint32_t>(i)};
+    }
+  });
+  sort_by_code(items);
+  order_.resize(items.size());
+  for (std::size_t i = 0; i < items.size(); ++i) order_[i] = items[i].triangle;
+
+  struct Open {
+    Range range;
+    std::uint32_t node;
+  };
+  std::vector<Open> open{{{0, static_cast<std::uint32_t>(items.size())}, 0}};
+  nodes_.emplace_back();
+  while (!open.empty()) {
+    const Open top = open.back();
+    open.pop_back();
+    const Split split = split_in_four(items, top.range);
+    for (std::size_t k = 0; k < 4; ++k) {
+      const Range part = k < split.count ? split.parts[k] : Range{};
+      const bool is_leaf = part.size() <= k_leaf;
+      const auto next = static_cast<std::uint32_t>(nodes_.size());
+      nodes_[top.node].child[k] = is_leaf ? part.begin : next;
+      nodes_[top.node].count[k] = is_leaf ? part.size() : 0;
+      if (is_leaf) continue;
+      open.push_back({part, next});
+      nodes_.emplace_back();
+    }
+  }
+  parallel_for((nodes_.size() + k_chunk - 1) / k_chunk, threads, [&](std::uint64_t chunk) {
+    const std::size_t end = std::min<std::size_t>(nodes_.size(), (chunk + 1) * k_chunk);
+    for (std::size_t i = chunk * k_chunk; i < end; ++i) set_leaf_boxes(nodes_[i]);
+  });
+  // A child stands after its parent.
+  for (std::size_t i = nodes_.size(); i-- > 0;) set_inner_boxes(nodes_[i]);
+}
+
+void Bvh::set_leaf_boxes(Node& node) const {
+  for (std::size_t k = 0; k < 4; ++k) {
+    Box box;
+    for (std::uint32_t i = 0; i < node.count[k]; ++i) {
+      for (const std::uint32_t v : mesh_.triangles[order_[node.child[k] + i]]) {
+        box.add(to_frame(mesh_.positions[v]));
+      }
+    }
+    for (int axis = 0; axis < 3; ++axis) {
+      node.lo[axis][k] = box.empty() ? k_huge : below(box.lo[axis]);
+      node.hi[axis][k] = box.empty() ? -k_huge : above(box.hi[axis]);
+    }
+  }
+}
+
+void Bvh::set_inner_boxes(Node& node) const {
+  for (std::size_t k = 0; k < 4; ++k) {
+    if (node.count[k] > 0 || node.child[k] == 0) continue;
+    const Node& child = nodes_[node.child[k]];
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      node.lo[axis][k] = *std::min_element(child.lo[axis], child.lo[axis] + 4);
+      node.hi[axis][k] = *std::max_element(child.hi[axis], child.hi[axis] + 4);
+    }
+  }
+}
+
+}  // namespace meshfarm

@@ -1,0 +1,57 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#include "geometry/bvh_morton.hpp"
+
+#include <algorithm>
+#include <array>
+#include <utility>
+
+namespace meshfarm {
+namespace {
+
+constexpr int k_axis_bits = 21;
+constexpr int k_digit_bits = 9;
+constexpr int k_digits = 7;  // of 9 bits: all 63 of a code
+constexpr std::size_t k_values = std::size_t{1} << k_digit_bits;
+
+/// Puts two zero bits before each of the 21 low bits.
+std::uint64_t spread(std::uint64_t bits) {
+  bits = (bits | bits << 32) & 0x001f00000000ffffU;
+  bits = (bits | bits << 16) & 0x001f0000ff0000ffU;
+  bits = (bits | bits << 8) & 0x100f00f00f00f00fU;
+  bits = (bits | bits << 4) & 0x10c30c30c30c30c3U;
+  return (bits | bits << 2) & 0x1249249249249249U;
+}
+
+std::uint64_t cell(double x) {
+  constexpr double k_cells = 1 << k_axis_bits;
+  return static_cast<std::uint64_t>(std::clamp((x + 0.5) * k_cells, 0.0, k_cells - 1));
+}
+
+std::size_t digit(const MortonItem& item, int index) {
+  return (item.code >> (index * k_digit_bits)) & (k_values - 1);
+}
+
+}  // namespace
+
+std::uint64_t morton_code(Vec3 p) {
+  return spread(cell(p.x)) << 2 | spread(cell(p.y)) << 1 | spread(cell(p.z));
+}
+
+void sort_by_code(std::vector<MortonItem>& items) {
+  std::vector<std::array<std::size_t, k_values>> places(k_digits);
+  for (const MortonItem& item : items) {
+    for (int d = 0; d < k_digits; ++d) ++places[static_cast<std::size_t>(d)][digit(item, d)];
+  }
+  std::vector<MortonItem> other(items.size());
+  for (int d = 0; d < k_digits; ++d) {
+    auto& place = places[static_cast<std::size_t>(d)];
+    if (std::find(place.begin(), place.end(), items.size()) != place.end()) continue;  // all alike
+    std::size_t sum = 0;
+    for (std::size_t& at : place) sum += std::exchange(at, sum);
+    for (const MortonItem& item : items) other[place[digit(item, d)]++] = item;
+    items.swap(other);
+  }
+}
+
+}  // namespace meshfarm

@@ -1,0 +1,24 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include <meshfarm/geometry/vec.hpp>
+
+namespace meshfarm {
+
+struct MortonItem {
+  std::uint64_t code = 0;
+  std::uint32_t triangle = 0;
+};
+
+/// The place of `p`, each coordinate in [-1/2, 1/2], along the Z-shaped curve: 21 bits an axis,
+/// woven.
+std::uint64_t morton_code(Vec3 p);
+
+/// Sorts by code; equal codes keep their order. Needs the same memory again.
+void sort_by_code(std::vector<MortonItem>& items);
+
+}  // namespace meshfarm

@@ -1,0 +1,83 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <meshfarm/geometry/mesh.hpp>
+#include <span>
+
+#include "geometry/adjacency.hpp"
+#include "geometry/quadric.hpp"
+
+namespace meshfarm {
+
+/// An edge whose ends have more triangles than this together does not collapse: a hub of many
+/// thousand would be walked once for each of its edges. Its rim collapses, so that it shrinks.
+constexpr std::uint32_t k_max_star = 256;
+
+/// The state that the collapses of one pass work on.
+struct CollapseState {
+  std::span<Vec3> positions;
+  std::span<const std::uint8_t> flags;     // VertexFlag
+  std::span<const std::uint32_t> target;   // the vertex that a vertex has become in this pass
+  const Adjacency* adjacency = nullptr;    // as it was when the pass began
+  PositionType type = PositionType::float64;
+};
+
+struct CollapseLimits {
+  std::uint64_t triangles = 0;  // remove no more than these
+  double max_cost = 0;
+};
+
+struct Collapse {
+  std::uint32_t triangles = 0;  // that it removes: 2, at a border 1; 0 if it may not be
+  Vec3 position;
+  double cost = 0;
+};
+
+/// Judges single collapses. Both ends must not have taken part in a collapse of this pass; their
+/// neighbours may have.
+class CollapseJudge {
+ public:
+  explicit CollapseJudge(const CollapseState& state) : state_(state) {}
+
+  /// Where the merged vertex would go and at what cost, if that keeps the topology, turns no
+  /// triangle by more than 75 degrees and makes none of no area. The quadric is of the triangles
+  /// as they are now, each counted once.
+  Collapse judge(std::uint32_t a, std::uint32_t b, const CollapseLimits& limits);
+
+ private:
+  struct Ring {
+    std::array<std::uint32_t, k_max_star> next;
+    std::array<std::uint32_t, k_max_star> prev;
+    std::uint32_t size = 0;
+    bool border = false;
+    Vec3 apex;  // from the edge's middle
+  };
+  struct StarTriangle {
+    Vec3 p;
+    Vec3 q;
+    Vec3 apex;
+    Vec3 normal;
+  };
+
+  void walk_ring(std::uint32_t vertex, Ring& ring) const;
+  std::uint32_t shared_triangles(std::uint32_t b) const;
+  std::uint32_t common_neighbours() const;
+  bool link_allows(std::uint32_t shared) const;
+  void add_star(const Ring& ring, std::uint32_t other, bool with_shared);
+  void add_border(const Ring& ring, std::uint32_t without);
+  Vec3 best_position(std::uint32_t a, std::uint32_t b) const;
+  bool shape_holds(const StarTriangle& triangle, Vec3 x) const;
+
+  CollapseState state_;
+  Vec3 middle_;
+  Ring ring_a_;
+  Ring ring_b_;
+  EdgeQuadric quadric_;
+  std::array<StarTriangle, k_max_star> star_;  // the triangles that stay
+  std::uint32_t star_size_ = 0;
+};
+
+}  // namespace meshfarm

@@ -1,0 +1,135 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include <meshfarm/geometry/distance.hpp>
+#include <meshfarm/util/errors.hpp>
+#include <meshfarm/util/parallel.hpp>
+
+#include "geometry/bvh.hpp"
+
+namespace meshfarm {
+namespace {
+
+// Both fixed, so that nothing depends on the threads: chunks are what is summed up and handed out.
+constexpr std::uint64_t k_samples_a_chunk = 1024;
+constexpr std::size_t k_triangles_a_block = 128;
+
+double area_of(const Mesh& mesh, std::size_t triangle) {
+  const Triangle& t = mesh.triangles[triangle];
+  const Vec3 a = mesh.positions[t[0]];
+  return length(cross(mesh.positions[t[1]] - a, mesh.positions[t[2]] - a)) / 2;
+}
+
+/// The area of all triangles before each block of them; the whole area at the end.
+std::vector<double> areas_before(const Mesh& mesh, unsigned threads, const char* which) {
+  const std::size_t count = mesh.triangles.size();
+  const std::size_t blocks = (count + k_triangles_a_block - 1) / k_triangles_a_block;
+  std::vector<double> before(blocks + 1, 0.0);
+  parallel_for(blocks, threads, [&](std::uint64_t block) {
+    const std::size_t end = std::min(count, (block + 1) * k_triangles_a_block);
+    double sum = 0;
+    for (std::size_t i = block * k_triangles_a_block; i < end; ++i) sum += area_of(mesh, i);
+    before[block + 1] = sum;
+  });
+  for (std::size_t i = 1; i <= blocks; ++i) before[i] += before[i - 1];
+  if (!std::isfinite(before.back())) {
+    throw DataError(std::string("cannot measure distances: the mesh to measure ") + which +
+                    " has coordinates that are not finite, or too large");
+  }
+  if (!(before.back() > 0)) {
+    throw DataError(std::string("cannot measure distances: the mesh to measure ") + which +
+                    " has no triangle of positive area");
+  }
+  return before;
+}
+
+/// The n-th number of a fixed random sequence, in [0, 1): splitmix64 (Steele et al. 2014).
+double random_unit(std::uint64_t n) {
+  std::uint64_t z = (n + 1) * 0x9e3779b97f4a7c15U;
+  z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9U;
+  z = (z ^ (z >> 27)) * 0x94d049bb133111ebU;
+  z ^= z >> 31;
+  return static_cast<double>(z >> 11) * 0x1p-53;
+}
+
+/// Sample n lies in the n-th of equal shares of the area, at a random place of it. Samples must be
+/// asked for in rising order.
+class Sampler {
+ public:
+  Sampler(const Mesh& mesh, const std::vector<double>& before, std::uint64_t samples)
+      : mesh_(mesh), before_(before), share_(before.back() / static_cast<double>(samples)) {}
+
+  Vec3 sample(std::uint64_t n) {
+    seek((static_cast<double>(n) + random_unit(3 * n)) * share_);
+    const Triangle& t = mesh_.triangles[triangle_];
+    const double root = std::sqrt(random_unit(3 * n + 1)), across = random_unit(3 * n + 2);
+    return mesh_.positions[t[0]] * (1 - root) + mesh_.positions[t[1]] * (root * (1 - across)) +
+           mesh_.positions[t[2]] * (root * across);
+  }
+
+ private:
+  // Jumps to the block that holds the place, then walks. Block sums and walked sums may differ in
+  // the last bit, so a walk may end on the triangle beside: it is on the surface as well.
+  void seek(double place) {
+    const auto next = std::upper_bound(before_.begin() + 1, before_.end() - 1, place);
+    const auto block = static_cast<std::size_t>(next - before_.begin()) - 1;
+    if (block != block_) {
+      block_ = block;
+      triangle_ = block * k_triangles_a_block;
+      walked_ = before_[block] + area_of(mesh_, triangle_);
+    }
+    const std::size_t end = std::min(mesh_.triangles.size(), (block + 1) * k_triangles_a_block) - 1;
+    while (walked_ < place && triangle_ < end) walked_ += area_of(mesh_, ++triangle_);
+  }
+
+  const Mesh& mesh_;
+  const std::vector<double>& before_;
+  double share_;
+  std::size_t block_ = static_cast<std::size_t>(-1);
+  std::size_t triangle_ = 0;
+  double walked_ = 0;  // area up to the end of triangle_
+};
+
+struct Sums {
+  double squares = 0;
+  double distances = 0;
+  double max_square = 0;
+};
+
+}  // namespace
+
+Distance measure_distance(const Mesh& from, const Mesh& to, const DistanceOptions& options) {
+  if (options.samples == 0) throw UsageError("distances need at least one sample");
+  const std::vector<double> before = areas_before(from, options.threads, "from");
+  areas_before(to, options.threads, "to");
+  const Bvh bvh(to, options.threads);
+
+  std::vector<Sums> chunks((options.samples + k_samples_a_chunk - 1) / k_samples_a_chunk);
+  parallel_for(chunks.size(), options.threads, [&](std::uint64_t chunk) {
+    Sampler sampler(from, before, options.samples);
+    const std::uint64_t end = std::min(options.samples, (chunk + 1) * k_samples_a_chunk);
+    Sums sums;
+    std::uint32_t guess = 0;
+    for (std::uint64_t n = chunk * k_samples_a_chunk; n < end; ++n) {
+      const Bvh::Nearest nearest = bvh.nearest(sampler.sample(n), guess);
+      guess = nearest.triangle;
+      sums.squares += nearest.squared;
+      sums.distances += std::sqrt(nearest.squared);
+      sums.max_square = std::max(sums.max_square, nearest.squared);
+    }
+    chunks[chunk] = sums;
+  });
+  Sums all;
+  for (const Sums& chunk : chunks) {
+    all.squares += chunk.squares;
+    all.distances += chunk.distances;
+    all.max_square = std::max(all.max_square, chunk.max_square);
+  }
+  const auto samples = static_cast<double>(options.samples);
+  return {std::sqrt(all.squares / samples), all.distances / samples, std::sqrt(all.max_square)};
+}
+
+}  // namespace meshfarm

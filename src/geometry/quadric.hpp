@@ -1,0 +1,102 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <meshfarm/geometry/vec.hpp>
+
+namespace meshfarm {
+
+/// A symmetric 3x3 matrix A. With x measured from a point that lies in all the planes added,
+/// x'Ax is the weighted sum of x's squared distances to them (Garland & Heckbert 1997).
+/// A memoryless quadric needs no more: all planes of a vertex's star pass through the vertex,
+/// so nothing is lost to a far origin.
+struct Quadric {
+  double xx = 0;
+  double xy = 0;
+  double xz = 0;
+  double yy = 0;
+  double yz = 0;
+  double zz = 0;
+
+  /// Adds weight * n n'.
+  void add(Vec3 n, double weight) {
+    const Vec3 w = n * weight;
+    xx += w.x * n.x;
+    xy += w.x * n.y;
+    xz += w.x * n.z;
+    yy += w.y * n.y;
+    yz += w.y * n.z;
+    zz += w.z * n.z;
+  }
+  double trace() const { return xx + yy + zz; }
+
+  friend Quadric operator+(const Quadric& a, const Quadric& b) {
+    return {a.xx + b.xx, a.xy + b.xy, a.xz + b.xz, a.yy + b.yy, a.yz + b.yz, a.zz + b.zz};
+  }
+  friend Quadric operator-(const Quadric& a, const Quadric& b) {
+    return {a.xx - b.xx, a.xy - b.xy, a.xz - b.xz, a.yy - b.yy, a.yz - b.yz, a.zz - b.zz};
+  }
+  friend Vec3 operator*(const Quadric& a, Vec3 x) {
+    return {a.xx * x.x + a.xy * x.y + a.xz * x.z, a.xy * x.x + a.yy * x.y + a.yz * x.z,
+            a.xz * x.x + a.yz * x.y + a.zz * x.z};
+  }
+};
+
+/// The x with (A + ridge I) x = b, by Cramer's rule; zero if there is none.
+inline Vec3 solve(const Quadric& a, double ridge, Vec3 b) {
+  const double xx = a.xx + ridge;
+  const double yy = a.yy + ridge;
+  const double zz = a.zz + ridge;
+  const Vec3 c0{yy * zz - a.yz * a.yz, a.xz * a.yz - a.xy * zz, a.xy * a.yz - a.xz * yy};
+  const double determinant = xx * c0.x + a.xy * c0.y + a.xz * c0.z;
+  if (!(determinant > 0)) return {};
+  const double c11 = xx * zz - a.xz * a.xz;
+  const double c12 = a.xy * a.xz - xx * a.yz;
+  const double c22 = xx * yy - a.xy * a.xy;
+  const Vec3 x{c0.x * b.x + c0.y * b.y + c0.z * b.z, c0.y * b.x + c11 * b.y + c12 * b.z,
+               c0.z * b.x + c12 * b.y + c22 * b.z};
+  return x * (1.0 / determinant);
+}
+
+/// The plane through a border edge perpendicular to its triangle, weighted like a triangle on the
+/// edge: keeps open borders where they are. Adds nothing for a triangle of no area.
+inline void add_border_plane(Quadric& quadric, Vec3 triangle_normal, Vec3 edge) {
+  constexpr double k_weight = 3;
+  const Vec3 n = cross(triangle_normal, edge);
+  const double scale = squared_length(n);
+  if (scale > 0 && std::isfinite(scale)) quadric.add(n, k_weight * squared_length(edge) / scale);
+}
+
+/// The planes round an edge, about its middle: x costs x'Ax - 2 b'x + c.
+struct EdgeQuadric {
+  Quadric a;
+  Vec3 b;
+  double c = 0;
+  double squared_length = 0;
+
+  /// Adds planes that all pass through `point`.
+  void add(const Quadric& planes, Vec3 point) {
+    const Vec3 moved = planes * point;
+    a = a + planes;
+    b = b + moved;
+    c += dot(moved, point);
+  }
+
+  /// Where the cost is least. Along directions that the planes leave open, it stays at the
+  /// middle: a ridge of 1e-3 drew all vertices there (RMS + 20 %), 1e-8 gave way to rounding.
+  Vec3 best() const { return solve(a, 1e-5 * a.trace(), b); }
+
+  /// The sum of weight x squared distance; differences of rounding count as none.
+  double cost(Vec3 x) const {
+    const double value = dot(a * x - b * 2.0, x) + c;
+    return value > 1e-14 * a.trace() * squared_length ? value : 0.0;
+  }
+
+  /// What orders edges: the cost, and where that is nothing the length, so that flat regions
+  /// do not collapse in order of indices into fans. Heavier (1e-3) it cost 15 % of the RMS at 10 %.
+  double ranking_cost(Vec3 x) const { return cost(x) + 1e-6 * a.trace() * squared_length; }
+};
+
+}  // namespace meshfarm

@@ -1,0 +1,247 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#include <algorithm>
+#include <cmath>
+#include <meshfarm/geometry/simplify.hpp>
+#include <utility>
+
+#include "geometry/adjacency.hpp"
+#include "geometry/collapse.hpp"
+#include "geometry/simplify_clean.hpp"
+#include "geometry/simplify_rank.hpp"
+
+namespace meshfarm {
+namespace {
+
+// Only the cheapest edges are taken before all are ranked anew.
+#ifndef SHARE
+#define SHARE 0.35
+#endif
+#ifndef BLK
+#define BLK 4096
+#endif
+constexpr double k_pass_share = SHARE;
+
+// Vertices whose edges are ranked, sorted and collapsed together: they and their stars fit into a
+// core's cache. On 10M triangles this halves the time.
+constexpr std::uint32_t k_block = BLK;
+
+/// What one pass is to do.
+struct Pass {
+  CostKey limit = k_any_cost;
+  double max_cost = 0;        // the lower of the goal's and what the limit stands for
+  std::uint32_t block = 0;    // vertices
+  bool everything = false;    // nothing but the goal's own limits holds it back
+};
+
+}  // namespace
+
+class Simplifier::Impl {
+ public:
+  Impl(Mesh mesh, SimplifyOptions options)
+      : mesh_(std::move(mesh)),
+        locked_(options.locked_vertices),
+        type_(options.positions),
+        seam_only_(!options.seam.empty()) {
+    check_input(mesh_, options);
+    dropped_ = drop_bad_triangles(mesh_, adjacency_);
+    adjacency_.build(mesh_.triangles, mesh_.positions.size());
+    flags_ = classify_vertices(mesh_, options, adjacency_);
+    drop_unused_vertices();
+    publish_seam();
+  }
+
+  void reduce(const SimplifyGoal& goal, const std::function<bool(std::uint64_t)>& progress) {
+    double share = k_pass_share;
+    while (may_go_on(goal)) {
+      begin_pass();
+      const Pass pass = plan_pass(goal, share);
+      const std::uint64_t before = mesh_.triangles.size();
+      const std::uint64_t removed = collapse_edges(goal, pass);
+      compact();
+      pass_cost_ = pass.max_cost;
+      if (progress && !progress(mesh_.triangles.size())) break;
+      if (pass.everything && is_exhausted(goal, before, removed)) break;
+      if (removed * 50 < before) share = std::min(1.0, share * 2);
+    }
+    publish_seam();
+  }
+
+  const Mesh& mesh() const { return mesh_; }
+  std::uint64_t free_triangles() const {
+    const auto is_free = [&](const Triangle& t) {
+      return t[0] >= locked_ && t[1] >= locked_ && t[2] >= locked_;
+    };
+    return static_cast<std::uint64_t>(
+        std::count_if(mesh_.triangles.begin(), mesh_.triangles.end(), is_free));
+  }
+  double max_cost() const { return max_cost_; }
+  double pass_cost() const { return pass_cost_; }
+  const Dropped& dropped() const { return dropped_; }
+  std::span<const std::uint8_t> seam() const { return seam_; }
+
+ private:
+  bool may_go_on(const SimplifyGoal& goal) const {
+    const std::uint64_t triangles = mesh_.triangles.size();
+    if (triangles <= goal.triangles || !(goal.max_cost > exhausted_cost_)) return false;
+    return triangles - goal.triangles > 1 || has_free_border();
+  }
+
+  bool has_free_border() const {
+    return std::any_of(flags_.begin(), flags_.end(), [](std::uint8_t flags) {
+      return (flags & (k_border | k_fixed)) == k_border;
+    });
+  }
+
+  /// Remembers that no call with this cost or less has anything left to do. One that may remove a
+  /// single triangle only tells nothing about others.
+  bool is_exhausted(const SimplifyGoal& goal, std::uint64_t before, std::uint64_t removed) {
+    const bool exhausted = std::isfinite(goal.max_cost) ? removed * 100 < before : removed == 0;
+    if (exhausted && before - goal.triangles > 1) exhausted_cost_ = goal.max_cost;
+    return exhausted;
+  }
+
+  void begin_pass() {
+    adjacency_.build(mesh_.triangles, mesh_.positions.size());
+    ranking_.begin_pass({mesh_.positions, mesh_.triangles, flags_, &adjacency_, seam_only_});
+  }
+
+  /// Far from the goal passes go block by block and take too few edges to overshoot it; the last
+  /// ones take the cheapest edges of the whole mesh first, and stop at the goal.
+  Pass plan_pass(const SimplifyGoal& goal, double share) {
+    const std::uint64_t triangles = mesh_.triangles.size();
+    const std::uint64_t excess = triangles - goal.triangles;
+    const auto vertices = static_cast<std::uint32_t>(mesh_.positions.size());
+    const bool far = excess > triangles / 8 && vertices > 2 * k_block;
+    Pass pass;
+    pass.block = far ? k_block : vertices;
+    const bool all = share >= 1 && !far;
+    const double most = far ? 0.45 * static_cast<double>(excess) : HUGE_VAL;
+    pass.limit = all ? k_any_cost : ranking_.estimate_limit(share, most);
+    pass.max_cost = std::min(goal.max_cost, cost_of(pass.limit));
+    pass.everything = goal.max_cost <= cost_of(pass.limit);
+    return pass;
+  }
+
+  std::uint64_t collapse_edges(const SimplifyGoal& goal, const Pass& pass) {
+    const auto vertices = static_cast<std::uint32_t>(mesh_.positions.size());
+    target_.resize(vertices);
+    for (std::uint32_t v = 0; v < vertices; ++v) target_[v] = v;
+    touched_.assign(vertices, 0);
+    CollapseJudge judge({mesh_.positions, flags_, target_, &adjacency_, type_});
+    CollapseLimits limits{mesh_.triangles.size() - goal.triangles, pass.max_cost};
+    for (std::uint32_t first = 0; first < vertices; first += pass.block) {
+      const std::uint32_t last = std::min(vertices, first + pass.block);
+      for (const RankedEdge& e : ranking_.cheapest(first, last, {pass.limit, pass.max_cost})) {
+        if ((touched_[e.a] | touched_[e.b]) != 0) continue;
+        const Collapse collapse = judge.judge(e.a, e.b, limits);
+        if (collapse.triangles == 0) continue;
+        merge(e, collapse);
+        limits.triangles -= collapse.triangles;
+        if (limits.triangles == 0) break;
+      }
+      if (limits.triangles == 0) break;
+    }
+    return mesh_.triangles.size() - goal.triangles - limits.triangles;
+  }
+
+  void merge(const RankedEdge& e, const Collapse& collapse) {
+    touched_[e.a] = touched_[e.b] = 1;
+    target_[e.b] = e.a;
+    flags_[e.a] |= flags_[e.b];
+    mesh_.positions[e.a] = collapse.position;
+    max_cost_ = std::max(max_cost_, collapse.cost);
+  }
+
+  /// Renumbers the vertices that are left, in their order, and drops the triangles that are gone.
+  void compact() {
+    std::uint32_t kept = 0;
+    for (std::uint32_t v = 0; v < target_.size(); ++v) {
+      // A vertex merges into a smaller one, whose new number is known by now.
+      if (target_[v] != v) {
+        target_[v] = target_[target_[v]];
+        continue;
+      }
+      mesh_.positions[kept] = mesh_.positions[v];
+      flags_[kept] = flags_[v];
+      target_[v] = kept++;
+    }
+    mesh_.positions.resize(kept);
+    flags_.resize(kept);
+    std::erase_if(mesh_.triangles, [&](Triangle& t) {
+      t = {target_[t[0]], target_[t[1]], target_[t[2]]};
+      return t[0] == t[1] || t[1] == t[2] || t[2] == t[0];
+    });
+  }
+
+  void drop_unused_vertices() {
+    target_.resize(mesh_.positions.size());
+    std::uint32_t kept = 0;
+    for (std::uint32_t v = 0; v < target_.size(); ++v) {
+      if (v >= locked_ && adjacency_.count(v) == 0) continue;
+      mesh_.positions[kept] = mesh_.positions[v];
+      flags_[kept] = flags_[v];
+      target_[v] = kept++;
+    }
+    mesh_.positions.resize(kept);
+    flags_.resize(kept);
+    for (Triangle& t : mesh_.triangles) t = {target_[t[0]], target_[t[1]], target_[t[2]]};
+  }
+
+  void publish_seam() {
+    if (!seam_only_) return;
+    seam_.resize(flags_.size());
+    std::transform(flags_.begin(), flags_.end(), seam_.begin(), [](std::uint8_t flags) {
+      return static_cast<std::uint8_t>((flags & k_seam) != 0 ? 1 : 0);
+    });
+  }
+
+  Mesh mesh_;
+  std::uint32_t locked_;
+  PositionType type_;
+  bool seam_only_;
+  Dropped dropped_;
+  std::vector<std::uint8_t> flags_;  // VertexFlag
+  std::vector<std::uint8_t> seam_;
+  double max_cost_ = 0;
+  double pass_cost_ = 0;
+  double exhausted_cost_ = -1;
+
+  Adjacency adjacency_;
+  EdgeRanking ranking_;
+  std::vector<std::uint32_t> target_;   // the vertex that a vertex becomes in this pass
+  std::vector<std::uint8_t> touched_;   // took part in a collapse of this pass
+};
+
+Simplifier::Simplifier(Mesh mesh, SimplifyOptions options)
+    : impl_(std::make_unique<Impl>(std::move(mesh), std::move(options))) {}
+Simplifier::~Simplifier() = default;
+Simplifier::Simplifier(Simplifier&&) noexcept = default;
+
+void Simplifier::reduce(const SimplifyGoal& goal,
+                        const std::function<bool(std::uint64_t)>& progress) {
+  impl_->reduce(goal, progress);
+}
+const Mesh& Simplifier::mesh() const {
+  return impl_->mesh();
+}
+std::uint64_t Simplifier::free_triangles() const {
+  return impl_->free_triangles();
+}
+double Simplifier::max_cost() const {
+  return impl_->max_cost();
+}
+double Simplifier::pass_cost() const {
+  return impl_->pass_cost();
+}
+std::uint64_t Simplifier::dropped_degenerate() const {
+  return impl_->dropped().degenerate;
+}
+std::uint64_t Simplifier::dropped_duplicate() const {
+  return impl_->dropped().duplicate;
+}
+std::span<const std::uint8_t> Simplifier::seam() const {
+  return impl_->seam();
+}
+
+}  // namespace meshfarm

@@ -1,0 +1,38 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <meshfarm/geometry/mesh.hpp>
+#include <meshfarm/geometry/simplify.hpp>
+#include <vector>
+
+#include "geometry/adjacency.hpp"
+
+namespace meshfarm {
+
+/// What a vertex may do, one byte each; a merged vertex inherits border and seam.
+enum VertexFlag : std::uint8_t {
+  k_fixed = 1,   // neither moves nor goes, and no edge at it collapses
+  k_border = 2,  // on an edge that has one triangle
+  k_seam = 4,    // SimplifyOptions::seam
+};
+
+/// Throws UsageError or DataError if options or mesh cannot be taken.
+void check_input(const Mesh& mesh, const SimplifyOptions& options);
+
+struct Dropped {
+  std::uint64_t degenerate = 0;
+  std::uint64_t duplicate = 0;
+};
+
+/// Drops triangles with two equal corners, then those with the vertices of an earlier one.
+/// `adjacency` is scratch.
+Dropped drop_bad_triangles(Mesh& mesh, Adjacency& adjacency);
+
+/// The flags of all vertices. Fixed are the locked, those that are not finite, and those whose
+/// triangles do not make one consistently oriented fan: ends of non-manifold edges, bow ties.
+std::vector<std::uint8_t> classify_vertices(const Mesh& mesh, const SimplifyOptions& options,
+                                            const Adjacency& adjacency);
+
+}  // namespace meshfarm

@@ -1,0 +1,85 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#include <array>
+#include <bit>
+#include <cassert>
+#include <limits>
+
+#include <meshfarm/geometry/weld.hpp>
+
+namespace meshfarm {
+namespace {
+
+constexpr std::uint32_t k_empty = std::numeric_limits<std::uint32_t>::max();
+// So many slots are fetched ahead of their use: the table is bigger than the near caches.
+constexpr std::size_t k_ahead = 16;
+
+struct Key {
+  std::uint64_t x, y, z;
+  friend bool operator==(const Key&, const Key&) = default;
+};
+
+Key key_of(Vec3 p) {
+  // Adding 0.0 turns -0.0 into 0.0 and leaves all else.
+  return {std::bit_cast<std::uint64_t>(p.x + 0.0), std::bit_cast<std::uint64_t>(p.y + 0.0),
+          std::bit_cast<std::uint64_t>(p.z + 0.0)};
+}
+
+std::uint64_t mixed(std::uint64_t h) {
+  h ^= h >> 32;
+  h *= 0xd6e8feb86659fd93U;
+  return h ^ (h >> 32);
+}
+
+// Coordinates from a grid differ in few bits, all of them high: each is mixed before the next.
+std::uint64_t hash_of(const Key& key) {
+  return mixed(mixed(mixed(key.x) + key.y) + key.z) * 0x9e3779b97f4a7c15U;
+}
+
+/// Open addressing with linear probing, never more than half full.
+class Table {
+ public:
+  explicit Table(std::size_t entries)
+      : shift_(64 - static_cast<int>(std::bit_width(entries * 2 + 1))),
+        slots_(std::size_t{1} << (64 - shift_), k_empty) {}
+  std::size_t home(std::uint64_t hash) const { return hash >> shift_; }
+  void prefetch(std::size_t slot) const { __builtin_prefetch(&slots_[slot], 1); }
+  std::size_t next(std::size_t slot) const { return (slot + 1) & (slots_.size() - 1); }
+  std::uint32_t& operator[](std::size_t slot) { return slots_[slot]; }
+
+ private:
+  int shift_;
+  std::vector<std::uint32_t> slots_;
+};
+
+}  // namespace
+
+WeldResult weld(std::span<const Vec3> positions) {
+  assert(positions.size() < k_empty);
+  WeldResult result;
+  result.first.resize(positions.size());
+  Table table(positions.size());
+  std::array<std::size_t, k_ahead> homes{};
+  const auto look_ahead = [&](std::size_t i) {
+    if (i >= positions.size()) return;
+    homes[i % k_ahead] = table.home(hash_of(key_of(positions[i])));
+    table.prefetch(homes[i % k_ahead]);
+  };
+  for (std::size_t i = 0; i < k_ahead; ++i) look_ahead(i);
+  for (std::size_t i = 0; i < positions.size(); ++i) {
+    std::size_t slot = homes[i % k_ahead];
+    look_ahead(i + k_ahead);
+    const Key key = key_of(positions[i]);
+    while (table[slot] != k_empty && key_of(positions[table[slot]]) != key) slot = table.next(slot);
+    // Vertices come in order, so the one in the table is the lowest of its twins.
+    if (table[slot] == k_empty) {
+      table[slot] = static_cast<std::uint32_t>(i);
+    } else {
+      ++result.merged;
+    }
+    result.first[i] = table[slot];
+  }
+  return result;
+}
+
+}  // namespace meshfarm

@@ -1,0 +1,125 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#include "byte_stream_inflate.hpp"
+
+#include <algorithm>
+#include <cstring>
+#include <new>
+#include <string>
+
+#include <boost/iostreams/categories.hpp>
+#include <boost/iostreams/filter/gzip.hpp>
+#include <boost/iostreams/filter/zstd.hpp>
+#include <boost/iostreams/filtering_streambuf.hpp>
+
+#include <meshfarm/util/errors.hpp>
+
+namespace meshfarm {
+namespace {
+
+namespace bio = boost::iostreams;
+
+constexpr std::streamsize k_filter_bytes = 1 << 16;
+
+/// The compressed bytes, let go of as they are read.
+class MappedDevice {
+ public:
+  using char_type = char;
+  using category = bio::source_tag;
+
+  explicit MappedDevice(const MappedFile& file) : file_(&file) {}
+
+  std::streamsize read(char* out, std::streamsize wanted) {
+    const std::string_view bytes = file_->bytes();
+    const std::size_t count = std::min(static_cast<std::size_t>(wanted), bytes.size() - offset_);
+    if (count == 0) return -1;
+    std::memcpy(out, bytes.data() + offset_, count);
+    offset_ += count;
+    if (offset_ - released_ >= k_step_bytes) {
+      file_->release(released_, offset_ - released_);
+      released_ = offset_ / k_page_bytes * k_page_bytes;
+    }
+    return static_cast<std::streamsize>(count);
+  }
+
+ private:
+  static constexpr std::size_t k_step_bytes = std::size_t{4} << 20;
+  static constexpr std::size_t k_page_bytes = 4096;
+  const MappedFile* file_;
+  std::size_t offset_ = 0;
+  std::size_t released_ = 0;
+};
+
+class InflatedStream final : public ByteStream {
+ public:
+  InflatedStream(const MappedFile& file, Compression compression, std::filesystem::path path)
+      : path_(std::move(path)),
+        compression_(compression),
+        buffer_(std::make_unique_for_overwrite<char[]>(k_max_window_bytes)) {
+    if (compression == Compression::gzip) {
+      input_.push(bio::gzip_decompressor(bio::gzip::default_window_bits, k_filter_bytes),
+                  k_filter_bytes);
+    } else {
+      input_.push(bio::zstd_decompressor(k_filter_bytes), k_filter_bytes);
+    }
+    input_.push(MappedDevice(file), k_filter_bytes);
+    current_ = end_ = buffer_.get();
+  }
+
+  bool skip(std::uint64_t count) override {
+    while (count > 0) {
+      const std::size_t step = std::min<std::uint64_t>(count, window(1).size());
+      if (step == 0) return false;
+      consume(step);
+      count -= step;
+    }
+    return true;
+  }
+  std::uint64_t position() const override {
+    return inflated_ - static_cast<std::uint64_t>(end_ - current_);
+  }
+  std::optional<std::uint64_t> remaining() const override { return std::nullopt; }
+
+ private:
+  void widen(std::size_t at_least) override {
+    auto held = static_cast<std::size_t>(end_ - current_);
+    std::memmove(buffer_.get(), current_, held);
+    while (held < std::min(at_least, k_max_window_bytes) && !at_end_) {
+      const std::size_t got = inflate(buffer_.get() + held, k_max_window_bytes - held);
+      at_end_ = got == 0;
+      held += got;
+      inflated_ += got;
+    }
+    current_ = buffer_.get();
+    end_ = current_ + held;
+  }
+
+  std::size_t inflate(char* out, std::size_t room) {
+    try {
+      const std::streamsize got = input_.sgetn(out, static_cast<std::streamsize>(room));
+      return got > 0 ? static_cast<std::size_t>(got) : 0;
+    } catch (const std::bad_alloc&) {
+      throw;
+    } catch (const std::exception&) {  // the filters' own words say nothing to a user
+      throw DataError(path_.string() + ": the " + std::string(name_of(compression_)) +
+                      " data is corrupt or truncated, somewhere after byte " +
+                      std::to_string(inflated_) + " of what it holds");
+    }
+  }
+
+  std::filesystem::path path_;
+  Compression compression_;
+  std::unique_ptr<char[]> buffer_;
+  bio::filtering_streambuf<bio::input> input_;
+  std::uint64_t inflated_ = 0;
+  bool at_end_ = false;
+};
+
+}  // namespace
+
+std::unique_ptr<ByteStream> open_compressed(const MappedFile& file, Compression compression,
+                                            const std::filesystem::path& path) {
+  return std::make_unique<InflatedStream>(file, compression, path);
+}
+
+}  // namespace meshfarm

@@ -1,0 +1,17 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <filesystem>
+#include <string_view>
+
+namespace meshfarm {
+
+/// Whether the bytes start like a zstd file.
+bool is_zstd(std::string_view bytes);
+
+/// Throws DataError unless the last frame is whole: the decompressor at hand takes a file that is
+/// cut off for one that ends. Reads the blocks' headers only.
+void check_zstd_frames(std::string_view bytes, const std::filesystem::path& path);
+
+}  // namespace meshfarm

@@ -1,0 +1,117 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+//
+// The manifest, kind "MNFT", version 1; the payload of a sealed file. Strings are u32 + characters,
+// a file is name | size u64 | xxh3-64 u64:
+//   input | input format | position type u8 | box 6 x f64 | input vertices u64 | input triangles
+//   u64 | merged vertices u64 | dropped degenerate u64 | dropped duplicate u64 | skipped u32 x
+//   string | cut seconds f64 | boundary triangles u64 | boundary file | parts u32 x (file |
+//   vertices u64 | triangles u64 | boundary vertices u32)
+#include <meshfarm/io/manifest.hpp>
+#include <meshfarm/staging/sealed.hpp>
+#include <meshfarm/util/bytes.hpp>
+
+#include "io/part_mesh.hpp"
+
+namespace meshfarm {
+namespace {
+
+constexpr FileKind k_kind = {'M', 'N', 'F', 'T'};
+constexpr std::uint32_t k_version = 1;
+
+void put_file(ByteWriter& out, const FileRef& file) {
+  out.put_string(file.name);
+  out.put(file.size);
+  out.put(file.hash);
+}
+
+/// A manifest may name only files of the kind that stands in that place.
+template <class Name>
+FileRef get_file(ByteReader& in) {
+  FileRef file;
+  file.name = in.get_string();
+  file.size = in.get<std::uint64_t>();
+  file.hash = in.get<std::uint64_t>();
+  const auto name = parse_staged_name(file.name);
+  if (!name || !std::holds_alternative<Name>(*name)) in.fail("not the name of a staged file");
+  return file;
+}
+
+void put_parts(ByteWriter& out, const std::vector<PartEntry>& parts) {
+  out.put(static_cast<std::uint32_t>(parts.size()));
+  for (const PartEntry& part : parts) {
+    put_file(out, part.file);
+    out.put(part.vertices);
+    out.put(part.triangles);
+    out.put(part.boundary_vertices);
+  }
+}
+
+std::vector<PartEntry> get_parts(ByteReader& in) {
+  std::vector<PartEntry> parts;
+  const auto count = in.get<std::uint32_t>();
+  for (std::uint32_t i = 0; i < count; ++i) {
+    PartEntry part;
+    part.file = get_file<PartName>(in);
+    part.vertices = in.get<std::uint64_t>();
+    part.triangles = in.get<std::uint64_t>();
+    part.boundary_vertices = in.get<std::uint32_t>();
+    if (part.boundary_vertices > part.vertices) in.fail("more boundary vertices than vertices");
+    parts.push_back(std::move(part));
+  }
+  return parts;
+}
+
+}  // namespace
+
+std::uint64_t Manifest::triangles() const {
+  std::uint64_t sum = boundary_triangles;
+  for (const PartEntry& part : parts) sum += part.triangles;
+  return sum;
+}
+
+std::string encode_manifest(const Manifest& m) {
+  ByteWriter out;
+  out.put_string(m.input);
+  out.put_string(m.input_format);
+  out.put(m.positions);
+  out.put(m.box.lo);
+  out.put(m.box.hi);
+  out.put(m.input_vertices);
+  out.put(m.input_triangles);
+  out.put(m.merged_vertices);
+  out.put(m.dropped_degenerate);
+  out.put(m.dropped_duplicate);
+  out.put(static_cast<std::uint32_t>(m.skipped.size()));
+  for (const std::string& name : m.skipped) out.put_string(name);
+  out.put(m.cut_seconds);
+  out.put(m.boundary_triangles);
+  put_file(out, m.boundary);
+  put_parts(out, m.parts);
+  return seal(k_kind, k_version, out.bytes());
+}
+
+Manifest decode_manifest(std::string_view file, std::string_view what) {
+  ByteReader in(unseal(file, k_kind, k_version, what), what);
+  Manifest m;
+  m.input = in.get_string();
+  m.input_format = in.get_string();
+  m.positions = get_position_type(in);
+  m.box.lo = in.get<Vec3>();
+  m.box.hi = in.get<Vec3>();
+  m.input_vertices = in.get<std::uint64_t>();
+  m.input_triangles = in.get<std::uint64_t>();
+  m.merged_vertices = in.get<std::uint64_t>();
+  m.dropped_degenerate = in.get<std::uint64_t>();
+  m.dropped_duplicate = in.get<std::uint64_t>();
+  const auto skipped = in.get<std::uint32_t>();
+  for (std::uint32_t i = 0; i < skipped; ++i) m.skipped.push_back(in.get_string());
+  m.cut_seconds = in.get<double>();
+  m.boundary_triangles = in.get<std::uint64_t>();
+  m.boundary = get_file<BoundaryName>(in);
+  m.parts = get_parts(in);
+  in.expect_end();
+  return m;
+}
+
+}  // namespace meshfarm

@@ -1,0 +1,39 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#include <meshfarm/io/mesh_source.hpp>
+#include <meshfarm/util/errors.hpp>
+
+#include "ply_reader.hpp"
+
+namespace meshfarm {
+
+std::unique_ptr<MeshSource> open_mesh(const std::filesystem::path& path) {
+  InputFile file(path);
+  if (is_ply_file(file)) return open_ply(std::move(file));
+  throw DataError(
+      path.string() +
+      ": unknown format; meshfarm reads PLY (ascii, binary little or big endian), plain "
+      "or compressed with gzip or zstd");
+}
+
+Mesh read_mesh(MeshSource& source) {
+  if (source.info().vertices > UINT32_MAX) {
+    throw DataError("a mesh of " + std::to_string(source.info().vertices) +
+                    " vertices is too large to be read into memory: the limit is " +
+                    std::to_string(UINT32_MAX));
+  }
+  Mesh mesh;
+  source.scan_vertices([&mesh](std::span<const Vec3> batch) {
+    mesh.positions.insert(mesh.positions.end(), batch.begin(), batch.end());
+  });
+  source.scan_triangles([&mesh](std::span<const WideTriangle> batch) {
+    for (const WideTriangle& triangle : batch) {
+      mesh.triangles.push_back({static_cast<std::uint32_t>(triangle[0]),
+                                static_cast<std::uint32_t>(triangle[1]),
+                                static_cast<std::uint32_t>(triangle[2])});
+    }
+  });
+  return mesh;
+}
+
+}  // namespace meshfarm

@@ -1,0 +1,55 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#include "io/part_mesh.hpp"
+
+#include <limits>
+
+namespace meshfarm {
+
+void put_mesh(ByteWriter& out, const Mesh& mesh, PositionType positions) {
+  if (positions == PositionType::float64) {
+    out.put_array(std::span<const Vec3>(mesh.positions));
+  } else {
+    for (const Vec3& p : mesh.positions) {
+      out.put(std::array<float, 3>{static_cast<float>(p.x), static_cast<float>(p.y),
+                                   static_cast<float>(p.z)});
+    }
+  }
+  out.put_array(std::span<const Triangle>(mesh.triangles));
+}
+
+Mesh get_mesh(ByteReader& in, std::uint64_t vertices, std::uint64_t triangles,
+              PositionType positions) {
+  if (vertices > std::numeric_limits<std::uint32_t>::max()) in.fail("too many vertices for a part");
+  Mesh mesh;
+  if (positions == PositionType::float64) {
+    mesh.positions = in.get_array<Vec3>(vertices);
+  } else {
+    if (vertices > in.remaining() / (3 * sizeof(float))) in.fail("positions run past the end");
+    mesh.positions.reserve(vertices);
+    for (std::uint64_t i = 0; i < vertices; ++i) {
+      const auto p = in.get<std::array<float, 3>>();
+      mesh.positions.push_back({p[0], p[1], p[2]});
+    }
+  }
+  for (const Vec3& p : mesh.positions) {
+    if (!is_finite(p)) in.fail("a coordinate is not finite");
+  }
+  mesh.triangles = in.get_array<Triangle>(triangles);
+  for (const Triangle& t : mesh.triangles) {
+    if (t[0] >= vertices || t[1] >= vertices || t[2] >= vertices) {
+      in.fail("a triangle uses a vertex that is not there");
+    }
+  }
+  return mesh;
+}
+
+PositionType get_position_type(ByteReader& in) {
+  const auto type = in.get<PositionType>();
+  if (type != PositionType::float32 && type != PositionType::float64) {
+    in.fail("unknown kind of positions");
+  }
+  return type;
+}
+
+}  // namespace meshfarm

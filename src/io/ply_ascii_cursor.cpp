@@ -1,0 +1,147 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#include "ply_ascii_cursor.hpp"
+
+#include <charconv>
+#include <limits>
+
+namespace meshfarm {
+namespace {
+
+constexpr std::ptrdiff_t k_longest_value = 256;  // longer ones are taken for no number
+
+/// Whether a decimal that no double can hold is too near zero for it, not too large.
+bool is_tiny(std::string_view text) {
+  const std::size_t e = text.find_first_of("eE");
+  long exponent = 0;
+  if (e != std::string_view::npos) {
+    const std::size_t digits = text.substr(e + 1).starts_with('+') ? e + 2 : e + 1;
+    const char* end = text.data() + text.size();
+    const auto result = std::from_chars(text.data() + digits, end, exponent);
+    if (result.ec == std::errc::result_out_of_range) return text[e + 1] == '-';
+  }
+  const std::string_view mantissa = text.substr(0, e);
+  const std::size_t point = std::min(mantissa.find('.'), mantissa.size());
+  const std::size_t first = std::min(mantissa.find_first_of("123456789"), mantissa.size());
+  return exponent + static_cast<long>(point) - static_cast<long>(first) < 0;
+}
+
+bool fits(double value, PlyType type) {
+  const unsigned bits = 8 * static_cast<unsigned>(size_of(type));
+  const bool is_signed = static_cast<unsigned>(type) % 2 == 0;
+  const double end = std::ldexp(1.0, static_cast<int>(is_signed ? bits - 1 : bits));
+  return std::trunc(value) == value && value >= (is_signed ? -end : 0.0) && value < end;
+}
+
+}  // namespace
+
+void AsciiCursor::refill(std::size_t at_least) {
+  stream_->consume(static_cast<std::size_t>(current_ - begin_));
+  const std::string_view window = stream_->window(at_least);
+  begin_ = current_ = window.data();
+  end_ = begin_ + window.size();
+}
+
+bool AsciiCursor::next_record() {
+  while (!has_value()) {
+    if (current_ == end_) return false;
+    ++current_;
+    ++line_;
+  }
+  return true;
+}
+
+bool AsciiCursor::end_record() {
+  if (has_value()) return false;
+  if (current_ != end_) {
+    ++current_;
+    ++line_;
+  }
+  return true;
+}
+
+void AsciiCursor::skip_record() {
+  while (true) {
+    const auto ahead = static_cast<std::size_t>(end_ - current_);
+    const void* found = ahead == 0 ? nullptr : std::memchr(current_, line_end_, ahead);
+    if (found != nullptr) {
+      current_ = static_cast<const char*>(found) + 1;
+      ++line_;
+      return;
+    }
+    current_ = end_;
+    refill(1);
+    if (current_ == end_) return;
+  }
+}
+
+bool AsciiCursor::has_value() {
+  while (true) {
+    while (current_ != end_ && is_blank(*current_)) ++current_;
+    if (end_ - current_ > k_longest_value) break;
+    // Too near the window's end for a value to be whole in it, unless the file ends here too.
+    const bool at_end = current_ == end_;
+    refill(k_longest_value + 1);
+    if (!at_end || current_ == end_) break;
+  }
+  return current_ != end_ && *current_ != line_end_;
+}
+
+void AsciiCursor::skip_value() {
+  while (true) {
+    while (!ends_value(current_)) ++current_;
+    if (current_ != end_) return;
+    refill(1);
+    if (current_ == end_) return;
+  }
+}
+
+template <class T>
+std::optional<T> AsciiCursor::parse() {
+  const char* first = current_;
+  // The same limit wherever the window ends, or the result would depend on that.
+  const char* limit = end_ - current_ > k_longest_value ? current_ + k_longest_value : end_;
+  if (*first == '+' && end_ - first > 1 && first[1] != '-') ++first;
+  T value{};
+  const auto [stop, error] = std::from_chars(first, limit, value);
+  if (error == std::errc::invalid_argument || !ends_value(stop)) return std::nullopt;
+  if (error == std::errc::result_out_of_range) {
+    const std::string_view text(first, static_cast<std::size_t>(stop - first));
+    if constexpr (std::is_integral_v<T>) {
+      value = *first == '-' ? std::numeric_limits<T>::min() : std::numeric_limits<T>::max();
+    } else {
+      value = is_tiny(text) ? T{0} : std::numeric_limits<T>::infinity();
+    }
+  }
+  current_ = stop;
+  return value;
+}
+
+std::optional<double> AsciiCursor::real(PlyType type) {
+  if (type == PlyType::float32) {
+    const std::optional<float> value = parse<float>();
+    return value ? std::optional<double>(*value) : std::nullopt;
+  }
+  const char* start = current_;
+  const std::optional<double> value = parse<double>();
+  if (!value || type == PlyType::float64 || fits(*value, type)) return value;
+  current_ = start;
+  return std::nullopt;
+}
+
+std::optional<std::int64_t> AsciiCursor::whole(PlyType type) {
+  if (is_integer(type)) return parse<std::int64_t>();
+  const char* start = current_;
+  const std::optional<double> value = parse<double>();
+  const std::optional<std::int64_t> whole = value ? whole_number(*value) : std::nullopt;
+  if (!whole) current_ = start;
+  return whole;
+}
+
+std::string AsciiCursor::token() const {
+  const char* stop = current_;
+  while (!ends_value(stop)) ++stop;
+  return shown({current_, static_cast<std::size_t>(stop - current_)});
+}
+
+}  // namespace meshfarm

@@ -1,0 +1,55 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "byte_stream.hpp"
+#include "ply_types.hpp"
+
+namespace meshfarm {
+
+/// Walks over text: lines, and in them values set apart by blanks. Nothing depends on the locale,
+/// and nothing is allocated for a line.
+class AsciiCursor {
+ public:
+  AsciiCursor(std::unique_ptr<ByteStream> stream, char line_end, std::uint64_t line)
+      : stream_(std::move(stream)), line_end_(line_end), line_(line) {}
+
+  /// The number of the line at hand, from 1.
+  std::uint64_t line() const { return line_; }
+
+  /// Goes to the next line that is not blank. False if there is none.
+  bool next_record();
+  /// Leaves the line at hand. False if it has more values.
+  bool end_record();
+  /// Leaves the line at hand, whatever is left of it.
+  void skip_record();
+
+  /// Whether the line at hand has another value; stands at it then.
+  bool has_value();
+  /// The value ahead. Nothing if it is not what is asked for; then token() tells what it is.
+  std::optional<double> real(PlyType type);
+  std::optional<std::int64_t> whole(PlyType type);
+  void skip_value();
+  std::string token() const;
+
+ private:
+  bool is_blank(char c) const { return c != line_end_ && (c == ' ' || (c >= '\t' && c <= '\r')); }
+  bool ends_value(const char* at) const { return at == end_ || *at == line_end_ || is_blank(*at); }
+  void refill(std::size_t at_least);
+  template <class T>
+  std::optional<T> parse();
+
+  std::unique_ptr<ByteStream> stream_;
+  char line_end_;
+  std::uint64_t line_;
+  const char* begin_ = nullptr;  // the stream's window
+  const char* current_ = nullptr;
+  const char* end_ = nullptr;
+};
+
+}  // namespace meshfarm

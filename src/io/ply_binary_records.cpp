@@ -1,0 +1,123 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#include "ply_binary_records.hpp"
+
+namespace meshfarm {
+namespace {
+
+template <class T, bool k_swap>
+void decode_xyz(const char* record, std::size_t record_bytes, std::span<Vec3> out) {
+  for (Vec3& vertex : out) {
+    vertex = {static_cast<double>(load_ply<T, k_swap>(record)),
+              static_cast<double>(load_ply<T, k_swap>(record + sizeof(T))),
+              static_cast<double>(load_ply<T, k_swap>(record + 2 * sizeof(T)))};
+    record += record_bytes;
+  }
+}
+
+template <class Count, class Index, bool k_swap>
+std::size_t decode(const TriangleLayout& layout, const char* records, std::uint64_t vertices,
+                   std::span<WideTriangle> out) {
+  const char* list = records + layout.list_offset;
+  // Through int64: a negative index becomes one that is out of any range.
+  const auto index = [&list](std::size_t corner) {
+    const char* bytes = list + sizeof(Count) + corner * sizeof(Index);
+    return static_cast<std::uint64_t>(std::int64_t{load_ply<Index, k_swap>(bytes)});
+  };
+  for (std::size_t i = 0; i < out.size(); ++i, list += layout.record_bytes) {
+    if (load_ply<Count, k_swap>(list) != 3) return i;
+    const WideTriangle triangle{index(0), index(1), index(2)};
+    if (std::max({triangle[0], triangle[1], triangle[2]}) >= vertices) return i;
+    out[i] = triangle;
+  }
+  return out.size();
+}
+
+template <class Count, bool k_swap>
+std::size_t decode(const TriangleLayout& layout, const char* records, std::uint64_t vertices,
+                   std::span<WideTriangle> out) {
+  return layout.index_type == PlyType::int32
+             ? decode<Count, std::int32_t, k_swap>(layout, records, vertices, out)
+             : decode<Count, std::uint32_t, k_swap>(layout, records, vertices, out);
+}
+
+}  // namespace
+
+VertexLayout vertex_layout(const PlyElement& element) {
+  VertexLayout layout;
+  std::vector<std::size_t> offsets;
+  for (const PlyProperty& property : element.properties) {
+    offsets.push_back(layout.record_bytes);
+    layout.record_bytes += size_of(property.type);
+  }
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    layout.offsets[axis] = offsets[element.axes[axis]];
+    layout.types[axis] = element.properties[element.axes[axis]].type;
+  }
+  return layout;
+}
+
+template <bool k_swap>
+void decode_vertices(const VertexLayout& layout, const char* records, std::span<Vec3> out) {
+  const PlyType type = layout.types[0];
+  const std::size_t first = layout.offsets[0];
+  const std::size_t size = size_of(type);
+  const bool together = layout.types[1] == type && layout.types[2] == type &&
+                        layout.offsets[1] == first + size && layout.offsets[2] == first + 2 * size;
+  if (together && type == PlyType::float32) {
+    decode_xyz<float, k_swap>(records + first, layout.record_bytes, out);
+  } else if (together && type == PlyType::float64) {
+    decode_xyz<double, k_swap>(records + first, layout.record_bytes, out);
+  } else {
+    for (Vec3& vertex : out) {
+      vertex = {load_real<k_swap>(layout.types[0], records + layout.offsets[0]),
+                load_real<k_swap>(layout.types[1], records + layout.offsets[1]),
+                load_real<k_swap>(layout.types[2], records + layout.offsets[2])};
+      records += layout.record_bytes;
+    }
+  }
+}
+
+template void decode_vertices<false>(const VertexLayout&, const char*, std::span<Vec3>);
+template void decode_vertices<true>(const VertexLayout&, const char*, std::span<Vec3>);
+
+std::optional<TriangleLayout> triangle_layout(const PlyElement& element) {
+  if (element.role != PlyRole::faces) return std::nullopt;
+  const PlyProperty& corners = element.properties[element.index_list];
+  if (corners.type != PlyType::int32 && corners.type != PlyType::uint32) return std::nullopt;
+  if (!is_integer(*corners.count_type) || size_of(*corners.count_type) > 4) return std::nullopt;
+  TriangleLayout layout;
+  layout.count_bytes = size_of(*corners.count_type);
+  layout.index_type = corners.type;
+  for (std::size_t i = 0; i < element.properties.size(); ++i) {
+    if (i == element.index_list) {
+      layout.list_offset = layout.record_bytes;
+      layout.record_bytes += layout.count_bytes + 3 * size_of(corners.type);
+    } else if (element.properties[i].is_list()) {
+      return std::nullopt;
+    } else {
+      layout.record_bytes += size_of(element.properties[i].type);
+    }
+  }
+  return layout;
+}
+
+template <bool k_swap>
+std::size_t decode_triangles(const TriangleLayout& layout, const char* records,
+                             std::uint64_t vertices, std::span<WideTriangle> out) {
+  switch (layout.count_bytes) {
+    case 1:
+      return decode<std::uint8_t, k_swap>(layout, records, vertices, out);
+    case 2:
+      return decode<std::uint16_t, k_swap>(layout, records, vertices, out);
+    default:
+      return decode<std::uint32_t, k_swap>(layout, records, vertices, out);
+  }
+}
+
+template std::size_t decode_triangles<false>(const TriangleLayout&, const char*, std::uint64_t,
+                                             std::span<WideTriangle>);
+template std::size_t decode_triangles<true>(const TriangleLayout&, const char*, std::uint64_t,
+                                            std::span<WideTriangle>);
+
+}  // namespace meshfarm

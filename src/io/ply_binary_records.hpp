@@ -1,0 +1,47 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <array>
+#include <optional>
+#include <span>
+
+#include <meshfarm/geometry/vec.hpp>
+#include <meshfarm/io/mesh_source.hpp>
+
+#include "ply_header.hpp"
+
+namespace meshfarm {
+
+/// Vertex records of one size: where the coordinates lie in them.
+struct VertexLayout {
+  std::size_t record_bytes = 0;
+  std::array<std::size_t, 3> offsets{};
+  std::array<PlyType, 3> types{};
+};
+
+/// `element` has no lists.
+VertexLayout vertex_layout(const PlyElement& element);
+
+/// Decodes as many records as `out` has room for.
+template <bool k_swap>
+void decode_vertices(const VertexLayout& layout, const char* records, std::span<Vec3> out);
+
+/// Face records whose only list holds the corners: the record of a triangle.
+struct TriangleLayout {
+  std::size_t record_bytes = 0;
+  std::size_t list_offset = 0;
+  std::size_t count_bytes = 0;          // 1, 2 or 4
+  PlyType index_type = PlyType::int32;  // int32 or uint32
+};
+
+/// Nothing if the records are not of that kind.
+std::optional<TriangleLayout> triangle_layout(const PlyElement& element);
+
+/// Decodes records up to the first that is no triangle or has an index out of range. Returns how
+/// many.
+template <bool k_swap>
+std::size_t decode_triangles(const TriangleLayout& layout, const char* records,
+                             std::uint64_t vertices, std::span<WideTriangle> out);
+
+}  // namespace meshfarm

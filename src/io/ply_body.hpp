@@ -1,0 +1,123 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include <meshfarm/io/mesh_source.hpp>
+
+#include "byte_stream.hpp"
+#include "ply_header.hpp"
+
+namespace meshfarm {
+
+/// Collects items and hands them on in batches.
+template <class T>
+class Batch {
+ public:
+  using Take = std::function<void(std::span<const T>)>;
+
+  explicit Batch(const Take& take) : take_(take), items_(k_most_items) {}
+
+  void add(const T& item) {
+    items_[size_] = item;
+    added(1);
+  }
+  /// Room for items that the caller writes and then counts with added().
+  std::span<T> room() { return std::span(items_).subspan(size_); }
+  void added(std::size_t count) {
+    size_ += count;
+    if (size_ == k_most_items) flush();
+  }
+  void flush() {
+    if (size_ > 0) take_(std::span(items_).first(size_));
+    size_ = 0;
+  }
+
+ private:
+  static constexpr std::size_t k_most_items = 8192;  // stays in the second-level cache
+  const Take& take_;
+  std::vector<T> items_;
+  std::size_t size_ = 0;
+};
+
+/// Makes triangles of the corners of faces and strips, in the memory of two corners.
+class TriangleMaker {
+ public:
+  TriangleMaker(std::uint64_t vertices, const Batch<WideTriangle>::Take& take)
+      : vertices_(vertices), batch_(take) {}
+
+  void begin(PlyRole role) {
+    role_ = role;
+    corners_ = 0;
+  }
+  /// False if there is no such vertex.
+  bool corner(std::int64_t index) {
+    const auto vertex = static_cast<std::uint64_t>(index);
+    if (vertex >= vertices_) return restart(index);
+    if (corners_ >= 2) role_ == PlyRole::strips ? add_to_strip(vertex) : add_to_fan(vertex);
+    if (corners_ < 2) last_[corners_] = vertex;
+    ++corners_;
+    return true;
+  }
+  void end() {
+    if (role_ == PlyRole::faces && corners_ < 3) ++small_faces_;
+  }
+
+  std::uint64_t vertices() const { return vertices_; }
+  std::uint64_t small_faces() const { return small_faces_; }
+  Batch<WideTriangle>& batch() { return batch_; }
+
+ private:
+  bool restart(std::int64_t index) {
+    corners_ = 0;
+    return role_ == PlyRole::strips && index == -1;
+  }
+  void add_to_fan(std::uint64_t vertex) {
+    batch_.add({last_[0], last_[1], vertex});
+    last_[1] = vertex;
+  }
+  void add_to_strip(std::uint64_t vertex) {
+    // Every second triangle of a strip runs the other way round. A repeated vertex is how strips
+    // are joined into one, not a face.
+    const bool odd = corners_ % 2 != 0;
+    if (last_[0] != last_[1] && last_[1] != vertex && last_[0] != vertex) {
+      batch_.add({last_[odd ? 1 : 0], last_[odd ? 0 : 1], vertex});
+    }
+    last_ = {last_[1], vertex};
+  }
+
+  std::uint64_t vertices_;
+  Batch<WideTriangle> batch_;
+  PlyRole role_ = PlyRole::faces;
+  std::uint64_t corners_ = 0;
+  std::array<std::uint64_t, 2> last_{};
+  std::uint64_t small_faces_ = 0;
+};
+
+/// What follows the header, read element by element in the file's order. Malformed records throw
+/// DataError naming file, element, index and place.
+class PlyBody {
+ public:
+  virtual ~PlyBody() = default;
+  virtual void read_vertices(const PlyElement& element, Batch<Vec3>& batch) = 0;
+  virtual void read_corners(const PlyElement& element, TriangleMaker& maker) = 0;
+  virtual void skip(const PlyElement& element) = 0;
+  /// After the last element: whether nothing (in ascii: nothing but blanks) follows.
+  virtual bool at_end() = 0;
+  /// What was let pass so far: a line for the user, or nothing.
+  virtual const std::string& oddity() const = 0;
+};
+
+/// `stream` stands at the first byte after the header; `path` must outlive the body.
+std::unique_ptr<PlyBody> make_binary_body(std::unique_ptr<ByteStream> stream,
+                                          const std::filesystem::path& path,
+                                          const PlyHeader& header);
+std::unique_ptr<PlyBody> make_ascii_body(std::unique_ptr<ByteStream> stream,
+                                         const std::filesystem::path& path,
+                                         const PlyHeader& header);
+
+}  // namespace meshfarm

@@ -1,0 +1,59 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "ply_types.hpp"
+
+namespace meshfarm {
+
+struct PlyProperty {
+  std::string name;
+  PlyType type = PlyType::float32;
+  std::optional<PlyType> count_type;  // of a list
+
+  bool is_list() const { return count_type.has_value(); }
+};
+
+/// What an element is to us.
+enum class PlyRole : std::uint8_t { other, vertices, faces, strips };
+
+struct PlyElement {
+  std::string name;
+  std::uint64_t count = 0;
+  std::vector<PlyProperty> properties;
+  PlyRole role = PlyRole::other;
+  std::array<std::size_t, 3> axes{};  // of vertices: the properties x, y, z
+  std::size_t index_list = 0;         // of faces and strips: the property with the corners
+
+  bool has_lists() const;
+  /// Bytes that a record takes in a file; with lists or as text, the fewest it can take.
+  std::uint64_t record_bytes(PlyFormat format) const;
+};
+
+struct PlyHeader {
+  PlyFormat format = PlyFormat::ascii;
+  std::vector<PlyElement> elements;
+  std::uint64_t size_bytes = 0;
+  std::uint64_t lines = 0;
+  char line_end = '\n';
+  std::vector<std::string> oddities;  // what was let pass; each a line for the user
+
+  const PlyElement& vertices() const;
+};
+
+/// Whether the bytes start like a PLY file.
+bool is_ply(std::string_view start);
+
+/// Parses the header that `start`, the first bytes of the file or all of it, begins with, and finds
+/// the vertices and faces in it. Throws DataError naming `path` and the line.
+PlyHeader parse_ply_header(std::string_view start, const std::filesystem::path& path);
+
+}  // namespace meshfarm

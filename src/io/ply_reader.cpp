@@ -1,0 +1,163 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#include "ply_reader.hpp"
+
+#include <set>
+
+#include <meshfarm/util/errors.hpp>
+#include <meshfarm/util/log.hpp>
+
+#include "ply_body.hpp"
+#include "ply_header.hpp"
+
+namespace meshfarm {
+namespace {
+
+std::string_view name_of(PlyFormat format) {
+  switch (format) {
+    case PlyFormat::ascii:
+      return "PLY ascii";
+    case PlyFormat::binary_little:
+      return "PLY binary little endian";
+    case PlyFormat::binary_big:
+      return "PLY binary big endian";
+  }
+  return "";
+}
+
+/// Floats hold every integer of 16 bits, doubles every one of 32.
+PositionType position_type(const PlyElement& vertices) {
+  for (const std::size_t axis : vertices.axes) {
+    const PlyType type = vertices.properties[axis].type;
+    if (type != PlyType::float32 && size_of(type) > 2) return PositionType::float64;
+  }
+  return PositionType::float32;
+}
+
+bool is_used(const PlyElement& element, std::size_t property) {
+  if (element.role != PlyRole::vertices) return property == element.index_list;
+  return std::find(element.axes.begin(), element.axes.end(), property) != element.axes.end();
+}
+
+std::vector<std::string> skipped_names(const PlyHeader& header) {
+  std::vector<std::string> names;
+  for (const PlyElement& element : header.elements) {
+    if (element.role == PlyRole::other) {
+      names.push_back(element.name + " (" + std::to_string(element.count) + " elements)");
+      continue;
+    }
+    for (std::size_t i = 0; i < element.properties.size(); ++i) {
+      if (!is_used(element, i)) names.push_back(element.name + "." + element.properties[i].name);
+    }
+  }
+  return names;
+}
+
+/// A count is believed only as far as the file's size allows it. `at`: where the body begins.
+void check_counts(const PlyHeader& header, std::uint64_t at, std::uint64_t body_bytes,
+                  const std::filesystem::path& path) {
+  std::uint64_t left = body_bytes;
+  if (header.format == PlyFormat::ascii) ++left;  // the last line may lack its end
+  for (const PlyElement& element : header.elements) {
+    const std::uint64_t record = element.record_bytes(header.format);
+    if (record == 0) continue;
+    if (element.count > left / record) {
+      const bool varies = header.format == PlyFormat::ascii || element.has_lists();
+      throw DataError(path.string() + ": truncated, or the header is wrong: it claims " +
+                      std::to_string(element.count) + " records of element " + element.name +
+                      " of " + std::to_string(record) + (varies ? " bytes or more" : " bytes") +
+                      ", but the file ends at byte " + std::to_string(at + body_bytes) + ", in " +
+                      element.name + " " + std::to_string(left / record) + " at the latest");
+    }
+    left -= element.count * record;
+  }
+}
+
+class PlySource final : public MeshSource {
+ public:
+  explicit PlySource(InputFile file) : file_(std::move(file)) {
+    const std::unique_ptr<ByteStream> stream = file_.open();
+    const std::string_view start = stream->window(ByteStream::k_max_window_bytes);
+    header_ = parse_ply_header(start.substr(0, ByteStream::k_max_window_bytes), file_.path());
+    for (const std::string& oddity : header_.oddities) warn(oddity);
+    stream->consume(header_.size_bytes);
+    if (const std::optional<std::uint64_t> body_bytes = stream->remaining()) {
+      check_counts(header_, header_.size_bytes, *body_bytes, file_.path());
+    }
+    fill_info();
+  }
+
+  const MeshFileInfo& info() const override { return info_; }
+  std::uint64_t small_faces() const override { return small_faces_; }
+
+  void scan_vertices(const std::function<void(std::span<const Vec3>)>& take) override {
+    const std::unique_ptr<PlyBody> body = open_body();
+    for (const PlyElement& element : header_.elements) {
+      if (element.role == PlyRole::vertices) {
+        Batch<Vec3> batch(take);
+        body->read_vertices(element, batch);
+        return warn(body->oddity());
+      }
+      body->skip(element);
+    }
+  }
+
+  void scan_triangles(const std::function<void(std::span<const WideTriangle>)>& take) override {
+    const std::unique_ptr<PlyBody> body = open_body();
+    TriangleMaker maker(info_.vertices, take);
+    for (const PlyElement& element : header_.elements) {
+      const bool corners = element.role == PlyRole::faces || element.role == PlyRole::strips;
+      corners ? body->read_corners(element, maker) : body->skip(element);
+    }
+    small_faces_ = maker.small_faces();
+    warn(body->oddity());
+    if (!body->at_end()) {
+      warn(file_.path().string() + ": there is more in the file than its header says");
+    }
+  }
+
+ private:
+  void fill_info() {
+    info_.format = name_of(header_.format);
+    info_.compression = name_of(file_.compression());
+    info_.vertices = header_.vertices().count;
+    info_.positions = position_type(header_.vertices());
+    info_.skipped = skipped_names(header_);
+    for (const PlyElement& element : header_.elements) {
+      if (element.role == PlyRole::faces || element.role == PlyRole::strips) {
+        info_.faces += element.count;
+      }
+    }
+  }
+
+  /// A file is scanned more than once, but each warning about it is given once.
+  void warn(const std::string& line) {
+    if (!line.empty() && warnings_.insert(line).second) log_warning(line);
+  }
+
+  std::unique_ptr<PlyBody> open_body() const {
+    std::unique_ptr<ByteStream> stream = file_.open();
+    stream->skip(header_.size_bytes);
+    return header_.format == PlyFormat::ascii
+               ? make_ascii_body(std::move(stream), file_.path(), header_)
+               : make_binary_body(std::move(stream), file_.path(), header_);
+  }
+
+  InputFile file_;
+  PlyHeader header_;
+  MeshFileInfo info_;
+  std::uint64_t small_faces_ = 0;
+  std::set<std::string> warnings_;
+};
+
+}  // namespace
+
+bool is_ply_file(const InputFile& file) {
+  return is_ply(file.open()->window(ByteStream::k_max_window_bytes));
+}
+
+std::unique_ptr<MeshSource> open_ply(InputFile file) {
+  return std::make_unique<PlySource>(std::move(file));
+}
+
+}  // namespace meshfarm

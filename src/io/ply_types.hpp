@@ -1,0 +1,119 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <optional>
+#include <string>
+#include <string_view>
+
+namespace meshfarm {
+
+enum class PlyType : std::uint8_t {
+  int8,
+  uint8,
+  int16,
+  uint16,
+  int32,
+  uint32,
+  int64,
+  uint64,
+  float32,
+  float64
+};
+
+enum class PlyFormat : std::uint8_t { ascii, binary_little, binary_big };
+
+/// "char", "uint8", "float", ... Nothing for an unknown name.
+std::optional<PlyType> ply_type(std::string_view name);
+std::string_view name_of(PlyType type);
+
+constexpr std::size_t size_of(PlyType type) {
+  switch (type) {
+    case PlyType::int8:
+    case PlyType::uint8:
+      return 1;
+    case PlyType::int16:
+    case PlyType::uint16:
+      return 2;
+    case PlyType::int32:
+    case PlyType::uint32:
+    case PlyType::float32:
+      return 4;
+    default:
+      return 8;
+  }
+}
+
+constexpr bool is_integer(PlyType type) {
+  return type != PlyType::float32 && type != PlyType::float64;
+}
+
+/// A value as it lies in a binary file. `k_swap`: the file is big endian.
+template <class T, bool k_swap>
+T load_ply(const char* bytes) {
+  char raw[sizeof(T)];
+  std::memcpy(raw, bytes, sizeof(T));
+  if constexpr (k_swap) std::reverse(raw, raw + sizeof(T));
+  T value;
+  std::memcpy(&value, raw, sizeof(T));
+  return value;
+}
+
+/// Calls `use` with the value of `type` at `bytes`.
+template <bool k_swap, class Use>
+auto with_ply_value(PlyType type, const char* bytes, Use&& use) {
+  switch (type) {
+    case PlyType::int8:
+      return use(load_ply<std::int8_t, k_swap>(bytes));
+    case PlyType::uint8:
+      return use(load_ply<std::uint8_t, k_swap>(bytes));
+    case PlyType::int16:
+      return use(load_ply<std::int16_t, k_swap>(bytes));
+    case PlyType::uint16:
+      return use(load_ply<std::uint16_t, k_swap>(bytes));
+    case PlyType::int32:
+      return use(load_ply<std::int32_t, k_swap>(bytes));
+    case PlyType::uint32:
+      return use(load_ply<std::uint32_t, k_swap>(bytes));
+    case PlyType::int64:
+      return use(load_ply<std::int64_t, k_swap>(bytes));
+    case PlyType::uint64:
+      return use(load_ply<std::uint64_t, k_swap>(bytes));
+    case PlyType::float32:
+      return use(load_ply<float, k_swap>(bytes));
+    default:
+      return use(load_ply<double, k_swap>(bytes));
+  }
+}
+
+template <bool k_swap>
+double load_real(PlyType type, const char* bytes) {
+  return with_ply_value<k_swap>(type, bytes, [](auto value) { return static_cast<double>(value); });
+}
+
+/// The whole number that `value` is. Nothing if it is none; what lies beyond 64 signed bits, and so
+/// beyond any count or index, becomes the largest.
+std::optional<std::int64_t> whole_number(double value);
+
+template <bool k_swap>
+std::optional<std::int64_t> load_whole(PlyType type, const char* bytes) {
+  return with_ply_value<k_swap>(type, bytes, [](auto value) -> std::optional<std::int64_t> {
+    if constexpr (std::is_floating_point_v<decltype(value)>) {
+      return whole_number(static_cast<double>(value));
+    } else if constexpr (std::is_same_v<decltype(value), std::uint64_t>) {
+      return static_cast<std::int64_t>(std::min<std::uint64_t>(value, INT64_MAX));
+    } else {
+      return value;
+    }
+  });
+}
+
+/// Text out of a file, as it may stand in a message: short and printable.
+std::string shown(std::string_view text);
+
+}  // namespace meshfarm

@@ -1,0 +1,54 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <meshfarm/util/file.hpp>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace meshfarm {
+
+/// Many growing byte strings in one scratch file, through buffers of bounded size: a full buffer goes
+/// to the file's end, and its bucket remembers where. The file has no name and dies with its owner.
+class BucketFile {
+ public:
+  BucketFile(const std::filesystem::path& folder, std::size_t buckets);
+  void append(std::size_t bucket, std::string_view bytes);
+  template <class T>
+  void put(std::size_t bucket, const T& value) {
+    append(bucket, {reinterpret_cast<const char*>(&value), sizeof(T)});
+  }
+  /// Writes out what is still buffered and frees the buffers; nothing is appended after.
+  void finish();
+  /// The whole bucket, as values of T. Safe from several threads after finish().
+  template <class T>
+  std::vector<T> read(std::size_t bucket) const {
+    std::vector<T> values(size(bucket) / sizeof(T));
+    read_into(bucket, reinterpret_cast<char*>(values.data()));
+    return values;
+  }
+  std::uint64_t size(std::size_t bucket) const;
+
+ private:
+  struct Extent {
+    std::uint64_t offset = 0;
+    std::uint64_t size = 0;
+  };
+  struct Bucket {
+    std::string buffer;
+    std::vector<Extent> extents;
+  };
+  void flush(Bucket& bucket);
+  void read_into(std::size_t bucket, char* to) const;
+
+  std::filesystem::path folder_;
+  Fd fd_;
+  std::uint64_t end_ = 0;
+  std::size_t buffer_bytes_;
+  std::vector<Bucket> buckets_;
+};
+
+}  // namespace meshfarm

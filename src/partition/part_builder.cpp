@@ -1,0 +1,90 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#include "partition/part_builder.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <meshfarm/geometry/weld.hpp>
+#include <numeric>
+
+namespace meshfarm {
+namespace {
+
+constexpr std::uint32_t k_unused = std::numeric_limits<std::uint32_t>::max();
+
+/// Replaces each corner by its representative; drops triangles that lose a corner by it.
+std::uint64_t merge_corners(std::vector<Triangle>& triangles,
+                            const std::vector<std::uint32_t>& representative) {
+  const std::size_t before = triangles.size();
+  for (Triangle& t : triangles) {
+    for (std::uint32_t& corner : t) corner = representative[corner];
+  }
+  std::erase_if(triangles, [](const Triangle& t) {
+    return t[0] == t[1] || t[1] == t[2] || t[2] == t[0];
+  });
+  return before - triangles.size();
+}
+
+/// Numbers the representatives that are used: boundary first, each group in raw order.
+/// Returns the number of boundary vertices.
+std::uint32_t number_vertices(const std::vector<Triangle>& triangles,
+                              const std::vector<std::uint32_t>& boundary_raw,
+                              const std::vector<std::uint32_t>& representative,
+                              std::vector<std::uint32_t>& number) {
+  constexpr std::uint32_t k_inner = 0;
+  constexpr std::uint32_t k_boundary = 1;
+  for (const Triangle& t : triangles) {
+    for (const std::uint32_t corner : t) number[corner] = k_inner;
+  }
+  for (const std::uint32_t raw : boundary_raw) number[representative[raw]] = k_boundary;
+  const auto boundary =
+      static_cast<std::uint32_t>(std::count(number.begin(), number.end(), k_boundary));
+  std::uint32_t next_boundary = 0;
+  std::uint32_t next_inner = boundary;
+  for (std::uint32_t& n : number) {
+    if (n != k_unused) n = n == k_boundary ? next_boundary++ : next_inner++;
+  }
+  return boundary;
+}
+
+}  // namespace
+
+BuiltPart build_part(RawPart raw, PositionType positions, Weld weld_mode) {
+  BuiltPart built;
+  std::vector<std::uint32_t> representative;
+  if (weld_mode == Weld::exact) {
+    WeldResult welded = weld(raw.positions);
+    representative = std::move(welded.first);
+    built.merged_vertices = welded.merged;
+  } else {
+    representative.resize(raw.positions.size());
+    std::iota(representative.begin(), representative.end(), 0U);
+  }
+  built.dropped_degenerate = merge_corners(raw.triangles, representative);
+
+  built.boundary_raw = std::move(raw.boundary);
+  std::sort(built.boundary_raw.begin(), built.boundary_raw.end());
+  built.boundary_raw.erase(std::unique(built.boundary_raw.begin(), built.boundary_raw.end()),
+                           built.boundary_raw.end());
+
+  std::vector<std::uint32_t> number(raw.positions.size(), k_unused);
+  Part& part = built.part;
+  part.positions = positions;
+  part.boundary_vertices =
+      number_vertices(raw.triangles, built.boundary_raw, representative, number);
+  const auto used = number.size() - static_cast<std::size_t>(std::count(
+                                        number.begin(), number.end(), k_unused));
+  part.mesh.positions.resize(used);
+  for (std::size_t i = 0; i < number.size(); ++i) {
+    if (number[i] != k_unused) part.mesh.positions[number[i]] = raw.positions[i];
+  }
+  for (Triangle& t : raw.triangles) t = {number[t[0]], number[t[1]], number[t[2]]};
+  part.mesh.triangles = std::move(raw.triangles);
+  built.boundary_final.reserve(built.boundary_raw.size());
+  for (const std::uint32_t b : built.boundary_raw) {
+    built.boundary_final.push_back(number[representative[b]]);
+  }
+  return built;
+}
+
+}  // namespace meshfarm

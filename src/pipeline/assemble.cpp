@@ -1,0 +1,143 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#include <chrono>
+#include <meshfarm/geometry/simplify.hpp>
+#include <meshfarm/io/boundary_file.hpp>
+#include <meshfarm/io/ply_writer.hpp>
+#include <meshfarm/io/result_file.hpp>
+#include <meshfarm/pipeline/assemble.hpp>
+#include <meshfarm/pipeline/budget.hpp>
+#include <meshfarm/stitch/stitcher.hpp>
+#include <meshfarm/util/errors.hpp>
+
+namespace meshfarm {
+namespace {
+
+class Stopwatch {
+ public:
+  double lap() {
+    const auto now = std::chrono::steady_clock::now();
+    const double seconds = std::chrono::duration<double>(now - last_).count();
+    last_ = now;
+    return seconds;
+  }
+
+ private:
+  std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
+};
+
+class Assembly {
+ public:
+  Assembly(const Stage& stage, const Manifest& manifest, const RunOptions& run,
+           const AssembleOptions& options)
+      : stage_(stage), manifest_(manifest), run_(run), options_(options) {
+    summary_.manifest = manifest;
+    summary_.output = options.output.string();
+    summary_.target = target_triangles(manifest, run);
+    summary_.dropped_degenerate = manifest.dropped_degenerate;
+    summary_.dropped_duplicate = manifest.dropped_duplicate;
+  }
+
+  RunSummary run(std::span<const AcceptedJob> accepted) {
+    Stopwatch watch;
+    count_drops(accepted);
+    StitchedMesh stitched = stitch(choose_rungs(manifest_, run_, accepted));
+    summary_.stitched = stitched.mesh.triangles.size();
+    summary_.stitch_seconds = watch.lap();
+    const Mesh result = finish(std::move(stitched));
+    summary_.finish_seconds = watch.lap();
+    write_ply(options_.output, result, manifest_.positions);
+    summary_.write_seconds = watch.lap();
+    return std::move(summary_);
+  }
+
+ private:
+  void tell(std::string_view phase, double done, std::uint64_t triangles) const {
+    check_stop();
+    if (options_.progress) options_.progress(phase, done, triangles);
+  }
+
+  void check_stop() const {
+    if (options_.stop != nullptr && *options_.stop) {
+      throw IncompleteError("interrupted before the result was written; all parts are simplified, "
+                            "'meshfarm replay' or 'meshfarm run' on the stage goes on from there");
+    }
+  }
+
+  /// Every part's last accepted output counts; earlier rounds dropped the same triangles.
+  void count_drops(std::span<const AcceptedJob> accepted) {
+    for (const AcceptedJob& job : accepted.first(manifest_.parts.size())) {
+      const ResultSummary s = decode_summary(job.output.summary, job.output.file.name);
+      summary_.dropped_degenerate += s.dropped_degenerate;
+      summary_.dropped_duplicate += s.dropped_duplicate;
+    }
+  }
+
+  StitchedMesh stitch(const std::vector<ChosenRung>& chosen) const {
+    Stitcher stitcher;
+    for (std::size_t p = 0; p < chosen.size(); ++p) {
+      const std::string file = stage_.read(chosen[p].file);
+      const ResultMesh part = decode_result(file, chosen[p].rung, chosen[p].file.name);
+      if (part.boundary_vertices != manifest_.parts[p].boundary_vertices) {
+        throw DataError(chosen[p].file.name + ": is not the result of part " + std::to_string(p));
+      }
+      stitcher.add(part);
+      tell("stitch", static_cast<double>(p + 1) / static_cast<double>(chosen.size()), 0);
+    }
+    return stitcher.finish(
+        decode_boundary(stage_.read(manifest_.boundary), manifest_.boundary.name));
+  }
+
+  Mesh finish(StitchedMesh stitched) {
+    const std::uint64_t before = stitched.mesh.triangles.size();
+    SimplifyOptions options{.locked_vertices = 0, .positions = manifest_.positions, .seam = {}};
+    if (run_.finish == Finish::boundary) options.seam = std::move(stitched.seam);
+    Simplifier simplifier(std::move(stitched.mesh), std::move(options));
+    const auto reduce_to = [&](std::uint64_t triangles) {
+      simplifier.reduce({.triangles = triangles}, [&](std::uint64_t left) {
+        const std::uint64_t all = before - std::min(before, triangles);
+        const std::uint64_t done = before - std::min(before, left);
+        tell("finish", all == 0 ? 1.0 : std::min(1.0, static_cast<double>(done) / static_cast<double>(all)), done);
+        return true;
+      });
+    };
+    reduce_to(summary_.target);
+    // A closed surface loses triangles in pairs: of an odd target one fewer is taken, not one more.
+    if (simplifier.triangles() == summary_.target + 1 && summary_.target > 0) {
+      reduce_to(summary_.target - 1);
+    }
+    summary_.dropped_degenerate += simplifier.dropped_degenerate();
+    summary_.dropped_duplicate += simplifier.dropped_duplicate();
+    summary_.triangles = simplifier.triangles();
+    summary_.vertices = simplifier.mesh().positions.size();
+    summary_.why_not_exact = why_not_exact(before);
+    return simplifier.mesh();
+  }
+
+  std::string why_not_exact(std::uint64_t before) const {
+    if (summary_.triangles == summary_.target) return {};
+    if (summary_.target > before) return "the input has no more";
+    if (summary_.triangles < summary_.target) {
+      return "where no open border is left, triangles go in pairs";
+    }
+    return run_.finish == Finish::boundary
+               ? "nothing more can be collapsed at the seams"
+               : "nothing more can be collapsed without changing the topology or turning a "
+                 "triangle over";
+  }
+
+  const Stage& stage_;
+  const Manifest& manifest_;
+  const RunOptions& run_;
+  const AssembleOptions& options_;
+  RunSummary summary_;
+};
+
+}  // namespace
+
+RunSummary assemble(const Stage& stage, const Manifest& manifest, const RunOptions& run,
+                    std::span<const AcceptedJob> accepted, const AssembleOptions& options) {
+  return Assembly(stage, manifest, run, options).run(accepted);
+}
+
+}  // namespace meshfarm

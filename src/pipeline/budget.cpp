@@ -1,0 +1,153 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#include <algorithm>
+#include <limits>
+#include <meshfarm/pipeline/budget.hpp>
+#include <meshfarm/pipeline/simplify_job.hpp>
+#include <meshfarm/util/errors.hpp>
+
+namespace meshfarm {
+namespace {
+
+/// A ladder begins at this many times the part's even share, so that a part of much detail can keep
+/// more than its share; a part that deserves still more is asked for again.
+constexpr double k_first_headroom = 8;
+constexpr double k_more_headroom = 8;
+/// A ladder ends at this fraction of the part's even share.
+constexpr double k_floor = 1.0 / 16;
+
+/// How many times the target the parts together keep for the finish to choose from: twice where much
+/// is taken away (measured: no better with more), less where little is, as then seams are few.
+double provision(double ratio) {
+  return 1 + std::min(1.0, (1 - ratio) / (4 * ratio));
+}
+
+/// What a run knows after some of its rounds: derived from the accepted outputs alone, so that
+/// ventilator and sink, restarted or not, agree.
+class Rounds {
+ public:
+  Rounds(const Manifest& manifest, const RunOptions& options,
+         std::span<const AcceptedJob> accepted)
+      : manifest_(manifest),
+        options_(options),
+        target_(target_triangles(manifest, options)),
+        headroom_(manifest.parts.size(), k_first_headroom),
+        ladders_(manifest.parts.size()),
+        files_(manifest.parts.size()) {
+    for (std::uint32_t p = 0; p < manifest.parts.size(); ++p) asked_.push_back(p);
+    while (!asked_.empty() && accepted.size() >= asked_.size()) {
+      take(accepted.first(asked_.size()));
+      accepted = accepted.subspan(asked_.size());
+      ask_again();
+    }
+  }
+
+  /// The jobs of the round that is not accepted yet.
+  std::vector<Job> jobs() const {
+    std::vector<Job> jobs;
+    for (const std::uint32_t part : asked_) jobs.push_back(job_of(part));
+    return jobs;
+  }
+
+  std::vector<ChosenRung> chosen() const {
+    if (!asked_.empty()) throw Error("rungs are chosen before all parts are accepted");
+    std::vector<ChosenRung> chosen;
+    for (std::size_t p = 0; p < ladders_.size(); ++p) {
+      chosen.push_back({files_[p], rung_at(ladders_[p], level_)});
+    }
+    return chosen;
+  }
+
+ private:
+  double ratio() const {
+    return std::min(1.0, static_cast<double>(target_) /
+                             static_cast<double>(std::max<std::uint64_t>(1, manifest_.triangles())));
+  }
+
+  Job job_of(std::uint32_t part) const {
+    const PartEntry& entry = manifest_.parts[part];
+    const double share = ratio() * static_cast<double>(entry.triangles);
+    SimplifyParameters parameters;
+    parameters.allocation = options_.allocation;
+    parameters.cost_unit = cost_unit(manifest_.box.diagonal());
+    parameters.floor_triangles = static_cast<std::uint64_t>(share * k_floor);
+    double start = share;
+    if (options_.allocation == Allocation::threshold) {
+      start = share * headroom_[part] * provision(ratio()) / 2 + 2.0 * entry.boundary_vertices;
+      if (start > 0.7 * static_cast<double>(entry.triangles)) {
+        start = static_cast<double>(entry.triangles);
+      }
+    }
+    parameters.start_triangles = static_cast<std::uint64_t>(start);
+    return {std::string(k_simplify_kind), {entry.file}, encode_parameters(parameters),
+            entry.triangles};
+  }
+
+  void take(std::span<const AcceptedJob> round) {
+    for (std::size_t i = 0; i < round.size(); ++i) {
+      const JobOutput& output = round[i].output;
+      ladders_[asked_[i]] = decode_summary(output.summary, "summary of " + output.file.name).rungs;
+      files_[asked_[i]] = output.file;
+    }
+  }
+
+  void ask_again() {
+    asked_.clear();
+    const double wanted = provision(ratio()) * static_cast<double>(target_);
+    level_ = common_level(ladders_, static_cast<std::uint64_t>(wanted));
+    if (options_.allocation == Allocation::uniform) return;
+    for (std::uint32_t p = 0; p < ladders_.size(); ++p) {
+      if (ladders_[p].front().level > level_) {
+        headroom_[p] *= k_more_headroom;
+        asked_.push_back(p);
+      }
+    }
+  }
+
+  const Manifest& manifest_;
+  const RunOptions& options_;
+  std::uint64_t target_;
+  std::vector<double> headroom_;
+  std::vector<std::vector<Rung>> ladders_;
+  std::vector<FileRef> files_;
+  std::vector<std::uint32_t> asked_;
+  std::int32_t level_ = 0;
+};
+
+}  // namespace
+
+std::uint32_t rung_at(std::span<const Rung> ladder, std::int32_t level) {
+  std::uint32_t rung = 0;
+  while (rung + 1 < ladder.size() && ladder[rung + 1].level <= level) ++rung;
+  return rung;
+}
+
+std::int32_t common_level(std::span<const std::vector<Rung>> ladders, std::uint64_t wanted) {
+  std::int32_t lowest = std::numeric_limits<std::int32_t>::max();
+  std::int32_t highest = std::numeric_limits<std::int32_t>::min();
+  for (const std::vector<Rung>& ladder : ladders) {
+    lowest = std::min(lowest, ladder.front().level);
+    highest = std::max(highest, ladder.back().level);
+  }
+  for (std::int32_t level = highest; level > lowest; --level) {
+    std::uint64_t free = 0;
+    for (const std::vector<Rung>& ladder : ladders) {
+      free += ladder[rung_at(ladder, level)].free_triangles;
+    }
+    if (free >= wanted) return level;
+  }
+  return lowest;
+}
+
+JobSource make_job_source(const Manifest& manifest, const RunOptions& options) {
+  return [manifest, options](std::span<const AcceptedJob> accepted) {
+    return Rounds(manifest, options, accepted).jobs();
+  };
+}
+
+std::vector<ChosenRung> choose_rungs(const Manifest& manifest, const RunOptions& options,
+                                     std::span<const AcceptedJob> accepted) {
+  return Rounds(manifest, options, accepted).chosen();
+}
+
+}  // namespace meshfarm

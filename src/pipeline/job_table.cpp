@@ -1,0 +1,26 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#include <meshfarm/pipeline/job_table.hpp>
+#include <meshfarm/pipeline/simplify_job.hpp>
+#include <meshfarm/util/errors.hpp>
+#include <utility>
+
+namespace meshfarm {
+namespace {
+
+using JobPointer = JobOutput (*)(const Job&, const JobContext&);
+
+constexpr std::pair<std::string_view, JobPointer> k_table[] = {
+    {k_simplify_kind, simplify_part},
+};
+
+}  // namespace
+
+JobOutput do_job(const Job& job, const JobContext& context) {
+  for (const auto& [kind, function] : k_table) {
+    if (kind == job.kind) return function(job, context);
+  }
+  throw DataError("unknown kind of job '" + job.kind + "'; is this worker of another version?");
+}
+
+}  // namespace meshfarm

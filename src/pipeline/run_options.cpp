@@ -1,0 +1,32 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#include <algorithm>
+#include <cmath>
+#include <meshfarm/pipeline/run_options.hpp>
+#include <meshfarm/util/bytes.hpp>
+#include <meshfarm/util/checksum.hpp>
+#include <meshfarm/util/errors.hpp>
+
+namespace meshfarm {
+
+std::uint64_t target_triangles(const Manifest& manifest, const RunOptions& options) {
+  if (options.triangles != 0) return options.triangles;
+  if (!(options.ratio > 0 && options.ratio <= 1)) {
+    throw UsageError("give the size of the result: --ratio above 0 and up to 1, or --triangles");
+  }
+  // Of the clean input: what was dropped as degenerate is no triangle to keep a share of.
+  const double wanted = options.ratio * static_cast<double>(manifest.triangles());
+  return static_cast<std::uint64_t>(std::llround(wanted));
+}
+
+std::uint64_t run_key(const Manifest& manifest, const RunOptions& options) {
+  ByteWriter out;
+  out.put(checksum(encode_manifest(manifest)));
+  out.put(target_triangles(manifest, options));
+  out.put(options.allocation);
+  out.put(options.finish);
+  const std::uint64_t key = checksum(out.bytes());
+  return key == 0 ? 1 : key;  // 0 means "any run" to the farm
+}
+
+}  // namespace meshfarm

@@ -1,0 +1,143 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#include <algorithm>
+#include <cmath>
+#include <meshfarm/geometry/simplify.hpp>
+#include <meshfarm/io/part_file.hpp>
+#include <meshfarm/io/result_file.hpp>
+#include <meshfarm/pipeline/simplify_job.hpp>
+#include <meshfarm/util/bytes.hpp>
+#include <meshfarm/util/checksum.hpp>
+#include <meshfarm/util/errors.hpp>
+
+namespace meshfarm {
+namespace {
+
+// Version 1: allocation u8 | start u64 | floor u64 | cost unit f64.
+constexpr std::uint8_t k_version = 1;
+constexpr std::int32_t k_top_level = 52;
+constexpr std::int32_t k_input_level = -1;  // of a rung that is the part as it came
+
+/// Climbs the levels and keeps a snapshot wherever the mesh changed.
+class LadderBuilder {
+ public:
+  LadderBuilder(Part part, const SimplifyParameters& parameters, const JobContext& context)
+      : parameters_(parameters),
+        context_(context),
+        input_triangles_(part.mesh.triangles.size()),
+        simplifier_(std::move(part.mesh), {.locked_vertices = part.boundary_vertices,
+                                           .positions = part.positions,
+                                           .seam = {}}),
+        result_(part.positions, part.boundary_vertices) {}
+
+  void build() {
+    if (parameters_.allocation == Allocation::uniform) {
+      reduce({.triangles = parameters_.start_triangles});
+      snapshot(0);
+    } else {
+      climb(start());
+    }
+  }
+
+  std::string file() const { return result_.finish(); }
+  ResultSummary summary() const {
+    return {result_.rungs(), simplifier_.dropped_degenerate(), simplifier_.dropped_duplicate()};
+  }
+
+ private:
+  /// Makes the first rung and returns the level that the mesh has reached with it.
+  std::int32_t start() {
+    if (parameters_.start_triangles < simplifier_.triangles()) {
+      reduce({.triangles = parameters_.start_triangles});
+      const std::int32_t level = level_of(simplifier_.pass_cost(), parameters_.cost_unit);
+      snapshot(level - 1);  // what costs that much is done in part only
+      return level;
+    }
+    snapshot(k_input_level);
+    // A first step by count finds the level to begin at; below it there is little to collapse.
+    reduce({.triangles = simplifier_.triangles() - simplifier_.triangles() / 10});
+    return level_of(simplifier_.pass_cost(), parameters_.cost_unit);
+  }
+
+  void climb(std::int32_t level) {
+    for (; level <= k_top_level; ++level) {
+      if (simplifier_.triangles() <= parameters_.floor_triangles) return;
+      if (simplifier_.free_triangles() == 0) return;
+      reduce({.triangles = parameters_.floor_triangles,
+              .max_cost = level_cost(level, parameters_.cost_unit)});
+      if (simplifier_.triangles() < result_.rungs().back().triangles) snapshot(level);
+    }
+  }
+
+  void reduce(const SimplifyGoal& goal) {
+    bool given_up = false;
+    simplifier_.reduce(goal, [&](std::uint64_t left) {
+      given_up = !context_.progress(input_triangles_ - std::min(left, input_triangles_));
+      return !given_up;
+    });
+    if (given_up) throw IncompleteError("the job was given up");
+  }
+
+  void snapshot(std::int32_t level) {
+    result_.add(level, simplifier_.mesh(), simplifier_.free_triangles());
+  }
+
+  const SimplifyParameters& parameters_;
+  const JobContext& context_;
+  std::uint64_t input_triangles_;
+  Simplifier simplifier_;
+  ResultEncoder result_;
+};
+
+}  // namespace
+
+std::string encode_parameters(const SimplifyParameters& parameters) {
+  ByteWriter out;
+  out.put(k_version);
+  out.put(parameters.allocation);
+  out.put(parameters.start_triangles);
+  out.put(parameters.floor_triangles);
+  out.put(parameters.cost_unit);
+  return out.take();
+}
+
+SimplifyParameters decode_parameters(std::string_view bytes) {
+  ByteReader in(bytes, "parameters of a simplify job");
+  if (in.get<std::uint8_t>() != k_version) in.fail("made by another version of meshfarm");
+  SimplifyParameters parameters;
+  parameters.allocation = in.get<Allocation>();
+  if (parameters.allocation > Allocation::uniform) in.fail("unknown allocation");
+  parameters.start_triangles = in.get<std::uint64_t>();
+  parameters.floor_triangles = in.get<std::uint64_t>();
+  parameters.cost_unit = in.get<double>();
+  in.expect_end();
+  return parameters;
+}
+
+double level_cost(std::int32_t level, double unit) {
+  return std::ldexp(unit, 2 * level);
+}
+
+std::int32_t level_of(double cost, double unit) {
+  std::int32_t level = 0;
+  while (level < k_top_level && level_cost(level, unit) < cost) ++level;
+  return level;
+}
+
+double cost_unit(double diagonal) {
+  const double squared = diagonal * diagonal;
+  return std::ldexp(squared * squared, -2 * 50);
+}
+
+JobOutput simplify_part(const Job& job, const JobContext& context) {
+  if (job.inputs.size() != 1) throw DataError("a simplify job takes one part");
+  const SimplifyParameters parameters = decode_parameters(job.parameters);
+  Part part = decode_part(context.stage.read(job.inputs[0]), job.inputs[0].name);
+  LadderBuilder ladder(std::move(part), parameters, context);
+  ladder.build();
+  const ResultName name{key_of(job).value, context.attempt, context.incarnation};
+  return {context.stage.publish(name, ladder.file(), to_hex(context.incarnation)),
+          encode_summary(ladder.summary())};
+}
+
+}  // namespace meshfarm

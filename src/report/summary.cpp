@@ -1,0 +1,225 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#include <algorithm>
+#include <cstdio>
+#include <meshfarm/report/summary.hpp>
+#include <nlohmann/json.hpp>
+#include <utility>
+#include <vector>
+
+namespace meshfarm {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// "1,234,567"
+std::string grouped(std::uint64_t value) {
+  std::string digits = std::to_string(value);
+  for (std::size_t at = digits.size(); at > 3; at -= 3) digits.insert(at - 3, ",");
+  return digits;
+}
+
+std::string number(double value, const char* format) {
+  char text[64];
+  std::snprintf(text, sizeof text, format, value);
+  return text;
+}
+
+/// A table of "label  value" lines.
+class Lines {
+ public:
+  void add(const std::string& label, const std::string& value) {
+    std::string padded = label;
+    padded.resize(std::max<std::size_t>(padded.size(), 16), ' ');
+    text_ += padded + " " + value + "\n";
+  }
+  const std::string& text() const { return text_; }
+
+ private:
+  std::string text_;
+};
+
+std::string joined(const std::vector<std::string>& words) {
+  std::string text;
+  for (const std::string& word : words) text += (text.empty() ? "" : ", ") + word;
+  return text;
+}
+
+Json to_json(const Box& box) {
+  if (box.empty()) return nullptr;
+  return {{"lo", {box.lo.x, box.lo.y, box.lo.z}}, {"hi", {box.hi.x, box.hi.y, box.hi.z}}};
+}
+
+Json to_json(const Topology& t) {
+  return {{"vertices", t.vertices},
+          {"unused_vertices", t.vertices - t.used_vertices},
+          {"triangles", t.triangles},
+          {"components", t.components},
+          {"euler", t.euler},
+          {"border_edges", t.border_edges},
+          {"nonmanifold_edges", t.nonmanifold_edges},
+          {"orientation_conflicts", t.orientation_conflicts},
+          {"degenerate", t.degenerate},
+          {"zero_area", t.zero_area},
+          {"duplicate", t.duplicate}};
+}
+
+Json to_json(const Distance& d, double diagonal) {
+  return {{"rms", d.rms / diagonal}, {"mean", d.mean / diagonal}, {"max", d.max / diagonal}};
+}
+
+std::string text_of(const Topology& t) {
+  return grouped(t.components) + " components, " + grouped(t.border_edges) + " border edges, " +
+         grouped(t.nonmanifold_edges) + " non-manifold edges, " + grouped(t.degenerate) +
+         " degenerate, " + grouped(t.zero_area) + " of zero area, " + grouped(t.duplicate) +
+         " duplicate, Euler characteristic " + std::to_string(t.euler);
+}
+
+std::string text_of(const Distance& d, double diagonal) {
+  return "rms " + number(d.rms / diagonal, "%.3g") + "  mean " +
+         number(d.mean / diagonal, "%.3g") + "  max " + number(d.max / diagonal, "%.3g");
+}
+
+Json input_json(const Manifest& m) {
+  return {{"path", m.input},
+          {"format", m.input_format},
+          {"vertices", m.input_vertices},
+          {"triangles", m.input_triangles},
+          {"merged_vertices", m.merged_vertices},
+          {"skipped", m.skipped}};
+}
+
+void add_input(Lines& lines, const Manifest& m) {
+  lines.add("input", m.input + " (" + m.input_format + ")");
+  lines.add("", grouped(m.input_triangles) + " triangles, " + grouped(m.input_vertices) +
+                    " vertices" +
+                    (m.merged_vertices != 0
+                         ? ", " + grouped(m.merged_vertices) + " coincident ones merged"
+                         : ""));
+  if (!m.skipped.empty()) lines.add("not kept", joined(m.skipped));
+}
+
+}  // namespace
+
+std::string render(const Manifest& m, const std::string& stage, Format format) {
+  if (format == Format::json) {
+    const Json json = {{"stage", stage},
+                       {"input", input_json(m)},
+                       {"parts", m.parts.size()},
+                       {"boundary_triangles", m.boundary_triangles},
+                       {"dropped", {{"degenerate", m.dropped_degenerate},
+                                    {"duplicate", m.dropped_duplicate}}},
+                       {"seconds", m.cut_seconds}};
+    return json.dump(2) + "\n";
+  }
+  Lines lines;
+  add_input(lines, m);
+  lines.add("stage", stage + ": " + grouped(m.parts.size()) + " parts, " +
+                         grouped(m.boundary_triangles) + " boundary triangles");
+  lines.add("time", number(m.cut_seconds, "%.2f s"));
+  return lines.text();
+}
+
+std::string render(const RunSummary& s, Format format) {
+  const Manifest& m = s.manifest;
+  if (format == Format::json) {
+    const Json json = {
+        {"input", input_json(m)},
+        {"output", {{"path", s.output}, {"triangles", s.triangles}, {"vertices", s.vertices}}},
+        {"target", s.target},
+        {"exact", s.why_not_exact.empty()},
+        {"why_not_exact", s.why_not_exact},
+        {"dropped", {{"degenerate", s.dropped_degenerate}, {"duplicate", s.dropped_duplicate}}},
+        {"parts", m.parts.size()},
+        {"boundary_triangles", m.boundary_triangles},
+        {"stitched_triangles", s.stitched},
+        {"seconds",
+         {{"cut", m.cut_seconds},
+          {"farm", s.farm_seconds},
+          {"stitch", s.stitch_seconds},
+          {"finish", s.finish_seconds},
+          {"write", s.write_seconds}}}};
+    return json.dump(2) + "\n";
+  }
+  Lines lines;
+  add_input(lines, m);
+  if (s.dropped_degenerate + s.dropped_duplicate > 0) {
+    lines.add("dropped", grouped(s.dropped_degenerate) + " degenerate and " +
+                             grouped(s.dropped_duplicate) + " duplicate triangles");
+  }
+  lines.add("output", s.output);
+  lines.add("", grouped(s.triangles) + " triangles, " + grouped(s.vertices) + " vertices");
+  if (!s.why_not_exact.empty()) {
+    lines.add("", grouped(s.target) + " were asked for: " + s.why_not_exact);
+  }
+  lines.add("parts", grouped(m.parts.size()) + ", stitched to " + grouped(s.stitched) +
+                         " triangles before the finish");
+  lines.add("time", "cut " + number(m.cut_seconds, "%.2f s") + ", farm " +
+                        number(s.farm_seconds, "%.2f s") + ", stitch " +
+                        number(s.stitch_seconds, "%.2f s") + ", finish " +
+                        number(s.finish_seconds, "%.2f s") + ", write " +
+                        number(s.write_seconds, "%.2f s"));
+  return lines.text();
+}
+
+std::string render(const FileSummary& s, Format format) {
+  if (format == Format::json) {
+    Json json = {{"path", s.path},
+                 {"format", s.file.format},
+                 {"compression", s.file.compression},
+                 {"vertices", s.file.vertices},
+                 {"triangles", s.triangles},
+                 {"short_faces", s.short_faces},
+                 {"positions", s.file.positions == PositionType::float64 ? "float64" : "float32"},
+                 {"skipped", s.file.skipped},
+                 {"box", to_json(s.box)},
+                 {"diagonal", s.box.diagonal()}};
+    if (s.topology) json["topology"] = to_json(*s.topology);
+    return json.dump(2) + "\n";
+  }
+  Lines lines;
+  lines.add("file", s.path);
+  lines.add("format", s.file.format + (s.file.compression == "none"
+                                           ? ""
+                                           : ", compressed by " + s.file.compression));
+  lines.add("triangles", grouped(s.triangles));
+  if (s.short_faces > 0) lines.add("left out", grouped(s.short_faces) + " faces of 0 to 2 corners");
+  lines.add("vertices", grouped(s.file.vertices) +
+                            (s.file.positions == PositionType::float64 ? ", double" : ", float"));
+  if (!s.file.skipped.empty()) lines.add("not kept", joined(s.file.skipped));
+  if (!s.box.empty()) {
+    const auto range = [](double lo, double hi) {
+      return "[" + number(lo, "%.9g") + ", " + number(hi, "%.9g") + "]";
+    };
+    lines.add("bounding box", range(s.box.lo.x, s.box.hi.x) + " x " +
+                                  range(s.box.lo.y, s.box.hi.y) + " x " +
+                                  range(s.box.lo.z, s.box.hi.z));
+    lines.add("diagonal", number(s.box.diagonal(), "%.9g"));
+  }
+  if (s.topology) lines.add("topology", text_of(*s.topology));
+  return lines.text();
+}
+
+std::string render(const Comparison& c, Format format) {
+  if (format == Format::json) {
+    const Json json = {{"a", c.path_a},
+                       {"b", c.path_b},
+                       {"diagonal", c.diagonal},
+                       {"a_to_b", to_json(c.a_to_b, c.diagonal)},
+                       {"b_to_a", to_json(c.b_to_a, c.diagonal)},
+                       {"topology_a", to_json(c.topology_a)},
+                       {"topology_b", to_json(c.topology_b)}};
+    return json.dump(2) + "\n";
+  }
+  Lines lines;
+  lines.add("A", c.path_a + ", " + grouped(c.topology_a.triangles) + " triangles");
+  lines.add("", text_of(c.topology_a));
+  lines.add("B", c.path_b + ", " + grouped(c.topology_b.triangles) + " triangles");
+  lines.add("", text_of(c.topology_b));
+  lines.add("A to B", text_of(c.a_to_b, c.diagonal));
+  lines.add("B to A", text_of(c.b_to_a, c.diagonal));
+  lines.add("unit", "A's diagonal, " + number(c.diagonal, "%.9g"));
+  return lines.text();
+}
+
+}  // namespace meshfarm

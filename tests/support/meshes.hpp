@@ -1,0 +1,130 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <map>
+#include <utility>
+
+#include <meshfarm/geometry/mesh.hpp>
+
+/// Small meshes for tests. Closed ones are oriented outwards.
+namespace meshfarm::test {
+
+/// Four vertices, four triangles; one corner at the origin, legs of length 1.
+inline Mesh tetrahedron() {
+  return {{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}},
+          {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}}};
+}
+
+/// A closed octahedron of radius 1.
+inline Mesh octahedron() {
+  return {{{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}},
+          {{0, 2, 4}, {2, 1, 4}, {1, 3, 4}, {3, 0, 4}, {2, 0, 5}, {1, 2, 5}, {3, 1, 5}, {0, 3, 5}}};
+}
+
+/// An icosahedron, each triangle split into four `levels` times, on the sphere of radius 1:
+/// 20 * 4^levels triangles, 10 * 4^levels + 2 vertices.
+inline Mesh icosphere(int levels) {
+  const double g = (1 + std::sqrt(5.0)) / 2;
+  Mesh mesh{{{-1, g, 0},
+             {1, g, 0},
+             {-1, -g, 0},
+             {1, -g, 0},
+             {0, -1, g},
+             {0, 1, g},
+             {0, -1, -g},
+             {0, 1, -g},
+             {g, 0, -1},
+             {g, 0, 1},
+             {-g, 0, -1},
+             {-g, 0, 1}},
+            {{0, 11, 5},  {0, 5, 1},  {0, 1, 7},  {0, 7, 10}, {0, 10, 11}, {1, 5, 9}, {5, 11, 4},
+             {11, 10, 2}, {10, 7, 6}, {7, 1, 8},  {3, 9, 4},  {3, 4, 2},   {3, 2, 6}, {3, 6, 8},
+             {3, 8, 9},   {4, 9, 5},  {2, 4, 11}, {6, 2, 10}, {8, 6, 7},   {9, 8, 1}}};
+  for (int level = 0; level < levels; ++level) {
+    std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> middles;
+    const auto middle = [&](std::uint32_t a, std::uint32_t b) {
+      const auto [at, is_new] =
+          middles.try_emplace(std::minmax(a, b), static_cast<std::uint32_t>(mesh.positions.size()));
+      if (is_new) mesh.positions.push_back((mesh.positions[a] + mesh.positions[b]) * 0.5);
+      return at->second;
+    };
+    std::vector<Triangle> finer;
+    for (const auto [a, b, c] : mesh.triangles) {
+      const std::uint32_t ab = middle(a, b), bc = middle(b, c), ca = middle(c, a);
+      finer.insert(finer.end(), {{a, ab, ca}, {b, bc, ab}, {c, ca, bc}, {ab, bc, ca}});
+    }
+    mesh.triangles = std::move(finer);
+  }
+  for (Vec3& p : mesh.positions) p = p * (1 / length(p));
+  return mesh;
+}
+
+/// A closed torus round the z axis, radii 1 and 0.4: `rows` rings of `columns` vertices each
+/// (both at least 3), 2 * rows * columns triangles.
+inline Mesh torus(std::uint32_t rows, std::uint32_t columns) {
+  const double turn = 2 * std::acos(-1.0);
+  Mesh mesh;
+  for (std::uint32_t i = 0; i < rows; ++i) {
+    for (std::uint32_t j = 0; j < columns; ++j) {
+      const double u = turn * i / rows, v = turn * j / columns;
+      const double radius = 1 + 0.4 * std::cos(v);
+      mesh.positions.push_back({radius * std::cos(u), radius * std::sin(u), 0.4 * std::sin(v)});
+      const std::uint32_t down = (i + 1) % rows, right = (j + 1) % columns;
+      const std::uint32_t a = i * columns + j, b = down * columns + j;
+      const std::uint32_t c = down * columns + right, d = i * columns + right;
+      mesh.triangles.push_back({a, b, c});
+      mesh.triangles.push_back({a, c, d});
+    }
+  }
+  return mesh;
+}
+
+/// A flat open sheet of nx x ny unit squares in z = 0, seen from +z:
+///
+///     6---7---8
+///     | / | / |      grid(2, 2): vertex y * (nx + 1) + x,
+///     3---4---5      2 * nx * ny triangles,
+///     | / | / |      2 * (nx + ny) border edges
+///     0---1---2
+inline Mesh grid(std::uint32_t nx, std::uint32_t ny) {
+  Mesh mesh;
+  for (std::uint32_t y = 0; y <= ny; ++y) {
+    for (std::uint32_t x = 0; x <= nx; ++x) {
+      mesh.positions.push_back({static_cast<double>(x), static_cast<double>(y), 0});
+      if (x == nx || y == ny) continue;
+      const std::uint32_t a = y * (nx + 1) + x, b = a + nx + 1;
+      mesh.triangles.push_back({a, a + 1, b + 1});
+      mesh.triangles.push_back({a, b + 1, b});
+    }
+  }
+  return mesh;
+}
+
+/// Two triangles with one vertex in common, which is not manifold:
+///
+///     1       4
+///     | \   / |
+///     |   0   |
+///     | /   \ |
+///     2       3
+inline Mesh bow_tie() {
+  return {{{0, 0, 0}, {-1, 1, 0}, {-1, -1, 0}, {1, -1, 0}, {1, 1, 0}}, {{0, 1, 2}, {0, 3, 4}}};
+}
+
+/// Three triangles on the one edge 0-1, which is not manifold, seen from its end:
+///
+///        2
+///        |
+///       0,1
+///      /   \        .
+///     3     4
+inline Mesh three_fans() {
+  return {{{0, 0, 0}, {0, 0, 1}, {0, 1, 0}, {-1, -1, 0}, {1, -1, 0}},
+          {{0, 1, 2}, {0, 1, 3}, {1, 0, 4}}};
+}
+
+}  // namespace meshfarm::test

@@ -1,0 +1,124 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <atomic>
+#include <chrono>
+#include <exception>
+#include <functional>
+#include <meshfarm/farm/job.hpp>
+#include <meshfarm/farm/sink.hpp>
+#include <meshfarm/farm/ventilator.hpp>
+#include <meshfarm/farm/worker.hpp>
+#include <meshfarm/util/bytes.hpp>
+#include <string>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include "support/temp_folder.hpp"
+
+namespace meshfarm::test {
+
+inline Job make_job(const std::string& name, std::uint64_t cost = 1) {
+  return {"test", {}, name, cost};
+}
+
+inline std::vector<Job> make_jobs(std::size_t count, const std::string& prefix = "job ") {
+  std::vector<Job> jobs;
+  for (std::size_t i = 0; i < count; ++i) jobs.push_back(make_job(prefix + std::to_string(i), i));
+  return jobs;
+}
+
+/// One round of `count` jobs.
+inline JobSource one_round(std::size_t count) {
+  return [count](std::span<const AcceptedJob> accepted) {
+    return accepted.empty() ? make_jobs(count) : std::vector<Job>{};
+  };
+}
+
+/// What the trivial job publishes: its own parameters, turned round.
+inline std::string reversed(const std::string& text) { return {text.rbegin(), text.rend()}; }
+
+inline JobOutput do_trivial_job(const Job& job, const JobContext& context) {
+  context.progress(job.cost);
+  const ResultName name{key_of(job).value, context.attempt, context.incarnation};
+  const std::string bytes = reversed(job.parameters);
+  return {context.stage.publish(name, bytes), bytes};
+}
+
+/// A thread that runs a part of the farm and keeps what came of it.
+class Part {
+ public:
+  explicit Part(std::function<void(const std::atomic<bool>& stop)> run)
+      : thread_([this, run = std::move(run)] {
+          try {
+            run(stop_);
+          } catch (...) {
+            error_ = std::current_exception();
+          }
+          ended_ = true;
+        }) {}
+  ~Part() {
+    stop_ = true;
+    if (thread_.joinable()) thread_.join();
+  }
+  Part(const Part&) = delete;
+  Part& operator=(const Part&) = delete;
+
+  void stop() { stop_ = true; }
+  bool ended() const { return ended_; }
+  /// Waits for the end and rethrows what it threw.
+  void join() {
+    thread_.join();
+    if (error_) std::rethrow_exception(std::exchange(error_, nullptr));
+  }
+
+ private:
+  std::atomic<bool> stop_{false};
+  std::atomic<bool> ended_{false};
+  std::exception_ptr error_;
+  std::thread thread_;
+};
+
+/// A stage in a temporary folder, and quick options for the three parts.
+struct Farm {
+  TempFolder folder;
+  Stage stage = Stage::create(folder / "stage");
+  std::uint64_t run = 7;
+  std::chrono::milliseconds heartbeat{200};
+  std::chrono::milliseconds patience{20'000};
+
+  auto ventilator(JobSource source, std::function<void(const FarmProgress&)> progress = {}) {
+    return [=, this](const std::atomic<bool>& stop) {
+      VentilatorOptions options;
+      options.run = run;
+      options.heartbeat = heartbeat;
+      options.progress = progress;
+      options.stop = &stop;
+      run_ventilator(stage, source, options);
+    };
+  }
+  auto worker(JobFunction work = do_trivial_job, std::uint32_t buffer = 3) {
+    return [=, this](const std::atomic<bool>& stop) {
+      WorkerOptions options;
+      options.buffer = buffer;
+      options.patience = patience;
+      options.stop = &stop;
+      run_worker(stage, work, options);
+    };
+  }
+  auto sink(JobSource source, std::vector<std::string>& summaries) {
+    return [=, this, &summaries](const std::atomic<bool>& stop) {
+      SinkOptions options;
+      options.run = run;
+      options.patience = patience;
+      options.stop = &stop;
+      run_sink(stage, source, options, [&](std::span<const AcceptedJob> accepted) {
+        for (const AcceptedJob& each : accepted) summaries.push_back(each.output.summary);
+      });
+    };
+  }
+};
+
+}  // namespace meshfarm::test

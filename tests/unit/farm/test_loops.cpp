@@ -1,0 +1,277 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#include <memory>
+#include <vector>
+
+#include <doctest/doctest.h>
+
+#include "farm_fixture.hpp"
+
+namespace meshfarm::test {
+namespace {
+
+std::vector<std::string> expected_of(std::size_t jobs) {
+  std::vector<std::string> expected;
+  for (const Job& job : make_jobs(jobs)) expected.push_back(reversed(job.parameters));
+  return expected;
+}
+
+/// Runs the three parts to their end and returns the outputs' summaries.
+std::vector<std::string> run_farm(Farm& farm, const JobSource& source, int workers,
+                                  const JobFunction& work = do_trivial_job) {
+  std::vector<std::string> summaries;
+  Part ventilator(farm.ventilator(source));
+  Part sink(farm.sink(source, summaries));
+  std::vector<std::unique_ptr<Part>> crew;
+  for (int i = 0; i < workers; ++i) crew.push_back(std::make_unique<Part>(farm.worker(work)));
+  sink.join();
+  ventilator.join();
+  for (auto& worker : crew) worker->join();
+  return summaries;
+}
+
+/// The trivial job, counted.
+JobFunction counted(std::atomic<int>& count) {
+  return [&count](const Job& job, const JobContext& context) {
+    ++count;
+    return do_trivial_job(job, context);
+  };
+}
+
+/// The trivial job, as slow as a few heartbeats are long in all.
+JobOutput do_slow_job(const Job& job, const JobContext& context) {
+  std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  return do_trivial_job(job, context);
+}
+
+template <class Predicate>
+void wait_until(Predicate predicate) {
+  const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(30);
+  while (!predicate() && std::chrono::steady_clock::now() < end) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(2));
+  }
+  REQUIRE(predicate());
+}
+
+TEST_CASE("a run gives every job's output, in the order asked for") {
+  for (const std::size_t jobs : {0, 1, 2, 100}) {
+    for (const int workers : {1, 3}) {
+      CAPTURE(jobs);
+      CAPTURE(workers);
+      Farm farm;
+      CHECK(run_farm(farm, one_round(jobs), workers) == expected_of(jobs));
+    }
+  }
+}
+
+TEST_CASE("a later round sees the outputs of those before") {
+  Farm farm;
+  const JobSource source = [](std::span<const AcceptedJob> accepted) -> std::vector<Job> {
+    if (accepted.empty()) return make_jobs(5);
+    if (accepted.size() > 5) return {};
+    std::string all;
+    for (const AcceptedJob& each : accepted) all += each.output.summary + ",";
+    return {make_job(all)};
+  };
+  const auto summaries = run_farm(farm, source, 2);
+  REQUIRE(summaries.size() == 6);
+  CHECK(summaries[5] == reversed("0 boj,1 boj,2 boj,3 boj,4 boj,"));
+}
+
+TEST_CASE("a job asked for twice is done once and given twice") {
+  Farm farm;
+  const JobSource source = [](std::span<const AcceptedJob> accepted) -> std::vector<Job> {
+    if (!accepted.empty()) return {};
+    return {make_job("a"), make_job("b"), make_job("a")};
+  };
+  std::atomic<int> count{0};
+  CHECK(run_farm(farm, source, 1, counted(count)) == std::vector<std::string>{"a", "b", "a"});
+  CHECK(count == 2);
+}
+
+TEST_CASE("ten thousand tiny jobs go through") {
+  Farm farm;
+  const auto start = std::chrono::steady_clock::now();
+  CHECK(run_farm(farm, one_round(10'000), 3) == expected_of(10'000));
+  const std::chrono::duration<double> took = std::chrono::steady_clock::now() - start;
+  MESSAGE("10,000 jobs, each a synced file, in ", took.count(), " s");
+}
+
+TEST_CASE("a run that is repeated takes all from the journals") {
+  Farm farm;
+  std::atomic<int> count{0};
+  CHECK(run_farm(farm, one_round(50), 2, counted(count)) == expected_of(50));
+  CHECK(count == 50);
+  SUBCASE("nothing is done again") {
+    CHECK(run_farm(farm, one_round(50), 2, counted(count)) == expected_of(50));
+    CHECK(count == 50);
+  }
+  SUBCASE("without any worker") {
+    CHECK(run_farm(farm, one_round(50), 0) == expected_of(50));
+  }
+  SUBCASE("but what is damaged or gone, which is done again") {
+    std::vector<std::filesystem::path> files;
+    for (const auto& file : std::filesystem::directory_iterator(farm.folder / "stage/results")) {
+      files.push_back(file.path());
+    }
+    std::filesystem::remove(files.at(0));
+    std::filesystem::resize_file(files.at(1), 1);
+    CHECK(run_farm(farm, one_round(50), 2, counted(count)) == expected_of(50));
+    CHECK(count == 52);
+  }
+}
+
+TEST_CASE("an attempt that fails is made again") {
+  Farm farm;
+  std::atomic<int> failures{0};
+  const JobFunction work = [&](const Job& job, const JobContext& context) {
+    if (job.parameters == "job 1" && context.attempt == 1) throw std::bad_alloc();
+    if (job.parameters == "job 1" && context.attempt == 2) {
+      ++failures;
+      throw IoError("cannot read", "x", 5);
+    }
+    return do_trivial_job(job, context);
+  };
+  CHECK(run_farm(farm, one_round(3), 2, work) == expected_of(3));
+  CHECK(failures == 1);
+}
+
+TEST_CASE("a job that fails for good ends the run, the others are kept") {
+  Farm farm;
+  std::atomic<int> attempts{0};
+  std::atomic<bool> bad{false};
+  const JobFunction work = [&](const Job& job, const JobContext& context) {
+    if (job.parameters != "job 1") return do_trivial_job(job, context);
+    ++attempts;
+    if (bad) throw BadInputError("no mesh in it");
+    throw DataError("no luck today");
+  };
+  SUBCASE("after three attempts") { bad = false; }
+  SUBCASE("at once if its input is bad") { bad = true; }
+  std::vector<std::string> summaries;
+  Part ventilator(farm.ventilator(one_round(10)));
+  Part sink(farm.sink(one_round(10), summaries));
+  Part worker(farm.worker(work));
+  const std::string why = bad ? "no mesh in it" : "no luck today";
+  CHECK_THROWS_WITH_AS(ventilator.join(), doctest::Contains(why.c_str()), DataError);
+  CHECK_THROWS_WITH_AS(sink.join(), doctest::Contains(why.c_str()), DataError);
+  worker.join();
+  CHECK(attempts == (bad ? 1 : 3));
+  std::atomic<int> count{0};
+  CHECK(run_farm(farm, one_round(10), 1, counted(count)) == expected_of(10));
+  CHECK(count == 1);
+}
+
+TEST_CASE("an error in making the output reaches sink and ventilator") {
+  Farm farm;
+  Part ventilator(farm.ventilator(one_round(3)));
+  Part worker(farm.worker());
+  Part sink([&](const std::atomic<bool>& stop) {
+    SinkOptions options;
+    options.run = farm.run;
+    options.stop = &stop;
+    run_sink(farm.stage, one_round(3), options,
+             [](std::span<const AcceptedJob>) { throw IoError("cannot write", "out.ply", 28); });
+  });
+  CHECK_THROWS_WITH_AS(sink.join(), doctest::Contains("out.ply"), IoError);
+  CHECK_THROWS_WITH_AS(ventilator.join(), doctest::Contains("out.ply"), DataError);
+  worker.join();
+}
+
+TEST_CASE("a sink that is stopped and started again goes on") {
+  Farm farm;
+  std::atomic<std::uint64_t> done{0};
+  std::atomic<int> count{0};
+  const JobFunction work = [&](const Job& job, const JobContext& context) {
+    ++count;
+    return do_slow_job(job, context);
+  };
+  Part ventilator(farm.ventilator(one_round(300), [&](const FarmProgress& p) {
+    done = p.jobs_done;
+  }));
+  std::vector<std::string> none;
+  std::vector<std::string> summaries;
+  auto first = std::make_unique<Part>(farm.sink(one_round(300), none));
+  Part worker(farm.worker(work));
+  Part other(farm.worker(work));
+  wait_until([&] { return done > 20; });
+  first->stop();
+  CHECK_THROWS_AS(first->join(), IncompleteError);
+  Part second(farm.sink(one_round(300), summaries));
+  second.join();
+  ventilator.join();
+  worker.join();
+  other.join();
+  CHECK(none.empty());
+  CHECK(summaries == expected_of(300));
+  CHECK(count == 300);  // what was done while no sink was there was sent again, not done again
+}
+
+TEST_CASE("a ventilator that is stopped and started again goes on") {
+  Farm farm;
+  std::atomic<std::uint64_t> done{0};
+  std::vector<std::string> summaries;
+  auto first = std::make_unique<Part>(farm.ventilator(one_round(300), [&](const FarmProgress& p) {
+    done = p.jobs_done;
+  }));
+  Part sink(farm.sink(one_round(300), summaries));
+  Part worker(farm.worker(do_slow_job));
+  Part other(farm.worker(do_slow_job));
+  wait_until([&] { return done > 20; });
+  first->stop();
+  CHECK_THROWS_AS(first->join(), IncompleteError);
+  Part second(farm.ventilator(one_round(300)));
+  second.join();
+  sink.join();
+  worker.join();
+  other.join();
+  CHECK(summaries == expected_of(300));
+}
+
+TEST_CASE("a worker that is stopped gives back what it holds, at once") {
+  Farm farm;
+  farm.heartbeat = std::chrono::milliseconds(60'000);  // so that nobody is lost by silence
+  std::vector<std::string> summaries;
+  std::atomic<bool> begun{false};
+  const JobFunction endless = [&](const Job&, const JobContext& context) -> JobOutput {
+    begun = true;
+    while (context.progress(1)) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    throw IncompleteError("given up");
+  };
+  Part ventilator(farm.ventilator(one_round(4)));
+  Part sink(farm.sink(one_round(4), summaries));
+  Part stopped(farm.worker(endless));
+  wait_until([&] { return begun.load(); });
+  stopped.stop();
+  CHECK_THROWS_AS(stopped.join(), IncompleteError);
+  Part worker(farm.worker());
+  sink.join();
+  ventilator.join();
+  worker.join();
+  CHECK(summaries == expected_of(4));
+}
+
+TEST_CASE("whoever finds no ventilator says what to start") {
+  Farm farm;
+  farm.patience = std::chrono::milliseconds(300);
+  std::vector<std::string> summaries;
+  Part worker(farm.worker());
+  Part sink(farm.sink(one_round(1), summaries));
+  CHECK_THROWS_WITH_AS(worker.join(), doctest::Contains("start 'meshfarm"), IncompleteError);
+  CHECK_THROWS_WITH_AS(sink.join(), doctest::Contains("start 'meshfarm"), IncompleteError);
+}
+
+TEST_CASE("a sink of another run is not served") {
+  Farm farm;
+  farm.patience = std::chrono::milliseconds(500);
+  Part ventilator(farm.ventilator(one_round(1)));
+  farm.run = 8;
+  std::vector<std::string> summaries;
+  Part sink(farm.sink(one_round(1), summaries));
+  CHECK_THROWS_AS(sink.join(), IncompleteError);
+  ventilator.stop();
+  CHECK_THROWS_AS(ventilator.join(), IncompleteError);
+}
+
+}  // namespace
+}  // namespace meshfarm::test

@@ -1,0 +1,215 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#include <boost/iostreams/copy.hpp>
+#include <boost/iostreams/device/array.hpp>
+#include <boost/iostreams/device/back_inserter.hpp>
+#include <boost/iostreams/filter/gzip.hpp>
+#include <boost/iostreams/filter/zstd.hpp>
+#include <boost/iostreams/filtering_streambuf.hpp>
+#include <doctest/doctest.h>
+#include <support/meshes.hpp>
+#include <sys/stat.h>
+
+#include <meshfarm/io/ply_writer.hpp>
+
+#include "ply_test_files.hpp"
+
+using namespace meshfarm;
+using namespace meshfarm::test;
+
+namespace {
+
+namespace bio = boost::iostreams;
+
+template <class Filter>
+std::string compressed(std::string_view bytes) {
+  std::string result;
+  bio::filtering_streambuf<bio::output> out;
+  out.push(Filter());
+  out.push(bio::back_inserter(result));
+  bio::copy(bio::array_source(bytes.data(), bytes.size()), out);
+  return result;
+}
+
+std::string gzipped(std::string_view bytes) {
+  return compressed<bio::gzip_compressor>(bytes);
+}
+std::string zstandard(std::string_view bytes) {
+  return compressed<bio::zstd_compressor>(bytes);
+}
+
+std::string torus_bytes() {
+  const TempFolder folder;
+  write_ply(folder / "torus.ply", torus(150, 200), PositionType::float64);
+  return read_file(folder / "torus.ply");
+}
+
+/// A zstd frame by hand: no content size, one raw block, no checksum.
+std::string raw_zstd(std::string_view content) {
+  std::string frame("\x28\xb5\x2f\xfd\x00\x58", 6);
+  const std::size_t block = content.size() << 3 | 1;
+  for (int i = 0; i < 3; ++i) frame += static_cast<char>(block >> (8 * i) & 0xff);
+  return frame + std::string(content);
+}
+
+}  // namespace
+
+TEST_CASE("gzip and zstd are told by content") {
+  for (const std::string& bytes :
+       {ascii_square(), binary_square().text(), binary_square(BinaryFile::Order::big).text()}) {
+    const ReadFile from_gzip = read_bytes(gzipped(bytes));
+    check_square(from_gzip);
+    CHECK(from_gzip.info.compression == "gzip");
+    const ReadFile from_zstd = read_bytes(zstandard(bytes));
+    check_square(from_zstd);
+    CHECK(from_zstd.info.compression == "zstd");
+    check_square(read_bytes(raw_zstd(bytes)));
+  }
+}
+
+TEST_CASE("a compressed mesh longer than the windows is the same mesh") {
+  const std::string bytes = torus_bytes();
+  const Mesh mesh = read_bytes(bytes).mesh;
+  REQUIRE(bytes.size() > 1'400'000);
+  for (const std::string& packed : {gzipped(bytes), zstandard(bytes)}) {
+    const ReadFile read = read_bytes(packed);
+    CHECK(read.mesh.positions == mesh.positions);
+    CHECK(read.mesh.triangles == mesh.triangles);
+  }
+}
+
+TEST_CASE("several members or frames are one file") {
+  const std::string bytes = binary_square().text();
+  const std::string head = bytes.substr(0, 100), tail = bytes.substr(100);
+  check_square(read_bytes(gzipped(head) + gzipped(tail)));
+  check_square(read_bytes(zstandard(head) + zstandard(tail)));
+  const std::string skippable("\x5a\x2a\x4d\x18\x03\x00\x00\x00xyz", 11);
+  check_square(read_bytes(skippable + raw_zstd(head) + skippable + raw_zstd(tail)));
+}
+
+TEST_CASE("compressed data cut off at any byte is refused") {
+  const std::string bytes = binary_square().text();
+  for (const std::string& packed : {gzipped(bytes), zstandard(bytes)}) {
+    for (std::size_t size = 1; size < packed.size(); ++size) {
+      CAPTURE(size);
+      CHECK_FALSE(refusal(packed.substr(0, size)).empty());
+    }
+  }
+}
+
+TEST_CASE("corrupt compressed data is refused or does no harm") {
+  const std::string bytes = torus_bytes();
+  const std::string gzip = gzipped(bytes), zstd = zstandard(bytes);
+  std::string bad_sum = gzip;
+  bad_sum[bad_sum.size() - 5] ^= 1;
+  CHECK(refusal(bad_sum).find("the gzip data is corrupt or truncated") != std::string::npos);
+  CHECK(refusal(gzip.substr(0, gzip.size() / 2)).find("the gzip data is corrupt or truncated") !=
+        std::string::npos);
+  CHECK(refusal(zstd.substr(0, zstd.size() / 2)) ==
+        "m.ply: the zstd data is truncated: the frame that starts at byte 0 has no end");
+  CHECK(refusal(zstd + "more") ==
+        "m.ply: the zstd data is corrupt: no frame starts at byte " + std::to_string(zstd.size()));
+  std::string torn = gzip;
+  torn[torn.size() / 2] ^= 0x55;
+  CHECK_FALSE(refusal(torn).empty());
+  const std::string small = binary_square().text();
+  for (const std::string& packed : {gzipped(small), zstandard(small)}) {
+    for (std::size_t at = 0; at < packed.size(); ++at) {
+      std::string changed = packed;
+      changed[at] ^= 0x10;
+      refusal(changed);
+    }
+  }
+}
+
+TEST_CASE("a compressed header cannot make us allocate what it claims") {
+  for (const auto format : {"ascii", "binary_little_endian"}) {
+    const std::string bytes = "ply\nformat " + std::string(format) + " 1.0\n" +
+                              mesh_elements(UINT32_MAX, UINT64_MAX) + "end_header\n1 2 3\n4 5 6\n";
+    CHECK(refusal(gzipped(bytes)).find("truncated") != std::string::npos);
+    CHECK(refusal(zstandard(bytes)).find("truncated") != std::string::npos);
+  }
+  BinaryFile file(BinaryFile::Order::little,
+                  replaced(mesh_elements(1, 1), "uchar int", "uint64 int"));
+  file.floats({0, 0, 0}).put<std::uint64_t>({UINT64_MAX}).ints({0, 0, 0});
+  CHECK(refusal(gzipped(file.text())).find("inside face 0 of 1") != std::string::npos);
+}
+
+TEST_CASE("unknown formats are refused with what is supported") {
+  const std::string why =
+      "m.ply: unknown format; meshfarm reads PLY (ascii, binary little or big endian), plain or "
+      "compressed with gzip or zstd";
+  for (const auto text : {"", "\n\n", "v 0 0 0\nf 1 1 1\n", "solid x\nendsolid x\n", "OFF\n0 0 0\n",
+                          "plying\n", "PLY\n", " ply\n", "p", "\x1f", "\x28\xb5\x2f"}) {
+    CHECK(refusal(text) == why);
+  }
+  CHECK(refusal(gzipped("v 0 0 0\n")) == why);
+  CHECK(refusal(zstandard("")) == why);
+}
+
+TEST_CASE("what is no readable file is refused") {
+  const TempFolder folder;
+  CHECK_THROWS_AS(open_mesh(folder / "none.ply"), IoError);
+  CHECK_THROWS_AS(open_mesh(folder.path()), IoError);
+  CHECK_THROWS_AS(open_mesh("/dev/null"), DataError);
+  REQUIRE(::mkfifo((folder / "pipe").c_str(), 0600) == 0);
+  CHECK_THROWS_AS(open_mesh(folder / "pipe"), DataError);
+}
+
+TEST_CASE("a source can be scanned as often as wanted, in bounded batches") {
+  const TempFolder folder;
+  const std::string bytes = torus_bytes();
+  write_file(folder / "m.ply", bytes);
+  write_file(folder / "m.gz", gzipped(bytes));
+  for (const auto name : {"m.ply", "m.gz"}) {
+    const auto source = open_mesh(folder / name);
+    for (int pass = 0; pass < 2; ++pass) {
+      std::size_t triangles = 0, vertices = 0, largest = 0;
+      source->scan_triangles([&](std::span<const WideTriangle> batch) {
+        triangles += batch.size();
+        largest = std::max(largest, batch.size());
+      });
+      source->scan_vertices([&](std::span<const Vec3> batch) {
+        vertices += batch.size();
+        largest = std::max(largest, batch.size());
+      });
+      CHECK(vertices == 30'000);
+      CHECK(triangles == 60'000);
+      CHECK(largest <= 65'536);
+    }
+  }
+}
+
+TEST_CASE("an exception of the taker ends the scan and leaves the source usable") {
+  const TempFolder folder;
+  write_file(folder / "m.ply", ascii_square());
+  const auto source = open_mesh(folder / "m.ply");
+  CHECK_THROWS_AS(source->scan_vertices([](std::span<const Vec3>) { throw 7; }), int);
+  CHECK(read_mesh(*source).positions == k_square_vertices);
+}
+
+TEST_CASE("vertices of a plain binary file are jumped over") {
+  // Bad coordinates are only seen by who looks at them.
+  BinaryFile file(BinaryFile::Order::little, mesh_elements(4, 1));
+  file.put<std::uint32_t>(std::initializer_list<std::uint32_t>{~0U, ~0U, ~0U, ~0U, ~0U, ~0U, ~0U,
+                                                               ~0U, ~0U, ~0U, ~0U, ~0U});
+  file.bytes({3}).ints({0, 1, 2});
+  const TempFolder folder;
+  write_file(folder / "m.ply", file.text());
+  const auto source = open_mesh(folder / "m.ply");
+  std::size_t triangles = 0;
+  source->scan_triangles([&](std::span<const WideTriangle> batch) { triangles += batch.size(); });
+  CHECK(triangles == 1);
+  CHECK_THROWS_AS(source->scan_vertices([](std::span<const Vec3>) {}), DataError);
+}
+
+TEST_CASE("a mesh of 2^32 vertices is not read into memory") {
+  struct Huge : MeshSource {
+    MeshFileInfo huge;
+    const MeshFileInfo& info() const override { return huge; }
+    void scan_vertices(const std::function<void(std::span<const Vec3>)>&) override { FAIL("read"); }
+    void scan_triangles(const std::function<void(std::span<const WideTriangle>)>&) override {}
+  } source;
+  source.huge.vertices = std::uint64_t{1} << 32;
+  CHECK_THROWS_AS(read_mesh(source), DataError);
+}

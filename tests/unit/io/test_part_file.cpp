@@ -1,0 +1,149 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#include <doctest/doctest.h>
+
+#include <limits>
+#include <meshfarm/io/boundary_file.hpp>
+#include <meshfarm/io/manifest.hpp>
+#include <meshfarm/io/part_file.hpp>
+#include <meshfarm/io/result_file.hpp>
+#include <meshfarm/util/errors.hpp>
+
+#include "support/meshes.hpp"
+
+using namespace meshfarm;
+
+namespace {
+
+/// Every prefix and every single flipped bit must be refused by `decode`.
+template <class Decode>
+void check_refuses_damage(const std::string& file, Decode decode) {
+  for (std::size_t i = 0; i < file.size(); ++i) {
+    CAPTURE(i);
+    CHECK_THROWS_AS(decode(std::string_view(file).substr(0, i)), DataError);
+    std::string damaged = file;
+    damaged[i] = static_cast<char>(damaged[i] ^ (1 << (i % 8)));
+    CHECK_THROWS_AS(decode(damaged), DataError);
+  }
+}
+
+Manifest sample_manifest() {
+  Manifest m;
+  m.input = "lucy.ply";
+  m.input_format = "PLY binary little endian";
+  m.positions = PositionType::float64;
+  m.box.add({-1, -2, -3});
+  m.box.add({1, 2, 3});
+  m.input_vertices = std::uint64_t{5} << 32;
+  m.input_triangles = std::uint64_t{10} << 32;
+  m.merged_vertices = 7;
+  m.dropped_degenerate = 8;
+  m.dropped_duplicate = 9;
+  m.skipped = {"vertex.red", "face.flags"};
+  m.cut_seconds = 1.5;
+  m.boundary_triangles = 11;
+  m.boundary = {"boundary", 100, 42};
+  m.parts = {{{"parts/000000.part", 200, 43}, 12, 20, 3}, {{"parts/000001.part", 300, 44}, 5, 6, 5}};
+  return m;
+}
+
+}  // namespace
+
+TEST_CASE("a part comes back, in both kinds of positions") {
+  for (const PositionType type : {PositionType::float32, PositionType::float64}) {
+    Part part{test::icosphere(1), 5, type};
+    for (Vec3& p : part.mesh.positions) p = rounded(p, type);
+    const Part back = decode_part(encode_part(part), "part");
+    CHECK(back.mesh.positions == part.mesh.positions);
+    CHECK(back.mesh.triangles == part.mesh.triangles);
+    CHECK(back.boundary_vertices == 5);
+    CHECK(back.positions == type);
+  }
+  const Part empty = decode_part(encode_part({}), "part");
+  CHECK(empty.mesh.triangles.empty());
+}
+
+TEST_CASE("a damaged part is refused") {
+  check_refuses_damage(encode_part({test::tetrahedron(), 1, PositionType::float32}),
+                       [](std::string_view file) { return decode_part(file, "part"); });
+}
+
+TEST_CASE("a part that does not fit together is refused, though its checksum is right") {
+  Part part{test::tetrahedron(), 5, PositionType::float32};
+  CHECK_THROWS_AS(decode_part(encode_part(part), "part"), DataError);  // 5 boundary vertices of 4
+  part.boundary_vertices = 0;
+  part.mesh.triangles[2][1] = 4;
+  CHECK_THROWS_AS(decode_part(encode_part(part), "part"), DataError);
+  part.mesh.triangles[2][1] = 3;
+  part.mesh.positions[0].y = std::numeric_limits<double>::quiet_NaN();
+  CHECK_THROWS_AS(decode_part(encode_part(part), "part"), DataError);
+}
+
+TEST_CASE("each rung of a result comes back") {
+  ResultEncoder encoder(PositionType::float64, 2);
+  encoder.add(-1, test::icosphere(1), 60);
+  encoder.add(4, test::icosphere(0), 20);
+  encoder.add(9, test::tetrahedron(), 0);
+  const std::string file = encoder.finish();
+  CHECK(decode_result(file, 0, "r").mesh.triangles == test::icosphere(1).triangles);
+  CHECK(decode_result(file, 1, "r").mesh.positions == test::icosphere(0).positions);
+  const ResultMesh last = decode_result(file, 2, "r");
+  CHECK(last.mesh.triangles == test::tetrahedron().triangles);
+  CHECK(last.boundary_vertices == 2);
+  CHECK_THROWS_AS(decode_result(file, 3, "r"), DataError);
+}
+
+TEST_CASE("a damaged result is refused") {
+  ResultEncoder encoder(PositionType::float32, 2);
+  encoder.add(0, test::octahedron(), 3);
+  encoder.add(1, test::tetrahedron(), 0);
+  check_refuses_damage(encoder.finish(),
+                       [](std::string_view file) { return decode_result(file, 1, "result"); });
+}
+
+TEST_CASE("a summary comes back, and one that contradicts itself is refused") {
+  ResultSummary summary{{{-1, 100, 50, 40}, {3, 60, 30, 20}}, 4, 5};
+  const ResultSummary back = decode_summary(encode_summary(summary), "s");
+  CHECK(back.rungs.size() == 2);
+  CHECK(back.rungs[1].level == 3);
+  CHECK(back.rungs[1].free_triangles == 20);
+  CHECK(back.dropped_duplicate == 5);
+  summary.rungs[1].level = -1;
+  CHECK_THROWS_AS(decode_summary(encode_summary(summary), "s"), DataError);
+  summary.rungs[1] = {3, 60, 51, 20};
+  CHECK_THROWS_AS(decode_summary(encode_summary(summary), "s"), DataError);
+  summary.rungs.clear();
+  CHECK_THROWS_AS(decode_summary(encode_summary(summary), "s"), DataError);
+}
+
+TEST_CASE("boundary triangles come back, damaged ones are refused") {
+  const std::vector<BoundaryTriangle> triangles = {{{{0, 1}, {2, 3}, {4, 5}}},
+                                                   {{{1, 0}, {1, 1}, {0, 0xffffffff}}}};
+  CHECK(decode_boundary(encode_boundary(triangles), "b") == triangles);
+  CHECK(decode_boundary(encode_boundary({}), "b").empty());
+  check_refuses_damage(encode_boundary(triangles),
+                       [](std::string_view file) { return decode_boundary(file, "boundary"); });
+}
+
+TEST_CASE("a manifest comes back whole") {
+  const Manifest m = sample_manifest();
+  const Manifest back = decode_manifest(encode_manifest(m), "manifest");
+  CHECK(encode_manifest(back) == encode_manifest(m));
+  CHECK(back.input == "lucy.ply");
+  CHECK(back.input_triangles == std::uint64_t{10} << 32);
+  CHECK(back.skipped == m.skipped);
+  CHECK(back.parts[1].file == m.parts[1].file);
+  CHECK(back.box.hi == Vec3{1, 2, 3});
+  CHECK(back.triangles() == 20 + 6 + 11);
+}
+
+TEST_CASE("a manifest that is damaged or names a file outside its place is refused") {
+  check_refuses_damage(encode_manifest(sample_manifest()),
+                       [](std::string_view file) { return decode_manifest(file, "manifest"); });
+  for (const char* name : {"../part", "/parts/000001.part", "boundary", "results/x"}) {
+    Manifest m = sample_manifest();
+    m.parts[0].file.name = name;
+    CAPTURE(name);
+    CHECK_THROWS_AS(decode_manifest(encode_manifest(m), "manifest"), DataError);
+  }
+}

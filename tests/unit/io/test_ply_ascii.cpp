@@ -1,0 +1,226 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#include <locale>
+
+#include <doctest/doctest.h>
+
+#include "ply_test_files.hpp"
+
+using namespace meshfarm;
+using namespace meshfarm::test;
+
+namespace {
+
+std::string one_vertex(std::string_view type, std::string_view line) {
+  const std::string property = "property " + std::string(type) + " ";
+  return "ply\nformat ascii 1.0\nelement vertex 1\n" + property + "x\n" + property + "y\n" +
+         property + "z\nend_header\n" + std::string(line) + "\n";
+}
+
+std::vector<Triangle> triangles_of(std::string_view faces) {
+  return read_bytes(ascii_square(faces)).mesh.triangles;
+}
+
+std::string strips(std::string_view indices) {
+  return "ply\nformat ascii 1.0\nelement vertex 4\n" + std::string(k_xyz) +
+         "element tristrips 1\nproperty list int int vertex_indices\nend_header\n" +
+         std::string(k_square_text) + std::string(indices) + "\n";
+}
+
+}  // namespace
+
+TEST_CASE("ascii numbers of every notation") {
+  const auto x = [](std::string_view type, std::string_view number) {
+    return read_bytes(one_vertex(type, std::string(number) + " 0 0")).mesh.positions.at(0).x;
+  };
+  CHECK(x("float", "1.5") == 1.5);
+  CHECK(x("float", "+1.5") == 1.5);
+  CHECK(x("float", "-.5") == -0.5);
+  CHECK(x("float", "5.") == 5);
+  CHECK(x("float", "1e2") == 100);
+  CHECK(x("float", "-1.25E-2") == static_cast<double>(-1.25e-2F));
+  CHECK(x("float", "0.1") == static_cast<double>(0.1F));
+  CHECK(x("double", "0.1") == 0.1);
+  CHECK(x("float", "1e-60") == 0);
+  CHECK(x("double", "-1e-400") == 0);
+  CHECK(x("double", "0." + std::string(200, '0') + "1e-200") == 0);
+  CHECK(x("double", "1e-99999999999999999999") == 0);
+  CHECK(x("int", "-2147483648") == -2147483648.0);
+  CHECK(x("uint64", "18446744073709549568") == 18446744073709549568.0);
+  CHECK(x("char", "-128") == -128);
+}
+
+TEST_CASE("ascii values that are no number, or no finite one, are refused with their line") {
+  const auto told = [](std::string_view type, std::string_view number) {
+    return refusal(one_vertex(type, "0 " + std::string(number) + " 0"));
+  };
+  const std::string at = "m.ply: vertex 0 on line 8: ";
+  for (const auto number : {"nan", "NaN", "inf", "-inf", "+inf", "infinity", "1e39", "1e9999"}) {
+    CHECK(told("float", number) == at + "a coordinate is not finite");
+  }
+  CHECK(told("double", "-1e309") == at + "a coordinate is not finite");
+  CHECK(told("double", "1e99999999999999999999") == at + "a coordinate is not finite");
+  CHECK(told("float", "abc") == at + "the coordinate 'abc' is no number of type float");
+  CHECK(told("float", "1,5") == at + "the coordinate '1,5' is no number of type float");
+  CHECK(told("float", "1.#INF") == at + "the coordinate '1.#INF' is no number of type float");
+  CHECK(told("float", "+-1") == at + "the coordinate '+-1' is no number of type float");
+  CHECK(told("float", "0x10") == at + "the coordinate '0x10' is no number of type float");
+  CHECK(told("float", std::string_view("1\0", 2)) ==
+        at + "the coordinate '1?' is no number of type float");
+  CHECK(told("int", "1.5") == at + "the coordinate '1.5' is no number of type int");
+  CHECK(told("uchar", "256") == at + "the coordinate '256' is no number of type uchar");
+  CHECK(told("uchar", "-1") == at + "the coordinate '-1' is no number of type uchar");
+  CHECK(told("float", "0." + std::string(300, '1')).find("is no number of type float") !=
+        std::string::npos);
+}
+
+TEST_CASE("numbers do not depend on the locale") {
+  struct Comma : std::numpunct<char> {
+    char do_decimal_point() const override { return ','; }
+  };
+  const std::locale before = std::locale::global(std::locale(std::locale(), new Comma));
+  const ReadFile read = read_bytes(one_vertex("double", "0.5 1.5 2.5"));
+  std::locale::global(before);
+  CHECK(read.mesh.positions == std::vector<Vec3>{{0.5, 1.5, 2.5}});
+}
+
+TEST_CASE("polygons become fans; strips their triangles") {
+  CHECK(triangles_of("4 0 1 3 2\n") == std::vector<Triangle>{{0, 1, 3}, {0, 3, 2}});
+  CHECK(triangles_of("5 0 1 3 2 1\n") == std::vector<Triangle>{{0, 1, 3}, {0, 3, 2}, {0, 2, 1}});
+  const auto of_strips = [](std::string_view indices) {
+    return read_bytes(strips(indices)).mesh.triangles;
+  };
+  CHECK(of_strips("4 0 1 2 3") == std::vector<Triangle>{{0, 1, 2}, {2, 1, 3}});
+  CHECK(of_strips("9 0 1 2 3 -1 0 1 2 -1") ==
+        std::vector<Triangle>{{0, 1, 2}, {2, 1, 3}, {0, 1, 2}});
+  CHECK(of_strips("8 0 1 2 -1 -1 1 3 2") == std::vector<Triangle>{{0, 1, 2}, {1, 3, 2}});
+  CHECK(of_strips("7 0 1 2 2 2 1 3") == std::vector<Triangle>{{0, 1, 2}, {2, 1, 3}});
+  CHECK(of_strips("2 0 1").empty());
+  CHECK(of_strips("0").empty());
+  CHECK(refusal(strips("3 0 1 -2")) ==
+        "m.ply: tristrips 0 on line 14: vertex index -2 is out of range: there are 4 vertices");
+}
+
+TEST_CASE("faces of fewer than three corners are left out and counted") {
+  const ReadFile read = read_bytes(ascii_square("3 0 1 2\n2 0 1\n0\n1 3\n3 2 1 3\n"));
+  check_square(read);
+  CHECK(read.info.faces == 5);
+  CHECK(read.small_faces == 3);
+}
+
+TEST_CASE("indices out of range are refused with face and line") {
+  const std::string at = "m.ply: face 1 on line 15: vertex index ";
+  CHECK(refusal(ascii_square("3 0 1 2\n3 2 1 4\n")) ==
+        at + "4 is out of range: there are 4 vertices");
+  CHECK(refusal(ascii_square("3 0 1 2\n3 2 -1 3\n")) ==
+        at + "-1 is out of range: there are 4 vertices");
+  CHECK(refusal(ascii_square("3 0 1 2\n3 2 1 99999999999999999999\n")).starts_with(at));
+  CHECK(refusal(ascii_square("3 0 1 2\n2 2 7\n")).starts_with(at));
+  CHECK(refusal(ascii_square("3 0 1 2\n3 2 1 x\n")) ==
+        "m.ply: face 1 on line 15: the vertex index 'x' is not a whole number");
+  CHECK(refusal(ascii_square("3 0 1 2\n3 2 1 3.0\n")) ==
+        "m.ply: face 1 on line 15: the vertex index '3.0' is not a whole number");
+}
+
+TEST_CASE("float indices are taken as long as they are whole") {
+  const std::string bytes =
+      replaced(ascii_square("3.0 0 1.0 2e0\n3 2 1 3\n"), "list uchar int", "list float double");
+  check_square(read_bytes(bytes));
+  CHECK(refusal(replaced(bytes, "2e0", "1.5")) ==
+        "m.ply: face 0 on line 14: the vertex index '1.5' is not a whole number");
+  CHECK(refusal(replaced(bytes, "3.0 0", "2.5 0")) ==
+        "m.ply: face 0 on line 14: list vertex_indices has the count '2.5', which is not a whole "
+        "number");
+}
+
+TEST_CASE("list counts are checked") {
+  CHECK(refusal(ascii_square("3 0 1 2\n-1 2 1 3\n")) ==
+        "m.ply: face 1 on line 15: list vertex_indices has a count below zero");
+  CHECK(refusal(ascii_square("3 0 1 2\n4 2 1 3\n")) ==
+        "m.ply: face 1 on line 15: the line ends before its last value");
+  CHECK(refusal(ascii_square("3 0 1 2\n9223372036854775807 2 1 3\n")) ==
+        "m.ply: face 1 on line 15: the line ends before its last value");
+}
+
+TEST_CASE("a record is one line; blank lines are none; the last may lack its end") {
+  check_square(read_bytes(replaced(ascii_square(), "3 0 1 2\n", "\n3 0 1 2\n \t \n\n")));
+  std::string bytes = ascii_square();
+  bytes.pop_back();
+  check_square(read_bytes(bytes));
+  CHECK(refusal(replaced(ascii_square(), "1 0 0\n", "1 0\n0\n")) ==
+        "m.ply: vertex 1 on line 11: the line ends before its last value");
+}
+
+TEST_CASE("more values than the header says are left out, and told once") {
+  const std::string bytes =
+      replaced(replaced(ascii_square("3 0 1 2 9 9\n3 2 1 3 x\n"), "1 0 0\n", "1 0 0 255\n"),
+               "0 1 0\n", "0 1 0 255\n");
+  const std::string told = stderr_of([&] { check_square(read_bytes(bytes)); });
+  CHECK(std::count(told.begin(), told.end(), '\n') == 2);
+  CHECK(told.find("m.ply: vertex 1 on line 11: there are more values than the header says") !=
+        std::string::npos);
+  CHECK(told.find("m.ply: face 0 on line 14: there are more values than the header says") !=
+        std::string::npos);
+}
+
+TEST_CASE("lines behind the last element are told once, blanks are not") {
+  CHECK(stderr_of([] { check_square(read_bytes(ascii_square() + "\n \r\n\t")); }).empty());
+  const TempFolder folder;
+  write_file(folder / "m.ply", ascii_square() + "3 1 0 2\n");
+  const std::string told = stderr_of([&] {
+    const auto source = open_mesh(folder / "m.ply");
+    CHECK(read_mesh(*source).triangles == k_square_triangles);
+    CHECK(read_mesh(*source).triangles == k_square_triangles);
+  });
+  CHECK(told == "meshfarm: warning: " + (folder / "m.ply").string() +
+                    ": there is more in the file than its header says\n");
+}
+
+TEST_CASE("extra elements and properties stand anywhere") {
+  const std::string bytes =
+      "ply\nformat ascii 1.0\n"
+      "element camera 2\nproperty float f\nproperty list uchar int tags\n"
+      "element nothing 7\n"
+      "element face 2\nproperty list uchar float uv\nproperty list ushort uint vertex_indices\n"
+      "property uchar flags\n"
+      "element edge 1\nproperty int a\nproperty int b\n"
+      "element vertex 4\nproperty uchar r\nproperty double z\nproperty list int int ring\n"
+      "property float y\nproperty short x\n"
+      "element end 1\nproperty list uchar uchar text\n"
+      "end_header\n"
+      "1.5 2 7 8\n2.5 0\n"
+      "2 0.5 0.5 3 0 1 2 255\n0 3 2 1 3 0\n"
+      "0 1\n"
+      "9 0 0 0 0\n9 0 1 5 0 1\n9 0 2 5 6 1 0\n9 0.5 0 1 1\n"
+      "3 65 66 67\n";
+  const ReadFile read = read_bytes(bytes);
+  check_square(read);
+  CHECK(read.info.positions == PositionType::float64);
+  CHECK(read.info.skipped == std::vector<std::string>{"camera (2 elements)", "nothing (7 elements)",
+                                                      "face.uv", "face.flags", "edge (1 elements)",
+                                                      "vertex.r", "vertex.ring",
+                                                      "end (1 elements)"});
+  CHECK(refusal(bytes.substr(0, bytes.find("3 65"))) ==
+        "m.ply: truncated: the file ends on line 32, before end 0 of 1");
+}
+
+TEST_CASE("a long file is read through many windows") {
+  constexpr int k_count = 300'000;  // more text than a window holds, at any offset
+  std::string bytes = "ply\nformat ascii 1.0\n" + mesh_elements(k_count, 1) + "end_header\n";
+  for (int i = 0; i < k_count; ++i) {
+    bytes += std::to_string(i) + ".25 " + std::to_string(-i) + (i % 7 == 0 ? "   0.5\n" : " 0.5\n");
+  }
+  bytes += "255";
+  for (int i = 0; i < 255; ++i) bytes += " " + std::to_string(i * 1000);
+  const ReadFile read = read_bytes(bytes + "\n");
+  REQUIRE(read.mesh.positions.size() == k_count);
+  bool same = true;
+  for (int i = 0; i < k_count; ++i) {
+    const auto at = static_cast<double>(i);
+    same = same && read.mesh.positions[static_cast<std::size_t>(i)] ==
+                       rounded({at + 0.25, -at, 0.5}, PositionType::float32);
+  }
+  CHECK(same);
+  CHECK(read.mesh.triangles.size() == 253);
+  CHECK(read.mesh.triangles.back() == Triangle{0, 253'000, 254'000});
+}

@@ -1,0 +1,63 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#include <doctest/doctest.h>
+
+#include <meshfarm/staging/atomic_file.hpp>
+#include <meshfarm/util/errors.hpp>
+
+#include "support/temp_folder.hpp"
+
+using namespace meshfarm;
+
+TEST_CASE("nothing is to be seen before commit, and nothing is left without it") {
+  const test::TempFolder folder;
+  const auto path = folder.path() / "file";
+  {
+    AtomicFile file(path);
+    file.write("abandoned");
+    CHECK_FALSE(std::filesystem::exists(path));
+  }
+  CHECK(std::filesystem::is_empty(folder.path()));
+}
+
+TEST_CASE("commit publishes all that was written, rewritten places too") {
+  const test::TempFolder folder;
+  const auto path = folder.path() / "file";
+  AtomicFile file(path, "writer1");
+  file.write("head");
+  const std::string large(3'000'000, 'x');
+  file.write(large);
+  file.write("tail");
+  CHECK(file.size() == 8 + large.size());
+  file.rewrite(0, "HEAD");
+  file.commit();
+  CHECK(read_file(path) == "HEAD" + large + "tail");
+}
+
+TEST_CASE("a temporary file left by a dead writer of our name is no obstacle") {
+  const test::TempFolder folder;
+  const auto path = folder.path() / "file";
+  {
+    AtomicFile dead(path, "same");
+    dead.write("dead");
+    AtomicFile living(path, "same");
+    living.write("living");
+    living.commit();
+  }
+  CHECK(read_file(path) == "living");
+}
+
+TEST_CASE("a rename that answers ENOENT though it was done is no failure") {
+  const test::TempFolder folder;
+  AtomicFile file(folder.path() / "to");
+  file.write("done");
+  file.commit();
+  CHECK_NOTHROW(rename_checked(folder.path() / "gone", folder.path() / "to", 4));
+  CHECK_THROWS_AS(rename_checked(folder.path() / "gone", folder.path() / "to", 5), IoError);
+  CHECK_THROWS_AS(rename_checked(folder.path() / "gone", folder.path() / "absent", 4), IoError);
+}
+
+TEST_CASE("a folder that is not there is an error that names the file") {
+  const test::TempFolder folder;
+  CHECK_THROWS_AS(AtomicFile(folder.path() / "absent" / "file"), IoError);
+}

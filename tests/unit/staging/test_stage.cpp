@@ -1,0 +1,105 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#include <doctest/doctest.h>
+
+#include <fstream>
+#include <meshfarm/staging/stage.hpp>
+#include <meshfarm/util/errors.hpp>
+#include <meshfarm/util/file.hpp>
+#include <thread>
+
+#include "support/temp_folder.hpp"
+
+using namespace meshfarm;
+
+namespace {
+
+constexpr ReadPatience k_no_patience = {.attempts = 1, .first_wait_ms = 0};
+
+}  // namespace
+
+TEST_CASE("a published file is read back by its reference") {
+  const test::TempFolder folder;
+  const Stage stage = Stage::create(folder.path() / "stage");
+  const FileRef file = stage.publish(PartName{3}, "content", "abc");
+  CHECK(file.name == "parts/000003.part");
+  CHECK(file.size == 7);
+  CHECK(stage.read(file) == "content");
+  CHECK(stage.read(PartName{3}) == "content");
+  std::size_t files = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(stage.root() / "parts")) {
+    CHECK(entry.path().filename() == "000003.part");  // and no temporary one
+    ++files;
+  }
+  CHECK(files == 1);
+}
+
+TEST_CASE("a folder without a manifest is no stage") {
+  const test::TempFolder folder;
+  CHECK_THROWS_AS(Stage::open(folder.path()), DataError);
+  CHECK_THROWS_AS(Stage::open(folder.path() / "absent"), DataError);
+  const Stage stage = Stage::create(folder.path());
+  stage.publish(ManifestName{}, "m");
+  CHECK_NOTHROW(Stage::open(folder.path()));
+}
+
+TEST_CASE("one flipped byte or a missing one is noticed by the reader") {
+  const test::TempFolder folder;
+  const Stage stage = Stage::create(folder.path());
+  const FileRef file = stage.publish(PartName{0}, "content");
+  const auto path = stage.path(PartName{0});
+  std::ofstream(path) << "contenT";
+  CHECK_THROWS_WITH_AS(
+      stage.read(file, k_no_patience),
+      (path.string() + ": damaged (its checksum is not the promised one)").c_str(), DataError);
+  std::ofstream(path) << "conten";
+  CHECK_THROWS_WITH_AS(stage.read(file, k_no_patience),
+                       (path.string() + ": 6 bytes where 7 were promised").c_str(), DataError);
+}
+
+TEST_CASE("a file that comes late is waited for") {
+  const test::TempFolder folder;
+  const Stage stage = Stage::create(folder.path());
+  FileRef file = stage.publish(PartName{1}, "late");
+  std::filesystem::rename(stage.path(PartName{1}), folder.path() / "hidden");
+  std::jthread writer([&] {
+    std::this_thread::sleep_for(std::chrono::milliseconds(30));
+    std::filesystem::rename(folder.path() / "hidden", stage.path(PartName{1}));
+  });
+  CHECK(stage.read(file, {.attempts = 10, .first_wait_ms = 10}) == "late");
+}
+
+TEST_CASE("only staged names are opened, and only beneath the stage") {
+  const test::TempFolder folder;
+  const Stage stage = Stage::create(folder.path() / "stage");
+  std::ofstream(folder.path() / "secret") << "secret";
+  CHECK_THROWS_AS(stage.read(FileRef{"../secret", 6, 0}, k_no_patience), DataError);
+  CHECK_THROWS_AS(stage.read(FileRef{"/etc/passwd", 6, 0}, k_no_patience), DataError);
+  std::filesystem::create_symlink(folder.path() / "secret", stage.path(PartName{7}));
+  CHECK_THROWS_AS(stage.read(PartName{7}), IoError);
+}
+
+TEST_CASE("numbers of journals and epochs are listed in order; strangers are passed over") {
+  const test::TempFolder folder;
+  const Stage stage = Stage::create(folder.path());
+  for (const std::uint32_t n : {12U, 2U, 1'000'001U}) stage.publish(JournalName{n}, "x");
+  stage.publish(EndpointName{4}, "x");
+  std::ofstream(stage.root() / "journal" / "notes.txt") << "x";
+  CHECK(stage.journals() == std::vector<std::uint32_t>{2, 12, 1'000'001});
+  CHECK(stage.epochs() == std::vector<std::uint32_t>{4});
+}
+
+TEST_CASE("removing a stage leaves what is not its own") {
+  const test::TempFolder folder;
+  const auto root = folder.path() / "stage";
+  const Stage stage = Stage::create(root);
+  stage.publish(PartName{1}, "x");
+  stage.publish(ManifestName{}, "x");
+  std::ofstream(root / "mine.ply") << "x";
+  remove_stage(root);
+  CHECK_FALSE(std::filesystem::exists(root / "parts"));
+  CHECK(std::filesystem::exists(root / "mine.ply"));
+  std::filesystem::remove(root / "mine.ply");
+  remove_stage(root);
+  CHECK_FALSE(std::filesystem::exists(root));
+}

@@ -1,0 +1,63 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#include <doctest/doctest.h>
+
+#include <atomic>
+#include <fstream>
+#include <meshfarm/util/errors.hpp>
+#include <meshfarm/util/file.hpp>
+#include <meshfarm/util/parallel.hpp>
+#include <stdexcept>
+
+#include "support/temp_folder.hpp"
+
+using namespace meshfarm;
+
+TEST_CASE("a missing file is an error that names it") {
+  const test::TempFolder folder;
+  const auto path = folder.path() / "absent";
+  CHECK_THROWS_WITH_AS(read_file(path),
+                       ("cannot open " + path.string() + ": No such file or directory").c_str(),
+                       IoError);
+}
+
+TEST_CASE("files are mapped and read alike") {
+  const test::TempFolder folder;
+  const auto path = folder.path() / "file";
+  std::ofstream(path, std::ios::binary) << "twelve bytes";
+  CHECK(read_file(path) == "twelve bytes");
+  const MappedFile mapped = MappedFile::open(path);
+  CHECK(mapped.bytes() == "twelve bytes");
+  mapped.release(0, mapped.bytes().size());
+  CHECK(mapped.bytes() == "twelve bytes");
+
+  std::ofstream(folder.path() / "empty").flush();
+  CHECK(MappedFile::open(folder.path() / "empty").bytes().empty());
+}
+
+TEST_CASE("a scratch file has no name, is zero, and keeps what is written") {
+  const test::TempFolder folder;
+  MappedFile scratch = MappedFile::scratch(folder.path(), 4096 * sizeof(std::uint64_t));
+  CHECK(std::filesystem::is_empty(folder.path()));
+  const auto values = scratch.as_span<std::uint64_t>();
+  CHECK(values.size() == 4096);
+  CHECK(values[4095] == 0);
+  values[4095] = 7;
+  const MappedFile moved = std::move(scratch);
+  CHECK(moved.as_span<std::uint64_t>()[4095] == 7);
+}
+
+TEST_CASE("parallel_for does each index once") {
+  std::vector<std::atomic<int>> counts(1000);
+  parallel_for(counts.size(), 4, [&](std::uint64_t i) { ++counts[i]; });
+  for (const auto& count : counts) CHECK(count == 1);
+  CHECK_NOTHROW(parallel_for(0, 4, [](std::uint64_t) { throw std::logic_error("called"); }));
+}
+
+TEST_CASE("parallel_for throws what a call threw") {
+  CHECK_THROWS_WITH_AS(parallel_for(100, 3,
+                                    [](std::uint64_t i) {
+                                      if (i == 50) throw DataError("fifty");
+                                    }),
+                       "fifty", DataError);
+}
