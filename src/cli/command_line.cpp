@@ -49,12 +49,25 @@ std::unique_ptr<Command> find_command(std::string_view name) {
                    "'; 'meshfarm help' lists the commands");
 }
 
+/// No option takes one, and Boost would wrap it round to a huge unsigned number.
+void refuse_negative_numbers(const po::basic_parsed_options<char>& parsed) {
+  for (const auto& option : parsed.options) {
+    for (const std::string& value : option.value) {
+      if (value.size() > 1 && value[0] == '-' && value[1] >= '0' && value[1] <= '9') {
+        throw UsageError("--" + option.string_key + " takes no negative number: " + value);
+      }
+    }
+  }
+}
+
 /// Options of the config file have the names of the command line; the command line wins.
 void read_config(const std::string& path, const po::options_description& options,
                  po::variables_map& values) {
   std::ifstream file(path);
   if (!file) throw_errno("cannot open", path);
-  po::store(po::parse_config_file(file, options), values);
+  const auto parsed = po::parse_config_file(file, options);
+  refuse_negative_numbers(parsed);
+  po::store(parsed, values);
 }
 
 /// Positional arguments are options without a description: shown in the synopsis, not in the list.
@@ -74,8 +87,11 @@ int run_command(Command& command, const std::vector<std::string>& words) {
   options.add_options()
       ("config", po::value(&config)->value_name("FILE"), "read options from a file, NAME = VALUE")
       ("help,h", "this text");
+  const auto parsed =
+      po::command_line_parser(words).options(options).positional(positional).run();
+  refuse_negative_numbers(parsed);
   po::variables_map values;
-  po::store(po::command_line_parser(words).options(options).positional(positional).run(), values);
+  po::store(parsed, values);
   if (values.count("help") != 0) {
     std::cout << help_of(command, described_only(options));
     return k_done;

@@ -3,6 +3,7 @@
 #include "cli/farm_command.hpp"
 
 #include <meshfarm/util/errors.hpp>
+#include <meshfarm/util/log.hpp>
 
 #include "cli/signals.hpp"
 
@@ -17,6 +18,7 @@ void FarmCommand::add_stage(po::options_description& options,
 
 int FarmCommand::run() {
   const std::atomic<bool>& stop = stop_on_signals();
+  if (talk_.quiet || supervised_) set_log(name(), LogLevel::warning);
   try {
     serve(Stage::open(stage_), stop);
   } catch (const IncompleteError&) {

@@ -25,16 +25,15 @@ std::uint32_t default_workers() {
 }
 
 int run_local_farm(const LocalFarm& farm, const std::atomic<bool>& stop) {
+  // Looked at here once, so that a missing or damaged stage is one line and not one a process.
   const Stage stage = Stage::open(farm.stage);
-  const Manifest manifest = decode_manifest(stage.read(ManifestName{}), "manifest");
-  const std::vector<std::string> target =
-      farm.target.words(target_triangles(manifest, farm.target.run));
+  decode_manifest(stage.read(ManifestName{}), stage.path(ManifestName{}).string());
   std::vector<std::string> quiet = {"--supervised"};
   if (farm.talk.quiet) quiet.push_back("--quiet");
 
   Supervisor supervisor(stop);
   const std::vector<std::string> common =
-      joined(joined({farm.stage}, joined(target, farm.network.words())), quiet);
+      joined(joined({farm.stage}, joined(farm.target.words(), farm.network.words())), quiet);
   supervisor.start(joined({"ventilator"}, common));
   std::vector<std::string> sink = joined(joined({"sink"}, common), {"--output", farm.output});
   if (farm.talk.json) sink.push_back("--json");

@@ -63,8 +63,16 @@ void TargetOptions::check() {
   run.finish = finish == "boundary" ? Finish::boundary : Finish::global;
 }
 
-std::vector<std::string> TargetOptions::words(std::uint64_t target) const {
-  return {"--triangles", std::to_string(target), "--allocation", allocation, "--finish", finish};
+std::vector<std::string> TargetOptions::words() const {
+  std::vector<std::string> words = {"--allocation", allocation, "--finish", finish};
+  if (run.triangles != 0) {
+    words.insert(words.end(), {"--triangles", std::to_string(run.triangles)});
+  } else {
+    char text[32];  // the shortest text that reads back as the same number
+    const auto end = std::to_chars(text, text + sizeof text, run.ratio).ptr;
+    words.insert(words.end(), {"--ratio", std::string(text, end)});
+  }
+  return words;
 }
 
 void CutWords::add(po::options_description& options) {

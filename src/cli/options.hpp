@@ -38,7 +38,7 @@ struct TargetOptions {
   void add(po::options_description& options);
   void check();
   /// The same as words for a command line.
-  std::vector<std::string> words(std::uint64_t target) const;
+  std::vector<std::string> words() const;
 };
 
 /// --parts, --weld, --threads.

@@ -2,16 +2,17 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <meshfarm/farm/endpoint.hpp>
-#include <meshfarm/farm/membership.hpp>
-#include <meshfarm/staging/stage.hpp>
-#include <meshfarm/util/errors.hpp>
-#include <meshfarm/util/log.hpp>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include <zmq.hpp>
+
+#include <meshfarm/farm/endpoint.hpp>
+#include <meshfarm/farm/membership.hpp>
+#include <meshfarm/staging/stage.hpp>
+#include <meshfarm/util/errors.hpp>
+#include <meshfarm/util/log.hpp>
 
 #include "farm/sockets.hpp"
 

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
 #include <algorithm>
+
 #include <meshfarm/farm/dispatcher.hpp>
 #include <meshfarm/util/checksum.hpp>
 
@@ -9,6 +10,9 @@ namespace {
 
 /// Whoever is silent for this many heartbeats is lost.
 constexpr int k_silent_heartbeats = 3;
+/// Attempt numbers go on from epoch to epoch, so that a worker which outlives a ventilator never
+/// publishes two results under one name.
+constexpr std::uint32_t k_attempts_per_epoch = 1000;
 
 }  // namespace
 
@@ -59,6 +63,10 @@ void Dispatcher::worker_joins(const PeerId& peer, const Hello& hello) {
   }
   const auto before = by_incarnation_.find(hello.incarnation);
   if (before != by_incarnation_.end()) lose(before->second, "joined again", Blame::none);
+  if (const auto charge = charges_.find(hello.incarnation); charge != charges_.end()) {
+    plan_.forgive(charge->second.key, charge->second.reason);  // it lives: no job has killed it
+    charges_.erase(charge);
+  }
   const WorkerId id{next_worker_++};
   Worker& worker = workers_[id];
   worker.peer = peer;
@@ -109,7 +117,11 @@ void Dispatcher::sink_joins(const PeerId& peer, const Hello& hello) {
     to_workers(SinkAt{hello.results});
   }
   sink_->heard = now_;
-  send(peer, Welcome{WorkerId{}, options_.epoch, options_.run, {}, {},
+  send(peer, Welcome{WorkerId{},
+                     options_.epoch,
+                     options_.run,
+                     {},
+                     {},
                      static_cast<std::uint32_t>(options_.heartbeat.count())});
 }
 
@@ -118,7 +130,7 @@ void Dispatcher::sink_joins(const PeerId& peer, const Hello& hello) {
 void Dispatcher::on(const PeerId& peer, const Heartbeat& beat) {
   if (sink_ && sink_->peer == peer) {
     sink_->heard = now_;
-    return send(peer, Alive{options_.epoch});
+    return send(peer, Alive{options_.epoch, {}});
   }
   Worker* worker = worker_at(peer, beat.worker, beat.epoch);
   if (worker == nullptr) {
@@ -129,7 +141,7 @@ void Dispatcher::on(const PeerId& peer, const Heartbeat& beat) {
     send(peer, Refused{Refusal::stranger, "the lane lost jobs; say hello for another"});
     return lose(beat.worker, "its lane lost jobs", Blame::none);
   }
-  send(peer, Alive{options_.epoch});
+  send(peer, Alive{options_.epoch, sink_ ? sink_->results : std::string()});
   if (over_) send(peer, Stop{StopReason::run_over});
 }
 
@@ -176,8 +188,10 @@ void Dispatcher::lose(WorkerId id, const std::string& reason, Blame blame) {
   for (const Held& held : worker.held) {
     holder_.erase(held.key);
     if (blame == Blame::first_held && &held == &worker.held.front()) {
-      fail(held.key, "worker " + std::to_string(id.value) + " on " + worker.host + " " + reason,
-           false);
+      const std::string why =
+          "worker " + std::to_string(id.value) + " on " + worker.host + " " + reason;
+      charges_[worker.incarnation] = {held.key, why};
+      fail(held.key, why, false);
     } else {
       plan_.give_back(held.key);
     }
@@ -225,11 +239,10 @@ void Dispatcher::on(const PeerId& peer, const Reject& reject) {
     });
   }
   if (current || reject.failure.for_good) {
-    fail(reject.key, "attempt " + std::to_string(reject.attempt) + ": " + reject.failure.reason,
-         reject.failure.for_good);
+    fail(reject.key, reject.failure.reason, reject.failure.for_good);
     settle(reject.key, reject.worker);
   } else if (const auto reporter = workers_.find(reject.worker); reporter != workers_.end()) {
-    send(reporter->second.peer, Done{reject.key});
+    send(reporter->second.peer, Done{reject.key, reject.attempt});
   }
   issue();
   look_for_end();
@@ -237,6 +250,10 @@ void Dispatcher::on(const PeerId& peer, const Reject& reject) {
 
 void Dispatcher::on(const PeerId& peer, const Ready& ready) {
   if (!from_sink(peer, ready.epoch) || sink_->ready) return;
+  if (ready.accepted != sink_->told.size()) {
+    send(peer, Refused{Refusal::stranger, "some of what was accepted got lost; say hello again"});
+    return lose_sink();
+  }
   sink_->ready = true;
   plan_.restart(std::exchange(sink_->told, {}));
   for (const LostJob& lost : plan_.lost()) send(peer, JobFailed{lost.key, clipped(lost.reasons)});
@@ -255,13 +272,19 @@ void Dispatcher::on(const PeerId& peer, const Failed& failed) {
 
 // --- jobs
 
-/// Nobody needs to work on the job any more: who reported it and who holds it may forget it.
+std::uint32_t Dispatcher::attempt_number(std::uint32_t attempt) const {
+  return k_attempts_per_epoch * (options_.epoch - 1) + attempt;
+}
+
+/// Nobody needs the attempts made so far any more: who reported one and who holds one may forget
+/// it.
 void Dispatcher::settle(JobKey key, WorkerId reporter) {
+  const Done done{key, attempt_number(plan_.attempts(key))};
   const auto told = workers_.find(reporter);
-  if (told != workers_.end()) send(told->second.peer, Done{key});
+  if (told != workers_.end()) send(told->second.peer, done);
   const auto holder = holder_.find(key);
   if (holder == holder_.end()) return;
-  if (holder->second != reporter) send(workers_.at(holder->second).peer, Done{key});
+  if (holder->second != reporter) send(workers_.at(holder->second).peer, done);
   const WorkerId id = holder->second;
   Worker& worker = workers_.at(id);
   holder_.erase(holder);
@@ -295,13 +318,14 @@ void Dispatcher::issue() {
     if (laden >= fair) return;
     Worker& worker = workers_.at(id);
     IssuedJob issued = *plan_.issue();
-    worker.held.push_back({issued.key, issued.attempt});
+    const std::uint32_t attempt = attempt_number(issued.attempt);
+    worker.held.push_back({issued.key, attempt});
     worker.pushed = now_;
     ++worker.sent;
     holder_[issued.key] = id;
     rank(id, worker);
-    out_.push_back(PushJob{id, Assignment{options_.run, options_.epoch, worker.sent,
-                                          issued.attempt, std::move(issued.job)}});
+    out_.push_back(PushJob{
+        id, Assignment{options_.run, options_.epoch, worker.sent, attempt, std::move(issued.job)}});
   }
 }
 

@@ -4,6 +4,7 @@
 // An endpoint file is sealed (staging/sealed.hpp), kind "ENDP", version 1:
 //   epoch u32 | run u64 | address text | host text | pid u32        text = length u32 | bytes
 #include <cerrno>
+
 #include <meshfarm/farm/endpoint.hpp>
 #include <meshfarm/staging/sealed.hpp>
 #include <meshfarm/util/bytes.hpp>

@@ -2,8 +2,10 @@
 // SPDX-License-Identifier: MIT
 //
 // A record of the sink's journal, version 1:
-//   version u32 | key u64 | name text | size u64 | hash u64 | summary text    text = length u32 | bytes
+//   version u32 | key u64 | name text | size u64 | hash u64 | summary text    text = length u32 |
+//   bytes
 #include <cerrno>
+
 #include <meshfarm/farm/ledger.hpp>
 #include <meshfarm/util/bytes.hpp>
 #include <meshfarm/util/errors.hpp>

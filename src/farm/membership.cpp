@@ -1,8 +1,9 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
 #include <algorithm>
-#include <meshfarm/farm/membership.hpp>
 #include <utility>
+
+#include <meshfarm/farm/membership.hpp>
 
 namespace meshfarm {
 namespace {
@@ -50,8 +51,8 @@ Membership::Event Membership::on_welcome(const Welcome& welcome, FarmTime now) {
   if (joined_) return Event::none;
   joined_ = true;
   welcome_ = welcome;
-  heartbeat_ = FarmTime(
-      std::clamp(welcome.heartbeat_ms, k_shortest_heartbeat_ms, k_longest_heartbeat_ms));
+  heartbeat_ =
+      FarmTime(std::clamp(welcome.heartbeat_ms, k_shortest_heartbeat_ms, k_longest_heartbeat_ms));
   next_beat_ = now;
   alone_since_.reset();
   greet_ = false;
@@ -61,10 +62,13 @@ Membership::Event Membership::on_welcome(const Welcome& welcome, FarmTime now) {
 
 Membership::Event Membership::on_refused(const Refused& refused, FarmTime now) {
   switch (refused.why) {
-    case Refusal::stranger: return joined_ ? lose(now) : Event::none;
-    case Refusal::full: return Event::none;  // greeted again in a while
+    case Refusal::stranger:
+      return joined_ ? lose(now) : Event::none;
+    case Refusal::full:
+      return Event::none;  // greeted again in a while
     case Refusal::other_run:
-    case Refusal::replaced: break;
+    case Refusal::replaced:
+      break;
   }
   reason_ = "the ventilator at " + dialled_->address + " refused: " + refused.reason;
   return Event::refused;

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
 #include <cassert>
+
 #include <meshfarm/farm/plan.hpp>
 
 namespace meshfarm {
@@ -74,6 +75,14 @@ void Plan::fail_attempt(JobKey key, const std::string& reason, bool for_good) {
   move_to(key, entry, give_up ? JobState::failed : JobState::ready);
 }
 
+void Plan::forgive(JobKey key, const std::string& reason) {
+  const auto found = entries_.find(key);
+  if (found == entries_.end()) return;
+  Entry& entry = found->second;
+  if (std::erase(entry.failures, reason) == 0 || entry.state != JobState::failed) return;
+  if (entry.failures.size() < max_attempts_) move_to(key, entry, JobState::ready);
+}
+
 bool Plan::accept(JobKey key, const JobOutput& output) {
   if (!rounds_.accept(key, output)) return false;
   Entry& entry = entries_.at(key);
@@ -87,6 +96,11 @@ std::optional<JobState> Plan::state(JobKey key) const {
   const auto found = entries_.find(key);
   if (found == entries_.end()) return std::nullopt;
   return found->second.state;
+}
+
+std::uint32_t Plan::attempts(JobKey key) const {
+  const auto found = entries_.find(key);
+  return found == entries_.end() ? 0 : found->second.attempts;
 }
 
 bool Plan::stuck() const {
@@ -109,7 +123,8 @@ std::vector<LostJob> Plan::lost() const {
 }
 
 void Plan::move_to(JobKey key, Entry& entry, JobState state) {
-  // A job that no round reached since the restart wants is remembered, but neither counted nor issued.
+  // A job that no round reached since the restart wants is remembered, but neither counted nor
+  // issued.
   if (entry.wanted) {
     assert(count_of(entry.state) > 0);
     --count_of(entry.state);
@@ -123,10 +138,14 @@ void Plan::move_to(JobKey key, Entry& entry, JobState state) {
 
 std::uint64_t& Plan::count_of(JobState state) {
   switch (state) {
-    case JobState::ready: return counts_.ready;
-    case JobState::running: return counts_.running;
-    case JobState::done: return counts_.done;
-    case JobState::failed: break;
+    case JobState::ready:
+      return counts_.ready;
+    case JobState::running:
+      return counts_.running;
+    case JobState::done:
+      return counts_.done;
+    case JobState::failed:
+      break;
   }
   return counts_.failed;
 }

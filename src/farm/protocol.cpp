@@ -2,12 +2,13 @@
 // SPDX-License-Identifier: MIT
 #include <array>
 #include <concepts>
-#include <meshfarm/farm/protocol.hpp>
-#include <meshfarm/util/bytes.hpp>
-#include <meshfarm/util/errors.hpp>
 #include <tuple>
 #include <type_traits>
 #include <utility>
+
+#include <meshfarm/farm/protocol.hpp>
+#include <meshfarm/util/bytes.hpp>
+#include <meshfarm/util/errors.hpp>
 
 namespace meshfarm {
 namespace {
@@ -19,53 +20,93 @@ concept Is = std::same_as<std::remove_const_t<M>, T>;
 
 // The fields of each struct, once for both directions.
 template <Is<JobKey> M>
-auto fields(M& m) { return std::tie(m.value); }
+auto fields(M& m) {
+  return std::tie(m.value);
+}
 template <Is<WorkerId> M>
-auto fields(M& m) { return std::tie(m.value); }
+auto fields(M& m) {
+  return std::tie(m.value);
+}
 template <Is<FileRef> M>
-auto fields(M& m) { return std::tie(m.name, m.size, m.hash); }
+auto fields(M& m) {
+  return std::tie(m.name, m.size, m.hash);
+}
 template <Is<JobFailure> M>
-auto fields(M& m) { return std::tie(m.reason, m.for_good); }
+auto fields(M& m) {
+  return std::tie(m.reason, m.for_good);
+}
 template <Is<Hello> M>
-auto fields(M& m) { return std::tie(m.role, m.run, m.incarnation, m.pid, m.host, m.results); }
+auto fields(M& m) {
+  return std::tie(m.role, m.run, m.incarnation, m.pid, m.host, m.results);
+}
 template <Is<Welcome> M>
 auto fields(M& m) {
   return std::tie(m.worker, m.epoch, m.run, m.lane, m.sink, m.heartbeat_ms);
 }
 template <Is<Refused> M>
-auto fields(M& m) { return std::tie(m.why, m.reason); }
+auto fields(M& m) {
+  return std::tie(m.why, m.reason);
+}
 template <Is<Heartbeat> M>
-auto fields(M& m) { return std::tie(m.epoch, m.worker, m.held, m.received, m.progress); }
+auto fields(M& m) {
+  return std::tie(m.epoch, m.worker, m.held, m.received, m.progress);
+}
 template <Is<Alive> M>
-auto fields(M& m) { return std::tie(m.epoch); }
+auto fields(M& m) {
+  return std::tie(m.epoch, m.sink);
+}
 template <Is<Credit> M>
-auto fields(M& m) { return std::tie(m.epoch, m.worker, m.up_to); }
+auto fields(M& m) {
+  return std::tie(m.epoch, m.worker, m.up_to);
+}
 template <Is<Release> M>
-auto fields(M& m) { return std::tie(m.epoch, m.worker); }
+auto fields(M& m) {
+  return std::tie(m.epoch, m.worker);
+}
 template <Is<Assignment> M>
-auto fields(M& m) { return std::tie(m.run, m.epoch, m.lane_seq, m.attempt, m.job); }
+auto fields(M& m) {
+  return std::tie(m.run, m.epoch, m.lane_seq, m.attempt, m.job);
+}
 template <Is<Result> M>
 auto fields(M& m) {
   return std::tie(m.run, m.epoch, m.worker, m.incarnation, m.attempt, m.key, m.outcome);
 }
 template <Is<Accept> M>
-auto fields(M& m) { return std::tie(m.epoch, m.worker, m.key, m.output); }
+auto fields(M& m) {
+  return std::tie(m.epoch, m.worker, m.key, m.output);
+}
 template <Is<Reject> M>
-auto fields(M& m) { return std::tie(m.epoch, m.worker, m.attempt, m.key, m.failure); }
+auto fields(M& m) {
+  return std::tie(m.epoch, m.worker, m.attempt, m.key, m.failure);
+}
 template <Is<Ready> M>
-auto fields(M& m) { return std::tie(m.epoch); }
+auto fields(M& m) {
+  return std::tie(m.epoch, m.accepted);
+}
 template <Is<Done> M>
-auto fields(M& m) { return std::tie(m.key); }
+auto fields(M& m) {
+  return std::tie(m.key, m.attempt);
+}
 template <Is<SinkAt> M>
-auto fields(M& m) { return std::tie(m.results); }
+auto fields(M& m) {
+  return std::tie(m.results);
+}
 template <Is<JobFailed> M>
-auto fields(M& m) { return std::tie(m.key, m.reason); }
+auto fields(M& m) {
+  return std::tie(m.key, m.reason);
+}
 template <Is<Complete> M>
-auto fields(M& m) { return std::tie(m.epoch); }
+auto fields(M& m) {
+  return std::tie(m.epoch);
+}
 template <Is<Failed> M>
-auto fields(M& m) { return std::tie(m.epoch, m.reason); }
+auto fields(M& m) {
+  return std::tie(m.epoch, m.reason);
+}
 template <Is<Stop> M>
-auto fields(M& m) { return std::tie(m.why); }
+auto fields(M& m) {
+  return std::tie(m.why);
+}
 
 void check(std::size_t size, std::size_t limit, std::string_view what) {
   if (size <= limit) return;
@@ -76,10 +117,12 @@ void check(std::size_t size, std::size_t limit, std::string_view what) {
 class Encoder {
  public:
   template <std::integral T>
-  void field(T value) { out_.put(value); }
+  void field(T value) {
+    out_.put(value);
+  }
   void field(bool value) { out_.put(static_cast<std::uint8_t>(value ? 1 : 0)); }
   template <class T>
-    requires std::is_enum_v<T>
+  requires std::is_enum_v<T>
   void field(T value) { out_.put(static_cast<std::underlying_type_t<T>>(value)); }
   void field(const std::string& text) { bytes(text, k_max_text_bytes, "text"); }
   template <class T>
@@ -103,7 +146,7 @@ class Encoder {
     std::visit([this](const auto& which) { field(which); }, outcome);
   }
   template <class T>
-    requires requires(const T& t) { fields(t); }
+  requires requires(const T& t) { fields(t); }
   void field(const T& group) {
     std::apply([this](const auto&... each) { (field(each), ...); }, fields(group));
   }
@@ -121,7 +164,9 @@ class Decoder {
  public:
   explicit Decoder(ByteReader& in) : in_(in) {}
   template <std::integral T>
-  void field(T& value) { value = in_.get<T>(); }
+  void field(T& value) {
+    value = in_.get<T>();
+  }
   void field(bool& value) {
     const auto raw = in_.get<std::uint8_t>();
     if (raw > 1) in_.fail("neither yes nor no");
@@ -156,7 +201,7 @@ class Decoder {
     if (index == 1) field(outcome.emplace<JobFailure>());
   }
   template <class T>
-    requires requires(T& t) { fields(t); }
+  requires requires(T& t) { fields(t); }
   void field(T& group) {
     std::apply([this](auto&... each) { (field(each), ...); }, fields(group));
   }

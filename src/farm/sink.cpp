@@ -1,17 +1,18 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
-#include <unistd.h>
-
 #include <deque>
 #include <exception>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include <unistd.h>
+
 #include <meshfarm/farm/ledger.hpp>
 #include <meshfarm/farm/sink.hpp>
 #include <meshfarm/farm/sink_core.hpp>
 #include <meshfarm/util/errors.hpp>
 #include <meshfarm/util/log.hpp>
-#include <optional>
-#include <utility>
-#include <vector>
 
 #include "farm/control_link.hpp"
 #include "farm/sockets.hpp"
@@ -53,9 +54,11 @@ class SinkLoop {
       case SinkLeaves::Why::complete:
         if (!left_->message.empty()) log_warning(left_->message);
         return;
-      case SinkLeaves::Why::incomplete: throw IncompleteError(left_->message);
+      case SinkLeaves::Why::incomplete:
+        throw IncompleteError(left_->message);
       case SinkLeaves::Why::jobs_failed:
-      case SinkLeaves::Why::output_failed: throw DataError(left_->message);
+      case SinkLeaves::Why::output_failed:
+        throw DataError(left_->message);
     }
   }
 

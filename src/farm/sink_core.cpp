@@ -1,10 +1,11 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
 #include <algorithm>
+#include <utility>
+
 #include <meshfarm/farm/ledger.hpp>
 #include <meshfarm/farm/sink_core.hpp>
 #include <meshfarm/util/checksum.hpp>
-#include <utility>
 
 namespace meshfarm {
 
@@ -19,7 +20,7 @@ SinkActions SinkCore::tick(FarmTime now) {
   if (member_.beat_due(now)) {
     const Welcome& joined = member_.welcome();
     say(Heartbeat{joined.epoch, WorkerId{}, 0, 0, rounds_.jobs_accepted()});
-    if (phase_ == Phase::saying_complete && told_all_) say(Complete{joined.epoch});
+    if (told_all_) say_where_it_stands();
   }
   if (phase_ == Phase::saying_complete && say_until_ < now) {
     leave(SinkLeaves::Why::complete, "no ventilator acknowledged the end");
@@ -47,15 +48,20 @@ SinkActions SinkCore::on_control(const Message& message, FarmTime now) {
 
 void SinkCore::on(Membership::Event event, FarmTime now) {
   switch (event) {
-    case Membership::Event::none: return;
+    case Membership::Event::none:
+      return;
     case Membership::Event::joined:
       told_all_ = false;
       failed_.clear();  // this ventilator says anew what it gave up
       if (phase_ == Phase::saying_complete) say_until_ = now + member_.options().patience;
       return tell_all();
-    case Membership::Event::lost: told_all_ = false; return act(HangUp{});
-    case Membership::Event::run_over: return run_over();
-    case Membership::Event::refused: return leave(SinkLeaves::Why::incomplete, member_.reason());
+    case Membership::Event::lost:
+      told_all_ = false;
+      return act(HangUp{});
+    case Membership::Event::run_over:
+      return run_over();
+    case Membership::Event::refused:
+      return leave(SinkLeaves::Why::incomplete, member_.reason());
     case Membership::Event::expired:
       if (phase_ == Phase::collecting) leave(SinkLeaves::Why::incomplete, member_.reason());
       return;
@@ -67,10 +73,13 @@ void SinkCore::run_over() {
     case Phase::collecting:
       if (!failed_.empty()) return leave(SinkLeaves::Why::jobs_failed, list_failed());
       return leave(SinkLeaves::Why::incomplete, "the ventilator ended the run before its end");
-    case Phase::saying_complete: return leave(SinkLeaves::Why::complete, {});
-    case Phase::saying_failed: return leave(SinkLeaves::Why::output_failed, problem_);
+    case Phase::saying_complete:
+      return leave(SinkLeaves::Why::complete, {});
+    case Phase::saying_failed:
+      return leave(SinkLeaves::Why::output_failed, problem_);
     case Phase::making_output:
-    case Phase::left: return;
+    case Phase::left:
+      return;
   }
 }
 
@@ -90,8 +99,7 @@ void SinkCore::take_result(const Result& result) {
   if (rounds_.accepted(result.key) != nullptr) return tell(result.key, result.worker);
   if (const auto* failure = std::get_if<JobFailure>(&result.outcome)) {
     if (!told_all_) return;  // the worker says it again
-    return say(
-        Reject{member_.epoch(), result.worker, result.attempt, result.key, *failure});
+    return say(Reject{member_.epoch(), result.worker, result.attempt, result.key, *failure});
   }
   const JobOutput& output = std::get<JobOutput>(result.outcome);
   const ResultName name{result.key.value, result.attempt, result.incarnation};
@@ -112,8 +120,7 @@ SinkActions SinkCore::checked(const Check& check, const std::string& problem) {
     tell(check.key, check.worker);
     want();
   } else if (!check.from_journal && told_all_) {
-    say(Reject{member_.epoch(), check.worker, check.attempt, check.key,
-               {clipped(problem), false}});
+    say(Reject{member_.epoch(), check.worker, check.attempt, check.key, {clipped(problem), false}});
   }
   tell_all();
   return take();
@@ -140,9 +147,13 @@ void SinkCore::tell_all() {
   if (told_all_ || !member_.joined() || !begun_ || checking_journal_ > 0) return;
   told_all_ = true;
   for (const JobKey key : accepted_) tell(key, WorkerId{});
-  say(Ready{member_.epoch()});
+  say_where_it_stands();
+}
+
+void SinkCore::say_where_it_stands() {
+  say(Ready{member_.epoch(), accepted_.size()});
   if (phase_ == Phase::saying_complete) say(Complete{member_.epoch()});
-  if (phase_ == Phase::saying_failed) say(Failed{member_.epoch(), problem_});
+  if (phase_ == Phase::saying_failed) say(Failed{member_.epoch(), clipped(problem_)});
 }
 
 void SinkCore::tell(JobKey key, WorkerId worker) {
@@ -155,7 +166,7 @@ SinkActions SinkCore::completed(const std::string& problem, FarmTime now) {
   say_until_ = now + member_.options().patience;
   phase_ = Phase::saying_complete;
   if (!problem.empty()) return fail(problem);
-  if (told_all_) say(Complete{member_.epoch()});
+  if (told_all_) say_where_it_stands();
   return take();
 }
 
@@ -163,7 +174,7 @@ SinkActions SinkCore::fail(const std::string& problem) {
   problem_ = problem;
   phase_ = Phase::saying_failed;
   if (told_all_) {
-    say(Failed{member_.epoch(), clipped(problem)});
+    say_where_it_stands();
   } else {
     leave(SinkLeaves::Why::output_failed, problem);
   }

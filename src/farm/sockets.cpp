@@ -2,6 +2,13 @@
 // SPDX-License-Identifier: MIT
 #include "farm/sockets.hpp"
 
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <memory>
+#include <random>
+
+#include <arpa/inet.h>
 #include <ifaddrs.h>
 #include <net/if.h>
 #include <netdb.h>
@@ -10,15 +17,8 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
-#include <algorithm>
-#include <array>
-#include <cerrno>
-#include <memory>
 #include <meshfarm/util/errors.hpp>
 #include <meshfarm/util/log.hpp>
-#include <random>
-
-#include <arpa/inet.h>
 
 namespace meshfarm {
 namespace {
@@ -238,8 +238,7 @@ std::chrono::milliseconds poll_interval(FarmTime heartbeat) {
 }
 
 FarmTime farm_clock() {
-  return std::chrono::duration_cast<FarmTime>(
-      std::chrono::steady_clock::now().time_since_epoch());
+  return std::chrono::duration_cast<FarmTime>(std::chrono::steady_clock::now().time_since_epoch());
 }
 
 }  // namespace meshfarm

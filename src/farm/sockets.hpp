@@ -6,7 +6,6 @@
 
 #include <chrono>
 #include <cstdint>
-#include <meshfarm/farm/protocol.hpp>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -15,6 +14,8 @@
 
 #include <zmq.hpp>
 
+#include <meshfarm/farm/protocol.hpp>
+
 namespace meshfarm {
 
 struct PortRange {
@@ -22,7 +23,8 @@ struct PortRange {
   std::uint16_t last = 0;
 };
 
-/// Room for as many sockets as there may be workers; raises this process's file limit to its hard one.
+/// Room for as many sockets as there may be workers; raises this process's file limit to its hard
+/// one.
 zmq::context_t make_context();
 
 zmq::socket_t make_control_server(zmq::context_t& context);

@@ -2,13 +2,14 @@
 // SPDX-License-Identifier: MIT
 #include "farm/task_thread.hpp"
 
+#include <cassert>
+#include <cstdint>
+#include <utility>
+
 #include <sys/eventfd.h>
 #include <unistd.h>
 
-#include <cassert>
-#include <cstdint>
 #include <meshfarm/util/errors.hpp>
-#include <utility>
 
 namespace meshfarm {
 

@@ -4,9 +4,10 @@
 
 #include <condition_variable>
 #include <functional>
-#include <meshfarm/util/file.hpp>
 #include <mutex>
 #include <thread>
+
+#include <meshfarm/util/file.hpp>
 
 namespace meshfarm {
 

@@ -1,19 +1,20 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
-#include <unistd.h>
-
 #include <algorithm>
 #include <deque>
 #include <map>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include <unistd.h>
+
 #include <meshfarm/farm/dispatcher.hpp>
 #include <meshfarm/farm/endpoint.hpp>
 #include <meshfarm/farm/ventilator.hpp>
 #include <meshfarm/util/checksum.hpp>
 #include <meshfarm/util/errors.hpp>
 #include <meshfarm/util/log.hpp>
-#include <optional>
-#include <utility>
-#include <vector>
 
 #include "farm/sockets.hpp"
 

@@ -1,16 +1,17 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
-#include <unistd.h>
-
 #include <atomic>
-#include <meshfarm/farm/worker.hpp>
-#include <meshfarm/farm/worker_core.hpp>
-#include <meshfarm/util/errors.hpp>
-#include <meshfarm/util/log.hpp>
 #include <new>
 #include <optional>
 #include <utility>
 #include <vector>
+
+#include <unistd.h>
+
+#include <meshfarm/farm/worker.hpp>
+#include <meshfarm/farm/worker_core.hpp>
+#include <meshfarm/util/errors.hpp>
+#include <meshfarm/util/log.hpp>
 
 #include "farm/control_link.hpp"
 #include "farm/sockets.hpp"
@@ -31,8 +32,13 @@ class WorkerLoop {
         incarnation_(random_id()),
         context_(make_context()),
         link_(context_, stage),
-        core_({Role::worker, 0, incarnation_, static_cast<std::uint32_t>(::getpid()),
-               clipped(host_name()), {}, options.patience},
+        core_({Role::worker,
+               0,
+               incarnation_,
+               static_cast<std::uint32_t>(::getpid()),
+               clipped(host_name()),
+               {},
+               options.patience},
               options.buffer) {}
 
   WorkerReport run() {
@@ -129,9 +135,9 @@ class WorkerLoop {
   Outcome checked(const Begin& begin, JobOutput output) const {
     const ResultName name{key_of(begin.job).value, begin.attempt, incarnation_};
     if (output.file.name != to_string(name)) {
-      return JobFailure{clipped("its output is named '" + output.file.name + "', not '" +
-                                to_string(name) + "'"),
-                        false};
+      return JobFailure{
+          clipped("its output is named '" + output.file.name + "', not '" + to_string(name) + "'"),
+          false};
     }
     if (output.summary.size() > k_max_summary_bytes) {
       return JobFailure{"its summary is too long for a message", false};

@@ -1,8 +1,9 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
 #include <algorithm>
-#include <meshfarm/farm/worker_core.hpp>
 #include <utility>
+
+#include <meshfarm/farm/worker_core.hpp>
 
 namespace meshfarm {
 namespace {
@@ -41,8 +42,9 @@ WorkerActions WorkerCore::on_control(const Message& message, FarmTime now) {
   if (left_ || leaving_) return take();
   on(member_.on_message(message, now), now);
   if (!member_.joined()) return take();
-  if (const auto* done = std::get_if<Done>(&message)) forget(done->key);
+  if (const auto* done = std::get_if<Done>(&message)) forget(*done);
   if (const auto* sink = std::get_if<SinkAt>(&message)) sink_is_at(sink->results, now);
+  if (const auto* alive = std::get_if<Alive>(&message)) sink_is_at(alive->sink, now);
   return take();
 }
 
@@ -76,7 +78,7 @@ WorkerActions WorkerCore::finished(std::variant<JobOutput, JobFailure> outcome, 
   if (ended.wanted) {
     ++(outcome.index() == 0 ? report_.jobs_done : report_.jobs_failed);
     Kept& kept = unacknowledged_[ended.key];
-    kept.result = {run_,          0,         WorkerId{}, member_.options().incarnation,
+    kept.result = {run_,          0,         WorkerId{},        member_.options().incarnation,
                    ended.attempt, ended.key, std::move(outcome)};
     kept.sent = now;
     if (member_.joined() && !sink_.empty()) send_result(kept, now);
@@ -95,16 +97,20 @@ WorkerActions WorkerCore::stop() {
 
 void WorkerCore::on(Membership::Event event, FarmTime now) {
   switch (event) {
-    case Membership::Event::none: return;
-    case Membership::Event::joined: return join(now);
+    case Membership::Event::none:
+      return;
+    case Membership::Event::joined:
+      return join(now);
     case Membership::Event::lost:
       waiting_.clear();
       sink_is_at({}, now);
       if (in_work_) in_work_->on_this_lane = false;
       return act(HangUp{});
-    case Membership::Event::run_over: return leave({});
+    case Membership::Event::run_over:
+      return leave({});
     case Membership::Event::refused:
-    case Membership::Event::expired: return leave(member_.reason());
+    case Membership::Event::expired:
+      return leave(member_.reason());
   }
 }
 
@@ -135,10 +141,16 @@ void WorkerCore::leave(std::string incomplete) {
   act(Leave{incomplete_});
 }
 
-void WorkerCore::forget(JobKey key) {
-  unacknowledged_.erase(key);
-  std::erase_if(waiting_, [&](const Assignment& each) { return key_of(each.job) == key; });
-  if (in_work_ && in_work_->key == key && in_work_->wanted) {
+void WorkerCore::forget(const Done& done) {
+  const auto kept = unacknowledged_.find(done.key);
+  if (kept != unacknowledged_.end() && kept->second.result.attempt <= done.attempt) {
+    unacknowledged_.erase(kept);
+  }
+  std::erase_if(waiting_, [&](const Assignment& each) {
+    return each.attempt <= done.attempt && key_of(each.job) == done.key;
+  });
+  const bool in_work = in_work_ && in_work_->key == done.key && in_work_->attempt <= done.attempt;
+  if (in_work && in_work_->wanted) {
     in_work_->wanted = false;
     act(GiveUp{});
   }

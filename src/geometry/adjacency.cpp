@@ -19,9 +19,4 @@ void Adjacency::build(std::span<const Triangle> triangles, std::size_t vertices)
   }
 }
 
-void Adjacency::clear() {
-  offsets_ = {};
-  corners_ = {};
-}
-
 }  // namespace meshfarm

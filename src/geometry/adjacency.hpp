@@ -4,9 +4,10 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <meshfarm/geometry/mesh.hpp>
 #include <span>
 #include <vector>
+
+#include <meshfarm/geometry/mesh.hpp>
 
 namespace meshfarm {
 
@@ -21,7 +22,9 @@ class Adjacency {
  public:
   /// Keeps its memory from one build to the next.
   void build(std::span<const Triangle> triangles, std::size_t vertices);
-  void clear();
+  std::uint32_t vertices() const {
+    return offsets_.empty() ? 0 : static_cast<std::uint32_t>(offsets_.size() - 2);
+  }
   std::span<const Corner> at(std::uint32_t vertex) const {
     return {corners_.data() + offsets_[vertex], corners_.data() + offsets_[vertex + 1]};
   }

@@ -4,9 +4,12 @@
 
 #include <cstdint>
 #include <limits>
+#include <span>
 #include <vector>
 
 #include <meshfarm/geometry/mesh.hpp>
+
+#include "geometry/bvh_morton.hpp"
 
 namespace meshfarm {
 
@@ -15,8 +18,8 @@ namespace meshfarm {
 double squared_distance(Vec3 p, Vec3 a, Vec3 b, Vec3 c);
 
 /// A bounding volume hierarchy over the triangles of a mesh, four children a node, split along the
-/// Morton order of the triangles' centres (Lauterbach et al. 2009). About 16 bytes a triangle, and
-/// twice as many again while it is built. The mesh must outlive it and have finite coordinates.
+/// Morton order of the triangles' centres (Lauterbach et al. 2009). Up to 20 bytes a triangle, 40
+/// while it is built. The mesh must outlive it and have finite coordinates.
 class Bvh {
  public:
   struct Nearest {
@@ -42,6 +45,8 @@ class Bvh {
   Vec3 to_frame(Vec3 p) const { return (p - center_) * scale_; }
   void set_frame();
   void make_nodes(unsigned threads);
+  std::vector<MortonItem> sorted_items(unsigned threads) const;
+  void split_into_nodes(std::span<const MortonItem> items);
   void set_leaf_boxes(Node& node) const;
   void set_inner_boxes(Node& node) const;
   void visit_leaf(Query& query, std::uint32_t first, std::uint32_t count) const;

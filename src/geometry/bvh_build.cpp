@@ -10,12 +10,11 @@
 #include <meshfarm/util/parallel.hpp>
 
 #include "geometry/bvh.hpp"
-#include "geometry/bvh_morton.hpp"
 
 namespace meshfarm {
 namespace {
 
-constexpr std::uint32_t k_leaf = 4;
+constexpr std::uint32_t k_leaf = 6;
 constexpr std::uint64_t k_chunk = 4096;
 constexpr float k_huge = std::numeric_limits<float>::max();
 
@@ -84,6 +83,21 @@ void Bvh::set_frame() {
 }
 
 void Bvh::make_nodes(unsigned threads) {
+  {
+    const std::vector<MortonItem> items = sorted_items(threads);
+    split_into_nodes(items);
+    order_.resize(items.size());
+    for (std::size_t i = 0; i < items.size(); ++i) order_[i] = items[i].triangle;
+  }
+  parallel_for((nodes_.size() + k_chunk - 1) / k_chunk, threads, [&](std::uint64_t chunk) {
+    const std::size_t end = std::min<std::size_t>(nodes_.size(), (chunk + 1) * k_chunk);
+    for (std::size_t i = chunk * k_chunk; i < end; ++i) set_leaf_boxes(nodes_[i]);
+  });
+  // A child stands after its parent.
+  for (std::size_t i = nodes_.size(); i-- > 0;) set_inner_boxes(nodes_[i]);
+}
+
+std::vector<MortonItem> Bvh::sorted_items(unsigned threads) const {
   std::vector<MortonItem> items(mesh_.triangles.size());
   parallel_for((items.size() + k_chunk - 1) / k_chunk, threads, [&](std::uint64_t chunk) {
     const std::size_t end = std::min<std::size_t>(items.size(), (chunk + 1) * k_chunk);
@@ -95,14 +109,16 @@ void Bvh::make_nodes(unsigned threads) {
     }
   });
   sort_by_code(items);
-  order_.resize(items.size());
-  for (std::size_t i = 0; i < items.size(); ++i) order_[i] = items[i].triangle;
+  return items;
+}
 
+void Bvh::split_into_nodes(std::span<const MortonItem> items) {
   struct Open {
     Range range;
     std::uint32_t node;
   };
   std::vector<Open> open{{{0, static_cast<std::uint32_t>(items.size())}, 0}};
+  nodes_.reserve(items.size() / 8 + 1);  // usual; what is not used is never touched
   nodes_.emplace_back();
   while (!open.empty()) {
     const Open top = open.back();
@@ -119,12 +135,6 @@ void Bvh::make_nodes(unsigned threads) {
       nodes_.emplace_back();
     }
   }
-  parallel_for((nodes_.size() + k_chunk - 1) / k_chunk, threads, [&](std::uint64_t chunk) {
-    const std::size_t end = std::min<std::size_t>(nodes_.size(), (chunk + 1) * k_chunk);
-    for (std::size_t i = chunk * k_chunk; i < end; ++i) set_leaf_boxes(nodes_[i]);
-  });
-  // A child stands after its parent.
-  for (std::size_t i = nodes_.size(); i-- > 0;) set_inner_boxes(nodes_[i]);
 }
 
 void Bvh::set_leaf_boxes(Node& node) const {

@@ -86,6 +86,7 @@ void CollapseJudge::add_star(const Ring& ring, std::uint32_t other, bool with_sh
     star_size_ += shared ? 0 : 1;
     const double twice_area = length(t.normal);
     if (!(twice_area > 0 && std::isfinite(twice_area))) continue;
+    area_ += 0.5 * twice_area;
     const double weight = 0.5 / twice_area;
     const double height = dot(t.normal, t.apex);
     quadric_.a.add(t.normal, weight);
@@ -101,14 +102,14 @@ void CollapseJudge::add_border(const Ring& ring, std::uint32_t without) {
   for_border_edges({fan.data(), ring.size}, [&](const Corner& c, std::uint32_t end) {
     if (end == without) return;
     Quadric plane;
-    add_border_plane(plane,
-                     cross(state_.positions[c.next] - apex, state_.positions[c.prev] - apex),
+    add_border_plane(plane, cross(state_.positions[c.next] - apex, state_.positions[c.prev] - apex),
                      state_.positions[end] - apex);
     quadric_.add(plane, ring.apex);
   });
 }
 
-bool CollapseJudge::shape_holds(const StarTriangle& t, Vec3 x) const {
+/// Adds the area that the triangle has with its apex at x; false if that spoils its shape.
+bool CollapseJudge::add_kept_area(const StarTriangle& t, Vec3 x, double& area) {
   const Vec3 p = t.p - x;
   const Vec3 q = t.q - x;
   const Vec3 normal = cross(p, q);
@@ -117,6 +118,7 @@ bool CollapseJudge::shape_holds(const StarTriangle& t, Vec3 x) const {
   const double turn = dot(normal, t.normal);
   const bool turned = !(turn > 0 && turn * turn >= k_cos_75_squared * size * old_size);
   if (turned && old_size > 0) return false;
+  area += 0.5 * std::sqrt(size);
   const double scale = squared_length(p) * squared_length(q);
   if (size > k_least_sine_squared * scale) return true;
   // A sliver of the input may stay one, or nothing round it could ever collapse.
@@ -144,6 +146,7 @@ Collapse CollapseJudge::judge(std::uint32_t a, std::uint32_t b, const CollapseLi
   quadric_ = {};
   quadric_.squared_length = 4 * squared_length(half);
   star_size_ = 0;
+  area_ = 0;
   add_star(ring_a_, b, true);
   add_star(ring_b_, a, false);
   if (ring_a_.border) add_border(ring_a_, k_none);
@@ -151,12 +154,14 @@ Collapse CollapseJudge::judge(std::uint32_t a, std::uint32_t b, const CollapseLi
 
   const Vec3 position = best_position(a, b);
   const Vec3 x = position - middle_;
-  const double cost = quadric_.cost(x);
+  double cost = quadric_.cost(x);
   if (!(cost <= limits.max_cost)) return {};
+  double kept = 0;
   for (std::uint32_t i = 0; i < star_size_; ++i) {
-    if (!shape_holds(star_[i], x)) return {};
+    if (!add_kept_area(star_[i], x, kept)) return {};
   }
-  return {shared, position, cost};
+  cost = std::max(cost, quadric_.cost_of_lost_area(area_ - kept));
+  return cost <= limits.max_cost ? Collapse{shared, position, cost} : Collapse{};
 }
 
 }  // namespace meshfarm

@@ -4,8 +4,9 @@
 
 #include <array>
 #include <cstdint>
-#include <meshfarm/geometry/mesh.hpp>
 #include <span>
+
+#include <meshfarm/geometry/mesh.hpp>
 
 #include "geometry/adjacency.hpp"
 #include "geometry/quadric.hpp"
@@ -19,9 +20,9 @@ constexpr std::uint32_t k_max_star = 256;
 /// The state that the collapses of one pass work on.
 struct CollapseState {
   std::span<Vec3> positions;
-  std::span<const std::uint8_t> flags;     // VertexFlag
-  std::span<const std::uint32_t> target;   // the vertex that a vertex has become in this pass
-  const Adjacency* adjacency = nullptr;    // as it was when the pass began
+  std::span<const std::uint8_t> flags;    // VertexFlag
+  std::span<const std::uint32_t> target;  // the vertex that a vertex has become in this pass
+  const Adjacency* adjacency = nullptr;   // as it was when the pass began
   PositionType type = PositionType::float64;
 };
 
@@ -69,13 +70,14 @@ class CollapseJudge {
   void add_star(const Ring& ring, std::uint32_t other, bool with_shared);
   void add_border(const Ring& ring, std::uint32_t without);
   Vec3 best_position(std::uint32_t a, std::uint32_t b) const;
-  bool shape_holds(const StarTriangle& triangle, Vec3 x) const;
+  static bool add_kept_area(const StarTriangle& triangle, Vec3 x, double& area);
 
   CollapseState state_;
   Vec3 middle_;
   Ring ring_a_;
   Ring ring_b_;
   EdgeQuadric quadric_;
+  double area_ = 0;
   std::array<StarTriangle, k_max_star> star_;  // the triangles that stay
   std::uint32_t star_size_ = 0;
 };

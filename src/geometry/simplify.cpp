@@ -2,8 +2,9 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
 #include <cmath>
-#include <meshfarm/geometry/simplify.hpp>
 #include <utility>
+
+#include <meshfarm/geometry/simplify.hpp>
 
 #include "geometry/adjacency.hpp"
 #include "geometry/collapse.hpp"
@@ -13,25 +14,24 @@
 namespace meshfarm {
 namespace {
 
-// Only the cheapest edges are taken before all are ranked anew.
-#ifndef SHARE
-#define SHARE 0.35
-#endif
-#ifndef BLK
-#define BLK 4096
-#endif
-constexpr double k_pass_share = SHARE;
+// Only the cheapest edges are taken before all are ranked anew. A quarter gave 1 % less error at
+// 1 % of the triangles for 10 % more time, a half 3 % more error for the same time.
+constexpr double k_pass_share = 0.35;
+
+// The edges taken in a pass that must not overshoot, as a part of the triangles still to go: each
+// that can collapse, about six in ten, removes two.
+constexpr double k_most_of_excess = 0.7;
 
 // Vertices whose edges are ranked, sorted and collapsed together: they and their stars fit into a
 // core's cache. On 10M triangles this halves the time.
-constexpr std::uint32_t k_block = BLK;
+constexpr std::uint32_t k_block = 4096;
 
 /// What one pass is to do.
 struct Pass {
   CostKey limit = k_any_cost;
-  double max_cost = 0;        // the lower of the goal's and what the limit stands for
-  std::uint32_t block = 0;    // vertices
-  bool everything = false;    // nothing but the goal's own limits holds it back
+  double max_cost = 0;      // the lower of the goal's and what the limit stands for
+  std::uint32_t block = 0;  // vertices
+  bool everything = false;  // nothing but the goal's own limits holds it back
 };
 
 }  // namespace
@@ -45,7 +45,6 @@ class Simplifier::Impl {
         seam_only_(!options.seam.empty()) {
     check_input(mesh_, options);
     dropped_ = drop_bad_triangles(mesh_, adjacency_);
-    adjacency_.build(mesh_.triangles, mesh_.positions.size());
     flags_ = classify_vertices(mesh_, options, adjacency_);
     drop_unused_vertices();
     publish_seam();
@@ -62,7 +61,7 @@ class Simplifier::Impl {
       pass_cost_ = pass.max_cost;
       if (progress && !progress(mesh_.triangles.size())) break;
       if (pass.everything && is_exhausted(goal, before, removed)) break;
-      if (removed * 50 < before) share = std::min(1.0, share * 2);
+      share = removed * 50 < before ? std::min(1.0, share * 2) : std::max(k_pass_share, share / 2);
     }
     publish_seam();
   }
@@ -102,7 +101,8 @@ class Simplifier::Impl {
   }
 
   void begin_pass() {
-    adjacency_.build(mesh_.triangles, mesh_.positions.size());
+    if (!adjacency_is_current_) adjacency_.build(mesh_.triangles, mesh_.positions.size());
+    adjacency_is_current_ = false;
     ranking_.begin_pass({mesh_.positions, mesh_.triangles, flags_, &adjacency_, seam_only_});
   }
 
@@ -112,12 +112,11 @@ class Simplifier::Impl {
     const std::uint64_t triangles = mesh_.triangles.size();
     const std::uint64_t excess = triangles - goal.triangles;
     const auto vertices = static_cast<std::uint32_t>(mesh_.positions.size());
-    const bool far = excess > triangles / 8 && vertices > 2 * k_block;
+    const bool far = share < 1 && excess > triangles / 8 && vertices > 2 * k_block;
     Pass pass;
     pass.block = far ? k_block : vertices;
-    const bool all = share >= 1 && !far;
-    const double most = far ? 0.45 * static_cast<double>(excess) : HUGE_VAL;
-    pass.limit = all ? k_any_cost : ranking_.estimate_limit(share, most);
+    const double most = far ? k_most_of_excess * static_cast<double>(excess) : HUGE_VAL;
+    pass.limit = share >= 1 ? k_any_cost : ranking_.estimate_limit(share, most);
     pass.max_cost = std::min(goal.max_cost, cost_of(pass.limit));
     pass.everything = goal.max_cost <= cost_of(pass.limit);
     return pass;
@@ -183,6 +182,7 @@ class Simplifier::Impl {
       flags_[kept] = flags_[v];
       target_[v] = kept++;
     }
+    adjacency_is_current_ = kept == target_.size();
     mesh_.positions.resize(kept);
     flags_.resize(kept);
     for (Triangle& t : mesh_.triangles) t = {target_[t[0]], target_[t[1]], target_[t[2]]};
@@ -208,9 +208,10 @@ class Simplifier::Impl {
   double exhausted_cost_ = -1;
 
   Adjacency adjacency_;
+  bool adjacency_is_current_ = false;
   EdgeRanking ranking_;
-  std::vector<std::uint32_t> target_;   // the vertex that a vertex becomes in this pass
-  std::vector<std::uint8_t> touched_;   // took part in a collapse of this pass
+  std::vector<std::uint32_t> target_;  // the vertex that a vertex becomes in this pass
+  std::vector<std::uint8_t> touched_;  // took part in a collapse of this pass
 };
 
 Simplifier::Simplifier(Mesh mesh, SimplifyOptions options)

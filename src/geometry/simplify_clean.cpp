@@ -3,6 +3,9 @@
 #include "geometry/simplify_clean.hpp"
 
 #include <algorithm>
+#include <compare>
+#include <set>
+
 #include <meshfarm/util/errors.hpp>
 
 namespace meshfarm {
@@ -12,7 +15,6 @@ bool is_degenerate(const Triangle& t) {
   return t[0] == t[1] || t[1] == t[2] || t[2] == t[0];
 }
 
-/// The first `n` triangles that `keep` accepts, in order.
 template <typename Keep>
 std::uint64_t drop_unless(std::vector<Triangle>& triangles, const Keep& keep) {
   const auto last = std::remove_if(triangles.begin(), triangles.end(),
@@ -22,18 +24,86 @@ std::uint64_t drop_unless(std::vector<Triangle>& triangles, const Keep& keep) {
   return dropped;
 }
 
+struct Pair {
+  std::uint32_t low;
+  std::uint32_t high;
+  friend auto operator<=>(const Pair&, const Pair&) = default;
+};
+
+/// The vertices that are the smallest of two triangles with the same vertices, ascending.
+std::vector<std::uint32_t> vertices_with_duplicates(const Adjacency& adjacency) {
+  std::vector<std::uint32_t> found;
+  std::vector<Pair> others;
+  for (std::uint32_t v = 0; v < adjacency.vertices(); ++v) {
+    others.clear();
+    for (const Corner c : adjacency.at(v)) {
+      if (c.next < v || c.prev < v) continue;
+      others.push_back({std::min(c.next, c.prev), std::max(c.next, c.prev)});
+    }
+    std::sort(others.begin(), others.end());
+    if (std::adjacent_find(others.begin(), others.end()) != others.end()) found.push_back(v);
+  }
+  return found;
+}
+
+/// Of the triangles whose smallest vertex is in `vertices`, keeps the first of each set.
+std::uint64_t drop_duplicates_at(const std::vector<std::uint32_t>& vertices, Mesh& mesh) {
+  std::vector<std::uint8_t> doubtful(mesh.positions.size(), 0);
+  for (const std::uint32_t v : vertices) doubtful[v] = 1;
+  std::set<Triangle> seen;
+  return drop_unless(mesh.triangles, [&](Triangle t) {
+    std::sort(t.begin(), t.end());
+    return doubtful[t[0]] == 0 || seen.insert(t).second;
+  });
+}
+
 enum class Fan : std::uint8_t { closed, open, broken };
 
 /// Walks round a vertex. Sorting keeps hubs of many thousand triangles cheap.
 class FanWalker {
  public:
   Fan walk(std::span<const Corner> corners) {
+    return corners.size() <= k_few ? walk_few(corners) : walk_many(corners);
+  }
+
+ private:
+  static constexpr std::size_t k_few = 16;
+
+  static std::size_t starting_at(std::span<const Corner> corners, std::uint32_t next) {
+    std::size_t i = 0;
+    while (i < corners.size() && corners[i].next != next) ++i;
+    return i;
+  }
+  static std::size_t ending_at(std::span<const Corner> corners, std::uint32_t prev) {
+    std::size_t i = 0;
+    while (i < corners.size() && corners[i].prev != prev) ++i;
+    return i;
+  }
+
+  static Fan walk_few(std::span<const Corner> corners) {
+    // Back to the border, or once round.
+    std::size_t first = 0;
+    for (std::size_t steps = 0; steps < corners.size(); ++steps) {
+      const std::size_t before = ending_at(corners, corners[first].next);
+      if (before == corners.size()) break;
+      first = before;
+    }
+    std::size_t at = first;
+    for (std::size_t steps = 1; steps < corners.size(); ++steps) {
+      at = starting_at(corners, corners[at].prev);
+      if (at == corners.size() || at == first) return Fan::broken;
+    }
+    const std::size_t after = starting_at(corners, corners[at].prev);
+    if (after == corners.size()) return Fan::open;
+    return after == first ? Fan::closed : Fan::broken;
+  }
+
+  Fan walk_many(std::span<const Corner> corners) {
     corners_.assign(corners.begin(), corners.end());
-    std::sort(corners_.begin(), corners_.end(),
-              [](Corner a, Corner b) { return a.next < b.next; });
-    const bool repeated = std::adjacent_find(corners_.begin(), corners_.end(), [](Corner a, Corner b) {
-                            return a.next == b.next;
-                          }) != corners_.end();
+    std::sort(corners_.begin(), corners_.end(), [](Corner a, Corner b) { return a.next < b.next; });
+    const bool repeated =
+        std::adjacent_find(corners_.begin(), corners_.end(),
+                           [](Corner a, Corner b) { return a.next == b.next; }) != corners_.end();
     if (repeated) return Fan::broken;
     prevs_.clear();
     for (const Corner c : corners_) prevs_.push_back(c.prev);
@@ -41,7 +111,6 @@ class FanWalker {
     return follow();
   }
 
- private:
   // With distinct nexts each corner has at most one successor: the one that begins where it ends.
   const Corner* starting_at(std::uint32_t next) const {
     const auto at = std::lower_bound(corners_.begin(), corners_.end(), next,
@@ -97,38 +166,11 @@ Dropped drop_bad_triangles(Mesh& mesh, Adjacency& adjacency) {
   Dropped dropped;
   dropped.degenerate =
       drop_unless(mesh.triangles, [](const Triangle& t) { return !is_degenerate(t); });
-
-  // A triangle is looked for among those at its smallest vertex; rows are in triangle order, so
-  // the k-th corner of a row that has this smallest vertex belongs to the k-th such triangle.
   adjacency.build(mesh.triangles, mesh.positions.size());
-  std::vector<std::uint8_t> repeats(mesh.triangles.size(), 0);
-  struct Pair {
-    std::uint32_t low;
-    std::uint32_t high;
-    std::uint32_t rank;
-  };
-  std::vector<Pair> pairs;
-  std::vector<std::uint32_t> seen(mesh.positions.size() + 1, 0);
-  for (const Triangle& t : mesh.triangles) ++seen[std::min({t[0], t[1], t[2]}) + 1];
-  for (std::size_t v = 1; v < seen.size(); ++v) seen[v] += seen[v - 1];
-  for (std::uint32_t v = 0; v < mesh.positions.size(); ++v) {
-    pairs.clear();
-    for (const Corner c : adjacency.at(v)) {
-      if (c.next < v || c.prev < v) continue;
-      pairs.push_back({std::min(c.next, c.prev), std::max(c.next, c.prev),
-                       static_cast<std::uint32_t>(pairs.size())});
-    }
-    std::sort(pairs.begin(), pairs.end(), [](const Pair& a, const Pair& b) {
-      return std::tie(a.low, a.high, a.rank) < std::tie(b.low, b.high, b.rank);
-    });
-    for (std::size_t i = 1; i < pairs.size(); ++i) {
-      const bool same = pairs[i].low == pairs[i - 1].low && pairs[i].high == pairs[i - 1].high;
-      if (same) repeats[seen[v] + pairs[i].rank] = 1;
-    }
-  }
-  dropped.duplicate = drop_unless(mesh.triangles, [&](const Triangle& t) {
-    return repeats[seen[std::min({t[0], t[1], t[2]})]++] == 0;
-  });
+  const std::vector<std::uint32_t> doubtful = vertices_with_duplicates(adjacency);
+  if (doubtful.empty()) return dropped;
+  dropped.duplicate = drop_duplicates_at(doubtful, mesh);
+  adjacency.build(mesh.triangles, mesh.positions.size());
   return dropped;
 }
 

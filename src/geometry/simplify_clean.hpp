@@ -3,9 +3,10 @@
 #pragma once
 
 #include <cstdint>
+#include <vector>
+
 #include <meshfarm/geometry/mesh.hpp>
 #include <meshfarm/geometry/simplify.hpp>
-#include <vector>
 
 #include "geometry/adjacency.hpp"
 
@@ -27,7 +28,7 @@ struct Dropped {
 };
 
 /// Drops triangles with two equal corners, then those with the vertices of an earlier one.
-/// `adjacency` is scratch.
+/// Leaves `adjacency` built for what is left.
 Dropped drop_bad_triangles(Mesh& mesh, Adjacency& adjacency);
 
 /// The flags of all vertices. Fixed are the locked, those that are not finite, and those whose

@@ -70,7 +70,7 @@ void EdgeRanking::sum_border_planes() {
 
 /// Calls take(a, b) for each edge that may collapse at its smaller end.
 template <typename Take>
-void EdgeRanking::for_edges_at(std::uint32_t vertex, const Take& take) const {
+inline void EdgeRanking::for_edges_at(std::uint32_t vertex, const Take& take) const {
   const std::uint8_t flags = input_.flags[vertex];
   if ((flags & k_fixed) != 0) return;
   const std::span<const Corner> fan = input_.adjacency->at(vertex);
@@ -92,22 +92,24 @@ void EdgeRanking::for_edges_at(std::uint32_t vertex, const Take& take) const {
   for_border_edges(fan, [&](const Corner&, std::uint32_t end) { consider(end); });
 }
 
-EdgeQuadric EdgeRanking::edge_quadric(std::uint32_t a, std::uint32_t b) const {
+/// The costs of an edge at the position that it will probably get.
+inline EdgeRanking::Costs EdgeRanking::costs(std::uint32_t a, std::uint32_t b) const {
   const Vec3 half = (input_.positions[b] - input_.positions[a]) * 0.5;
+  const Quadric& at_a = quadrics_[a];
+  const Quadric& at_b = quadrics_[b];
+  const std::uint8_t only_one = (input_.flags[a] ^ input_.flags[b]) & k_border;
   EdgeQuadric q;
-  q.a = quadrics_[a] + quadrics_[b];
-  q.b = (quadrics_[b] - quadrics_[a]) * half;
-  q.c = dot(q.a * half, half);
   q.squared_length = 4 * squared_length(half);
-  return q;
-}
-
-Vec3 EdgeRanking::expected_position(std::uint32_t a, std::uint32_t b,
-                                    const EdgeQuadric& quadric) const {
-  const bool border_a = (input_.flags[a] & k_border) != 0;
-  const bool border_b = (input_.flags[b] & k_border) != 0;
-  if (border_a == border_b) return quadric.best();
-  return (input_.positions[border_a ? a : b] - input_.positions[border_a ? b : a]) * 0.5;
+  q.a = at_a + at_b;
+  if (only_one != 0) {
+    const bool to_a = (input_.flags[a] & k_border) != 0;
+    q.c = 4 * dot((to_a ? at_b : at_a) * half, half);
+    return {q.least_cost({}), q.ranking_cost(q.least_cost({}))};
+  }
+  q.b = (at_b - at_a) * half;
+  q.c = dot(q.a * half, half);
+  const double least = q.least_cost(q.best());
+  return {least, q.ranking_cost(least)};
 }
 
 CostKey EdgeRanking::estimate_limit(double share, double most) {
@@ -118,10 +120,9 @@ CostKey EdgeRanking::estimate_limit(double share, double most) {
   for (std::uint32_t v = 0; v < vertices; ++v) {
     if (scrambled(v) > UINT32_MAX / one_in) continue;
     for_edges_at(v, [&](std::uint32_t a, std::uint32_t b) {
-      const EdgeQuadric q = edge_quadric(a, b);
-      const double cost = q.ranking_cost(expected_position(a, b, q));
-      if (!std::isfinite(cost)) return;
-      ++starts_[bucket_of(key_of(cost))];
+      const Costs cost = costs(a, b);
+      if (!std::isfinite(cost.ranking)) return;
+      ++starts_[bucket_of(key_of(cost.ranking))];
       ++sampled;
     });
   }
@@ -139,12 +140,10 @@ std::span<const RankedEdge> EdgeRanking::cheapest(std::uint32_t first, std::uint
   found_.clear();
   for (std::uint32_t v = first; v < last; ++v) {
     for_edges_at(v, [&](std::uint32_t a, std::uint32_t b) {
-      const EdgeQuadric q = edge_quadric(a, b);
-      const Vec3 x = expected_position(a, b, q);
-      const double cost = q.ranking_cost(x);
-      if (!std::isfinite(cost)) return;
-      const CostKey key = key_of(cost);
-      if (key <= limits.key && q.cost(x) <= limits.max_cost) found_.push_back({a, b, key});
+      const Costs cost = costs(a, b);
+      if (!std::isfinite(cost.ranking)) return;
+      const CostKey key = key_of(cost.ranking);
+      if (key <= limits.key && cost.planes <= limits.max_cost) found_.push_back({a, b, key});
     });
   }
   sort_found();
@@ -154,9 +153,9 @@ std::span<const RankedEdge> EdgeRanking::cheapest(std::uint32_t first, std::uint
 void EdgeRanking::sort_found() {
   sorted_.resize(found_.size());
   if (found_.empty()) return;
-  const auto [low, high] = std::minmax_element(
-      found_.begin(), found_.end(),
-      [](const RankedEdge& x, const RankedEdge& y) { return x.key < y.key; });
+  const auto [low, high] =
+      std::minmax_element(found_.begin(), found_.end(),
+                          [](const RankedEdge& x, const RankedEdge& y) { return x.key < y.key; });
   const std::uint32_t base = bucket_of(low->key);
   starts_.assign(bucket_of(high->key) - base + 2, 0);
   for (const RankedEdge& e : found_) ++starts_[bucket_of(e.key) - base + 1];

@@ -3,9 +3,10 @@
 #pragma once
 
 #include <cstdint>
-#include <meshfarm/geometry/mesh.hpp>
 #include <span>
 #include <vector>
+
+#include <meshfarm/geometry/mesh.hpp>
 
 #include "geometry/adjacency.hpp"
 #include "geometry/quadric.hpp"
@@ -60,12 +61,15 @@ class EdgeRanking {
                                        const RankLimits& limits);
 
  private:
+  struct Costs {
+    double planes;
+    double ranking;
+  };
   void sum_planes();
   void sum_border_planes();
   template <typename Take>
   void for_edges_at(std::uint32_t vertex, const Take& take) const;
-  EdgeQuadric edge_quadric(std::uint32_t a, std::uint32_t b) const;
-  Vec3 expected_position(std::uint32_t a, std::uint32_t b, const EdgeQuadric& quadric) const;
+  Costs costs(std::uint32_t a, std::uint32_t b) const;
   void sort_found();
 
   RankingInput input_;

@@ -22,14 +22,6 @@ class MappedStream final : public ByteStream {
   }
   ~MappedStream() override { release_behind(); }
 
-  bool skip(std::uint64_t count) override {
-    const std::uint64_t ahead = bytes_.size() - position();
-    release_behind();
-    current_ += std::min(count, ahead);
-    released_ = position() / k_page_bytes * k_page_bytes;
-    end_ = std::max(end_, current_);
-    return count <= ahead;
-  }
   std::uint64_t position() const override {
     return static_cast<std::uint64_t>(current_ - bytes_.data());
   }
@@ -40,6 +32,14 @@ class MappedStream final : public ByteStream {
     release_behind();
     const std::size_t ahead = bytes_.size() - position();
     end_ = current_ + std::min(std::max(at_least, k_step_bytes), ahead);
+  }
+  bool jump(std::uint64_t count) override {
+    const std::uint64_t ahead = bytes_.size() - position();
+    release_behind();
+    current_ += std::min(count, ahead);
+    end_ = current_;
+    released_ = position() / k_page_bytes * k_page_bytes;
+    return count <= ahead;
   }
   void release_behind() {
     file_.release(released_, position() - released_);

@@ -29,14 +29,20 @@ class ByteStream {
   /// Steps over bytes that the window showed.
   void consume(std::size_t count) { current_ += count; }
   /// Steps over `count` bytes. False if the input ends before; then the position is its end.
-  virtual bool skip(std::uint64_t count) = 0;
+  bool skip(std::uint64_t count) {
+    if (count > static_cast<std::uint64_t>(end_ - current_)) return jump(count);
+    current_ += count;
+    return true;
+  }
   /// Offset of the window's first byte.
   virtual std::uint64_t position() const = 0;
   /// How many bytes lie ahead, if that is known.
   virtual std::optional<std::uint64_t> remaining() const = 0;
 
  protected:
+  /// window() for more than is in view; skip() over more than is in view.
   virtual void widen(std::size_t at_least) = 0;
+  virtual bool jump(std::uint64_t count) = 0;
 
   const char* current_ = nullptr;
   const char* end_ = nullptr;

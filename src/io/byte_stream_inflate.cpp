@@ -66,15 +66,6 @@ class InflatedStream final : public ByteStream {
     current_ = end_ = buffer_.get();
   }
 
-  bool skip(std::uint64_t count) override {
-    while (count > 0) {
-      const std::size_t step = std::min<std::uint64_t>(count, window(1).size());
-      if (step == 0) return false;
-      consume(step);
-      count -= step;
-    }
-    return true;
-  }
   std::uint64_t position() const override {
     return inflated_ - static_cast<std::uint64_t>(end_ - current_);
   }
@@ -92,6 +83,16 @@ class InflatedStream final : public ByteStream {
     }
     current_ = buffer_.get();
     end_ = current_ + held;
+  }
+
+  bool jump(std::uint64_t count) override {
+    while (count > 0) {
+      const std::size_t step = std::min<std::uint64_t>(count, window(1).size());
+      if (step == 0) return false;
+      consume(step);
+      count -= step;
+    }
+    return true;
   }
 
   std::size_t inflate(char* out, std::size_t room) {

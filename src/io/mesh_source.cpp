@@ -23,6 +23,10 @@ Mesh read_mesh(MeshSource& source) {
                     std::to_string(UINT32_MAX));
   }
   Mesh mesh;
+  if (source.info().compression == "none") {  // else the counts are the header's mere claim
+    mesh.positions.reserve(source.info().vertices);
+    mesh.triangles.reserve(source.info().faces);
+  }
   source.scan_vertices([&mesh](std::span<const Vec3> batch) {
     mesh.positions.insert(mesh.positions.end(), batch.begin(), batch.end());
   });

@@ -1,5 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
+#include <bit>
+
 #include <meshfarm/util/errors.hpp>
 
 #include "ply_binary_records.hpp"
@@ -7,6 +9,11 @@
 
 namespace meshfarm {
 namespace {
+
+/// How many values fit. Sizes are powers of two; a division would be felt once a list.
+std::uint64_t items_in(std::uint64_t bytes, PlyType type) {
+  return bytes >> std::countr_zero(size_of(type));
+}
 
 /// Records of a binary PLY file. `k_swap`: it is big endian.
 template <bool k_swap>
@@ -148,7 +155,7 @@ class BinaryBody final : public PlyBody {
     const std::size_t size = size_of(property.type);
     for (std::uint64_t left = read_list_length(property); left > 0;) {
       const char* bytes = need(size);
-      const std::size_t count = std::min<std::uint64_t>(left, stream_->window(0).size() / size);
+      const std::size_t count = std::min(left, items_in(stream_->window(0).size(), property.type));
       for (std::size_t i = 0; i < count; ++i) {
         const std::optional<std::int64_t> index =
             load_whole<k_swap>(property.type, bytes + i * size);
@@ -168,13 +175,19 @@ class BinaryBody final : public PlyBody {
     const std::optional<std::int64_t> length = load_whole<k_swap>(*property.count_type, need(size));
     if (!length || *length < 0) fail("list " + property.name + " has a count below zero or broken");
     const auto count = static_cast<std::uint64_t>(*length);
-    const std::optional<std::uint64_t> ahead = stream_->remaining();
-    if (ahead && count > (*ahead - size) / size_of(property.type)) {
-      fail("list " + property.name + " claims " + std::to_string(count) + " items, but only " +
-           std::to_string(*ahead - size) + " bytes follow");
-    }
+    const bool in_view = count <= items_in(stream_->window(0).size() - size, property.type);
+    if (!in_view) check_list_fits(property, count);
     stream_->consume(size);
     return count;
+  }
+
+  void check_list_fits(const PlyProperty& property, std::uint64_t count) const {
+    if (!stream_->remaining()) return;  // decompression will tell
+    const std::uint64_t ahead = *stream_->remaining() - size_of(*property.count_type);
+    if (count > items_in(ahead, property.type)) {
+      fail("list " + property.name + " claims " + std::to_string(count) + " items, but only " +
+           std::to_string(ahead) + " bytes follow");
+    }
   }
 
   void skip(const PlyProperty& property) {

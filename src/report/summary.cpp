@@ -110,7 +110,7 @@ std::string render(const Manifest& m, const std::string& stage, Format format) {
                        {"dropped", {{"degenerate", m.dropped_degenerate},
                                     {"duplicate", m.dropped_duplicate}}},
                        {"seconds", m.cut_seconds}};
-    return json.dump(2) + "\n";
+    return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
   }
   Lines lines;
   add_input(lines, m);
@@ -139,7 +139,7 @@ std::string render(const RunSummary& s, Format format) {
           {"stitch", s.stitch_seconds},
           {"finish", s.finish_seconds},
           {"write", s.write_seconds}}}};
-    return json.dump(2) + "\n";
+    return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
   }
   Lines lines;
   add_input(lines, m);
@@ -175,7 +175,7 @@ std::string render(const FileSummary& s, Format format) {
                  {"box", to_json(s.box)},
                  {"diagonal", s.box.diagonal()}};
     if (s.topology) json["topology"] = to_json(*s.topology);
-    return json.dump(2) + "\n";
+    return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
   }
   Lines lines;
   lines.add("file", s.path);
@@ -209,7 +209,7 @@ std::string render(const Comparison& c, Format format) {
                        {"b_to_a", to_json(c.b_to_a, c.diagonal)},
                        {"topology_a", to_json(c.topology_a)},
                        {"topology_b", to_json(c.topology_b)}};
-    return json.dump(2) + "\n";
+    return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
   }
   Lines lines;
   lines.add("A", c.path_a + ", " + grouped(c.topology_a.triangles) + " triangles");

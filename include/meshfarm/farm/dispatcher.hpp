@@ -4,9 +4,6 @@
 
 #include <cstdint>
 #include <map>
-#include <meshfarm/farm/plan.hpp>
-#include <meshfarm/farm/protocol.hpp>
-#include <meshfarm/farm/ventilator.hpp>
 #include <optional>
 #include <set>
 #include <string>
@@ -14,6 +11,10 @@
 #include <utility>
 #include <variant>
 #include <vector>
+
+#include <meshfarm/farm/plan.hpp>
+#include <meshfarm/farm/protocol.hpp>
+#include <meshfarm/farm/ventilator.hpp>
 
 namespace meshfarm {
 
@@ -53,8 +54,7 @@ struct DispatcherOptions {
 /// Holds: a worker is never sent a job beyond its credit, nor one while another holds it.
 class Dispatcher {
  public:
-  Dispatcher(Plan plan, DispatcherOptions options)
-      : plan_(std::move(plan)), options_(options) {}
+  Dispatcher(Plan plan, DispatcherOptions options) : plan_(std::move(plan)), options_(options) {}
 
   Actions on_message(const PeerId& peer, const Message& message, FarmTime now);
   Actions lane_opened(WorkerId worker, const std::string& address);
@@ -66,6 +66,8 @@ class Dispatcher {
 
   const Plan& plan() const { return plan_; }
   FarmProgress progress() const;
+  /// Jobs that a worker holds.
+  std::uint64_t holding() const { return holder_.size(); }
   std::uint64_t dropped() const { return dropped_; }
 
  private:
@@ -94,9 +96,16 @@ class Dispatcher {
     std::map<JobKey, JobOutput> told;
   };
   enum class Blame { none, first_held };
+  /// A job held to have cost a worker its life.
+  struct Charge {
+    JobKey key;
+    std::string reason;
+  };
 
   template <class M>
-  void on(const PeerId&, const M&) { ++dropped_; }  // not for the ventilator
+  void on(const PeerId&, const M&) {
+    ++dropped_;
+  }  // not for the ventilator
   void on(const PeerId& peer, const Hello& hello);
   void on(const PeerId& peer, const Heartbeat& beat);
   void on(const PeerId& peer, const Credit& credit);
@@ -115,6 +124,7 @@ class Dispatcher {
   void hear(WorkerId id, Worker& worker);
   void lose(WorkerId id, const std::string& reason, Blame blame);
   void lose_sink();
+  std::uint32_t attempt_number(std::uint32_t attempt) const;
   void settle(JobKey key, WorkerId reporter);
   void fail(JobKey key, const std::string& reason, bool for_good);
   void rank(WorkerId id, Worker& worker);
@@ -122,7 +132,9 @@ class Dispatcher {
   void look_for_end();
   void finish(const std::string& failure);
   void to_workers(const Message& message);
-  void send(const PeerId& peer, Message message) { out_.push_back(SendTo{peer, std::move(message)}); }
+  void send(const PeerId& peer, Message message) {
+    out_.push_back(SendTo{peer, std::move(message)});
+  }
   Actions take() { return std::exchange(out_, {}); }
 
   Plan plan_;
@@ -136,6 +148,7 @@ class Dispatcher {
   std::set<std::pair<FarmTime, WorkerId>> by_heard_;
   std::set<std::pair<std::size_t, WorkerId>> willing_;  // may be sent a job; the least laden first
   std::unordered_map<JobKey, WorkerId, JobKeyHash> holder_;
+  std::unordered_map<std::uint64_t, Charge> charges_;  // by the lost worker's incarnation
   std::optional<Sink> sink_;
   std::uint64_t last_sink_ = 0;  // incarnation
   std::set<std::uint64_t> replaced_sinks_;

@@ -3,10 +3,11 @@
 #pragma once
 
 #include <cstdint>
-#include <meshfarm/staging/stage.hpp>
 #include <string>
 #include <string_view>
 #include <vector>
+
+#include <meshfarm/staging/stage.hpp>
 
 namespace meshfarm {
 

@@ -4,11 +4,12 @@
 
 #include <cstdint>
 #include <functional>
-#include <meshfarm/staging/stage.hpp>
-#include <meshfarm/util/errors.hpp>
 #include <span>
 #include <string>
 #include <vector>
+
+#include <meshfarm/staging/stage.hpp>
+#include <meshfarm/util/errors.hpp>
 
 namespace meshfarm {
 
@@ -21,10 +22,10 @@ struct JobKey {
 
 /// A unit of work. To the farm `kind` and `parameters` are opaque.
 struct Job {
-  std::string kind;               // "simplify"
-  std::vector<FileRef> inputs;    // in the stage
-  std::string parameters;         // bytes that the job's function decodes
-  std::uint64_t cost = 0;         // estimated work, in triangles
+  std::string kind;             // "simplify"
+  std::vector<FileRef> inputs;  // in the stage
+  std::string parameters;       // bytes that the job's function decodes
+  std::uint64_t cost = 0;       // estimated work, in triangles
 };
 
 JobKey key_of(const Job& job);

@@ -4,12 +4,13 @@
 
 #include <cstdint>
 #include <map>
-#include <meshfarm/farm/job.hpp>
-#include <meshfarm/staging/journal.hpp>
-#include <meshfarm/staging/stage.hpp>
 #include <span>
 #include <string>
 #include <string_view>
+
+#include <meshfarm/farm/job.hpp>
+#include <meshfarm/staging/journal.hpp>
+#include <meshfarm/staging/stage.hpp>
 
 namespace meshfarm {
 

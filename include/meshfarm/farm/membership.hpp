@@ -3,11 +3,12 @@
 #pragma once
 
 #include <cstdint>
-#include <meshfarm/farm/endpoint.hpp>
-#include <meshfarm/farm/protocol.hpp>
 #include <optional>
 #include <span>
 #include <string>
+
+#include <meshfarm/farm/endpoint.hpp>
+#include <meshfarm/farm/protocol.hpp>
 
 namespace meshfarm {
 

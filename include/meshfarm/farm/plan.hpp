@@ -4,13 +4,14 @@
 
 #include <cstdint>
 #include <map>
-#include <meshfarm/farm/job.hpp>
-#include <meshfarm/farm/rounds.hpp>
 #include <optional>
 #include <set>
 #include <string>
 #include <unordered_map>
 #include <vector>
+
+#include <meshfarm/farm/job.hpp>
+#include <meshfarm/farm/rounds.hpp>
 
 namespace meshfarm {
 
@@ -60,11 +61,15 @@ class Plan {
   /// An attempt at a running job failed: it is ready again, or given up. `for_good` gives it up
   /// whatever its state, unless it is done.
   void fail_attempt(JobKey key, const std::string& reason, bool for_good);
+  /// Takes a failure back that turned out to be none; a job given up for it is ready again.
+  void forgive(JobKey key, const std::string& reason);
   /// False if the job is not wanted or done already.
   bool accept(JobKey key, const JobOutput& output);
 
   /// Nothing; if the job was never wanted.
   std::optional<JobState> state(JobKey key) const;
+  /// How often the job was issued.
+  std::uint32_t attempts(JobKey key) const;
   /// All jobs of all rounds are done.
   bool complete() const { return started_ && rounds_.complete(); }
   /// Nothing is left to do although some jobs were given up: the run cannot be completed.

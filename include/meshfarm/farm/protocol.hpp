@@ -7,9 +7,9 @@
 //   body    = the fields of the struct in the order of their declaration, little endian
 //   text    = length u32 | bytes       list = count u32 | elements       yes/no, choice = u8
 //
-// Channels: control is V's ROUTER with a DEALER in every W and S; a lane is V's PUSH to one W's PULL;
-// results is every W's PUSH to S's PULL. A frame that does not decode, comes from nobody known or
-// from another run or an older epoch is dropped and counted.
+// Channels: control is V's ROUTER with a DEALER in every W and S; a lane is V's PUSH to one W's
+// PULL; results is every W's PUSH to S's PULL. A frame that does not decode, comes from nobody
+// known or from another run or an older epoch is dropped and counted.
 //
 //   joining    W,S -> V  Hello (repeated until answered)     V -> W,S  Welcome | Refused
 //   alive      W,S -> V  Heartbeat                           V -> W,S  Alive
@@ -22,11 +22,12 @@
 
 #include <chrono>
 #include <cstdint>
-#include <meshfarm/farm/job.hpp>
 #include <string>
 #include <string_view>
 #include <variant>
 #include <vector>
+
+#include <meshfarm/farm/job.hpp>
 
 namespace meshfarm {
 
@@ -81,8 +82,10 @@ struct Heartbeat {
 };
 struct Alive {
   std::uint32_t epoch = 0;
+  std::string sink;  // as SinkAt, for whom that did not reach
 };
-/// "I can hold what the lane brings up to this number": absolute, so loss and repetition do no harm.
+/// "I can hold what the lane brings up to this number": absolute, so loss and repetition do no
+/// harm.
 struct Credit {
   std::uint32_t epoch = 0;
   WorkerId worker;
@@ -126,12 +129,16 @@ struct Reject {
   JobKey key;
   JobFailure failure;
 };
-/// The sink has told all that it had accepted before.
+/// The sink has told all that it had accepted before; repeated with each of its heartbeats.
 struct Ready {
   std::uint32_t epoch = 0;
+  std::uint64_t accepted = 0;  // as many jobs, so that a lost Accept is noticed
 };
+/// Attempts at the job up to this one are settled: drop them and their results. A later one, which
+/// may have come down the lane already, is not meant.
 struct Done {
   JobKey key;
+  std::uint32_t attempt = 0;
 };
 struct SinkAt {
   std::string results;  // empty: there is none for now
@@ -152,9 +159,9 @@ struct Stop {
 };
 
 /// The order gives each type its number on the wire, from 1: append only.
-using Message = std::variant<Hello, Welcome, Refused, Heartbeat, Alive, Credit, Release, Assignment,
-                             Result, Accept, Reject, Ready, Done, SinkAt, JobFailed, Complete,
-                             Failed, Stop>;
+using Message =
+    std::variant<Hello, Welcome, Refused, Heartbeat, Alive, Credit, Release, Assignment, Result,
+                 Accept, Reject, Ready, Done, SinkAt, JobFailed, Complete, Failed, Stop>;
 
 /// Throws DataError if a field is longer than the protocol allows.
 std::string encode(const Message& message);

@@ -3,10 +3,11 @@
 #pragma once
 
 #include <cstdint>
-#include <meshfarm/farm/job.hpp>
 #include <span>
 #include <unordered_map>
 #include <vector>
+
+#include <meshfarm/farm/job.hpp>
 
 namespace meshfarm {
 

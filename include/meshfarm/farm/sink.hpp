@@ -6,10 +6,11 @@
 #include <chrono>
 #include <cstdint>
 #include <functional>
-#include <meshfarm/farm/job.hpp>
-#include <meshfarm/staging/stage.hpp>
 #include <span>
 #include <string>
+
+#include <meshfarm/farm/job.hpp>
+#include <meshfarm/staging/stage.hpp>
 
 namespace meshfarm {
 
@@ -17,7 +18,7 @@ struct SinkOptions {
   std::string bind = "127.0.0.1";
   std::uint16_t first_port = 0;  // 0: any
   std::uint16_t last_port = 0;
-  std::uint64_t run = 0;         // must be the ventilator's
+  std::uint64_t run = 0;                       // must be the ventilator's
   std::chrono::milliseconds patience{60'000};  // how long to look for a ventilator
   const std::atomic<bool>* stop = nullptr;
 };

@@ -4,14 +4,15 @@
 
 #include <cstdint>
 #include <map>
-#include <meshfarm/farm/membership.hpp>
-#include <meshfarm/farm/protocol.hpp>
-#include <meshfarm/farm/rounds.hpp>
 #include <span>
 #include <string>
 #include <utility>
 #include <variant>
 #include <vector>
+
+#include <meshfarm/farm/membership.hpp>
+#include <meshfarm/farm/protocol.hpp>
+#include <meshfarm/farm/rounds.hpp>
 
 namespace meshfarm {
 
@@ -35,7 +36,8 @@ using SinkAction = std::variant<Look, Dial, HangUp, Say, Check, MakeOutput, Sink
 using SinkActions = std::vector<SinkAction>;
 
 /// The sink's mind: what is wanted, what is accepted, what the ventilator has been told. Pure.
-/// Holds: a job is accepted once, and told only after checked() said that it is verified and on disk.
+/// Holds: a job is accepted once, and told only after checked() said that it is verified and on
+/// disk.
 class SinkCore {
  public:
   /// `journal`: what earlier sinks accepted; believed after its files are checked again.
@@ -66,11 +68,14 @@ class SinkCore {
   void take_result(const Result& result);
   void want();
   void tell_all();
+  void say_where_it_stands();
   void tell(JobKey key, WorkerId worker);
   void leave(SinkLeaves::Why why, std::string message);
   std::string list_failed() const;
   template <class A>
-  void act(A action) { out_.push_back(std::move(action)); }
+  void act(A action) {
+    out_.push_back(std::move(action));
+  }
   void say(Message message) { out_.push_back(Say{std::move(message)}); }
   SinkActions take();
 
@@ -80,7 +85,7 @@ class SinkCore {
   SinkActions out_;
   Phase phase_ = Phase::collecting;
   bool begun_ = false;
-  bool told_all_ = false;               // to the ventilator joined now
+  bool told_all_ = false;  // to the ventilator joined now
   std::map<JobKey, Check> checking_;
   std::uint64_t checking_journal_ = 0;  // how many of those come from a journal
   std::vector<JobKey> accepted_;        // in the order of acceptance

@@ -6,9 +6,10 @@
 #include <chrono>
 #include <cstdint>
 #include <functional>
+#include <string>
+
 #include <meshfarm/farm/job.hpp>
 #include <meshfarm/staging/stage.hpp>
-#include <string>
 
 namespace meshfarm {
 
@@ -16,7 +17,7 @@ namespace meshfarm {
 struct FarmProgress {
   std::uint64_t jobs_done = 0;
   std::uint64_t jobs_known = 0;
-  std::uint64_t cost_done = 0;   // triangles of the jobs accepted
+  std::uint64_t cost_done = 0;  // triangles of the jobs accepted
   std::uint64_t cost_known = 0;
   std::uint64_t jobs_running = 0;
   std::uint32_t workers = 0;
@@ -26,12 +27,12 @@ struct FarmProgress {
 };
 
 struct VentilatorOptions {
-  std::string bind = "127.0.0.1";       // address or interface, never all by default
-  std::uint16_t first_port = 0;         // 0: any; else control and lanes use this one and those after
+  std::string bind = "127.0.0.1";  // address or interface, never all by default
+  std::uint16_t first_port = 0;    // 0: any; else control and lanes use this one and those after
   std::uint16_t last_port = 0;
-  std::uint64_t run = 0;                // the run's key: peers of another run are refused
+  std::uint64_t run = 0;  // the run's key: peers of another run are refused
   std::chrono::milliseconds heartbeat{1000};
-  std::uint32_t max_attempts = 3;       // a job that failed this often is given up
+  std::uint32_t max_attempts = 3;                     // a job that failed this often is given up
   std::function<void(const FarmProgress&)> progress;  // about twice a second; may be empty
   const std::atomic<bool>* stop = nullptr;            // set by a signal: stop, resumable
 };

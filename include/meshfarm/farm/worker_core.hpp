@@ -5,15 +5,16 @@
 #include <cstdint>
 #include <deque>
 #include <map>
-#include <meshfarm/farm/membership.hpp>
-#include <meshfarm/farm/protocol.hpp>
-#include <meshfarm/farm/worker.hpp>
 #include <optional>
 #include <span>
 #include <string>
 #include <utility>
 #include <variant>
 #include <vector>
+
+#include <meshfarm/farm/membership.hpp>
+#include <meshfarm/farm/protocol.hpp>
+#include <meshfarm/farm/worker.hpp>
 
 namespace meshfarm {
 
@@ -79,14 +80,16 @@ class WorkerCore {
   void on(Membership::Event event, FarmTime now);
   void join(FarmTime now);
   void leave(std::string incomplete);
-  void forget(JobKey key);
+  void forget(const Done& done);
   void sink_is_at(const std::string& address, FarmTime now);
   void send_result(Kept& kept, FarmTime now);
   void begin_next();
   void raise_credit();
   std::uint32_t held() const;
   template <class A>
-  void act(A action) { out_.push_back(std::move(action)); }
+  void act(A action) {
+    out_.push_back(std::move(action));
+  }
   WorkerActions take();
 
   Membership member_;

@@ -22,7 +22,9 @@ struct DistanceOptions {
 
 /// Samples the surface of `from` and measures to the nearest point of the surface of `to`
 /// (bounding volume hierarchy; one direction of the Metro measure, Cignoni et al. 1998).
-/// Throws DataError if either mesh has no triangle of positive area.
+/// Memory: about 20 bytes a triangle of `to`, 40 while its hierarchy is built.
+/// Throws DataError if either mesh has no triangle of positive area, or coordinates that are not
+/// finite or whose areas overflow; UsageError if no samples are asked for.
 Distance measure_distance(const Mesh& from, const Mesh& to, const DistanceOptions& options);
 
 }  // namespace meshfarm

@@ -15,8 +15,8 @@ namespace meshfarm {
 /// triangles. Closed, oriented, one component, Euler characteristic 0.
 class BumpyTorus {
  public:
-  /// The number of triangles is the nearest that a grid gives: 2 * rows * columns.
-  /// Throws UsageError below 200 triangles.
+  /// The number of triangles is the nearest that a grid of well-shaped triangles gives:
+  /// 2 * rows * columns. Throws UsageError below 200 triangles and above 2^48.
   explicit BumpyTorus(std::uint64_t triangles);
   std::uint64_t vertices() const { return rows_ * columns_; }
   std::uint64_t triangles() const { return 2 * rows_ * columns_; }

@@ -22,12 +22,17 @@ struct Mesh {
   std::vector<Triangle> triangles;
 };
 
+/// The nearest number that a float can hold. Through memory, as g++ 12 drops the rounding of two
+/// neighbours when it packs them into a vector ((double)(float)x at -O2).
+inline double rounded_to_float(double x) {
+  const volatile float narrow = static_cast<float>(x);
+  return static_cast<double>(narrow);
+}
+
 /// The nearest point that `type` can hold.
 inline Vec3 rounded(Vec3 p, PositionType type) {
   if (type == PositionType::float64) return p;
-  return {static_cast<double>(static_cast<float>(p.x)),
-          static_cast<double>(static_cast<float>(p.y)),
-          static_cast<double>(static_cast<float>(p.z))};
+  return {rounded_to_float(p.x), rounded_to_float(p.y), rounded_to_float(p.z)};
 }
 
 /// An axis-aligned box. Empty (lo > hi) until a point is added.

@@ -26,7 +26,8 @@ struct Topology {
   std::int64_t euler = 0;                   // used vertices - edges + non-degenerate triangles
 };
 
-/// Measures `mesh`. Memory: about 40 bytes a triangle.
+/// Measures `mesh`. Memory: about 12 bytes a triangle and 16 a vertex.
+/// Throws DataError if a triangle names a vertex that is not there.
 Topology measure_topology(const Mesh& mesh);
 
 }  // namespace meshfarm

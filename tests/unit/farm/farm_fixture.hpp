@@ -6,15 +6,16 @@
 #include <chrono>
 #include <exception>
 #include <functional>
+#include <string>
+#include <thread>
+#include <utility>
+#include <vector>
+
 #include <meshfarm/farm/job.hpp>
 #include <meshfarm/farm/sink.hpp>
 #include <meshfarm/farm/ventilator.hpp>
 #include <meshfarm/farm/worker.hpp>
 #include <meshfarm/util/bytes.hpp>
-#include <string>
-#include <thread>
-#include <utility>
-#include <vector>
 
 #include "support/temp_folder.hpp"
 
@@ -38,7 +39,9 @@ inline JobSource one_round(std::size_t count) {
 }
 
 /// What the trivial job publishes: its own parameters, turned round.
-inline std::string reversed(const std::string& text) { return {text.rbegin(), text.rend()}; }
+inline std::string reversed(const std::string& text) {
+  return {text.rbegin(), text.rend()};
+}
 
 inline JobOutput do_trivial_job(const Job& job, const JobContext& context) {
   context.progress(job.cost);
@@ -90,29 +93,29 @@ struct Farm {
   std::chrono::milliseconds patience{20'000};
 
   auto ventilator(JobSource source, std::function<void(const FarmProgress&)> progress = {}) {
-    return [=, this](const std::atomic<bool>& stop) {
-      VentilatorOptions options;
-      options.run = run;
-      options.heartbeat = heartbeat;
-      options.progress = progress;
+    VentilatorOptions options;
+    options.run = run;
+    options.heartbeat = heartbeat;
+    options.progress = std::move(progress);
+    return [this, source, options](const std::atomic<bool>& stop) mutable {
       options.stop = &stop;
       run_ventilator(stage, source, options);
     };
   }
   auto worker(JobFunction work = do_trivial_job, std::uint32_t buffer = 3) {
-    return [=, this](const std::atomic<bool>& stop) {
-      WorkerOptions options;
-      options.buffer = buffer;
-      options.patience = patience;
+    WorkerOptions options;
+    options.buffer = buffer;
+    options.patience = patience;
+    return [this, work, options](const std::atomic<bool>& stop) mutable {
       options.stop = &stop;
       run_worker(stage, work, options);
     };
   }
   auto sink(JobSource source, std::vector<std::string>& summaries) {
-    return [=, this, &summaries](const std::atomic<bool>& stop) {
-      SinkOptions options;
-      options.run = run;
-      options.patience = patience;
+    SinkOptions options;
+    options.run = run;
+    options.patience = patience;
+    return [this, source, options, &summaries](const std::atomic<bool>& stop) mutable {
       options.stop = &stop;
       run_sink(stage, source, options, [&](std::span<const AcceptedJob> accepted) {
         for (const AcceptedJob& each : accepted) summaries.push_back(each.output.summary);

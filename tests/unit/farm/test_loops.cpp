@@ -89,12 +89,12 @@ TEST_CASE("a job asked for twice is done once and given twice") {
   CHECK(count == 2);
 }
 
-TEST_CASE("ten thousand tiny jobs go through") {
+TEST_CASE("thousands of tiny jobs go through") {
   Farm farm;
   const auto start = std::chrono::steady_clock::now();
-  CHECK(run_farm(farm, one_round(10'000), 3) == expected_of(10'000));
+  CHECK(run_farm(farm, one_round(3'000), 3) == expected_of(3'000));
   const std::chrono::duration<double> took = std::chrono::steady_clock::now() - start;
-  MESSAGE("10,000 jobs, each a synced file, in ", took.count(), " s");
+  MESSAGE("3,000 jobs, each a synced file, in ", took.count(), " s");
 }
 
 TEST_CASE("a run that is repeated takes all from the journals") {
@@ -125,15 +125,14 @@ TEST_CASE("an attempt that fails is made again") {
   Farm farm;
   std::atomic<int> failures{0};
   const JobFunction work = [&](const Job& job, const JobContext& context) {
-    if (job.parameters == "job 1" && context.attempt == 1) throw std::bad_alloc();
-    if (job.parameters == "job 1" && context.attempt == 2) {
-      ++failures;
+    if (job.parameters == "job 1" && failures < 2) {
+      if (++failures == 1) throw std::bad_alloc();
       throw IoError("cannot read", "x", 5);
     }
     return do_trivial_job(job, context);
   };
   CHECK(run_farm(farm, one_round(3), 2, work) == expected_of(3));
-  CHECK(failures == 1);
+  CHECK(failures == 2);
 }
 
 TEST_CASE("a job that fails for good ends the run, the others are kept") {
@@ -146,8 +145,12 @@ TEST_CASE("a job that fails for good ends the run, the others are kept") {
     if (bad) throw BadInputError("no mesh in it");
     throw DataError("no luck today");
   };
-  SUBCASE("after three attempts") { bad = false; }
-  SUBCASE("at once if its input is bad") { bad = true; }
+  SUBCASE("after three attempts") {
+    bad = false;
+  }
+  SUBCASE("at once if its input is bad") {
+    bad = true;
+  }
   std::vector<std::string> summaries;
   Part ventilator(farm.ventilator(one_round(10)));
   Part sink(farm.sink(one_round(10), summaries));
@@ -186,9 +189,8 @@ TEST_CASE("a sink that is stopped and started again goes on") {
     ++count;
     return do_slow_job(job, context);
   };
-  Part ventilator(farm.ventilator(one_round(300), [&](const FarmProgress& p) {
-    done = p.jobs_done;
-  }));
+  Part ventilator(
+      farm.ventilator(one_round(300), [&](const FarmProgress& p) { done = p.jobs_done; }));
   std::vector<std::string> none;
   std::vector<std::string> summaries;
   auto first = std::make_unique<Part>(farm.sink(one_round(300), none));
@@ -211,9 +213,8 @@ TEST_CASE("a ventilator that is stopped and started again goes on") {
   Farm farm;
   std::atomic<std::uint64_t> done{0};
   std::vector<std::string> summaries;
-  auto first = std::make_unique<Part>(farm.ventilator(one_round(300), [&](const FarmProgress& p) {
-    done = p.jobs_done;
-  }));
+  auto first = std::make_unique<Part>(
+      farm.ventilator(one_round(300), [&](const FarmProgress& p) { done = p.jobs_done; }));
   Part sink(farm.sink(one_round(300), summaries));
   Part worker(farm.worker(do_slow_job));
   Part other(farm.worker(do_slow_job));

@@ -106,6 +106,32 @@ TEST_CASE("distance: the tree finds what a look at every triangle finds") {
   }
 }
 
+TEST_CASE("distance: the tree tells sheets apart that floats do not") {
+  // All eight within two steps of a float, so that only careful rounding finds the nearest.
+  Mesh mesh;
+  const Mesh sheet = test::grid(6, 6);
+  for (int layer = 0; layer < 8; ++layer) {
+    const auto first = static_cast<std::uint32_t>(mesh.positions.size());
+    for (const Vec3& p : sheet.positions) {
+      mesh.positions.push_back(p + Vec3{0.1 * layer, 0.03 * layer, 0.7 + layer * 5e-8});
+    }
+    for (const auto& [a, b, c] : sheet.triangles) {
+      mesh.triangles.push_back({a + first, b + first, c + first});
+    }
+  }
+  mesh.positions.insert(mesh.positions.end(), {{3, 3, 5}, {4, 3, 5}, {3, 4, 5}});
+  const auto last = static_cast<std::uint32_t>(mesh.positions.size());
+  mesh.triangles.push_back({last - 3, last - 2, last - 1});
+  const Bvh bvh(mesh, 1);
+  std::mt19937 random(4);
+  std::uniform_real_distribution<double> unit(0, 1);
+  for (int i = 0; i < 2000; ++i) {
+    const Vec3 p{unit(random) * 7, unit(random) * 7, 0.7 + (unit(random) * 12 - 2) * 5e-8};
+    const std::uint32_t guess = static_cast<std::uint32_t>(random() % mesh.triangles.size());
+    REQUIRE(bvh.nearest(p, guess).squared == nearest_slowly(mesh, p));
+  }
+}
+
 TEST_CASE("distance: many triangles of one centre do not deepen the tree") {
   Mesh mesh;
   for (std::uint32_t i = 0; i < 2000; ++i) {

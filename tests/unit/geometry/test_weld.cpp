@@ -74,6 +74,15 @@ TEST_CASE("weld: a million vertices that are not numbers take no longer than oth
   CHECK(result.first[1'000'001] == 1'000'001);
 }
 
+TEST_CASE("weld: vertices in line along an axis do not pile up in the table") {
+  // With 300,000 of them in one chain this would take minutes.
+  for (const Vec3& step : {Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, 0, 1}, Vec3{1, 1, 1}}) {
+    std::vector<Vec3> positions;
+    for (int i = 0; i < 300'000; ++i) positions.push_back(step * (1024.0 * i));
+    CHECK(weld(positions).merged == 0);
+  }
+}
+
 TEST_CASE("weld: agrees with the comparison of all pairs") {
   std::mt19937 random(7);
   for (const std::uint32_t range : {1U, 3U, 8U, 100U}) {

@@ -18,6 +18,7 @@
 #include <meshfarm/io/mesh_source.hpp>
 #include <meshfarm/util/errors.hpp>
 #include <meshfarm/util/file.hpp>
+#include <meshfarm/util/log.hpp>
 
 namespace meshfarm::test {
 
@@ -96,6 +97,12 @@ inline std::string refusal(std::string_view bytes) {
     return message.substr(where.size());
   }
 }
+
+/// No warnings while it lives.
+struct Quiet {
+  Quiet() { set_log("", LogLevel::off); }
+  ~Quiet() { set_log("", LogLevel::info); }
+};
 
 /// What `run` writes to stderr.
 template <class Run>

@@ -1,8 +1,9 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
+#include <limits>
+
 #include <doctest/doctest.h>
 
-#include <limits>
 #include <meshfarm/io/boundary_file.hpp>
 #include <meshfarm/io/manifest.hpp>
 #include <meshfarm/io/part_file.hpp>
@@ -43,7 +44,8 @@ Manifest sample_manifest() {
   m.cut_seconds = 1.5;
   m.boundary_triangles = 11;
   m.boundary = {"boundary", 100, 42};
-  m.parts = {{{"parts/000000.part", 200, 43}, 12, 20, 3}, {{"parts/000001.part", 300, 44}, 5, 6, 5}};
+  m.parts = {{{"parts/000000.part", 200, 43}, 12, 20, 3},
+             {{"parts/000001.part", 300, 44}, 5, 6, 5}};
   return m;
 }
 

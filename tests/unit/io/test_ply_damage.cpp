@@ -43,6 +43,7 @@ constexpr const char* k_most = "18446744073709551615";
 }  // namespace
 
 TEST_CASE("a binary file cut off at any byte is refused") {
+  const Quiet quiet;
   for (const Order order : {Order::little, Order::big}) {
     const std::string whole = rich_file(order);
     CHECK(refusal(whole).empty());
@@ -55,6 +56,7 @@ TEST_CASE("a binary file cut off at any byte is refused") {
 
 TEST_CASE(
     "an ascii file cut off at any byte is refused, or has lost digits of its last value only") {
+  const Quiet quiet;
   const std::string whole = ascii_square();
   const std::size_t last_value = whole.rfind(' ') + 2;
   for (std::size_t size = 1; size < whole.size(); ++size) {
@@ -102,6 +104,7 @@ TEST_CASE("an element without properties takes no time, however often it claims 
 }
 
 TEST_CASE("any byte changed to any other") {
+  const Quiet quiet;
   std::size_t read = 0;
   for (const std::string& whole :
        {rich_file(Order::little), rich_file(Order::big), ascii_square("3 0 1 2\n4 2 1 3 0\n")}) {

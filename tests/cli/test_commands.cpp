@@ -1,0 +1,217 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+//
+// The commands as a user types them: what they print, where, and their exit codes.
+#include <algorithm>
+#include <doctest/doctest.h>
+
+#include "support/process.hpp"
+#include "support/temp_folder.hpp"
+
+using meshfarm::test::Ran;
+using meshfarm::test::read_text;
+using meshfarm::test::run_meshfarm;
+using meshfarm::test::TempFolder;
+namespace fs = std::filesystem;
+
+namespace {
+
+class Shell {
+ public:
+  Ran operator()(const std::vector<std::string>& words) {
+    return run_meshfarm(words, folder_.path() / ("log" + std::to_string(++logs_)));
+  }
+  std::string path(const std::string& name) const { return (folder_.path() / name).string(); }
+  std::string file(const std::string& name, const std::string& text) const {
+    std::ofstream(path(name), std::ios::binary) << text;
+    return path(name);
+  }
+  /// A cube of 12 triangles, ascii.
+  std::string cube() const {
+    return file("cube.ply",
+                "ply\nformat ascii 1.0\nelement vertex 8\nproperty float x\nproperty float y\n"
+                "property float z\nproperty uchar red\nelement face 6\n"
+                "property list uchar int vertex_indices\nend_header\n"
+                "0 0 0 9\n1 0 0 9\n1 1 0 9\n0 1 0 9\n0 0 1 9\n1 0 1 9\n1 1 1 9\n0 1 1 9\n"
+                "4 0 3 2 1\n4 4 5 6 7\n4 0 1 5 4\n4 1 2 6 5\n4 2 3 7 6\n4 3 0 4 7\n");
+  }
+
+ private:
+  TempFolder folder_;
+  int logs_ = 0;
+};
+
+bool has(const std::string& text, const std::string& part) {
+  return text.find(part) != std::string::npos;
+}
+
+std::size_t lines(const std::string& text) {
+  return static_cast<std::size_t>(std::count(text.begin(), text.end(), '\n'));
+}
+
+}  // namespace
+
+TEST_CASE("help and version go to stdout, and say what there is") {
+  Shell shell;
+  for (const std::vector<std::string>& words : {std::vector<std::string>{"help"}, {"--help"}}) {
+    const Ran ran = shell(words);
+    CHECK(ran.code == 0);
+    for (const char* command : {"simplify", "cut", "run", "worker", "replay", "ventilator", "sink",
+                                "info", "compare", "generate"}) {
+      CHECK(has(ran.out, command));
+    }
+  }
+  CHECK(shell({"--version"}).out == "meshfarm " MESHFARM_VERSION "\n");
+  const Ran ran = shell({"simplify", "--help"});
+  CHECK(ran.code == 0);
+  for (const char* option : {"--output", "--ratio", "--triangles", "--workers", "--parts", "--stage",
+                             "--keep-stage", "--weld", "--quiet", "--json", "--config"}) {
+    CHECK(has(ran.out, option));
+  }
+  CHECK_FALSE(has(ran.out, "supervised"));
+}
+
+TEST_CASE("wrong usage is one line and exit 2") {
+  Shell shell;
+  const std::string cube = shell.cube();
+  const std::vector<std::vector<std::string>> wrong = {
+      {"simplfy"},
+      {"simplify"},
+      {"simplify", cube},
+      {"simplify", cube, "-o", shell.path("o.ply")},
+      {"simplify", cube, "-o", shell.path("o.ply"), "--ratio", "0"},
+      {"simplify", cube, "-o", shell.path("o.ply"), "--ratio", "1.5"},
+      {"simplify", cube, "-o", shell.path("o.ply"), "--ratio", "nan"},
+      {"simplify", cube, "-o", shell.path("o.ply"), "--ratio", "half"},
+      {"simplify", cube, "-o", shell.path("o.ply"), "--ratio", "0.5", "--triangles", "3"},
+      {"simplify", cube, "-o", shell.path("o.ply"), "--triangles", "-3"},
+      {"simplify", cube, "-o", shell.path("o.ply"), "--ratio", "0.5", "--weld", "maybe"},
+      {"simplify", cube, "-o", shell.path("o.ply"), "--ratio", "0.5", "--workers", "0"},
+      {"simplify", cube, "-o", shell.path("o.ply"), "--ratio", "0.5", "--parts", "-1"},
+      {"simplify", cube, "-o", shell.path("o.ply"), "--ratio", "0.5", "--colour"},
+      {"run", shell.path("s"), "--ratio", "0.5", "--ports", "9-8"},
+      {"compare", cube},
+  };
+  for (const auto& words : wrong) {
+    std::string typed;
+    for (const std::string& word : words) typed += word + " ";
+    CAPTURE(typed);
+    const Ran ran = shell(words);
+    CHECK(ran.code == 2);
+    CHECK(lines(ran.err) == 1);
+    CHECK(ran.out.empty());
+  }
+  CHECK_FALSE(fs::exists(shell.path("o.ply")));
+}
+
+TEST_CASE("what cannot be read or written is one line and exit 1") {
+  Shell shell;
+  const std::string cube = shell.cube();
+  const std::string text = shell.file("text.ply", "no mesh\n");
+  const std::string obj = shell.file("mesh.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+  const std::string nan = shell.file(
+      "nan.ply",
+      "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\n"
+      "property float z\nend_header\n0 nan 0\n");
+  const std::vector<std::pair<std::vector<std::string>, std::string>> failing = {
+      {{"simplify", shell.path("absent.ply"), "-o", shell.path("o.ply"), "--ratio", "0.5"},
+       "absent.ply"},
+      {{"simplify", cube, "-o", shell.path("no/such/folder/o.ply"), "--ratio", "0.5"},
+       "no/such/folder"},
+      {{"simplify", text, "-o", shell.path("o.ply"), "--ratio", "0.5"}, "text.ply"},
+      {{"simplify", obj, "-o", shell.path("o.ply"), "--ratio", "0.5"}, "mesh.obj"},
+      {{"simplify", nan, "-o", shell.path("o.ply"), "--ratio", "0.5"}, "vertex 0"},
+      {{"replay", shell.path("absent"), "--ratio", "0.5"}, "absent"},
+      {{"worker", shell.path("absent")}, "absent"},
+      {{"info", shell.path("absent.ply")}, "absent.ply"},
+      {{"compare", cube, text}, "text.ply"},
+      {{"cut", cube, "--stage", shell.path("cube.ply")}, "cube.ply"},
+  };
+  for (const auto& [words, place] : failing) {
+    std::string typed;
+    for (const std::string& word : words) typed += word + " ";
+    CAPTURE(typed);
+    const Ran ran = shell(words);
+    CAPTURE(ran.err);
+    CHECK(ran.code == 1);
+    CHECK(lines(ran.err) == 1);
+    CHECK(has(ran.err, "error: "));
+    CHECK(has(ran.err, place));
+    CHECK(ran.out.empty());
+  }
+}
+
+TEST_CASE("a cube goes through, and what is not kept is named") {
+  Shell shell;
+  const Ran ran = shell({"simplify", shell.cube(), "-o", shell.path("o.ply"), "--ratio", "1",
+                         "--workers", "1"});
+  CHECK(ran.code == 0);
+  CHECK(has(ran.out, "12 triangles, 8 vertices"));
+  CHECK(has(ran.out, "vertex.red"));
+  const Ran info = shell({"info", shell.path("o.ply"), "--json"});
+  CHECK(info.code == 0);
+  CHECK(has(info.out, "\"euler\": 2"));
+  CHECK(has(info.out, "\"border_edges\": 0"));
+}
+
+TEST_CASE("quiet says nothing on stderr; json is on stdout") {
+  Shell shell;
+  const Ran ran = shell({"simplify", shell.cube(), "-o", shell.path("o.ply"), "--triangles", "4",
+                         "--workers", "1", "--quiet", "--json"});
+  CHECK(ran.code == 0);
+  CHECK(ran.err.empty());
+  CHECK(ran.out.front() == '{');
+  CHECK(has(ran.out, "\"target\": 4"));
+}
+
+TEST_CASE("options may stand in a config file; the command line wins") {
+  Shell shell;
+  const std::string config = shell.file("run.conf", "# a comment\nratio = 0.5\nworkers = 1\n");
+  const Ran ran = shell({"simplify", shell.cube(), "-o", shell.path("o.ply"), "--config", config,
+                         "--json", "--workers", "2"});
+  CHECK(ran.code == 0);
+  CHECK(has(ran.out, "\"target\": 6"));
+  const std::string wrong = shell.file("wrong.conf", "rato = 0.5\n");
+  CHECK(shell({"simplify", shell.cube(), "-o", shell.path("o.ply"), "--config", wrong}).code == 2);
+}
+
+TEST_CASE("a stage that holds a finished cut is not cut again") {
+  Shell shell;
+  CHECK(shell({"cut", shell.cube(), "--stage", shell.path("stage")}).code == 0);
+  const Ran ran = shell({"cut", shell.cube(), "--stage", shell.path("stage")});
+  CHECK(ran.code == 1);
+  CHECK(has(ran.err, "meshfarm replay"));
+  CHECK(has(shell({"info", shell.path("stage")}).out, "1 parts"));
+}
+
+TEST_CASE("a point cloud and a mesh without anything make an empty result") {
+  Shell shell;
+  const std::string head = "ply\nformat ascii 1.0\nelement vertex ";
+  const std::string xyz = "\nproperty float x\nproperty float y\nproperty float z\n";
+  const std::string faces = "element face 0\nproperty list uchar int vertex_indices\nend_header\n";
+  for (const std::string& text :
+       {head + "2" + xyz + "end_header\n0 0 0\n1 1 1\n", head + "0" + xyz + faces}) {
+    const std::string input = shell.file("points.ply", text);
+    const Ran ran = shell({"simplify", input, "-o", shell.path("o.ply"), "--ratio", "0.5"});
+    CAPTURE(ran.err);
+    CHECK(ran.code == 0);
+    CHECK(has(ran.out, "0 triangles"));
+  }
+}
+
+TEST_CASE("generate, info and compare fit together") {
+  Shell shell;
+  CHECK(shell({"generate", "-o", shell.path("t.ply"), "--triangles", "20000"}).code == 0);
+  const Ran info = shell({"info", shell.path("t.ply")});
+  CHECK(has(info.out, "1 components, 0 border edges, 0 non-manifold edges"));
+  CHECK(has(info.out, "Euler characteristic 0"));
+  CHECK(shell({"simplify", shell.path("t.ply"), "-o", shell.path("s.ply"), "--triangles", "2000"})
+            .code == 0);
+  const Ran same = shell({"compare", shell.path("t.ply"), shell.path("t.ply"), "--samples", "1000"});
+  const std::size_t rms = same.out.find("rms ");
+  REQUIRE(rms != std::string::npos);
+  CHECK(std::stod(same.out.substr(rms + 4)) < 1e-9);
+  const Ran ran = shell({"compare", shell.path("t.ply"), shell.path("s.ply"), "--json"});
+  CHECK(ran.code == 0);
+  CHECK(has(ran.out, "\"triangles\": 2000,"));
+}

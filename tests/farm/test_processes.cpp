@@ -1,0 +1,343 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+//
+// Whole runs of the real program: ventilator, sink and workers as processes over tcp, killed,
+// stopped and started again. Every run must end with the same bytes.
+#include <arpa/inet.h>
+#include <doctest/doctest.h>
+#include <netinet/in.h>
+#include <sys/socket.h>
+
+#include <optional>
+#include <random>
+
+#include "support/process.hpp"
+#include "support/temp_folder.hpp"
+
+using meshfarm::test::Process;
+using meshfarm::test::Ran;
+using meshfarm::test::read_text;
+using meshfarm::test::run_meshfarm;
+using meshfarm::test::TempFolder;
+using meshfarm::test::wait_until;
+namespace fs = std::filesystem;
+
+namespace {
+
+/// A mesh of 300,000 triangles in 24 parts, its cut, and the result of an undisturbed run.
+class Bench {
+ public:
+  Bench() {
+    REQUIRE(meshfarm({"generate", "-o", mesh(), "--triangles", "300000"}).code == 0);
+    REQUIRE(meshfarm({"simplify", mesh(), "-o", path("expected.ply"), "--ratio", "0.02", "--parts",
+                      "24", "--workers", "2"})
+                .code == 0);
+    expected_ = read_text(path("expected.ply"));
+    REQUIRE(expected_.size() > 1000);
+  }
+
+  std::string path(const std::string& name) const { return (folder_.path() / name).string(); }
+  std::string mesh() const { return path("mesh.ply"); }
+  const std::string& expected() const { return expected_; }
+  Ran meshfarm(const std::vector<std::string>& words) {
+    return run_meshfarm(words, path("log" + std::to_string(++logs_)));
+  }
+  Process start(const std::vector<std::string>& words) {
+    return Process(words, path("log" + std::to_string(++logs_)));
+  }
+
+  /// A fresh cut of the mesh.
+  std::string cut() {
+    const std::string stage = path("stage" + std::to_string(++stages_));
+    REQUIRE(meshfarm({"cut", mesh(), "--stage", stage, "--parts", "24"}).code == 0);
+    return stage;
+  }
+  Process ventilator(const std::string& stage) {
+    return start({"ventilator", stage, "--ratio", "0.02", "--bind", "127.0.0.1", "--heartbeat-ms",
+                  "150"});
+  }
+  Process sink(const std::string& stage) {
+    return start({"sink", stage, "--ratio", "0.02", "--bind", "127.0.0.1", "-o", stage + ".ply"});
+  }
+  Process worker(const std::string& stage) { return start({"worker", stage}); }
+
+ private:
+  TempFolder folder_;
+  std::string expected_;
+  int logs_ = 0;
+  int stages_ = 0;
+};
+
+Bench& bench() {
+  static Bench instance;
+  return instance;
+}
+
+std::size_t files_in(const fs::path& folder) {
+  std::error_code ignored;
+  std::size_t count = 0;
+  for (const auto& entry : fs::directory_iterator(folder, ignored)) {
+    count += entry.path().filename().string().front() != '.';
+  }
+  return count;
+}
+
+bool wait_for_results(const std::string& stage, std::size_t count) {
+  return wait_until([&] { return files_in(fs::path(stage) / "results") >= count; });
+}
+
+void check_result(const std::string& output) {
+  CHECK(read_text(output) == bench().expected());
+}
+
+/// The address in the newest endpoint file: the text "tcp://127.0.0.1:PORT" stands in it.
+std::optional<std::uint16_t> port_of(const std::string& stage) {
+  std::string newest;
+  std::error_code ignored;
+  for (const auto& entry : fs::directory_iterator(fs::path(stage) / "control", ignored)) {
+    if (entry.path().extension() == ".endpoint") newest = std::max(newest, entry.path().string());
+  }
+  const std::string text = newest.empty() ? "" : read_text(newest);
+  const std::string start = "tcp://127.0.0.1:";
+  const std::size_t at = text.find(start);
+  if (at == std::string::npos) return std::nullopt;
+  return static_cast<std::uint16_t>(std::atoi(text.c_str() + at + start.size()));
+}
+
+/// Sends bytes to a port and closes; whether anyone listens does not matter.
+void send_bytes(std::uint16_t port, const std::string& bytes) {
+  const int fd = ::socket(AF_INET, SOCK_STREAM, 0);
+  sockaddr_in address{};
+  address.sin_family = AF_INET;
+  address.sin_port = htons(port);
+  address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+  if (::connect(fd, reinterpret_cast<sockaddr*>(&address), sizeof address) == 0) {
+    (void)::send(fd, bytes.data(), bytes.size(), MSG_NOSIGNAL);
+  }
+  ::close(fd);
+}
+
+}  // namespace
+
+TEST_CASE("1, 2 and 5 workers make the same bytes") {
+  for (const char* workers : {"1", "5"}) {
+    CAPTURE(workers);
+    const std::string output = bench().path(std::string("w") + workers + ".ply");
+    const Ran ran = bench().meshfarm({"simplify", bench().mesh(), "-o", output, "--ratio", "0.02",
+                                      "--parts", "24", "--workers", workers});
+    CHECK(ran.code == 0);
+    check_result(output);
+    CHECK_FALSE(fs::exists(output + ".stage"));
+  }
+}
+
+TEST_CASE("a cut, ventilator and sink, and two workers started by hand make the same bytes") {
+  const std::string stage = bench().cut();
+  Process one = bench().worker(stage);  // a worker may come before anyone else
+  Process run = bench().start({"run", stage, "--ratio", "0.02", "-o", stage + ".ply", "--bind",
+                               "127.0.0.1"});
+  Process two = bench().worker(stage);
+  CHECK(run.wait() == 0);
+  CHECK(one.wait() == 0);
+  CHECK(two.wait() == 0);
+  check_result(stage + ".ply");
+
+  SUBCASE("and a replay of the same stage too, with nothing simplified again") {
+    const std::size_t results = files_in(fs::path(stage) / "results");
+    const std::string output = stage + "-again.ply";
+    const Ran ran = bench().meshfarm({"replay", stage, "-o", output, "--ratio", "0.02"});
+    CHECK(ran.code == 0);
+    check_result(output);
+    CHECK(files_in(fs::path(stage) / "results") == results);
+  }
+  SUBCASE("and another target from the same cut is met") {
+    const std::string output = stage + "-half.ply";
+    const Ran ran = bench().meshfarm(
+        {"replay", stage, "-o", output, "--triangles", "12000", "--json"});
+    CHECK(ran.code == 0);
+    CHECK(ran.out.find("\"triangles\": 12000") != std::string::npos);
+  }
+}
+
+TEST_CASE("a worker killed half-way costs nothing but time") {
+  const std::string stage = bench().cut();
+  Process ventilator = bench().ventilator(stage);
+  Process sink = bench().sink(stage);
+  Process killed = bench().worker(stage);
+  REQUIRE(wait_for_results(stage, 3));
+  killed.signal(SIGKILL);
+  CHECK(killed.wait() == -SIGKILL);
+  Process heir = bench().worker(stage);
+  CHECK(sink.wait() == 0);
+  CHECK(ventilator.wait() == 0);
+  CHECK(heir.wait() == 0);
+  check_result(stage + ".ply");
+}
+
+TEST_CASE("a worker that hangs loses its jobs to another, and its late results do no harm") {
+  const std::string stage = bench().cut();
+  Process ventilator = bench().ventilator(stage);
+  Process sink = bench().sink(stage);
+  Process hung = bench().worker(stage);
+  REQUIRE(wait_for_results(stage, 2));
+  hung.signal(SIGSTOP);
+  Process heir = bench().worker(stage);
+  REQUIRE(wait_for_results(stage, 20));
+  hung.signal(SIGCONT);
+  CHECK(sink.wait() == 0);
+  CHECK(ventilator.wait() == 0);
+  CHECK(heir.wait() == 0);
+  check_result(stage + ".ply");
+}
+
+TEST_CASE("sink, then ventilator, killed and started again: the run goes on") {
+  const std::string stage = bench().cut();
+  Process ventilator = bench().ventilator(stage);
+  Process sink = bench().sink(stage);
+  Process one = bench().worker(stage);
+  Process two = bench().worker(stage);
+  REQUIRE(wait_for_results(stage, 4));
+  sink.signal(SIGKILL);
+  CHECK(sink.wait() == -SIGKILL);
+  sink = bench().sink(stage);
+  REQUIRE(wait_for_results(stage, 10));
+  ventilator.signal(SIGKILL);
+  CHECK(ventilator.wait() == -SIGKILL);
+  ventilator = bench().ventilator(stage);
+  CHECK(sink.wait() == 0);
+  CHECK(ventilator.wait() == 0);
+  CHECK(one.wait() == 0);
+  CHECK(two.wait() == 0);
+  check_result(stage + ".ply");
+}
+
+TEST_CASE("everything killed, everything started again: only what was not accepted is done") {
+  const std::string stage = bench().cut();
+  {
+    Process ventilator = bench().ventilator(stage);
+    Process sink = bench().sink(stage);
+    Process worker = bench().worker(stage);
+    REQUIRE(wait_for_results(stage, 8));
+  }  // all are killed here
+  const std::size_t before = files_in(fs::path(stage) / "results");
+  const Ran ran = bench().meshfarm({"replay", stage, "-o", stage + ".ply", "--ratio", "0.02"});
+  CHECK(ran.code == 0);
+  check_result(stage + ".ply");
+  const std::size_t journalled_before = before - 5;  // those in the worker's hands may be lost
+  CHECK(files_in(fs::path(stage) / "results") <= 24 + before - journalled_before);
+}
+
+TEST_CASE("Ctrl-C leaves a stage that replay takes up") {
+  const std::string output = bench().path("interrupted.ply");
+  Process simplify = bench().start({"simplify", bench().mesh(), "-o", output, "--ratio", "0.02",
+                                    "--parts", "24", "--workers", "1"});
+  const std::string stage = output + ".stage";
+  REQUIRE(wait_for_results(stage, 3));
+  simplify.signal(SIGINT);
+  CHECK(simplify.wait() == 3);
+  CHECK(simplify.err().find("meshfarm replay " + stage) != std::string::npos);
+  CHECK_FALSE(fs::exists(output));
+  const Ran ran = bench().meshfarm({"replay", stage, "-o", output, "--ratio", "0.02"});
+  CHECK(ran.code == 0);
+  check_result(output);
+}
+
+TEST_CASE("a worker that is asked to leave gives back what it holds") {
+  const std::string stage = bench().cut();
+  Process ventilator = bench().ventilator(stage);
+  Process sink = bench().sink(stage);
+  Process leaving = bench().worker(stage);
+  REQUIRE(wait_for_results(stage, 3));
+  leaving.signal(SIGTERM);
+  CHECK(leaving.wait(10) == 3);
+  Process heir = bench().worker(stage);
+  CHECK(sink.wait() == 0);
+  CHECK(ventilator.wait() == 0);
+  check_result(stage + ".ply");
+}
+
+TEST_CASE("random bytes sent to the sockets are refused and the run goes on") {
+  const std::string stage = bench().cut();
+  Process ventilator = bench().ventilator(stage);
+  Process sink = bench().sink(stage);
+  std::optional<std::uint16_t> port;
+  REQUIRE(wait_until([&] { return (port = port_of(stage)).has_value(); }));
+  std::mt19937 random(7);
+  const auto blob = [&](std::size_t size) {
+    std::string bytes(size, '\0');
+    for (char& c : bytes) c = static_cast<char>(random());
+    return bytes;
+  };
+  for (int i = 0; i < 50; ++i) send_bytes(*port, blob(random() % 5000));
+  send_bytes(*port, "GET / HTTP/1.1\r\n\r\n");
+  const std::string greeting = std::string("\xff\0\0\0\0\0\0\0\x01\x7f\x03\0NULL", 16);
+  for (int i = 0; i < 20; ++i) send_bytes(*port, greeting + std::string(48, '\0') + blob(300));
+  Process worker = bench().worker(stage);
+  REQUIRE(wait_for_results(stage, 2));
+  for (int i = 0; i < 50; ++i) send_bytes(*port, blob(100));
+  for (std::uint16_t near = 1; near < 6; ++near) {  // lanes and results are likely here
+    send_bytes(static_cast<std::uint16_t>(*port + near), blob(500));
+  }
+  CHECK(sink.wait() == 0);
+  CHECK(ventilator.wait() == 0);
+  CHECK(worker.wait() == 0);
+  check_result(stage + ".ply");
+}
+
+TEST_CASE("a staged part with a flipped byte, or cut short, is named and nothing is written") {
+  for (const bool cut_short : {false, true}) {
+    CAPTURE(cut_short);
+    const std::string stage = bench().cut();
+    const fs::path part = fs::path(stage) / "parts" / "000005.part";
+    if (cut_short) {
+      fs::resize_file(part, fs::file_size(part) - 1);
+    } else {
+      std::fstream file(part, std::ios::in | std::ios::out | std::ios::binary);
+      file.seekp(1000);
+      file.put('\x55');
+    }
+    const Ran ran = bench().meshfarm({"replay", stage, "-o", stage + ".ply", "--ratio", "0.02",
+                                      "--workers", "2"});
+    CHECK(ran.code == 1);
+    CHECK(ran.err.find("000005.part") != std::string::npos);
+    CHECK_FALSE(fs::exists(stage + ".ply"));
+  }
+}
+
+TEST_CASE("an accepted result that is damaged later is noticed and made again") {
+  const std::string stage = bench().cut();
+  REQUIRE(bench().meshfarm({"replay", stage, "-o", stage + ".ply", "--ratio", "0.02"}).code == 0);
+  for (const auto& entry : fs::directory_iterator(fs::path(stage) / "results")) {
+    std::fstream file(entry.path(), std::ios::in | std::ios::out | std::ios::binary);
+    file.seekp(200);
+    file.put('\x55');
+    break;
+  }
+  const std::string output = stage + "-again.ply";
+  const Ran ran = bench().meshfarm({"replay", stage, "-o", output, "--ratio", "0.02"});
+  CHECK(ran.code == 0);
+  check_result(output);
+}
+
+TEST_CASE("a damaged manifest is one clear line") {
+  const std::string stage = bench().cut();
+  std::ofstream(fs::path(stage) / "manifest", std::ios::app) << "x";
+  const Ran ran = bench().meshfarm({"replay", stage, "-o", stage + ".ply", "--ratio", "0.02"});
+  CHECK(ran.code == 1);
+  CHECK(ran.err == "meshfarm replay: error: " + (fs::path(stage) / "manifest").string() + ": 1 bytes too many at byte " +
+                       std::to_string(fs::file_size(fs::path(stage) / "manifest") - 1) + "\n");
+}
+
+TEST_CASE("two runs of different targets do not mix") {
+  const std::string stage = bench().cut();
+  Process ventilator = bench().ventilator(stage);
+  Process stranger = bench().start({"sink", stage, "--ratio", "0.5", "--bind", "127.0.0.1", "-o",
+                                    stage + "-other.ply", "--wait", "1"});
+  CHECK(stranger.wait() == 3);
+  CHECK(stranger.err().find("another run") != std::string::npos);
+  Process sink = bench().sink(stage);
+  Process worker = bench().worker(stage);
+  CHECK(sink.wait() == 0);
+  CHECK(ventilator.wait() == 0);
+  check_result(stage + ".ply");
+}

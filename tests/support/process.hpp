@@ -1,0 +1,112 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <fcntl.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <csignal>
+#include <filesystem>
+#include <fstream>
+#include <functional>
+#include <iterator>
+#include <stdexcept>
+#include <string>
+#include <thread>
+#include <utility>
+#include <vector>
+
+namespace meshfarm::test {
+
+inline std::string read_text(const std::filesystem::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+/// Asks until `done` says yes, at most `seconds`. Returns whether it did.
+inline bool wait_until(const std::function<bool()>& done, double seconds = 60) {
+  const auto end = std::chrono::steady_clock::now() + std::chrono::duration<double>(seconds);
+  while (!done()) {
+    if (std::chrono::steady_clock::now() > end) return false;
+    std::this_thread::sleep_for(std::chrono::milliseconds(2));
+  }
+  return true;
+}
+
+/// A meshfarm process. Its output goes to files beside `log`; it is killed if it outlives its owner.
+class Process {
+ public:
+  Process(std::vector<std::string> words, const std::filesystem::path& log)
+      : out_(log.string() + ".out"), err_(log.string() + ".err") {
+    pid_ = ::fork();
+    if (pid_ < 0) throw std::runtime_error("cannot fork");
+    if (pid_ == 0) become(words);
+  }
+  ~Process() {
+    if (pid_ > 0) {
+      ::kill(pid_, SIGKILL);
+      ::waitpid(pid_, nullptr, 0);
+    }
+  }
+  Process(Process&& other) noexcept
+      : pid_(std::exchange(other.pid_, -1)), out_(other.out_), err_(other.err_) {}
+  Process& operator=(Process&& other) noexcept {
+    std::swap(pid_, other.pid_);
+    std::swap(out_, other.out_);
+    std::swap(err_, other.err_);
+    return *this;
+  }
+
+  pid_t pid() const { return pid_; }
+  void signal(int number) const { ::kill(pid_, number); }
+  bool running() { return pid_ > 0 && ::waitid(P_PID, static_cast<id_t>(pid_), &info_, WEXITED | WNOHANG | WNOWAIT) == 0 && info_.si_pid == 0; }
+  /// The exit code, or minus the signal that ended it; -1000 if it did not end in time.
+  int wait(double seconds = 120) {
+    int status = 0;
+    if (!wait_until([&] { return ::waitpid(pid_, &status, WNOHANG) == pid_; }, seconds)) {
+      return -1000;
+    }
+    pid_ = -1;
+    return WIFEXITED(status) ? WEXITSTATUS(status) : -WTERMSIG(status);
+  }
+  std::string out() const { return read_text(out_); }
+  std::string err() const { return read_text(err_); }
+
+ private:
+  [[noreturn]] void become(const std::vector<std::string>& words) const {
+    const auto redirect = [](const std::string& path, int to) {
+      const int fd = ::open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0644);
+      ::dup2(fd, to);
+    };
+    redirect(out_, STDOUT_FILENO);
+    redirect(err_, STDERR_FILENO);
+    std::vector<char*> argv;
+    static std::string program = MESHFARM_PROGRAM;
+    argv.push_back(program.data());
+    for (const std::string& word : words) argv.push_back(const_cast<char*>(word.c_str()));
+    argv.push_back(nullptr);
+    ::execv(program.c_str(), argv.data());
+    ::_exit(127);
+  }
+
+  pid_t pid_ = -1;
+  siginfo_t info_{};
+  std::string out_;
+  std::string err_;
+};
+
+/// Runs a command to its end and returns its exit code; `err` and `out` take what it said.
+struct Ran {
+  int code = 0;
+  std::string out;
+  std::string err;
+};
+inline Ran run_meshfarm(const std::vector<std::string>& words, const std::filesystem::path& log) {
+  Process process(words, log);
+  const int code = process.wait();
+  return {code, process.out(), process.err()};
+}
+
+}  // namespace meshfarm::test

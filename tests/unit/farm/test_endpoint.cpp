@@ -1,0 +1,56 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#include <fstream>
+
+#include <doctest/doctest.h>
+
+#include <meshfarm/farm/endpoint.hpp>
+#include <meshfarm/util/errors.hpp>
+
+#include "support/temp_folder.hpp"
+
+namespace meshfarm {
+namespace {
+
+const Endpoint k_endpoint{3, 7, "tcp://10.0.0.1:5555", "host", 42};
+
+TEST_CASE("an endpoint comes back as it was, and damaged not at all") {
+  const std::string file = encode_endpoint(k_endpoint);
+  CHECK(decode_endpoint(file, "e") == k_endpoint);
+  for (std::size_t size = 0; size < file.size(); ++size) {
+    CHECK_THROWS_AS(decode_endpoint(file.substr(0, size), "e"), DataError);
+  }
+  for (std::size_t i = 0; i < file.size(); ++i) {
+    std::string changed = file;
+    changed[i] = static_cast<char>(changed[i] ^ 4);
+    CHECK_THROWS_AS(decode_endpoint(changed, "e"), DataError);
+  }
+}
+
+TEST_CASE("each publisher gets an epoch of its own, above all that there are") {
+  const test::TempFolder folder;
+  const Stage stage = Stage::create(folder.path());
+  CHECK(publish_endpoint(stage, k_endpoint, "a").epoch == 1);
+  CHECK(publish_endpoint(stage, k_endpoint, "b").epoch == 2);
+  stage.publish(EndpointName{9}, "damaged");
+  CHECK(publish_endpoint(stage, k_endpoint, "c").epoch == 10);
+
+  EndpointList list;
+  const std::vector<Endpoint> seen = list.look(stage);
+  REQUIRE(seen.size() == 3);
+  CHECK(seen[2].epoch == 10);
+  CHECK(seen[2].address == k_endpoint.address);
+  publish_endpoint(stage, k_endpoint, "d");
+  CHECK(list.look(stage).back().epoch == 11);
+}
+
+TEST_CASE("an endpoint under another number than its own is left out") {
+  const test::TempFolder folder;
+  const Stage stage = Stage::create(folder.path());
+  stage.publish(EndpointName{5}, encode_endpoint(k_endpoint));
+  EndpointList list;
+  CHECK(list.look(stage).empty());
+}
+
+}  // namespace
+}  // namespace meshfarm

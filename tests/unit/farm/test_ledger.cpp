@@ -1,0 +1,59 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#include <filesystem>
+
+#include <doctest/doctest.h>
+
+#include <meshfarm/farm/ledger.hpp>
+#include <meshfarm/util/errors.hpp>
+
+#include "support/temp_folder.hpp"
+
+namespace meshfarm {
+namespace {
+
+AcceptedJob accepted(std::uint64_t key, std::uint32_t attempt) {
+  return {{key}, {{to_string(ResultName{key, attempt, 5}), 10, 20}, "summary"}};
+}
+
+TEST_CASE("a record comes back as it was, cut or forged not at all") {
+  const std::string record = encode_accepted(accepted(1, 2));
+  const AcceptedJob back = decode_accepted(record, "r");
+  CHECK(back.key == JobKey{1});
+  CHECK(back.output.file == accepted(1, 2).output.file);
+  CHECK(back.output.summary == "summary");
+  for (std::size_t size = 0; size < record.size(); ++size) {
+    CHECK_THROWS_AS(decode_accepted(record.substr(0, size), "r"), DataError);
+  }
+  AcceptedJob forged = accepted(1, 2);
+  for (const std::string name : {"../../etc/passwd", "manifest", "", "results/x"}) {
+    forged.output.file.name = name;
+    CHECK_THROWS_AS(decode_accepted(encode_accepted(forged), "r"), DataError);
+  }
+  forged.output.file.name = accepted(2, 2).output.file.name;  // another job's
+  CHECK_THROWS_AS(decode_accepted(encode_accepted(forged), "r"), DataError);
+}
+
+TEST_CASE("the journals of a stage are read in order, torn and foreign ones as far as they go") {
+  const test::TempFolder folder;
+  const Stage stage = Stage::create(folder.path());
+  open_journal(stage).append(encode_accepted(accepted(1, 1)));
+  const std::vector<std::string> records = {encode_accepted(accepted(1, 2)),
+                                            encode_accepted(accepted(2, 1)),
+                                            encode_accepted(accepted(3, 1))};
+  open_journal(stage).append_all(records);
+  REQUIRE(stage.journals().size() == 2);
+  const auto second = stage.path(JournalName{2});
+  std::filesystem::resize_file(second, std::filesystem::file_size(second) - 1);
+  stage.publish(JournalName{7}, "this is no journal");
+  open_journal(stage).append("no record of ours");
+
+  const auto all = read_journals(stage);
+  REQUIRE(all.size() == 2);
+  CHECK(all.at({1}).file == accepted(1, 2).output.file);
+  CHECK(all.at({2}).file == accepted(2, 1).output.file);
+  CHECK(stage.journals().back() == 8);
+}
+
+}  // namespace
+}  // namespace meshfarm

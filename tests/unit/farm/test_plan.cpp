@@ -1,0 +1,153 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#include <string>
+#include <vector>
+
+#include <doctest/doctest.h>
+
+#include <meshfarm/farm/plan.hpp>
+
+#include "farm_fixture.hpp"
+
+namespace meshfarm::test {
+namespace {
+
+JobOutput output_of(JobKey key) {
+  return {{to_string(ResultName{key.value, 1, 1}), 1, 1}, "made"};
+}
+
+Plan started_plan(JobSource source) {
+  Plan plan(std::move(source), 3);
+  plan.restart({});
+  return plan;
+}
+
+TEST_CASE("nothing is known before the sink has told what it has") {
+  Plan plan(one_round(3), 3);
+  CHECK_FALSE(plan.started());
+  CHECK_FALSE(plan.issue());
+  CHECK_FALSE(plan.complete());
+}
+
+TEST_CASE("the largest job is given out first, equals as asked for") {
+  const std::vector<Job> jobs = {make_job("a", 1), make_job("b", 5), make_job("c", 3),
+                                 make_job("d", 5)};
+  Plan plan = started_plan([&](std::span<const AcceptedJob> accepted) {
+    return accepted.empty() ? jobs : std::vector<Job>{};
+  });
+  std::string order;
+  while (const auto issued = plan.issue()) order += issued->job.parameters;
+  CHECK(order == "bdca");
+  CHECK(plan.counts().running == 4);
+  CHECK(plan.counts().cost_known == 14);
+}
+
+TEST_CASE("a source that wants nothing is complete at once") {
+  CHECK(started_plan(one_round(0)).complete());
+}
+
+TEST_CASE("a job given back is ready again under another attempt, without blame") {
+  Plan plan = started_plan(one_round(1));
+  for (std::uint32_t attempt = 1; attempt <= 10; ++attempt) {
+    const auto issued = plan.issue();
+    REQUIRE(issued);
+    CHECK(issued->attempt == attempt);
+    CHECK_FALSE(plan.issue());
+    plan.give_back(issued->key);
+    CHECK(plan.state(issued->key) == JobState::ready);
+  }
+  CHECK(plan.counts().retries == 9);
+}
+
+TEST_CASE("three failed attempts give a job up, with their reasons") {
+  Plan plan = started_plan(one_round(1));
+  for (const std::string reason : {"first", "second", "third"}) {
+    CHECK_FALSE(plan.stuck());
+    const auto issued = plan.issue();
+    REQUIRE(issued);
+    plan.fail_attempt(issued->key, reason, false);
+  }
+  CHECK(plan.stuck());
+  CHECK_FALSE(plan.complete());
+  CHECK_FALSE(plan.issue());
+  REQUIRE(plan.lost().size() == 1);
+  CHECK(plan.lost()[0].reasons == "first; second; third");
+}
+
+TEST_CASE("an input that is bad for good fails its job at once, the others go on") {
+  Plan plan = started_plan(one_round(2));
+  plan.fail_attempt(plan.issue()->key, "no mesh", true);
+  CHECK(plan.counts().failed == 1);
+  CHECK_FALSE(plan.stuck());
+  const JobKey other = plan.issue()->key;
+  CHECK(plan.accept(other, output_of(other)));
+  CHECK(plan.stuck());
+}
+
+TEST_CASE("an accepted job stays accepted") {
+  Plan plan = started_plan(one_round(2));
+  const auto issued = plan.issue();
+  CHECK(plan.accept(issued->key, output_of(issued->key)));
+  CHECK_FALSE(plan.accept(issued->key, output_of(issued->key)));
+  plan.give_back(issued->key);
+  plan.fail_attempt(issued->key, "late", true);
+  CHECK(plan.state(issued->key) == JobState::done);
+  CHECK(plan.counts().done == 1);
+  CHECK_FALSE(plan.accept(JobKey{99}, output_of(JobKey{99})));
+  CHECK_FALSE(plan.state(JobKey{99}));
+}
+
+TEST_CASE("a late result counts even for a job that waits or was given up") {
+  Plan plan = started_plan(one_round(2));
+  const JobKey waits = plan.issue()->key;
+  plan.give_back(waits);
+  CHECK(plan.accept(waits, output_of(waits)));
+  const JobKey failed = plan.issue()->key;
+  plan.fail_attempt(failed, "bad", true);
+  CHECK(plan.stuck());
+  CHECK(plan.accept(failed, output_of(failed)));
+  CHECK(plan.complete());
+}
+
+TEST_CASE("rounds follow each other, and a restart goes straight to the round that is open") {
+  const JobSource source = [](std::span<const AcceptedJob> accepted) -> std::vector<Job> {
+    if (accepted.size() == 0) return {make_job("a"), make_job("b")};
+    if (accepted.size() == 2) return {make_job("c")};
+    return {};
+  };
+  const JobKey a = key_of(make_job("a"));
+  const JobKey b = key_of(make_job("b"));
+  const JobKey c = key_of(make_job("c"));
+  Plan plan = started_plan(source);
+  plan.accept(a, output_of(a));
+  CHECK_FALSE(plan.state(c));
+  plan.accept(b, output_of(b));
+  CHECK(plan.state(c) == JobState::ready);
+  CHECK(plan.issue()->key == c);
+
+  SUBCASE("the sink knows all") {
+    plan.restart({{a, output_of(a)}, {b, output_of(b)}});
+    CHECK(plan.state(c) == JobState::running);
+    CHECK(plan.counts().running == 1);
+    CHECK(plan.accept(c, output_of(c)));
+    CHECK(plan.complete());
+  }
+  SUBCASE("the sink lost a job of the first round") {
+    plan.restart({{a, output_of(a)}});
+    CHECK(plan.state(b) == JobState::ready);
+    CHECK(plan.counts().running == 0);  // c is not wanted yet
+    plan.give_back(c);                  // its worker is lost meanwhile
+    CHECK(plan.issue()->key == b);
+    CHECK_FALSE(plan.issue());
+    plan.accept(b, output_of(b));
+    CHECK(plan.issue()->key == c);
+  }
+  SUBCASE("the sink has all") {
+    plan.restart({{a, output_of(a)}, {b, output_of(b)}, {c, output_of(c)}});
+    CHECK(plan.complete());
+    CHECK(plan.counts().done == 3);
+  }
+}
+
+}  // namespace
+}  // namespace meshfarm::test

@@ -1,0 +1,219 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <meshfarm/io/boundary_file.hpp>
+#include <meshfarm/io/part_file.hpp>
+#include <meshfarm/partition/cut.hpp>
+#include <meshfarm/util/errors.hpp>
+#include <meshfarm/util/file.hpp>
+#include <set>
+
+#include "partition/bucket_file.hpp"
+#include "partition/part_builder.hpp"
+#include "support/memory_source.hpp"
+#include "support/meshes.hpp"
+#include "support/temp_folder.hpp"
+
+using namespace meshfarm;
+
+namespace {
+
+/// A triangle as its corners' positions, turned so that the least comes first: the same triangle in
+/// whatever mesh and numbering.
+using Corners = std::array<std::array<double, 3>, 3>;
+
+Corners corners_of(Vec3 a, Vec3 b, Vec3 c) {
+  Corners corners = {{{a.x, a.y, a.z}, {b.x, b.y, b.z}, {c.x, c.y, c.z}}};
+  std::rotate(corners.begin(), std::min_element(corners.begin(), corners.end()), corners.end());
+  return corners;
+}
+
+std::vector<Corners> triangles_of(const Mesh& mesh) {
+  std::vector<Corners> all;
+  for (const auto& [a, b, c] : mesh.triangles) {
+    all.push_back(corners_of(mesh.positions[a], mesh.positions[b], mesh.positions[c]));
+  }
+  std::sort(all.begin(), all.end());
+  return all;
+}
+
+struct CutMesh {
+  Manifest manifest;
+  std::vector<Part> parts;
+  std::vector<BoundaryTriangle> boundary;
+};
+
+CutMesh cut(Mesh mesh, const CutOptions& options, const std::filesystem::path& folder,
+            PositionType positions = PositionType::float64) {
+  test::MemorySource source(std::move(mesh), positions);
+  const Stage stage = Stage::create(folder);
+  CutMesh made{cut_mesh(source, stage, options), {}, {}};
+  for (const PartEntry& entry : made.manifest.parts) {
+    made.parts.push_back(decode_part(stage.read(entry.file), "part"));
+  }
+  made.boundary = decode_boundary(stage.read(made.manifest.boundary), "boundary");
+  return made;
+}
+
+/// All triangles of the cut, by position.
+std::vector<Corners> triangles_of(const CutMesh& made) {
+  std::vector<Corners> all;
+  for (const Part& part : made.parts) {
+    const auto some = triangles_of(part.mesh);
+    all.insert(all.end(), some.begin(), some.end());
+  }
+  const auto at = [&](BoundaryCorner corner) {
+    return made.parts[corner.part].mesh.positions[corner.local];
+  };
+  for (const auto& [a, b, c] : made.boundary) all.push_back(corners_of(at(a), at(b), at(c)));
+  std::sort(all.begin(), all.end());
+  return all;
+}
+
+}  // namespace
+
+TEST_CASE("parts and boundary together are the input, boundary vertices first") {
+  const Mesh mesh = test::torus(60, 40);
+  const test::TempFolder folder;
+  const CutMesh made = cut(mesh, {.parts = 7}, folder.path());
+  CHECK(triangles_of(made) == triangles_of(mesh));
+  CHECK(made.parts.size() == 7);
+  CHECK(made.manifest.triangles() == mesh.triangles.size());
+  CHECK(made.manifest.input_vertices == mesh.positions.size());
+
+  std::vector<std::set<std::uint32_t>> used(made.parts.size());
+  for (const BoundaryTriangle& t : made.boundary) {
+    std::set<std::uint32_t> parts;
+    for (const BoundaryCorner& corner : t) {
+      used[corner.part].insert(corner.local);
+      parts.insert(corner.part);
+    }
+    CHECK(parts.size() >= 2);
+  }
+  for (std::size_t p = 0; p < made.parts.size(); ++p) {
+    // Every vertex at the head is used by a boundary triangle, and no other is.
+    CHECK(used[p].size() == made.parts[p].boundary_vertices);
+    CHECK(*used[p].rbegin() == made.parts[p].boundary_vertices - 1);
+    CHECK(made.manifest.parts[p].triangles == made.parts[p].mesh.triangles.size());
+  }
+}
+
+TEST_CASE("the same cut from any number of threads") {
+  const test::TempFolder folder;
+  const Mesh mesh = test::torus(50, 50);
+  cut(mesh, {.parts = 5, .threads = 1}, folder.path() / "1");
+  cut(mesh, {.parts = 5, .threads = 4}, folder.path() / "4");
+  for (const char* name : {"parts/000000.part", "parts/000004.part", "boundary"}) {
+    CHECK(read_file(folder.path() / "1" / name) == read_file(folder.path() / "4" / name));
+  }
+}
+
+TEST_CASE("coincident vertices are welded across the whole mesh, seams included") {
+  // Every triangle with corners of its own, as in an STL file.
+  const Mesh mesh = test::torus(40, 30);
+  Mesh soup;
+  for (const Triangle& t : mesh.triangles) {
+    for (const std::uint32_t corner : t) soup.positions.push_back(mesh.positions[corner]);
+    const auto n = static_cast<std::uint32_t>(soup.positions.size());
+    soup.triangles.push_back({n - 3, n - 2, n - 1});
+  }
+  const test::TempFolder folder;
+  const CutMesh welded = cut(soup, {.parts = 4, .weld = Weld::exact}, folder.path() / "exact");
+  CHECK(triangles_of(welded) == triangles_of(mesh));
+  CHECK(welded.manifest.merged_vertices == soup.positions.size() - mesh.positions.size());
+  std::uint64_t vertices = 0;
+  for (const PartEntry& part : welded.manifest.parts) vertices += part.vertices;
+  CHECK(vertices == mesh.positions.size());
+  for (const BoundaryTriangle& t : welded.boundary) {
+    for (const BoundaryCorner& c : t) CHECK(c.local < welded.parts[c.part].boundary_vertices);
+  }
+
+  const CutMesh apart = cut(soup, {.parts = 4, .weld = Weld::off}, folder.path() / "off");
+  CHECK(apart.manifest.merged_vertices == 0);
+  vertices = 0;
+  for (const PartEntry& part : apart.manifest.parts) vertices += part.vertices;
+  CHECK(vertices == soup.positions.size());
+}
+
+TEST_CASE("degenerate triangles go, wherever they lie, and are counted") {
+  Mesh mesh = test::torus(40, 30);
+  const std::size_t clean = mesh.triangles.size();
+  for (std::uint32_t i = 0; i < 1200; i += 10) {
+    mesh.triangles.push_back({i, i, (i + 600) % 1200});  // two equal corners, often of two parts
+  }
+  const test::TempFolder folder;
+  const CutMesh made = cut(mesh, {.parts = 4}, folder.path());
+  CHECK(made.manifest.dropped_degenerate == 120);
+  CHECK(made.manifest.triangles() == clean);
+  CHECK(made.manifest.input_triangles == clean + 120);
+}
+
+TEST_CASE("a boundary triangle that comes twice is kept once") {
+  Mesh mesh = test::torus(40, 30);
+  const std::vector<Triangle> once = mesh.triangles;
+  for (const auto& [a, b, c] : once) mesh.triangles.push_back({c, a, b});
+  const test::TempFolder folder;
+  const CutMesh made = cut(mesh, {.parts = 4}, folder.path());
+  const CutMesh clean = cut(test::torus(40, 30), {.parts = 4}, folder.path() / "clean");
+  CHECK(made.boundary == clean.boundary);
+  CHECK(made.manifest.dropped_duplicate == clean.boundary.size());
+}
+
+TEST_CASE("float positions stay as they are") {
+  Mesh mesh = test::icosphere(3);
+  for (Vec3& p : mesh.positions) p = rounded(p, PositionType::float32);
+  const test::TempFolder folder;
+  const CutMesh made = cut(mesh, {.parts = 3}, folder.path(), PositionType::float32);
+  CHECK(triangles_of(made) == triangles_of(mesh));
+}
+
+TEST_CASE("meshes of almost nothing") {
+  const test::TempFolder folder;
+  const CutMesh empty = cut({}, {}, folder.path() / "empty");
+  CHECK(empty.manifest.triangles() == 0);
+  const CutMesh points = cut({{{0, 0, 0}, {1, 1, 1}}, {}}, {.parts = 2}, folder.path() / "points");
+  CHECK(points.manifest.triangles() == 0);
+  const CutMesh one = cut(test::tetrahedron(), {}, folder.path() / "one");
+  CHECK(one.parts.size() == 1);
+  CHECK(triangles_of(one) == triangles_of(test::tetrahedron()));
+  // All at one place: one cell, one part, whatever was asked for.
+  const CutMesh place =
+      cut({{{1, 1, 1}, {1, 1, 1}, {1, 1, 1}}, {{0, 1, 2}}}, {.parts = 9}, folder.path() / "place");
+  CHECK(place.parts.size() == 1);
+  CHECK(place.manifest.dropped_degenerate == 1);
+}
+
+TEST_CASE("a stop ends the cut and publishes no manifest") {
+  const test::TempFolder folder;
+  const std::atomic<bool> stop = true;
+  CHECK_THROWS_AS(cut(test::torus(20, 20), {.stop = &stop}, folder.path()), IncompleteError);
+  CHECK_FALSE(std::filesystem::exists(folder.path() / "manifest"));
+}
+
+TEST_CASE("the number of parts depends on the size alone") {
+  CHECK(default_parts(0) == 1);
+  CHECK(default_parts(99'999) == 1);
+  CHECK(default_parts(200'000) == 4);
+  CHECK(default_parts(871'414) == 16);
+  CHECK(default_parts(10'000'000) == 16);
+  CHECK(default_parts(28'000'000) == 28);
+  CHECK(default_parts(std::uint64_t{1} << 60) == 1'000'000);
+}
+
+TEST_CASE("buckets give back what each was given, through full buffers too") {
+  const test::TempFolder folder;
+  BucketFile buckets(folder.path(), 10'000);  // buffers of the smallest size
+  for (std::uint32_t i = 0; i < 200'000; ++i) buckets.put(i % 7, i);
+  buckets.finish();
+  for (std::uint32_t b = 0; b < 7; ++b) {
+    const auto values = buckets.read<std::uint32_t>(b);
+    REQUIRE(values.size() == (200'000 - b + 6) / 7);
+    for (std::uint32_t i = 0; i < values.size(); ++i) {
+      if (values[i] != i * 7 + b) FAIL("bucket " << b << " at " << i);
+    }
+  }
+  CHECK(buckets.read<std::uint32_t>(9999).empty());
+  CHECK(std::filesystem::is_empty(folder.path()));
+}

@@ -1,0 +1,173 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+//
+// The pipeline without its processes: cut, jobs, stitch and finish called in turn.
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <meshfarm/geometry/topology.hpp>
+#include <meshfarm/io/result_file.hpp>
+#include <meshfarm/partition/cut.hpp>
+#include <meshfarm/pipeline/assemble.hpp>
+#include <meshfarm/pipeline/budget.hpp>
+#include <meshfarm/pipeline/job_table.hpp>
+#include <meshfarm/util/errors.hpp>
+#include <meshfarm/util/file.hpp>
+
+#include "support/memory_source.hpp"
+#include "support/meshes.hpp"
+#include "support/temp_folder.hpp"
+
+using namespace meshfarm;
+
+namespace {
+
+struct Made {
+  RunSummary summary;
+  Mesh mesh;
+  std::string bytes;
+  std::size_t jobs = 0;
+};
+
+Made simplify(Mesh mesh, std::uint32_t parts, const RunOptions& run,
+              const std::filesystem::path& folder) {
+  test::MemorySource source(std::move(mesh));
+  const Stage stage = Stage::create(folder);
+  const Manifest manifest = cut_mesh(source, stage, {.parts = parts});
+  const JobSource jobs_of = make_job_source(manifest, run);
+  const JobContext context{stage, 1, 7, [](std::uint64_t) { return true; }};
+  std::vector<AcceptedJob> accepted;
+  for (std::vector<Job> jobs = jobs_of(accepted); !jobs.empty(); jobs = jobs_of(accepted)) {
+    for (const Job& job : jobs) accepted.push_back({key_of(job), do_job(job, context)});
+  }
+  Made made;
+  made.jobs = accepted.size();
+  const auto output = folder / "out.ply";
+  made.summary = assemble(stage, manifest, run, accepted, {.output = output});
+  made.mesh = read_mesh(*open_mesh(output));
+  made.bytes = read_file(output);
+  return made;
+}
+
+/// A flat sheet but for one corner, which is rough: nearly all detail is in few parts.
+Mesh sheet_with_a_rough_corner() {
+  Mesh mesh = test::grid(120, 120);
+  for (Vec3& p : mesh.positions) {
+    if (p.x < 25 && p.y < 25) p.z = std::sin(p.x * 1.7) * std::cos(p.y * 2.3);
+  }
+  return mesh;
+}
+
+}  // namespace
+
+TEST_CASE("a closed surface stays closed and gets its count, from any number of parts") {
+  const test::TempFolder folder;
+  for (const std::uint32_t parts : {1U, 3U, 12U}) {
+    CAPTURE(parts);
+    const Made made = simplify(test::torus(100, 60), parts, {.triangles = 600},
+                               folder.path() / std::to_string(parts));
+    CHECK(made.summary.triangles == 600);
+    CHECK(made.summary.why_not_exact.empty());
+    const Topology t = measure_topology(made.mesh);
+    CHECK(t.triangles == 600);
+    CHECK(t.components == 1);
+    CHECK(t.euler == 0);
+    CHECK(t.border_edges == 0);
+    CHECK(t.nonmanifold_edges == 0);
+    CHECK(t.orientation_conflicts == 0);
+    CHECK(t.degenerate + t.zero_area + t.duplicate == 0);
+    for (const Vec3& p : made.mesh.positions) {
+      const double ring = std::hypot(p.x, p.y) - 1;
+      CHECK(std::hypot(ring, p.z) == doctest::Approx(0.4).epsilon(0.06));
+    }
+  }
+}
+
+TEST_CASE("an odd count of a closed surface is one fewer, and the summary says why") {
+  const test::TempFolder folder;
+  const Made made = simplify(test::torus(60, 40), 4, {.triangles = 501}, folder.path());
+  CHECK(made.summary.triangles == 500);
+  CHECK_FALSE(made.summary.why_not_exact.empty());
+}
+
+TEST_CASE("a surface that cannot go so far says so") {
+  const test::TempFolder folder;
+  const Made made = simplify(test::icosphere(2), 2, {.triangles = 1}, folder.path());
+  CHECK(made.summary.triangles == 4);
+  CHECK(made.summary.why_not_exact.find("topology") != std::string::npos);
+  const Made more = simplify(test::icosphere(1), 2, {.triangles = 500}, folder.path() / "more");
+  CHECK(more.summary.triangles == 80);
+  CHECK(more.summary.why_not_exact == "the input has no more");
+}
+
+TEST_CASE("one threshold gives the rough corner what the flat rest does not need") {
+  const test::TempFolder folder;
+  const auto rough = [](const Mesh& mesh) {
+    return std::count_if(mesh.triangles.begin(), mesh.triangles.end(), [&](const Triangle& t) {
+      return mesh.positions[t[0]].x < 26 && mesh.positions[t[0]].y < 26;
+    });
+  };
+  const Made made =
+      simplify(sheet_with_a_rough_corner(), 16, {.ratio = 0.03}, folder.path() / "threshold");
+  CHECK(made.summary.triangles == 864);
+  CHECK(made.jobs > 16);  // the rough parts were asked for again
+  CHECK(rough(made.mesh) > 550);
+  const Made uniform = simplify(sheet_with_a_rough_corner(), 16,
+                                {.ratio = 0.03,
+                                 .allocation = Allocation::uniform,
+                                 .finish = Finish::boundary},
+                                folder.path() / "uniform");
+  CHECK(rough(uniform.mesh) < 400);
+}
+
+TEST_CASE("the paper's way reaches about its count without touching the inside again") {
+  const test::TempFolder folder;
+  const Made made = simplify(test::torus(100, 60), 6,
+                             {.ratio = 0.1,
+                              .allocation = Allocation::uniform,
+                              .finish = Finish::boundary},
+                             folder.path());
+  CHECK(made.summary.triangles >= 1200);
+  CHECK(made.summary.triangles < 1500);
+  const Topology t = measure_topology(made.mesh);
+  CHECK(t.euler == 0);
+  CHECK(t.border_edges == 0);
+}
+
+TEST_CASE("the same bytes every time") {
+  const test::TempFolder folder;
+  const Made a = simplify(test::torus(80, 50), 5, {.ratio = 0.05}, folder.path() / "a");
+  const Made b = simplify(test::torus(80, 50), 5, {.ratio = 0.05}, folder.path() / "b");
+  CHECK(a.bytes == b.bytes);
+}
+
+TEST_CASE("a result of another part is refused, and a stop writes nothing") {
+  const test::TempFolder folder;
+  test::MemorySource source(test::torus(60, 40));
+  const Stage stage = Stage::create(folder.path());
+  const Manifest manifest = cut_mesh(source, stage, {.parts = 3});
+  const RunOptions run{.ratio = 0.5};
+  const JobContext context{stage, 1, 7, [](std::uint64_t) { return true; }};
+  std::vector<AcceptedJob> accepted;
+  for (const Job& job : make_job_source(manifest, run)({})) {
+    accepted.push_back({key_of(job), do_job(job, context)});
+  }
+  const auto output = folder.path() / "out.ply";
+  const std::atomic<bool> stop = true;
+  CHECK_THROWS_AS(assemble(stage, manifest, run, accepted, {.output = output, .stop = &stop}),
+                  IncompleteError);
+  accepted[1].output = accepted[2].output;
+  if (manifest.parts[1].boundary_vertices != manifest.parts[2].boundary_vertices) {
+    CHECK_THROWS_AS(assemble(stage, manifest, run, accepted, {.output = output}), DataError);
+  }
+  CHECK_FALSE(std::filesystem::exists(output));
+}
+
+TEST_CASE("an unknown kind of job, or one without its part, is refused") {
+  const test::TempFolder folder;
+  const Stage stage = Stage::create(folder.path());
+  const JobContext context{stage, 1, 7, [](std::uint64_t) { return true; }};
+  CHECK_THROWS_AS(do_job({"paint", {}, "", 0}, context), DataError);
+  CHECK_THROWS_AS(do_job({"simplify", {}, "", 0}, context), DataError);
+}

@@ -1,0 +1,163 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#include <doctest/doctest.h>
+
+#include <meshfarm/pipeline/budget.hpp>
+#include <meshfarm/pipeline/simplify_job.hpp>
+#include <meshfarm/util/errors.hpp>
+
+using namespace meshfarm;
+
+namespace {
+
+Rung rung(std::int32_t level, std::uint64_t triangles) {
+  return {level, triangles / 2, triangles, triangles};
+}
+
+Manifest manifest_of(std::uint32_t parts, std::uint64_t triangles_each) {
+  Manifest m;
+  m.box.add({0, 0, 0});
+  m.box.add({1, 1, 1});
+  for (std::uint32_t p = 0; p < parts; ++p) {
+    m.parts.push_back({{to_string(PartName{p}), 100, p}, triangles_each / 2, triangles_each, 10});
+  }
+  return m;
+}
+
+AcceptedJob accepted(const Job& job, std::vector<Rung> rungs) {
+  return {key_of(job), {{to_string(ResultName{key_of(job).value, 1, 1}), 1, 1},
+                        encode_summary({std::move(rungs), 0, 0})}};
+}
+
+}  // namespace
+
+TEST_CASE("the rung at a level is the coarsest that is not above it") {
+  const std::vector<Rung> ladder = {rung(3, 100), rung(5, 60), rung(6, 40), rung(9, 10)};
+  CHECK(rung_at(ladder, 2) == 0);  // none is: the finest there is
+  CHECK(rung_at(ladder, 3) == 0);
+  CHECK(rung_at(ladder, 4) == 0);
+  CHECK(rung_at(ladder, 5) == 1);
+  CHECK(rung_at(ladder, 8) == 2);
+  CHECK(rung_at(ladder, 99) == 3);
+}
+
+TEST_CASE("the common level is the coarsest that leaves enough") {
+  const std::vector<std::vector<Rung>> ladders = {{rung(1, 100), rung(2, 50), rung(3, 20)},
+                                                  {rung(1, 10), rung(3, 2)}};
+  CHECK(common_level(ladders, 22) == 3);
+  CHECK(common_level(ladders, 23) == 2);
+  CHECK(common_level(ladders, 60) == 2);
+  CHECK(common_level(ladders, 61) == 1);
+  CHECK(common_level(ladders, 1000) == 1);
+}
+
+TEST_CASE("levels and costs fit each other") {
+  const double unit = cost_unit(123.4);
+  for (const std::int32_t level : {0, 1, 7, 30, 50}) {
+    CHECK(level_of(level_cost(level, unit), unit) == level);
+    CHECK(level_of(level_cost(level, unit) * 1.001, unit) == level + 1);
+  }
+  CHECK(level_of(0, unit) == 0);
+  CHECK(level_of(0, 0) == 0);
+  CHECK(cost_unit(2) == 16 * cost_unit(1));
+}
+
+TEST_CASE("the first round asks for every part once, with the same parameters each time") {
+  const Manifest manifest = manifest_of(3, 100'000);
+  const RunOptions options{.ratio = 0.01};
+  const std::vector<Job> jobs = make_job_source(manifest, options)({});
+  REQUIRE(jobs.size() == 3);
+  CHECK(jobs[2].inputs == std::vector<FileRef>{manifest.parts[2].file});
+  CHECK(jobs[0].cost == 100'000);
+  CHECK(key_of(jobs[0]) == key_of(make_job_source(manifest, options)({})[0]));
+  CHECK(key_of(jobs[0]) != key_of(jobs[1]));
+  const SimplifyParameters p = decode_parameters(jobs[0].parameters);
+  CHECK(p.start_triangles > 2 * 1000);
+  CHECK(p.start_triangles < 10 * 1000);
+  CHECK(p.floor_triangles < 1000);
+}
+
+TEST_CASE("when the ladders reach the common level the run is complete") {
+  const Manifest manifest = manifest_of(2, 100'000);
+  const RunOptions options{.ratio = 0.01};
+  const JobSource source = make_job_source(manifest, options);
+  const std::vector<Job> jobs = source({});
+  // 2,000 triangles are wanted in the end, so 4,000 before the finish.
+  const std::vector<AcceptedJob> done = {
+      accepted(jobs[0], {rung(10, 8000), rung(11, 4000), rung(12, 2000)}),
+      accepted(jobs[1], {rung(9, 7000), rung(10, 900), rung(12, 100)})};
+  CHECK(source(done).empty());
+  const std::vector<ChosenRung> chosen = choose_rungs(manifest, options, done);
+  CHECK(chosen[0].rung == 1);
+  CHECK(chosen[1].rung == 1);
+}
+
+TEST_CASE("a part that was taken too far is asked for again with a finer start") {
+  const Manifest manifest = manifest_of(2, 100'000);
+  const RunOptions options{.ratio = 0.01};
+  const JobSource source = make_job_source(manifest, options);
+  const std::vector<Job> jobs = source({});
+  std::vector<AcceptedJob> done = {
+      accepted(jobs[0], {rung(20, 3000), rung(21, 2000)}),  // all the detail is here
+      accepted(jobs[1], {rung(5, 8000), rung(6, 30)})};
+  const std::vector<Job> more = source(done);
+  REQUIRE(more.size() == 1);
+  CHECK(more[0].inputs == jobs[0].inputs);
+  CHECK(decode_parameters(more[0].parameters).start_triangles >
+        4 * decode_parameters(jobs[0].parameters).start_triangles);
+  CHECK_THROWS_AS(choose_rungs(manifest, options, done), Error);
+
+  done.push_back(accepted(more[0], {rung(6, 40'000), rung(18, 6000), rung(20, 3000)}));
+  CHECK(source(done).empty());
+  const std::vector<ChosenRung> chosen = choose_rungs(manifest, options, done);
+  CHECK(chosen[0].file.name == done[2].output.file.name);
+  CHECK(chosen[0].rung == 1);
+  CHECK(chosen[1].rung == 1);
+}
+
+TEST_CASE("a large ratio leaves the parts as they are") {
+  const Manifest manifest = manifest_of(2, 1000);
+  const std::vector<Job> jobs = make_job_source(manifest, {.ratio = 0.9})({});
+  CHECK(decode_parameters(jobs[0].parameters).start_triangles == 1000);
+}
+
+TEST_CASE("the paper's allocation is the same ratio in each part, one round") {
+  const Manifest manifest = manifest_of(2, 100'000);
+  const RunOptions options{.ratio = 0.02, .allocation = Allocation::uniform};
+  const JobSource source = make_job_source(manifest, options);
+  const std::vector<Job> jobs = source({});
+  CHECK(decode_parameters(jobs[0].parameters).start_triangles == 2000);
+  const std::vector<AcceptedJob> done = {accepted(jobs[0], {rung(0, 2500)}),
+                                         accepted(jobs[1], {rung(0, 2000)})};
+  CHECK(source(done).empty());
+}
+
+TEST_CASE("a stage without parts has no jobs; a target needs a ratio or a count") {
+  CHECK(make_job_source(manifest_of(0, 0), {.ratio = 0.5})({}).empty());
+  CHECK(target_triangles(manifest_of(1, 1001), {.ratio = 0.5}) == 501);
+  CHECK(target_triangles(manifest_of(1, 1000), {.triangles = 7}) == 7);
+  CHECK_THROWS_AS(target_triangles(manifest_of(1, 1000), {}), UsageError);
+  CHECK_THROWS_AS(target_triangles(manifest_of(1, 1000), {.ratio = 1.5}), UsageError);
+}
+
+TEST_CASE("runs of different targets have different keys") {
+  const Manifest manifest = manifest_of(1, 1000);
+  CHECK(run_key(manifest, {.ratio = 0.5}) == run_key(manifest, {.triangles = 500}));
+  CHECK(run_key(manifest, {.ratio = 0.5}) != run_key(manifest, {.ratio = 0.4}));
+  CHECK(run_key(manifest, {.ratio = 0.5}) !=
+        run_key(manifest, {.ratio = 0.5, .finish = Finish::boundary}));
+}
+
+TEST_CASE("parameters come back; damaged ones are refused") {
+  const SimplifyParameters p{Allocation::uniform, 12, 3, 0.25};
+  const std::string bytes = encode_parameters(p);
+  const SimplifyParameters back = decode_parameters(bytes);
+  CHECK(back.allocation == Allocation::uniform);
+  CHECK(back.start_triangles == 12);
+  CHECK(back.cost_unit == 0.25);
+  for (std::size_t i = 0; i < bytes.size(); ++i) {
+    CHECK_THROWS_AS(decode_parameters(std::string_view(bytes).substr(0, i)), DataError);
+  }
+  CHECK_THROWS_AS(decode_parameters(bytes + "x"), DataError);
+  CHECK_THROWS_AS(decode_parameters("\x09" + bytes.substr(1)), DataError);
+}

@@ -1,0 +1,60 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#include <doctest/doctest.h>
+
+#include <meshfarm/report/progress.hpp>
+#include <meshfarm/report/summary.hpp>
+
+using namespace meshfarm;
+
+TEST_CASE("numbers have units that people read") {
+  CHECK(with_unit(12) == "12 ");
+  CHECK(with_unit(999) == "999 ");
+  CHECK(with_unit(999.6) == "1 k");
+  CHECK(with_unit(123'456) == "123 k");
+  CHECK(with_unit(3'450'000) == "3.5 M");
+  CHECK(with_unit(2e9) == "2.0 G");
+  CHECK(duration_text(3.4) == "3 s");
+  CHECK(duration_text(59.6) == "1 min 0 s");
+  CHECK(duration_text(200) == "3 min 20 s");
+  CHECK(duration_text(7500) == "2 h 5 min");
+}
+
+TEST_CASE("a line has the phase, the share, the rate and the time left") {
+  using namespace std::chrono_literals;
+  ProgressPrinter printer(ProgressStyle::none);
+  const ProgressPrinter::Clock::time_point zero{};
+  CHECK(printer.line({.phase = "farm", .done = 0.25, .triangles = 5'000'000}, zero + 10s) ==
+        "farm: 25 %, 500 ktriangles/s, 30 s left");
+  CHECK(printer.line({.phase = "cut", .done = 0.01, .triangles = 0}, zero + 10s) == "cut: 1 %");
+  CHECK(printer.line({.phase = "cut", .done = 1, .triangles = 0}, zero + 10s) == "cut: 100 %");
+}
+
+TEST_CASE("a comparison is in fractions of the diagonal") {
+  Comparison c;
+  c.path_a = "a.ply";
+  c.path_b = "b.ply";
+  c.diagonal = 10;
+  c.a_to_b = {.rms = 0.02, .mean = 0.01, .max = 0.5};
+  const std::string text = render(c, Format::text);
+  CHECK(text.find("rms 0.002  mean 0.001  max 0.05") != std::string::npos);
+  const std::string json = render(c, Format::json);
+  CHECK(json.find("\"rms\": 0.002") != std::string::npos);
+}
+
+TEST_CASE("a run's summary says when the count is not the one asked for") {
+  RunSummary s;
+  s.target = 101;
+  s.triangles = 1'234'567;
+  CHECK(render(s, Format::text).find("asked for") == std::string::npos);
+  s.why_not_exact = "for a reason";
+  CHECK(render(s, Format::text).find("101 were asked for: for a reason") != std::string::npos);
+  CHECK(render(s, Format::text).find("1,234,567 triangles") != std::string::npos);
+  CHECK(render(s, Format::json).find("\"exact\": false") != std::string::npos);
+}
+
+TEST_CASE("an input's name may hold any bytes") {
+  Manifest m;
+  m.input = "caf\xe9.ply";  // Latin-1: no valid UTF-8
+  CHECK_NOTHROW(render(m, "stage", Format::json));
+}
