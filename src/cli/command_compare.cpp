@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
 #include <iostream>
+
 #include <meshfarm/geometry/distance.hpp>
 #include <meshfarm/geometry/topology.hpp>
 #include <meshfarm/io/mesh_source.hpp>
@@ -22,10 +23,10 @@ class CompareCommand : public Command {
   }
   void setup(po::options_description& options,
              po::positional_options_description& positional) override {
-    options.add_options()("a", po::value(&a_)->required(), "")("b", po::value(&b_)->required(), "")
-        ("samples", po::value(&distance_.samples)->default_value(distance_.samples)->value_name("N"),
-         "points on each surface")
-        ("threads", po::value(&distance_.threads)->value_name("N"), "threads (default: cores)");
+    options.add_options()("a", po::value(&a_)->required(), "")("b", po::value(&b_)->required(), "")(
+        "samples", po::value(&distance_.samples)->default_value(distance_.samples)->value_name("N"),
+        "points on each surface")("threads", po::value(&distance_.threads)->value_name("N"),
+                                  "threads (default: cores)");
     talk_.add(options);
     positional.add("a", 1).add("b", 1);
   }

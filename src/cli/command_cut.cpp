@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
 #include <iostream>
+
 #include <meshfarm/report/summary.hpp>
 
 #include "cli/command.hpp"
@@ -20,16 +21,15 @@ class CutCommand : public Command {
   }
   void setup(po::options_description& options,
              po::positional_options_description& positional) override {
-    options.add_options()("input", po::value(&input_)->required(), "")
-        ("stage", po::value(&stage_)->required()->value_name("FOLDER"), "the stage to make");
+    options.add_options()("input", po::value(&input_)->required(), "")(
+        "stage", po::value(&stage_)->required()->value_name("FOLDER"), "the stage to make");
     cut_.add(options);
     talk_.add(options);
     positional.add("input", 1);
   }
   void check() override { cut_.check(); }
   int run() override {
-    const Manifest manifest =
-        cut_to_stage({input_, stage_, cut_.cut, talk_, stop_on_signals()});
+    const Manifest manifest = cut_to_stage({input_, stage_, cut_.cut, talk_, stop_on_signals()});
     std::cout << render(manifest, stage_, talk_.format());
     return 0;
   }

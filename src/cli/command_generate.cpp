@@ -17,10 +17,10 @@ class GenerateCommand : public Command {
     return "make a closed test surface of any size, streamed to a file";
   }
   void setup(po::options_description& options, po::positional_options_description&) override {
-    options.add_options()
-        ("output,o", po::value(&output_)->required()->value_name("FILE"), "where it goes, as PLY")
-        ("triangles", po::value(&triangles_)->default_value(triangles_)->value_name("N"),
-         "about so many triangles");
+    options.add_options()("output,o", po::value(&output_)->required()->value_name("FILE"),
+                          "where it goes, as PLY")(
+        "triangles", po::value(&triangles_)->default_value(triangles_)->value_name("N"),
+        "about so many triangles");
     talk_.add_quiet(options);
   }
   int run() override {

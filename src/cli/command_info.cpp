@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include <filesystem>
 #include <iostream>
+
 #include <meshfarm/geometry/topology.hpp>
 #include <meshfarm/io/mesh_source.hpp>
 #include <meshfarm/report/summary.hpp>
@@ -22,9 +23,9 @@ class InfoCommand : public Command {
   }
   void setup(po::options_description& options,
              po::positional_options_description& positional) override {
-    options.add_options()("file", po::value(&file_)->required(), "")
-        ("no-topology", po::bool_switch(&no_topology_),
-         "counts and box only: in a bounded memory, whatever the size");
+    options.add_options()("file", po::value(&file_)->required(), "")(
+        "no-topology", po::bool_switch(&no_topology_),
+        "counts and box only: in a bounded memory, whatever the size");
     talk_.add(options);
     positional.add("file", 1);
   }

@@ -4,11 +4,12 @@
 #include <cstdio>
 #include <fstream>
 #include <iostream>
+#include <new>
+#include <sstream>
+
 #include <meshfarm/cli/command_line.hpp>
 #include <meshfarm/util/errors.hpp>
 #include <meshfarm/util/log.hpp>
-#include <new>
-#include <sstream>
 
 #include "cli/command.hpp"
 #include "cli/version.hpp"
@@ -37,7 +38,8 @@ std::string list_of_commands() {
 std::string help_of(const Command& command, const po::options_description& options) {
   std::ostringstream out;
   out << "meshfarm " << command.name() << " " << command.synopsis() << "\n  " << command.summary()
-      << "\n\n" << options;
+      << "\n\n"
+      << options;
   return out.str();
 }
 
@@ -84,11 +86,9 @@ int run_command(Command& command, const std::vector<std::string>& words) {
   po::positional_options_description positional;
   command.setup(options, positional);
   std::string config;
-  options.add_options()
-      ("config", po::value(&config)->value_name("FILE"), "read options from a file, NAME = VALUE")
-      ("help,h", "this text");
-  const auto parsed =
-      po::command_line_parser(words).options(options).positional(positional).run();
+  options.add_options()("config", po::value(&config)->value_name("FILE"),
+                        "read options from a file, NAME = VALUE")("help,h", "this text");
+  const auto parsed = po::command_line_parser(words).options(options).positional(positional).run();
   refuse_negative_numbers(parsed);
   po::variables_map values;
   po::store(parsed, values);

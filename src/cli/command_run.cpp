@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
 #include <filesystem>
+
 #include <meshfarm/util/errors.hpp>
 #include <meshfarm/util/log.hpp>
 
@@ -30,9 +31,9 @@ class RunCommand : public Command {
   }
   void setup(po::options_description& options,
              po::positional_options_description& positional) override {
-    options.add_options()("stage", po::value(&stage_)->required(), "")
-        ("output,o", po::value(&output_)->value_name("FILE"),
-         "where the result goes, as PLY (default: STAGE/result.ply)");
+    options.add_options()("stage", po::value(&stage_)->required(), "")(
+        "output,o", po::value(&output_)->value_name("FILE"),
+        "where the result goes, as PLY (default: STAGE/result.ply)");
     target_.add(options);
     options.add_options()("workers", po::value(&workers_)->default_value(workers_)->value_name("N"),
                           "worker processes started here");
@@ -53,8 +54,7 @@ class RunCommand : public Command {
   int run() override {
     const std::atomic<bool>& stop = stop_on_signals();
     check_writable(output_);
-    const int code =
-        run_local_farm({stage_, output_, target_, network_, talk_, workers_}, stop);
+    const int code = run_local_farm({stage_, output_, target_, network_, talk_, workers_}, stop);
     if (code == 3) {
       log_info("stopped; what is done is kept: the same command goes on from there");
     }

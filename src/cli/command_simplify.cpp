@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include <filesystem>
 #include <iostream>
+
 #include <meshfarm/io/mesh_source.hpp>
 #include <meshfarm/partition/cut.hpp>
 #include <meshfarm/staging/stage.hpp>
@@ -28,15 +29,16 @@ class SimplifyCommand : public Command {
   }
   void setup(po::options_description& options,
              po::positional_options_description& positional) override {
-    options.add_options()("input", po::value(&input_)->required(), "")
-        ("output,o", po::value(&output_)->required()->value_name("FILE"), "where the result goes, as PLY");
+    options.add_options()("input", po::value(&input_)->required(), "")(
+        "output,o", po::value(&output_)->required()->value_name("FILE"),
+        "where the result goes, as PLY");
     target_.add(options);
     options.add_options()("workers", po::value(&workers_)->default_value(workers_)->value_name("N"),
                           "worker processes (default: cores)");
     cut_.add(options);
-    options.add_options()
-        ("stage", po::value(&stage_)->value_name("FOLDER"), "where parts are staged (default: OUTPUT.stage)")
-        ("keep-stage", po::bool_switch(&keep_stage_), "keep the stage, for replay");
+    options.add_options()("stage", po::value(&stage_)->value_name("FOLDER"),
+                          "where parts are staged (default: OUTPUT.stage)")(
+        "keep-stage", po::bool_switch(&keep_stage_), "keep the stage, for replay");
     talk_.add(options);
     positional.add("input", 1);
   }
@@ -52,8 +54,7 @@ class SimplifyCommand : public Command {
     const std::atomic<bool>& stop = stop_on_signals();
     check_writable(output_);
     cut_to_stage({input_, stage_, cut_.cut, talk_, stop});
-    const int code = run_local_farm(
-        {stage_, output_, target_, network_, talk_, workers_}, stop);
+    const int code = run_local_farm({stage_, output_, target_, network_, talk_, workers_}, stop);
     if (code == 0 && !keep_stage_) remove_stage(stage_);
     if (code == 3) {
       log_info("stopped; the parts are kept: 'meshfarm replay " + stage_ + " -o " + output_ +

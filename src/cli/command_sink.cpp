@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include <chrono>
 #include <iostream>
+
 #include <meshfarm/farm/sink.hpp>
 #include <meshfarm/pipeline/assemble.hpp>
 #include <meshfarm/pipeline/budget.hpp>
@@ -28,7 +29,8 @@ class SinkCommand : public FarmCommand {
                           "where the result goes, as PLY");
     target_.add(options);
     network_.add(options);
-    options.add_options()("wait", po::value(&wait_s_)->default_value(wait_s_)->value_name("SECONDS"),
+    options.add_options()("wait",
+                          po::value(&wait_s_)->default_value(wait_s_)->value_name("SECONDS"),
                           "how long to look for a ventilator");
     talk_.add(options);
   }

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
 #include <algorithm>
+
 #include <meshfarm/farm/ventilator.hpp>
 #include <meshfarm/pipeline/budget.hpp>
 #include <meshfarm/util/errors.hpp>
@@ -22,7 +23,8 @@ class VentilatorCommand : public FarmCommand {
     add_stage(options, positional);
     target_.add(options);
     network_.add(options);
-    options.add_options()("heartbeat-ms", po::value(&heartbeat_ms_)->default_value(heartbeat_ms_)->value_name("N"),
+    options.add_options()("heartbeat-ms",
+                          po::value(&heartbeat_ms_)->default_value(heartbeat_ms_)->value_name("N"),
                           "a worker or sink that is silent three times as long is lost");
     talk_.add_quiet(options);
   }
@@ -52,8 +54,8 @@ class VentilatorCommand : public FarmCommand {
  private:
   static void show(ProgressPrinter& printer, const FarmProgress& p) {
     if (p.jobs_done == p.jobs_known) return printer.end();
-    std::string phase = "farm, " + std::to_string(p.jobs_done) + " of " +
-                        std::to_string(p.jobs_known) + " jobs, ";
+    std::string phase =
+        "farm, " + std::to_string(p.jobs_done) + " of " + std::to_string(p.jobs_known) + " jobs, ";
     if (p.workers == 0) {
       phase += "waiting for workers ('meshfarm worker STAGE' on any host)";
     } else {
@@ -61,9 +63,8 @@ class VentilatorCommand : public FarmCommand {
     }
     if (p.retries > 0) phase += ", " + std::to_string(p.retries) + " given out again";
     const double all = static_cast<double>(std::max<std::uint64_t>(1, p.cost_known));
-    printer.show({.phase = phase,
-                  .done = static_cast<double>(p.cost_done) / all,
-                  .triangles = p.cost_done});
+    printer.show(
+        {.phase = phase, .done = static_cast<double>(p.cost_done) / all, .triangles = p.cost_done});
   }
 
   TargetOptions target_;

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
 #include <chrono>
+
 #include <meshfarm/farm/worker.hpp>
 #include <meshfarm/pipeline/job_table.hpp>
 #include <meshfarm/util/log.hpp>
@@ -20,7 +21,8 @@ class WorkerCommand : public FarmCommand {
   void setup(po::options_description& options,
              po::positional_options_description& positional) override {
     add_stage(options, positional);
-    options.add_options()("wait", po::value(&wait_s_)->default_value(wait_s_)->value_name("SECONDS"),
+    options.add_options()("wait",
+                          po::value(&wait_s_)->default_value(wait_s_)->value_name("SECONDS"),
                           "how long to look for a ventilator");
     talk_.add_quiet(options);
   }

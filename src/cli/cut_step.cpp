@@ -2,9 +2,10 @@
 // SPDX-License-Identifier: MIT
 #include "cli/cut_step.hpp"
 
+#include <filesystem>
+
 #include <unistd.h>
 
-#include <filesystem>
 #include <meshfarm/io/mesh_source.hpp>
 #include <meshfarm/staging/stage.hpp>
 #include <meshfarm/util/errors.hpp>
@@ -31,7 +32,8 @@ Manifest cut_to_stage(const CutStep& step) {
 void check_writable(const std::string& output) {
   const std::filesystem::path path(output);
   const std::filesystem::path folder = path.has_parent_path() ? path.parent_path() : ".";
-  if (std::filesystem::is_directory(path)) throw IoError("cannot write over the folder", path, EISDIR);
+  if (std::filesystem::is_directory(path))
+    throw IoError("cannot write over the folder", path, EISDIR);
   if (::access(folder.c_str(), W_OK | X_OK) != 0) throw_errno("cannot write into", folder);
 }
 

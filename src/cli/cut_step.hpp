@@ -3,9 +3,10 @@
 #pragma once
 
 #include <atomic>
+#include <string>
+
 #include <meshfarm/io/manifest.hpp>
 #include <meshfarm/partition/cut.hpp>
-#include <string>
 
 #include "cli/options.hpp"
 

@@ -11,8 +11,8 @@ namespace meshfarm {
 
 void FarmCommand::add_stage(po::options_description& options,
                             po::positional_options_description& positional) {
-  options.add_options()("stage", po::value(&stage_)->required(), "")
-      ("supervised", po::bool_switch(&supervised_), "");
+  options.add_options()("stage", po::value(&stage_)->required(), "")(
+      "supervised", po::bool_switch(&supervised_), "");
   positional.add("stage", 1);
 }
 

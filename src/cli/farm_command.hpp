@@ -2,9 +2,10 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <string>
+
 #include <meshfarm/io/manifest.hpp>
 #include <meshfarm/staging/stage.hpp>
-#include <string>
 
 #include "cli/command.hpp"
 #include "cli/options.hpp"

@@ -3,9 +3,10 @@
 #include "cli/local_farm.hpp"
 
 #include <algorithm>
+#include <thread>
+
 #include <meshfarm/io/manifest.hpp>
 #include <meshfarm/staging/stage.hpp>
-#include <thread>
 
 #include "cli/supervisor.hpp"
 

@@ -2,11 +2,12 @@
 // SPDX-License-Identifier: MIT
 #include "cli/options.hpp"
 
+#include <charconv>
+
 #include <arpa/inet.h>
 #include <ifaddrs.h>
 #include <net/if.h>
 
-#include <charconv>
 #include <meshfarm/util/errors.hpp>
 
 namespace meshfarm {
@@ -37,13 +38,13 @@ ProgressStyle TalkOptions::progress() const {
 }
 
 void TargetOptions::add(po::options_description& options) {
-  options.add_options()
-      ("ratio", po::value(&run.ratio), "share of the input's triangles to keep, as 0.01")
-      ("triangles", po::value(&run.triangles), "number of triangles to keep")
-      ("allocation", po::value(&allocation)->default_value(allocation),
-       "threshold: one cost threshold for all parts; uniform: the same ratio in every part")
-      ("finish", po::value(&finish)->default_value(finish),
-       "global: the last pass may touch everything; boundary: edges at seams only");
+  options.add_options()("ratio", po::value(&run.ratio),
+                        "share of the input's triangles to keep, as 0.01")(
+      "triangles", po::value(&run.triangles), "number of triangles to keep")(
+      "allocation", po::value(&allocation)->default_value(allocation),
+      "threshold: one cost threshold for all parts; uniform: the same ratio in every part")(
+      "finish", po::value(&finish)->default_value(finish),
+      "global: the last pass may touch everything; boundary: edges at seams only");
 }
 
 void TargetOptions::check() {
@@ -76,12 +77,12 @@ std::vector<std::string> TargetOptions::words() const {
 }
 
 void CutWords::add(po::options_description& options) {
-  options.add_options()
-      ("parts", po::value(&cut.parts)->value_name("N"),
-       "number of parts (default: about a million triangles each, at least 16 of a large mesh)")
-      ("weld", po::value(&weld)->default_value(weld),
-       "exact: vertices at the same position become one; off: they stay apart")
-      ("threads", po::value(&cut.threads)->value_name("N"), "threads of the cut (default: cores)");
+  options.add_options()(
+      "parts", po::value(&cut.parts)->value_name("N"),
+      "number of parts (default: about a million triangles each, at least 16 of a large mesh)")(
+      "weld", po::value(&weld)->default_value(weld),
+      "exact: vertices at the same position become one; off: they stay apart")(
+      "threads", po::value(&cut.threads)->value_name("N"), "threads of the cut (default: cores)");
 }
 
 void CutWords::check() {
@@ -93,11 +94,10 @@ void CutWords::check() {
 }
 
 void NetworkOptions::add(po::options_description& options) {
-  options.add_options()
-      ("bind", po::value(&bind)->value_name("ADDRESS"),
-       "address or interface to listen on (default: this host's first network)")
-      ("ports", po::value(&ports)->value_name("FIRST-LAST"),
-       "ports to listen on, for firewalls (default: any that is free)");
+  options.add_options()("bind", po::value(&bind)->value_name("ADDRESS"),
+                        "address or interface to listen on (default: this host's first network)")(
+      "ports", po::value(&ports)->value_name("FIRST-LAST"),
+      "ports to listen on, for firewalls (default: any that is free)");
 }
 
 void NetworkOptions::check() {

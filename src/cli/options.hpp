@@ -2,14 +2,16 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <boost/program_options.hpp>
 #include <cstdint>
+#include <string>
+#include <vector>
+
+#include <boost/program_options.hpp>
+
 #include <meshfarm/partition/cut.hpp>
 #include <meshfarm/pipeline/run_options.hpp>
 #include <meshfarm/report/progress.hpp>
 #include <meshfarm/report/summary.hpp>
-#include <string>
-#include <vector>
 
 namespace meshfarm {
 

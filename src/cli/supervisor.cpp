@@ -2,15 +2,16 @@
 // SPDX-License-Identifier: MIT
 #include "cli/supervisor.hpp"
 
-#include <sys/prctl.h>
-#include <sys/wait.h>
-#include <unistd.h>
-
 #include <algorithm>
 #include <cerrno>
 #include <chrono>
 #include <csignal>
 #include <ctime>
+
+#include <sys/prctl.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
 #include <meshfarm/util/errors.hpp>
 #include <meshfarm/util/log.hpp>
 

@@ -2,11 +2,11 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <sys/types.h>
-
 #include <atomic>
 #include <string>
 #include <vector>
+
+#include <sys/types.h>
 
 namespace meshfarm {
 

@@ -92,17 +92,10 @@ struct EdgeQuadric {
   /// The sum of weight x squared distance; differences of rounding count as none.
   double cost(Vec3 x) const { return unless_noise(dot(a * x - b * 2.0, x) + c); }
 
-  /// The cost of best(), but for the ridge: what is left of c once x solves A x = b.
-  double least_cost(Vec3 best) const { return unless_noise(c - dot(b, best)); }
-
   /// Planes are endless and do not see a thin spike or tube draw back from its tip: only the tiny
   /// tip moves away from its planes. The area that is lost tells. Without this dragons lose 3 % of
   /// their height here and there, which the area-weighted cost calls cheap.
   double cost_of_lost_area(double area) const { return unless_noise(0.1 * area * squared_length); }
-
-  /// What orders edges: the cost, and where that is nothing the length, so that flat regions
-  /// do not collapse in order of indices into fans. Heavier (1e-3) it cost 15 % of the RMS at 10 %.
-  double ranking_cost(double cost) const { return cost + 1e-6 * a.trace() * squared_length; }
 
  private:
   double unless_noise(double value) const {

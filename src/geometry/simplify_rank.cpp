@@ -53,7 +53,7 @@ void EdgeRanking::sum_planes() {
     if (!(twice_area > 0 && std::isfinite(twice_area))) continue;
     Quadric plane;
     plane.add(n, 0.5 / twice_area);
-    for (const std::uint32_t v : t) quadrics_[v] = quadrics_[v] + plane;
+    for (const std::uint32_t v : t) quadrics_[v].add(plane);
   }
 }
 
@@ -63,14 +63,15 @@ void EdgeRanking::sum_border_planes() {
     const Vec3 at = input_.positions[v];
     for_border_edges(input_.adjacency->at(v), [&](const Corner& c, std::uint32_t end) {
       const Vec3 normal = cross(input_.positions[c.next] - at, input_.positions[c.prev] - at);
-      add_border_plane(quadrics_[v], normal, input_.positions[end] - at);
+      Quadric plane;
+      add_border_plane(plane, normal, input_.positions[end] - at);
+      quadrics_[v].add(plane);
     });
   }
 }
 
-/// Calls take(a, b) for each edge that may collapse at its smaller end.
-template <typename Take>
-inline void EdgeRanking::for_edges_at(std::uint32_t vertex, const Take& take) const {
+/// Lists the edges that may collapse of which the vertex is the smaller end.
+inline void EdgeRanking::list_edges_at(std::uint32_t vertex) {
   const std::uint8_t flags = input_.flags[vertex];
   if ((flags & k_fixed) != 0) return;
   const std::span<const Corner> fan = input_.adjacency->at(vertex);
@@ -79,7 +80,7 @@ inline void EdgeRanking::for_edges_at(std::uint32_t vertex, const Take& take) co
     if (end < vertex || (other & k_fixed) != 0) return;
     if (input_.seam_only && ((flags | other) & k_seam) == 0) return;
     if (fan.size() + input_.adjacency->count(end) > k_max_star) return;
-    take(vertex, end);
+    listed_.push_back({vertex, end});
   };
   if ((flags & k_border) == 0) {
     for (const Corner& c : fan) consider(c.next);
@@ -92,41 +93,44 @@ inline void EdgeRanking::for_edges_at(std::uint32_t vertex, const Take& take) co
   for_border_edges(fan, [&](const Corner&, std::uint32_t end) { consider(end); });
 }
 
-/// The costs of an edge at the position that it will probably get.
-inline EdgeRanking::Costs EdgeRanking::costs(std::uint32_t a, std::uint32_t b) const {
-  const Vec3 half = (input_.positions[b] - input_.positions[a]) * 0.5;
-  const Quadric& at_a = quadrics_[a];
-  const Quadric& at_b = quadrics_[b];
-  const std::uint8_t only_one = (input_.flags[a] ^ input_.flags[b]) & k_border;
-  EdgeQuadric q;
-  q.squared_length = 4 * squared_length(half);
-  q.a = at_a + at_b;
-  if (only_one != 0) {
-    const bool to_a = (input_.flags[a] & k_border) != 0;
-    q.c = 4 * dot((to_a ? at_b : at_a) * half, half);
-    return {q.least_cost({}), q.ranking_cost(q.least_cost({}))};
+/// Calls take(edge, cost) for each listed edge whose cost is finite.
+template <typename Take>
+void EdgeRanking::for_costs(const Take& take) {
+  const auto give = [&](const Edge& e, const EdgeCost& cost) {
+    if (std::isfinite(cost.ranking)) take(e, cost);
+  };
+  for (std::size_t first = 0; first < listed_.size(); first += EdgeCosts::k_size) {
+    const std::size_t count = std::min(EdgeCosts::k_size, listed_.size() - first);
+    for (std::size_t i = 0; i < count; ++i) {
+      const auto [a, b] = listed_[first + i];
+      costs_.put(i, quadrics_[a], quadrics_[b], (input_.positions[b] - input_.positions[a]) * 0.5);
+    }
+    costs_.compute();
+    for (std::size_t i = 0; i < count; ++i) {
+      const Edge& e = listed_[first + i];
+      const std::uint8_t one_border = (input_.flags[e.a] ^ input_.flags[e.b]) & k_border;
+      give(e, one_border == 0 ? costs_.get(i) : cost_of_border_end(e));
+    }
   }
-  q.b = (at_b - at_a) * half;
-  q.c = dot(q.a * half, half);
-  const double least = q.least_cost(q.best());
-  return {least, q.ranking_cost(least)};
+}
+
+/// An inner vertex that merges into a border takes the border's position.
+EdgeCost EdgeRanking::cost_of_border_end(const Edge& e) const {
+  const bool border_a = (input_.flags[e.a] & k_border) != 0;
+  return cost_of_end(quadrics_[border_a ? e.b : e.a],
+                     (input_.positions[e.b] - input_.positions[e.a]) * 0.5);
 }
 
 CostKey EdgeRanking::estimate_limit(double share, double most) {
   const auto vertices = static_cast<std::uint32_t>(input_.positions.size());
   const std::uint32_t one_in = std::max(1U, vertices / k_sampled_vertices);
   starts_.assign(bucket_of(k_any_cost) + 1, 0);
-  std::uint64_t sampled = 0;
+  listed_.clear();
   for (std::uint32_t v = 0; v < vertices; ++v) {
-    if (scrambled(v) > UINT32_MAX / one_in) continue;
-    for_edges_at(v, [&](std::uint32_t a, std::uint32_t b) {
-      const Costs cost = costs(a, b);
-      if (!std::isfinite(cost.ranking)) return;
-      ++starts_[bucket_of(key_of(cost.ranking))];
-      ++sampled;
-    });
+    if (scrambled(v) <= UINT32_MAX / one_in) list_edges_at(v);
   }
-  const double wanted = std::min(share * static_cast<double>(sampled), most / one_in);
+  for_costs([&](const Edge&, const EdgeCost& cost) { ++starts_[bucket_of(key_of(cost.ranking))]; });
+  const double wanted = std::min(share * static_cast<double>(listed_.size()), most / one_in);
   std::uint64_t sum = 0;
   for (std::uint32_t bucket = 0; bucket < starts_.size(); ++bucket) {
     sum += starts_[bucket];
@@ -137,15 +141,13 @@ CostKey EdgeRanking::estimate_limit(double share, double most) {
 
 std::span<const RankedEdge> EdgeRanking::cheapest(std::uint32_t first, std::uint32_t last,
                                                   const RankLimits& limits) {
+  listed_.clear();
+  for (std::uint32_t v = first; v < last; ++v) list_edges_at(v);
   found_.clear();
-  for (std::uint32_t v = first; v < last; ++v) {
-    for_edges_at(v, [&](std::uint32_t a, std::uint32_t b) {
-      const Costs cost = costs(a, b);
-      if (!std::isfinite(cost.ranking)) return;
-      const CostKey key = key_of(cost.ranking);
-      if (key <= limits.key && cost.planes <= limits.max_cost) found_.push_back({a, b, key});
-    });
-  }
+  for_costs([&](const Edge& e, const EdgeCost& cost) {
+    const CostKey key = key_of(cost.ranking);
+    if (key <= limits.key && cost.least <= limits.max_cost) found_.push_back({e.a, e.b, key});
+  });
   sort_found();
   return sorted_;
 }

@@ -9,7 +9,7 @@
 #include <meshfarm/geometry/mesh.hpp>
 
 #include "geometry/adjacency.hpp"
-#include "geometry/quadric.hpp"
+#include "geometry/simplify_cost.hpp"
 
 namespace meshfarm {
 
@@ -61,19 +61,22 @@ class EdgeRanking {
                                        const RankLimits& limits);
 
  private:
-  struct Costs {
-    double planes;
-    double ranking;
+  struct Edge {
+    std::uint32_t a;
+    std::uint32_t b;
   };
   void sum_planes();
   void sum_border_planes();
+  void list_edges_at(std::uint32_t vertex);
   template <typename Take>
-  void for_edges_at(std::uint32_t vertex, const Take& take) const;
-  Costs costs(std::uint32_t a, std::uint32_t b) const;
+  void for_costs(const Take& take);
+  EdgeCost cost_of_border_end(const Edge& e) const;
   void sort_found();
 
   RankingInput input_;
-  std::vector<Quadric> quadrics_;
+  std::vector<FloatQuadric> quadrics_;
+  std::vector<Edge> listed_;
+  EdgeCosts costs_;
   std::vector<RankedEdge> found_;
   std::vector<RankedEdge> sorted_;
   std::vector<std::uint32_t> starts_;

@@ -2,12 +2,13 @@
 // SPDX-License-Identifier: MIT
 #include "partition/bucket_file.hpp"
 
-#include <fcntl.h>
-#include <unistd.h>
-
 #include <algorithm>
 #include <cerrno>
 #include <cstdlib>
+
+#include <fcntl.h>
+#include <unistd.h>
+
 #include <meshfarm/util/errors.hpp>
 
 namespace meshfarm {

@@ -4,15 +4,17 @@
 
 #include <cstdint>
 #include <filesystem>
-#include <meshfarm/util/file.hpp>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include <meshfarm/util/file.hpp>
+
 namespace meshfarm {
 
-/// Many growing byte strings in one scratch file, through buffers of bounded size: a full buffer goes
-/// to the file's end, and its bucket remembers where. The file has no name and dies with its owner.
+/// Many growing byte strings in one scratch file, through buffers of bounded size: a full buffer
+/// goes to the file's end, and its bucket remembers where. The file has no name and dies with its
+/// owner.
 class BucketFile {
  public:
   BucketFile(const std::filesystem::path& folder, std::size_t buckets);

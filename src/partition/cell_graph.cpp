@@ -1,14 +1,15 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
-#include <metis.h>
-
 #include <algorithm>
 #include <limits>
-#include <meshfarm/partition/cell_graph.hpp>
-#include <meshfarm/util/errors.hpp>
-#include <nanoflann.hpp>
 #include <string>
 #include <utility>
+
+#include <metis.h>
+#include <nanoflann.hpp>
+
+#include <meshfarm/partition/cell_graph.hpp>
+#include <meshfarm/util/errors.hpp>
 
 namespace meshfarm {
 namespace {
@@ -89,9 +90,9 @@ std::vector<idx_t> run_metis(std::span<const Cell> cells, const std::vector<Edge
   std::vector<idx_t> part(cells.size(), 0);
   // Few parts come out better balanced by recursive bisection; many are cut faster k-way.
   const auto metis = parts <= 8 ? METIS_PartGraphRecursive : METIS_PartGraphKway;
-  const int status = metis(&nodes, &constraints, first.data(), targets.data(), weights.data(),
-                           nullptr, nullptr, &parts, nullptr, nullptr, options, &edge_cut,
-                           part.data());
+  const int status =
+      metis(&nodes, &constraints, first.data(), targets.data(), weights.data(), nullptr, nullptr,
+            &parts, nullptr, nullptr, options, &edge_cut, part.data());
   if (status != METIS_OK) {
     throw Error("METIS could not cut the graph of " + std::to_string(cells.size()) +
                 " cells (status " + std::to_string(status) + ")");
@@ -121,8 +122,7 @@ std::vector<std::uint32_t> partition_cells(std::span<const Cell> cells,
   if (cells.size() > (std::size_t{1} << 26)) {
     throw Error("too many grid cells to cut: " + std::to_string(cells.size()));
   }
-  const auto parts =
-      static_cast<idx_t>(std::min<std::size_t>(options.parts, cells.size()));
+  const auto parts = static_cast<idx_t>(std::min<std::size_t>(options.parts, cells.size()));
   const std::vector<Edge> edges = nearest_edges(cells, options.neighbours);
   return renumbered(run_metis(cells, edges, parts), parts);
 }

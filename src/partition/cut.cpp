@@ -9,9 +9,11 @@
 //   triangles   to the part's bucket, or, when two or three parts meet in one, to the boundary
 // Then each part is built from its buckets by itself, on all cores.
 #include <algorithm>
-#include <chrono>
 #include <array>
+#include <chrono>
 #include <memory>
+#include <mutex>
+
 #include <meshfarm/io/boundary_file.hpp>
 #include <meshfarm/partition/cell_graph.hpp>
 #include <meshfarm/partition/cut.hpp>
@@ -19,7 +21,6 @@
 #include <meshfarm/util/errors.hpp>
 #include <meshfarm/util/file.hpp>
 #include <meshfarm/util/parallel.hpp>
-#include <mutex>
 
 #include "partition/bucket_file.hpp"
 #include "partition/part_builder.hpp"
@@ -91,9 +92,8 @@ class Cutter {
   void choose_parts() {
     // Polygons and strips hold more triangles than the header tells: vertices are a second hint.
     const MeshFileInfo& info = source_.info();
-    const std::uint32_t wanted = options_.parts != 0
-                                     ? options_.parts
-                                     : default_parts(std::max(info.faces, info.vertices));
+    const std::uint32_t wanted =
+        options_.parts != 0 ? options_.parts : default_parts(std::max(info.faces, info.vertices));
     grid_ = UniformGrid(manifest_.box, wanted == 1 ? 0 : grid_bits(wanted));
     std::uint64_t done = 0;
     source_.scan_vertices([&](std::span<const Vec3> batch) {

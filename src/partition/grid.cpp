@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
 #include <cassert>
+
 #include <meshfarm/partition/grid.hpp>
 
 namespace meshfarm {

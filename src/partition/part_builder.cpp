@@ -4,8 +4,9 @@
 
 #include <algorithm>
 #include <limits>
-#include <meshfarm/geometry/weld.hpp>
 #include <numeric>
+
+#include <meshfarm/geometry/weld.hpp>
 
 namespace meshfarm {
 namespace {
@@ -19,9 +20,8 @@ std::uint64_t merge_corners(std::vector<Triangle>& triangles,
   for (Triangle& t : triangles) {
     for (std::uint32_t& corner : t) corner = representative[corner];
   }
-  std::erase_if(triangles, [](const Triangle& t) {
-    return t[0] == t[1] || t[1] == t[2] || t[2] == t[0];
-  });
+  std::erase_if(triangles,
+                [](const Triangle& t) { return t[0] == t[1] || t[1] == t[2] || t[2] == t[0]; });
   return before - triangles.size();
 }
 
@@ -72,8 +72,8 @@ BuiltPart build_part(RawPart raw, PositionType positions, Weld weld_mode) {
   part.positions = positions;
   part.boundary_vertices =
       number_vertices(raw.triangles, built.boundary_raw, representative, number);
-  const auto used = number.size() - static_cast<std::size_t>(std::count(
-                                        number.begin(), number.end(), k_unused));
+  const auto used =
+      number.size() - static_cast<std::size_t>(std::count(number.begin(), number.end(), k_unused));
   part.mesh.positions.resize(used);
   for (std::size_t i = 0; i < number.size(); ++i) {
     if (number[i] != k_unused) part.mesh.positions[number[i]] = raw.positions[i];

@@ -3,18 +3,19 @@
 #pragma once
 
 #include <cstdint>
+#include <vector>
+
 #include <meshfarm/geometry/mesh.hpp>
 #include <meshfarm/io/part_file.hpp>
 #include <meshfarm/partition/cut.hpp>
-#include <vector>
 
 namespace meshfarm {
 
 /// What the scans gathered of one part. Raw indices count its vertices in file order.
 struct RawPart {
   std::vector<Vec3> positions;
-  std::vector<Triangle> triangles;        // raw indices
-  std::vector<std::uint32_t> boundary;    // raw indices of boundary vertices, any order, repeats
+  std::vector<Triangle> triangles;      // raw indices
+  std::vector<std::uint32_t> boundary;  // raw indices of boundary vertices, any order, repeats
 };
 
 struct BuiltPart {

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
 #include <chrono>
+
 #include <meshfarm/geometry/simplify.hpp>
 #include <meshfarm/io/boundary_file.hpp>
 #include <meshfarm/io/ply_writer.hpp>
@@ -59,8 +60,9 @@ class Assembly {
 
   void check_stop() const {
     if (options_.stop != nullptr && *options_.stop) {
-      throw IncompleteError("interrupted before the result was written; all parts are simplified, "
-                            "'meshfarm replay' or 'meshfarm run' on the stage goes on from there");
+      throw IncompleteError(
+          "interrupted before the result was written; all parts are simplified, "
+          "'meshfarm replay' or 'meshfarm run' on the stage goes on from there");
     }
   }
 
@@ -97,7 +99,9 @@ class Assembly {
       simplifier.reduce({.triangles = triangles}, [&](std::uint64_t left) {
         const std::uint64_t all = before - std::min(before, triangles);
         const std::uint64_t done = before - std::min(before, left);
-        tell("finish", all == 0 ? 1.0 : std::min(1.0, static_cast<double>(done) / static_cast<double>(all)), done);
+        tell("finish",
+             all == 0 ? 1.0 : std::min(1.0, static_cast<double>(done) / static_cast<double>(all)),
+             done);
         return true;
       });
     };

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
 #include <limits>
+
 #include <meshfarm/pipeline/budget.hpp>
 #include <meshfarm/pipeline/simplify_job.hpp>
 #include <meshfarm/util/errors.hpp>
@@ -16,8 +17,8 @@ constexpr double k_more_headroom = 8;
 /// A ladder ends at this fraction of the part's even share.
 constexpr double k_floor = 1.0 / 16;
 
-/// How many times the target the parts together keep for the finish to choose from: twice where much
-/// is taken away (measured: no better with more), less where little is, as then seams are few.
+/// How many times the target the parts together keep for the finish to choose from: twice where
+/// much is taken away (measured: no better with more), less where little is, as then seams are few.
 double provision(double ratio) {
   return 1 + std::min(1.0, (1 - ratio) / (4 * ratio));
 }
@@ -26,8 +27,7 @@ double provision(double ratio) {
 /// ventilator and sink, restarted or not, agree.
 class Rounds {
  public:
-  Rounds(const Manifest& manifest, const RunOptions& options,
-         std::span<const AcceptedJob> accepted)
+  Rounds(const Manifest& manifest, const RunOptions& options, std::span<const AcceptedJob> accepted)
       : manifest_(manifest),
         options_(options),
         target_(target_triangles(manifest, options)),
@@ -60,8 +60,8 @@ class Rounds {
 
  private:
   double ratio() const {
-    return std::min(1.0, static_cast<double>(target_) /
-                             static_cast<double>(std::max<std::uint64_t>(1, manifest_.triangles())));
+    return std::min(1.0, static_cast<double>(target_) / static_cast<double>(std::max<std::uint64_t>(
+                                                            1, manifest_.triangles())));
   }
 
   Job job_of(std::uint32_t part) const {
@@ -79,8 +79,8 @@ class Rounds {
       }
     }
     parameters.start_triangles = static_cast<std::uint64_t>(start);
-    return {std::string(k_simplify_kind), {entry.file}, encode_parameters(parameters),
-            entry.triangles};
+    return {
+        std::string(k_simplify_kind), {entry.file}, encode_parameters(parameters), entry.triangles};
   }
 
   void take(std::span<const AcceptedJob> round) {

@@ -1,9 +1,10 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
+#include <utility>
+
 #include <meshfarm/pipeline/job_table.hpp>
 #include <meshfarm/pipeline/simplify_job.hpp>
 #include <meshfarm/util/errors.hpp>
-#include <utility>
 
 namespace meshfarm {
 namespace {

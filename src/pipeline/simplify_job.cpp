@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
 #include <cmath>
+
 #include <meshfarm/geometry/simplify.hpp>
 #include <meshfarm/io/part_file.hpp>
 #include <meshfarm/io/result_file.hpp>
@@ -25,9 +26,9 @@ class LadderBuilder {
       : parameters_(parameters),
         context_(context),
         input_triangles_(part.mesh.triangles.size()),
-        simplifier_(std::move(part.mesh), {.locked_vertices = part.boundary_vertices,
-                                           .positions = part.positions,
-                                           .seam = {}}),
+        simplifier_(
+            std::move(part.mesh),
+            {.locked_vertices = part.boundary_vertices, .positions = part.positions, .seam = {}}),
         result_(part.positions, part.boundary_vertices) {}
 
   void build() {

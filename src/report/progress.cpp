@@ -1,9 +1,10 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
-#include <unistd.h>
-
 #include <cmath>
 #include <cstdio>
+
+#include <unistd.h>
+
 #include <meshfarm/report/progress.hpp>
 
 namespace meshfarm {

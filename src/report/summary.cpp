@@ -2,10 +2,12 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
 #include <cstdio>
-#include <meshfarm/report/summary.hpp>
-#include <nlohmann/json.hpp>
 #include <utility>
 #include <vector>
+
+#include <nlohmann/json.hpp>
+
+#include <meshfarm/report/summary.hpp>
 
 namespace meshfarm {
 namespace {
@@ -76,8 +78,8 @@ std::string text_of(const Topology& t) {
 }
 
 std::string text_of(const Distance& d, double diagonal) {
-  return "rms " + number(d.rms / diagonal, "%.3g") + "  mean " +
-         number(d.mean / diagonal, "%.3g") + "  max " + number(d.max / diagonal, "%.3g");
+  return "rms " + number(d.rms / diagonal, "%.3g") + "  mean " + number(d.mean / diagonal, "%.3g") +
+         "  max " + number(d.max / diagonal, "%.3g");
 }
 
 Json input_json(const Manifest& m) {
@@ -91,11 +93,11 @@ Json input_json(const Manifest& m) {
 
 void add_input(Lines& lines, const Manifest& m) {
   lines.add("input", m.input + " (" + m.input_format + ")");
-  lines.add("", grouped(m.input_triangles) + " triangles, " + grouped(m.input_vertices) +
-                    " vertices" +
-                    (m.merged_vertices != 0
-                         ? ", " + grouped(m.merged_vertices) + " coincident ones merged"
-                         : ""));
+  lines.add(
+      "",
+      grouped(m.input_triangles) + " triangles, " + grouped(m.input_vertices) + " vertices" +
+          (m.merged_vertices != 0 ? ", " + grouped(m.merged_vertices) + " coincident ones merged"
+                                  : ""));
   if (!m.skipped.empty()) lines.add("not kept", joined(m.skipped));
 }
 
@@ -103,13 +105,13 @@ void add_input(Lines& lines, const Manifest& m) {
 
 std::string render(const Manifest& m, const std::string& stage, Format format) {
   if (format == Format::json) {
-    const Json json = {{"stage", stage},
-                       {"input", input_json(m)},
-                       {"parts", m.parts.size()},
-                       {"boundary_triangles", m.boundary_triangles},
-                       {"dropped", {{"degenerate", m.dropped_degenerate},
-                                    {"duplicate", m.dropped_duplicate}}},
-                       {"seconds", m.cut_seconds}};
+    const Json json = {
+        {"stage", stage},
+        {"input", input_json(m)},
+        {"parts", m.parts.size()},
+        {"boundary_triangles", m.boundary_triangles},
+        {"dropped", {{"degenerate", m.dropped_degenerate}, {"duplicate", m.dropped_duplicate}}},
+        {"seconds", m.cut_seconds}};
     return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
   }
   Lines lines;
@@ -179,9 +181,9 @@ std::string render(const FileSummary& s, Format format) {
   }
   Lines lines;
   lines.add("file", s.path);
-  lines.add("format", s.file.format + (s.file.compression == "none"
-                                           ? ""
-                                           : ", compressed by " + s.file.compression));
+  lines.add("format",
+            s.file.format +
+                (s.file.compression == "none" ? "" : ", compressed by " + s.file.compression));
   lines.add("triangles", grouped(s.triangles));
   if (s.short_faces > 0) lines.add("left out", grouped(s.short_faces) + " faces of 0 to 2 corners");
   lines.add("vertices", grouped(s.file.vertices) +

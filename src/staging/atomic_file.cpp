@@ -1,10 +1,11 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
+#include <cerrno>
+
 #include <fcntl.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include <cerrno>
 #include <meshfarm/staging/atomic_file.hpp>
 #include <meshfarm/util/errors.hpp>
 
@@ -26,7 +27,7 @@ void rename_checked(const std::filesystem::path& from, const std::filesystem::pa
                     std::uint64_t size_bytes) {
   if (::rename(from.c_str(), to.c_str()) == 0) return;
   const int error = errno;
-  struct stat status{};
+  struct stat status {};
   if (error == ENOENT && ::stat(to.c_str(), &status) == 0 &&
       static_cast<std::uint64_t>(status.st_size) == size_bytes) {
     return;
@@ -35,8 +36,7 @@ void rename_checked(const std::filesystem::path& from, const std::filesystem::pa
 }
 
 AtomicFile::AtomicFile(std::filesystem::path final_path, std::string_view unique)
-    : final_path_(std::move(final_path)),
-      temporary_path_(temporary_name(final_path_, unique)) {
+    : final_path_(std::move(final_path)), temporary_path_(temporary_name(final_path_, unique)) {
   constexpr int k_flags = O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC;
   fd_ = Fd(::open(temporary_path_.c_str(), k_flags, 0644));
   if (!fd_ && errno == EEXIST) {  // left behind by a dead process that had our name

@@ -3,10 +3,11 @@
 //
 // A journal:  head = "MFJL" | version u32 = 1      record = size u32 | xxh3-64 u64 | bytes
 // A crash leaves at most one torn record, the last; a file shorter than its head is all torn.
+#include <array>
+
 #include <fcntl.h>
 #include <unistd.h>
 
-#include <array>
 #include <meshfarm/staging/journal.hpp>
 #include <meshfarm/util/bytes.hpp>
 #include <meshfarm/util/checksum.hpp>

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
 #include <charconv>
+
 #include <meshfarm/staging/names.hpp>
 #include <meshfarm/util/checksum.hpp>
 
@@ -27,7 +28,8 @@ struct Printer {
   }
 };
 
-/// Eats text from its front. Lenient on digits' form: parse_staged_name compares with the printed name.
+/// Eats text from its front. Lenient on digits' form: parse_staged_name compares with the printed
+/// name.
 class Scanner {
  public:
   explicit Scanner(std::string_view text) : text_(text) {}

@@ -2,10 +2,11 @@
 // SPDX-License-Identifier: MIT
 //
 // A staged file:
-//   magic "MFRM" | kind, 4 characters | version u32 | byte order u32 0x01020304 | payload size u64 |
-//   payload | xxh3-64 of everything before it
+//   magic "MFRM" | kind, 4 characters | version u32 | byte order u32 0x01020304 | payload size u64
+//   | payload | xxh3-64 of everything before it
 // Little endian. Version history is kept with each kind of payload.
 #include <algorithm>
+
 #include <meshfarm/staging/sealed.hpp>
 #include <meshfarm/util/bytes.hpp>
 #include <meshfarm/util/checksum.hpp>

@@ -1,9 +1,10 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
 #include <limits>
+#include <string>
+
 #include <meshfarm/stitch/stitcher.hpp>
 #include <meshfarm/util/errors.hpp>
-#include <string>
 
 namespace meshfarm {
 

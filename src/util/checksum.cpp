@@ -1,9 +1,10 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
+#include <new>
+
 #include <xxhash.h>
 
 #include <meshfarm/util/checksum.hpp>
-#include <new>
 
 namespace meshfarm {
 

@@ -1,8 +1,9 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
 #include <cerrno>
-#include <meshfarm/util/errors.hpp>
 #include <system_error>
+
+#include <meshfarm/util/errors.hpp>
 
 namespace meshfarm {
 

@@ -1,11 +1,12 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
+#include <cerrno>
+
 #include <fcntl.h>
 #include <sys/mman.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include <cerrno>
 #include <meshfarm/util/errors.hpp>
 #include <meshfarm/util/file.hpp>
 
@@ -46,7 +47,7 @@ void write_all(int fd, std::string_view bytes, const std::filesystem::path& path
 }
 
 std::uint64_t file_size(int fd, const std::filesystem::path& path) {
-  struct stat status{};
+  struct stat status {};
   if (::fstat(fd, &status) != 0) throw_errno("cannot stat", path);
   return static_cast<std::uint64_t>(status.st_size);
 }
@@ -96,8 +97,7 @@ MappedFile MappedFile::scratch(const std::filesystem::path& folder, std::uint64_
     error = ::ftruncate(fd.get(), static_cast<off_t>(size_bytes)) == 0 ? 0 : errno;
   }
   if (error != 0) throw IoError("cannot reserve a scratch file in", folder, error);
-  void* data =
-      ::mmap(nullptr, mapped.size_, PROT_READ | PROT_WRITE, MAP_SHARED, fd.get(), 0);
+  void* data = ::mmap(nullptr, mapped.size_, PROT_READ | PROT_WRITE, MAP_SHARED, fd.get(), 0);
   if (data == MAP_FAILED) throw_errno("cannot map a scratch file in", folder);
   mapped.data_ = static_cast<char*>(data);
   return mapped;

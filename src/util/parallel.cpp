@@ -3,10 +3,11 @@
 #include <algorithm>
 #include <atomic>
 #include <exception>
-#include <meshfarm/util/parallel.hpp>
 #include <mutex>
 #include <thread>
 #include <vector>
+
+#include <meshfarm/util/parallel.hpp>
 
 namespace meshfarm {
 

@@ -3,6 +3,7 @@
 //
 // The commands as a user types them: what they print, where, and their exit codes.
 #include <algorithm>
+
 #include <doctest/doctest.h>
 
 #include "support/process.hpp"
@@ -64,8 +65,9 @@ TEST_CASE("help and version go to stdout, and say what there is") {
   CHECK(shell({"--version"}).out == "meshfarm " MESHFARM_VERSION "\n");
   const Ran ran = shell({"simplify", "--help"});
   CHECK(ran.code == 0);
-  for (const char* option : {"--output", "--ratio", "--triangles", "--workers", "--parts", "--stage",
-                             "--keep-stage", "--weld", "--quiet", "--json", "--config"}) {
+  for (const char* option :
+       {"--output", "--ratio", "--triangles", "--workers", "--parts", "--stage", "--keep-stage",
+        "--weld", "--quiet", "--json", "--config"}) {
     CHECK(has(ran.out, option));
   }
   CHECK_FALSE(has(ran.out, "supervised"));
@@ -109,10 +111,10 @@ TEST_CASE("what cannot be read or written is one line and exit 1") {
   const std::string cube = shell.cube();
   const std::string text = shell.file("text.ply", "no mesh\n");
   const std::string obj = shell.file("mesh.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
-  const std::string nan = shell.file(
-      "nan.ply",
-      "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\n"
-      "property float z\nend_header\n0 nan 0\n");
+  const std::string nan =
+      shell.file("nan.ply",
+                 "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\n"
+                 "property float z\nend_header\n0 nan 0\n");
   const std::vector<std::pair<std::vector<std::string>, std::string>> failing = {
       {{"simplify", shell.path("absent.ply"), "-o", shell.path("o.ply"), "--ratio", "0.5"},
        "absent.ply"},
@@ -143,8 +145,8 @@ TEST_CASE("what cannot be read or written is one line and exit 1") {
 
 TEST_CASE("a cube goes through, and what is not kept is named") {
   Shell shell;
-  const Ran ran = shell({"simplify", shell.cube(), "-o", shell.path("o.ply"), "--ratio", "1",
-                         "--workers", "1"});
+  const Ran ran = shell(
+      {"simplify", shell.cube(), "-o", shell.path("o.ply"), "--ratio", "1", "--workers", "1"});
   CHECK(ran.code == 0);
   CHECK(has(ran.out, "12 triangles, 8 vertices"));
   CHECK(has(ran.out, "vertex.red"));
@@ -207,7 +209,8 @@ TEST_CASE("generate, info and compare fit together") {
   CHECK(has(info.out, "Euler characteristic 0"));
   CHECK(shell({"simplify", shell.path("t.ply"), "-o", shell.path("s.ply"), "--triangles", "2000"})
             .code == 0);
-  const Ran same = shell({"compare", shell.path("t.ply"), shell.path("t.ply"), "--samples", "1000"});
+  const Ran same =
+      shell({"compare", shell.path("t.ply"), shell.path("t.ply"), "--samples", "1000"});
   const std::size_t rms = same.out.find("rms ");
   REQUIRE(rms != std::string::npos);
   CHECK(std::stod(same.out.substr(rms + 4)) < 1e-9);

@@ -3,13 +3,13 @@
 //
 // Whole runs of the real program: ventilator, sink and workers as processes over tcp, killed,
 // stopped and started again. Every run must end with the same bytes.
+#include <optional>
+#include <random>
+
 #include <arpa/inet.h>
 #include <doctest/doctest.h>
 #include <netinet/in.h>
 #include <sys/socket.h>
-
-#include <optional>
-#include <random>
 
 #include "support/process.hpp"
 #include "support/temp_folder.hpp"
@@ -53,8 +53,8 @@ class Bench {
     return stage;
   }
   Process ventilator(const std::string& stage) {
-    return start({"ventilator", stage, "--ratio", "0.02", "--bind", "127.0.0.1", "--heartbeat-ms",
-                  "150"});
+    return start(
+        {"ventilator", stage, "--ratio", "0.02", "--bind", "127.0.0.1", "--heartbeat-ms", "150"});
   }
   Process sink(const std::string& stage) {
     return start({"sink", stage, "--ratio", "0.02", "--bind", "127.0.0.1", "-o", stage + ".ply"});
@@ -134,8 +134,8 @@ TEST_CASE("1, 2 and 5 workers make the same bytes") {
 TEST_CASE("a cut, ventilator and sink, and two workers started by hand make the same bytes") {
   const std::string stage = bench().cut();
   Process one = bench().worker(stage);  // a worker may come before anyone else
-  Process run = bench().start({"run", stage, "--ratio", "0.02", "-o", stage + ".ply", "--bind",
-                               "127.0.0.1"});
+  Process run =
+      bench().start({"run", stage, "--ratio", "0.02", "-o", stage + ".ply", "--bind", "127.0.0.1"});
   Process two = bench().worker(stage);
   CHECK(run.wait() == 0);
   CHECK(one.wait() == 0);
@@ -152,8 +152,8 @@ TEST_CASE("a cut, ventilator and sink, and two workers started by hand make the 
   }
   SUBCASE("and another target from the same cut is met") {
     const std::string output = stage + "-half.ply";
-    const Ran ran = bench().meshfarm(
-        {"replay", stage, "-o", output, "--triangles", "12000", "--json"});
+    const Ran ran =
+        bench().meshfarm({"replay", stage, "-o", output, "--triangles", "12000", "--json"});
     CHECK(ran.code == 0);
     CHECK(ran.out.find("\"triangles\": 12000") != std::string::npos);
   }
@@ -296,8 +296,8 @@ TEST_CASE("a staged part with a flipped byte, or cut short, is named and nothing
       file.seekp(1000);
       file.put('\x55');
     }
-    const Ran ran = bench().meshfarm({"replay", stage, "-o", stage + ".ply", "--ratio", "0.02",
-                                      "--workers", "2"});
+    const Ran ran = bench().meshfarm(
+        {"replay", stage, "-o", stage + ".ply", "--ratio", "0.02", "--workers", "2"});
     CHECK(ran.code == 1);
     CHECK(ran.err.find("000005.part") != std::string::npos);
     CHECK_FALSE(fs::exists(stage + ".ply"));
@@ -324,7 +324,8 @@ TEST_CASE("a damaged manifest is one clear line") {
   std::ofstream(fs::path(stage) / "manifest", std::ios::app) << "x";
   const Ran ran = bench().meshfarm({"replay", stage, "-o", stage + ".ply", "--ratio", "0.02"});
   CHECK(ran.code == 1);
-  CHECK(ran.err == "meshfarm replay: error: " + (fs::path(stage) / "manifest").string() + ": 1 bytes too many at byte " +
+  CHECK(ran.err == "meshfarm replay: error: " + (fs::path(stage) / "manifest").string() +
+                       ": 1 bytes too many at byte " +
                        std::to_string(fs::file_size(fs::path(stage) / "manifest") - 1) + "\n");
 }
 

@@ -5,10 +5,11 @@
 // input is also tried as the payload of a sound seal.
 #include <cstdint>
 #include <cstdlib>
+#include <string>
+
 #include <meshfarm/farm/endpoint.hpp>
 #include <meshfarm/staging/sealed.hpp>
 #include <meshfarm/util/errors.hpp>
-#include <string>
 
 namespace {
 

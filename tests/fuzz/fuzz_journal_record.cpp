@@ -4,6 +4,7 @@
 // A record of the sink's journal, and a whole journal.
 #include <cstdint>
 #include <cstdlib>
+
 #include <meshfarm/farm/ledger.hpp>
 #include <meshfarm/staging/journal.hpp>
 #include <meshfarm/util/errors.hpp>

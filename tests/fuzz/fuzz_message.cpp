@@ -4,6 +4,7 @@
 // A frame from anybody: refused with DataError, or a message that encodes to the same bytes.
 #include <cstdint>
 #include <cstdlib>
+
 #include <meshfarm/farm/protocol.hpp>
 #include <meshfarm/util/errors.hpp>
 

@@ -3,8 +3,9 @@
 #pragma once
 
 #include <algorithm>
-#include <meshfarm/io/mesh_source.hpp>
 #include <utility>
+
+#include <meshfarm/io/mesh_source.hpp>
 
 namespace meshfarm::test {
 

@@ -2,10 +2,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <fcntl.h>
-#include <sys/wait.h>
-#include <unistd.h>
-
 #include <chrono>
 #include <csignal>
 #include <filesystem>
@@ -17,6 +13,10 @@
 #include <thread>
 #include <utility>
 #include <vector>
+
+#include <fcntl.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 namespace meshfarm::test {
 
@@ -35,7 +35,8 @@ inline bool wait_until(const std::function<bool()>& done, double seconds = 60) {
   return true;
 }
 
-/// A meshfarm process. Its output goes to files beside `log`; it is killed if it outlives its owner.
+/// A meshfarm process. Its output goes to files beside `log`; it is killed if it outlives its
+/// owner.
 class Process {
  public:
   Process(std::vector<std::string> words, const std::filesystem::path& log)
@@ -61,7 +62,11 @@ class Process {
 
   pid_t pid() const { return pid_; }
   void signal(int number) const { ::kill(pid_, number); }
-  bool running() { return pid_ > 0 && ::waitid(P_PID, static_cast<id_t>(pid_), &info_, WEXITED | WNOHANG | WNOWAIT) == 0 && info_.si_pid == 0; }
+  bool running() {
+    return pid_ > 0 &&
+           ::waitid(P_PID, static_cast<id_t>(pid_), &info_, WEXITED | WNOHANG | WNOWAIT) == 0 &&
+           info_.si_pid == 0;
+  }
   /// The exit code, or minus the signal that ended it; -1000 if it did not end in time.
   int wait(double seconds = 120) {
     int status = 0;

@@ -6,9 +6,10 @@
 #include <functional>
 #include <limits>
 #include <memory>
-#include <meshfarm/geometry/mesh.hpp>
 #include <span>
 #include <vector>
+
+#include <meshfarm/geometry/mesh.hpp>
 
 namespace meshfarm {
 
@@ -27,25 +28,34 @@ struct SimplifyGoal {
   /// Stop at this many triangles; never fewer.
   std::uint64_t triangles = 0;
   /// Collapse no edge that costs more. A cost is an area times a squared distance: the sum over the
-  /// triangles of the collapsed edge of area x squared distance of the new vertex to their planes.
+  /// triangles round the edge, as they are just before, of area x squared distance of the new
+  /// vertex to their planes; open borders add a plane along each border edge, as heavy as three
+  /// squares on it. No less than a tenth of the area that the surface loses x the edge's squared
+  /// length, since planes do not see a spike draw back. It depends on nothing else: costs of parts
+  /// compare.
   double max_cost = std::numeric_limits<double>::infinity();
 };
 
 /// Iterative edge collapse by quadric error (Garland & Heckbert 1997) in passes without a heap;
 /// quadrics are memoryless (Lindstrom & Turk 1999): made anew from the current mesh at each pass.
 ///
+/// Needs about 70 bytes a triangle beside the mesh, and at most that for a moment when it starts.
+///
 /// The input may be dirty: degenerate and duplicate triangles are dropped and counted; non-manifold
 /// edges and vertices are locked. Topology is kept, no triangle flips, none becomes degenerate.
 /// Deterministic: same mesh, options and goals, same bytes.
 class Simplifier {
  public:
+  /// Throws UsageError if the options do not fit the mesh or it is too big (over 2^32 / 3 vertices
+  /// or triangles), DataError if a triangle names a vertex that does not exist.
   Simplifier(Mesh mesh, SimplifyOptions options);
   ~Simplifier();
   Simplifier(Simplifier&&) noexcept;
 
-  /// Collapses until the goal is met or nothing that is allowed is left. May be called again with
-  /// a farther goal. `progress` (may be empty) is told the triangles left after each pass, and
-  /// stops the work by returning false.
+  /// Collapses until the goal is met or nothing that is allowed is left; with a finite max_cost,
+  /// until a pass over all that it allows removes less than 1 %. May be called again with a farther
+  /// goal; with one that is met, or a cost that was exhausted, it returns at once. `progress` (may
+  /// be empty) is told the triangles left after each pass, and stops the work by returning false.
   void reduce(const SimplifyGoal& goal,
               const std::function<bool(std::uint64_t triangles_left)>& progress = {});
 

@@ -3,9 +3,10 @@
 #pragma once
 
 #include <cstdint>
-#include <meshfarm/partition/grid.hpp>
 #include <span>
 #include <vector>
+
+#include <meshfarm/partition/grid.hpp>
 
 namespace meshfarm {
 
@@ -15,8 +16,8 @@ struct CellGraphOptions {
 };
 
 /// The part of each cell: a graph with a node a cell, weighted by its vertices, and edges to its
-/// nearest cells, cut by METIS (Karypis & Kumar 1998; Xiong et al. 2008, 3.1 step 2) with a fixed seed.
-/// Parts are numbered 0.. without gaps; there may be fewer than asked for, never more.
+/// nearest cells, cut by METIS (Karypis & Kumar 1998; Xiong et al. 2008, 3.1 step 2) with a fixed
+/// seed. Parts are numbered 0.. without gaps; there may be fewer than asked for, never more.
 std::vector<std::uint32_t> partition_cells(std::span<const Cell> cells,
                                            const CellGraphOptions& options);
 

@@ -5,21 +5,22 @@
 #include <atomic>
 #include <cstdint>
 #include <functional>
+#include <string>
+#include <string_view>
+
 #include <meshfarm/io/manifest.hpp>
 #include <meshfarm/io/mesh_source.hpp>
 #include <meshfarm/staging/stage.hpp>
-#include <string>
-#include <string_view>
 
 namespace meshfarm {
 
 enum class Weld { exact, off };
 
 struct CutOptions {
-  std::uint32_t parts = 0;   // 0: default_parts() of the input's triangles
-  Weld weld = Weld::exact;   // vertices at the same position become one
-  std::string input_name;    // kept in the manifest, for people
-  unsigned threads = 0;      // 0: one a core; the parts do not depend on it
+  std::uint32_t parts = 0;  // 0: default_parts() of the input's triangles
+  Weld weld = Weld::exact;  // vertices at the same position become one
+  std::string input_name;   // kept in the manifest, for people
+  unsigned threads = 0;     // 0: one a core; the parts do not depend on it
   /// Told what is being done and how far it is (0..1); may be empty.
   std::function<void(std::string_view phase, double done)> progress;
   const std::atomic<bool>* stop = nullptr;

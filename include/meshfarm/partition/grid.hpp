@@ -3,8 +3,9 @@
 #pragma once
 
 #include <cstdint>
-#include <meshfarm/geometry/mesh.hpp>
 #include <vector>
+
+#include <meshfarm/geometry/mesh.hpp>
 
 namespace meshfarm {
 

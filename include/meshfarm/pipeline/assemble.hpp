@@ -6,12 +6,13 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <span>
+#include <string_view>
+
 #include <meshfarm/farm/job.hpp>
 #include <meshfarm/io/manifest.hpp>
 #include <meshfarm/pipeline/run_options.hpp>
 #include <meshfarm/report/summary.hpp>
-#include <span>
-#include <string_view>
 
 namespace meshfarm {
 

@@ -3,19 +3,20 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
+#include <vector>
+
 #include <meshfarm/farm/job.hpp>
 #include <meshfarm/io/manifest.hpp>
 #include <meshfarm/io/result_file.hpp>
 #include <meshfarm/pipeline/run_options.hpp>
-#include <span>
-#include <vector>
 
 namespace meshfarm {
 
 /// The jobs of a run, round by round (see JobSource). First every part is simplified to a ladder:
 /// snapshots at rising cost levels that are the same in all parts. From the rungs' counts one level
-/// is chosen for all. A part whose ladder begins above that level was taken too far: it is asked for
-/// again in the next round, with a finer start.
+/// is chosen for all. A part whose ladder begins above that level was taken too far: it is asked
+/// for again in the next round, with a finer start.
 JobSource make_job_source(const Manifest& manifest, const RunOptions& options);
 
 /// The result of a part that counts, and the rung to stitch.

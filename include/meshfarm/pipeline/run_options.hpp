@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+
 #include <meshfarm/io/manifest.hpp>
 
 namespace meshfarm {
@@ -21,7 +22,7 @@ enum class Finish : std::uint8_t {
 
 /// What a run is asked to make of a stage.
 struct RunOptions {
-  double ratio = 0;             // of the input's triangles; used when triangles is 0
+  double ratio = 0;  // of the input's triangles; used when triangles is 0
   std::uint64_t triangles = 0;
   Allocation allocation = Allocation::threshold;
   Finish finish = Finish::global;

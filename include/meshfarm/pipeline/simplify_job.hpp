@@ -3,10 +3,11 @@
 #pragma once
 
 #include <cstdint>
-#include <meshfarm/farm/job.hpp>
-#include <meshfarm/pipeline/run_options.hpp>
 #include <string>
 #include <string_view>
+
+#include <meshfarm/farm/job.hpp>
+#include <meshfarm/pipeline/run_options.hpp>
 
 namespace meshfarm {
 

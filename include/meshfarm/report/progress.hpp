@@ -20,9 +20,9 @@ ProgressStyle progress_style_of_stderr();
 
 /// One thing that is being done: how far it is, its rate, and when it will end.
 struct ProgressState {
-  std::string_view phase;      // "cut: triangles", "farm: 12 of 28 jobs"
-  double done = 0;             // 0 .. 1
-  std::uint64_t triangles = 0; // done so far, for the rate; 0: no rate
+  std::string_view phase;       // "cut: triangles", "farm: 12 of 28 jobs"
+  double done = 0;              // 0 .. 1
+  std::uint64_t triangles = 0;  // done so far, for the rate; 0: no rate
 };
 
 /// "1.2 M", "345 k", "12"

@@ -3,12 +3,13 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
+#include <string>
+
 #include <meshfarm/geometry/distance.hpp>
 #include <meshfarm/geometry/topology.hpp>
 #include <meshfarm/io/manifest.hpp>
 #include <meshfarm/io/mesh_source.hpp>
-#include <optional>
-#include <string>
 
 namespace meshfarm {
 
@@ -17,12 +18,12 @@ enum class Format { text, json };
 /// What a run made, for people and for programs.
 struct RunSummary {
   Manifest manifest;
-  std::string output;              // path of the result
-  std::uint64_t target = 0;        // triangles asked for
-  std::uint64_t triangles = 0;     // triangles made
+  std::string output;           // path of the result
+  std::uint64_t target = 0;     // triangles asked for
+  std::uint64_t triangles = 0;  // triangles made
   std::uint64_t vertices = 0;
-  std::string why_not_exact;       // empty when triangles == target
-  std::uint64_t stitched = 0;      // triangles of the stitched mesh, before the finish
+  std::string why_not_exact;             // empty when triangles == target
+  std::uint64_t stitched = 0;            // triangles of the stitched mesh, before the finish
   std::uint64_t dropped_degenerate = 0;  // cut, parts and finish together
   std::uint64_t dropped_duplicate = 0;
   double farm_seconds = 0;
@@ -45,7 +46,7 @@ struct FileSummary {
 struct Comparison {
   std::string path_a;
   std::string path_b;
-  double diagonal = 0;   // of A's bounding box; distances are fractions of it
+  double diagonal = 0;  // of A's bounding box; distances are fractions of it
   Distance a_to_b;
   Distance b_to_a;
   Topology topology_a;

@@ -4,18 +4,21 @@
 
 #include <cstdint>
 #include <filesystem>
-#include <meshfarm/util/file.hpp>
 #include <string>
 #include <string_view>
 
+#include <meshfarm/util/file.hpp>
+
 namespace meshfarm {
 
-/// A file that others see only whole: a temporary name in the same folder -> write -> fsync -> close
+/// A file that others see only whole: a temporary name in the same folder -> write -> fsync ->
+/// close
 /// -> rename, each step checked (a full NFS disk shows only at fsync or close). Only commit()
 /// publishes; the destructor removes what was not published.
 class AtomicFile {
  public:
-  /// Makes the temporary file. `unique` (process or incarnation) keeps two writers of one name apart.
+  /// Makes the temporary file. `unique` (process or incarnation) keeps two writers of one name
+  /// apart.
   explicit AtomicFile(std::filesystem::path final_path, std::string_view unique = {});
   ~AtomicFile();
   AtomicFile(const AtomicFile&) = delete;

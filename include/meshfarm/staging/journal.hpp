@@ -4,11 +4,12 @@
 
 #include <cstdint>
 #include <filesystem>
-#include <meshfarm/util/file.hpp>
 #include <span>
 #include <string>
 #include <string_view>
 #include <vector>
+
+#include <meshfarm/util/file.hpp>
 
 namespace meshfarm {
 

@@ -4,11 +4,12 @@
 
 #include <cstdint>
 #include <filesystem>
-#include <meshfarm/staging/names.hpp>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
+
+#include <meshfarm/staging/names.hpp>
 
 namespace meshfarm {
 
@@ -40,10 +41,12 @@ class Stage {
 
   /// Publishes the bytes under a name never used before, whole and synced.
   /// `unique` (an incarnation) keeps the temporary names of two writers apart.
-  FileRef publish(const StagedName& name, std::string_view bytes, std::string_view unique = {}) const;
+  FileRef publish(const StagedName& name, std::string_view bytes,
+                  std::string_view unique = {}) const;
 
   /// Reads a file that a message told of: its name must parse, it is opened beneath the stage only,
-  /// and size and checksum must match; stale NFS answers are tried again. Throws DataError, IoError.
+  /// and size and checksum must match; stale NFS answers are tried again. Throws DataError,
+  /// IoError.
   std::string read(const FileRef& file, const ReadPatience& patience = {}) const;
   /// Reads a file known by name only; its seal is the check.
   std::string read(const StagedName& name) const;

@@ -3,11 +3,12 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
+#include <vector>
+
 #include <meshfarm/geometry/mesh.hpp>
 #include <meshfarm/io/boundary_file.hpp>
 #include <meshfarm/io/result_file.hpp>
-#include <span>
-#include <vector>
 
 namespace meshfarm {
 
@@ -18,8 +19,8 @@ struct StitchedMesh {
 };
 
 /// Joins simplified parts (Xiong et al. 2008, 3.3): vertex lists are appended in the order of the
-/// parts and their starts remembered; boundary vertices kept their place at the head of each list, so
-/// the corners of the boundary triangles are found by part and local index.
+/// parts and their starts remembered; boundary vertices kept their place at the head of each list,
+/// so the corners of the boundary triangles are found by part and local index.
 class Stitcher {
  public:
   /// Adds the next part, number 0 first. Throws DataError if the whole outgrows 32-bit indices.

@@ -21,15 +21,13 @@ static_assert(std::endian::native == std::endian::little,
 class ByteWriter {
  public:
   template <class T>
-    requires std::is_trivially_copyable_v<T>
-  void put(const T& value) {
-    bytes_.append(reinterpret_cast<const char*>(&value), sizeof(T));
-  }
+  requires std::is_trivially_copyable_v<T>
+  void put(const T& value) { bytes_.append(reinterpret_cast<const char*>(&value), sizeof(T)); }
   /// A length (u32), then the characters.
   void put_string(std::string_view text);
   /// The elements as they lie in memory, without a count.
   template <class T>
-    requires std::is_trivially_copyable_v<T>
+  requires std::is_trivially_copyable_v<T>
   void put_array(std::span<const T> values) {
     bytes_.append(reinterpret_cast<const char*>(values.data()), values.size_bytes());
   }
@@ -47,16 +45,14 @@ class ByteReader {
   ByteReader(std::string_view bytes, std::string_view what) : bytes_(bytes), what_(what) {}
 
   template <class T>
-    requires std::is_trivially_copyable_v<T>
-  T get() {
+  requires std::is_trivially_copyable_v<T> T get() {
     T value;
     std::memcpy(&value, take(sizeof(T)).data(), sizeof(T));
     return value;
   }
   std::string get_string();
   template <class T>
-    requires std::is_trivially_copyable_v<T>
-  std::vector<T> get_array(std::uint64_t count) {
+  requires std::is_trivially_copyable_v<T> std::vector<T> get_array(std::uint64_t count) {
     if (count > remaining() / sizeof(T)) fail("an array runs past the end");
     std::vector<T> values(count);
     const std::string_view raw = take(count * sizeof(T));

@@ -58,10 +58,8 @@ class MappedFile {
   void release(std::uint64_t offset, std::uint64_t size) const;
 
   template <class T>
-    requires std::is_trivially_copyable_v<T>
-  std::span<T> as_span() const {
-    return {reinterpret_cast<T*>(data_), size_ / sizeof(T)};
-  }
+  requires std::is_trivially_copyable_v<T> std::span<T> as_span()
+  const { return {reinterpret_cast<T*>(data_), size_ / sizeof(T)}; }
 
  private:
   char* data_ = nullptr;

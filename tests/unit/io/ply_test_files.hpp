@@ -83,8 +83,7 @@ inline ReadFile read_bytes(std::string_view bytes) {
 
 /// The message that a read of the bytes is refused with, from behind the folder's name on; empty if
 /// they are read.
-inline std::string refusal(std::string_view bytes) {
-  const TempFolder folder;
+inline std::string refusal(std::string_view bytes, const TempFolder& folder) {
   write_file(folder / "m.ply", bytes);
   try {
     read_path(folder / "m.ply");
@@ -96,6 +95,10 @@ inline std::string refusal(std::string_view bytes) {
     REQUIRE(message.starts_with(where));
     return message.substr(where.size());
   }
+}
+
+inline std::string refusal(std::string_view bytes) {
+  return refusal(bytes, TempFolder());
 }
 
 /// No warnings while it lives.

@@ -80,6 +80,19 @@ TEST_CASE("coordinates of every type, in both byte orders") {
   }
 }
 
+TEST_CASE("coordinates stand in any order, apart or together") {
+  for (const std::string order : {"xyz", "zyx", "yxz", "xwyz", "wxyz", "xywz", "xwzy", "xyzw"}) {
+    std::string elements = "element vertex 2\n";
+    for (const char axis : order) elements += std::string("property float ") + axis + "\n";
+    BinaryFile file(Order::little, elements);
+    for (const float vertex : {0.F, 10.F}) {
+      for (const char axis : order) file.floats({vertex + static_cast<float>(axis - 'w')});
+    }
+    CAPTURE(order);
+    CHECK(read_bytes(file.text()).mesh.positions == std::vector<Vec3>{{1, 2, 3}, {11, 12, 13}});
+  }
+}
+
 TEST_CASE("extra elements and properties stand anywhere in a binary file") {
   for (const Order order : {Order::little, Order::big}) {
     BinaryFile file(

@@ -44,12 +44,13 @@ constexpr const char* k_most = "18446744073709551615";
 
 TEST_CASE("a binary file cut off at any byte is refused") {
   const Quiet quiet;
+  const TempFolder folder;
   for (const Order order : {Order::little, Order::big}) {
     const std::string whole = rich_file(order);
     CHECK(refusal(whole).empty());
     for (std::size_t size = 1; size < whole.size(); ++size) {
       CAPTURE(size);
-      CHECK_FALSE(refusal(whole.substr(0, size)).empty());
+      CHECK_FALSE(refusal(whole.substr(0, size), folder).empty());
     }
   }
 }
@@ -57,11 +58,12 @@ TEST_CASE("a binary file cut off at any byte is refused") {
 TEST_CASE(
     "an ascii file cut off at any byte is refused, or has lost digits of its last value only") {
   const Quiet quiet;
+  const TempFolder folder;
   const std::string whole = ascii_square();
   const std::size_t last_value = whole.rfind(' ') + 2;
   for (std::size_t size = 1; size < whole.size(); ++size) {
     CAPTURE(size);
-    CHECK(refusal(whole.substr(0, size)).empty() == (size >= last_value));
+    CHECK(refusal(whole.substr(0, size), folder).empty() == (size >= last_value));
   }
 }
 
@@ -105,6 +107,7 @@ TEST_CASE("an element without properties takes no time, however often it claims 
 
 TEST_CASE("any byte changed to any other") {
   const Quiet quiet;
+  const TempFolder folder;
   std::size_t read = 0;
   for (const std::string& whole :
        {rich_file(Order::little), rich_file(Order::big), ascii_square("3 0 1 2\n4 2 1 3 0\n")}) {
@@ -112,7 +115,7 @@ TEST_CASE("any byte changed to any other") {
       for (const char change : {'\x00', '\x01', '\x7f', '\x80', '\xff', '\n', '-', '9'}) {
         std::string bytes = whole;
         bytes[at] = change;
-        read += refusal(bytes).empty();
+        read += refusal(bytes, folder).empty();
       }
     }
   }

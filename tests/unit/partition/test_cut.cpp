@@ -1,14 +1,15 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
+#include <algorithm>
+#include <set>
+
 #include <doctest/doctest.h>
 
-#include <algorithm>
 #include <meshfarm/io/boundary_file.hpp>
 #include <meshfarm/io/part_file.hpp>
 #include <meshfarm/partition/cut.hpp>
 #include <meshfarm/util/errors.hpp>
 #include <meshfarm/util/file.hpp>
-#include <set>
 
 #include "partition/bucket_file.hpp"
 #include "partition/part_builder.hpp"

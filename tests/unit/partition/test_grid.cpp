@@ -1,12 +1,12 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
-#include <doctest/doctest.h>
-
 #include <algorithm>
+#include <set>
+
+#include <doctest/doctest.h>
 
 #include <meshfarm/partition/cell_graph.hpp>
 #include <meshfarm/partition/grid.hpp>
-#include <set>
 
 using namespace meshfarm;
 

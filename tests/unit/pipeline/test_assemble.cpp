@@ -2,10 +2,11 @@
 // SPDX-License-Identifier: MIT
 //
 // The pipeline without its processes: cut, jobs, stitch and finish called in turn.
-#include <doctest/doctest.h>
-
 #include <algorithm>
 #include <cmath>
+
+#include <doctest/doctest.h>
+
 #include <meshfarm/geometry/topology.hpp>
 #include <meshfarm/io/result_file.hpp>
 #include <meshfarm/partition/cut.hpp>
@@ -113,21 +114,18 @@ TEST_CASE("one threshold gives the rough corner what the flat rest does not need
   CHECK(made.summary.triangles == 864);
   CHECK(made.jobs > 16);  // the rough parts were asked for again
   CHECK(rough(made.mesh) > 550);
-  const Made uniform = simplify(sheet_with_a_rough_corner(), 16,
-                                {.ratio = 0.03,
-                                 .allocation = Allocation::uniform,
-                                 .finish = Finish::boundary},
-                                folder.path() / "uniform");
+  const Made uniform =
+      simplify(sheet_with_a_rough_corner(), 16,
+               {.ratio = 0.03, .allocation = Allocation::uniform, .finish = Finish::boundary},
+               folder.path() / "uniform");
   CHECK(rough(uniform.mesh) < 400);
 }
 
 TEST_CASE("the paper's way reaches about its count without touching the inside again") {
   const test::TempFolder folder;
-  const Made made = simplify(test::torus(100, 60), 6,
-                             {.ratio = 0.1,
-                              .allocation = Allocation::uniform,
-                              .finish = Finish::boundary},
-                             folder.path());
+  const Made made = simplify(
+      test::torus(100, 60), 6,
+      {.ratio = 0.1, .allocation = Allocation::uniform, .finish = Finish::boundary}, folder.path());
   CHECK(made.summary.triangles >= 1200);
   CHECK(made.summary.triangles < 1500);
   const Topology t = measure_topology(made.mesh);

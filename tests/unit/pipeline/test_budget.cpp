@@ -25,8 +25,9 @@ Manifest manifest_of(std::uint32_t parts, std::uint64_t triangles_each) {
 }
 
 AcceptedJob accepted(const Job& job, std::vector<Rung> rungs) {
-  return {key_of(job), {{to_string(ResultName{key_of(job).value, 1, 1}), 1, 1},
-                        encode_summary({std::move(rungs), 0, 0})}};
+  return {key_of(job),
+          {{to_string(ResultName{key_of(job).value, 1, 1}), 1, 1},
+           encode_summary({std::move(rungs), 0, 0})}};
 }
 
 }  // namespace

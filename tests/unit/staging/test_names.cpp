@@ -22,12 +22,28 @@ TEST_CASE("every name that is made is parsed back") {
 }
 
 TEST_CASE("any other text is no staged name") {
-  for (const char* text :
-       {"", "/", "..", "parts", "parts/", "parts/1.part", "parts/000001.part/", "parts/000001.parts",
-        "parts/-00001.part", "parts/+00001.part", "parts/99999999999.part", "/parts/000001.part",
-        "./parts/000001.part", "parts/../manifest", "results/1.a1.1", "results/x.a1.y", "Manifest",
-        "manifest ", "control/000001", "journal/000001.endpoint",
-        "results/FEDCBA9876543210.a1.0000000000000001", "../../etc/passwd"}) {
+  for (const char* text : {"",
+                           "/",
+                           "..",
+                           "parts",
+                           "parts/",
+                           "parts/1.part",
+                           "parts/000001.part/",
+                           "parts/000001.parts",
+                           "parts/-00001.part",
+                           "parts/+00001.part",
+                           "parts/99999999999.part",
+                           "/parts/000001.part",
+                           "./parts/000001.part",
+                           "parts/../manifest",
+                           "results/1.a1.1",
+                           "results/x.a1.y",
+                           "Manifest",
+                           "manifest ",
+                           "control/000001",
+                           "journal/000001.endpoint",
+                           "results/FEDCBA9876543210.a1.0000000000000001",
+                           "../../etc/passwd"}) {
     CAPTURE(text);
     CHECK_FALSE(parse_staged_name(text).has_value());
   }

@@ -14,7 +14,8 @@ constexpr FileKind k_kind = {'T', 'E', 'S', 'T'};
 }  // namespace
 
 TEST_CASE("a sealed payload comes back") {
-  for (const std::string& payload : {std::string(), std::string("payload"), std::string(5000, 'p')}) {
+  for (const std::string& payload :
+       {std::string(), std::string("payload"), std::string(5000, 'p')}) {
     const std::string file = seal(k_kind, 1, payload);
     CHECK(unseal(file, k_kind, 1, "file") == payload);
   }

@@ -1,12 +1,13 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
+#include <fstream>
+#include <thread>
+
 #include <doctest/doctest.h>
 
-#include <fstream>
 #include <meshfarm/staging/stage.hpp>
 #include <meshfarm/util/errors.hpp>
 #include <meshfarm/util/file.hpp>
-#include <thread>
 
 #include "support/temp_folder.hpp"
 
@@ -49,9 +50,9 @@ TEST_CASE("one flipped byte or a missing one is noticed by the reader") {
   const FileRef file = stage.publish(PartName{0}, "content");
   const auto path = stage.path(PartName{0});
   std::ofstream(path) << "contenT";
-  CHECK_THROWS_WITH_AS(
-      stage.read(file, k_no_patience),
-      (path.string() + ": damaged (its checksum is not the promised one)").c_str(), DataError);
+  CHECK_THROWS_WITH_AS(stage.read(file, k_no_patience),
+                       (path.string() + ": damaged (its checksum is not the promised one)").c_str(),
+                       DataError);
   std::ofstream(path) << "conten";
   CHECK_THROWS_WITH_AS(stage.read(file, k_no_patience),
                        (path.string() + ": 6 bytes where 7 were promised").c_str(), DataError);

@@ -1,8 +1,9 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
+#include <array>
+
 #include <doctest/doctest.h>
 
-#include <array>
 #include <meshfarm/util/bytes.hpp>
 #include <meshfarm/util/checksum.hpp>
 #include <meshfarm/util/errors.hpp>

@@ -1,13 +1,14 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
-#include <doctest/doctest.h>
-
 #include <atomic>
 #include <fstream>
+#include <stdexcept>
+
+#include <doctest/doctest.h>
+
 #include <meshfarm/util/errors.hpp>
 #include <meshfarm/util/file.hpp>
 #include <meshfarm/util/parallel.hpp>
-#include <stdexcept>
 
 #include "support/temp_folder.hpp"
 
