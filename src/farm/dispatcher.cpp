@@ -256,6 +256,7 @@ void Dispatcher::on(const PeerId& peer, const Ready& ready) {
   }
   sink_->ready = true;
   plan_.restart(std::exchange(sink_->told, {}));
+  over_ = over_ && plan_.complete();  // a sink that lost results needs workers again
   for (const LostJob& lost : plan_.lost()) send(peer, JobFailed{lost.key, clipped(lost.reasons)});
   issue();
   look_for_end();

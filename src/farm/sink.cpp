@@ -75,7 +75,7 @@ class SinkLoop {
     wait_for(items, poll_interval(core_.heartbeat()));
     const FarmTime now = farm_clock();
     if (disk_.take_finished()) disk_answers(now);
-    while (link_.socket() != nullptr) {
+    for (int count = 0; link_.socket() != nullptr && count < k_messages_per_turn; ++count) {
       const auto received = receive(*link_.socket());
       if (!received) break;
       if (received->message) perform(core_.on_control(*received->message, now));

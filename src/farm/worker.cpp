@@ -20,6 +20,9 @@
 namespace meshfarm {
 namespace {
 
+/// So that a flood cannot keep the clock from being looked at.
+constexpr int k_messages_per_turn = 1000;
+
 using Outcome = std::variant<JobOutput, JobFailure>;
 
 /// The sockets and the compute thread round a WorkerCore, which decides everything.
@@ -58,12 +61,12 @@ class WorkerLoop {
     wait_for(items, poll_interval(core_.heartbeat()));
     const FarmTime now = farm_clock();
     if (compute_.take_finished()) perform(core_.finished(std::move(outcome_), now));
-    while (link_.socket() != nullptr) {
+    for (int count = 0; link_.socket() != nullptr && count < k_messages_per_turn; ++count) {
       const auto received = receive(*link_.socket());
       if (!received) break;
       if (received->message) perform(core_.on_control(*received->message, now));
     }
-    while (lane_) {
+    for (int count = 0; lane_ && count < k_messages_per_turn; ++count) {
       const auto received = receive(*lane_);
       if (!received) break;
       if (received->message) perform(core_.on_lane(*received->message, now));

@@ -134,6 +134,7 @@ Vec3 CollapseJudge::best_position(std::uint32_t a, std::uint32_t b) const {
 }
 
 Collapse CollapseJudge::judge(std::uint32_t a, std::uint32_t b, const CollapseLimits& limits) {
+  if (state_.adjacency->count(a) + state_.adjacency->count(b) > k_max_star) return {};
   walk_ring(a, ring_a_);
   walk_ring(b, ring_b_);
   const std::uint32_t shared = shared_triangles(b);

@@ -39,11 +39,14 @@ std::vector<double> areas_before(const Mesh& mesh, unsigned threads, const char*
     throw DataError(std::string("cannot measure distances: the mesh to measure ") + which +
                     " has coordinates that are not finite, or too large");
   }
+  return before;
+}
+
+void check_area(const std::vector<double>& before, const char* which) {
   if (!(before.back() > 0)) {
     throw DataError(std::string("cannot measure distances: the mesh to measure ") + which +
                     " has no triangle of positive area");
   }
-  return before;
 }
 
 /// The n-th number of a fixed random sequence, in [0, 1): splitmix64 (Steele et al. 2014).
@@ -99,22 +102,18 @@ struct Sums {
   double max_square = 0;
 };
 
-}  // namespace
-
-Distance measure_distance(const Mesh& from, const Mesh& to, const DistanceOptions& options) {
-  if (options.samples == 0) throw UsageError("distances need at least one sample");
-  const std::vector<double> before = areas_before(from, options.threads, "from");
-  areas_before(to, options.threads, "to");
-  const Bvh bvh(to, options.threads);
-
-  std::vector<Sums> chunks((options.samples + k_samples_a_chunk - 1) / k_samples_a_chunk);
-  parallel_for(chunks.size(), options.threads, [&](std::uint64_t chunk) {
-    Sampler sampler(from, before, options.samples);
-    const std::uint64_t end = std::min(options.samples, (chunk + 1) * k_samples_a_chunk);
+/// Measures so many points, which `points_of(chunk)` gives a maker of, chunk by chunk.
+template <class PointsOf>
+Distance measure_chunks(const Bvh& bvh, std::uint64_t count, unsigned threads,
+                        const PointsOf& points_of) {
+  std::vector<Sums> chunks((count + k_samples_a_chunk - 1) / k_samples_a_chunk);
+  parallel_for(chunks.size(), threads, [&](std::uint64_t chunk) {
+    auto point = points_of();
+    const std::uint64_t end = std::min(count, (chunk + 1) * k_samples_a_chunk);
     Sums sums;
     std::uint32_t guess = 0;
     for (std::uint64_t n = chunk * k_samples_a_chunk; n < end; ++n) {
-      const Bvh::Nearest nearest = bvh.nearest(sampler.sample(n), guess);
+      const Bvh::Nearest nearest = bvh.nearest(point(n), guess);
       guess = nearest.triangle;
       sums.squares += nearest.squared;
       sums.distances += std::sqrt(nearest.squared);
@@ -128,8 +127,56 @@ Distance measure_distance(const Mesh& from, const Mesh& to, const DistanceOption
     all.distances += chunk.distances;
     all.max_square = std::max(all.max_square, chunk.max_square);
   }
-  const auto samples = static_cast<double>(options.samples);
+  const auto samples = static_cast<double>(std::max<std::uint64_t>(1, count));
   return {std::sqrt(all.squares / samples), all.distances / samples, std::sqrt(all.max_square)};
+}
+
+}  // namespace
+
+Distance measure_distance(const Mesh& from, const Mesh& to, const DistanceOptions& options) {
+  if (options.samples == 0) throw UsageError("distances need at least one sample");
+  const std::vector<double> before = areas_before(from, options.threads, "from");
+  check_area(before, "from");
+  check_area(areas_before(to, options.threads, "to"), "to");
+  const Bvh bvh(to, options.threads);
+  return measure_chunks(bvh, options.samples, options.threads, [&] {
+    return [sampler = Sampler(from, before, options.samples)](std::uint64_t n) mutable {
+      return sampler.sample(n);
+    };
+  });
+}
+
+SurfaceSamples sample_surface(const Mesh& mesh, const DistanceOptions& options) {
+  const std::vector<double> before = areas_before(mesh, options.threads, "from");
+  SurfaceSamples samples;
+  samples.area = before.back();
+  if (!(samples.area > 0)) return samples;
+  Sampler sampler(mesh, before, options.samples);
+  samples.points.reserve(options.samples);
+  for (std::uint64_t n = 0; n < options.samples; ++n) samples.points.push_back(sampler.sample(n));
+  return samples;
+}
+
+class DistanceMeter::Impl {
+ public:
+  Impl(const Mesh& to, unsigned threads) : bvh_(to, threads), threads_(threads) {}
+  Distance measure(std::span<const Vec3> points) const {
+    return measure_chunks(bvh_, points.size(), threads_,
+                          [&] { return [points](std::uint64_t n) { return points[n]; }; });
+  }
+
+ private:
+  Bvh bvh_;
+  unsigned threads_;
+};
+
+DistanceMeter::DistanceMeter(const Mesh& to, unsigned threads)
+    : impl_(std::make_unique<Impl>(to, threads)) {}
+DistanceMeter::~DistanceMeter() = default;
+DistanceMeter::DistanceMeter(DistanceMeter&&) noexcept = default;
+
+Distance DistanceMeter::measure(std::span<const Vec3> points) const {
+  return impl_->measure(points);
 }
 
 }  // namespace meshfarm

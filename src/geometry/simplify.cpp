@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <utility>
 
 #include <meshfarm/geometry/simplify.hpp>
@@ -58,7 +59,6 @@ class Simplifier::Impl {
       const std::uint64_t before = mesh_.triangles.size();
       const std::uint64_t removed = collapse_edges(goal, pass);
       compact();
-      pass_cost_ = pass.max_cost;
       if (progress && !progress(mesh_.triangles.size())) break;
       if (pass.everything && is_exhausted(goal, before, removed)) break;
       share = removed * 50 < before ? std::min(1.0, share * 2) : std::max(k_pass_share, share / 2);
@@ -92,12 +92,14 @@ class Simplifier::Impl {
     });
   }
 
-  /// Remembers that no call with this cost or less has anything left to do. One that may remove a
-  /// single triangle only tells nothing about others.
+  /// Whether a pass over all that the goal allows was of no use. If it was not the number of
+  /// triangles that held it back, no later call with this cost or less has anything left to do.
   bool is_exhausted(const SimplifyGoal& goal, std::uint64_t before, std::uint64_t removed) {
-    const bool exhausted = std::isfinite(goal.max_cost) ? removed * 100 < before : removed == 0;
-    if (exhausted && before - goal.triangles > 1) exhausted_cost_ = goal.max_cost;
-    return exhausted;
+    const bool held_back = mesh_.triangles.size() - goal.triangles <= 1;
+    const bool little = std::isfinite(goal.max_cost) && removed * 100 < before && !held_back;
+    if (removed > 0 && !little) return false;
+    if (!held_back) exhausted_cost_ = goal.max_cost;
+    return true;
   }
 
   void begin_pass() {
@@ -112,6 +114,8 @@ class Simplifier::Impl {
     const std::uint64_t triangles = mesh_.triangles.size();
     const std::uint64_t excess = triangles - goal.triangles;
     const auto vertices = static_cast<std::uint32_t>(mesh_.positions.size());
+    // One triangle short, only border edges help, and those may rank anywhere.
+    if (excess == 1) share = 1;
     const bool far = share < 1 && excess > triangles / 8 && vertices > 2 * k_block;
     Pass pass;
     pass.block = far ? k_block : vertices;
@@ -122,14 +126,18 @@ class Simplifier::Impl {
     return pass;
   }
 
+  /// Returns the triangles removed. Sets the cost reached: where it stops at the goal while going
+  /// through the whole mesh, that is less than the pass might have paid.
   std::uint64_t collapse_edges(const SimplifyGoal& goal, const Pass& pass) {
     const auto vertices = static_cast<std::uint32_t>(mesh_.positions.size());
     target_.resize(vertices);
-    for (std::uint32_t v = 0; v < vertices; ++v) target_[v] = v;
+    std::iota(target_.begin(), target_.end(), 0U);
     touched_.assign(vertices, 0);
     CollapseJudge judge({mesh_.positions, flags_, target_, &adjacency_, type_});
-    CollapseLimits limits{mesh_.triangles.size() - goal.triangles, pass.max_cost};
-    for (std::uint32_t first = 0; first < vertices; first += pass.block) {
+    const std::uint64_t excess = mesh_.triangles.size() - goal.triangles;
+    CollapseLimits limits{excess, pass.max_cost};
+    double reached = pass.max_cost;
+    for (std::uint32_t first = 0; first < vertices && limits.triangles > 0; first += pass.block) {
       const std::uint32_t last = std::min(vertices, first + pass.block);
       for (const RankedEdge& e : ranking_.cheapest(first, last, {pass.limit, pass.max_cost})) {
         if ((touched_[e.a] | touched_[e.b]) != 0) continue;
@@ -137,11 +145,13 @@ class Simplifier::Impl {
         if (collapse.triangles == 0) continue;
         merge(e, collapse);
         limits.triangles -= collapse.triangles;
+        const bool in_order = pass.block == vertices;
+        if (limits.triangles <= 1 && in_order) reached = std::min(reached, cost_of(e.key));
         if (limits.triangles == 0) break;
       }
-      if (limits.triangles == 0) break;
     }
-    return mesh_.triangles.size() - goal.triangles - limits.triangles;
+    if (excess > 1) pass_cost_ = std::isfinite(reached) ? reached : max_cost_;
+    return excess - limits.triangles;
   }
 
   void merge(const RankedEdge& e, const Collapse& collapse) {

@@ -22,6 +22,8 @@ std::uint32_t bucket_of(CostKey key) {
 // About 40,000 edges give the rank to a per cent.
 constexpr std::uint32_t k_sampled_vertices = 16384;
 
+constexpr std::size_t k_listed_at_once = 1024;
+
 // Scrambled, so that a sample follows no pattern of the numbering.
 std::uint32_t scrambled(std::uint32_t vertex) {
   return vertex * 2654435769U;
@@ -60,6 +62,7 @@ void EdgeRanking::sum_planes() {
 void EdgeRanking::sum_border_planes() {
   for (std::uint32_t v = 0; v < input_.flags.size(); ++v) {
     if ((input_.flags[v] & (k_border | k_fixed)) != k_border) continue;
+    if (input_.adjacency->count(v) > k_max_star) continue;
     const Vec3 at = input_.positions[v];
     for_border_edges(input_.adjacency->at(v), [&](const Corner& c, std::uint32_t end) {
       const Vec3 normal = cross(input_.positions[c.next] - at, input_.positions[c.prev] - at);
@@ -73,34 +76,45 @@ void EdgeRanking::sum_border_planes() {
 /// Lists the edges that may collapse of which the vertex is the smaller end.
 inline void EdgeRanking::list_edges_at(std::uint32_t vertex) {
   const std::uint8_t flags = input_.flags[vertex];
-  if ((flags & k_fixed) != 0) return;
   const std::span<const Corner> fan = input_.adjacency->at(vertex);
-  const auto consider = [&](std::uint32_t end) {
+  if ((flags & k_fixed) != 0 || fan.size() > k_max_star) return;
+  // Written always, counted if wanted: which neighbours are the greater ones no processor guesses.
+  const std::size_t most = listed_count_ + fan.size() + 2;
+  if (listed_.size() < most) listed_.resize(2 * most);
+  const bool any_seam = !input_.seam_only || (flags & k_seam) != 0;
+  const auto consider = [&](std::uint32_t end, std::uint8_t barred) {
     const std::uint8_t other = input_.flags[end];
-    if (end < vertex || (other & k_fixed) != 0) return;
-    if (input_.seam_only && ((flags | other) & k_seam) == 0) return;
-    if (fan.size() + input_.adjacency->count(end) > k_max_star) return;
-    listed_.push_back({vertex, end});
+    listed_[listed_count_] = {vertex, end};
+    const bool wanted =
+        (end > vertex) & ((other & (k_fixed | barred)) == 0) & (any_seam | ((other & k_seam) != 0));
+    listed_count_ += wanted ? 1 : 0;
   };
-  if ((flags & k_border) == 0) {
-    for (const Corner& c : fan) consider(c.next);
-    return;
-  }
   // An inner edge between two borders may not collapse: it would pinch the surface.
-  for (const Corner& c : fan) {
-    if ((input_.flags[c.next] & k_border) == 0) consider(c.next);
+  const bool border = (flags & k_border) != 0;
+  for (const Corner& c : fan) consider(c.next, border ? k_border : 0);
+  if (border) {
+    for_border_edges(fan, [&](const Corner&, std::uint32_t end) { consider(end, 0); });
   }
-  for_border_edges(fan, [&](const Corner&, std::uint32_t end) { consider(end); });
 }
 
-/// Calls take(edge, cost) for each listed edge whose cost is finite.
+/// Calls take(edge, cost) for the edges, with finite cost, of one in so many of the vertices.
 template <typename Take>
-void EdgeRanking::for_costs(const Take& take) {
+void EdgeRanking::for_costs(const Range& range, const Take& take) {
+  for (std::uint32_t v = range.first; v < range.last; ++v) {
+    if (scrambled(v) > UINT32_MAX / range.one_in) continue;
+    list_edges_at(v);
+    if (listed_count_ >= k_listed_at_once) cost_listed(take);
+  }
+  cost_listed(take);
+}
+
+template <typename Take>
+void EdgeRanking::cost_listed(const Take& take) {
   const auto give = [&](const Edge& e, const EdgeCost& cost) {
     if (std::isfinite(cost.ranking)) take(e, cost);
   };
-  for (std::size_t first = 0; first < listed_.size(); first += EdgeCosts::k_size) {
-    const std::size_t count = std::min(EdgeCosts::k_size, listed_.size() - first);
+  for (std::size_t first = 0; first < listed_count_; first += EdgeCosts::k_size) {
+    const std::size_t count = std::min(EdgeCosts::k_size, listed_count_ - first);
     for (std::size_t i = 0; i < count; ++i) {
       const auto [a, b] = listed_[first + i];
       costs_.put(i, quadrics_[a], quadrics_[b], (input_.positions[b] - input_.positions[a]) * 0.5);
@@ -112,6 +126,7 @@ void EdgeRanking::for_costs(const Take& take) {
       give(e, one_border == 0 ? costs_.get(i) : cost_of_border_end(e));
     }
   }
+  listed_count_ = 0;
 }
 
 /// An inner vertex that merges into a border takes the border's position.
@@ -125,12 +140,12 @@ CostKey EdgeRanking::estimate_limit(double share, double most) {
   const auto vertices = static_cast<std::uint32_t>(input_.positions.size());
   const std::uint32_t one_in = std::max(1U, vertices / k_sampled_vertices);
   starts_.assign(bucket_of(k_any_cost) + 1, 0);
-  listed_.clear();
-  for (std::uint32_t v = 0; v < vertices; ++v) {
-    if (scrambled(v) <= UINT32_MAX / one_in) list_edges_at(v);
-  }
-  for_costs([&](const Edge&, const EdgeCost& cost) { ++starts_[bucket_of(key_of(cost.ranking))]; });
-  const double wanted = std::min(share * static_cast<double>(listed_.size()), most / one_in);
+  std::uint64_t sampled = 0;
+  for_costs({0, vertices, one_in}, [&](const Edge&, const EdgeCost& cost) {
+    ++starts_[bucket_of(key_of(cost.ranking))];
+    ++sampled;
+  });
+  const double wanted = std::min(share * static_cast<double>(sampled), most / one_in);
   std::uint64_t sum = 0;
   for (std::uint32_t bucket = 0; bucket < starts_.size(); ++bucket) {
     sum += starts_[bucket];
@@ -141,10 +156,8 @@ CostKey EdgeRanking::estimate_limit(double share, double most) {
 
 std::span<const RankedEdge> EdgeRanking::cheapest(std::uint32_t first, std::uint32_t last,
                                                   const RankLimits& limits) {
-  listed_.clear();
-  for (std::uint32_t v = first; v < last; ++v) list_edges_at(v);
   found_.clear();
-  for_costs([&](const Edge& e, const EdgeCost& cost) {
+  for_costs({first, last, 1}, [&](const Edge& e, const EdgeCost& cost) {
     const CostKey key = key_of(cost.ranking);
     if (key <= limits.key && cost.least <= limits.max_cost) found_.push_back({e.a, e.b, key});
   });

@@ -24,8 +24,8 @@ constexpr std::streamsize k_filter_bytes = 1 << 16;
 /// The compressed bytes, let go of as they are read.
 class MappedDevice {
  public:
-  using char_type = char;
-  using category = bio::source_tag;
+  using char_type = char;            // NOLINT(readability-identifier-naming): Boost's name
+  using category = bio::source_tag;  // NOLINT(readability-identifier-naming): Boost's name
 
   explicit MappedDevice(const MappedFile& file) : file_(&file) {}
 

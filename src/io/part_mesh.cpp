@@ -6,15 +6,34 @@
 
 namespace meshfarm {
 
-void put_mesh(ByteWriter& out, const Mesh& mesh, PositionType positions) {
+void put_positions(ByteWriter& out, std::span<const Vec3> points, PositionType positions) {
+  if (positions == PositionType::float64) return out.put_array(points);
+  for (const Vec3& p : points) {
+    out.put(std::array<float, 3>{static_cast<float>(p.x), static_cast<float>(p.y),
+                                 static_cast<float>(p.z)});
+  }
+}
+
+std::vector<Vec3> get_positions(ByteReader& in, std::uint64_t count, PositionType positions) {
+  std::vector<Vec3> points;
   if (positions == PositionType::float64) {
-    out.put_array(std::span<const Vec3>(mesh.positions));
+    points = in.get_array<Vec3>(count);
   } else {
-    for (const Vec3& p : mesh.positions) {
-      out.put(std::array<float, 3>{static_cast<float>(p.x), static_cast<float>(p.y),
-                                   static_cast<float>(p.z)});
+    if (count > in.remaining() / (3 * sizeof(float))) in.fail("positions run past the end");
+    points.reserve(count);
+    for (std::uint64_t i = 0; i < count; ++i) {
+      const auto p = in.get<std::array<float, 3>>();
+      points.push_back({p[0], p[1], p[2]});
     }
   }
+  for (const Vec3& p : points) {
+    if (!is_finite(p)) in.fail("a coordinate is not finite");
+  }
+  return points;
+}
+
+void put_mesh(ByteWriter& out, const Mesh& mesh, PositionType positions) {
+  put_positions(out, mesh.positions, positions);
   out.put_array(std::span<const Triangle>(mesh.triangles));
 }
 
@@ -22,19 +41,7 @@ Mesh get_mesh(ByteReader& in, std::uint64_t vertices, std::uint64_t triangles,
               PositionType positions) {
   if (vertices > std::numeric_limits<std::uint32_t>::max()) in.fail("too many vertices for a part");
   Mesh mesh;
-  if (positions == PositionType::float64) {
-    mesh.positions = in.get_array<Vec3>(vertices);
-  } else {
-    if (vertices > in.remaining() / (3 * sizeof(float))) in.fail("positions run past the end");
-    mesh.positions.reserve(vertices);
-    for (std::uint64_t i = 0; i < vertices; ++i) {
-      const auto p = in.get<std::array<float, 3>>();
-      mesh.positions.push_back({p[0], p[1], p[2]});
-    }
-  }
-  for (const Vec3& p : mesh.positions) {
-    if (!is_finite(p)) in.fail("a coordinate is not finite");
-  }
+  mesh.positions = get_positions(in, vertices, positions);
   mesh.triangles = in.get_array<Triangle>(triangles);
   for (const Triangle& t : mesh.triangles) {
     if (t[0] >= vertices || t[1] >= vertices || t[2] >= vertices) {

@@ -13,6 +13,10 @@ void put_mesh(ByteWriter& out, const Mesh& mesh, PositionType positions);
 Mesh get_mesh(ByteReader& in, std::uint64_t vertices, std::uint64_t triangles,
               PositionType positions);
 
+/// The positions alone.
+void put_positions(ByteWriter& out, std::span<const Vec3> points, PositionType positions);
+std::vector<Vec3> get_positions(ByteReader& in, std::uint64_t count, PositionType positions);
+
 PositionType get_position_type(ByteReader& in);
 
 }  // namespace meshfarm

@@ -15,8 +15,8 @@ std::uint64_t items_in(std::uint64_t bytes, PlyType type) {
   return bytes >> std::countr_zero(size_of(type));
 }
 
-/// Records of a binary PLY file. `k_swap`: it is big endian.
-template <bool k_swap>
+/// Records of a binary PLY file.
+template <std::endian Order>
 class BinaryBody final : public PlyBody {
  public:
   BinaryBody(std::unique_ptr<ByteStream> stream, const std::filesystem::path& path)
@@ -100,9 +100,8 @@ class BinaryBody final : public PlyBody {
       need(layout.record_bytes);
       const std::span<Vec3> room = batch.room();
       const std::size_t whole = stream_->window(0).size() / layout.record_bytes;
-      const std::size_t count =
-          std::min<std::uint64_t>({whole, room.size(), element_->count - index_});
-      decode_vertices<k_swap>(layout, stream_->window(0).data(), room.first(count));
+      const auto count = std::min<std::uint64_t>({whole, room.size(), element_->count - index_});
+      decode_vertices<Order>(layout, stream_->window(0).data(), room.first(count));
       for (std::size_t i = 0; i < count; ++i) {
         if (is_finite(room[i])) continue;
         index_ += i;
@@ -120,7 +119,7 @@ class BinaryBody final : public PlyBody {
       const PlyProperty& property = element_->properties[i];
       for (std::size_t axis = 0; axis < 3; ++axis) {
         if (element_->axes[axis] != i) continue;
-        xyz[axis] = load_real<k_swap>(property.type, need(size_of(property.type)));
+        xyz[axis] = load_real<Order>(property.type, need(size_of(property.type)));
         if (!std::isfinite(xyz[axis])) fail("a coordinate is not finite");
       }
       skip(property);
@@ -132,10 +131,10 @@ class BinaryBody final : public PlyBody {
   std::size_t read_triangle_run(const TriangleLayout& layout, TriangleMaker& maker) {
     const std::string_view window = stream_->window(layout.record_bytes);
     const std::span<WideTriangle> room = maker.batch().room();
-    const std::size_t most = std::min<std::uint64_t>(
+    const auto most = std::min<std::uint64_t>(
         {window.size() / layout.record_bytes, room.size(), element_->count - index_});
     const std::size_t count =
-        decode_triangles<k_swap>(layout, window.data(), maker.vertices(), room.first(most));
+        decode_triangles<Order>(layout, window.data(), maker.vertices(), room.first(most));
     stream_->consume(count * layout.record_bytes);
     index_ += count;
     maker.batch().added(count);
@@ -158,7 +157,7 @@ class BinaryBody final : public PlyBody {
       const std::size_t count = std::min(left, items_in(stream_->window(0).size(), property.type));
       for (std::size_t i = 0; i < count; ++i) {
         const std::optional<std::int64_t> index =
-            load_whole<k_swap>(property.type, bytes + i * size);
+            load_whole<Order>(property.type, bytes + i * size);
         if (index && maker.corner(*index)) continue;
         stream_->consume(i * size);
         if (!index) fail("a vertex index is not a whole number");
@@ -172,7 +171,7 @@ class BinaryBody final : public PlyBody {
   /// Reads a list's count and checks it against what the file still holds.
   std::uint64_t read_list_length(const PlyProperty& property) {
     const std::size_t size = size_of(*property.count_type);
-    const std::optional<std::int64_t> length = load_whole<k_swap>(*property.count_type, need(size));
+    const std::optional<std::int64_t> length = load_whole<Order>(*property.count_type, need(size));
     if (!length || *length < 0) fail("list " + property.name + " has a count below zero or broken");
     const auto count = static_cast<std::uint64_t>(*length);
     const bool in_view = count <= items_in(stream_->window(0).size() - size, property.type);
@@ -214,9 +213,9 @@ std::unique_ptr<PlyBody> make_binary_body(std::unique_ptr<ByteStream> stream,
                                           const std::filesystem::path& path,
                                           const PlyHeader& header) {
   if (header.format == PlyFormat::binary_big) {
-    return std::make_unique<BinaryBody<true>>(std::move(stream), path);
+    return std::make_unique<BinaryBody<std::endian::big>>(std::move(stream), path);
   }
-  return std::make_unique<BinaryBody<false>>(std::move(stream), path);
+  return std::make_unique<BinaryBody<std::endian::little>>(std::move(stream), path);
 }
 
 }  // namespace meshfarm

@@ -5,27 +5,27 @@
 namespace meshfarm {
 namespace {
 
-template <class T, bool k_swap>
+template <class T, std::endian Order>
 void decode_xyz(const char* record, std::size_t record_bytes, std::span<Vec3> out) {
   for (Vec3& vertex : out) {
-    vertex = {static_cast<double>(load_ply<T, k_swap>(record)),
-              static_cast<double>(load_ply<T, k_swap>(record + sizeof(T))),
-              static_cast<double>(load_ply<T, k_swap>(record + 2 * sizeof(T)))};
+    vertex = {static_cast<double>(load_ply<T, Order>(record)),
+              static_cast<double>(load_ply<T, Order>(record + sizeof(T))),
+              static_cast<double>(load_ply<T, Order>(record + 2 * sizeof(T)))};
     record += record_bytes;
   }
 }
 
-template <class Count, class Index, bool k_swap>
+template <class Count, class Index, std::endian Order>
 std::size_t decode(const TriangleLayout& layout, const char* records, std::uint64_t vertices,
                    std::span<WideTriangle> out) {
   const char* list = records + layout.list_offset;
   // Through int64: a negative index becomes one that is out of any range.
   const auto index = [&list](std::size_t corner) {
     const char* bytes = list + sizeof(Count) + corner * sizeof(Index);
-    return static_cast<std::uint64_t>(std::int64_t{load_ply<Index, k_swap>(bytes)});
+    return static_cast<std::uint64_t>(std::int64_t{load_ply<Index, Order>(bytes)});
   };
   for (std::size_t i = 0; i < out.size(); ++i, list += layout.record_bytes) {
-    if (load_ply<Count, k_swap>(list) != 3) return i;
+    if (load_ply<Count, Order>(list) != 3) return i;
     const WideTriangle triangle{index(0), index(1), index(2)};
     if (std::max({triangle[0], triangle[1], triangle[2]}) >= vertices) return i;
     out[i] = triangle;
@@ -33,12 +33,12 @@ std::size_t decode(const TriangleLayout& layout, const char* records, std::uint6
   return out.size();
 }
 
-template <class Count, bool k_swap>
+template <class Count, std::endian Order>
 std::size_t decode(const TriangleLayout& layout, const char* records, std::uint64_t vertices,
                    std::span<WideTriangle> out) {
   return layout.index_type == PlyType::int32
-             ? decode<Count, std::int32_t, k_swap>(layout, records, vertices, out)
-             : decode<Count, std::uint32_t, k_swap>(layout, records, vertices, out);
+             ? decode<Count, std::int32_t, Order>(layout, records, vertices, out)
+             : decode<Count, std::uint32_t, Order>(layout, records, vertices, out);
 }
 
 }  // namespace
@@ -57,7 +57,7 @@ VertexLayout vertex_layout(const PlyElement& element) {
   return layout;
 }
 
-template <bool k_swap>
+template <std::endian Order>
 void decode_vertices(const VertexLayout& layout, const char* records, std::span<Vec3> out) {
   const PlyType type = layout.types[0];
   const std::size_t first = layout.offsets[0];
@@ -65,21 +65,22 @@ void decode_vertices(const VertexLayout& layout, const char* records, std::span<
   const bool together = layout.types[1] == type && layout.types[2] == type &&
                         layout.offsets[1] == first + size && layout.offsets[2] == first + 2 * size;
   if (together && type == PlyType::float32) {
-    decode_xyz<float, k_swap>(records + first, layout.record_bytes, out);
+    decode_xyz<float, Order>(records + first, layout.record_bytes, out);
   } else if (together && type == PlyType::float64) {
-    decode_xyz<double, k_swap>(records + first, layout.record_bytes, out);
+    decode_xyz<double, Order>(records + first, layout.record_bytes, out);
   } else {
     for (Vec3& vertex : out) {
-      vertex = {load_real<k_swap>(layout.types[0], records + layout.offsets[0]),
-                load_real<k_swap>(layout.types[1], records + layout.offsets[1]),
-                load_real<k_swap>(layout.types[2], records + layout.offsets[2])};
+      vertex = {load_real<Order>(layout.types[0], records + layout.offsets[0]),
+                load_real<Order>(layout.types[1], records + layout.offsets[1]),
+                load_real<Order>(layout.types[2], records + layout.offsets[2])};
       records += layout.record_bytes;
     }
   }
 }
 
-template void decode_vertices<false>(const VertexLayout&, const char*, std::span<Vec3>);
-template void decode_vertices<true>(const VertexLayout&, const char*, std::span<Vec3>);
+template void decode_vertices<std::endian::little>(const VertexLayout&, const char*,
+                                                   std::span<Vec3>);
+template void decode_vertices<std::endian::big>(const VertexLayout&, const char*, std::span<Vec3>);
 
 std::optional<TriangleLayout> triangle_layout(const PlyElement& element) {
   if (element.role != PlyRole::faces) return std::nullopt;
@@ -102,22 +103,22 @@ std::optional<TriangleLayout> triangle_layout(const PlyElement& element) {
   return layout;
 }
 
-template <bool k_swap>
+template <std::endian Order>
 std::size_t decode_triangles(const TriangleLayout& layout, const char* records,
                              std::uint64_t vertices, std::span<WideTriangle> out) {
   switch (layout.count_bytes) {
     case 1:
-      return decode<std::uint8_t, k_swap>(layout, records, vertices, out);
+      return decode<std::uint8_t, Order>(layout, records, vertices, out);
     case 2:
-      return decode<std::uint16_t, k_swap>(layout, records, vertices, out);
+      return decode<std::uint16_t, Order>(layout, records, vertices, out);
     default:
-      return decode<std::uint32_t, k_swap>(layout, records, vertices, out);
+      return decode<std::uint32_t, Order>(layout, records, vertices, out);
   }
 }
 
-template std::size_t decode_triangles<false>(const TriangleLayout&, const char*, std::uint64_t,
-                                             std::span<WideTriangle>);
-template std::size_t decode_triangles<true>(const TriangleLayout&, const char*, std::uint64_t,
-                                            std::span<WideTriangle>);
+template std::size_t decode_triangles<std::endian::little>(const TriangleLayout&, const char*,
+                                                           std::uint64_t, std::span<WideTriangle>);
+template std::size_t decode_triangles<std::endian::big>(const TriangleLayout&, const char*,
+                                                        std::uint64_t, std::span<WideTriangle>);
 
 }  // namespace meshfarm

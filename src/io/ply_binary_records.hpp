@@ -24,7 +24,7 @@ struct VertexLayout {
 VertexLayout vertex_layout(const PlyElement& element);
 
 /// Decodes as many records as `out` has room for.
-template <bool k_swap>
+template <std::endian Order>
 void decode_vertices(const VertexLayout& layout, const char* records, std::span<Vec3> out);
 
 /// Face records whose only list holds the corners: the record of a triangle.
@@ -40,7 +40,7 @@ std::optional<TriangleLayout> triangle_layout(const PlyElement& element);
 
 /// Decodes records up to the first that is no triangle or has an index out of range. Returns how
 /// many.
-template <bool k_swap>
+template <std::endian Order>
 std::size_t decode_triangles(const TriangleLayout& layout, const char* records,
                              std::uint64_t vertices, std::span<WideTriangle> out);
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -53,56 +54,56 @@ constexpr bool is_integer(PlyType type) {
   return type != PlyType::float32 && type != PlyType::float64;
 }
 
-/// A value as it lies in a binary file. `k_swap`: the file is big endian.
-template <class T, bool k_swap>
+/// A value as it lies in a binary file.
+template <class T, std::endian Order>
 T load_ply(const char* bytes) {
   char raw[sizeof(T)];
   std::memcpy(raw, bytes, sizeof(T));
-  if constexpr (k_swap) std::reverse(raw, raw + sizeof(T));
+  if constexpr (Order != std::endian::native) std::reverse(raw, raw + sizeof(T));
   T value;
   std::memcpy(&value, raw, sizeof(T));
   return value;
 }
 
 /// Calls `use` with the value of `type` at `bytes`.
-template <bool k_swap, class Use>
+template <std::endian Order, class Use>
 auto with_ply_value(PlyType type, const char* bytes, Use&& use) {
   switch (type) {
     case PlyType::int8:
-      return use(load_ply<std::int8_t, k_swap>(bytes));
+      return use(load_ply<std::int8_t, Order>(bytes));
     case PlyType::uint8:
-      return use(load_ply<std::uint8_t, k_swap>(bytes));
+      return use(load_ply<std::uint8_t, Order>(bytes));
     case PlyType::int16:
-      return use(load_ply<std::int16_t, k_swap>(bytes));
+      return use(load_ply<std::int16_t, Order>(bytes));
     case PlyType::uint16:
-      return use(load_ply<std::uint16_t, k_swap>(bytes));
+      return use(load_ply<std::uint16_t, Order>(bytes));
     case PlyType::int32:
-      return use(load_ply<std::int32_t, k_swap>(bytes));
+      return use(load_ply<std::int32_t, Order>(bytes));
     case PlyType::uint32:
-      return use(load_ply<std::uint32_t, k_swap>(bytes));
+      return use(load_ply<std::uint32_t, Order>(bytes));
     case PlyType::int64:
-      return use(load_ply<std::int64_t, k_swap>(bytes));
+      return use(load_ply<std::int64_t, Order>(bytes));
     case PlyType::uint64:
-      return use(load_ply<std::uint64_t, k_swap>(bytes));
+      return use(load_ply<std::uint64_t, Order>(bytes));
     case PlyType::float32:
-      return use(load_ply<float, k_swap>(bytes));
+      return use(load_ply<float, Order>(bytes));
     default:
-      return use(load_ply<double, k_swap>(bytes));
+      return use(load_ply<double, Order>(bytes));
   }
 }
 
-template <bool k_swap>
+template <std::endian Order>
 double load_real(PlyType type, const char* bytes) {
-  return with_ply_value<k_swap>(type, bytes, [](auto value) { return static_cast<double>(value); });
+  return with_ply_value<Order>(type, bytes, [](auto value) { return static_cast<double>(value); });
 }
 
 /// The whole number that `value` is. Nothing if it is none; what lies beyond 64 signed bits, and so
 /// beyond any count or index, becomes the largest.
 std::optional<std::int64_t> whole_number(double value);
 
-template <bool k_swap>
+template <std::endian Order>
 std::optional<std::int64_t> load_whole(PlyType type, const char* bytes) {
-  return with_ply_value<k_swap>(type, bytes, [](auto value) -> std::optional<std::int64_t> {
+  return with_ply_value<Order>(type, bytes, [](auto value) -> std::optional<std::int64_t> {
     if constexpr (std::is_floating_point_v<decltype(value)>) {
       return whole_number(static_cast<double>(value));
     } else if constexpr (std::is_same_v<decltype(value), std::uint64_t>) {

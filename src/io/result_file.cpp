@@ -5,8 +5,11 @@
 //   position type u8 | boundary vertices u32 | rungs u32 |
 //   rungs x (level i32 | vertices u64 | triangles u64 | free triangles u64) |
 //   rungs x (positions | triangles)            as in a part, finest rung first
+//   area of the part f64 | samples u64 | samples, 3 numbers each, of the part's surface
 // The summary that travels with the message:
 //   dropped degenerate u64 | dropped duplicate u64 | rungs u32 | rungs as above
+#include <cmath>
+
 #include <meshfarm/io/result_file.hpp>
 #include <meshfarm/staging/sealed.hpp>
 #include <meshfarm/util/bytes.hpp>
@@ -88,6 +91,9 @@ std::string ResultEncoder::finish() const {
   out.put(boundary_vertices_);
   put_rungs(out, rungs_);
   out.put_array(std::span<const char>(meshes_));
+  out.put(samples_.area);
+  out.put(static_cast<std::uint64_t>(samples_.points.size()));
+  put_positions(out, samples_.points, positions_);
   return seal(k_kind, k_version, out.bytes());
 }
 
@@ -108,6 +114,10 @@ ResultMesh decode_result(std::string_view file, std::size_t rung, std::string_vi
       in.take(mesh_bytes(r, positions));
     }
   }
+  result.samples.area = in.get<double>();
+  if (!std::isfinite(result.samples.area) || result.samples.area < 0) in.fail("impossible area");
+  const auto samples = in.get<std::uint64_t>();
+  result.samples.points = get_positions(in, samples, positions);
   in.expect_end();
   return result;
 }

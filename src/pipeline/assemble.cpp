@@ -1,7 +1,11 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
+#include <algorithm>
 #include <chrono>
+#include <cmath>
+#include <vector>
 
+#include <meshfarm/geometry/distance.hpp>
 #include <meshfarm/geometry/simplify.hpp>
 #include <meshfarm/io/boundary_file.hpp>
 #include <meshfarm/io/ply_writer.hpp>
@@ -47,6 +51,8 @@ class Assembly {
     summary_.stitch_seconds = watch.lap();
     const Mesh result = finish(std::move(stitched));
     summary_.finish_seconds = watch.lap();
+    measure_error(result);
+    summary_.measure_seconds = watch.lap();
     write_ply(options_.output, result, manifest_.positions);
     summary_.write_seconds = watch.lap();
     return std::move(summary_);
@@ -75,19 +81,52 @@ class Assembly {
     }
   }
 
-  StitchedMesh stitch(const std::vector<ChosenRung>& chosen) const {
+  StitchedMesh stitch(const std::vector<ChosenRung>& chosen) {
     Stitcher stitcher;
     for (std::size_t p = 0; p < chosen.size(); ++p) {
       const std::string file = stage_.read(chosen[p].file);
-      const ResultMesh part = decode_result(file, chosen[p].rung, chosen[p].file.name);
+      ResultMesh part = decode_result(file, chosen[p].rung, chosen[p].file.name);
       if (part.boundary_vertices != manifest_.parts[p].boundary_vertices) {
         throw DataError(chosen[p].file.name + ": is not the result of part " + std::to_string(p));
       }
       stitcher.add(part);
+      samples_.push_back(std::move(part.samples));
       tell("stitch", static_cast<double>(p + 1) / static_cast<double>(chosen.size()), 0);
     }
-    return stitcher.finish(
-        decode_boundary(stage_.read(manifest_.boundary), manifest_.boundary.name));
+    const auto boundary = decode_boundary(stage_.read(manifest_.boundary), manifest_.boundary.name);
+    StitchedMesh stitched = stitcher.finish(boundary);
+    sample_boundary(stitched.mesh, boundary.size());
+    return stitched;
+  }
+
+  /// The boundary triangles, last in the stitched mesh, are still those of the input.
+  void sample_boundary(Mesh& stitched, std::size_t count) {
+    Mesh boundary;
+    boundary.triangles.assign(stitched.triangles.end() - static_cast<std::ptrdiff_t>(count),
+                              stitched.triangles.end());
+    std::swap(boundary.positions, stitched.positions);
+    samples_.push_back(sample_surface(boundary, {.samples = samples_for(manifest_, count)}));
+    std::swap(boundary.positions, stitched.positions);
+  }
+
+  /// Every set of samples counts by the area it stands for.
+  void measure_error(const Mesh& result) {
+    if (result.triangles.empty()) return;
+    const DistanceMeter meter(result, 0);
+    double area = 0;
+    double squares = 0;
+    for (const SurfaceSamples& part : samples_) {
+      const Distance d = meter.measure(part.points);
+      if (!part.points.empty()) area += part.area;
+      squares += part.area * d.rms * d.rms;
+      summary_.error.mean += part.area * d.mean;
+      summary_.error.max = std::max(summary_.error.max, d.max);
+      summary_.error_samples += part.points.size();
+      tell("error", 0, 0);
+    }
+    if (!(area > 0)) return;
+    summary_.error.rms = std::sqrt(squares / area);
+    summary_.error.mean /= area;
   }
 
   Mesh finish(StitchedMesh stitched) {
@@ -135,6 +174,7 @@ class Assembly {
   const RunOptions& run_;
   const AssembleOptions& options_;
   RunSummary summary_;
+  std::vector<SurfaceSamples> samples_;
 };
 
 }  // namespace

@@ -14,8 +14,9 @@
 namespace meshfarm {
 namespace {
 
-// Version 1: allocation u8 | start u64 | floor u64 | cost unit f64.
+// Version 1: allocation u8 | start u64 | floor u64 | samples u64 | cost unit f64.
 constexpr std::uint8_t k_version = 1;
+constexpr std::uint64_t k_max_samples = 100'000'000;
 constexpr std::int32_t k_top_level = 52;
 constexpr std::int32_t k_input_level = -1;  // of a rung that is the part as it came
 
@@ -40,6 +41,7 @@ class LadderBuilder {
     }
   }
 
+  void set_samples(SurfaceSamples samples) { result_.set_samples(std::move(samples)); }
   std::string file() const { return result_.finish(); }
   ResultSummary summary() const {
     return {result_.rungs(), simplifier_.dropped_degenerate(), simplifier_.dropped_duplicate()};
@@ -98,6 +100,7 @@ std::string encode_parameters(const SimplifyParameters& parameters) {
   out.put(parameters.allocation);
   out.put(parameters.start_triangles);
   out.put(parameters.floor_triangles);
+  out.put(parameters.samples);
   out.put(parameters.cost_unit);
   return out.take();
 }
@@ -110,6 +113,8 @@ SimplifyParameters decode_parameters(std::string_view bytes) {
   if (parameters.allocation > Allocation::uniform) in.fail("unknown allocation");
   parameters.start_triangles = in.get<std::uint64_t>();
   parameters.floor_triangles = in.get<std::uint64_t>();
+  parameters.samples = in.get<std::uint64_t>();
+  if (parameters.samples > k_max_samples) in.fail("too many samples");
   parameters.cost_unit = in.get<double>();
   in.expect_end();
   return parameters;
@@ -134,7 +139,10 @@ JobOutput simplify_part(const Job& job, const JobContext& context) {
   if (job.inputs.size() != 1) throw DataError("a simplify job takes one part");
   const SimplifyParameters parameters = decode_parameters(job.parameters);
   Part part = decode_part(context.stage.read(job.inputs[0]), job.inputs[0].name);
+  // One thread: a worker is one of many on its host.
+  SurfaceSamples samples = sample_surface(part.mesh, {.samples = parameters.samples, .threads = 1});
   LadderBuilder ladder(std::move(part), parameters, context);
+  ladder.set_samples(std::move(samples));
   ladder.build();
   const ResultName name{key_of(job).value, context.attempt, context.incarnation};
   return {context.stage.publish(name, ladder.file(), to_hex(context.incarnation)),

@@ -82,6 +82,13 @@ std::string text_of(const Distance& d, double diagonal) {
          "  max " + number(d.max / diagonal, "%.3g");
 }
 
+Json error_json(const RunSummary& s) {
+  Json json = to_json(s.error, s.manifest.box.diagonal());
+  json["samples"] = s.error_samples;
+  json["from"] = "input to output, fractions of the diagonal";
+  return json;
+}
+
 Json input_json(const Manifest& m) {
   return {{"path", m.input},
           {"format", m.input_format},
@@ -131,6 +138,7 @@ std::string render(const RunSummary& s, Format format) {
         {"target", s.target},
         {"exact", s.why_not_exact.empty()},
         {"why_not_exact", s.why_not_exact},
+        {"error", s.error_samples == 0 ? Json(nullptr) : error_json(s)},
         {"dropped", {{"degenerate", s.dropped_degenerate}, {"duplicate", s.dropped_duplicate}}},
         {"parts", m.parts.size()},
         {"boundary_triangles", m.boundary_triangles},
@@ -140,6 +148,7 @@ std::string render(const RunSummary& s, Format format) {
           {"farm", s.farm_seconds},
           {"stitch", s.stitch_seconds},
           {"finish", s.finish_seconds},
+          {"measure", s.measure_seconds},
           {"write", s.write_seconds}}}};
     return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
   }
@@ -154,12 +163,17 @@ std::string render(const RunSummary& s, Format format) {
   if (!s.why_not_exact.empty()) {
     lines.add("", grouped(s.target) + " were asked for: " + s.why_not_exact);
   }
+  if (s.error_samples > 0) {
+    lines.add("error", text_of(s.error, m.box.diagonal()) + "  of the diagonal, from " +
+                           grouped(s.error_samples) + " points of the input");
+  }
   lines.add("parts", grouped(m.parts.size()) + ", stitched to " + grouped(s.stitched) +
                          " triangles before the finish");
   lines.add("time", "cut " + number(m.cut_seconds, "%.2f s") + ", farm " +
                         number(s.farm_seconds, "%.2f s") + ", stitch " +
                         number(s.stitch_seconds, "%.2f s") + ", finish " +
-                        number(s.finish_seconds, "%.2f s") + ", write " +
+                        number(s.finish_seconds, "%.2f s") + ", measure " +
+                        number(s.measure_seconds, "%.2f s") + ", write " +
                         number(s.write_seconds, "%.2f s"));
   return lines.text();
 }

@@ -3,6 +3,9 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
 
 #include <meshfarm/geometry/mesh.hpp>
 
@@ -26,5 +29,29 @@ struct DistanceOptions {
 /// Throws DataError if either mesh has no triangle of positive area, or coordinates that are not
 /// finite or whose areas overflow; UsageError if no samples are asked for.
 Distance measure_distance(const Mesh& from, const Mesh& to, const DistanceOptions& options);
+
+/// Points that stand for a surface when the mesh itself is gone.
+struct SurfaceSamples {
+  double area = 0;  // of the surface; every point stands for an equal share of it
+  std::vector<Vec3> points;
+};
+
+/// Stratified by area; none where the mesh has no area. Throws DataError as measure_distance does.
+SurfaceSamples sample_surface(const Mesh& mesh, const DistanceOptions& options);
+
+/// Measures from points to the surface of `to`, which must outlive it and have finite coordinates
+/// and at least one triangle.
+class DistanceMeter {
+ public:
+  DistanceMeter(const Mesh& to, unsigned threads);
+  ~DistanceMeter();
+  DistanceMeter(DistanceMeter&&) noexcept;
+  /// The points' distances; zeros for no points.
+  Distance measure(std::span<const Vec3> points) const;
+
+ private:
+  class Impl;
+  std::unique_ptr<Impl> impl_;
+};
 
 }  // namespace meshfarm

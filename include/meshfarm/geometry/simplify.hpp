@@ -66,8 +66,8 @@ class Simplifier {
   std::uint64_t free_triangles() const;
   /// The greatest cost paid so far.
   double max_cost() const;
-  /// The greatest cost that the last pass was allowed to pay: with rank-limited passes the level
-  /// that the mesh has reached.
+  /// The level that the mesh has reached: the last pass took what it could up to this cost. After
+  /// a pass that might pay any cost it is max_cost().
   double pass_cost() const;
   std::uint64_t dropped_degenerate() const;
   std::uint64_t dropped_duplicate() const;

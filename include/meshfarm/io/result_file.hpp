@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include <meshfarm/geometry/distance.hpp>
 #include <meshfarm/geometry/mesh.hpp>
 
 namespace meshfarm {
@@ -35,6 +36,8 @@ class ResultEncoder {
   ResultEncoder(PositionType positions, std::uint32_t boundary_vertices)
       : positions_(positions), boundary_vertices_(boundary_vertices) {}
   void add(std::int32_t level, const Mesh& mesh, std::uint64_t free_triangles);
+  /// Points of the part as it came, by which the error of the final mesh is measured.
+  void set_samples(SurfaceSamples samples) { samples_ = std::move(samples); }
   bool empty() const { return rungs_.empty(); }
   const std::vector<Rung>& rungs() const { return rungs_; }
   std::string finish() const;
@@ -44,12 +47,14 @@ class ResultEncoder {
   std::uint32_t boundary_vertices_;
   std::vector<Rung> rungs_;
   std::string meshes_;
+  SurfaceSamples samples_;
 };
 
 /// One rung of a result. The first `boundary_vertices` are the part's, unmoved.
 struct ResultMesh {
   Mesh mesh;
   std::uint32_t boundary_vertices = 0;
+  SurfaceSamples samples;
 };
 
 /// Reads the rung with this index. Throws DataError naming `what`.

@@ -18,6 +18,7 @@ struct SimplifyParameters {
   Allocation allocation = Allocation::threshold;
   std::uint64_t start_triangles = 0;  // the first rung: at most this many triangles
   std::uint64_t floor_triangles = 0;  // the ladder need not go below
+  std::uint64_t samples = 0;          // points of the part to measure the final error by
   double cost_unit = 0;               // cost of level 0
 };
 

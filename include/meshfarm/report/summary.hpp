@@ -23,12 +23,15 @@ struct RunSummary {
   std::uint64_t triangles = 0;  // triangles made
   std::uint64_t vertices = 0;
   std::string why_not_exact;             // empty when triangles == target
+  Distance error;                        // from points of the input to the result, in its unit
+  std::uint64_t error_samples = 0;       // 0: there is nothing to measure
   std::uint64_t stitched = 0;            // triangles of the stitched mesh, before the finish
   std::uint64_t dropped_degenerate = 0;  // cut, parts and finish together
   std::uint64_t dropped_duplicate = 0;
   double farm_seconds = 0;
   double stitch_seconds = 0;
   double finish_seconds = 0;
+  double measure_seconds = 0;
   double write_seconds = 0;
 };
 

@@ -221,6 +221,8 @@ class FarmSimulation {
       if (!workers_[id].core || workers_[id].life != life) return;
       std::visit([&](const auto& each) { worker_act(id, each); }, action);
     }
+    const Worker& worker = workers_[id];
+    if (worker.core && worker.core->waiting() > k_buffer) broken = "a worker holds too much";
   }
   void worker_act(std::size_t id, const Look&) {
     worker_do(id, workers_[id].core->found(endpoints_, now_));
@@ -343,9 +345,6 @@ class FarmSimulation {
   }
 
   void check_invariants() {
-    for (const Worker& worker : workers_) {
-      if (worker.core && worker.core->waiting() > k_buffer) broken = "a worker holds too much";
-    }
     if (!vent_) return;
     const PlanCounts& counts = vent_->plan().counts();
     // More are held than run only while a restarted plan does not want the held ones yet.

@@ -228,3 +228,17 @@ TEST_CASE("distance: meshes without a surface or without finite coordinates are 
     CHECK_THROWS_AS(measure(sheet, bad), DataError);
   }
 }
+
+TEST_CASE("samples and a meter measure what measure_distance does") {
+  const Mesh from = test::torus(40, 20), to = test::torus(20, 10);
+  const Distance whole = measure_distance(from, to, {.samples = 5000});
+  const SurfaceSamples samples = sample_surface(from, {.samples = 5000});
+  CHECK(samples.points.size() == 5000);
+  CHECK(samples.area == doctest::Approx(4 * std::acos(-1.0) * std::acos(-1.0) * 0.4).epsilon(0.03));
+  const DistanceMeter meter(to, 2);
+  const Distance measured = meter.measure(samples.points);
+  CHECK(measured.rms == doctest::Approx(whole.rms).epsilon(1e-9));
+  CHECK(measured.max == doctest::Approx(whole.max).epsilon(1e-9));
+  CHECK(meter.measure({}).rms == 0);
+  CHECK(sample_surface({}, {.samples = 10}).points.empty());
+}

@@ -86,7 +86,10 @@ TEST_CASE("each rung of a result comes back") {
   encoder.add(-1, test::icosphere(1), 60);
   encoder.add(4, test::icosphere(0), 20);
   encoder.add(9, test::tetrahedron(), 0);
+  encoder.set_samples({2.5, {{1, 2, 3}, {4, 5, 6}}});
   const std::string file = encoder.finish();
+  CHECK(decode_result(file, 1, "r").samples.area == 2.5);
+  CHECK(decode_result(file, 1, "r").samples.points[1] == Vec3{4, 5, 6});
   CHECK(decode_result(file, 0, "r").mesh.triangles == test::icosphere(1).triangles);
   CHECK(decode_result(file, 1, "r").mesh.positions == test::icosphere(0).positions);
   const ResultMesh last = decode_result(file, 2, "r");

@@ -150,11 +150,12 @@ TEST_CASE("runs of different targets have different keys") {
 }
 
 TEST_CASE("parameters come back; damaged ones are refused") {
-  const SimplifyParameters p{Allocation::uniform, 12, 3, 0.25};
+  const SimplifyParameters p{Allocation::uniform, 12, 3, 77, 0.25};
   const std::string bytes = encode_parameters(p);
   const SimplifyParameters back = decode_parameters(bytes);
   CHECK(back.allocation == Allocation::uniform);
   CHECK(back.start_triangles == 12);
+  CHECK(back.samples == 77);
   CHECK(back.cost_unit == 0.25);
   for (std::size_t i = 0; i < bytes.size(); ++i) {
     CHECK_THROWS_AS(decode_parameters(std::string_view(bytes).substr(0, i)), DataError);

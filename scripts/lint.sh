@@ -1,0 +1,12 @@
+#!/usr/bin/env bash
+# Checks the form of our code: clang-format, and clang-tidy over what scripts/test.sh has built.
+#   lint.sh           both
+#   lint.sh --format  clang-format only
+set -euo pipefail
+root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
+cd "$root"
+mapfile -t files < <(git ls-files '*.cpp' '*.hpp')
+clang-format --dry-run -Werror "${files[@]}"
+[ "${1:-}" = --format ] && exit 0
+mapfile -t sources < <(git ls-files 'src/*.cpp' 'bin/*.cpp')
+printf '%s\n' "${sources[@]}" | xargs -P "$(nproc)" -n 4 clang-tidy -p build --quiet

@@ -1,0 +1,91 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#include "geometry/simplify_cost.hpp"
+
+#include <algorithm>
+#include <cfloat>
+
+namespace meshfarm {
+namespace {
+
+// Of trace x squared half length: so that flat regions do not collapse into fans in order of their
+// indices. 1e-3 costs 15 % of the error at 10 % of the triangles, 1e-5 and less nothing.
+constexpr double k_length_share = 4e-6;
+
+// Of the trace, as in EdgeQuadric::best.
+constexpr float k_ridge = 1e-5F;
+
+EdgeCost edge_cost(double cost, double trace, double squared_half) {
+  const double preference = k_length_share * squared_half;
+  return {trace * std::max(0.0, cost - preference), trace * (std::max(0.0, cost) + preference)};
+}
+
+}  // namespace
+
+void EdgeCosts::put(std::size_t i, const FloatQuadric& a, const FloatQuadric& b, Vec3 half) {
+  xx_[i] = a.xx + b.xx;
+  xy_[i] = a.xy + b.xy;
+  xz_[i] = a.xz + b.xz;
+  yy_[i] = a.yy + b.yy;
+  yz_[i] = a.yz + b.yz;
+  zz_[i] = a.zz + b.zz;
+  dxx_[i] = b.xx - a.xx;
+  dxy_[i] = b.xy - a.xy;
+  dxz_[i] = b.xz - a.xz;
+  dyy_[i] = b.yy - a.yy;
+  dyz_[i] = b.yz - a.yz;
+  dzz_[i] = b.zz - a.zz;
+  hx_[i] = static_cast<float>(half.x);
+  hy_[i] = static_cast<float>(half.y);
+  hz_[i] = static_cast<float>(half.z);
+}
+
+/// With A x = b solved by A = L D L', the least cost is c - b'x = c - sum of (inv(L) b)^2 / D. The
+/// ridge in A makes that a little more for positions far from the edge.
+void EdgeCosts::compute() {
+  for (std::size_t i = 0; i < k_size; ++i) {
+    const float trace = xx_[i] + yy_[i] + zz_[i];
+    // The summand keeps no area at all from dividing by zero without a branch.
+    const float scale = 1 / (trace + FLT_MIN);
+    const float hx = hx_[i];
+    const float hy = hy_[i];
+    const float hz = hz_[i];
+    const float ax = xx_[i] * hx + xy_[i] * hy + xz_[i] * hz;
+    const float ay = xy_[i] * hx + yy_[i] * hy + yz_[i] * hz;
+    const float az = xz_[i] * hx + yz_[i] * hy + zz_[i] * hz;
+    const float bx = (dxx_[i] * hx + dxy_[i] * hy + dxz_[i] * hz) * scale;
+    const float by = (dxy_[i] * hx + dyy_[i] * hy + dyz_[i] * hz) * scale;
+    const float bz = (dxz_[i] * hx + dyz_[i] * hy + dzz_[i] * hz) * scale;
+    const float xy = xy_[i] * scale;
+    const float xz = xz_[i] * scale;
+    const float inverse0 = 1 / (xx_[i] * scale + k_ridge);
+    const float l1 = xy * inverse0;
+    const float l2 = xz * inverse0;
+    const float inverse1 = 1 / (yy_[i] * scale + k_ridge - l1 * xy);
+    const float m = yz_[i] * scale - l1 * xz;
+    const float l3 = m * inverse1;
+    const float inverse2 = 1 / (zz_[i] * scale + k_ridge - l2 * xz - l3 * m);
+    const float y1 = by - l1 * bx;
+    const float y2 = bz - l2 * bx - l3 * y1;
+    const float saved = bx * bx * inverse0 + y1 * y1 * inverse1 + y2 * y2 * inverse2;
+    trace_[i] = trace;
+    cost_[i] = (ax * hx + ay * hy + az * hz) * scale - saved;
+    squared_[i] = hx * hx + hy * hy + hz * hz;
+  }
+}
+
+EdgeCost EdgeCosts::get(std::size_t i) const {
+  return edge_cost(cost_[i], trace_[i], squared_[i]);
+}
+
+EdgeCost cost_of_end(const FloatQuadric& other, Vec3 half) {
+  const FloatQuadric& q = other;
+  const Vec3 moved{q.xx * half.x + q.xy * half.y + q.xz * half.z,
+                   q.xy * half.x + q.yy * half.y + q.yz * half.z,
+                   q.xz * half.x + q.yz * half.y + q.zz * half.z};
+  const double trace = static_cast<double>(q.xx) + q.yy + q.zz;
+  if (!(trace > 0)) return {};
+  return edge_cost(4 * dot(moved, half) / trace, trace, squared_length(half));
+}
+
+}  // namespace meshfarm

@@ -1,0 +1,312 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#include <string>
+#include <vector>
+
+#include <doctest/doctest.h>
+
+#include <meshfarm/farm/dispatcher.hpp>
+
+#include "farm_fixture.hpp"
+
+namespace meshfarm::test {
+namespace {
+
+constexpr std::uint64_t k_run = 7;
+constexpr std::uint32_t k_epoch = 2;
+
+template <class A>
+std::vector<A> only(const Actions& actions) {
+  std::vector<A> found;
+  for (const Action& action : actions) {
+    if (const auto* each = std::get_if<A>(&action)) found.push_back(*each);
+  }
+  return found;
+}
+
+/// The messages of type M among the actions, to this peer.
+template <class M>
+std::vector<M> said_to(const PeerId& peer, const Actions& actions) {
+  std::vector<M> found;
+  for (const SendTo& each : only<SendTo>(actions)) {
+    const auto* message = std::get_if<M>(&each.message);
+    if (each.peer == peer && message != nullptr) found.push_back(*message);
+  }
+  return found;
+}
+
+/// A Dispatcher with a clock, and short words for what its peers say.
+struct Desk {
+  explicit Desk(JobSource source)
+      : dispatcher(Plan(std::move(source), 3), {k_run, k_epoch, FarmTime(1000)}) {}
+
+  Actions say(const PeerId& peer, const Message& message) {
+    return dispatcher.on_message(peer, message, now);
+  }
+  /// Joins; the worker's id is as many as joined before, plus 1.
+  Actions worker(const PeerId& peer, std::uint64_t incarnation) {
+    const Actions opened = say(peer, Hello{Role::worker, 0, incarnation, 1, "host", {}});
+    const auto lanes = only<OpenLane>(opened);
+    REQUIRE(lanes.size() == 1);
+    return dispatcher.lane_opened(lanes[0].worker, "lane");
+  }
+  Actions sink(const PeerId& peer, std::uint64_t incarnation,
+               const std::vector<JobKey>& accepted = {}) {
+    say(peer, Hello{Role::sink, k_run, incarnation, 1, "host", "results of " + peer});
+    for (const JobKey key : accepted) accept(peer, key, 0);
+    return say(peer, Ready{k_epoch, accepted.size()});
+  }
+  Actions accept(const PeerId& peer, JobKey key, std::uint32_t worker) {
+    Accept message;
+    message.epoch = k_epoch;
+    message.worker = {worker};
+    message.key = key;
+    return say(peer, message);
+  }
+  Actions credit(const PeerId& peer, std::uint32_t worker, std::uint64_t up_to) {
+    return say(peer, Credit{k_epoch, {worker}, up_to});
+  }
+  Actions silence(FarmTime duration) { return dispatcher.tick(now += duration); }
+
+  Dispatcher dispatcher;
+  FarmTime now{0};
+};
+
+std::string names(const Actions& actions) {
+  std::string names;
+  for (const PushJob& push : only<PushJob>(actions)) {
+    names += push.assignment.job.parameters + "@" + std::to_string(push.worker.value) + " ";
+  }
+  return names;
+}
+
+JobKey key(int i) {
+  return key_of(make_jobs(static_cast<std::size_t>(i) + 1).back());
+}
+
+TEST_CASE("no job goes out before a sink is ready, nor beyond the credit") {
+  Desk desk(one_round(10));
+  desk.worker("w", 1);
+  CHECK(names(desk.credit("w", 1, 2)).empty());
+  CHECK(names(desk.sink("s", 9)) == "job 9@1 job 8@1 ");
+  CHECK(names(desk.credit("w", 1, 2)).empty());  // the same again gives nothing more
+  CHECK(names(desk.credit("w", 1, 1)).empty());  // nor does less
+  CHECK(names(desk.credit("w", 1, 3)) == "job 7@1 ");
+  CHECK(names(desk.accept("s", key(9), 1)).empty());  // done, but no credit for another
+  CHECK(desk.dispatcher.holding() == 2);
+}
+
+TEST_CASE("the least laden worker is served first, and near the end nobody hoards") {
+  Desk desk(one_round(4));
+  desk.worker("a", 1);
+  desk.worker("b", 2);
+  desk.credit("a", 1, 4);
+  desk.credit("b", 2, 4);
+  CHECK(names(desk.sink("s", 9)) == "job 3@1 job 2@2 job 1@1 ");
+  CHECK(names(desk.accept("s", key(2), 2)) == "job 0@2 ");
+}
+
+TEST_CASE("a silent worker loses its jobs; the one it had in work counts as failed") {
+  Desk desk(one_round(3));
+  desk.sink("s", 9);
+  desk.worker("a", 1);
+  desk.credit("a", 1, 3);
+  desk.silence(FarmTime(2000));
+  desk.say("s", Heartbeat{k_epoch, {}, 0, 0, 0});
+  desk.worker("b", 2);
+  CHECK(names(desk.credit("b", 2, 2)) == "job 0@2 ");  // the other two are with the silent one
+  const Actions lost = desk.silence(FarmTime(1001));
+  REQUIRE(only<CloseLane>(lost).size() == 1);
+  CHECK(only<CloseLane>(lost)[0].worker == WorkerId{1});
+  CHECK(desk.dispatcher.progress().workers_lost == 1);
+  CHECK(desk.dispatcher.holding() == 2);
+  const auto again = only<PushJob>(lost);
+  REQUIRE(again.size() == 1);
+  CHECK(again[0].assignment.job.parameters == "job 2");
+  CHECK(again[0].assignment.attempt == 1002);  // the second attempt of the second epoch
+
+  SUBCASE("its late result is taken, and the new holder told to stop") {
+    const Actions done = desk.accept("s", key(2), 1);
+    CHECK(said_to<Done>("b", done).size() == 1);
+    CHECK(desk.dispatcher.plan().state(key(2)) == JobState::done);
+    CHECK(desk.dispatcher.holding() == 1);
+  }
+  SUBCASE("a late failure of its attempt is not held against the new one") {
+    Reject late{k_epoch, {1}, 1001, key(2), {"late", false}};
+    desk.say("s", late);
+    CHECK(desk.dispatcher.plan().state(key(2)) == JobState::running);
+  }
+  SUBCASE("it is a stranger from now on, and must say hello") {
+    const Actions answer = desk.say("a", Heartbeat{k_epoch, {1}, 0, 3, 0});
+    REQUIRE(said_to<Refused>("a", answer).size() == 1);
+    CHECK(said_to<Refused>("a", answer)[0].why == Refusal::stranger);
+  }
+}
+
+/// A worker that takes the only job and falls silent; the sink stays.
+Actions worker_dies(Desk& desk, std::uint32_t worker) {
+  const PeerId peer = "w" + std::to_string(worker);
+  desk.worker(peer, worker);
+  CHECK(names(desk.credit(peer, worker, 1)) == "job 0@" + std::to_string(worker) + " ");
+  desk.say("s", Heartbeat{k_epoch, {}, 0, 0, 0});
+  desk.silence(FarmTime(1600));
+  desk.say("s", Heartbeat{k_epoch, {}, 0, 0, 0});
+  return desk.silence(FarmTime(1600));
+}
+
+TEST_CASE("a job that three workers died of is given up") {
+  Desk desk(one_round(1));
+  desk.sink("s", 9);
+  CHECK(only<Finish>(worker_dies(desk, 1)).empty());
+  CHECK(only<Finish>(worker_dies(desk, 2)).empty());
+  const Actions last = worker_dies(desk, 3);
+  REQUIRE(only<Finish>(last).size() == 1);
+  CHECK(only<Finish>(last)[0].failure.find("silent") != std::string::npos);
+  CHECK(said_to<JobFailed>("s", last).size() == 1);
+  CHECK(said_to<Stop>("s", last).size() == 1);
+}
+
+TEST_CASE("a job is not blamed for a worker that comes back") {
+  Desk desk(one_round(1));
+  desk.sink("s", 9);
+  worker_dies(desk, 1);
+  worker_dies(desk, 2);
+  desk.worker("w1 again", 1);
+  CHECK(names(desk.credit("w1 again", 3, 1)) == "job 0@3 ");
+  desk.say("s", Heartbeat{k_epoch, {}, 0, 0, 0});
+  desk.silence(FarmTime(1600));
+  desk.say("s", Heartbeat{k_epoch, {}, 0, 0, 0});
+  CHECK(only<Finish>(desk.silence(FarmTime(1600))).empty());
+  CHECK(desk.dispatcher.plan().counts().failed == 0);
+}
+
+TEST_CASE("a duplicate of a result changes nothing") {
+  Desk desk(one_round(2));
+  desk.sink("s", 9);
+  desk.worker("w", 1);
+  desk.credit("w", 1, 1);
+  desk.accept("s", key(1), 1);
+  const Actions again = desk.accept("s", key(1), 1);
+  CHECK(desk.dispatcher.plan().counts().done == 1);
+  CHECK(said_to<Done>("w", again).size() == 1);  // it may have missed the first
+}
+
+TEST_CASE("a rejected result is made again; another worker's rejection is not ours") {
+  Desk desk(one_round(1));
+  desk.sink("s", 9);
+  desk.worker("w", 1);
+  desk.credit("w", 1, 5);
+  const Actions again = desk.say("s", Reject{k_epoch, {1}, 1001, key(0), {"damaged", false}});
+  REQUIRE(said_to<Done>("w", again).size() == 1);
+  CHECK(said_to<Done>("w", again)[0].attempt == 1001);  // not the attempt that goes out now
+  CHECK(names(again) == "job 0@1 ");
+  CHECK(names(desk.say("s", Reject{k_epoch, {5}, 1002, key(0), {"forged", false}})).empty());
+  const Actions bad = desk.say("s", Reject{k_epoch, {1}, 1002, key(0), {"no mesh", true}});
+  CHECK(only<Finish>(bad).size() == 1);
+}
+
+TEST_CASE("a worker that leaves gives its jobs back without blame") {
+  Desk desk(one_round(2));
+  desk.sink("s", 9);
+  desk.worker("a", 1);
+  desk.worker("b", 2);
+  desk.credit("a", 1, 2);
+  desk.credit("b", 2, 4);
+  CHECK(desk.dispatcher.holding() == 2);
+  const Actions left = desk.say("a", Release{k_epoch, {1}});
+  CHECK(only<CloseLane>(left).size() == 1);
+  CHECK(desk.dispatcher.holding() == 2);
+  CHECK(desk.dispatcher.progress().workers_lost == 0);
+}
+
+TEST_CASE("a worker that joins again under another routing id has lost what it held") {
+  Desk desk(one_round(1));
+  desk.sink("s", 9);
+  desk.worker("a", 1);
+  desk.credit("a", 1, 1);
+  CHECK(desk.dispatcher.holding() == 1);
+  desk.worker("a2", 1);
+  CHECK(desk.dispatcher.holding() == 0);
+  CHECK(desk.dispatcher.progress().workers == 1);
+  CHECK(names(desk.credit("a2", 2, 1)) == "job 0@2 ");
+}
+
+TEST_CASE("a lane that lost a job is noticed") {
+  Desk desk(one_round(1));
+  desk.sink("s", 9);
+  desk.worker("a", 1);
+  desk.credit("a", 1, 1);
+  for (int i = 0; i < 4; ++i) {
+    desk.silence(FarmTime(1000));
+    desk.say("s", Heartbeat{k_epoch, {}, 0, 0, 0});
+    const Actions answer = desk.say("a", Heartbeat{k_epoch, {1}, 0, 0, 0});
+    CHECK(said_to<Refused>("a", answer).size() == (i == 3 ? 1 : 0));
+  }
+  CHECK(desk.dispatcher.holding() == 0);
+}
+
+TEST_CASE("a sink that is lost stops the farm until one is back and has told what it has") {
+  Desk desk(one_round(3));
+  desk.sink("s", 9);
+  desk.worker("w", 1);
+  desk.credit("w", 1, 2);
+  desk.accept("s", key(2), 1);
+  desk.silence(FarmTime(2000));
+  desk.say("w", Heartbeat{k_epoch, {1}, 1, 2, 0});
+  const Actions lost = desk.silence(FarmTime(1001));
+  CHECK(said_to<SinkAt>("w", lost).at(0).results.empty());
+  CHECK(names(desk.credit("w", 1, 3)).empty());
+
+  SUBCASE("the same again") {
+    CHECK(names(desk.sink("s2", 9, {key(2)})) == "job 0@1 ");
+  }
+  SUBCASE("another, and the first is not taken back") {
+    const Actions joined = desk.say("s2", Hello{Role::sink, k_run, 10, 1, "host", "results of s2"});
+    CHECK(said_to<SinkAt>("w", joined).at(0).results == "results of s2");
+    const Actions old = desk.say("s", Hello{Role::sink, k_run, 9, 1, "host", "x"});
+    CHECK(said_to<Refused>("s", old).at(0).why == Refusal::replaced);
+  }
+  SUBCASE("one that lost a result: the job is ready again") {
+    CHECK(names(desk.sink("s2", 10)) == "job 2@1 ");
+    CHECK(desk.dispatcher.plan().counts().done == 0);
+  }
+  SUBCASE("one of whose words some got lost must join again") {
+    desk.say("s2", Hello{Role::sink, k_run, 10, 1, "host", "results of s2"});
+    const Actions ready = desk.say("s2", Ready{k_epoch, 1});
+    CHECK(said_to<Refused>("s2", ready).at(0).why == Refusal::stranger);
+    CHECK(names(ready).empty());
+  }
+}
+
+TEST_CASE("the words of another epoch or of a stranger are dropped") {
+  Desk desk(one_round(2));
+  desk.sink("s", 9);
+  desk.worker("w", 1);
+  const auto before = desk.dispatcher.dropped();
+  CHECK(names(desk.say("w", Credit{k_epoch - 1, {1}, 5})).empty());
+  CHECK(names(desk.say("x", Credit{k_epoch, {1}, 5})).empty());
+  CHECK(names(desk.say("w", Credit{k_epoch, {2}, 5})).empty());
+  CHECK(desk.say("x", Complete{k_epoch}).empty());
+  CHECK(desk.say("s", Complete{k_epoch - 1}).empty());
+  CHECK(desk.say("x", Stop{}).empty());
+  CHECK(desk.dispatcher.dropped() == before + 6);
+}
+
+TEST_CASE("the end: workers hear it once all is accepted, the sink once it is complete") {
+  Desk desk(one_round(1));
+  desk.sink("s", 9);
+  desk.worker("w", 1);
+  desk.credit("w", 1, 1);
+  CHECK(only<Finish>(desk.say("s", Complete{k_epoch})).empty());  // too early
+  const Actions all = desk.accept("s", key(0), 1);
+  CHECK(said_to<Stop>("w", all).size() == 1);
+  CHECK(said_to<Stop>("s", all).empty());
+  const Actions late = desk.say("v", Hello{Role::worker, 0, 5, 1, "host", {}});
+  CHECK(said_to<Stop>("v", late).size() == 1);
+  const Actions end = desk.say("s", Complete{k_epoch});
+  CHECK(said_to<Stop>("s", end).size() == 1);
+  CHECK(only<Finish>(end).at(0).failure.empty());
+}
+
+}  // namespace
+}  // namespace meshfarm::test

@@ -1,0 +1,160 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#include <doctest/doctest.h>
+
+#include "geometry/adjacency.hpp"
+#include "geometry/quadric.hpp"
+#include "geometry/simplify_cost.hpp"
+#include "test_simplify_meshes.hpp"
+
+using namespace meshfarm;
+
+namespace {
+
+/// Planes through a vertex, nearly those of a surface whose normal is z.
+Quadric random_planes(simplify_test::Random& random, double roughness) {
+  Quadric q;
+  for (int i = 0; i < 6; ++i) {
+    const Vec3 n{roughness * (random.unit() - 0.5), roughness * (random.unit() - 0.5), 1};
+    q.add(n * (1 / length(n)), 0.5 + random.unit());
+  }
+  return q;
+}
+
+}  // namespace
+
+TEST_CASE("a quadric is the squared distance to its planes") {
+  Quadric q;
+  q.add({0, 0, 1}, 2);
+  q.add({0.6, 0.8, 0}, 1);
+  const Vec3 x{1, 2, 3};
+  CHECK(dot(q * x, x) == doctest::Approx(2 * 9 + 2.2 * 2.2));
+  CHECK(q.trace() == doctest::Approx(3));
+}
+
+TEST_CASE("solve inverts, and gives zero where there is nothing to invert") {
+  Quadric q;
+  q.add({1, 0, 0}, 2);
+  q.add({0, 1, 0}, 3);
+  q.add({0.6, 0, 0.8}, 4);
+  const Vec3 x = solve(q, 0, q * Vec3{5, -6, 7});
+  CHECK(x.x == doctest::Approx(5));
+  CHECK(x.y == doctest::Approx(-6));
+  CHECK(x.z == doctest::Approx(7));
+  CHECK(solve({}, 0, {1, 1, 1}) == Vec3{});
+}
+
+TEST_CASE("an edge quadric finds the corner of three planes") {
+  EdgeQuadric q;
+  q.squared_length = 4;
+  const Vec3 corner{0.3, -0.2, 0.5};
+  for (const Vec3 n : {Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, 0, 1}}) {
+    Quadric plane;
+    plane.add(n, 1);
+    q.add(plane, corner);
+  }
+  CHECK(length(q.best() - corner) < 1e-4);
+  CHECK(q.cost(corner) == 0);
+  CHECK(q.cost(corner + Vec3{0, 2, 0}) == doctest::Approx(4));
+}
+
+TEST_CASE("an edge quadric of one plane stays in the middle") {
+  EdgeQuadric q;
+  q.squared_length = 4;
+  Quadric plane;
+  plane.add({0, 0, 1}, 1);
+  q.add(plane, {1, 0, 0.25});
+  const Vec3 best = q.best();
+  CHECK(best.x == 0);
+  CHECK(best.y == 0);
+  CHECK(best.z == doctest::Approx(0.25).epsilon(1e-4));
+}
+
+TEST_CASE("lost area costs, gained area does not") {
+  EdgeQuadric q;
+  q.squared_length = 2;
+  q.a.add({0, 0, 1}, 1);
+  CHECK(q.cost_of_lost_area(3) == doctest::Approx(0.6));
+  CHECK(q.cost_of_lost_area(-3) == 0);
+}
+
+TEST_CASE("a border plane stands on the edge, perpendicular to the triangle") {
+  Quadric q;
+  add_border_plane(q, {0, 0, 5}, {2, 0, 0});
+  CHECK(dot(q * Vec3{7, 0, 9}, Vec3{7, 0, 9}) == 0);
+  CHECK(dot(q * Vec3{0, 1, 0}, Vec3{0, 1, 0}) == doctest::Approx(3 * 4));
+  Quadric none;
+  add_border_plane(none, {0, 0, 0}, {2, 0, 0});
+  CHECK(none.trace() == 0);
+}
+
+TEST_CASE("adjacency lists each vertex's corners in triangle order") {
+  // 3 - 2
+  // | / |
+  // 0 - 1
+  const std::vector<Triangle> triangles{{0, 1, 2}, {0, 2, 3}};
+  Adjacency adjacency;
+  adjacency.build(triangles, 5);
+  CHECK(adjacency.vertices() == 5);
+  REQUIRE(adjacency.count(0) == 2);
+  CHECK(adjacency.at(0)[0].next == 1);
+  CHECK(adjacency.at(0)[0].prev == 2);
+  CHECK(adjacency.at(0)[1].next == 2);
+  CHECK(adjacency.at(0)[1].prev == 3);
+  CHECK(adjacency.count(1) == 1);
+  CHECK(adjacency.at(2).size() == 2);
+  CHECK(adjacency.at(4).empty());
+  int ends = 0;
+  for_border_edges(adjacency.at(0), [&](const Corner&, std::uint32_t end) { ends += 1 << end; });
+  CHECK(ends == (1 << 1) + (1 << 3));
+}
+
+TEST_CASE("ranking agrees with the cost of the best position") {
+  simplify_test::Random random(7);
+  EdgeCosts costs;
+  for (const double roughness : {1.0, 0.1, 0.02}) {
+    for (int repeat = 0; repeat < 20; ++repeat) {
+      std::vector<EdgeQuadric> exact(EdgeCosts::k_size);
+      for (std::size_t i = 0; i < EdgeCosts::k_size; ++i) {
+        const Vec3 half{random.unit() - 0.5, random.unit() - 0.5, 0.1 * random.unit()};
+        const Quadric a = random_planes(random, roughness);
+        const Quadric b = random_planes(random, roughness);
+        exact[i].squared_length = 4 * squared_length(half);
+        exact[i].add(a, half * -1.0);
+        exact[i].add(b, half);
+        FloatQuadric float_a;
+        FloatQuadric float_b;
+        float_a.add(a);
+        float_b.add(b);
+        costs.put(i, float_a, float_b, half);
+      }
+      costs.compute();
+      for (std::size_t i = 0; i < EdgeCosts::k_size; ++i) {
+        const Vec3 x = exact[i].best();
+        const double trace = exact[i].a.trace();
+        const double least = exact[i].cost(x) + 1e-5 * trace * squared_length(x);
+        const double preference = 1e-6 * trace * exact[i].squared_length;
+        CHECK(costs.get(i).ranking == doctest::Approx(least + preference).epsilon(0.01));
+        CHECK(costs.get(i).least <= least);
+        CHECK(costs.get(i).least >= least * 0.99 - 2 * preference);
+      }
+    }
+  }
+}
+
+TEST_CASE("ranking takes planes without area, and prefers short edges where planes cost nothing") {
+  EdgeCosts costs;
+  FloatQuadric flat;
+  Quadric plane;
+  plane.add({0, 0, 1}, 1);
+  flat.add(plane);
+  costs.put(0, {}, {}, {1, 0, 0});
+  costs.put(1, flat, flat, {1, 0, 0});
+  costs.put(2, flat, flat, {0.5, 0, 0});
+  costs.compute();
+  CHECK(costs.get(0).ranking == 0);
+  CHECK(costs.get(1).least == 0);
+  CHECK(costs.get(1).ranking > costs.get(2).ranking);
+  CHECK(costs.get(2).ranking > 0);
+  CHECK(cost_of_end(flat, {0, 0, 1}).least == doctest::Approx(4).epsilon(1e-4));
+}

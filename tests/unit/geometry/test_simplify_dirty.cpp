@@ -1,0 +1,238 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#include <limits>
+
+#include <doctest/doctest.h>
+
+#include <meshfarm/geometry/simplify.hpp>
+
+#include "test_simplify_meshes.hpp"
+
+using namespace meshfarm;
+using namespace meshfarm::simplify_test;
+
+namespace {
+
+bool has_position(const Mesh& mesh, Vec3 p) {
+  return std::find(mesh.positions.begin(), mesh.positions.end(), p) != mesh.positions.end();
+}
+
+/// Two spheres that share one vertex: a bow tie.
+Mesh bow_tie() {
+  Mesh mesh = sphere(3);
+  append(mesh, sphere(3), {2, 0, 0});
+  const auto second = static_cast<std::uint32_t>(mesh.positions.size() / 2 + 1);
+  REQUIRE(mesh.positions[0] == mesh.positions[second]);
+  for (Triangle& t : mesh.triangles) {
+    for (std::uint32_t& v : t) v = v == second ? 0 : v;
+  }
+  return mesh;
+}
+
+/// Three wings on one spine: its edges have three triangles.
+Mesh three_wings() {
+  Mesh mesh;
+  constexpr std::uint32_t k_size = 12;
+  constexpr std::uint32_t k_row = k_size + 1;
+  for (std::uint32_t wing = 0; wing < 3; ++wing) {
+    const double angle = 2 * std::numbers::pi * wing / 3;
+    Mesh one = flat_grid(k_size, k_size);
+    for (Vec3& p : one.positions) p = {p.x * std::cos(angle), p.x * std::sin(angle), p.y};
+    append(mesh, one, {});
+  }
+  for (Triangle& t : mesh.triangles) {
+    for (std::uint32_t& v : t) {
+      const std::uint32_t local = v % (k_row * k_row);
+      if (local % k_row == 0) v = local;
+    }
+  }
+  return mesh;
+}
+
+}  // namespace
+
+TEST_CASE("degenerate and duplicate triangles are dropped and counted") {
+  Mesh mesh = sphere(3);
+  const std::uint64_t good = mesh.triangles.size();
+  const Triangle t = mesh.triangles[5];
+  mesh.triangles.insert(mesh.triangles.begin() + 20, {t[0], t[0], t[1]});
+  mesh.triangles.insert(mesh.triangles.begin() + 30, {t[2], t[2], t[2]});
+  mesh.triangles.push_back({t[1], t[2], t[0]});
+  mesh.triangles.push_back({t[1], t[0], t[2]});
+  Simplifier simplifier(mesh, {});
+  CHECK(simplifier.dropped_degenerate() == 2);
+  CHECK(simplifier.dropped_duplicate() == 2);
+  CHECK(simplifier.triangles() == good);
+  CHECK(simplifier.mesh().triangles[5] == t);
+  simplifier.reduce({100});
+  CHECK(simplifier.triangles() == 100);
+  CHECK(is_clean(simplifier.mesh()));
+}
+
+TEST_CASE("unused vertices are dropped") {
+  Mesh mesh = tetrahedron();
+  mesh.positions.insert(mesh.positions.begin() + 1, Vec3{9, 9, 9});
+  for (Triangle& t : mesh.triangles) {
+    for (std::uint32_t& v : t) v += v > 0 ? 1 : 0;
+  }
+  CHECK(same_bytes(Simplifier(mesh, {}).mesh(), tetrahedron()));
+}
+
+TEST_CASE("a bow tie stays where it is") {
+  Simplifier simplifier(bow_tie(), {});
+  simplifier.reduce({60});
+  CHECK(simplifier.triangles() == 60);
+  CHECK(is_clean(simplifier.mesh()));
+  CHECK(has_position(simplifier.mesh(), {1, 0, 0}));
+  CHECK(check(simplifier.mesh()).components == 1);
+  CHECK(check(simplifier.mesh()).euler == 3);
+}
+
+TEST_CASE("a spine of three wings stays as it is") {
+  const Mesh mesh = three_wings();
+  const Validity before = check(mesh);
+  REQUIRE(before.crowded_edges == 12);
+  Simplifier simplifier(mesh, {});
+  simplifier.reduce({0});
+  const Validity after = check(simplifier.mesh());
+  CHECK(after.crowded_edges == 12);
+  CHECK(after.euler == before.euler);
+  CHECK(after.components == 1);
+  CHECK(after.degenerate + after.duplicate + after.no_area == 0);
+  CHECK(simplifier.triangles() < mesh.triangles.size() / 3);
+  for (int i = 0; i <= 12; ++i) CHECK(has_position(simplifier.mesh(), {0, 0, i / 12.0}));
+}
+
+TEST_CASE("neighbours of opposite orientation are locked") {
+  Mesh mesh = flat_grid(20, 20);
+  for (Triangle& t : mesh.triangles) {
+    if (mesh.positions[t[0]].x >= 0.5) std::swap(t[1], t[2]);
+  }
+  const Validity before = check(mesh);
+  REQUIRE(before.crowded_edges == 20);
+  Simplifier simplifier(mesh, {});
+  simplifier.reduce({0});
+  CHECK(check(simplifier.mesh()).crowded_edges == 20);
+  CHECK(check(simplifier.mesh()).euler == before.euler);
+  CHECK(simplifier.triangles() < 300);
+}
+
+TEST_CASE("triangles of no area neither crash nor spread") {
+  Mesh mesh = wavy_grid(30, 30);
+  // Vertices moved onto a neighbour, and a row drawn into one line.
+  for (std::uint32_t v = 100; v < 800; v += 37) mesh.positions[v] = mesh.positions[v + 1];
+  for (std::uint32_t v = 403; v < 433; ++v) {
+    mesh.positions[v] = mesh.positions[v - 31] + Vec3{0, 0, 0};
+  }
+  const Validity before = check(mesh);
+  REQUIRE(before.no_area > 50);
+  for (const std::uint64_t goal : {1500U, 1000U, 500U, 100U}) {
+    CAPTURE(goal);
+    Simplifier simplifier(mesh, {});
+    simplifier.reduce({goal});
+    const Validity after = check(simplifier.mesh());
+    CHECK(after.no_area <= before.no_area);
+    CHECK(after.degenerate + after.duplicate + after.crowded_edges == 0);
+    CHECK(after.euler == 1);
+    CHECK(simplifier.triangles() >= goal);
+  }
+}
+
+TEST_CASE("vertices that are not finite stay") {
+  Mesh mesh = wavy_grid(20, 20);
+  mesh.positions[100].y = std::numeric_limits<double>::quiet_NaN();
+  mesh.positions[200].x = HUGE_VAL;
+  Simplifier simplifier(mesh, {});
+  simplifier.reduce({200});
+  CHECK(simplifier.triangles() == 200);
+  const auto& positions = simplifier.mesh().positions;
+  CHECK(std::count_if(positions.begin(), positions.end(), [](Vec3 p) { return !is_finite(p); }) ==
+        2);
+}
+
+TEST_CASE("a hub of many triangles is not walked once an edge") {
+  constexpr std::uint32_t k_rim = 200000;
+  for (const bool closed : {true, false}) {
+    CAPTURE(closed);
+    Mesh mesh;
+    mesh.positions.push_back({0, 0, 1});
+    for (std::uint32_t i = 0; i < k_rim; ++i) {
+      const double angle = 2 * std::numbers::pi * i / k_rim;
+      mesh.positions.push_back({std::cos(angle), std::sin(angle), 0});
+      const bool last = i + 1 == k_rim;
+      if (closed || !last) mesh.triangles.push_back({0, i + 1, last ? 1 : i + 2});
+    }
+    Simplifier simplifier(mesh, {});
+    simplifier.reduce({50});
+    CHECK(simplifier.triangles() == 50);
+    CHECK(is_clean(simplifier.mesh()));
+    CHECK(check(simplifier.mesh()).euler == 1);
+  }
+}
+
+TEST_CASE("random soup never breaks") {
+  for (std::uint64_t seed = 1; seed <= 300; ++seed) {
+    CAPTURE(seed);
+    Random random(seed);
+    Mesh mesh;
+    const std::uint32_t vertices = 5 + random.below(40);
+    const std::uint32_t steps = 1 + random.below(20);
+    for (std::uint32_t v = 0; v < vertices; ++v) {
+      const auto coordinate = [&] { return static_cast<double>(random.below(steps)); };
+      const double x = coordinate();
+      const double y = coordinate();
+      mesh.positions.push_back({x, y, coordinate()});
+    }
+    const std::uint32_t triangles = 5 + random.below(120);
+    for (std::uint32_t t = 0; t < triangles; ++t) {
+      const std::uint32_t a = random.below(vertices);
+      const std::uint32_t b = random.below(vertices);
+      mesh.triangles.push_back({a, b, random.below(vertices)});
+    }
+    SimplifyOptions options;
+    options.locked_vertices = random.below(4);
+    Simplifier simplifier(mesh, options);
+    const Validity before = check(simplifier.mesh());
+    CHECK(simplifier.dropped_degenerate() == check(mesh).degenerate);
+    CHECK(simplifier.dropped_duplicate() == check(mesh).duplicate);
+    simplifier.reduce({random.below(triangles)});
+    simplifier.reduce({0});
+    const Validity after = check(simplifier.mesh());
+    CHECK(after.bad_index + after.degenerate + after.duplicate == 0);
+    CHECK(after.no_area <= before.no_area);
+    CHECK(after.unused <= options.locked_vertices);
+    CHECK(after.components == before.components);
+    CHECK(after.euler == before.euler);
+    CHECK(after.crowded_edges <= before.crowded_edges);
+  }
+}
+
+TEST_CASE("surfaces with random holes, handles and flips never break") {
+  for (std::uint64_t seed = 1; seed <= 200; ++seed) {
+    CAPTURE(seed);
+    Random random(seed);
+    Mesh mesh = seed % 2 == 0 ? torus(8 + random.below(8), 6 + random.below(8))
+                              : wavy_grid(6 + random.below(12), 6 + random.below(12));
+    for (Vec3& p : mesh.positions) {
+      p = p + Vec3{random.unit(), random.unit(), random.unit()} * (0.02 * random.below(8));
+    }
+    const std::uint32_t hole = random.below(3) * 8 + 1;
+    std::erase_if(mesh.triangles, [&](const Triangle&) { return random.below(hole) == 1; });
+    // Points glued together make bow ties and crowded edges.
+    for (std::uint32_t glued = random.below(4); glued > 0; --glued) {
+      const auto n = static_cast<std::uint32_t>(mesh.positions.size());
+      const std::uint32_t from = random.below(n);
+      const std::uint32_t to = random.below(n);
+      for (Triangle& t : mesh.triangles) std::replace(t.begin(), t.end(), from, to);
+    }
+    Simplifier simplifier(mesh, {random.below(20), PositionType::float32, {}});
+    const Validity before = check(simplifier.mesh());
+    simplifier.reduce({random.below(100)});
+    const Validity after = check(simplifier.mesh());
+    CHECK(after.bad_index + after.degenerate + after.duplicate == 0);
+    CHECK(after.no_area <= before.no_area);
+    CHECK(after.components == before.components);
+    CHECK(after.euler == before.euler);
+    CHECK(after.crowded_edges <= before.crowded_edges);
+  }
+}

@@ -1,0 +1,170 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#include <doctest/doctest.h>
+
+#include <meshfarm/geometry/simplify.hpp>
+
+#include "test_simplify_meshes.hpp"
+
+using namespace meshfarm;
+using namespace meshfarm::simplify_test;
+
+namespace {
+
+Mesh shifted(Mesh mesh, Vec3 by) {
+  for (Vec3& p : mesh.positions) p = p + by;
+  return mesh;
+}
+
+double farthest_from_unit_sphere(const Mesh& mesh, Vec3 centre) {
+  double farthest = 0;
+  for (const Vec3 p : mesh.positions) {
+    farthest = std::max(farthest, std::abs(length(p - centre) - 1));
+  }
+  return farthest;
+}
+
+}  // namespace
+
+TEST_CASE("no collapse costs more than max_cost") {
+  Simplifier simplifier(sphere(5), {});
+  std::uint64_t before = simplifier.triangles();
+  for (const double limit : {1e-8, 1e-7, 1e-5}) {
+    CAPTURE(limit);
+    simplifier.reduce({0, limit});
+    CHECK(simplifier.max_cost() <= limit);
+    CHECK(simplifier.pass_cost() <= limit);
+    CHECK(simplifier.max_cost() > limit / 4);
+    CHECK(simplifier.triangles() < before);
+    before = simplifier.triangles();
+    CHECK(is_clean(simplifier.mesh()));
+    int passes = 0;
+    simplifier.reduce({0, limit}, [&](std::uint64_t) { return ++passes > 0; });
+    CHECK(passes == 0);
+  }
+  CHECK(before > 8);
+}
+
+TEST_CASE("the level reached is that of the goal, not of the last pass") {
+  Simplifier simplifier(sphere(5), {});
+  simplifier.reduce({1001});
+  CHECK(simplifier.triangles() == 1002);
+  const double level = simplifier.pass_cost();
+  CHECK(level > 0);
+  CHECK(level <= 2 * simplifier.max_cost());
+  simplifier.reduce({0, level});
+  CHECK(simplifier.triangles() > 700);
+  simplifier.reduce({0});
+  CHECK(simplifier.pass_cost() == simplifier.max_cost());
+}
+
+TEST_CASE("goals in small steps are met exactly, whatever cost they allow") {
+  for (const double max_cost : {1.0, HUGE_VAL}) {
+    Simplifier grid(wavy_grid(30, 30), {});
+    for (std::uint64_t goal = 1500; goal > 1480; --goal) {
+      grid.reduce({goal, max_cost});
+      CHECK(grid.triangles() == goal);
+    }
+    Simplifier ball(sphere(4), {});
+    for (std::uint64_t goal = 1500; goal > 1480; --goal) {
+      ball.reduce({goal, max_cost});
+      CHECK(ball.triangles() == goal + goal % 2);
+    }
+  }
+}
+
+TEST_CASE("max_cost is nearly exhausted by one call") {
+  Simplifier once(wavy_grid(100, 100), {});
+  once.reduce({0, 1e-8});
+  Simplifier twice(wavy_grid(100, 100), {});
+  twice.reduce({0, 1e-9});
+  twice.reduce({0, 1e-8});
+  const auto a = static_cast<double>(once.triangles());
+  const auto b = static_cast<double>(twice.triangles());
+  CHECK(a == doctest::Approx(b).epsilon(0.1));
+}
+
+TEST_CASE("costs do not depend on where a part lies") {
+  Simplifier here(wavy_grid(60, 60), {});
+  here.reduce({1000});
+  Simplifier there(shifted(wavy_grid(60, 60), {4096, -4096, 4096}), {});
+  there.reduce({1000});
+  CHECK(here.pass_cost() == doctest::Approx(there.pass_cost()).epsilon(0.1));
+  CHECK(here.max_cost() == doctest::Approx(there.max_cost()).epsilon(0.1));
+}
+
+TEST_CASE("far from the origin nothing is lost") {
+  const Vec3 centre{1e6, -2e6, 3e6};
+  Simplifier simplifier(shifted(sphere(5), centre), {});
+  simplifier.reduce({400});
+  CHECK(simplifier.triangles() == 400);
+  CHECK(is_clean(simplifier.mesh()));
+  CHECK(farthest_from_unit_sphere(simplifier.mesh(), centre) < 0.02);
+}
+
+TEST_CASE("tiny and huge meshes are treated alike") {
+  for (const double scale : {1e-15, 1e15}) {
+    Mesh mesh = sphere(4);
+    for (Vec3& p : mesh.positions) p = p * scale;
+    Simplifier simplifier(mesh, {});
+    simplifier.reduce({200});
+    CHECK(simplifier.triangles() == 200);
+    Mesh result = simplifier.mesh();
+    for (Vec3& p : result.positions) p = p * (1 / scale);
+    CHECK(is_clean(result));
+    CHECK(farthest_from_unit_sphere(result, {}) < 0.05);
+  }
+}
+
+TEST_CASE("float32 results survive being written as float32") {
+  SimplifyOptions options;
+  options.positions = PositionType::float32;
+  // About 16 steps of a float across a triangle.
+  Mesh mesh = shifted(sphere(4), {50000, 50000, 50000});
+  for (Vec3& p : mesh.positions) p = rounded(p, PositionType::float32);
+  const std::uint64_t flat_before = check(mesh).no_area;
+  Simplifier simplifier(mesh, options);
+  simplifier.reduce({300});
+  CHECK(simplifier.triangles() == 300);
+  for (const Vec3 p : simplifier.mesh().positions) {
+    CHECK(p == rounded(p, PositionType::float32));
+  }
+  CHECK(flat_before == 0);
+  CHECK(is_clean(simplifier.mesh()));
+  CHECK(check(simplifier.mesh()).euler == 2);
+}
+
+TEST_CASE("a thin spike does not draw back before flat ground does") {
+  // A needle of radius 0.01 and height 1 on a gently wavy ground.
+  Mesh mesh = wavy_grid(40, 40);
+  const auto base = static_cast<std::uint32_t>(mesh.positions.size());
+  constexpr std::uint32_t k_sides = 6;
+  constexpr std::uint32_t k_rings = 40;
+  for (std::uint32_t r = 0; r <= k_rings; ++r) {
+    for (std::uint32_t s = 0; s < k_sides; ++s) {
+      const double angle = 2 * std::numbers::pi * s / k_sides;
+      mesh.positions.push_back(
+          {5 + 0.01 * std::cos(angle), 0.01 * std::sin(angle), static_cast<double>(r) / k_rings});
+    }
+  }
+  const auto tip = static_cast<std::uint32_t>(mesh.positions.size());
+  mesh.positions.push_back({5, 0, 1.01});
+  for (std::uint32_t s = 0; s < k_sides; ++s) {
+    const std::uint32_t n = (s + 1) % k_sides;
+    for (std::uint32_t r = 0; r < k_rings; ++r) {
+      const std::uint32_t low = base + r * k_sides;
+      const std::uint32_t high = low + k_sides;
+      mesh.triangles.push_back({low + s, low + n, high + n});
+      mesh.triangles.push_back({low + s, high + n, high + s});
+    }
+    const std::uint32_t top = base + k_rings * k_sides;
+    mesh.triangles.push_back({top + s, top + n, tip});
+  }
+  Simplifier simplifier(mesh, {});
+  simplifier.reduce({300});
+  double highest = 0;
+  for (const Vec3 p : simplifier.mesh().positions) {
+    if (p.x > 4) highest = std::max(highest, p.z);
+  }
+  CHECK(highest > 0.9);
+}
