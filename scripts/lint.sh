@@ -9,4 +9,4 @@ mapfile -t files < <(git ls-files '*.cpp' '*.hpp')
 clang-format --dry-run -Werror "${files[@]}"
 [ "${1:-}" = --format ] && exit 0
 mapfile -t sources < <(git ls-files 'src/*.cpp' 'bin/*.cpp')
-printf '%s\n' "${sources[@]}" | xargs -P "$(nproc)" -n 4 clang-tidy -p build --quiet
+printf '%s\n' "${sources[@]}" | xargs -P "$(nproc)" -n 4 clang-tidy -p build --quiet --extra-arg=-Wno-unknown-warning-option

@@ -27,9 +27,14 @@ Membership::Event Membership::tick(FarmTime now) {
   if (now - *alone_since_ <= options_.patience) return Event::none;
   const std::string waited =
       std::to_string(std::chrono::duration_cast<std::chrono::seconds>(options_.patience).count());
-  reason_ = dialled_ ? "no answer from the ventilator at " + dialled_->address + " (host " +
-                           dialled_->host + ", pid " + std::to_string(dialled_->pid) + ") for "
-                     : "no ventilator announced itself in the stage for ";
+  if (dialled_) {
+    reason_ = "no answer from the ventilator at " + dialled_->address + " (host " + dialled_->host +
+              ", pid " + std::to_string(dialled_->pid) + ") for ";
+  } else if (seen_over_) {
+    reason_ = "the last run of this stage is over, and no ventilator came for another in ";
+  } else {
+    reason_ = "no ventilator announced itself in the stage for ";
+  }
   reason_ += waited + " s; start 'meshfarm run' or 'meshfarm ventilator' on this stage";
   return Event::expired;
 }
@@ -84,6 +89,7 @@ Membership::Event Membership::found(std::span<const Endpoint> endpoints, FarmTim
   if (newest->address.empty()) {
     // Whoever came after the end waits for the next run instead.
     const bool was_there = dialled_ && dialled_->run == newest->run;
+    seen_over_ = true;
     return was_there ? Event::run_over : Event::none;
   }
   const bool other = !dialled_ || dialled_->epoch != newest->epoch;

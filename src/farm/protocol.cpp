@@ -143,12 +143,12 @@ class Encoder {
   }
   void field(const std::variant<JobOutput, JobFailure>& outcome) {
     field(static_cast<std::uint8_t>(outcome.index()));
-    std::visit([this](const auto& which) { field(which); }, outcome);
+    std::visit([this](const auto& which) { this->field(which); }, outcome);
   }
   template <class T>
   requires requires(const T& t) { fields(t); }
   void field(const T& group) {
-    std::apply([this](const auto&... each) { (field(each), ...); }, fields(group));
+    std::apply([this](const auto&... each) { (this->field(each), ...); }, fields(group));
   }
   std::string take() { return out_.take(); }
 
@@ -203,7 +203,7 @@ class Decoder {
   template <class T>
   requires requires(T& t) { fields(t); }
   void field(T& group) {
-    std::apply([this](auto&... each) { (field(each), ...); }, fields(group));
+    std::apply([this](auto&... each) { (this->field(each), ...); }, fields(group));
   }
 
  private:

@@ -85,16 +85,18 @@ struct EdgeQuadric {
     c += dot(moved, point);
   }
 
-  /// Where the cost is least. Along directions that the planes leave open, it stays at the
-  /// middle: a ridge of 1e-3 drew all vertices there (RMS + 20 %), 1e-8 gave way to rounding.
+  /// Where the cost is least. Along directions that the planes leave open it stays at the middle.
+  /// A ridge of 1e-3 cost 6 % of the error at 10 % of the triangles; 1e-6 or 1e-8 gained nothing.
+  /// Holding the volume (Lindstrom & Turk 1999) at any weight, or x near the edge, gained nothing.
   Vec3 best() const { return solve(a, 1e-5 * a.trace(), b); }
 
   /// The sum of weight x squared distance; differences of rounding count as none.
   double cost(Vec3 x) const { return unless_noise(dot(a * x - b * 2.0, x) + c); }
 
-  /// Planes are endless and do not see a thin spike or tube draw back from its tip: only the tiny
-  /// tip moves away from its planes. The area that is lost tells. Without this dragons lose 3 % of
-  /// their height here and there, which the area-weighted cost calls cheap.
+  /// Planes are endless and do not see a thin spike or tube draw back: only its tiny tip moves away
+  /// from its planes. The area that is lost tells. Without this the thin tubes of a scan shrank by
+  /// 50 times its error, a third of the RMS at 10 % of the triangles. Weights by the longest edge
+  /// in place of the area, and area gained as well as lost, helped less or no more.
   double cost_of_lost_area(double area) const { return unless_noise(0.1 * area * squared_length); }
 
  private:

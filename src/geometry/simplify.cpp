@@ -15,8 +15,8 @@
 namespace meshfarm {
 namespace {
 
-// Only the cheapest edges are taken before all are ranked anew. A quarter gave 1 % less error at
-// 1 % of the triangles for 10 % more time, a half 3 % more error for the same time.
+// Only the cheapest edges are taken before all are ranked anew. With 0.25 or 0.3 the error is the
+// same, with 0.5 it is 2 to 4 % more for 10 % less time.
 constexpr double k_pass_share = 0.35;
 
 // The edges taken in a pass that must not overshoot, as a part of the triangles still to go: each
@@ -39,7 +39,7 @@ struct Pass {
 
 class Simplifier::Impl {
  public:
-  Impl(Mesh mesh, SimplifyOptions options)
+  Impl(Mesh mesh, const SimplifyOptions& options)
       : mesh_(std::move(mesh)),
         locked_(options.locked_vertices),
         type_(options.positions),
@@ -224,8 +224,8 @@ class Simplifier::Impl {
   std::vector<std::uint8_t> touched_;  // took part in a collapse of this pass
 };
 
-Simplifier::Simplifier(Mesh mesh, SimplifyOptions options)
-    : impl_(std::make_unique<Impl>(std::move(mesh), std::move(options))) {}
+Simplifier::Simplifier(Mesh mesh, const SimplifyOptions& options)
+    : impl_(std::make_unique<Impl>(std::move(mesh), options)) {}
 Simplifier::~Simplifier() = default;
 Simplifier::Simplifier(Simplifier&&) noexcept = default;
 

@@ -3,8 +3,8 @@
 #include "geometry/simplify_clean.hpp"
 
 #include <algorithm>
-#include <compare>
 #include <set>
+#include <utility>
 
 #include <meshfarm/util/errors.hpp>
 
@@ -24,21 +24,15 @@ std::uint64_t drop_unless(std::vector<Triangle>& triangles, const Keep& keep) {
   return dropped;
 }
 
-struct Pair {
-  std::uint32_t low;
-  std::uint32_t high;
-  friend auto operator<=>(const Pair&, const Pair&) = default;
-};
-
 /// The vertices that are the smallest of two triangles with the same vertices, ascending.
 std::vector<std::uint32_t> vertices_with_duplicates(const Adjacency& adjacency) {
   std::vector<std::uint32_t> found;
-  std::vector<Pair> others;
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> others;
   for (std::uint32_t v = 0; v < adjacency.vertices(); ++v) {
     others.clear();
     for (const Corner c : adjacency.at(v)) {
       if (c.next < v || c.prev < v) continue;
-      others.push_back({std::min(c.next, c.prev), std::max(c.next, c.prev)});
+      others.emplace_back(std::min(c.next, c.prev), std::max(c.next, c.prev));
     }
     std::sort(others.begin(), others.end());
     if (std::adjacent_find(others.begin(), others.end()) != others.end()) found.push_back(v);

@@ -21,6 +21,7 @@ std::uint32_t bucket_of(CostKey key) {
 
 // About 40,000 edges give the rank to a per cent.
 constexpr std::uint32_t k_sampled_vertices = 16384;
+constexpr std::uint64_t k_least_sample = 2000;
 
 constexpr std::size_t k_listed_at_once = 1024;
 
@@ -136,15 +137,27 @@ EdgeCost EdgeRanking::cost_of_border_end(const Edge& e) const {
                      (input_.positions[e.b] - input_.positions[e.a]) * 0.5);
 }
 
-CostKey EdgeRanking::estimate_limit(double share, double most) {
-  const auto vertices = static_cast<std::uint32_t>(input_.positions.size());
-  const std::uint32_t one_in = std::max(1U, vertices / k_sampled_vertices);
+/// Counts the keys of the edges of one in so many vertices into starts_.
+std::uint64_t EdgeRanking::sample_costs(std::uint32_t one_in) {
   starts_.assign(bucket_of(k_any_cost) + 1, 0);
   std::uint64_t sampled = 0;
+  const auto vertices = static_cast<std::uint32_t>(input_.positions.size());
   for_costs({0, vertices, one_in}, [&](const Edge&, const EdgeCost& cost) {
     ++starts_[bucket_of(key_of(cost.ranking))];
     ++sampled;
   });
+  return sampled;
+}
+
+CostKey EdgeRanking::estimate_limit(double share, double most) {
+  const auto vertices = static_cast<std::uint32_t>(input_.positions.size());
+  std::uint32_t one_in = std::max(1U, vertices / k_sampled_vertices);
+  std::uint64_t sampled = sample_costs(one_in);
+  // Where most vertices are locked or no seam, a sample may say too little.
+  if (sampled < k_least_sample && one_in > 1) {
+    one_in = 1;
+    sampled = sample_costs(one_in);
+  }
   const double wanted = std::min(share * static_cast<double>(sampled), most / one_in);
   std::uint64_t sum = 0;
   for (std::uint32_t bucket = 0; bucket < starts_.size(); ++bucket) {

@@ -78,6 +78,7 @@ class EdgeRanking {
   template <typename Take>
   void cost_listed(const Take& take);
   EdgeCost cost_of_border_end(const Edge& e) const;
+  std::uint64_t sample_costs(std::uint32_t one_in);
   void sort_found();
 
   RankingInput input_;

@@ -86,6 +86,7 @@ class Membership {
   FarmTime heard_{0};
   FarmTime next_beat_{0};
   std::optional<Endpoint> dialled_;
+  bool seen_over_ = false;
   int greetings_ = 0;
   bool dial_ = false;
   bool greet_ = false;

@@ -70,6 +70,7 @@ class Part {
   Part& operator=(const Part&) = delete;
 
   void stop() { stop_ = true; }
+  bool stopped() const { return stop_; }
   bool ended() const { return ended_; }
   /// Waits for the end and rethrows what it threw.
   void join() {

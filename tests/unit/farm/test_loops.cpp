@@ -26,7 +26,15 @@ std::vector<std::string> run_farm(Farm& farm, const JobSource& source, int worke
   for (int i = 0; i < workers; ++i) crew.push_back(std::make_unique<Part>(farm.worker(work)));
   sink.join();
   ventilator.join();
-  for (auto& worker : crew) worker->join();
+  for (auto& worker : crew) {
+    // One that came when all was over waits for another run, as it should.
+    if (!worker->ended()) worker->stop();
+    try {
+      worker->join();
+    } catch (const IncompleteError&) {
+      CHECK(worker->stopped());
+    }
+  }
   return summaries;
 }
 

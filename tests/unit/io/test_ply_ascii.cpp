@@ -42,6 +42,7 @@ TEST_CASE("ascii numbers of every notation") {
   CHECK(x("float", "0.1") == static_cast<double>(0.1F));
   CHECK(x("double", "0.1") == 0.1);
   CHECK(x("float", "1e-60") == 0);
+  CHECK(x("float", "0." + std::string(60, '0') + "1") == 0);
   CHECK(x("double", "-1e-400") == 0);
   CHECK(x("double", "0." + std::string(200, '0') + "1e-200") == 0);
   CHECK(x("double", "1e-99999999999999999999") == 0);
@@ -58,6 +59,7 @@ TEST_CASE("ascii values that are no number, or no finite one, are refused with t
   for (const auto number : {"nan", "NaN", "inf", "-inf", "+inf", "infinity", "1e39", "1e9999"}) {
     CHECK(told("float", number) == at + "a coordinate is not finite");
   }
+  CHECK(told("float", "1" + std::string(60, '0') + "e-10") == at + "a coordinate is not finite");
   CHECK(told("double", "-1e309") == at + "a coordinate is not finite");
   CHECK(told("double", "1e99999999999999999999") == at + "a coordinate is not finite");
   CHECK(told("float", "abc") == at + "the coordinate 'abc' is no number of type float");

@@ -1,0 +1,194 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#include <string>
+#include <vector>
+
+#include <doctest/doctest.h>
+
+#include <meshfarm/farm/worker_core.hpp>
+
+#include "farm_fixture.hpp"
+
+namespace meshfarm::test {
+namespace {
+
+template <class A>
+std::vector<A> only(const WorkerActions& actions) {
+  std::vector<A> found;
+  for (const WorkerAction& action : actions) {
+    if (const auto* each = std::get_if<A>(&action)) found.push_back(*each);
+  }
+  return found;
+}
+
+/// The last credit that is announced among the actions; 0 if none is.
+std::uint64_t credit_in(const WorkerActions& actions) {
+  std::uint64_t credit = 0;
+  for (const Say& say : only<Say>(actions)) {
+    if (const auto* each = std::get_if<Credit>(&say.message)) credit = each->up_to;
+  }
+  return credit;
+}
+
+Endpoint endpoint(std::uint32_t epoch) {
+  return {epoch, 7, "tcp://v:" + std::to_string(epoch), "h", 1};
+}
+
+/// A worker and a clock.
+struct Bench {
+  explicit Bench(std::uint32_t buffer = 5)
+      : core({Role::worker, 0, 99, 1, "h", {}, FarmTime(10'000)}, buffer) {}
+
+  WorkerActions join(std::uint32_t epoch, const std::string& sink = "sink") {
+    core.tick(0, now);
+    const Endpoint there = endpoint(epoch);
+    CHECK(only<Dial>(core.found({&there, 1}, now)).size() == 1);
+    return core.on_control(Welcome{{epoch}, epoch, 7, "lane", sink, 1000}, now);
+  }
+  WorkerActions job(std::uint64_t seq, const std::string& name, std::uint32_t attempt = 1,
+                    std::uint32_t epoch = 1) {
+    return core.on_lane(Assignment{7, epoch, seq, attempt, make_job(name)}, now);
+  }
+  WorkerActions finish() { return core.finished(JobFailure{"tried", false}, now); }
+
+  WorkerCore core;
+  FarmTime now{0};
+};
+
+TEST_CASE("a batch is asked for when the buffer is less than 0.8 full") {
+  Bench bench(5);
+  CHECK(credit_in(bench.join(1)) == 6);  // five wait beside the one in work
+  CHECK(only<Begin>(bench.job(1, "1")).size() == 1);
+  for (std::uint64_t seq = 2; seq <= 6; ++seq) CHECK(only<Begin>(bench.job(seq, "x")).empty());
+  CHECK(bench.core.waiting() == 5);
+  CHECK(credit_in(bench.finish()) == 0);  // 4 of 5 wait: 0.8, not less
+  CHECK(credit_in(bench.finish()) == 8);  // 3 of 5 wait, one is in work: room for two more
+}
+
+TEST_CASE("without a buffer a job is asked for when there is none") {
+  Bench bench(0);
+  CHECK(credit_in(bench.join(1)) == 1);
+  CHECK(credit_in(bench.job(1, "1")) == 0);
+  CHECK(credit_in(bench.finish()) == 2);
+}
+
+TEST_CASE("a repeated job is dropped, a gap in the lane makes the worker join again") {
+  Bench bench;
+  bench.join(1);
+  bench.job(1, "1");
+  CHECK(bench.job(1, "1").empty());
+  CHECK(bench.core.dropped() == 1);
+  CHECK(only<HangUp>(bench.job(3, "3")).size() == 1);
+  CHECK(bench.core.waiting() == 0);
+}
+
+TEST_CASE("a result is kept, and said again, until it is done") {
+  Bench bench;
+  bench.join(1);
+  bench.job(1, "1", 5);
+  const auto results = only<SendResult>(bench.finish());
+  REQUIRE(results.size() == 1);
+  CHECK(results[0].result.epoch == 1);
+  CHECK(results[0].result.attempt == 5);
+  const JobKey key = results[0].result.key;
+  bench.now += FarmTime(2500);
+  bench.core.on_control(Alive{1, "sink"}, bench.now);
+  CHECK(only<SendResult>(bench.core.tick(0, bench.now)).empty());
+  bench.now += FarmTime(2500);
+  CHECK(only<SendResult>(bench.core.tick(0, bench.now)).size() == 1);
+  bench.core.on_control(Done{key, 4}, bench.now);  // an earlier attempt is meant
+  CHECK(bench.core.unacknowledged() == 1);
+  bench.core.on_control(Done{key, 5}, bench.now);
+  CHECK(bench.core.unacknowledged() == 0);
+}
+
+TEST_CASE("a new sink is told at once what is not acknowledged") {
+  Bench bench;
+  bench.join(1, "");
+  bench.job(1, "1");
+  CHECK(only<SendResult>(bench.finish()).empty());  // nobody to tell
+  const WorkerActions told = bench.core.on_control(SinkAt{"sink"}, bench.now);
+  REQUIRE(only<ConnectSink>(told).size() == 1);
+  CHECK(only<ConnectSink>(told)[0].address == "sink");
+  CHECK(only<SendResult>(told).size() == 1);
+}
+
+TEST_CASE("Done takes a job from the buffer or from work, but not a later attempt at it") {
+  Bench bench;
+  bench.join(1);
+  const JobKey one = key_of(make_job("1"));
+  bench.job(1, "1", 1);
+  bench.job(2, "2", 1);
+  bench.job(3, "1", 2);
+  CHECK(bench.core.waiting() == 2);
+  CHECK(only<GiveUp>(bench.core.on_control(Done{one, 1}, bench.now)).size() == 1);
+  CHECK(bench.core.waiting() == 2);
+  bench.core.on_control(Done{key_of(make_job("2")), 9}, bench.now);
+  CHECK(bench.core.waiting() == 1);
+  const WorkerActions ended = bench.finish();
+  CHECK(only<SendResult>(ended).empty());  // nobody wants it
+  REQUIRE(only<Begin>(ended).size() == 1);
+  CHECK(only<Begin>(ended)[0].attempt == 2);
+}
+
+TEST_CASE("a ventilator that falls silent is replaced; what was done is kept, what waits is not") {
+  Bench bench;
+  bench.join(1);
+  bench.job(1, "1");
+  bench.job(2, "2");
+  bench.job(3, "3");
+  bench.finish();
+  bench.now += FarmTime(3001);
+  const WorkerActions lost = bench.core.tick(0, bench.now);
+  CHECK(only<HangUp>(lost).size() == 1);
+  CHECK(only<Look>(lost).size() == 1);
+  CHECK(bench.core.waiting() == 0);
+  const WorkerActions joined = bench.join(2);
+  REQUIRE(only<SendResult>(joined).size() == 1);
+  CHECK(only<SendResult>(joined)[0].result.epoch == 2);
+  CHECK(credit_in(joined) == 5);  // one of the six places is taken by the job still in work
+  CHECK(bench.job(1, "1", 1, 1).empty());  // the old epoch's lane
+  CHECK(bench.core.dropped() == 1);
+}
+
+TEST_CASE("patience ends, the run ends, and a stop gives back") {
+  Bench bench;
+  SUBCASE("no ventilator") {
+    bench.core.tick(0, bench.now);
+    const auto left = only<Leave>(bench.core.tick(0, bench.now + FarmTime(10'001)));
+    REQUIRE(left.size() == 1);
+    CHECK(left[0].incomplete.find("meshfarm run") != std::string::npos);
+  }
+  SUBCASE("over") {
+    bench.join(1);
+    const auto left = only<Leave>(bench.core.on_control(Stop{StopReason::run_over}, bench.now));
+    REQUIRE(left.size() == 1);
+    CHECK(left[0].incomplete.empty());
+  }
+  SUBCASE("over, as the stage says") {
+    bench.join(1);
+    bench.now += FarmTime(3001);
+    bench.core.tick(0, bench.now);
+    const std::vector<Endpoint> seen = {endpoint(1), {2, 7, "", "h", 1}};
+    const auto left = only<Leave>(bench.core.found(seen, bench.now));
+    REQUIRE(left.size() == 1);
+    CHECK(left[0].incomplete.empty());
+  }
+  SUBCASE("over before it came: it waits for the next run") {
+    const std::vector<Endpoint> seen = {endpoint(1), {2, 7, "", "h", 1}};
+    CHECK(bench.core.found(seen, bench.now).empty());
+  }
+  SUBCASE("stopped while it works: it leaves once the job ended") {
+    bench.join(1);
+    bench.job(1, "1");
+    const WorkerActions stopping = bench.core.stop();
+    REQUIRE(only<Say>(stopping).size() == 1);
+    CHECK(std::holds_alternative<Release>(only<Say>(stopping)[0].message));
+    CHECK(only<GiveUp>(stopping).size() == 1);
+    CHECK(only<Leave>(stopping).empty());
+    CHECK(only<Leave>(bench.finish()).size() == 1);
+  }
+}
+
+}  // namespace
+}  // namespace meshfarm::test
