@@ -51,6 +51,8 @@ class VentilatorCommand : public FarmCommand {
     run_ventilator(stage, make_job_source(manifest, target_.run), options);
   }
 
+  bool sink_reports_failures() const override { return true; }
+
  private:
   static void show(ProgressPrinter& printer, const FarmProgress& p) {
     if (p.jobs_done == p.jobs_known) return printer.end();

@@ -33,7 +33,7 @@ class WorkerCommand : public FarmCommand {
     options.patience = std::chrono::seconds(wait_s_);
     options.stop = &stop;
     const WorkerReport report = run_worker(stage, do_job, options);
-    if (report.jobs_failed > 0) {
+    if (report.jobs_failed > 0 && !supervised()) {
       log_warning(std::to_string(report.jobs_failed) + " jobs failed here");
     }
   }

@@ -24,6 +24,9 @@ int FarmCommand::run() {
   } catch (const IncompleteError&) {
     if (supervised_ && stop) return 3;
     throw;
+  } catch (const DataError&) {
+    if (supervised_ && sink_reports_failures()) return 1;
+    throw;
   }
   return 0;
 }

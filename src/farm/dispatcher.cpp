@@ -336,12 +336,11 @@ void Dispatcher::look_for_end() {
     over_ = true;
     to_workers(Stop{StopReason::run_over});
   } else if (plan_.stuck()) {
-    const std::vector<LostJob> lost = plan_.lost();
-    std::string failure = std::to_string(lost.size()) + " job(s) failed for good:";
-    for (std::size_t i = 0; i < std::min<std::size_t>(lost.size(), 10); ++i) {
-      failure += "\n  " + lost[i].kind + " " + to_hex(lost[i].key.value) + ": " + lost[i].reasons;
+    std::vector<std::string> reasons;
+    for (const LostJob& lost : plan_.lost()) {
+      reasons.push_back(lost.kind + " " + to_hex(lost.key.value) + ": " + lost.reasons);
     }
-    finish(failure);
+    finish(failed_for_good(reasons));
   }
 }
 

@@ -32,6 +32,8 @@ Membership::Event Membership::tick(FarmTime now) {
               ", pid " + std::to_string(dialled_->pid) + ") for ";
   } else if (seen_over_) {
     reason_ = "the last run of this stage is over, and no ventilator came for another in ";
+  } else if (seen_other_run_) {
+    reason_ = "only ventilators of another run (is the target the same?) were in the stage for ";
   } else {
     reason_ = "no ventilator announced itself in the stage for ";
   }
@@ -83,7 +85,9 @@ Membership::Event Membership::found(std::span<const Endpoint> endpoints, FarmTim
   if (joined_) return Event::none;
   const Endpoint* newest = nullptr;
   for (const Endpoint& endpoint : endpoints) {
-    if (options_.run == 0 || endpoint.run == options_.run) newest = &endpoint;
+    const bool ours = options_.run == 0 || endpoint.run == options_.run;
+    if (ours) newest = &endpoint;
+    seen_other_run_ = seen_other_run_ || !ours;
   }
   if (newest == nullptr) return Event::none;
   if (newest->address.empty()) {

@@ -1,5 +1,6 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
+#include <algorithm>
 #include <cassert>
 
 #include <meshfarm/farm/plan.hpp>
@@ -112,14 +113,28 @@ std::vector<LostJob> Plan::lost() const {
   for (const JobKey key : wanted_) {
     const Entry& entry = entries_.at(key);
     if (entry.state != JobState::failed) continue;
+    // Attempts mostly fail for the same reason: it is told once.
     std::string reasons;
-    for (const std::string& failure : entry.failures) {
+    for (auto at = entry.failures.begin(); at != entry.failures.end(); ++at) {
+      if (std::find(entry.failures.begin(), at, *at) != at) continue;
       if (!reasons.empty()) reasons += "; ";
-      reasons += failure;
+      reasons += *at;
     }
     lost.push_back({key, entry.job.kind, reasons});
   }
   return lost;
+}
+
+std::string failed_for_good(std::span<const std::string> reasons) {
+  constexpr std::size_t k_told = 3;
+  std::string line = std::to_string(reasons.size()) +
+                     (reasons.size() == 1 ? " job failed for good: " : " jobs failed for good: ");
+  for (std::size_t i = 0; i < std::min(reasons.size(), k_told); ++i) {
+    if (i > 0) line += "; ";
+    line += reasons[i];
+  }
+  if (reasons.size() > k_told) line += "; and so on";
+  return line;
 }
 
 void Plan::move_to(JobKey key, Entry& entry, JobState state) {

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include <meshfarm/farm/ledger.hpp>
+#include <meshfarm/farm/plan.hpp>
 #include <meshfarm/farm/sink_core.hpp>
 #include <meshfarm/util/checksum.hpp>
 
@@ -195,13 +196,9 @@ void SinkCore::leave(SinkLeaves::Why why, std::string message) {
 }
 
 std::string SinkCore::list_failed() const {
-  std::string list = std::to_string(failed_.size()) + " job(s) failed for good:";
-  std::size_t listed = 0;
-  for (const auto& [key, reason] : failed_) {
-    if (++listed > 10) break;
-    list += "\n  " + to_hex(key.value) + ": " + reason;
-  }
-  return list;
+  std::vector<std::string> reasons;
+  for (const auto& [key, reason] : failed_) reasons.push_back(to_hex(key.value) + ": " + reason);
+  return failed_for_good(reasons);
 }
 
 SinkActions SinkCore::take() {

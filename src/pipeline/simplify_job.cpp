@@ -92,6 +92,17 @@ class LadderBuilder {
   ResultEncoder result_;
 };
 
+/// A part that is not whole may be read whole by the next attempt; one that is whole by its
+/// checksum and makes no sense never will.
+Part read_part(const Stage& stage, const FileRef& input) {
+  const std::string file = stage.read(input);
+  try {
+    return decode_part(file, input.name);
+  } catch (const DataError& error) {
+    throw BadInputError(error.what());
+  }
+}
+
 }  // namespace
 
 std::string encode_parameters(const SimplifyParameters& parameters) {
@@ -138,7 +149,7 @@ double cost_unit(double diagonal) {
 JobOutput simplify_part(const Job& job, const JobContext& context) {
   if (job.inputs.size() != 1) throw DataError("a simplify job takes one part");
   const SimplifyParameters parameters = decode_parameters(job.parameters);
-  Part part = decode_part(context.stage.read(job.inputs[0]), job.inputs[0].name);
+  Part part = read_part(context.stage, job.inputs[0]);
   // One thread: a worker is one of many on its host.
   SurfaceSamples samples = sample_surface(part.mesh, {.samples = parameters.samples, .threads = 1});
   LadderBuilder ladder(std::move(part), parameters, context);

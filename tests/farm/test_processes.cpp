@@ -3,6 +3,7 @@
 //
 // Whole runs of the real program: ventilator, sink and workers as processes over tcp, killed,
 // stopped and started again. Every run must end with the same bytes.
+#include <algorithm>
 #include <optional>
 #include <random>
 
@@ -299,7 +300,9 @@ TEST_CASE("a staged part with a flipped byte, or cut short, is named and nothing
     const Ran ran = bench().meshfarm(
         {"replay", stage, "-o", stage + ".ply", "--ratio", "0.02", "--workers", "2"});
     CHECK(ran.code == 1);
+    CHECK(ran.err.find("error: 1 job failed for good: ") != std::string::npos);
     CHECK(ran.err.find("000005.part") != std::string::npos);
+    CHECK(std::count(ran.err.begin(), ran.err.end(), '\n') == 1);
     CHECK_FALSE(fs::exists(stage + ".ply"));
   }
 }

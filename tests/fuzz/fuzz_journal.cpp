@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>
+
 #include <meshfarm/staging/journal.hpp>
 #include <meshfarm/staging/names.hpp>
 #include <meshfarm/util/errors.hpp>

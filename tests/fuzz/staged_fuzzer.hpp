@@ -4,14 +4,16 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <string_view>
+
 #include <meshfarm/staging/sealed.hpp>
 #include <meshfarm/util/errors.hpp>
-#include <string_view>
 
 namespace meshfarm::fuzz {
 
-/// Gives a decoder the bytes as a file, and once more sealed as the payload of a file of its kind, so
-/// that the checksum does not keep the fuzzer from what lies behind it. Only DataError may come out.
+/// Gives a decoder the bytes as a file, and once more sealed as the payload of a file of its kind,
+/// so that the checksum does not keep the fuzzer from what lies behind it. Only DataError may come
+/// out.
 template <class Decode>
 void decode_staged(const std::uint8_t* data, std::size_t size, FileKind kind, Decode decode) {
   const std::string_view bytes(reinterpret_cast<const char*>(data), size);

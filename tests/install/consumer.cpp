@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
 #include <iostream>
+
 #include <meshfarm/geometry/simplify.hpp>
 #include <meshfarm/io/ply_writer.hpp>
 

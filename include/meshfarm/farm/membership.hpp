@@ -87,6 +87,7 @@ class Membership {
   FarmTime next_beat_{0};
   std::optional<Endpoint> dialled_;
   bool seen_over_ = false;
+  bool seen_other_run_ = false;
   int greetings_ = 0;
   bool dial_ = false;
   bool greet_ = false;

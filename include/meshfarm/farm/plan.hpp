@@ -6,6 +6,7 @@
 #include <map>
 #include <optional>
 #include <set>
+#include <span>
 #include <string>
 #include <unordered_map>
 #include <vector>
@@ -30,6 +31,9 @@ struct LostJob {
   std::string kind;
   std::string reasons;
 };
+
+/// One line that tells of jobs given up: how many, and the reasons of the first few.
+std::string failed_for_good(std::span<const std::string> reasons);
 
 struct PlanCounts {
   std::uint64_t ready = 0;

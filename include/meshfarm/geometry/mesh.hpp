@@ -4,8 +4,9 @@
 
 #include <array>
 #include <cstdint>
-#include <meshfarm/geometry/vec.hpp>
 #include <vector>
+
+#include <meshfarm/geometry/vec.hpp>
 
 namespace meshfarm {
 
