@@ -1,0 +1,30 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#include <utility>
+
+#include <meshfarm/geometry/simplify.hpp>
+
+#include "peer.hpp"
+
+namespace meshfarm::bench {
+namespace {
+
+Mesh simplify(Task task, Stopwatch& watch) {
+  watch.start();
+  SimplifyOptions options;
+  options.positions = task.positions;
+  Simplifier simplifier(std::move(task.mesh), options);
+  SimplifyGoal goal;
+  goal.triangles = task.target;
+  simplifier.reduce(goal);
+  watch.stop();
+  return simplifier.mesh();
+}
+
+}  // namespace
+}  // namespace meshfarm::bench
+
+int main(int argc, char** argv) {
+  using namespace meshfarm::bench;
+  return run_peer(argc, argv, {"meshfarm kernel", MESHFARM_VERSION, simplify});
+}
