@@ -10,6 +10,7 @@
 #include <meshfarm/cli/command_line.hpp>
 #include <meshfarm/util/errors.hpp>
 #include <meshfarm/util/log.hpp>
+#include <meshfarm/util/memory.hpp>
 
 #include "cli/command.hpp"
 #include "cli/version.hpp"
@@ -122,6 +123,7 @@ int dispatch(const std::vector<std::string>& words) {
 }  // namespace
 
 int run_command_line(int argc, const char* const* argv) {
+  keep_freed_memory();
   try {
     const int code = dispatch({argv + std::min(1, argc), argv + argc});
     std::cout.flush();

@@ -23,14 +23,15 @@ FloatMesh to_floats(const Mesh& mesh) {
     for (int axis = 0; axis < 3; ++axis) out.positions.push_back(static_cast<float>(p[axis]));
   }
   out.indices.reserve(3 * mesh.triangles.size());
-  for (const Triangle& t : mesh.triangles) out.indices.insert(out.indices.end(), t.begin(), t.end());
+  for (const Triangle& t : mesh.triangles)
+    out.indices.insert(out.indices.end(), t.begin(), t.end());
   return out;
 }
 
 Mesh to_mesh(FloatMesh& in) {
-  const std::size_t kept = meshopt_optimizeVertexFetch(
-      in.positions.data(), in.indices.data(), in.indices.size(), in.positions.data(),
-      in.positions.size() / 3, 3 * sizeof(float));
+  const std::size_t kept =
+      meshopt_optimizeVertexFetch(in.positions.data(), in.indices.data(), in.indices.size(),
+                                  in.positions.data(), in.positions.size() / 3, 3 * sizeof(float));
   Mesh out;
   for (std::size_t v = 0; v < kept; ++v) {
     const float* p = &in.positions[3 * v];

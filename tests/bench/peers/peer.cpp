@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
+#include <ctime>
 #include <exception>
 #include <limits>
 #include <utility>
@@ -56,21 +57,29 @@ double parse_ratio(const char* text) {
   return ratio;
 }
 
-void run(const Peer& peer, const char* input, const char* output, const char* ratio) {
-  const double share = parse_ratio(ratio);
-  const auto source = open_mesh(input);
-  Task task{cleaned(read_mesh(*source)), 0, source->info().positions};
-  task.target = static_cast<std::uint64_t>(
-      std::llround(share * static_cast<double>(task.mesh.triangles.size())));
-  const PositionType positions = task.positions;
-  Stopwatch watch;
-  const Mesh result = peer.simplify(std::move(task), watch);
-  write_ply(output, result, positions);
+CommandLine parse(int argc, char** argv) {
+  if (argc != 4) throw UsageError("usage: INPUT.ply OUTPUT.ply RATIO");
+  return {argv[1], argv[2], parse_ratio(argv[3])};
+}
+
+Outcome simplify_file(const Peer& peer, const CommandLine& command) {
+  const auto source = open_mesh(command.input);
+  const PositionType positions = source->info().positions;
+  Task task{cleaned(read_mesh(*source)), 0, positions};
+  task.target = share_of(task.mesh.triangles.size(), command.ratio);
+  Outcome outcome{peer.tool, peer.version, {}, 0};
+  const Mesh result = peer.simplify(std::move(task), outcome.watch);
+  write_ply(command.output, result, positions);
+  outcome.triangles = result.triangles.size();
+  return outcome;
+}
+
+void print(const Outcome& outcome) {
   std::printf(
       "{\"tool\": \"%s\", \"version\": \"%s\", \"cpu_s\": %.4f, \"wall_s\": %.4f, "
-      "\"triangles\": %zu}\n",
-      peer.tool.c_str(), peer.version.c_str(), watch.cpu_s(), watch.wall_s(),
-      result.triangles.size());
+      "\"triangles\": %llu}\n",
+      outcome.tool.c_str(), outcome.version.c_str(), outcome.watch.cpu_s(), outcome.watch.wall_s(),
+      static_cast<unsigned long long>(outcome.triangles));
 }
 
 }  // namespace
@@ -85,13 +94,13 @@ void Stopwatch::stop() {
   wall_s_ += seconds(CLOCK_MONOTONIC);
 }
 
-int run_peer(int argc, char** argv, const Peer& peer) {
-  if (argc != 4) {
-    std::fprintf(stderr, "usage: %s INPUT.ply OUTPUT.ply RATIO\n", argv[0]);
-    return 2;
-  }
+std::uint64_t share_of(std::uint64_t triangles, double ratio) {
+  return static_cast<std::uint64_t>(std::llround(ratio * static_cast<double>(triangles)));
+}
+
+int run_program(int argc, char** argv, const std::function<Outcome(const CommandLine&)>& run) {
   try {
-    run(peer, argv[1], argv[2], argv[3]);
+    print(run(parse(argc, argv)));
     return 0;
   } catch (const UsageError& error) {
     std::fprintf(stderr, "%s: %s\n", argv[0], error.what());
@@ -100,6 +109,11 @@ int run_peer(int argc, char** argv, const Peer& peer) {
     std::fprintf(stderr, "%s: %s\n", argv[0], error.what());
     return 1;
   }
+}
+
+int run_peer(int argc, char** argv, const Peer& peer) {
+  return run_program(argc, argv,
+                     [&](const CommandLine& command) { return simplify_file(peer, command); });
 }
 
 }  // namespace meshfarm::bench

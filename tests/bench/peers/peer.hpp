@@ -3,7 +3,7 @@
 #pragma once
 
 #include <cstdint>
-#include <ctime>
+#include <functional>
 #include <string>
 
 #include <meshfarm/geometry/mesh.hpp>
@@ -38,8 +38,28 @@ struct Peer {
   Mesh (*simplify)(Task task, Stopwatch& watch) = nullptr;
 };
 
-/// The whole program `peer_NAME INPUT.ply OUTPUT.ply RATIO`: reads and cleans, simplifies, writes,
-/// prints one JSON line. Returns the exit code.
+/// INPUT.ply OUTPUT.ply RATIO: the same command line for every program here.
+struct CommandLine {
+  std::string input;
+  std::string output;
+  double ratio = 0;
+};
+
+struct Outcome {
+  std::string tool;
+  std::string version;
+  Stopwatch watch;
+  std::uint64_t triangles = 0;
+};
+
+/// How many triangles are wanted; meshfarm's own rule.
+std::uint64_t share_of(std::uint64_t triangles, double ratio);
+
+/// The whole program: parses the command line, runs, prints the outcome as one JSON line, errors on
+/// stderr. Returns the exit code.
+int run_program(int argc, char** argv, const std::function<Outcome(const CommandLine&)>& run);
+
+/// The program of a peer: reads and cleans, simplifies under the stopwatch, writes.
 int run_peer(int argc, char** argv, const Peer& peer);
 
 }  // namespace meshfarm::bench
