@@ -20,6 +20,7 @@ namespace {
 
 constexpr int k_max_restarts = 20;
 constexpr int k_grace_ms = 10'000;
+constexpr int k_last_words_ms = 2'000;
 constexpr int k_incomplete = 3;
 
 sigset_t child_signal() {
@@ -79,6 +80,8 @@ int Supervisor::run() {
     wait_for_child(200);
   }
   const bool done = essentials_done();
+  // Ventilator and sink end together; the other may be about to say why.
+  if (failure_ != 0) wait_all(Which::essentials, k_last_words_ms);
   end_all();
   if (failure_ != 0) return failure_;
   return done ? 0 : k_incomplete;
@@ -123,13 +126,14 @@ bool Supervisor::essentials_done() const {
                      [](const Child& child) { return child.worker() || child.done; });
 }
 
-bool Supervisor::wait_all(int timeout_ms) {
+bool Supervisor::wait_all(Which which, int timeout_ms) {
   const auto end = std::chrono::steady_clock::now() + std::chrono::milliseconds(timeout_ms);
   while (true) {
     bool running = false;
     for (Child& child : children_) {
       if (child.pid > 0 && ::waitpid(child.pid, nullptr, WNOHANG) != 0) child.pid = -1;
-      running = running || child.pid > 0;
+      const bool counts = which == Which::all || !child.worker();
+      running = running || (counts && child.pid > 0);
     }
     if (!running) return true;
     if (std::chrono::steady_clock::now() >= end) return false;
@@ -138,15 +142,15 @@ bool Supervisor::wait_all(int timeout_ms) {
 }
 
 void Supervisor::end_all() {
-  if (wait_all(0)) return;
+  if (wait_all(Which::all, 0)) return;
   for (const Child& child : children_) {
     if (child.pid > 0) ::kill(child.pid, SIGTERM);
   }
-  if (wait_all(k_grace_ms)) return;
+  if (wait_all(Which::all, k_grace_ms)) return;
   for (const Child& child : children_) {
     if (child.pid > 0) ::kill(child.pid, SIGKILL);
   }
-  wait_all(k_grace_ms);
+  wait_all(Which::all, k_grace_ms);
 }
 
 }  // namespace meshfarm

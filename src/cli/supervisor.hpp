@@ -38,7 +38,8 @@ class Supervisor {
   void reap();
   void ended(Child& child, int status);
   void end_all();
-  bool wait_all(int timeout_ms);
+  enum class Which { all, essentials };
+  bool wait_all(Which which, int timeout_ms);
   bool essentials_done() const;
   bool has_live_worker() const;
 

@@ -4,8 +4,8 @@
 // Whole runs of the real program: ventilator, sink and workers as processes over tcp, killed,
 // stopped and started again. Every run must end with the same bytes.
 #include <algorithm>
-#include <optional>
 #include <random>
+#include <sstream>
 
 #include <arpa/inet.h>
 #include <doctest/doctest.h>
@@ -91,18 +91,29 @@ void check_result(const std::string& output) {
   CHECK(read_text(output) == bench().expected());
 }
 
-/// The address in the newest endpoint file: the text "tcp://127.0.0.1:PORT" stands in it.
-std::optional<std::uint16_t> port_of(const std::string& stage) {
-  std::string newest;
+/// The tcp ports that a process listens on: its socket inodes among those of /proc/net/tcp that are
+/// in the state LISTEN (0A).
+std::vector<std::uint16_t> listening_ports(pid_t pid) {
+  const std::string process = "/proc/" + std::to_string(pid);
+  std::vector<std::string> inodes;
   std::error_code ignored;
-  for (const auto& entry : fs::directory_iterator(fs::path(stage) / "control", ignored)) {
-    if (entry.path().extension() == ".endpoint") newest = std::max(newest, entry.path().string());
+  for (const auto& entry : fs::directory_iterator(process + "/fd", ignored)) {
+    const std::string target = fs::read_symlink(entry.path(), ignored).string();
+    if (target.starts_with("socket:[")) inodes.push_back(target.substr(8, target.size() - 9));
   }
-  const std::string text = newest.empty() ? "" : read_text(newest);
-  const std::string start = "tcp://127.0.0.1:";
-  const std::size_t at = text.find(start);
-  if (at == std::string::npos) return std::nullopt;
-  return static_cast<std::uint16_t>(std::atoi(text.c_str() + at + start.size()));
+  std::vector<std::uint16_t> ports;
+  std::ifstream table(process + "/net/tcp");
+  for (std::string line; std::getline(table, line);) {
+    std::istringstream words(line);
+    std::string slot, local, remote, state, skip, inode;
+    words >> slot >> local >> remote >> state;
+    for (int i = 0; i < 5; ++i) words >> skip;
+    words >> inode;
+    if (state != "0A" || std::find(inodes.begin(), inodes.end(), inode) == inodes.end()) continue;
+    ports.push_back(
+        static_cast<std::uint16_t>(std::stoul(local.substr(local.find(':') + 1), nullptr, 16)));
+  }
+  return ports;
 }
 
 /// Sends bytes to a port and closes; whether anyone listens does not matter.
@@ -257,27 +268,30 @@ TEST_CASE("a worker that is asked to leave gives back what it holds") {
   check_result(stage + ".ply");
 }
 
-TEST_CASE("random bytes sent to the sockets are refused and the run goes on") {
+TEST_CASE("random bytes to every socket are refused and the run goes on") {
   const std::string stage = bench().cut();
   Process ventilator = bench().ventilator(stage);
   Process sink = bench().sink(stage);
-  std::optional<std::uint16_t> port;
-  REQUIRE(wait_until([&] { return (port = port_of(stage)).has_value(); }));
+  Process worker = bench().worker(stage);
+  REQUIRE(wait_for_results(stage, 1));
+  std::vector<std::uint16_t> ports = listening_ports(ventilator.pid());
+  CHECK(ports.size() == 2);  // control, and the worker's lane
+  for (const std::uint16_t port : listening_ports(sink.pid())) ports.push_back(port);
+  CHECK(ports.size() == 3);  // and results
+
   std::mt19937 random(7);
   const auto blob = [&](std::size_t size) {
     std::string bytes(size, '\0');
     for (char& c : bytes) c = static_cast<char>(random());
     return bytes;
   };
-  for (int i = 0; i < 50; ++i) send_bytes(*port, blob(random() % 5000));
-  send_bytes(*port, "GET / HTTP/1.1\r\n\r\n");
   const std::string greeting = std::string("\xff\0\0\0\0\0\0\0\x01\x7f\x03\0NULL", 16);
-  for (int i = 0; i < 20; ++i) send_bytes(*port, greeting + std::string(48, '\0') + blob(300));
-  Process worker = bench().worker(stage);
-  REQUIRE(wait_for_results(stage, 2));
-  for (int i = 0; i < 50; ++i) send_bytes(*port, blob(100));
-  for (std::uint16_t near = 1; near < 6; ++near) {  // lanes and results are likely here
-    send_bytes(static_cast<std::uint16_t>(*port + near), blob(500));
+  for (int i = 0; i < 20; ++i) {
+    for (const std::uint16_t port : ports) {
+      send_bytes(port, blob(random() % 5000));
+      send_bytes(port, "GET / HTTP/1.1\r\n\r\n");
+      send_bytes(port, greeting + std::string(48, '\0') + blob(300));
+    }
   }
   CHECK(sink.wait() == 0);
   CHECK(ventilator.wait() == 0);

@@ -44,49 +44,65 @@ std::vector<unsigned> read_indices(MeshSource& source) {
   return indices;
 }
 
-/// Corners that lie at one point get one index, and triangles with two of them go.
-std::vector<unsigned> welded(const std::vector<unsigned>& indices,
-                             const std::vector<float>& positions) {
-  std::vector<unsigned> joined(indices.size());
-  meshopt_generateShadowIndexBuffer(joined.data(), indices.data(), indices.size(), positions.data(),
-                                    positions.size() / 3, k_stride, k_stride);
+struct Arrays {
+  std::vector<float> positions;  // x y z
+  std::vector<unsigned> indices;
+};
+
+/// Vertices at one point become one. (A shadow index buffer, which leaves the twins in place,
+/// makes meshopt_simplify take them for seams.)
+void weld(Arrays& mesh) {
+  const std::size_t vertices = mesh.positions.size() / 3;
+  std::vector<unsigned> remap(vertices);
+  const std::size_t distinct =
+      meshopt_generateVertexRemap(remap.data(), mesh.indices.data(), mesh.indices.size(),
+                                  mesh.positions.data(), vertices, k_stride);
+  meshopt_remapIndexBuffer(mesh.indices.data(), mesh.indices.data(), mesh.indices.size(),
+                           remap.data());
+  meshopt_remapVertexBuffer(mesh.positions.data(), mesh.positions.data(), vertices, k_stride,
+                            remap.data());
+  mesh.positions.resize(3 * distinct);
+}
+
+void drop_degenerate(std::vector<unsigned>& indices) {
   std::size_t kept = 0;
-  for (std::size_t i = 0; i < joined.size(); i += 3) {
-    const unsigned a = joined[i];
-    const unsigned b = joined[i + 1];
-    const unsigned c = joined[i + 2];
+  for (std::size_t i = 0; i < indices.size(); i += 3) {
+    const unsigned a = indices[i];
+    const unsigned b = indices[i + 1];
+    const unsigned c = indices[i + 2];
     if (a == b || b == c || c == a) continue;
-    joined[kept] = a;
-    joined[kept + 1] = b;
-    joined[kept + 2] = c;
+    indices[kept] = a;
+    indices[kept + 1] = b;
+    indices[kept + 2] = c;
     kept += 3;
   }
-  joined.resize(kept);
-  return joined;
+  indices.resize(kept);
 }
 
-void simplify(std::vector<unsigned>& indices, const std::vector<float>& positions, double ratio) {
-  std::vector<unsigned> left(indices.size());
+void simplify(Arrays& mesh, double ratio) {
+  std::vector<unsigned> left(mesh.indices.size());
+  const std::uint64_t target = 3 * share_of(mesh.indices.size() / 3, ratio);
   const float any_error = std::numeric_limits<float>::max();
-  left.resize(meshopt_simplify(left.data(), indices.data(), indices.size(), positions.data(),
-                               positions.size() / 3, k_stride,
-                               3 * share_of(indices.size() / 3, ratio), any_error, 0, nullptr));
-  indices.swap(left);
+  left.resize(meshopt_simplify(left.data(), mesh.indices.data(), mesh.indices.size(),
+                               mesh.positions.data(), mesh.positions.size() / 3, k_stride, target,
+                               any_error, 0, nullptr));
+  mesh.indices.swap(left);
 }
 
-void write(const std::string& path, std::vector<unsigned>& indices, std::vector<float>& positions) {
+void write(const std::string& path, Arrays& mesh) {
   PlyWriterOptions options;
-  options.vertices = meshopt_optimizeVertexFetch(positions.data(), indices.data(), indices.size(),
-                                                 positions.data(), positions.size() / 3, k_stride);
-  options.triangles = indices.size() / 3;
+  options.vertices =
+      meshopt_optimizeVertexFetch(mesh.positions.data(), mesh.indices.data(), mesh.indices.size(),
+                                  mesh.positions.data(), mesh.positions.size() / 3, k_stride);
+  options.triangles = mesh.indices.size() / 3;
   PlyWriter writer(path, options);
   for (std::size_t v = 0; v < options.vertices; ++v) {
-    const float* p = &positions[3 * v];
+    const float* p = &mesh.positions[3 * v];
     const Vec3 position{p[0], p[1], p[2]};
     writer.vertices({&position, 1});
   }
-  for (std::size_t i = 0; i < indices.size(); i += 3) {
-    const Triangle triangle{indices[i], indices[i + 1], indices[i + 2]};
+  for (std::size_t i = 0; i < mesh.indices.size(); i += 3) {
+    const Triangle triangle{mesh.indices[i], mesh.indices[i + 1], mesh.indices[i + 2]};
     writer.triangles(std::span<const Triangle>(&triangle, 1));
   }
   writer.commit();
@@ -99,11 +115,12 @@ Outcome run(const CommandLine& command) {
   if (source->info().vertices > std::numeric_limits<unsigned>::max()) {
     throw DataError(command.input + " has more vertices than meshoptimizer can index");
   }
-  std::vector<float> positions = read_positions(*source);
-  std::vector<unsigned> indices = welded(read_indices(*source), positions);
-  simplify(indices, positions, command.ratio);
-  outcome.triangles = indices.size() / 3;
-  write(command.output, indices, positions);
+  Arrays mesh{read_positions(*source), read_indices(*source)};
+  weld(mesh);
+  drop_degenerate(mesh.indices);
+  simplify(mesh, command.ratio);
+  outcome.triangles = mesh.indices.size() / 3;
+  write(command.output, mesh);
   outcome.watch.stop();
   return outcome;
 }

@@ -1,0 +1,134 @@
+#!/usr/bin/env bash
+# Measures meshfarm beside its peers, and prints one table:
+#   bench.sh [--peers all|NAME,...] [--runs N] [--ratio R] [--workers N] [--install] [--kernel] INPUT.ply
+#   --peers    meshoptimizer, cgal (both of its methods), openmesh, vtk, or none: those that are
+#              installed are run, the others are named (default: all)
+#   --runs     rounds; the programs take turns in each, and medians are shown (default: 5)
+#   --ratio    how much of the input is kept (default: 0.01)
+#   --workers  of the whole runs of meshfarm (default: 2)
+#   --install  first installs the Debian packages of the peers
+#   --kernel   also runs the microbenchmarks; without INPUT.ply only these
+# The rows "file to file" are whole runs: everything from the start of the program to its end. The
+# others time the simplification alone, of a mesh that is read and cleaned before.
+set -euo pipefail
+root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
+build=$root/build-bench
+known=(meshoptimizer cgal_lindstrom_turk cgal_garland_heckbert openmesh vtk)
+
+fail_usage() {
+  echo "bench.sh: $1" >&2
+  sed -n '3s/^# *//p' "$0" >&2
+  exit 2
+}
+
+peers=all runs=5 ratio=0.01 workers=2 install=no kernel=no input=
+while [ $# -gt 0 ]; do
+  case "$1" in
+    --peers | --runs | --ratio | --workers)
+      [ $# -gt 1 ] || fail_usage "$1 needs a value"
+      declare "${1#--}=$2"
+      shift ;;
+    --install) install=yes ;;
+    --kernel) kernel=yes ;;
+    --help | -h) sed -n '2,/^set/{/^#/s/^# \{0,1\}//p}' "$0"; exit 0 ;;
+    -*) fail_usage "unknown option $1" ;;
+    *) [ -z "$input" ] || fail_usage "one INPUT.ply only"; input=$1 ;;
+  esac
+  shift
+done
+[[ $runs =~ ^[1-9][0-9]*$ ]] || fail_usage "--runs: at least 1"
+[[ $workers =~ ^[1-9][0-9]*$ ]] || fail_usage "--workers: at least 1"
+[ -n "$input" ] || [ "$kernel" = yes ] || fail_usage "INPUT.ply is missing"
+[ -z "$input" ] || [ -r "$input" ] || fail_usage "can't read $input"
+
+install_peers() {
+  local sudo=()
+  [ "$(id -u)" -eq 0 ] || sudo=(sudo)
+  "$root/scripts/packages.sh"
+  DEBIAN_FRONTEND=noninteractive "${sudo[@]}" apt-get install -y --no-install-recommends \
+    libmeshoptimizer-dev libcgal-dev libopenmesh-dev libvtk9-dev libbenchmark-dev libeigen3-dev \
+    > "$build/install.log" 2>&1 ||
+    { tail -n 5 "$build/install.log" >&2; echo "bench.sh: could not install the peers" >&2; exit 1; }
+}
+
+# The names of the peers to run; those asked for that were not built are named on stderr.
+choose_peers() {
+  local name word
+  for name in "${known[@]}"; do
+    for word in ${peers//,/ }; do
+      [ "$word" = all ] || [[ $name == "$word"* ]] || continue
+      if [ -x "$build/tests/bench/peer_$name" ]; then
+        echo "$name"
+      else
+        echo "bench.sh: $name is left out: it is not installed (--install gets it)" >&2
+      fi
+      break
+    done
+  done
+}
+
+check_peer_words() {
+  local word name found
+  for word in ${peers//,/ }; do
+    found=no
+    for name in "${known[@]}" all; do [[ $name == "$word"* ]] && found=yes; done
+    [ "$found" = yes ] || [ "$word" = none ] || fail_usage "--peers: unknown peer $word"
+  done
+}
+
+# One run of one program: NAME.ROUND.tree is what the whole process tree took, .peer what it says.
+run_one() {
+  local name=$1 round=$2 output=$results/$1.ply
+  local command=("$build/tests/bench/peer_$name" "$input" "$output" "$ratio")
+  if [ "$name" = meshfarm_file ]; then
+    rm -rf "$output.stage"
+    command=("$build/meshfarm" simplify "$input" -o "$output" --ratio "$ratio"
+      --workers "$workers" --quiet)
+  fi
+  echo "round $round: $name" >&2
+  "$build/tests/bench/measure_tree" "$results/$name.$round.tree" "${command[@]}" \
+    > "$results/$name.$round.peer" 2> "$results/$name.log" && return
+  echo "bench.sh: $name failed: $(tail -n 1 "$results/$name.log")" >&2
+  touch "$results/$name.failed"
+}
+
+compare_one() {
+  "$build/meshfarm" compare "$input" "$results/$1.ply" --json > "$results/$1.compare" ||
+    touch "$results/$1.failed"
+}
+
+check_peer_words
+mkdir -p "$build"
+[ "$install" = no ] || install_peers
+"$root/scripts/build.sh" "$build" -DMESHFARM_BENCH=ON -DMESHFARM_TESTS=OFF \
+  -DCMAKE_BUILD_TYPE=Release > "$build/build.log" 2>&1 || { tail -n 30 "$build/build.log" >&2; exit 1; }
+if [ "$kernel" = yes ]; then
+  [ -x "$build/tests/bench/bench_kernel" ] ||
+    { echo "bench.sh: Google Benchmark is not installed (--install gets it)" >&2; exit 1; }
+  "$build/tests/bench/bench_kernel"
+fi
+[ -n "$input" ] || exit 0
+
+results=$build/results
+rm -rf "$results"
+mkdir -p "$results"
+mapfile -t names < <(choose_peers)
+names=(meshfarm "${names[@]}" meshfarm_file)
+[[ " ${names[*]} " != *" meshoptimizer "* ]] || names+=(meshoptimizer_file)
+
+cat "$input" > /dev/null # the first to read it shall not pay for the disk
+load_before=$(cut -d ' ' -f 1 /proc/loadavg)
+for ((round = 1; round <= runs; ++round)); do
+  for name in "${names[@]}"; do
+    [ -e "$results/$name.failed" ] || run_one "$name" "$round"
+  done
+done
+load_after=$(cut -d ' ' -f 1 /proc/loadavg)
+for name in "${names[@]}"; do
+  [ -e "$results/$name.failed" ] || compare_one "$name"
+done
+
+echo "$(basename "$input") at ratio $ratio, medians of $runs rounds, $workers workers," \
+  "$(nproc) cores, load average $load_before before and $load_after after"
+echo
+python3 "$root/tests/bench/bench_table.py" "$results" "${names[@]}"
