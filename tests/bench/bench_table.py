@@ -15,6 +15,11 @@ HEAD = ["tool", "CPU s", "wall s", "peak RSS MB", "triangles", "RMS 1e-6", "max 
         "non-manifold edges", "degenerate", "duplicate", "components", "Euler"]
 
 
+def millionths(value):
+    scaled = value * 1e6
+    return f"{scaled:,.0f}" if scaled >= 1000 else f"{scaled:.1f}"
+
+
 class Row:
     """One tool: medians over the rounds, and the quality of its last result."""
 
@@ -32,8 +37,11 @@ class Row:
         self.cpu_all = [run["cpu_s"] for run in timed]
         self.cpu = statistics.median(self.cpu_all)
         self.wall = statistics.median(run["wall_s"] for run in timed)
-        self.rss = statistics.median(tree["peak_anon_mb"] for tree in trees)
-        self.title = f"{said[0]['tool']} {said[0]['version']}" if said else "meshfarm, file to file"
+        # A peak that falls between two looks is missed, so the largest seen is the nearest.
+        self.rss = max(tree["peak_anon_mb"] for tree in trees)
+        self.title = f"{said[0]['tool']} {said[0]['version']}" if said else "meshfarm simplify"
+        if self.whole:
+            self.title += ", file to file"
         comparison = json.loads((folder / f"{name}.compare").read_text())
         both_ways = (comparison["a_to_b"], comparison["b_to_a"])
         self.rms = max(way["rms"] for way in both_ways)
@@ -45,7 +53,7 @@ class Row:
             return [self.title, "failed"] + ["" for _ in HEAD[2:]]
         t = self.topology
         return [self.title, f"{self.cpu:.2f}", f"{self.wall:.2f}", f"{self.rss:.0f}",
-                f"{t['triangles']:,}", f"{self.rms * 1e6:.4g}", f"{self.max * 1e6:.4g}",
+                f"{t['triangles']:,}", millionths(self.rms), millionths(self.max),
                 f"{t['nonmanifold_edges']:,}", f"{t['degenerate'] + t['zero_area']:,}",
                 f"{t['duplicate']:,}", f"{t['components']:,}", f"{t['euler']:,}"]
 
@@ -86,7 +94,7 @@ def main():
     spread = max((max(row.cpu_all) / min(row.cpu_all) - 1 for row in measured), default=0)
     print("\nRMS and max: the greater of both directions, in millionths of the input's diagonal. "
           "Degenerate includes triangles of zero area.\nPeak RSS: anonymous memory of all the "
-          "processes of a program together, reading and cleaning included.\n"
+          "processes of a program together, reading and cleaning included; the most seen.\n"
           f"CPU time varied by up to {spread:.0%} between the rounds of a tool.")
     if any(row.name == "meshoptimizer" for row in measured):
         print_ratios(rows)

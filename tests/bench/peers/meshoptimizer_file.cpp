@@ -109,7 +109,7 @@ void write(const std::string& path, Arrays& mesh) {
 }
 
 Outcome run(const CommandLine& command) {
-  Outcome outcome{"meshoptimizer, file to file", meshoptimizer_version(), {}, 0};
+  Outcome outcome{"meshoptimizer", meshoptimizer_version(), {}, 0};
   outcome.watch.start();
   const auto source = open_mesh(command.input);
   if (source->info().vertices > std::numeric_limits<unsigned>::max()) {

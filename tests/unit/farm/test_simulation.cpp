@@ -94,7 +94,7 @@ TEST_CASE("a job that kills its workers is given up after five, the others are d
   FarmSimulation world(source, 5, {.poison = "job 7"}, 1);
   CHECK_FALSE(world.run(FarmTime(300'000)));
   REQUIRE(world.failure);
-  CHECK(doctest::String(world.failure->c_str()) == doctest::Contains("1 job(s) failed for good"));
+  CHECK(doctest::String(world.failure->c_str()) == doctest::Contains("1 job failed for good"));
   CHECK(world.journalled.size() == 9);
 }
 
