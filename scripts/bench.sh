@@ -128,7 +128,7 @@ for name in "${names[@]}"; do
   [ -e "$results/$name.failed" ] || compare_one "$name"
 done
 
-echo "$(basename "$input") at ratio $ratio, medians of $runs rounds, $workers workers," \
+echo "$(basename "$input") at ratio $ratio, medians of $runs round(s), $workers workers," \
   "$(nproc) cores, load average $load_before before and $load_after after"
 echo
 python3 "$root/tests/bench/bench_table.py" "$results" "${names[@]}"

@@ -51,6 +51,7 @@ class InfoCommand : public Command {
     source.scan_triangles(
         [&](std::span<const WideTriangle> batch) { summary.triangles += batch.size(); });
     summary.file = source.info();
+    summary.short_faces = source.small_faces();
     return summary;
   }
 
@@ -61,6 +62,7 @@ class InfoCommand : public Command {
     summary.triangles = mesh.triangles.size();
     summary.topology = measure_topology(mesh);
     summary.file = source.info();
+    summary.short_faces = source.small_faces();
     return summary;
   }
 

@@ -3,6 +3,8 @@
 #include "cli/options.hpp"
 
 #include <charconv>
+#include <cmath>
+#include <memory>
 
 #include <arpa/inet.h>
 #include <ifaddrs.h>
@@ -20,6 +22,20 @@ std::uint16_t parse_port(std::string_view text) {
     throw UsageError("--ports takes FIRST-LAST, two port numbers from 1 to 65535");
   }
   return port;
+}
+
+/// "0.5%": of the diagonal; "2.5": in the mesh's unit.
+Length parse_length(const std::string& text, std::string_view option) {
+  Length length;
+  length.of_diagonal = text.ends_with('%');
+  const char* last = text.data() + text.size() - (length.of_diagonal ? 1 : 0);
+  const auto [end, error] = std::from_chars(text.data(), last, length.value);
+  if (error != std::errc{} || end != last || !(length.value >= 0) || !std::isfinite(length.value)) {
+    throw UsageError(std::string(option) +
+                     " takes a length in the mesh's unit, or a share of the diagonal as in 0.5%");
+  }
+  if (length.of_diagonal) length.value /= 100;
+  return length;
 }
 
 }  // namespace
@@ -44,7 +60,9 @@ void TargetOptions::add(po::options_description& options) {
       "allocation", po::value(&allocation)->default_value(allocation),
       "threshold: one cost threshold for all parts; uniform: the same ratio in every part")(
       "finish", po::value(&finish)->default_value(finish),
-      "global: the last pass may touch everything; boundary: edges at seams only");
+      "global: the last pass may touch everything; boundary: edges at seams only")(
+      "drop-components", po::value(&drop_components)->value_name("LENGTH"),
+      "leave out components smaller than this: in the mesh's unit, or 0.5% of the diagonal");
 }
 
 void TargetOptions::check() {
@@ -60,12 +78,18 @@ void TargetOptions::check() {
   if (finish != "global" && finish != "boundary") {
     throw UsageError("--finish is 'global' or 'boundary', not '" + finish + "'");
   }
+  if (!drop_components.empty()) {
+    run.drop_components = parse_length(drop_components, "--drop-components");
+  }
   run.allocation = allocation == "uniform" ? Allocation::uniform : Allocation::threshold;
   run.finish = finish == "boundary" ? Finish::boundary : Finish::global;
 }
 
 std::vector<std::string> TargetOptions::words() const {
   std::vector<std::string> words = {"--allocation", allocation, "--finish", finish};
+  if (!drop_components.empty()) {
+    words.insert(words.end(), {"--drop-components", drop_components});
+  }
   if (run.triangles != 0) {
     words.insert(words.end(), {"--triangles", std::to_string(run.triangles)});
   } else {

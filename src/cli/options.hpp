@@ -31,9 +31,10 @@ struct TalkOptions {
   ProgressStyle progress() const;
 };
 
-/// --ratio, --triangles, --allocation, --finish.
+/// --ratio, --triangles, --allocation, --finish, --drop-components.
 struct TargetOptions {
   RunOptions run;
+  std::string drop_components;
   std::string allocation = "threshold";
   std::string finish = "global";
 

@@ -9,6 +9,8 @@
 #include <meshfarm/geometry/topology.hpp>
 #include <meshfarm/util/errors.hpp>
 
+#include "geometry/union_find.hpp"
+
 namespace meshfarm {
 namespace {
 
@@ -131,37 +133,14 @@ void count_duplicates(const Mesh& mesh, Topology& topology) {
   }
 }
 
-/// Union-find; the lowest vertex stands for its component.
-class Components {
- public:
-  explicit Components(std::size_t vertices) : parent_(vertices) {
-    std::iota(parent_.begin(), parent_.end(), std::uint32_t{0});
-  }
-  /// True if they were apart.
-  bool join(std::uint32_t a, std::uint32_t b) {
-    a = find(a);
-    b = find(b);
-    if (a == b) return false;
-    parent_[std::max(a, b)] = std::min(a, b);
-    return true;
-  }
-
- private:
-  std::uint32_t find(std::uint32_t v) {
-    while (parent_[v] != v) v = parent_[v] = parent_[parent_[v]];
-    return v;
-  }
-  std::vector<std::uint32_t> parent_;
-};
-
 void count_components(const Mesh& mesh, Topology& topology) {
-  Components components(mesh.positions.size());
+  UnionFind pieces(mesh.positions.size());
   std::vector<bool> used(mesh.positions.size());
   std::uint64_t joined = 0;
   for_proper_triangles(mesh, [&](const Triangle& t) {
     for (const std::uint32_t v : t) used[v] = true;
-    joined += components.join(t[0], t[1]);
-    joined += components.join(t[1], t[2]);
+    joined += pieces.join(t[0], t[1]);
+    joined += pieces.join(t[1], t[2]);
   });
   topology.used_vertices = static_cast<std::uint64_t>(std::count(used.begin(), used.end(), true));
   topology.components = topology.used_vertices - joined;

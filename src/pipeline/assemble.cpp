@@ -5,6 +5,7 @@
 #include <cmath>
 #include <vector>
 
+#include <meshfarm/geometry/components.hpp>
 #include <meshfarm/geometry/distance.hpp>
 #include <meshfarm/geometry/simplify.hpp>
 #include <meshfarm/io/boundary_file.hpp>
@@ -47,6 +48,8 @@ class Assembly {
     Stopwatch watch;
     count_drops(accepted);
     StitchedMesh stitched = stitch(choose_rungs(manifest_, run_, accepted));
+    summary_.dropped_components =
+        drop_small_components(stitched.mesh, run_.drop_components.in(manifest_.box));
     summary_.stitched = stitched.mesh.triangles.size();
     summary_.stitch_seconds = watch.lap();
     const Mesh result = finish(std::move(stitched));
@@ -159,7 +162,10 @@ class Assembly {
 
   std::string why_not_exact(std::uint64_t before) const {
     if (summary_.triangles == summary_.target) return {};
-    if (summary_.target > before) return "the input has no more";
+    if (summary_.target > before) {
+      return summary_.dropped_components.components == 0 ? "the input has no more"
+                                                         : "no more is left of the input";
+    }
     if (summary_.triangles < summary_.target) {
       return "where no open border is left, triangles go in pairs";
     }

@@ -13,7 +13,7 @@ namespace {
 
 /// A ladder begins at this many times the part's even share, so that a part of much detail can keep
 /// more than its share; a part that deserves still more is asked for again.
-constexpr double k_first_headroom = 8;
+constexpr double k_first_headroom = 4;
 constexpr double k_more_headroom = 8;
 /// A ladder ends at this fraction of the part's even share.
 constexpr double k_floor = 1.0 / 16;

@@ -26,6 +26,7 @@ std::uint64_t run_key(const Manifest& manifest, const RunOptions& options) {
   out.put(target_triangles(manifest, options));
   out.put(options.allocation);
   out.put(options.finish);
+  out.put(options.drop_components.in(manifest.box));
   const std::uint64_t key = checksum(out.bytes());
   return key == 0 ? 1 : key;  // 0 means "any run" to the farm
 }

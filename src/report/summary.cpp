@@ -139,7 +139,10 @@ std::string render(const RunSummary& s, Format format) {
         {"exact", s.why_not_exact.empty()},
         {"why_not_exact", s.why_not_exact},
         {"error", s.error_samples == 0 ? Json(nullptr) : error_json(s)},
-        {"dropped", {{"degenerate", s.dropped_degenerate}, {"duplicate", s.dropped_duplicate}}},
+        {"dropped",
+         {{"degenerate", s.dropped_degenerate},
+          {"duplicate", s.dropped_duplicate},
+          {"components", s.dropped_components.components}}},
         {"parts", m.parts.size()},
         {"boundary_triangles", m.boundary_triangles},
         {"stitched_triangles", s.stitched},
@@ -157,6 +160,9 @@ std::string render(const RunSummary& s, Format format) {
   if (s.dropped_degenerate + s.dropped_duplicate > 0) {
     lines.add("dropped", grouped(s.dropped_degenerate) + " degenerate and " +
                              grouped(s.dropped_duplicate) + " duplicate triangles");
+  }
+  if (s.dropped_components.components > 0) {
+    lines.add("dropped", grouped(s.dropped_components.components) + " small components");
   }
   lines.add("output", s.output);
   lines.add("", grouped(s.triangles) + " triangles, " + grouped(s.vertices) + " vertices");
@@ -187,7 +193,7 @@ std::string render(const FileSummary& s, Format format) {
                  {"triangles", s.triangles},
                  {"short_faces", s.short_faces},
                  {"positions", s.file.positions == PositionType::float64 ? "float64" : "float32"},
-                 {"skipped", s.file.skipped},
+                 {"attributes", s.file.skipped},
                  {"box", to_json(s.box)},
                  {"diagonal", s.box.diagonal()}};
     if (s.topology) json["topology"] = to_json(*s.topology);
@@ -202,7 +208,7 @@ std::string render(const FileSummary& s, Format format) {
   if (s.short_faces > 0) lines.add("left out", grouped(s.short_faces) + " faces of 0 to 2 corners");
   lines.add("vertices", grouped(s.file.vertices) +
                             (s.file.positions == PositionType::float64 ? ", double" : ", float"));
-  if (!s.file.skipped.empty()) lines.add("not kept", joined(s.file.skipped));
+  if (!s.file.skipped.empty()) lines.add("attributes", joined(s.file.skipped));
   if (!s.box.empty()) {
     const auto range = [](double lo, double hi) {
       return "[" + number(lo, "%.9g") + ", " + number(hi, "%.9g") + "]";

@@ -133,7 +133,10 @@ int main(int argc, char** argv) {
   sigemptyset(&child_ended);
   sigaddset(&child_ended, SIGCHLD);
   if (sigprocmask(SIG_BLOCK, &child_ended, &before) != 0) die("sigprocmask");
-  const Measured measured = watch(start(argv + 2, before), child_ended);
+  const pid_t first = start(argv + 2, before);
+  // On a busy machine the looks would come late; where this is not allowed, they may.
+  setpriority(PRIO_PROCESS, 0, -10);
+  const Measured measured = watch(first, child_ended);
   if (!write_report(argv[1], measured)) die(argv[1]);
   if (WIFEXITED(measured.status)) return WEXITSTATUS(measured.status);
   return 128 + WTERMSIG(measured.status);

@@ -90,6 +90,8 @@ TEST_CASE("wrong usage is one line and exit 2") {
       {"simplify", cube, "-o", shell.path("o.ply"), "--ratio", "0.5", "--weld", "maybe"},
       {"simplify", cube, "-o", shell.path("o.ply"), "--ratio", "0.5", "--workers", "0"},
       {"simplify", cube, "-o", shell.path("o.ply"), "--ratio", "0.5", "--parts", "-1"},
+      {"simplify", cube, "-o", shell.path("o.ply"), "--ratio", "0.5", "--drop-components", "x"},
+      {"simplify", cube, "-o", shell.path("o.ply"), "--ratio", "0.5", "--drop-components", "%"},
       {"simplify", cube, "-o", shell.path("o.ply"), "--ratio", "0.5", "--colour"},
       {"run", shell.path("s"), "--ratio", "0.5", "--ports", "9-8"},
       {"compare", cube},

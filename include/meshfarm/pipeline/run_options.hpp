@@ -20,12 +20,20 @@ enum class Finish : std::uint8_t {
   boundary,  // edges at boundary vertices only (Xiong et al. 2008, 3.3)
 };
 
+/// A length in the mesh's unit, or as a fraction of the diagonal of its bounding box.
+struct Length {
+  double value = 0;
+  bool of_diagonal = false;
+  double in(const Box& box) const { return of_diagonal ? value * box.diagonal() : value; }
+};
+
 /// What a run is asked to make of a stage.
 struct RunOptions {
   double ratio = 0;  // of the input's triangles; used when triangles is 0
   std::uint64_t triangles = 0;
   Allocation allocation = Allocation::threshold;
   Finish finish = Finish::global;
+  Length drop_components;  // components with a smaller diagonal are left out
 };
 
 /// The number of triangles that the result shall have. Throws UsageError if the options name

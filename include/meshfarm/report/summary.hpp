@@ -6,6 +6,7 @@
 #include <optional>
 #include <string>
 
+#include <meshfarm/geometry/components.hpp>
 #include <meshfarm/geometry/distance.hpp>
 #include <meshfarm/geometry/topology.hpp>
 #include <meshfarm/io/manifest.hpp>
@@ -23,6 +24,7 @@ struct RunSummary {
   std::uint64_t triangles = 0;  // triangles made
   std::uint64_t vertices = 0;
   std::string why_not_exact;             // empty when triangles == target
+  DroppedComponents dropped_components;  // and their triangles before the finish
   Distance error;                        // from points of the input to the result, in its unit
   std::uint64_t error_samples = 0;       // 0: there is nothing to measure
   std::uint64_t stitched = 0;            // triangles of the stitched mesh, before the finish

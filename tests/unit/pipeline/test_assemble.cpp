@@ -133,6 +133,27 @@ TEST_CASE("the paper's way reaches about its count without touching the inside a
   CHECK(t.border_edges == 0);
 }
 
+TEST_CASE("components that are smaller than asked for are left out, and counted") {
+  Mesh mesh = test::torus(60, 40);  // 2.8 wide, and dust beside it
+  for (int i = 0; i < 10; ++i) {
+    const auto first = static_cast<std::uint32_t>(mesh.positions.size());
+    for (const Vec3& p : test::tetrahedron().positions) {
+      mesh.positions.push_back(p * 0.01 + Vec3{1.5, i * 0.05, 0});
+    }
+    for (const auto& [a, b, c] : test::tetrahedron().triangles) {
+      mesh.triangles.push_back({a + first, b + first, c + first});
+    }
+  }
+  const test::TempFolder folder;
+  const Made all = simplify(mesh, 4, {.triangles = 400}, folder.path() / "all");
+  CHECK(measure_topology(all.mesh).components == 11);
+  const Made some = simplify(mesh, 4, {.triangles = 400, .drop_components = {0.02, true}},
+                             folder.path() / "some");
+  CHECK(measure_topology(some.mesh).components == 1);
+  CHECK(some.summary.dropped_components.components == 10);
+  CHECK(some.summary.triangles == 400);
+}
+
 TEST_CASE("the same bytes every time") {
   const test::TempFolder folder;
   const Made a = simplify(test::torus(80, 50), 5, {.ratio = 0.05}, folder.path() / "a");

@@ -1,0 +1,43 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#include <doctest/doctest.h>
+
+#include <meshfarm/geometry/components.hpp>
+#include <meshfarm/geometry/topology.hpp>
+
+#include "support/meshes.hpp"
+
+using namespace meshfarm;
+
+namespace {
+
+void add(Mesh& mesh, Mesh piece, double size, Vec3 at) {
+  const auto first = static_cast<std::uint32_t>(mesh.positions.size());
+  for (const Vec3& p : piece.positions) mesh.positions.push_back(p * size + at);
+  for (const auto& [a, b, c] : piece.triangles) {
+    mesh.triangles.push_back({a + first, b + first, c + first});
+  }
+}
+
+}  // namespace
+
+TEST_CASE("pieces below the diagonal go, whatever their number of triangles") {
+  Mesh mesh;
+  add(mesh, test::icosphere(3), 0.01, {5, 0, 0});  // small, of many triangles
+  add(mesh, test::tetrahedron(), 2, {0, 0, 0});    // large, of few
+  add(mesh, test::tetrahedron(), 0.01, {0, 5, 0});
+  const DroppedComponents dropped = drop_small_components(mesh, 0.1);
+  CHECK(dropped.components == 2);
+  CHECK(dropped.triangles == 1280 + 4);
+  CHECK(mesh.triangles.size() == 4);
+  CHECK(measure_topology(mesh).components == 1);
+  CHECK(drop_small_components(mesh, 0.1).components == 0);
+}
+
+TEST_CASE("a piece of just that diagonal stays, and a touching vertex joins pieces") {
+  Mesh tie = test::bow_tie();  // two triangles of diagonal sqrt(5), together 2 x 2
+  CHECK(drop_small_components(tie, std::sqrt(8.0)).components == 0);
+  CHECK(drop_small_components(tie, std::sqrt(8.0) * 1.0001).triangles == 2);
+  Mesh nothing;
+  CHECK(drop_small_components(nothing, 1).components == 0);
+}
