@@ -3,62 +3,96 @@
 #include "geometry/collapse.hpp"
 
 #include <algorithm>
-#include <cmath>
+#include <numeric>
 
 #include "geometry/simplify_clean.hpp"
 
 namespace meshfarm {
 namespace {
 
-constexpr double k_cos_75_squared = 0.066987298107780676;
-// Of the angle at the new vertex: near 0 and near 180 degrees alike are as good as no area.
-constexpr double k_least_sine_squared = 1e-6;
-
 constexpr std::uint32_t k_none = UINT32_MAX;
+
+// No vertex either; unlike k_none it is found in no ring.
+constexpr std::uint32_t k_gap = UINT32_MAX - 1;
+constexpr std::uint32_t k_compared_at_once = 8;
 
 // The neighbour of an open ring that no triangle begins at.
 template <typename Ring>
 std::uint32_t last_neighbour(const Ring& ring) {
+  const auto* const end = ring.next.data() + ring.size;
   for (std::uint32_t i = 0; i < ring.size; ++i) {
-    const auto* const end = ring.next.data() + ring.size;
+    if (ring.prev[i] == k_gap) continue;
     if (std::find(ring.next.data(), end, ring.prev[i]) == end) return ring.prev[i];
   }
   return k_none;
 }
 
+template <typename Ring>
+std::uint32_t count_in(const Ring& ring, std::uint32_t vertex) {
+  std::uint32_t count = 0;
+  for (std::uint32_t i = 0; i < ring.size; ++i) count += ring.next[i] == vertex ? 1 : 0;
+  return count;
+}
+
 }  // namespace
 
-void CollapseJudge::walk_ring(std::uint32_t vertex, Ring& ring) const {
-  ring.size = 0;
-  for (const Corner& c : state_.adjacency->at(vertex)) {
-    const std::uint32_t next = state_.target[c.next];
-    const std::uint32_t prev = state_.target[c.prev];
-    ring.next[ring.size] = next;
-    ring.prev[ring.size] = prev;
-    // Equal after another collapse of this pass: the triangle is gone.
-    ring.size += next != prev ? 1 : 0;
+void CollapseJudge::walk(const End& end, Ring& ring) {
+  const std::span<const Corner> corners = state_.adjacency->at(end.vertex);
+  const std::uint32_t* const target = state_.target.data();
+  const Vec3* const positions = state_.positions.data();
+  const auto size = static_cast<std::uint32_t>(corners.size());
+  const Corner none{end.vertex, end.vertex};
+  std::uint32_t triangles = 0;
+  for (std::uint32_t i = 0; i < size; i += 2) {
+    const Corner& c0 = corners[i];
+    const Corner& c1 = i + 1 < size ? corners[i + 1] : none;
+    const std::array<std::uint32_t, 2> next{target[c0.next], target[c1.next]};
+    const std::array<std::uint32_t, 2> prev{target[c0.prev], target[c1.prev]};
+    CollapseStar::Mask there{};
+    CollapseStar::Mask shared{};
+    for (std::uint32_t l = 0; l < 2; ++l) {
+      // Equal after another collapse of this pass: the triangle is gone.
+      const bool gone = next[l] == prev[l];
+      there[l] = -static_cast<std::int64_t>(!gone);
+      shared[l] = -static_cast<std::int64_t>(next[l] == end.other) |
+                  -static_cast<std::int64_t>(prev[l] == end.other);
+      ring.next[i + l] = gone ? k_gap : next[l];
+      ring.prev[i + l] = gone ? k_gap : prev[l];
+      triangles += gone ? 0 : 1;
+    }
+    star_.add({positions[next[0]], positions[prev[0]], positions[next[1]], positions[prev[1]],
+               there & (~shared | end.counts_shared), there & ~shared},
+              end.from_middle);
   }
-  ring.border = (state_.flags[vertex] & k_border) != 0;
+  ring.size = size + size % 2;
+  ring.triangles = triangles;
+  ring.border = (state_.flags[end.vertex] & k_border) != 0;
 }
 
 std::uint32_t CollapseJudge::shared_triangles(std::uint32_t b) const {
   std::uint32_t shared = 0;
-  for (std::uint32_t i = 0; i < ring_a_.size; ++i) {
+  const std::uint32_t size = ring_a_.size;
+  for (std::uint32_t i = 0; i < size; ++i) {
     shared += (ring_a_.next[i] == b ? 1 : 0) + (ring_a_.prev[i] == b ? 1 : 0);
   }
   return shared;
 }
 
 std::uint32_t CollapseJudge::common_neighbours() const {
-  std::uint32_t common = 0;
-  const auto count = [&](const Ring& ring, std::uint32_t vertex) {
-    for (std::uint32_t i = 0; i < ring.size; ++i) common += ring.next[i] == vertex ? 1 : 0;
-  };
-  for (std::uint32_t i = 0; i < ring_a_.size; ++i) count(ring_b_, ring_a_.next[i]);
+  std::array<std::uint32_t, k_compared_at_once> equal{};
+  for (std::uint32_t i = 0; i < ring_b_.size; ++i) {
+    const std::uint32_t vertex = ring_b_.next[i] == k_gap ? k_none : ring_b_.next[i];
+    for (std::uint32_t first = 0; first < ring_a_.size; first += k_compared_at_once) {
+      const std::uint32_t* const next = ring_a_.next.data() + first;
+      for (std::uint32_t l = 0; l < k_compared_at_once; ++l) equal[l] += next[l] == vertex ? 1 : 0;
+    }
+  }
+  std::uint32_t common = std::accumulate(equal.begin(), equal.end(), 0U);
+  if (!ring_a_.border && !ring_b_.border) return common;
   const std::uint32_t last_a = ring_a_.border ? last_neighbour(ring_a_) : k_none;
   const std::uint32_t last_b = ring_b_.border ? last_neighbour(ring_b_) : k_none;
-  if (last_a != k_none) count(ring_b_, last_a);
-  if (last_b != k_none) count(ring_a_, last_b);
+  if (last_a != k_none) common += count_in(ring_b_, last_a);
+  if (last_b != k_none) common += count_in(ring_a_, last_b);
   return common + (last_a != k_none && last_a == last_b ? 1 : 0);
 }
 
@@ -67,64 +101,27 @@ std::uint32_t CollapseJudge::common_neighbours() const {
 bool CollapseJudge::link_allows(std::uint32_t shared) const {
   if (shared == 2) {
     if (ring_a_.border && ring_b_.border) return false;
-    if (ring_a_.size == 3 && ring_b_.size == 3) return false;
+    if (ring_a_.triangles == 3 && ring_b_.triangles == 3) return false;
   } else {
-    if (shared != 1 || (ring_a_.size == 1 && ring_b_.size == 1)) return false;
+    if (shared != 1 || (ring_a_.triangles == 1 && ring_b_.triangles == 1)) return false;
   }
   return common_neighbours() == shared;
 }
 
-void CollapseJudge::add_star(const Ring& ring, std::uint32_t other, bool with_shared) {
-  for (std::uint32_t i = 0; i < ring.size; ++i) {
-    const bool shared = ring.next[i] == other || ring.prev[i] == other;
-    if (shared && !with_shared) continue;
-    StarTriangle& t = star_[star_size_];
-    t.p = state_.positions[ring.next[i]] - middle_;
-    t.q = state_.positions[ring.prev[i]] - middle_;
-    t.apex = ring.apex;
-    t.normal = cross(t.p - t.apex, t.q - t.apex);
-    star_size_ += shared ? 0 : 1;
-    const double twice_area = length(t.normal);
-    if (!(twice_area > 0 && std::isfinite(twice_area))) continue;
-    area_ += 0.5 * twice_area;
-    const double weight = 0.5 / twice_area;
-    const double height = dot(t.normal, t.apex);
-    quadric_.a.add(t.normal, weight);
-    quadric_.b = quadric_.b + t.normal * (weight * height);
-    quadric_.c += weight * height * height;
-  }
-}
-
-void CollapseJudge::add_border(const Ring& ring, std::uint32_t without) {
+void CollapseJudge::add_border(const Ring& ring, Vec3 end, std::uint32_t without) {
   std::array<Corner, k_max_star> fan;
-  for (std::uint32_t i = 0; i < ring.size; ++i) fan[i] = {ring.next[i], ring.prev[i]};
-  const Vec3 apex = middle_ + ring.apex;
-  for_border_edges({fan.data(), ring.size}, [&](const Corner& c, std::uint32_t end) {
-    if (end == without) return;
+  std::uint32_t size = 0;
+  for (std::uint32_t i = 0; i < ring.size; ++i) {
+    if (ring.next[i] != k_gap) fan[size++] = {ring.next[i], ring.prev[i]};
+  }
+  const Vec3 at = middle_ + end;
+  for_border_edges({fan.data(), size}, [&](const Corner& c, std::uint32_t neighbour) {
+    if (neighbour == without) return;
     Quadric plane;
-    add_border_plane(plane, cross(state_.positions[c.next] - apex, state_.positions[c.prev] - apex),
-                     state_.positions[end] - apex);
-    quadric_.add(plane, ring.apex);
+    add_border_plane(plane, cross(state_.positions[c.next] - at, state_.positions[c.prev] - at),
+                     state_.positions[neighbour] - at);
+    quadric_.add(plane, end);
   });
-}
-
-/// Adds the area that the triangle has with its apex at x; false if that spoils its shape.
-bool CollapseJudge::add_kept_area(const StarTriangle& t, Vec3 x, double& area) {
-  const Vec3 p = t.p - x;
-  const Vec3 q = t.q - x;
-  const Vec3 normal = cross(p, q);
-  const double size = squared_length(normal);
-  const double old_size = squared_length(t.normal);
-  const double turn = dot(normal, t.normal);
-  const bool turned = !(turn > 0 && turn * turn >= k_cos_75_squared * size * old_size);
-  if (turned && old_size > 0) return false;
-  area += 0.5 * std::sqrt(size);
-  const double scale = squared_length(p) * squared_length(q);
-  if (size > k_least_sine_squared * scale) return true;
-  // A sliver of the input may stay one, or nothing round it could ever collapse.
-  const double old_scale = squared_length(t.p - t.apex) * squared_length(t.q - t.apex);
-  return old_size <= k_least_sine_squared * old_scale && size * old_scale >= old_size * scale &&
-         (size > 0 || old_size == 0);
 }
 
 /// An inner vertex that merges into a border leaves the border as it is.
@@ -135,33 +132,29 @@ Vec3 CollapseJudge::best_position(std::uint32_t a, std::uint32_t b) const {
 
 Collapse CollapseJudge::judge(std::uint32_t a, std::uint32_t b, const CollapseLimits& limits) {
   if (state_.adjacency->count(a) + state_.adjacency->count(b) > k_max_star) return {};
-  walk_ring(a, ring_a_);
-  walk_ring(b, ring_b_);
+  const Vec3 half = (state_.positions[b] - state_.positions[a]) * 0.5;
+  middle_ = state_.positions[a] + half;
+  star_.clear(middle_, half);
+  walk({a, b, half * -1.0, CollapseStar::Mask{-1, -1}}, ring_a_);
+  // The ring that is searched may be compared beyond its end.
+  std::fill_n(ring_a_.next.begin() + ring_a_.size, k_compared_at_once, k_gap);
+  walk({b, a, half, CollapseStar::Mask{}}, ring_b_);
   const std::uint32_t shared = shared_triangles(b);
   if (shared > limits.triangles || !link_allows(shared)) return {};
 
-  const Vec3 half = (state_.positions[b] - state_.positions[a]) * 0.5;
-  middle_ = state_.positions[a] + half;
-  ring_a_.apex = half * -1.0;
-  ring_b_.apex = half;
   quadric_ = {};
   quadric_.squared_length = 4 * squared_length(half);
-  star_size_ = 0;
-  area_ = 0;
-  add_star(ring_a_, b, true);
-  add_star(ring_b_, a, false);
-  if (ring_a_.border) add_border(ring_a_, k_none);
-  if (ring_b_.border) add_border(ring_b_, a);
+  star_.sum_planes(quadric_);
+  if (ring_a_.border) add_border(ring_a_, half * -1.0, k_none);
+  if (ring_b_.border) add_border(ring_b_, half, a);
 
   const Vec3 position = best_position(a, b);
   const Vec3 x = position - middle_;
   double cost = quadric_.cost(x);
   if (!(cost <= limits.max_cost)) return {};
-  double kept = 0;
-  for (std::uint32_t i = 0; i < star_size_; ++i) {
-    if (!add_kept_area(star_[i], x, kept)) return {};
-  }
-  cost = std::max(cost, quadric_.cost_of_lost_area(area_ - kept));
+  const std::optional<double> lost = star_.lost_area(x);
+  if (!lost) return {};
+  cost = std::max(cost, quadric_.cost_of_lost_area(*lost));
   return cost <= limits.max_cost ? Collapse{shared, position, cost} : Collapse{};
 }
 

@@ -9,13 +9,14 @@
 #include <meshfarm/geometry/mesh.hpp>
 
 #include "geometry/adjacency.hpp"
+#include "geometry/collapse_star.hpp"
 #include "geometry/quadric.hpp"
 
 namespace meshfarm {
 
 /// An edge whose ends have more triangles than this together does not collapse: a hub of many
 /// thousand would be walked once for each of its edges. Its rim collapses, so that it shrinks.
-constexpr std::uint32_t k_max_star = 256;
+constexpr std::uint32_t k_max_star = CollapseStar::k_capacity;
 
 /// The state that the collapses of one pass work on.
 struct CollapseState {
@@ -49,37 +50,34 @@ class CollapseJudge {
   Collapse judge(std::uint32_t a, std::uint32_t b, const CollapseLimits& limits);
 
  private:
+  // Triangles that are gone after another collapse of this pass leave gaps.
   struct Ring {
-    std::array<std::uint32_t, k_max_star> next;
-    std::array<std::uint32_t, k_max_star> prev;
-    std::uint32_t size = 0;
+    std::array<std::uint32_t, k_max_star + 8> next;
+    std::array<std::uint32_t, k_max_star + 8> prev;
+    std::uint32_t size = 0;       // with the gaps
+    std::uint32_t triangles = 0;  // without
     bool border = false;
-    Vec3 apex;  // from the edge's middle
   };
-  struct StarTriangle {
-    Vec3 p;
-    Vec3 q;
-    Vec3 apex;
-    Vec3 normal;
+  struct End {
+    std::uint32_t vertex;
+    std::uint32_t other;
+    Vec3 from_middle;
+    CollapseStar::Mask counts_shared;
   };
 
-  void walk_ring(std::uint32_t vertex, Ring& ring) const;
+  void walk(const End& end, Ring& ring);
   std::uint32_t shared_triangles(std::uint32_t b) const;
   std::uint32_t common_neighbours() const;
   bool link_allows(std::uint32_t shared) const;
-  void add_star(const Ring& ring, std::uint32_t other, bool with_shared);
-  void add_border(const Ring& ring, std::uint32_t without);
+  void add_border(const Ring& ring, Vec3 end, std::uint32_t without);
   Vec3 best_position(std::uint32_t a, std::uint32_t b) const;
-  static bool add_kept_area(const StarTriangle& triangle, Vec3 x, double& area);
 
   CollapseState state_;
   Vec3 middle_;
   Ring ring_a_;
   Ring ring_b_;
+  CollapseStar star_;
   EdgeQuadric quadric_;
-  double area_ = 0;
-  std::array<StarTriangle, k_max_star> star_;  // the triangles that stay
-  std::uint32_t star_size_ = 0;
 };
 
 }  // namespace meshfarm

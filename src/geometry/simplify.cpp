@@ -45,8 +45,9 @@ class Simplifier::Impl {
         type_(options.positions),
         seam_only_(!options.seam.empty()) {
     check_input(mesh_, options);
-    dropped_ = drop_bad_triangles(mesh_, adjacency_);
-    flags_ = classify_vertices(mesh_, options, adjacency_);
+    Surface surface = clean_surface(mesh_, options, adjacency_);
+    dropped_ = surface.dropped;
+    flags_ = std::move(surface.flags);
     drop_unused_vertices();
     publish_seam();
   }

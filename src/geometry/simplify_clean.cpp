@@ -3,6 +3,7 @@
 #include "geometry/simplify_clean.hpp"
 
 #include <algorithm>
+#include <array>
 #include <set>
 #include <utility>
 
@@ -24,11 +25,14 @@ std::uint64_t drop_unless(std::vector<Triangle>& triangles, const Keep& keep) {
   return dropped;
 }
 
-/// The vertices that are the smallest of two triangles with the same vertices, ascending.
-std::vector<std::uint32_t> vertices_with_duplicates(const Adjacency& adjacency) {
+/// The vertices that are the smallest of two triangles with the same vertices, ascending. The two
+/// together are a fan of their own, so that only bad fans and fans of two need a look.
+std::vector<std::uint32_t> vertices_with_duplicates(std::span<const std::uint8_t> flags,
+                                                    const Adjacency& adjacency) {
   std::vector<std::uint32_t> found;
   std::vector<std::pair<std::uint32_t, std::uint32_t>> others;
   for (std::uint32_t v = 0; v < adjacency.vertices(); ++v) {
+    if ((flags[v] & k_fixed) == 0 && adjacency.count(v) != 2) continue;
     others.clear();
     for (const Corner c : adjacency.at(v)) {
       if (c.next < v || c.prev < v) continue;
@@ -74,22 +78,41 @@ class FanWalker {
     return i;
   }
 
+  /// Nearly every vertex has a closed fan, and only this is worth no guesses of the processor.
   static Fan walk_few(std::span<const Corner> corners) {
-    // Back to the border, or once round.
+    const auto size = static_cast<std::uint32_t>(corners.size());
+    std::array<std::uint32_t, k_few> after;
+    for (std::uint32_t i = 0; i < size; ++i) {
+      std::uint32_t found = size;
+      for (std::uint32_t j = 0; j < size; ++j)
+        found = corners[j].next == corners[i].prev ? j : found;
+      after[i] = found;
+    }
+    std::uint32_t at = 0;
+    std::uint32_t steps = 0;
+    while (steps < size && at < size && (at != 0 || steps == 0)) {
+      at = after[at];
+      ++steps;
+    }
+    if (at == 0) return steps == size ? Fan::closed : Fan::broken;
+    return walk_open(corners);
+  }
+
+  static Fan walk_open(std::span<const Corner> corners) {
     std::size_t first = 0;
+    std::size_t before = 0;
     for (std::size_t steps = 0; steps < corners.size(); ++steps) {
-      const std::size_t before = ending_at(corners, corners[first].next);
+      before = ending_at(corners, corners[first].next);
       if (before == corners.size()) break;
       first = before;
     }
+    if (before != corners.size()) return Fan::broken;
     std::size_t at = first;
     for (std::size_t steps = 1; steps < corners.size(); ++steps) {
       at = starting_at(corners, corners[at].prev);
       if (at == corners.size() || at == first) return Fan::broken;
     }
-    const std::size_t after = starting_at(corners, corners[at].prev);
-    if (after == corners.size()) return Fan::open;
-    return after == first ? Fan::closed : Fan::broken;
+    return starting_at(corners, corners[at].prev) == corners.size() ? Fan::open : Fan::broken;
   }
 
   Fan walk_many(std::span<const Corner> corners) {
@@ -135,6 +158,22 @@ class FanWalker {
   std::vector<std::uint32_t> prevs_;
 };
 
+std::vector<std::uint8_t> classify_vertices(const Mesh& mesh, const SimplifyOptions& options,
+                                            const Adjacency& adjacency) {
+  std::vector<std::uint8_t> flags(mesh.positions.size(), 0);
+  FanWalker walker;
+  for (std::uint32_t v = 0; v < flags.size(); ++v) {
+    const bool locked = v < options.locked_vertices;
+    if (locked || !is_finite(mesh.positions[v])) flags[v] |= k_fixed;
+    if (!options.seam.empty() && options.seam[v] != 0) flags[v] |= k_seam;
+    if (adjacency.count(v) == 0) continue;
+    const Fan fan = walker.walk(adjacency.at(v));
+    if (fan == Fan::broken) flags[v] |= k_fixed;
+    if (fan == Fan::open) flags[v] |= k_border;
+  }
+  return flags;
+}
+
 }  // namespace
 
 void check_input(const Mesh& mesh, const SimplifyOptions& options) {
@@ -156,32 +195,18 @@ void check_input(const Mesh& mesh, const SimplifyOptions& options) {
   }
 }
 
-Dropped drop_bad_triangles(Mesh& mesh, Adjacency& adjacency) {
-  Dropped dropped;
-  dropped.degenerate =
+Surface clean_surface(Mesh& mesh, const SimplifyOptions& options, Adjacency& adjacency) {
+  Surface surface;
+  surface.dropped.degenerate =
       drop_unless(mesh.triangles, [](const Triangle& t) { return !is_degenerate(t); });
   adjacency.build(mesh.triangles, mesh.positions.size());
-  const std::vector<std::uint32_t> doubtful = vertices_with_duplicates(adjacency);
-  if (doubtful.empty()) return dropped;
-  dropped.duplicate = drop_duplicates_at(doubtful, mesh);
+  surface.flags = classify_vertices(mesh, options, adjacency);
+  const std::vector<std::uint32_t> doubtful = vertices_with_duplicates(surface.flags, adjacency);
+  if (doubtful.empty()) return surface;
+  surface.dropped.duplicate = drop_duplicates_at(doubtful, mesh);
   adjacency.build(mesh.triangles, mesh.positions.size());
-  return dropped;
-}
-
-std::vector<std::uint8_t> classify_vertices(const Mesh& mesh, const SimplifyOptions& options,
-                                            const Adjacency& adjacency) {
-  std::vector<std::uint8_t> flags(mesh.positions.size(), 0);
-  FanWalker walker;
-  for (std::uint32_t v = 0; v < flags.size(); ++v) {
-    const bool locked = v < options.locked_vertices;
-    if (locked || !is_finite(mesh.positions[v])) flags[v] |= k_fixed;
-    if (!options.seam.empty() && options.seam[v] != 0) flags[v] |= k_seam;
-    if (adjacency.count(v) == 0) continue;
-    const Fan fan = walker.walk(adjacency.at(v));
-    if (fan == Fan::broken) flags[v] |= k_fixed;
-    if (fan == Fan::open) flags[v] |= k_border;
-  }
-  return flags;
+  surface.flags = classify_vertices(mesh, options, adjacency);
+  return surface;
 }
 
 }  // namespace meshfarm

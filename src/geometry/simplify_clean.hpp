@@ -27,13 +27,17 @@ struct Dropped {
   std::uint64_t duplicate = 0;
 };
 
-/// Drops triangles with two equal corners, then those with the vertices of an earlier one.
-/// Leaves `adjacency` built for what is left.
-Dropped drop_bad_triangles(Mesh& mesh, Adjacency& adjacency);
+/// What a mesh is made of, once it is clean.
+struct Surface {
+  Dropped dropped;
+  std::vector<std::uint8_t> flags;  // VertexFlag
+};
 
-/// The flags of all vertices. Fixed are the locked, those that are not finite, and those whose
-/// triangles do not make one consistently oriented fan: ends of non-manifold edges, bow ties.
-std::vector<std::uint8_t> classify_vertices(const Mesh& mesh, const SimplifyOptions& options,
-                                            const Adjacency& adjacency);
+/// Drops triangles with two equal corners, then those with the vertices of an earlier one, and
+/// flags the vertices. Leaves `adjacency` built for what is left.
+///
+/// Fixed are the locked, those that are not finite, and those whose triangles do not make one
+/// consistently oriented fan: ends of non-manifold edges, bow ties.
+Surface clean_surface(Mesh& mesh, const SimplifyOptions& options, Adjacency& adjacency);
 
 }  // namespace meshfarm

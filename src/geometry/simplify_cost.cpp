@@ -15,34 +15,42 @@ constexpr double k_length_share = 4e-6;
 // Of the trace, as in EdgeQuadric::best.
 constexpr float k_ridge = 1e-5F;
 
-EdgeCost edge_cost(double cost, double trace, double squared_half) {
-  const double preference = k_length_share * squared_half;
-  return {trace * std::max(0.0, cost - preference), trace * (std::max(0.0, cost) + preference)};
+double least_cost(double cost, double trace, double squared_half) {
+  return trace * std::max(0.0, cost - k_length_share * squared_half);
+}
+
+double ranking_cost(double cost, double trace, double squared_half) {
+  return trace * (std::max(0.0, cost) + k_length_share * squared_half);
 }
 
 }  // namespace
 
-void EdgeCosts::put(std::size_t i, const FloatQuadric& a, const FloatQuadric& b, Vec3 half) {
-  xx_[i] = a.xx + b.xx;
-  xy_[i] = a.xy + b.xy;
-  xz_[i] = a.xz + b.xz;
-  yy_[i] = a.yy + b.yy;
-  yz_[i] = a.yz + b.yz;
-  zz_[i] = a.zz + b.zz;
-  dxx_[i] = b.xx - a.xx;
-  dxy_[i] = b.xy - a.xy;
-  dxz_[i] = b.xz - a.xz;
-  dyy_[i] = b.yy - a.yy;
-  dyz_[i] = b.yz - a.yz;
-  dzz_[i] = b.zz - a.zz;
-  hx_[i] = static_cast<float>(half.x);
-  hy_[i] = static_cast<float>(half.y);
-  hz_[i] = static_cast<float>(half.z);
+void EdgeCosts::compute() {
+  gather();
+  solve();
+  weigh();
+}
+
+void EdgeCosts::gather() {
+  for (std::size_t i = 0; i < k_size; ++i) {
+    xx_[i] = a_[i].xx + b_[i].xx;
+    xy_[i] = a_[i].xy + b_[i].xy;
+    xz_[i] = a_[i].xz + b_[i].xz;
+    yy_[i] = a_[i].yy + b_[i].yy;
+    yz_[i] = a_[i].yz + b_[i].yz;
+    zz_[i] = a_[i].zz + b_[i].zz;
+    dxx_[i] = b_[i].xx - a_[i].xx;
+    dxy_[i] = b_[i].xy - a_[i].xy;
+    dxz_[i] = b_[i].xz - a_[i].xz;
+    dyy_[i] = b_[i].yy - a_[i].yy;
+    dyz_[i] = b_[i].yz - a_[i].yz;
+    dzz_[i] = b_[i].zz - a_[i].zz;
+  }
 }
 
 /// With A x = b solved by A = L D L', the least cost is c - b'x = c - sum of (inv(L) b)^2 / D. The
 /// ridge in A makes that a little more for positions far from the edge.
-void EdgeCosts::compute() {
+void EdgeCosts::solve() {
   for (std::size_t i = 0; i < k_size; ++i) {
     const float trace = xx_[i] + yy_[i] + zz_[i];
     // The summand keeps no area at all from dividing by zero without a branch.
@@ -74,8 +82,12 @@ void EdgeCosts::compute() {
   }
 }
 
-EdgeCost EdgeCosts::get(std::size_t i) const {
-  return edge_cost(cost_[i], trace_[i], squared_[i]);
+/// In double, as float has not the range for an area times a squared distance.
+void EdgeCosts::weigh() {
+  for (std::size_t i = 0; i < k_size; ++i) {
+    least_[i] = least_cost(cost_[i], trace_[i], squared_[i]);
+    ranking_[i] = ranking_cost(cost_[i], trace_[i], squared_[i]);
+  }
 }
 
 EdgeCost cost_of_end(const FloatQuadric& other, Vec3 half) {
@@ -85,7 +97,9 @@ EdgeCost cost_of_end(const FloatQuadric& other, Vec3 half) {
                    q.xz * half.x + q.yz * half.y + q.zz * half.z};
   const double trace = static_cast<double>(q.xx) + q.yy + q.zz;
   if (!(trace > 0)) return {};
-  return edge_cost(4 * dot(moved, half) / trace, trace, squared_length(half));
+  const double cost = 4 * dot(moved, half) / trace;
+  const double squared = squared_length(half);
+  return {least_cost(cost, trace, squared), ranking_cost(cost, trace, squared)};
 }
 
 }  // namespace meshfarm

@@ -22,14 +22,28 @@ struct FloatQuadric {
   float yy = 0;
   float yz = 0;
   float zz = 0;
+  // So that it fills two vector registers and lies in one cache line.
+  float none0 = 0;
+  float none1 = 0;
 
-  void add(const Quadric& q) {
-    xx += static_cast<float>(q.xx);
-    xy += static_cast<float>(q.xy);
-    xz += static_cast<float>(q.xz);
-    yy += static_cast<float>(q.yy);
-    yz += static_cast<float>(q.yz);
-    zz += static_cast<float>(q.zz);
+  FloatQuadric() = default;
+  explicit FloatQuadric(const Quadric& q)
+      : xx(static_cast<float>(q.xx)),
+        xy(static_cast<float>(q.xy)),
+        xz(static_cast<float>(q.xz)),
+        yy(static_cast<float>(q.yy)),
+        yz(static_cast<float>(q.yz)),
+        zz(static_cast<float>(q.zz)) {}
+
+  void add(const FloatQuadric& q) {
+    xx += q.xx;
+    xy += q.xy;
+    xz += q.xz;
+    yy += q.yy;
+    yz += q.yz;
+    zz += q.zz;
+    none0 += q.none0;
+    none1 += q.none1;
   }
 };
 
@@ -44,12 +58,24 @@ class EdgeCosts {
   static constexpr std::size_t k_size = 16;
 
   /// The edge from -half to +half.
-  void put(std::size_t i, const FloatQuadric& a, const FloatQuadric& b, Vec3 half);
+  void put(std::size_t i, const FloatQuadric& a, const FloatQuadric& b, const Vec3& half) {
+    a_[i] = a;
+    b_[i] = b;
+    hx_[i] = static_cast<float>(half.x);
+    hy_[i] = static_cast<float>(half.y);
+    hz_[i] = static_cast<float>(half.z);
+  }
   void compute();
-  EdgeCost get(std::size_t i) const;
+  EdgeCost get(std::size_t i) const { return {least_[i], ranking_[i]}; }
 
  private:
   using Lane = std::array<float, k_size>;
+  void gather();
+  void solve();
+  void weigh();
+
+  std::array<FloatQuadric, k_size> a_;
+  std::array<FloatQuadric, k_size> b_;
   // Sum and difference (b - a) of the two quadrics.
   Lane xx_{}, xy_{}, xz_{}, yy_{}, yz_{}, zz_{};
   Lane dxx_{}, dxy_{}, dxz_{}, dyy_{}, dyz_{}, dzz_{};
@@ -57,6 +83,8 @@ class EdgeCosts {
   Lane trace_{};
   Lane cost_{};     // / trace
   Lane squared_{};  // a quarter of the edge's squared length
+  std::array<double, k_size> least_{};
+  std::array<double, k_size> ranking_{};
 };
 
 /// The cost of drawing the edge's other end to the vertex whose quadric is not counted.

@@ -19,9 +19,12 @@ std::uint32_t bucket_of(CostKey key) {
   return key >> k_bucket_shift;
 }
 
-// About 40,000 edges give the rank to a per cent.
-constexpr std::uint32_t k_sampled_vertices = 16384;
+// About 12,000 edges give the rank to half a per cent.
+constexpr std::uint32_t k_sampled_vertices = 4096;
 constexpr std::uint64_t k_least_sample = 2000;
+
+// Keys of infinity and of what is no number are greater.
+constexpr CostKey k_greatest_finite = 0x7FEFFFFF;
 
 constexpr std::size_t k_listed_at_once = 1024;
 
@@ -56,7 +59,8 @@ void EdgeRanking::sum_planes() {
     if (!(twice_area > 0 && std::isfinite(twice_area))) continue;
     Quadric plane;
     plane.add(n, 0.5 / twice_area);
-    for (const std::uint32_t v : t) quadrics_[v].add(plane);
+    const FloatQuadric narrow(plane);
+    for (const std::uint32_t v : t) quadrics_[v].add(narrow);
   }
 }
 
@@ -69,62 +73,56 @@ void EdgeRanking::sum_border_planes() {
       const Vec3 normal = cross(input_.positions[c.next] - at, input_.positions[c.prev] - at);
       Quadric plane;
       add_border_plane(plane, normal, input_.positions[end] - at);
-      quadrics_[v].add(plane);
+      quadrics_[v].add(FloatQuadric(plane));
     });
   }
 }
 
 /// Lists the edges that may collapse of which the vertex is the smaller end.
 inline void EdgeRanking::list_edges_at(std::uint32_t vertex) {
-  const std::uint8_t flags = input_.flags[vertex];
+  const std::uint8_t* const all_flags = input_.flags.data();
+  const std::uint8_t flags = all_flags[vertex];
   const std::span<const Corner> fan = input_.adjacency->at(vertex);
   if ((flags & k_fixed) != 0 || fan.size() > k_max_star) return;
   // Written always, counted if wanted: which neighbours are the greater ones no processor guesses.
   const std::size_t most = listed_count_ + fan.size() + 2;
   if (listed_.size() < most) listed_.resize(2 * most);
+  Edge* end_of_list = listed_.data() + listed_count_;
   const bool any_seam = !input_.seam_only || (flags & k_seam) != 0;
   const auto consider = [&](std::uint32_t end, std::uint8_t barred) {
-    const std::uint8_t other = input_.flags[end];
-    listed_[listed_count_] = {vertex, end};
+    const std::uint8_t other = all_flags[end];
+    *end_of_list = {vertex, end};
     const bool wanted =
         (end > vertex) & ((other & (k_fixed | barred)) == 0) & (any_seam | ((other & k_seam) != 0));
-    listed_count_ += wanted ? 1 : 0;
+    end_of_list += wanted ? 1 : 0;
   };
   // An inner edge between two borders may not collapse: it would pinch the surface.
   const bool border = (flags & k_border) != 0;
-  for (const Corner& c : fan) consider(c.next, border ? k_border : 0);
+  const std::uint8_t barred = border ? k_border : 0;
+  for (const Corner& c : fan) consider(c.next, barred);
   if (border) {
     for_border_edges(fan, [&](const Corner&, std::uint32_t end) { consider(end, 0); });
   }
+  listed_count_ = static_cast<std::size_t>(end_of_list - listed_.data());
 }
 
-/// Calls take(edge, cost) for the edges, with finite cost, of one in so many of the vertices.
-template <typename Take>
-void EdgeRanking::for_costs(const Range& range, const Take& take) {
-  for (std::uint32_t v = range.first; v < range.last; ++v) {
-    if (scrambled(v) > UINT32_MAX / range.one_in) continue;
-    list_edges_at(v);
-    if (listed_count_ >= k_listed_at_once) cost_listed(take);
-  }
-  cost_listed(take);
-}
-
+/// Calls take(edge, cost) for the listed edges.
 template <typename Take>
 void EdgeRanking::cost_listed(const Take& take) {
-  const auto give = [&](const Edge& e, const EdgeCost& cost) {
-    if (std::isfinite(cost.ranking)) take(e, cost);
-  };
+  const Vec3* const positions = input_.positions.data();
+  const std::uint8_t* const flags = input_.flags.data();
   for (std::size_t first = 0; first < listed_count_; first += EdgeCosts::k_size) {
     const std::size_t count = std::min(EdgeCosts::k_size, listed_count_ - first);
+    const Edge* const edges = listed_.data() + first;
     for (std::size_t i = 0; i < count; ++i) {
-      const auto [a, b] = listed_[first + i];
-      costs_.put(i, quadrics_[a], quadrics_[b], (input_.positions[b] - input_.positions[a]) * 0.5);
+      const auto [a, b] = edges[i];
+      costs_.put(i, quadrics_[a], quadrics_[b], (positions[b] - positions[a]) * 0.5);
     }
     costs_.compute();
     for (std::size_t i = 0; i < count; ++i) {
-      const Edge& e = listed_[first + i];
-      const std::uint8_t one_border = (input_.flags[e.a] ^ input_.flags[e.b]) & k_border;
-      give(e, one_border == 0 ? costs_.get(i) : cost_of_border_end(e));
+      const Edge& e = edges[i];
+      const std::uint8_t one_border = (flags[e.a] ^ flags[e.b]) & k_border;
+      take(e, one_border == 0 ? costs_.get(i) : cost_of_border_end(e));
     }
   }
   listed_count_ = 0;
@@ -141,11 +139,18 @@ EdgeCost EdgeRanking::cost_of_border_end(const Edge& e) const {
 std::uint64_t EdgeRanking::sample_costs(std::uint32_t one_in) {
   starts_.assign(bucket_of(k_any_cost) + 1, 0);
   std::uint64_t sampled = 0;
-  const auto vertices = static_cast<std::uint32_t>(input_.positions.size());
-  for_costs({0, vertices, one_in}, [&](const Edge&, const EdgeCost& cost) {
-    ++starts_[bucket_of(key_of(cost.ranking))];
+  const auto count = [&](const Edge&, const EdgeCost& cost) {
+    const CostKey key = key_of(cost.ranking);
+    if (key > k_greatest_finite) return;
+    ++starts_[bucket_of(key)];
     ++sampled;
-  });
+  };
+  const auto vertices = static_cast<std::uint32_t>(input_.positions.size());
+  for (std::uint32_t first = 0; vertices - first >= one_in; first += one_in) {
+    list_edges_at(first + scrambled(first) % one_in);
+    if (listed_count_ >= k_listed_at_once) cost_listed(count);
+  }
+  cost_listed(count);
   return sampled;
 }
 
@@ -169,26 +174,43 @@ CostKey EdgeRanking::estimate_limit(double share, double most) {
 
 std::span<const RankedEdge> EdgeRanking::cheapest(std::uint32_t first, std::uint32_t last,
                                                   const RankLimits& limits) {
-  found_.clear();
-  for_costs({first, last, 1}, [&](const Edge& e, const EdgeCost& cost) {
+  found_count_ = 0;
+  const CostKey greatest = std::min(limits.key, k_greatest_finite);
+  const auto find = [&](const Edge& e, const EdgeCost& cost) {
     const CostKey key = key_of(cost.ranking);
-    if (key <= limits.key && cost.least <= limits.max_cost) found_.push_back({e.a, e.b, key});
-  });
+    found_[found_count_] = {e.a, e.b, key};
+    const bool cheap = (key <= greatest) & (cost.least <= limits.max_cost);
+    found_count_ += cheap ? 1 : 0;
+  };
+  const auto cost_all = [&] {
+    if (found_.size() < found_count_ + listed_count_)
+      found_.resize(2 * (found_count_ + listed_count_));
+    cost_listed(find);
+  };
+  for (std::uint32_t v = first; v < last; ++v) {
+    list_edges_at(v);
+    if (listed_count_ >= k_listed_at_once) cost_all();
+  }
+  cost_all();
   sort_found();
   return sorted_;
 }
 
 void EdgeRanking::sort_found() {
-  sorted_.resize(found_.size());
-  if (found_.empty()) return;
-  const auto [low, high] =
-      std::minmax_element(found_.begin(), found_.end(),
-                          [](const RankedEdge& x, const RankedEdge& y) { return x.key < y.key; });
-  const std::uint32_t base = bucket_of(low->key);
-  starts_.assign(bucket_of(high->key) - base + 2, 0);
-  for (const RankedEdge& e : found_) ++starts_[bucket_of(e.key) - base + 1];
+  const std::span<const RankedEdge> found(found_.data(), found_count_);
+  sorted_.resize(found.size());
+  if (found.empty()) return;
+  CostKey low = UINT32_MAX;
+  CostKey high = 0;
+  for (const RankedEdge& e : found) {
+    low = std::min(low, e.key);
+    high = std::max(high, e.key);
+  }
+  const std::uint32_t base = bucket_of(low);
+  starts_.assign(bucket_of(high) - base + 2, 0);
+  for (const RankedEdge& e : found) ++starts_[bucket_of(e.key) - base + 1];
   for (std::size_t i = 1; i < starts_.size(); ++i) starts_[i] += starts_[i - 1];
-  for (const RankedEdge& e : found_) sorted_[starts_[bucket_of(e.key) - base]++] = e;
+  for (const RankedEdge& e : found) sorted_[starts_[bucket_of(e.key) - base]++] = e;
 }
 
 }  // namespace meshfarm

@@ -65,16 +65,9 @@ class EdgeRanking {
     std::uint32_t a;
     std::uint32_t b;
   };
-  struct Range {
-    std::uint32_t first;
-    std::uint32_t last;
-    std::uint32_t one_in;
-  };
   void sum_planes();
   void sum_border_planes();
   void list_edges_at(std::uint32_t vertex);
-  template <typename Take>
-  void for_costs(const Range& range, const Take& take);
   template <typename Take>
   void cost_listed(const Take& take);
   EdgeCost cost_of_border_end(const Edge& e) const;
@@ -86,7 +79,8 @@ class EdgeRanking {
   std::vector<Edge> listed_;  // the first listed_count_
   std::size_t listed_count_ = 0;
   EdgeCosts costs_;
-  std::vector<RankedEdge> found_;
+  std::vector<RankedEdge> found_;  // the first found_count_
+  std::size_t found_count_ = 0;
   std::vector<RankedEdge> sorted_;
   std::vector<std::uint32_t> starts_;
 };

@@ -122,11 +122,7 @@ TEST_CASE("ranking agrees with the cost of the best position") {
         exact[i].squared_length = 4 * squared_length(half);
         exact[i].add(a, half * -1.0);
         exact[i].add(b, half);
-        FloatQuadric float_a;
-        FloatQuadric float_b;
-        float_a.add(a);
-        float_b.add(b);
-        costs.put(i, float_a, float_b, half);
+        costs.put(i, FloatQuadric(a), FloatQuadric(b), half);
       }
       costs.compute();
       for (std::size_t i = 0; i < EdgeCosts::k_size; ++i) {
@@ -144,10 +140,9 @@ TEST_CASE("ranking agrees with the cost of the best position") {
 
 TEST_CASE("ranking takes planes without area, and prefers short edges where planes cost nothing") {
   EdgeCosts costs;
-  FloatQuadric flat;
   Quadric plane;
   plane.add({0, 0, 1}, 1);
-  flat.add(plane);
+  const FloatQuadric flat(plane);
   costs.put(0, {}, {}, {1, 0, 0});
   costs.put(1, flat, flat, {1, 0, 0});
   costs.put(2, flat, flat, {0.5, 0, 0});

@@ -63,3 +63,17 @@ TEST_CASE("a damaged record ends the journal there") {
   CHECK(content.torn_bytes == 12 + 13);
   CHECK_THROWS_AS(parse_journal("no journal at all", "j"), DataError);
 }
+
+TEST_CASE("records that are appended together are records apart") {
+  const test::TempFolder folder;
+  const auto path = folder.path() / "journal";
+  const std::vector<std::string> records = {"one", "", "three"};
+  {
+    JournalWriter writer(path);
+    writer.append_all(records);
+    writer.append_all({});
+    writer.append("four");
+  }
+  CHECK(parse_journal(read_file(path), "journal").records ==
+        std::vector<std::string>{"one", "", "three", "four"});
+}

@@ -1,0 +1,72 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#include "geometry/collapse_star.hpp"
+
+namespace meshfarm {
+namespace {
+
+constexpr double k_cos_75_squared = 0.066987298107780676;
+// Of the angle at the new vertex: near 0 and near 180 degrees alike are as good as no area.
+constexpr double k_least_sine_squared = 1e-6;
+
+}  // namespace
+
+void CollapseStar::sum_planes(EdgeQuadric& quadric) const {
+  const auto sum = [](const Pair& pair) { return pair[0] + pair[1]; };
+  const Sums& s = sums_;
+  quadric.a = quadric.a + Quadric{sum(s.xx), sum(s.xy), sum(s.xz), sum(s.yy), sum(s.yz), sum(s.zz)};
+  quadric.b = quadric.b + Vec3{sum(s.bx), sum(s.by), sum(s.bz)};
+  quadric.c += sum(s.c);
+}
+
+/// A sliver of the input may stay one, or nothing round it could ever collapse.
+bool CollapseStar::is_acceptable(const Two& two, int lane, Vec3 x) {
+  const auto at = [&](const Vec3Pair& a) { return Vec3{a.x[lane], a.y[lane], a.z[lane]}; };
+  const Vec3 p = at(two.p);
+  const Vec3 q = at(two.q);
+  const Vec3 end = at(two.end);
+  const Vec3 old_normal = at(two.normal);
+  const Vec3 normal = meshfarm::cross(p - x, q - x);
+  const double size = squared_length(normal);
+  const double old_size = squared_length(old_normal);
+  const double turn = meshfarm::dot(normal, old_normal);
+  const bool turned = !(turn > 0 && turn * turn >= k_cos_75_squared * size * old_size);
+  if (turned && old_size > 0) return false;
+  const double scale = squared_length(p - x) * squared_length(q - x);
+  if (size > k_least_sine_squared * scale) return true;
+  const double old_scale = squared_length(p - end) * squared_length(q - end);
+  return old_size <= k_least_sine_squared * old_scale && size * old_scale >= old_size * scale &&
+         (size > 0 || old_size == 0);
+}
+
+std::optional<double> CollapseStar::lost_area(Vec3 x) const {
+  Pair twice_lost = sums_.twice_area;
+  const Vec3Pair to = from(x);
+  for (std::uint32_t i = 0; i < size_; ++i) {
+    const Two& two = pairs_[i];
+    const Vec3Pair p = minus(two.p, to);
+    const Vec3Pair q = minus(two.q, to);
+    const Vec3Pair normal = cross(p, q);
+    Pair size;
+    Pair turn;
+    Pair squared_p;
+    Pair squared_q;
+    dot(normal, normal, size);
+    dot(normal, two.normal, turn);
+    dot(p, p, squared_p);
+    dot(q, q, squared_q);
+    const Mask good = (turn > 0) & (turn * turn >= k_cos_75_squared * size * two.squared_size) &
+                      (size > k_least_sine_squared * (squared_p * squared_q));
+    const Mask doubtful = two.stays & ~good;
+    if ((doubtful[0] | doubtful[1]) != 0) {
+      if (doubtful[0] != 0 && !is_acceptable(two, 0, x)) return {};
+      if (doubtful[1] != 0 && !is_acceptable(two, 1, x)) return {};
+    }
+    Pair length;
+    root(size, length);
+    twice_lost -= reinterpret_cast<Pair>(reinterpret_cast<Mask>(length) & two.stays);
+  }
+  return 0.5 * (twice_lost[0] + twice_lost[1]);
+}
+
+}  // namespace meshfarm
