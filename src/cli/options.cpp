@@ -57,6 +57,9 @@ void TargetOptions::add(po::options_description& options) {
   options.add_options()("ratio", po::value(&run.ratio),
                         "share of the input's triangles to keep, as 0.01")(
       "triangles", po::value(&run.triangles), "number of triangles to keep")(
+      "error", po::value(&error)->value_name("LENGTH"),
+      "as few triangles as keep this distance from the input (measured at points of it): in the "
+      "mesh's unit, or 0.1% of the diagonal")(
       "allocation", po::value(&allocation)->default_value(allocation),
       "threshold: one cost threshold for all parts; uniform: the same ratio in every part")(
       "finish", po::value(&finish)->default_value(finish),
@@ -66,11 +69,15 @@ void TargetOptions::add(po::options_description& options) {
 }
 
 void TargetOptions::check() {
-  if ((run.ratio != 0) == (run.triangles != 0)) {
-    throw UsageError("give either --ratio or --triangles, above 0");
-  }
-  if (run.triangles == 0 && !(run.ratio > 0 && run.ratio <= 1)) {
+  const int given =
+      (run.ratio != 0 ? 1 : 0) + (run.triangles != 0 ? 1 : 0) + (error.empty() ? 0 : 1);
+  if (given != 1) throw UsageError("give one of --ratio, --triangles and --error, above 0");
+  if (run.ratio != 0 && !(run.ratio > 0 && run.ratio <= 1)) {
     throw UsageError("--ratio must be above 0 and not above 1");
+  }
+  if (!error.empty()) {
+    run.error = parse_length(error, "--error");
+    if (!(run.error.value > 0)) throw UsageError("--error must be above 0");
   }
   if (allocation != "threshold" && allocation != "uniform") {
     throw UsageError("--allocation is 'threshold' or 'uniform', not '" + allocation + "'");
@@ -90,7 +97,9 @@ std::vector<std::string> TargetOptions::words() const {
   if (!drop_components.empty()) {
     words.insert(words.end(), {"--drop-components", drop_components});
   }
-  if (run.triangles != 0) {
+  if (!error.empty()) {
+    words.insert(words.end(), {"--error", error});
+  } else if (run.triangles != 0) {
     words.insert(words.end(), {"--triangles", std::to_string(run.triangles)});
   } else {
     char text[32];  // the shortest text that reads back as the same number

@@ -31,9 +31,10 @@ struct TalkOptions {
   ProgressStyle progress() const;
 };
 
-/// --ratio, --triangles, --allocation, --finish, --drop-components.
+/// --ratio, --triangles, --error, --allocation, --finish, --drop-components.
 struct TargetOptions {
   RunOptions run;
+  std::string error;
   std::string drop_components;
   std::string allocation = "threshold";
   std::string finish = "global";

@@ -3,7 +3,7 @@
 //
 // A simplified part, kind "RSLT", version 1; the payload of a sealed file:
 //   position type u8 | boundary vertices u32 | rungs u32 |
-//   rungs x (level i32 | vertices u64 | triangles u64 | free triangles u64) |
+//   rungs x (level i32 | vertices u64 | triangles u64 | free triangles u64 | error f64) |
 //   rungs x (positions | triangles)            as in a part, finest rung first
 //   area of the part f64 | samples u64 | samples, 3 numbers each, of the part's surface
 // The summary that travels with the message:
@@ -31,6 +31,7 @@ void put_rungs(ByteWriter& out, const std::vector<Rung>& rungs) {
     out.put(rung.vertices);
     out.put(rung.triangles);
     out.put(rung.free_triangles);
+    out.put(rung.error);
   }
 }
 
@@ -44,6 +45,8 @@ std::vector<Rung> get_rungs(ByteReader& in) {
     rung.vertices = in.get<std::uint64_t>();
     rung.triangles = in.get<std::uint64_t>();
     rung.free_triangles = in.get<std::uint64_t>();
+    rung.error = in.get<double>();
+    if (!std::isfinite(rung.error) || rung.error < 0) in.fail("impossible error");
     if (rung.free_triangles > rung.triangles) in.fail("more free triangles than triangles");
     if (i > 0 && (rung.level <= rungs.back().level || rung.triangles > rungs.back().triangles)) {
       in.fail("rungs out of order");
@@ -78,8 +81,9 @@ ResultSummary decode_summary(std::string_view bytes, std::string_view what) {
   return summary;
 }
 
-void ResultEncoder::add(std::int32_t level, const Mesh& mesh, std::uint64_t free_triangles) {
-  rungs_.push_back({level, mesh.positions.size(), mesh.triangles.size(), free_triangles});
+void ResultEncoder::add(std::int32_t level, const Mesh& mesh, std::uint64_t free_triangles,
+                        double error) {
+  rungs_.push_back({level, mesh.positions.size(), mesh.triangles.size(), free_triangles, error});
   ByteWriter out;
   put_mesh(out, mesh, positions_);
   meshes_ += out.bytes();

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include <meshfarm/geometry/components.hpp>
@@ -40,6 +42,7 @@ class Assembly {
     summary_.manifest = manifest;
     summary_.output = options.output.string();
     summary_.target = target_triangles(manifest, run);
+    summary_.max_error = run.error.in(manifest.box);
     summary_.dropped_degenerate = manifest.dropped_degenerate;
     summary_.dropped_duplicate = manifest.dropped_duplicate;
   }
@@ -52,9 +55,13 @@ class Assembly {
         drop_small_components(stitched.mesh, run_.drop_components.in(manifest_.box));
     summary_.stitched = stitched.mesh.triangles.size();
     summary_.stitch_seconds = watch.lap();
-    const Mesh result = finish(std::move(stitched));
+    const Mesh result = summary_.max_error > 0 ? finish_to_error(std::move(stitched.mesh))
+                                               : finish(std::move(stitched));
+    summary_.triangles = result.triangles.size();
+    summary_.vertices = result.positions.size();
     summary_.finish_seconds = watch.lap();
-    measure_error(result);
+    summary_.error = measure_error(result);
+    for (const SurfaceSamples& part : samples_) summary_.error_samples += part.points.size();
     summary_.measure_seconds = watch.lap();
     write_ply(options_.output, result, manifest_.positions);
     summary_.write_seconds = watch.lap();
@@ -108,13 +115,14 @@ class Assembly {
     boundary.triangles.assign(stitched.triangles.end() - static_cast<std::ptrdiff_t>(count),
                               stitched.triangles.end());
     std::swap(boundary.positions, stitched.positions);
-    samples_.push_back(sample_surface(boundary, {.samples = samples_for(manifest_, count)}));
+    samples_.push_back(sample_surface(boundary, {.samples = samples_for(manifest_, run_, count)}));
     std::swap(boundary.positions, stitched.positions);
   }
 
   /// Every set of samples counts by the area it stands for.
-  void measure_error(const Mesh& result) {
-    if (result.triangles.empty()) return;
+  Distance measure_error(const Mesh& result) const {
+    Distance error;
+    if (result.triangles.empty()) return error;
     const DistanceMeter meter(result, 0);
     double area = 0;
     double squares = 0;
@@ -122,14 +130,40 @@ class Assembly {
       const Distance d = meter.measure(part.points);
       if (!part.points.empty()) area += part.area;
       squares += part.area * d.rms * d.rms;
-      summary_.error.mean += part.area * d.mean;
-      summary_.error.max = std::max(summary_.error.max, d.max);
-      summary_.error_samples += part.points.size();
-      tell("error", 0, 0);
+      error.mean += part.area * d.mean;
+      error.max = std::max(error.max, d.max);
+      check_stop();
     }
-    if (!(area > 0)) return;
-    summary_.error.rms = std::sqrt(squares / area);
-    summary_.error.mean /= area;
+    if (!(area > 0)) return error;
+    error.rms = std::sqrt(squares / area);
+    error.mean /= area;
+    return error;
+  }
+
+  /// Takes triangles away by a share at a time as long as the error is kept, then goes on from the
+  /// last good mesh by smaller shares.
+  Mesh finish_to_error(Mesh good) {
+    constexpr double k_first_step = 0.7;
+    constexpr double k_last_step = 0.99;
+    const SimplifyOptions options{.locked_vertices = 0, .positions = manifest_.positions};
+    bool cleaned = false;
+    for (double step = k_first_step; step < k_last_step; step = std::sqrt(step)) {
+      Simplifier simplifier(good, options);
+      if (!std::exchange(cleaned, true)) {
+        summary_.dropped_degenerate += simplifier.dropped_degenerate();
+        summary_.dropped_duplicate += simplifier.dropped_duplicate();
+      }
+      while (true) {
+        const std::uint64_t before = simplifier.triangles();
+        simplifier.reduce(
+            {.triangles = static_cast<std::uint64_t>(static_cast<double>(before) * step)});
+        tell("finish, " + std::to_string(simplifier.triangles()) + " triangles", 0, 0);
+        if (measure_error(simplifier.mesh()).max > summary_.max_error) break;
+        good = simplifier.mesh();
+        if (simplifier.triangles() == before) return good;
+      }
+    }
+    return good;
   }
 
   Mesh finish(StitchedMesh stitched) {
@@ -154,19 +188,17 @@ class Assembly {
     }
     summary_.dropped_degenerate += simplifier.dropped_degenerate();
     summary_.dropped_duplicate += simplifier.dropped_duplicate();
-    summary_.triangles = simplifier.triangles();
-    summary_.vertices = simplifier.mesh().positions.size();
-    summary_.why_not_exact = why_not_exact(before);
+    summary_.why_not_exact = why_not_exact(before, simplifier.triangles());
     return simplifier.mesh();
   }
 
-  std::string why_not_exact(std::uint64_t before) const {
-    if (summary_.triangles == summary_.target) return {};
+  std::string why_not_exact(std::uint64_t before, std::uint64_t after) const {
+    if (after == summary_.target) return {};
     if (summary_.target > before) {
       return summary_.dropped_components.components == 0 ? "the input has no more"
                                                          : "no more is left of the input";
     }
-    if (summary_.triangles < summary_.target) {
+    if (after < summary_.target) {
       return "where no open border is left, triangles go in pairs";
     }
     return run_.finish == Finish::boundary

@@ -21,6 +21,13 @@ constexpr double k_floor = 1.0 / 16;
 /// Points of the input by which the error of the result is measured: the RMS of as many varies by
 /// less than one per cent.
 constexpr double k_error_samples = 100'000;
+/// A bound is on the greatest distance, which more points find more of.
+constexpr double k_bound_samples = 400'000;
+
+/// With a bound on the error, a ladder begins at this share of the part, or as it came if even that
+/// is too far from it; and parts may take up this share of the bound, the finish the rest.
+constexpr double k_error_start = 0.5;
+constexpr double k_error_share = 0.5;
 
 /// How many times the target the parts together keep for the finish to choose from: twice where
 /// much is taken away (measured: no better with more), less where little is, as then seams are few.
@@ -58,7 +65,8 @@ class Rounds {
     if (!asked_.empty()) throw Error("rungs are chosen before all parts are accepted");
     std::vector<ChosenRung> chosen;
     for (std::size_t p = 0; p < ladders_.size(); ++p) {
-      chosen.push_back({files_[p], rung_at(ladders_[p], level_)});
+      const auto last = static_cast<std::uint32_t>(ladders_[p].size() - 1);
+      chosen.push_back({files_[p], by_error() ? last : rung_at(ladders_[p], level_)});
     }
     return chosen;
   }
@@ -69,13 +77,32 @@ class Rounds {
                                                             1, manifest_.triangles())));
   }
 
+  bool by_error() const { return options_.error.value > 0; }
+
   Job job_of(std::uint32_t part) const {
     const PartEntry& entry = manifest_.parts[part];
-    const double share = ratio() * static_cast<double>(entry.triangles);
     SimplifyParameters parameters;
     parameters.allocation = options_.allocation;
-    parameters.samples = samples_for(manifest_, entry.triangles);
+    parameters.samples = samples_for(manifest_, options_, entry.triangles);
     parameters.cost_unit = cost_unit(manifest_.box.diagonal());
+    by_error() ? set_error_bound(parameters, part) : set_share(parameters, part);
+    return {
+        std::string(k_simplify_kind), {entry.file}, encode_parameters(parameters), entry.triangles};
+  }
+
+  void set_error_bound(SimplifyParameters& parameters, std::uint32_t part) const {
+    const std::uint64_t triangles = manifest_.parts[part].triangles;
+    const bool first = headroom_[part] == k_first_headroom;
+    parameters.allocation = Allocation::threshold;
+    parameters.max_error = k_error_share * options_.error.in(manifest_.box);
+    parameters.start_triangles =
+        first ? static_cast<std::uint64_t>(k_error_start * static_cast<double>(triangles))
+              : triangles;
+  }
+
+  void set_share(SimplifyParameters& parameters, std::uint32_t part) const {
+    const PartEntry& entry = manifest_.parts[part];
+    const double share = ratio() * static_cast<double>(entry.triangles);
     parameters.floor_triangles = static_cast<std::uint64_t>(share * k_floor);
     double start = share;
     if (options_.allocation == Allocation::threshold) {
@@ -85,8 +112,6 @@ class Rounds {
       }
     }
     parameters.start_triangles = static_cast<std::uint64_t>(start);
-    return {
-        std::string(k_simplify_kind), {entry.file}, encode_parameters(parameters), entry.triangles};
   }
 
   void take(std::span<const AcceptedJob> round) {
@@ -97,17 +122,27 @@ class Rounds {
     }
   }
 
+  /// Whether a part was taken past what it may be in the end.
+  bool too_far(std::uint32_t part) const {
+    const Rung& first = ladders_[part].front();
+    return by_error() ? first.error > k_error_share * options_.error.in(manifest_.box)
+                      : first.level > level_;
+  }
+
   void ask_again() {
     asked_.clear();
+    if (!by_error()) choose_level();
+    if (options_.allocation == Allocation::uniform && !by_error()) return;
+    for (std::uint32_t p = 0; p < ladders_.size(); ++p) {
+      if (!too_far(p)) continue;
+      headroom_[p] *= k_more_headroom;
+      asked_.push_back(p);
+    }
+  }
+
+  void choose_level() {
     const double wanted = provision(ratio()) * static_cast<double>(target_);
     level_ = common_level(ladders_, static_cast<std::uint64_t>(wanted));
-    if (options_.allocation == Allocation::uniform) return;
-    for (std::uint32_t p = 0; p < ladders_.size(); ++p) {
-      if (ladders_[p].front().level > level_) {
-        headroom_[p] *= k_more_headroom;
-        asked_.push_back(p);
-      }
-    }
   }
 
   const Manifest& manifest_;
@@ -122,10 +157,12 @@ class Rounds {
 
 }  // namespace
 
-std::uint64_t samples_for(const Manifest& manifest, std::uint64_t triangles) {
+std::uint64_t samples_for(const Manifest& manifest, const RunOptions& options,
+                          std::uint64_t triangles) {
   const double share = static_cast<double>(triangles) /
                        static_cast<double>(std::max<std::uint64_t>(1, manifest.triangles()));
-  return static_cast<std::uint64_t>(std::ceil(share * k_error_samples));
+  const double all = options.error.value > 0 ? k_bound_samples : k_error_samples;
+  return static_cast<std::uint64_t>(std::ceil(share * all));
 }
 
 std::uint32_t rung_at(std::span<const Rung> ladder, std::int32_t level) {

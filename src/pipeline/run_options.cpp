@@ -12,8 +12,10 @@ namespace meshfarm {
 
 std::uint64_t target_triangles(const Manifest& manifest, const RunOptions& options) {
   if (options.triangles != 0) return options.triangles;
+  if (options.error.value > 0) return 0;  // as few as the error allows
   if (!(options.ratio > 0 && options.ratio <= 1)) {
-    throw UsageError("give the size of the result: --ratio above 0 and up to 1, or --triangles");
+    throw UsageError(
+        "give the size of the result: --ratio above 0 and up to 1, --triangles, or --error");
   }
   // Of the clean input: what was dropped as degenerate is no triangle to keep a share of.
   const double wanted = options.ratio * static_cast<double>(manifest.triangles());
@@ -27,6 +29,7 @@ std::uint64_t run_key(const Manifest& manifest, const RunOptions& options) {
   out.put(options.allocation);
   out.put(options.finish);
   out.put(options.drop_components.in(manifest.box));
+  out.put(options.error.in(manifest.box));
   const std::uint64_t key = checksum(out.bytes());
   return key == 0 ? 1 : key;  // 0 means "any run" to the farm
 }

@@ -14,7 +14,8 @@
 namespace meshfarm {
 namespace {
 
-// Version 1: allocation u8 | start u64 | floor u64 | samples u64 | cost unit f64.
+// Version 1: allocation u8 | start u64 | floor u64 | samples u64 | cost unit f64 |
+// greatest error f64.
 constexpr std::uint8_t k_version = 1;
 constexpr std::uint64_t k_max_samples = 100'000'000;
 constexpr std::int32_t k_top_level = 52;
@@ -24,7 +25,8 @@ constexpr std::int32_t k_input_level = -1;  // of a rung that is the part as it 
 class LadderBuilder {
  public:
   LadderBuilder(Part part, const SimplifyParameters& parameters, const JobContext& context)
-      : parameters_(parameters),
+      : samples_(sample_surface(part.mesh, {.samples = parameters.samples, .threads = 1})),
+        parameters_(parameters),
         context_(context),
         input_triangles_(part.mesh.triangles.size()),
         simplifier_(
@@ -41,8 +43,10 @@ class LadderBuilder {
     }
   }
 
-  void set_samples(SurfaceSamples samples) { result_.set_samples(std::move(samples)); }
-  std::string file() const { return result_.finish(); }
+  std::string file() {
+    result_.set_samples(std::move(samples_));
+    return result_.finish();
+  }
   ResultSummary summary() const {
     return {result_.rungs(), simplifier_.dropped_degenerate(), simplifier_.dropped_duplicate()};
   }
@@ -68,7 +72,7 @@ class LadderBuilder {
       if (simplifier_.free_triangles() == 0) return;
       reduce({.triangles = parameters_.floor_triangles,
               .max_cost = level_cost(level, parameters_.cost_unit)});
-      if (simplifier_.triangles() < result_.rungs().back().triangles) snapshot(level);
+      if (simplifier_.triangles() < result_.rungs().back().triangles && !snapshot(level)) return;
     }
   }
 
@@ -81,10 +85,23 @@ class LadderBuilder {
     if (given_up) throw IncompleteError("the job was given up");
   }
 
-  void snapshot(std::int32_t level) {
-    result_.add(level, simplifier_.mesh(), simplifier_.free_triangles());
+  /// Keeps the mesh as it is as a rung. False, and nothing kept, if it is too far from the part;
+  /// a first rung is kept whatever it is.
+  bool snapshot(std::int32_t level) {
+    const double error = measured_error(level);
+    if (error > parameters_.max_error && !result_.empty()) return false;
+    result_.add(level, simplifier_.mesh(), simplifier_.free_triangles(), error);
+    return true;
   }
 
+  double measured_error(std::int32_t level) const {
+    const bool measured = parameters_.max_error > 0 && level != k_input_level;
+    if (!measured || simplifier_.mesh().triangles.empty()) return 0;
+    // One thread: a worker is one of many on its host.
+    return DistanceMeter(simplifier_.mesh(), 1).measure(samples_.points).max;
+  }
+
+  SurfaceSamples samples_;  // made before the part is simplified
   const SimplifyParameters& parameters_;
   const JobContext& context_;
   std::uint64_t input_triangles_;
@@ -113,6 +130,7 @@ std::string encode_parameters(const SimplifyParameters& parameters) {
   out.put(parameters.floor_triangles);
   out.put(parameters.samples);
   out.put(parameters.cost_unit);
+  out.put(parameters.max_error);
   return out.take();
 }
 
@@ -127,6 +145,7 @@ SimplifyParameters decode_parameters(std::string_view bytes) {
   parameters.samples = in.get<std::uint64_t>();
   if (parameters.samples > k_max_samples) in.fail("too many samples");
   parameters.cost_unit = in.get<double>();
+  parameters.max_error = in.get<double>();
   in.expect_end();
   return parameters;
 }
@@ -150,10 +169,7 @@ JobOutput simplify_part(const Job& job, const JobContext& context) {
   if (job.inputs.size() != 1) throw DataError("a simplify job takes one part");
   const SimplifyParameters parameters = decode_parameters(job.parameters);
   Part part = read_part(context.stage, job.inputs[0]);
-  // One thread: a worker is one of many on its host.
-  SurfaceSamples samples = sample_surface(part.mesh, {.samples = parameters.samples, .threads = 1});
   LadderBuilder ladder(std::move(part), parameters, context);
-  ladder.set_samples(std::move(samples));
   ladder.build();
   const ResultName name{key_of(job).value, context.attempt, context.incarnation};
   return {context.stage.publish(name, ladder.file(), to_hex(context.incarnation)),

@@ -136,6 +136,7 @@ std::string render(const RunSummary& s, Format format) {
         {"input", input_json(m)},
         {"output", {{"path", s.output}, {"triangles", s.triangles}, {"vertices", s.vertices}}},
         {"target", s.target},
+        {"max_error", s.max_error > 0 ? Json(s.max_error / m.box.diagonal()) : Json(nullptr)},
         {"exact", s.why_not_exact.empty()},
         {"why_not_exact", s.why_not_exact},
         {"error", s.error_samples == 0 ? Json(nullptr) : error_json(s)},

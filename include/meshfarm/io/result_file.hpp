@@ -18,6 +18,7 @@ struct Rung {
   std::uint64_t vertices = 0;
   std::uint64_t triangles = 0;       // falling along the ladder
   std::uint64_t free_triangles = 0;  // those without a locked vertex
+  double error = 0;                  // greatest distance from the samples, where it was measured
 };
 
 /// What a simplified part tells of itself without being read: travels with the result message.
@@ -35,7 +36,7 @@ class ResultEncoder {
  public:
   ResultEncoder(PositionType positions, std::uint32_t boundary_vertices)
       : positions_(positions), boundary_vertices_(boundary_vertices) {}
-  void add(std::int32_t level, const Mesh& mesh, std::uint64_t free_triangles);
+  void add(std::int32_t level, const Mesh& mesh, std::uint64_t free_triangles, double error = 0);
   /// Points of the part as it came, by which the error of the final mesh is measured.
   void set_samples(SurfaceSamples samples) { samples_ = std::move(samples); }
   bool empty() const { return rungs_.empty(); }

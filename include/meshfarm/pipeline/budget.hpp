@@ -30,7 +30,8 @@ std::vector<ChosenRung> choose_rungs(const Manifest& manifest, const RunOptions&
                                      std::span<const AcceptedJob> accepted);
 
 /// How many points of a surface of so many of the input's triangles the error is measured by.
-std::uint64_t samples_for(const Manifest& manifest, std::uint64_t triangles);
+std::uint64_t samples_for(const Manifest& manifest, const RunOptions& options,
+                          std::uint64_t triangles);
 
 /// Of one ladder: the coarsest rung that is not above `level`, else its first.
 std::uint32_t rung_at(std::span<const Rung> ladder, std::int32_t level);

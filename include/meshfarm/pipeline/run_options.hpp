@@ -31,6 +31,7 @@ struct Length {
 struct RunOptions {
   double ratio = 0;  // of the input's triangles; used when triangles is 0
   std::uint64_t triangles = 0;
+  Length error;  // where above 0: as few triangles as keep this distance
   Allocation allocation = Allocation::threshold;
   Finish finish = Finish::global;
   Length drop_components;  // components with a smaller diagonal are left out

@@ -20,7 +20,8 @@ enum class Format { text, json };
 struct RunSummary {
   Manifest manifest;
   std::string output;           // path of the result
-  std::uint64_t target = 0;     // triangles asked for
+  std::uint64_t target = 0;     // triangles asked for, 0: as few as max_error allows
+  double max_error = 0;         // the greatest distance allowed, in the mesh's unit; 0: any
   std::uint64_t triangles = 0;  // triangles made
   std::uint64_t vertices = 0;
   std::string why_not_exact;             // empty when triangles == target

@@ -133,6 +133,21 @@ TEST_CASE("the paper's way reaches about its count without touching the inside a
   CHECK(t.border_edges == 0);
 }
 
+TEST_CASE("a bound on the error is kept, with few triangles, and a tighter one needs more") {
+  const test::TempFolder folder;
+  std::uint64_t before = 12'000;
+  for (const double bound : {0.002, 0.02, 0.1}) {
+    CAPTURE(bound);
+    const Made made = simplify(test::torus(100, 60), 6, {.error = {bound, false}},
+                               folder.path() / std::to_string(bound));
+    CHECK(made.summary.error.max <= bound);
+    CHECK(made.summary.error.max > bound / 3);
+    CHECK(measure_topology(made.mesh).euler == 0);
+    CHECK(made.summary.triangles * 10 < before * 7);
+    before = made.summary.triangles;
+  }
+}
+
 TEST_CASE("components that are smaller than asked for are left out, and counted") {
   Mesh mesh = test::torus(60, 40);  // 2.8 wide, and dust beside it
   for (int i = 0; i < 10; ++i) {
