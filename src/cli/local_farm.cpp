@@ -30,14 +30,14 @@ int run_local_farm(const LocalFarm& farm, const std::atomic<bool>& stop) {
   const Stage stage = Stage::open(farm.stage);
   decode_manifest(stage.read(ManifestName{}), stage.path(ManifestName{}).string());
   std::vector<std::string> quiet = {"--supervised"};
-  if (farm.talk.quiet) quiet.push_back("--quiet");
+  if (farm.talk.quiet) quiet.emplace_back("--quiet");
 
   Supervisor supervisor(stop);
   const std::vector<std::string> common =
       joined(joined({farm.stage}, joined(farm.target.words(), farm.network.words())), quiet);
   supervisor.start(joined({"ventilator"}, common));
   std::vector<std::string> sink = joined(joined({"sink"}, common), {"--output", farm.output});
-  if (farm.talk.json) sink.push_back("--json");
+  if (farm.talk.json) sink.emplace_back("--json");
   supervisor.start(sink);
   for (std::uint32_t i = 0; i < farm.workers; ++i) {
     supervisor.start(joined({"worker", farm.stage}, quiet));

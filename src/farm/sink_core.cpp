@@ -102,7 +102,7 @@ void SinkCore::take_result(const Result& result) {
     if (!told_all_) return;  // the worker says it again
     return say(Reject{member_.epoch(), result.worker, result.attempt, result.key, *failure});
   }
-  const JobOutput& output = std::get<JobOutput>(result.outcome);
+  const auto& output = std::get<JobOutput>(result.outcome);
   const ResultName name{result.key.value, result.attempt, result.incarnation};
   if (output.file.name != to_string(name)) {
     ++dropped_;

@@ -142,7 +142,7 @@ class VentilatorLoop {
   }
 
   void act(const PushJob& each) {
-    lanes_.at(each.worker).waiting.push_back(each.assignment);
+    lanes_.at(each.worker).waiting.emplace_back(each.assignment);
     flush(each.worker);
   }
 

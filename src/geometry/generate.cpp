@@ -40,7 +40,7 @@ struct Circle {
 /// cos and sin of an angle given in turns, 0 <= turn < 1: Taylor series within an eighth of a turn
 /// of the nearest quarter, good to the last bits of a double.
 Circle on_circle(double turn) {
-  const int quarter = static_cast<int>(turn * 4 + 0.5);
+  const int quarter = static_cast<int>(std::floor(turn * 4 + 0.5));
   const double x = (turn - quarter * 0.25) * 6.283185307179586476925;
   const double y = x * x;
   double c = 0, s = 0;

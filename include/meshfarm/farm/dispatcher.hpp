@@ -57,8 +57,8 @@ class Dispatcher {
   Dispatcher(Plan plan, DispatcherOptions options) : plan_(std::move(plan)), options_(options) {}
 
   Actions on_message(const PeerId& peer, const Message& message, FarmTime now);
-  Actions lane_opened(WorkerId worker, const std::string& address);
-  Actions lane_failed(WorkerId worker, const std::string& reason);
+  Actions lane_opened(WorkerId id, const std::string& address);
+  Actions lane_failed(WorkerId id, const std::string& reason);
   /// To be called about twice a heartbeat, when all messages that are there have been given.
   Actions tick(FarmTime now);
   /// Tells everybody that this ventilator leaves before the end.

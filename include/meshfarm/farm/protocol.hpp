@@ -32,11 +32,11 @@
 namespace meshfarm {
 
 inline constexpr std::uint16_t k_protocol_version = 1;
-inline constexpr std::size_t k_max_frame_bytes = 64 * 1024;
-inline constexpr std::size_t k_max_text_bytes = 1024;             // names, addresses, reasons
-inline constexpr std::size_t k_max_summary_bytes = 16 * 1024;     // JobOutput::summary
-inline constexpr std::size_t k_max_parameters_bytes = 32 * 1024;  // Job::parameters
-inline constexpr std::size_t k_max_list = 4096;                   // Job::inputs
+inline constexpr std::size_t k_max_frame_bytes = 65'536;
+inline constexpr std::size_t k_max_text_bytes = 1024;          // names, addresses, reasons
+inline constexpr std::size_t k_max_summary_bytes = 16'384;     // JobOutput::summary
+inline constexpr std::size_t k_max_parameters_bytes = 32'768;  // Job::parameters
+inline constexpr std::size_t k_max_list = 4096;                // Job::inputs
 
 /// Time as the farm's state machines see it: since any fixed moment, never going back.
 using FarmTime = std::chrono::milliseconds;

@@ -26,7 +26,7 @@ struct Mesh {
 /// The nearest number that a float can hold. Through memory, as g++ 12 drops the rounding of two
 /// neighbours when it packs them into a vector ((double)(float)x at -O2).
 inline double rounded_to_float(double x) {
-  const volatile float narrow = static_cast<float>(x);
+  const volatile auto narrow = static_cast<float>(x);
   return static_cast<double>(narrow);
 }
 
