@@ -12,8 +12,6 @@ namespace {
 
 constexpr std::uint32_t k_none = UINT32_MAX;
 
-// No vertex either; unlike k_none it is found in no ring.
-constexpr std::uint32_t k_gap = UINT32_MAX - 1;
 constexpr std::uint32_t k_compared_at_once = 8;
 
 // The neighbour of an open ring that no triangle begins at.
@@ -21,7 +19,6 @@ template <typename Ring>
 std::uint32_t last_neighbour(const Ring& ring) {
   const auto* const end = ring.next.data() + ring.size;
   for (std::uint32_t i = 0; i < ring.size; ++i) {
-    if (ring.prev[i] == k_gap) continue;
     if (std::find(ring.next.data(), end, ring.prev[i]) == end) return ring.prev[i];
   }
   return k_none;
@@ -36,52 +33,53 @@ std::uint32_t count_in(const Ring& ring, std::uint32_t vertex) {
 
 }  // namespace
 
-void CollapseJudge::walk(const End& end, Ring& ring) {
-  const std::span<const Corner> corners = state_.adjacency->at(end.vertex);
+/// Lists the triangles at one end. All is written always and counted if wanted: which triangles
+/// are there no processor guesses.
+CollapseJudge::Walk CollapseJudge::walk(const Walk& walk, Ring& ring) const {
   const std::uint32_t* const target = state_.target.data();
-  const Vec3* const positions = state_.positions.data();
-  const auto size = static_cast<std::uint32_t>(corners.size());
-  const Corner none{end.vertex, end.vertex};
-  std::uint32_t triangles = 0;
-  for (std::uint32_t i = 0; i < size; i += 2) {
-    const Corner& c0 = corners[i];
-    const Corner& c1 = i + 1 < size ? corners[i + 1] : none;
-    const std::array<std::uint32_t, 2> next{target[c0.next], target[c1.next]};
-    const std::array<std::uint32_t, 2> prev{target[c0.prev], target[c1.prev]};
-    CollapseStar::Mask there{};
-    CollapseStar::Mask shared{};
-    for (std::uint32_t l = 0; l < 2; ++l) {
-      // Equal after another collapse of this pass: the triangle is gone.
-      const bool gone = next[l] == prev[l];
-      there[l] = -static_cast<std::int64_t>(!gone);
-      shared[l] = -static_cast<std::int64_t>(next[l] == end.other) |
-                  -static_cast<std::int64_t>(prev[l] == end.other);
-      ring.next[i + l] = gone ? k_gap : next[l];
-      ring.prev[i + l] = gone ? k_gap : prev[l];
-      triangles += gone ? 0 : 1;
-    }
-    star_.add({positions[next[0]], positions[prev[0]], positions[next[1]], positions[prev[1]],
-               there & (~shared | end.counts_shared), there & ~shared},
-              end.from_middle);
+  const std::uint32_t other = walk.other;
+  Corner* shared_end = walk.shared;
+  Corner* kept_end = walk.kept;
+  std::uint32_t size = 0;
+  for (const Corner& c : state_.adjacency->at(walk.vertex)) {
+    const std::uint32_t next = target[c.next];
+    const std::uint32_t prev = target[c.prev];
+    ring.next[size] = next;
+    ring.prev[size] = prev;
+    // Equal after another collapse of this pass: the triangle is gone.
+    const std::uint32_t there = next != prev ? 1 : 0;
+    const std::uint32_t shared = ((next == other) | (prev == other)) ? 1 : 0;
+    *shared_end = {next, prev};
+    *kept_end = {next, prev};
+    shared_end += there & shared;
+    kept_end += there & ~shared;
+    size += there;
   }
-  ring.size = size + size % 2;
-  ring.triangles = triangles;
-  ring.border = (state_.flags[end.vertex] & k_border) != 0;
+  ring.size = size;
+  ring.border = (state_.flags[walk.vertex] & k_border) != 0;
+  return {walk.vertex, other, shared_end, kept_end};
 }
 
-std::uint32_t CollapseJudge::shared_triangles(std::uint32_t b) const {
-  std::uint32_t shared = 0;
-  const std::uint32_t size = ring_a_.size;
-  for (std::uint32_t i = 0; i < size; ++i) {
-    shared += (ring_a_.next[i] == b ? 1 : 0) + (ring_a_.prev[i] == b ? 1 : 0);
-  }
-  return shared;
+/// Returns the number of shared triangles.
+std::uint32_t CollapseJudge::list_star(std::uint32_t a, std::uint32_t b) {
+  std::array<Corner, k_max_star> shared_again;
+  std::array<Corner, k_max_star> shared_once;
+  const Walk at_a = walk({a, b, shared_once.data(), corners_.data() + 2}, ring_a_);
+  // The ring that is searched may be compared beyond its end.
+  std::fill_n(ring_a_.next.begin() + ring_a_.size, k_compared_at_once, k_none);
+  const Walk at_b = walk({b, a, shared_again.data(), at_a.kept}, ring_b_);
+  *at_b.kept = {a, a};
+  corners_[0] = shared_once[0];
+  corners_[1] = shared_once[1];
+  kept_of_a_ = static_cast<std::uint32_t>(at_a.kept - corners_.data()) - 2;
+  kept_ = static_cast<std::uint32_t>(at_b.kept - corners_.data()) - 2;
+  return static_cast<std::uint32_t>(at_a.shared - shared_once.data());
 }
 
 std::uint32_t CollapseJudge::common_neighbours() const {
   std::array<std::uint32_t, k_compared_at_once> equal{};
   for (std::uint32_t i = 0; i < ring_b_.size; ++i) {
-    const std::uint32_t vertex = ring_b_.next[i] == k_gap ? k_none : ring_b_.next[i];
+    const std::uint32_t vertex = ring_b_.next[i];
     for (std::uint32_t first = 0; first < ring_a_.size; first += k_compared_at_once) {
       const std::uint32_t* const next = ring_a_.next.data() + first;
       for (std::uint32_t l = 0; l < k_compared_at_once; ++l) equal[l] += next[l] == vertex ? 1 : 0;
@@ -101,19 +99,33 @@ std::uint32_t CollapseJudge::common_neighbours() const {
 bool CollapseJudge::link_allows(std::uint32_t shared) const {
   if (shared == 2) {
     if (ring_a_.border && ring_b_.border) return false;
-    if (ring_a_.triangles == 3 && ring_b_.triangles == 3) return false;
+    if (ring_a_.size == 3 && ring_b_.size == 3) return false;
   } else {
-    if (shared != 1 || (ring_a_.triangles == 1 && ring_b_.triangles == 1)) return false;
+    if (shared != 1 || (ring_a_.size == 1 && ring_b_.size == 1)) return false;
   }
   return common_neighbours() == shared;
 }
 
+void CollapseJudge::add_star(std::uint32_t shared) {
+  const Vec3* const positions = state_.positions.data();
+  const auto add = [&](std::uint32_t i, CollapseStar::Pair sides) {
+    const Corner& c0 = corners_[i];
+    const Corner& c1 = corners_[i + 1];
+    star_.add({positions[c0.next], positions[c0.prev], positions[c1.next], positions[c1.prev]},
+              sides);
+  };
+  // One at a border.
+  if (shared == 1) corners_[1] = {corners_[0].next, corners_[0].next};
+  add(0, CollapseStar::Pair{-1, -1});
+  for (std::uint32_t i = 0; i < kept_; i += 2) {
+    add(i + 2, CollapseStar::Pair{i < kept_of_a_ ? -1.0 : 1.0, i + 1 < kept_of_a_ ? -1.0 : 1.0});
+  }
+}
+
 void CollapseJudge::add_border(const Ring& ring, Vec3 end, std::uint32_t without) {
   std::array<Corner, k_max_star> fan;
-  std::uint32_t size = 0;
-  for (std::uint32_t i = 0; i < ring.size; ++i) {
-    if (ring.next[i] != k_gap) fan[size++] = {ring.next[i], ring.prev[i]};
-  }
+  const std::uint32_t size = ring.size;
+  for (std::uint32_t i = 0; i < size; ++i) fan[i] = {ring.next[i], ring.prev[i]};
   const Vec3 at = middle_ + end;
   for_border_edges({fan.data(), size}, [&](const Corner& c, std::uint32_t neighbour) {
     if (neighbour == without) return;
@@ -132,16 +144,13 @@ Vec3 CollapseJudge::best_position(std::uint32_t a, std::uint32_t b) const {
 
 Collapse CollapseJudge::judge(std::uint32_t a, std::uint32_t b, const CollapseLimits& limits) {
   if (state_.adjacency->count(a) + state_.adjacency->count(b) > k_max_star) return {};
+  const std::uint32_t shared = list_star(a, b);
+  if (shared > limits.triangles || !link_allows(shared)) return {};
+
   const Vec3 half = (state_.positions[b] - state_.positions[a]) * 0.5;
   middle_ = state_.positions[a] + half;
   star_.clear(middle_, half);
-  walk({a, b, half * -1.0, CollapseStar::Mask{-1, -1}}, ring_a_);
-  // The ring that is searched may be compared beyond its end.
-  std::fill_n(ring_a_.next.begin() + ring_a_.size, k_compared_at_once, k_gap);
-  walk({b, a, half, CollapseStar::Mask{}}, ring_b_);
-  const std::uint32_t shared = shared_triangles(b);
-  if (shared > limits.triangles || !link_allows(shared)) return {};
-
+  add_star(shared);
   quadric_ = {};
   quadric_.squared_length = 4 * squared_length(half);
   star_.sum_planes(quadric_);
@@ -152,7 +161,7 @@ Collapse CollapseJudge::judge(std::uint32_t a, std::uint32_t b, const CollapseLi
   const Vec3 x = position - middle_;
   double cost = quadric_.cost(x);
   if (!(cost <= limits.max_cost)) return {};
-  const std::optional<double> lost = star_.lost_area(x);
+  const std::optional<double> lost = star_.lost_area(kept_, x);
   if (!lost) return {};
   cost = std::max(cost, quadric_.cost_of_lost_area(*lost));
   return cost <= limits.max_cost ? Collapse{shared, position, cost} : Collapse{};

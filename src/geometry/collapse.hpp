@@ -50,25 +50,24 @@ class CollapseJudge {
   Collapse judge(std::uint32_t a, std::uint32_t b, const CollapseLimits& limits);
 
  private:
-  // Triangles that are gone after another collapse of this pass leave gaps.
   struct Ring {
     std::array<std::uint32_t, k_max_star + 8> next;
     std::array<std::uint32_t, k_max_star + 8> prev;
-    std::uint32_t size = 0;       // with the gaps
-    std::uint32_t triangles = 0;  // without
+    std::uint32_t size = 0;
     bool border = false;
   };
-  struct End {
+  struct Walk {
     std::uint32_t vertex;
-    std::uint32_t other;
-    Vec3 from_middle;
-    CollapseStar::Mask counts_shared;
+    std::uint32_t other;  // the edge's other end
+    Corner* shared;       // where to list the triangles that have it
+    Corner* kept;         // and those that have not
   };
 
-  void walk(const End& end, Ring& ring);
-  std::uint32_t shared_triangles(std::uint32_t b) const;
+  Walk walk(const Walk& walk, Ring& ring) const;
+  std::uint32_t list_star(std::uint32_t a, std::uint32_t b);
   std::uint32_t common_neighbours() const;
   bool link_allows(std::uint32_t shared) const;
+  void add_star(std::uint32_t shared);
   void add_border(const Ring& ring, Vec3 end, std::uint32_t without);
   Vec3 best_position(std::uint32_t a, std::uint32_t b) const;
 
@@ -76,6 +75,10 @@ class CollapseJudge {
   Vec3 middle_;
   Ring ring_a_;
   Ring ring_b_;
+  // The shared triangles, two places; those that a keeps; those that b keeps; one place more.
+  std::array<Corner, k_max_star + 3> corners_;
+  std::uint32_t kept_of_a_ = 0;
+  std::uint32_t kept_ = 0;
   CollapseStar star_;
   EdgeQuadric quadric_;
 };

@@ -39,11 +39,11 @@ bool CollapseStar::is_acceptable(const Two& two, int lane, Vec3 x) {
          (size > 0 || old_size == 0);
 }
 
-std::optional<double> CollapseStar::lost_area(Vec3 x) const {
+std::optional<double> CollapseStar::lost_area(std::uint32_t kept, Vec3 x) const {
   Pair twice_lost = sums_.twice_area;
   const Vec3Pair to = from(x);
-  for (std::uint32_t i = 0; i < size_; ++i) {
-    const Two& two = pairs_[i];
+  for (std::uint32_t i = 0; i < kept; i += 2) {
+    const Two& two = pairs_[1 + i / 2];
     const Vec3Pair p = minus(two.p, to);
     const Vec3Pair q = minus(two.q, to);
     const Vec3Pair normal = cross(p, q);
@@ -57,14 +57,14 @@ std::optional<double> CollapseStar::lost_area(Vec3 x) const {
     dot(q, q, squared_q);
     const Mask good = (turn > 0) & (turn * turn >= k_cos_75_squared * size * two.squared_size) &
                       (size > k_least_sine_squared * (squared_p * squared_q));
-    const Mask doubtful = two.stays & ~good;
-    if ((doubtful[0] | doubtful[1]) != 0) {
-      if (doubtful[0] != 0 && !is_acceptable(two, 0, x)) return {};
-      if (doubtful[1] != 0 && !is_acceptable(two, 1, x)) return {};
+    if ((good[0] & good[1]) == 0) {
+      if (good[0] == 0 && !is_acceptable(two, 0, x)) return {};
+      // Beyond the last one is none; p == q makes it neither good nor an area.
+      if (good[1] == 0 && i + 1 < kept && !is_acceptable(two, 1, x)) return {};
     }
     Pair length;
     root(size, length);
-    twice_lost -= reinterpret_cast<Pair>(reinterpret_cast<Mask>(length) & two.stays);
+    twice_lost -= length;
   }
   return 0.5 * (twice_lost[0] + twice_lost[1]);
 }

@@ -22,14 +22,12 @@ class CollapseStar {
   using Pair = double __attribute__((vector_size(16)));
   using Mask = std::int64_t __attribute__((vector_size(16)));  // all bits of a lane or none
 
-  /// Two triangles at one end of the edge, without that end. One with p == q is none.
+  /// Two triangles at the edge, without the end that they are at. One with p == q is none.
   struct TwoTriangles {
     const Vec3& p0;
     const Vec3& q0;
     const Vec3& p1;
     const Vec3& q1;
-    Mask counted;  // its plane and area count
-    Mask stays;    // the collapse keeps it
   };
 
   /// The edge from middle - half to middle + half.
@@ -39,14 +37,15 @@ class CollapseStar {
     size_ = 0;
     sums_ = Sums{};
   }
-  /// `end` is the end that the triangles are at, from the middle: half or -half.
-  void add(const TwoTriangles& triangles, Vec3 end);
+  /// First the two that both ends share. `sides` are the ends that they are at: -1 or 1.
+  void add(const TwoTriangles& triangles, const Pair& sides);
 
   /// Adds the planes.
   void sum_planes(EdgeQuadric& quadric) const;
 
-  /// The area that is lost if both ends move to x; nothing if that spoils the shape of a triangle.
-  std::optional<double> lost_area(Vec3 x) const;
+  /// The area that is lost if both ends move to x; nothing if that spoils the shape of one of the
+  /// `kept` triangles after the shared ones.
+  std::optional<double> lost_area(std::uint32_t kept, Vec3 x) const;
 
  private:
   struct Vec3Pair {
@@ -56,7 +55,6 @@ class CollapseStar {
     Vec3Pair p, q, end;
     Vec3Pair normal;  // twice the area long
     Pair squared_size;
-    Mask stays;
   };
   struct Sums {
     Pair xx, xy, xz, yy, yz, zz, bx, by, bz, c, twice_area;
@@ -73,33 +71,31 @@ class CollapseStar {
     result = a.x * b.x + a.y * b.y + a.z * b.z;
   }
   static void root(const Pair& a, Pair& result) { result = Pair{std::sqrt(a[0]), std::sqrt(a[1])}; }
-  void add_planes(const Two& two, const Mask& counted);
+  void add_planes(const Two& two);
   static bool is_acceptable(const Two& two, int lane, Vec3 x);
 
   Vec3 middle_;
   Vec3 half_;
   std::uint32_t size_ = 0;  // of pairs_
   Sums sums_{};
-  // Each end may have a pair that is half full.
   std::array<Two, k_capacity / 2 + 2> pairs_;
 };
 
-inline void CollapseStar::add(const TwoTriangles& t, Vec3 end) {
+inline void CollapseStar::add(const TwoTriangles& t, const Pair& sides) {
   Two& two = pairs_[size_++];
   const Vec3Pair middle = from(middle_);
   two.p = minus({Pair{t.p0.x, t.p1.x}, Pair{t.p0.y, t.p1.y}, Pair{t.p0.z, t.p1.z}}, middle);
   two.q = minus({Pair{t.q0.x, t.q1.x}, Pair{t.q0.y, t.q1.y}, Pair{t.q0.z, t.q1.z}}, middle);
-  two.end = from(end);
+  two.end = {half_.x * sides, half_.y * sides, half_.z * sides};
   two.normal = cross(minus(two.p, two.end), minus(two.q, two.end));
   dot(two.normal, two.normal, two.squared_size);
-  two.stays = t.stays;
-  add_planes(two, t.counted);
+  add_planes(two);
 }
 
-inline void CollapseStar::add_planes(const Two& two, const Mask& counted) {
+inline void CollapseStar::add_planes(const Two& two) {
   Pair length;
   root(two.squared_size, length);
-  const Mask some = counted & (length > 0);
+  const Mask some = length > 0;
   const Pair weight = reinterpret_cast<Pair>(reinterpret_cast<Mask>(0.5 / length) & some);
   const Vec3Pair n = two.normal;
   Pair height;
@@ -117,7 +113,7 @@ inline void CollapseStar::add_planes(const Two& two, const Mask& counted) {
   sums_.by += n.y * wh;
   sums_.bz += n.z * wh;
   sums_.c += wh * height;
-  sums_.twice_area += reinterpret_cast<Pair>(reinterpret_cast<Mask>(length) & counted);
+  sums_.twice_area += length;
 }
 
 }  // namespace meshfarm

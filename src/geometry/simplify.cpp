@@ -19,6 +19,11 @@ namespace {
 // same, with 0.5 it is 2 to 4 % more for 10 % less time.
 constexpr double k_pass_share = 0.35;
 
+// As long as there are so many times the triangles of the goal, more may be taken at once: the
+// error is made later.
+constexpr std::uint64_t k_far = 4;
+constexpr double k_far_share = 0.5;
+
 // The edges taken in a pass that must not overshoot, as a part of the triangles still to go: each
 // that can collapse, about six in ten, removes two.
 constexpr double k_most_of_excess = 0.7;
@@ -117,6 +122,7 @@ class Simplifier::Impl {
     const auto vertices = static_cast<std::uint32_t>(mesh_.positions.size());
     // One triangle short, only border edges help, and those may rank anywhere.
     if (excess == 1) share = 1;
+    if (triangles > k_far * goal.triangles) share = std::max(share, k_far_share);
     const bool far = share < 1 && excess > triangles / 8 && vertices > 2 * k_block;
     Pass pass;
     pass.block = far ? k_block : vertices;

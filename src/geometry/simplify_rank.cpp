@@ -26,7 +26,8 @@ constexpr std::uint64_t k_least_sample = 2000;
 // Keys of infinity and of what is no number are greater.
 constexpr CostKey k_greatest_finite = 0x7FEFFFFF;
 
-constexpr std::size_t k_listed_at_once = 1024;
+// Few enough that what the listing fetches ahead is still in the first cache.
+constexpr std::size_t k_listed_at_once = 256;
 
 // Scrambled, so that a sample follows no pattern of the numbering.
 std::uint32_t scrambled(std::uint32_t vertex) {
@@ -81,6 +82,8 @@ void EdgeRanking::sum_border_planes() {
 /// Lists the edges that may collapse of which the vertex is the smaller end.
 inline void EdgeRanking::list_edges_at(std::uint32_t vertex) {
   const std::uint8_t* const all_flags = input_.flags.data();
+  const Vec3* const positions = input_.positions.data();
+  const FloatQuadric* const quadrics = quadrics_.data();
   const std::uint8_t flags = all_flags[vertex];
   const std::span<const Corner> fan = input_.adjacency->at(vertex);
   if ((flags & k_fixed) != 0 || fan.size() > k_max_star) return;
@@ -92,6 +95,8 @@ inline void EdgeRanking::list_edges_at(std::uint32_t vertex) {
   const auto consider = [&](std::uint32_t end, std::uint8_t barred) {
     const std::uint8_t other = all_flags[end];
     *end_of_list = {vertex, end};
+    __builtin_prefetch(positions + end);
+    __builtin_prefetch(quadrics + end);
     const bool wanted =
         (end > vertex) & ((other & (k_fixed | barred)) == 0) & (any_seam | ((other & k_seam) != 0));
     end_of_list += wanted ? 1 : 0;

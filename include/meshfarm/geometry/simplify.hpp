@@ -39,7 +39,7 @@ struct SimplifyGoal {
 /// Iterative edge collapse by quadric error (Garland & Heckbert 1997) in passes without a heap;
 /// quadrics are memoryless (Lindstrom & Turk 1999): made anew from the current mesh at each pass.
 ///
-/// Needs about 45 bytes a triangle beside the mesh, 65 if the goal is near the input's count.
+/// Needs about 50 bytes a triangle beside the mesh, 70 if the goal is near the input's count.
 ///
 /// The input may be dirty: degenerate and duplicate triangles are dropped and counted; non-manifold
 /// edges and vertices are locked. Topology is kept, no triangle flips, none becomes degenerate.

@@ -3,6 +3,7 @@
 #include <doctest/doctest.h>
 
 #include "geometry/adjacency.hpp"
+#include "geometry/collapse_star.hpp"
 #include "geometry/quadric.hpp"
 #include "geometry/simplify_cost.hpp"
 #include "test_simplify_meshes.hpp"
@@ -86,6 +87,64 @@ TEST_CASE("a border plane stands on the edge, perpendicular to the triangle") {
   Quadric none;
   add_border_plane(none, {0, 0, 0}, {2, 0, 0});
   CHECK(none.trace() == 0);
+}
+
+TEST_CASE("a star sums the planes of its triangles, and those of no area add nothing") {
+  simplify_test::Random random(11);
+  const auto point = [&] { return Vec3{random.unit(), random.unit(), random.unit()}; };
+  const Vec3 middle{5, 6, 7};
+  const Vec3 half{0.5, 0.25, 0};
+  CollapseStar star;
+  star.clear(middle, half);
+  EdgeQuadric wanted;
+  for (const double side : {-1.0, 1.0, 1.0}) {
+    const Vec3 p = point();
+    const Vec3 q = point();
+    const Vec3 end = half * side;
+    const Vec3 n = cross(p - end, q - end);
+    Quadric plane;
+    plane.add(n, 0.5 / length(n));
+    wanted.add(plane, end);
+    star.add({middle + p, middle + q, middle + p, middle + p}, CollapseStar::Pair{side, -side});
+  }
+  EdgeQuadric sum;
+  star.sum_planes(sum);
+  CHECK(sum.a.trace() == doctest::Approx(wanted.a.trace()));
+  CHECK(sum.a.xy == doctest::Approx(wanted.a.xy));
+  CHECK(sum.a.yz == doctest::Approx(wanted.a.yz));
+  CHECK(sum.b.x == doctest::Approx(wanted.b.x));
+  CHECK(sum.b.z == doctest::Approx(wanted.b.z));
+  CHECK(sum.c == doctest::Approx(wanted.c));
+}
+
+TEST_CASE("a star tells the area that is lost, and refuses turned triangles") {
+  // w - n - e
+  // | a - b |
+  // 1 - s - 2
+  const Vec3 a{-1, 0, 0};
+  const Vec3 b{1, 0, 0};
+  const Vec3 n{0, 2, 0};
+  const Vec3 s{0, -2, 0};
+  const Vec3 w{-3, 2, 0};
+  const Vec3 e{3, 2, 0};
+  const Vec3 w1{-3, -2, 0};
+  const Vec3 e2{3, -2, 0};
+  CollapseStar star;
+  star.clear({}, b);
+  star.add({s, b, b, n}, CollapseStar::Pair{-1, -1});
+  star.add({n, w, w, w1}, CollapseStar::Pair{-1, -1});
+  star.add({w1, s, s, e2}, CollapseStar::Pair{-1, 1});
+  star.add({e2, e, e, n}, CollapseStar::Pair{1, 1});
+  EdgeQuadric quadric;
+  star.sum_planes(quadric);
+  CHECK(quadric.a.zz == doctest::Approx(24));
+  constexpr std::uint32_t k_kept = 6;
+  REQUIRE(star.lost_area(k_kept, {}).has_value());
+  CHECK(*star.lost_area(k_kept, {}) == doctest::Approx(0));
+  CHECK(*star.lost_area(k_kept, {0, 0, 1}) < -1);
+  CHECK(!star.lost_area(k_kept, a * 4).has_value());
+  CHECK(!star.lost_area(k_kept, w).has_value());
+  CHECK(!star.lost_area(k_kept, {0, 3, 0}).has_value());
 }
 
 TEST_CASE("adjacency lists each vertex's corners in triangle order") {
