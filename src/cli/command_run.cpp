@@ -23,7 +23,7 @@ class RunCommand : public Command {
       : whose_(whose), workers_(whose == Workers::own ? default_workers() : 0) {}
   std::string_view name() const override { return whose_ == Workers::own ? "replay" : "run"; }
   std::string_view synopsis() const override {
-    return "STAGE [-o OUTPUT] (--ratio R | --triangles N)";
+    return "STAGE [-o OUTPUT] (--ratio R | --triangles N | --error LENGTH)";
   }
   std::string_view summary() const override {
     return whose_ == Workers::own ? "simplify a stage on this machine: nothing is cut again"

@@ -1,10 +1,6 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
-#include <filesystem>
-#include <iostream>
 
-#include <meshfarm/io/mesh_source.hpp>
-#include <meshfarm/partition/cut.hpp>
 #include <meshfarm/staging/stage.hpp>
 #include <meshfarm/util/errors.hpp>
 #include <meshfarm/util/log.hpp>
@@ -22,7 +18,7 @@ class SimplifyCommand : public Command {
  public:
   std::string_view name() const override { return "simplify"; }
   std::string_view synopsis() const override {
-    return "INPUT -o OUTPUT (--ratio R | --triangles N)";
+    return "INPUT -o OUTPUT (--ratio R | --triangles N | --error LENGTH)";
   }
   std::string_view summary() const override {
     return "simplify a mesh file on this machine: cut, farm, stitch, finish";

@@ -17,7 +17,7 @@ class SinkCommand : public FarmCommand {
  public:
   std::string_view name() const override { return "sink"; }
   std::string_view synopsis() const override {
-    return "STAGE -o OUTPUT (--ratio R | --triangles N)";
+    return "STAGE -o OUTPUT (--ratio R | --triangles N | --error LENGTH)";
   }
   std::string_view summary() const override {
     return "collect, stitch and finish the parts of a stage ('run' starts this)";

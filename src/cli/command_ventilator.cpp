@@ -14,7 +14,9 @@ namespace {
 class VentilatorCommand : public FarmCommand {
  public:
   std::string_view name() const override { return "ventilator"; }
-  std::string_view synopsis() const override { return "STAGE (--ratio R | --triangles N)"; }
+  std::string_view synopsis() const override {
+    return "STAGE (--ratio R | --triangles N | --error LENGTH)";
+  }
   std::string_view summary() const override {
     return "hand the parts of a stage to workers ('run' starts this)";
   }

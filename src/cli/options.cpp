@@ -54,9 +54,9 @@ ProgressStyle TalkOptions::progress() const {
 }
 
 void TargetOptions::add(po::options_description& options) {
-  options.add_options()("ratio", po::value(&run.ratio),
+  options.add_options()("ratio", po::value(&run.ratio)->value_name("R"),
                         "share of the input's triangles to keep, as 0.01")(
-      "triangles", po::value(&run.triangles), "number of triangles to keep")(
+      "triangles", po::value(&run.triangles)->value_name("N"), "number of triangles to keep")(
       "error", po::value(&error)->value_name("LENGTH"),
       "as few triangles as keep this distance from the input (measured at points of it): in the "
       "mesh's unit, or 0.1% of the diagonal")(
