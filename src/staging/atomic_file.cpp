@@ -60,20 +60,6 @@ void AtomicFile::write(std::string_view bytes) {
   }
 }
 
-void AtomicFile::rewrite(std::uint64_t offset, std::string_view bytes) {
-  flush();
-  while (!bytes.empty()) {
-    const ssize_t written =
-        ::pwrite(fd_.get(), bytes.data(), bytes.size(), static_cast<off_t>(offset));
-    if (written < 0) {
-      if (errno == EINTR) continue;
-      throw_errno("cannot write", temporary_path_);
-    }
-    bytes.remove_prefix(static_cast<std::size_t>(written));
-    offset += static_cast<std::uint64_t>(written);
-  }
-}
-
 void AtomicFile::flush() {
   write_all(fd_.get(), buffer_, temporary_path_);
   flushed_ += buffer_.size();

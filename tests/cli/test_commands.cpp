@@ -14,6 +14,7 @@ using meshfarm::test::read_text;
 using meshfarm::test::run_meshfarm;
 using meshfarm::test::TempFolder;
 namespace fs = std::filesystem;
+namespace test = meshfarm::test;
 
 namespace {
 
@@ -180,6 +181,23 @@ TEST_CASE("options may stand in a config file; the command line wins") {
   CHECK(has(ran.out, "\"target\": 6"));
   const std::string wrong = shell.file("wrong.conf", "rato = 0.5\n");
   CHECK(shell({"simplify", shell.cube(), "-o", shell.path("o.ply"), "--config", wrong}).code == 2);
+}
+
+TEST_CASE("the example config files are understood") {
+  Shell shell;
+  const std::string conf = std::string(MESHFARM_SOURCE_DIR) + "/conf/";
+  const Ran ran =
+      shell({"simplify", shell.cube(), "-o", shell.path("o.ply"), "--config",
+             conf + "simplify.conf", "--ratio", "0.5", "--stage", shell.path("s"), "--keep-stage"});
+  CAPTURE(ran.err);
+  CHECK(ran.code == 0);
+  // Without a sink it waits until it is stopped: what matters is that it got that far.
+  test::Process ventilator(
+      {"ventilator", shell.path("s"), "--bind", "127.0.0.1", "--config", conf + "ventilator.conf"},
+      shell.path("ventilator"));
+  CHECK(test::wait_until([&] { return has(ventilator.err(), "listens on"); }));
+  ventilator.signal(SIGTERM);
+  CHECK(ventilator.wait() == 3);
 }
 
 TEST_CASE("a stage that holds a finished cut is not cut again") {

@@ -62,11 +62,6 @@ class Process {
 
   pid_t pid() const { return pid_; }
   void signal(int number) const { ::kill(pid_, number); }
-  bool running() {
-    return pid_ > 0 &&
-           ::waitid(P_PID, static_cast<id_t>(pid_), &info_, WEXITED | WNOHANG | WNOWAIT) == 0 &&
-           info_.si_pid == 0;
-  }
   /// The exit code, or minus the signal that ended it; -1000 if it did not end in time.
   int wait(double seconds = 120) {
     int status = 0;
@@ -97,7 +92,6 @@ class Process {
   }
 
   pid_t pid_ = -1;
-  siginfo_t info_{};
   std::string out_;
   std::string err_;
 };

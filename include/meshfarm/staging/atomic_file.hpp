@@ -26,8 +26,6 @@ class AtomicFile {
 
   /// Buffered; throws IoError.
   void write(std::string_view bytes);
-  /// Overwrites bytes already written (a header whose counts are known at the end).
-  void rewrite(std::uint64_t offset, std::string_view bytes);
   std::uint64_t size() const { return flushed_ + buffer_.size(); }
   void commit();
 
