@@ -72,6 +72,7 @@ void Dispatcher::worker_joins(const PeerId& peer, const Hello& hello) {
   worker.peer = peer;
   worker.incarnation = hello.incarnation;
   worker.host = hello.host;
+  worker.capacity = hello.capacity;
   worker.heard = now_;
   by_peer_[peer] = id;
   by_incarnation_[hello.incarnation] = id;
@@ -238,8 +239,9 @@ void Dispatcher::on(const PeerId& peer, const Reject& reject) {
       return each.key == reject.key && each.attempt == reject.attempt;
     });
   }
-  if (current || reject.failure.for_good) {
-    fail(reject.key, reject.failure.reason, reject.failure.for_good);
+  const bool for_good = reject.failure.kind == FailureKind::for_good;
+  if (current || for_good) {
+    fail(reject.key, reject.failure.reason, for_good);
     settle(reject.key, reject.worker);
   } else if (const auto reporter = workers_.find(reject.worker); reporter != workers_.end()) {
     send(reporter->second.peer, Done{reject.key, reject.attempt});

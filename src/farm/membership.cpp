@@ -122,8 +122,8 @@ std::optional<std::string> Membership::dial() {
 
 std::optional<Hello> Membership::hello() {
   if (!std::exchange(greet_, false)) return std::nullopt;
-  return Hello{options_.role, options_.run,  options_.incarnation,
-               options_.pid,  options_.host, options_.results};
+  return Hello{options_.role, options_.run,     options_.incarnation, options_.pid,
+               options_.host, options_.results, options_.capacity};
 }
 
 bool Membership::beat_due(FarmTime now) {

@@ -33,11 +33,19 @@ auto fields(M& m) {
 }
 template <Is<JobFailure> M>
 auto fields(M& m) {
-  return std::tie(m.reason, m.for_good);
+  return std::tie(m.reason, m.kind);
+}
+template <Is<Capacity> M>
+auto fields(M& m) {
+  return std::tie(m.speed, m.memory, m.threads);
+}
+template <Is<JobTimes> M>
+auto fields(M& m) {
+  return std::tie(m.read_ms, m.wait_ms, m.compute_ms, m.write_ms);
 }
 template <Is<Hello> M>
 auto fields(M& m) {
-  return std::tie(m.role, m.run, m.incarnation, m.pid, m.host, m.results);
+  return std::tie(m.role, m.run, m.incarnation, m.pid, m.host, m.results, m.capacity);
 }
 template <Is<Welcome> M>
 auto fields(M& m) {
@@ -49,7 +57,8 @@ auto fields(M& m) {
 }
 template <Is<Heartbeat> M>
 auto fields(M& m) {
-  return std::tie(m.epoch, m.worker, m.held, m.received, m.progress);
+  return std::tie(m.epoch, m.worker, m.held, m.received, m.progress, m.still, m.still_ms,
+                  m.in_storage, m.rss_bytes);
 }
 template <Is<Alive> M>
 auto fields(M& m) {
@@ -69,11 +78,11 @@ auto fields(M& m) {
 }
 template <Is<Result> M>
 auto fields(M& m) {
-  return std::tie(m.run, m.epoch, m.worker, m.incarnation, m.attempt, m.key, m.outcome);
+  return std::tie(m.run, m.epoch, m.worker, m.incarnation, m.attempt, m.key, m.outcome, m.times);
 }
 template <Is<Accept> M>
 auto fields(M& m) {
-  return std::tie(m.epoch, m.worker, m.key, m.output);
+  return std::tie(m.epoch, m.worker, m.key, m.output, m.times);
 }
 template <Is<Reject> M>
 auto fields(M& m) {
@@ -93,7 +102,7 @@ auto fields(M& m) {
 }
 template <Is<JobFailed> M>
 auto fields(M& m) {
-  return std::tie(m.key, m.reason);
+  return std::tie(m.key, m.reason, m.resumable);
 }
 template <Is<Complete> M>
 auto fields(M& m) {
@@ -101,7 +110,7 @@ auto fields(M& m) {
 }
 template <Is<Failed> M>
 auto fields(M& m) {
-  return std::tie(m.epoch, m.reason);
+  return std::tie(m.epoch, m.reason, m.resumable);
 }
 template <Is<Stop> M>
 auto fields(M& m) {
@@ -140,6 +149,7 @@ class Encoder {
     field(job.inputs);
     bytes(job.parameters, k_max_parameters_bytes, "parameters");
     field(job.cost);
+    field(job.memory);
   }
   void field(const std::variant<JobOutput, JobFailure>& outcome) {
     field(static_cast<std::uint8_t>(outcome.index()));
@@ -174,7 +184,8 @@ class Decoder {
   }
   void field(Role& value) { choice(value, Role::sink); }
   void field(Refusal& value) { choice(value, Refusal::replaced); }
-  void field(StopReason& value) { choice(value, StopReason::leaving); }
+  void field(StopReason& value) { choice(value, StopReason::hung); }
+  void field(FailureKind& value) { choice(value, FailureKind::no_space); }
   void field(std::string& text) { bytes(text, k_max_text_bytes); }
   template <class T>
   void field(std::vector<T>& list) {
@@ -193,6 +204,7 @@ class Decoder {
     field(job.inputs);
     bytes(job.parameters, k_max_parameters_bytes);
     field(job.cost);
+    field(job.memory);
   }
   void field(std::variant<JobOutput, JobFailure>& outcome) {
     const auto index = in_.get<std::uint8_t>();

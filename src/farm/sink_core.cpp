@@ -108,7 +108,7 @@ void SinkCore::take_result(const Result& result) {
     ++dropped_;
     return;
   }
-  const Check check{result.key, output, result.worker, result.attempt, false};
+  const Check check{result.key, output, result.worker, result.attempt, false, result.times};
   if (checking_.try_emplace(result.key, check).second) act(check);
 }
 
@@ -118,10 +118,14 @@ SinkActions SinkCore::checked(const Check& check, const std::string& problem) {
   if (problem.empty()) {
     if (rounds_.accept(check.key, check.output)) accepted_.push_back(check.key);
     failed_.erase(check.key);
-    tell(check.key, check.worker);
+    tell(check.key, check.worker, check.times);
     want();
   } else if (!check.from_journal && told_all_) {
-    say(Reject{member_.epoch(), check.worker, check.attempt, check.key, {clipped(problem), false}});
+    say(Reject{member_.epoch(),
+               check.worker,
+               check.attempt,
+               check.key,
+               {clipped(problem), FailureKind::attempt}});
   }
   tell_all();
   return take();
@@ -157,9 +161,9 @@ void SinkCore::say_where_it_stands() {
   if (phase_ == Phase::saying_failed) say(Failed{member_.epoch(), clipped(problem_)});
 }
 
-void SinkCore::tell(JobKey key, WorkerId worker) {
+void SinkCore::tell(JobKey key, WorkerId worker, const JobTimes& times) {
   if (!told_all_) return;
-  say(Accept{member_.epoch(), worker, key, *rounds_.accepted(key)});
+  say(Accept{member_.epoch(), worker, key, *rounds_.accepted(key), times});
 }
 
 SinkActions SinkCore::completed(const std::string& problem, FarmTime now) {

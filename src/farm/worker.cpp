@@ -41,7 +41,8 @@ class WorkerLoop {
                static_cast<std::uint32_t>(::getpid()),
                clipped(host_name()),
                {},
-               options.patience},
+               options.patience,
+               options.capacity},
               options.buffer) {}
 
   WorkerReport run() {
@@ -125,13 +126,13 @@ class WorkerLoop {
     try {
       return checked(begin, work_(begin.job, context));
     } catch (const BadInputError& error) {
-      return JobFailure{clipped(error.what()), true};
+      return JobFailure{clipped(error.what()), FailureKind::for_good};
     } catch (const std::bad_alloc&) {
-      return JobFailure{"out of memory", false};
+      return JobFailure{"out of memory", FailureKind::attempt};
     } catch (const std::exception& error) {
-      return JobFailure{clipped(error.what()), false};
+      return JobFailure{clipped(error.what()), FailureKind::attempt};
     } catch (...) {
-      return JobFailure{"an unknown exception", false};
+      return JobFailure{"an unknown exception", FailureKind::attempt};
     }
   }
 
@@ -140,10 +141,10 @@ class WorkerLoop {
     if (output.file.name != to_string(name)) {
       return JobFailure{
           clipped("its output is named '" + output.file.name + "', not '" + to_string(name) + "'"),
-          false};
+          FailureKind::attempt};
     }
     if (output.summary.size() > k_max_summary_bytes) {
-      return JobFailure{"its summary is too long for a message", false};
+      return JobFailure{"its summary is too long for a message", FailureKind::attempt};
     }
     return output;
   }

@@ -79,6 +79,7 @@ class Dispatcher {
     PeerId peer;
     std::uint64_t incarnation = 0;
     std::string host;
+    Capacity capacity;
     std::string lane;  // empty until it is open
     FarmTime heard{0};
     FarmTime pushed{0};

@@ -26,6 +26,7 @@ struct Job {
   std::vector<FileRef> inputs;  // in the stage
   std::string parameters;       // bytes that the job's function decodes
   std::uint64_t cost = 0;       // estimated work, in triangles
+  std::uint64_t memory = 0;     // estimated need in bytes, inputs included; 0: fits everywhere
 };
 
 JobKey key_of(const Job& job);

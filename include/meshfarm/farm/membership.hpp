@@ -20,6 +20,7 @@ struct MemberOptions {
   std::string host;
   std::string results;  // the sink's address
   FarmTime patience{60'000};
+  Capacity capacity = {};  // a worker's
 };
 
 /// Look at the stage's endpoints and answer with found().

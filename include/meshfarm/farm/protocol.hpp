@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
 //
-// All that ventilator (V), workers (W) and sink (S) say to each other. Version 1.
+// All that ventilator (V), workers (W) and sink (S) say to each other. Version 2.
 //
 //   frame   = "MFMS" | version u16 | type u16 | body      one message a frame, one frame a message
 //   body    = the fields of the struct in the order of their declaration, little endian
@@ -31,7 +31,7 @@
 
 namespace meshfarm {
 
-inline constexpr std::uint16_t k_protocol_version = 1;
+inline constexpr std::uint16_t k_protocol_version = 2;
 inline constexpr std::size_t k_max_frame_bytes = 65'536;
 inline constexpr std::size_t k_max_text_bytes = 1024;          // names, addresses, reasons
 inline constexpr std::size_t k_max_summary_bytes = 16'384;     // JobOutput::summary
@@ -51,7 +51,15 @@ enum class Role : std::uint8_t { worker = 1, sink = 2 };
 /// stranger: say Hello again. full: try again later. The others are final.
 enum class Refusal : std::uint8_t { stranger = 1, full = 2, other_run = 3, replaced = 4 };
 /// run_over: all is done (or given up). leaving: the ventilator was stopped; another may come.
-enum class StopReason : std::uint8_t { run_over = 1, leaving = 2 };
+/// hung: a job of this worker stands still; it has lost its jobs and must end its process.
+enum class StopReason : std::uint8_t { run_over = 1, leaving = 2, hung = 3 };
+
+/// What a worker can do; 0: not known.
+struct Capacity {
+  std::uint64_t speed = 0;    // triangles a second of each of its threads, by benchmark
+  std::uint64_t memory = 0;   // bytes for all jobs in work together
+  std::uint32_t threads = 1;  // jobs computed at once
+};
 
 struct Hello {
   Role role = Role::worker;
@@ -60,6 +68,7 @@ struct Hello {
   std::uint32_t pid = 0;
   std::string host;
   std::string results;  // the sink's address
+  Capacity capacity;    // a worker's
 };
 struct Welcome {
   WorkerId worker;  // 0 to the sink
@@ -78,7 +87,11 @@ struct Heartbeat {
   WorkerId worker;
   std::uint32_t held = 0;      // jobs not yet finished
   std::uint64_t received = 0;  // the last lane number seen
-  std::uint64_t progress = 0;  // of the compute thread; stands still if that hangs
+  std::uint64_t progress = 0;  // of all compute threads, in triangles
+  JobKey still;                // of the jobs in work, the one that stands still the longest...
+  std::uint32_t still_ms = 0;  // ...for so long
+  bool in_storage = false;     // ...in reading or writing the stage, not in computing
+  std::uint64_t rss_bytes = 0;
 };
 struct Alive {
   std::uint32_t epoch = 0;
@@ -103,9 +116,18 @@ struct Assignment {
   std::uint32_t attempt = 0;
   Job job;
 };
+/// attempt: another attempt may do better. for_good: none can. no_space: the stage is full.
+enum class FailureKind : std::uint8_t { attempt = 1, for_good = 2, no_space = 3 };
 struct JobFailure {
   std::string reason;
-  bool for_good = false;  // no other attempt can do better
+  FailureKind kind = FailureKind::attempt;
+};
+/// Where the time of an attempt went.
+struct JobTimes {
+  std::uint32_t read_ms = 0;
+  std::uint32_t wait_ms = 0;  // read, but all compute threads were busy
+  std::uint32_t compute_ms = 0;
+  std::uint32_t write_ms = 0;
 };
 struct Result {
   std::uint64_t run = 0;
@@ -115,12 +137,14 @@ struct Result {
   std::uint32_t attempt = 0;
   JobKey key;
   std::variant<JobOutput, JobFailure> outcome;
+  JobTimes times;
 };
 struct Accept {
   std::uint32_t epoch = 0;
   WorkerId worker;  // whose Result this answers, 0: none
   JobKey key;
   JobOutput output;
+  JobTimes times;  // as in the Result
 };
 struct Reject {
   std::uint32_t epoch = 0;
@@ -146,6 +170,7 @@ struct SinkAt {
 struct JobFailed {
   JobKey key;
   std::string reason;
+  bool resumable = false;  // it cost workers their lives, or room ran out: a new run may do it
 };
 struct Complete {
   std::uint32_t epoch = 0;
@@ -153,6 +178,7 @@ struct Complete {
 struct Failed {
   std::uint32_t epoch = 0;
   std::string reason;
+  bool resumable = false;
 };
 struct Stop {
   StopReason why = StopReason::run_over;

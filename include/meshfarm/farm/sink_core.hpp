@@ -23,6 +23,7 @@ struct Check {
   WorkerId worker;            // 0: from a journal
   std::uint32_t attempt = 0;  // 0: from a journal
   bool from_journal = false;
+  JobTimes times = {};
 };
 /// Make the run's output of Rounds::outputs(); answered by completed().
 struct MakeOutput {};
@@ -69,7 +70,7 @@ class SinkCore {
   void want();
   void tell_all();
   void say_where_it_stands();
-  void tell(JobKey key, WorkerId worker);
+  void tell(JobKey key, WorkerId worker, const JobTimes& times = {});
   void leave(SinkLeaves::Why why, std::string message);
   std::string list_failed() const;
   template <class A>

@@ -7,11 +7,13 @@
 #include <cstdint>
 
 #include <meshfarm/farm/job.hpp>
+#include <meshfarm/farm/protocol.hpp>
 #include <meshfarm/staging/stage.hpp>
 
 namespace meshfarm {
 
 struct WorkerOptions {
+  Capacity capacity;  // what the ventilator is told of this worker
   std::uint32_t buffer =
       3;  // jobs held beside the one in work; a batch is asked for below 0.8 of it
   /// How long to look for a ventilator, at the start and after losing one, before giving up.

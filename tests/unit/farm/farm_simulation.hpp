@@ -263,7 +263,7 @@ class FarmSimulation {
     });
   }
   std::variant<JobOutput, JobFailure> outcome_of(const Begin& begin, std::uint64_t incarnation) {
-    if (chance(faults_.fail)) return JobFailure{"no luck", false};
+    if (chance(faults_.fail)) return JobFailure{"no luck", FailureKind::attempt};
     JobOutput output;
     output.file.name = to_string(ResultName{key_of(begin.job).value, begin.attempt, incarnation});
     output.file.size = chance(faults_.damaged) ? 0 : 1;

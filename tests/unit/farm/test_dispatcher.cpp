@@ -132,7 +132,7 @@ TEST_CASE("a silent worker loses its jobs; the one it had in work counts as fail
     CHECK(desk.dispatcher.holding() == 1);
   }
   SUBCASE("a late failure of its attempt is not held against the new one") {
-    Reject late{k_epoch, {1}, 1001, key(2), {"late", false}};
+    Reject late{k_epoch, {1}, 1001, key(2), {"late", FailureKind::attempt}};
     desk.say("s", late);
     CHECK(desk.dispatcher.plan().state(key(2)) == JobState::running);
   }
@@ -196,12 +196,15 @@ TEST_CASE("a rejected result is made again; another worker's rejection is not ou
   desk.sink("s", 9);
   desk.worker("w", 1);
   desk.credit("w", 1, 5);
-  const Actions again = desk.say("s", Reject{k_epoch, {1}, 1001, key(0), {"damaged", false}});
+  const Actions again =
+      desk.say("s", Reject{k_epoch, {1}, 1001, key(0), {"damaged", FailureKind::attempt}});
   REQUIRE(said_to<Done>("w", again).size() == 1);
   CHECK(said_to<Done>("w", again)[0].attempt == 1001);  // not the attempt that goes out now
   CHECK(names(again) == "job 0@1 ");
-  CHECK(names(desk.say("s", Reject{k_epoch, {5}, 1002, key(0), {"forged", false}})).empty());
-  const Actions bad = desk.say("s", Reject{k_epoch, {1}, 1002, key(0), {"no mesh", true}});
+  CHECK(names(desk.say("s", Reject{k_epoch, {5}, 1002, key(0), {"forged", FailureKind::attempt}}))
+            .empty());
+  const Actions bad =
+      desk.say("s", Reject{k_epoch, {1}, 1002, key(0), {"no mesh", FailureKind::for_good}});
   CHECK(only<Finish>(bad).size() == 1);
 }
 

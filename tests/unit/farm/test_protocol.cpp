@@ -15,25 +15,25 @@ namespace {
 std::vector<Message> one_of_each() {
   const FileRef part{"parts/000001.part", 123, 456};
   const JobOutput output{{"results/00000000000000ff.a2.0000000000000001", 9, 10}, "summary"};
-  const JobFailure failure{"the disk is full", true};
-  return {Hello{Role::sink, 1, 2, 3, "host", "tcp://h:1"},
+  const JobFailure failure{"the disk is full", FailureKind::no_space};
+  return {Hello{Role::sink, 1, 2, 3, "host", "tcp://h:1", {4, 5, 6}},
           Welcome{{4}, 5, 6, "tcp://h:2", "tcp://h:3", 1000},
           Refused{Refusal::replaced, "why"},
-          Heartbeat{1, {2}, 3, 4, 5},
+          Heartbeat{1, {2}, 3, 4, 5, {6}, 7, true, 8},
           Alive{7, "tcp://h:5"},
           Credit{1, {2}, 1ULL << 40},
           Release{1, {2}},
-          Assignment{1, 2, 3, 4, {"simplify", {part, part}, std::string("\0\1\2", 3), 77}},
-          Result{1, 2, {3}, 4, 5, {6}, output},
-          Result{1, 2, {3}, 4, 5, {6}, failure},
-          Accept{1, {2}, {3}, output},
+          Assignment{1, 2, 3, 4, {"simplify", {part, part}, std::string("\0\1\2", 3), 77, 88}},
+          Result{1, 2, {3}, 4, 5, {6}, output, {7, 8, 9, 10}},
+          Result{1, 2, {3}, 4, 5, {6}, failure, {7, 8, 9, 10}},
+          Accept{1, {2}, {3}, output, {4, 5, 6, 7}},
           Reject{1, {2}, 3, {4}, failure},
           Ready{9, 10},
           Done{{10}, 11},
           SinkAt{"tcp://h:4"},
-          JobFailed{{11}, "poison"},
+          JobFailed{{11}, "poison", true},
           Complete{12},
-          Failed{13, "no space"},
+          Failed{13, "no space", true},
           Stop{StopReason::leaving}};
 }
 
@@ -61,10 +61,11 @@ TEST_CASE("fields come back in their own places") {
   CHECK(assignment.job.inputs[1] == FileRef{"parts/000001.part", 123, 456});
   CHECK(assignment.job.parameters == std::string("\0\1\2", 3));
   CHECK(assignment.job.cost == 77);
+  CHECK(assignment.job.memory == 88);
   const Message failed = decode(encode(one_of_each()[9]));
   const auto& failure = std::get<JobFailure>(std::get<Result>(failed).outcome);
   CHECK(failure.reason == "the disk is full");
-  CHECK(failure.for_good);
+  CHECK(failure.kind == FailureKind::no_space);
 }
 
 TEST_CASE("a frame cut at any byte, or longer by one, is refused") {
@@ -101,7 +102,7 @@ TEST_CASE("strangers' frames are refused with a reason") {
   other_magic[0] = 'X';
   CHECK_THROWS_WITH_AS(decode(other_magic), doctest::Contains("not a message of ours"), DataError);
   std::string other_version = frame;
-  other_version[4] = 2;
+  other_version[4] = 3;
   CHECK_THROWS_WITH_AS(decode(other_version), doctest::Contains("version"), DataError);
   for (const char type : {'\0', '\x13', '\x7f'}) {
     std::string other_type = frame;
@@ -112,9 +113,9 @@ TEST_CASE("strangers' frames are refused with a reason") {
 }
 
 TEST_CASE("numbers on the wire never change") {
-  CHECK(encode(Stop{StopReason::leaving}) == std::string("MFMS\1\0\x12\0\2", 9));
+  CHECK(encode(Stop{StopReason::leaving}) == std::string("MFMS\2\0\x12\0\2", 9));
   CHECK(encode(Credit{1, {2}, 3}) ==
-        std::string("MFMS\1\0\6\0\1\0\0\0\2\0\0\0\3\0\0\0\0\0\0\0", 24));
+        std::string("MFMS\2\0\6\0\1\0\0\0\2\0\0\0\3\0\0\0\0\0\0\0", 24));
 }
 
 TEST_CASE("what is too long for a message is refused by the sender") {

@@ -119,7 +119,7 @@ std::vector<std::string> framed_garbage(std::uint32_t epoch) {
   accept.key = key;
   accept.output.file.name = good;
   frames.push_back(encode(accept));
-  frames.push_back(encode(Reject{epoch, {1}, 1, key, {"forged", true}}));
+  frames.push_back(encode(Reject{epoch, {1}, 1, key, {"forged", FailureKind::for_good}}));
   frames.push_back(encode(Heartbeat{epoch, {1}, 0, 0, 0}));
   frames.push_back(encode(Credit{epoch, {1}, 1'000'000}));
   frames.push_back(encode(Release{epoch, {1}}));

@@ -49,7 +49,7 @@ struct Bench {
                     std::uint32_t epoch = 1) {
     return core.on_lane(Assignment{7, epoch, seq, attempt, make_job(name)}, now);
   }
-  WorkerActions finish() { return core.finished(JobFailure{"tried", false}, now); }
+  WorkerActions finish() { return core.finished(JobFailure{"tried", FailureKind::attempt}, now); }
 
   WorkerCore core;
   FarmTime now{0};
