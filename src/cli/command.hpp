@@ -40,6 +40,7 @@ std::unique_ptr<Command> make_worker_command();
 std::unique_ptr<Command> make_ventilator_command();
 std::unique_ptr<Command> make_sink_command();
 std::unique_ptr<Command> make_generate_command();
+std::unique_ptr<Command> make_benchmark_command();
 std::unique_ptr<Command> make_info_command();
 std::unique_ptr<Command> make_compare_command();
 

@@ -3,10 +3,13 @@
 #include <chrono>
 
 #include <meshfarm/farm/worker.hpp>
+#include <meshfarm/pipeline/benchmark.hpp>
 #include <meshfarm/pipeline/job_table.hpp>
 #include <meshfarm/util/log.hpp>
+#include <meshfarm/util/memory.hpp>
 
 #include "cli/farm_command.hpp"
+#include "cli/version.hpp"
 
 namespace meshfarm {
 namespace {
@@ -24,7 +27,15 @@ class WorkerCommand : public FarmCommand {
     options.add_options()("wait",
                           po::value(&wait_s_)->default_value(wait_s_)->value_name("SECONDS"),
                           "how long to look for a ventilator");
+    options.add_options()(
+        "speed", po::value(&speed_)->value_name("N"),
+        "triangles a second that this host simplifies (default: as 'meshfarm benchmark' measured)")(
+        "memory", po::value(&memory_)->value_name("SIZE"),
+        "what parts in work may take together, as 8G (default: what the host has free)");
     talk_.add_quiet(options);
+  }
+  void check() override {
+    if (!memory_.empty()) memory_bytes_ = parse_size(memory_, "--memory");
   }
 
  protected:
@@ -32,6 +43,8 @@ class WorkerCommand : public FarmCommand {
     WorkerOptions options;
     options.patience = std::chrono::seconds(wait_s_);
     options.stop = &stop;
+    options.capacity.speed = speed_ != 0 ? speed_ : speed_of_this_host(k_version);
+    options.capacity.memory = memory_.empty() ? available_memory() : memory_bytes_;
     const WorkerReport report = run_worker(stage, do_job, options);
     if (report.jobs_failed > 0 && !supervised()) {
       log_warning(std::to_string(report.jobs_failed) + " jobs failed here");
@@ -40,6 +53,9 @@ class WorkerCommand : public FarmCommand {
 
  private:
   std::uint32_t wait_s_ = 60;
+  std::uint64_t speed_ = 0;
+  std::string memory_;
+  std::uint64_t memory_bytes_ = 0;
 };
 
 }  // namespace

@@ -149,6 +149,21 @@ std::vector<std::string> NetworkOptions::words() const {
   return words;
 }
 
+std::uint64_t parse_size(const std::string& text, std::string_view option) {
+  double value = 0;
+  const char* last = text.data() + text.size();
+  const auto [end, error] = std::from_chars(text.data(), last, value);
+  const std::string_view unit(end, static_cast<std::size_t>(last - end));
+  constexpr std::string_view k_units = "KMGT";
+  const std::size_t power = unit.empty() ? 0 : k_units.find(unit[0]) + 1;
+  const bool known = unit.empty() || (unit.size() == 1 && power != 0);
+  value = std::ldexp(value, 10 * static_cast<int>(power));
+  if (error != std::errc{} || !known || !(value >= 0) || value > 0x1p60) {
+    throw UsageError(std::string(option) + " takes a size as in 512M or 8G, not '" + text + "'");
+  }
+  return static_cast<std::uint64_t>(value);
+}
+
 std::string host_address() {
   ifaddrs* list = nullptr;
   if (::getifaddrs(&list) != 0) return "127.0.0.1";

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <boost/program_options.hpp>
@@ -65,6 +66,9 @@ struct NetworkOptions {
   void check();
   std::vector<std::string> words() const;
 };
+
+/// "512M" or "8G" (powers of 1024) as bytes; `option` is for the message. Throws UsageError.
+std::uint64_t parse_size(const std::string& text, std::string_view option);
 
 /// The host's address on its first network but loopback; loopback where there is none.
 std::string host_address();

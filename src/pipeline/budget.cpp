@@ -35,6 +35,15 @@ double provision(double ratio) {
   return 1 + std::min(1.0, (1 - ratio) / (4 * ratio));
 }
 
+/// What a simplify job needs by and large: the part's file and its mesh (20 and 40 bytes a
+/// triangle), the simplifier (50 to 70), and the ladder, whose rungs shrink by a third or more from
+/// the first on.
+std::uint64_t memory_of(const PartEntry& part, std::uint64_t first_rung) {
+  constexpr std::uint64_t k_process = std::uint64_t{16} << 20;
+  const std::uint64_t ladder = 3 * 20 * std::min(part.triangles, first_rung);
+  return k_process + part.file.size + 110 * part.triangles + ladder;
+}
+
 /// What a run knows after some of its rounds: derived from the accepted outputs alone, so that
 /// ventilator and sink, restarted or not, agree.
 class Rounds {
@@ -86,8 +95,11 @@ class Rounds {
     parameters.samples = samples_for(manifest_, options_, entry.triangles);
     parameters.cost_unit = cost_unit(manifest_.box.diagonal());
     by_error() ? set_error_bound(parameters, part) : set_share(parameters, part);
-    return {
-        std::string(k_simplify_kind), {entry.file}, encode_parameters(parameters), entry.triangles};
+    return {std::string(k_simplify_kind),
+            {entry.file},
+            encode_parameters(parameters),
+            entry.triangles,
+            memory_of(entry, parameters.start_triangles)};
   }
 
   void set_error_bound(SimplifyParameters& parameters, std::uint32_t part) const {

@@ -223,6 +223,19 @@ std::string render(const FileSummary& s, Format format) {
   return lines.text();
 }
 
+std::string render(const HostSummary& host, Format format) {
+  if (format == Format::json) {
+    const Json json = {
+        {"triangles_per_second", host.speed}, {"free_memory", host.memory}, {"cores", host.cores}};
+    return json.dump(2) + "\n";
+  }
+  Lines lines;
+  lines.add("speed", grouped(host.speed) + " triangles/s, one thread");
+  lines.add("free memory", grouped(host.memory >> 20) + " MiB");
+  lines.add("cores", std::to_string(host.cores));
+  return lines.text();
+}
+
 std::string render(const Comparison& c, Format format) {
   if (format == Format::json) {
     const Json json = {{"a", c.path_a},

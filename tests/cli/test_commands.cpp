@@ -241,3 +241,25 @@ TEST_CASE("generate, info and compare fit together") {
   CHECK(ran.code == 0);
   CHECK(has(ran.out, "\"triangles\": 2000,"));
 }
+
+TEST_CASE("benchmark tells the speed, the memory and the cores, and remembers the speed") {
+  Shell shell;
+  ::setenv("XDG_CACHE_HOME", shell.path("cache").c_str(), 1);
+  const Ran text = shell({"benchmark"});
+  CHECK(text.code == 0);
+  CHECK(has(text.out, "triangles/s"));
+  CHECK(lines(text.out) == 3);
+  CHECK(has(shell({"benchmark", "--json"}).out, "\"triangles_per_second\": "));
+  CHECK(fs::exists(shell.path("cache/meshfarm")));
+  ::unsetenv("XDG_CACHE_HOME");
+}
+
+TEST_CASE("a worker's memory is a size") {
+  Shell shell;
+  for (const std::string bad : {"8X", "G", "8GB", "", "1e99"}) {
+    CAPTURE(bad);
+    const Ran ran = shell({"worker", shell.path("none"), "--memory", bad});
+    CHECK(ran.code == (bad.empty() ? 1 : 2));
+  }
+  CHECK(shell({"worker", shell.path("none"), "--memory", "8G"}).code == 1);  // no such stage
+}

@@ -59,6 +59,14 @@ struct Comparison {
   Topology topology_b;
 };
 
+/// What `benchmark` tells of this host.
+struct HostSummary {
+  std::uint64_t speed = 0;   // triangles a second, one thread
+  std::uint64_t memory = 0;  // bytes that are free
+  std::uint32_t cores = 1;
+};
+
+std::string render(const HostSummary& host, Format format);
 std::string render(const Manifest& manifest, const std::string& stage, Format format);
 std::string render(const RunSummary& summary, Format format);
 std::string render(const FileSummary& summary, Format format);
