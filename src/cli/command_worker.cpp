@@ -1,10 +1,13 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
 #include <chrono>
+#include <cstdio>
+#include <cstdlib>
 
 #include <meshfarm/farm/worker.hpp>
 #include <meshfarm/pipeline/benchmark.hpp>
 #include <meshfarm/pipeline/job_table.hpp>
+#include <meshfarm/util/errors.hpp>
 #include <meshfarm/util/log.hpp>
 #include <meshfarm/util/memory.hpp>
 
@@ -30,11 +33,14 @@ class WorkerCommand : public FarmCommand {
     options.add_options()(
         "speed", po::value(&speed_)->value_name("N"),
         "triangles a second that this host simplifies (default: as 'meshfarm benchmark' measured)")(
+        "threads", po::value(&threads_)->default_value(threads_)->value_name("N"),
+        "parts simplified at once")(
         "memory", po::value(&memory_)->value_name("SIZE"),
         "what parts in work may take together, as 8G (default: what the host has free)");
     talk_.add_quiet(options);
   }
   void check() override {
+    if (threads_ == 0 || threads_ > 256) throw UsageError("--threads: from 1 to 256");
     if (!memory_.empty()) memory_bytes_ = parse_size(memory_, "--memory");
   }
 
@@ -43,16 +49,38 @@ class WorkerCommand : public FarmCommand {
     WorkerOptions options;
     options.patience = std::chrono::seconds(wait_s_);
     options.stop = &stop;
+    options.abort = [](const std::string& incomplete) { end_process(incomplete); };
+    options.capacity.threads = threads_;
     options.capacity.speed = speed_ != 0 ? speed_ : speed_of_this_host(k_version);
     options.capacity.memory = memory_.empty() ? available_memory() : memory_bytes_;
     const WorkerReport report = run_worker(stage, do_job, options);
-    if (report.jobs_failed > 0 && !supervised()) {
+    if (supervised()) return;
+    log_info(account_of(report));
+    if (report.jobs_failed > 0) {
       log_warning(std::to_string(report.jobs_failed) + " jobs failed here");
     }
   }
 
  private:
+  /// "16 jobs in 2.91 s, computing for 98.7 % of it"
+  std::string account_of(const WorkerReport& report) const {
+    char text[96];
+    const double all = report.span_seconds * threads_;
+    std::snprintf(text, sizeof text, "%llu jobs in %.2f s, computing for %.1f %% of it",
+                  static_cast<unsigned long long>(report.jobs_done), report.span_seconds,
+                  all > 0 ? 100 * report.compute_seconds / all : 0.0);
+    return text;
+  }
+
+  /// Threads that do not listen cannot be ended but with the process.
+  [[noreturn]] static void end_process(const std::string& incomplete) {
+    log_error("left with a job that does not end; " +
+              (incomplete.empty() ? std::string("the run is over") : incomplete));
+    std::_Exit(incomplete.empty() ? 0 : 3);
+  }
+
   std::uint32_t wait_s_ = 60;
+  std::uint32_t threads_ = 1;
   std::uint64_t speed_ = 0;
   std::string memory_;
   std::uint64_t memory_bytes_ = 0;

@@ -21,4 +21,14 @@ JobKey key_of(const Job& job) {
   return {checksum(out.bytes())};
 }
 
+std::string JobContext::read(const FileRef& file) const {
+  return storage != nullptr ? storage->read(file) : stage.read(file);
+}
+
+FileRef JobContext::publish(const StagedName& name, std::string_view bytes) const {
+  const std::string unique = to_hex(incarnation);
+  return storage != nullptr ? storage->publish(name, bytes, unique)
+                            : stage.publish(name, bytes, unique);
+}
+
 }  // namespace meshfarm

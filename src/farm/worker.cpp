@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
-#include <atomic>
-#include <new>
+#include <algorithm>
+#include <memory>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -12,26 +12,31 @@
 #include <meshfarm/farm/worker_core.hpp>
 #include <meshfarm/util/errors.hpp>
 #include <meshfarm/util/log.hpp>
+#include <meshfarm/util/memory.hpp>
 
+#include "farm/compute_gate.hpp"
 #include "farm/control_link.hpp"
+#include "farm/job_slot.hpp"
 #include "farm/sockets.hpp"
-#include "farm/task_thread.hpp"
 
 namespace meshfarm {
 namespace {
 
 /// So that a flood cannot keep the clock from being looked at.
 constexpr int k_messages_per_turn = 1000;
+constexpr FarmTime k_memory_every{500};
 
-using Outcome = std::variant<JobOutput, JobFailure>;
+/// One job more than is computed: its inputs are read ahead meanwhile, or its output is written.
+WorkerLimits limits_of(const WorkerOptions& options) {
+  return {options.buffer, std::max(1U, options.capacity.threads) + 1, options.capacity.memory,
+          options.grace};
+}
 
-/// The sockets and the compute thread round a WorkerCore, which decides everything.
+/// The sockets and the job slots round a WorkerCore, which decides everything.
 class WorkerLoop {
  public:
   WorkerLoop(const Stage& stage, const JobFunction& work, const WorkerOptions& options)
-      : stage_(stage),
-        work_(work),
-        options_(options),
+      : options_(options),
         incarnation_(random_id()),
         context_(make_context()),
         link_(context_, stage),
@@ -43,7 +48,12 @@ class WorkerLoop {
                {},
                options.patience,
                options.capacity},
-              options.buffer) {}
+              limits_of(options)),
+        gate_(std::max(1U, options.capacity.threads)) {
+    for (std::uint32_t i = 0; i < limits_of(options).slots; ++i) {
+      slots_.push_back(std::make_unique<JobSlot>(stage, work, gate_, incarnation_));
+    }
+  }
 
   WorkerReport run() {
     while (!left_) {
@@ -51,17 +61,24 @@ class WorkerLoop {
       turn();
     }
     if (!left_->incomplete.empty()) throw IncompleteError(left_->incomplete);
-    return core_.report();
+    WorkerReport report = core_.report();
+    const std::chrono::duration<double> span = last_end_ - first_begin_.value_or(last_end_);
+    report.span_seconds = span.count();
+    report.compute_seconds = std::chrono::duration<double>(computed_).count();
+    return report;
   }
 
  private:
   void turn() {
-    std::vector<zmq::pollitem_t> items = {{nullptr, compute_.fd(), ZMQ_POLLIN, 0}};
+    std::vector<zmq::pollitem_t> items;
+    for (const auto& slot : slots_) items.push_back({nullptr, slot->fd(), ZMQ_POLLIN, 0});
     if (link_.socket() != nullptr) items.push_back({link_.socket()->handle(), 0, ZMQ_POLLIN, 0});
     if (lane_) items.push_back({lane_->handle(), 0, ZMQ_POLLIN, 0});
     wait_for(items, poll_interval(core_.heartbeat()));
     const FarmTime now = farm_clock();
-    if (compute_.take_finished()) perform(core_.finished(std::move(outcome_), now));
+    for (std::uint32_t i = 0; i < slots_.size(); ++i) {
+      if (slots_[i]->take_finished()) finish(i, now);
+    }
     for (int count = 0; link_.socket() != nullptr && count < k_messages_per_turn; ++count) {
       const auto received = receive(*link_.socket());
       if (!received) break;
@@ -72,7 +89,28 @@ class WorkerLoop {
       if (!received) break;
       if (received->message) perform(core_.on_lane(*received->message, now));
     }
-    perform(core_.tick(progress_.load(std::memory_order_relaxed), now));
+    if (next_look_at_memory_ <= now) {
+      next_look_at_memory_ = now + k_memory_every;
+      rss_bytes_ = resident_memory();
+    }
+    perform(core_.tick(pulse(), now));
+  }
+
+  WorkerPulse pulse() const {
+    WorkerPulse pulse;
+    for (const auto& slot : slots_) {
+      pulse.slots.push_back(slot->pulse());
+      pulse.progress += pulse.slots.back().progress;
+    }
+    pulse.rss_bytes = rss_bytes_;
+    return pulse;
+  }
+
+  void finish(std::uint32_t slot, FarmTime now) {
+    JobSlot& ended = *slots_[slot];
+    last_end_ = now;
+    computed_ += FarmTime(ended.times().compute_ms);
+    perform(core_.finished(slot, std::move(ended.outcome()), now, ended.times()));
   }
 
   void perform(const WorkerActions& actions) {
@@ -103,11 +141,14 @@ class WorkerLoop {
     if (results_) send(*results_, each.result);  // what gets lost is sent again
   }
   void act(const Begin& each) {
-    give_up_.store(false);
-    compute_.start([this, each] { outcome_ = attempt(each); });
+    if (!first_begin_) first_begin_ = farm_clock();
+    slots_[each.slot]->begin(each);
   }
-  void act(const GiveUp&) { give_up_.store(true); }
-  void act(const Leave& each) { left_ = each; }
+  void act(const GiveUp& each) { slots_[each.slot]->give_up(); }
+  void act(const Leave& each) {
+    left_ = each;
+    if (each.abort && options_.abort) options_.abort(each.incomplete);
+  }
 
   static void connect(zmq::socket_t& socket, const std::string& address) {
     try {
@@ -117,40 +158,6 @@ class WorkerLoop {
     }
   }
 
-  /// On the compute thread. Whatever the job's function throws is the job's failure, not ours.
-  Outcome attempt(const Begin& begin) {
-    const JobContext context{stage_, begin.attempt, incarnation_, [this](std::uint64_t done) {
-                               progress_.fetch_add(done, std::memory_order_relaxed);
-                               return !give_up_.load(std::memory_order_relaxed);
-                             }};
-    try {
-      return checked(begin, work_(begin.job, context));
-    } catch (const BadInputError& error) {
-      return JobFailure{clipped(error.what()), FailureKind::for_good};
-    } catch (const std::bad_alloc&) {
-      return JobFailure{"out of memory", FailureKind::attempt};
-    } catch (const std::exception& error) {
-      return JobFailure{clipped(error.what()), FailureKind::attempt};
-    } catch (...) {
-      return JobFailure{"an unknown exception", FailureKind::attempt};
-    }
-  }
-
-  Outcome checked(const Begin& begin, JobOutput output) const {
-    const ResultName name{key_of(begin.job).value, begin.attempt, incarnation_};
-    if (output.file.name != to_string(name)) {
-      return JobFailure{
-          clipped("its output is named '" + output.file.name + "', not '" + to_string(name) + "'"),
-          FailureKind::attempt};
-    }
-    if (output.summary.size() > k_max_summary_bytes) {
-      return JobFailure{"its summary is too long for a message", FailureKind::attempt};
-    }
-    return output;
-  }
-
-  const Stage& stage_;
-  const JobFunction& work_;
   const WorkerOptions& options_;
   std::uint64_t incarnation_;
   zmq::context_t context_;
@@ -159,10 +166,13 @@ class WorkerLoop {
   std::optional<zmq::socket_t> results_;
   WorkerCore core_;
   std::optional<Leave> left_;
-  std::atomic<std::uint64_t> progress_{0};
-  std::atomic<bool> give_up_{false};
-  Outcome outcome_;     // the compute thread's while it works
-  TaskThread compute_;  // the last member, so that its thread ends first
+  std::optional<FarmTime> first_begin_;
+  FarmTime last_end_{0};
+  FarmTime computed_{0};
+  FarmTime next_look_at_memory_{0};
+  std::uint64_t rss_bytes_ = 0;
+  ComputeGate gate_;
+  std::vector<std::unique_ptr<JobSlot>> slots_;  // the last member, so that their threads end first
 };
 
 }  // namespace

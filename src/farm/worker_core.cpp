@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
 #include <algorithm>
+#include <cstdint>
 #include <utility>
 
 #include <meshfarm/farm/worker_core.hpp>
@@ -13,21 +14,54 @@ constexpr int k_resend_heartbeats = 5;
 
 }  // namespace
 
-WorkerActions WorkerCore::tick(std::uint64_t progress, FarmTime now) {
+WorkerActions WorkerCore::tick(const WorkerPulse& pulse, FarmTime now) {
+  if (leaving_ && !left_) {
+    if (!leaving_since_) leaving_since_ = now;
+    if (now - *leaving_since_ > limits_.grace) abort(incomplete_);
+  }
   if (left_ || leaving_) return take();
+  feel(pulse, now);
   on(member_.tick(now), now);
   if (member_.look_due(now)) act(Look{});
-  if (member_.beat_due(now)) {
-    const Welcome& joined = member_.welcome();
-    act(Say{Heartbeat{joined.epoch, joined.worker, held(), received_, progress}});
-    if (credit_ > 0) act(Say{Credit{joined.epoch, joined.worker, credit_}});
-  }
+  if (member_.beat_due(now)) beat(pulse, now);
   if (member_.joined() && !sink_.empty()) {
     for (auto& [key, kept] : unacknowledged_) {
       if (kept.sent + k_resend_heartbeats * member_.heartbeat() <= now) send_result(kept, now);
     }
   }
   return take();
+}
+
+void WorkerCore::beat(const WorkerPulse& pulse, FarmTime now) {
+  const Welcome& joined = member_.welcome();
+  Heartbeat beat;
+  beat.epoch = joined.epoch;
+  beat.worker = joined.worker;
+  beat.held = static_cast<std::uint32_t>(waiting_.size()) + in_work();
+  beat.received = received_;
+  beat.progress = pulse.progress;
+  beat.rss_bytes = pulse.rss_bytes;
+  for (const auto& slot : slots_) {
+    const FarmTime still = slot && !pulse.slots.empty() ? now - slot->moved : FarmTime(0);
+    if (still.count() <= beat.still_ms) continue;
+    beat.still = slot->key;
+    beat.still_ms = static_cast<std::uint32_t>(std::min<FarmTime::rep>(still.count(), UINT32_MAX));
+    beat.in_storage = slot->pulse.phase == JobPhase::storage;
+  }
+  act(Say{beat});
+  if (credit_ > 0) act(Say{Credit{joined.epoch, joined.worker, credit_}});
+}
+
+/// Takes the slots' pulses. Whoever waits for a compute thread does not stand still.
+void WorkerCore::feel(const WorkerPulse& pulse, FarmTime now) {
+  for (std::size_t i = 0; i < std::min(slots_.size(), pulse.slots.size()); ++i) {
+    if (!slots_[i]) continue;
+    const SlotPulse& felt = pulse.slots[i];
+    SlotPulse& known = slots_[i]->pulse;
+    const bool moved = felt.progress != known.progress || felt.phase != known.phase;
+    if (moved || felt.phase == JobPhase::waiting) slots_[i]->moved = now;
+    known = felt;
+  }
 }
 
 WorkerActions WorkerCore::found(std::span<const Endpoint> endpoints, FarmTime now) {
@@ -39,7 +73,13 @@ WorkerActions WorkerCore::found(std::span<const Endpoint> endpoints, FarmTime no
 }
 
 WorkerActions WorkerCore::on_control(const Message& message, FarmTime now) {
-  if (left_ || leaving_) return take();
+  if (left_) return take();
+  const auto* stop = std::get_if<Stop>(&message);
+  if (stop != nullptr && stop->why == StopReason::hung) {
+    abort("a job here stood still and was given to others");
+    return take();
+  }
+  if (leaving_) return take();
   on(member_.on_message(message, now), now);
   if (!member_.joined()) return take();
   if (const auto* done = std::get_if<Done>(&message)) forget(*done);
@@ -63,14 +103,16 @@ WorkerActions WorkerCore::on_lane(const Message& message, FarmTime now) {
   }
   received_ = assignment->lane_seq;
   waiting_.push_back(*assignment);
+  now_ = now;
   begin_next();
   raise_credit();
   return take();
 }
 
-WorkerActions WorkerCore::finished(std::variant<JobOutput, JobFailure> outcome, FarmTime now) {
+WorkerActions WorkerCore::finished(std::uint32_t slot, std::variant<JobOutput, JobFailure> outcome,
+                                   FarmTime now, const JobTimes& times) {
   if (left_) return take();
-  const InWork ended = *std::exchange(in_work_, std::nullopt);
+  const InWork ended = *std::exchange(slots_.at(slot), std::nullopt);
   if (leaving_) {
     leave(incomplete_);
     return take();
@@ -78,11 +120,12 @@ WorkerActions WorkerCore::finished(std::variant<JobOutput, JobFailure> outcome, 
   if (ended.wanted) {
     ++(outcome.index() == 0 ? report_.jobs_done : report_.jobs_failed);
     Kept& kept = unacknowledged_[ended.key];
-    kept.result = {run_,          0,         WorkerId{},        member_.options().incarnation,
-                   ended.attempt, ended.key, std::move(outcome)};
+    kept.result = {run_,          0,         WorkerId{},         member_.options().incarnation,
+                   ended.attempt, ended.key, std::move(outcome), times};
     kept.sent = now;
     if (member_.joined() && !sink_.empty()) send_result(kept, now);
   }
+  now_ = now;
   begin_next();
   raise_credit();
   return take();
@@ -104,7 +147,9 @@ void WorkerCore::on(Membership::Event event, FarmTime now) {
     case Membership::Event::lost:
       waiting_.clear();
       sink_is_at({}, now);
-      if (in_work_) in_work_->on_this_lane = false;
+      for (auto& slot : slots_) {
+        if (slot) slot->on_this_lane = false;
+      }
       return act(HangUp{});
     case Membership::Event::run_over:
       return leave({});
@@ -118,10 +163,7 @@ void WorkerCore::join(FarmTime now) {
   const Welcome& welcome = member_.welcome();
   if (welcome.run != run_) {
     unacknowledged_.clear();
-    if (in_work_) {
-      in_work_->wanted = false;
-      act(GiveUp{});
-    }
+    for (std::uint32_t slot = 0; slot < slots_.size(); ++slot) give_up(slot);
     run_ = welcome.run;
   }
   received_ = 0;
@@ -133,12 +175,23 @@ void WorkerCore::join(FarmTime now) {
 
 void WorkerCore::leave(std::string incomplete) {
   waiting_.clear();
-  if (!leaving_ && in_work_) act(GiveUp{});
+  for (std::uint32_t slot = 0; !leaving_ && slot < slots_.size(); ++slot) give_up(slot);
   leaving_ = true;
   incomplete_ = std::move(incomplete);
-  if (in_work_) return;
+  if (in_work() > 0) return;
   left_ = true;
-  act(Leave{incomplete_});
+  act(Leave{incomplete_, false});
+}
+
+void WorkerCore::abort(std::string incomplete) {
+  left_ = true;
+  act(Leave{std::move(incomplete), true});
+}
+
+void WorkerCore::give_up(std::uint32_t slot) {
+  if (!slots_[slot] || !slots_[slot]->wanted) return;
+  slots_[slot]->wanted = false;
+  act(GiveUp{slot});
 }
 
 void WorkerCore::forget(const Done& done) {
@@ -149,10 +202,9 @@ void WorkerCore::forget(const Done& done) {
   std::erase_if(waiting_, [&](const Assignment& each) {
     return each.attempt <= done.attempt && key_of(each.job) == done.key;
   });
-  const bool in_work = in_work_ && in_work_->key == done.key && in_work_->attempt <= done.attempt;
-  if (in_work && in_work_->wanted) {
-    in_work_->wanted = false;
-    act(GiveUp{});
+  for (std::uint32_t slot = 0; slot < slots_.size(); ++slot) {
+    const auto& job = slots_[slot];
+    if (job && job->key == done.key && job->attempt <= done.attempt) give_up(slot);
   }
   raise_credit();
 }
@@ -173,28 +225,47 @@ void WorkerCore::send_result(Kept& kept, FarmTime now) {
 }
 
 void WorkerCore::begin_next() {
-  if (in_work_ || waiting_.empty()) return;
-  Assignment next = std::move(waiting_.front());
-  waiting_.pop_front();
-  in_work_ = InWork{key_of(next.job), next.attempt, true, true};
-  act(Begin{next.attempt, std::move(next.job)});
+  while (!waiting_.empty()) {
+    const std::uint64_t memory = waiting_.front().job.memory;
+    const auto slot = free_slot(memory);
+    if (!slot) return;
+    Assignment next = std::move(waiting_.front());
+    waiting_.pop_front();
+    slots_[*slot] = InWork{key_of(next.job), next.attempt, memory, true, true, {}, now_};
+    act(Begin{*slot, next.attempt, std::move(next.job)});
+  }
+}
+
+/// A slot for a job that takes so much memory; the first job always gets one.
+std::optional<std::uint32_t> WorkerCore::free_slot(std::uint64_t memory) const {
+  std::optional<std::uint32_t> found;
+  std::uint64_t taken = 0;
+  for (std::uint32_t slot = 0; slot < slots_.size(); ++slot) {
+    if (slots_[slot]) taken += slots_[slot]->memory;
+    if (!slots_[slot] && !found) found = slot;
+  }
+  const bool fits = limits_.memory == 0 || in_work() == 0 || taken + memory <= limits_.memory;
+  return fits ? found : std::nullopt;
 }
 
 void WorkerCore::raise_credit() {
   if (!member_.joined()) return;
-  const bool idle = waiting_.empty() && !in_work_;
+  std::uint64_t on_lane = 0;
+  for (const auto& slot : slots_) on_lane += slot && slot->on_this_lane ? 1 : 0;
+  const std::uint64_t busy = in_work();
+  const bool idle = waiting_.empty() && busy < slots_.size();
   // The paper, 3.2: a batch is applied for when the input buffer is less than 0.8 full.
-  if (!idle && waiting_.size() * 10 >= std::uint64_t{buffer_} * 8) return;
-  const bool on_lane = in_work_ && in_work_->on_this_lane;
-  const std::uint64_t begun_or_gone = received_ - waiting_.size() - (on_lane ? 1 : 0);
-  const std::uint64_t room = std::uint64_t{buffer_} + (in_work_ && !on_lane ? 0 : 1);
+  if (!idle && waiting_.size() * 10 >= std::uint64_t{limits_.buffer} * 8) return;
+  const std::uint64_t begun_or_gone = received_ - waiting_.size() - on_lane;
+  const std::uint64_t room = limits_.buffer + slots_.size() - (busy - on_lane);
   if (begun_or_gone + room <= credit_) return;
   credit_ = begun_or_gone + room;
   act(Say{Credit{member_.epoch(), member_.welcome().worker, credit_}});
 }
 
-std::uint32_t WorkerCore::held() const {
-  return static_cast<std::uint32_t>(waiting_.size() + (in_work_ ? 1 : 0));
+std::uint32_t WorkerCore::in_work() const {
+  return static_cast<std::uint32_t>(
+      std::count_if(slots_.begin(), slots_.end(), [](const auto& slot) { return bool(slot); }));
 }
 
 WorkerActions WorkerCore::take() {

@@ -111,8 +111,8 @@ class LadderBuilder {
 
 /// A part that is not whole may be read whole by the next attempt; one that is whole by its
 /// checksum and makes no sense never will.
-Part read_part(const Stage& stage, const FileRef& input) {
-  const std::string file = stage.read(input);
+Part read_part(const JobContext& context, const FileRef& input) {
+  const std::string file = context.read(input);
   try {
     return decode_part(file, input.name);
   } catch (const DataError& error) {
@@ -168,12 +168,12 @@ double cost_unit(double diagonal) {
 JobOutput simplify_part(const Job& job, const JobContext& context) {
   if (job.inputs.size() != 1) throw DataError("a simplify job takes one part");
   const SimplifyParameters parameters = decode_parameters(job.parameters);
-  Part part = read_part(context.stage, job.inputs[0]);
+  Part part = read_part(context, job.inputs[0]);
   LadderBuilder ladder(std::move(part), parameters, context);
   ladder.build();
   const ResultName name{key_of(job).value, context.attempt, context.incarnation};
-  return {context.stage.publish(name, ladder.file(), to_hex(context.incarnation)),
-          encode_summary(ladder.summary())};
+  const std::string file = ladder.file();
+  return {context.publish(name, file), encode_summary(ladder.summary())};
 }
 
 }  // namespace meshfarm

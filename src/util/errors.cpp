@@ -12,6 +12,10 @@ IoError::IoError(std::string_view action, const std::filesystem::path& path, int
             std::generic_category().message(error_number)),
       error_number_(error_number) {}
 
+bool is_no_space(const IoError& error) {
+  return error.error_number() == ENOSPC || error.error_number() == EDQUOT;
+}
+
 void throw_errno(std::string_view action, const std::filesystem::path& path) {
   throw IoError(action, path, errno);
 }

@@ -6,6 +6,7 @@
 #include <functional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <meshfarm/staging/stage.hpp>
@@ -37,6 +38,15 @@ struct JobOutput {
   std::string summary;  // <= 16 KiB, opaque to the farm
 };
 
+/// How a job reaches the stage.
+class JobStorage {
+ public:
+  virtual ~JobStorage() = default;
+  virtual std::string read(const FileRef& file) = 0;
+  virtual FileRef publish(const StagedName& name, std::string_view bytes,
+                          std::string_view unique) = 0;
+};
+
 /// What a job's function is given beside the job.
 struct JobContext {
   const Stage& stage;
@@ -44,6 +54,13 @@ struct JobContext {
   std::uint64_t incarnation = 0;  // of the worker: result names carry it
   /// Counts work done, in triangles; returns false when the job is to be given up.
   std::function<bool(std::uint64_t done)> progress;
+  JobStorage* storage = nullptr;  // none: straight to the stage
+
+  /// An input, as Stage::read; a worker may have read it ahead.
+  std::string read(const FileRef& file) const;
+  /// The output, as Stage::publish. To be called when all is computed: from here on the worker may
+  /// begin to compute the next job.
+  FileRef publish(const StagedName& name, std::string_view bytes) const;
 };
 
 /// Thrown by a job's function when the job's input can never be done, whoever tries: the job is

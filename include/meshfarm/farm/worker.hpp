@@ -5,6 +5,8 @@
 #include <atomic>
 #include <chrono>
 #include <cstdint>
+#include <functional>
+#include <string>
 
 #include <meshfarm/farm/job.hpp>
 #include <meshfarm/farm/protocol.hpp>
@@ -13,21 +15,28 @@
 namespace meshfarm {
 
 struct WorkerOptions {
-  Capacity capacity;  // what the ventilator is told of this worker
-  std::uint32_t buffer =
-      3;  // jobs held beside the one in work; a batch is asked for below 0.8 of it
+  Capacity capacity;          // what the ventilator is told of this worker
+  std::uint32_t buffer = 16;  // jobs that may wait; a batch is asked for below 0.8 of it
   /// How long to look for a ventilator, at the start and after losing one, before giving up.
   std::chrono::milliseconds patience{60'000};
   const std::atomic<bool>* stop = nullptr;  // set by a signal: give back what is held, and leave
+  std::chrono::milliseconds grace{5000};    // for jobs in work to give up when the worker leaves
+  /// Called instead of returning when jobs in work do not give up: must end the process, as their
+  /// threads cannot be ended. `incomplete` as IncompleteError would tell; empty: the run is over.
+  std::function<void(const std::string& incomplete)> abort;
 };
 
 struct WorkerReport {
   std::uint64_t jobs_done = 0;
   std::uint64_t jobs_failed = 0;
+  double span_seconds = 0;     // from the first job's begin to the last one's end
+  double compute_seconds = 0;  // of all threads together within that
 };
 
-/// Finds the ventilator's address in the stage, takes jobs from its lane, does them with `work` on
-/// a compute thread, and reports each to the sink, until the ventilator says that the run is over.
+/// Finds the ventilator's address in the stage, takes jobs from its lane, does them with `work`, as
+/// many at once as it has threads, and reports each to the sink, until the ventilator says that the
+/// run is over. One job more is in work than is computed: while some compute, the next one's inputs
+/// are read ahead if they fit into its estimated memory, or an output is written.
 /// Throws IncompleteError when stopped or when no ventilator is found in time.
 WorkerReport run_worker(const Stage& stage, const JobFunction& work, const WorkerOptions& options);
 

@@ -28,35 +28,60 @@ struct ConnectSink {
 struct SendResult {
   Result result;
 };
-/// Give the job to the compute thread, which has none; answered by finished().
+/// Work on the job in this slot, which is free; answered by finished().
 struct Begin {
+  std::uint32_t slot = 0;
   std::uint32_t attempt = 0;
   Job job;
 };
-/// Ask the compute thread to give its job up; it still answers with finished().
-struct GiveUp {};
-/// The end; `incomplete` says why the run is not over.
+/// Ask the slot's job to be given up; it still answers with finished().
+struct GiveUp {
+  std::uint32_t slot = 0;
+};
+/// The end; `incomplete` says why the run is not over. If it is an abort, jobs are still in work:
+/// they do not listen, and may not be waited for.
 struct Leave {
   std::string incomplete;
+  bool abort = false;
 };
 using WorkerAction = std::variant<Look, Dial, HangUp, Say, ConnectLane, ConnectSink, SendResult,
                                   Begin, GiveUp, Leave>;
 using WorkerActions = std::vector<WorkerAction>;
 
+struct WorkerLimits {
+  std::uint32_t buffer = 16;  // jobs that may wait beside those in work
+  std::uint32_t slots = 1;    // jobs in work at once: computed, read ahead, or written
+  std::uint64_t memory = 0;   // bytes for all jobs in work together; 0: no limit
+  FarmTime grace{5000};       // how long jobs in work may take to give up when the worker leaves
+};
+
+/// What the job in a slot is at.
+enum class JobPhase : std::uint8_t { storage, waiting, computing };
+struct SlotPulse {
+  std::uint64_t progress = 0;  // any count that grows as long as the job goes on
+  JobPhase phase = JobPhase::computing;
+};
+/// Signs of life of the slots, those that have no job included.
+struct WorkerPulse {
+  std::vector<SlotPulse> slots;  // empty: not known, and nothing is held to stand still
+  std::uint64_t progress = 0;    // of all slots together
+  std::uint64_t rss_bytes = 0;
+};
+
 /// The worker's mind: its input buffer, its credit, the results that nobody acknowledged yet. Pure.
-/// Holds: at most `buffer` jobs wait beside the one in work; a result is kept until Done.
+/// Holds: at most `buffer` jobs wait beside those in work; a result is kept until Done.
 class WorkerCore {
  public:
-  WorkerCore(MemberOptions member, std::uint32_t buffer)
-      : member_(std::move(member)), buffer_(buffer) {}
+  WorkerCore(MemberOptions member, const WorkerLimits& limits)
+      : member_(std::move(member)), limits_(limits), slots_(limits.slots) {}
 
-  /// `progress` is the compute thread's counter.
-  WorkerActions tick(std::uint64_t progress, FarmTime now);
+  WorkerActions tick(const WorkerPulse& pulse, FarmTime now);
   WorkerActions found(std::span<const Endpoint> endpoints, FarmTime now);
   WorkerActions on_control(const Message& message, FarmTime now);
   WorkerActions on_lane(const Message& message, FarmTime now);
-  WorkerActions finished(std::variant<JobOutput, JobFailure> outcome, FarmTime now);
-  /// Gives back all that is held and leaves, at once or when the job in work ended.
+  WorkerActions finished(std::uint32_t slot, std::variant<JobOutput, JobFailure> outcome,
+                         FarmTime now, const JobTimes& times = {});
+  /// Gives back all that is held and leaves: at once, or when the jobs in work have ended.
   WorkerActions stop();
 
   const WorkerReport& report() const { return report_; }
@@ -69,8 +94,11 @@ class WorkerCore {
   struct InWork {
     JobKey key;
     std::uint32_t attempt = 0;
+    std::uint64_t memory = 0;
     bool on_this_lane = true;  // it counts against the lane's credit
     bool wanted = true;
+    SlotPulse pulse = {};
+    FarmTime moved{0};  // when the pulse was last seen to change
   };
   struct Kept {
     Result result;
@@ -80,29 +108,36 @@ class WorkerCore {
   void on(Membership::Event event, FarmTime now);
   void join(FarmTime now);
   void leave(std::string incomplete);
+  void abort(std::string incomplete);
   void forget(const Done& done);
   void sink_is_at(const std::string& address, FarmTime now);
   void send_result(Kept& kept, FarmTime now);
   void begin_next();
+  std::optional<std::uint32_t> free_slot(std::uint64_t memory) const;
+  void give_up(std::uint32_t slot);
   void raise_credit();
-  std::uint32_t held() const;
+  void beat(const WorkerPulse& pulse, FarmTime now);
+  void feel(const WorkerPulse& pulse, FarmTime now);
+  std::uint32_t in_work() const;
   template <class A>
   void act(A action) {
-    out_.push_back(std::move(action));
+    out_.emplace_back(std::in_place_type<A>, std::move(action));
   }
   WorkerActions take();
 
   Membership member_;
-  std::uint32_t buffer_;
+  WorkerLimits limits_;
   WorkerActions out_;
+  FarmTime now_{0};
   std::deque<Assignment> waiting_;
-  std::optional<InWork> in_work_;
+  std::vector<std::optional<InWork>> slots_;
   std::map<JobKey, Kept> unacknowledged_;
   std::string sink_;
   std::uint64_t run_ = 0;       // that what is kept belongs to
   std::uint64_t received_ = 0;  // the lane's last number
   std::uint64_t credit_ = 0;
   bool leaving_ = false;
+  std::optional<FarmTime> leaving_since_;
   bool left_ = false;
   std::string incomplete_;
   WorkerReport report_;

@@ -39,6 +39,9 @@ class IoError : public Error {
   int error_number_;
 };
 
+/// Whether the error is that the disk, or the user's share of it, is full.
+bool is_no_space(const IoError& error);
+
 /// The run stopped before its end; what is staged is kept and can be taken up again (exit 3).
 class IncompleteError : public Error {
  public:

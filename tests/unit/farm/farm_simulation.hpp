@@ -199,7 +199,7 @@ class FarmSimulation {
     worker.incarnation = random_() | 1;
     worker.core = std::make_unique<WorkerCore>(
         MemberOptions{Role::worker, 0, worker.incarnation, 1, "host", "", FarmTime(600'000)},
-        k_buffer);
+        WorkerLimits{.buffer = k_buffer});
     tick_worker(id, worker.life);
   }
   void awake(std::size_t id, std::uint64_t life, std::function<void()> event) {
@@ -212,7 +212,7 @@ class FarmSimulation {
     Worker& worker = workers_[id];
     if (!worker.core || worker.life != life) return;
     if (chance(faults_.pause)) worker.paused_until = now_ + FarmTime(pick(10'000));
-    awake(id, life, [this, id] { worker_do(id, workers_[id].core->tick(0, now_)); });
+    awake(id, life, [this, id] { worker_do(id, workers_[id].core->tick({}, now_)); });
     at(FarmTime(100), [this, id, life] { tick_worker(id, life); });
   }
   void worker_do(std::size_t id, const WorkerActions& actions) {
@@ -257,9 +257,10 @@ class FarmSimulation {
       return;
     }
     const auto outcome = outcome_of(each, workers_[id].incarnation);
-    at(FarmTime(1 + pick(1500)), [this, id, life, outcome] {
-      awake(id, life,
-            [this, id, outcome] { worker_do(id, workers_[id].core->finished(outcome, now_)); });
+    at(FarmTime(1 + pick(1500)), [this, id, life, slot = each.slot, outcome] {
+      awake(id, life, [this, id, slot, outcome] {
+        worker_do(id, workers_[id].core->finished(slot, outcome, now_));
+      });
     });
   }
   std::variant<JobOutput, JobFailure> outcome_of(const Begin& begin, std::uint64_t incarnation) {
@@ -272,6 +273,7 @@ class FarmSimulation {
   }
   void worker_act(std::size_t, const GiveUp&) {}  // a job that does not listen ends all the same
   void worker_act(std::size_t id, const Leave& each) {
+    if (each.abort) return crash(id, workers_[id].life);
     CHECK(each.incomplete == "");
     workers_[id].core.reset();
   }

@@ -36,11 +36,11 @@ Endpoint endpoint(std::uint32_t epoch) {
 
 /// A worker and a clock.
 struct Bench {
-  explicit Bench(std::uint32_t buffer = 5)
-      : core({Role::worker, 0, 99, 1, "h", {}, FarmTime(10'000)}, buffer) {}
+  explicit Bench(std::uint32_t buffer = 5, std::uint32_t slots = 1, std::uint64_t memory = 0)
+      : core({Role::worker, 0, 99, 1, "h", {}, FarmTime(10'000)}, {buffer, slots, memory}) {}
 
   WorkerActions join(std::uint32_t epoch, const std::string& sink = "sink") {
-    core.tick(0, now);
+    core.tick({}, now);
     const Endpoint there = endpoint(epoch);
     CHECK(only<Dial>(core.found({&there, 1}, now)).size() == 1);
     return core.on_control(Welcome{{epoch}, epoch, 7, "lane", sink, 1000}, now);
@@ -49,7 +49,9 @@ struct Bench {
                     std::uint32_t epoch = 1) {
     return core.on_lane(Assignment{7, epoch, seq, attempt, make_job(name)}, now);
   }
-  WorkerActions finish() { return core.finished(JobFailure{"tried", FailureKind::attempt}, now); }
+  WorkerActions finish(std::uint32_t slot = 0) {
+    return core.finished(slot, JobFailure{"tried", FailureKind::attempt}, now);
+  }
 
   WorkerCore core;
   FarmTime now{0};
@@ -93,9 +95,9 @@ TEST_CASE("a result is kept, and said again, until it is done") {
   const JobKey key = results[0].result.key;
   bench.now += FarmTime(2500);
   bench.core.on_control(Alive{1, "sink"}, bench.now);
-  CHECK(only<SendResult>(bench.core.tick(0, bench.now)).empty());
+  CHECK(only<SendResult>(bench.core.tick({}, bench.now)).empty());
   bench.now += FarmTime(2500);
-  CHECK(only<SendResult>(bench.core.tick(0, bench.now)).size() == 1);
+  CHECK(only<SendResult>(bench.core.tick({}, bench.now)).size() == 1);
   bench.core.on_control(Done{key, 4}, bench.now);  // an earlier attempt is meant
   CHECK(bench.core.unacknowledged() == 1);
   bench.core.on_control(Done{key, 5}, bench.now);
@@ -139,7 +141,7 @@ TEST_CASE("a ventilator that falls silent is replaced; what was done is kept, wh
   bench.job(3, "3");
   bench.finish();
   bench.now += FarmTime(3001);
-  const WorkerActions lost = bench.core.tick(0, bench.now);
+  const WorkerActions lost = bench.core.tick({}, bench.now);
   CHECK(only<HangUp>(lost).size() == 1);
   CHECK(only<Look>(lost).size() == 1);
   CHECK(bench.core.waiting() == 0);
@@ -154,8 +156,8 @@ TEST_CASE("a ventilator that falls silent is replaced; what was done is kept, wh
 TEST_CASE("patience ends, the run ends, and a stop gives back") {
   Bench bench;
   SUBCASE("no ventilator") {
-    bench.core.tick(0, bench.now);
-    const auto left = only<Leave>(bench.core.tick(0, bench.now + FarmTime(10'001)));
+    bench.core.tick({}, bench.now);
+    const auto left = only<Leave>(bench.core.tick({}, bench.now + FarmTime(10'001)));
     REQUIRE(left.size() == 1);
     CHECK(left[0].incomplete.find("meshfarm run") != std::string::npos);
   }
@@ -168,7 +170,7 @@ TEST_CASE("patience ends, the run ends, and a stop gives back") {
   SUBCASE("over, as the stage says") {
     bench.join(1);
     bench.now += FarmTime(3001);
-    bench.core.tick(0, bench.now);
+    bench.core.tick({}, bench.now);
     const std::vector<Endpoint> seen = {endpoint(1), {2, 7, "", "h", 1}};
     const auto left = only<Leave>(bench.core.found(seen, bench.now));
     REQUIRE(left.size() == 1);
@@ -188,6 +190,92 @@ TEST_CASE("patience ends, the run ends, and a stop gives back") {
     CHECK(only<Leave>(stopping).empty());
     CHECK(only<Leave>(bench.finish()).size() == 1);
   }
+  SUBCASE("stopped while it works, and the job does not listen: the process must end") {
+    bench.join(1);
+    bench.job(1, "1");
+    bench.core.stop();
+    CHECK(bench.core.tick({}, bench.now).empty());
+    CHECK(bench.core.tick({}, bench.now + FarmTime(5000)).empty());
+    const auto aborted = only<Leave>(bench.core.tick({}, bench.now + FarmTime(5001)));
+    REQUIRE(aborted.size() == 1);
+    CHECK(aborted[0].abort);
+    CHECK(aborted[0].incomplete.find("given back") != std::string::npos);
+  }
+  SUBCASE("told that it hangs") {
+    bench.join(1);
+    bench.job(1, "1");
+    CHECK(only<Leave>(bench.core.on_control(Stop{StopReason::hung}, bench.now)).size() == 1);
+  }
+}
+
+TEST_CASE("as many jobs are in work as there are slots and memory") {
+  SUBCASE("three slots") {
+    Bench bench(2, 3);
+    CHECK(credit_in(bench.join(1)) == 5);
+    for (std::uint64_t seq = 1; seq <= 3; ++seq) {
+      const auto begun = only<Begin>(bench.job(seq, std::to_string(seq)));
+      REQUIRE(begun.size() == 1);
+      CHECK(begun[0].slot == seq - 1);
+    }
+    CHECK(only<Begin>(bench.job(4, "4")).empty());
+    const WorkerActions ended = bench.finish(1);
+    REQUIRE(only<Begin>(ended).size() == 1);
+    CHECK(only<Begin>(ended)[0].slot == 1);
+    CHECK(credit_in(ended) == 6);
+  }
+  SUBCASE("a job waits for memory, but the first never") {
+    Bench bench(2, 2, 100);
+    bench.join(1);
+    const auto send = [&](std::uint64_t seq, std::uint64_t memory) {
+      Job job = make_job(std::to_string(seq));
+      job.memory = memory;
+      return only<Begin>(bench.core.on_lane(Assignment{7, 1, seq, 1, job}, bench.now)).size();
+    };
+    CHECK(send(1, 150) == 1);
+    CHECK(send(2, 60) == 0);
+    CHECK(only<Begin>(bench.finish(0)).size() == 1);
+    CHECK(send(3, 50) == 0);
+    CHECK(only<Begin>(bench.finish(0)).size() == 1);
+    CHECK(send(4, 50) == 1);
+  }
+}
+
+Heartbeat beat_in(const WorkerActions& actions) {
+  for (const Say& say : only<Say>(actions)) {
+    if (const auto* beat = std::get_if<Heartbeat>(&say.message)) return *beat;
+  }
+  FAIL("no heartbeat");
+  return {};
+}
+
+TEST_CASE("a heartbeat tells of the job that stands still the longest") {
+  Bench bench(5, 2);
+  bench.join(1);
+  bench.job(1, "1");
+  bench.job(2, "2");
+  using enum JobPhase;
+  bench.core.tick({{{1, computing}, {1, waiting}}}, bench.now);
+  const auto beat = [&](const std::vector<SlotPulse>& slots) {
+    bench.now += FarmTime(1000);
+    bench.core.on_control(Alive{1, "sink"}, bench.now);
+    return beat_in(bench.core.tick({slots, 9, 8}, bench.now));
+  };
+  Heartbeat told = beat({{2, computing}, {1, waiting}});
+  CHECK(told.still_ms == 0);
+  CHECK(told.progress == 9);
+  CHECK(told.rss_bytes == 8);
+  told = beat({{2, computing}, {1, waiting}});
+  CHECK(told.still_ms == 1000);
+  CHECK(told.still == key_of(make_job("1")));
+  CHECK_FALSE(told.in_storage);
+  told = beat({{3, computing}, {1, storage}});
+  CHECK(told.still_ms == 0);
+  beat({{4, computing}, {1, storage}});
+  told = beat({{4, computing}, {1, storage}});
+  CHECK(told.still_ms == 2000);
+  CHECK(told.still == key_of(make_job("2")));
+  CHECK(told.in_storage);
+  CHECK(beat({}).still_ms == 0);  // nothing is known of the slots
 }
 
 }  // namespace

@@ -1,0 +1,32 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#include "farm/compute_gate.hpp"
+
+namespace meshfarm {
+
+bool ComputeGate::enter(const std::atomic<bool>& given_up) {
+  std::unique_lock lock(mutex_);
+  const std::uint64_t ticket = next_ticket_++;
+  changed_.wait(lock, [&] { return served_ == ticket && (free_ > 0 || given_up); });
+  ++served_;  // whoever gave up has had its turn, too
+  const bool entered = !given_up;
+  if (entered) --free_;
+  lock.unlock();
+  changed_.notify_all();
+  return entered;
+}
+
+void ComputeGate::leave() {
+  {
+    const std::lock_guard lock(mutex_);
+    ++free_;
+  }
+  changed_.notify_all();
+}
+
+void ComputeGate::look_up() {
+  const std::lock_guard lock(mutex_);
+  changed_.notify_all();
+}
+
+}  // namespace meshfarm

@@ -1,0 +1,33 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <atomic>
+#include <condition_variable>
+#include <cstdint>
+#include <mutex>
+
+namespace meshfarm {
+
+/// Lets so many threads compute at once, in the order in which they came.
+class ComputeGate {
+ public:
+  explicit ComputeGate(std::uint32_t places) : free_(places) {}
+  ComputeGate(const ComputeGate&) = delete;
+  ComputeGate& operator=(const ComputeGate&) = delete;
+
+  /// Waits for a place. False, and none is taken, once `given_up` is set (see look_up()).
+  bool enter(const std::atomic<bool>& given_up);
+  void leave();
+  /// Makes those who wait look at their `given_up`.
+  void look_up();
+
+ private:
+  std::mutex mutex_;
+  std::condition_variable changed_;
+  std::uint32_t free_;
+  std::uint64_t next_ticket_ = 0;
+  std::uint64_t served_ = 0;
+};
+
+}  // namespace meshfarm

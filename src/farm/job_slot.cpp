@@ -1,0 +1,128 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#include "farm/job_slot.hpp"
+
+#include <new>
+#include <utility>
+
+#include <meshfarm/util/errors.hpp>
+
+#include "farm/sockets.hpp"
+
+namespace meshfarm {
+
+void JobSlot::begin(const Begin& begin) {
+  give_up_ = false;
+  phase_ = JobPhase::storage;
+  thread_.start([this, begin] {
+    times_ = {};
+    outcome_ = attempt(begin);
+    ahead_.clear();
+  });
+}
+
+void JobSlot::give_up() {
+  give_up_ = true;
+  gate_.look_up();
+}
+
+SlotPulse JobSlot::pulse() const {
+  return {progress_.load(std::memory_order_relaxed), phase_.load(std::memory_order_relaxed)};
+}
+
+/// On the slot's thread, as is all below. Whatever the job's function throws is the job's failure,
+/// not ours.
+JobOutcome JobSlot::attempt(const Begin& begin) {
+  lap_ = farm_clock();
+  read_ahead(begin.job);
+  times_.read_ms = lap_ms();
+  phase_ = JobPhase::waiting;
+  if (!gate_.enter(give_up_)) return JobFailure{"given up", FailureKind::attempt};
+  times_.wait_ms = lap_ms();
+  phase_ = JobPhase::computing;
+  computing_ = true;
+  JobOutcome outcome;
+  try {
+    outcome = compute(begin);
+  } catch (const BadInputError& error) {
+    outcome = JobFailure{clipped(error.what()), FailureKind::for_good};
+  } catch (const IoError& error) {
+    outcome = JobFailure{clipped(error.what()),
+                         is_no_space(error) ? FailureKind::no_space : FailureKind::attempt};
+  } catch (const std::bad_alloc&) {
+    outcome = JobFailure{"out of memory", FailureKind::attempt};
+  } catch (const std::exception& error) {
+    outcome = JobFailure{clipped(error.what()), FailureKind::attempt};
+  } catch (...) {
+    outcome = JobFailure{"an unknown exception", FailureKind::attempt};
+  }
+  end_computing();
+  return outcome;
+}
+
+JobOutcome JobSlot::compute(const Begin& begin) {
+  const auto progress = [this](std::uint64_t done) {
+    progress_.fetch_add(done, std::memory_order_relaxed);
+    return !give_up_.load(std::memory_order_relaxed);
+  };
+  const JobContext context{stage_, begin.attempt, incarnation_, progress, this};
+  return checked(begin, work_(begin.job, context));
+}
+
+JobOutcome JobSlot::checked(const Begin& begin, JobOutput output) const {
+  const ResultName name{key_of(begin.job).value, begin.attempt, incarnation_};
+  if (output.file.name != to_string(name)) {
+    return JobFailure{
+        clipped("its output is named '" + output.file.name + "', not '" + to_string(name) + "'"),
+        FailureKind::attempt};
+  }
+  if (output.summary.size() > k_max_summary_bytes) {
+    return JobFailure{"its summary is too long for a message", FailureKind::attempt};
+  }
+  return output;
+}
+
+/// What cannot be read now is read again by the job itself, which says why it cannot be.
+void JobSlot::read_ahead(const Job& job) {
+  std::uint64_t size = 0;
+  for (const FileRef& input : job.inputs) size += input.size;
+  if (size > job.memory) return;  // the job means to read it bit by bit
+  try {
+    for (const FileRef& input : job.inputs) {
+      if (give_up_) return;
+      ahead_[input.name] = stage_.read(input, {.attempts = 1});
+    }
+  } catch (const Error&) {
+  } catch (const std::bad_alloc&) {
+  }
+}
+
+std::string JobSlot::read(const FileRef& file) {
+  auto found = ahead_.extract(file.name);
+  if (!found.empty()) return std::move(found.mapped());
+  phase_ = JobPhase::storage;
+  std::string bytes = stage_.read(file);
+  phase_ = JobPhase::computing;
+  return bytes;
+}
+
+FileRef JobSlot::publish(const StagedName& name, std::string_view bytes, std::string_view unique) {
+  end_computing();
+  FileRef file = stage_.publish(name, bytes, unique);
+  times_.write_ms += lap_ms();
+  return file;
+}
+
+void JobSlot::end_computing() {
+  if (!std::exchange(computing_, false)) return;
+  times_.compute_ms = lap_ms();
+  phase_ = JobPhase::storage;
+  gate_.leave();
+}
+
+std::uint32_t JobSlot::lap_ms() {
+  const FarmTime now = farm_clock();
+  return static_cast<std::uint32_t>((now - std::exchange(lap_, now)).count());
+}
+
+}  // namespace meshfarm

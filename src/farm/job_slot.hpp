@@ -1,0 +1,67 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <map>
+#include <string>
+#include <variant>
+
+#include <meshfarm/farm/job.hpp>
+#include <meshfarm/farm/protocol.hpp>
+#include <meshfarm/farm/worker_core.hpp>
+#include <meshfarm/staging/stage.hpp>
+
+#include "farm/compute_gate.hpp"
+#include "farm/task_thread.hpp"
+
+namespace meshfarm {
+
+using JobOutcome = std::variant<JobOutput, JobFailure>;
+
+/// One of a worker's places for a job in work, with its thread: reads the inputs ahead, waits for
+/// its turn to compute, lets the next compute while the output is written.
+class JobSlot : private JobStorage {
+ public:
+  JobSlot(const Stage& stage, const JobFunction& work, ComputeGate& gate, std::uint64_t incarnation)
+      : stage_(stage), work_(work), gate_(gate), incarnation_(incarnation) {}
+
+  /// Only when the last job was taken.
+  void begin(const Begin& begin);
+  /// The job is asked to give up; it still ends.
+  void give_up();
+  int fd() const { return thread_.fd(); }
+  /// True once for each job that ended; then outcome() and times() are its own.
+  bool take_finished() { return thread_.take_finished(); }
+  JobOutcome& outcome() { return outcome_; }
+  const JobTimes& times() const { return times_; }
+  SlotPulse pulse() const;
+
+ private:
+  JobOutcome attempt(const Begin& begin);
+  JobOutcome compute(const Begin& begin);
+  JobOutcome checked(const Begin& begin, JobOutput output) const;
+  void read_ahead(const Job& job);
+  void end_computing();
+  std::uint32_t lap_ms();
+  std::string read(const FileRef& file) override;
+  FileRef publish(const StagedName& name, std::string_view bytes, std::string_view unique) override;
+
+  const Stage& stage_;
+  const JobFunction& work_;
+  ComputeGate& gate_;
+  std::uint64_t incarnation_;
+  std::atomic<std::uint64_t> progress_{0};
+  std::atomic<JobPhase> phase_{JobPhase::storage};
+  std::atomic<bool> give_up_{false};
+  // The thread's own while it works:
+  std::map<std::string, std::string> ahead_;  // bytes by name
+  bool computing_ = false;
+  FarmTime lap_{0};
+  JobOutcome outcome_;
+  JobTimes times_;
+  TaskThread thread_;  // the last member, so that it ends first
+};
+
+}  // namespace meshfarm
