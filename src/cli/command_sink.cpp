@@ -47,6 +47,7 @@ class SinkCommand : public FarmCommand {
     options.bind = network_.bind;
     options.first_port = network_.first_port;
     options.last_port = network_.last_port;
+    options.security = network_.security.security;
     options.run = run_key(manifest, target_.run);
     options.patience = std::chrono::seconds(wait_s_);
     options.stop = &stop;

@@ -46,6 +46,7 @@ class VentilatorCommand : public FarmCommand {
     options.bind = network_.bind;
     options.first_port = network_.first_port;
     options.last_port = network_.last_port;
+    options.security = network_.security.security;
     options.run = run_key(manifest, target_.run);
     options.heartbeat = std::chrono::milliseconds(heartbeat_ms_);
     options.stop = &stop;
@@ -66,6 +67,7 @@ class VentilatorCommand : public FarmCommand {
       phase += std::to_string(p.workers) + (p.workers == 1 ? " worker" : " workers");
     }
     if (p.retries > 0) phase += ", " + std::to_string(p.retries) + " given out again";
+    if (p.refused > 0) phase += ", " + std::to_string(p.refused) + " strangers refused";
     const double all = static_cast<double>(std::max<std::uint64_t>(1, p.cost_known));
     printer.show(
         {.phase = phase, .done = static_cast<double>(p.cost_done) / all, .triangles = p.cost_done});

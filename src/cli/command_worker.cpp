@@ -37,9 +37,11 @@ class WorkerCommand : public FarmCommand {
         "parts simplified at once")(
         "memory", po::value(&memory_)->value_name("SIZE"),
         "what parts in work may take together, as 8G (default: what the host has free)");
+    security_.add(options);
     talk_.add_quiet(options);
   }
   void check() override {
+    security_.check();
     if (threads_ == 0 || threads_ > 256) throw UsageError("--threads: from 1 to 256");
     if (!memory_.empty()) memory_bytes_ = parse_size(memory_, "--memory");
   }
@@ -47,6 +49,7 @@ class WorkerCommand : public FarmCommand {
  protected:
   void serve(const Stage& stage, const std::atomic<bool>& stop) override {
     WorkerOptions options;
+    options.security = security_.security;
     options.patience = std::chrono::seconds(wait_s_);
     options.stop = &stop;
     options.abort = [](const std::string& incomplete) { end_process(incomplete); };
@@ -84,6 +87,7 @@ class WorkerCommand : public FarmCommand {
   std::uint64_t speed_ = 0;
   std::string memory_;
   std::uint64_t memory_bytes_ = 0;
+  SecurityWords security_;
 };
 
 }  // namespace

@@ -40,7 +40,7 @@ int run_local_farm(const LocalFarm& farm, const std::atomic<bool>& stop) {
   if (farm.talk.json) sink.emplace_back("--json");
   supervisor.start(sink);
   for (std::uint32_t i = 0; i < farm.workers; ++i) {
-    supervisor.start(joined({"worker", farm.stage}, quiet));
+    supervisor.start(joined({"worker", farm.stage}, joined(farm.network.security.words(), quiet)));
   }
   return supervisor.run();
 }

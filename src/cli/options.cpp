@@ -126,15 +126,44 @@ void CutWords::check() {
   if (cut.parts > 1'000'000) throw UsageError("--parts: at most 1,000,000");
 }
 
+void SecurityWords::add(po::options_description& options) {
+  options.add_options()("key-file", po::value(&key_file)->value_name("FILE"),
+                        "the keys of the run, made where they are missing; the same for all its "
+                        "processes (default: in the stage)")(
+      "insecure", po::bool_switch(&insecure),
+      "no encryption and no authentication, for all processes of a run")(
+      "insecure-network", po::bool_switch(&insecure_network),
+      "with --insecure: listen where other hosts reach it");
+}
+
+void SecurityWords::check() {
+  if (insecure && !key_file.empty()) throw UsageError("--insecure uses no --key-file");
+  if (insecure_network && !insecure) throw UsageError("--insecure-network goes with --insecure");
+  security.authentication = insecure ? Authentication::none : Authentication::curve;
+  security.insecure_exposure = insecure_network ? Exposure::network : Exposure::loopback_only;
+  security.key_file = key_file;
+}
+
+std::vector<std::string> SecurityWords::words() const {
+  std::vector<std::string> words;
+  if (!key_file.empty()) words.insert(words.end(), {"--key-file", key_file});
+  if (insecure) words.emplace_back("--insecure");
+  if (insecure_network) words.emplace_back("--insecure-network");
+  return words;
+}
+
 void NetworkOptions::add(po::options_description& options) {
   options.add_options()("bind", po::value(&bind)->value_name("ADDRESS"),
                         "address or interface to listen on (default: this host's first network)")(
       "ports", po::value(&ports)->value_name("FIRST-LAST"),
       "ports to listen on, for firewalls (default: any that is free)");
+  security.add(options);
 }
 
 void NetworkOptions::check() {
   if (bind.empty()) bind = host_address();
+  security.check();
+  check_exposure(security.security, bind);
   if (ports.empty()) return;
   const std::size_t dash = ports.find('-');
   if (dash == std::string::npos) throw UsageError("--ports takes FIRST-LAST");
@@ -146,6 +175,8 @@ void NetworkOptions::check() {
 std::vector<std::string> NetworkOptions::words() const {
   std::vector<std::string> words = {"--bind", bind};
   if (!ports.empty()) words.insert(words.end(), {"--ports", ports});
+  const std::vector<std::string> more = security.words();
+  words.insert(words.end(), more.begin(), more.end());
   return words;
 }
 

@@ -9,6 +9,7 @@
 
 #include <boost/program_options.hpp>
 
+#include <meshfarm/farm/security.hpp>
 #include <meshfarm/partition/cut.hpp>
 #include <meshfarm/pipeline/run_options.hpp>
 #include <meshfarm/report/progress.hpp>
@@ -55,12 +56,25 @@ struct CutWords {
   void check();
 };
 
-/// --bind, --ports.
+/// --key-file, --insecure, --insecure-network.
+struct SecurityWords {
+  SecurityOptions security;
+  std::string key_file;
+  bool insecure = false;
+  bool insecure_network = false;
+
+  void add(po::options_description& options);
+  void check();
+  std::vector<std::string> words() const;
+};
+
+/// --bind, --ports, and what SecurityWords has.
 struct NetworkOptions {
   std::string bind;
   std::string ports;
   std::uint16_t first_port = 0;
   std::uint16_t last_port = 0;
+  SecurityWords security;
 
   void add(po::options_description& options);
   void check();

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <algorithm>
 #include <optional>
 #include <string>
 #include <vector>
@@ -14,6 +15,7 @@
 #include <meshfarm/util/errors.hpp>
 #include <meshfarm/util/log.hpp>
 
+#include "farm/run_keys.hpp"
 #include "farm/sockets.hpp"
 
 namespace meshfarm {
@@ -21,7 +23,8 @@ namespace meshfarm {
 /// A worker's or sink's end of the control channel: does what Membership asks for.
 class ControlLink {
  public:
-  ControlLink(zmq::context_t& context, const Stage& stage) : context_(context), stage_(stage) {}
+  ControlLink(zmq::context_t& context, const Stage& stage, const SecurityOptions& security)
+      : context_(context), stage_(stage), security_(security) {}
 
   /// The endpoints that the stage shows now; as before if it cannot be listed (NFS away).
   const std::vector<Endpoint>& look() {
@@ -33,7 +36,9 @@ class ControlLink {
     return endpoints_;
   }
   void dial(const std::string& address) {
-    socket_.emplace(make_control_client(context_, random_id()));
+    socket_.reset();
+    if (!find_keys(address)) return;  // dialled again in a while
+    socket_.emplace(make_control_client(context_, keys_, random_id()));
     try {
       socket_->connect(address);
     } catch (const zmq::error_t& error) {
@@ -48,10 +53,29 @@ class ControlLink {
     if (socket_) send(*socket_, message);  // what gets lost is said again
   }
   zmq::socket_t* socket() { return socket_ ? &*socket_ : nullptr; }
+  /// Those of the run dialled last.
+  const Keys& keys() const { return keys_; }
 
  private:
+  bool find_keys(const std::string& address) {
+    const auto endpoint = std::find_if(endpoints_.rbegin(), endpoints_.rend(),
+                                       [&](const Endpoint& e) { return e.address == address; });
+    if (endpoint == endpoints_.rend()) return false;
+    try {
+      keys_ = keys_to_connect(stage_, *endpoint, security_);
+      return true;
+    } catch (const Error& error) {
+      if (problem_ != error.what()) log_warning(error.what());
+      problem_ = error.what();
+      return false;
+    }
+  }
+
   zmq::context_t& context_;
   const Stage& stage_;
+  const SecurityOptions& security_;
+  Keys keys_;
+  std::string problem_;
   EndpointList list_;
   std::vector<Endpoint> endpoints_;
   std::optional<zmq::socket_t> socket_;

@@ -1,8 +1,10 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
 //
-// An endpoint file is sealed (staging/sealed.hpp), kind "ENDP", version 1:
-//   epoch u32 | run u64 | address text | host text | pid u32        text = length u32 | bytes
+// An endpoint file is sealed (staging/sealed.hpp), kind "ENDP", version 2:
+//   epoch u32 | run u64 | address text | host text | pid u32 | server key text
+//   text = length u32 | bytes
+// Version 1 had no server key.
 #include <cerrno>
 
 #include <meshfarm/farm/endpoint.hpp>
@@ -15,7 +17,7 @@ namespace meshfarm {
 namespace {
 
 constexpr FileKind k_kind = {'E', 'N', 'D', 'P'};
-constexpr std::uint32_t k_version = 1;
+constexpr std::uint32_t k_version = 2;
 constexpr std::size_t k_max_text_bytes = 1024;
 
 }  // namespace
@@ -27,6 +29,7 @@ std::string encode_endpoint(const Endpoint& endpoint) {
   out.put_string(endpoint.address);
   out.put_string(endpoint.host);
   out.put(endpoint.pid);
+  out.put_string(endpoint.server_key);
   return seal(k_kind, k_version, out.bytes());
 }
 
@@ -37,10 +40,11 @@ Endpoint decode_endpoint(std::string_view file, std::string_view what) {
   endpoint.run = in.get<std::uint64_t>();
   endpoint.address = in.get_string();
   endpoint.host = in.get_string();
-  if (endpoint.address.size() > k_max_text_bytes || endpoint.host.size() > k_max_text_bytes) {
-    in.fail("an address too long");
-  }
   endpoint.pid = in.get<std::uint32_t>();
+  endpoint.server_key = in.get_string();
+  for (const std::string* text : {&endpoint.address, &endpoint.host, &endpoint.server_key}) {
+    if (text->size() > k_max_text_bytes) in.fail("a text too long");
+  }
   in.expect_end();
   return endpoint;
 }

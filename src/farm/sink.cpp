@@ -15,6 +15,8 @@
 #include <meshfarm/util/log.hpp>
 
 #include "farm/control_link.hpp"
+#include "farm/gatekeeper.hpp"
+#include "farm/run_keys.hpp"
 #include "farm/sockets.hpp"
 #include "farm/task_thread.hpp"
 
@@ -35,13 +37,13 @@ class SinkLoop {
       : stage_(stage),
         options_(options),
         complete_(complete),
+        keys_(keys_to_serve(stage, options.run, options.security)),
         context_(make_context()),
-        results_(make_results_server(context_)),
-        link_(context_, stage),
+        gate_(context_, keys_),
+        results_(make_results_server(context_, keys_)),
+        link_(context_, stage, options.security),
         core_({Role::sink, options.run, random_id(), static_cast<std::uint32_t>(::getpid()),
-               clipped(host_name()),
-               bind_within(results_, options.bind, {options.first_port, options.last_port}),
-               options.patience},
+               clipped(host_name()), listen(), options.patience},
               source, read_journals(stage)) {}
 
   void run() {
@@ -49,6 +51,7 @@ class SinkLoop {
       if (options_.stop != nullptr && options_.stop->load()) perform(core_.stop());
       turn();
     }
+    tell_of_strangers(gate_.refused(), garbage_);
     if (problem_) std::rethrow_exception(problem_);
     switch (left_->why) {
       case SinkLeaves::Why::complete:
@@ -63,6 +66,11 @@ class SinkLoop {
   }
 
  private:
+  std::string listen() {
+    gate_.watch(results_);
+    return bind_within(results_, options_.bind, {options_.first_port, options_.last_port});
+  }
+
   struct Checked {
     Check check;
     std::string problem;
@@ -83,7 +91,11 @@ class SinkLoop {
     for (int count = 0; count < k_messages_per_turn; ++count) {
       const auto received = receive(results_);
       if (!received) break;
-      if (received->message) perform(core_.on_result(*received->message));
+      if (received->message) {
+        perform(core_.on_result(*received->message));
+      } else {
+        ++garbage_;
+      }
     }
     perform(core_.tick(now));
     use_disk();
@@ -173,11 +185,14 @@ class SinkLoop {
   const Stage& stage_;
   const SinkOptions& options_;
   const Complete& complete_;
+  Keys keys_;
   zmq::context_t context_;
+  Gatekeeper gate_;
   zmq::socket_t results_;
   ControlLink link_;
   SinkCore core_;
   std::deque<Check> to_check_;
+  std::uint64_t garbage_ = 0;
   bool make_output_ = false;
   bool making_output_ = false;
   std::optional<SinkLeaves> left_;
@@ -192,6 +207,7 @@ class SinkLoop {
 
 void run_sink(const Stage& stage, const JobSource& source, const SinkOptions& options,
               const std::function<void(std::span<const AcceptedJob>)>& complete) {
+  check_exposure(options.security, options.bind);
   SinkLoop(stage, source, options, complete).run();
 }
 

@@ -50,6 +50,28 @@ zmq::socket_t make(zmq::context_t& context, zmq::socket_type type, int linger_ms
   return socket;
 }
 
+zmq::socket_t make_server(zmq::context_t& context, const Keys& keys, zmq::socket_type type,
+                          int linger_ms) {
+  zmq::socket_t socket = make(context, type, linger_ms);
+  if (keys) {
+    socket.set(zmq::sockopt::curve_server, 1);
+    socket.set(zmq::sockopt::curve_secretkey, keys->server_secret);
+    socket.set(zmq::sockopt::zap_domain, "meshfarm");
+  }
+  return socket;
+}
+
+zmq::socket_t make_client(zmq::context_t& context, const Keys& keys, zmq::socket_type type,
+                          int linger_ms) {
+  zmq::socket_t socket = make(context, type, linger_ms);
+  if (keys) {
+    socket.set(zmq::sockopt::curve_serverkey, keys->server_public);
+    socket.set(zmq::sockopt::curve_publickey, keys->client_public);
+    socket.set(zmq::sockopt::curve_secretkey, keys->client_secret);
+  }
+  return socket;
+}
+
 /// An IPv4 address of this host that others can reach, or its name.
 std::string reachable_host() {
   ifaddrs* list = nullptr;
@@ -122,14 +144,15 @@ zmq::context_t make_context() {
   return zmq::context_t(1, k_max_sockets);
 }
 
-zmq::socket_t make_control_server(zmq::context_t& context) {
-  zmq::socket_t socket = make(context, zmq::socket_type::router, k_linger_ms);
+zmq::socket_t make_control_server(zmq::context_t& context, const Keys& keys) {
+  zmq::socket_t socket = make_server(context, keys, zmq::socket_type::router, k_linger_ms);
   socket.set(zmq::sockopt::router_mandatory, 1);
   return socket;
 }
 
-zmq::socket_t make_control_client(zmq::context_t& context, std::uint64_t routing_id) {
-  zmq::socket_t socket = make(context, zmq::socket_type::dealer, k_linger_ms);
+zmq::socket_t make_control_client(zmq::context_t& context, const Keys& keys,
+                                  std::uint64_t routing_id) {
+  zmq::socket_t socket = make_client(context, keys, zmq::socket_type::dealer, k_linger_ms);
   // An id must not begin with a zero byte; 'm' does not.
   std::string id = "m";
   id.append(reinterpret_cast<const char*>(&routing_id), sizeof routing_id);
@@ -137,20 +160,20 @@ zmq::socket_t make_control_client(zmq::context_t& context, std::uint64_t routing
   return socket;
 }
 
-zmq::socket_t make_lane_server(zmq::context_t& context) {
-  return make(context, zmq::socket_type::push, 0);
+zmq::socket_t make_lane_server(zmq::context_t& context, const Keys& keys) {
+  return make_server(context, keys, zmq::socket_type::push, 0);
 }
 
-zmq::socket_t make_lane_client(zmq::context_t& context) {
-  return make(context, zmq::socket_type::pull, 0);
+zmq::socket_t make_lane_client(zmq::context_t& context, const Keys& keys) {
+  return make_client(context, keys, zmq::socket_type::pull, 0);
 }
 
-zmq::socket_t make_results_server(zmq::context_t& context) {
-  return make(context, zmq::socket_type::pull, 0);
+zmq::socket_t make_results_server(zmq::context_t& context, const Keys& keys) {
+  return make_server(context, keys, zmq::socket_type::pull, 0);
 }
 
-zmq::socket_t make_results_client(zmq::context_t& context) {
-  return make(context, zmq::socket_type::push, k_linger_ms);
+zmq::socket_t make_results_client(zmq::context_t& context, const Keys& keys) {
+  return make_client(context, keys, zmq::socket_type::push, k_linger_ms);
 }
 
 std::string bind_within(zmq::socket_t& socket, const std::string& interface, PortRange range) {

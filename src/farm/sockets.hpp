@@ -16,6 +16,8 @@
 
 #include <meshfarm/farm/protocol.hpp>
 
+#include "farm/run_keys.hpp"
+
 namespace meshfarm {
 
 struct PortRange {
@@ -27,13 +29,16 @@ struct PortRange {
 /// one.
 zmq::context_t make_context();
 
-zmq::socket_t make_control_server(zmq::context_t& context);
+// With keys a server talks only to clients that the context's Gatekeeper lets in, and a client only
+// to a server that has the server's secret key.
+zmq::socket_t make_control_server(zmq::context_t& context, const Keys& keys);
 /// `routing_id` must be new for each connection.
-zmq::socket_t make_control_client(zmq::context_t& context, std::uint64_t routing_id);
-zmq::socket_t make_lane_server(zmq::context_t& context);
-zmq::socket_t make_lane_client(zmq::context_t& context);
-zmq::socket_t make_results_server(zmq::context_t& context);
-zmq::socket_t make_results_client(zmq::context_t& context);
+zmq::socket_t make_control_client(zmq::context_t& context, const Keys& keys,
+                                  std::uint64_t routing_id);
+zmq::socket_t make_lane_server(zmq::context_t& context, const Keys& keys);
+zmq::socket_t make_lane_client(zmq::context_t& context, const Keys& keys);
+zmq::socket_t make_results_server(zmq::context_t& context, const Keys& keys);
+zmq::socket_t make_results_client(zmq::context_t& context, const Keys& keys);
 
 /// Binds to the interface or address on the first free port of the range. Returns the address for
 /// others to connect to. Throws IoError that names the interface and the ports.

@@ -16,6 +16,8 @@
 #include <meshfarm/util/errors.hpp>
 #include <meshfarm/util/log.hpp>
 
+#include "farm/gatekeeper.hpp"
+#include "farm/run_keys.hpp"
 #include "farm/sockets.hpp"
 
 namespace meshfarm {
@@ -40,8 +42,10 @@ class VentilatorLoop {
       : stage_(stage),
         options_(options),
         unique_(to_hex(random_id())),
+        keys_(keys_to_serve(stage, options.run, options.security)),
         context_(make_context()),
-        control_(make_control_server(context_)),
+        gate_(context_, keys_),
+        control_(make_control_server(context_, keys_)),
         endpoint_(announce()),
         dispatcher_(Plan(checked_source(source), options.max_attempts),
                     {options.run, endpoint_.epoch, options.heartbeat}) {}
@@ -55,11 +59,12 @@ class VentilatorLoop {
       }
       turn();
     }
-    if (options_.progress) options_.progress(dispatcher_.progress());
+    if (options_.progress) options_.progress(progress());
+    tell_of_strangers(gate_.refused(), garbage_);
     // Workers that were just about to join, or missed the word, see here that the run is over.
-    publish_endpoint(stage_, {0, options_.run, {}, endpoint_.host, endpoint_.pid}, unique_);
+    publish_endpoint(stage_, {0, options_.run, {}, endpoint_.host, endpoint_.pid, {}}, unique_);
     if (!end_->failure.empty()) throw DataError(end_->failure);
-    return dispatcher_.progress();
+    return progress();
   }
 
  private:
@@ -71,6 +76,8 @@ class VentilatorLoop {
   Endpoint announce() {
     Endpoint endpoint;
     endpoint.run = options_.run;
+    if (keys_) endpoint.server_key = keys_->server_public;
+    gate_.watch(control_);
     endpoint.address =
         bind_within(control_, options_.bind, {options_.first_port, options_.last_port});
     endpoint.host = host_name();
@@ -94,6 +101,8 @@ class VentilatorLoop {
       if (!received) break;
       if (received->message) {
         perform(dispatcher_.on_message(received->peer, *received->message, now));
+      } else {
+        ++garbage_;
       }
     }
     // Nobody is silent whose words are still to be read.
@@ -104,7 +113,13 @@ class VentilatorLoop {
   void report(FarmTime now) {
     if (!options_.progress || now < next_report_) return;
     next_report_ = now + k_progress_every;
-    options_.progress(dispatcher_.progress());
+    options_.progress(progress());
+  }
+
+  FarmProgress progress() const {
+    FarmProgress progress = dispatcher_.progress();
+    progress.refused = gate_.refused();
+    return progress;
   }
 
   void perform(const Actions& actions) {
@@ -119,7 +134,8 @@ class VentilatorLoop {
 
   void act(const OpenLane& each) {
     try {
-      zmq::socket_t socket = make_lane_server(context_);
+      zmq::socket_t socket = make_lane_server(context_, keys_);
+      gate_.watch(socket);
       const std::string address =
           bind_within(socket, options_.bind, {options_.first_port, options_.last_port});
       lanes_.emplace(each.worker, Lane{std::move(socket), {}});
@@ -162,13 +178,16 @@ class VentilatorLoop {
   const Stage& stage_;
   const VentilatorOptions& options_;
   std::string unique_;
+  Keys keys_;
   zmq::context_t context_;
+  Gatekeeper gate_;
   zmq::socket_t control_;
   Endpoint endpoint_;
   Dispatcher dispatcher_;
   std::map<WorkerId, Lane> lanes_;
   std::vector<WorkerId> unsent_;  // lanes with something waiting
   FarmTime next_report_{0};
+  std::uint64_t garbage_ = 0;
   std::optional<Finish> end_;
 };
 
@@ -176,6 +195,7 @@ class VentilatorLoop {
 
 FarmProgress run_ventilator(const Stage& stage, const JobSource& source,
                             const VentilatorOptions& options) {
+  check_exposure(options.security, options.bind);
   return VentilatorLoop(stage, source, options).run();
 }
 

@@ -39,7 +39,7 @@ class WorkerLoop {
       : options_(options),
         incarnation_(random_id()),
         context_(make_context()),
-        link_(context_, stage),
+        link_(context_, stage, options.security),
         core_({Role::worker,
                0,
                incarnation_,
@@ -127,14 +127,14 @@ class WorkerLoop {
   }
   void act(const Say& each) { link_.say(each.message); }
   void act(const ConnectLane& each) {
-    lane_.emplace(make_lane_client(context_));
+    lane_.emplace(make_lane_client(context_, link_.keys()));
     connect(*lane_, each.address);
   }
   void act(const ConnectSink& each) {
     if (results_) results_->set(zmq::sockopt::linger, 0);
     results_.reset();
     if (each.address.empty()) return;
-    results_.emplace(make_results_client(context_));
+    results_.emplace(make_results_client(context_, link_.keys()));
     connect(*results_, each.address);
   }
   void act(const SendResult& each) {

@@ -35,13 +35,14 @@ void rename_checked(const std::filesystem::path& from, const std::filesystem::pa
   throw IoError("cannot rename " + from.string() + " to", to, error);
 }
 
-AtomicFile::AtomicFile(std::filesystem::path final_path, std::string_view unique)
+AtomicFile::AtomicFile(std::filesystem::path final_path, std::string_view unique, Readers readers)
     : final_path_(std::move(final_path)), temporary_path_(temporary_name(final_path_, unique)) {
   constexpr int k_flags = O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC;
-  fd_ = Fd(::open(temporary_path_.c_str(), k_flags, 0644));
+  const mode_t mode = readers == Readers::owner ? 0600 : 0644;
+  fd_ = Fd(::open(temporary_path_.c_str(), k_flags, mode));
   if (!fd_ && errno == EEXIST) {  // left behind by a dead process that had our name
     ::unlink(temporary_path_.c_str());
-    fd_ = Fd(::open(temporary_path_.c_str(), k_flags, 0644));
+    fd_ = Fd(::open(temporary_path_.c_str(), k_flags, mode));
   }
   if (!fd_) throw_errno("cannot make", temporary_path_);
 }
@@ -66,22 +67,54 @@ void AtomicFile::flush() {
   buffer_.clear();
 }
 
-void AtomicFile::commit() {
+void AtomicFile::sync_and_close() {
   flush();
   if (::fsync(fd_.get()) != 0) throw_errno("cannot sync", temporary_path_);
   // From here on the destructor has nothing to close, so a failure must clean up by itself.
   const int close_error = fd_.close();
-  if (close_error == 0) {
-    try {
-      rename_checked(temporary_path_, final_path_, flushed_);
-      return;
-    } catch (const IoError&) {
-      ::unlink(temporary_path_.c_str());
-      throw;
-    }
-  }
+  if (close_error == 0) return;
   ::unlink(temporary_path_.c_str());
   throw IoError("cannot close", temporary_path_, close_error);
+}
+
+void AtomicFile::commit() {
+  sync_and_close();
+  try {
+    rename_checked(temporary_path_, final_path_, flushed_);
+  } catch (const IoError&) {
+    ::unlink(temporary_path_.c_str());
+    throw;
+  }
+}
+
+bool AtomicFile::commit_new() {
+  sync_and_close();
+  bool ours = false;
+  try {
+    ours = link_final();
+  } catch (const IoError&) {
+    ::unlink(temporary_path_.c_str());
+    throw;
+  }
+  ::unlink(temporary_path_.c_str());
+  return ours;
+}
+
+bool AtomicFile::link_final() const {
+  if (::link(temporary_path_.c_str(), final_path_.c_str()) == 0) return true;
+  const int error = errno;
+  struct stat ours {};
+  struct stat theirs {};
+  if (error == EEXIST) {
+    // An answer that a restarting NFS server lost may have been ours.
+    return ::stat(temporary_path_.c_str(), &ours) == 0 &&
+           ::stat(final_path_.c_str(), &theirs) == 0 && ours.st_ino == theirs.st_ino;
+  }
+  const bool no_links = error == EPERM || error == EOPNOTSUPP || error == ENOSYS || error == EMLINK;
+  if (!no_links) throw IoError("cannot make", final_path_, error);
+  if (::stat(final_path_.c_str(), &theirs) == 0) return false;
+  rename_checked(temporary_path_, final_path_, flushed_);
+  return true;
 }
 
 }  // namespace meshfarm

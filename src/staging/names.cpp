@@ -26,6 +26,7 @@ struct Printer {
   std::string operator()(EndpointName n) const {
     return "control/" + six_digits(n.epoch) + ".endpoint";
   }
+  std::string operator()(KeysName n) const { return "control/" + to_hex(n.run) + ".keys"; }
 };
 
 /// Eats text from its front. Lenient on digits' form: parse_staged_name compares with the printed
@@ -68,8 +69,13 @@ std::optional<StagedName> scan(std::string_view text) {
     JournalName name;
     if (in.number(name.number, 10)) return name;
   } else if (in.word("control/")) {
-    EndpointName name;
-    if (in.number(name.epoch, 10)) return name;
+    if (text.ends_with(".keys")) {
+      KeysName name;
+      if (in.number(name.run, 16)) return name;
+    } else {
+      EndpointName name;
+      if (in.number(name.epoch, 10)) return name;
+    }
   }
   return std::nullopt;
 }

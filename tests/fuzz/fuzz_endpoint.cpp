@@ -27,6 +27,6 @@ void try_file(std::string_view file) {
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const std::string_view bytes(reinterpret_cast<const char*>(data), size);
   try_file(bytes);
-  try_file(meshfarm::seal({'E', 'N', 'D', 'P'}, 1, bytes));
+  try_file(meshfarm::seal({'E', 'N', 'D', 'P'}, 2, bytes));
   return 0;
 }

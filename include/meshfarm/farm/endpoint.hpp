@@ -18,6 +18,7 @@ struct Endpoint {
   std::string address;  // tcp://host:port; empty: the run that the epoch before served is over
   std::string host;
   std::uint32_t pid = 0;
+  std::string server_key;  // public, as Z85 text; empty: whoever comes is believed (--insecure)
   friend bool operator==(const Endpoint&, const Endpoint&) = default;
 };
 

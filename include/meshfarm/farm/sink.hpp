@@ -10,6 +10,7 @@
 #include <string>
 
 #include <meshfarm/farm/job.hpp>
+#include <meshfarm/farm/security.hpp>
 #include <meshfarm/staging/stage.hpp>
 
 namespace meshfarm {
@@ -18,6 +19,7 @@ struct SinkOptions {
   std::string bind = "127.0.0.1";
   std::uint16_t first_port = 0;  // 0: any
   std::uint16_t last_port = 0;
+  SecurityOptions security;
   std::uint64_t run = 0;                       // must be the ventilator's
   std::chrono::milliseconds patience{60'000};  // how long to look for a ventilator
   const std::atomic<bool>* stop = nullptr;

@@ -9,6 +9,7 @@
 #include <string>
 
 #include <meshfarm/farm/job.hpp>
+#include <meshfarm/farm/security.hpp>
 #include <meshfarm/staging/stage.hpp>
 
 namespace meshfarm {
@@ -24,12 +25,14 @@ struct FarmProgress {
   std::uint32_t workers_lost = 0;
   std::uint32_t retries = 0;
   bool sink_present = false;
+  std::uint64_t refused = 0;  // connections that did not prove to belong to the run
 };
 
 struct VentilatorOptions {
   std::string bind = "127.0.0.1";  // address or interface, never all by default
   std::uint16_t first_port = 0;    // 0: any; else control and lanes use this one and those after
   std::uint16_t last_port = 0;
+  SecurityOptions security;
   std::uint64_t run = 0;  // the run's key: peers of another run are refused
   std::chrono::milliseconds heartbeat{1000};
   std::uint32_t max_attempts = 3;                     // a job that failed this often is given up

@@ -10,6 +10,7 @@
 
 #include <meshfarm/farm/job.hpp>
 #include <meshfarm/farm/protocol.hpp>
+#include <meshfarm/farm/security.hpp>
 #include <meshfarm/staging/stage.hpp>
 
 namespace meshfarm {
@@ -17,6 +18,7 @@ namespace meshfarm {
 struct WorkerOptions {
   Capacity capacity;          // what the ventilator is told of this worker
   std::uint32_t buffer = 16;  // jobs that may wait; a batch is asked for below 0.8 of it
+  SecurityOptions security;
   /// How long to look for a ventilator, at the start and after losing one, before giving up.
   std::chrono::milliseconds patience{60'000};
   const std::atomic<bool>* stop = nullptr;  // set by a signal: give back what is held, and leave

@@ -17,9 +17,12 @@ namespace meshfarm {
 /// publishes; the destructor removes what was not published.
 class AtomicFile {
  public:
+  enum class Readers { everyone, owner };
+
   /// Makes the temporary file. `unique` (process or incarnation) keeps two writers of one name
   /// apart.
-  explicit AtomicFile(std::filesystem::path final_path, std::string_view unique = {});
+  explicit AtomicFile(std::filesystem::path final_path, std::string_view unique = {},
+                      Readers readers = Readers::everyone);
   ~AtomicFile();
   AtomicFile(const AtomicFile&) = delete;
   AtomicFile& operator=(const AtomicFile&) = delete;
@@ -28,9 +31,14 @@ class AtomicFile {
   void write(std::string_view bytes);
   std::uint64_t size() const { return flushed_ + buffer_.size(); }
   void commit();
+  /// The same if nobody has the name yet; else false, and what is there stays. Of two writers one
+  /// is told true (where a file system has no hard links that is not certain: look who has it).
+  bool commit_new();
 
  private:
   void flush();
+  void sync_and_close();
+  bool link_final() const;
 
   std::filesystem::path final_path_;
   std::filesystem::path temporary_path_;

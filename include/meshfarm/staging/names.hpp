@@ -19,6 +19,8 @@ namespace meshfarm {
 ///   results/KEY.aATTEMPT.INCARNATION  a job's output; KEY names the job by content, 16 hex digits
 ///   journal/000001                    accepted results, one file a sink incarnation
 ///   control/000001.endpoint           where a ventilator listens, one file an epoch
+///   control/RUN.keys                  what the processes of a run prove themselves by, 16 hex
+///   digits
 struct ManifestName {};
 struct BoundaryName {};
 struct PartName {
@@ -35,8 +37,11 @@ struct JournalName {
 struct EndpointName {
   std::uint32_t epoch = 0;
 };
-using StagedName =
-    std::variant<ManifestName, BoundaryName, PartName, ResultName, JournalName, EndpointName>;
+struct KeysName {
+  std::uint64_t run = 0;
+};
+using StagedName = std::variant<ManifestName, BoundaryName, PartName, ResultName, JournalName,
+                                EndpointName, KeysName>;
 
 std::string to_string(const StagedName& name);
 /// The name that to_string made; nothing for any other text.

@@ -12,7 +12,7 @@
 namespace meshfarm {
 namespace {
 
-const Endpoint k_endpoint{3, 7, "tcp://10.0.0.1:5555", "host", 42};
+const Endpoint k_endpoint{3, 7, "tcp://10.0.0.1:5555", "host", 42, "key"};
 
 TEST_CASE("an endpoint comes back as it was, and damaged not at all") {
   const std::string file = encode_endpoint(k_endpoint);

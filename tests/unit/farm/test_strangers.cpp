@@ -16,6 +16,7 @@
 #include <meshfarm/farm/endpoint.hpp>
 #include <meshfarm/util/file.hpp>
 
+#include "farm/run_keys.hpp"
 #include "farm/sockets.hpp"
 #include "farm_fixture.hpp"
 
@@ -53,8 +54,10 @@ std::optional<M> wait_for_message(zmq::socket_t& socket, std::chrono::millisecon
 
 /// A worker played by hand.
 struct FakeWorker {
-  explicit FakeWorker(const Endpoint& endpoint)
-      : control(make_control_client(context, random_id())), lane(make_lane_client(context)) {
+  FakeWorker(const Stage& stage, const Endpoint& endpoint)
+      : keys(keys_to_connect(stage, endpoint, {})),
+        control(make_control_client(context, keys, random_id())),
+        lane(make_lane_client(context, keys)) {
     control.connect(endpoint.address);
     send(control, Hello{Role::worker, 0, incarnation, 1, "fake", {}});
     welcome = *wait_for_message<Welcome>(control, k_soon);
@@ -64,6 +67,7 @@ struct FakeWorker {
 
   zmq::context_t context{1};
   std::uint64_t incarnation = random_id();
+  Keys keys;
   zmq::socket_t control;
   zmq::socket_t lane;
   Welcome welcome;
@@ -147,24 +151,24 @@ JobOutput do_slow_job(const Job& job, const JobContext& context) {
   return do_trivial_job(job, context);
 }
 
-TEST_CASE("what strangers send is dropped, the run goes on") {
+TEST_CASE("what nobody should send is dropped, whoever sends it, and the run goes on") {
   Farm farm;
   const JobSource source = one_round(100);
   std::vector<std::string> summaries;
   Part ventilator(farm.ventilator(source));
   Part sink(farm.sink(source, summaries));
   const Endpoint endpoint = wait_for_endpoint(farm.stage);
-  FakeWorker spy(endpoint);  // gives no credit; learns where the sink is
+  FakeWorker spy(farm.stage, endpoint);  // gives no credit; learns where the sink is
   std::string results = spy.welcome.sink;
   if (results.empty()) results = wait_for_message<SinkAt>(spy.control, k_soon)->results;
   Part worker(farm.worker(do_slow_job));
   for (const std::string& address : {endpoint.address, spy.welcome.lane, results}) {
     for (const std::string& bytes : raw_garbage()) send_raw(address, bytes);
   }
-  zmq::socket_t dealer = make_control_client(spy.context, random_id());
+  zmq::socket_t dealer = make_control_client(spy.context, spy.keys, random_id());
   dealer.connect(endpoint.address);
   send_framed(dealer, framed_garbage(endpoint.epoch));
-  zmq::socket_t push = make_results_client(spy.context);
+  zmq::socket_t push = make_results_client(spy.context, spy.keys);
   push.connect(results);
   send_framed(push, framed_garbage(endpoint.epoch));
   zmq::socket_t wrong_type(spy.context, zmq::socket_type::sub);
@@ -184,7 +188,7 @@ TEST_CASE("a worker gets no more than its credit, and is missed when it falls si
   FarmProgress last;
   Part ventilator(farm.ventilator(source, [&](const FarmProgress& p) { last = p; }));
   Part sink(farm.sink(source, summaries));
-  auto fake = std::make_unique<FakeWorker>(wait_for_endpoint(farm.stage));
+  auto fake = std::make_unique<FakeWorker>(farm.stage, wait_for_endpoint(farm.stage));
   fake->credit(2);
   const auto first = wait_for_message<Assignment>(fake->lane, k_soon);
   const auto second = wait_for_message<Assignment>(fake->lane, k_soon);
@@ -212,12 +216,13 @@ TEST_CASE("fifty thousand jobs go through one lane, each once and in order") {
   const Endpoint endpoint = wait_for_endpoint(farm.stage);
   // A sink without a disk: accepts whatever it hears of.
   zmq::context_t context(1);
-  zmq::socket_t sink = make_control_client(context, random_id());
+  zmq::socket_t sink =
+      make_control_client(context, keys_to_connect(farm.stage, endpoint, {}), random_id());
   sink.connect(endpoint.address);
   send(sink, Hello{Role::sink, farm.run, random_id(), 1, "fake", "tcp://127.0.0.1:1"});
   REQUIRE(wait_for_message<Welcome>(sink, k_soon));
   send(sink, Ready{endpoint.epoch, 0});
-  FakeWorker worker(endpoint);
+  FakeWorker worker(farm.stage, endpoint);
   constexpr std::uint64_t k_window = 64;
   worker.credit(k_window);
   Accept accept;

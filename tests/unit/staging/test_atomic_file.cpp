@@ -1,5 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
+#include <filesystem>
+
 #include <doctest/doctest.h>
 
 #include <meshfarm/staging/atomic_file.hpp>
@@ -59,4 +61,32 @@ TEST_CASE("a rename that answers ENOENT though it was done is no failure") {
 TEST_CASE("a folder that is not there is an error that names the file") {
   const test::TempFolder folder;
   CHECK_THROWS_AS(AtomicFile(folder.path() / "absent" / "file"), IoError);
+}
+
+TEST_CASE("the first of two has the name, the second is told so") {
+  const test::TempFolder folder;
+  const auto path = folder.path() / "file";
+  AtomicFile first(path, "1", AtomicFile::Readers::owner);
+  first.write("first");
+  AtomicFile second(path, "2", AtomicFile::Readers::owner);
+  second.write("second");
+  CHECK(first.commit_new());
+  CHECK_FALSE(second.commit_new());
+  CHECK(read_file(path) == "first");
+  CHECK(std::filesystem::hard_link_count(path) == 1);
+  const auto entries = std::filesystem::directory_iterator(folder.path());
+  CHECK(std::distance(begin(entries), end(entries)) == 1);
+}
+
+TEST_CASE("what only its owner may read is so from the start") {
+  const test::TempFolder folder;
+  const auto path = folder.path() / "file";
+  AtomicFile file(path, "1", AtomicFile::Readers::owner);
+  for (const auto& entry : std::filesystem::directory_iterator(folder.path())) {
+    CHECK(entry.status().permissions() ==
+          (std::filesystem::perms::owner_read | std::filesystem::perms::owner_write));
+  }
+  file.commit();
+  CHECK(std::filesystem::status(path).permissions() ==
+        (std::filesystem::perms::owner_read | std::filesystem::perms::owner_write));
 }

@@ -10,13 +10,14 @@ TEST_CASE("every name that is made is parsed back") {
   for (const StagedName& name :
        {StagedName(ManifestName{}), StagedName(BoundaryName{}), StagedName(PartName{0}),
         StagedName(PartName{4'294'967'295U}), StagedName(JournalName{12}),
-        StagedName(EndpointName{1'000'000}),
+        StagedName(EndpointName{1'000'000}), StagedName(KeysName{0xfedcba9876543210ULL}),
         StagedName(ResultName{0xfedcba9876543210ULL, 3, 0x0123456789abcdefULL})}) {
     const auto parsed = parse_staged_name(to_string(name));
     REQUIRE(parsed.has_value());
     CHECK(parsed->index() == name.index());
     CHECK(to_string(*parsed) == to_string(name));
   }
+  CHECK(to_string(KeysName{10}) == "control/000000000000000a.keys");
   CHECK(to_string(PartName{123}) == "parts/000123.part");
   CHECK(to_string(ResultName{1, 2, 3}) == "results/0000000000000001.a2.0000000000000003");
 }
@@ -41,6 +42,9 @@ TEST_CASE("any other text is no staged name") {
                            "Manifest",
                            "manifest ",
                            "control/000001",
+                           "control/000001.keys",
+                           "control/000000000000000A.keys",
+                           "control/000000000000000a.endpoint",
                            "journal/000001.endpoint",
                            "results/FEDCBA9876543210.a1.0000000000000001",
                            "../../etc/passwd"}) {

@@ -1,0 +1,33 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+
+namespace meshfarm {
+
+/// curve: every connection is encrypted, and both its ends prove that they hold the run's keys.
+/// none: whoever reaches a port is believed. All processes of a run must agree.
+enum class Authentication { curve, none };
+
+/// Whether sockets without authentication may be reached from other hosts.
+enum class Exposure { loopback_only, network };
+
+/// How the processes of a run know each other. The first ventilator or sink of a run makes its
+/// keys, in a file that only its owner can read; whoever can read that file belongs to the run.
+struct SecurityOptions {
+  Authentication authentication = Authentication::curve;
+  std::filesystem::path key_file;  // empty: in the stage, one file a run
+  Exposure insecure_exposure = Exposure::loopback_only;
+};
+
+/// Whether an address or interface to listen on is reached from this host only.
+bool is_loopback(std::string_view bind);
+
+/// Throws UsageError if sockets bound there would be open to other hosts without authentication
+/// and that was not asked for in so many words.
+void check_exposure(const SecurityOptions& security, const std::string& bind);
+
+}  // namespace meshfarm
