@@ -43,5 +43,6 @@ std::unique_ptr<Command> make_generate_command();
 std::unique_ptr<Command> make_benchmark_command();
 std::unique_ptr<Command> make_info_command();
 std::unique_ptr<Command> make_compare_command();
+std::unique_ptr<Command> make_simulate_command();
 
 }  // namespace meshfarm

@@ -1,7 +1,6 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
 #include <algorithm>
-#include <cstdio>
 #include <utility>
 #include <vector>
 
@@ -9,23 +8,12 @@
 
 #include <meshfarm/report/summary.hpp>
 
+#include "report/lines.hpp"
+
 namespace meshfarm {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-/// "1,234,567"
-std::string grouped(std::uint64_t value) {
-  std::string digits = std::to_string(value);
-  for (std::size_t at = digits.size(); at > 3; at -= 3) digits.insert(at - 3, ",");
-  return digits;
-}
-
-std::string number(double value, const char* format) {
-  char text[64];
-  std::snprintf(text, sizeof text, format, value);
-  return text;
-}
 
 /// A table of "label  value" lines.
 class Lines {

@@ -59,7 +59,7 @@ TEST_CASE("help and version go to stdout, and say what there is") {
     const Ran ran = shell(words);
     CHECK(ran.code == 0);
     for (const char* command : {"simplify", "cut", "run", "worker", "replay", "ventilator", "sink",
-                                "info", "compare", "generate"}) {
+                                "info", "compare", "generate", "simulate"}) {
       CHECK(has(ran.out, command));
     }
   }
@@ -74,11 +74,28 @@ TEST_CASE("help and version go to stdout, and say what there is") {
   CHECK_FALSE(has(ran.out, "supervised"));
 }
 
+TEST_CASE("simulate tells what came of its seeds, the same each time") {
+  Shell shell;
+  const std::vector<std::string> words = {"simulate", "--seeds", "20", "--workers",
+                                          "6",        "--jobs",  "50"};
+  const Ran ran = shell(words);
+  CHECK(ran.code == 0);
+  CHECK(has(ran.out, "20 seeds, 6 workers, 50 jobs: "));
+  CHECK(has(ran.out, ", 0 failed"));
+  const auto trace = [](const std::string& out) { return out.substr(out.find("trace "), 22); };
+  CHECK(trace(shell(words).out) == trace(ran.out));
+  CHECK(trace(shell({"simulate", "--seed", "2", "--jobs", "50"}).out) != trace(ran.out));
+  CHECK(has(shell({"simulate", "--seed", "3", "--json"}).out, "\"problems\": []"));
+}
+
 TEST_CASE("wrong usage is one line and exit 2") {
   Shell shell;
   const std::string cube = shell.cube();
   const std::vector<std::vector<std::string>> wrong = {
       {"simplfy"},
+      {"simulate"},
+      {"simulate", "--seeds", "5", "--workers", "0"},
+      {"simulate", "--seeds", "5", "--jobs", "3"},
       {"simplify"},
       {"simplify", cube},
       {"simplify", cube, "-o", shell.path("o.ply")},

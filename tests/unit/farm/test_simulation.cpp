@@ -6,43 +6,35 @@
 
 #include <doctest/doctest.h>
 
-#include "farm_simulation.hpp"
+#include <meshfarm/farm/simulation.hpp>
+
+#include "farm/simulation_checks.hpp"
 
 namespace meshfarm::test {
 namespace {
 
-/// `count` jobs, then one that depends on all of them, then `count` more.
-JobSource three_rounds(std::size_t count) {
-  return [count](std::span<const AcceptedJob> accepted) -> std::vector<Job> {
-    if (accepted.empty()) return make_jobs(count);
-    if (accepted.size() == count) return {make_job("all of " + accepted.back().output.summary)};
-    if (accepted.size() == count + 1) return make_jobs(count, "again ");
-    return {};
-  };
-}
-
-void check_outputs(const FarmSimulation& world, std::size_t count) {
-  REQUIRE(world.outputs);
-  REQUIRE(world.outputs->size() == 2 * count + 1);
-  std::vector<Job> jobs = make_jobs(count);
-  jobs.push_back(make_job("all of " + reversed(jobs.back().parameters)));
-  for (const Job& job : make_jobs(count, "again ")) jobs.push_back(job);
-  for (std::size_t i = 0; i < jobs.size(); ++i) {
-    CHECK((*world.outputs)[i].output.summary == reversed(jobs[i].parameters));
+SimulationOptions farm_of(std::uint32_t workers, const SimulatedFaults& faults) {
+  SimulationOptions options;
+  options.faults = faults;
+  for (std::uint32_t i = 0; i < workers; ++i) {
+    options.workers.push_back({i % 3 == 2 ? 0.4 : 1, i / 2, SimulatedTime(i * 7919 % 3000 * 1000)});
   }
+  return options;
 }
 
-void check_seeds(const Faults& faults, int seeds) {
+void check_seeds(const SimulatedFaults& faults, int seeds) {
+  const JobSource source = simulated_jobs(60);
+  const std::vector<std::string> expected = expected_summaries(source);
+  REQUIRE(expected.size() == 60);
+  SimulationOptions options = farm_of(6, faults);
   for (int seed = 1; seed <= seeds; ++seed) {
     CAPTURE(seed);
-    FarmSimulation world(three_rounds(20), 5, faults, static_cast<std::uint64_t>(seed));
-    const bool ended = world.run(FarmTime(900'000));
-    CAPTURE(world.now().count());
-    CAPTURE(world.failure.value_or("(none)"));
-    CHECK(world.broken == "");
-    REQUIRE(ended);
-    CHECK(world.failure == "");
-    check_outputs(world, 20);
+    options.seed = static_cast<std::uint64_t>(seed);
+    options.through_wire = seed % 8 == 0;
+    const SimulationResult result = simulate_farm(source, options);
+    CAPTURE(result.failure);
+    CAPTURE(result.time.count());
+    REQUIRE(problem_of(result, options.faults, expected) == "");
   }
 }
 
@@ -50,61 +42,161 @@ TEST_CASE("a farm without faults ends, for every seed") {
   check_seeds({}, 100);
 }
 
-TEST_CASE("lost messages only cost time") {
-  check_seeds({.lose = 0.03}, 200);
+TEST_CASE("lost, late, repeated and overtaking messages only cost time") {
+  check_seeds({.lose = 0.03}, 100);
+  check_seeds({.late = 0.02}, 100);
+  check_seeds({.duplicate = 0.2, .overtake = 0.3}, 100);
+  check_seeds({.lane_fails = 0.3}, 50);
 }
 
-TEST_CASE("workers may hang and come back") {
-  check_seeds({.pause = 0.003}, 200);
+TEST_CASE("hosts may be cut off, in one direction or both, and come back") {
+  check_seeds({.host_cuts = 1}, 200);
 }
 
-TEST_CASE("workers may be killed and others come") {
-  check_seeds({.crash = 0.05}, 200);
+TEST_CASE("workers may hang and come back, be killed and others come") {
+  check_seeds({.worker_pauses = 1}, 200);
+  check_seeds({.worker_crashes = 1}, 200);
+  check_seeds({.crash_at_job = 0.05}, 200);
 }
 
-TEST_CASE("sink and ventilator may be killed and started again") {
-  check_seeds({.sink_crash = 0.01, .vent_crash = 0.01}, 200);
+TEST_CASE("sink and ventilator may hang, or be killed and started again") {
+  check_seeds({.sink_crashes = 6, .ventilator_crashes = 6}, 200);
+  check_seeds({.sink_pauses = 6, .ventilator_pauses = 6}, 200);
 }
 
-TEST_CASE("results may be damaged and jobs may fail now and then") {
-  check_seeds({.fail = 0.01, .damaged = 0.01}, 100);
+TEST_CASE("storage may be late, full, slow and wrong") {
+  check_seeds({.read_error = 0.01, .write_error = 0.01, .lost_answer = 0.02}, 100);
+  check_seeds({.damaged = 0.02, .unseen = 0.01, .stale = 0.05}, 100);
+  check_seeds({.storage_stalls = 4}, 100);
+  check_seeds({.disk_fills = 2}, 100);
 }
 
-TEST_CASE("all at once") {
-  check_seeds(
-      {.lose = 0.01, .damaged = 0.001, .sink_crash = 0.004, .vent_crash = 0.004, .pause = 0.004},
-      300);
-}
-
-TEST_CASE("one seed gives one history") {
-  const Faults faults{.lose = 0.01, .sink_crash = 0.004, .pause = 0.004};
-  std::uint64_t history[2] = {0, 0};
-  for (std::uint64_t& each : history) {
-    FarmSimulation world(three_rounds(20), 5, faults, 1234);
-    REQUIRE(world.run(FarmTime(900'000)));
-    each = world.history;
+TEST_CASE("everything at once, each seed with a mix of its own") {
+  const JobSource source = simulated_jobs(100);
+  const std::vector<std::string> expected = expected_summaries(source);
+  int hopeless = 0;
+  for (std::uint64_t seed = 1; seed <= 400; ++seed) {
+    CAPTURE(seed);
+    SimulationOptions options = farm_of(12, faults_of_seed(seed));
+    options.seed = seed;
+    const SimulationResult result = simulate_farm(source, options);
+    CAPTURE(result.failure);
+    REQUIRE(problem_of(result, options.faults, expected) == "");
+    if (!result.failure.empty()) ++hopeless;
   }
-  CHECK(history[0] == history[1]);
+  CHECK(hopeless > 10);  // runs with a job that cannot be done
+  CHECK(hopeless < 100);
 }
 
-TEST_CASE("a job that kills its workers is given up after five, the others are done") {
-  const JobSource source = [](std::span<const AcceptedJob> accepted) {
-    return accepted.empty() ? make_jobs(10) : std::vector<Job>{};
-  };
-  FarmSimulation world(source, 5, {.poison = "job 7"}, 1);
-  CHECK_FALSE(world.run(FarmTime(300'000)));
-  REQUIRE(world.failure);
-  CHECK(doctest::String(world.failure->c_str()) == doctest::Contains("1 job failed for good"));
-  CHECK(world.journalled.size() == 9);
+TEST_CASE("one seed gives one history, another seed another") {
+  const JobSource source = simulated_jobs(60);
+  SimulationOptions options = farm_of(6, faults_of_seed(1234));
+  options.seed = 1234;
+  const std::uint64_t history = simulate_farm(source, options).trace_hash;
+  CHECK(simulate_farm(source, options).trace_hash == history);
+  options.through_wire = true;  // nothing is lost in translation
+  CHECK(simulate_farm(source, options).trace_hash == history);
+  options.seed = 1235;
+  CHECK(simulate_farm(source, options).trace_hash != history);
+}
+
+TEST_CASE("a job that kills its workers is given up, the others are done") {
+  SimulatedFaults faults;
+  faults.poison = "job 7";
+  faults.end = SimulatedTime(0);
+  const SimulationResult result = simulate_farm(simulated_jobs(20), farm_of(5, faults));
+  CHECK(result.ended);
+  CHECK(result.broken == "");
+  CHECK(doctest::String(result.failure.c_str()) == doctest::Contains("1 job failed for good"));
+  CHECK(result.jobs.size() == 17);  // 18 are in the first round
+}
+
+TEST_CASE("a job that no attempt can do is tried once") {
+  SimulatedFaults faults;
+  faults.bad = "job 7";
+  faults.end = SimulatedTime(0);
+  const SimulationResult result = simulate_farm(simulated_jobs(20), farm_of(5, faults));
+  CHECK(result.ended);
+  CHECK(doctest::String(result.failure.c_str()) == doctest::Contains("no mesh can come of this"));
+  CHECK(result.pushes == 18);
 }
 
 TEST_CASE("a thousand workers share ten thousand jobs") {
+  SimulatedFaults faults;
+  faults.end = SimulatedTime(0);
+  const JobSource source = simulated_jobs(10'000);
   const auto start = std::chrono::steady_clock::now();
-  FarmSimulation world(three_rounds(5000), 1000, {}, 1);
-  REQUIRE(world.run(FarmTime(900'000)));
-  check_outputs(world, 5000);
+  const SimulationResult result = simulate_farm(source, farm_of(1000, faults));
   const std::chrono::duration<double> took = std::chrono::steady_clock::now() - start;
-  MESSAGE(world.events, " events in ", took.count(), " s");
+  CHECK(problem_of(result, faults, expected_summaries(source)) == "");
+  MESSAGE(result.events, " events in ", took.count(), " s");
+}
+
+// --- the simulation would notice
+
+Assignment push(std::uint64_t lane_seq, std::uint32_t attempt) {
+  return {7, 1, lane_seq, attempt, {}};
+}
+
+TEST_CASE("the checks notice what must never happen") {
+  SimulationChecks checks;
+  const WorkerId first{1};
+  const WorkerId second{2};
+  const WorkerId third{3};
+  for (const WorkerId each : {first, second, third}) checks.credit(each, 2);
+  checks.pushed(first, {5}, push(1, 1));
+  CHECK(checks.broken() == "");
+  SUBCASE("more than the credit") {
+    checks.pushed(first, {6}, push(2, 1));
+    CHECK(checks.broken() == "");
+    checks.pushed(first, {7}, push(3, 1));
+    CHECK(checks.broken() == "a worker was sent more than its credit");
+  }
+  SUBCASE("a third live attempt") {
+    checks.pushed(second, {5}, push(1, 2));
+    CHECK(checks.broken() == "");
+    checks.pushed(third, {5}, push(1, 3));
+    CHECK(checks.broken() == "a job has more than two live attempts");
+  }
+  SUBCASE("a third attempt once one has ended is fine") {
+    checks.pushed(second, {5}, push(1, 2));
+    checks.lane_closed(first);
+    checks.pushed(third, {5}, push(1, 3));
+    CHECK(checks.broken() == "");
+  }
+  SUBCASE("an attempt number used again") {
+    checks.lane_closed(first);
+    checks.pushed(second, {5}, push(1, 1));
+    CHECK(checks.broken() == "an attempt number was used again");
+  }
+  SUBCASE("a job accepted twice, or without its file") {
+    checks.journalled({5}, true);
+    CHECK(checks.broken() == "");
+    SUBCASE("twice") {
+      checks.journalled({5}, true);
+      CHECK(checks.broken() == "a job was accepted twice");
+    }
+    SUBCASE("without") {
+      checks.journalled({6}, false);
+      CHECK(checks.broken() == "a job was accepted whose file is not whole");
+    }
+  }
+}
+
+TEST_CASE("a history that ends as it must not is a problem") {
+  const JobSource source = simulated_jobs(20);
+  const std::vector<std::string> expected = expected_summaries(source);
+  SimulatedFaults none;
+  none.end = SimulatedTime(0);
+  SimulationResult result = simulate_farm(source, farm_of(2, none));
+  CHECK(problem_of(result, none, expected) == "");
+  result.outputs[3].output.summary += "x";
+  CHECK(problem_of(result, none, expected) == "it ended with other bytes");
+  none.bad = "job 7";
+  CHECK(problem_of(result, none, expected) == "a job that cannot be done was done");
+  SimulationOptions hasty = farm_of(2, {});
+  hasty.limit = SimulatedTime(1'000'000);
+  CHECK(problem_of(simulate_farm(source, hasty), {}, expected) == "it did not come to its end");
 }
 
 }  // namespace

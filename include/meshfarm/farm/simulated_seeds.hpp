@@ -1,0 +1,37 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include <meshfarm/farm/simulation.hpp>
+
+namespace meshfarm {
+
+/// Histories to simulate for the sake of correctness: every seed with its own mix of faults.
+struct SeedsOptions {
+  std::uint64_t first = 1;
+  std::uint64_t count = 0;
+  std::uint32_t workers = 24;  // every third is slower, two are on a host
+  std::uint64_t jobs = 1024;
+  unsigned threads = 0;  // 0: one a core
+};
+
+struct SeedProblem {
+  std::uint64_t seed = 0;
+  std::string what;
+};
+
+struct SeedsResult {
+  std::uint64_t events = 0;
+  double virtual_s = 0;               // of all histories together
+  std::uint64_t trace_hash = 0;       // of all histories, in the order of the seeds
+  std::vector<SeedProblem> problems;  // ascending by seed
+};
+
+/// Does not depend on the number of threads.
+SeedsResult simulate_seeds(const SeedsOptions& options);
+
+}  // namespace meshfarm

@@ -1,0 +1,144 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+//
+// The farm on virtual time: the very Dispatcher, WorkerCores and SinkCore that the processes run,
+// in one thread, over a simulated network, storage and hosts. One seed gives one history.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include <meshfarm/farm/job.hpp>
+#include <meshfarm/farm/protocol.hpp>
+
+namespace meshfarm {
+
+/// Since the simulated start.
+using SimulatedTime = std::chrono::microseconds;
+
+/// What a job costs.
+struct SimulatedWork {
+  double compute_s = 0;  // on a worker of speed 1
+  std::uint64_t read_bytes = 0;
+  std::uint64_t write_bytes = 0;
+};
+
+struct SimulatedWorker {
+  double speed = 1;
+  std::uint32_t host = 0;  // workers of one host are cut off together
+  SimulatedTime start{0};
+  std::uint32_t threads = 1;
+  std::uint64_t memory = 0;  // bytes; 0: no limit
+};
+
+/// A message takes delay, and up to jitter more.
+struct SimulatedNetwork {
+  SimulatedTime delay{1000};
+  SimulatedTime jitter{20'000};
+};
+
+/// A file takes delay, then its bytes one after another over the server's link, which all hosts
+/// share, and over the host's own. 0: no limit.
+struct SimulatedStorage {
+  SimulatedTime delay{2000};
+  double server_bytes_per_s = 0;
+  double host_bytes_per_s = 0;
+};
+
+/// What goes wrong until `end`. Chances are per message, job or file, rates per minute.
+struct SimulatedFaults {
+  double lose = 0;       // a message
+  double duplicate = 0;  // a message: it comes twice
+  double late = 0;       // a message: it comes seconds later, and what follows it on its channel
+  double overtake = 0;   // a result: those behind it may come first (another connection)
+
+  double crash_at_job = 0;  // the worker dies at a job
+  double fail = 0;          // a job throws
+  double hang = 0;          // a job never ends
+  double read_error = 0;    // reading a part fails
+  double write_error = 0;   // fsync or close fails, and no file is there
+  double lost_answer = 0;   // the rename was done, but is reported as failed
+  double damaged = 0;       // the file is short or damaged, and nobody was told
+  double unseen = 0;        // a told name stays invisible to its reader for 30 s and more
+  double stale = 0;         // a reader sees an old state of a file for some seconds
+  double lane_fails = 0;    // no port is free for a lane
+
+  double worker_crashes = 0;  // per worker, as are the next two
+  double worker_pauses = 0;   // as under SIGSTOP, up to 12 s
+  double host_cuts = 0;       // one direction or both, up to 12 s; TCP delivers later, or not
+  double sink_crashes = 0;
+  double sink_pauses = 0;
+  double ventilator_crashes = 0;
+  double ventilator_pauses = 0;
+  double storage_stalls = 0;  // no file operation ends for up to 20 s
+  double disk_fills = 0;      // nothing can be written for up to 20 s
+
+  std::string poison;  // the job of these parameters kills each worker that begins it
+  std::string bad;     // the job of these parameters can never be done
+  SimulatedTime end{std::chrono::seconds(30)};
+};
+
+/// A mix of faults drawn from the seed: each kind is absent, rare or frequent.
+SimulatedFaults faults_of_seed(std::uint64_t seed);
+
+struct SimulationOptions {
+  std::uint64_t seed = 1;
+  std::vector<SimulatedWorker> workers;
+  SimulatedNetwork network;
+  SimulatedStorage storage;
+  SimulatedFaults faults;
+  FarmTime heartbeat{1000};
+  std::uint32_t max_attempts = 3;
+  std::uint32_t buffer = 16;      // of a worker
+  double triangles_per_s = 1000;  // what a worker of speed 1 says of itself
+  /// The world must come to its end by then.
+  SimulatedTime limit{std::chrono::minutes(20)};
+  std::function<SimulatedWork(const Job&)> work;  // empty: the job's cost in milliseconds
+  bool through_wire = false;                      // encode and decode each message
+};
+
+/// One attempt that was accepted.
+struct SimulatedJob {
+  JobKey key;
+  std::uint32_t worker = 0;  // index of SimulationOptions::workers
+  SimulatedTime begin{0};    // it had been read, and was computed from then on
+  SimulatedTime end{0};      // its file was published
+  SimulatedTime accepted{0};
+  JobTimes times;
+};
+
+struct SimulationResult {
+  bool ended = false;   // the world came to its end in time
+  std::string broken;   // the first invariant that was, if any
+  std::string failure;  // the last run's, empty: all was done
+  std::vector<AcceptedJob> outputs;
+  std::vector<SimulatedJob> jobs;  // in the order in which they were accepted
+  SimulatedTime first_push{0};     // the first job went out
+  SimulatedTime last_accept{0};    // the last result was accepted
+  SimulatedTime time{0};           // the end of the world
+  std::uint64_t events = 0;
+  std::uint64_t pushes = 0;  // jobs given out
+  std::uint64_t trace_hash = 0;
+  std::uint32_t runs = 0;  // after a failed one the user starts again, while there are faults
+};
+
+/// Simulates the farm from its start until all processes have left.
+SimulationResult simulate_farm(const JobSource& source, const SimulationOptions& options);
+
+/// What a simulated job makes: told by its parameters alone.
+std::string simulated_summary(const Job& job);
+/// Made-up jobs of 0.1 to 1 s in three rounds: most, then one that depends on all of them, then the
+/// rest. The first are named "job 0", "job 1"...
+JobSource simulated_jobs(std::uint64_t count);
+/// The outputs' summaries of a run in which nothing goes wrong, by hand.
+std::vector<std::string> expected_summaries(const JobSource& source);
+/// What is wrong with a simulated history: an invariant was broken, it did not come to its end, or
+/// the end is not the one that it must have. Empty: nothing.
+std::string problem_of(const SimulationResult& result, const SimulatedFaults& faults,
+                       std::span<const std::string> expected);
+
+}  // namespace meshfarm

@@ -1,0 +1,87 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#include <algorithm>
+#include <cmath>
+
+#include "farm/simulated_farm.hpp"
+
+namespace meshfarm {
+namespace {
+
+constexpr std::chrono::milliseconds k_longest_pause{12'000};
+constexpr std::chrono::milliseconds k_longest_stall{20'000};
+
+}  // namespace
+
+void SimulatedFarm::repeat(double rate_per_minute, const EventQueue::Event& fault) {
+  if (rate_per_minute <= 0) return;
+  const double minutes = -std::log(1 - dice_.fraction()) / rate_per_minute;
+  const auto wait = SimulatedTime(static_cast<std::int64_t>(std::min(minutes, 1e6) * 60e6));
+  if (queue_.now() + wait >= options_.faults.end) return;
+  queue_.in(wait, [this, rate_per_minute, fault] {
+    fault();
+    repeat(rate_per_minute, fault);
+  });
+}
+
+void SimulatedFarm::plan_faults() {
+  const SimulatedFaults& faults = options_.faults;
+  const auto until = [this](std::chrono::milliseconds longest) {
+    return std::min(options_.faults.end, queue_.now() + up_to(longest));
+  };
+  const auto pause = [=](Process& process) { process.asleep_until = until(k_longest_pause); };
+  const auto any_worker = [this] {
+    return static_cast<std::uint32_t>(dice_.pick(workers_.size()));
+  };
+  const auto of_workers = [&](double rate) { return rate * static_cast<double>(workers_.size()); };
+  repeat(of_workers(faults.worker_crashes), [=, this] { kill_worker(any_worker()); });
+  repeat(of_workers(faults.worker_pauses), [=, this] { pause(workers_[any_worker()]); });
+  repeat(of_workers(faults.host_cuts), [=, this] {
+    const auto host = static_cast<std::uint32_t>(dice_.pick(hosts_));
+    wires_.cut(host, until(k_longest_pause));
+  });
+  repeat(faults.sink_crashes, [this] { kill_sink(); });
+  repeat(faults.sink_pauses, [=, this] { pause(sink_); });
+  repeat(faults.ventilator_crashes, [this] { kill_ventilator(); });
+  repeat(faults.ventilator_pauses, [=, this] { pause(ventilator_); });
+  repeat(faults.storage_stalls, [=, this] { folder_.stall(until(k_longest_stall)); });
+  repeat(faults.disk_fills, [=, this] { folder_.fill(until(k_longest_stall)); });
+}
+
+SimulatedFaults faults_of_seed(std::uint64_t seed) {
+  // Not the numbers that the simulation itself draws from the same seed.
+  Dice dice(seed ^ 0x5eed'0f'fa'0175);
+  const auto draw = [&](double rare, double frequent) {
+    const std::uint64_t level = dice.pick(4);
+    return level == 3 ? frequent : level == 2 ? rare : 0;
+  };
+  SimulatedFaults faults;
+  faults.lose = draw(0.0005, 0.01);
+  faults.duplicate = draw(0.001, 0.02);
+  faults.late = draw(0.0005, 0.005);
+  faults.overtake = draw(0.01, 0.2);
+  faults.crash_at_job = draw(0.001, 0.01);
+  faults.fail = draw(0.001, 0.01);
+  faults.read_error = draw(0.0005, 0.005);
+  faults.write_error = draw(0.0005, 0.005);
+  faults.lost_answer = draw(0.001, 0.01);
+  faults.damaged = draw(0.001, 0.01);
+  faults.unseen = draw(0.0005, 0.005);
+  faults.stale = draw(0.001, 0.01);
+  faults.lane_fails = draw(0.01, 0.1);
+  faults.worker_crashes = draw(0.05, 0.5);
+  faults.worker_pauses = draw(0.05, 0.5);
+  faults.host_cuts = draw(0.05, 0.5);
+  faults.sink_crashes = draw(0.5, 3);
+  faults.sink_pauses = draw(0.5, 3);
+  faults.ventilator_crashes = draw(0.5, 3);
+  faults.ventilator_pauses = draw(0.5, 3);
+  faults.storage_stalls = draw(0.5, 2);
+  faults.disk_fills = draw(0.25, 1);
+  const std::uint64_t hopeless = dice.pick(16);
+  if (hopeless == 0) faults.poison = "job 3";
+  if (hopeless == 1) faults.bad = "job 3";
+  return faults;
+}
+
+}  // namespace meshfarm

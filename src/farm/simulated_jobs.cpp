@@ -1,0 +1,164 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+//
+// A job in a simulated worker, as in src/farm/job_slot.cpp: its inputs are read, it waits for a
+// compute thread, is computed, and its output is written and published.
+#include <utility>
+
+#include "farm/simulated_farm.hpp"
+
+namespace meshfarm {
+
+void SimulatedFarm::act(std::uint32_t index, Begin& each) {
+  Worker& worker = workers_[index];
+  checks_.that(!worker.slots.at(each.slot), "a worker began two jobs in one slot");
+  InWork& in_work = worker.slots[each.slot].emplace();
+  in_work.token = ++tokens_;
+  in_work.key = key_of(each.job);
+  in_work.attempt = each.attempt;
+  in_work.job = std::move(each.job);
+  in_work.work = options_.work ? options_.work(in_work.job)
+                               : SimulatedWork{static_cast<double>(in_work.job.cost) * 1e-3, 0, 0};
+  in_work.lap = queue_.now();
+  const SimulatedTime there =
+      folder_.transfer(worker.host, in_work.work.read_bytes) + folder_.visibility_delay();
+  while_in_work(worker, each.slot, there, [this, &worker, slot = each.slot] {
+    InWork& read = *worker.slots[slot];
+    read.times.read_ms = lap_ms(read);
+    read.phase = JobPhase::waiting;
+    worker.gate.push_back(slot);
+    open_gate(worker);
+  });
+}
+
+/// The signs of life that a real worker sees of its slots: a job that goes on counts up.
+void SimulatedFarm::feel_pulse(Worker& worker) {
+  for (std::size_t i = 0; i < worker.slots.size(); ++i) {
+    const auto& in_work = worker.slots[i];
+    if (!in_work) continue;
+    SlotPulse& pulse = worker.pulse.slots[i];
+    pulse.phase = in_work->phase;
+    const bool moves = pulse.phase == JobPhase::computing && !in_work->hangs;
+    if (moves) {
+      ++pulse.progress;
+      ++worker.pulse.progress;
+    }
+  }
+}
+
+std::uint32_t SimulatedFarm::lap_ms(InWork& in_work) const {
+  const SimulatedTime since = std::exchange(in_work.lap, queue_.now());
+  return static_cast<std::uint32_t>((queue_.now() - since) / std::chrono::milliseconds(1));
+}
+
+void SimulatedFarm::while_in_work(Worker& worker, std::uint32_t slot, SimulatedTime time,
+                                  EventQueue::Event event) {
+  const std::uint64_t token = worker.slots[slot]->token;
+  auto later = [this, &worker, slot, token, life = worker.life, event = std::move(event)] {
+    when_awake(worker, life, [&worker, slot, token, event] {
+      if (worker.slots[slot] && worker.slots[slot]->token == token) event();
+    });
+  };
+  queue_.at(time, std::move(later));
+}
+
+void SimulatedFarm::open_gate(Worker& worker) {
+  const std::uint64_t life = worker.life;
+  while (worker.alive && worker.life == life && !worker.gate.empty() &&
+         worker.computing < options_.workers[index_of(worker)].threads) {
+    const std::uint32_t slot = worker.gate.front();
+    worker.gate.pop_front();
+    begin_computing(worker, slot);
+  }
+}
+
+void SimulatedFarm::begin_computing(Worker& worker, std::uint32_t slot) {
+  InWork& in_work = *worker.slots[slot];
+  const std::string& name = in_work.job.parameters;
+  const SimulatedFaults& faults = options_.faults;
+  const bool poison = !faults.poison.empty() && name == faults.poison;
+  if (poison || chance(faults.crash_at_job)) return kill_worker(index_of(worker));
+  if (!faults.bad.empty() && name == faults.bad) {
+    return fail_job(worker, slot, "no mesh can come of this", FailureKind::for_good);
+  }
+  if (chance(faults.read_error)) return fail_job(worker, slot, "cannot read");
+  if (chance(faults.fail)) return fail_job(worker, slot, "no luck");
+  compute(worker, slot);
+}
+
+void SimulatedFarm::compute(Worker& worker, std::uint32_t slot) {
+  InWork& in_work = *worker.slots[slot];
+  ++worker.computing;
+  in_work.times.wait_ms = lap_ms(in_work);
+  in_work.phase = JobPhase::computing;
+  in_work.begin = queue_.now();
+  if (chance(options_.faults.hang)) {
+    in_work.hangs = true;
+    return;
+  }
+  const double seconds = in_work.work.compute_s / options_.workers[index_of(worker)].speed;
+  const auto takes = SimulatedTime(static_cast<std::int64_t>(seconds * 1e6));
+  while_in_work(worker, slot, queue_.now() + takes, [this, &worker, slot] {
+    InWork& computed = *worker.slots[slot];
+    end_computing(worker, computed);
+    const SimulatedTime written = folder_.transfer(worker.host, computed.work.write_bytes);
+    while_in_work(worker, slot, written, [this, &worker, slot] { write(worker, slot); });
+    open_gate(worker);
+  });
+}
+
+void SimulatedFarm::end_computing(Worker& worker, InWork& in_work) {
+  if (in_work.phase != JobPhase::computing) return;
+  --worker.computing;
+  in_work.times.compute_ms = lap_ms(in_work);
+  in_work.phase = JobPhase::storage;
+}
+
+void SimulatedFarm::write(Worker& worker, std::uint32_t slot) {
+  InWork& in_work = *worker.slots[slot];
+  in_work.times.write_ms = lap_ms(in_work);
+  if (folder_.full()) {
+    return fail_job(worker, slot, "no space left on device", FailureKind::no_space);
+  }
+  if (chance(options_.faults.write_error)) return fail_job(worker, slot, "fsync: I/O error");
+  JobOutput output;
+  output.file.name = to_string(ResultName{in_work.key.value, in_work.attempt, worker.incarnation});
+  output.file.size = in_work.work.write_bytes;
+  output.summary = simulated_summary(in_work.job);
+  const auto content = chance(options_.faults.damaged) ? SimulatedFolder::Content::damaged
+                                                       : SimulatedFolder::Content::whole;
+  checks_.that(folder_.publish(output.file.name, content), "two results shared a name");
+  if (chance(options_.faults.lost_answer)) {
+    return fail_job(worker, slot, "rename: no such file or directory");
+  }
+  published_[output.file.name] = {in_work.key, index_of(worker), in_work.begin, queue_.now(),
+                                  {},          in_work.times};
+  finish_job(worker, slot, std::move(output));
+}
+
+void SimulatedFarm::fail_job(Worker& worker, std::uint32_t slot, const char* reason,
+                             FailureKind kind) {
+  finish_job(worker, slot, JobFailure{reason, kind});
+}
+
+void SimulatedFarm::finish_job(Worker& worker, std::uint32_t slot,
+                               std::variant<JobOutput, JobFailure> outcome) {
+  end_computing(worker, *worker.slots[slot]);
+  const JobTimes times = worker.slots[slot]->times;
+  std::erase(worker.gate, slot);
+  worker.slots[slot].reset();
+  note(index_of(worker));
+  const std::uint64_t life = worker.life;
+  worker_does(index_of(worker), worker.core->finished(slot, std::move(outcome), farm_now(), times));
+  if (worker.life == life) open_gate(worker);
+}
+
+void SimulatedFarm::act(std::uint32_t index, GiveUp& each) {
+  // A job looks now and then whether it is still wanted; some look away and end all the same.
+  Worker& worker = workers_[index];
+  if (!worker.slots[each.slot] || worker.slots[each.slot]->hangs || chance(0.5)) return;
+  while_in_work(worker, each.slot, queue_.now() + SimulatedTime(20'000),
+                [this, &worker, slot = each.slot] { fail_job(worker, slot, "given up"); });
+}
+
+}  // namespace meshfarm

@@ -1,0 +1,53 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include <meshfarm/farm/simulation.hpp>
+
+#include "farm/dice.hpp"
+#include "farm/event_queue.hpp"
+
+namespace meshfarm {
+
+/// One connection in one direction: what is sent arrives in order, as over TCP.
+struct SimulatedChannel {
+  std::uint32_t from = 0;  // hosts
+  std::uint32_t to = 0;
+  SimulatedTime last{0};  // arrival of what was sent last
+};
+
+/// Delivers messages late, twice or never, and hosts can be cut off from it.
+class SimulatedWires {
+ public:
+  SimulatedWires(const SimulationOptions& options, std::uint32_t hosts, Dice& dice,
+                 EventQueue& queue)
+      : network_(options.network),
+        faults_(options.faults),
+        dice_(dice),
+        queue_(queue),
+        cuts_(hosts) {}
+
+  enum class Order { kept, may_change };
+  void send(SimulatedChannel& channel, Order order, EventQueue::Event deliver);
+  /// What the host sends or is sent is held back until then, or lost.
+  void cut(std::uint32_t host, SimulatedTime until);
+
+ private:
+  struct Cut {
+    SimulatedTime sends_again{0};
+    SimulatedTime hears_again{0};
+    bool loses = false;
+  };
+  bool faulty() const { return queue_.now() < faults_.end; }
+
+  const SimulatedNetwork& network_;
+  const SimulatedFaults& faults_;
+  Dice& dice_;
+  EventQueue& queue_;
+  std::vector<Cut> cuts_;
+};
+
+}  // namespace meshfarm

@@ -1,0 +1,65 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#include <algorithm>
+
+#include <meshfarm/farm/simulated_seeds.hpp>
+#include <meshfarm/util/parallel.hpp>
+
+namespace meshfarm {
+namespace {
+
+/// One seed in so many takes its messages through the wire's format: the others need the time for
+/// more histories.
+constexpr std::uint64_t k_wire_every = 32;
+/// A ventilator of many workers would be busy with heartbeats alone.
+constexpr std::uint32_t k_workers_per_heartbeat_ms = 2;
+
+struct SeedResult {
+  std::uint64_t events = 0;
+  double virtual_s = 0;
+  std::uint64_t trace_hash = 0;
+  std::string problem;
+};
+
+SimulationOptions farm_of(const SeedsOptions& seeds, std::uint64_t seed) {
+  SimulationOptions options;
+  options.seed = seed;
+  options.faults = faults_of_seed(seed);
+  options.through_wire = seed % k_wire_every == 0;
+  options.heartbeat =
+      std::max(options.heartbeat, FarmTime(seeds.workers / k_workers_per_heartbeat_ms));
+  for (std::uint32_t i = 0; i < seeds.workers; ++i) {
+    SimulatedWorker worker;
+    worker.speed = i % 3 == 2 ? 0.4 : 1;
+    worker.host = i / 2;
+    worker.start = SimulatedTime(std::uint64_t{i} * 7919 % 3000 * 1000);
+    options.workers.push_back(worker);
+  }
+  return options;
+}
+
+}  // namespace
+
+SeedsResult simulate_seeds(const SeedsOptions& options) {
+  const JobSource source = simulated_jobs(options.jobs);
+  const std::vector<std::string> expected = expected_summaries(source);
+  std::vector<SeedResult> each(options.count);
+  parallel_for(options.count, options.threads, [&](std::uint64_t i) {
+    const SimulationOptions farm = farm_of(options, options.first + i);
+    const SimulationResult result = simulate_farm(source, farm);
+    each[i] = {result.events, std::chrono::duration<double>(result.time).count(), result.trace_hash,
+               problem_of(result, farm.faults, expected)};
+  });
+  SeedsResult all;
+  for (std::uint64_t i = 0; i < options.count; ++i) {
+    all.events += each[i].events;
+    all.virtual_s += each[i].virtual_s;
+    all.trace_hash = all.trace_hash * 0x100000001b3 + each[i].trace_hash;
+    if (!each[i].problem.empty()) {
+      all.problems.push_back({options.first + i, each[i].problem});
+    }
+  }
+  return all;
+}
+
+}  // namespace meshfarm

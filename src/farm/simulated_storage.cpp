@@ -1,0 +1,45 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#include "farm/simulated_storage.hpp"
+
+#include <algorithm>
+
+namespace meshfarm {
+namespace {
+
+/// A link is used by one transfer after another: returns when this one ends.
+SimulatedTime through(SimulatedTime& free, SimulatedTime now, std::uint64_t bytes,
+                      double bytes_per_s) {
+  if (bytes_per_s <= 0) return now;
+  const double seconds = static_cast<double>(bytes) / bytes_per_s;
+  free = std::max(free, now) + SimulatedTime(static_cast<std::int64_t>(seconds * 1e6));
+  return free;
+}
+
+}  // namespace
+
+SimulatedTime SimulatedFolder::transfer(std::uint32_t host, std::uint64_t bytes) {
+  const SimulatedTime now = queue_.now();
+  const SimulatedTime served = through(server_free_, now, bytes, storage_.server_bytes_per_s);
+  const SimulatedTime arrived = through(host_free_[host], now, bytes, storage_.host_bytes_per_s);
+  return std::max({served, arrived, stalled_until_}) + storage_.delay;
+}
+
+bool SimulatedFolder::publish(const std::string& name, Content content) {
+  return files_.try_emplace(name, content).second;
+}
+
+bool SimulatedFolder::has_whole(const std::string& name) const {
+  const auto found = files_.find(name);
+  return found != files_.end() && found->second == Content::whole;
+}
+
+SimulatedTime SimulatedFolder::visibility_delay() {
+  if (!faulty()) return SimulatedTime(0);
+  // Measured on NFS v3 and v4.2: a name that was looked up too early is invisible for 30 to 60 s.
+  if (dice_.chance(faults_.unseen)) return SimulatedTime(30'000'000 + dice_.pick(30'000'000));
+  if (dice_.chance(faults_.stale)) return SimulatedTime(dice_.pick(10'000'000));
+  return SimulatedTime(0);
+}
+
+}  // namespace meshfarm

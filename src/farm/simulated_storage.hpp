@@ -1,0 +1,59 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <unordered_map>
+#include <vector>
+
+#include <meshfarm/farm/simulation.hpp>
+
+#include "farm/dice.hpp"
+#include "farm/event_queue.hpp"
+
+namespace meshfarm {
+
+/// The shared folder: how long files take, and what its readers see.
+class SimulatedFolder {
+ public:
+  SimulatedFolder(const SimulationOptions& options, std::uint32_t hosts, Dice& dice,
+                  const EventQueue& queue)
+      : storage_(options.storage),
+        faults_(options.faults),
+        dice_(dice),
+        queue_(queue),
+        host_free_(hosts) {}
+
+  /// When so many bytes, asked for now by that host, are there.
+  SimulatedTime transfer(std::uint32_t host, std::uint64_t bytes);
+
+  /// A finished file gets its name. False if that name was taken: two writers shared it.
+  enum class Content : std::uint8_t { whole, damaged };
+  bool publish(const std::string& name, Content content);
+  bool has_whole(const std::string& name) const;
+
+  /// What opening and reading a told name takes longer than it should: a name looked up too early
+  /// stays invisible, an old state stays visible.
+  SimulatedTime visibility_delay();
+
+  void stall(SimulatedTime until) { stalled_until_ = until; }
+  void fill(SimulatedTime until) { full_until_ = until; }
+  bool full() const { return queue_.now() < full_until_; }
+  bool stalled() const { return queue_.now() < stalled_until_; }
+
+ private:
+  bool faulty() const { return queue_.now() < faults_.end; }
+
+  const SimulatedStorage& storage_;
+  const SimulatedFaults& faults_;
+  Dice& dice_;
+  const EventQueue& queue_;
+  SimulatedTime server_free_{0};
+  std::vector<SimulatedTime> host_free_;
+  SimulatedTime stalled_until_{0};
+  SimulatedTime full_until_{0};
+  std::unordered_map<std::string, Content> files_;
+};
+
+}  // namespace meshfarm

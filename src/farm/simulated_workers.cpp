@@ -1,0 +1,133 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#include <utility>
+
+#include "farm/simulated_farm.hpp"
+
+namespace meshfarm {
+namespace {
+
+constexpr std::chrono::milliseconds k_down{6000};
+/// Nobody's patience ends while there are faults.
+constexpr FarmTime k_patience = std::chrono::hours(2);
+
+}  // namespace
+
+void SimulatedFarm::start_worker(std::uint32_t index) {
+  Worker& worker = workers_[index];
+  if (finished_ || worker.alive) return;
+  const SimulatedWorker& is = options_.workers[index];
+  worker.alive = true;
+  const std::uint64_t life = ++worker.life;
+  worker.incarnation = dice_.next() | 1;
+  worker.to_ventilator = worker.to_sink = worker.from_ventilator = worker.lane_channel = {};
+  worker.to_ventilator.from = worker.to_sink.from = worker.host;
+  worker.from_ventilator.to = worker.lane_channel.to = worker.host;
+  MemberOptions member;
+  member.incarnation = worker.incarnation;
+  member.pid = index + 1;
+  member.host = "host" + std::to_string(worker.host);
+  member.patience = k_patience;
+  member.capacity.speed = static_cast<std::uint64_t>(is.speed * options_.triangles_per_s);
+  member.capacity.memory = is.memory;
+  member.capacity.threads = is.threads;
+  // As in the real worker: one job more is in work than is computed.
+  worker.slots.assign(is.threads + 1, std::nullopt);
+  worker.gate.clear();
+  worker.computing = 0;
+  worker.pulse = {};
+  worker.pulse.slots.resize(worker.slots.size());
+  worker.core = std::make_unique<WorkerCore>(
+      member,
+      WorkerLimits{.buffer = options_.buffer, .slots = is.threads + 1, .memory = is.memory});
+  tick_worker(index, life);
+}
+
+void SimulatedFarm::tick_worker(std::uint32_t index, std::uint64_t life) {
+  Worker& worker = workers_[index];
+  if (!worker.alive || worker.life != life) return;
+  when_awake(worker, life, [this, &worker] {
+    feel_pulse(worker);
+    worker_does(index_of(worker), worker.core->tick(worker.pulse, farm_now()));
+  });
+  queue_.in(options_.heartbeat / 2 + up_to(options_.heartbeat / 20),
+            [this, index, life] { tick_worker(index, life); });
+}
+
+void SimulatedFarm::kill_worker(std::uint32_t index) {
+  Worker& worker = workers_[index];
+  if (!worker.alive) return;
+  kill(worker);
+  worker.core.reset();
+  worker.peer.clear();
+  worker.lane.clear();
+  worker.sink.clear();
+  queue_.in(up_to(k_down), [this, index] { start_worker(index); });
+}
+
+void SimulatedFarm::worker_does(std::uint32_t index, WorkerActions actions) {
+  Worker& worker = workers_[index];
+  const std::uint64_t life = worker.life;
+  for (WorkerAction& action : actions) {
+    if (!worker.alive || worker.life != life) return;
+    std::visit([&](auto& each) { act(index, each); }, action);
+  }
+  if (worker.core)
+    checks_.that(worker.core->waiting() <= options_.buffer, "a worker holds too much");
+}
+
+void SimulatedFarm::act(std::uint32_t index, Look&) {
+  worker_does(index, workers_[index].core->found(endpoints_, farm_now()));
+}
+
+void SimulatedFarm::act(std::uint32_t index, Dial& each) {
+  Worker& worker = workers_[index];
+  worker.peer = "w" + std::to_string(index) + "." + std::to_string(++dials_);
+  worker.dialled = static_cast<std::uint32_t>(std::stoul(each.address.substr(1)));
+}
+
+void SimulatedFarm::act(std::uint32_t index, HangUp&) {
+  workers_[index].peer.clear();
+  workers_[index].lane.clear();
+}
+
+void SimulatedFarm::act(std::uint32_t index, Say& each) {
+  Worker& worker = workers_[index];
+  if (worker.peer.empty()) return;
+  to_ventilator(worker, worker.to_ventilator, worker.peer, worker.dialled, std::move(each.message));
+}
+
+void SimulatedFarm::act(std::uint32_t index, ConnectLane& each) {
+  workers_[index].lane = each.address;
+}
+
+void SimulatedFarm::act(std::uint32_t index, ConnectSink& each) {
+  workers_[index].sink = each.address;
+}
+
+void SimulatedFarm::act(std::uint32_t index, SendResult& each) {
+  Worker& worker = workers_[index];
+  const bool buffered = chance(0.5);
+  worker.to_sink.to = sink_.host;
+  wires_.send(worker.to_sink, SimulatedWires::Order::may_change,
+              [this, &worker, buffered, life = worker.life, sink = worker.sink,
+               letter = in_envelope(std::move(each.result))] {
+                if (buffered && worker.life != life) return;
+                if (!sink_.alive || sink_.here != sink) return;
+                when_awake(sink_, sink_.life,
+                           [this, letter] { sink_does(sink_.core->on_result(*letter)); });
+              });
+}
+
+void SimulatedFarm::act(std::uint32_t index, Leave& each) {
+  Worker& worker = workers_[index];
+  if (each.abort) return kill_worker(index);
+  checks_.that(each.incomplete.empty(), "a worker gave up looking");
+  kill(worker);
+  worker.core.reset();
+  worker.peer.clear();
+  worker.lane.clear();
+  if (faulty()) queue_.in(k_down, [this, index] { start_worker(index); });
+}
+
+}  // namespace meshfarm

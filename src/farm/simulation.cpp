@@ -1,0 +1,71 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#include <algorithm>
+
+#include <meshfarm/farm/rounds.hpp>
+#include <meshfarm/farm/simulation.hpp>
+#include <meshfarm/util/checksum.hpp>
+
+namespace meshfarm {
+namespace {
+
+Job made_up(const std::string& name) {
+  Job job;
+  job.kind = "simulated";
+  job.parameters = name;
+  job.cost = 100 + checksum(name) % 900;
+  return job;
+}
+
+}  // namespace
+
+std::string simulated_summary(const Job& job) {
+  return to_hex(checksum("made of " + job.parameters));
+}
+
+JobSource simulated_jobs(std::uint64_t count) {
+  const std::uint64_t last = count / 16;
+  const std::uint64_t first = count - last - std::min<std::uint64_t>(count, 1);
+  return [first, last](std::span<const AcceptedJob> accepted) {
+    std::vector<Job> jobs;
+    if (accepted.size() < first) {
+      for (std::uint64_t i = 0; i < first; ++i) jobs.push_back(made_up("job " + std::to_string(i)));
+    } else if (accepted.size() == first) {
+      const std::string needs = accepted.empty() ? "nothing" : accepted.back().output.summary;
+      jobs.push_back(made_up("all, to " + needs));
+    } else if (accepted.size() == first + 1) {
+      for (std::uint64_t i = 0; i < last; ++i) jobs.push_back(made_up("end " + std::to_string(i)));
+    }
+    return jobs;
+  };
+}
+
+std::vector<std::string> expected_summaries(const JobSource& source) {
+  Rounds rounds(source);
+  for (std::vector<Job> jobs = rounds.advance(); !jobs.empty(); jobs = rounds.advance()) {
+    for (const Job& job : jobs) {
+      JobOutput output;
+      output.summary = simulated_summary(job);
+      rounds.accept(key_of(job), output);
+    }
+  }
+  std::vector<std::string> summaries;
+  for (const AcceptedJob& each : rounds.outputs()) summaries.push_back(each.output.summary);
+  return summaries;
+}
+
+std::string problem_of(const SimulationResult& result, const SimulatedFaults& faults,
+                       std::span<const std::string> expected) {
+  if (!result.broken.empty()) return "broken: " + result.broken;
+  if (!result.ended) return "it did not come to its end";
+  if (!faults.poison.empty() || !faults.bad.empty()) {
+    return result.failure.empty() ? "a job that cannot be done was done" : "";
+  }
+  if (!result.failure.empty()) return "it failed: " + result.failure;
+  const bool same = std::equal(
+      result.outputs.begin(), result.outputs.end(), expected.begin(), expected.end(),
+      [](const AcceptedJob& made, const std::string& each) { return made.output.summary == each; });
+  return same ? "" : "it ended with other bytes";
+}
+
+}  // namespace meshfarm
