@@ -1,10 +1,13 @@
 #!/usr/bin/env bash
-# Checks the form of our code: clang-format, and clang-tidy over what scripts/test.sh has built.
-#   lint.sh           both
+# Checks the form of our code: shellcheck, clang-format, and clang-tidy over what scripts/test.sh has
+# built.
+#   lint.sh           all three
 #   lint.sh --format  clang-format only
 set -euo pipefail
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 cd "$root"
+mapfile -t scripts < <(git ls-files '*.sh' .ci/run)
+[ "${1:-}" = --format ] || shellcheck -x "${scripts[@]}"
 mapfile -t files < <(git ls-files '*.cpp' '*.hpp')
 clang-format --dry-run -Werror "${files[@]}"
 [ "${1:-}" = --format ] && exit 0

@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # Installs the Debian packages that building, testing and the demo need, where they are missing.
-# With --fuzz also those of the fuzzers.
+# With --fuzz also those of the fuzzers, with --lab those of tests/lab (Slurm, NFS, ssh servers: best
+# on a machine of its own), with --lint those of lint.sh.
 set -euo pipefail
 
 packages=(g++ cmake ninja-build pkg-config make
@@ -10,6 +11,10 @@ packages=(g++ cmake ninja-build pkg-config make
 for word in "$@"; do
   case "$word" in
     --fuzz) packages+=(clang libclang-rt-dev) ;;
+    --lab) packages+=(user-mode-linux uml-utilities kmod nfs-common nfs-kernel-server rpcbind
+      e2fsprogs iproute2 iptables openssh-server openssh-client strace
+      slurm-wlm slurmctld slurmd slurm-client munge) ;;
+    --lint) packages+=(clang-format clang-tidy shellcheck) ;;
     --npm) command -v npm > /dev/null || packages+=(npm) ;;
     *) echo "packages.sh: unknown option $word" >&2; exit 2 ;;
   esac

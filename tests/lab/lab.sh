@@ -1,0 +1,125 @@
+#!/usr/bin/env bash
+# What the labs share; they source it. A lab runs the real program on real things: hosts in network
+# namespaces, Slurm, NFS. Each is called with the program, leaves nothing behind, and exits 77 with a
+# reason where the machine cannot have it.
+set -euo pipefail
+
+lab=$(basename "$0" .sh)
+lab_here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
+# shellcheck disable=SC2034 # for those who source this
+lab_root=$(cd "$lab_here/../.." && pwd)
+[ -x "${1:-}" ] || { echo "usage: $lab.sh PROGRAM" >&2; exit 2; }
+MESHFARM=$(realpath "$1")
+export MESHFARM
+# Not in /tmp/x: some of the labs' daemons want every folder above them to be root's.
+work=$(mktemp -d "${TMPDIR:-/tmp}/meshfarm-lab.XXXXXX")
+
+skip() {
+  echo "SKIPPED $lab: $1"
+  exit 77
+}
+fail() {
+  echo "FAILED $lab: $1"
+  exit 1
+}
+say() {
+  printf '%6.1f s  %s\n' "$(($(date +%s%N) / 1000000 - lab_start))e-3" "$1"
+}
+lab_start=$(($(date +%s%N) / 1000000))
+
+need_root() {
+  [ "$(id -u)" -eq 0 ] || skip "it needs root"
+}
+need_commands() {
+  local command
+  for command in "$@"; do
+    command -v "$command" > /dev/null ||
+      skip "there is no $command here ('scripts/packages.sh --lab' installs what the labs need)"
+  done
+}
+
+# A mesh of $1 triangles and what becomes of it undisturbed, $work/expected.ply; cut into $2 parts at
+# the folder $3.
+make_stage() {
+  local triangles=$1 parts=$2 stage=$3
+  [ -e "$work/mesh.ply" ] ||
+    "$MESHFARM" generate -o "$work/mesh.ply" --triangles "$triangles" --quiet
+  if [ ! -e "$work/expected.ply" ]; then
+    "$MESHFARM" simplify "$work/mesh.ply" -o "$work/expected.ply" --ratio 0.05 --parts "$parts" \
+      --quiet > /dev/null
+  fi
+  "$MESHFARM" cut "$work/mesh.ply" --stage "$stage" --parts "$parts" --quiet > /dev/null
+}
+check_result() {
+  cmp "$1" "$work/expected.ply" || fail "other bytes than undisturbed: $1"
+}
+
+# Waits at most $1 seconds until the command that follows succeeds.
+wait_for() {
+  local until=$((SECONDS + $1))
+  shift
+  until "$@"; do
+    [ "$SECONDS" -lt "$until" ] || return 1
+    sleep 0.1
+  done
+}
+has_results() { # STAGE COUNT
+  [ "$(find "$1/results" -type f ! -name '.*' 2> /dev/null | wc -l)" -ge "$2" ]
+}
+
+# A program like ours whose every fsync takes $2 milliseconds, so that a run on small parts takes a
+# while without taking the machine's cores.
+make_slow_program() {
+  cat > "$1" << END
+#!/usr/bin/env bash
+exec strace -D -f --seccomp-bpf -qq -o /dev/null -e trace=fsync \
+  -e inject=fsync:delay_exit=$(($2 * 1000)) $(printf %q "$MESHFARM") "\$@"
+END
+  chmod +x "$1"
+}
+
+# Hosts in network namespaces, $hosts_prefix1 ... N at 10.77.0.1 ... N, on a bridge of their own.
+hosts_prefix=mf$$-
+hosts_up() {
+  local i host
+  { echo '127.0.0.1 localhost'; for i in $(seq "$1"); do echo "10.77.0.$i $hosts_prefix$i"; done; } \
+    > "$work/etc-hosts"
+  ip netns add "${hosts_prefix}sw"
+  ip -n "${hosts_prefix}sw" link add br0 type bridge
+  ip -n "${hosts_prefix}sw" link set br0 up
+  for i in $(seq "$1"); do
+    host=$hosts_prefix$i
+    ip netns add "$host"
+    ip -n "${hosts_prefix}sw" link add "v$i" type veth peer name eth0 netns "$host"
+    ip -n "${hosts_prefix}sw" link set "v$i" master br0 up
+    ip -n "$host" addr add "10.77.0.$i/24" dev eth0
+    ip -n "$host" link set eth0 up
+    ip -n "$host" link set lo up
+  done
+}
+hosts_down() {
+  local name
+  for name in $(ip netns list | awk -v p="$hosts_prefix" 'index($1, p) == 1 { print $1 }'); do
+    kill_host "${name#"$hosts_prefix"}" 2> /dev/null || true
+    ip netns del "$name" || true
+  done
+}
+# Not by 'ip netns exec': that mounts /sys anew, and slurmd misses its cgroups.
+on_host() { # NUMBER COMMAND...
+  local name=$hosts_prefix$1
+  shift
+  # shellcheck disable=SC2016 # for the inner shell
+  nsenter --net="/run/netns/$name" unshare --uts --mount -- \
+    bash -c 'hostname "$1"; mount --bind "$2" /etc/hosts; shift 2; exec "$@"' _ "$name" \
+    "$work/etc-hosts" "$@"
+}
+kill_host() { # NUMBER
+  ip netns pids "$hosts_prefix$1" | xargs -r kill -KILL
+}
+cut_off() { # NUMBER
+  on_host "$1" iptables -A INPUT -i eth0 -j DROP
+  on_host "$1" iptables -A OUTPUT -o eth0 -j DROP
+}
+heal() { # NUMBER
+  on_host "$1" iptables -F
+}
