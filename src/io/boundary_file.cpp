@@ -3,6 +3,9 @@
 //
 // The boundary side file, kind "BNDY", version 1; the payload of a sealed file:
 //   triangles u64 | triangles x 3 x (part u32 | local index u32)
+#include <algorithm>
+#include <utility>
+
 #include <meshfarm/io/boundary_file.hpp>
 #include <meshfarm/staging/sealed.hpp>
 #include <meshfarm/util/bytes.hpp>
@@ -14,6 +17,25 @@ constexpr FileKind k_kind = {'B', 'N', 'D', 'Y'};
 constexpr std::uint32_t k_version = 1;
 
 }  // namespace
+
+std::uint64_t drop_duplicates(std::vector<BoundaryTriangle>& triangles) {
+  std::vector<std::pair<BoundaryTriangle, std::size_t>> sorted;
+  sorted.reserve(triangles.size());
+  for (std::size_t i = 0; i < triangles.size(); ++i) {
+    BoundaryTriangle key = triangles[i];
+    std::sort(key.begin(), key.end());
+    sorted.emplace_back(key, i);
+  }
+  std::sort(sorted.begin(), sorted.end());
+  std::vector<bool> duplicate(triangles.size(), false);
+  for (std::size_t i = 1; i < sorted.size(); ++i) {
+    if (sorted[i].first == sorted[i - 1].first) duplicate[sorted[i].second] = true;
+  }
+  const std::size_t before = triangles.size();
+  std::size_t index = 0;
+  std::erase_if(triangles, [&](const BoundaryTriangle&) { return duplicate[index++]; });
+  return before - triangles.size();
+}
 
 std::string encode_boundary(const std::vector<BoundaryTriangle>& triangles) {
   ByteWriter out;

@@ -9,30 +9,22 @@
 //   triangles   to the part's bucket, or, when two or three parts meet in one, to the boundary
 // Then each part is built from its buckets by itself, on all cores.
 #include <algorithm>
-#include <array>
 #include <chrono>
 #include <memory>
 #include <mutex>
 
 #include <meshfarm/io/boundary_file.hpp>
+#include <meshfarm/io/mesh_shares.hpp>
 #include <meshfarm/partition/cell_graph.hpp>
 #include <meshfarm/partition/cut.hpp>
 #include <meshfarm/partition/grid.hpp>
 #include <meshfarm/util/errors.hpp>
-#include <meshfarm/util/file.hpp>
 #include <meshfarm/util/parallel.hpp>
 
-#include "partition/bucket_file.hpp"
 #include "partition/part_builder.hpp"
 
 namespace meshfarm {
 namespace {
-
-struct MapEntry {
-  std::uint32_t part = 0;
-  std::uint32_t raw = 0;
-};
-using RawBoundaryTriangle = std::array<MapEntry, 3>;
 
 /// Parts of 200 to 1000 cells each: fine enough for even sizes and smooth seams.
 unsigned grid_bits(std::uint32_t parts) {
@@ -107,81 +99,37 @@ class Cutter {
   }
 
   void distribute_vertices() {
-    map_ = MappedFile::scratch(stage_.root(), manifest_.input_vertices * sizeof(MapEntry));
-    vertices_ = std::make_unique<BucketFile>(stage_.root(), parts_);
-    const std::span<MapEntry> map = map_.as_span<MapEntry>();
-    std::vector<std::uint64_t> next(parts_, 0);
+    shares_ = std::make_unique<MeshShares>(
+        MeshShares::Options{stage_.root(), parts_, manifest_.input_vertices, manifest_.positions});
+    std::vector<std::uint32_t> parts;
     std::uint64_t done = 0;
     source_.scan_vertices([&](std::span<const Vec3> batch) {
+      parts.clear();
       for (const Vec3& p : batch) {
-        const std::uint32_t part = part_of_cell_[cells_.number_of(grid_.cell_of(p))];
-        if (next[part] > 0xfffffffe) {
-          throw DataError("a part would have 2^32 vertices or more; ask for more --parts");
-        }
-        map[done++] = {part, static_cast<std::uint32_t>(next[part]++)};
-        put_position(part, p);
+        parts.push_back(part_of_cell_[cells_.number_of(grid_.cell_of(p))]);
       }
-      tell("cut: vertices", done, manifest_.input_vertices);
+      shares_->add_vertices(batch, parts);
+      tell("cut: vertices", done += batch.size(), manifest_.input_vertices);
     });
-    vertices_->finish();
-  }
-
-  void put_position(std::uint32_t part, Vec3 p) {
-    if (manifest_.positions == PositionType::float64) {
-      vertices_->put(part, p);
-    } else {
-      vertices_->put(part, std::array<float, 3>{static_cast<float>(p.x), static_cast<float>(p.y),
-                                                static_cast<float>(p.z)});
-    }
   }
 
   void distribute_triangles() {
-    triangles_ = std::make_unique<BucketFile>(stage_.root(), parts_);
-    boundary_vertices_ = std::make_unique<BucketFile>(stage_.root(), parts_);
-    const std::span<const MapEntry> map = map_.as_span<const MapEntry>();
     source_.scan_triangles([&](std::span<const WideTriangle> batch) {
-      for (const WideTriangle& t : batch) {
-        const MapEntry a = map[t[0]];
-        const MapEntry b = map[t[1]];
-        const MapEntry c = map[t[2]];
-        if (a.part == b.part && b.part == c.part) {
-          triangles_->put(a.part, Triangle{a.raw, b.raw, c.raw});
-        } else {
-          boundary_.push_back({a, b, c});
-          for (const MapEntry& corner : {a, b, c}) boundary_vertices_->put(corner.part, corner.raw);
-        }
-      }
+      shares_->add_triangles(batch);
       manifest_.input_triangles += batch.size();
       tell("cut: triangles", manifest_.input_triangles, source_.info().faces);
     });
-    triangles_->finish();
-    boundary_vertices_->finish();
-    map_ = {};
-  }
-
-  RawPart read_raw(std::uint32_t part) const {
-    RawPart raw;
-    if (manifest_.positions == PositionType::float64) {
-      raw.positions = vertices_->read<Vec3>(part);
-    } else {
-      const auto floats = vertices_->read<std::array<float, 3>>(part);
-      raw.positions.reserve(floats.size());
-      for (const auto& p : floats) raw.positions.push_back({p[0], p[1], p[2]});
-    }
-    raw.triangles = triangles_->read<Triangle>(part);
-    raw.boundary = boundary_vertices_->read<std::uint32_t>(part);
-    return raw;
+    shares_->finish();
   }
 
   void build_parts() {
     manifest_.parts.resize(parts_);
-    boundary_raw_.resize(parts_);
-    boundary_final_.resize(parts_);
+    numbers_.resize(parts_);
     std::mutex mutex;
     std::uint64_t done = 0;
     parallel_for(parts_, options_.threads, [&](std::uint64_t i) {
       const auto number = static_cast<std::uint32_t>(i);
-      BuiltPart built = build_part(read_raw(number), manifest_.positions, options_.weld);
+      BuiltPart built = build_part(shares_->read(number), manifest_.positions, options_.weld);
       PartEntry entry;
       entry.vertices = built.part.mesh.positions.size();
       entry.triangles = built.part.mesh.triangles.size();
@@ -191,54 +139,19 @@ class Cutter {
       entry.file = stage_.publish(PartName{number}, bytes);
       const std::lock_guard lock(mutex);
       manifest_.parts[i] = std::move(entry);
-      boundary_raw_[i] = std::move(built.boundary_raw);
-      boundary_final_[i] = std::move(built.boundary_final);
+      numbers_[i] = std::move(built.boundary);
       manifest_.merged_vertices += built.merged_vertices;
       manifest_.dropped_degenerate += built.dropped_degenerate;
       tell("cut: parts", ++done, parts_);
     });
   }
 
-  BoundaryCorner final_corner(MapEntry corner) const {
-    const std::vector<std::uint32_t>& raw = boundary_raw_[corner.part];
-    const auto at = std::lower_bound(raw.begin(), raw.end(), corner.raw) - raw.begin();
-    return {corner.part, boundary_final_[corner.part][static_cast<std::size_t>(at)]};
-  }
-
   void write_boundary() {
-    std::vector<BoundaryTriangle> triangles;
-    triangles.reserve(boundary_.size());
-    for (const RawBoundaryTriangle& t : boundary_) {
-      const BoundaryTriangle made = {final_corner(t[0]), final_corner(t[1]), final_corner(t[2])};
-      if (made[0] == made[1] || made[1] == made[2] || made[2] == made[0]) {
-        ++manifest_.dropped_degenerate;
-      } else {
-        triangles.push_back(made);
-      }
-    }
+    std::vector<BoundaryTriangle> triangles =
+        shares_->boundary(numbers_, manifest_.dropped_degenerate);
     manifest_.dropped_duplicate = drop_duplicates(triangles);
     manifest_.boundary_triangles = triangles.size();
     manifest_.boundary = stage_.publish(BoundaryName{}, encode_boundary(triangles));
-  }
-
-  /// Keeps the first of the triangles with the same corners, in whatever order they name them.
-  static std::uint64_t drop_duplicates(std::vector<BoundaryTriangle>& triangles) {
-    std::vector<std::pair<BoundaryTriangle, std::size_t>> sorted;
-    sorted.reserve(triangles.size());
-    for (std::size_t i = 0; i < triangles.size(); ++i) {
-      BoundaryTriangle key = triangles[i];
-      std::sort(key.begin(), key.end());
-      sorted.emplace_back(key, i);
-    }
-    std::sort(sorted.begin(), sorted.end());
-    std::vector<bool> duplicate(triangles.size(), false);
-    for (std::size_t i = 1; i < sorted.size(); ++i) {
-      if (sorted[i].first == sorted[i - 1].first) duplicate[sorted[i].second] = true;
-    }
-    const std::size_t before = triangles.size();
-    std::size_t index = 0;
-    std::erase_if(triangles, [&](const BoundaryTriangle&) { return duplicate[index++]; });
-    return before - triangles.size();
   }
 
   MeshSource& source_;
@@ -249,13 +162,8 @@ class Cutter {
   CellTable cells_;
   std::vector<std::uint32_t> part_of_cell_;
   std::uint32_t parts_ = 0;
-  MappedFile map_;
-  std::unique_ptr<BucketFile> vertices_;
-  std::unique_ptr<BucketFile> triangles_;
-  std::unique_ptr<BucketFile> boundary_vertices_;
-  std::vector<RawBoundaryTriangle> boundary_;  // as the square root of the input
-  std::vector<std::vector<std::uint32_t>> boundary_raw_;
-  std::vector<std::vector<std::uint32_t>> boundary_final_;
+  std::unique_ptr<MeshShares> shares_;
+  std::vector<BoundaryNumbers> numbers_;
 };
 
 }  // namespace

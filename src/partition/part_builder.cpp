@@ -49,7 +49,7 @@ std::uint32_t number_vertices(const std::vector<Triangle>& triangles,
 
 }  // namespace
 
-BuiltPart build_part(RawPart raw, PositionType positions, Weld weld_mode) {
+BuiltPart build_part(MeshShare raw, PositionType positions, Weld weld_mode) {
   BuiltPart built;
   std::vector<std::uint32_t> representative;
   if (weld_mode == Weld::exact) {
@@ -62,16 +62,17 @@ BuiltPart build_part(RawPart raw, PositionType positions, Weld weld_mode) {
   }
   built.dropped_degenerate = merge_corners(raw.triangles, representative);
 
-  built.boundary_raw = std::move(raw.boundary);
-  std::sort(built.boundary_raw.begin(), built.boundary_raw.end());
-  built.boundary_raw.erase(std::unique(built.boundary_raw.begin(), built.boundary_raw.end()),
-                           built.boundary_raw.end());
+  built.boundary.places = std::move(raw.boundary);
+  std::sort(built.boundary.places.begin(), built.boundary.places.end());
+  built.boundary.places.erase(
+      std::unique(built.boundary.places.begin(), built.boundary.places.end()),
+      built.boundary.places.end());
 
   std::vector<std::uint32_t> number(raw.positions.size(), k_unused);
   Part& part = built.part;
   part.positions = positions;
   part.boundary_vertices =
-      number_vertices(raw.triangles, built.boundary_raw, representative, number);
+      number_vertices(raw.triangles, built.boundary.places, representative, number);
   const auto used =
       number.size() - static_cast<std::size_t>(std::count(number.begin(), number.end(), k_unused));
   part.mesh.positions.resize(used);
@@ -80,9 +81,9 @@ BuiltPart build_part(RawPart raw, PositionType positions, Weld weld_mode) {
   }
   for (Triangle& t : raw.triangles) t = {number[t[0]], number[t[1]], number[t[2]]};
   part.mesh.triangles = std::move(raw.triangles);
-  built.boundary_final.reserve(built.boundary_raw.size());
-  for (const std::uint32_t b : built.boundary_raw) {
-    built.boundary_final.push_back(number[representative[b]]);
+  built.boundary.numbers.reserve(built.boundary.places.size());
+  for (const std::uint32_t b : built.boundary.places) {
+    built.boundary.numbers.push_back(number[representative[b]]);
   }
   return built;
 }

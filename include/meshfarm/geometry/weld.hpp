@@ -10,6 +10,9 @@
 
 namespace meshfarm {
 
+/// Whether vertices at the same position become one.
+enum class Weld { exact, off };
+
 /// Which vertices are one point.
 struct WeldResult {
   std::vector<std::uint32_t> first;  // for each vertex its lowest twin: itself if it has none below

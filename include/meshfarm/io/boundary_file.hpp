@@ -18,6 +18,10 @@ struct BoundaryCorner {
 };
 using BoundaryTriangle = std::array<BoundaryCorner, 3>;
 
+/// Keeps the first of the triangles with the same corners, in whatever order they name them.
+/// Returns how many went.
+std::uint64_t drop_duplicates(std::vector<BoundaryTriangle>& triangles);
+
 /// The side file: every triangle whose corners lie in two or three parts
 /// (Xiong et al. 2008, 3.1 step 4).
 std::string encode_boundary(const std::vector<BoundaryTriangle>& triangles);

@@ -8,13 +8,12 @@
 #include <string>
 #include <string_view>
 
+#include <meshfarm/geometry/weld.hpp>
 #include <meshfarm/io/manifest.hpp>
 #include <meshfarm/io/mesh_source.hpp>
 #include <meshfarm/staging/stage.hpp>
 
 namespace meshfarm {
-
-enum class Weld { exact, off };
 
 struct CutOptions {
   std::uint32_t parts = 0;  // 0: default_parts() of the input's triangles

@@ -11,7 +11,6 @@
 #include <meshfarm/util/errors.hpp>
 #include <meshfarm/util/file.hpp>
 
-#include "partition/bucket_file.hpp"
 #include "partition/part_builder.hpp"
 #include "support/memory_source.hpp"
 #include "support/meshes.hpp"
@@ -201,20 +200,4 @@ TEST_CASE("the number of parts depends on the size alone") {
   CHECK(default_parts(10'000'000) == 16);
   CHECK(default_parts(28'000'000) == 28);
   CHECK(default_parts(std::uint64_t{1} << 60) == 1'000'000);
-}
-
-TEST_CASE("buckets give back what each was given, through full buffers too") {
-  const test::TempFolder folder;
-  BucketFile buckets(folder.path(), 10'000);  // buffers of the smallest size
-  for (std::uint32_t i = 0; i < 200'000; ++i) buckets.put(i % 7, i);
-  buckets.finish();
-  for (std::uint32_t b = 0; b < 7; ++b) {
-    const auto values = buckets.read<std::uint32_t>(b);
-    REQUIRE(values.size() == (200'000 - b + 6) / 7);
-    for (std::uint32_t i = 0; i < values.size(); ++i) {
-      if (values[i] != i * 7 + b) FAIL("bucket " << b << " at " << i);
-    }
-  }
-  CHECK(buckets.read<std::uint32_t>(9999).empty());
-  CHECK(std::filesystem::is_empty(folder.path()));
 }

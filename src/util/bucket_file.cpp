@@ -1,7 +1,5 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
-#include "partition/bucket_file.hpp"
-
 #include <algorithm>
 #include <cerrno>
 #include <cstdlib>
@@ -9,6 +7,7 @@
 #include <fcntl.h>
 #include <unistd.h>
 
+#include <meshfarm/util/bucket_file.hpp>
 #include <meshfarm/util/errors.hpp>
 
 namespace meshfarm {

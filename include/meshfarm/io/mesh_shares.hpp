@@ -1,0 +1,77 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <span>
+#include <vector>
+
+#include <meshfarm/geometry/mesh.hpp>
+#include <meshfarm/io/boundary_file.hpp>
+#include <meshfarm/io/mesh_source.hpp>
+#include <meshfarm/util/bucket_file.hpp>
+#include <meshfarm/util/file.hpp>
+
+namespace meshfarm {
+
+/// What of a mesh fell to one share: vertices in file order; boundary vertices in any order, some
+/// of them named again and again.
+struct MeshShare {
+  std::vector<Vec3> positions;
+  std::vector<Triangle> triangles;
+  std::vector<std::uint32_t> boundary;
+};
+
+/// The boundary vertices of a share by their place in it, ascending, and the number that each has
+/// in what was made of the share. Coincident ones may have the same.
+struct BoundaryNumbers {
+  std::vector<std::uint32_t> places;
+  std::vector<std::uint32_t> numbers;
+};
+
+/// Shares a mesh out as it is scanned, in bounded memory: vertices by whatever share they are given
+/// to; a triangle goes with its vertices, or to the boundary if these are of two or three shares.
+/// The map from a vertex to its share and place is a mapped scratch file.
+class MeshShares {
+ public:
+  struct Options {
+    std::filesystem::path folder;  // for scratch files
+    std::uint32_t shares = 0;
+    std::uint64_t vertices = 0;  // exactly as many are added
+    PositionType positions = PositionType::float32;
+  };
+  explicit MeshShares(const Options& options);
+
+  /// The next vertices, and the share of each. Throws DataError if one gets 2^32.
+  void add_vertices(std::span<const Vec3> batch, std::span<const std::uint32_t> shares);
+  /// After all vertices.
+  void add_triangles(std::span<const WideTriangle> batch);
+  /// After all triangles; read() is then safe from several threads.
+  void finish();
+  MeshShare read(std::uint32_t share) const;
+
+  /// The boundary triangles, in file order and by final numbers, one entry of `numbers` a share;
+  /// those that have lost a corner by it are left out and counted.
+  std::vector<BoundaryTriangle> boundary(std::span<const BoundaryNumbers> numbers,
+                                         std::uint64_t& degenerate) const;
+
+ private:
+  struct Place {
+    std::uint32_t share = 0;
+    std::uint32_t place = 0;
+  };
+  void put_position(std::uint32_t share, Vec3 p);
+
+  PositionType positions_;
+  MappedFile map_;
+  BucketFile vertices_;
+  BucketFile triangles_;
+  BucketFile boundary_vertices_;
+  std::vector<std::uint64_t> next_;  // place in each share
+  std::uint64_t added_ = 0;
+  std::vector<std::array<Place, 3>> boundary_;  // as the square root of the input
+};
+
+}  // namespace meshfarm

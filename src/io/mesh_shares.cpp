@@ -1,0 +1,95 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#include <algorithm>
+
+#include <meshfarm/io/mesh_shares.hpp>
+#include <meshfarm/util/errors.hpp>
+
+namespace meshfarm {
+
+MeshShares::MeshShares(const Options& options)
+    : positions_(options.positions),
+      map_(MappedFile::scratch(options.folder, options.vertices * sizeof(Place))),
+      vertices_(options.folder, options.shares),
+      triangles_(options.folder, options.shares),
+      boundary_vertices_(options.folder, options.shares),
+      next_(options.shares, 0) {}
+
+void MeshShares::add_vertices(std::span<const Vec3> batch, std::span<const std::uint32_t> shares) {
+  const std::span<Place> map = map_.as_span<Place>();
+  for (std::size_t i = 0; i < batch.size(); ++i) {
+    const std::uint32_t share = shares[i];
+    if (next_[share] > 0xfffffffe) {
+      throw DataError("a part would have 2^32 vertices or more; ask for more --parts");
+    }
+    map[added_++] = {share, static_cast<std::uint32_t>(next_[share]++)};
+    put_position(share, batch[i]);
+  }
+  if (added_ == map.size()) vertices_.finish();  // its buffers are of no more use
+}
+
+void MeshShares::put_position(std::uint32_t share, Vec3 p) {
+  if (positions_ == PositionType::float64) {
+    vertices_.put(share, p);
+  } else {
+    vertices_.put(share, std::array<float, 3>{static_cast<float>(p.x), static_cast<float>(p.y),
+                                              static_cast<float>(p.z)});
+  }
+}
+
+void MeshShares::add_triangles(std::span<const WideTriangle> batch) {
+  const std::span<const Place> map = map_.as_span<const Place>();
+  for (const WideTriangle& t : batch) {
+    const Place a = map[t[0]];
+    const Place b = map[t[1]];
+    const Place c = map[t[2]];
+    if (a.share == b.share && b.share == c.share) {
+      triangles_.put(a.share, Triangle{a.place, b.place, c.place});
+    } else {
+      boundary_.push_back({a, b, c});
+      for (const Place& corner : {a, b, c}) boundary_vertices_.put(corner.share, corner.place);
+    }
+  }
+}
+
+void MeshShares::finish() {
+  triangles_.finish();
+  boundary_vertices_.finish();
+  map_ = {};
+}
+
+MeshShare MeshShares::read(std::uint32_t share) const {
+  MeshShare read;
+  if (positions_ == PositionType::float64) {
+    read.positions = vertices_.read<Vec3>(share);
+  } else {
+    const auto floats = vertices_.read<std::array<float, 3>>(share);
+    read.positions.reserve(floats.size());
+    for (const auto& p : floats) read.positions.push_back({p[0], p[1], p[2]});
+  }
+  read.triangles = triangles_.read<Triangle>(share);
+  read.boundary = boundary_vertices_.read<std::uint32_t>(share);
+  return read;
+}
+
+std::vector<BoundaryTriangle> MeshShares::boundary(std::span<const BoundaryNumbers> numbers,
+                                                   std::uint64_t& degenerate) const {
+  const auto numbered = [&](const Place& corner) -> BoundaryCorner {
+    const auto& [places, values] = numbers[corner.share];
+    const auto at = std::lower_bound(places.begin(), places.end(), corner.place) - places.begin();
+    return {corner.share, values[static_cast<std::size_t>(at)]};
+  };
+  std::vector<BoundaryTriangle> triangles;
+  triangles.reserve(boundary_.size());
+  for (const std::array<Place, 3>& t : boundary_) {
+    const BoundaryTriangle made = {numbered(t[0]), numbered(t[1]), numbered(t[2])};
+    if (made[0] == made[1] || made[1] == made[2] || made[2] == made[0]) {
+      ++degenerate;
+    } else {
+      triangles.push_back(made);
+    }
+  }
+  return triangles;
+}
+
+}  // namespace meshfarm

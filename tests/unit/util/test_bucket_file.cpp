@@ -1,0 +1,27 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#include <numeric>
+
+#include <doctest/doctest.h>
+
+#include <meshfarm/util/bucket_file.hpp>
+
+#include "support/temp_folder.hpp"
+
+using namespace meshfarm;
+
+TEST_CASE("buckets give back what each was given, through full buffers too") {
+  const test::TempFolder folder;
+  BucketFile buckets(folder.path(), 10'000);  // buffers of the smallest size
+  for (std::uint32_t i = 0; i < 200'000; ++i) buckets.put(i % 7, i);
+  buckets.finish();
+  for (std::uint32_t b = 0; b < 7; ++b) {
+    const auto values = buckets.read<std::uint32_t>(b);
+    REQUIRE(values.size() == (200'000 - b + 6) / 7);
+    for (std::uint32_t i = 0; i < values.size(); ++i) {
+      if (values[i] != i * 7 + b) FAIL("bucket " << b << " at " << i);
+    }
+  }
+  CHECK(buckets.read<std::uint32_t>(9999).empty());
+  CHECK(std::filesystem::is_empty(folder.path()));
+}
