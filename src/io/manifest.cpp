@@ -1,12 +1,14 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
 //
-// The manifest, kind "MNFT", version 1; the payload of a sealed file. Strings are u32 + characters,
+// The manifest, kind "MNFT", version 2; the payload of a sealed file. Strings are u32 + characters,
 // a file is name | size u64 | xxh3-64 u64:
-//   input | input format | position type u8 | box 6 x f64 | input vertices u64 | input triangles
-//   u64 | merged vertices u64 | dropped degenerate u64 | dropped duplicate u64 | skipped u32 x
-//   string | cut seconds f64 | boundary triangles u64 | boundary file | parts u32 x (file |
-//   vertices u64 | triangles u64 | boundary vertices u32)
+//   input | input format | scheme u8 (0 cut, 1 stream) | window u64 | position type u8 | box 6 x
+//   f64 | input vertices u64 | input triangles u64 | merged vertices u64 | dropped degenerate u64 |
+//   dropped duplicate u64 | skipped u32 x string | cut seconds f64 | boundary triangles u64 |
+//   boundary file | parts u32 x (file | vertices u64 | triangles u64 | boundary vertices u32) |
+//   samples u32 x the same: none, or one a part, its file's name empty where it has none
+// Version 1 had no scheme, window and samples.
 #include <meshfarm/io/manifest.hpp>
 #include <meshfarm/staging/sealed.hpp>
 #include <meshfarm/util/bytes.hpp>
@@ -17,7 +19,7 @@ namespace meshfarm {
 namespace {
 
 constexpr FileKind k_kind = {'M', 'N', 'F', 'T'};
-constexpr std::uint32_t k_version = 1;
+constexpr std::uint32_t k_version = 2;
 
 void put_file(ByteWriter& out, const FileRef& file) {
   out.put_string(file.name);
@@ -25,16 +27,19 @@ void put_file(ByteWriter& out, const FileRef& file) {
   out.put(file.hash);
 }
 
-/// A manifest may name only files of the kind that stands in that place.
-template <class Name>
 FileRef get_file(ByteReader& in) {
   FileRef file;
   file.name = in.get_string();
   file.size = in.get<std::uint64_t>();
   file.hash = in.get<std::uint64_t>();
+  return file;
+}
+
+/// A manifest may name only files of the kind that stands in that place.
+template <class Name>
+void check_name(const ByteReader& in, const FileRef& file) {
   const auto name = parse_staged_name(file.name);
   if (!name || !std::holds_alternative<Name>(*name)) in.fail("not the name of a staged file");
-  return file;
 }
 
 void put_parts(ByteWriter& out, const std::vector<PartEntry>& parts) {
@@ -52,7 +57,7 @@ std::vector<PartEntry> get_parts(ByteReader& in) {
   const auto count = in.get<std::uint32_t>();
   for (std::uint32_t i = 0; i < count; ++i) {
     PartEntry part;
-    part.file = get_file<PartName>(in);
+    part.file = get_file(in);
     part.vertices = in.get<std::uint64_t>();
     part.triangles = in.get<std::uint64_t>();
     part.boundary_vertices = in.get<std::uint32_t>();
@@ -74,6 +79,8 @@ std::string encode_manifest(const Manifest& m) {
   ByteWriter out;
   out.put_string(m.input);
   out.put_string(m.input_format);
+  out.put(m.scheme);
+  out.put(m.window_triangles);
   out.put(m.positions);
   out.put(m.box.lo);
   out.put(m.box.hi);
@@ -88,6 +95,7 @@ std::string encode_manifest(const Manifest& m) {
   out.put(m.boundary_triangles);
   put_file(out, m.boundary);
   put_parts(out, m.parts);
+  put_parts(out, m.samples);
   return seal(k_kind, k_version, out.bytes());
 }
 
@@ -96,6 +104,9 @@ Manifest decode_manifest(std::string_view file, std::string_view what) {
   Manifest m;
   m.input = in.get_string();
   m.input_format = in.get_string();
+  m.scheme = in.get<Scheme>();
+  if (m.scheme > Scheme::stream) in.fail("unknown scheme");
+  m.window_triangles = in.get<std::uint64_t>();
   m.positions = get_position_type(in);
   m.box.lo = in.get<Vec3>();
   m.box.hi = in.get<Vec3>();
@@ -108,8 +119,18 @@ Manifest decode_manifest(std::string_view file, std::string_view what) {
   for (std::uint32_t i = 0; i < skipped; ++i) m.skipped.push_back(in.get_string());
   m.cut_seconds = in.get<double>();
   m.boundary_triangles = in.get<std::uint64_t>();
-  m.boundary = get_file<BoundaryName>(in);
+  m.boundary = get_file(in);
+  check_name<BoundaryName>(in, m.boundary);
   m.parts = get_parts(in);
+  for (const PartEntry& part : m.parts) {
+    m.scheme == Scheme::cut ? check_name<PartName>(in, part.file)
+                            : check_name<StreamName>(in, part.file);
+  }
+  m.samples = get_parts(in);
+  if (!m.samples.empty() && m.samples.size() != m.parts.size()) in.fail("stray samples");
+  for (const PartEntry& sample : m.samples) {
+    if (!sample.file.name.empty()) check_name<PartName>(in, sample.file);
+  }
   in.expect_end();
   return m;
 }

@@ -18,6 +18,9 @@ struct Printer {
   std::string operator()(ManifestName) const { return "manifest"; }
   std::string operator()(BoundaryName) const { return "boundary"; }
   std::string operator()(PartName n) const { return "parts/" + six_digits(n.part) + ".part"; }
+  std::string operator()(StreamName n) const {
+    return "streams/" + six_digits(n.stream) + ".stream";
+  }
   std::string operator()(ResultName n) const {
     return "results/" + to_hex(n.key) + ".a" + std::to_string(n.attempt) + "." +
            to_hex(n.incarnation);
@@ -59,6 +62,9 @@ std::optional<StagedName> scan(std::string_view text) {
   if (in.word("parts/")) {
     PartName name;
     if (in.number(name.part, 10)) return name;
+  } else if (in.word("streams/")) {
+    StreamName name;
+    if (in.number(name.stream, 10)) return name;
   } else if (in.word("results/")) {
     ResultName name;
     if (in.number(name.key, 16) && in.word(".a") && in.number(name.attempt, 10) && in.word(".") &&

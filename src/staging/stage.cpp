@@ -46,19 +46,45 @@ bool may_pass(int error_number) {
   return error_number == ENOENT || error_number == ESTALE || error_number == EIO;
 }
 
-std::string read_once(const std::filesystem::path& root, const FileRef& file) {
+Fd open_once(const std::filesystem::path& root, const FileRef& file) {
   const std::filesystem::path path = root / file.name;
-  const Fd fd = open_beneath(root, file.name);
+  Fd fd = open_beneath(root, file.name);
   const std::uint64_t size = file_size(fd.get(), path);
   if (size != file.size) {
     throw DataError(path.string() + ": " + std::to_string(size) + " bytes where " +
                     std::to_string(file.size) + " were promised");
   }
+  return fd;
+}
+
+std::string read_once(const std::filesystem::path& root, const FileRef& file) {
+  const std::filesystem::path path = root / file.name;
+  const Fd fd = open_once(root, file);
   std::string bytes = read_file(fd.get(), path);
   if (bytes.size() != file.size || checksum(bytes) != file.hash) {
     throw DataError(path.string() + ": damaged (its checksum is not the promised one)");
   }
   return bytes;
+}
+
+/// Tries again what NFS may have answered too early.
+template <class Try>
+auto patiently(const Stage& stage, const FileRef& file, const ReadPatience& patience,
+               const Try& try_once) {
+  const auto name = parse_staged_name(file.name);
+  if (!name) throw DataError("'" + file.name + "' is not a staged name");
+  int wait_ms = patience.first_wait_ms;
+  for (int attempt = 1;; ++attempt, wait_ms *= 2) {
+    try {
+      return try_once();
+    } catch (const IoError& error) {
+      if (!may_pass(error.error_number()) || attempt >= patience.attempts) throw;
+    } catch (const DataError&) {
+      if (attempt >= patience.attempts) throw;
+    }
+    std::this_thread::sleep_for(std::chrono::milliseconds(wait_ms));
+    refresh(stage.path(*name).parent_path());
+  }
 }
 
 template <class Name, class Number>
@@ -116,20 +142,11 @@ FileRef Stage::publish(const StagedName& name, std::string_view bytes,
 }
 
 std::string Stage::read(const FileRef& file, const ReadPatience& patience) const {
-  const auto name = parse_staged_name(file.name);
-  if (!name) throw DataError("'" + file.name + "' is not a staged name");
-  int wait_ms = patience.first_wait_ms;
-  for (int attempt = 1;; ++attempt, wait_ms *= 2) {
-    try {
-      return read_once(root_, file);
-    } catch (const IoError& error) {
-      if (!may_pass(error.error_number()) || attempt >= patience.attempts) throw;
-    } catch (const DataError&) {
-      if (attempt >= patience.attempts) throw;
-    }
-    std::this_thread::sleep_for(std::chrono::milliseconds(wait_ms));
-    refresh(path(*name).parent_path());
-  }
+  return patiently(*this, file, patience, [&] { return read_once(root_, file); });
+}
+
+Fd Stage::open_told(const FileRef& file, const ReadPatience& patience) const {
+  return patiently(*this, file, patience, [&] { return open_once(root_, file); });
 }
 
 std::string Stage::read(const StagedName& name) const {

@@ -15,14 +15,15 @@ namespace meshfarm::fuzz {
 /// so that the checksum does not keep the fuzzer from what lies behind it. Only DataError may come
 /// out.
 template <class Decode>
-void decode_staged(const std::uint8_t* data, std::size_t size, FileKind kind, Decode decode) {
+void decode_staged(const std::uint8_t* data, std::size_t size, FileKind kind, Decode decode,
+                   std::uint32_t version = 1) {
   const std::string_view bytes(reinterpret_cast<const char*>(data), size);
   try {
     decode(bytes);
   } catch (const DataError&) {
   }
   try {
-    decode(seal(kind, 1, bytes));
+    decode(seal(kind, version, bytes));
   } catch (const DataError&) {
   }
 }

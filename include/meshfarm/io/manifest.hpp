@@ -12,7 +12,13 @@
 
 namespace meshfarm {
 
-/// One part as the cut made it.
+/// How a mesh is divided (Xiong et al. 2008, 3 and 4).
+enum class Scheme : std::uint8_t {
+  cut,     // into compact parts, each simplified in memory
+  stream,  // into slabs along the longest axis, each simplified by a sweep
+};
+
+/// One part as the cut made it, or one stream.
 struct PartEntry {
   FileRef file;
   std::uint64_t vertices = 0;
@@ -24,6 +30,8 @@ struct PartEntry {
 struct Manifest {
   std::string input;         // the path as it was given, for people
   std::string input_format;  // "PLY ascii, gzip"
+  Scheme scheme = Scheme::cut;
+  std::uint64_t window_triangles = 0;  // of a sweep's buffer
   PositionType positions = PositionType::float32;
   Box box;
   std::uint64_t input_vertices = 0;
@@ -35,7 +43,8 @@ struct Manifest {
   double cut_seconds = 0;
   std::uint64_t boundary_triangles = 0;
   FileRef boundary;
-  std::vector<PartEntry> parts;
+  std::vector<PartEntry> parts;    // or streams
+  std::vector<PartEntry> samples;  // of long streams, by stream: a piece as a part; else no name
 
   /// Triangles that the parts and the boundary hold.
   std::uint64_t triangles() const;

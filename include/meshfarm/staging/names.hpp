@@ -16,6 +16,7 @@ namespace meshfarm {
 ///   manifest                          what the cut made; published last, never changed
 ///   boundary                          the boundary triangles
 ///   parts/000123.part                 a sub-mesh
+///   streams/000123.stream             a mesh in sweep order, by --scheme stream
 ///   results/KEY.aATTEMPT.INCARNATION  a job's output; KEY names the job by content, 16 hex digits
 ///   journal/000001                    accepted results, one file a sink incarnation
 ///   control/000001.endpoint           where a ventilator listens, one file an epoch
@@ -25,6 +26,9 @@ struct ManifestName {};
 struct BoundaryName {};
 struct PartName {
   std::uint32_t part = 0;
+};
+struct StreamName {
+  std::uint32_t stream = 0;
 };
 struct ResultName {
   std::uint64_t key = 0;
@@ -40,15 +44,15 @@ struct EndpointName {
 struct KeysName {
   std::uint64_t run = 0;
 };
-using StagedName = std::variant<ManifestName, BoundaryName, PartName, ResultName, JournalName,
-                                EndpointName, KeysName>;
+using StagedName = std::variant<ManifestName, BoundaryName, PartName, StreamName, ResultName,
+                                JournalName, EndpointName, KeysName>;
 
 std::string to_string(const StagedName& name);
 /// The name that to_string made; nothing for any other text.
 std::optional<StagedName> parse_staged_name(std::string_view text);
 
 /// The folders of a stage, all made before a run starts: workers make none.
-inline constexpr std::array<std::string_view, 4> k_stage_folders = {"parts", "results", "journal",
-                                                                    "control"};
+inline constexpr std::array<std::string_view, 5> k_stage_folders = {"parts", "streams", "results",
+                                                                    "journal", "control"};
 
 }  // namespace meshfarm

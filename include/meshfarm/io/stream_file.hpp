@@ -1,0 +1,99 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <meshfarm/geometry/mesh.hpp>
+#include <meshfarm/io/part_file.hpp>
+
+namespace meshfarm {
+
+/// What the head of a stream says: a mesh file that is read once, front to back, in bounded memory
+/// (Xiong et al. 2008, 4; streaming meshes: Isenburg & Lindstrom 2005).
+struct StreamInfo {
+  PositionType positions = PositionType::float32;
+  std::uint64_t vertices = 0;
+  std::uint64_t triangles = 0;
+  std::uint32_t boundary_vertices = 0;  // shared with other streams
+};
+
+/// A mesh in sweep order, to be made a stream.
+struct StreamMesh {
+  Mesh mesh;                           // every vertex is used by a triangle or is a boundary vertex
+  std::vector<std::uint8_t> boundary;  // a flag a vertex
+  PositionType positions = PositionType::float32;
+};
+
+/// The whole staged file: vertices come just before the first triangle that needs them or one
+/// after them, and each is marked at its last use. Positions must be exact in `stream.positions`.
+/// Throws UsageError from 2^31 vertices on.
+std::string encode_stream(const StreamMesh& stream);
+
+/// A vertex as a corner of a triangle, counted from the stream's first, and whether this is its
+/// last use.
+struct StreamCorner {
+  std::uint32_t code = 0;
+  std::uint32_t vertex() const { return code >> 1; }
+  bool last_use() const { return (code & 1) != 0; }
+};
+
+/// A piece of a stream: new vertices, then triangles of these and of earlier ones.
+struct StreamBlock {
+  std::vector<Vec3> positions;  // of the next vertices
+  /// Which of these, ascending and by their place here, are boundary vertices; "last use" is said
+  /// of those that no triangle uses.
+  std::vector<StreamCorner> boundary;
+  std::vector<std::array<StreamCorner, 3>> triangles;
+};
+
+/// Reads a stream block by block. Holds a block and a few bytes for each vertex from the oldest
+/// that is still to be used. Throws DataError naming `what`, the block and the place for anything
+/// that encode_stream did not make: a damaged or cut off file, a triangle of a vertex that is not
+/// there yet or was finalised before, a vertex that never is.
+class StreamReader {
+ public:
+  /// Fills a buffer with the file's next bytes, all of it, or throws.
+  using Fill = std::function<void(std::span<char>)>;
+
+  StreamReader(Fill fill, std::string what);
+  const StreamInfo& info() const { return info_; }
+  /// The next block, checked; false after the last.
+  bool next(StreamBlock& block);
+
+ private:
+  void read_head();
+  void add_vertices(const StreamBlock& block);
+  void finish(std::uint64_t vertex);
+  void finish_corners(const std::array<StreamCorner, 3>& triangle, std::size_t index);
+  void forget_finished();
+  void check_end() const;
+  [[noreturn]] void fail(const std::string& why) const;
+
+  Fill fill_;
+  std::string what_;
+  StreamInfo info_;
+  std::string bytes_;
+  std::uint64_t sum_ = 0;         // of what was read, each block's made from the one before
+  std::uint64_t block_ = 0;       // blocks read
+  std::uint64_t vertices_ = 0;    // read so far
+  std::uint64_t triangles_ = 0;   // read so far
+  std::uint64_t boundary_ = 0;    // read so far
+  std::uint64_t unfinished_ = 0;  // vertices that are still to be used
+  std::uint64_t first_state_ = 0;
+  std::vector<std::uint8_t> states_;  // of vertices from first_state_ on: finished or not
+};
+
+/// A fill that reads from bytes in memory, which must outlive it.
+StreamReader::Fill fill_from(std::string_view bytes, std::string what);
+
+/// Reads the whole stream into memory as a part, its boundary vertices first.
+Part read_stream(StreamReader& reader);
+
+}  // namespace meshfarm

@@ -1,0 +1,41 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#include <cerrno>
+#include <string>
+
+#include <unistd.h>
+
+#include <meshfarm/staging/staged_reader.hpp>
+#include <meshfarm/util/errors.hpp>
+
+namespace meshfarm {
+
+StagedReader::StagedReader(const Stage& stage, const FileRef& file)
+    : file_(file), path_(stage.root() / file.name), fd_(stage.open_told(file)) {}
+
+void StagedReader::fill(std::span<char> buffer) {
+  std::size_t done = 0;
+  while (done < buffer.size()) {
+    const ssize_t got = ::read(fd_.get(), buffer.data() + done, buffer.size() - done);
+    if (got < 0 && errno == EINTR) continue;
+    if (got < 0) throw_errno("cannot read", path_);
+    if (got == 0) {
+      throw DataError(path_.string() + ": cut short at byte " + std::to_string(done_ + done));
+    }
+    done += static_cast<std::size_t>(got);
+  }
+  sum_.add({buffer.data(), buffer.size()});
+  done_ += buffer.size();
+}
+
+void StagedReader::expect_end() const {
+  if (done_ != file_.size) {
+    throw DataError(path_.string() + ": " + std::to_string(file_.size - done_) +
+                    " bytes too many at byte " + std::to_string(done_));
+  }
+  if (sum_.value() != file_.hash) {
+    throw DataError(path_.string() + ": damaged (its checksum is not the promised one)");
+  }
+}
+
+}  // namespace meshfarm
