@@ -1,0 +1,230 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+//
+// Stream generation: Xiong, Jiang, Zhang, Shi, "Parallel Simplification of Large Meshes on PC
+// Clusters", EGPGV 2008, 4.1. Scans of the input, each in order and through bounded buffers:
+//   vertices    bounding box, and whether they come in order along an axis
+//   vertices    how many lie where along the axis -> slabs, one a stream
+//   vertices    index map (scratch file): slab and place in it; positions to the slab's bucket
+//   triangles   to the slab's bucket, or, when two or three slabs meet in one, to the boundary
+// Then each slab is sorted by itself, on all cores: a distribution sort, which moves everything to
+// disk and back once, as sorted runs and a merge would, but leaves nothing to merge.
+#include <algorithm>
+#include <chrono>
+#include <memory>
+#include <mutex>
+#include <thread>
+
+#include <meshfarm/io/boundary_file.hpp>
+#include <meshfarm/io/mesh_shares.hpp>
+#include <meshfarm/io/stream_file.hpp>
+#include <meshfarm/stream/generate_streams.hpp>
+#include <meshfarm/util/errors.hpp>
+#include <meshfarm/util/parallel.hpp>
+
+#include "stream/slab.hpp"
+#include "stream/sweep_order.hpp"
+
+namespace meshfarm {
+namespace {
+
+/// What sorting a slab and encoding its stream need at most, for each triangle.
+constexpr std::uint64_t k_slab_bytes_per_triangle = 72;
+
+/// A sample's share of a stream, and the least number of triangles that tell something.
+constexpr std::uint64_t k_sample_part = 20;
+constexpr std::uint64_t k_least_sample = 60'000;
+
+constexpr std::uint32_t k_most_streams = 65'536;
+
+class Generator {
+ public:
+  Generator(MeshSource& source, const Stage& stage, const StreamOptions& options)
+      : source_(source), stage_(stage), options_(options) {}
+
+  Manifest run() {
+    const auto start = std::chrono::steady_clock::now();
+    describe_input();
+    choose_order();
+    choose_slabs();
+    distribute_vertices();
+    distribute_triangles();
+    write_streams();
+    write_boundary();
+    manifest_.cut_seconds =
+        std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    stage_.publish(ManifestName{}, encode_manifest(manifest_));
+    return std::move(manifest_);
+  }
+
+ private:
+  void describe_input() {
+    const MeshFileInfo& info = source_.info();
+    manifest_.scheme = Scheme::stream;
+    manifest_.window_triangles = options_.window_triangles;
+    manifest_.input = options_.input_name;
+    manifest_.input_format = info.format;
+    if (info.compression != "none") manifest_.input_format += ", " + info.compression;
+    manifest_.positions = info.positions;
+    manifest_.skipped = info.skipped;
+  }
+
+  void tell(std::string_view phase, std::uint64_t done, std::uint64_t all) const {
+    if (options_.stop != nullptr && *options_.stop) {
+      throw IncompleteError("the making of streams was interrupted; run the same command again");
+    }
+    if (options_.progress) {
+      options_.progress(phase,
+                        all == 0 ? 1.0 : static_cast<double>(done) / static_cast<double>(all));
+    }
+  }
+
+  void choose_order() {
+    OrderProbe probe;
+    source_.scan_vertices([&](std::span<const Vec3> batch) {
+      probe.look_at(batch);
+      manifest_.input_vertices += batch.size();
+      tell("streams: bounding box", manifest_.input_vertices, source_.info().vertices);
+    });
+    manifest_.box = probe.box();
+    order_ = probe.choose();
+  }
+
+  /// As many as asked for, but so many that one fits into half the memory.
+  std::uint32_t wanted_streams() const {
+    // Polygons and strips hold more triangles than the header tells: vertices are a second hint.
+    const MeshFileInfo& info = source_.info();
+    const std::uint64_t triangles = std::max(info.faces, info.vertices);
+    const std::uint64_t wanted =
+        options_.streams != 0 ? options_.streams : default_streams(triangles);
+    const std::uint64_t half = std::max<std::uint64_t>(1, options_.memory_bytes / 2);
+    const std::uint64_t least = triangles * k_slab_bytes_per_triangle / half + 1;
+    return static_cast<std::uint32_t>(
+        std::min<std::uint64_t>(k_most_streams, std::max(wanted, least)));
+  }
+
+  void choose_slabs() {
+    slabs_ = std::make_unique<SlabMap>(manifest_.box, order_);
+    std::uint64_t done = 0;
+    source_.scan_vertices([&](std::span<const Vec3> batch) {
+      slabs_->count(batch);
+      tell("streams: slabs", done += batch.size(), manifest_.input_vertices);
+    });
+    streams_ = slabs_->divide(wanted_streams());
+  }
+
+  void distribute_vertices() {
+    shares_ = std::make_unique<MeshShares>(MeshShares::Options{
+        stage_.root(), streams_, manifest_.input_vertices, manifest_.positions});
+    std::vector<std::uint32_t> slabs;
+    std::uint64_t done = 0;
+    source_.scan_vertices([&](std::span<const Vec3> batch) {
+      slabs.clear();
+      for (const Vec3& p : batch) slabs.push_back(slabs_->slab_of(p));
+      shares_->add_vertices(batch, slabs);
+      tell("streams: vertices", done += batch.size(), manifest_.input_vertices);
+    });
+    slabs_.reset();
+  }
+
+  void distribute_triangles() {
+    source_.scan_triangles([&](std::span<const WideTriangle> batch) {
+      shares_->add_triangles(batch);
+      manifest_.input_triangles += batch.size();
+      tell("streams: triangles", manifest_.input_triangles, source_.info().faces);
+    });
+    shares_->finish();
+  }
+
+  /// As many at once as fit into the memory, going by the average.
+  unsigned threads() const {
+    const unsigned cores = std::max(1U, std::thread::hardware_concurrency());
+    const std::uint64_t bytes = k_slab_bytes_per_triangle * manifest_.input_triangles /
+                                std::max<std::uint64_t>(1, streams_);
+    const std::uint64_t fit = options_.memory_bytes / std::max<std::uint64_t>(1, bytes);
+    return static_cast<unsigned>(
+        std::clamp<std::uint64_t>(fit, 1, options_.threads != 0 ? options_.threads : cores));
+  }
+
+  void write_streams() {
+    manifest_.parts.resize(streams_);
+    manifest_.samples.resize(streams_);
+    numbers_.resize(streams_);
+    std::mutex mutex;
+    std::uint64_t done = 0;
+    parallel_for(streams_, threads(), [&](std::uint64_t i) {
+      const auto number = static_cast<std::uint32_t>(i);
+      SortedSlab slab =
+          sort_slab(shares_->read(number), {order_, options_.weld, manifest_.positions});
+      PartEntry sample = write_sample(slab, number);
+      PartEntry entry = write_stream(slab, number);
+      const std::lock_guard lock(mutex);
+      manifest_.parts[i] = std::move(entry);
+      manifest_.samples[i] = std::move(sample);
+      numbers_[i] = std::move(slab.boundary);
+      manifest_.merged_vertices += slab.merged_vertices;
+      manifest_.dropped_degenerate += slab.dropped_degenerate;
+      tell("streams: sort", ++done, streams_);
+    });
+  }
+
+  PartEntry write_stream(SortedSlab& slab, std::uint32_t number) const {
+    PartEntry entry;
+    entry.vertices = slab.stream.mesh.positions.size();
+    entry.triangles = slab.stream.mesh.triangles.size();
+    entry.boundary_vertices = slab.boundary_vertices;
+    const std::string bytes = encode_stream(slab.stream);
+    slab.stream = {};
+    entry.file = stage_.publish(StreamName{number}, bytes);
+    return entry;
+  }
+
+  /// Nothing for a short stream: it can be tried as a whole.
+  PartEntry write_sample(const SortedSlab& slab, std::uint32_t number) const {
+    const std::uint64_t triangles = slab.stream.mesh.triangles.size();
+    if (triangles <= options_.window_triangles) return {};
+    const Part part =
+        sample_slab(slab, order_, std::max(k_least_sample, triangles / k_sample_part), number);
+    PartEntry entry;
+    entry.vertices = part.mesh.positions.size();
+    entry.triangles = part.mesh.triangles.size();
+    entry.boundary_vertices = part.boundary_vertices;
+    entry.file = stage_.publish(PartName{number}, encode_part(part));
+    return entry;
+  }
+
+  void write_boundary() {
+    std::vector<BoundaryTriangle> triangles =
+        shares_->boundary(numbers_, manifest_.dropped_degenerate);
+    manifest_.dropped_duplicate = drop_duplicates(triangles);
+    manifest_.boundary_triangles = triangles.size();
+    manifest_.boundary = stage_.publish(BoundaryName{}, encode_boundary(triangles));
+  }
+
+  MeshSource& source_;
+  const Stage& stage_;
+  const StreamOptions& options_;
+  Manifest manifest_;
+  SweepOrder order_;
+  std::unique_ptr<SlabMap> slabs_;
+  std::uint32_t streams_ = 0;
+  std::unique_ptr<MeshShares> shares_;
+  std::vector<BoundaryNumbers> numbers_;
+};
+
+}  // namespace
+
+std::uint32_t default_streams(std::uint64_t triangles) {
+  constexpr std::uint64_t k_stream = 1'200'000;
+  constexpr std::uint64_t k_worth_dividing = 100'000;
+  constexpr std::uint64_t k_few = 8;
+  const std::uint64_t streams = std::max((triangles + k_stream - 1) / k_stream,
+                                         std::min(k_few, triangles / k_worth_dividing));
+  return static_cast<std::uint32_t>(std::clamp<std::uint64_t>(streams, 1, k_most_streams));
+}
+
+Manifest generate_streams(MeshSource& source, const Stage& stage, const StreamOptions& options) {
+  return Generator(source, stage, options).run();
+}
+
+}  // namespace meshfarm

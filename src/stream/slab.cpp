@@ -1,0 +1,218 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#include "stream/slab.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <utility>
+
+namespace meshfarm {
+namespace {
+
+constexpr std::uint32_t k_none = std::numeric_limits<std::uint32_t>::max();
+
+/// The vertices in sweep order, by their raw indices; coincident ones in raw order. Empty if that
+/// is the order they come in.
+std::vector<std::uint32_t> sorted_vertices(const std::vector<Vec3>& positions,
+                                           const SweepOrder& order) {
+  const auto before = [&](Vec3 a, Vec3 b) { return order.before(a, b); };
+  if (std::is_sorted(positions.begin(), positions.end(), before)) return {};
+  struct Key {
+    double along;
+    std::uint32_t raw;
+  };
+  std::vector<Key> keys(positions.size());
+  for (std::uint32_t i = 0; i < keys.size(); ++i) keys[i] = {order.along(positions[i]), i};
+  std::sort(keys.begin(), keys.end(), [&](const Key& a, const Key& b) {
+    if (a.along != b.along) return a.along < b.along;
+    const Vec3& p = positions[a.raw];
+    const Vec3& q = positions[b.raw];
+    if (order.before(p, q)) return true;
+    if (order.before(q, p)) return false;
+    return a.raw < b.raw;
+  });
+  std::vector<std::uint32_t> sorted;
+  sorted.reserve(keys.size());
+  for (const Key& key : keys) sorted.push_back(key.raw);
+  return sorted;
+}
+
+/// Sorts a slab by the steps of run().
+class SlabSorter {
+ public:
+  SlabSorter(MeshShare raw, const SlabOptions& options) : raw_(std::move(raw)), options_(options) {
+    slab_.stream.positions = options.positions;
+  }
+
+  SortedSlab run() {
+    rank_vertices();
+    rank_triangles();
+    mark_boundary();
+    number_vertices();
+    sort_triangles();
+    return std::move(slab_);
+  }
+
+ private:
+  /// The rank of each raw vertex; welded ones share it. Positions go by rank from now on.
+  void rank_vertices() {
+    const std::vector<std::uint32_t> sorted = sorted_vertices(raw_.positions, options_.order);
+    const std::size_t count = raw_.positions.size();
+    rank_.resize(count);
+    std::vector<Vec3>& positions = slab_.stream.mesh.positions;
+    positions.reserve(count);
+    for (std::size_t i = 0; i < count; ++i) {
+      const std::uint32_t raw = sorted.empty() ? static_cast<std::uint32_t>(i) : sorted[i];
+      const Vec3 p = raw_.positions[raw];
+      if (options_.weld == Weld::exact && !positions.empty() && positions.back() == p) {
+        ++slab_.merged_vertices;
+      } else {
+        positions.push_back(p);
+      }
+      rank_[raw] = static_cast<std::uint32_t>(positions.size() - 1);
+    }
+    raw_.positions = {};
+  }
+
+  /// Triangles by rank, the smallest corner first, without those that are degenerate.
+  void rank_triangles() {
+    const std::size_t before = raw_.triangles.size();
+    std::erase_if(raw_.triangles, [&](Triangle& t) {
+      t = {rank_[t[0]], rank_[t[1]], rank_[t[2]]};
+      if (t[1] < t[0] && t[1] < t[2]) {
+        t = {t[1], t[2], t[0]};
+      } else if (t[2] < t[0] && t[2] < t[1]) {
+        t = {t[2], t[0], t[1]};
+      }
+      return t[0] == t[1] || t[1] == t[2] || t[2] == t[0];
+    });
+    slab_.dropped_degenerate = before - raw_.triangles.size();
+  }
+
+  void mark_boundary() {
+    std::vector<std::uint32_t>& places = slab_.boundary.places;
+    places = std::move(raw_.boundary);
+    std::sort(places.begin(), places.end());
+    places.erase(std::unique(places.begin(), places.end()), places.end());
+    flags_.assign(slab_.stream.mesh.positions.size(), 0);
+    for (const std::uint32_t raw : places) flags_[rank_[raw]] = k_boundary;
+    for (const Triangle& t : raw_.triangles) {
+      for (const std::uint32_t v : t) flags_[v] |= k_used;
+    }
+  }
+
+  /// Closes the gaps that unused vertices leave, and numbers the boundary vertices.
+  void number_vertices() {
+    StreamMesh& stream = slab_.stream;
+    std::vector<std::uint32_t> boundary_number(flags_.size(), k_none);
+    std::vector<std::uint32_t> number(flags_.size(), k_none);
+    std::uint32_t kept = 0;
+    for (std::uint32_t v = 0; v < flags_.size(); ++v) {
+      if (flags_[v] == 0) continue;
+      const bool is_boundary = (flags_[v] & k_boundary) != 0;
+      if (is_boundary) boundary_number[v] = slab_.boundary_vertices++;
+      stream.mesh.positions[kept] = stream.mesh.positions[v];
+      stream.boundary.push_back(is_boundary ? 1 : 0);
+      number[v] = kept++;
+    }
+    stream.mesh.positions.resize(kept);
+    for (const std::uint32_t raw : slab_.boundary.places) {
+      slab_.boundary.numbers.push_back(boundary_number[rank_[raw]]);
+    }
+    for (Triangle& t : raw_.triangles) t = {number[t[0]], number[t[1]], number[t[2]]};
+  }
+
+  /// Counts them by their smallest vertex; the few of each are sorted by themselves.
+  void sort_triangles() {
+    std::vector<Triangle>& from = raw_.triangles;
+    std::vector<Triangle>& to = slab_.stream.mesh.triangles;
+    if (std::is_sorted(from.begin(), from.end())) {
+      to = std::move(from);
+      return;
+    }
+    std::vector<std::uint32_t> start(slab_.stream.mesh.positions.size() + 1, 0);
+    for (const Triangle& t : from) ++start[t[0] + 1];
+    std::partial_sum(start.begin(), start.end(), start.begin());
+    to.resize(from.size());
+    for (const Triangle& t : from) to[start[t[0]]++] = t;
+    from = {};
+    for (std::size_t first = 0, last = 0; first < to.size(); first = last) {
+      while (last < to.size() && to[last][0] == to[first][0]) ++last;
+      std::sort(to.begin() + static_cast<std::ptrdiff_t>(first),
+                to.begin() + static_cast<std::ptrdiff_t>(last));
+    }
+  }
+
+  static constexpr std::uint8_t k_used = 1;
+  static constexpr std::uint8_t k_boundary = 2;
+  MeshShare raw_;
+  const SlabOptions& options_;
+  SortedSlab slab_;
+  std::vector<std::uint32_t> rank_;
+  std::vector<std::uint8_t> flags_;  // by rank
+};
+
+/// The range of the second coordinate that holds `share` of the vertices, from a place that
+/// `number` decides: multiples of the golden ratio are spread evenly.
+std::pair<double, double> sample_range(const std::vector<Vec3>& positions, int axis, double share,
+                                       std::uint32_t number) {
+  constexpr std::size_t k_looked_at = 8192;
+  constexpr double k_golden = 0.6180339887498949;
+  const std::size_t step = std::max<std::size_t>(1, positions.size() / k_looked_at);
+  std::vector<double> values;
+  for (std::size_t i = 0; i < positions.size(); i += step) values.push_back(positions[i][axis]);
+  std::sort(values.begin(), values.end());
+  const double from = std::fmod((number + 0.5) * k_golden, 1.0) * (1 - share);
+  const auto value_at = [&](double quantile) {
+    const double last = static_cast<double>(values.size() - 1);
+    return values[static_cast<std::size_t>(std::clamp(quantile * last, 0.0, last))];
+  };
+  return {value_at(from), value_at(from + share)};
+}
+
+}  // namespace
+
+SortedSlab sort_slab(MeshShare raw, const SlabOptions& options) {
+  return SlabSorter(std::move(raw), options).run();
+}
+
+Part sample_slab(const SortedSlab& slab, const SweepOrder& order, std::uint64_t triangles,
+                 std::uint32_t number) {
+  const Mesh& mesh = slab.stream.mesh;
+  const double share =
+      std::min(1.0, static_cast<double>(triangles) /
+                        static_cast<double>(std::max<std::size_t>(1, mesh.triangles.size())));
+  const auto [low, high] = sample_range(mesh.positions, order.axes[1], share, number);
+  const auto inside = [&](std::uint32_t v) {
+    const double x = mesh.positions[v][order.axes[1]];
+    return x >= low && x <= high;
+  };
+  constexpr std::uint8_t k_in = 1;
+  constexpr std::uint8_t k_out = 2;
+  std::vector<std::uint8_t> seen(mesh.positions.size(), 0);
+  Part part;
+  part.positions = slab.stream.positions;
+  for (const Triangle& t : mesh.triangles) {
+    const bool in = inside(t[0]) && inside(t[1]) && inside(t[2]);
+    for (const std::uint32_t v : t) seen[v] |= in ? k_in : k_out;
+    if (in) part.mesh.triangles.push_back(t);
+  }
+  std::vector<std::uint32_t> index(mesh.positions.size(), k_none);
+  const auto is_edge = [&](std::uint32_t v) {
+    return (seen[v] & k_out) != 0 || slab.stream.boundary[v] != 0;
+  };
+  for (const bool edge : {true, false}) {
+    for (std::uint32_t v = 0; v < seen.size(); ++v) {
+      if ((seen[v] & k_in) == 0 || is_edge(v) != edge) continue;
+      index[v] = static_cast<std::uint32_t>(part.mesh.positions.size());
+      part.mesh.positions.push_back(mesh.positions[v]);
+    }
+    if (edge) part.boundary_vertices = static_cast<std::uint32_t>(part.mesh.positions.size());
+  }
+  for (Triangle& t : part.mesh.triangles) t = {index[t[0]], index[t[1]], index[t[2]]};
+  return part;
+}
+
+}  // namespace meshfarm

@@ -1,0 +1,295 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <utility>
+#include <vector>
+
+#include <meshfarm/geometry/simplify.hpp>
+#include <meshfarm/stream/sweep.hpp>
+#include <meshfarm/util/errors.hpp>
+
+namespace meshfarm {
+namespace {
+
+constexpr std::uint32_t k_none = std::numeric_limits<std::uint32_t>::max();
+
+/// What lies so many rings behind the front is done: the rings nearest to it are drawn out by what
+/// is locked there, and are to be simplified again with the next window.
+constexpr std::uint32_t k_kept_rings = 6;
+
+/// What a vertex of the buffer is. All but the free ones are locked.
+enum class Role : std::uint8_t {
+  free,
+  open,      // on the front: more triangles of it may come
+  boundary,  // of the stream
+  sent,      // on the edge of what has been sent on
+};
+
+class Sweep {
+ public:
+  Sweep(StreamReader& reader, const SweepOptions& options) : reader_(reader), options_(options) {
+    result_.positions = reader.info().positions;
+    result_.boundary_vertices = reader.info().boundary_vertices;
+    result_.mesh.positions.resize(result_.boundary_vertices);
+  }
+
+  SweptStream run() {
+    StreamBlock block;
+    while (reader_.next(block)) {
+      append(block);
+      if (buffer_.triangles.size() >= options_.window_triangles && fresh_ >= least_fresh()) {
+        simplify_window();
+        send(settled());
+      }
+    }
+    simplify_window();
+    send(std::vector<std::uint8_t>(buffer_.triangles.size(), 1));
+    if (!distances_.empty()) {
+      result_.error = *std::max_element(distances_.begin(), distances_.end());
+    }
+    return std::move(result_);
+  }
+
+ private:
+  /// So that a front that fills the buffer is not simplified again for every block.
+  std::uint64_t least_fresh() const { return options_.window_triangles / 4; }
+
+  void append(const StreamBlock& block) {
+    const std::uint64_t before = buffer_.triangles.size();
+    std::size_t next_boundary = 0;
+    for (std::uint32_t i = 0; i < block.positions.size(); ++i) {
+      const bool is_boundary =
+          next_boundary < block.boundary.size() && block.boundary[next_boundary].vertex() == i;
+      local_.push_back(static_cast<std::uint32_t>(buffer_.positions.size()));
+      buffer_.positions.push_back(block.positions[i]);
+      if (is_boundary) {
+        result_.mesh.positions[boundary_] = block.positions[i];
+        add_role(Role::boundary, boundary_++);
+        if (block.boundary[next_boundary++].last_use()) local_.back() = k_none;
+      } else {
+        add_role(Role::open, 0);
+      }
+    }
+    for (const auto& [a, b, c] : block.triangles) {
+      buffer_.triangles.push_back({local(a), local(b), local(c)});
+      for (const StreamCorner corner : {a, b, c}) {
+        if (corner.last_use()) finish(corner);
+      }
+    }
+    fresh_ += buffer_.triangles.size() - before;
+    read_ += buffer_.triangles.size() - before;
+    take_samples(before);
+  }
+
+  void add_role(Role role, std::uint32_t id) {
+    roles_.push_back(role);
+    ids_.push_back(id);
+  }
+
+  std::uint32_t local(StreamCorner corner) const { return local_[corner.vertex() - first_local_]; }
+
+  void finish(StreamCorner corner) {
+    std::uint32_t& vertex = local_[corner.vertex() - first_local_];
+    if (roles_[vertex] == Role::open) roles_[vertex] = Role::free;
+    vertex = k_none;
+  }
+
+  /// Of the triangles that have come last, as they came.
+  void take_samples(std::uint64_t first) {
+    const std::uint64_t all = std::max<std::uint64_t>(1, reader_.info().triangles);
+    const std::uint64_t wanted = options_.samples * read_ / all - options_.samples * sampled_ / all;
+    sampled_ = read_;
+    Mesh fresh;
+    fresh.triangles.assign(buffer_.triangles.begin() + static_cast<std::ptrdiff_t>(first),
+                           buffer_.triangles.end());
+    if (fresh.triangles.empty() || wanted == 0) return;
+    std::swap(fresh.positions, buffer_.positions);
+    const SurfaceSamples some = sample_surface(fresh, {.samples = wanted, .threads = 1});
+    std::swap(fresh.positions, buffer_.positions);
+    result_.samples.area += some.area;
+    result_.samples.points.insert(result_.samples.points.end(), some.points.begin(),
+                                  some.points.end());
+  }
+
+  void simplify_window() {
+    forget_finished();
+    const std::uint32_t locked = put_locked_first();
+    const std::uint64_t before = buffer_.triangles.size();
+    Simplifier simplifier(
+        std::move(buffer_),
+        {.locked_vertices = locked, .positions = reader_.info().positions, .seam = {}});
+    SimplifyGoal goal{.triangles = 0, .max_cost = options_.max_cost};
+    if (options_.ratio > 0) goal = {.triangles = quota(before), .max_cost = HUGE_VAL};
+    simplifier.reduce(goal, [&](std::uint64_t) { return tell(); });
+    if (stopped_) throw IncompleteError("the job was given up");
+    buffer_ = simplifier.mesh();
+    result_.dropped_degenerate += simplifier.dropped_degenerate();
+    result_.dropped_duplicate += simplifier.dropped_duplicate();
+    roles_.resize(locked);
+    roles_.resize(buffer_.positions.size(), Role::free);
+    ids_.resize(buffer_.positions.size());
+    fresh_ = 0;
+  }
+
+  bool tell() {
+    stopped_ = options_.progress && !options_.progress(read_);
+    return !stopped_;
+  }
+
+  /// With a ratio: what is old was reduced before, the rest is reduced by it.
+  std::uint64_t quota(std::uint64_t triangles) const {
+    return triangles - fresh_ +
+           static_cast<std::uint64_t>(options_.ratio * static_cast<double>(fresh_));
+  }
+
+  /// The stream's vertices before the first that is still to be used are never looked up again.
+  void forget_finished() {
+    const auto first = std::find_if(local_.begin(), local_.end(),
+                                    [](std::uint32_t vertex) { return vertex != k_none; });
+    first_local_ += static_cast<std::uint32_t>(first - local_.begin());
+    local_.erase(local_.begin(), first);
+  }
+
+  /// Renumbers the buffer, its order kept otherwise. Returns the number of locked vertices.
+  std::uint32_t put_locked_first() {
+    std::vector<std::uint32_t> order;
+    order.reserve(buffer_.positions.size());
+    for (const bool wanted : {true, false}) {
+      for (std::uint32_t v = 0; v < roles_.size(); ++v) {
+        if ((roles_[v] != Role::free) == wanted) order.push_back(v);
+      }
+    }
+    const auto free =
+        static_cast<std::uint32_t>(std::count(roles_.begin(), roles_.end(), Role::free));
+    renumber(order);
+    return static_cast<std::uint32_t>(roles_.size()) - free;
+  }
+
+  /// Keeps the vertices that `order` names, in that order, and the triangles as they are.
+  void renumber(const std::vector<std::uint32_t>& order) {
+    std::vector<std::uint32_t> number(buffer_.positions.size(), k_none);
+    Mesh ordered;
+    ordered.positions.reserve(order.size());
+    std::vector<Role> roles;
+    std::vector<std::uint32_t> ids;
+    for (const std::uint32_t v : order) {
+      number[v] = static_cast<std::uint32_t>(ordered.positions.size());
+      ordered.positions.push_back(buffer_.positions[v]);
+      roles.push_back(roles_[v]);
+      ids.push_back(ids_[v]);
+    }
+    for (Triangle& t : buffer_.triangles) t = {number[t[0]], number[t[1]], number[t[2]]};
+    for (std::uint32_t& v : local_) v = v == k_none ? k_none : number[v];
+    buffer_.positions = std::move(ordered.positions);
+    roles_ = std::move(roles);
+    ids_ = std::move(ids);
+  }
+
+  /// Flags the triangles that are far enough behind the front.
+  std::vector<std::uint8_t> settled() const {
+    std::vector<std::uint32_t> ring(buffer_.positions.size(), k_none);
+    for (std::size_t v = 0; v < ring.size(); ++v) {
+      if (roles_[v] == Role::open) ring[v] = 0;
+    }
+    std::vector<std::uint8_t> is_settled(buffer_.triangles.size(), 1);
+    for (std::uint32_t distance = 0; distance < k_kept_rings; ++distance) {
+      for (std::size_t i = 0; i < is_settled.size(); ++i) {
+        const Triangle& t = buffer_.triangles[i];
+        if (std::min({ring[t[0]], ring[t[1]], ring[t[2]]}) != distance) continue;
+        is_settled[i] = 0;
+        for (const std::uint32_t v : t) ring[v] = std::min(ring[v], distance + 1);
+      }
+    }
+    return is_settled;
+  }
+
+  /// Sends the flagged triangles on to the result. Their vertices that others need stay, locked.
+  void send(const std::vector<std::uint8_t>& flags) {
+    if (options_.measure) measure(flags);
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < flags.size(); ++i) {
+      Triangle& t = buffer_.triangles[i];
+      if (flags[i] == 0) {
+        buffer_.triangles[kept++] = t;
+        continue;
+      }
+      const bool is_free = std::none_of(
+          t.begin(), t.end(), [&](std::uint32_t v) { return roles_[v] == Role::boundary; });
+      result_.free_triangles += is_free ? 1 : 0;
+      result_.mesh.triangles.push_back({sent(t[0]), sent(t[1]), sent(t[2])});
+    }
+    buffer_.triangles.resize(kept);
+    drop_unused();
+  }
+
+  /// The distance of a point to the result is the least to any piece that is sent. Pieces far from
+  /// a point that has met its own already do not matter.
+  void measure(const std::vector<std::uint8_t>& flags) {
+    Mesh piece;
+    for (std::size_t i = 0; i < flags.size(); ++i) {
+      if (flags[i] != 0) piece.triangles.push_back(buffer_.triangles[i]);
+    }
+    distances_.resize(result_.samples.points.size(), HUGE_VAL);
+    if (piece.triangles.empty()) return;
+    piece.positions = buffer_.positions;
+    const DistanceMeter meter(piece, 1);
+    for (std::size_t i = 0; i < distances_.size(); ++i) {
+      if (distances_[i] == 0) continue;
+      const double distance = meter.measure({&result_.samples.points[i], 1}).max;
+      distances_[i] = std::min(distances_[i], distance);
+    }
+  }
+
+  /// The vertex's number in the result, where it is from now on.
+  std::uint32_t sent(std::uint32_t vertex) {
+    if (roles_[vertex] == Role::free) {
+      roles_[vertex] = Role::sent;
+      ids_[vertex] = static_cast<std::uint32_t>(result_.mesh.positions.size());
+      result_.mesh.positions.push_back(buffer_.positions[vertex]);
+    }
+    return ids_[vertex];
+  }
+
+  void drop_unused() {
+    std::vector<std::uint8_t> used(buffer_.positions.size(), 0);
+    for (const Triangle& t : buffer_.triangles) {
+      for (const std::uint32_t v : t) used[v] = 1;
+    }
+    for (const std::uint32_t v : local_) {
+      if (v != k_none) used[v] = 1;
+    }
+    std::vector<std::uint32_t> order;
+    for (std::uint32_t v = 0; v < used.size(); ++v) {
+      if (used[v] != 0) order.push_back(v);
+    }
+    renumber(order);
+  }
+
+  StreamReader& reader_;
+  const SweepOptions& options_;
+  SweptStream result_;
+  Mesh buffer_;
+  std::vector<Role> roles_;         // of the buffer's vertices
+  std::vector<std::uint32_t> ids_;  // of boundary vertices and sent ones: number in the result
+  /// Where in the buffer the stream's vertices from first_local_ on are, as long as more triangles
+  /// are to use them.
+  std::vector<std::uint32_t> local_;
+  std::uint32_t first_local_ = 0;
+  std::uint32_t boundary_ = 0;  // boundary vertices read so far
+  std::uint64_t read_ = 0;      // triangles
+  std::uint64_t sampled_ = 0;
+  std::uint64_t fresh_ = 0;        // triangles that came after the last window
+  std::vector<double> distances_;  // of the samples, to what has been sent so far
+  bool stopped_ = false;
+};
+
+}  // namespace
+
+SweptStream sweep(StreamReader& reader, const SweepOptions& options) {
+  return Sweep(reader, options).run();
+}
+
+}  // namespace meshfarm

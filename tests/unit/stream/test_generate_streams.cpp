@@ -1,0 +1,261 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#include <algorithm>
+#include <numeric>
+#include <random>
+
+#include <doctest/doctest.h>
+
+#include <meshfarm/io/boundary_file.hpp>
+#include <meshfarm/io/stream_file.hpp>
+#include <meshfarm/stream/generate_streams.hpp>
+#include <meshfarm/util/errors.hpp>
+#include <meshfarm/util/file.hpp>
+
+#include "stream/sweep_order.hpp"
+#include "support/memory_source.hpp"
+#include "support/meshes.hpp"
+#include "support/temp_folder.hpp"
+
+using namespace meshfarm;
+
+namespace {
+
+/// A triangle as its corners' positions, turned so that the least comes first.
+using Corners = std::array<std::array<double, 3>, 3>;
+
+Corners corners_of(Vec3 a, Vec3 b, Vec3 c) {
+  Corners corners = {{{a.x, a.y, a.z}, {b.x, b.y, b.z}, {c.x, c.y, c.z}}};
+  std::rotate(corners.begin(), std::min_element(corners.begin(), corners.end()), corners.end());
+  return corners;
+}
+
+std::vector<Corners> triangles_of(const Mesh& mesh) {
+  std::vector<Corners> all;
+  for (const auto& [a, b, c] : mesh.triangles) {
+    all.push_back(corners_of(mesh.positions[a], mesh.positions[b], mesh.positions[c]));
+  }
+  std::sort(all.begin(), all.end());
+  return all;
+}
+
+struct Generated {
+  Manifest manifest;
+  std::vector<Part> streams;  // read whole
+  std::vector<std::string> files;
+  std::vector<BoundaryTriangle> boundary;
+};
+
+Generated generate(Mesh mesh, const StreamOptions& options, const std::filesystem::path& folder) {
+  test::MemorySource source(std::move(mesh));
+  const Stage stage = Stage::create(folder);
+  Generated made{generate_streams(source, stage, options), {}, {}, {}};
+  for (const PartEntry& entry : made.manifest.parts) {
+    made.files.push_back(stage.read(entry.file));
+    StreamReader reader(fill_from(made.files.back(), "stream"), "stream");
+    made.streams.push_back(read_stream(reader));
+  }
+  made.boundary = decode_boundary(stage.read(made.manifest.boundary), "boundary");
+  return made;
+}
+
+std::vector<Corners> triangles_of(const Generated& made) {
+  std::vector<Corners> all;
+  for (const Part& part : made.streams) {
+    const auto some = triangles_of(part.mesh);
+    all.insert(all.end(), some.begin(), some.end());
+  }
+  const auto at = [&](BoundaryCorner corner) {
+    const Part& part = made.streams.at(corner.part);
+    REQUIRE(corner.local < part.boundary_vertices);
+    return part.mesh.positions[corner.local];
+  };
+  for (const auto& [a, b, c] : made.boundary) all.push_back(corners_of(at(a), at(b), at(c)));
+  std::sort(all.begin(), all.end());
+  return all;
+}
+
+/// Vertices and triangles in another order, triangles turned, too.
+Mesh shuffled(const Mesh& mesh, unsigned seed) {
+  std::mt19937 random(seed);
+  std::vector<std::uint32_t> order(mesh.positions.size());
+  std::iota(order.begin(), order.end(), 0U);
+  std::shuffle(order.begin(), order.end(), random);
+  Mesh made;
+  made.positions.resize(order.size());
+  for (std::size_t v = 0; v < order.size(); ++v) made.positions[order[v]] = mesh.positions[v];
+  for (Triangle t : mesh.triangles) {
+    t = {order[t[0]], order[t[1]], order[t[2]]};
+    std::rotate(t.begin(), t.begin() + random() % 3, t.end());
+    made.triangles.push_back(t);
+  }
+  std::shuffle(made.triangles.begin(), made.triangles.end(), random);
+  return made;
+}
+
+}  // namespace
+
+TEST_CASE("streams and boundary together are the input") {
+  const Mesh mesh = test::torus(90, 40);
+  const test::TempFolder folder;
+  const Generated made = generate(mesh, {.streams = 5}, folder.path());
+  CHECK(made.manifest.scheme == Scheme::stream);
+  CHECK(made.streams.size() == 5);
+  CHECK(made.manifest.triangles() == mesh.triangles.size());
+  CHECK(made.manifest.boundary_triangles > 0);
+  CHECK(triangles_of(made) == triangles_of(mesh));
+}
+
+TEST_CASE("streams are slabs along the longest axis, of about equal size") {
+  Mesh mesh = test::torus(200, 60);
+  for (Vec3& p : mesh.positions) p.y *= 3;
+  const test::TempFolder folder;
+  const Generated made = generate(mesh, {.streams = 6}, folder.path());
+  REQUIRE(made.streams.size() == 6);
+  double highest = -HUGE_VAL;
+  const auto vertices = static_cast<double>(mesh.positions.size());
+  const auto triangles = static_cast<double>(mesh.triangles.size());
+  for (const Part& part : made.streams) {
+    Box box;
+    for (const Vec3& p : part.mesh.positions) box.add(p);
+    CHECK(box.lo.y > highest);
+    highest = box.hi.y;
+    CHECK(part.mesh.positions.size() > 0.9 / 6 * vertices);
+    CHECK(part.mesh.positions.size() < 1.1 / 6 * vertices);
+    CHECK(part.mesh.triangles.size() > 0.85 / 6 * triangles);
+    CHECK(part.mesh.triangles.size() < 1.1 / 6 * triangles);
+  }
+}
+
+TEST_CASE("a stream's vertices come in order, and triangles by their smallest vertex") {
+  const test::TempFolder folder;
+  const Generated made = generate(shuffled(test::torus(80, 30), 3), {.streams = 1}, folder.path());
+  StreamReader reader(fill_from(made.files[0], "stream"), "stream");
+  StreamBlock block;
+  double last = -HUGE_VAL;
+  std::uint32_t smallest = 0;
+  while (reader.next(block)) {
+    for (const Vec3& p : block.positions) {
+      REQUIRE(p.x >= last);
+      last = p.x;
+    }
+    for (const auto& t : block.triangles) {
+      const std::uint32_t least = std::min({t[0].vertex(), t[1].vertex(), t[2].vertex()});
+      REQUIRE(least >= smallest);
+      smallest = least;
+    }
+  }
+}
+
+TEST_CASE("the order of the input and the number of threads do not matter") {
+  const Mesh mesh = test::torus(70, 30);
+  const test::TempFolder folder;
+  const Generated first = generate(mesh, {.streams = 4, .threads = 1}, folder / "a");
+  const Generated second = generate(shuffled(mesh, 1), {.streams = 4, .threads = 3}, folder / "b");
+  const Generated third = generate(shuffled(mesh, 2), {.streams = 4, .threads = 2}, folder / "c");
+  CHECK(first.files == second.files);
+  CHECK(first.files == third.files);
+  CHECK(first.manifest.boundary_triangles == second.manifest.boundary_triangles);
+}
+
+TEST_CASE("coincident vertices are welded, degenerate and duplicate triangles dropped") {
+  Mesh mesh = test::torus(60, 24);
+  // Every triangle gets corners of its own: only welding makes it a surface again.
+  Mesh soup;
+  for (const Triangle& t : mesh.triangles) {
+    const auto first = static_cast<std::uint32_t>(soup.positions.size());
+    for (const std::uint32_t v : t) soup.positions.push_back(mesh.positions[v]);
+    soup.triangles.push_back({first, first + 1, first + 2});
+  }
+  soup.triangles.push_back({0, 0, 1});
+  const test::TempFolder folder;
+  const Generated made = generate(soup, {.streams = 3}, folder / "welded");
+  CHECK(made.manifest.merged_vertices == soup.positions.size() - mesh.positions.size());
+  CHECK(made.manifest.dropped_degenerate == 1);
+  CHECK(triangles_of(made) == triangles_of(mesh));
+  std::uint64_t vertices = 0;
+  for (const PartEntry& entry : made.manifest.parts) vertices += entry.vertices;
+  CHECK(vertices == mesh.positions.size());
+
+  const Generated apart = generate(soup, {.streams = 3, .weld = Weld::off}, folder / "apart");
+  CHECK(apart.manifest.merged_vertices == 0);
+  CHECK(apart.manifest.boundary_triangles < made.manifest.boundary_triangles * 2);
+}
+
+TEST_CASE("long streams get a sample: a piece of them with its edge locked") {
+  const Mesh mesh = test::grid(700, 300);
+  const test::TempFolder folder;
+  const Generated made = generate(mesh, {.streams = 2, .window_triangles = 100'000}, folder.path());
+  const Stage stage = Stage::open(folder.path());
+  REQUIRE(made.manifest.samples.size() == 2);
+  for (std::size_t s = 0; s < 2; ++s) {
+    const PartEntry& entry = made.manifest.samples[s];
+    CHECK(entry.triangles == doctest::Approx(60'000).epsilon(0.1));
+    const Part part = decode_part(stage.read(entry.file), "sample");
+    CHECK(part.mesh.triangles.size() == entry.triangles);
+    std::vector<Corners> whole = triangles_of(made.streams[s].mesh);
+    const std::vector<Corners> some = triangles_of(part.mesh);
+    CHECK(std::includes(whole.begin(), whole.end(), some.begin(), some.end()));
+    Box box;
+    for (const Vec3& p : part.mesh.positions) box.add(p);
+    for (std::uint32_t v = 0; v < part.mesh.positions.size(); ++v) {
+      const Vec3 p = part.mesh.positions[v];
+      const bool inner = p.y > box.lo.y && p.y < box.hi.y && p.x > box.lo.x && p.x < box.hi.x;
+      if (inner) REQUIRE(v >= part.boundary_vertices);
+      // The seam with the other stream is locked, as are the sides.
+      if (p.y == box.lo.y && p.y > 0) REQUIRE(v < part.boundary_vertices);
+    }
+  }
+  CHECK(generate(mesh, {.streams = 2}, folder / "short").manifest.samples[0].file.name.empty());
+}
+
+TEST_CASE("there are more streams than asked for if one would not fit into the memory") {
+  const test::TempFolder folder;
+  const Generated made = generate(
+      test::torus(300, 100), {.streams = 2, .memory_bytes = std::uint64_t{1} << 20}, folder.path());
+  CHECK(made.streams.size() >= 8);
+  CHECK(made.manifest.triangles() == 60'000);
+}
+
+TEST_CASE("meshes of almost nothing, and of one layer") {
+  const test::TempFolder folder;
+  CHECK(generate({}, {}, folder / "none").streams.empty());
+  CHECK(generate(test::tetrahedron(), {.streams = 9}, folder / "four").manifest.triangles() == 4);
+  Mesh wall = test::grid(30, 30);
+  for (Vec3& p : wall.positions) p.x = p.y = 0;
+  CHECK(generate(wall, {.streams = 4}, folder / "point").streams.size() == 1);
+  CHECK(default_streams(0) == 1);
+  CHECK(default_streams(28'065'032) == 24);
+  CHECK(default_streams(134'184'962) == 112);
+}
+
+TEST_CASE("a stop publishes no manifest") {
+  const test::TempFolder folder;
+  const std::atomic<bool> stop = true;
+  test::MemorySource source(test::torus(30, 20));
+  const Stage stage = Stage::create(folder.path());
+  CHECK_THROWS_AS(generate_streams(source, stage, {.stop = &stop}), IncompleteError);
+  CHECK_FALSE(stage.has_manifest());
+}
+
+TEST_CASE("of axes that are equally long the one is swept along which the file is in order") {
+  const auto order_of = [](const std::vector<Vec3>& positions) {
+    OrderProbe probe;
+    probe.look_at(positions);
+    return probe.choose();
+  };
+  std::vector<Vec3> rows;  // y falls from row to row
+  for (int y = 0; y < 10; ++y) {
+    for (int x = 0; x < 10; ++x) rows.push_back({1.0 * x, -1.0 * y, 0});
+  }
+  CHECK(order_of(rows).axes[0] == 1);
+  CHECK(order_of(rows).sign == -1);
+  std::reverse(rows.begin(), rows.end());
+  CHECK(order_of(rows).axes[0] == 1);
+  CHECK(order_of(rows).sign == 1);
+  rows.push_back({20, 0, 0});  // the longest axis wins, in order or not
+  CHECK(order_of(rows).axes[0] == 0);
+  std::mt19937 random(5);
+  std::shuffle(rows.begin(), rows.end(), random);
+  CHECK(order_of(rows).axes[0] == 0);
+}

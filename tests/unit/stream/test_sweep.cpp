@@ -1,0 +1,144 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#include <algorithm>
+#include <cmath>
+
+#include <doctest/doctest.h>
+
+#include <meshfarm/geometry/simplify.hpp>
+#include <meshfarm/geometry/topology.hpp>
+#include <meshfarm/stream/sweep.hpp>
+#include <meshfarm/util/errors.hpp>
+
+#include "stream/slab.hpp"
+#include "support/meshes.hpp"
+
+using namespace meshfarm;
+
+namespace {
+
+/// The whole mesh as one stream, along x; the first `boundary` vertices are boundary vertices.
+StreamMesh stream_of(const Mesh& mesh, std::uint32_t boundary = 0) {
+  MeshShare share{mesh.positions, mesh.triangles, {}};
+  for (std::uint32_t v = 0; v < boundary; ++v) share.boundary.push_back(v);
+  return sort_slab(std::move(share), {{}, Weld::exact, PositionType::float64}).stream;
+}
+
+SweptStream swept(const StreamMesh& stream, const SweepOptions& options) {
+  const std::string file = encode_stream(stream);
+  StreamReader reader(fill_from(file, "stream"), "stream");
+  return sweep(reader, options);
+}
+
+Mesh wavy_torus() {
+  Mesh mesh = test::torus(240, 120);
+  for (Vec3& p : mesh.positions) p.z += 0.05 * std::sin(9 * p.x) * std::cos(7 * p.y);
+  return mesh;
+}
+
+}  // namespace
+
+TEST_CASE("a sweep through any window keeps the topology and reaches about the same count") {
+  const Mesh mesh = wavy_torus();  // 57,600 triangles
+  const double cost = 1e-8;
+  Simplifier whole(mesh, {});
+  whole.reduce({.triangles = 0, .max_cost = cost});
+  REQUIRE(whole.triangles() < mesh.triangles.size() / 4);
+  for (const std::uint64_t window : {100'000, 20'000, 8'000}) {
+    CAPTURE(window);
+    const SweptStream result =
+        swept(stream_of(mesh), {.max_cost = cost, .window_triangles = window});
+    const Topology t = measure_topology(result.mesh);
+    CHECK(t.euler == 0);
+    CHECK(t.components == 1);
+    CHECK(t.border_edges == 0);
+    CHECK(t.nonmanifold_edges == 0);
+    CHECK(t.orientation_conflicts == 0);
+    CHECK(t.degenerate + t.duplicate == 0);
+    CHECK(t.used_vertices == t.vertices);
+    CHECK(result.free_triangles == result.mesh.triangles.size());
+    CHECK(static_cast<double>(t.triangles) ==
+          doctest::Approx(static_cast<double>(whole.triangles())).epsilon(0.2));
+  }
+}
+
+TEST_CASE("the same bytes whenever") {
+  const StreamMesh stream = stream_of(wavy_torus());
+  const SweepOptions options{.max_cost = 1e-9, .window_triangles = 9'000, .samples = 500};
+  const SweptStream a = swept(stream, options);
+  const SweptStream b = swept(stream, options);
+  CHECK(a.mesh.positions == b.mesh.positions);
+  CHECK(a.mesh.triangles == b.mesh.triangles);
+  CHECK(a.samples.points == b.samples.points);
+}
+
+TEST_CASE("boundary vertices come first, in the stream's order and unmoved") {
+  const StreamMesh stream = stream_of(test::grid(150, 150), 3 * 151);
+  std::vector<Vec3> expected;
+  for (std::size_t v = 0; v < stream.boundary.size(); ++v) {
+    if (stream.boundary[v] != 0) expected.push_back(stream.mesh.positions[v]);
+  }
+  const SweptStream result = swept(stream, {.max_cost = 1, .window_triangles = 4'000});
+  REQUIRE(result.boundary_vertices == 3 * 151);
+  for (std::size_t v = 0; v < expected.size(); ++v) {
+    REQUIRE(result.mesh.positions[v] == expected[v]);
+  }
+  CHECK(result.mesh.triangles.size() < 8'000);  // two rows of 600 are locked altogether
+  CHECK(result.free_triangles < result.mesh.triangles.size());
+  const Topology t = measure_topology(result.mesh);
+  CHECK(t.euler == 1);
+  CHECK(t.nonmanifold_edges == 0);
+}
+
+TEST_CASE("with a cost below nothing all stays as it came") {
+  const Mesh mesh = test::grid(120, 80);
+  const SweptStream result = swept(stream_of(mesh), {.max_cost = -1, .window_triangles = 3'000});
+  CHECK(result.mesh.triangles.size() == mesh.triangles.size());
+  CHECK(result.mesh.positions.size() == mesh.positions.size());
+}
+
+TEST_CASE("with a ratio every window keeps its share") {
+  const Mesh mesh = wavy_torus();
+  const SweptStream result = swept(stream_of(mesh), {.ratio = 0.2, .window_triangles = 9'000});
+  CHECK(static_cast<double>(result.mesh.triangles.size()) ==
+        doctest::Approx(0.2 * static_cast<double>(mesh.triangles.size())).epsilon(0.2));
+  CHECK(measure_topology(result.mesh).euler == 0);
+}
+
+TEST_CASE("samples are of the surface as it came, and the error is measured by them") {
+  const Mesh mesh = wavy_torus();
+  const SweptStream result =
+      swept(stream_of(mesh),
+            {.max_cost = 1e-8, .window_triangles = 9'000, .samples = 2'000, .measure = true});
+  CHECK(result.samples.points.size() == 2'000);
+  const SurfaceSamples all = sample_surface(mesh, {.samples = 2'000});
+  CHECK(result.samples.area == doctest::Approx(all.area));
+  const Distance direct = DistanceMeter(result.mesh, 1).measure(result.samples.points);
+  CHECK(result.error == doctest::Approx(direct.max));
+  CHECK(result.error > 0);
+  CHECK(DistanceMeter(mesh, 1).measure(result.samples.points).max < 1e-12);
+}
+
+TEST_CASE("a front that is more than the window is held all the same") {
+  // A closed strip swept along x whose rings of 600 vertices each are far more than the window.
+  const SweptStream result =
+      swept(stream_of(test::torus(40, 600)), {.max_cost = 1e-9, .window_triangles = 100});
+  CHECK(measure_topology(result.mesh).euler == 0);
+}
+
+TEST_CASE("duplicate triangles are dropped and counted, non-manifold edges stay") {
+  Mesh mesh = test::grid(100, 60);
+  mesh.triangles.push_back(mesh.triangles[777]);
+  mesh.triangles.push_back(
+      {mesh.triangles[5'000][1], mesh.triangles[5'000][2], mesh.triangles[5'000][0]});
+  const SweptStream result = swept(stream_of(mesh), {.max_cost = 0, .window_triangles = 2'000});
+  CHECK(result.dropped_duplicate == 2);
+  CHECK(measure_topology(result.mesh).duplicate == 0);
+}
+
+TEST_CASE("a sweep that is given up says so") {
+  CHECK_THROWS_AS(swept(stream_of(wavy_torus()), {.max_cost = 1e-9,
+                                                  .window_triangles = 5'000,
+                                                  .progress = [](std::uint64_t) { return false; }}),
+                  IncompleteError);
+}
