@@ -29,7 +29,7 @@ class CutCommand : public Command {
   }
   void check() override { cut_.check(); }
   int run() override {
-    const Manifest manifest = cut_to_stage({input_, stage_, cut_.cut, talk_, stop_on_signals()});
+    const Manifest manifest = cut_to_stage({input_, stage_, cut_, talk_, stop_on_signals()});
     std::cout << render(manifest, stage_, talk_.format());
     return 0;
   }

@@ -49,7 +49,7 @@ class SimplifyCommand : public Command {
   int run() override {
     const std::atomic<bool>& stop = stop_on_signals();
     check_writable(output_);
-    cut_to_stage({input_, stage_, cut_.cut, talk_, stop});
+    cut_to_stage({input_, stage_, cut_, talk_, stop});
     const int code = run_local_farm({stage_, output_, target_, network_, talk_, workers_}, stop);
     if (code == 0 && !keep_stage_) remove_stage(stage_);
     if (code == 3) {

@@ -7,7 +7,9 @@
 #include <unistd.h>
 
 #include <meshfarm/io/mesh_source.hpp>
+#include <meshfarm/partition/cut.hpp>
 #include <meshfarm/staging/stage.hpp>
+#include <meshfarm/stream/generate_streams.hpp>
 #include <meshfarm/util/errors.hpp>
 
 namespace meshfarm {
@@ -20,13 +22,18 @@ Manifest cut_to_stage(const CutStep& step) {
                     "' uses it, or remove it to cut again");
   }
   ProgressPrinter printer(step.talk.progress());
-  CutOptions options = step.cut;
-  options.input_name = step.input;
-  options.stop = &step.stop;
-  options.progress = [&](std::string_view phase, double done) {
-    printer.show({.phase = phase, .done = done, .triangles = 0});
+  const auto with_common = [&](auto options) {
+    options.input_name = step.input;
+    options.stop = &step.stop;
+    options.progress = [&](std::string_view phase, double done) {
+      printer.show({.phase = phase, .done = done, .triangles = 0});
+    };
+    return options;
   };
-  return cut_mesh(*source, stage, options);
+  if (step.words.scheme == Scheme::stream) {
+    return generate_streams(*source, stage, with_common(step.words.stream));
+  }
+  return cut_mesh(*source, stage, with_common(step.words.cut));
 }
 
 void check_writable(const std::string& output) {

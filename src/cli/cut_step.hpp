@@ -6,7 +6,6 @@
 #include <string>
 
 #include <meshfarm/io/manifest.hpp>
-#include <meshfarm/partition/cut.hpp>
 
 #include "cli/options.hpp"
 
@@ -15,12 +14,13 @@ namespace meshfarm {
 struct CutStep {
   std::string input;
   std::string stage;
-  CutOptions cut;
+  const CutWords& words;
   const TalkOptions& talk;
   const std::atomic<bool>& stop;
 };
 
-/// Cuts a file into a stage that holds no manifest yet, with progress on stderr.
+/// Cuts a file, or makes streams of it, in a stage that holds no manifest yet, with progress on
+/// stderr.
 Manifest cut_to_stage(const CutStep& step);
 
 /// Throws IoError now rather than after an hour's work if `output` cannot be made.

@@ -38,6 +38,21 @@ Length parse_length(const std::string& text, std::string_view option) {
   return length;
 }
 
+/// "512M": a number, and perhaps K, M, G or T.
+std::uint64_t parse_bytes(const std::string& text, std::string_view option) {
+  std::uint64_t value = 0;
+  const char* last = text.data() + text.size();
+  const auto [end, error] = std::from_chars(text.data(), last, value);
+  const std::string_view units = "KMGT";
+  const std::size_t unit = end + 1 == last ? units.find(*end) : std::string_view::npos;
+  const unsigned shift = end == last ? 0 : static_cast<unsigned>(10 * (unit + 1));
+  if (error != std::errc{} || (end != last && unit == std::string_view::npos) || value == 0 ||
+      value >> (63 - shift) != 0) {
+    throw UsageError(std::string(option) + " takes a number of bytes, as 512M or 2G");
+  }
+  return value << shift;
+}
+
 }  // namespace
 
 void TalkOptions::add(po::options_description& options) {
@@ -110,20 +125,40 @@ std::vector<std::string> TargetOptions::words() const {
 }
 
 void CutWords::add(po::options_description& options) {
-  options.add_options()(
+  options.add_options()("scheme",
+                        po::value(&scheme_word)->default_value(scheme_word)->value_name("S"),
+                        "cut: compact parts, each simplified in memory; stream: slabs along the "
+                        "longest axis, each swept through a bounded buffer")(
       "parts", po::value(&cut.parts)->value_name("N"),
-      "number of parts (default: about a million triangles each, at least 16 of a large mesh)")(
+      "number of parts (default: about a million triangles each, at least 16 of a large mesh) or "
+      "streams (1.2 million)")(
       "weld", po::value(&weld)->default_value(weld),
       "exact: vertices at the same position become one; off: they stay apart")(
-      "threads", po::value(&cut.threads)->value_name("N"), "threads of the cut (default: cores)");
+      "threads", po::value(&cut.threads)->value_name("N"), "threads of the cut (default: cores)")(
+      "memory", po::value(&memory)->default_value(memory)->value_name("BYTES"),
+      "stream: memory for the sorting, as 512M or 2G")(
+      "window",
+      po::value(&stream.window_triangles)->default_value(stream.window_triangles)->value_name("N"),
+      "stream: triangles that a worker's sweep holds at once");
 }
 
 void CutWords::check() {
+  if (scheme_word != "cut" && scheme_word != "stream") {
+    throw UsageError("--scheme is 'cut' or 'stream', not '" + scheme_word + "'");
+  }
   if (weld != "exact" && weld != "off") {
     throw UsageError("--weld is 'exact' or 'off', not '" + weld + "'");
   }
+  scheme = scheme_word == "stream" ? Scheme::stream : Scheme::cut;
   cut.weld = weld == "off" ? Weld::off : Weld::exact;
   if (cut.parts > 1'000'000) throw UsageError("--parts: at most 1,000,000");
+  if (stream.window_triangles < 1000 || stream.window_triangles > 1'000'000'000) {
+    throw UsageError("--window: from 1,000 to 1,000,000,000 triangles");
+  }
+  stream.streams = cut.parts;
+  stream.weld = cut.weld;
+  stream.threads = cut.threads;
+  stream.memory_bytes = parse_bytes(memory, "--memory");
 }
 
 void SecurityWords::add(po::options_description& options) {

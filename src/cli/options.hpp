@@ -14,6 +14,7 @@
 #include <meshfarm/pipeline/run_options.hpp>
 #include <meshfarm/report/progress.hpp>
 #include <meshfarm/report/summary.hpp>
+#include <meshfarm/stream/generate_streams.hpp>
 
 namespace meshfarm {
 
@@ -47,10 +48,14 @@ struct TargetOptions {
   std::vector<std::string> words() const;
 };
 
-/// --parts, --weld, --threads.
+/// --scheme, --parts, --weld, --threads, --memory, --window.
 struct CutWords {
+  Scheme scheme = Scheme::cut;
   CutOptions cut;
+  StreamOptions stream;
+  std::string scheme_word = "cut";
   std::string weld = "exact";
+  std::string memory = "512M";
 
   void add(po::options_description& options);
   void check();

@@ -49,7 +49,6 @@ class Assembly {
 
   RunSummary run(std::span<const AcceptedJob> accepted) {
     Stopwatch watch;
-    count_drops(accepted);
     StitchedMesh stitched = stitch(choose_rungs(manifest_, run_, accepted));
     summary_.dropped_components =
         drop_small_components(stitched.mesh, run_.drop_components.in(manifest_.box));
@@ -82,15 +81,6 @@ class Assembly {
     }
   }
 
-  /// Every part's last accepted output counts; earlier rounds dropped the same triangles.
-  void count_drops(std::span<const AcceptedJob> accepted) {
-    for (const AcceptedJob& job : accepted.first(manifest_.parts.size())) {
-      const ResultSummary s = decode_summary(job.output.summary, job.output.file.name);
-      summary_.dropped_degenerate += s.dropped_degenerate;
-      summary_.dropped_duplicate += s.dropped_duplicate;
-    }
-  }
-
   StitchedMesh stitch(const std::vector<ChosenRung>& chosen) {
     Stitcher stitcher;
     for (std::size_t p = 0; p < chosen.size(); ++p) {
@@ -100,6 +90,8 @@ class Assembly {
         throw DataError(chosen[p].file.name + ": is not the result of part " + std::to_string(p));
       }
       stitcher.add(part);
+      summary_.dropped_degenerate += chosen[p].dropped_degenerate;
+      summary_.dropped_duplicate += chosen[p].dropped_duplicate;
       samples_.push_back(std::move(part.samples));
       tell("stitch", static_cast<double>(p + 1) / static_cast<double>(chosen.size()), 0);
     }

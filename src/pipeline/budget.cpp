@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include <meshfarm/pipeline/budget.hpp>
 #include <meshfarm/pipeline/simplify_job.hpp>
+#include <meshfarm/pipeline/sweep_job.hpp>
 #include <meshfarm/util/errors.hpp>
 
 namespace meshfarm {
@@ -15,6 +17,8 @@ namespace {
 /// more than its share; a part that deserves still more is asked for again.
 constexpr double k_first_headroom = 4;
 constexpr double k_more_headroom = 8;
+/// A ladder ends at this fraction of the part's even share.
+constexpr double k_floor = 1.0 / 16;
 
 /// Points of the input by which the error of the result is measured: the RMS of as many varies by
 /// less than one per cent.
@@ -42,6 +46,12 @@ std::uint64_t memory_of(const PartEntry& part, std::uint64_t first_rung) {
   return k_process + part.file.size + 110 * part.triangles + ladder;
 }
 
+/// The window as it comes and as it is simplified, and what was sent on from it.
+std::uint64_t memory_of_sweep(std::uint64_t window_triangles) {
+  constexpr std::uint64_t k_process = std::uint64_t{16} << 20;
+  return k_process + 150 * window_triangles;
+}
+
 /// What a run knows after some of its rounds: derived from the accepted outputs alone, so that
 /// ventilator and sink, restarted or not, agree.
 class Rounds {
@@ -51,29 +61,37 @@ class Rounds {
         options_(options),
         target_(target_triangles(manifest, options)),
         headroom_(manifest.parts.size(), k_first_headroom),
-        ladders_(manifest.parts.size()),
+        results_(manifest.parts.size()),
         files_(manifest.parts.size()) {
-    for (std::uint32_t p = 0; p < manifest.parts.size(); ++p) asked_.push_back(p);
+    for (std::uint32_t p = 0; p < manifest.parts.size(); ++p) {
+      if (!is_sampled(p) || climbs_samples()) asked_.push_back(p);
+    }
+    if (asked_.empty()) begin_sweeps();
     while (!asked_.empty() && accepted.size() >= asked_.size()) {
       take(accepted.first(asked_.size()));
       accepted = accepted.subspan(asked_.size());
-      ask_again();
+      swept_ ? sweep_again() : ask_again();
+      if (!swept_ && asked_.empty()) begin_sweeps();
     }
   }
 
   /// The jobs of the round that is not accepted yet.
   std::vector<Job> jobs() const {
     std::vector<Job> jobs;
-    for (const std::uint32_t part : asked_) jobs.push_back(job_of(part));
+    for (const std::uint32_t part : asked_) {
+      jobs.push_back(swept_ ? sweep_of(part) : job_of(part));
+    }
     return jobs;
   }
 
   std::vector<ChosenRung> chosen() const {
     if (!asked_.empty()) throw Error("rungs are chosen before all parts are accepted");
     std::vector<ChosenRung> chosen;
-    for (std::size_t p = 0; p < ladders_.size(); ++p) {
-      const auto last = static_cast<std::uint32_t>(ladders_[p].size() - 1);
-      chosen.push_back({files_[p], by_error() ? last : rung_at(ladders_[p], level_)});
+    for (std::size_t p = 0; p < results_.size(); ++p) {
+      const ResultSummary& result = results_[p];
+      const auto last = static_cast<std::uint32_t>(result.rungs.size() - 1);
+      chosen.push_back({files_[p], by_error() ? last : rung_at(result.rungs, level_),
+                        result.dropped_degenerate, result.dropped_duplicate});
     }
     return chosen;
   }
@@ -86,8 +104,20 @@ class Rounds {
 
   bool by_error() const { return options_.error.value > 0; }
 
+  /// Whether levels are to be found: the same ratio everywhere needs none.
+  bool climbs_samples() const { return by_error() || options_.allocation == Allocation::threshold; }
+
+  bool is_sampled(std::uint32_t part) const {
+    return !manifest_.samples.empty() && !manifest_.samples[part].file.name.empty();
+  }
+
+  /// What is climbed: the part, or a sample of a long stream.
+  const PartEntry& climbed(std::uint32_t part) const {
+    return is_sampled(part) ? manifest_.samples[part] : manifest_.parts[part];
+  }
+
   Job job_of(std::uint32_t part) const {
-    const PartEntry& entry = manifest_.parts[part];
+    const PartEntry& entry = climbed(part);
     SimplifyParameters parameters;
     parameters.allocation = options_.allocation;
     parameters.samples = samples_for(manifest_, options_, entry.triangles);
@@ -101,7 +131,7 @@ class Rounds {
   }
 
   void set_error_bound(SimplifyParameters& parameters, std::uint32_t part) const {
-    const std::uint64_t triangles = manifest_.parts[part].triangles;
+    const std::uint64_t triangles = climbed(part).triangles;
     const bool first = headroom_[part] == k_first_headroom;
     parameters.allocation = Allocation::threshold;
     parameters.max_error = k_error_share * options_.error.in(manifest_.box);
@@ -111,9 +141,9 @@ class Rounds {
   }
 
   void set_share(SimplifyParameters& parameters, std::uint32_t part) const {
-    const PartEntry& entry = manifest_.parts[part];
+    const PartEntry& entry = climbed(part);
     const double share = ratio() * static_cast<double>(entry.triangles);
-    parameters.share_triangles = static_cast<std::uint64_t>(share);
+    parameters.floor_triangles = static_cast<std::uint64_t>(share * k_floor);
     double start = share;
     if (options_.allocation == Allocation::threshold) {
       start = share * headroom_[part] * provision(ratio()) / 2 + 2.0 * entry.boundary_vertices;
@@ -124,17 +154,85 @@ class Rounds {
     parameters.start_triangles = static_cast<std::uint64_t>(start);
   }
 
+  Job sweep_of(std::uint32_t part) const {
+    const PartEntry& entry = manifest_.parts[part];
+    SweepParameters parameters;
+    parameters.level = sweep_levels_[part];
+    parameters.max_cost = sweep_cost(parameters.level);
+    if (!climbs_samples()) parameters.ratio = ratio();
+    parameters.window_triangles = manifest_.window_triangles;
+    parameters.samples = samples_for(manifest_, options_, entry.triangles);
+    parameters.max_error = by_error() ? k_error_share * options_.error.in(manifest_.box) : 0;
+    return {std::string(k_sweep_kind),
+            {entry.file},
+            encode_parameters(parameters),
+            entry.triangles,
+            memory_of_sweep(manifest_.window_triangles)};
+  }
+
+  /// Nothing is so cheap that the rung of a part as it came would have lost it.
+  double sweep_cost(std::int32_t level) const {
+    return level < 0 ? -1 : level_cost(level, cost_unit(manifest_.box.diagonal()));
+  }
+
+  void begin_sweeps() {
+    swept_ = true;
+    sweep_levels_.assign(results_.size(), level_);
+    for (std::uint32_t p = 0; p < results_.size(); ++p) {
+      if (!is_sampled(p)) continue;
+      if (by_error()) sweep_levels_[p] = results_[p].rungs.back().level;
+      asked_.push_back(p);
+    }
+  }
+
   void take(std::span<const AcceptedJob> round) {
     for (std::size_t i = 0; i < round.size(); ++i) {
+      const std::uint32_t part = asked_[i];
       const JobOutput& output = round[i].output;
-      ladders_[asked_[i]] = decode_summary(output.summary, "summary of " + output.file.name).rungs;
-      files_[asked_[i]] = output.file;
+      results_[part] = decode_summary(output.summary, "summary of " + output.file.name);
+      files_[part] = output.file;
+      if (!swept_ && is_sampled(part)) stand_for_stream(part);
     }
+  }
+
+  /// As many triangles as there would be of the whole stream.
+  void stand_for_stream(std::uint32_t part) {
+    const double times =
+        static_cast<double>(manifest_.parts[part].triangles) /
+        static_cast<double>(std::max<std::uint64_t>(1, manifest_.samples[part].triangles));
+    for (Rung& rung : results_[part].rungs) {
+      rung.free_triangles =
+          static_cast<std::uint64_t>(times * static_cast<double>(rung.free_triangles));
+    }
+  }
+
+  /// Where too few triangles are left for the target, or a stream is too far from what it was.
+  void sweep_again() {
+    const std::vector<std::uint32_t> swept = std::exchange(asked_, {});
+    if (by_error()) {
+      for (const std::uint32_t part : swept) {
+        if (!too_far(part) || sweep_levels_[part] < 0) continue;
+        --sweep_levels_[part];
+        asked_.push_back(part);
+      }
+    } else if (climbs_samples() && level_ >= 0 && free_triangles() < target_) {
+      --level_;
+      sweep_levels_.assign(results_.size(), level_);
+      asked_ = swept;
+    }
+  }
+
+  std::uint64_t free_triangles() const {
+    std::uint64_t sum = 0;
+    for (const ResultSummary& result : results_) {
+      sum += result.rungs[rung_at(result.rungs, level_)].free_triangles;
+    }
+    return sum;
   }
 
   /// Whether a part was taken past what it may be in the end.
   bool too_far(std::uint32_t part) const {
-    const Rung& first = ladders_[part].front();
+    const Rung& first = results_[part].rungs.front();
     return by_error() ? first.error > k_error_share * options_.error.in(manifest_.box)
                       : first.level > level_;
   }
@@ -143,7 +241,7 @@ class Rounds {
     asked_.clear();
     if (!by_error()) choose_level();
     if (options_.allocation == Allocation::uniform && !by_error()) return;
-    for (std::uint32_t p = 0; p < ladders_.size(); ++p) {
+    for (std::uint32_t p = 0; p < results_.size(); ++p) {
       if (!too_far(p)) continue;
       headroom_[p] *= k_more_headroom;
       asked_.push_back(p);
@@ -152,17 +250,21 @@ class Rounds {
 
   void choose_level() {
     const double wanted = provision(ratio()) * static_cast<double>(target_);
-    level_ = common_level(ladders_, static_cast<std::uint64_t>(wanted));
+    std::vector<std::vector<Rung>> ladders;
+    for (const ResultSummary& result : results_) ladders.push_back(result.rungs);
+    level_ = common_level(ladders, static_cast<std::uint64_t>(wanted));
   }
 
   const Manifest& manifest_;
   const RunOptions& options_;
   std::uint64_t target_;
   std::vector<double> headroom_;
-  std::vector<std::vector<Rung>> ladders_;
+  std::vector<ResultSummary> results_;  // the last accepted, by part
   std::vector<FileRef> files_;
   std::vector<std::uint32_t> asked_;
   std::int32_t level_ = 0;
+  bool swept_ = false;  // ladders are done, long streams are being swept
+  std::vector<std::int32_t> sweep_levels_;
 };
 
 }  // namespace

@@ -4,6 +4,7 @@
 
 #include <meshfarm/pipeline/job_table.hpp>
 #include <meshfarm/pipeline/simplify_job.hpp>
+#include <meshfarm/pipeline/sweep_job.hpp>
 #include <meshfarm/util/errors.hpp>
 
 namespace meshfarm {
@@ -13,6 +14,7 @@ using JobPointer = JobOutput (*)(const Job&, const JobContext&);
 
 constexpr std::pair<std::string_view, JobPointer> k_table[] = {
     {k_simplify_kind, simplify_part},
+    {k_sweep_kind, sweep_stream},
 };
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include <meshfarm/geometry/simplify.hpp>
 #include <meshfarm/io/part_file.hpp>
 #include <meshfarm/io/result_file.hpp>
+#include <meshfarm/io/stream_file.hpp>
 #include <meshfarm/pipeline/simplify_job.hpp>
 #include <meshfarm/util/bytes.hpp>
 #include <meshfarm/util/checksum.hpp>
@@ -14,14 +15,11 @@
 namespace meshfarm {
 namespace {
 
-// Version 2: allocation u8 | start u64 | even share u64 | samples u64 | cost unit f64 |
+// Version 1: allocation u8 | start u64 | floor u64 | samples u64 | cost unit f64 |
 // greatest error f64.
-constexpr std::uint8_t k_version = 2;
+constexpr std::uint8_t k_version = 1;
 constexpr std::uint64_t k_max_samples = 100'000'000;
 constexpr std::int32_t k_top_level = 52;
-// A part keeps no less than this fraction of its even share.
-constexpr std::uint64_t k_shares_per_floor = 16;
-constexpr std::int32_t k_input_level = -1;  // of a rung that is the part as it came
 
 /// Climbs the levels and keeps a snapshot wherever the mesh changed.
 class LadderBuilder {
@@ -57,8 +55,7 @@ class LadderBuilder {
   /// Makes the first rung and returns the level that the mesh has reached with it.
   std::int32_t start() {
     if (parameters_.start_triangles < simplifier_.triangles()) {
-      reduce({.triangles = parameters_.start_triangles,
-              .last_triangles = parameters_.share_triangles});
+      reduce({.triangles = parameters_.start_triangles});
       const std::int32_t level = level_of(simplifier_.pass_cost(), parameters_.cost_unit);
       snapshot(level - 1);  // what costs that much is done in part only
       return level;
@@ -70,11 +67,11 @@ class LadderBuilder {
   }
 
   void climb(std::int32_t level) {
-    const std::uint64_t floor = parameters_.share_triangles / k_shares_per_floor;
     for (; level <= k_top_level; ++level) {
-      if (simplifier_.triangles() <= floor) return;
+      if (simplifier_.triangles() <= parameters_.floor_triangles) return;
       if (simplifier_.free_triangles() == 0) return;
-      reduce({.triangles = floor, .max_cost = level_cost(level, parameters_.cost_unit)});
+      reduce({.triangles = parameters_.floor_triangles,
+              .max_cost = level_cost(level, parameters_.cost_unit)});
       if (simplifier_.triangles() < result_.rungs().back().triangles && !snapshot(level)) return;
     }
   }
@@ -112,12 +109,15 @@ class LadderBuilder {
   ResultEncoder result_;
 };
 
-/// A part that is not whole may be read whole by the next attempt; one that is whole by its
-/// checksum and makes no sense never will.
+/// A part, or a stream as one. What is not whole may be read whole by the next attempt; what is
+/// whole by its checksum and makes no sense never will.
 Part read_part(const JobContext& context, const FileRef& input) {
   const std::string file = context.read(input);
+  const auto name = parse_staged_name(input.name);
   try {
-    return decode_part(file, input.name);
+    if (!name || !std::holds_alternative<StreamName>(*name)) return decode_part(file, input.name);
+    StreamReader reader(fill_from(file, input.name), input.name);
+    return read_stream(reader);
   } catch (const DataError& error) {
     throw BadInputError(error.what());
   }
@@ -130,7 +130,7 @@ std::string encode_parameters(const SimplifyParameters& parameters) {
   out.put(k_version);
   out.put(parameters.allocation);
   out.put(parameters.start_triangles);
-  out.put(parameters.share_triangles);
+  out.put(parameters.floor_triangles);
   out.put(parameters.samples);
   out.put(parameters.cost_unit);
   out.put(parameters.max_error);
@@ -144,7 +144,7 @@ SimplifyParameters decode_parameters(std::string_view bytes) {
   parameters.allocation = in.get<Allocation>();
   if (parameters.allocation > Allocation::uniform) in.fail("unknown allocation");
   parameters.start_triangles = in.get<std::uint64_t>();
-  parameters.share_triangles = in.get<std::uint64_t>();
+  parameters.floor_triangles = in.get<std::uint64_t>();
   parameters.samples = in.get<std::uint64_t>();
   if (parameters.samples > k_max_samples) in.fail("too many samples");
   parameters.cost_unit = in.get<double>();

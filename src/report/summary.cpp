@@ -86,6 +86,14 @@ Json input_json(const Manifest& m) {
           {"skipped", m.skipped}};
 }
 
+const char* scheme_name(const Manifest& m) {
+  return m.scheme == Scheme::stream ? "stream" : "cut";
+}
+
+const char* parts_name(const Manifest& m) {
+  return m.scheme == Scheme::stream ? "streams" : "parts";
+}
+
 void add_input(Lines& lines, const Manifest& m) {
   lines.add("input", m.input + " (" + m.input_format + ")");
   lines.add(
@@ -103,6 +111,7 @@ std::string render(const Manifest& m, const std::string& stage, Format format) {
     const Json json = {
         {"stage", stage},
         {"input", input_json(m)},
+        {"scheme", scheme_name(m)},
         {"parts", m.parts.size()},
         {"boundary_triangles", m.boundary_triangles},
         {"dropped", {{"degenerate", m.dropped_degenerate}, {"duplicate", m.dropped_duplicate}}},
@@ -111,7 +120,7 @@ std::string render(const Manifest& m, const std::string& stage, Format format) {
   }
   Lines lines;
   add_input(lines, m);
-  lines.add("stage", stage + ": " + grouped(m.parts.size()) + " parts, " +
+  lines.add("stage", stage + ": " + grouped(m.parts.size()) + " " + parts_name(m) + ", " +
                          grouped(m.boundary_triangles) + " boundary triangles");
   lines.add("time", number(m.cut_seconds, "%.2f s"));
   return lines.text();
@@ -132,6 +141,7 @@ std::string render(const RunSummary& s, Format format) {
          {{"degenerate", s.dropped_degenerate},
           {"duplicate", s.dropped_duplicate},
           {"components", s.dropped_components.components}}},
+        {"scheme", scheme_name(m)},
         {"parts", m.parts.size()},
         {"boundary_triangles", m.boundary_triangles},
         {"stitched_triangles", s.stitched},
@@ -162,10 +172,10 @@ std::string render(const RunSummary& s, Format format) {
     lines.add("error", text_of(s.error, m.box.diagonal()) + "  of the diagonal, from " +
                            grouped(s.error_samples) + " points of the input");
   }
-  lines.add("parts", grouped(m.parts.size()) + ", stitched to " + grouped(s.stitched) +
-                         " triangles before the finish");
-  lines.add("time", "cut " + number(m.cut_seconds, "%.2f s") + ", farm " +
-                        number(s.farm_seconds, "%.2f s") + ", stitch " +
+  lines.add(parts_name(m), grouped(m.parts.size()) + ", stitched to " + grouped(s.stitched) +
+                               " triangles before the finish");
+  lines.add("time", std::string(scheme_name(m)) + " " + number(m.cut_seconds, "%.2f s") +
+                        ", farm " + number(s.farm_seconds, "%.2f s") + ", stitch " +
                         number(s.stitch_seconds, "%.2f s") + ", finish " +
                         number(s.finish_seconds, "%.2f s") + ", measure " +
                         number(s.measure_seconds, "%.2f s") + ", write " +

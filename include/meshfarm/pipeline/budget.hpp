@@ -17,12 +17,18 @@ namespace meshfarm {
 /// snapshots at rising cost levels that are the same in all parts. From the rungs' counts one level
 /// is chosen for all. A part whose ladder begins above that level was taken too far: it is asked
 /// for again in the next round, with a finer start.
+///
+/// Of a long stream a sample is climbed instead, and stands for the stream by its share of the
+/// triangles; the stream itself is then swept at the level that was chosen. If the swept streams
+/// together hold less than the target, they are swept again one level finer.
 JobSource make_job_source(const Manifest& manifest, const RunOptions& options);
 
 /// The result of a part that counts, and the rung to stitch.
 struct ChosenRung {
   FileRef file;
   std::uint32_t rung = 0;
+  std::uint64_t dropped_degenerate = 0;  // in the part
+  std::uint64_t dropped_duplicate = 0;
 };
 
 /// What to stitch, by part, once every job of make_job_source is accepted.

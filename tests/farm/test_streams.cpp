@@ -1,0 +1,139 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+//
+// The stream scheme with the real program's processes. The farm is the same as for the cut, whose
+// tests are harder on it; here it is the streams, their jobs and their damage that count.
+#include <algorithm>
+#include <fstream>
+
+#include <doctest/doctest.h>
+
+#include "support/process.hpp"
+#include "support/temp_folder.hpp"
+
+using meshfarm::test::Process;
+using meshfarm::test::Ran;
+using meshfarm::test::read_text;
+using meshfarm::test::run_meshfarm;
+using meshfarm::test::TempFolder;
+using meshfarm::test::wait_until;
+namespace fs = std::filesystem;
+
+namespace {
+
+/// A mesh of 300,000 triangles, and the result of an undisturbed run: 6 streams, each swept.
+class Bench {
+ public:
+  Bench() {
+    REQUIRE(meshfarm({"generate", "-o", mesh(), "--triangles", "300000"}).code == 0);
+    REQUIRE(meshfarm(simplify(path("expected.ply"), "2")).code == 0);
+    expected_ = read_text(path("expected.ply"));
+    REQUIRE(expected_.size() > 1000);
+  }
+
+  std::string path(const std::string& name) const { return (folder_.path() / name).string(); }
+  std::string mesh() const { return path("mesh.ply"); }
+  const std::string& expected() const { return expected_; }
+  Ran meshfarm(const std::vector<std::string>& words) {
+    return run_meshfarm(words, path("log" + std::to_string(++logs_)));
+  }
+  Process start(const std::vector<std::string>& words) {
+    return Process(words, path("log" + std::to_string(++logs_)));
+  }
+  std::vector<std::string> simplify(const std::string& output, const std::string& workers) const {
+    return {"simplify", mesh(),    "-o", output,     "--ratio", "0.02",      "--scheme",
+            "stream",   "--parts", "6",  "--window", "20000",   "--workers", workers};
+  }
+  std::string streams() {
+    const std::string stage = path("stage" + std::to_string(++stages_));
+    REQUIRE(meshfarm({"cut", mesh(), "--stage", stage, "--scheme", "stream", "--parts", "6",
+                      "--window", "20000"})
+                .code == 0);
+    return stage;
+  }
+  Ran replay(const std::string& stage) {
+    return meshfarm({"replay", stage, "-o", stage + ".ply", "--ratio", "0.02", "--workers", "2"});
+  }
+
+ private:
+  TempFolder folder_;
+  std::string expected_;
+  int logs_ = 0;
+  int stages_ = 0;
+};
+
+Bench& bench() {
+  static Bench instance;
+  return instance;
+}
+
+std::size_t results_in(const std::string& stage) {
+  std::error_code ignored;
+  std::size_t count = 0;
+  for (const auto& entry : fs::directory_iterator(fs::path(stage) / "results", ignored)) {
+    count += entry.path().filename().string().front() != '.';
+  }
+  return count;
+}
+
+}  // namespace
+
+TEST_CASE("streams: 1 and 5 workers make the same bytes as 2") {
+  for (const char* workers : {"1", "5"}) {
+    CAPTURE(workers);
+    const std::string output = bench().path(std::string("w") + workers + ".ply");
+    const Ran ran = bench().meshfarm(bench().simplify(output, workers));
+    CHECK(ran.code == 0);
+    CHECK(ran.out.find("streams          6, stitched to") != std::string::npos);
+    CHECK(read_text(output) == bench().expected());
+    CHECK_FALSE(fs::exists(output + ".stage"));
+  }
+}
+
+TEST_CASE("streams: killed while samples are climbed and while streams are swept, a run goes on") {
+  const std::string stage = bench().streams();
+  for (const std::size_t results : {2, 7, 10}) {
+    Process run =
+        bench().start({"replay", stage, "-o", stage + ".ply", "--ratio", "0.02", "--workers", "1"});
+    REQUIRE(wait_until([&] { return results_in(stage) >= results; }));
+    run.signal(SIGKILL);  // its children end with it
+    CHECK(run.wait() == -SIGKILL);
+    CHECK_FALSE(fs::exists(stage + ".ply"));
+  }
+  CHECK(bench().replay(stage).code == 0);
+  CHECK(read_text(stage + ".ply") == bench().expected());
+}
+
+TEST_CASE("streams: a worker killed in a sweep costs nothing but time") {
+  const std::string stage = bench().streams();
+  Process run =
+      bench().start({"run", stage, "--ratio", "0.02", "-o", stage + ".ply", "--bind", "127.0.0.1"});
+  Process killed = bench().start({"worker", stage});
+  REQUIRE(wait_until([&] { return results_in(stage) >= 7; }));
+  killed.signal(SIGKILL);
+  CHECK(killed.wait() == -SIGKILL);
+  Process heir = bench().start({"worker", stage});
+  CHECK(run.wait() == 0);
+  CHECK(heir.wait() == 0);
+  CHECK(read_text(stage + ".ply") == bench().expected());
+}
+
+TEST_CASE("streams: a flipped byte or a cut is named with its place, and nothing is written") {
+  for (const bool cut_short : {false, true}) {
+    CAPTURE(cut_short);
+    const std::string stage = bench().streams();
+    const fs::path stream = fs::path(stage) / "streams" / "000003.stream";
+    if (cut_short) {
+      fs::resize_file(stream, fs::file_size(stream) - 1);
+    } else {
+      std::fstream file(stream, std::ios::in | std::ios::out | std::ios::binary);
+      file.seekp(300'000);
+      file.put('\x55');
+    }
+    const Ran ran = bench().replay(stage);
+    CHECK(ran.code == 1);
+    CHECK(ran.err.find("error: 1 job failed for good: ") != std::string::npos);
+    CHECK(ran.err.find("000003.stream") != std::string::npos);
+    CHECK_FALSE(fs::exists(stage + ".ply"));
+  }
+}

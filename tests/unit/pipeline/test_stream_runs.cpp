@@ -1,0 +1,178 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+//
+// The stream scheme without its processes: generation, jobs, stitch and finish called in turn.
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+
+#include <doctest/doctest.h>
+
+#include <meshfarm/geometry/distance.hpp>
+#include <meshfarm/geometry/topology.hpp>
+#include <meshfarm/io/mesh_source.hpp>
+#include <meshfarm/pipeline/assemble.hpp>
+#include <meshfarm/pipeline/budget.hpp>
+#include <meshfarm/pipeline/job_table.hpp>
+#include <meshfarm/pipeline/sweep_job.hpp>
+#include <meshfarm/stream/generate_streams.hpp>
+#include <meshfarm/util/errors.hpp>
+
+#include "support/memory_source.hpp"
+#include "support/meshes.hpp"
+#include "support/temp_folder.hpp"
+
+using namespace meshfarm;
+
+namespace {
+
+struct Made {
+  RunSummary summary;
+  Mesh mesh;
+  std::vector<std::string> kinds;  // of the jobs, in order
+};
+
+/// A ring whose one half is rough: the streams deserve very different numbers of triangles.
+Mesh half_rough_torus() {
+  Mesh mesh = test::torus(320, 160);  // 102,400 triangles
+  for (Vec3& p : mesh.positions) {
+    if (p.x > 0) p.z += 0.02 * std::sin(40 * p.x) * std::cos(37 * p.y);
+  }
+  return mesh;
+}
+
+Made simplify(const Mesh& mesh, const StreamOptions& options, const RunOptions& run,
+              const std::filesystem::path& folder) {
+  test::MemorySource source(mesh);
+  const Stage stage = Stage::create(folder);
+  const Manifest manifest = generate_streams(source, stage, options);
+  const JobSource jobs_of = make_job_source(manifest, run);
+  const JobContext context{stage, 1, 7, [](std::uint64_t) { return true; }};
+  Made made;
+  std::vector<AcceptedJob> accepted;
+  for (std::vector<Job> jobs = jobs_of(accepted); !jobs.empty(); jobs = jobs_of(accepted)) {
+    for (const Job& job : jobs) {
+      accepted.push_back({key_of(job), do_job(job, context)});
+      made.kinds.push_back(job.kind);
+    }
+  }
+  const auto output = folder / "out.ply";
+  made.summary = assemble(stage, manifest, run, accepted, {.output = output});
+  made.mesh = read_mesh(*open_mesh(output));
+  return made;
+}
+
+double rms(const Mesh& a, const Mesh& b) {
+  return std::max(measure_distance(a, b, {.samples = 50'000}).rms,
+                  measure_distance(b, a, {.samples = 50'000}).rms);
+}
+
+const StreamOptions k_swept{.streams = 3, .window_triangles = 16'000};
+
+}  // namespace
+
+TEST_CASE("swept streams, climbed streams and the uncut mesh end as good, closed, and exact") {
+  const Mesh mesh = half_rough_torus();
+  const RunOptions run{.triangles = 3000};
+  const test::TempFolder folder;
+  const Made uncut = simplify(mesh, {.streams = 1}, run, folder / "uncut");
+  const Made climbed = simplify(mesh, {.streams = 3}, run, folder / "climbed");
+  const Made swept = simplify(mesh, k_swept, run, folder / "swept");
+  CHECK(climbed.kinds == std::vector<std::string>(3, "simplify"));
+  CHECK(std::count(swept.kinds.begin(), swept.kinds.end(), k_sweep_kind) == 3);
+  for (const Made* made : {&uncut, &climbed, &swept}) {
+    CHECK(made->mesh.triangles.size() == 3000);
+    const Topology t = measure_topology(made->mesh);
+    CHECK(t.euler == 0);
+    CHECK(t.border_edges + t.nonmanifold_edges + t.degenerate + t.duplicate == 0);
+    // Few triangles between seams: the finish cannot mend all. On large meshes it is one per cent.
+    CHECK(rms(mesh, made->mesh) < 1.15 * rms(mesh, uncut.mesh));
+  }
+  CHECK(swept.summary.stitched > 4500);
+  CHECK(swept.summary.error_samples >= 100'000);
+  CHECK(swept.summary.error.rms == doctest::Approx(uncut.summary.error.rms).epsilon(0.05));
+}
+
+TEST_CASE("hardly anything and nearly everything can be kept") {
+  const test::TempFolder folder;
+  const Mesh mesh = half_rough_torus();
+  const Made most = simplify(mesh, k_swept, {.ratio = 0.9}, folder / "most");
+  CHECK(most.mesh.triangles.size() == 92'160);
+  const Made all = simplify(mesh, k_swept, {.ratio = 1}, folder / "all");
+  CHECK(all.mesh.triangles.size() == 102'400);
+  const Made few = simplify(mesh, k_swept, {.triangles = 100}, folder / "few");
+  CHECK(few.mesh.triangles.size() == 100);
+  CHECK(measure_topology(few.mesh).euler == 0);
+}
+
+TEST_CASE("a flat stream is not swept away when detail elsewhere sets the level") {
+  Mesh mesh = test::grid(400, 60);
+  for (Vec3& p : mesh.positions) {
+    if (p.x > 300) p.z = std::sin(p.x * 1.7) * std::cos(p.y * 2.3);
+  }
+  const test::TempFolder folder;
+  const Made made =
+      simplify(mesh, {.streams = 4, .window_triangles = 5000}, {.triangles = 4000}, folder.path());
+  CHECK(made.mesh.triangles.size() == 4000);
+  CHECK(measure_topology(made.mesh).euler == 1);
+  CHECK(rms(mesh, made.mesh) < 0.4);
+}
+
+TEST_CASE("the paper's way: the same ratio everywhere, and no level is looked for") {
+  const test::TempFolder folder;
+  const Made made =
+      simplify(half_rough_torus(), k_swept,
+               {.ratio = 0.05, .allocation = Allocation::uniform, .finish = Finish::boundary},
+               folder.path());
+  CHECK(made.kinds == std::vector<std::string>(3, std::string(k_sweep_kind)));
+  CHECK(measure_topology(made.mesh).euler == 0);
+  CHECK(made.mesh.triangles.size() < 8'000);
+}
+
+TEST_CASE("a bound on the error is kept") {
+  const Mesh mesh = half_rough_torus();
+  const test::TempFolder folder;
+  const RunOptions run{.error = {0.004, false}};
+  const Made made = simplify(mesh, k_swept, run, folder.path());
+  CHECK(made.summary.error.max <= 0.004);
+  CHECK(measure_distance(mesh, made.mesh, {.samples = 50'000}).max < 0.0045);
+  CHECK(made.mesh.triangles.size() < mesh.triangles.size() / 4);
+  CHECK(measure_topology(made.mesh).euler == 0);
+}
+
+TEST_CASE(
+    "a stream that is longer than the memory of its job is read bit by bit, to the same end") {
+  const test::TempFolder folder;
+  test::MemorySource source(half_rough_torus());
+  const Stage stage = Stage::create(folder.path());
+  const Manifest manifest = generate_streams(source, stage, k_swept);
+  const JobContext context{stage, 1, 7, [](std::uint64_t) { return true; }};
+  SweepParameters parameters;
+  parameters.max_cost = 1e-9;
+  parameters.window_triangles = 16'000;
+  Job job{std::string(k_sweep_kind), {manifest.parts[0].file}, encode_parameters(parameters), 1, 0};
+  const JobOutput bit_by_bit = do_job(job, context);
+  job.memory = manifest.parts[0].file.size;
+  CHECK(do_job(job, context).file == bit_by_bit.file);
+
+  std::fstream file(stage.path(StreamName{0}), std::ios::in | std::ios::out | std::ios::binary);
+  file.seekp(static_cast<std::streamoff>(manifest.parts[0].file.size / 2));
+  file.put('\x55');
+  file.close();
+  job.memory = 0;
+  CHECK_THROWS_WITH_AS(do_job(job, context), "streams/000000.stream: block 1: damaged (checksum)",
+                       DataError);
+}
+
+TEST_CASE("a sweep job that makes no sense is refused") {
+  const test::TempFolder folder;
+  const Stage stage = Stage::create(folder.path());
+  const JobContext context{stage, 1, 7, [](std::uint64_t) { return true; }};
+  CHECK_THROWS_AS(do_job({std::string(k_sweep_kind), {}, "", 0, 0}, context), DataError);
+  CHECK_THROWS_AS(decode_sweep_parameters(""), DataError);
+  std::string bytes = encode_parameters(SweepParameters{});
+  CHECK_NOTHROW(decode_sweep_parameters(bytes));
+  CHECK_THROWS_AS(decode_sweep_parameters(bytes + "x"), DataError);
+  bytes[0] = 9;
+  CHECK_THROWS_AS(decode_sweep_parameters(bytes), DataError);
+}
