@@ -22,7 +22,7 @@ int FarmCommand::run() {
   try {
     serve(Stage::open(stage_), stop);
   } catch (const IncompleteError&) {
-    if (supervised_ && stop) return 3;
+    if (supervised_ && (stop || sink_reports_failures())) return 3;
     throw;
   } catch (const DataError&) {
     if (supervised_ && sink_reports_failures()) return 1;

@@ -10,9 +10,8 @@ namespace {
 
 /// Whoever is silent for this many heartbeats is lost.
 constexpr int k_silent_heartbeats = 3;
-/// Attempt numbers go on from epoch to epoch, so that a worker which outlives a ventilator never
-/// publishes two results under one name.
-constexpr std::uint32_t k_attempts_per_epoch = 1000;
+/// A job hangs that has not moved for so many times as long as it should take.
+constexpr int k_hanging_estimates = 3;
 
 }  // namespace
 
@@ -27,11 +26,14 @@ Actions Dispatcher::tick(FarmTime now) {
   const FarmTime patience = k_silent_heartbeats * options_.heartbeat;
   while (!finished_ && !by_heard_.empty() && by_heard_.begin()->first + patience < now_) {
     const WorkerId id = by_heard_.begin()->second;
-    lose(id, "was silent for " + std::to_string(k_silent_heartbeats) + " heartbeats",
-         Blame::first_held);
+    ++lost_workers_;
+    lose(id, "was silent for " + std::to_string(k_silent_heartbeats) + " heartbeats", in_work(id));
   }
   if (!finished_ && sink_ && sink_->heard + patience < now_) lose_sink();
   issue();
+  if (!finished_ && sink_ && sink_->ready) {
+    for (Scheduler::Pick& pick : scheduler_.second_attempts(plan_, now_)) push(std::move(pick));
+  }
   return take();
 }
 
@@ -62,9 +64,11 @@ void Dispatcher::worker_joins(const PeerId& peer, const Hello& hello) {
     return;
   }
   const auto before = by_incarnation_.find(hello.incarnation);
-  if (before != by_incarnation_.end()) lose(before->second, "joined again", Blame::none);
+  if (before != by_incarnation_.end()) lose(before->second, "joined again", {});
   if (const auto charge = charges_.find(hello.incarnation); charge != charges_.end()) {
-    plan_.forgive(charge->second.key, charge->second.reason);  // it lives: no job has killed it
+    for (const Charge& each : charge->second) {  // it lives: no job has killed it
+      plan_.forgive(each.key, each.reason);
+    }
     charges_.erase(charge);
   }
   const WorkerId id{next_worker_++};
@@ -72,11 +76,13 @@ void Dispatcher::worker_joins(const PeerId& peer, const Hello& hello) {
   worker.peer = peer;
   worker.incarnation = hello.incarnation;
   worker.host = hello.host;
+  worker.pid = hello.pid;
   worker.capacity = hello.capacity;
   worker.heard = now_;
   by_peer_[peer] = id;
   by_incarnation_[hello.incarnation] = id;
   by_heard_.insert({now_, id});
+  scheduler_.join(id, hello.host, hello.capacity);
   out_.push_back(OpenLane{id});
 }
 
@@ -93,7 +99,7 @@ Actions Dispatcher::lane_failed(WorkerId id, const std::string& reason) {
   const auto found = workers_.find(id);
   if (found != workers_.end()) {
     send(found->second.peer, Refused{Refusal::full, clipped(reason)});
-    lose(id, reason, Blame::none);
+    lose(id, reason, {});
   }
   return take();
 }
@@ -140,8 +146,10 @@ void Dispatcher::on(const PeerId& peer, const Heartbeat& beat) {
   const bool unreceived = beat.received < worker->sent;
   if (unreceived && worker->pushed + k_silent_heartbeats * options_.heartbeat < now_) {
     send(peer, Refused{Refusal::stranger, "the lane lost jobs; say hello for another"});
-    return lose(beat.worker, "its lane lost jobs", Blame::none);
+    return lose(beat.worker, "its lane lost jobs", {});
   }
+  worker->beat = beat;
+  if (hangs(beat.worker, *worker)) return lose_hanging(beat.worker);
   send(peer, Alive{options_.epoch, sink_ ? sink_->results : std::string()});
   if (over_) send(peer, Stop{StopReason::run_over});
 }
@@ -150,14 +158,14 @@ void Dispatcher::on(const PeerId& peer, const Credit& credit) {
   Worker* worker = worker_at(peer, credit.worker, credit.epoch);
   if (worker == nullptr || credit.up_to <= worker->credit) return;
   worker->credit = credit.up_to;
-  rank(credit.worker, *worker);
+  set_room(credit.worker);
   issue();
 }
 
 void Dispatcher::on(const PeerId& peer, const Release& release) {
   Worker* worker = worker_at(peer, release.worker, release.epoch);
   if (worker == nullptr) return;
-  lose(release.worker, "left", Blame::none);
+  lose(release.worker, "left", {});
 }
 
 Dispatcher::Worker* Dispatcher::worker_at(const PeerId& peer, WorkerId id, std::uint32_t epoch) {
@@ -177,25 +185,71 @@ void Dispatcher::hear(WorkerId id, Worker& worker) {
   by_heard_.insert({now_, id});
 }
 
-void Dispatcher::lose(WorkerId id, const std::string& reason, Blame blame) {
+/// Whether a job in work here stands still for too long.
+bool Dispatcher::hangs(WorkerId id, const Worker& worker) const {
+  const Heartbeat& beat = worker.beat;
+  if (FarmTime(beat.still_ms) < options_.hang) return false;
+  if (beat.in_storage) return !storage_stalls();
+  double seconds = 0;
+  for (const Scheduler::Held& held : scheduler_.held(id)) {
+    if (held.key == beat.still) seconds = static_cast<double>(held.cost) / scheduler_.speed(id);
+  }
+  return beat.still_ms > k_hanging_estimates * 1000 * seconds;
+}
+
+/// Whether most of those who work wait for the stage: then it is the storage that is away, and no
+/// other worker could do better.
+bool Dispatcher::storage_stalls() const {
+  std::size_t working = 0;
+  std::size_t waiting = 0;
+  for (const auto& [id, worker] : workers_) {
+    working += worker.beat.held > 0 ? 1 : 0;
+    waiting += worker.beat.in_storage && FarmTime(worker.beat.still_ms) >= options_.hang / 2;
+  }
+  return 2 * waiting > working;
+}
+
+void Dispatcher::lose_hanging(WorkerId id) {
+  const Worker& worker = workers_.at(id);
+  const Heartbeat beat = worker.beat;
+  const std::string stood = " stood still for " + std::to_string(beat.still_ms / 1000) + " s";
+  send(worker.peer, Stop{StopReason::hung});
+  ++lost_workers_;
+  if (beat.in_storage) {
+    scheduler_.failed_on(id, beat.still);
+    lose(id, "waited for the stage and" + stood, {});
+  } else {
+    lose(id, "computed and" + stood, {beat.still});
+  }
+}
+
+std::vector<JobKey> Dispatcher::in_work(WorkerId id) const {
+  std::vector<JobKey> keys;
+  for (const Scheduler::Held& held : scheduler_.held(id)) {
+    if (keys.size() < scheduler_.in_work(id)) keys.push_back(held.key);
+  }
+  return keys;
+}
+
+/// `suspects` are the jobs that may have cost the worker its life.
+void Dispatcher::lose(WorkerId id, const std::string& reason, const std::vector<JobKey>& suspects) {
   const Worker worker = std::move(workers_.at(id));
   workers_.erase(id);
   by_peer_.erase(worker.peer);
   by_incarnation_.erase(worker.incarnation);
   by_heard_.erase({worker.heard, id});
-  if (worker.willing) willing_.erase({*worker.willing, id});
   out_.push_back(CloseLane{id});
-  if (blame != Blame::none) ++lost_workers_;
-  for (const Held& held : worker.held) {
-    holder_.erase(held.key);
-    if (blame == Blame::first_held && &held == &worker.held.front()) {
-      const std::string why =
-          "worker " + std::to_string(id.value) + " on " + worker.host + " " + reason;
-      charges_[worker.incarnation] = {held.key, why};
-      fail(held.key, why, false);
-    } else {
+  const std::string why =
+      "worker " + std::to_string(id.value) + " on " + worker.host + " " + reason;
+  for (const JobKey key : suspects) scheduler_.failed_on(id, key);
+  for (const Scheduler::Held& held : scheduler_.leave(id)) {
+    if (std::find(suspects.begin(), suspects.end(), held.key) == suspects.end()) {
       plan_.give_back(held.key);
+      continue;
     }
+    charges_[worker.incarnation].push_back({held.key, why});
+    scheduler_.suspect(held.key);
+    fail(held.key, why, Failing::worker_lost);
   }
   issue();
   look_for_end();
@@ -206,158 +260,6 @@ void Dispatcher::lose_sink() {
   to_workers(SinkAt{});
 }
 
-// --- what the sink says
-
-bool Dispatcher::from_sink(const PeerId& peer, std::uint32_t epoch) {
-  if (!sink_ || sink_->peer != peer || epoch != options_.epoch) {
-    ++dropped_;
-    return false;
-  }
-  sink_->heard = now_;
-  return true;
-}
-
-void Dispatcher::on(const PeerId& peer, const Accept& accept) {
-  if (!from_sink(peer, accept.epoch)) return;
-  if (!sink_->ready) {
-    sink_->told[accept.key] = accept.output;
-  } else {
-    plan_.accept(accept.key, accept.output);
-  }
-  settle(accept.key, accept.worker);
-  issue();
-  look_for_end();
-}
-
-void Dispatcher::on(const PeerId& peer, const Reject& reject) {
-  if (!from_sink(peer, reject.epoch)) return;
-  const auto holder = holder_.find(reject.key);
-  bool current = false;
-  if (holder != holder_.end() && holder->second == reject.worker) {
-    const auto& held = workers_.at(reject.worker).held;
-    current = std::any_of(held.begin(), held.end(), [&](const Held& each) {
-      return each.key == reject.key && each.attempt == reject.attempt;
-    });
-  }
-  const bool for_good = reject.failure.kind == FailureKind::for_good;
-  if (current || for_good) {
-    fail(reject.key, reject.failure.reason, for_good);
-    settle(reject.key, reject.worker);
-  } else if (const auto reporter = workers_.find(reject.worker); reporter != workers_.end()) {
-    send(reporter->second.peer, Done{reject.key, reject.attempt});
-  }
-  issue();
-  look_for_end();
-}
-
-void Dispatcher::on(const PeerId& peer, const Ready& ready) {
-  if (!from_sink(peer, ready.epoch) || sink_->ready) return;
-  if (ready.accepted != sink_->told.size()) {
-    send(peer, Refused{Refusal::stranger, "some of what was accepted got lost; say hello again"});
-    return lose_sink();
-  }
-  sink_->ready = true;
-  plan_.restart(std::exchange(sink_->told, {}));
-  over_ = over_ && plan_.complete();  // a sink that lost results needs workers again
-  for (const LostJob& lost : plan_.lost()) send(peer, JobFailed{lost.key, clipped(lost.reasons)});
-  issue();
-  look_for_end();
-}
-
-void Dispatcher::on(const PeerId& peer, const Complete& complete) {
-  if (!from_sink(peer, complete.epoch) || !plan_.complete()) return;
-  finish({});
-}
-
-void Dispatcher::on(const PeerId& peer, const Failed& failed) {
-  if (from_sink(peer, failed.epoch)) finish("the sink failed: " + failed.reason);
-}
-
-// --- jobs
-
-std::uint32_t Dispatcher::attempt_number(std::uint32_t attempt) const {
-  return k_attempts_per_epoch * (options_.epoch - 1) + attempt;
-}
-
-/// Nobody needs the attempts made so far any more: who reported one and who holds one may forget
-/// it.
-void Dispatcher::settle(JobKey key, WorkerId reporter) {
-  const Done done{key, attempt_number(plan_.attempts(key))};
-  const auto told = workers_.find(reporter);
-  if (told != workers_.end()) send(told->second.peer, done);
-  const auto holder = holder_.find(key);
-  if (holder == holder_.end()) return;
-  if (holder->second != reporter) send(workers_.at(holder->second).peer, done);
-  const WorkerId id = holder->second;
-  Worker& worker = workers_.at(id);
-  holder_.erase(holder);
-  std::erase_if(worker.held, [&](const Held& held) { return held.key == key; });
-  rank(id, worker);
-  plan_.give_back(key);  // where the plan does not call it done or failed: nobody runs it now
-}
-
-void Dispatcher::fail(JobKey key, const std::string& reason, bool for_good) {
-  const bool was_failed = plan_.state(key) == JobState::failed;
-  plan_.fail_attempt(key, reason, for_good);
-  if (was_failed || plan_.state(key) != JobState::failed || !sink_ || !sink_->ready) return;
-  for (const LostJob& lost : plan_.lost()) {
-    if (lost.key == key) send(sink_->peer, JobFailed{key, clipped(lost.reasons)});
-  }
-}
-
-void Dispatcher::rank(WorkerId id, Worker& worker) {
-  if (worker.willing) willing_.erase({*worker.willing, id});
-  worker.willing.reset();
-  if (worker.lane.empty() || worker.sent >= worker.credit) return;
-  worker.willing = worker.held.size();
-  willing_.insert({*worker.willing, id});
-}
-
-void Dispatcher::issue() {
-  while (!finished_ && sink_ && sink_->ready && !willing_.empty() && plan_.counts().ready > 0) {
-    // Near the end of a round nobody hoards: the fewer jobs are left, the fewer each may hold.
-    const std::size_t fair = 1 + plan_.counts().ready / workers_.size();
-    const auto [laden, id] = *willing_.begin();
-    if (laden >= fair) return;
-    Worker& worker = workers_.at(id);
-    IssuedJob issued = *plan_.issue();
-    const std::uint32_t attempt = attempt_number(issued.attempt);
-    worker.held.push_back({issued.key, attempt});
-    worker.pushed = now_;
-    ++worker.sent;
-    holder_[issued.key] = id;
-    rank(id, worker);
-    out_.push_back(PushJob{
-        id, Assignment{options_.run, options_.epoch, worker.sent, attempt, std::move(issued.job)}});
-  }
-}
-
-void Dispatcher::look_for_end() {
-  if (finished_ || over_) return;
-  if (plan_.complete()) {
-    over_ = true;
-    to_workers(Stop{StopReason::run_over});
-  } else if (plan_.stuck()) {
-    std::vector<std::string> reasons;
-    for (const LostJob& lost : plan_.lost()) {
-      reasons.push_back(lost.kind + " " + to_hex(lost.key.value) + ": " + lost.reasons);
-    }
-    finish(failed_for_good(reasons));
-  }
-}
-
-void Dispatcher::finish(const std::string& failure) {
-  over_ = true;
-  to_workers(Stop{StopReason::run_over});
-  if (sink_) send(sink_->peer, Stop{StopReason::run_over});
-  finished_ = true;
-  out_.push_back(Finish{failure});
-}
-
-void Dispatcher::to_workers(const Message& message) {
-  for (const auto& [id, worker] : workers_) send(worker.peer, message);
-}
-
 FarmProgress Dispatcher::progress() const {
   const PlanCounts& counts = plan_.counts();
   FarmProgress progress;
@@ -366,11 +268,27 @@ FarmProgress Dispatcher::progress() const {
   progress.cost_done = counts.cost_done;
   progress.cost_known = counts.cost_known;
   progress.jobs_running = counts.running;
+  progress.jobs_failed = counts.failed;
   progress.workers = static_cast<std::uint32_t>(workers_.size());
   progress.workers_lost = lost_workers_;
   progress.retries = counts.retries;
   progress.sink_present = sink_.has_value();
+  if (const auto memory = scheduler_.greatest_memory()) {
+    progress.jobs_too_big = plan_.ready_above(*memory);
+  }
+  progress.bad_hosts = scheduler_.bad_hosts();
+  progress.storage_stalls = storage_stalls();
   return progress;
+}
+
+std::vector<WorkerStatus> Dispatcher::workers() const {
+  std::vector<WorkerStatus> all;
+  for (const auto& [id, worker] : workers_) {
+    all.push_back({id, worker.host, worker.pid, worker.capacity, scheduler_.speed(id),
+                   static_cast<std::uint32_t>(scheduler_.held(id).size()), worker.beat.rss_bytes,
+                   now_ - worker.heard});
+  }
+  return all;
 }
 
 }  // namespace meshfarm

@@ -6,6 +6,13 @@
 #include <meshfarm/farm/plan.hpp>
 
 namespace meshfarm {
+namespace {
+
+/// So many jobs that will not do are looked at in a row before another order is tried.
+constexpr int k_tries = 256;
+constexpr std::uint64_t k_last = std::numeric_limits<std::uint64_t>::max();
+
+}  // namespace
 
 bool Plan::ReadyJob::operator<(const ReadyJob& other) const {
   // The largest first, so that the last jobs of a round are short; then as asked for.
@@ -17,6 +24,7 @@ void Plan::restart(const std::map<JobKey, JobOutput>& accepted) {
   for (const JobKey key : wanted_) entries_.at(key).wanted = false;
   wanted_.clear();
   ready_.clear();
+  by_memory_.clear();
   counts_ = {.retries = counts_.retries};
   rounds_ = Rounds(source_);
   started_ = true;
@@ -43,37 +51,82 @@ void Plan::advance(const std::map<JobKey, JobOutput>& accepted) {
         entry.state = JobState::done;
         counts_.cost_done += entry.job.cost;
       }
+      if (entry.state == JobState::ready) add_ready(key, entry);
       ++count_of(entry.state);
-      if (entry.state == JobState::ready) ready_.insert({entry.job.cost, entry.order, key});
     }
   }
 }
 
-std::optional<IssuedJob> Plan::issue() {
-  if (ready_.empty()) return std::nullopt;
-  const JobKey key = ready_.begin()->key;
+std::optional<IssuedJob> Plan::issue(const JobChoice& choice) {
+  const ReadyJob* chosen = choose(choice);
+  if (chosen == nullptr) return std::nullopt;
+  return issue(chosen->key);
+}
+
+IssuedJob Plan::issue(JobKey key) {
   Entry& entry = entries_.at(key);
+  assert(entry.state == JobState::ready || entry.state == JobState::running);
   move_to(key, entry, JobState::running);
+  ++entry.live;
   ++entry.attempts;
   if (entry.attempts > 1) ++counts_.retries;
   return IssuedJob{key, entry.attempts, entry.job};
 }
 
-void Plan::give_back(JobKey key) {
-  const auto found = entries_.find(key);
-  if (found == entries_.end() || found->second.state != JobState::running) return;
-  move_to(key, found->second, JobState::ready);
+const Plan::ReadyJob* Plan::choose(const JobChoice& choice) const {
+  const auto will_do = [&](const ReadyJob& job) {
+    return job.cost <= choice.max_cost && job.memory <= choice.max_memory &&
+           (!choice.may || choice.may(job.key));
+  };
+  int tries = 0;
+  for (auto at = ready_.lower_bound({choice.max_cost, 0, {}, 0}); at != ready_.end(); ++at) {
+    if (will_do(*at)) return &*at;
+    if (++tries == k_tries) break;
+  }
+  if (tries < k_tries) return nullptr;
+  auto at = by_memory_.upper_bound({choice.max_memory, ReadyJob{0, k_last, {}, 0}});
+  for (tries = 0; at != by_memory_.begin() && tries < k_tries; ++tries) {
+    if (will_do((--at)->second)) return &at->second;
+  }
+  return nullptr;
 }
 
-void Plan::fail_attempt(JobKey key, const std::string& reason, bool for_good) {
+std::vector<JobKey> Plan::ready_jobs() const {
+  std::vector<JobKey> jobs;
+  for (const ReadyJob& job : ready_) jobs.push_back(job.key);
+  return jobs;
+}
+
+std::uint64_t Plan::ready_above(std::uint64_t memory) const {
+  std::uint64_t count = 0;
+  for (auto at = by_memory_.rbegin(); at != by_memory_.rend() && at->first > memory; ++at) ++count;
+  return count;
+}
+
+void Plan::give_back(JobKey key) {
+  const auto found = entries_.find(key);
+  if (found == entries_.end() || found->second.live == 0) return;
+  --found->second.live;
+  if (found->second.state == JobState::running && found->second.live == 0) {
+    move_to(key, found->second, JobState::ready);
+  }
+}
+
+void Plan::fail_attempt(JobKey key, const std::string& reason, Failing failing) {
   const auto found = entries_.find(key);
   if (found == entries_.end()) return;
   Entry& entry = found->second;
+  const bool for_good = failing == Failing::for_good;
   const bool open = entry.state == JobState::running || entry.state == JobState::ready;
+  if (entry.live > 0) --entry.live;
   if (!open || (entry.state == JobState::ready && !for_good)) return;
   entry.failures.push_back(reason);
-  const bool give_up = for_good || entry.failures.size() >= max_attempts_;
-  move_to(key, entry, give_up ? JobState::failed : JobState::ready);
+  entry.resumable = failing == Failing::worker_lost;
+  if (for_good || entry.failures.size() >= max_attempts_) {
+    move_to(key, entry, JobState::failed);
+  } else if (entry.live == 0) {
+    move_to(key, entry, JobState::ready);
+  }
 }
 
 void Plan::forgive(JobKey key, const std::string& reason) {
@@ -120,7 +173,7 @@ std::vector<LostJob> Plan::lost() const {
       if (!reasons.empty()) reasons += "; ";
       reasons += *at;
     }
-    lost.push_back({key, entry.job.kind, reasons});
+    lost.push_back({key, entry.job.kind, reasons, entry.resumable});
   }
   return lost;
 }
@@ -144,11 +197,24 @@ void Plan::move_to(JobKey key, Entry& entry, JobState state) {
     assert(count_of(entry.state) > 0);
     --count_of(entry.state);
     ++count_of(state);
-    const ReadyJob place{entry.job.cost, entry.order, key};
-    if (entry.state == JobState::ready) ready_.erase(place);
-    if (state == JobState::ready) ready_.insert(place);
+    if (entry.state == JobState::ready) remove_ready(key, entry);
+    if (state == JobState::ready) add_ready(key, entry);
   }
   entry.state = state;
+}
+
+void Plan::add_ready(JobKey key, const Entry& entry) {
+  const ReadyJob job{entry.job.cost, entry.order, key, entry.job.memory};
+  ready_.insert(job);
+  if (job.memory != 0) by_memory_.insert({job.memory, job});
+  counts_.cost_ready += job.cost;
+}
+
+void Plan::remove_ready(JobKey key, const Entry& entry) {
+  const ReadyJob job{entry.job.cost, entry.order, key, entry.job.memory};
+  ready_.erase(job);
+  if (job.memory != 0) by_memory_.erase({job.memory, job});
+  counts_.cost_ready -= job.cost;
 }
 
 std::uint64_t& Plan::count_of(JobState state) {

@@ -103,7 +103,7 @@ void SimulatedFarm::sink_act(MakeOutput&) {
         checks_.that(folder_.has_whole(each.output.file.name), "an accepted file is not there");
       }
       result_.outputs.assign(made.begin(), made.end());
-      sink_does(sink_.core->completed("", farm_now()));
+      sink_does(sink_.core->completed({}, farm_now()));
     });
   });
 }

@@ -52,7 +52,7 @@ class SinkLoop {
       turn();
     }
     tell_of_strangers(gate_.refused(), garbage_);
-    if (problem_) std::rethrow_exception(problem_);
+    if (problem_ && left_->why != SinkLeaves::Why::incomplete) std::rethrow_exception(problem_);
     switch (left_->why) {
       case SinkLeaves::Why::complete:
         if (!left_->message.empty()) log_warning(left_->message);
@@ -132,7 +132,7 @@ class SinkLoop {
 
   void disk_answers(FarmTime now) {
     if (std::exchange(making_output_, false)) {
-      return perform(core_.completed(problem_ ? what(problem_) : std::string(), now));
+      return perform(core_.completed(problem_ ? what(problem_) : SinkProblem{}, now));
     }
     if (problem_) return perform(core_.fail(what(problem_)));
     for (const Checked& each : std::exchange(batch_, {})) {
@@ -141,13 +141,18 @@ class SinkLoop {
     }
   }
 
-  static std::string what(const std::exception_ptr& problem) {
+  static SinkProblem what(const std::exception_ptr& problem) {
     try {
       std::rethrow_exception(problem);
+    } catch (const IoError& error) {
+      if (!is_no_space(error)) return {error.what(), false};
+      return {std::string(error.what()) +
+                  "; what is done is kept: make room, then run the same command again",
+              true};
     } catch (const std::exception& error) {
-      return error.what();
+      return {error.what(), false};
     } catch (...) {
-      return "an unknown exception";
+      return {"an unknown exception", false};
     }
   }
 

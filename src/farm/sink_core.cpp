@@ -27,7 +27,7 @@ SinkActions SinkCore::tick(FarmTime now) {
     leave(SinkLeaves::Why::complete, "no ventilator acknowledged the end");
   }
   if (phase_ == Phase::saying_failed && say_until_ < now) {
-    leave(SinkLeaves::Why::output_failed, problem_);
+    leave_for_problem();
   }
   return take();
 }
@@ -43,7 +43,7 @@ SinkActions SinkCore::found(std::span<const Endpoint> endpoints, FarmTime now) {
 SinkActions SinkCore::on_control(const Message& message, FarmTime now) {
   if (phase_ == Phase::left) return take();
   on(member_.on_message(message, now), now);
-  if (const auto* failed = std::get_if<JobFailed>(&message)) failed_[failed->key] = failed->reason;
+  if (const auto* failed = std::get_if<JobFailed>(&message)) failed_[failed->key] = *failed;
   return take();
 }
 
@@ -72,12 +72,12 @@ void SinkCore::on(Membership::Event event, FarmTime now) {
 void SinkCore::run_over() {
   switch (phase_) {
     case Phase::collecting:
-      if (!failed_.empty()) return leave(SinkLeaves::Why::jobs_failed, list_failed());
+      if (!failed_.empty()) return leave_for_failed_jobs();
       return leave(SinkLeaves::Why::incomplete, "the ventilator ended the run before its end");
     case Phase::saying_complete:
       return leave(SinkLeaves::Why::complete, {});
     case Phase::saying_failed:
-      return leave(SinkLeaves::Why::output_failed, problem_);
+      return leave_for_problem();
     case Phase::making_output:
     case Phase::left:
       return;
@@ -158,7 +158,9 @@ void SinkCore::tell_all() {
 void SinkCore::say_where_it_stands() {
   say(Ready{member_.epoch(), accepted_.size()});
   if (phase_ == Phase::saying_complete) say(Complete{member_.epoch()});
-  if (phase_ == Phase::saying_failed) say(Failed{member_.epoch(), clipped(problem_)});
+  if (phase_ == Phase::saying_failed) {
+    say(Failed{member_.epoch(), clipped(problem_.text), problem_.resumable});
+  }
 }
 
 void SinkCore::tell(JobKey key, WorkerId worker, const JobTimes& times) {
@@ -166,22 +168,22 @@ void SinkCore::tell(JobKey key, WorkerId worker, const JobTimes& times) {
   say(Accept{member_.epoch(), worker, key, *rounds_.accepted(key), times});
 }
 
-SinkActions SinkCore::completed(const std::string& problem, FarmTime now) {
+SinkActions SinkCore::completed(const SinkProblem& problem, FarmTime now) {
   if (phase_ == Phase::left) return take();
   say_until_ = now + member_.options().patience;
   phase_ = Phase::saying_complete;
-  if (!problem.empty()) return fail(problem);
+  if (!problem.text.empty()) return fail(problem);
   if (told_all_) say_where_it_stands();
   return take();
 }
 
-SinkActions SinkCore::fail(const std::string& problem) {
+SinkActions SinkCore::fail(const SinkProblem& problem) {
   problem_ = problem;
   phase_ = Phase::saying_failed;
   if (told_all_) {
     say_where_it_stands();
   } else {
-    leave(SinkLeaves::Why::output_failed, problem);
+    leave_for_problem();
   }
   return take();
 }
@@ -199,10 +201,26 @@ void SinkCore::leave(SinkLeaves::Why why, std::string message) {
   act(SinkLeaves{why, std::move(message)});
 }
 
-std::string SinkCore::list_failed() const {
+void SinkCore::leave_for_failed_jobs() {
+  const auto whole_run = failed_.find(k_whole_run);
+  if (whole_run != failed_.end()) {
+    return leave(
+        whole_run->second.resumable ? SinkLeaves::Why::incomplete : SinkLeaves::Why::jobs_failed,
+        whole_run->second.reason);
+  }
   std::vector<std::string> reasons;
-  for (const auto& [key, reason] : failed_) reasons.push_back(to_hex(key.value) + ": " + reason);
-  return failed_for_good(reasons);
+  bool resumable = true;
+  for (const auto& [key, failed] : failed_) {
+    reasons.push_back(to_hex(key.value) + ": " + failed.reason);
+    resumable = resumable && failed.resumable;
+  }
+  leave(resumable ? SinkLeaves::Why::incomplete : SinkLeaves::Why::jobs_failed,
+        failed_for_good(reasons));
+}
+
+void SinkCore::leave_for_problem() {
+  leave(problem_.resumable ? SinkLeaves::Why::incomplete : SinkLeaves::Why::output_failed,
+        problem_.text);
 }
 
 SinkActions SinkCore::take() {

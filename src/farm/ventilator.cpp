@@ -47,8 +47,9 @@ class VentilatorLoop {
         gate_(context_, keys_),
         control_(make_control_server(context_, keys_)),
         endpoint_(announce()),
-        dispatcher_(Plan(checked_source(source), options.max_attempts),
-                    {options.run, endpoint_.epoch, options.heartbeat}) {}
+        dispatcher_(
+            Plan(checked_source(source), options.max_attempts),
+            {options.run, endpoint_.epoch, options.heartbeat, options.hang, options.schedule}) {}
 
   FarmProgress run() {
     while (!end_) {
@@ -61,8 +62,8 @@ class VentilatorLoop {
     }
     if (options_.progress) options_.progress(progress());
     tell_of_strangers(gate_.refused(), garbage_);
-    // Workers that were just about to join, or missed the word, see here that the run is over.
-    publish_endpoint(stage_, {0, options_.run, {}, endpoint_.host, endpoint_.pid, {}}, unique_);
+    say_over();
+    if (end_->resumable) throw IncompleteError(end_->failure);
     if (!end_->failure.empty()) throw DataError(end_->failure);
     return progress();
   }
@@ -72,6 +73,15 @@ class VentilatorLoop {
     zmq::socket_t socket;
     std::deque<Message> waiting;  // until the worker has connected
   };
+
+  /// Workers that were just about to join, or missed the word, see here that the run is over.
+  void say_over() {
+    try {
+      publish_endpoint(stage_, {0, options_.run, {}, endpoint_.host, endpoint_.pid, {}}, unique_);
+    } catch (const IoError& error) {
+      log_warning("late workers cannot be told that the run is over: " + std::string(error.what()));
+    }
+  }
 
   Endpoint announce() {
     Endpoint endpoint;

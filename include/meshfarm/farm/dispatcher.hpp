@@ -14,6 +14,7 @@
 
 #include <meshfarm/farm/plan.hpp>
 #include <meshfarm/farm/protocol.hpp>
+#include <meshfarm/farm/scheduler.hpp>
 #include <meshfarm/farm/ventilator.hpp>
 
 namespace meshfarm {
@@ -36,9 +37,11 @@ struct PushJob {
   WorkerId worker;
   Assignment assignment;
 };
-/// The ventilator's work is over; `failure` says why the run could not be completed.
+/// The ventilator's work is over; `failure` says why the run could not be completed, and
+/// `resumable` that the same run may be, later.
 struct Finish {
   std::string failure;
+  bool resumable = false;
 };
 using Action = std::variant<SendTo, OpenLane, CloseLane, PushJob, Finish>;
 using Actions = std::vector<Action>;
@@ -47,14 +50,19 @@ struct DispatcherOptions {
   std::uint64_t run = 0;
   std::uint32_t epoch = 0;
   FarmTime heartbeat{1000};
+  /// A job that makes no progress for so long, and for three times its estimate, hangs.
+  FarmTime hang{30'000};
+  SchedulerOptions schedule = {};
 };
 
-/// The ventilator's mind: who is there, who holds what, who gets what. Pure: fed with messages and
-/// the time, it answers with what to do, in order; the simulator runs the same class.
-/// Holds: a worker is never sent a job beyond its credit, nor one while another holds it.
+/// The ventilator's mind: who is there, and who holds what; the Scheduler says who gets what. Pure:
+/// fed with messages and the time, it answers with what to do, in order; the simulator runs the
+/// same class. Holds: a worker is never sent a job beyond its credit or its memory, and no job is
+/// held by more than two.
 class Dispatcher {
  public:
-  Dispatcher(Plan plan, DispatcherOptions options) : plan_(std::move(plan)), options_(options) {}
+  Dispatcher(Plan plan, DispatcherOptions options)
+      : plan_(std::move(plan)), options_(options), scheduler_(options.schedule) {}
 
   Actions on_message(const PeerId& peer, const Message& message, FarmTime now);
   Actions lane_opened(WorkerId id, const std::string& address);
@@ -65,19 +73,18 @@ class Dispatcher {
   Actions leave();
 
   const Plan& plan() const { return plan_; }
+  const Scheduler& scheduler() const { return scheduler_; }
   FarmProgress progress() const;
+  std::vector<WorkerStatus> workers() const;
   /// Jobs that a worker holds.
-  std::uint64_t holding() const { return holder_.size(); }
+  std::uint64_t holding() const { return scheduler_.jobs_held(); }
   std::uint64_t dropped() const { return dropped_; }
 
  private:
-  struct Held {
-    JobKey key;
-    std::uint32_t attempt = 0;
-  };
   struct Worker {
     PeerId peer;
     std::uint64_t incarnation = 0;
+    std::uint32_t pid = 0;
     std::string host;
     Capacity capacity;
     std::string lane;  // empty until it is open
@@ -85,8 +92,7 @@ class Dispatcher {
     FarmTime pushed{0};
     std::uint64_t credit = 0;
     std::uint64_t sent = 0;
-    std::vector<Held> held;              // as sent; the first is the one in work
-    std::optional<std::size_t> willing;  // its rank in willing_
+    Heartbeat beat;  // the last
   };
   struct Sink {
     PeerId peer;
@@ -96,7 +102,6 @@ class Dispatcher {
     bool ready = false;
     std::map<JobKey, JobOutput> told;
   };
-  enum class Blame { none, first_held };
   /// A job held to have cost a worker its life.
   struct Charge {
     JobKey key;
@@ -123,15 +128,22 @@ class Dispatcher {
   Worker* worker_at(const PeerId& peer, WorkerId id, std::uint32_t epoch);
   bool from_sink(const PeerId& peer, std::uint32_t epoch);
   void hear(WorkerId id, Worker& worker);
-  void lose(WorkerId id, const std::string& reason, Blame blame);
+  bool hangs(WorkerId id, const Worker& worker) const;
+  bool storage_stalls() const;
+  void lose_hanging(WorkerId id);
+  void lose(WorkerId id, const std::string& reason, const std::vector<JobKey>& suspects);
+  std::vector<JobKey> in_work(WorkerId id) const;
   void lose_sink();
   std::uint32_t attempt_number(std::uint32_t attempt) const;
   void settle(JobKey key, WorkerId reporter);
-  void fail(JobKey key, const std::string& reason, bool for_good);
-  void rank(WorkerId id, Worker& worker);
+  void drop(WorkerId holder, JobKey key);
+  void reject_attempt(const Reject& reject);
+  void fail(JobKey key, const std::string& reason, Failing failing);
+  void set_room(WorkerId id);
   void issue();
+  void push(Scheduler::Pick pick);
   void look_for_end();
-  void finish(const std::string& failure);
+  void finish(const std::string& failure, bool resumable);
   void to_workers(const Message& message);
   void send(const PeerId& peer, Message message) {
     out_.push_back(SendTo{peer, std::move(message)});
@@ -140,6 +152,7 @@ class Dispatcher {
 
   Plan plan_;
   DispatcherOptions options_;
+  Scheduler scheduler_;
   FarmTime now_{0};
   Actions out_;
   std::uint32_t next_worker_ = 1;
@@ -147,9 +160,7 @@ class Dispatcher {
   std::unordered_map<PeerId, WorkerId> by_peer_;
   std::unordered_map<std::uint64_t, WorkerId> by_incarnation_;
   std::set<std::pair<FarmTime, WorkerId>> by_heard_;
-  std::set<std::pair<std::size_t, WorkerId>> willing_;  // may be sent a job; the least laden first
-  std::unordered_map<JobKey, WorkerId, JobKeyHash> holder_;
-  std::unordered_map<std::uint64_t, Charge> charges_;  // by the lost worker's incarnation
+  std::unordered_map<std::uint64_t, std::vector<Charge>> charges_;  // by the lost one's incarnation
   std::optional<Sink> sink_;
   std::uint64_t last_sink_ = 0;  // incarnation
   std::set<std::uint64_t> replaced_sinks_;

@@ -3,12 +3,15 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
+#include <limits>
 #include <map>
 #include <optional>
 #include <set>
 #include <span>
 #include <string>
 #include <unordered_map>
+#include <utility>
 #include <vector>
 
 #include <meshfarm/farm/job.hpp>
@@ -30,7 +33,18 @@ struct LostJob {
   JobKey key;
   std::string kind;
   std::string reasons;
+  bool resumable = false;  // only because workers were lost over it
 };
+
+/// Which of the ready jobs will do.
+struct JobChoice {
+  std::uint64_t max_cost = std::numeric_limits<std::uint64_t>::max();
+  std::uint64_t max_memory = std::numeric_limits<std::uint64_t>::max();
+  std::function<bool(JobKey)> may = {};  // empty: any
+};
+
+/// What an attempt that failed says of its job. worker_lost: the worker was, and the job in work.
+enum class Failing { attempt, for_good, worker_lost };
 
 /// One line that tells of jobs given up: how many, and the reasons of the first few.
 std::string failed_for_good(std::span<const std::string> reasons);
@@ -42,6 +56,7 @@ struct PlanCounts {
   std::uint64_t failed = 0;
   std::uint64_t cost_done = 0;
   std::uint64_t cost_known = 0;
+  std::uint64_t cost_ready = 0;
   std::uint32_t retries = 0;
 };
 
@@ -58,13 +73,17 @@ class Plan {
   void restart(const std::map<JobKey, JobOutput>& accepted);
   bool started() const { return started_; }
 
-  /// The ready job of the largest cost becomes running, under an attempt number of its own.
-  std::optional<IssuedJob> issue();
-  /// A running job that nobody will do (its worker left before it began) is ready again.
+  /// The ready job of the largest cost among those that will do becomes running, under an attempt
+  /// number of its own. (Where very many do not, one of the most memory that does.)
+  std::optional<IssuedJob> issue(const JobChoice& choice = {});
+  /// This job, which is ready; or one more attempt at it if it is running.
+  IssuedJob issue(JobKey key);
+  /// An attempt that nobody makes any more (its worker left before it began). A running job is
+  /// ready again after the last.
   void give_back(JobKey key);
-  /// An attempt at a running job failed: it is ready again, or given up. `for_good` gives it up
-  /// whatever its state, unless it is done.
-  void fail_attempt(JobKey key, const std::string& reason, bool for_good);
+  /// An attempt at a running job failed: after the last it is ready again, or given up. for_good
+  /// gives it up whatever its state, unless it is done.
+  void fail_attempt(JobKey key, const std::string& reason, Failing failing);
   /// Takes a failure back that turned out to be none; a job given up for it is ready again.
   void forgive(JobKey key, const std::string& reason);
   /// False if the job is not wanted or done already.
@@ -72,6 +91,12 @@ class Plan {
 
   /// Nothing; if the job was never wanted.
   std::optional<JobState> state(JobKey key) const;
+  /// A job that is known.
+  const Job& job(JobKey key) const { return entries_.at(key).job; }
+  /// The largest cost first.
+  std::vector<JobKey> ready_jobs() const;
+  /// How many ready jobs need more memory than this.
+  std::uint64_t ready_above(std::uint64_t memory) const;
   /// How often the job was issued.
   std::uint32_t attempts(JobKey key) const;
   /// All jobs of all rounds are done.
@@ -89,16 +114,22 @@ class Plan {
     JobState state = JobState::ready;
     bool wanted = false;  // by the rounds reached since the last restart
     std::uint32_t attempts = 0;
+    std::uint32_t live = 0;  // attempts that somebody makes
     std::vector<std::string> failures;
+    bool resumable = false;
   };
   struct ReadyJob {
     std::uint64_t cost = 0;
     std::uint64_t order = 0;
     JobKey key;
+    std::uint64_t memory = 0;
     bool operator<(const ReadyJob& other) const;
   };
 
   void advance(const std::map<JobKey, JobOutput>& accepted);
+  void add_ready(JobKey key, const Entry& entry);
+  void remove_ready(JobKey key, const Entry& entry);
+  const ReadyJob* choose(const JobChoice& choice) const;
   void move_to(JobKey key, Entry& entry, JobState state);
   std::uint64_t& count_of(JobState state);
 
@@ -110,6 +141,7 @@ class Plan {
   std::unordered_map<JobKey, Entry, JobKeyHash> entries_;  // for look-up, never iterated
   std::vector<JobKey> wanted_;                             // in the order asked for
   std::set<ReadyJob> ready_;
+  std::set<std::pair<std::uint64_t, ReadyJob>> by_memory_;  // the ready jobs that say their need
   PlanCounts counts_;
 };
 

@@ -167,6 +167,8 @@ struct Done {
 struct SinkAt {
   std::string results;  // empty: there is none for now
 };
+/// In a JobFailed: no job failed, but the run cannot go on.
+inline constexpr JobKey k_whole_run{0};
 struct JobFailed {
   JobKey key;
   std::string reason;

@@ -33,6 +33,11 @@ struct SinkLeaves {
   Why why = Why::complete;
   std::string message;
 };
+/// Why the output, or the journal, could not be written; nothing: it was.
+struct SinkProblem {
+  std::string text;
+  bool resumable = false;  // the same run may be completed later: the disk was full
+};
 using SinkAction = std::variant<Look, Dial, HangUp, Say, Check, MakeOutput, SinkLeaves>;
 using SinkActions = std::vector<SinkAction>;
 
@@ -52,9 +57,9 @@ class SinkCore {
   /// The answer to a Check: `problem` is empty if the file is whole and the record is on the disk.
   SinkActions checked(const Check& check, const std::string& problem);
   /// The answer to MakeOutput.
-  SinkActions completed(const std::string& problem, FarmTime now);
+  SinkActions completed(const SinkProblem& problem, FarmTime now);
   /// Tells the ventilator that this sink cannot go on (its journal cannot be written).
-  SinkActions fail(const std::string& problem);
+  SinkActions fail(const SinkProblem& problem);
   SinkActions stop();
 
   const Rounds& rounds() const { return rounds_; }
@@ -72,7 +77,8 @@ class SinkCore {
   void say_where_it_stands();
   void tell(JobKey key, WorkerId worker, const JobTimes& times = {});
   void leave(SinkLeaves::Why why, std::string message);
-  std::string list_failed() const;
+  void leave_for_failed_jobs();
+  void leave_for_problem();
   template <class A>
   void act(A action) {
     out_.push_back(std::move(action));
@@ -90,8 +96,8 @@ class SinkCore {
   std::map<JobKey, Check> checking_;
   std::uint64_t checking_journal_ = 0;  // how many of those come from a journal
   std::vector<JobKey> accepted_;        // in the order of acceptance
-  std::map<JobKey, std::string> failed_;
-  std::string problem_;
+  std::map<JobKey, JobFailed> failed_;
+  SinkProblem problem_;
   FarmTime say_until_{0};
   std::uint64_t dropped_ = 0;
 };

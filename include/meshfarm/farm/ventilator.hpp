@@ -7,8 +7,11 @@
 #include <cstdint>
 #include <functional>
 #include <string>
+#include <vector>
 
 #include <meshfarm/farm/job.hpp>
+#include <meshfarm/farm/protocol.hpp>
+#include <meshfarm/farm/scheduler.hpp>
 #include <meshfarm/farm/security.hpp>
 #include <meshfarm/staging/stage.hpp>
 
@@ -21,11 +24,27 @@ struct FarmProgress {
   std::uint64_t cost_done = 0;  // triangles of the jobs accepted
   std::uint64_t cost_known = 0;
   std::uint64_t jobs_running = 0;
+  std::uint64_t jobs_failed = 0;
+  std::uint64_t jobs_too_big = 0;  // ready, but they need more memory than any worker has
   std::uint32_t workers = 0;
   std::uint32_t workers_lost = 0;
   std::uint32_t retries = 0;
   bool sink_present = false;
-  std::uint64_t refused = 0;  // connections that did not prove to belong to the run
+  std::uint64_t refused = 0;           // connections that did not prove to belong to the run
+  bool storage_stalls = false;         // most workers wait for the stage
+  std::vector<std::string> bad_hosts;  // get no more jobs: too many failed there in a row
+};
+
+/// One worker as the ventilator sees it.
+struct WorkerStatus {
+  WorkerId id;
+  std::string host;
+  std::uint32_t pid = 0;
+  Capacity capacity;
+  double speed = 0;  // triangles a second and thread, by the jobs it did
+  std::uint32_t held = 0;
+  std::uint64_t rss_bytes = 0;
+  FarmTime silent{0};  // since it was last heard
 };
 
 struct VentilatorOptions {
@@ -35,6 +54,8 @@ struct VentilatorOptions {
   SecurityOptions security;
   std::uint64_t run = 0;  // the run's key: peers of another run are refused
   std::chrono::milliseconds heartbeat{1000};
+  std::chrono::milliseconds hang{30'000};  // a job that makes no progress for so long hangs
+  SchedulerOptions schedule = {};
   std::uint32_t max_attempts = 3;                     // a job that failed this often is given up
   std::function<void(const FarmProgress&)> progress;  // about twice a second; may be empty
   const std::atomic<bool>* stop = nullptr;            // set by a signal: stop, resumable
@@ -42,7 +63,8 @@ struct VentilatorOptions {
 
 /// Hands out the jobs of `source` over one lane a worker until the sink has them all and says that
 /// the run is complete. Publishes its address in the stage as a new epoch.
-/// Throws IncompleteError when stopped, DataError when jobs failed for good (named with reasons).
+/// Throws IncompleteError when stopped, when the stage is full or jobs cost workers their lives,
+/// DataError when jobs failed for good (named with reasons).
 FarmProgress run_ventilator(const Stage& stage, const JobSource& source,
                             const VentilatorOptions& options);
 

@@ -96,45 +96,48 @@ TEST_CASE("no job goes out before a sink is ready, nor beyond the credit") {
   CHECK(desk.dispatcher.holding() == 2);
 }
 
-TEST_CASE("the least laden worker is served first, and near the end nobody hoards") {
+TEST_CASE("the worker that will be free first is served first") {
   Desk desk(one_round(4));
   desk.worker("a", 1);
   desk.worker("b", 2);
   desk.credit("a", 1, 4);
   desk.credit("b", 2, 4);
-  CHECK(names(desk.sink("s", 9)) == "job 3@1 job 2@2 job 1@1 ");
-  CHECK(names(desk.accept("s", key(2), 2)) == "job 0@2 ");
+  CHECK(names(desk.sink("s", 9)) == "job 3@1 job 2@2 job 1@2 job 0@1 ");
 }
 
-TEST_CASE("a silent worker loses its jobs; the one it had in work counts as failed") {
-  Desk desk(one_round(3));
+TEST_CASE("a silent worker loses its jobs; those it may have had in work are suspects") {
+  Desk desk(one_round(4));
   desk.sink("s", 9);
   desk.worker("a", 1);
-  desk.credit("a", 1, 3);
+  CHECK(names(desk.credit("a", 1, 3)) == "job 3@1 job 2@1 job 1@1 ");
   desk.silence(FarmTime(2000));
   desk.say("s", Heartbeat{k_epoch, {}, 0, 0, 0});
   desk.worker("b", 2);
-  CHECK(names(desk.credit("b", 2, 2)) == "job 0@2 ");  // the other two are with the silent one
   const Actions lost = desk.silence(FarmTime(1001));
   REQUIRE(only<CloseLane>(lost).size() == 1);
   CHECK(only<CloseLane>(lost)[0].worker == WorkerId{1});
   CHECK(desk.dispatcher.progress().workers_lost == 1);
-  CHECK(desk.dispatcher.holding() == 2);
-  const auto again = only<PushJob>(lost);
+  CHECK(desk.dispatcher.holding() == 0);
+  // Two were in work at most: one computed, one read ahead. Each goes out again, but alone.
+  const Actions first = desk.credit("b", 2, 4);
+  const auto again = only<PushJob>(first);
   REQUIRE(again.size() == 1);
-  CHECK(again[0].assignment.job.parameters == "job 2");
+  CHECK(again[0].assignment.job.parameters == "job 3");
   CHECK(again[0].assignment.attempt == 1002);  // the second attempt of the second epoch
 
+  SUBCASE("innocent ones are done one by one, then all goes on as before") {
+    CHECK(names(desk.accept("s", key(3), 2)) == "job 2@2 ");
+    CHECK(names(desk.accept("s", key(2), 2)) == "job 1@2 job 0@2 ");
+  }
   SUBCASE("its late result is taken, and the new holder told to stop") {
-    const Actions done = desk.accept("s", key(2), 1);
+    const Actions done = desk.accept("s", key(3), 1);
     CHECK(said_to<Done>("b", done).size() == 1);
-    CHECK(desk.dispatcher.plan().state(key(2)) == JobState::done);
-    CHECK(desk.dispatcher.holding() == 1);
+    CHECK(desk.dispatcher.plan().state(key(3)) == JobState::done);
   }
   SUBCASE("a late failure of its attempt is not held against the new one") {
-    Reject late{k_epoch, {1}, 1001, key(2), {"late", FailureKind::attempt}};
+    Reject late{k_epoch, {1}, 1001, key(3), {"late", FailureKind::attempt}};
     desk.say("s", late);
-    CHECK(desk.dispatcher.plan().state(key(2)) == JobState::running);
+    CHECK(desk.dispatcher.plan().state(key(3)) == JobState::running);
   }
   SUBCASE("it is a stranger from now on, and must say hello") {
     const Actions answer = desk.say("a", Heartbeat{k_epoch, {1}, 0, 3, 0});
@@ -162,6 +165,7 @@ TEST_CASE("a job that three workers died of is given up") {
   const Actions last = worker_dies(desk, 3);
   REQUIRE(only<Finish>(last).size() == 1);
   CHECK(only<Finish>(last)[0].failure.find("silent") != std::string::npos);
+  CHECK(only<Finish>(last)[0].resumable);
   CHECK(said_to<JobFailed>("s", last).size() == 1);
   CHECK(said_to<Stop>("s", last).size() == 1);
 }
@@ -178,6 +182,73 @@ TEST_CASE("a job is not blamed for a worker that comes back") {
   desk.say("s", Heartbeat{k_epoch, {}, 0, 0, 0});
   CHECK(only<Finish>(desk.silence(FarmTime(1600))).empty());
   CHECK(desk.dispatcher.plan().counts().failed == 0);
+}
+
+Heartbeat standing(std::uint32_t worker, JobKey job, std::uint32_t still_ms, bool in_storage) {
+  Heartbeat beat{k_epoch, {worker}, 1, 1, 0};
+  beat.still = job;
+  beat.still_ms = still_ms;
+  beat.in_storage = in_storage;
+  return beat;
+}
+
+TEST_CASE("a job that stands still costs its worker its jobs") {
+  Desk desk(one_round(2));
+  desk.sink("s", 9);
+  desk.worker("a", 1);
+  desk.worker("b", 2);
+  desk.credit("a", 1, 1);
+  desk.credit("b", 2, 2);
+  SUBCASE("while it computes") {
+    CHECK(said_to<Stop>("a", desk.say("a", standing(1, key(1), 29'999, false))).empty());
+    const Actions lost = desk.say("a", standing(1, key(1), 30'000, false));
+    REQUIRE(said_to<Stop>("a", lost).size() == 1);
+    CHECK(said_to<Stop>("a", lost)[0].why == StopReason::hung);
+    CHECK(only<CloseLane>(lost).size() == 1);
+    CHECK(desk.dispatcher.progress().workers_lost == 1);
+    CHECK(names(desk.accept("s", key(0), 2)) == "job 1@2 ");  // a suspect: after the other is done
+  }
+  SUBCASE("while it waits for the stage, and others do not") {
+    desk.say("b", standing(2, key(0), 0, true));
+    const Actions lost = desk.say("a", standing(1, key(1), 30'000, true));
+    CHECK(said_to<Stop>("a", lost).size() == 1);
+    CHECK(names(lost) == "job 1@2 ");  // not the job's fault
+  }
+  SUBCASE("but not while most wait for the stage") {
+    desk.say("b", standing(2, key(0), 20'000, true));
+    const Actions waits = desk.say("a", standing(1, key(1), 90'000, true));
+    CHECK(said_to<Stop>("a", waits).empty());
+    CHECK(desk.dispatcher.progress().storage_stalls);
+    CHECK(desk.dispatcher.holding() == 2);
+  }
+}
+
+TEST_CASE("a job that takes long by its estimate may stand still longer") {
+  const std::uint64_t hundred_seconds = 100'000'000;
+  Desk desk([&](std::span<const AcceptedJob> accepted) {
+    return accepted.empty() ? std::vector<Job>{make_job("big", hundred_seconds)}
+                            : std::vector<Job>{};
+  });
+  desk.sink("s", 9);
+  desk.worker("a", 1);
+  desk.credit("a", 1, 1);
+  const JobKey big = key_of(make_job("big"));
+  CHECK(said_to<Stop>("a", desk.say("a", standing(1, big, 299'000, false))).empty());
+  CHECK(said_to<Stop>("a", desk.say("a", standing(1, big, 301'000, false))).size() == 1);
+}
+
+TEST_CASE("a stage without room ends the run, resumable") {
+  Desk desk(one_round(2));
+  desk.sink("s", 9);
+  desk.worker("w", 1);
+  desk.credit("w", 1, 1);
+  const Actions full =
+      desk.say("s", Reject{k_epoch, {1}, 1001, key(1), {"ENOSPC", FailureKind::no_space}});
+  REQUIRE(only<Finish>(full).size() == 1);
+  CHECK(only<Finish>(full)[0].resumable);
+  REQUIRE(said_to<JobFailed>("s", full).size() == 1);
+  CHECK(said_to<JobFailed>("s", full)[0].key == k_whole_run);
+  CHECK(said_to<Stop>("w", full).size() == 1);
 }
 
 TEST_CASE("a duplicate of a result changes nothing") {

@@ -1,5 +1,6 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
+#include <cerrno>
 #include <memory>
 #include <vector>
 
@@ -173,19 +174,47 @@ TEST_CASE("a job that fails for good ends the run, the others are kept") {
   CHECK(count == 1);
 }
 
+TEST_CASE("a full stage ends the run, which may be taken up again") {
+  Farm farm;
+  std::atomic<int> count{0};
+  const JobFunction work = [&](const Job& job, const JobContext& context) {
+    if (++count == 5) throw IoError("cannot sync", "results/x", ENOSPC);
+    return do_trivial_job(job, context);
+  };
+  std::vector<std::string> summaries;
+  Part ventilator(farm.ventilator(one_round(10)));
+  Part sink(farm.sink(one_round(10), summaries));
+  Part worker(farm.worker(work));
+  CHECK_THROWS_WITH_AS(ventilator.join(), doctest::Contains("make room"), IncompleteError);
+  CHECK_THROWS_WITH_AS(sink.join(), doctest::Contains("results/x"), IncompleteError);
+  worker.join();
+  CHECK(run_farm(farm, one_round(10), 1) == expected_of(10));
+}
+
 TEST_CASE("an error in making the output reaches sink and ventilator") {
   Farm farm;
+  int error_number = EIO;
+  SUBCASE("whatever it is") {}
+  SUBCASE("a full disk, which may have room later") {
+    error_number = ENOSPC;
+  }
   Part ventilator(farm.ventilator(one_round(3)));
   Part worker(farm.worker());
   Part sink([&](const std::atomic<bool>& stop) {
     SinkOptions options;
     options.run = farm.run;
     options.stop = &stop;
-    run_sink(farm.stage, one_round(3), options,
-             [](std::span<const AcceptedJob>) { throw IoError("cannot write", "out.ply", 28); });
+    run_sink(farm.stage, one_round(3), options, [&](std::span<const AcceptedJob>) {
+      throw IoError("cannot write", "out.ply", error_number);
+    });
   });
-  CHECK_THROWS_WITH_AS(sink.join(), doctest::Contains("out.ply"), IoError);
-  CHECK_THROWS_WITH_AS(ventilator.join(), doctest::Contains("out.ply"), DataError);
+  if (error_number == ENOSPC) {
+    CHECK_THROWS_WITH_AS(sink.join(), doctest::Contains("out.ply"), IncompleteError);
+    CHECK_THROWS_WITH_AS(ventilator.join(), doctest::Contains("make room"), IncompleteError);
+  } else {
+    CHECK_THROWS_WITH_AS(sink.join(), doctest::Contains("out.ply"), IoError);
+    CHECK_THROWS_WITH_AS(ventilator.join(), doctest::Contains("out.ply"), DataError);
+  }
   worker.join();
 }
 

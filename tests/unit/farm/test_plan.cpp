@@ -65,7 +65,7 @@ TEST_CASE("three failed attempts give a job up, with their reasons") {
     CHECK_FALSE(plan.stuck());
     const auto issued = plan.issue();
     REQUIRE(issued);
-    plan.fail_attempt(issued->key, reason, false);
+    plan.fail_attempt(issued->key, reason, Failing::attempt);
   }
   CHECK(plan.stuck());
   CHECK_FALSE(plan.complete());
@@ -76,7 +76,7 @@ TEST_CASE("three failed attempts give a job up, with their reasons") {
 
 TEST_CASE("an input that is bad for good fails its job at once, the others go on") {
   Plan plan = started_plan(one_round(2));
-  plan.fail_attempt(plan.issue()->key, "no mesh", true);
+  plan.fail_attempt(plan.issue()->key, "no mesh", Failing::for_good);
   CHECK(plan.counts().failed == 1);
   CHECK_FALSE(plan.stuck());
   const JobKey other = plan.issue()->key;
@@ -90,7 +90,7 @@ TEST_CASE("an accepted job stays accepted") {
   CHECK(plan.accept(issued->key, output_of(issued->key)));
   CHECK_FALSE(plan.accept(issued->key, output_of(issued->key)));
   plan.give_back(issued->key);
-  plan.fail_attempt(issued->key, "late", true);
+  plan.fail_attempt(issued->key, "late", Failing::for_good);
   CHECK(plan.state(issued->key) == JobState::done);
   CHECK(plan.counts().done == 1);
   CHECK_FALSE(plan.accept(JobKey{99}, output_of(JobKey{99})));
@@ -103,7 +103,7 @@ TEST_CASE("a late result counts even for a job that waits or was given up") {
   plan.give_back(waits);
   CHECK(plan.accept(waits, output_of(waits)));
   const JobKey failed = plan.issue()->key;
-  plan.fail_attempt(failed, "bad", true);
+  plan.fail_attempt(failed, "bad", Failing::for_good);
   CHECK(plan.stuck());
   CHECK(plan.accept(failed, output_of(failed)));
   CHECK(plan.complete());

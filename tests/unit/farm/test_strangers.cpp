@@ -181,7 +181,7 @@ TEST_CASE("what nobody should send is dropped, whoever sends it, and the run goe
   for (std::size_t i = 0; i < 100; ++i) CHECK(summaries[i] == reversed("job " + std::to_string(i)));
 }
 
-TEST_CASE("a worker gets no more than its credit, and is missed when it falls silent") {
+TEST_CASE("a worker gets no more than its credit, and if it falls silent others do its jobs") {
   Farm farm;
   const JobSource source = one_round(20);
   std::vector<std::string> summaries;
@@ -204,7 +204,6 @@ TEST_CASE("a worker gets no more than its credit, and is missed when it falls si
   ventilator.join();
   worker.join();
   CHECK(summaries.size() == 20);
-  CHECK(last.workers_lost == 1);
   CHECK(last.retries == 2);
 }
 

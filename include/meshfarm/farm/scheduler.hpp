@@ -1,0 +1,164 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <map>
+#include <optional>
+#include <set>
+#include <string>
+#include <unordered_map>
+#include <unordered_set>
+#include <utility>
+#include <vector>
+
+#include <meshfarm/farm/plan.hpp>
+#include <meshfarm/farm/protocol.hpp>
+
+namespace meshfarm {
+
+/// dynamic: jobs go to whoever will have done them first. fixed: all jobs are dealt out at the
+/// start in sets of equal estimated time (Xiong et al. 2008, 3.2.1: the baseline of the paper).
+enum class Schedule : std::uint8_t { dynamic, fixed };
+
+struct SchedulerOptions {
+  Schedule schedule = Schedule::dynamic;
+  std::uint32_t expect_workers = 1;  // a fixed schedule is dealt out once so many are there
+  FarmTime horizon{2000};            // a full input buffer is worth so much time on every worker
+};
+
+/// Who gets which job. Knows what each worker can do, what it holds, and how fast it has been: the
+/// benchmark at first, then more and more the jobs it did. Pure.
+///
+/// Buffers are filled so that all would drain at the same time (the paper, 3.2.2), and shrink with
+/// the work that is left. Near the end a worker is given a job only if it will have done it about
+/// when all is done; and whoever has nothing to do makes a second attempt at what would take
+/// another longer.
+class Scheduler {
+ public:
+  struct Held {
+    JobKey key;
+    std::uint32_t attempt = 0;
+    std::uint64_t cost = 0;
+    std::uint64_t memory = 0;
+    std::optional<FarmTime> since;  // when it was its turn, as far as we know
+  };
+  struct Pick {
+    WorkerId worker;
+    IssuedJob job;
+  };
+
+  explicit Scheduler(const SchedulerOptions& options) : options_(options) {}
+
+  void join(WorkerId id, const std::string& host, const Capacity& capacity);
+  /// Returns what it held, as it was sent. The first jobs, as many as in_work(), may have begun.
+  std::vector<Held> leave(WorkerId id);
+  /// How many more jobs the worker may be sent.
+  void set_room(WorkerId id, std::uint64_t jobs);
+  /// It does not hold the job any more. False if it did not.
+  bool drop(WorkerId id, JobKey key, FarmTime now);
+  /// It did the job that it holds in so much time (0: not known).
+  void did(WorkerId id, JobKey key, std::uint32_t compute_ms, FarmTime now);
+
+  /// After three failures in a row a host gets no more jobs, as long as there are others.
+  void failed_on(WorkerId id, JobKey key);
+  /// A job in work when a worker was lost. From now on it is given to a worker alone, so that the
+  /// next loss tells whether it is to blame.
+  void suspect(JobKey key) { suspects_.insert(key); }
+  void settled(JobKey key);
+
+  /// What to send to whom now, if anything: the plan has issued it, and the worker holds it.
+  std::optional<Pick> next(Plan& plan, FarmTime now);
+  /// Second attempts that are worth making, issued and held as with next(). May be asked at any
+  /// time, and answers now and then.
+  std::vector<Pick> second_attempts(Plan& plan, FarmTime now);
+
+  const std::vector<Held>& held(WorkerId id) const { return crew_.at(id).held; }
+  /// How many of the jobs it holds may be in work: one is read ahead or written beside those
+  /// computed.
+  std::uint32_t in_work(WorkerId id) const { return crew_.at(id).threads + 1; }
+  /// Triangles a second of one of its threads, as estimated now.
+  double speed(WorkerId id) const { return crew_.at(id).speed; }
+  /// Who makes an attempt at the job: two at most.
+  std::vector<WorkerId> holders(JobKey key) const;
+  std::uint64_t jobs_held() const { return holders_.size(); }
+  /// The greatest memory that any worker has; none: no limit. Nothing if there is no worker.
+  std::optional<std::uint64_t> greatest_memory() const;
+  /// Hosts that get no more jobs.
+  std::vector<std::string> bad_hosts() const;
+  bool known(WorkerId id) const { return crew_.contains(id); }
+
+ private:
+  struct Host {
+    std::string name;
+    std::uint32_t workers = 0;
+    std::uint32_t failures = 0;  // in a row
+  };
+  struct Member {
+    Host* host = nullptr;
+    std::uint32_t threads = 1;
+    std::uint64_t memory = 0;  // 0: no limit
+    double benchmark = 0;      // triangles a second and thread
+    double speed = 0;
+    double cost_done = 0;
+    double seconds_done = 0;
+    std::uint64_t room = 0;
+    std::vector<Held> held;
+    double cost_held = 0;
+    std::optional<double> rank;  // in willing_
+  };
+  struct Late {
+    double left = 0;  // seconds
+    const Held* held = nullptr;
+  };
+  /// How the rest of the run looks from `now`: times in seconds from then on.
+  struct Outlook {
+    FarmTime valid_until{-1};
+    FarmTime now{0};
+    std::uint64_t cost_ready = 0;
+    double all_done = 0;   // if the work could be shared out evenly
+    double last_free = 0;  // when the worker that has the most is through
+    double fastest = 0;
+  };
+
+  bool fits(const Member& member, std::uint64_t memory) const;
+  bool good(const Host& host) const;
+  std::vector<Late> late_jobs(const Plan& plan, FarmTime now) const;
+  bool elsewhere(const std::vector<std::string>& hosts) const;
+  bool may(const Member& member, JobKey key) const;
+  void rank(WorkerId id, Member& member);
+  void rank_all();
+  bool serves(const Member& member) const;
+  bool open(const Member& member) const;
+  void begin_turns(Member& member, FarmTime now);
+  double estimated_speed(const Member& member) const;
+  double seconds_left(const Member& member, const Held& held, FarmTime now) const;
+  double seconds_held(const Member& member, FarmTime now) const;
+  const Outlook& outlook(const Plan& plan, FarmTime now);
+  std::uint64_t greatest_cost(const Member& member, FarmTime now) const;
+  Pick hand(WorkerId id, IssuedJob job, FarmTime now);
+  std::optional<Pick> next_fixed(Plan& plan, FarmTime now);
+  void deal(const Plan& plan);
+
+  SchedulerOptions options_;
+  std::map<WorkerId, Member> crew_;
+  std::map<std::string, Host> hosts_;              // entries stay
+  std::set<std::pair<double, WorkerId>> willing_;  // those who read nothing ahead, then the others;
+                                                   // the least laden first
+  std::unordered_map<JobKey, std::vector<WorkerId>, JobKeyHash> holders_;
+  std::unordered_set<JobKey, JobKeyHash> suspects_;
+  std::unordered_map<JobKey, std::vector<std::string>, JobKeyHash> failed_on_;
+  Outlook outlook_;
+  FarmTime next_second_attempts_{0};
+  // What all workers did: how fast a host is at real jobs for what its benchmark says.
+  double cost_done_ = 0;
+  double benchmark_cost_done_ = 0;
+  double jobs_done_ = 0;
+  // A fixed schedule: who shall get what.
+  std::map<WorkerId, std::deque<JobKey>> sets_;
+  std::unordered_set<JobKey, JobKeyHash> dealt_;
+  std::uint64_t undealt_ = 0;  // ready jobs that fit nobody
+};
+
+}  // namespace meshfarm

@@ -1,0 +1,194 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+//
+// The dispatcher's second half: jobs, from issue to the end of the run.
+#include <algorithm>
+
+#include <meshfarm/farm/dispatcher.hpp>
+#include <meshfarm/util/checksum.hpp>
+
+namespace meshfarm {
+namespace {
+
+/// Attempt numbers go on from epoch to epoch, so that a worker which outlives a ventilator never
+/// publishes two results under one name.
+constexpr std::uint32_t k_attempts_per_epoch = 1000;
+
+}  // namespace
+
+// --- what the sink says
+
+bool Dispatcher::from_sink(const PeerId& peer, std::uint32_t epoch) {
+  if (!sink_ || sink_->peer != peer || epoch != options_.epoch) {
+    ++dropped_;
+    return false;
+  }
+  sink_->heard = now_;
+  return true;
+}
+
+void Dispatcher::on(const PeerId& peer, const Accept& accept) {
+  if (!from_sink(peer, accept.epoch)) return;
+  if (!sink_->ready) {
+    sink_->told[accept.key] = accept.output;
+  } else {
+    plan_.accept(accept.key, accept.output);
+  }
+  if (scheduler_.known(accept.worker)) {
+    scheduler_.did(accept.worker, accept.key, accept.times.compute_ms, now_);
+  }
+  settle(accept.key, accept.worker);
+  issue();
+  look_for_end();
+}
+
+void Dispatcher::on(const PeerId& peer, const Reject& reject) {
+  if (!from_sink(peer, reject.epoch)) return;
+  switch (reject.failure.kind) {
+    case FailureKind::for_good:
+      fail(reject.key, reject.failure.reason, Failing::for_good);
+      settle(reject.key, reject.worker);
+      break;
+    case FailureKind::no_space:
+      return finish("the stage has no room left (" + reject.failure.reason +
+                        "); what is done is kept: make room, then run the same command again",
+                    true);
+    case FailureKind::attempt:
+      reject_attempt(reject);
+      break;
+  }
+  issue();
+  look_for_end();
+}
+
+/// Only the attempt that the worker makes now counts.
+void Dispatcher::reject_attempt(const Reject& reject) {
+  const auto reporter = workers_.find(reject.worker);
+  if (reporter == workers_.end()) return;
+  send(reporter->second.peer, Done{reject.key, reject.attempt});
+  const auto& held = scheduler_.held(reject.worker);
+  const bool current = std::any_of(held.begin(), held.end(), [&](const Scheduler::Held& each) {
+    return each.key == reject.key && attempt_number(each.attempt) == reject.attempt;
+  });
+  if (!current) return;
+  scheduler_.failed_on(reject.worker, reject.key);
+  drop(reject.worker, reject.key);
+  fail(reject.key, reject.failure.reason, Failing::attempt);
+}
+
+void Dispatcher::on(const PeerId& peer, const Ready& ready) {
+  if (!from_sink(peer, ready.epoch) || sink_->ready) return;
+  if (ready.accepted != sink_->told.size()) {
+    send(peer, Refused{Refusal::stranger, "some of what was accepted got lost; say hello again"});
+    return lose_sink();
+  }
+  sink_->ready = true;
+  plan_.restart(std::exchange(sink_->told, {}));
+  over_ = over_ && plan_.complete();  // a sink that lost results needs workers again
+  for (const LostJob& lost : plan_.lost()) {
+    send(peer, JobFailed{lost.key, clipped(lost.reasons), lost.resumable});
+  }
+  issue();
+  look_for_end();
+}
+
+void Dispatcher::on(const PeerId& peer, const Complete& complete) {
+  if (!from_sink(peer, complete.epoch) || !plan_.complete()) return;
+  finish({}, false);
+}
+
+void Dispatcher::on(const PeerId& peer, const Failed& failed) {
+  if (!from_sink(peer, failed.epoch)) return;
+  finish("the sink could not make the output: " + failed.reason, failed.resumable);
+}
+
+// --- who does what
+
+std::uint32_t Dispatcher::attempt_number(std::uint32_t attempt) const {
+  return k_attempts_per_epoch * (options_.epoch - 1) + attempt;
+}
+
+/// Nobody needs the attempts made so far any more: who reported one and who holds one may forget
+/// it.
+void Dispatcher::settle(JobKey key, WorkerId reporter) {
+  const Done done{key, attempt_number(plan_.attempts(key))};
+  const auto told = workers_.find(reporter);
+  if (told != workers_.end()) send(told->second.peer, done);
+  for (const WorkerId holder : scheduler_.holders(key)) {
+    if (holder != reporter) send(workers_.at(holder).peer, done);
+    drop(holder, key);
+    plan_.give_back(key);  // where the plan does not call it done or failed: nobody runs it now
+  }
+  const auto state = plan_.state(key);
+  if (state == JobState::done || state == JobState::failed) scheduler_.settled(key);
+}
+
+void Dispatcher::drop(WorkerId holder, JobKey key) {
+  scheduler_.drop(holder, key, now_);
+}
+
+void Dispatcher::fail(JobKey key, const std::string& reason, Failing failing) {
+  const bool was_failed = plan_.state(key) == JobState::failed;
+  plan_.fail_attempt(key, reason, failing);
+  if (was_failed || plan_.state(key) != JobState::failed || !sink_ || !sink_->ready) return;
+  for (const LostJob& lost : plan_.lost()) {
+    if (lost.key == key) send(sink_->peer, JobFailed{key, clipped(lost.reasons), lost.resumable});
+  }
+}
+
+void Dispatcher::set_room(WorkerId id) {
+  const Worker& worker = workers_.at(id);
+  const bool may = !worker.lane.empty() && worker.credit > worker.sent;
+  scheduler_.set_room(id, may ? worker.credit - worker.sent : 0);
+}
+
+void Dispatcher::issue() {
+  while (!finished_ && sink_ && sink_->ready) {
+    auto pick = scheduler_.next(plan_, now_);
+    if (!pick) return;
+    push(std::move(*pick));
+  }
+}
+
+void Dispatcher::push(Scheduler::Pick pick) {
+  Worker& worker = workers_.at(pick.worker);
+  worker.pushed = now_;
+  ++worker.sent;
+  out_.push_back(
+      PushJob{pick.worker, Assignment{options_.run, options_.epoch, worker.sent,
+                                      attempt_number(pick.job.attempt), std::move(pick.job.job)}});
+}
+
+void Dispatcher::look_for_end() {
+  if (finished_ || over_) return;
+  if (plan_.complete()) {
+    over_ = true;
+    to_workers(Stop{StopReason::run_over});
+  } else if (plan_.stuck()) {
+    std::vector<std::string> reasons;
+    bool resumable = true;
+    for (const LostJob& lost : plan_.lost()) {
+      reasons.push_back(lost.kind + " " + to_hex(lost.key.value) + ": " + lost.reasons);
+      resumable = resumable && lost.resumable;
+    }
+    finish(failed_for_good(reasons), resumable);
+  }
+}
+
+void Dispatcher::finish(const std::string& failure, bool resumable) {
+  over_ = true;
+  to_workers(Stop{StopReason::run_over});
+  // The sink has heard of jobs that failed; this is for what ends the run otherwise.
+  if (sink_ && !plan_.complete() && !plan_.stuck()) {
+    send(sink_->peer, JobFailed{k_whole_run, clipped(failure), resumable});
+  }
+  if (sink_) send(sink_->peer, Stop{StopReason::run_over});
+  finished_ = true;
+  out_.push_back(Finish{failure, resumable});
+}
+
+void Dispatcher::to_workers(const Message& message) {
+  for (const auto& [id, worker] : workers_) send(worker.peer, message);
+}
+
+}  // namespace meshfarm

@@ -1,0 +1,232 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <limits>
+
+#include <meshfarm/farm/scheduler.hpp>
+
+namespace meshfarm {
+namespace {
+
+constexpr std::uint32_t k_failures_of_a_bad_host = 3;
+/// Of a worker that does not say.
+constexpr double k_usual_speed = 1e6;
+/// A buffer is never made smaller than this, in seconds: it has to outlast the way of a message.
+constexpr double k_least_buffer = 0.01;
+/// Added to the load of those who hold enough to read ahead: more seconds than anyone holds.
+constexpr double k_second_rank = 1e6;
+constexpr std::uint64_t k_no_limit = std::numeric_limits<std::uint64_t>::max();
+
+double seconds(FarmTime time) {
+  return std::chrono::duration<double>(time).count();
+}
+
+}  // namespace
+
+void Scheduler::join(WorkerId id, const std::string& host, const Capacity& capacity) {
+  Member& member = crew_[id];
+  member.host = &hosts_[host];
+  member.host->name = host;
+  member.threads = std::clamp<std::uint32_t>(capacity.threads, 1, 4096);
+  member.memory = capacity.memory;
+  member.benchmark = capacity.speed == 0 ? k_usual_speed : static_cast<double>(capacity.speed);
+  member.speed = estimated_speed(member);
+  ++member.host->workers;
+  undealt_ = 0;
+  outlook_.valid_until = FarmTime(-1);
+}
+
+std::vector<Scheduler::Held> Scheduler::leave(WorkerId id) {
+  const auto found = crew_.find(id);
+  set_room(id, 0);
+  std::vector<Held> held = std::move(found->second.held);
+  for (const Held& each : held) {
+    auto& holders = holders_.at(each.key);
+    std::erase(holders, id);
+    if (holders.empty()) holders_.erase(each.key);
+  }
+  --found->second.host->workers;
+  crew_.erase(found);
+  if (const auto set = sets_.extract(id); !set.empty()) {
+    for (const JobKey key : set.mapped()) dealt_.erase(key);
+  }
+  outlook_.valid_until = FarmTime(-1);
+  const bool any_bad = std::any_of(hosts_.begin(), hosts_.end(),
+                                   [&](const auto& each) { return !good(each.second); });
+  if (any_bad) rank_all();  // a bad host may be the only one now
+  return held;
+}
+
+void Scheduler::set_room(WorkerId id, std::uint64_t jobs) {
+  Member& member = crew_.at(id);
+  member.room = jobs;
+  rank(id, member);
+}
+
+bool Scheduler::drop(WorkerId id, JobKey key, FarmTime now) {
+  Member& member = crew_.at(id);
+  const auto at = std::find_if(member.held.begin(), member.held.end(),
+                               [&](const Held& each) { return each.key == key; });
+  if (at == member.held.end()) return false;
+  member.cost_held -= static_cast<double>(at->cost);
+  member.held.erase(at);
+  if (member.held.empty()) member.cost_held = 0;
+  auto& holders = holders_.at(key);
+  std::erase(holders, id);
+  if (holders.empty()) holders_.erase(key);
+  begin_turns(member, now);
+  rank(id, member);
+  return true;
+}
+
+void Scheduler::did(WorkerId id, JobKey key, std::uint32_t compute_ms, FarmTime now) {
+  Member& member = crew_.at(id);
+  member.host->failures = 0;
+  const auto at = std::find_if(member.held.begin(), member.held.end(),
+                               [&](const Held& each) { return each.key == key; });
+  if (at == member.held.end() || at->cost == 0) return;
+  const double since = at->since ? seconds(now - *at->since) : 0;
+  const double took = compute_ms != 0 ? compute_ms / 1000.0 : since;
+  if (took <= 0) return;
+  const auto cost = static_cast<double>(at->cost);
+  member.cost_done += cost;
+  member.seconds_done += took;
+  cost_done_ += cost;
+  benchmark_cost_done_ += member.benchmark * took;
+  ++jobs_done_;
+  member.speed = estimated_speed(member);
+}
+
+/// The benchmark, corrected by what all hosts make of theirs, weighs as much as one job.
+double Scheduler::estimated_speed(const Member& member) const {
+  if (jobs_done_ == 0) return member.benchmark;
+  const double expected = member.benchmark * cost_done_ / benchmark_cost_done_;
+  const double weight = cost_done_ / jobs_done_;
+  return (member.cost_done + weight) / (member.seconds_done + weight / expected);
+}
+
+void Scheduler::failed_on(WorkerId id, JobKey key) {
+  Host& host = *crew_.at(id).host;
+  auto& hosts = failed_on_[key];
+  if (std::find(hosts.begin(), hosts.end(), host.name) == hosts.end()) hosts.push_back(host.name);
+  if (++host.failures == k_failures_of_a_bad_host) rank_all();
+}
+
+void Scheduler::settled(JobKey key) {
+  suspects_.erase(key);
+  failed_on_.erase(key);
+}
+
+bool Scheduler::good(const Host& host) const {
+  return host.failures < k_failures_of_a_bad_host;
+}
+
+/// Whether there are workers on a good host that is not one of these.
+bool Scheduler::elsewhere(const std::vector<std::string>& hosts) const {
+  return std::any_of(hosts_.begin(), hosts_.end(), [&](const auto& each) {
+    return each.second.workers > 0 && good(each.second) &&
+           std::find(hosts.begin(), hosts.end(), each.first) == hosts.end();
+  });
+}
+
+std::vector<std::string> Scheduler::bad_hosts() const {
+  std::vector<std::string> bad;
+  for (const auto& [name, host] : hosts_) {
+    if (!good(host) && elsewhere({name})) bad.push_back(name);
+  }
+  return bad;
+}
+
+std::optional<std::uint64_t> Scheduler::greatest_memory() const {
+  if (crew_.empty()) return std::nullopt;
+  std::uint64_t greatest = 0;
+  for (const auto& [id, member] : crew_) {
+    greatest = std::max(greatest, member.memory == 0 ? k_no_limit : member.memory);
+  }
+  return greatest;
+}
+
+std::vector<WorkerId> Scheduler::holders(JobKey key) const {
+  const auto found = holders_.find(key);
+  return found == holders_.end() ? std::vector<WorkerId>{} : found->second;
+}
+
+bool Scheduler::serves(const Member& member) const {
+  return good(*member.host) || !elsewhere({member.host->name});
+}
+
+/// Whether it may be sent anything at all.
+bool Scheduler::open(const Member& member) const {
+  if (member.room == 0 || !serves(member)) return false;
+  return suspects_.empty() || member.held.size() != 1 ||
+         !suspects_.contains(member.held.front().key);
+}
+
+void Scheduler::rank_all() {
+  for (auto& [id, member] : crew_) rank(id, member);
+}
+
+void Scheduler::rank(WorkerId id, Member& member) {
+  if (member.rank) willing_.erase({*member.rank, id});
+  member.rank.reset();
+  if (!open(member)) return;
+  member.rank = member.cost_held / (member.speed * member.threads);
+  if (member.held.size() > member.threads) *member.rank += k_second_rank;
+  willing_.insert({*member.rank, id});
+}
+
+bool Scheduler::fits(const Member& member, std::uint64_t memory) const {
+  return member.memory == 0 || memory <= member.memory;
+}
+
+bool Scheduler::may(const Member& member, JobKey key) const {
+  if (!member.held.empty() && suspects_.contains(key)) return false;
+  const auto failed = failed_on_.find(key);
+  if (failed == failed_on_.end()) return true;
+  const auto& hosts = failed->second;
+  const bool here = std::find(hosts.begin(), hosts.end(), member.host->name) != hosts.end();
+  return !here || !elsewhere(hosts);
+}
+
+void Scheduler::begin_turns(Member& member, FarmTime now) {
+  for (std::size_t i = 0; i < std::min<std::size_t>(member.held.size(), member.threads); ++i) {
+    if (!member.held[i].since) member.held[i].since = now;
+  }
+}
+
+Scheduler::Pick Scheduler::hand(WorkerId id, IssuedJob job, FarmTime now) {
+  Member& member = crew_.at(id);
+  assert(member.room > 0);
+  --member.room;
+  member.held.push_back({job.key, job.attempt, job.job.cost, job.job.memory, std::nullopt});
+  member.cost_held += static_cast<double>(job.job.cost);
+  holders_[job.key].push_back(id);
+  begin_turns(member, now);
+  rank(id, member);
+  return {id, std::move(job)};
+}
+
+std::optional<Scheduler::Pick> Scheduler::next(Plan& plan, FarmTime now) {
+  if (plan.counts().ready == 0 || crew_.empty()) return std::nullopt;
+  if (options_.schedule == Schedule::fixed) return next_fixed(plan, now);
+  const double left = outlook(plan, now).all_done;
+  const double full = std::max(k_least_buffer, std::min(seconds(options_.horizon), left / 4));
+  while (!willing_.empty()) {
+    const auto [load, id] = *willing_.begin();
+    if (load >= k_second_rank + full) return std::nullopt;
+    Member& member = crew_.at(id);
+    JobChoice choice;
+    choice.max_cost = greatest_cost(member, now);
+    if (member.memory != 0) choice.max_memory = member.memory;
+    const bool all_welcome = suspects_.empty() && failed_on_.empty();
+    if (!all_welcome) choice.may = [&](JobKey key) { return may(member, key); };
+    if (auto job = plan.issue(choice)) return hand(id, std::move(*job), now);
+    willing_.erase(willing_.begin());  // there is nothing for it before the next outlook
+    member.rank.reset();
+  }
+  return std::nullopt;
+}
+
+}  // namespace meshfarm

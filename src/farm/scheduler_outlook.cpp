@@ -1,0 +1,190 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+//
+// The scheduler's estimates of what is left, and what follows from them near the end of a run.
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include <meshfarm/farm/scheduler.hpp>
+
+namespace meshfarm {
+namespace {
+
+/// An estimate of the rest holds for this share of the rest.
+constexpr double k_outlook_share = 1.0 / 16;
+/// How often second attempts are thought of. One must be through so much earlier than the first, in
+/// seconds and as a share.
+constexpr FarmTime k_second_attempts_every{100};
+constexpr double k_least_gain = 0.1;
+constexpr double k_least_gain_share = 0.1;
+/// An attempt that takes longer than estimated is held to take on as long as it is late, times
+/// this: at one and a half times its estimate a second attempt pays.
+constexpr double k_lateness = 2;
+/// No job is left to a worker that is faster by less than this.
+constexpr double k_about_the_fastest = 0.75;
+
+double seconds(FarmTime time) {
+  return std::chrono::duration<double>(time).count();
+}
+
+}  // namespace
+
+double Scheduler::seconds_left(const Member& member, const Held& held, FarmTime now) const {
+  const double whole = static_cast<double>(held.cost) / member.speed;
+  if (!held.since) return whole;
+  const double late = seconds(now - *held.since) - whole;
+  return late <= 0 ? -late : k_lateness * late;
+}
+
+double Scheduler::seconds_held(const Member& member, FarmTime now) const {
+  double sum = 0;
+  double longest = 0;
+  for (const Held& held : member.held) {
+    const double left = seconds_left(member, held, now);
+    sum += left;
+    longest = std::max(longest, left);
+  }
+  return std::max(sum / member.threads, longest);
+}
+
+const Scheduler::Outlook& Scheduler::outlook(const Plan& plan, FarmTime now) {
+  const bool more_work = plan.counts().cost_ready > outlook_.cost_ready;
+  if (now < outlook_.valid_until && !more_work) return outlook_;
+  outlook_ = {};
+  outlook_.cost_ready = plan.counts().cost_ready;
+  outlook_.now = now;
+  double work = static_cast<double>(plan.counts().cost_ready);
+  double power = 0;
+  for (auto& [id, member] : crew_) {
+    member.speed = estimated_speed(member);
+    if (!member.rank) rank(id, member);
+    const double held = seconds_held(member, now);
+    if (held == 0 && !serves(member)) continue;
+    work += held * member.speed * member.threads;
+    power += member.speed * member.threads;
+    outlook_.last_free = std::max(outlook_.last_free, held);
+    outlook_.fastest = std::max(outlook_.fastest, member.speed);
+  }
+  outlook_.all_done = power > 0 ? work / power : 0;
+  const auto valid = static_cast<FarmTime::rep>(1000 * k_outlook_share * outlook_.all_done);
+  outlook_.valid_until = now + FarmTime(std::clamp<FarmTime::rep>(valid, 2, 1000));
+  return outlook_;
+}
+
+/// The cost up to which a job is better done by this worker, after what it holds, than left to the
+/// others: it is through by the time when all is done, give or take half the job on the fastest
+/// worker; or while another is busy anyway. So a job is left to a faster worker only as long as
+/// that is expected to come free in time, and the fastest idle worker takes any.
+std::uint64_t Scheduler::greatest_cost(const Member& member, FarmTime now) const {
+  constexpr double k_any = std::numeric_limits<double>::max();
+  const double gone = seconds(now - outlook_.now);
+  const double held = seconds_held(member, now);
+  const double left = outlook_.all_done - gone - held;
+  const double slower = 1 / member.speed - 0.5 / outlook_.fastest;
+  double cost = std::max(0.0, left / slower);
+  cost = std::max(cost, (outlook_.last_free - gone - held) * member.speed);
+  const bool fast = member.speed >= k_about_the_fastest * outlook_.fastest;
+  // Whatever the estimates are worth: where nobody holds anything, somebody must begin.
+  if ((member.held.empty() && fast) || holders_.empty()) cost = k_any;
+  return cost >= 0x1p63 ? std::numeric_limits<std::uint64_t>::max()
+                        : static_cast<std::uint64_t>(cost);
+}
+
+/// Jobs with a single attempt, those first that will be done last.
+std::vector<Scheduler::Late> Scheduler::late_jobs(const Plan& plan, FarmTime now) const {
+  std::vector<Late> late;
+  for (const auto& [id, member] : crew_) {
+    double before = 0;
+    for (const Held& held : member.held) {
+      const double left = before + seconds_left(member, held, now);
+      if (!held.since) before += static_cast<double>(held.cost) / member.speed / member.threads;
+      const bool single = holders_.at(held.key).size() == 1;
+      const bool open = plan.state(held.key) == JobState::running;
+      if (single && open && !suspects_.contains(held.key)) late.push_back({left, &held});
+    }
+  }
+  std::stable_sort(late.begin(), late.end(),
+                   [](const Late& a, const Late& b) { return a.left > b.left; });
+  return late;
+}
+
+std::vector<Scheduler::Pick> Scheduler::second_attempts(Plan& plan, FarmTime now) {
+  std::vector<Pick> picks;
+  if (options_.schedule == Schedule::fixed || plan.counts().ready > 0) return picks;
+  if (now < next_second_attempts_) return picks;
+  next_second_attempts_ = now + k_second_attempts_every;
+  std::vector<std::pair<double, WorkerId>> idle;  // the fastest first
+  for (const auto& [id, member] : crew_) {
+    if (member.held.empty() && open(member)) idle.emplace_back(-member.speed, id);
+  }
+  if (idle.empty()) return picks;
+  std::sort(idle.begin(), idle.end());
+  std::vector<Late> late = late_jobs(plan, now);
+  for (const auto& [speed, id] : idle) {
+    const Member& member = crew_.at(id);
+    bool any_gains = false;
+    const auto taken = std::find_if(late.begin(), late.end(), [&](const Late& each) {
+      const double gain = each.left - static_cast<double>(each.held->cost) / member.speed;
+      const bool gains = gain >= std::max(k_least_gain, k_least_gain_share * each.left);
+      any_gains = any_gains || gains;
+      return gains && fits(member, each.held->memory) && may(member, each.held->key);
+    });
+    if (taken != late.end()) {
+      picks.push_back(hand(id, plan.issue(taken->held->key), now));
+      late.erase(taken);
+    } else if (!any_gains) {
+      break;  // nor does a slower worker
+    }
+  }
+  return picks;
+}
+
+// --- the fixed schedule
+
+/// Deals out what nobody was dealt yet: the largest job first, each to whoever would then be
+/// through the earliest.
+void Scheduler::deal(const Plan& plan) {
+  std::map<WorkerId, double> load;
+  for (const auto& [id, member] : crew_) {
+    double cost = member.cost_held;
+    for (const JobKey key : sets_[id]) cost += static_cast<double>(plan.job(key).cost);
+    load[id] = cost;
+  }
+  undealt_ = 0;
+  for (const JobKey key : plan.ready_jobs()) {
+    if (dealt_.contains(key)) continue;
+    const auto cost = static_cast<double>(plan.job(key).cost);
+    std::optional<std::pair<double, WorkerId>> best;
+    for (const auto& [id, member] : crew_) {
+      if (!fits(member, plan.job(key).memory)) continue;
+      const std::pair through((load[id] + cost) / (member.benchmark * member.threads), id);
+      if (!best || through < *best) best = through;
+    }
+    if (!best) {
+      ++undealt_;
+      continue;
+    }
+    load[best->second] += cost;
+    sets_[best->second].push_back(key);
+    dealt_.insert(key);
+  }
+}
+
+std::optional<Scheduler::Pick> Scheduler::next_fixed(Plan& plan, FarmTime now) {
+  if (crew_.size() < options_.expect_workers && sets_.empty()) return std::nullopt;
+  if (plan.counts().ready > dealt_.size() + undealt_) deal(plan);
+  for (const auto& [load, id] : willing_) {
+    auto& set = sets_[id];
+    while (!set.empty()) {
+      const JobKey key = set.front();
+      set.pop_front();
+      dealt_.erase(key);
+      if (plan.state(key) == JobState::ready) return hand(id, plan.issue(key), now);
+    }
+  }
+  return std::nullopt;
+}
+
+}  // namespace meshfarm

@@ -1,0 +1,309 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#include <map>
+#include <random>
+#include <string>
+#include <vector>
+
+#include <doctest/doctest.h>
+
+#include <meshfarm/farm/scheduler.hpp>
+
+#include "farm_fixture.hpp"
+
+namespace meshfarm::test {
+namespace {
+
+JobOutput output_of(JobKey key) {
+  return {{to_string(ResultName{key.value, 1, 1}), 1, 1}, "made"};
+}
+
+JobSource source_of(std::vector<Job> jobs) {
+  return [jobs = std::move(jobs)](std::span<const AcceptedJob> accepted) {
+    return accepted.empty() ? jobs : std::vector<Job>{};
+  };
+}
+
+/// Workers that do exactly as they are told, on virtual time; each holds up to 16 jobs.
+class Shop {
+ public:
+  Shop(std::vector<Job> jobs, const SchedulerOptions& options)
+      : plan_(source_of(std::move(jobs)), 3), scheduler_(options) {
+    plan_.restart({});
+  }
+
+  /// `speed`: what it really does; `claimed`: its benchmark.
+  void add(double speed, double claimed) {
+    const WorkerId id{static_cast<std::uint32_t>(speeds_.size() + 1)};
+    speeds_[id] = speed;
+    power_ += speed;
+    scheduler_.join(id, "host " + std::to_string(id.value),
+                    {static_cast<std::uint64_t>(claimed), 0, 1});
+    scheduler_.set_room(id, k_room);
+  }
+
+  /// The time until all jobs are done, over what it would take if the work were divisible.
+  double run() {
+    double work = 0;
+    for (const JobKey key : plan_.ready_jobs()) work += static_cast<double>(plan_.job(key).cost);
+    const double ideal = 1000 * work / power_;
+    for (; !plan_.complete(); now_ += FarmTime(1)) {
+      REQUIRE(now_.count() < 100 * ideal + 10'000);
+      for (const auto& [id, end] : std::map(ends_)) {
+        if (end <= static_cast<double>(now_.count())) finish(id);
+      }
+      while (auto pick = scheduler_.next(plan_, now_)) begin(pick->worker);
+      for (const auto& pick : scheduler_.second_attempts(plan_, now_)) begin(pick.worker);
+    }
+    return static_cast<double>(now_.count() - 1) / ideal;
+  }
+
+ private:
+  static constexpr std::uint64_t k_room = 16;
+
+  void begin(WorkerId id) {
+    if (ends_.contains(id) || scheduler_.held(id).empty()) return;
+    const auto& job = scheduler_.held(id).front();
+    ends_[id] =
+        static_cast<double>(now_.count()) + 1000 * static_cast<double>(job.cost) / speeds_.at(id);
+    doing_[id] = job.key;
+  }
+  void finish(WorkerId id) {
+    if (!ends_.contains(id)) return;
+    const JobKey key = doing_.at(id);
+    scheduler_.did(id, key, 0, now_);
+    plan_.accept(key, output_of(key));
+    for (const WorkerId holder : scheduler_.holders(key)) {
+      scheduler_.drop(holder, key, now_);
+      if (doing_[holder] == key) ends_.erase(holder);
+      scheduler_.set_room(holder, k_room - scheduler_.held(holder).size());
+      begin(holder);
+    }
+  }
+
+  Plan plan_;
+  Scheduler scheduler_;
+  FarmTime now_{0};
+  std::map<WorkerId, double> speeds_;
+  std::map<WorkerId, double> ends_;
+  std::map<WorkerId, JobKey> doing_;
+  double power_ = 0;
+};
+
+/// A model of `triangles` cut into parts that vary as a partitioner's do.
+std::vector<Job> parts_of(double triangles, std::size_t parts, double spread, unsigned seed) {
+  std::mt19937 random(seed);
+  std::vector<Job> jobs;
+  for (std::size_t i = 0; i < parts; ++i) {
+    const double dice = static_cast<double>(random()) / 4294967296.0;
+    const double size = triangles / static_cast<double>(parts) * (1 + spread * (2 * dice - 1));
+    jobs.push_back(make_job("part " + std::to_string(i), static_cast<std::uint64_t>(size)));
+  }
+  return jobs;
+}
+
+/// 16 fast workers and 8 of a third of their speed: the paper's Figure 4.
+double mixed_farm(std::size_t parts, const SchedulerOptions& options, double claim_of_slow = 1) {
+  Shop shop(parts_of(1e9, parts, 0.1, 7), options);
+  for (int i = 0; i < 16; ++i) shop.add(1e6, 1e6);
+  for (int i = 0; i < 8; ++i) shop.add(1e6 / 3, claim_of_slow * 1e6 / 3);
+  return shop.run();
+}
+
+TEST_CASE("16 fast and 8 slow workers end together, from 512 parts on within 3 %") {
+  for (const std::size_t parts : {512, 1024, 2048, 4096}) {
+    CAPTURE(parts);
+    const double over = mixed_farm(parts, {});
+    const double fixed = mixed_farm(parts, {.schedule = Schedule::fixed, .expect_workers = 24});
+    MESSAGE(parts, " parts: dynamic ", over, ", fixed ", fixed, " of the ideal time");
+    CHECK(over <= 1.03);
+  }
+  CHECK(mixed_farm(128, {}) <= 1.15);
+}
+
+TEST_CASE("a benchmark that is wrong by two is made up for by what workers do") {
+  CHECK(mixed_farm(512, {}, 2.0) <= 1.05);
+  CHECK(mixed_farm(512, {}, 0.5) <= 1.05);
+  const SchedulerOptions fixed{.schedule = Schedule::fixed, .expect_workers = 24};
+  CHECK(mixed_farm(512, fixed, 2.0) > 1.2);  // as it does not
+}
+
+TEST_CASE("24 equal workers are busy to the end") {
+  for (const std::size_t parts : {96, 384}) {
+    CAPTURE(parts);
+    Shop shop(parts_of(1e9, parts, 0.2, 3), {});
+    for (int i = 0; i < 24; ++i) shop.add(1e6, 1e6);
+    CHECK(shop.run() <= (parts == 96 ? 1.06 : 1.02));
+  }
+}
+
+TEST_CASE("a fixed schedule without surprises is close to the ideal, too") {
+  CHECK(mixed_farm(512, {.schedule = Schedule::fixed, .expect_workers = 24}) <= 1.03);
+}
+
+/// A plan with a scheduler and short words.
+struct Desk {
+  explicit Desk(std::vector<Job> jobs, const SchedulerOptions& options = {})
+      : plan(source_of(std::move(jobs)), 3), scheduler(options) {
+    plan.restart({});
+  }
+  void join(std::uint32_t id, const std::string& host, const Capacity& capacity = {},
+            std::uint64_t room = 9) {
+    scheduler.join({id}, host, capacity);
+    scheduler.set_room({id}, room);
+  }
+  /// All that can be handed out now: "name@worker ".
+  std::string hand_out() {
+    std::string names;
+    while (const auto pick = scheduler.next(plan, now)) {
+      names += pick->job.job.parameters + "@" + std::to_string(pick->worker.value) + " ";
+    }
+    return names;
+  }
+  std::string second_attempts() {
+    now += FarmTime(100);  // often enough asked
+    std::string names;
+    for (const auto& pick : scheduler.second_attempts(plan, now)) {
+      names += pick.job.job.parameters + "@" + std::to_string(pick.worker.value) + " ";
+    }
+    return names;
+  }
+  void fail(std::uint32_t id, const std::string& name) {
+    const JobKey key = key_of(make_job(name));
+    scheduler.failed_on({id}, key);
+    scheduler.drop({id}, key, now);
+    scheduler.set_room({id}, 1);
+    plan.fail_attempt(key, "no luck", Failing::attempt);
+  }
+  void done(std::uint32_t id, const std::string& name) {
+    const JobKey key = key_of(make_job(name));
+    scheduler.did({id}, key, 1, now);
+    scheduler.drop({id}, key, now);
+    scheduler.settled(key);
+    plan.accept(key, output_of(key));
+  }
+
+  Plan plan;
+  Scheduler scheduler;
+  FarmTime now{0};
+};
+
+Job with_memory(const std::string& name, std::uint64_t cost, std::uint64_t memory) {
+  Job job = make_job(name, cost);
+  job.memory = memory;
+  return job;
+}
+
+TEST_CASE("a job is never given to a worker that it does not fit") {
+  Desk desk({with_memory("big", 9, 1000), with_memory("small", 1, 10)});
+  desk.join(1, "a", {0, 500, 1});
+  CHECK(desk.hand_out() == "small@1 ");
+  CHECK(desk.plan.ready_above(*desk.scheduler.greatest_memory()) == 1);
+  desk.join(2, "b", {0, 1000, 1});
+  CHECK(desk.plan.ready_above(*desk.scheduler.greatest_memory()) == 0);
+  desk.now += FarmTime(1000);
+  CHECK(desk.hand_out() == "big@2 ");
+}
+
+TEST_CASE("a small worker finds what fits it behind very many that do not") {
+  std::vector<Job> jobs = {with_memory("small", 1, 10)};
+  for (int i = 0; i < 1000; ++i) {
+    jobs.push_back(with_memory("big " + std::to_string(i), 1000, 1000));
+  }
+  Desk desk(jobs);
+  desk.join(1, "a", {0, 500, 1});
+  CHECK(desk.hand_out() == "small@1 ");
+}
+
+TEST_CASE("the last job is left to a fast worker that comes free in time") {
+  // "long" takes the fast one 1 s, "last" 0.9 s; the slow one would need 9 s.
+  Desk desk({make_job("long", 1'000'000), make_job("last", 900'000)});
+  desk.join(1, "fast", {1'000'000, 0, 1}, 1);
+  desk.join(2, "slow", {100'000, 0, 1}, 1);
+  CHECK(desk.hand_out() == "long@1 ");
+  desk.now += FarmTime(999);
+  CHECK(desk.hand_out().empty());
+  SUBCASE("which it does") {
+    desk.done(1, "long");
+    desk.scheduler.set_room({1}, 1);
+    CHECK(desk.hand_out() == "last@1 ");
+  }
+  SUBCASE("or does not: the slow one helps out") {
+    desk.now += FarmTime(10'000);
+    CHECK(desk.hand_out() == "last@2 ");
+  }
+}
+
+TEST_CASE("an idle worker makes a second attempt at what would take another longer, once") {
+  Desk desk({make_job("long", 1'000'000)});
+  desk.join(1, "slow", {100'000, 0, 1});
+  CHECK(desk.hand_out() == "long@1 ");
+  desk.join(2, "as slow", {100'000, 0, 1});
+  CHECK(desk.second_attempts().empty());
+  desk.join(3, "fast", {1'000'000, 0, 1});
+  desk.join(4, "fast", {1'000'000, 0, 1});
+  CHECK(desk.second_attempts() == "long@3 ");
+  CHECK(desk.second_attempts().empty());  // two attempts at most
+  CHECK(desk.scheduler.holders(key_of(make_job("long"))).size() == 2);
+  CHECK(desk.plan.attempts(key_of(make_job("long"))) == 2);
+  CHECK(desk.plan.counts().running == 1);
+}
+
+TEST_CASE("a straggler is overtaken once it is half as late again as it should be") {
+  Desk desk({make_job("long", 1'000'000)});
+  desk.join(1, "a", {1'000'000, 0, 1});
+  desk.join(2, "b", {1'000'000, 0, 1});
+  CHECK(desk.hand_out() == "long@1 ");
+  desk.now = FarmTime(1300);
+  CHECK(desk.second_attempts().empty());
+  desk.now = FarmTime(1500);
+  CHECK(desk.second_attempts() == "long@2 ");
+}
+
+TEST_CASE("a job that failed on a host is tried on another") {
+  Desk desk({make_job("job")});
+  desk.join(1, "a", {}, 1);
+  CHECK(desk.hand_out() == "job@1 ");
+  desk.fail(1, "job");
+  SUBCASE("if there is one") {
+    desk.join(2, "b", {}, 1);
+    CHECK(desk.hand_out() == "job@2 ");
+  }
+  SUBCASE("and else there again") {
+    CHECK(desk.hand_out() == "job@1 ");
+  }
+}
+
+TEST_CASE("a host where three jobs in a row failed gets no more, as long as there are others") {
+  Desk desk({make_job("x", 9), make_job("y", 8), make_job("z", 7), make_job("w", 6)});
+  desk.join(1, "bad", {}, 1);
+  desk.join(2, "good", {}, 0);
+  for (const std::string name : {"x", "y", "z"}) {
+    CHECK(desk.hand_out() == name + "@1 ");
+    desk.fail(1, name);
+  }
+  CHECK(desk.hand_out().empty());
+  CHECK(desk.scheduler.bad_hosts() == std::vector<std::string>{"bad"});
+  SUBCASE("the others do the rest") {
+    desk.scheduler.set_room({2}, 9);
+    CHECK(desk.hand_out() == "x@2 y@2 ");  // one to do, one to read ahead
+  }
+  SUBCASE("no others are left") {
+    desk.scheduler.leave({2});
+    CHECK(desk.scheduler.bad_hosts().empty());
+    CHECK(desk.hand_out() == "x@1 ");
+  }
+}
+
+TEST_CASE("a suspect is given to a worker alone") {
+  Desk desk({make_job("suspect", 9), make_job("other", 1)});
+  desk.scheduler.suspect(key_of(make_job("suspect")));
+  desk.join(1, "a");
+  CHECK(desk.hand_out() == "suspect@1 ");
+  desk.join(2, "b");
+  desk.now += FarmTime(1000);
+  CHECK(desk.hand_out() == "other@2 ");
+}
+
+}  // namespace
+}  // namespace meshfarm::test
