@@ -38,6 +38,7 @@ class RunCommand : public Command {
     options.add_options()("workers", po::value(&workers_)->default_value(workers_)->value_name("N"),
                           "worker processes started here");
     if (whose_ == Workers::of_any_host) network_.add(options);
+    schedule_.add(options);
     talk_.add(options);
     positional.add("stage", 1);
   }
@@ -49,12 +50,14 @@ class RunCommand : public Command {
     }
     if (workers_ > 1000) throw UsageError("--workers: at most 1000");
     network_.check();
+    schedule_.check();
     if (output_.empty()) output_ = (std::filesystem::path(stage_) / "result.ply").string();
   }
   int run() override {
     const std::atomic<bool>& stop = stop_on_signals();
     check_writable(output_);
-    const int code = run_local_farm({stage_, output_, target_, network_, talk_, workers_}, stop);
+    const int code =
+        run_local_farm({stage_, output_, target_, network_, schedule_, talk_, workers_}, stop);
     if (code == 3) {
       log_info("stopped; what is done is kept: the same command goes on from there");
     }
@@ -68,6 +71,7 @@ class RunCommand : public Command {
   std::uint32_t workers_;
   TargetOptions target_;
   NetworkOptions network_;
+  ScheduleWords schedule_;
   TalkOptions talk_;
 };
 

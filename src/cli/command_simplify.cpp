@@ -50,7 +50,8 @@ class SimplifyCommand : public Command {
     const std::atomic<bool>& stop = stop_on_signals();
     check_writable(output_);
     cut_to_stage({input_, stage_, cut_, talk_, stop});
-    const int code = run_local_farm({stage_, output_, target_, network_, talk_, workers_}, stop);
+    const int code =
+        run_local_farm({stage_, output_, target_, network_, schedule_, talk_, workers_}, stop);
     if (code == 0 && !keep_stage_) remove_stage(stage_);
     if (code == 3) {
       log_info("stopped; the parts are kept: 'meshfarm replay " + stage_ + " -o " + output_ +
@@ -68,6 +69,7 @@ class SimplifyCommand : public Command {
   TargetOptions target_;
   CutWords cut_;
   NetworkOptions network_;
+  ScheduleWords schedule_;
   TalkOptions talk_;
 };
 

@@ -25,6 +25,7 @@ class VentilatorCommand : public FarmCommand {
     add_stage(options, positional);
     target_.add(options);
     network_.add(options);
+    schedule_.add(options);
     options.add_options()("heartbeat-ms",
                           po::value(&heartbeat_ms_)->default_value(heartbeat_ms_)->value_name("N"),
                           "a worker or sink that is silent three times as long is lost");
@@ -33,6 +34,7 @@ class VentilatorCommand : public FarmCommand {
   void check() override {
     target_.check();
     network_.check();
+    schedule_.check();
     if (heartbeat_ms_ < 50 || heartbeat_ms_ > 60'000) {
       throw UsageError("--heartbeat-ms: from 50 to 60000");
     }
@@ -49,6 +51,8 @@ class VentilatorCommand : public FarmCommand {
     options.security = network_.security.security;
     options.run = run_key(manifest, target_.run);
     options.heartbeat = std::chrono::milliseconds(heartbeat_ms_);
+    options.hang = std::chrono::seconds(schedule_.hang_s);
+    options.schedule = schedule_.options;
     options.stop = &stop;
     options.progress = [&](const FarmProgress& p) { show(printer, p); };
     run_ventilator(stage, make_job_source(manifest, target_.run), options);
@@ -67,6 +71,11 @@ class VentilatorCommand : public FarmCommand {
       phase += std::to_string(p.workers) + (p.workers == 1 ? " worker" : " workers");
     }
     if (p.retries > 0) phase += ", " + std::to_string(p.retries) + " given out again";
+    if (p.jobs_too_big > 0) {
+      phase += ", " + std::to_string(p.jobs_too_big) + " wait for a worker with more memory";
+    }
+    for (const std::string& host : p.bad_hosts) phase += ", no more jobs for " + host;
+    if (p.storage_stalls) phase += ", the stage's storage stands still";
     if (p.refused > 0) phase += ", " + std::to_string(p.refused) + " strangers refused";
     const double all = static_cast<double>(std::max<std::uint64_t>(1, p.cost_known));
     printer.show(
@@ -75,6 +84,7 @@ class VentilatorCommand : public FarmCommand {
 
   TargetOptions target_;
   NetworkOptions network_;
+  ScheduleWords schedule_;
   std::uint32_t heartbeat_ms_ = 1000;
 };
 

@@ -16,6 +16,7 @@ struct LocalFarm {
   std::string output;
   const TargetOptions& target;
   const NetworkOptions& network;
+  const ScheduleWords& schedule;
   const TalkOptions& talk;
   std::uint32_t workers = 0;
 };

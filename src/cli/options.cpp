@@ -215,6 +215,33 @@ std::vector<std::string> NetworkOptions::words() const {
   return words;
 }
 
+void ScheduleWords::add(po::options_description& described) {
+  described.add_options()(
+      "schedule", po::value(&schedule)->default_value(schedule),
+      "dynamic: parts go to whoever will have done them first; static: dealt out at the start in "
+      "sets of equal estimated time")(
+      "expect-workers",
+      po::value(&options.expect_workers)->default_value(options.expect_workers)->value_name("N"),
+      "how many workers a static schedule waits for before it deals out")(
+      "hang-seconds", po::value(&hang_s)->default_value(hang_s)->value_name("N"),
+      "a part that makes no progress for so long, and three times its estimate, is given to "
+      "another worker");
+}
+
+void ScheduleWords::check() {
+  if (schedule != "dynamic" && schedule != "static") {
+    throw UsageError("--schedule is 'dynamic' or 'static', not '" + schedule + "'");
+  }
+  options.schedule = schedule == "static" ? Schedule::fixed : Schedule::dynamic;
+  if (hang_s == 0 || hang_s > 86'400) throw UsageError("--hang-seconds: from 1 to 86400");
+}
+
+std::vector<std::string> ScheduleWords::words() const {
+  return {"--schedule",       schedule,
+          "--expect-workers", std::to_string(options.expect_workers),
+          "--hang-seconds",   std::to_string(hang_s)};
+}
+
 std::uint64_t parse_size(const std::string& text, std::string_view option) {
   double value = 0;
   const char* last = text.data() + text.size();

@@ -9,6 +9,7 @@
 
 #include <boost/program_options.hpp>
 
+#include <meshfarm/farm/scheduler.hpp>
 #include <meshfarm/farm/security.hpp>
 #include <meshfarm/partition/cut.hpp>
 #include <meshfarm/pipeline/run_options.hpp>
@@ -80,6 +81,17 @@ struct NetworkOptions {
   std::uint16_t first_port = 0;
   std::uint16_t last_port = 0;
   SecurityWords security;
+
+  void add(po::options_description& options);
+  void check();
+  std::vector<std::string> words() const;
+};
+
+/// --schedule, --expect-workers, --hang-seconds.
+struct ScheduleWords {
+  SchedulerOptions options;
+  std::string schedule = "dynamic";
+  std::uint32_t hang_s = 30;
 
   void add(po::options_description& options);
   void check();

@@ -1,0 +1,252 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#include <map>
+#include <string>
+#include <vector>
+
+#include <doctest/doctest.h>
+
+#include <meshfarm/farm/sink_core.hpp>
+
+#include "farm_fixture.hpp"
+
+namespace meshfarm::test {
+namespace {
+
+template <class A>
+std::vector<A> only(const SinkActions& actions) {
+  std::vector<A> found;
+  for (const SinkAction& action : actions) {
+    if (const auto* each = std::get_if<A>(&action)) found.push_back(*each);
+  }
+  return found;
+}
+
+/// What the sink says of type M.
+template <class M>
+std::vector<M> said(const SinkActions& actions) {
+  std::vector<M> found;
+  for (const Say& say : only<Say>(actions)) {
+    if (const auto* each = std::get_if<M>(&say.message)) found.push_back(*each);
+  }
+  return found;
+}
+
+JobKey key(const std::string& name) {
+  return key_of(make_job(name));
+}
+
+JobOutput output_of(JobKey of, std::uint32_t attempt = 1, std::uint64_t incarnation = 5) {
+  return {{to_string(ResultName{of.value, attempt, incarnation}), 1, 1}, "made"};
+}
+
+/// A sink with a clock, of a run of jobs "job 0", "job 1"...
+struct Bench {
+  explicit Bench(std::size_t jobs, std::map<JobKey, JobOutput> journal = {})
+      : core({Role::sink, 7, 99, 1, "h", "results", FarmTime(10'000)}, one_round(jobs),
+             std::move(journal)) {}
+
+  SinkActions join(std::uint32_t epoch) {
+    SinkActions all = core.tick(now);
+    const Endpoint there{epoch, 7, "tcp://v", "h", 1};
+    const SinkActions dialled = core.found({&there, 1}, now);
+    CHECK(only<Dial>(dialled).size() == 1);
+    CHECK(said<Hello>(dialled).size() == 1);
+    for (SinkAction& each : core.on_control(Welcome{{}, epoch, 7, "", "", 1000}, now)) {
+      all.push_back(std::move(each));
+    }
+    return all;
+  }
+  SinkActions result(JobKey of, std::uint32_t epoch = 1, std::uint32_t attempt = 1) {
+    return core.on_result(
+        Result{7, epoch, {3}, 5, attempt, of, output_of(of, attempt), {1, 2, 3, 4}});
+  }
+  /// The result comes, and its file is found whole.
+  SinkActions accept(JobKey of) {
+    const auto checks = only<Check>(result(of));
+    REQUIRE(checks.size() == 1);
+    return core.checked(checks[0], "");
+  }
+  SinkActions silence(FarmTime duration) { return core.tick(now += duration); }
+
+  SinkCore core;
+  FarmTime now{0};
+};
+
+TEST_CASE("a result is told only after its file is found whole and journalled") {
+  Bench bench(2);
+  bench.join(1);
+  const auto checks = only<Check>(bench.result(key("job 1")));
+  REQUIRE(checks.size() == 1);
+  CHECK_FALSE(checks[0].from_journal);
+  CHECK(checks[0].attempt == 1);
+  CHECK(only<Check>(bench.result(key("job 1"))).empty());  // said again: it is being checked
+  const auto accepts = said<Accept>(bench.core.checked(checks[0], ""));
+  REQUIRE(accepts.size() == 1);
+  CHECK(accepts[0].worker == WorkerId{3});
+  CHECK(accepts[0].times.compute_ms == 3);
+  const SinkActions again = bench.result(key("job 1"));  // the worker missed the answer
+  CHECK(only<Check>(again).empty());
+  CHECK(said<Accept>(again).size() == 1);
+  CHECK(bench.core.rounds().jobs_accepted() == 1);
+}
+
+TEST_CASE("a damaged result and a failed job are rejected with their reasons") {
+  Bench bench(2);
+  bench.join(1);
+  const auto checks = only<Check>(bench.result(key("job 0"), 1, 4));
+  const auto damaged = said<Reject>(bench.core.checked(checks.at(0), "it is damaged"));
+  REQUIRE(damaged.size() == 1);
+  CHECK(damaged[0].attempt == 4);
+  CHECK(damaged[0].failure.reason == "it is damaged");
+  CHECK(damaged[0].failure.kind == FailureKind::attempt);
+  const JobFailure full{"no room", FailureKind::no_space};
+  const auto failed =
+      said<Reject>(bench.core.on_result(Result{7, 1, {3}, 5, 1, key("job 1"), full, {}}));
+  REQUIRE(failed.size() == 1);
+  CHECK(failed[0].failure.kind == FailureKind::no_space);
+  CHECK(bench.core.rounds().jobs_accepted() == 0);
+}
+
+TEST_CASE("what is not ours is dropped and counted") {
+  Bench bench(1);
+  bench.join(2);
+  const JobKey job = key("job 0");
+  const JobOutput good = output_of(job);
+  CHECK(bench.core.on_result(Result{8, 2, {3}, 5, 1, job, good, {}}).empty());  // another run
+  CHECK(bench.core.on_result(Result{7, 1, {3}, 5, 1, job, good, {}}).empty());  // an old epoch
+  CHECK(bench.core.on_result(Result{7, 2, {3}, 5, 1, {1}, good, {}}).empty());  // not wanted
+  CHECK(bench.core.on_result(Result{7, 2, {3}, 6, 1, job, good, {}}).empty());  // another's file
+  CHECK(bench.core.on_result(Result{7, 2, {3}, 5, 2, job, good, {}}).empty());  // not its attempt
+  CHECK(bench.core.on_result(Complete{2}).empty());
+  CHECK(bench.core.dropped() == 6);
+  CHECK(only<Check>(bench.result(job, 2)).size() == 1);
+}
+
+TEST_CASE("what a journal knows is checked again, and told to each ventilator before Ready") {
+  const JobKey known = key("job 0");
+  const JobKey gone = key("job 1");
+  Bench bench(3, {{known, output_of(known)}, {gone, output_of(gone)}, {{1}, output_of({1})}});
+  const auto checks = only<Check>(bench.join(1));
+  REQUIRE(checks.size() == 2);  // what no round wants is left alone
+  CHECK(checks[0].from_journal);
+  CHECK(said<Ready>(bench.core.checked(checks[0], "")).empty());  // one is still being checked
+  const SinkActions told = bench.core.checked(checks[1], "it is not there");
+  CHECK(said<Reject>(told).empty());
+  CHECK(said<Accept>(told).size() == 1);
+  REQUIRE(said<Ready>(told).size() == 1);
+  CHECK(said<Ready>(told)[0].accepted == 1);
+  CHECK(said<Accept>(bench.accept(key("job 2"))).size() == 1);
+
+  bench.now += FarmTime(3001);
+  CHECK(only<HangUp>(bench.core.tick(bench.now)).size() == 1);
+  const SinkActions anew = bench.join(2);
+  CHECK(said<Accept>(anew).size() == 2);
+  CHECK(said<Ready>(anew).at(0).accepted == 2);
+}
+
+TEST_CASE("heartbeats say again where the sink stands") {
+  Bench bench(2);
+  bench.join(1);
+  bench.accept(key("job 0"));
+  const SinkActions beat = bench.silence(FarmTime(1000));
+  CHECK(said<Heartbeat>(beat).size() == 1);
+  CHECK(said<Ready>(beat).at(0).accepted == 1);
+}
+
+TEST_CASE("the output is made once all is accepted, and Complete said until it is heard") {
+  Bench bench(1);
+  bench.join(1);
+  CHECK(only<MakeOutput>(bench.accept(key("job 0"))).size() == 1);
+  bench.core.on_control(Alive{1, ""}, bench.now);
+  CHECK(said<Complete>(bench.core.completed({}, bench.now)).size() == 1);
+  CHECK(said<Complete>(bench.silence(FarmTime(1000))).size() == 1);
+  SUBCASE("the ventilator ends the run") {
+    const auto left =
+        only<SinkLeaves>(bench.core.on_control(Stop{StopReason::run_over}, bench.now));
+    REQUIRE(left.size() == 1);
+    CHECK(left[0].why == SinkLeaves::Why::complete);
+    CHECK(left[0].message.empty());
+  }
+  SUBCASE("nobody answers any more: it is complete all the same") {
+    SinkActions last;
+    for (int i = 0; i < 15 && only<SinkLeaves>(last).empty(); ++i) {
+      last = bench.silence(FarmTime(1000));
+    }
+    REQUIRE(only<SinkLeaves>(last).size() == 1);
+    CHECK(only<SinkLeaves>(last)[0].why == SinkLeaves::Why::complete);
+    CHECK_FALSE(only<SinkLeaves>(last)[0].message.empty());
+  }
+}
+
+TEST_CASE("an output or a journal that cannot be written is told, and is the end") {
+  Bench bench(1);
+  bench.join(1);
+  bool resumable = false;
+  SUBCASE("for good") {}
+  SUBCASE("for now: the disk is full") {
+    resumable = true;
+  }
+  const auto told = said<Failed>(bench.core.fail({"cannot write", resumable}));
+  REQUIRE(told.size() == 1);
+  CHECK(told[0].reason == "cannot write");
+  CHECK(told[0].resumable == resumable);
+  const auto left = only<SinkLeaves>(bench.core.on_control(Stop{StopReason::run_over}, bench.now));
+  REQUIRE(left.size() == 1);
+  CHECK(left[0].message == "cannot write");
+  CHECK(left[0].why == (resumable ? SinkLeaves::Why::incomplete : SinkLeaves::Why::output_failed));
+}
+
+TEST_CASE("jobs that were given up end the run, and say whether it may be taken up again") {
+  Bench bench(2);
+  bench.join(1);
+  const auto end_of = [&] {
+    return only<SinkLeaves>(bench.core.on_control(Stop{StopReason::run_over}, bench.now)).at(0);
+  };
+  SUBCASE("their input is bad") {
+    bench.core.on_control(JobFailed{key("job 0"), "no mesh", false}, bench.now);
+    bench.core.on_control(JobFailed{key("job 1"), "lost workers", true}, bench.now);
+    const SinkLeaves end = end_of();
+    CHECK(end.why == SinkLeaves::Why::jobs_failed);
+    CHECK(end.message.find("2 jobs failed for good") != std::string::npos);
+  }
+  SUBCASE("they cost workers their lives") {
+    bench.core.on_control(JobFailed{key("job 0"), "lost workers", true}, bench.now);
+    CHECK(end_of().why == SinkLeaves::Why::incomplete);
+  }
+  SUBCASE("a late result makes up for it") {
+    bench.core.on_control(JobFailed{key("job 0"), "lost workers", false}, bench.now);
+    bench.accept(key("job 0"));
+    const SinkLeaves end = end_of();
+    CHECK(end.why == SinkLeaves::Why::incomplete);
+    CHECK(end.message.find("before its end") != std::string::npos);
+  }
+  SUBCASE("the whole run cannot go on") {
+    bench.core.on_control(JobFailed{k_whole_run, "the stage is full", true}, bench.now);
+    const SinkLeaves end = end_of();
+    CHECK(end.why == SinkLeaves::Why::incomplete);
+    CHECK(end.message == "the stage is full");
+  }
+}
+
+TEST_CASE("a sink that is stopped, replaced or alone for too long leaves, resumable") {
+  Bench bench(1);
+  SUBCASE("stopped") {
+    bench.join(1);
+    CHECK(only<SinkLeaves>(bench.core.stop()).at(0).why == SinkLeaves::Why::incomplete);
+  }
+  SUBCASE("replaced") {
+    bench.join(1);
+    const SinkActions end = bench.core.on_control(Refused{Refusal::replaced, "another"}, bench.now);
+    CHECK(only<SinkLeaves>(end).at(0).message.find("another") != std::string::npos);
+  }
+  SUBCASE("alone") {
+    bench.core.tick(bench.now);
+    const auto left = only<SinkLeaves>(bench.silence(FarmTime(10'001)));
+    REQUIRE(left.size() == 1);
+    CHECK(left[0].message.find("meshfarm run") != std::string::npos);
+  }
+}
+
+}  // namespace
+}  // namespace meshfarm::test
