@@ -11,6 +11,7 @@
 #include "geometry/collapse.hpp"
 #include "geometry/simplify_clean.hpp"
 #include "geometry/simplify_rank.hpp"
+#include "geometry/simplify_sweep.hpp"
 
 namespace meshfarm {
 namespace {
@@ -23,6 +24,16 @@ constexpr double k_pass_share = 0.35;
 // error is made later.
 constexpr std::uint64_t k_far = 4;
 constexpr double k_far_share = 0.5;
+
+// And while there is as much more to go, edges need no ranking at all: sweeps halve the time and
+// cost 1 % of the error on the dragon and none on terrain. Down to 8 times the goal they took 10 %
+// longer for 1 % less error.
+// A sweep spares as many of the costliest vertices as the goal leaves, but at least these.
+constexpr double k_most_swept = 0.97;
+// And it keeps this far below the goal's own limit, near which the order matters.
+constexpr double k_sweep_margin = 8;
+// Less than this part of the triangles removed is not worth a sweep.
+constexpr double k_least_swept = 0.1;
 
 // The edges taken in a pass that must not overshoot, as a part of the triangles still to go: each
 // that can collapse, about six in ten, removes two.
@@ -58,8 +69,17 @@ class Simplifier::Impl {
   }
 
   void reduce(const SimplifyGoal& goal, const std::function<bool(std::uint64_t)>& progress) {
+    bool sweeping = !seam_only_;
     double share = k_pass_share;
     while (may_go_on(goal)) {
+      if (sweeping && is_far(goal)) {
+        const auto before = static_cast<double>(mesh_.triangles.size());
+        const std::uint64_t removed = sweep(goal);
+        sweeping = static_cast<double>(removed) >= k_least_swept * before;
+        compact();
+        if (progress && !progress(mesh_.triangles.size())) break;
+        continue;
+      }
       begin_pass();
       const Pass pass = plan_pass(goal, share);
       const std::uint64_t before = mesh_.triangles.size();
@@ -108,9 +128,56 @@ class Simplifier::Impl {
     return true;
   }
 
-  void begin_pass() {
+  bool is_far(const SimplifyGoal& goal) const {
+    const std::uint64_t last = goal.last_triangles > 0 ? goal.last_triangles : goal.triangles;
+    const std::uint64_t triangles = mesh_.triangles.size();
+    return triangles > k_far * last && triangles > 2 * goal.triangles &&
+           mesh_.positions.size() > 2 * k_block;
+  }
+
+  void build_adjacency() {
     if (!adjacency_is_current_) adjacency_.build(mesh_.triangles, mesh_.positions.size());
     adjacency_is_current_ = false;
+  }
+
+  void begin_collapses() {
+    const std::size_t vertices = mesh_.positions.size();
+    target_.resize(vertices);
+    std::iota(target_.begin(), target_.end(), 0U);
+    touched_.assign(vertices, 0);
+  }
+
+  CollapseState collapse_state() { return {mesh_.positions, flags_, target_, &adjacency_, type_}; }
+
+  /// Merges each vertex, in their order, with its nearest neighbour. Returns the triangles removed.
+  std::uint64_t sweep(const SimplifyGoal& goal) {
+    build_adjacency();
+    begin_collapses();
+    CollapseJudge judge(collapse_state());
+    const Sweep sweep({collapse_state(), touched_});
+    const std::uint64_t excess = mesh_.triangles.size() - goal.triangles;
+    const double left =
+        static_cast<double>(goal.triangles) / static_cast<double>(mesh_.triangles.size());
+    const std::optional<double> limit =
+        sweep.estimate_limit(judge, std::min(k_most_swept, 1 - left));
+    if (!limit || *limit * k_sweep_margin > goal.max_cost) return 0;
+    CollapseLimits limits{excess, *limit};
+    for (std::uint32_t v = 0; v < touched_.size() && limits.triangles > 1; ++v) {
+      if (touched_[v] != 0) continue;
+      const std::uint32_t other = sweep.partner(v);
+      if (other == v) continue;
+      const auto [a, b] = std::minmax(v, other);
+      const Collapse collapse = judge.judge(a, b, limits);
+      if (collapse.triangles == 0) continue;
+      merge(a, b, collapse);
+      limits.triangles -= collapse.triangles;
+    }
+    pass_cost_ = *limit;
+    return excess - limits.triangles;
+  }
+
+  void begin_pass() {
+    build_adjacency();
     ranking_.begin_pass({mesh_.positions, mesh_.triangles, flags_, &adjacency_, seam_only_});
   }
 
@@ -137,10 +204,8 @@ class Simplifier::Impl {
   /// through the whole mesh, that is less than the pass might have paid.
   std::uint64_t collapse_edges(const SimplifyGoal& goal, const Pass& pass) {
     const auto vertices = static_cast<std::uint32_t>(mesh_.positions.size());
-    target_.resize(vertices);
-    std::iota(target_.begin(), target_.end(), 0U);
-    touched_.assign(vertices, 0);
-    CollapseJudge judge({mesh_.positions, flags_, target_, &adjacency_, type_});
+    begin_collapses();
+    CollapseJudge judge(collapse_state());
     const std::uint64_t excess = mesh_.triangles.size() - goal.triangles;
     CollapseLimits limits{excess, pass.max_cost};
     double reached = pass.max_cost;
@@ -150,7 +215,7 @@ class Simplifier::Impl {
         if ((touched_[e.a] | touched_[e.b]) != 0) continue;
         const Collapse collapse = judge.judge(e.a, e.b, limits);
         if (collapse.triangles == 0) continue;
-        merge(e, collapse);
+        merge(e.a, e.b, collapse);
         limits.triangles -= collapse.triangles;
         const bool in_order = pass.block == vertices;
         if (limits.triangles <= 1 && in_order) reached = std::min(reached, cost_of(e.key));
@@ -161,11 +226,11 @@ class Simplifier::Impl {
     return excess - limits.triangles;
   }
 
-  void merge(const RankedEdge& e, const Collapse& collapse) {
-    touched_[e.a] = touched_[e.b] = 1;
-    target_[e.b] = e.a;
-    flags_[e.a] |= flags_[e.b];
-    mesh_.positions[e.a] = collapse.position;
+  void merge(std::uint32_t a, std::uint32_t b, const Collapse& collapse) {
+    touched_[a] = touched_[b] = 1;
+    target_[b] = a;
+    flags_[a] |= flags_[b];
+    mesh_.positions[a] = collapse.position;
     max_cost_ = std::max(max_cost_, collapse.cost);
   }
 

@@ -29,11 +29,6 @@ constexpr CostKey k_greatest_finite = 0x7FEFFFFF;
 // Few enough that what the listing fetches ahead is still in the first cache.
 constexpr std::size_t k_listed_at_once = 256;
 
-// Scrambled, so that a sample follows no pattern of the numbering.
-std::uint32_t scrambled(std::uint32_t vertex) {
-  return vertex * 2654435769U;
-}
-
 }  // namespace
 
 CostKey key_of(double cost) {

@@ -21,6 +21,11 @@ CostKey key_of(double cost);
 /// The greatest cost that has this key.
 double cost_of(CostKey key);
 
+/// Scrambles a number, so that a sample follows no pattern of the numbering.
+constexpr std::uint32_t scrambled(std::uint32_t vertex) {
+  return vertex * 2654435769U;
+}
+
 struct RankedEdge {
   std::uint32_t a;
   std::uint32_t b;

@@ -17,8 +17,6 @@ namespace {
 /// more than its share; a part that deserves still more is asked for again.
 constexpr double k_first_headroom = 4;
 constexpr double k_more_headroom = 8;
-/// A ladder ends at this fraction of the part's even share.
-constexpr double k_floor = 1.0 / 16;
 
 /// Points of the input by which the error of the result is measured: the RMS of as many varies by
 /// less than one per cent.
@@ -143,7 +141,7 @@ class Rounds {
   void set_share(SimplifyParameters& parameters, std::uint32_t part) const {
     const PartEntry& entry = climbed(part);
     const double share = ratio() * static_cast<double>(entry.triangles);
-    parameters.floor_triangles = static_cast<std::uint64_t>(share * k_floor);
+    parameters.share_triangles = static_cast<std::uint64_t>(share);
     double start = share;
     if (options_.allocation == Allocation::threshold) {
       start = share * headroom_[part] * provision(ratio()) / 2 + 2.0 * entry.boundary_vertices;

@@ -15,11 +15,13 @@
 namespace meshfarm {
 namespace {
 
-// Version 1: allocation u8 | start u64 | floor u64 | samples u64 | cost unit f64 |
+// Version 2: allocation u8 | start u64 | even share u64 | samples u64 | cost unit f64 |
 // greatest error f64.
-constexpr std::uint8_t k_version = 1;
+constexpr std::uint8_t k_version = 2;
 constexpr std::uint64_t k_max_samples = 100'000'000;
 constexpr std::int32_t k_top_level = 52;
+// A part keeps no less than this fraction of its even share.
+constexpr std::uint64_t k_shares_per_floor = 16;
 
 /// Climbs the levels and keeps a snapshot wherever the mesh changed.
 class LadderBuilder {
@@ -55,7 +57,8 @@ class LadderBuilder {
   /// Makes the first rung and returns the level that the mesh has reached with it.
   std::int32_t start() {
     if (parameters_.start_triangles < simplifier_.triangles()) {
-      reduce({.triangles = parameters_.start_triangles});
+      reduce({.triangles = parameters_.start_triangles,
+              .last_triangles = parameters_.share_triangles});
       const std::int32_t level = level_of(simplifier_.pass_cost(), parameters_.cost_unit);
       snapshot(level - 1);  // what costs that much is done in part only
       return level;
@@ -67,11 +70,11 @@ class LadderBuilder {
   }
 
   void climb(std::int32_t level) {
+    const std::uint64_t floor = parameters_.share_triangles / k_shares_per_floor;
     for (; level <= k_top_level; ++level) {
-      if (simplifier_.triangles() <= parameters_.floor_triangles) return;
+      if (simplifier_.triangles() <= floor) return;
       if (simplifier_.free_triangles() == 0) return;
-      reduce({.triangles = parameters_.floor_triangles,
-              .max_cost = level_cost(level, parameters_.cost_unit)});
+      reduce({.triangles = floor, .max_cost = level_cost(level, parameters_.cost_unit)});
       if (simplifier_.triangles() < result_.rungs().back().triangles && !snapshot(level)) return;
     }
   }
@@ -130,7 +133,7 @@ std::string encode_parameters(const SimplifyParameters& parameters) {
   out.put(k_version);
   out.put(parameters.allocation);
   out.put(parameters.start_triangles);
-  out.put(parameters.floor_triangles);
+  out.put(parameters.share_triangles);
   out.put(parameters.samples);
   out.put(parameters.cost_unit);
   out.put(parameters.max_error);
@@ -144,7 +147,7 @@ SimplifyParameters decode_parameters(std::string_view bytes) {
   parameters.allocation = in.get<Allocation>();
   if (parameters.allocation > Allocation::uniform) in.fail("unknown allocation");
   parameters.start_triangles = in.get<std::uint64_t>();
-  parameters.floor_triangles = in.get<std::uint64_t>();
+  parameters.share_triangles = in.get<std::uint64_t>();
   parameters.samples = in.get<std::uint64_t>();
   if (parameters.samples > k_max_samples) in.fail("too many samples");
   parameters.cost_unit = in.get<double>();

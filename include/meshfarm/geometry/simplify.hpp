@@ -34,6 +34,9 @@ struct SimplifyGoal {
   /// length, since planes do not see a spike draw back. It depends on nothing else: costs of parts
   /// compare.
   double max_cost = std::numeric_limits<double>::infinity();
+  /// About how many triangles will be left when all goals that follow are met; 0: none follows.
+  /// The farther the end, the less care a collapse needs.
+  std::uint64_t last_triangles = 0;
 };
 
 /// Iterative edge collapse by quadric error (Garland & Heckbert 1997) in passes without a heap;

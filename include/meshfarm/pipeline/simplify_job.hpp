@@ -17,7 +17,7 @@ inline constexpr std::string_view k_simplify_kind = "simplify";
 struct SimplifyParameters {
   Allocation allocation = Allocation::threshold;
   std::uint64_t start_triangles = 0;  // the first rung: at most this many triangles
-  std::uint64_t floor_triangles = 0;  // the ladder need not go below
+  std::uint64_t share_triangles = 0;  // the part's even share of the target
   std::uint64_t samples = 0;          // points of the part to measure the final error by
   double cost_unit = 0;               // cost of level 0
   double max_error = 0;               // where above 0: rungs are measured, and end below this
@@ -37,8 +37,8 @@ std::int32_t level_of(double cost, double unit);
 /// Level 0 of a mesh with this diagonal: distances of 2^-50 of it.
 double cost_unit(double diagonal);
 
-/// Simplifies one part or stream (the job's input) to a ladder, or with Allocation::uniform to one
-/// rung.
+/// Simplifies one part or stream (the job's input) to a ladder that ends at 1/16 of its even share,
+/// or with Allocation::uniform to one rung.
 JobOutput simplify_part(const Job& job, const JobContext& context);
 
 }  // namespace meshfarm

@@ -1,0 +1,119 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+#include <doctest/doctest.h>
+
+#include <meshfarm/geometry/distance.hpp>
+#include <meshfarm/geometry/simplify.hpp>
+
+#include "geometry/simplify_clean.hpp"
+#include "geometry/simplify_sweep.hpp"
+#include "test_simplify_meshes.hpp"
+
+using namespace meshfarm;
+using namespace meshfarm::simplify_test;
+
+namespace {
+
+/// A mesh with what a sweep works on.
+struct SweepBench {
+  explicit SweepBench(Mesh m) : mesh(std::move(m)) {
+    flags = clean_surface(mesh, {}, adjacency).flags;
+    for (std::uint32_t v = 0; v < flags.size(); ++v) target.push_back(v);
+    touched.assign(flags.size(), 0);
+  }
+  CollapseState state() {
+    return {mesh.positions, flags, target, &adjacency, PositionType::float64};
+  }
+  Sweep sweep() { return Sweep({state(), touched}); }
+
+  Mesh mesh;
+  Adjacency adjacency;
+  std::vector<std::uint8_t> flags;
+  std::vector<std::uint32_t> target;
+  std::vector<std::uint8_t> touched;
+};
+
+// A square sheet, smooth waves in one corner of it: an eighth of a side wide.
+constexpr std::uint32_t k_side = 160;
+bool in_corner(Vec3 p) {
+  return p.x < k_side / 8.0 && p.y < k_side / 8.0;
+}
+Mesh sheet_with_detail() {
+  Mesh mesh = flat_grid(k_side, k_side);
+  for (Vec3& p : mesh.positions) {
+    p = p * static_cast<double>(k_side);
+    if (in_corner(p)) p.z = std::sin(p.x) * std::cos(0.7 * p.y);
+  }
+  return mesh;
+}
+
+}  // namespace
+
+TEST_CASE("a sweep merges a vertex with its nearest neighbour that may") {
+  // A fan of six round vertex 0, all at distances of their own.
+  Mesh mesh{{{0, 0, 0}, {5, 0, 0}, {2, 3, 0}, {-2, 2, 0}, {-4, 0, 0}, {-2, -4, 0}, {3, -3, 0}},
+            {{0, 1, 2}, {0, 2, 3}, {0, 3, 4}, {0, 4, 5}, {0, 5, 6}, {0, 6, 1}}};
+  SweepBench bench(mesh);
+  CHECK(bench.sweep().partner(0) == 3);
+  bench.touched[3] = 1;
+  CHECK(bench.sweep().partner(0) == 2);
+  bench.flags[2] |= k_fixed;
+  CHECK(bench.sweep().partner(0) == 4);
+  // What has moved counts where it is now.
+  bench.mesh.positions[5] = {0, -1, 0};
+  CHECK(bench.sweep().partner(0) == 5);
+  bench.flags[0] |= k_fixed;
+  CHECK(bench.sweep().partner(0) == 0);
+}
+
+TEST_CASE("a sweep takes border vertices along the border or from inside") {
+  SweepBench bench(flat_grid(4, 4));
+  for (std::uint32_t v = 0; v < bench.mesh.positions.size(); ++v) {
+    const std::uint32_t other = bench.sweep().partner(v);
+    REQUIRE(other != v);
+    const bool both = (bench.flags[v] & bench.flags[other] & k_border) != 0;
+    if (!both) continue;
+    const Vec3 middle = (bench.mesh.positions[v] + bench.mesh.positions[other]) * 0.5;
+    CHECK((middle.x == 0 || middle.x == 1 || middle.y == 0 || middle.y == 1));
+  }
+}
+
+TEST_CASE("the limit of a sweep grows with its share") {
+  SweepBench bench(sheet_with_detail());
+  CollapseJudge judge(bench.state());
+  const auto limit = [&](double share) { return bench.sweep().estimate_limit(judge, share); };
+  CHECK(limit(0.5) == 0);
+  REQUIRE(limit(0.995).has_value());
+  CHECK(*limit(0.995) > 0);
+  CHECK(*limit(1) > *limit(0.995));
+  std::fill(bench.touched.begin(), bench.touched.end(), std::uint8_t{1});
+  CHECK(!limit(0.5).has_value());
+}
+
+TEST_CASE("sweeps leave the detail of a flat sheet alone") {
+  const Mesh mesh = sheet_with_detail();
+  Simplifier simplifier(mesh, {});
+  simplifier.reduce({mesh.triangles.size() / 50});
+  CHECK(simplifier.triangles() <= mesh.triangles.size() / 50);
+  const Mesh& result = simplifier.mesh();
+  CHECK(is_clean(result));
+  const auto kept = std::count_if(result.positions.begin(), result.positions.end(), in_corner);
+  CHECK(kept > 300);  // of 400
+  CHECK(measure_distance(mesh, result, {.samples = 100'000}).max < 0.2);
+}
+
+TEST_CASE("a goal with more to follow is met as exactly") {
+  Simplifier simplifier(sphere(6), {});
+  simplifier.reduce({.triangles = 10'000, .last_triangles = 1000});
+  CHECK(simplifier.triangles() == 10'000);
+  CHECK(is_clean(simplifier.mesh()));
+  CHECK(simplifier.pass_cost() > 0);
+  simplifier.reduce({1000});
+  CHECK(simplifier.triangles() == 1000);
+}
