@@ -30,4 +30,8 @@ class BumpyTorus {
   std::uint64_t columns_ = 0;
 };
 
+/// Puts vertices and triangles into a random order that depends on `seed` alone, and turns the
+/// triangles: the same surface, with no locality left.
+void shuffle(Mesh& mesh, std::uint64_t seed);
+
 }  // namespace meshfarm

@@ -12,6 +12,8 @@
 #include <meshfarm/util/checksum.hpp>
 #include <meshfarm/util/errors.hpp>
 
+#include "support/meshes.hpp"
+
 using namespace meshfarm;
 
 namespace {
@@ -143,4 +145,32 @@ TEST_CASE("generate: some regions are smooth, others rough") {
   const double cells = static_cast<double>(mesh.triangles.size()) / 2;
   CHECK(static_cast<double>(smooth) > 0.25 * cells);
   CHECK(static_cast<double>(rough) > 0.25 * cells);
+}
+
+TEST_CASE("a shuffled mesh is the same surface in another order, the same for the same seed") {
+  const Mesh mesh = test::torus(40, 30);
+  Mesh once = mesh;
+  shuffle(once, 1);
+  Mesh again = mesh;
+  shuffle(again, 1);
+  Mesh other = mesh;
+  shuffle(other, 2);
+  CHECK(once.positions == again.positions);
+  CHECK(once.triangles == again.triangles);
+  CHECK(once.triangles != other.triangles);
+  CHECK(once.positions != mesh.positions);
+  const auto sorted = [](const Mesh& m) {
+    std::vector<std::array<std::array<double, 3>, 3>> all;
+    for (const Triangle& t : m.triangles) {
+      auto& corners = all.emplace_back();
+      for (std::size_t k = 0; k < 3; ++k) {
+        const Vec3 p = m.positions[t[k]];
+        corners[k] = {p.x, p.y, p.z};
+      }
+      std::rotate(corners.begin(), std::min_element(corners.begin(), corners.end()), corners.end());
+    }
+    std::sort(all.begin(), all.end());
+    return all;
+  };
+  CHECK(sorted(once) == sorted(mesh));
 }
