@@ -39,7 +39,13 @@ void MeshShares::put_position(std::uint32_t share, Vec3 p) {
 
 void MeshShares::add_triangles(std::span<const WideTriangle> batch) {
   const std::span<const Place> map = map_.as_span<const Place>();
-  for (const WideTriangle& t : batch) {
+  // Where the input has no locality each look-up misses the caches: several are kept under way.
+  constexpr std::size_t k_ahead = 16;
+  for (std::size_t i = 0; i < batch.size(); ++i) {
+    if (i + k_ahead < batch.size()) {
+      for (const std::uint64_t v : batch[i + k_ahead]) __builtin_prefetch(&map[v]);
+    }
+    const WideTriangle& t = batch[i];
     const Place a = map[t[0]];
     const Place b = map[t[1]];
     const Place c = map[t[2]];

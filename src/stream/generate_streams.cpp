@@ -196,6 +196,11 @@ class Generator {
   void write_boundary() {
     std::vector<BoundaryTriangle> triangles =
         shares_->boundary(numbers_, manifest_.dropped_degenerate);
+    // As the streams, these are not to tell of the order of the input.
+    for (BoundaryTriangle& t : triangles) {
+      std::rotate(t.begin(), std::min_element(t.begin(), t.end()), t.end());
+    }
+    std::sort(triangles.begin(), triangles.end());
     manifest_.dropped_duplicate = drop_duplicates(triangles);
     manifest_.boundary_triangles = triangles.size();
     manifest_.boundary = stage_.publish(BoundaryName{}, encode_boundary(triangles));

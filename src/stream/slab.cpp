@@ -8,36 +8,12 @@
 #include <numeric>
 #include <utility>
 
+#include "stream/vertex_sort.hpp"
+
 namespace meshfarm {
 namespace {
 
 constexpr std::uint32_t k_none = std::numeric_limits<std::uint32_t>::max();
-
-/// The vertices in sweep order, by their raw indices; coincident ones in raw order. Empty if that
-/// is the order they come in.
-std::vector<std::uint32_t> sorted_vertices(const std::vector<Vec3>& positions,
-                                           const SweepOrder& order) {
-  const auto before = [&](Vec3 a, Vec3 b) { return order.before(a, b); };
-  if (std::is_sorted(positions.begin(), positions.end(), before)) return {};
-  struct Key {
-    double along;
-    std::uint32_t raw;
-  };
-  std::vector<Key> keys(positions.size());
-  for (std::uint32_t i = 0; i < keys.size(); ++i) keys[i] = {order.along(positions[i]), i};
-  std::sort(keys.begin(), keys.end(), [&](const Key& a, const Key& b) {
-    if (a.along != b.along) return a.along < b.along;
-    const Vec3& p = positions[a.raw];
-    const Vec3& q = positions[b.raw];
-    if (order.before(p, q)) return true;
-    if (order.before(q, p)) return false;
-    return a.raw < b.raw;
-  });
-  std::vector<std::uint32_t> sorted;
-  sorted.reserve(keys.size());
-  for (const Key& key : keys) sorted.push_back(key.raw);
-  return sorted;
-}
 
 /// Sorts a slab by the steps of run().
 class SlabSorter {
@@ -58,7 +34,8 @@ class SlabSorter {
  private:
   /// The rank of each raw vertex; welded ones share it. Positions go by rank from now on.
   void rank_vertices() {
-    const std::vector<std::uint32_t> sorted = sorted_vertices(raw_.positions, options_.order);
+    const std::vector<std::uint32_t> sorted =
+        sorted_vertices(raw_.positions, options_.order, options_.positions);
     const std::size_t count = raw_.positions.size();
     rank_.resize(count);
     std::vector<Vec3>& positions = slab_.stream.mesh.positions;

@@ -155,7 +155,7 @@ TEST_CASE("the order of the input and the number of threads do not matter") {
   const Generated third = generate(shuffled(mesh, 2), {.streams = 4, .threads = 2}, folder / "c");
   CHECK(first.files == second.files);
   CHECK(first.files == third.files);
-  CHECK(first.manifest.boundary_triangles == second.manifest.boundary_triangles);
+  CHECK(first.boundary == second.boundary);
 }
 
 TEST_CASE("coincident vertices are welded, degenerate and duplicate triangles dropped") {
