@@ -1,12 +1,17 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
+#include <algorithm>
+#include <array>
 #include <filesystem>
+#include <fstream>
 #include <iostream>
 
 #include <meshfarm/geometry/topology.hpp>
 #include <meshfarm/io/mesh_source.hpp>
+#include <meshfarm/io/stream_file.hpp>
 #include <meshfarm/report/summary.hpp>
 #include <meshfarm/staging/stage.hpp>
+#include <meshfarm/util/file.hpp>
 
 #include "cli/command.hpp"
 #include "cli/options.hpp"
@@ -17,9 +22,9 @@ namespace {
 class InfoCommand : public Command {
  public:
   std::string_view name() const override { return "info"; }
-  std::string_view synopsis() const override { return "FILE | STAGE"; }
+  std::string_view synopsis() const override { return "FILE | STREAM | STAGE"; }
   std::string_view summary() const override {
-    return "counts, bounding box and topology of a mesh file, or what a stage holds";
+    return "counts, bounding box and topology of a mesh file; what a stream or a stage holds";
   }
   void setup(po::options_description& options,
              po::positional_options_description& positional) override {
@@ -37,12 +42,42 @@ class InfoCommand : public Command {
       std::cout << render(manifest, file_, talk_.format());
       return 0;
     }
+    if (file_is_stream()) {
+      std::cout << render(read_through(), talk_.format());
+      return 0;
+    }
     const auto source = open_mesh(file_);
     std::cout << render(no_topology_ ? scanned(*source) : whole(*source), talk_.format());
     return 0;
   }
 
  private:
+  bool file_is_stream() const {
+    std::array<char, 8> start{};
+    std::ifstream(file_, std::ios::binary).read(start.data(), start.size());
+    return is_stream({start.data(), start.size()});
+  }
+
+  /// Checks all of the stream on the way.
+  StreamSummary read_through() const {
+    const MappedFile file = MappedFile::open(file_);
+    StreamReader reader(fill_from(file.bytes(), file_), file_);
+    StreamSummary summary{.path = file_, .stream = reader.info(), .box = {}};
+    std::uint64_t front = 0;
+    StreamBlock block;
+    while (reader.next(block)) {
+      ++summary.blocks;
+      for (const Vec3& p : block.positions) summary.box.add(p);
+      front += block.positions.size();
+      summary.widest_front = std::max(summary.widest_front, front);
+      for (const StreamCorner corner : block.boundary) front -= corner.last_use() ? 1 : 0;
+      for (const auto& t : block.triangles) {
+        for (const StreamCorner corner : t) front -= corner.last_use() ? 1 : 0;
+      }
+    }
+    return summary;
+  }
+
   FileSummary scanned(MeshSource& source) const {
     FileSummary summary{.path = file_, .file = {}, .box = {}, .topology = {}};
     source.scan_vertices([&](std::span<const Vec3> batch) {

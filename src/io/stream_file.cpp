@@ -283,6 +283,11 @@ void StreamReader::check_end() const {
   if (boundary_ != info_.boundary_vertices) fail("fewer boundary vertices than the head says");
 }
 
+bool is_stream(std::string_view start) {
+  const std::array<FileKind, 2> kinds = {k_magic, k_kind};
+  return start.size() >= sizeof kinds && std::memcmp(start.data(), &kinds, sizeof kinds) == 0;
+}
+
 StreamReader::Fill fill_from(std::string_view bytes, std::string what) {
   return [bytes, what = std::move(what), done = std::size_t{0}](std::span<char> buffer) mutable {
     if (buffer.size() > bytes.size() - done) {

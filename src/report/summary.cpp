@@ -86,6 +86,16 @@ Json input_json(const Manifest& m) {
           {"skipped", m.skipped}};
 }
 
+void add_box(Lines& lines, const Box& box) {
+  if (box.empty()) return;
+  const auto range = [](double lo, double hi) {
+    return "[" + number(lo, "%.9g") + ", " + number(hi, "%.9g") + "]";
+  };
+  lines.add("bounding box", range(box.lo.x, box.hi.x) + " x " + range(box.lo.y, box.hi.y) + " x " +
+                                range(box.lo.z, box.hi.z));
+  lines.add("diagonal", number(box.diagonal(), "%.9g"));
+}
+
 const char* scheme_name(const Manifest& m) {
   return m.scheme == Scheme::stream ? "stream" : "cut";
 }
@@ -208,15 +218,7 @@ std::string render(const FileSummary& s, Format format) {
   lines.add("vertices", grouped(s.file.vertices) +
                             (s.file.positions == PositionType::float64 ? ", double" : ", float"));
   if (!s.file.skipped.empty()) lines.add("attributes", joined(s.file.skipped));
-  if (!s.box.empty()) {
-    const auto range = [](double lo, double hi) {
-      return "[" + number(lo, "%.9g") + ", " + number(hi, "%.9g") + "]";
-    };
-    lines.add("bounding box", range(s.box.lo.x, s.box.hi.x) + " x " +
-                                  range(s.box.lo.y, s.box.hi.y) + " x " +
-                                  range(s.box.lo.z, s.box.hi.z));
-    lines.add("diagonal", number(s.box.diagonal(), "%.9g"));
-  }
+  add_box(lines, s.box);
   if (s.topology) lines.add("topology", text_of(*s.topology));
   return lines.text();
 }
@@ -231,6 +233,33 @@ std::string render(const HostSummary& host, Format format) {
   lines.add("speed", grouped(host.speed) + " triangles/s, one thread");
   lines.add("free memory", grouped(host.memory >> 20) + " MiB");
   lines.add("cores", std::to_string(host.cores));
+  return lines.text();
+}
+
+std::string render(const StreamSummary& s, Format format) {
+  if (format == Format::json) {
+    const Json json = {
+        {"path", s.path},
+        {"format", "meshfarm stream"},
+        {"vertices", s.stream.vertices},
+        {"boundary_vertices", s.stream.boundary_vertices},
+        {"triangles", s.stream.triangles},
+        {"positions", s.stream.positions == PositionType::float64 ? "float64" : "float32"},
+        {"box", to_json(s.box)},
+        {"blocks", s.blocks},
+        {"widest_front", s.widest_front}};
+    return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+  }
+  Lines lines;
+  lines.add("file", s.path);
+  lines.add("format", "meshfarm stream, " + grouped(s.blocks) + " blocks");
+  lines.add("triangles", grouped(s.stream.triangles));
+  lines.add("vertices",
+            grouped(s.stream.vertices) +
+                (s.stream.positions == PositionType::float64 ? ", double, " : ", float, ") +
+                grouped(s.stream.boundary_vertices) + " of them boundary vertices");
+  add_box(lines, s.box);
+  lines.add("widest front", grouped(s.widest_front) + " vertices");
   return lines.text();
 }
 

@@ -137,3 +137,30 @@ TEST_CASE("streams: a flipped byte or a cut is named with its place, and nothing
     CHECK_FALSE(fs::exists(stage + ".ply"));
   }
 }
+
+TEST_CASE("streams: info tells what a stream holds, and names the place of damage") {
+  const std::string stage = bench().streams();
+  const std::string stream = (fs::path(stage) / "streams" / "000001.stream").string();
+  const Ran ran = bench().meshfarm({"info", stream, "--json"});
+  CHECK(ran.code == 0);
+  CHECK(ran.out.find("\"format\": \"meshfarm stream\"") != std::string::npos);
+  CHECK(ran.out.find("\"widest_front\": ") != std::string::npos);
+  fs::resize_file(stream, fs::file_size(stream) - 1);
+  const Ran damaged = bench().meshfarm({"info", stream});
+  CHECK(damaged.code == 1);
+  CHECK(damaged.err == "meshfarm info: error: " + stream + ": cut short at byte " +
+                           std::to_string(fs::file_size(stream)) + "\n");
+}
+
+TEST_CASE("streams: a shuffled input makes the same streams, and the same result") {
+  const std::string shuffled = bench().path("shuffled.ply");
+  REQUIRE(
+      bench().meshfarm({"generate", "-o", shuffled, "--shuffle", "--from", bench().mesh()}).code ==
+      0);
+  CHECK(read_text(shuffled) != read_text(bench().mesh()));
+  const std::string output = bench().path("from-shuffled.ply");
+  std::vector<std::string> words = bench().simplify(output, "2");
+  words[1] = shuffled;
+  CHECK(bench().meshfarm(words).code == 0);
+  CHECK(read_text(output) == bench().expected());
+}

@@ -90,6 +90,9 @@ class StreamReader {
   std::vector<std::uint8_t> states_;  // of vertices from first_state_ on: finished or not
 };
 
+/// Whether a file begins like a stream.
+bool is_stream(std::string_view start);
+
 /// A fill that reads from bytes in memory, which must outlive it.
 StreamReader::Fill fill_from(std::string_view bytes, std::string what);
 

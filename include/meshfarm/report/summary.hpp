@@ -11,6 +11,7 @@
 #include <meshfarm/geometry/topology.hpp>
 #include <meshfarm/io/manifest.hpp>
 #include <meshfarm/io/mesh_source.hpp>
+#include <meshfarm/io/stream_file.hpp>
 
 namespace meshfarm {
 
@@ -48,6 +49,15 @@ struct FileSummary {
   std::optional<Topology> topology;
 };
 
+/// What `info` tells of a stream.
+struct StreamSummary {
+  std::string path;
+  StreamInfo stream;
+  Box box;
+  std::uint64_t blocks = 0;
+  std::uint64_t widest_front = 0;  // vertices that are there and not finalised, at most
+};
+
 /// What `compare` tells of two meshes.
 struct Comparison {
   std::string path_a;
@@ -70,6 +80,7 @@ std::string render(const HostSummary& host, Format format);
 std::string render(const Manifest& manifest, const std::string& stage, Format format);
 std::string render(const RunSummary& summary, Format format);
 std::string render(const FileSummary& summary, Format format);
+std::string render(const StreamSummary& summary, Format format);
 std::string render(const Comparison& comparison, Format format);
 
 }  // namespace meshfarm
