@@ -53,6 +53,12 @@ std::uint64_t parse_bytes(const std::string& text, std::string_view option) {
   return value << shift;
 }
 
+/// The shortest text that reads back as the same number.
+std::string shortest(double value) {
+  char text[32];
+  return {text, std::to_chars(text, text + sizeof text, value).ptr};
+}
+
 }  // namespace
 
 void TalkOptions::add(po::options_description& options) {
@@ -79,6 +85,10 @@ void TargetOptions::add(po::options_description& options) {
       "threshold: one cost threshold for all parts; uniform: the same ratio in every part")(
       "finish", po::value(&finish)->default_value(finish),
       "global: the last pass may touch everything; boundary: edges at seams only")(
+      "preserve-border", po::bool_switch(&run.lines.preserve_border),
+      "leave the vertices on open borders as they are")(
+      "crease-angle", po::value(&run.lines.crease_angle)->value_name("DEGREES"),
+      "keep edges sharper than this where they are: their vertices merge along them only")(
       "drop-components", po::value(&drop_components)->value_name("LENGTH"),
       "leave out components smaller than this: in the mesh's unit, or 0.5% of the diagonal");
 }
@@ -100,6 +110,9 @@ void TargetOptions::check() {
   if (finish != "global" && finish != "boundary") {
     throw UsageError("--finish is 'global' or 'boundary', not '" + finish + "'");
   }
+  if (!(run.lines.crease_angle >= 0 && run.lines.crease_angle < 180)) {
+    throw UsageError("--crease-angle must be 0 (no creases) or more, and below 180 degrees");
+  }
   if (!drop_components.empty()) {
     run.drop_components = parse_length(drop_components, "--drop-components");
   }
@@ -109,6 +122,10 @@ void TargetOptions::check() {
 
 std::vector<std::string> TargetOptions::words() const {
   std::vector<std::string> words = {"--allocation", allocation, "--finish", finish};
+  if (run.lines.preserve_border) words.emplace_back("--preserve-border");
+  if (run.lines.crease_angle > 0) {
+    words.insert(words.end(), {"--crease-angle", shortest(run.lines.crease_angle)});
+  }
   if (!drop_components.empty()) {
     words.insert(words.end(), {"--drop-components", drop_components});
   }
@@ -117,9 +134,7 @@ std::vector<std::string> TargetOptions::words() const {
   } else if (run.triangles != 0) {
     words.insert(words.end(), {"--triangles", std::to_string(run.triangles)});
   } else {
-    char text[32];  // the shortest text that reads back as the same number
-    const auto end = std::to_chars(text, text + sizeof text, run.ratio).ptr;
-    words.insert(words.end(), {"--ratio", std::string(text, end)});
+    words.insert(words.end(), {"--ratio", shortest(run.ratio)});
   }
   return words;
 }

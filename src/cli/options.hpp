@@ -35,7 +35,8 @@ struct TalkOptions {
   ProgressStyle progress() const;
 };
 
-/// --ratio, --triangles, --error, --allocation, --finish, --drop-components.
+/// --ratio, --triangles, --error, --allocation, --finish, --preserve-border, --crease-angle,
+/// --drop-components.
 struct TargetOptions {
   RunOptions run;
   std::string error;

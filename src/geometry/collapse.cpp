@@ -56,7 +56,7 @@ CollapseJudge::Walk CollapseJudge::walk(const Walk& walk, Ring& ring) const {
     size += there;
   }
   ring.size = size;
-  ring.border = (state_.flags[walk.vertex] & k_border) != 0;
+  ring.flags = state_.flags[walk.vertex];
   return {walk.vertex, other, shared_end, kept_end};
 }
 
@@ -86,9 +86,9 @@ std::uint32_t CollapseJudge::common_neighbours() const {
     }
   }
   std::uint32_t common = std::accumulate(equal.begin(), equal.end(), 0U);
-  if (!ring_a_.border && !ring_b_.border) return common;
-  const std::uint32_t last_a = ring_a_.border ? last_neighbour(ring_a_) : k_none;
-  const std::uint32_t last_b = ring_b_.border ? last_neighbour(ring_b_) : k_none;
+  if (!ring_a_.border() && !ring_b_.border()) return common;
+  const std::uint32_t last_a = ring_a_.border() ? last_neighbour(ring_a_) : k_none;
+  const std::uint32_t last_b = ring_b_.border() ? last_neighbour(ring_b_) : k_none;
   if (last_a != k_none) common += count_in(ring_b_, last_a);
   if (last_b != k_none) common += count_in(ring_a_, last_b);
   return common + (last_a != k_none && last_a == last_b ? 1 : 0);
@@ -98,7 +98,7 @@ std::uint32_t CollapseJudge::common_neighbours() const {
 /// vertex at infinity. It also keeps two triangles from becoming one.
 bool CollapseJudge::link_allows(std::uint32_t shared) const {
   if (shared == 2) {
-    if (ring_a_.border && ring_b_.border) return false;
+    if (ring_a_.border() && ring_b_.border()) return false;
     if (ring_a_.size == 3 && ring_b_.size == 3) return false;
   } else {
     if (shared != 1 || (ring_a_.size == 1 && ring_b_.size == 1)) return false;
@@ -122,24 +122,42 @@ void CollapseJudge::add_star(std::uint32_t shared) {
   }
 }
 
-void CollapseJudge::add_border(const Ring& ring, Vec3 end, std::uint32_t without) {
-  std::array<Corner, k_max_star> fan;
-  const std::uint32_t size = ring.size;
-  for (std::uint32_t i = 0; i < size; ++i) fan[i] = {ring.next[i], ring.prev[i]};
+/// Adds the planes of the lines at one end, but for the edge to `without`.
+void CollapseJudge::add_lines(const Ring& ring, Vec3 end, std::uint32_t without) {
+  std::array<Corner, k_max_star> corners;
+  for (std::uint32_t i = 0; i < ring.size; ++i) corners[i] = {ring.next[i], ring.prev[i]};
+  const std::span<const Corner> fan(corners.data(), ring.size);
   const Vec3 at = middle_ + end;
-  for_border_edges({fan.data(), size}, [&](const Corner& c, std::uint32_t neighbour) {
-    if (neighbour == without) return;
-    Quadric plane;
-    add_border_plane(plane, cross(state_.positions[c.next] - at, state_.positions[c.prev] - at),
-                     state_.positions[neighbour] - at);
-    quadric_.add(plane, end);
-  });
+  Quadric planes;
+  const auto add = [&](const Corner& c, std::uint32_t neighbour) {
+    add_line_plane(planes, cross(state_.positions[c.next] - at, state_.positions[c.prev] - at),
+                   state_.positions[neighbour] - at);
+  };
+  if (ring.border()) {
+    for_border_edges(fan, [&](const Corner& c, std::uint32_t neighbour) {
+      if (neighbour != without) add(c, neighbour);
+    });
+  }
+  if ((ring.flags & k_crease) != 0) {
+    const auto is_other_on_crease = [&](std::uint32_t neighbour) {
+      return neighbour != without && (state_.flags[neighbour] & k_crease) != 0;
+    };
+    for_crease_edges(fan, at, state_.positions, *state_.creases, is_other_on_crease,
+                     [&](const Corner& one, const Corner& other) {
+                       add(one, one.prev);
+                       add(other, one.prev);
+                     });
+  }
+  quadric_.add(planes, end);
 }
 
-/// An inner vertex that merges into a border leaves the border as it is.
+/// A vertex that merges into a line from beside leaves the line as it is, and one that merges into
+/// a corner the corner.
 Vec3 CollapseJudge::best_position(std::uint32_t a, std::uint32_t b) const {
-  if (ring_a_.border == ring_b_.border) return rounded(middle_ + quadric_.best(), state_.type);
-  return rounded(state_.positions[ring_a_.border ? a : b], state_.type);
+  const int rank_a = line_rank(ring_a_.flags);
+  const int rank_b = line_rank(ring_b_.flags);
+  if (rank_a == rank_b) return rounded(middle_ + quadric_.best(), state_.type);
+  return rounded(state_.positions[rank_a > rank_b ? a : b], state_.type);
 }
 
 Collapse CollapseJudge::judge(std::uint32_t a, std::uint32_t b, const CollapseLimits& limits) {
@@ -154,8 +172,8 @@ Collapse CollapseJudge::judge(std::uint32_t a, std::uint32_t b, const CollapseLi
   quadric_ = {};
   quadric_.squared_length = 4 * squared_length(half);
   star_.sum_planes(quadric_);
-  if (ring_a_.border) add_border(ring_a_, half * -1.0, k_none);
-  if (ring_b_.border) add_border(ring_b_, half, a);
+  if ((ring_a_.flags & k_line) != 0) add_lines(ring_a_, half * -1.0, k_none);
+  if ((ring_b_.flags & k_line) != 0) add_lines(ring_b_, half, a);
 
   const Vec3 position = best_position(a, b);
   const Vec3 x = position - middle_;

@@ -11,6 +11,7 @@
 #include "geometry/adjacency.hpp"
 #include "geometry/collapse_star.hpp"
 #include "geometry/quadric.hpp"
+#include "geometry/simplify_lines.hpp"
 
 namespace meshfarm {
 
@@ -25,6 +26,7 @@ struct CollapseState {
   std::span<const std::uint32_t> target;  // the vertex that a vertex has become in this pass
   const Adjacency* adjacency = nullptr;   // as it was when the pass began
   PositionType type = PositionType::float64;
+  const CreaseTest* creases = nullptr;  // where vertices are flagged as on creases
 };
 
 struct CollapseLimits {
@@ -54,7 +56,8 @@ class CollapseJudge {
     std::array<std::uint32_t, k_max_star + 8> next;
     std::array<std::uint32_t, k_max_star + 8> prev;
     std::uint32_t size = 0;
-    bool border = false;
+    std::uint8_t flags = 0;
+    bool border() const { return (flags & k_border) != 0; }
   };
   struct Walk {
     std::uint32_t vertex;
@@ -68,7 +71,7 @@ class CollapseJudge {
   std::uint32_t common_neighbours() const;
   bool link_allows(std::uint32_t shared) const;
   void add_star(std::uint32_t shared);
-  void add_border(const Ring& ring, Vec3 end, std::uint32_t without);
+  void add_lines(const Ring& ring, Vec3 end, std::uint32_t without);
   Vec3 best_position(std::uint32_t a, std::uint32_t b) const;
 
   CollapseState state_;

@@ -61,9 +61,9 @@ inline Vec3 solve(const Quadric& a, double ridge, Vec3 b) {
   return x * (1.0 / determinant);
 }
 
-/// The plane through a border edge perpendicular to its triangle, weighted like a triangle on the
-/// edge: keeps open borders where they are. Adds nothing for a triangle of no area.
-inline void add_border_plane(Quadric& quadric, Vec3 triangle_normal, Vec3 edge) {
+/// The plane through an edge of a border or crease perpendicular to a triangle there, as heavy as
+/// three squares on the edge: keeps the line where it is. Adds nothing for a triangle of no area.
+inline void add_line_plane(Quadric& quadric, Vec3 triangle_normal, Vec3 edge) {
   constexpr double k_weight = 3;
   const Vec3 n = cross(triangle_normal, edge);
   const double scale = squared_length(n);

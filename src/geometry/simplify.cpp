@@ -11,7 +11,7 @@
 #include "geometry/collapse.hpp"
 #include "geometry/simplify_clean.hpp"
 #include "geometry/simplify_rank.hpp"
-#include "geometry/simplify_sweep.hpp"
+#include "geometry/simplify_rough.hpp"
 
 namespace meshfarm {
 namespace {
@@ -25,15 +25,15 @@ constexpr double k_pass_share = 0.35;
 constexpr std::uint64_t k_far = 4;
 constexpr double k_far_share = 0.5;
 
-// And while there is as much more to go, edges need no ranking at all: sweeps halve the time and
-// cost 1 % of the error on the dragon and none on terrain. Down to 8 times the goal they took 10 %
-// longer for 1 % less error.
-// A sweep spares as many of the costliest vertices as the goal leaves, but at least these.
-constexpr double k_most_swept = 0.97;
+// And while there is as much more to go, edges need no ranking at all: rough passes halve the time
+// and cost 1 % of the error on the dragon and none on terrain. Down to 8 times the goal they took
+// 10 % longer for 1 % less error. A rough pass spares as many of the costliest vertices as the goal
+// leaves, but at least these.
+constexpr double k_most_rough = 0.97;
 // And it keeps this far below the goal's own limit, near which the order matters.
-constexpr double k_sweep_margin = 8;
-// Less than this part of the triangles removed is not worth a sweep.
-constexpr double k_least_swept = 0.1;
+constexpr double k_rough_margin = 8;
+// Less than this part of the triangles removed is not worth a rough pass.
+constexpr double k_least_rough = 0.1;
 
 // The edges taken in a pass that must not overshoot, as a part of the triangles still to go: each
 // that can collapse, about six in ten, removes two.
@@ -59,23 +59,25 @@ class Simplifier::Impl {
       : mesh_(std::move(mesh)),
         locked_(options.locked_vertices),
         type_(options.positions),
-        seam_only_(!options.seam.empty()) {
+        seam_only_(!options.seam.empty()),
+        creases_(options.lines.crease_angle) {
     check_input(mesh_, options);
     Surface surface = clean_surface(mesh_, options, adjacency_);
     dropped_ = surface.dropped;
     flags_ = std::move(surface.flags);
+    creases_.find(mesh_, adjacency_, flags_);
     drop_unused_vertices();
     publish_seam();
   }
 
   void reduce(const SimplifyGoal& goal, const std::function<bool(std::uint64_t)>& progress) {
-    bool sweeping = !seam_only_;
+    bool rough = !seam_only_;
     double share = k_pass_share;
     while (may_go_on(goal)) {
-      if (sweeping && is_far(goal)) {
+      if (rough && is_far(goal)) {
         const auto before = static_cast<double>(mesh_.triangles.size());
-        const std::uint64_t removed = sweep(goal);
-        sweeping = static_cast<double>(removed) >= k_least_swept * before;
+        const std::uint64_t removed = rough_pass(goal);
+        rough = static_cast<double>(removed) >= k_least_rough * before;
         compact();
         if (progress && !progress(mesh_.triangles.size())) break;
         continue;
@@ -138,6 +140,7 @@ class Simplifier::Impl {
   void build_adjacency() {
     if (!adjacency_is_current_) adjacency_.build(mesh_.triangles, mesh_.positions.size());
     adjacency_is_current_ = false;
+    creases_.update(mesh_, adjacency_, flags_);
   }
 
   void begin_collapses() {
@@ -147,24 +150,26 @@ class Simplifier::Impl {
     touched_.assign(vertices, 0);
   }
 
-  CollapseState collapse_state() { return {mesh_.positions, flags_, target_, &adjacency_, type_}; }
+  CollapseState collapse_state() {
+    return {mesh_.positions, flags_, target_, &adjacency_, type_, &creases_.test()};
+  }
 
   /// Merges each vertex, in their order, with its nearest neighbour. Returns the triangles removed.
-  std::uint64_t sweep(const SimplifyGoal& goal) {
+  std::uint64_t rough_pass(const SimplifyGoal& goal) {
     build_adjacency();
     begin_collapses();
     CollapseJudge judge(collapse_state());
-    const Sweep sweep({collapse_state(), touched_});
+    const RoughPass rough({collapse_state(), touched_});
     const std::uint64_t excess = mesh_.triangles.size() - goal.triangles;
     const double left =
         static_cast<double>(goal.triangles) / static_cast<double>(mesh_.triangles.size());
-    const std::optional<double> limit =
-        sweep.estimate_limit(judge, std::min(k_most_swept, 1 - left));
-    if (!limit || *limit * k_sweep_margin > goal.max_cost) return 0;
+    const std::optional<double> limit = rough.estimate_limit(
+        judge, std::min(k_most_rough, 1 - left), goal.max_cost / k_rough_margin);
+    if (!limit) return 0;
     CollapseLimits limits{excess, *limit};
     for (std::uint32_t v = 0; v < touched_.size() && limits.triangles > 1; ++v) {
       if (touched_[v] != 0) continue;
-      const std::uint32_t other = sweep.partner(v);
+      const std::uint32_t other = rough.partner(v);
       if (other == v) continue;
       const auto [a, b] = std::minmax(v, other);
       const Collapse collapse = judge.judge(a, b, limits);
@@ -178,7 +183,8 @@ class Simplifier::Impl {
 
   void begin_pass() {
     build_adjacency();
-    ranking_.begin_pass({mesh_.positions, mesh_.triangles, flags_, &adjacency_, seam_only_});
+    ranking_.begin_pass(
+        {mesh_.positions, mesh_.triangles, flags_, &adjacency_, &creases_.test(), seam_only_});
   }
 
   /// Far from the goal passes go block by block and take too few edges to overshoot it; the last
@@ -282,6 +288,7 @@ class Simplifier::Impl {
   std::uint32_t locked_;
   PositionType type_;
   bool seam_only_;
+  CreaseLines creases_;
   Dropped dropped_;
   std::vector<std::uint8_t> flags_;  // VertexFlag
   std::vector<std::uint8_t> seam_;

@@ -169,7 +169,7 @@ std::vector<std::uint8_t> classify_vertices(const Mesh& mesh, const SimplifyOpti
     if (adjacency.count(v) == 0) continue;
     const Fan fan = walker.walk(adjacency.at(v));
     if (fan == Fan::broken) flags[v] |= k_fixed;
-    if (fan == Fan::open) flags[v] |= k_border;
+    if (fan == Fan::open) flags[v] |= options.lines.preserve_border ? k_fixed : k_border;
   }
   return flags;
 }
@@ -178,6 +178,9 @@ std::vector<std::uint8_t> classify_vertices(const Mesh& mesh, const SimplifyOpti
 
 void check_input(const Mesh& mesh, const SimplifyOptions& options) {
   const std::size_t vertices = mesh.positions.size();
+  if (!(options.lines.crease_angle >= 0 && options.lines.crease_angle < 180)) {
+    throw UsageError("simplify: the crease angle is not in 0 to 180 degrees");
+  }
   if (options.locked_vertices > vertices) {
     throw UsageError("simplify: more locked vertices than the mesh has");
   }

@@ -44,7 +44,7 @@ void EdgeRanking::begin_pass(const RankingInput& input) {
   input_ = input;
   quadrics_.assign(input_.positions.size(), {});
   sum_planes();
-  sum_border_planes();
+  sum_line_planes();
 }
 
 void EdgeRanking::sum_planes() {
@@ -60,18 +60,34 @@ void EdgeRanking::sum_planes() {
   }
 }
 
-void EdgeRanking::sum_border_planes() {
+void EdgeRanking::sum_line_planes() {
   for (std::uint32_t v = 0; v < input_.flags.size(); ++v) {
-    if ((input_.flags[v] & (k_border | k_fixed)) != k_border) continue;
-    if (input_.adjacency->count(v) > k_max_star) continue;
+    const std::uint8_t flags = input_.flags[v];
+    if ((flags & k_line) == 0 || (flags & k_fixed) != 0) continue;
+    const std::span<const Corner> fan = input_.adjacency->at(v);
+    if (fan.size() > k_max_star) continue;
     const Vec3 at = input_.positions[v];
-    for_border_edges(input_.adjacency->at(v), [&](const Corner& c, std::uint32_t end) {
+    Quadric planes;
+    const auto add = [&](const Corner& c, std::uint32_t end) {
       const Vec3 normal = cross(input_.positions[c.next] - at, input_.positions[c.prev] - at);
-      Quadric plane;
-      add_border_plane(plane, normal, input_.positions[end] - at);
-      quadrics_[v].add(FloatQuadric(plane));
+      add_line_plane(planes, normal, input_.positions[end] - at);
+    };
+    if ((flags & k_border) != 0) for_border_edges(fan, add);
+    for_creases_at(v, [&](const Corner& one, const Corner& other) {
+      add(one, one.prev);
+      add(other, one.prev);
     });
+    quadrics_[v].add(FloatQuadric(planes));
   }
+}
+
+/// The creases that the vertex is on, by the mesh as it is at the beginning of the pass.
+template <typename Take>
+void EdgeRanking::for_creases_at(std::uint32_t vertex, const Take& take) const {
+  if ((input_.flags[vertex] & k_crease) == 0) return;
+  const auto is_on_crease = [&](std::uint32_t end) { return (input_.flags[end] & k_crease) != 0; };
+  for_crease_edges(input_.adjacency->at(vertex), input_.positions[vertex], input_.positions,
+                   *input_.creases, is_on_crease, take);
 }
 
 /// Lists the edges that may collapse of which the vertex is the smaller end.
@@ -83,7 +99,7 @@ inline void EdgeRanking::list_edges_at(std::uint32_t vertex) {
   const std::span<const Corner> fan = input_.adjacency->at(vertex);
   if ((flags & k_fixed) != 0 || fan.size() > k_max_star) return;
   // Written always, counted if wanted: which neighbours are the greater ones no processor guesses.
-  const std::size_t most = listed_count_ + fan.size() + 2;
+  const std::size_t most = listed_count_ + 2 * fan.size() + 2;
   if (listed_.size() < most) listed_.resize(2 * most);
   Edge* end_of_list = listed_.data() + listed_count_;
   const bool any_seam = !input_.seam_only || (flags & k_seam) != 0;
@@ -96,12 +112,13 @@ inline void EdgeRanking::list_edges_at(std::uint32_t vertex) {
         (end > vertex) & ((other & (k_fixed | barred)) == 0) & (any_seam | ((other & k_seam) != 0));
     end_of_list += wanted ? 1 : 0;
   };
-  // An inner edge between two borders may not collapse: it would pinch the surface.
-  const bool border = (flags & k_border) != 0;
-  const std::uint8_t barred = border ? k_border : 0;
-  for (const Corner& c : fan) consider(c.next, barred);
-  if (border) {
-    for_border_edges(fan, [&](const Corner&, std::uint32_t end) { consider(end, 0); });
+  for (const Corner& c : fan) consider(c.next, barred_beside(flags));
+  if ((flags & k_line) != 0) {
+    const std::uint8_t barred = barred_along(flags);
+    if ((flags & k_border) != 0) {
+      for_border_edges(fan, [&](const Corner&, std::uint32_t end) { consider(end, barred); });
+    }
+    for_creases_at(vertex, [&](const Corner& one, const Corner&) { consider(one.prev, barred); });
   }
   listed_count_ = static_cast<std::size_t>(end_of_list - listed_.data());
 }
@@ -121,17 +138,17 @@ void EdgeRanking::cost_listed(const Take& take) {
     costs_.compute();
     for (std::size_t i = 0; i < count; ++i) {
       const Edge& e = edges[i];
-      const std::uint8_t one_border = (flags[e.a] ^ flags[e.b]) & k_border;
-      take(e, one_border == 0 ? costs_.get(i) : cost_of_border_end(e));
+      const int unlike = (flags[e.a] ^ flags[e.b]) & (k_line | k_corner);
+      take(e, unlike == 0 ? costs_.get(i) : cost_of_line_end(e));
     }
   }
   listed_count_ = 0;
 }
 
-/// An inner vertex that merges into a border takes the border's position.
-EdgeCost EdgeRanking::cost_of_border_end(const Edge& e) const {
-  const bool border_a = (input_.flags[e.a] & k_border) != 0;
-  return cost_of_end(quadrics_[border_a ? e.b : e.a],
+/// The merged vertex takes the position of the one of higher rank.
+EdgeCost EdgeRanking::cost_of_line_end(const Edge& e) const {
+  const bool stays_at_a = line_rank(input_.flags[e.a]) > line_rank(input_.flags[e.b]);
+  return cost_of_end(quadrics_[stays_at_a ? e.b : e.a],
                      (input_.positions[e.b] - input_.positions[e.a]) * 0.5);
 }
 

@@ -10,6 +10,7 @@
 
 #include "geometry/adjacency.hpp"
 #include "geometry/simplify_cost.hpp"
+#include "geometry/simplify_lines.hpp"
 
 namespace meshfarm {
 
@@ -39,6 +40,7 @@ struct RankingInput {
   std::span<const Triangle> triangles;
   std::span<const std::uint8_t> flags;  // VertexFlag
   const Adjacency* adjacency = nullptr;
+  const CreaseTest* creases = nullptr;
   bool seam_only = false;
 };
 
@@ -71,11 +73,13 @@ class EdgeRanking {
     std::uint32_t b;
   };
   void sum_planes();
-  void sum_border_planes();
+  void sum_line_planes();
   void list_edges_at(std::uint32_t vertex);
   template <typename Take>
   void cost_listed(const Take& take);
-  EdgeCost cost_of_border_end(const Edge& e) const;
+  template <typename Take>
+  void for_creases_at(std::uint32_t vertex, const Take& take) const;
+  EdgeCost cost_of_line_end(const Edge& e) const;
   std::uint64_t sample_costs(std::uint32_t one_in);
   void sort_found();
 

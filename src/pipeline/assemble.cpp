@@ -137,7 +137,7 @@ class Assembly {
   Mesh finish_to_error(Mesh good) {
     constexpr double k_first_step = 0.7;
     constexpr double k_last_step = 0.99;
-    const SimplifyOptions options{.locked_vertices = 0, .positions = manifest_.positions};
+    const SimplifyOptions options{.positions = manifest_.positions, .lines = run_.lines};
     bool cleaned = false;
     for (double step = k_first_step; step < k_last_step; step = std::sqrt(step)) {
       Simplifier simplifier(good, options);
@@ -160,7 +160,7 @@ class Assembly {
 
   Mesh finish(StitchedMesh stitched) {
     const std::uint64_t before = stitched.mesh.triangles.size();
-    SimplifyOptions options{.locked_vertices = 0, .positions = manifest_.positions, .seam = {}};
+    SimplifyOptions options{.positions = manifest_.positions, .lines = run_.lines};
     if (run_.finish == Finish::boundary) options.seam = std::move(stitched.seam);
     Simplifier simplifier(std::move(stitched.mesh), std::move(options));
     const auto reduce_to = [&](std::uint64_t triangles) {
@@ -193,10 +193,11 @@ class Assembly {
     if (after < summary_.target) {
       return "where no open border is left, triangles go in pairs";
     }
-    return run_.finish == Finish::boundary
-               ? "nothing more can be collapsed at the seams"
-               : "nothing more can be collapsed without changing the topology or turning a "
-                 "triangle over";
+    if (run_.finish == Finish::boundary) return "nothing more can be collapsed at the seams";
+    std::string reason = "nothing more can be collapsed without changing the topology";
+    if (run_.lines.preserve_border) reason += ", the borders";
+    if (run_.lines.crease_angle > 0) reason += ", the creases";
+    return reason + " or turning a triangle over";
   }
 
   const Stage& stage_;

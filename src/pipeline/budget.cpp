@@ -120,6 +120,7 @@ class Rounds {
     parameters.allocation = options_.allocation;
     parameters.samples = samples_for(manifest_, options_, entry.triangles);
     parameters.cost_unit = cost_unit(manifest_.box.diagonal());
+    parameters.lines = options_.lines;
     by_error() ? set_error_bound(parameters, part) : set_share(parameters, part);
     return {std::string(k_simplify_kind),
             {entry.file},
@@ -161,6 +162,7 @@ class Rounds {
     parameters.window_triangles = manifest_.window_triangles;
     parameters.samples = samples_for(manifest_, options_, entry.triangles);
     parameters.max_error = by_error() ? k_error_share * options_.error.in(manifest_.box) : 0;
+    parameters.lines = options_.lines;
     return {std::string(k_sweep_kind),
             {entry.file},
             encode_parameters(parameters),

@@ -22,12 +22,28 @@ std::uint64_t target_triangles(const Manifest& manifest, const RunOptions& optio
   return static_cast<std::uint64_t>(std::llround(wanted));
 }
 
+void put(ByteWriter& out, const LineOptions& lines) {
+  out.put(static_cast<std::uint8_t>(lines.preserve_border ? 1 : 0));
+  out.put(lines.crease_angle);
+}
+
+LineOptions get_lines(ByteReader& in) {
+  LineOptions lines;
+  const auto preserve_border = in.get<std::uint8_t>();
+  if (preserve_border > 1) in.fail("impossible options of borders");
+  lines.preserve_border = preserve_border == 1;
+  lines.crease_angle = in.get<double>();
+  if (!(lines.crease_angle >= 0 && lines.crease_angle < 180)) in.fail("impossible crease angle");
+  return lines;
+}
+
 std::uint64_t run_key(const Manifest& manifest, const RunOptions& options) {
   ByteWriter out;
   out.put(checksum(encode_manifest(manifest)));
   out.put(target_triangles(manifest, options));
   out.put(options.allocation);
   out.put(options.finish);
+  put(out, options.lines);
   out.put(options.drop_components.in(manifest.box));
   out.put(options.error.in(manifest.box));
   const std::uint64_t key = checksum(out.bytes());

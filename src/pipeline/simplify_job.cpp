@@ -16,7 +16,7 @@ namespace meshfarm {
 namespace {
 
 // Version 2: allocation u8 | start u64 | even share u64 | samples u64 | cost unit f64 |
-// greatest error f64.
+// greatest error f64 | lines (run_options.hpp).
 constexpr std::uint8_t k_version = 2;
 constexpr std::uint64_t k_max_samples = 100'000'000;
 constexpr std::int32_t k_top_level = 52;
@@ -31,9 +31,9 @@ class LadderBuilder {
         parameters_(parameters),
         context_(context),
         input_triangles_(part.mesh.triangles.size()),
-        simplifier_(
-            std::move(part.mesh),
-            {.locked_vertices = part.boundary_vertices, .positions = part.positions, .seam = {}}),
+        simplifier_(std::move(part.mesh), {.locked_vertices = part.boundary_vertices,
+                                           .positions = part.positions,
+                                           .lines = parameters.lines}),
         result_(part.positions, part.boundary_vertices) {}
 
   void build() {
@@ -137,6 +137,7 @@ std::string encode_parameters(const SimplifyParameters& parameters) {
   out.put(parameters.samples);
   out.put(parameters.cost_unit);
   out.put(parameters.max_error);
+  put(out, parameters.lines);
   return out.take();
 }
 
@@ -152,6 +153,7 @@ SimplifyParameters decode_parameters(std::string_view bytes) {
   if (parameters.samples > k_max_samples) in.fail("too many samples");
   parameters.cost_unit = in.get<double>();
   parameters.max_error = in.get<double>();
+  parameters.lines = get_lines(in);
   in.expect_end();
   return parameters;
 }

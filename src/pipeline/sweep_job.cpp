@@ -14,7 +14,7 @@ namespace meshfarm {
 namespace {
 
 // Version 1: level i32 | greatest cost f64 | ratio f64 | window u64 | samples u64 |
-// greatest error f64.
+// greatest error f64 | lines (run_options.hpp).
 constexpr std::uint8_t k_version = 1;
 constexpr std::uint64_t k_max_samples = 100'000'000;
 constexpr std::uint64_t k_max_window = std::uint64_t{1} << 30;
@@ -27,6 +27,7 @@ SweptStream sweep_from(StreamReader::Fill fill, const Job& job, const JobContext
   options.ratio = parameters.ratio;
   options.window_triangles = parameters.window_triangles;
   options.samples = parameters.samples;
+  options.lines = parameters.lines;
   options.measure = parameters.max_error > 0;
   options.progress = context.progress;
   return sweep(reader, options);
@@ -60,6 +61,7 @@ std::string encode_parameters(const SweepParameters& parameters) {
   out.put(parameters.window_triangles);
   out.put(parameters.samples);
   out.put(parameters.max_error);
+  put(out, parameters.lines);
   return out.take();
 }
 
@@ -76,6 +78,7 @@ SweepParameters decode_sweep_parameters(std::string_view bytes) {
   parameters.samples = in.get<std::uint64_t>();
   if (parameters.samples > k_max_samples) in.fail("too many samples");
   parameters.max_error = in.get<double>();
+  parameters.lines = get_lines(in);
   in.expect_end();
   return parameters;
 }

@@ -118,9 +118,9 @@ class Sweep {
     forget_finished();
     const std::uint32_t locked = put_locked_first();
     const std::uint64_t before = buffer_.triangles.size();
-    Simplifier simplifier(
-        std::move(buffer_),
-        {.locked_vertices = locked, .positions = reader_.info().positions, .seam = {}});
+    Simplifier simplifier(std::move(buffer_), {.locked_vertices = locked,
+                                               .positions = reader_.info().positions,
+                                               .lines = options_.lines});
     SimplifyGoal goal{.triangles = 0, .max_cost = options_.max_cost};
     if (options_.ratio > 0) goal = {.triangles = quota(before), .max_cost = HUGE_VAL};
     simplifier.reduce(goal, [&](std::uint64_t) { return tell(); });

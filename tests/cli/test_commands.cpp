@@ -110,6 +110,8 @@ TEST_CASE("wrong usage is one line and exit 2") {
       {"simplify", cube, "-o", shell.path("o.ply"), "--ratio", "0.5", "--parts", "-1"},
       {"simplify", cube, "-o", shell.path("o.ply"), "--ratio", "0.5", "--drop-components", "x"},
       {"simplify", cube, "-o", shell.path("o.ply"), "--ratio", "0.5", "--drop-components", "%"},
+      {"simplify", cube, "-o", shell.path("o.ply"), "--ratio", "0.5", "--crease-angle", "180"},
+      {"simplify", cube, "-o", shell.path("o.ply"), "--ratio", "0.5", "--crease-angle", "-1"},
       {"simplify", cube, "-o", shell.path("o.ply"), "--ratio", "0.5", "--error", "1%"},
       {"simplify", cube, "-o", shell.path("o.ply"), "--error", "0"},
       {"simplify", cube, "-o", shell.path("o.ply"), "--error", "1km"},

@@ -13,6 +13,16 @@
 
 namespace meshfarm {
 
+/// What is asked of the lines of a surface, beyond that borders keep their shape like the rest.
+struct LineOptions {
+  /// Vertices on open borders neither move nor go.
+  bool preserve_border = false;
+  /// In degrees below 180, 0 for none: edges whose two triangles' normals differ by more than this
+  /// are creases. Vertices on creases merge along them only, and where creases meet or end they
+  /// stay where they are.
+  double crease_angle = 0;
+};
+
 struct SimplifyOptions {
   /// The first n vertices neither move nor go: they keep their indices 0..n-1.
   std::uint32_t locked_vertices = 0;
@@ -21,6 +31,7 @@ struct SimplifyOptions {
   /// Where not empty: one flag a vertex; only edges that touch a flagged vertex may collapse
   /// (the seam-only pass of Xiong et al. 2008, 3.3). A vertex merged from a flagged one is flagged.
   std::vector<std::uint8_t> seam;
+  LineOptions lines;
 };
 
 /// How far to go: whichever limit is met first.
@@ -30,9 +41,9 @@ struct SimplifyGoal {
   /// Collapse no edge that costs more. A cost is an area times a squared distance: the sum over the
   /// triangles round the edge, as they are just before, of area x squared distance of the new
   /// vertex to their planes; open borders add a plane along each border edge, as heavy as three
-  /// squares on it. No less than a tenth of the area that the surface loses x the edge's squared
-  /// length, since planes do not see a spike draw back. It depends on nothing else: costs of parts
-  /// compare.
+  /// squares on it, creases two. No less than a tenth of the area that the surface loses x the
+  /// edge's squared length, since planes do not see a spike draw back. It depends on nothing else:
+  /// costs of parts compare.
   double max_cost = std::numeric_limits<double>::infinity();
   /// About how many triangles will be left when all goals that follow are met; 0: none follows.
   /// The farther the end, the less care a collapse needs.

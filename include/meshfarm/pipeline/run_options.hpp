@@ -4,7 +4,9 @@
 
 #include <cstdint>
 
+#include <meshfarm/geometry/simplify.hpp>
 #include <meshfarm/io/manifest.hpp>
+#include <meshfarm/util/bytes.hpp>
 
 namespace meshfarm {
 
@@ -34,12 +36,17 @@ struct RunOptions {
   Length error;  // where above 0: as few triangles as keep this distance
   Allocation allocation = Allocation::threshold;
   Finish finish = Finish::global;
+  LineOptions lines;
   Length drop_components;  // components with a smaller diagonal are left out
 };
 
 /// The number of triangles that the result shall have. Throws UsageError if the options name
 /// neither a ratio in (0, 1] nor a count.
 std::uint64_t target_triangles(const Manifest& manifest, const RunOptions& options);
+
+/// As they stand in a job's parameters: preserve border u8 | crease angle f64.
+void put(ByteWriter& out, const LineOptions& lines);
+LineOptions get_lines(ByteReader& in);
 
 /// Tells one run from another on the same stage.
 std::uint64_t run_key(const Manifest& manifest, const RunOptions& options);

@@ -21,6 +21,7 @@ struct SimplifyParameters {
   std::uint64_t samples = 0;          // points of the part to measure the final error by
   double cost_unit = 0;               // cost of level 0
   double max_error = 0;               // where above 0: rungs are measured, and end below this
+  LineOptions lines;
 };
 
 std::string encode_parameters(const SimplifyParameters& parameters);

@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include <meshfarm/farm/job.hpp>
+#include <meshfarm/pipeline/run_options.hpp>
 
 namespace meshfarm {
 
@@ -20,6 +21,7 @@ struct SweepParameters {
   std::uint64_t window_triangles = 0;  // of the buffer
   std::uint64_t samples = 0;           // points of the stream to measure the final error by
   double max_error = 0;                // where above 0: the result's error is measured
+  LineOptions lines;
 };
 
 std::string encode_parameters(const SweepParameters& parameters);

@@ -8,6 +8,7 @@
 
 #include <meshfarm/geometry/distance.hpp>
 #include <meshfarm/geometry/mesh.hpp>
+#include <meshfarm/geometry/simplify.hpp>
 #include <meshfarm/io/stream_file.hpp>
 
 namespace meshfarm {
@@ -18,6 +19,7 @@ struct SweepOptions {
   /// Where above 0: this share of the triangles is kept, of each window the same (Xiong et al.
   /// 2008).
   double ratio = 0;
+  LineOptions lines;
   /// The buffer: so many triangles are simplified together, but for a front that alone is more.
   std::uint64_t window_triangles = 0;
   /// Points of the stream's surface to take, by which an error can be measured.

@@ -81,11 +81,11 @@ TEST_CASE("lost area costs, gained area does not") {
 
 TEST_CASE("a border plane stands on the edge, perpendicular to the triangle") {
   Quadric q;
-  add_border_plane(q, {0, 0, 5}, {2, 0, 0});
+  add_line_plane(q, {0, 0, 5}, {2, 0, 0});
   CHECK(dot(q * Vec3{7, 0, 9}, Vec3{7, 0, 9}) == 0);
   CHECK(dot(q * Vec3{0, 1, 0}, Vec3{0, 1, 0}) == doctest::Approx(3 * 4));
   Quadric none;
-  add_border_plane(none, {0, 0, 0}, {2, 0, 0});
+  add_line_plane(none, {0, 0, 0}, {2, 0, 0});
   CHECK(none.trace() == 0);
 }
 

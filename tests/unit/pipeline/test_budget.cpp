@@ -172,10 +172,14 @@ TEST_CASE("runs of different targets have different keys") {
   CHECK(run_key(manifest, {.ratio = 0.5}) != run_key(manifest, {.ratio = 0.4}));
   CHECK(run_key(manifest, {.ratio = 0.5}) !=
         run_key(manifest, {.ratio = 0.5, .finish = Finish::boundary}));
+  CHECK(run_key(manifest, {.ratio = 0.5}) !=
+        run_key(manifest, {.ratio = 0.5, .lines = {.preserve_border = true}}));
+  CHECK(run_key(manifest, {.ratio = 0.5}) !=
+        run_key(manifest, {.ratio = 0.5, .lines = {.crease_angle = 30}}));
 }
 
 TEST_CASE("parameters come back; damaged ones are refused") {
-  const SimplifyParameters p{Allocation::uniform, 12, 3, 77, 0.25, 0.5};
+  const SimplifyParameters p{Allocation::uniform, 12, 3, 77, 0.25, 0.5, {true, 40}};
   const std::string bytes = encode_parameters(p);
   const SimplifyParameters back = decode_parameters(bytes);
   CHECK(back.allocation == Allocation::uniform);
@@ -183,6 +187,8 @@ TEST_CASE("parameters come back; damaged ones are refused") {
   CHECK(back.samples == 77);
   CHECK(back.cost_unit == 0.25);
   CHECK(back.max_error == 0.5);
+  CHECK(back.lines.preserve_border);
+  CHECK(back.lines.crease_angle == 40);
   for (std::size_t i = 0; i < bytes.size(); ++i) {
     CHECK_THROWS_AS(decode_parameters(std::string_view(bytes).substr(0, i)), DataError);
   }

@@ -12,7 +12,7 @@
 #include <meshfarm/geometry/simplify.hpp>
 
 #include "geometry/simplify_clean.hpp"
-#include "geometry/simplify_sweep.hpp"
+#include "geometry/simplify_rough.hpp"
 #include "test_simplify_meshes.hpp"
 
 using namespace meshfarm;
@@ -20,9 +20,9 @@ using namespace meshfarm::simplify_test;
 
 namespace {
 
-/// A mesh with what a sweep works on.
-struct SweepBench {
-  explicit SweepBench(Mesh m) : mesh(std::move(m)) {
+/// A mesh with what a rough pass works on.
+struct RoughBench {
+  explicit RoughBench(Mesh m) : mesh(std::move(m)) {
     flags = clean_surface(mesh, {}, adjacency).flags;
     for (std::uint32_t v = 0; v < flags.size(); ++v) target.push_back(v);
     touched.assign(flags.size(), 0);
@@ -30,7 +30,7 @@ struct SweepBench {
   CollapseState state() {
     return {mesh.positions, flags, target, &adjacency, PositionType::float64};
   }
-  Sweep sweep() { return Sweep({state(), touched}); }
+  RoughPass rough() { return RoughPass({state(), touched}); }
 
   Mesh mesh;
   Adjacency adjacency;
@@ -55,27 +55,27 @@ Mesh sheet_with_detail() {
 
 }  // namespace
 
-TEST_CASE("a sweep merges a vertex with its nearest neighbour that may") {
+TEST_CASE("a rough pass merges a vertex with its nearest neighbour that may") {
   // A fan of six round vertex 0, all at distances of their own.
   Mesh mesh{{{0, 0, 0}, {5, 0, 0}, {2, 3, 0}, {-2, 2, 0}, {-4, 0, 0}, {-2, -4, 0}, {3, -3, 0}},
             {{0, 1, 2}, {0, 2, 3}, {0, 3, 4}, {0, 4, 5}, {0, 5, 6}, {0, 6, 1}}};
-  SweepBench bench(mesh);
-  CHECK(bench.sweep().partner(0) == 3);
+  RoughBench bench(mesh);
+  CHECK(bench.rough().partner(0) == 3);
   bench.touched[3] = 1;
-  CHECK(bench.sweep().partner(0) == 2);
+  CHECK(bench.rough().partner(0) == 2);
   bench.flags[2] |= k_fixed;
-  CHECK(bench.sweep().partner(0) == 4);
+  CHECK(bench.rough().partner(0) == 4);
   // What has moved counts where it is now.
   bench.mesh.positions[5] = {0, -1, 0};
-  CHECK(bench.sweep().partner(0) == 5);
+  CHECK(bench.rough().partner(0) == 5);
   bench.flags[0] |= k_fixed;
-  CHECK(bench.sweep().partner(0) == 0);
+  CHECK(bench.rough().partner(0) == 0);
 }
 
-TEST_CASE("a sweep takes border vertices along the border or from inside") {
-  SweepBench bench(flat_grid(4, 4));
+TEST_CASE("a rough pass takes border vertices along the border or from inside") {
+  RoughBench bench(flat_grid(4, 4));
   for (std::uint32_t v = 0; v < bench.mesh.positions.size(); ++v) {
-    const std::uint32_t other = bench.sweep().partner(v);
+    const std::uint32_t other = bench.rough().partner(v);
     REQUIRE(other != v);
     const bool both = (bench.flags[v] & bench.flags[other] & k_border) != 0;
     if (!both) continue;
@@ -84,19 +84,23 @@ TEST_CASE("a sweep takes border vertices along the border or from inside") {
   }
 }
 
-TEST_CASE("the limit of a sweep grows with its share") {
-  SweepBench bench(sheet_with_detail());
+TEST_CASE("the limit of a rough pass grows with its share") {
+  RoughBench bench(sheet_with_detail());
   CollapseJudge judge(bench.state());
-  const auto limit = [&](double share) { return bench.sweep().estimate_limit(judge, share); };
+  const auto limit = [&](double share, double most = HUGE_VAL) {
+    return bench.rough().estimate_limit(judge, share, most);
+  };
   CHECK(limit(0.5) == 0);
   REQUIRE(limit(0.995).has_value());
   CHECK(*limit(0.995) > 0);
   CHECK(*limit(1) > *limit(0.995));
+  CHECK(limit(1, *limit(0.995)) == limit(0.995));
+  CHECK(!limit(1, -1).has_value());
   std::fill(bench.touched.begin(), bench.touched.end(), std::uint8_t{1});
   CHECK(!limit(0.5).has_value());
 }
 
-TEST_CASE("sweeps leave the detail of a flat sheet alone") {
+TEST_CASE("rough passes leave the detail of a flat sheet alone") {
   const Mesh mesh = sheet_with_detail();
   Simplifier simplifier(mesh, {});
   simplifier.reduce({mesh.triangles.size() / 50});

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
-#include "geometry/simplify_sweep.hpp"
+#include "geometry/simplify_rough.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -15,10 +15,12 @@ namespace {
 // Gives the rank to one or two per cent.
 constexpr std::uint32_t k_sampled_vertices = 2048;
 constexpr std::size_t k_least_sample = 128;
+// With fewer vertices that merge a pass is not worth its time.
+constexpr double k_least_share = 0.3;
 
 }  // namespace
 
-std::uint32_t Sweep::partner(std::uint32_t vertex) const {
+std::uint32_t RoughPass::partner(std::uint32_t vertex) const {
   const CollapseState& state = state_.collapse;
   const std::uint8_t flags = state.flags[vertex];
   const std::span<const Corner> fan = state.adjacency->at(vertex);
@@ -34,15 +36,21 @@ std::uint32_t Sweep::partner(std::uint32_t vertex) const {
     least = nearer ? squared : least;
     nearest = nearer ? end : nearest;
   };
-  const bool border = (flags & k_border) != 0;
-  for (const Corner& c : fan) consider(c.next, border ? k_border : 0);
-  if (border) {
-    for_border_edges(fan, [&](const Corner&, std::uint32_t end) { consider(end, 0); });
+  for (const Corner& c : fan) consider(c.next, barred_beside(flags));
+  const std::uint8_t barred = barred_along(flags);
+  if ((flags & k_border) != 0) {
+    for_border_edges(fan, [&](const Corner&, std::uint32_t end) { consider(end, barred); });
+  }
+  if ((flags & k_crease) != 0) {
+    const auto is_on_crease = [&](std::uint32_t end) { return (state.flags[end] & k_crease) != 0; };
+    for_crease_edges(fan, at, state.positions, *state.creases, is_on_crease,
+                     [&](const Corner& one, const Corner&) { consider(one.prev, barred); });
   }
   return nearest;
 }
 
-std::optional<double> Sweep::estimate_limit(CollapseJudge& judge, double share) const {
+std::optional<double> RoughPass::estimate_limit(CollapseJudge& judge, double share,
+                                                double most) const {
   const auto vertices = static_cast<std::uint32_t>(state_.collapse.positions.size());
   const std::uint32_t one_in = std::max(1U, vertices / k_sampled_vertices);
   const CollapseLimits no_limits{UINT64_MAX, HUGE_VAL};
@@ -56,9 +64,11 @@ std::optional<double> Sweep::estimate_limit(CollapseJudge& judge, double share) 
     if (collapse.triangles > 0) costs.push_back(collapse.cost);
   }
   if (costs.size() < k_least_sample) return {};
+  const auto can = std::count_if(costs.begin(), costs.end(), [&](double c) { return c <= most; });
+  if (static_cast<double>(can) < k_least_share * static_cast<double>(costs.size())) return {};
   const auto rank = static_cast<std::size_t>(share * static_cast<double>(costs.size() - 1));
   std::nth_element(costs.begin(), costs.begin() + static_cast<std::ptrdiff_t>(rank), costs.end());
-  return costs[rank];
+  return std::min(costs[rank], most);
 }
 
 }  // namespace meshfarm
