@@ -29,6 +29,8 @@ struct Printer {
   std::string operator()(EndpointName n) const {
     return "control/" + six_digits(n.epoch) + ".endpoint";
   }
+  std::string operator()(TraceName n) const { return "log/" + six_digits(n.epoch) + ".trace"; }
+  std::string operator()(SummaryName n) const { return "log/" + six_digits(n.number) + ".summary"; }
   std::string operator()(KeysName n) const { return "control/" + to_hex(n.run) + ".keys"; }
 };
 
@@ -74,6 +76,11 @@ std::optional<StagedName> scan(std::string_view text) {
   } else if (in.word("journal/")) {
     JournalName name;
     if (in.number(name.number, 10)) return name;
+  } else if (in.word("log/")) {
+    std::uint32_t number = 0;
+    if (!in.number(number, 10)) return std::nullopt;
+    if (in.word(".trace")) return TraceName{number};
+    return SummaryName{number};
   } else if (in.word("control/")) {
     if (text.ends_with(".keys")) {
       KeysName name;

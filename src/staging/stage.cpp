@@ -102,6 +102,11 @@ std::vector<std::uint32_t> numbers_in(const std::filesystem::path& root, std::st
   return found;
 }
 
+bool has_log(const std::filesystem::path& root) {
+  std::error_code error;
+  return std::filesystem::is_directory(root / "log", error);
+}
+
 }  // namespace
 
 Stage Stage::create(const std::filesystem::path& root) {
@@ -159,6 +164,16 @@ std::vector<std::uint32_t> Stage::journals() const {
 
 std::vector<std::uint32_t> Stage::epochs() const {
   return numbers_in<EndpointName>(root_, "control", [](EndpointName n) { return n.epoch; });
+}
+
+std::vector<std::uint32_t> Stage::traces() const {
+  if (!has_log(root_)) return {};
+  return numbers_in<TraceName>(root_, "log", [](TraceName n) { return n.epoch; });
+}
+
+std::vector<std::uint32_t> Stage::summaries() const {
+  if (!has_log(root_)) return {};
+  return numbers_in<SummaryName>(root_, "log", [](SummaryName n) { return n.number; });
 }
 
 void Stage::remove(const StagedName& name) const noexcept {

@@ -22,6 +22,8 @@ namespace meshfarm {
 ///   control/000001.endpoint           where a ventilator listens, one file an epoch
 ///   control/RUN.keys                  what the processes of a run prove themselves by, 16 hex
 ///   digits
+///   log/000001.trace                  what happened in an epoch, told by its ventilator
+///   log/000001.summary                what a run made, told by its sink
 struct ManifestName {};
 struct BoundaryName {};
 struct PartName {
@@ -44,15 +46,21 @@ struct EndpointName {
 struct KeysName {
   std::uint64_t run = 0;
 };
+struct TraceName {
+  std::uint32_t epoch = 0;
+};
+struct SummaryName {
+  std::uint32_t number = 0;
+};
 using StagedName = std::variant<ManifestName, BoundaryName, PartName, StreamName, ResultName,
-                                JournalName, EndpointName, KeysName>;
+                                JournalName, EndpointName, KeysName, TraceName, SummaryName>;
 
 std::string to_string(const StagedName& name);
 /// The name that to_string made; nothing for any other text.
 std::optional<StagedName> parse_staged_name(std::string_view text);
 
 /// The folders of a stage, all made before a run starts: workers make none.
-inline constexpr std::array<std::string_view, 5> k_stage_folders = {"parts", "streams", "results",
-                                                                    "journal", "control"};
+inline constexpr std::array<std::string_view, 6> k_stage_folders = {"parts",   "streams", "results",
+                                                                    "journal", "control", "log"};
 
 }  // namespace meshfarm

@@ -58,6 +58,9 @@ class Stage {
   /// makes an NFS client look again.
   std::vector<std::uint32_t> journals() const;
   std::vector<std::uint32_t> epochs() const;
+  /// The same of traces and summaries; none in a stage that is older than they are.
+  std::vector<std::uint32_t> traces() const;
+  std::vector<std::uint32_t> summaries() const;
 
   void remove(const StagedName& name) const noexcept;
 

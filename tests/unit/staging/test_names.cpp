@@ -10,7 +10,8 @@ TEST_CASE("every name that is made is parsed back") {
   for (const StagedName& name :
        {StagedName(ManifestName{}), StagedName(BoundaryName{}), StagedName(PartName{0}),
         StagedName(PartName{4'294'967'295U}), StagedName(JournalName{12}),
-        StagedName(EndpointName{1'000'000}), StagedName(KeysName{0xfedcba9876543210ULL}),
+        StagedName(EndpointName{1'000'000}), StagedName(TraceName{3}), StagedName(SummaryName{4}),
+        StagedName(KeysName{0xfedcba9876543210ULL}),
         StagedName(ResultName{0xfedcba9876543210ULL, 3, 0x0123456789abcdefULL})}) {
     const auto parsed = parse_staged_name(to_string(name));
     REQUIRE(parsed.has_value());
@@ -46,6 +47,9 @@ TEST_CASE("any other text is no staged name") {
                            "control/000000000000000A.keys",
                            "control/000000000000000a.endpoint",
                            "journal/000001.endpoint",
+                           "log/000001",
+                           "log/000001.log",
+                           "log/.trace",
                            "results/FEDCBA9876543210.a1.0000000000000001",
                            "../../etc/passwd"}) {
     CAPTURE(text);

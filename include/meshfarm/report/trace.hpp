@@ -1,0 +1,111 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+namespace meshfarm {
+
+// What a trace tells, a line each; see src/report/trace.cpp for the format. Times `t` are in
+// seconds since the ventilator's start, worker numbers are those of its epoch.
+
+struct TraceHead {
+  std::uint32_t epoch = 0;
+  std::uint64_t run = 0;
+  double unix_s = 0;  // when the ventilator started
+  std::string host;   // where
+  std::uint32_t heartbeat_ms = 0;
+  std::string schedule;         // "dynamic", "static"
+  std::uint64_t triangles = 0;  // of the input
+  double cut_s = 0;
+};
+struct TraceJoined {
+  double t = 0;
+  std::uint32_t worker = 0;
+  std::string host;
+  std::uint32_t pid = 0;
+  std::uint64_t speed = 0;   // triangles a second and thread, by benchmark
+  std::uint64_t memory = 0;  // bytes
+  std::uint32_t threads = 1;
+};
+struct TraceLeft {
+  double t = 0;
+  std::uint32_t worker = 0;
+  std::string why;
+};
+/// A job whose result was accepted.
+struct TraceDone {
+  double t = 0;
+  std::uint32_t worker = 0;
+  std::uint64_t job = 0;  // its key
+  std::string kind;
+  std::uint32_t round = 0;      // jobs of a round wait for all of the rounds before
+  std::uint64_t triangles = 0;  // estimated work
+  std::uint64_t memory = 0;
+  std::uint64_t read_bytes = 0;
+  std::uint64_t written_bytes = 0;
+  std::uint32_t read_ms = 0;
+  std::uint32_t wait_ms = 0;
+  std::uint32_t compute_ms = 0;
+  std::uint32_t write_ms = 0;
+  std::uint64_t cpu_us = 0;  // of computing: what it would have taken on a host of its own
+};
+struct TraceFailed {
+  double t = 0;
+  std::uint32_t worker = 0;
+  std::uint64_t job = 0;
+  std::string why;
+};
+/// How the farm stands.
+struct TraceState {
+  struct Worker {
+    std::uint32_t worker = 0;
+    std::uint32_t held = 0;    // jobs sent and not done
+    std::uint32_t buffer = 0;  // jobs it would hold besides
+    double speed = 0;          // triangles a second and thread, by the jobs it did
+    std::uint64_t rss_bytes = 0;
+    double silent_s = 0;
+  };
+  double t = 0;
+  std::uint64_t jobs_done = 0;
+  std::uint64_t jobs_running = 0;
+  std::uint64_t jobs_failed = 0;
+  std::uint64_t jobs_known = 0;
+  std::uint64_t retries = 0;
+  std::uint64_t triangles_done = 0;
+  std::uint64_t triangles_known = 0;
+  bool sink = false;
+  bool storage_stalls = false;
+  std::vector<std::string> bad_hosts;
+  std::vector<Worker> workers;
+};
+/// The ventilator's last word. `failure` is empty if all was done.
+struct TraceEnd {
+  double t = 0;
+  std::string failure;
+};
+using TraceLine =
+    std::variant<TraceHead, TraceJoined, TraceLeft, TraceDone, TraceFailed, TraceState, TraceEnd>;
+
+/// One line, without its end.
+std::string to_line(const TraceLine& line);
+
+struct Trace {
+  TraceHead head;
+  std::vector<TraceJoined> joined;
+  std::vector<TraceLeft> left;
+  std::vector<TraceDone> done;
+  std::vector<TraceFailed> failed;
+  std::optional<TraceState> state;  // the last
+  std::optional<TraceEnd> end;
+};
+
+/// A last line that is not whole yet is left out. Throws DataError naming `what`.
+Trace parse_trace(std::string_view text, std::string_view what);
+
+}  // namespace meshfarm

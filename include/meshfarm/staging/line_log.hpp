@@ -1,0 +1,34 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <thread>
+
+namespace meshfarm {
+
+/// A text file of a run that others read while it grows: one writer, whole lines, only appended to.
+/// Written by a thread of its own, so that storage that stalls or is full never holds up the
+/// writer: lines that cannot be written are dropped, and the first time it is logged.
+class LineLog {
+ public:
+  /// Makes the file, and its folder where that is missing.
+  explicit LineLog(std::filesystem::path path);
+  /// Waits for a few seconds at most until what is there is written.
+  ~LineLog();
+  LineLog(const LineLog&) = delete;
+  LineLog& operator=(const LineLog&) = delete;
+
+  /// The line gets its end here. Others see it within about a second.
+  void add(std::string_view line);
+
+ private:
+  struct Shared;
+  std::shared_ptr<Shared> shared_;
+  std::thread thread_;
+};
+
+}  // namespace meshfarm
