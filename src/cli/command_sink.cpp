@@ -6,6 +6,7 @@
 #include <meshfarm/farm/sink.hpp>
 #include <meshfarm/pipeline/assemble.hpp>
 #include <meshfarm/pipeline/budget.hpp>
+#include <meshfarm/pipeline/run_trace.hpp>
 
 #include "cli/cut_step.hpp"
 #include "cli/farm_command.hpp"
@@ -67,6 +68,8 @@ class SinkCommand : public FarmCommand {
                summary = assemble(stage, manifest, target_.run, accepted, assembly);
                summary.farm_seconds = farm;
              });
+    summary.run = options.run;
+    publish_summary(stage, summary);
     std::cout << render(summary, talk_.format());
   }
 

@@ -4,6 +4,7 @@
 
 #include <meshfarm/farm/ventilator.hpp>
 #include <meshfarm/pipeline/budget.hpp>
+#include <meshfarm/pipeline/run_trace.hpp>
 #include <meshfarm/util/errors.hpp>
 
 #include "cli/farm_command.hpp"
@@ -55,7 +56,20 @@ class VentilatorCommand : public FarmCommand {
     options.schedule = schedule_.options;
     options.stop = &stop;
     options.progress = [&](const FarmProgress& p) { show(printer, p); };
-    run_ventilator(stage, make_job_source(manifest, target_.run), options);
+    TraceHead head;
+    head.run = options.run;
+    head.heartbeat_ms = heartbeat_ms_;
+    head.triangles = manifest.triangles();
+    head.cut_s = manifest.cut_seconds;
+    RunTrace trace(stage, head);
+    trace.follow(options);
+    try {
+      run_ventilator(stage, make_job_source(manifest, target_.run), options);
+    } catch (const Error& error) {
+      trace.end(error.what());
+      throw;
+    }
+    trace.end({});
   }
 
   bool sink_reports_failures() const override { return true; }

@@ -83,6 +83,7 @@ void Dispatcher::worker_joins(const PeerId& peer, const Hello& hello) {
   by_incarnation_[hello.incarnation] = id;
   by_heard_.insert({now_, id});
   scheduler_.join(id, hello.host, hello.capacity);
+  tell(WorkerJoined{id, worker.host, worker.pid, worker.capacity});
   out_.push_back(OpenLane{id});
 }
 
@@ -239,6 +240,7 @@ void Dispatcher::lose(WorkerId id, const std::string& reason, const std::vector<
   by_incarnation_.erase(worker.incarnation);
   by_heard_.erase({worker.heard, id});
   out_.push_back(CloseLane{id});
+  tell(WorkerLeft{id, reason});
   const std::string why =
       "worker " + std::to_string(id.value) + " on " + worker.host + " " + reason;
   for (const JobKey key : suspects) scheduler_.failed_on(id, key);
@@ -286,7 +288,7 @@ std::vector<WorkerStatus> Dispatcher::workers() const {
   for (const auto& [id, worker] : workers_) {
     all.push_back({id, worker.host, worker.pid, worker.capacity, scheduler_.speed(id),
                    static_cast<std::uint32_t>(scheduler_.held(id).size()), worker.beat.rss_bytes,
-                   now_ - worker.heard});
+                   now_ - worker.heard, worker.credit - worker.sent});
   }
   return all;
 }

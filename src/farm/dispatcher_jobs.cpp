@@ -32,7 +32,11 @@ void Dispatcher::on(const PeerId& peer, const Accept& accept) {
   if (!sink_->ready) {
     sink_->told[accept.key] = accept.output;
   } else {
-    plan_.accept(accept.key, accept.output);
+    const bool fresh = plan_.accept(accept.key, accept.output);
+    if (fresh && options_.tell && accept.worker.value != 0) {
+      tell(JobAccepted{accept.worker, accept.key, plan_.job(accept.key), plan_.round(accept.key),
+                       accept.output.file.size, accept.times});
+    }
   }
   if (scheduler_.known(accept.worker)) {
     scheduler_.did(accept.worker, accept.key, accept.times.compute_ms, now_);
@@ -44,6 +48,7 @@ void Dispatcher::on(const PeerId& peer, const Accept& accept) {
 
 void Dispatcher::on(const PeerId& peer, const Reject& reject) {
   if (!from_sink(peer, reject.epoch)) return;
+  tell(AttemptFailed{reject.worker, reject.key, reject.failure.reason});
   switch (reject.failure.kind) {
     case FailureKind::for_good:
       fail(reject.key, reject.failure.reason, Failing::for_good);

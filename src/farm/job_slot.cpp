@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "farm/job_slot.hpp"
 
+#include <ctime>
 #include <new>
 #include <utility>
 
@@ -10,6 +11,17 @@
 #include "farm/sockets.hpp"
 
 namespace meshfarm {
+namespace {
+
+/// Processor time that this thread has used.
+std::uint64_t thread_cpu_us() {
+  timespec used{};
+  if (::clock_gettime(CLOCK_THREAD_CPUTIME_ID, &used) != 0) return 0;
+  return static_cast<std::uint64_t>(used.tv_sec) * 1'000'000 +
+         static_cast<std::uint64_t>(used.tv_nsec) / 1000;
+}
+
+}  // namespace
 
 void JobSlot::begin(const Begin& begin) {
   give_up_ = false;
@@ -41,6 +53,7 @@ JobOutcome JobSlot::attempt(const Begin& begin) {
   times_.wait_ms = lap_ms();
   phase_ = JobPhase::computing;
   computing_ = true;
+  cpu_before_us_ = thread_cpu_us();
   JobOutcome outcome;
   try {
     outcome = compute(begin);
@@ -116,6 +129,7 @@ FileRef JobSlot::publish(const StagedName& name, std::string_view bytes, std::st
 void JobSlot::end_computing() {
   if (!std::exchange(computing_, false)) return;
   times_.compute_ms = lap_ms();
+  times_.cpu_us = thread_cpu_us() - cpu_before_us_;
   phase_ = JobPhase::storage;
   gate_.leave();
 }

@@ -59,6 +59,7 @@ class JobSlot : private JobStorage {
   std::map<std::string, std::string> ahead_;  // bytes by name
   bool computing_ = false;
   FarmTime lap_{0};
+  std::uint64_t cpu_before_us_ = 0;
   JobOutcome outcome_;
   JobTimes times_;
   TaskThread thread_;  // the last member, so that it ends first

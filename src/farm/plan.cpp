@@ -27,6 +27,7 @@ void Plan::restart(const std::map<JobKey, JobOutput>& accepted) {
   by_memory_.clear();
   counts_ = {.retries = counts_.retries};
   rounds_ = Rounds(source_);
+  rounds_begun_ = 0;
   started_ = true;
   advance(accepted);
 }
@@ -39,6 +40,7 @@ void Plan::advance(const std::map<JobKey, JobOutput>& accepted) {
       Entry& entry = found->second;
       if (is_new) {
         entry.order = next_order_++;
+        entry.round = rounds_begun_;
         entry.job = std::move(job);
       }
       entry.wanted = true;
@@ -54,6 +56,7 @@ void Plan::advance(const std::map<JobKey, JobOutput>& accepted) {
       if (entry.state == JobState::ready) add_ready(key, entry);
       ++count_of(entry.state);
     }
+    ++rounds_begun_;
   }
 }
 

@@ -41,7 +41,7 @@ auto fields(M& m) {
 }
 template <Is<JobTimes> M>
 auto fields(M& m) {
-  return std::tie(m.read_ms, m.wait_ms, m.compute_ms, m.write_ms);
+  return std::tie(m.read_ms, m.wait_ms, m.compute_ms, m.write_ms, m.cpu_us);
 }
 template <Is<Hello> M>
 auto fields(M& m) {

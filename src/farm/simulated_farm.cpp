@@ -55,6 +55,7 @@ SimulationResult SimulatedFarm::run() {
   result_.ended = over();
   result_.broken = checks_.broken();
   result_.time = queue_.now();
+  result_.server_busy_s = folder_.server_busy_s();
   result_.events = queue_.count();
   return std::move(result_);
 }

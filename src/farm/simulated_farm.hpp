@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <deque>
 #include <map>
@@ -94,6 +95,13 @@ class SimulatedFarm {
               [this, &process, life, event] { when_awake(process, life, event); });
   }
   void kill(Process& process);
+  /// Lets it happen when whoever does one thing after another has had so much time for it.
+  template <class Event>
+  void in_its_turn(SimulatedTime& free, SimulatedTime takes, const Event& event) {
+    if (takes.count() == 0) return event();
+    free = std::max(free, queue_.now()) + takes;
+    queue_.at(free, event);
+  }
   bool over() const;
   std::uint32_t index_of(const Worker& worker) const {
     return static_cast<std::uint32_t>(&worker - workers_.data());
@@ -113,6 +121,7 @@ class SimulatedFarm {
   void act(CloseLane& each);
   void act(PushJob& each);
   void act(Finish& each);
+  void act(Tell&) {}
   Worker* worker_at(const std::string& peer);
   void run_again();
 
@@ -179,6 +188,8 @@ class SimulatedFarm {
   std::map<JobKey, JobOutput> journal_;
   std::unordered_map<std::string, SimulatedJob> published_;  // by the file's name
   std::map<WorkerId, std::uint32_t> members_;  // of the ventilator's epoch: whose lane it is
+  SimulatedTime centre_free_{0};
+  SimulatedTime sink_free_{0};
   SimulatedTime run_start_{0};
   bool finished_ = false;  // the last run's ventilator said its last word
   bool said_failure_ = false;

@@ -47,8 +47,10 @@ void SimulatedFarm::feel_pulse(Worker& worker) {
 }
 
 std::uint32_t SimulatedFarm::lap_ms(InWork& in_work) const {
-  const SimulatedTime since = std::exchange(in_work.lap, queue_.now());
-  return static_cast<std::uint32_t>((queue_.now() - since) / std::chrono::milliseconds(1));
+  // Between two looks at a clock that counts milliseconds, as the real worker takes it.
+  const auto since = std::chrono::duration_cast<FarmTime>(in_work.lap);
+  in_work.lap = queue_.now();
+  return static_cast<std::uint32_t>((farm_now() - since).count());
 }
 
 void SimulatedFarm::while_in_work(Worker& worker, std::uint32_t slot, SimulatedTime time,

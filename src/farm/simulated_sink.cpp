@@ -1,5 +1,6 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
+#include <algorithm>
 #include <utility>
 
 #include "farm/simulated_farm.hpp"
@@ -72,7 +73,11 @@ void SimulatedFarm::sink_act(Say& each) {
 }
 
 void SimulatedFarm::sink_act(Check& each) {
-  const SimulatedTime there = folder_.transfer(sink_.host, 0) + folder_.visibility_delay();
+  SimulatedTime there =
+      folder_.transfer(sink_.host, each.output.file.size) + folder_.visibility_delay();
+  if (options_.centre.per_result.count() > 0) {
+    there = sink_free_ = std::max(sink_free_, there) + options_.centre.per_result;
+  }
   queue_.at(there, [this, each, life = sink_.life] {
     when_awake(sink_, life, [this, each] {
       const bool whole = folder_.has_whole(each.output.file.name);

@@ -20,6 +20,9 @@ SimulatedTime through(SimulatedTime& free, SimulatedTime now, std::uint64_t byte
 
 SimulatedTime SimulatedFolder::transfer(std::uint32_t host, std::uint64_t bytes) {
   const SimulatedTime now = queue_.now();
+  if (storage_.server_bytes_per_s > 0) {
+    server_busy_s_ += static_cast<double>(bytes) / storage_.server_bytes_per_s;
+  }
   const SimulatedTime served = through(server_free_, now, bytes, storage_.server_bytes_per_s);
   const SimulatedTime arrived = through(host_free_[host], now, bytes, storage_.host_bytes_per_s);
   return std::max({served, arrived, stalled_until_}) + storage_.delay;

@@ -40,6 +40,7 @@ class SimulatedFolder {
   void stall(SimulatedTime until) { stalled_until_ = until; }
   void fill(SimulatedTime until) { full_until_ = until; }
   bool full() const { return queue_.now() < full_until_; }
+  double server_busy_s() const { return server_busy_s_; }
   bool stalled() const { return queue_.now() < stalled_until_; }
 
  private:
@@ -50,6 +51,7 @@ class SimulatedFolder {
   Dice& dice_;
   const EventQueue& queue_;
   SimulatedTime server_free_{0};
+  double server_busy_s_ = 0;
   std::vector<SimulatedTime> host_free_;
   SimulatedTime stalled_until_{0};
   SimulatedTime full_until_{0};

@@ -32,6 +32,7 @@ void SimulatedFarm::start_ventilator() {
   dispatcher.run = k_run;
   dispatcher.epoch = ventilator_.epoch;
   dispatcher.heartbeat = options_.heartbeat;
+  dispatcher.schedule = options_.schedule;
   ventilator_.core.emplace(Plan(source_, options_.max_attempts), dispatcher);
   endpoints_.push_back({ventilator_.epoch, k_run, "v" + std::to_string(epochs_), "host", 1});
   note(ventilator_.epoch);
@@ -47,7 +48,8 @@ void SimulatedFarm::tick_ventilator(std::uint64_t life) {
     return;
   }
   ventilator_does(ventilator_.core->tick(farm_now()));
-  queue_.in(options_.heartbeat / 4, [this, life] { tick_ventilator(life); });
+  queue_.in(options_.heartbeat / (options_.centre.eager ? 10 : 4),
+            [this, life] { tick_ventilator(life); });
 }
 
 void SimulatedFarm::kill_ventilator() {
@@ -69,8 +71,10 @@ void SimulatedFarm::to_ventilator(const Process& sender, SimulatedChannel& chann
                letter = in_envelope(std::move(message))] {
                 if (buffered && sender.life != life) return;
                 if (ventilator_.epoch != epoch) return;
-                when_awake(ventilator_, ventilator_.life,
-                           [this, peer, letter] { ventilator_hears(peer, *letter); });
+                in_its_turn(centre_free_, options_.centre.per_message, [this, peer, letter] {
+                  when_awake(ventilator_, ventilator_.life,
+                             [this, peer, letter] { ventilator_hears(peer, *letter); });
+                });
               });
 }
 
@@ -81,6 +85,9 @@ void SimulatedFarm::ventilator_hears(const std::string& peer, const Message& mes
   }
   note(message.index());
   ventilator_does(ventilator_.core->on_message(peer, message, farm_now()));
+  if (options_.centre.eager && ventilator_.alive) {
+    ventilator_does(ventilator_.core->tick(farm_now()));
+  }
 }
 
 void SimulatedFarm::ventilator_does(Actions actions) {

@@ -28,7 +28,8 @@ void SimulatedFarm::start_worker(std::uint32_t index) {
   member.pid = index + 1;
   member.host = "host" + std::to_string(worker.host);
   member.patience = k_patience;
-  member.capacity.speed = static_cast<std::uint64_t>(is.speed * options_.triangles_per_s);
+  const double told = is.told_speed > 0 ? is.told_speed : is.speed;
+  member.capacity.speed = static_cast<std::uint64_t>(told * options_.triangles_per_s);
   member.capacity.memory = is.memory;
   member.capacity.threads = is.threads;
   // As in the real worker: one job more is in work than is computed.

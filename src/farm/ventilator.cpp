@@ -25,6 +25,8 @@ namespace {
 
 constexpr int k_messages_per_turn = 1000;
 constexpr FarmTime k_progress_every{500};
+constexpr FarmTime k_state_every{1000};
+constexpr FarmTime k_state_every_per_worker{5};
 
 /// A job that no message can carry is our caller's mistake: it is found before anything is sent.
 JobSource checked_source(const JobSource& source) {
@@ -47,11 +49,12 @@ class VentilatorLoop {
         gate_(context_, keys_),
         control_(make_control_server(context_, keys_)),
         endpoint_(announce()),
-        dispatcher_(
-            Plan(checked_source(source), options.max_attempts),
-            {options.run, endpoint_.epoch, options.heartbeat, options.hang, options.schedule}) {}
+        dispatcher_(Plan(checked_source(source), options.max_attempts),
+                    {options.run, endpoint_.epoch, options.heartbeat, options.hang,
+                     options.schedule, static_cast<bool>(options.event)}) {}
 
   FarmProgress run() {
+    if (options_.event) options_.event(RunBegan{endpoint_.epoch, endpoint_.host}, FarmTime(0));
     while (!end_) {
       if (options_.stop != nullptr && options_.stop->load()) {
         perform(dispatcher_.leave());
@@ -61,6 +64,8 @@ class VentilatorLoop {
       turn();
     }
     if (options_.progress) options_.progress(progress());
+    next_state_ = FarmTime(0);
+    tell_state(farm_clock());
     tell_of_strangers(gate_.refused(), garbage_);
     say_over();
     if (end_->resumable) throw IncompleteError(end_->failure);
@@ -118,12 +123,21 @@ class VentilatorLoop {
     // Nobody is silent whose words are still to be read.
     if (count < k_messages_per_turn) perform(dispatcher_.tick(now));
     report(now);
+    tell_state(now);
   }
 
   void report(FarmTime now) {
     if (!options_.progress || now < next_report_) return;
     next_report_ = now + k_progress_every;
     options_.progress(progress());
+  }
+
+  void tell_state(FarmTime now) {
+    if (!options_.state || now < next_state_) return;
+    const std::vector<WorkerStatus> workers = dispatcher_.workers();
+    next_state_ =
+        now + std::max(k_state_every, k_state_every_per_worker * static_cast<int>(workers.size()));
+    options_.state(progress(), workers, now - start_);
   }
 
   FarmProgress progress() const {
@@ -173,6 +187,9 @@ class VentilatorLoop {
   }
 
   void act(const Finish& each) { end_ = each; }
+  void act(const Tell& each) {
+    if (options_.event) options_.event(each.event, farm_clock() - start_);
+  }
 
   void flush(WorkerId id) {
     const auto found = lanes_.find(id);
@@ -196,7 +213,9 @@ class VentilatorLoop {
   Dispatcher dispatcher_;
   std::map<WorkerId, Lane> lanes_;
   std::vector<WorkerId> unsent_;  // lanes with something waiting
+  FarmTime start_ = farm_clock();
   FarmTime next_report_{0};
+  FarmTime next_state_{0};
   std::uint64_t garbage_ = 0;
   std::optional<Finish> end_;
 };

@@ -7,6 +7,8 @@
 #include <nlohmann/json.hpp>
 
 #include <meshfarm/report/summary.hpp>
+#include <meshfarm/util/checksum.hpp>
+#include <meshfarm/util/errors.hpp>
 
 #include "report/lines.hpp"
 
@@ -140,6 +142,7 @@ std::string render(const RunSummary& s, Format format) {
   const Manifest& m = s.manifest;
   if (format == Format::json) {
     const Json json = {
+        {"run", to_hex(s.run)},
         {"input", input_json(m)},
         {"output", {{"path", s.output}, {"triangles", s.triangles}, {"vertices", s.vertices}}},
         {"target", s.target},
@@ -191,6 +194,24 @@ std::string render(const RunSummary& s, Format format) {
                         number(s.measure_seconds, "%.2f s") + ", write " +
                         number(s.write_seconds, "%.2f s"));
   return lines.text();
+}
+
+RunTimes parse_run_times(std::string_view text, std::string_view what) {
+  try {
+    const Json json = Json::parse(text);
+    const Json& seconds = json.at("seconds");
+    const auto at = [&](const char* name) { return seconds.at(name).get<double>(); };
+    return {std::stoull(json.at("run").get<std::string>(), nullptr, 16),
+            json.at("output").at("triangles").get<std::uint64_t>(),
+            at("cut"),
+            at("farm"),
+            at("stitch"),
+            at("finish"),
+            at("measure"),
+            at("write")};
+  } catch (const std::exception& error) {
+    throw DataError(std::string(what) + ": no summary of a run: " + error.what());
+  }
 }
 
 std::string render(const FileSummary& s, Format format) {

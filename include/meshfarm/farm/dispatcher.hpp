@@ -12,6 +12,7 @@
 #include <variant>
 #include <vector>
 
+#include <meshfarm/farm/farm_event.hpp>
 #include <meshfarm/farm/plan.hpp>
 #include <meshfarm/farm/protocol.hpp>
 #include <meshfarm/farm/scheduler.hpp>
@@ -43,7 +44,11 @@ struct Finish {
   std::string failure;
   bool resumable = false;
 };
-using Action = std::variant<SendTo, OpenLane, CloseLane, PushJob, Finish>;
+/// Nothing to do: for those who watch.
+struct Tell {
+  FarmEvent event;
+};
+using Action = std::variant<SendTo, OpenLane, CloseLane, PushJob, Finish, Tell>;
 using Actions = std::vector<Action>;
 
 struct DispatcherOptions {
@@ -53,6 +58,7 @@ struct DispatcherOptions {
   /// A job that makes no progress for so long, and for three times its estimate, hangs.
   FarmTime hang{30'000};
   SchedulerOptions schedule = {};
+  bool tell = false;  // what happens, by Tell
 };
 
 /// The ventilator's mind: who is there, and who holds what; the Scheduler says who gets what. Pure:
@@ -145,6 +151,9 @@ class Dispatcher {
   void look_for_end();
   void finish(const std::string& failure, bool resumable);
   void to_workers(const Message& message);
+  void tell(FarmEvent event) {
+    if (options_.tell) out_.push_back(Tell{std::move(event)});
+  }
   void send(const PeerId& peer, Message message) {
     out_.push_back(SendTo{peer, std::move(message)});
   }

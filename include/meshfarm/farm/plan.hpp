@@ -93,6 +93,8 @@ class Plan {
   std::optional<JobState> state(JobKey key) const;
   /// A job that is known.
   const Job& job(JobKey key) const { return entries_.at(key).job; }
+  /// The round, from 0, that first asked for a job that is known.
+  std::uint32_t round(JobKey key) const { return entries_.at(key).round; }
   /// The largest cost first.
   std::vector<JobKey> ready_jobs() const;
   /// How many ready jobs need more memory than this.
@@ -111,6 +113,7 @@ class Plan {
   struct Entry {
     Job job;
     std::uint64_t order = 0;
+    std::uint32_t round = 0;
     JobState state = JobState::ready;
     bool wanted = false;  // by the rounds reached since the last restart
     std::uint32_t attempts = 0;
@@ -138,6 +141,7 @@ class Plan {
   std::uint32_t max_attempts_;
   bool started_ = false;
   std::uint64_t next_order_ = 0;
+  std::uint32_t rounds_begun_ = 0;                         // since the last restart
   std::unordered_map<JobKey, Entry, JobKeyHash> entries_;  // for look-up, never iterated
   std::vector<JobKey> wanted_;                             // in the order asked for
   std::set<ReadyJob> ready_;

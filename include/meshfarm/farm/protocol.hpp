@@ -128,6 +128,7 @@ struct JobTimes {
   std::uint32_t wait_ms = 0;  // read, but all compute threads were busy
   std::uint32_t compute_ms = 0;
   std::uint32_t write_ms = 0;
+  std::uint64_t cpu_us = 0;  // of the compute thread: what it would take on a host of its own
 };
 struct Result {
   std::uint64_t run = 0;

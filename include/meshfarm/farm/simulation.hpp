@@ -14,6 +14,7 @@
 
 #include <meshfarm/farm/job.hpp>
 #include <meshfarm/farm/protocol.hpp>
+#include <meshfarm/farm/scheduler.hpp>
 
 namespace meshfarm {
 
@@ -33,6 +34,7 @@ struct SimulatedWorker {
   SimulatedTime start{0};
   std::uint32_t threads = 1;
   std::uint64_t memory = 0;  // bytes; 0: no limit
+  double told_speed = 0;     // what it says of itself; 0: the truth
 };
 
 /// A message takes delay, and up to jitter more.
@@ -85,14 +87,23 @@ struct SimulatedFaults {
 /// A mix of faults drawn from the seed: each kind is absent, rare or frequent.
 SimulatedFaults faults_of_seed(std::uint64_t seed);
 
+/// What the central processes take for each message and each result: the limit of a large farm.
+struct SimulatedCentre {
+  SimulatedTime per_message{0};  // the ventilator
+  SimulatedTime per_result{0};   // the sink: look at the file, and its share of a journal sync
+  bool eager = false;            // the ventilator ticks after each message, as the real one does
+};
+
 struct SimulationOptions {
   std::uint64_t seed = 1;
   std::vector<SimulatedWorker> workers;
   SimulatedNetwork network;
   SimulatedStorage storage;
+  SimulatedCentre centre;
   SimulatedFaults faults;
   FarmTime heartbeat{1000};
   std::uint32_t max_attempts = 3;
+  SchedulerOptions schedule = {};
   std::uint32_t buffer = 16;      // of a worker
   double triangles_per_s = 1000;  // what a worker of speed 1 says of itself
   /// The world must come to its end by then.
@@ -122,6 +133,7 @@ struct SimulationResult {
   SimulatedTime time{0};           // the end of the world
   std::uint64_t events = 0;
   std::uint64_t pushes = 0;  // jobs given out
+  double server_busy_s = 0;  // of the storage's link
   std::uint64_t trace_hash = 0;
   std::uint32_t runs = 0;  // after a failed one the user starts again, while there are faults
 };

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include <meshfarm/farm/farm_event.hpp>
 #include <meshfarm/farm/job.hpp>
 #include <meshfarm/farm/protocol.hpp>
 #include <meshfarm/farm/scheduler.hpp>
@@ -44,7 +45,8 @@ struct WorkerStatus {
   double speed = 0;  // triangles a second and thread, by the jobs it did
   std::uint32_t held = 0;
   std::uint64_t rss_bytes = 0;
-  FarmTime silent{0};  // since it was last heard
+  FarmTime silent{0};      // since it was last heard
+  std::uint64_t room = 0;  // jobs that it may be sent besides
 };
 
 struct VentilatorOptions {
@@ -58,7 +60,11 @@ struct VentilatorOptions {
   SchedulerOptions schedule = {};
   std::uint32_t max_attempts = 3;                     // a job that failed this often is given up
   std::function<void(const FarmProgress&)> progress;  // about twice a second; may be empty
-  const std::atomic<bool>* stop = nullptr;            // set by a signal: stop, resumable
+  /// What happens, and the ventilator's age; may be empty.
+  std::function<void(const FarmEvent&, FarmTime)> event;
+  /// How the farm stands, once a second, or more seldom where there are hundreds of workers.
+  std::function<void(const FarmProgress&, const std::vector<WorkerStatus>&, FarmTime)> state;
+  const std::atomic<bool>* stop = nullptr;  // set by a signal: stop, resumable
 };
 
 /// Hands out the jobs of `source` over one lane a worker until the sink has them all and says that

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <string_view>
 
 #include <meshfarm/geometry/components.hpp>
 #include <meshfarm/geometry/distance.hpp>
@@ -20,6 +21,7 @@ enum class Format { text, json };
 /// What a run made, for people and for programs.
 struct RunSummary {
   Manifest manifest;
+  std::uint64_t run = 0;        // its key
   std::string output;           // path of the result
   std::uint64_t target = 0;     // triangles asked for, 0: as few as max_error allows
   double max_error = 0;         // the greatest distance allowed, in the mesh's unit; 0: any
@@ -79,6 +81,21 @@ struct HostSummary {
 std::string render(const HostSummary& host, Format format);
 std::string render(const Manifest& manifest, const std::string& stage, Format format);
 std::string render(const RunSummary& summary, Format format);
+
+/// Where a run's time went: of its summary as JSON. Seconds.
+struct RunTimes {
+  std::uint64_t run = 0;
+  std::uint64_t triangles_out = 0;
+  double cut = 0;
+  double farm = 0;
+  double stitch = 0;
+  double finish = 0;
+  double measure = 0;
+  double write = 0;
+};
+/// Throws DataError naming `what`.
+RunTimes parse_run_times(std::string_view json, std::string_view what);
+
 std::string render(const FileSummary& summary, Format format);
 std::string render(const StreamSummary& summary, Format format);
 std::string render(const Comparison& comparison, Format format);

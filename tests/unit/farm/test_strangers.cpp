@@ -107,7 +107,10 @@ std::vector<std::string> framed_garbage(std::uint32_t epoch) {
   const JobKey key = key_of(make_job("job 1"));
   const JobKey unknown{1};
   const auto result = [&](std::uint64_t run, std::uint32_t at, JobKey of, const std::string& name) {
-    return encode(Result{run, at, {1}, 5, 1, of, JobOutput{{name, 1, 2}, "forged"}});
+    JobOutput forged;
+    forged.file = {name, 1, 2};
+    forged.summary = "forged";
+    return encode(Result{run, at, {1}, 5, 1, of, forged});
   };
   const std::string good = to_string(ResultName{key.value, 1, 5});
   for (const std::string& name :

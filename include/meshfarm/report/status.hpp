@@ -1,0 +1,28 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include <meshfarm/io/manifest.hpp>
+#include <meshfarm/report/summary.hpp>
+#include <meshfarm/report/trace.hpp>
+
+namespace meshfarm {
+
+/// What `status` tells of a stage, as its newest trace and summary have it.
+struct StageStatus {
+  std::string stage;
+  Manifest manifest;
+  std::optional<Trace> trace;     // none: no run began
+  std::optional<RunTimes> times;  // of the trace's run; none: it is not over
+  double now_unix_s = 0;
+};
+
+std::string render(const StageStatus& status, Format format);
+/// Whether there is nothing more to watch: the last run has said its last word.
+bool is_over(const StageStatus& status);
+
+}  // namespace meshfarm
