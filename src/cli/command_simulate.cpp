@@ -1,5 +1,6 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
+#include <charconv>
 #include <chrono>
 #include <iostream>
 
@@ -9,6 +10,7 @@
 
 #include "cli/command.hpp"
 #include "cli/options.hpp"
+#include "cli/plan_step.hpp"
 
 namespace meshfarm {
 namespace {
@@ -16,30 +18,56 @@ namespace {
 class SimulateCommand : public Command {
  public:
   std::string_view name() const override { return "simulate"; }
-  std::string_view synopsis() const override { return "(--seed N | --seeds COUNT)"; }
+  std::string_view synopsis() const override { return "STAGE... | --seed N | --seeds COUNT"; }
   std::string_view summary() const override {
-    return "run the farm's own logic on virtual time, with faults";
+    return "plan a farm by a run's trace, or try the farm's logic with faults, on virtual time";
   }
-  void setup(po::options_description& options, po::positional_options_description&) override {
-    options.add_options()("seed", po::value(&seed_)->value_name("N"),
-                          "one history, or the first of --seeds");
+  void setup(po::options_description& options,
+             po::positional_options_description& positional) override {
+    options.add_options()("workers", po::value(&workers_)->value_name("LIST"),
+                          "farms to plan, as 24,240 or 16x1+8x0.33 (count x speed; default "
+                          "24,240,10000); with --seeds one number (default 24)");
+    plan_.add(options);
     options.add_options()("seeds", po::value(&seeds_.count)->value_name("COUNT"),
-                          "as many histories, each with its own mix of faults");
-    options.add_options()(
-        "workers", po::value(&seeds_.workers)->default_value(seeds_.workers)->value_name("N"),
-        "simulated workers");
+                          "as many made-up histories, each with its own mix of faults");
+    options.add_options()("seed", po::value(&seed_)->value_name("N"),
+                          "one of them, or the first of --seeds");
     options.add_options()("jobs",
                           po::value(&seeds_.jobs)->default_value(seeds_.jobs)->value_name("N"),
-                          "simulated jobs");
+                          "with --seeds: jobs of each");
     options.add_options()("threads", po::value(&seeds_.threads)->value_name("N"),
-                          "simulate as many seeds at once (default: one a core)");
+                          "with --seeds: as many at once (default: one a core)");
     talk_.add(options);
+    positional.add("stage", -1);
   }
   void check() override {
-    if (seed_ == 0 && seeds_.count == 0) throw UsageError("give --seed N or --seeds COUNT");
+    plans_ = !plan_.stages.empty();
+    if (plans_ == (seed_ != 0 || seeds_.count != 0)) {
+      throw UsageError("give a STAGE with a traced run, or --seed N or --seeds COUNT");
+    }
+    if (plans_) {
+      if (!workers_.empty()) plan_.workers = workers_;
+      plan_.check();
+    } else {
+      check_seeds();
+    }
+  }
+  int run() override {
+    if (!plans_) return run_seeds();
+    plan_.run(talk_.format());
+    return 0;
+  }
+
+ private:
+  void check_seeds() {
     if (seed_ != 0) seeds_.first = seed_;
     if (seeds_.count == 0) seeds_.count = 1;
     if (seeds_.count > 10'000'000) throw UsageError("--seeds: at most 10000000");
+    if (!workers_.empty()) {
+      const char* last = workers_.data() + workers_.size();
+      const auto [end, error] = std::from_chars(workers_.data(), last, seeds_.workers);
+      if (error != std::errc{} || end != last) seeds_.workers = 0;
+    }
     if (seeds_.workers == 0 || seeds_.workers > 100'000) {
       throw UsageError("--workers: from 1 to 100000");
     }
@@ -47,7 +75,8 @@ class SimulateCommand : public Command {
       throw UsageError("--jobs: from 16 to 10000000");
     }
   }
-  int run() override {
+
+  int run_seeds() const {
     const auto start = std::chrono::steady_clock::now();
     const SeedsResult result = simulate_seeds(seeds_);
     SeedsSummary summary;
@@ -66,9 +95,11 @@ class SimulateCommand : public Command {
     return summary.problems.empty() ? 0 : 1;
   }
 
- private:
+  bool plans_ = false;
+  std::string workers_;
   std::uint64_t seed_ = 0;
   SeedsOptions seeds_;
+  PlanWords plan_;
   TalkOptions talk_;
 };
 

@@ -59,6 +59,7 @@ class VentilatorCommand : public FarmCommand {
     TraceHead head;
     head.run = options.run;
     head.heartbeat_ms = heartbeat_ms_;
+    head.schedule = schedule_.options.schedule == Schedule::fixed ? "static" : "dynamic";
     head.triangles = manifest.triangles();
     head.cut_s = manifest.cut_seconds;
     RunTrace trace(stage, head);

@@ -17,6 +17,8 @@ std::vector<std::unique_ptr<Command>> all_commands() {
   commands.push_back(make_compare_command());
   commands.push_back(make_benchmark_command());
   commands.push_back(make_generate_command());
+  commands.push_back(make_status_command());
+  commands.push_back(make_report_command());
   commands.push_back(make_simulate_command());
   return commands;
 }

@@ -59,7 +59,7 @@ TEST_CASE("help and version go to stdout, and say what there is") {
     const Ran ran = shell(words);
     CHECK(ran.code == 0);
     for (const char* command : {"simplify", "cut", "run", "worker", "replay", "ventilator", "sink",
-                                "info", "compare", "generate", "simulate"}) {
+                                "info", "compare", "generate", "simulate", "status", "report"}) {
       CHECK(has(ran.out, command));
     }
   }
@@ -72,6 +72,39 @@ TEST_CASE("help and version go to stdout, and say what there is") {
     CHECK(has(ran.out, option));
   }
   CHECK_FALSE(has(ran.out, "supervised"));
+}
+
+TEST_CASE("a run is traced: status, report and simulate tell of it") {
+  Shell shell;
+  const std::string stage = shell.path("stage");
+  const std::string sphere = shell.path("sphere.ply");
+  REQUIRE(shell({"generate", "-o", sphere, "--triangles", "20000"}).code == 0);
+  REQUIRE(shell({"cut", sphere, "--stage", stage, "--parts", "8"}).code == 0);
+  CHECK(has(shell({"status", stage}).out, "none yet; the cut is whole"));
+  CHECK(shell({"simulate", stage}).code == 1);  // no trace yet
+  REQUIRE(shell({"replay", stage, "--ratio", "0.1", "-o", shell.path("o.ply")}).code == 0);
+
+  const Ran status = shell({"status", stage, "--watch"});  // over, so it looks once
+  CHECK(status.code == 0);
+  CHECK(has(status.out, "phase            done"));
+  CHECK(has(status.out, "8 of 8 done"));
+  CHECK(has(status.out, "last summary"));
+  CHECK(has(shell({"status", stage, "--json"}).out, "\"over\": true"));
+
+  CHECK(shell({"report", stage, "-o", shell.path("r.html")}).code == 0);
+  const std::string page = read_text(shell.path("r.html"));
+  CHECK(has(page, "all was done"));
+  CHECK(has(page, "<rect"));
+  CHECK(page.ends_with("</html>\n"));
+
+  const Ran plan = shell({"simulate", stage, "--workers", "2,16x1+8x0.333"});
+  CHECK(plan.code == 0);
+  CHECK(has(plan.out, "8 jobs, dynamic schedule"));
+  CHECK(has(plan.out, "16x1+8x0.333"));
+  const Ran paper = shell({"simulate", stage, "--paper", "-o", shell.path("figure.svg")});
+  CHECK(has(paper.out, "Table 1 (cutting), simulated on 24 workers"));
+  CHECK(has(paper.out, "Figure 4"));
+  CHECK(read_text(shell.path("figure.svg")).ends_with("</svg>\n"));
 }
 
 TEST_CASE("simulate tells what came of its seeds, the same each time") {
@@ -96,6 +129,11 @@ TEST_CASE("wrong usage is one line and exit 2") {
       {"simulate"},
       {"simulate", "--seeds", "5", "--workers", "0"},
       {"simulate", "--seeds", "5", "--jobs", "3"},
+      {"simulate", "stage", "--seeds", "5"},
+      {"simulate", "stage", "--workers", "24x"},
+      {"simulate", "stage", "--schedule", "maybe"},
+      {"simulate", "stage", "--storage", "0"},
+      {"status"},
       {"simplify"},
       {"simplify", cube},
       {"simplify", cube, "-o", shell.path("o.ply")},

@@ -1,0 +1,62 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include <meshfarm/farm/scheduler.hpp>
+#include <meshfarm/report/trace.hpp>
+
+namespace meshfarm {
+
+/// A farmed job of the past, on a worker of speed 1.
+struct PlannedJob {
+  std::uint32_t round = 0;
+  std::uint64_t triangles = 0;
+  std::uint64_t read_bytes = 0;
+  std::uint64_t written_bytes = 0;
+  double compute_s = 0;
+};
+
+/// The jobs of a trace. Speed 1 is that of the trace's worker that did most work in the time it
+/// computed. A job that was traced twice (an epoch before did it, too) counts once.
+std::vector<PlannedJob> planned_jobs(const Trace& trace);
+/// The same work, cut into so many jobs instead.
+std::vector<PlannedJob> as_parts(std::span<const PlannedJob> jobs, std::uint64_t count);
+/// So many jobs, drawn at random from the first round (the paper, 3.4.2).
+std::vector<PlannedJob> drawn(std::span<const PlannedJob> jobs, std::uint64_t count,
+                              std::uint64_t seed);
+
+/// So many workers of one speed.
+struct WorkerGroup {
+  std::uint64_t count = 0;
+  double speed = 1;
+};
+
+/// What the farm of the future is like.
+struct PlannedFarm {
+  std::vector<WorkerGroup> groups;
+  Schedule schedule = Schedule::dynamic;
+  double off = 0;  // the speeds are not as told: each is up to this share slower or faster
+  double delay_s = 100e-6;             // of a message
+  double file_s = 1e-3;                // of a file operation, besides its bytes
+  double server_bytes_per_s = 1.25e9;  // of the NFS server, shared: 10 Gbit/s
+  double link_bytes_per_s = 1.25e9;    // of each host
+  double message_s = 10e-6;            // of the ventilator, for each message
+  double result_s = 100e-6;            // of the sink, for each result
+};
+
+struct PlannedRun {
+  double farm_s = 0;        // from the first job given out to the last result accepted
+  double ideal_s = 0;       // all work over all speed
+  double work_s = 0;        // all work, on one worker of speed 1
+  double storage_busy = 0;  // share of the time that the server's link is busy
+};
+
+/// Simulates the farm on virtual time, with the real processes' own logic. Throws Error if that
+/// does not come to its end.
+PlannedRun simulate_run(std::span<const PlannedJob> jobs, const PlannedFarm& farm);
+
+}  // namespace meshfarm

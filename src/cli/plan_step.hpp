@@ -1,0 +1,47 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include <meshfarm/pipeline/planning.hpp>
+#include <meshfarm/report/planning_report.hpp>
+
+#include "cli/options.hpp"
+
+namespace meshfarm {
+
+/// `simulate STAGE...`: what a traced run says of farms that are not there.
+struct PlanWords {
+  std::vector<std::string> stages;  // or trace files
+  std::string workers = "24,240,10000";
+  std::string schedule = "dynamic";
+  std::string storage = "10";  // Gbit/s
+  std::string link = "10";
+  double delay_ms = 0.1;
+  double off = 0.2;
+  std::uint64_t parts = 0;
+  bool paper = false;
+  std::string output;
+
+  void add(po::options_description& options);
+  void check();
+  /// Prints; the picture goes to `output`. Throws Error.
+  void run(Format format) const;
+
+ private:
+  struct Farm {
+    std::string name;
+    std::vector<WorkerGroup> groups;
+  };
+  PlannedFarm farm_of(const Farm& farm) const;
+  PlanSummary plan_of(const std::string& stage, const std::vector<Farm>& farms) const;
+  ScheduleComparison compare_schedules(const std::string& stage) const;
+
+  std::vector<Farm> farms_;
+  PlannedFarm like_;
+};
+
+}  // namespace meshfarm

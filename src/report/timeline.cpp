@@ -1,0 +1,257 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#include <algorithm>
+#include <map>
+#include <vector>
+
+#include <meshfarm/report/progress.hpp>
+#include <meshfarm/report/timeline.hpp>
+#include <meshfarm/util/checksum.hpp>
+
+#include "report/lines.hpp"
+#include "report/svg.hpp"
+
+namespace meshfarm {
+namespace {
+
+constexpr double k_left = 170;
+constexpr double k_width = 1100;
+constexpr double k_right = 20;
+constexpr double k_axis = 24;
+/// Jobs that would be drawn narrower than this are drawn as one with their neighbours.
+constexpr double k_least_width = 1.5;
+constexpr const char* k_round_colours[] = {"#4878a8", "#d08030", "#58a058", "#a05898"};
+
+/// When a worker computed, and at what.
+struct Span {
+  double begin = 0;
+  double end = 0;
+  std::uint32_t round = 0;
+  std::uint64_t jobs = 1;
+  std::uint64_t triangles = 0;
+};
+
+struct Row {
+  TraceJoined joined;
+  std::optional<double> left;
+  std::vector<Span> spans;
+  std::vector<double> failures;
+  double computed_s = 0;
+  std::uint64_t jobs = 0;
+  std::uint64_t triangles = 0;
+};
+
+struct Frame {
+  std::map<std::uint32_t, Row> rows;
+  double begin = 0;  // of the farmed phase
+  double end = 1;
+  double length() const { return std::max(1e-3, end - begin); }
+  double x(double t) const {
+    return k_left + (t - begin) / length() * (k_width - k_left - k_right);
+  }
+};
+
+Span span_of(const TraceDone& job) {
+  // The trace has when the result was accepted: the job was written before, and computed before
+  // that.
+  const double computed = job.t - job.write_ms / 1000.0;
+  return {computed - job.compute_ms / 1000.0, computed, job.round, 1, job.triangles};
+}
+
+Frame frame_of(const Trace& trace) {
+  Frame frame;
+  frame.begin = trace.done.empty() ? 0 : trace.done.front().t;
+  for (const TraceJoined& each : trace.joined) frame.rows[each.worker].joined = each;
+  for (const TraceLeft& each : trace.left) frame.rows[each.worker].left = each.t;
+  for (const TraceFailed& each : trace.failed) frame.rows[each.worker].failures.push_back(each.t);
+  for (const TraceDone& each : trace.done) {
+    Row& row = frame.rows[each.worker];
+    row.spans.push_back(span_of(each));
+    row.computed_s += each.compute_ms / 1000.0;
+    ++row.jobs;
+    row.triangles += each.triangles;
+    frame.begin = std::min(frame.begin, std::max(0.0, row.spans.back().begin - each.read_ms / 1e3));
+    frame.end = std::max(frame.end == 1 ? 0 : frame.end, each.t);
+  }
+  return frame;
+}
+
+/// Neighbours that cannot be told apart become one.
+std::vector<Span> drawable(std::vector<Span> spans, const Frame& frame) {
+  std::sort(spans.begin(), spans.end(),
+            [](const Span& a, const Span& b) { return a.begin < b.begin; });
+  std::vector<Span> merged;
+  for (const Span& each : spans) {
+    const bool close = !merged.empty() && merged.back().round == each.round &&
+                       frame.x(each.end) - frame.x(merged.back().begin) < 2 * k_least_width &&
+                       frame.x(each.begin) - frame.x(merged.back().end) < k_least_width / 2;
+    if (!close) {
+      merged.push_back(each);
+      continue;
+    }
+    merged.back().end = std::max(merged.back().end, each.end);
+    merged.back().jobs += each.jobs;
+    merged.back().triangles += each.triangles;
+  }
+  return merged;
+}
+
+std::string s_text(double t) {
+  return number(t, "%.3g s");
+}
+
+void draw_axis(Svg& svg, const Frame& frame, double bottom) {
+  const double step = round_step(frame.length(), 10);
+  for (double t = 0; t <= frame.length() * 1.0001; t += step) {
+    const double x = frame.x(frame.begin + t);
+    svg.line({x, 0}, {x, bottom}, "#e4e4e4");
+    svg.text({x, bottom + 16}, s_text(t), SvgAnchor::middle);
+  }
+}
+
+void draw_row(Svg& svg, const Frame& frame, const Row& row, double y, double height) {
+  const double first = std::max(frame.begin, row.joined.t);
+  const double last = std::min(frame.end, row.left.value_or(frame.end));
+  if (last > first) {
+    svg.rect({frame.x(first), y}, frame.x(last) - frame.x(first), height, "#f1f1f1");
+  }
+  for (const Span& each : drawable(row.spans, frame)) {
+    const double x = frame.x(each.begin);
+    const std::string title = (each.jobs == 1 ? "a job of " : grouped(each.jobs) + " jobs of ") +
+                              grouped(each.triangles) + " triangles, " +
+                              s_text(each.begin - frame.begin) + " to " +
+                              s_text(each.end - frame.begin);
+    const double gap = frame.x(each.end) - x > 4 ? 0.6 : 0;
+    svg.rect({x, y}, std::max(0.4, frame.x(each.end) - x - gap), height,
+             k_round_colours[each.round % std::size(k_round_colours)], title);
+  }
+  for (const double t : row.failures) {
+    svg.circle({frame.x(t), y + height / 2}, 3, "#c02020", "an attempt failed");
+  }
+  if (row.left && *row.left < frame.end) {
+    svg.line({frame.x(*row.left), y}, {frame.x(*row.left), y + height}, "#c02020", 2);
+  }
+  if (height < 9) return;
+  svg.text({4, y + height / 2 + 4}, std::to_string(row.joined.worker) + "  " + row.joined.host);
+}
+
+std::string timeline(const Frame& frame) {
+  const double rows = std::max<double>(1, static_cast<double>(frame.rows.size()));
+  const double pitch = std::clamp(1200 / rows, 1.0, 22.0);
+  const double bottom = rows * pitch + 4;
+  Svg svg(k_width, bottom + k_axis);
+  draw_axis(svg, frame, bottom);
+  double y = 2;
+  for (const auto& [worker, row] : frame.rows) {
+    draw_row(svg, frame, row, y, pitch > 4 ? pitch - 2 : pitch);
+    y += pitch;
+  }
+  return svg.str();
+}
+
+/// How many triangles were done by when.
+std::string progress_chart(const Frame& frame, const Trace& trace) {
+  constexpr double k_height = 160;
+  double all = 1;
+  for (const TraceDone& each : trace.done) all += static_cast<double>(each.triangles);
+  Svg svg(k_width, k_height + k_axis);
+  draw_axis(svg, frame, k_height);
+  std::string path = "M" + number(frame.x(frame.begin), "%.1f") + " " + number(k_height, "%.1f");
+  double done = 0;
+  double drawn_x = 0;
+  for (const TraceDone& each : trace.done) {
+    done += static_cast<double>(each.triangles);
+    if (frame.x(each.t) - drawn_x < 1 && &each != &trace.done.back()) continue;
+    drawn_x = frame.x(each.t);
+    path += " L" + number(drawn_x, "%.1f") + " " + number(k_height * (1 - done / all), "%.1f");
+  }
+  svg.path(path, "#4878a8");
+  svg.text({4, 12}, grouped(static_cast<std::uint64_t>(done)));
+  svg.text({4, 28}, "triangles of the input");
+  return svg.str();
+}
+
+std::string row_of(const std::vector<std::string>& cells, const char* tag) {
+  std::string text = "<tr>";
+  for (const std::string& cell : cells) {
+    text += "<" + std::string(tag) + ">" + escaped(cell) + "</" + std::string(tag) + ">";
+  }
+  return text + "</tr>\n";
+}
+
+std::string worker_table(const Frame& frame, const Trace& trace) {
+  std::string text = "<table>\n" + row_of({"worker", "host", "jobs", "triangles", "triangles/s",
+                                           "computing", "failed attempts", "left"},
+                                          "th");
+  std::map<std::uint32_t, std::string> why;
+  for (const TraceLeft& each : trace.left) why[each.worker] = each.why;
+  for (const auto& [worker, row] : frame.rows) {
+    const double busy = 100 * row.computed_s / (frame.length() * row.joined.threads);
+    const double rate =
+        row.computed_s > 0 ? static_cast<double>(row.triangles) / row.computed_s : 0;
+    text += row_of({std::to_string(worker), row.joined.host + ":" + std::to_string(row.joined.pid),
+                    grouped(row.jobs), grouped(row.triangles), with_unit(rate),
+                    number(busy, "%.1f %%"), grouped(row.failures.size()), why[worker]},
+                   "td");
+  }
+  return text + "</table>\n";
+}
+
+std::string facts(const Manifest& manifest, const Trace& trace, const Frame& frame,
+                  const std::optional<RunTimes>& times) {
+  double computed = 0;
+  double threads = 0;
+  for (const auto& [worker, row] : frame.rows) {
+    computed += row.computed_s;
+    threads += row.joined.threads;
+  }
+  std::string text = "<table>\n";
+  const auto add = [&](const std::string& name, const std::string& value) {
+    text += row_of({name, value}, "td");
+  };
+  add("input", manifest.input + ", " + grouped(manifest.triangles()) + " triangles in " +
+                   grouped(manifest.parts.size()) + " parts");
+  add("run", to_hex(trace.head.run) + ", epoch " + std::to_string(trace.head.epoch) + " on " +
+                 trace.head.host);
+  add("end", !trace.end                   ? "not yet"
+             : trace.end->failure.empty() ? "all was done"
+                                          : "stopped: " + trace.end->failure);
+  add("farmed", number(frame.length(), "%.3f s") + ", " + grouped(trace.done.size()) + " jobs by " +
+                    grouped(frame.rows.size()) + " workers, " + grouped(trace.failed.size()) +
+                    " failed attempts");
+  if (threads > 0) {
+    add("computing", number(computed, "%.3f s") + ", " +
+                         number(100 * computed / (threads * frame.length()), "%.1f %%") +
+                         " of the workers' time");
+  }
+  add("cut", number(trace.head.cut_s, "%.2f s"));
+  if (times) {
+    add("after the farm", "stitch " + number(times->stitch, "%.2f s") + ", finish " +
+                              number(times->finish, "%.2f s") + ", measure " +
+                              number(times->measure, "%.2f s") + ", write " +
+                              number(times->write, "%.2f s"));
+  }
+  return text + "</table>\n";
+}
+
+}  // namespace
+
+std::string render_run_page(const Manifest& manifest, const Trace& trace,
+                            const std::optional<RunTimes>& times) {
+  const Frame frame = frame_of(trace);
+  return "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">\n<title>" +
+         escaped(manifest.input) +
+         "</title>\n<style>\n"
+         "body { font: 14px sans-serif; color: #333; margin: 24px auto; width: 1100px; }\n"
+         "table { border-collapse: collapse; } td, th { padding: 2px 12px 2px 0; text-align: left; "
+         "font-weight: normal; }\nth { color: #888; } h2 { font-size: 16px; margin: 24px 0 8px; }\n"
+         "</style></head><body>\n<h1>meshfarm run</h1>\n" +
+         facts(manifest, trace, frame, times) +
+         "<h2>Who computed when</h2>\n<p>A bar is a job (its colour the round), light grey a "
+         "worker "
+         "that waits, red an attempt that failed or a worker that left.</p>\n" +
+         timeline(frame) + "<h2>Done</h2>\n" + progress_chart(frame, trace) + "<h2>Workers</h2>\n" +
+         worker_table(frame, trace) + "</body></html>\n";
+}
+
+}  // namespace meshfarm
