@@ -62,6 +62,7 @@ SimulatedFaults faults_of_seed(std::uint64_t seed) {
   faults.overtake = draw(0.01, 0.2);
   faults.crash_at_job = draw(0.001, 0.01);
   faults.fail = draw(0.001, 0.01);
+  faults.hang = draw(0.0002, 0.002);
   faults.read_error = draw(0.0005, 0.005);
   faults.write_error = draw(0.0005, 0.005);
   faults.lost_answer = draw(0.001, 0.01);

@@ -59,6 +59,10 @@ TEST_CASE("workers may hang and come back, be killed and others come") {
   check_seeds({.crash_at_job = 0.05}, 200);
 }
 
+TEST_CASE("jobs may hang: their workers are given up") {
+  check_seeds({.hang = 0.02}, 100);
+}
+
 TEST_CASE("sink and ventilator may hang, or be killed and started again") {
   check_seeds({.sink_crashes = 6, .ventilator_crashes = 6}, 200);
   check_seeds({.sink_pauses = 6, .ventilator_pauses = 6}, 200);

@@ -1,0 +1,120 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#include <numeric>
+#include <vector>
+
+#include <doctest/doctest.h>
+
+#include <meshfarm/pipeline/planning.hpp>
+#include <meshfarm/util/errors.hpp>
+
+namespace meshfarm {
+namespace {
+
+/// Jobs of about 36 ms that differ by a tenth, as a quiet machine does them.
+std::vector<PlannedJob> jobs_of(std::uint64_t count) {
+  std::vector<PlannedJob> jobs;
+  for (std::uint64_t i = 0; i < count; ++i) {
+    const std::uint64_t triangles = 100'000 + i * 7919 % 5000;
+    const double seconds = static_cast<double>(triangles) * 360e-9 *
+                           (0.95 + 0.1 * static_cast<double>(i * 104'729 % 1000) / 1000);
+    jobs.push_back({0, triangles, 2'000'000, 800'000, seconds});
+  }
+  return jobs;
+}
+
+PlannedFarm farm_of(std::vector<WorkerGroup> groups, Schedule schedule = Schedule::dynamic) {
+  PlannedFarm farm;
+  farm.groups = std::move(groups);
+  farm.schedule = schedule;
+  farm.server_bytes_per_s = 12.5e9;
+  return farm;
+}
+
+TEST_CASE("24 equal workers are 23 times as fast as one") {
+  const auto jobs = jobs_of(1024);
+  const double one = simulate_run(jobs, farm_of({{1, 1}})).farm_s;
+  const PlannedRun run = simulate_run(jobs, farm_of({{24, 1}}));
+  CHECK(one / run.farm_s >= 23.0);
+  CHECK(one / run.farm_s <= 24.0);
+}
+
+TEST_CASE("16 fast and 8 slow workers share the work within three per cent of the ideal") {
+  for (const std::uint64_t count : {512, 1024, 2048}) {
+    CAPTURE(count);
+    const auto jobs = jobs_of(count);
+    const PlannedRun run = simulate_run(jobs, farm_of({{16, 1}, {8, 1.0 / 3}}));
+    CHECK(run.farm_s / run.ideal_s <= 1.03);
+    CHECK(run.farm_s >= run.ideal_s);
+  }
+}
+
+TEST_CASE("where speeds are not as told, a static schedule is late and a dynamic one is not") {
+  const auto jobs = jobs_of(2048);
+  PlannedFarm farm = farm_of({{16, 1}, {8, 1.0 / 3}});
+  farm.off = 0.2;
+  const PlannedRun dynamic = simulate_run(jobs, farm);
+  farm.schedule = Schedule::fixed;
+  const PlannedRun fixed = simulate_run(jobs, farm);
+  CHECK(dynamic.farm_s / dynamic.ideal_s <= 1.05);
+  CHECK(fixed.farm_s / fixed.ideal_s >= 1.1);
+}
+
+TEST_CASE("a slow server of the shared folder is the limit of a large farm") {
+  const auto jobs = jobs_of(1024);
+  PlannedFarm farm = farm_of({{240, 1}});
+  farm.server_bytes_per_s = 125e6;  // 1 Gbit/s, for 2 GB read and 0.8 GB written and read again
+  const PlannedRun run = simulate_run(jobs, farm);
+  CHECK(run.farm_s > 20);
+  CHECK(run.storage_busy > 0.95);
+}
+
+TEST_CASE("a round waits for the one before") {
+  auto jobs = jobs_of(48);
+  for (std::size_t i = 24; i < 48; ++i) jobs[i].round = 1;
+  const PlannedRun two = simulate_run(jobs, farm_of({{48, 1}}));
+  for (PlannedJob& job : jobs) job.round = 0;
+  const PlannedRun one = simulate_run(jobs, farm_of({{48, 1}}));
+  CHECK(two.farm_s > 1.8 * one.farm_s);
+}
+
+TEST_CASE("the same work in more parts, and a draw from it") {
+  const auto jobs = jobs_of(100);
+  const auto work = [](const std::vector<PlannedJob>& of) {
+    return std::accumulate(of.begin(), of.end(), 0.0,
+                           [](double sum, const PlannedJob& job) { return sum + job.compute_s; });
+  };
+  const auto parts = as_parts(jobs, 400);
+  CHECK(parts.size() == 400);
+  CHECK(work(parts) == doctest::Approx(work(jobs)));
+  CHECK(parts[0].triangles == jobs[0].triangles / 4);
+  const auto sample = drawn(jobs, 1000, 1);
+  CHECK(sample.size() == 1000);
+  CHECK(work(sample) == doctest::Approx(10 * work(jobs)).epsilon(0.02));
+}
+
+TEST_CASE("jobs are taken from a trace: once each, by processor time, as the fastest worker's") {
+  Trace trace;
+  TraceDone done;
+  done.triangles = 1000;
+  done.job = 1;
+  done.worker = 1;
+  done.compute_ms = 50;  // on a busy host
+  done.cpu_us = 10'000;
+  trace.done.push_back(done);
+  trace.done.push_back(done);  // an epoch before did it, too
+  done.job = 2;
+  done.worker = 2;  // twice as slow
+  done.cpu_us = 20'000;
+  done.round = 1;
+  trace.done.push_back(done);
+  const auto jobs = planned_jobs(trace);
+  REQUIRE(jobs.size() == 2);
+  CHECK(jobs[0].compute_s == doctest::Approx(0.01));
+  CHECK(jobs[1].compute_s == doctest::Approx(0.01));
+  CHECK(jobs[1].round == 1);
+  CHECK_THROWS_AS(planned_jobs(Trace{}), DataError);
+}
+
+}  // namespace
+}  // namespace meshfarm

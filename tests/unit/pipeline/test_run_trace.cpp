@@ -1,0 +1,82 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#include <doctest/doctest.h>
+
+#include <meshfarm/pipeline/run_trace.hpp>
+#include <meshfarm/util/errors.hpp>
+
+#include "support/temp_folder.hpp"
+
+namespace meshfarm {
+namespace {
+
+TEST_CASE("what a ventilator tells is in the stage's trace") {
+  test::TempFolder folder;
+  const Stage stage = Stage::create(folder / "stage");
+  CHECK_THROWS_AS(read_newest_trace(stage), DataError);
+  TraceHead head;
+  head.run = 77;
+  RunTrace trace(stage, head);
+  VentilatorOptions options;
+  trace.follow(options);
+  options.event(RunBegan{3, "here"}, FarmTime(0));
+  options.event(WorkerJoined{{1}, "host", 5, {1000, 2000, 4}}, FarmTime(500));
+  Job job{"simplify", {{"parts/000001.part", 100, 0}, {"parts/000002.part", 11, 0}}, "", 7};
+  job.memory = 9;
+  options.event(JobAccepted{{1}, {42}, job, 2, 33, {1, 2, 3, 4, 5}}, FarmTime(1500));
+  options.event(AttemptFailed{{1}, {43}, "no luck"}, FarmTime(1600));
+  FarmProgress progress;
+  progress.jobs_done = 1;
+  progress.jobs_known = 2;
+  progress.bad_hosts = {"bad"};
+  WorkerStatus worker;
+  worker.id = {1};
+  worker.silent = FarmTime(250);
+  options.state(progress, {worker}, FarmTime(2000));
+  options.event(WorkerLeft{{1}, "left"}, FarmTime(2500));
+  trace.end("why");
+
+  const Trace read = read_newest_trace(stage);
+  CHECK(read.head.epoch == 3);
+  CHECK(read.head.run == 77);
+  CHECK(read.head.host == "here");
+  CHECK(read.joined.at(0).threads == 4);
+  const TraceDone& done = read.done.at(0);
+  CHECK(done.t == 1.5);
+  CHECK(done.job == 42);
+  CHECK(done.round == 2);
+  CHECK(done.read_bytes == 111);
+  CHECK(done.written_bytes == 33);
+  CHECK(done.memory == 9);
+  CHECK(done.cpu_us == 5);
+  CHECK(read.failed.at(0).why == "no luck");
+  CHECK(read.state->workers.at(0).silent_s == 0.25);
+  CHECK(read.state->bad_hosts.at(0) == "bad");
+  CHECK(read.left.at(0).why == "left");
+  CHECK(read.end->failure == "why");
+  CHECK(read.end->t == 2.5);
+}
+
+TEST_CASE("the newest summary of a run is found again") {
+  test::TempFolder folder;
+  const Stage stage = Stage::create(folder / "stage");
+  CHECK_FALSE(read_run_times(stage, 5));
+  RunSummary summary;
+  summary.manifest.box.add({0, 0, 0});
+  summary.manifest.box.add({1, 1, 1});
+  for (const std::uint64_t run : {5, 6, 5}) {
+    summary.run = run;
+    summary.finish_seconds += 1.5;
+    summary.triangles = 10 * run;
+    publish_summary(stage, summary);
+  }
+  REQUIRE(read_run_times(stage, 5));
+  CHECK(read_run_times(stage, 5)->finish == 4.5);
+  CHECK(read_run_times(stage, 5)->triangles_out == 50);
+  CHECK(read_run_times(stage, 6)->finish == 3.0);
+  CHECK_FALSE(read_run_times(stage, 7));
+  CHECK_THROWS_AS(parse_run_times("{}", "it"), DataError);
+}
+
+}  // namespace
+}  // namespace meshfarm
