@@ -14,6 +14,8 @@ namespace {
 
 /// An estimate of the rest holds for this share of the rest.
 constexpr double k_outlook_share = 1.0 / 16;
+/// And at least for so long that a large crew is not looked through all the time.
+constexpr std::size_t k_members_per_ms = 400;
 /// How often second attempts are thought of. One must be through so much earlier than the first, in
 /// seconds and as a share.
 constexpr FarmTime k_second_attempts_every{100};
@@ -69,7 +71,8 @@ const Scheduler::Outlook& Scheduler::outlook(const Plan& plan, FarmTime now) {
   }
   outlook_.all_done = power > 0 ? work / power : 0;
   const auto valid = static_cast<FarmTime::rep>(1000 * k_outlook_share * outlook_.all_done);
-  outlook_.valid_until = now + FarmTime(std::clamp<FarmTime::rep>(valid, 2, 1000));
+  const auto least = 2 + static_cast<FarmTime::rep>(crew_.size() / k_members_per_ms);
+  outlook_.valid_until = now + FarmTime(std::clamp<FarmTime::rep>(valid, least, 1000));
   return outlook_;
 }
 
