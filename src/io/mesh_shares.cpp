@@ -7,11 +7,29 @@
 
 namespace meshfarm {
 
-MeshShares::MeshShares(const Options& options)
+std::uint64_t MeshShares::memory_for(std::uint64_t vertices, std::uint64_t triangles,
+                                     PositionType positions) {
+  return vertices * (sizeof(Place) + 3 * static_cast<std::uint64_t>(positions)) +
+         triangles * sizeof(Triangle);
+}
+
+MeshShares::Memory::Memory(const Options& options) {
+  std::uint64_t left = options.memory_bytes;
+  const std::uint64_t all = options.vertices * sizeof(Place);
+  map = all <= left ? all : 0;
+  left -= map;
+  vertices = std::min(left, 3 * static_cast<std::uint64_t>(options.positions) * options.vertices);
+  triangles = left - vertices;
+}
+
+MeshShares::MeshShares(const Options& options) : MeshShares(options, Memory(options)) {}
+
+MeshShares::MeshShares(const Options& options, const Memory& memory)
     : positions_(options.positions),
-      map_(MappedFile::scratch(options.folder, options.vertices * sizeof(Place))),
-      vertices_(options.folder, options.shares),
-      triangles_(options.folder, options.shares),
+      map_(memory.map > 0 ? MappedFile::memory(memory.map)
+                          : MappedFile::scratch(options.folder, options.vertices * sizeof(Place))),
+      vertices_(options.folder, options.shares, memory.vertices),
+      triangles_(options.folder, options.shares, memory.triangles),
       boundary_vertices_(options.folder, options.shares),
       next_(options.shares, 0) {}
 

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: MIT
 #include "io/part_mesh.hpp"
 
+#include <array>
+#include <cstring>
 #include <limits>
 
 namespace meshfarm {
@@ -19,10 +21,12 @@ std::vector<Vec3> get_positions(ByteReader& in, std::uint64_t count, PositionTyp
   if (positions == PositionType::float64) {
     points = in.get_array<Vec3>(count);
   } else {
-    if (count > in.remaining() / (3 * sizeof(float))) in.fail("positions run past the end");
+    std::array<float, 3> p{};
+    if (count > in.remaining() / sizeof p) in.fail("positions run past the end");
+    const std::string_view raw = in.take(count * sizeof p);
     points.reserve(count);
-    for (std::uint64_t i = 0; i < count; ++i) {
-      const auto p = in.get<std::array<float, 3>>();
+    for (std::size_t at = 0; at < raw.size(); at += sizeof p) {
+      std::memcpy(p.data(), raw.data() + at, sizeof p);
       points.push_back({p[0], p[1], p[2]});
     }
   }

@@ -3,13 +3,13 @@
 #include <algorithm>
 #include <limits>
 #include <string>
-#include <utility>
 
 #include <metis.h>
 #include <nanoflann.hpp>
 
 #include <meshfarm/partition/cell_graph.hpp>
 #include <meshfarm/util/errors.hpp>
+#include <meshfarm/util/parallel.hpp>
 
 namespace meshfarm {
 namespace {
@@ -27,31 +27,60 @@ struct CellCloud {
   }
 };
 
-using Edge = std::pair<idx_t, idx_t>;
+/// For each cell the cells next to it, as METIS takes them: those of cell i stand from first[i] on.
+struct Graph {
+  std::vector<idx_t> first;
+  std::vector<idx_t> targets;
+};
 
-/// Both directions of every edge from a cell to one of its nearest, sorted.
-std::vector<Edge> nearest_edges(std::span<const Cell> cells, std::uint32_t neighbours) {
+/// The k nearest of each cell, k places a cell, itself among them or not; what is not used is -1.
+std::vector<idx_t> nearest_cells(std::span<const Cell> cells, std::size_t k, unsigned threads) {
   using Tree = nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<double, CellCloud>,
                                                    CellCloud, 3, std::uint32_t>;
+  constexpr std::size_t k_chunk = 512;
   const CellCloud cloud{cells};
   const Tree tree(3, cloud);
-  const std::size_t wanted = std::min<std::size_t>(neighbours + 1, cells.size());
-  std::vector<std::uint32_t> found(wanted);
-  std::vector<double> distances(wanted);
-  std::vector<Edge> edges;
-  edges.reserve(cells.size() * neighbours * 2);
-  for (std::size_t i = 0; i < cells.size(); ++i) {
-    const double point[3] = {cells[i].mean.x, cells[i].mean.y, cells[i].mean.z};
-    const std::size_t count = tree.knnSearch(point, wanted, found.data(), distances.data());
-    for (std::size_t k = 0; k < count; ++k) {
-      if (found[k] == i) continue;
-      edges.emplace_back(static_cast<idx_t>(i), static_cast<idx_t>(found[k]));
-      edges.emplace_back(static_cast<idx_t>(found[k]), static_cast<idx_t>(i));
+  std::vector<idx_t> nearest(cells.size() * k, -1);
+  parallel_for((cells.size() + k_chunk - 1) / k_chunk, threads, [&](std::uint64_t chunk) {
+    std::vector<std::uint32_t> found(k);
+    std::vector<double> distances(k);
+    const std::size_t end = std::min<std::size_t>(cells.size(), (chunk + 1) * k_chunk);
+    for (std::size_t i = chunk * k_chunk; i < end; ++i) {
+      const double point[3] = {cells[i].mean.x, cells[i].mean.y, cells[i].mean.z};
+      const std::size_t count = tree.knnSearch(point, k, found.data(), distances.data());
+      for (std::size_t n = 0; n < count; ++n) nearest[i * k + n] = static_cast<idx_t>(found[n]);
     }
+  });
+  return nearest;
+}
+
+/// Joins each cell to its nearest, both ways, each pair once; targets ascend.
+Graph graph_of(std::span<const Cell> cells, const CellGraphOptions& options) {
+  const std::size_t k = std::min<std::size_t>(options.neighbours + 1, cells.size());
+  const std::vector<idx_t> nearest = nearest_cells(cells, k, options.threads);
+  const auto for_pairs = [&](const auto& take) {
+    for (std::size_t i = 0; i < nearest.size(); ++i) {
+      const auto from = static_cast<idx_t>(i / k);
+      if (nearest[i] >= 0 && nearest[i] != from) take(from, nearest[i]);
+    }
+  };
+  std::vector<idx_t> end(cells.size() + 1, 0);
+  for_pairs([&](idx_t a, idx_t b) { ++end[a + 1], ++end[b + 1]; });
+  for (std::size_t i = 0; i < cells.size(); ++i) end[i + 1] += end[i];
+  std::vector<idx_t> targets(end.back());
+  std::vector<idx_t> at(end.begin(), end.end() - 1);
+  for_pairs([&](idx_t a, idx_t b) { targets[at[a]++] = b, targets[at[b]++] = a; });
+
+  Graph graph{{0}, {}};
+  graph.targets.reserve(targets.size());
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    const auto begin = targets.begin() + end[i];
+    std::sort(begin, targets.begin() + end[i + 1]);
+    graph.targets.insert(graph.targets.end(), begin,
+                         std::unique(begin, targets.begin() + end[i + 1]));
+    graph.first.push_back(static_cast<idx_t>(graph.targets.size()));
   }
-  std::sort(edges.begin(), edges.end());
-  edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
-  return edges;
+  return graph;
 }
 
 /// METIS adds all weights up in 32 bits: large ones are scaled down together.
@@ -68,16 +97,7 @@ std::vector<idx_t> scaled_weights(std::span<const Cell> cells) {
   return weights;
 }
 
-std::vector<idx_t> run_metis(std::span<const Cell> cells, const std::vector<Edge>& edges,
-                             idx_t parts) {
-  std::vector<idx_t> first(cells.size() + 1, 0);
-  std::vector<idx_t> targets;
-  targets.reserve(edges.size());
-  for (const auto& [from, to] : edges) {
-    ++first[from + 1];
-    targets.push_back(to);
-  }
-  for (std::size_t i = 0; i < cells.size(); ++i) first[i + 1] += first[i];
+std::vector<idx_t> run_metis(std::span<const Cell> cells, Graph graph, idx_t parts) {
   std::vector<idx_t> weights = scaled_weights(cells);
 
   idx_t options[METIS_NOPTIONS];
@@ -91,8 +111,8 @@ std::vector<idx_t> run_metis(std::span<const Cell> cells, const std::vector<Edge
   // Few parts come out better balanced by recursive bisection; many are cut faster k-way.
   const auto metis = parts <= 8 ? METIS_PartGraphRecursive : METIS_PartGraphKway;
   const int status =
-      metis(&nodes, &constraints, first.data(), targets.data(), weights.data(), nullptr, nullptr,
-            &parts, nullptr, nullptr, options, &edge_cut, part.data());
+      metis(&nodes, &constraints, graph.first.data(), graph.targets.data(), weights.data(), nullptr,
+            nullptr, &parts, nullptr, nullptr, options, &edge_cut, part.data());
   if (status != METIS_OK) {
     throw Error("METIS could not cut the graph of " + std::to_string(cells.size()) +
                 " cells (status " + std::to_string(status) + ")");
@@ -123,8 +143,7 @@ std::vector<std::uint32_t> partition_cells(std::span<const Cell> cells,
     throw Error("too many grid cells to cut: " + std::to_string(cells.size()));
   }
   const auto parts = static_cast<idx_t>(std::min<std::size_t>(options.parts, cells.size()));
-  const std::vector<Edge> edges = nearest_edges(cells, options.neighbours);
-  return renumbered(run_metis(cells, edges, parts), parts);
+  return renumbered(run_metis(cells, graph_of(cells, options), parts), parts);
 }
 
 }  // namespace meshfarm

@@ -5,11 +5,12 @@
 // EGPGV 2008, 3.1. Scans of the input, each in order and through bounded buffers:
 //   vertices    bounding box
 //   vertices    cells with their counts and means -> METIS -> part of each cell
-//   vertices    vertex map (scratch file): part and raw index; positions to the part's bucket
+//   vertices    vertex map: part and raw index; positions to the part's bucket
 //   triangles   to the part's bucket, or, when two or three parts meet in one, to the boundary
 // Then each part is built from its buckets by itself, on all cores.
 #include <algorithm>
 #include <chrono>
+#include <limits>
 #include <memory>
 #include <mutex>
 
@@ -25,6 +26,9 @@
 
 namespace meshfarm {
 namespace {
+
+/// A mesh that fits into as much memory is cut without scratch files.
+constexpr std::uint64_t k_memory_bytes = std::uint64_t{256} << 20;
 
 /// Parts of 200 to 1000 cells each: fine enough for even sizes and smooth seams.
 unsigned grid_bits(std::uint32_t parts) {
@@ -93,20 +97,28 @@ class Cutter {
       tell("cut: cells", done += batch.size(), manifest_.input_vertices);
     });
     cells_.finish();
-    part_of_cell_ = partition_cells(cells_.cells(), {.parts = wanted});
+    part_of_cell_ = partition_cells(cells_.cells(), {.parts = wanted, .threads = options_.threads});
     const auto last = std::max_element(part_of_cell_.begin(), part_of_cell_.end());
     parts_ = last == part_of_cell_.end() ? 0 : *last + 1;
   }
 
   void distribute_vertices() {
+    const std::uint64_t all =
+        MeshShares::memory_for(manifest_.input_vertices, source_.info().faces, manifest_.positions);
     shares_ = std::make_unique<MeshShares>(
-        MeshShares::Options{stage_.root(), parts_, manifest_.input_vertices, manifest_.positions});
+        MeshShares::Options{stage_.root(), parts_, manifest_.input_vertices, manifest_.positions,
+                            all <= k_memory_bytes ? all : 0});
     std::vector<std::uint32_t> parts;
+    std::uint64_t last_cell = std::numeric_limits<std::uint64_t>::max();
+    std::uint32_t part = 0;
     std::uint64_t done = 0;
     source_.scan_vertices([&](std::span<const Vec3> batch) {
       parts.clear();
       for (const Vec3& p : batch) {
-        parts.push_back(part_of_cell_[cells_.number_of(grid_.cell_of(p))]);
+        const std::uint64_t cell = grid_.cell_of(p);
+        if (cell != last_cell) part = part_of_cell_[cells_.number_of(cell)];
+        last_cell = cell;
+        parts.push_back(part);
       }
       shares_->add_vertices(batch, parts);
       tell("cut: vertices", done += batch.size(), manifest_.input_vertices);

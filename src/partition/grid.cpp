@@ -28,11 +28,12 @@ UniformGrid::UniformGrid(const Box& box, unsigned bits) : lo_(box.lo), bits_(bit
 }
 
 std::uint64_t UniformGrid::cell_of(Vec3 p) const {
-  const std::uint64_t last = (std::uint64_t{1} << bits_) - 1;
+  // By way of signed numbers: there is an instruction for these.
+  const auto last = static_cast<double>((std::int64_t{1} << bits_) - 1);
   const auto along = [&](double x, double lo) {
-    const double cell = (x - lo) * cells_per_unit_;
-    if (!(cell > 0)) return std::uint64_t{0};
-    return cell >= static_cast<double>(last) ? last : static_cast<std::uint64_t>(cell);
+    double cell = (x - lo) * cells_per_unit_;
+    cell = cell > 0 ? cell : 0;
+    return static_cast<std::uint64_t>(static_cast<std::int64_t>(cell < last ? cell : last));
   };
   return (along(p.z, lo_.z) << (2 * bits_)) | (along(p.y, lo_.y) << bits_) | along(p.x, lo_.x);
 }
@@ -47,6 +48,14 @@ std::size_t CellTable::slot_of(std::uint64_t cell) const {
 }
 
 void CellTable::add(std::uint64_t cell, Vec3 position) {
+  // Neighbours in the file are often neighbours in space.
+  if (last_ >= cells_.size() || cells_[last_].index != cell) last_ = place_of(cell);
+  Cell& entry = cells_[last_];
+  ++entry.vertices;
+  entry.mean = entry.mean + position;
+}
+
+std::size_t CellTable::place_of(std::uint64_t cell) {
   std::size_t slot = slot_of(cell);
   if (slots_[slot] == 0) {
     if ((cells_.size() + 1) * 2 > slots_.size()) {
@@ -56,9 +65,7 @@ void CellTable::add(std::uint64_t cell, Vec3 position) {
     cells_.push_back({cell, 0, {}});
     slots_[slot] = static_cast<std::uint32_t>(cells_.size());
   }
-  Cell& entry = cells_[slots_[slot] - 1];
-  ++entry.vertices;
-  entry.mean = entry.mean + position;
+  return slots_[slot] - 1;
 }
 
 void CellTable::grow() {

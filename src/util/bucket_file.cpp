@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstdlib>
+#include <cstring>
+#include <span>
 
 #include <fcntl.h>
 #include <unistd.h>
@@ -19,10 +21,12 @@ constexpr std::size_t k_max_buffer_bytes = std::size_t{1} << 20;
 
 }  // namespace
 
-BucketFile::BucketFile(const std::filesystem::path& folder, std::size_t buckets)
+BucketFile::BucketFile(const std::filesystem::path& folder, std::size_t buckets,
+                       std::uint64_t memory_bytes)
     : folder_(folder),
       buffer_bytes_(std::clamp(k_all_buffers_bytes / std::max<std::size_t>(1, buckets),
                                k_min_buffer_bytes, k_max_buffer_bytes)),
+      memory_(MappedFile::memory(memory_bytes)),
       buckets_(buckets) {
   std::string name = (folder / "buckets.XXXXXX").string();
   fd_ = Fd(::mkostemp(name.data(), O_CLOEXEC));
@@ -37,10 +41,18 @@ void BucketFile::append(std::size_t bucket, std::string_view bytes) {
 }
 
 void BucketFile::flush(Bucket& bucket) {
-  if (bucket.buffer.empty()) return;
-  write_all(fd_.get(), bucket.buffer, folder_ / "(scratch)");
-  bucket.extents.push_back({end_, bucket.buffer.size()});
-  end_ += bucket.buffer.size();
+  const std::string& bytes = bucket.buffer;
+  if (bytes.empty()) return;
+  const std::span<char> memory = memory_.as_span<char>();
+  if (bytes.size() <= memory.size() - kept_) {
+    std::memcpy(memory.data() + kept_, bytes.data(), bytes.size());
+    bucket.extents.push_back({kept_, bytes.size()});
+    kept_ += bytes.size();
+  } else {
+    write_all(fd_.get(), bytes, folder_ / "(scratch)");
+    bucket.extents.push_back({memory.size() + end_, bytes.size()});
+    end_ += bytes.size();
+  }
   bucket.buffer.clear();
 }
 
@@ -58,17 +70,25 @@ std::uint64_t BucketFile::size(std::size_t bucket) const {
 }
 
 void BucketFile::read_into(std::size_t bucket, char* to) const {
+  const std::string_view memory = memory_.bytes();
   for (const Extent& extent : buckets_[bucket].extents) {
-    std::uint64_t done = 0;
-    while (done < extent.size) {
-      const ssize_t got = ::pread(fd_.get(), to + done, extent.size - done,
-                                  static_cast<off_t>(extent.offset + done));
-      if (got < 0 && errno == EINTR) continue;
-      if (got < 0) throw_errno("cannot read", folder_ / "(scratch)");
-      if (got == 0) throw IoError("scratch file cut short in", folder_, EIO);
-      done += static_cast<std::uint64_t>(got);
+    if (extent.offset < memory.size()) {
+      std::memcpy(to, memory.data() + extent.offset, extent.size);
+    } else {
+      read_file_into(extent.offset - memory.size(), extent.size, to);
     }
     to += extent.size;
+  }
+}
+
+void BucketFile::read_file_into(std::uint64_t offset, std::uint64_t size, char* to) const {
+  for (std::uint64_t done = 0; done < size;) {
+    const ssize_t got =
+        ::pread(fd_.get(), to + done, size - done, static_cast<off_t>(offset + done));
+    if (got < 0 && errno == EINTR) continue;
+    if (got < 0) throw_errno("cannot read", folder_ / "(scratch)");
+    if (got == 0) throw IoError("scratch file cut short in", folder_, EIO);
+    done += static_cast<std::uint64_t>(got);
   }
 }
 

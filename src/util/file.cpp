@@ -103,6 +103,17 @@ MappedFile MappedFile::scratch(const std::filesystem::path& folder, std::uint64_
   return mapped;
 }
 
+MappedFile MappedFile::memory(std::uint64_t size_bytes) {
+  MappedFile mapped;
+  mapped.size_ = size_bytes;
+  if (size_bytes == 0) return mapped;
+  constexpr int k_flags = MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE;
+  void* data = ::mmap(nullptr, mapped.size_, PROT_READ | PROT_WRITE, k_flags, -1, 0);
+  if (data == MAP_FAILED) throw_errno("cannot map", "memory");
+  mapped.data_ = static_cast<char*>(data);
+  return mapped;
+}
+
 MappedFile::~MappedFile() {
   if (data_ != nullptr) ::munmap(data_, size_);
 }

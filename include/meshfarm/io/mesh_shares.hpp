@@ -33,7 +33,7 @@ struct BoundaryNumbers {
 
 /// Shares a mesh out as it is scanned, in bounded memory: vertices by whatever share they are given
 /// to; a triangle goes with its vertices, or to the boundary if these are of two or three shares.
-/// The map from a vertex to its share and place is a mapped scratch file.
+/// The map from a vertex to its share and place is a mapped scratch file, or memory too.
 class MeshShares {
  public:
   struct Options {
@@ -41,6 +41,7 @@ class MeshShares {
     std::uint32_t shares = 0;
     std::uint64_t vertices = 0;  // exactly as many are added
     PositionType positions = PositionType::float32;
+    std::uint64_t memory_bytes = 0;  // of what is shared out; the rest goes to scratch files
   };
   explicit MeshShares(const Options& options);
 
@@ -57,11 +58,23 @@ class MeshShares {
   std::vector<BoundaryTriangle> boundary(std::span<const BoundaryNumbers> numbers,
                                          std::uint64_t& degenerate) const;
 
+  /// The memory that holds all of a mesh.
+  static std::uint64_t memory_for(std::uint64_t vertices, std::uint64_t triangles,
+                                  PositionType positions);
+
  private:
   struct Place {
     std::uint32_t share = 0;
     std::uint32_t place = 0;
   };
+  /// How the memory is divided; nothing for the map where it does not fit as a whole.
+  struct Memory {
+    explicit Memory(const Options& options);
+    std::uint64_t map = 0;
+    std::uint64_t vertices = 0;
+    std::uint64_t triangles = 0;
+  };
+  MeshShares(const Options& options, const Memory& memory);
   void put_position(std::uint32_t share, Vec3 p);
 
   PositionType positions_;

@@ -13,6 +13,7 @@ namespace meshfarm {
 struct CellGraphOptions {
   std::uint32_t parts = 1;
   std::uint32_t neighbours = 8;  // k of the k nearest cells by mean position
+  unsigned threads = 0;          // 0: one a core. The result does not depend on it.
 };
 
 /// The part of each cell: a graph with a node a cell, weighted by its vertices, and edges to its

@@ -44,10 +44,12 @@ class CellTable {
 
  private:
   std::size_t slot_of(std::uint64_t cell) const;
+  std::size_t place_of(std::uint64_t cell);
   void grow();
 
   std::vector<std::uint32_t> slots_;  // number + 1; 0 is free
   std::vector<Cell> cells_;           // mean holds the sum until finish()
+  std::size_t last_ = 0;              // where add() was last
 };
 
 }  // namespace meshfarm

@@ -14,10 +14,12 @@ namespace meshfarm {
 
 /// Many growing byte strings in one scratch file, through buffers of bounded size: a full buffer
 /// goes to the file's end, and its bucket remembers where. The file has no name and dies with its
-/// owner.
+/// owner. What full buffers hold stays in memory instead as long as `memory_bytes` have room for
+/// it: to write and read it back costs more than all that is done with it.
 class BucketFile {
  public:
-  BucketFile(const std::filesystem::path& folder, std::size_t buckets);
+  BucketFile(const std::filesystem::path& folder, std::size_t buckets,
+             std::uint64_t memory_bytes = 0);
   void append(std::size_t bucket, std::string_view bytes);
   template <class T>
   void put(std::size_t bucket, const T& value) {
@@ -36,7 +38,7 @@ class BucketFile {
 
  private:
   struct Extent {
-    std::uint64_t offset = 0;
+    std::uint64_t offset = 0;  // in the memory, or beyond its size: in the file
     std::uint64_t size = 0;
   };
   struct Bucket {
@@ -45,11 +47,14 @@ class BucketFile {
   };
   void flush(Bucket& bucket);
   void read_into(std::size_t bucket, char* to) const;
+  void read_file_into(std::uint64_t offset, std::uint64_t size, char* to) const;
 
   std::filesystem::path folder_;
   Fd fd_;
-  std::uint64_t end_ = 0;
+  std::uint64_t end_ = 0;  // of the file
   std::size_t buffer_bytes_;
+  MappedFile memory_;
+  std::uint64_t kept_ = 0;  // bytes of the memory in use
   std::vector<Bucket> buckets_;
 };
 

@@ -41,12 +41,14 @@ std::string read_file(int fd, const std::filesystem::path& path);
 std::uint64_t file_size(int fd, const std::filesystem::path& path);
 
 /// A private file mapped into memory: read-only over an existing file, or a scratch file of a given
-/// size that is unlinked as soon as it is made, so that it never outlives its owner.
+/// size that is unlinked as soon as it is made, so that it never outlives its owner. Or memory of
+/// no file, zero at first, of which only what is touched is taken, and all goes back at the end.
 class MappedFile {
  public:
   MappedFile() = default;
   static MappedFile open(const std::filesystem::path& path);
   static MappedFile scratch(const std::filesystem::path& folder, std::uint64_t size_bytes);
+  static MappedFile memory(std::uint64_t size_bytes);
   ~MappedFile();
   MappedFile(MappedFile&& other) noexcept;
   MappedFile& operator=(MappedFile&& other) noexcept;

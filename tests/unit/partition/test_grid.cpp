@@ -80,6 +80,8 @@ TEST_CASE("METIS cuts a square of cells into even, whole parts, the same each ti
     CAPTURE(parts);
     const auto part = partition_cells(cells, {.parts = parts});
     CHECK(part == partition_cells(cells, {.parts = parts}));
+    CHECK(part == partition_cells(cells, {.parts = parts, .threads = 1}));
+    CHECK(part == partition_cells(cells, {.parts = parts, .threads = 3}));
     std::vector<std::size_t> sizes(parts, 0);
     for (const std::uint32_t p : part) {
       REQUIRE(p < parts);

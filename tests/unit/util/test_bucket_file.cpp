@@ -10,9 +10,17 @@
 
 using namespace meshfarm;
 
-TEST_CASE("buckets give back what each was given, through full buffers too") {
+TEST_CASE("buckets give back what each was given, through full buffers and past the memory") {
   const test::TempFolder folder;
-  BucketFile buckets(folder.path(), 10'000);  // buffers of the smallest size
+  std::uint64_t memory_bytes = 0;
+  SUBCASE("all in the file") {}
+  SUBCASE("some in memory") {
+    memory_bytes = 345'678;
+  }
+  SUBCASE("all in memory") {
+    memory_bytes = 800'000;
+  }
+  BucketFile buckets(folder.path(), 10'000, memory_bytes);  // buffers of the smallest size
   for (std::uint32_t i = 0; i < 200'000; ++i) buckets.put(i % 7, i);
   buckets.finish();
   for (std::uint32_t b = 0; b < 7; ++b) {

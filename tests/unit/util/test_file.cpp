@@ -48,6 +48,16 @@ TEST_CASE("a scratch file has no name, is zero, and keeps what is written") {
   CHECK(moved.as_span<std::uint64_t>()[4095] == 7);
 }
 
+TEST_CASE("memory of no file is zero, and keeps what is written") {
+  const MappedFile memory = MappedFile::memory(std::uint64_t{1} << 30);  // most is never touched
+  const auto values = memory.as_span<std::uint64_t>();
+  CHECK(values.size() == std::size_t{1} << 27);
+  CHECK(values.back() == 0);
+  values.back() = 7;
+  CHECK(memory.as_span<std::uint64_t>().back() == 7);
+  CHECK(MappedFile::memory(0).bytes().empty());
+}
+
 TEST_CASE("parallel_for does each index once") {
   std::vector<std::atomic<int>> counts(1000);
   parallel_for(counts.size(), 4, [&](std::uint64_t i) { ++counts[i]; });
