@@ -1,5 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
+#include <utility>
+
 #include <meshfarm/util/errors.hpp>
 
 #include "ply_ascii_cursor.hpp"
@@ -60,7 +62,7 @@ class AsciiBody final : public PlyBody {
   }
 
   bool at_end() override { return !cursor_.next_record(); }
-  const std::string& oddity() const override { return oddity_; }
+  std::string take_oddity() override { return std::exchange(oddity_, {}); }
 
  private:
   void begin(const PlyElement& element) {

@@ -63,7 +63,7 @@ class BinaryBody final : public PlyBody {
   }
 
   bool at_end() override { return stream_->window(1).empty(); }
-  const std::string& oddity() const override { return no_oddity_; }
+  std::string take_oddity() override { return {}; }
 
  private:
   void begin(const PlyElement& element) {
@@ -204,7 +204,6 @@ class BinaryBody final : public PlyBody {
   const std::filesystem::path& path_;
   const PlyElement* element_ = nullptr;
   std::uint64_t index_ = 0;
-  std::string no_oddity_;
 };
 
 }  // namespace

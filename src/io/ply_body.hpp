@@ -108,8 +108,8 @@ class PlyBody {
   virtual void skip(const PlyElement& element) = 0;
   /// After the last element: whether nothing (in ascii: nothing but blanks) follows.
   virtual bool at_end() = 0;
-  /// What was let pass so far: a line for the user, or nothing.
-  virtual const std::string& oddity() const = 0;
+  /// What was let pass since the last call: a line for the user, or nothing.
+  virtual std::string take_oddity() = 0;
 };
 
 /// `stream` stands at the first byte after the header; `path` must outlive the body.

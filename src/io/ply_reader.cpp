@@ -2,7 +2,9 @@
 // SPDX-License-Identifier: MIT
 #include "ply_reader.hpp"
 
+#include <algorithm>
 #include <set>
+#include <utility>
 
 #include <meshfarm/util/errors.hpp>
 #include <meshfarm/util/log.hpp>
@@ -91,32 +93,69 @@ class PlySource final : public MeshSource {
   std::uint64_t small_faces() const override { return small_faces_; }
 
   void scan_vertices(const std::function<void(std::span<const Vec3>)>& take) override {
-    const std::unique_ptr<PlyBody> body = open_body();
-    for (const PlyElement& element : header_.elements) {
-      if (element.role == PlyRole::vertices) {
-        Batch<Vec3> batch(take);
-        body->read_vertices(element, batch);
-        return warn(body->oddity());
-      }
-      body->skip(element);
-    }
+    if (!kept_.empty()) return take_kept(take);
+    std::unique_ptr<PlyBody> body = open_body();
+    std::size_t next = 0;
+    while (header_.elements[next].role != PlyRole::vertices) body->skip(header_.elements[next++]);
+    const PlyElement& vertices = header_.elements[next++];
+    std::vector<Vec3> keep;
+    const Batch<Vec3>::Take take_and_keep = [&](std::span<const Vec3> points) {
+      keep.insert(keep.end(), points.begin(), points.end());
+      take(points);
+    };
+    Batch<Vec3> batch(is_worth_keeping(vertices) ? take_and_keep : take);
+    body->read_vertices(vertices, batch);
+    warn(body->take_oddity());
+    kept_ = std::move(keep);
+    parked_ = {std::move(body), next};
   }
 
   void scan_triangles(const std::function<void(std::span<const WideTriangle>)>& take) override {
-    const std::unique_ptr<PlyBody> body = open_body();
+    // Goes on where the last scan of the vertices stopped, if that is before all triangles.
+    auto [body, next] = std::exchange(parked_, {});
+    const auto first = std::find_if(header_.elements.begin(), header_.elements.end(), has_corners);
+    if (!body || first - header_.elements.begin() < static_cast<std::ptrdiff_t>(next)) {
+      body = open_body();
+      next = 0;
+    }
     TriangleMaker maker(info_.vertices, take);
-    for (const PlyElement& element : header_.elements) {
-      const bool corners = element.role == PlyRole::faces || element.role == PlyRole::strips;
-      corners ? body->read_corners(element, maker) : body->skip(element);
+    for (; next < header_.elements.size(); ++next) {
+      const PlyElement& element = header_.elements[next];
+      has_corners(element) ? body->read_corners(element, maker) : body->skip(element);
     }
     small_faces_ = maker.small_faces();
-    warn(body->oddity());
+    warn(body->take_oddity());
     if (!body->at_end()) {
       warn(file_.path().string() + ": there is more in the file than its header says");
     }
   }
 
  private:
+  /// A body that stands before an element.
+  struct Parked {
+    std::unique_ptr<PlyBody> body;
+    std::size_t next = 0;
+  };
+
+  static bool has_corners(const PlyElement& element) {
+    return element.role == PlyRole::faces || element.role == PlyRole::strips;
+  }
+
+  /// To parse or to decompress again takes longer than all else that a scan is for.
+  bool is_worth_keeping(const PlyElement& vertices) const {
+    const bool is_slow =
+        header_.format == PlyFormat::ascii || file_.compression() != Compression::none;
+    return is_slow && vertices.count <= k_most_kept;
+  }
+
+  void take_kept(const std::function<void(std::span<const Vec3>)>& take) const {
+    for (std::span<const Vec3> left(kept_); !left.empty();) {
+      const auto batch = left.first(std::min(left.size(), k_kept_batch));
+      take(batch);
+      left = left.subspan(batch.size());
+    }
+  }
+
   void fill_info() {
     info_.format = name_of(header_.format);
     info_.compression = name_of(file_.compression());
@@ -124,9 +163,7 @@ class PlySource final : public MeshSource {
     info_.positions = position_type(header_.vertices());
     info_.skipped = skipped_names(header_);
     for (const PlyElement& element : header_.elements) {
-      if (element.role == PlyRole::faces || element.role == PlyRole::strips) {
-        info_.faces += element.count;
-      }
+      if (has_corners(element)) info_.faces += element.count;
     }
   }
 
@@ -143,8 +180,13 @@ class PlySource final : public MeshSource {
                : make_binary_body(std::move(stream), file_.path(), header_);
   }
 
+  static constexpr std::uint64_t k_most_kept = std::uint64_t{2} << 20;  // 48 MB
+  static constexpr std::size_t k_kept_batch = 8192;
+
   InputFile file_;
   PlyHeader header_;
+  std::vector<Vec3> kept_;  // all vertices, or none
+  Parked parked_;
   MeshFileInfo info_;
   std::uint64_t small_faces_ = 0;
   std::set<std::string> warnings_;

@@ -200,6 +200,43 @@ TEST_CASE("a source can be scanned as often as wanted, in bounded batches") {
   }
 }
 
+TEST_CASE("scans in any order give the same, wherever the faces stand") {
+  const std::string faces = "element face 2\n" + std::string(k_corners);
+  const std::string vertices = "element vertex 4\n" + std::string(k_xyz);
+  const std::string corners = "3 0 1 2\n3 2 1 3\n";
+  const std::string first = "ply\nformat ascii 1.0\n";
+  const std::string points(k_square_text);
+  const TempFolder folder;
+  for (const std::string& text : {ascii_square(), binary_square().text(),
+                                  first + faces + vertices + "end_header\n" + corners + points,
+                                  first + "element extra 1\nproperty int a\n" + vertices +
+                                      "element more 1\nproperty int a\n" + faces +
+                                      "end_header\n5\n" + points + "6\n" + corners}) {
+    for (const std::string& bytes : {text, gzipped(text)}) {
+      write_file(folder / "m.ply", bytes);
+      for (const std::string_view scans : {"vvt", "vtvt", "tvtt", "vvvv", "ttvvtt"}) {
+        CAPTURE(scans);
+        const auto source = open_mesh(folder / "m.ply");
+        for (const char scan : scans) {
+          std::vector<Vec3> positions;
+          std::vector<WideTriangle> triangles;
+          if (scan == 'v') {
+            source->scan_vertices([&](std::span<const Vec3> batch) {
+              positions.insert(positions.end(), batch.begin(), batch.end());
+            });
+            CHECK(positions == k_square_vertices);
+          } else {
+            source->scan_triangles([&](std::span<const WideTriangle> batch) {
+              triangles.insert(triangles.end(), batch.begin(), batch.end());
+            });
+            CHECK(triangles == std::vector<WideTriangle>{{0, 1, 2}, {2, 1, 3}});
+          }
+        }
+      }
+    }
+  }
+}
+
 TEST_CASE("an exception of the taker ends the scan and leaves the source usable") {
   const TempFolder folder;
   write_file(folder / "m.ply", ascii_square());
