@@ -9,6 +9,7 @@
 namespace meshfarm {
 
 DroppedComponents drop_small_components(Mesh& mesh, double diagonal) {
+  if (!(diagonal > 0)) return {};  // no box is smaller than nothing
   UnionFind pieces(mesh.positions.size());
   for (const Triangle& t : mesh.triangles) {
     pieces.join(t[0], t[1]);

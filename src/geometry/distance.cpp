@@ -100,35 +100,34 @@ struct Sums {
   double squares = 0;
   double distances = 0;
   double max_square = 0;
+
+  void add(const Sums& other) {
+    squares += other.squares;
+    distances += other.distances;
+    max_square = std::max(max_square, other.max_square);
+  }
+  Distance over(std::uint64_t count) const {
+    const auto samples = static_cast<double>(std::max<std::uint64_t>(1, count));
+    return {std::sqrt(squares / samples), distances / samples, std::sqrt(max_square)};
+  }
 };
 
-/// Measures so many points, which `points_of(chunk)` gives a maker of, chunk by chunk.
-template <class PointsOf>
-Distance measure_chunks(const Bvh& bvh, std::uint64_t count, unsigned threads,
-                        const PointsOf& points_of) {
-  std::vector<Sums> chunks((count + k_samples_a_chunk - 1) / k_samples_a_chunk);
-  parallel_for(chunks.size(), threads, [&](std::uint64_t chunk) {
-    auto point = points_of();
-    const std::uint64_t end = std::min(count, (chunk + 1) * k_samples_a_chunk);
-    Sums sums;
-    std::uint32_t guess = 0;
-    for (std::uint64_t n = chunk * k_samples_a_chunk; n < end; ++n) {
-      const Bvh::Nearest nearest = bvh.nearest(point(n), guess);
-      guess = nearest.triangle;
-      sums.squares += nearest.squared;
-      sums.distances += std::sqrt(nearest.squared);
-      sums.max_square = std::max(sums.max_square, nearest.squared);
-    }
-    chunks[chunk] = sums;
-  });
-  Sums all;
-  for (const Sums& chunk : chunks) {
-    all.squares += chunk.squares;
-    all.distances += chunk.distances;
-    all.max_square = std::max(all.max_square, chunk.max_square);
+std::uint64_t chunks_of(std::uint64_t samples) {
+  return (samples + k_samples_a_chunk - 1) / k_samples_a_chunk;
+}
+
+/// Measures one chunk of so many samples, which `point(n)` gives.
+template <class Point>
+Sums measure_chunk(const Bvh& bvh, std::uint64_t count, std::uint64_t chunk, Point point) {
+  const std::uint64_t end = std::min(count, (chunk + 1) * k_samples_a_chunk);
+  Sums sums;
+  std::uint32_t guess = 0;
+  for (std::uint64_t n = chunk * k_samples_a_chunk; n < end; ++n) {
+    const Bvh::Nearest nearest = bvh.nearest(point(n), guess);
+    guess = nearest.triangle;
+    sums.add({nearest.squared, std::sqrt(nearest.squared), nearest.squared});
   }
-  const auto samples = static_cast<double>(std::max<std::uint64_t>(1, count));
-  return {std::sqrt(all.squares / samples), all.distances / samples, std::sqrt(all.max_square)};
+  return sums;
 }
 
 }  // namespace
@@ -139,11 +138,16 @@ Distance measure_distance(const Mesh& from, const Mesh& to, const DistanceOption
   check_area(before, "from");
   check_area(areas_before(to, options.threads, "to"), "to");
   const Bvh bvh(to, options.threads);
-  return measure_chunks(bvh, options.samples, options.threads, [&] {
-    return [sampler = Sampler(from, before, options.samples)](std::uint64_t n) mutable {
-      return sampler.sample(n);
-    };
+  const Sampler sampler(from, before, options.samples);
+  std::vector<Sums> chunks(chunks_of(options.samples));
+  parallel_for(chunks.size(), options.threads, [&](std::uint64_t chunk) {
+    chunks[chunk] =
+        measure_chunk(bvh, options.samples, chunk,
+                      [own = sampler](std::uint64_t n) mutable { return own.sample(n); });
   });
+  Sums all;
+  for (const Sums& chunk : chunks) all.add(chunk);
+  return all.over(options.samples);
 }
 
 SurfaceSamples sample_surface(const Mesh& mesh, const DistanceOptions& options) {
@@ -160,12 +164,34 @@ SurfaceSamples sample_surface(const Mesh& mesh, const DistanceOptions& options) 
 class DistanceMeter::Impl {
  public:
   Impl(const Mesh& to, unsigned threads) : bvh_(to, threads), threads_(threads) {}
-  Distance measure(std::span<const Vec3> points) const {
-    return measure_chunks(bvh_, points.size(), threads_,
-                          [&] { return [points](std::uint64_t n) { return points[n]; }; });
+
+  std::vector<Distance> measure_each(std::span<const Points> sets) const {
+    std::vector<ChunkOfSet> chunks;
+    for (std::size_t set = 0; set < sets.size(); ++set) {
+      const std::uint64_t count = chunks_of(sets[set].size());
+      for (std::uint64_t chunk = 0; chunk < count; ++chunk) chunks.push_back({set, chunk, {}});
+    }
+    parallel_for(chunks.size(), threads_, [&](std::uint64_t i) {
+      const Points points = sets[chunks[i].set];
+      chunks[i].sums = measure_chunk(bvh_, points.size(), chunks[i].chunk,
+                                     [&](std::uint64_t n) { return points[n]; });
+    });
+    std::vector<Sums> sums(sets.size());
+    for (const ChunkOfSet& each : chunks) sums[each.set].add(each.sums);
+    std::vector<Distance> distances;
+    for (std::size_t set = 0; set < sets.size(); ++set) {
+      distances.push_back(sums[set].over(sets[set].size()));
+    }
+    return distances;
   }
 
  private:
+  struct ChunkOfSet {
+    std::size_t set = 0;
+    std::uint64_t chunk = 0;
+    Sums sums;
+  };
+
   Bvh bvh_;
   unsigned threads_;
 };
@@ -175,8 +201,12 @@ DistanceMeter::DistanceMeter(const Mesh& to, unsigned threads)
 DistanceMeter::~DistanceMeter() = default;
 DistanceMeter::DistanceMeter(DistanceMeter&&) noexcept = default;
 
-Distance DistanceMeter::measure(std::span<const Vec3> points) const {
-  return impl_->measure(points);
+Distance DistanceMeter::measure(Points points) const {
+  return impl_->measure_each({&points, 1}).front();
+}
+
+std::vector<Distance> DistanceMeter::measure_each(std::span<const Points> sets) const {
+  return impl_->measure_each(sets);
 }
 
 }  // namespace meshfarm

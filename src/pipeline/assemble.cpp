@@ -17,6 +17,7 @@
 #include <meshfarm/pipeline/budget.hpp>
 #include <meshfarm/stitch/stitcher.hpp>
 #include <meshfarm/util/errors.hpp>
+#include <meshfarm/util/parallel.hpp>
 
 namespace meshfarm {
 namespace {
@@ -81,19 +82,29 @@ class Assembly {
     }
   }
 
+  ResultMesh read_part(const std::vector<ChosenRung>& chosen, std::size_t p) const {
+    const std::string file = stage_.read(chosen[p].file);
+    ResultMesh part = decode_result(file, chosen[p].rung, chosen[p].file.name);
+    if (part.boundary_vertices != manifest_.parts[p].boundary_vertices) {
+      throw DataError(chosen[p].file.name + ": is not the result of part " + std::to_string(p));
+    }
+    return part;
+  }
+
   StitchedMesh stitch(const std::vector<ChosenRung>& chosen) {
+    constexpr std::size_t k_read_at_once = 8;
     Stitcher stitcher;
-    for (std::size_t p = 0; p < chosen.size(); ++p) {
-      const std::string file = stage_.read(chosen[p].file);
-      ResultMesh part = decode_result(file, chosen[p].rung, chosen[p].file.name);
-      if (part.boundary_vertices != manifest_.parts[p].boundary_vertices) {
-        throw DataError(chosen[p].file.name + ": is not the result of part " + std::to_string(p));
+    for (std::size_t p = 0; p < chosen.size();) {
+      std::vector<ResultMesh> parts(std::min(k_read_at_once, chosen.size() - p));
+      parallel_for(parts.size(), 0, [&](std::uint64_t i) { parts[i] = read_part(chosen, p + i); });
+      for (ResultMesh& part : parts) {
+        stitcher.add(part);
+        summary_.dropped_degenerate += chosen[p].dropped_degenerate;
+        summary_.dropped_duplicate += chosen[p].dropped_duplicate;
+        samples_.push_back(std::move(part.samples));
+        ++p;
       }
-      stitcher.add(part);
-      summary_.dropped_degenerate += chosen[p].dropped_degenerate;
-      summary_.dropped_duplicate += chosen[p].dropped_duplicate;
-      samples_.push_back(std::move(part.samples));
-      tell("stitch", static_cast<double>(p + 1) / static_cast<double>(chosen.size()), 0);
+      tell("stitch", static_cast<double>(p) / static_cast<double>(chosen.size()), 0);
     }
     const auto boundary = decode_boundary(stage_.read(manifest_.boundary), manifest_.boundary.name);
     StitchedMesh stitched = stitcher.finish(boundary);
@@ -115,16 +126,19 @@ class Assembly {
   Distance measure_error(const Mesh& result) const {
     Distance error;
     if (result.triangles.empty()) return error;
-    const DistanceMeter meter(result, 0);
+    std::vector<DistanceMeter::Points> points;
+    for (const SurfaceSamples& part : samples_) points.emplace_back(part.points);
+    const std::vector<Distance> distances = DistanceMeter(result, 0).measure_each(points);
+    check_stop();
     double area = 0;
     double squares = 0;
-    for (const SurfaceSamples& part : samples_) {
-      const Distance d = meter.measure(part.points);
+    for (std::size_t i = 0; i < samples_.size(); ++i) {
+      const SurfaceSamples& part = samples_[i];
+      const Distance& d = distances[i];
       if (!part.points.empty()) area += part.area;
       squares += part.area * d.rms * d.rms;
       error.mean += part.area * d.mean;
       error.max = std::max(error.max, d.max);
-      check_stop();
     }
     if (!(area > 0)) return error;
     error.rms = std::sqrt(squares / area);

@@ -46,8 +46,11 @@ class DistanceMeter {
   DistanceMeter(const Mesh& to, unsigned threads);
   ~DistanceMeter();
   DistanceMeter(DistanceMeter&&) noexcept;
+  using Points = std::span<const Vec3>;
   /// The points' distances; zeros for no points.
-  Distance measure(std::span<const Vec3> points) const;
+  Distance measure(Points points) const;
+  /// The distances of each set by itself, measured all at once.
+  std::vector<Distance> measure_each(std::span<const Points> sets) const;
 
  private:
   class Impl;

@@ -41,9 +41,10 @@ struct Box {
   Vec3 lo{HUGE_VAL, HUGE_VAL, HUGE_VAL};
   Vec3 hi{-HUGE_VAL, -HUGE_VAL, -HUGE_VAL};
 
+  /// A coordinate that is not a number adds nothing. (Not std::fmin, which is a call.)
   void add(Vec3 p) {
-    lo = {std::fmin(lo.x, p.x), std::fmin(lo.y, p.y), std::fmin(lo.z, p.z)};
-    hi = {std::fmax(hi.x, p.x), std::fmax(hi.y, p.y), std::fmax(hi.z, p.z)};
+    lo = {p.x < lo.x ? p.x : lo.x, p.y < lo.y ? p.y : lo.y, p.z < lo.z ? p.z : lo.z};
+    hi = {p.x > hi.x ? p.x : hi.x, p.y > hi.y ? p.y : hi.y, p.z > hi.z ? p.z : hi.z};
   }
   bool empty() const { return lo.x > hi.x; }
   double diagonal() const { return empty() ? 0.0 : length(hi - lo); }

@@ -38,6 +38,7 @@ TEST_CASE("a piece of just that diagonal stays, and a touching vertex joins piec
   Mesh tie = test::bow_tie();  // two triangles of diagonal sqrt(5), together 2 x 2
   CHECK(drop_small_components(tie, std::sqrt(8.0)).components == 0);
   CHECK(drop_small_components(tie, std::sqrt(8.0) * 1.0001).triangles == 2);
+  CHECK(drop_small_components(tie, 0).triangles == 0);
   Mesh nothing;
   CHECK(drop_small_components(nothing, 1).components == 0);
 }

@@ -240,5 +240,14 @@ TEST_CASE("samples and a meter measure what measure_distance does") {
   CHECK(measured.rms == doctest::Approx(whole.rms).epsilon(1e-9));
   CHECK(measured.max == doctest::Approx(whole.max).epsilon(1e-9));
   CHECK(meter.measure({}).rms == 0);
+  const DistanceMeter::Points all(samples.points);
+  const std::vector<DistanceMeter::Points> sets{all.first(10), {}, all.subspan(10), all};
+  const std::vector<Distance> each = meter.measure_each(sets);
+  REQUIRE(each.size() == 4);
+  for (std::size_t i = 0; i < each.size(); ++i) {
+    CHECK(each[i].rms == meter.measure(sets[i]).rms);
+    CHECK(each[i].mean == DistanceMeter(to, 1).measure(sets[i]).mean);
+  }
+  CHECK(std::max(each[0].max, each[2].max) == each[3].max);
   CHECK(sample_surface({}, {.samples = 10}).points.empty());
 }
