@@ -9,7 +9,10 @@ namespace meshfarm {
 namespace {
 
 constexpr int k_silent_heartbeats = 3;
-constexpr FarmTime k_first_look{50};  // the pause doubles, up to the next
+// The pause between looks begins short, as a run's processes start together, and doubles. An
+// endpoint that is there gets some time to answer.
+constexpr FarmTime k_first_look{5};
+constexpr FarmTime k_first_answer{50};
 constexpr FarmTime k_look_every{500};
 /// After so many greetings without an answer the connection is made anew: its routing id may be
 /// held by a dead connection that the ventilator has not noticed yet.
@@ -18,6 +21,10 @@ constexpr std::uint32_t k_shortest_heartbeat_ms = 10;
 constexpr std::uint32_t k_longest_heartbeat_ms = 60'000;
 
 }  // namespace
+
+FarmTime poll_interval(FarmTime heartbeat) {
+  return std::clamp(heartbeat / 4, FarmTime(5), FarmTime(100));
+}
 
 Membership::Event Membership::tick(FarmTime now) {
   if (joined_) {
@@ -102,6 +109,8 @@ Membership::Event Membership::found(std::span<const Endpoint> endpoints, FarmTim
     dialled_ = *newest;
     dial_ = true;
     greetings_ = 0;
+    look_pause_ = k_first_answer;
+    next_look_ = now + look_pause_;
   }
   ++greetings_;
   greet_ = true;
@@ -113,6 +122,12 @@ bool Membership::look_due(FarmTime now) {
   next_look_ = now + look_pause_;
   look_pause_ = std::min(2 * look_pause_, k_look_every);
   return true;
+}
+
+FarmTime Membership::pause(FarmTime now) const {
+  const FarmTime pause = poll_interval(heartbeat_);
+  if (joined_ || !next_look_) return pause;
+  return std::clamp(*next_look_ - now, FarmTime(1), pause);
 }
 
 std::optional<std::string> Membership::dial() {

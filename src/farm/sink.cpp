@@ -80,7 +80,7 @@ class SinkLoop {
     std::vector<zmq::pollitem_t> items = {{nullptr, disk_.fd(), ZMQ_POLLIN, 0},
                                           {results_.handle(), 0, ZMQ_POLLIN, 0}};
     if (link_.socket() != nullptr) items.push_back({link_.socket()->handle(), 0, ZMQ_POLLIN, 0});
-    wait_for(items, poll_interval(core_.heartbeat()));
+    wait_for(items, core_.pause(farm_clock()));
     const FarmTime now = farm_clock();
     if (disk_.take_finished()) disk_answers(now);
     for (int count = 0; link_.socket() != nullptr && count < k_messages_per_turn; ++count) {

@@ -256,10 +256,6 @@ void wait_for(std::vector<zmq::pollitem_t>& items, std::chrono::milliseconds tim
   }
 }
 
-std::chrono::milliseconds poll_interval(FarmTime heartbeat) {
-  return std::clamp(heartbeat / 4, FarmTime(5), FarmTime(100));
-}
-
 FarmTime farm_clock() {
   return std::chrono::duration_cast<FarmTime>(std::chrono::steady_clock::now().time_since_epoch());
 }

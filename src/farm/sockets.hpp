@@ -62,8 +62,6 @@ bool send(zmq::socket_t& router, std::string_view peer, const Message& message);
 
 /// Waits until one of the items has something or the time is up; a signal ends it early.
 void wait_for(std::vector<zmq::pollitem_t>& items, std::chrono::milliseconds timeout);
-/// How long to wait for messages before the clock is looked at.
-std::chrono::milliseconds poll_interval(FarmTime heartbeat);
 FarmTime farm_clock();
 
 }  // namespace meshfarm

@@ -11,6 +11,7 @@
 
 #include <meshfarm/farm/dispatcher.hpp>
 #include <meshfarm/farm/endpoint.hpp>
+#include <meshfarm/farm/membership.hpp>
 #include <meshfarm/farm/ventilator.hpp>
 #include <meshfarm/util/checksum.hpp>
 #include <meshfarm/util/errors.hpp>

@@ -74,7 +74,7 @@ class WorkerLoop {
     for (const auto& slot : slots_) items.push_back({nullptr, slot->fd(), ZMQ_POLLIN, 0});
     if (link_.socket() != nullptr) items.push_back({link_.socket()->handle(), 0, ZMQ_POLLIN, 0});
     if (lane_) items.push_back({lane_->handle(), 0, ZMQ_POLLIN, 0});
-    wait_for(items, poll_interval(core_.heartbeat()));
+    wait_for(items, core_.pause(farm_clock()));
     const FarmTime now = farm_clock();
     for (std::uint32_t i = 0; i < slots_.size(); ++i) {
       if (slots_[i]->take_finished()) finish(i, now);

@@ -35,6 +35,10 @@ struct HangUp {};
 struct Say {
   Message message;
 };
+
+/// How long to wait for messages before the clock is looked at.
+FarmTime poll_interval(FarmTime heartbeat);
+
 /// How a worker or a sink finds a ventilator, stays with it, and notices that it is gone. Pure:
 /// each call says what happened, the answer says what to do.
 class Membership {
@@ -57,6 +61,8 @@ class Membership {
 
   /// Whether to look at the stage's endpoints now; asking resets it.
   bool look_due(FarmTime now);
+  /// How long to wait for messages before the clock is to be looked at again, at most.
+  FarmTime pause(FarmTime now) const;
   /// An address to connect to anew, if any; asking resets it.
   std::optional<std::string> dial();
   /// A greeting to say, if any; asking resets it.
@@ -83,7 +89,7 @@ class Membership {
   FarmTime heartbeat_{1000};
   std::optional<FarmTime> alone_since_;
   std::optional<FarmTime> next_look_;
-  FarmTime look_pause_{50};
+  FarmTime look_pause_{5};
   FarmTime heard_{0};
   FarmTime next_beat_{0};
   std::optional<Endpoint> dialled_;

@@ -63,7 +63,8 @@ class SinkCore {
   SinkActions stop();
 
   const Rounds& rounds() const { return rounds_; }
-  FarmTime heartbeat() const { return member_.heartbeat(); }
+  /// How long to wait for messages before tick() is called again, at most.
+  FarmTime pause(FarmTime now) const { return member_.pause(now); }
   std::uint64_t dropped() const { return dropped_; }
 
  private:

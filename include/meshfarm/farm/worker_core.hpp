@@ -87,7 +87,8 @@ class WorkerCore {
   const WorkerReport& report() const { return report_; }
   std::size_t waiting() const { return waiting_.size(); }
   std::size_t unacknowledged() const { return unacknowledged_.size(); }
-  FarmTime heartbeat() const { return member_.heartbeat(); }
+  /// How long to wait for messages before tick() is called again, at most.
+  FarmTime pause(FarmTime now) const { return member_.pause(now); }
   std::uint64_t dropped() const { return dropped_; }
 
  private:

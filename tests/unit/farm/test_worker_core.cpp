@@ -133,6 +133,28 @@ TEST_CASE("Done takes a job from the buffer or from work, but not a later attemp
   CHECK(only<Begin>(ended)[0].attempt == 2);
 }
 
+TEST_CASE("a worker looks for a ventilator at once and often, then less and less") {
+  Bench bench;
+  std::vector<FarmTime::rep> looks;
+  while (bench.now < FarmTime(5000)) {
+    if (!only<Look>(bench.core.tick({}, bench.now)).empty()) looks.push_back(bench.now.count());
+    CHECK(bench.core.pause(bench.now) >= FarmTime(1));
+    CHECK(bench.core.pause(bench.now) <= FarmTime(100));
+    bench.now += bench.core.pause(bench.now);
+  }
+  REQUIRE(looks.size() > 8);
+  CHECK(looks.size() < 20);
+  CHECK(looks[0] == 0);
+  CHECK(looks[2] == 15);
+  CHECK(looks.back() - looks[looks.size() - 2] >= 500);
+
+  // One that was found is given time to answer.
+  const Endpoint there = endpoint(1);
+  CHECK(only<Dial>(bench.core.found({&there, 1}, bench.now)).size() == 1);
+  CHECK(only<Look>(bench.core.tick({}, bench.now + FarmTime(45))).empty());
+  CHECK(only<Look>(bench.core.tick({}, bench.now + FarmTime(55))).size() == 1);
+}
+
 TEST_CASE("a ventilator that falls silent is replaced; what was done is kept, what waits is not") {
   Bench bench;
   bench.join(1);
