@@ -54,7 +54,9 @@ class WorkerCommand : public FarmCommand {
     options.stop = &stop;
     options.abort = [](const std::string& incomplete) { end_process(incomplete); };
     options.capacity.threads = threads_;
-    options.capacity.speed = speed_ != 0 ? speed_ : speed_of_this_host(k_version);
+    // Workers of one run on one machine are equally fast, and a short run need not wait.
+    const Haste haste = supervised() ? Haste::great : Haste::none;
+    options.capacity.speed = speed_ != 0 ? speed_ : speed_of_this_host(k_version, haste);
     options.capacity.memory = memory_.empty() ? available_memory() : memory_bytes_;
     const WorkerReport report = run_worker(stage, do_job, options);
     if (supervised()) return;

@@ -24,6 +24,7 @@ namespace {
 
 constexpr std::uint64_t k_triangles = 40'000;
 constexpr std::chrono::milliseconds k_duration{250};
+constexpr std::uint64_t k_usual_speed = 3'000'000;
 
 Mesh benchmark_mesh() {
   const BumpyTorus torus(k_triangles);
@@ -110,10 +111,11 @@ void remember_speed(const std::filesystem::path& folder, std::string_view key,
   }
 }
 
-std::uint64_t speed_of_this_host(std::string_view program_version) {
+std::uint64_t speed_of_this_host(std::string_view program_version, Haste haste) {
   const std::string key = speed_key(program_version);
   const std::filesystem::path folder = speed_folder();
   std::uint64_t speed = remembered_speed(folder, key);
+  if (speed == 0 && haste == Haste::great) return k_usual_speed;
   if (speed == 0) {
     speed = measure_speed();
     remember_speed(folder, key, speed);

@@ -28,7 +28,11 @@ std::uint64_t remembered_speed(const std::filesystem::path& folder, std::string_
 /// Remembers it, if it can: a full or read-only home is no reason not to work.
 void remember_speed(const std::filesystem::path& folder, std::string_view key, std::uint64_t speed);
 
-/// The speed remembered in speed_folder(), or else measured now and remembered.
-std::uint64_t speed_of_this_host(std::string_view program_version);
+/// Whether the time is there to measure a host that was not measured before.
+enum class Haste { none, great };
+
+/// The speed remembered in speed_folder(), or else measured now and remembered; in great haste a
+/// usual speed instead.
+std::uint64_t speed_of_this_host(std::string_view program_version, Haste haste = Haste::none);
 
 }  // namespace meshfarm

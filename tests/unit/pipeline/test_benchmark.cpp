@@ -1,6 +1,9 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
+#include <cstdlib>
+#include <filesystem>
 #include <fstream>
+#include <string>
 
 #include <doctest/doctest.h>
 
@@ -27,6 +30,20 @@ TEST_CASE("a speed is remembered under its key only") {
   remember_speed(folder / "cache", "a", 789);
   CHECK(remembered_speed(folder / "cache", "a") == 789);
   CHECK(remembered_speed(folder / "cache", "c") == 0);
+}
+
+TEST_CASE("in haste nothing is measured, and what is remembered counts") {
+  const TempFolder folder;
+  const char* old = std::getenv("XDG_CACHE_HOME");
+  const std::string kept = old == nullptr ? "" : old;
+  ::setenv("XDG_CACHE_HOME", folder.path().c_str(), 1);
+  const std::uint64_t usual = speed_of_this_host("test", Haste::great);
+  CHECK(usual > 0);
+  CHECK(std::filesystem::is_empty(folder.path()));
+  remember_speed(speed_folder(), speed_key("test"), usual + 1);
+  CHECK(speed_of_this_host("test", Haste::great) == usual + 1);
+  CHECK(speed_of_this_host("test") == usual + 1);
+  old == nullptr ? ::unsetenv("XDG_CACHE_HOME") : ::setenv("XDG_CACHE_HOME", kept.c_str(), 1);
 }
 
 TEST_CASE("a damaged memory, or none, is no speed and no error") {
