@@ -1,16 +1,22 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
 #include <algorithm>
+#include <utility>
 
 #include <meshfarm/io/mesh_shares.hpp>
 #include <meshfarm/util/errors.hpp>
 
 namespace meshfarm {
+namespace {
+
+constexpr std::uint64_t k_packed_bytes = 8;  // of a triangle, some of them escaped
+
+}  // namespace
 
 std::uint64_t MeshShares::memory_for(std::uint64_t vertices, std::uint64_t triangles,
                                      PositionType positions) {
   return vertices * (sizeof(Place) + 3 * static_cast<std::uint64_t>(positions)) +
-         triangles * sizeof(Triangle);
+         triangles * k_packed_bytes;
 }
 
 MeshShares::Memory::Memory(const Options& options) {
@@ -30,6 +36,7 @@ MeshShares::MeshShares(const Options& options, const Memory& memory)
                           : MappedFile::scratch(options.folder, options.vertices * sizeof(Place))),
       vertices_(options.folder, options.shares, memory.vertices),
       triangles_(options.folder, options.shares, memory.triangles),
+      packers_(options.shares),
       boundary_vertices_(options.folder, options.shares),
       next_(options.shares, 0) {}
 
@@ -68,7 +75,7 @@ void MeshShares::add_triangles(std::span<const WideTriangle> batch) {
     const Place b = map[t[1]];
     const Place c = map[t[2]];
     if (a.share == b.share && b.share == c.share) {
-      triangles_.put(a.share, Triangle{a.place, b.place, c.place});
+      triangles_.append(a.share, packers_[a.share].pack({a.place, b.place, c.place}));
     } else {
       boundary_.push_back({a, b, c});
       for (const Place& corner : {a, b, c}) boundary_vertices_.put(corner.share, corner.place);
@@ -91,7 +98,10 @@ MeshShare MeshShares::read(std::uint32_t share) const {
     read.positions.reserve(floats.size());
     for (const auto& p : floats) read.positions.push_back({p[0], p[1], p[2]});
   }
-  read.triangles = triangles_.read<Triangle>(share);
+  const auto packed = triangles_.read<char>(share);
+  auto triangles = unpack_triangles({packed.data(), packed.size()});
+  if (!triangles) throw Error("a share's triangles are not those that were put");
+  read.triangles = std::move(*triangles);
   read.boundary = boundary_vertices_.read<std::uint32_t>(share);
   return read;
 }

@@ -1,9 +1,14 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
 //
-// A part, kind "PART", version 1; the payload of a sealed file:
+// A part, kind "PART", version 2; the payload of a sealed file:
 //   position type u8 (4 float32, 8 float64) | boundary vertices u32 | vertices u64 | triangles u64
-//   | positions, 3 numbers a vertex, boundary vertices first | triangles, 3 x u32
+//   | positions, 3 numbers a vertex, boundary vertices first
+//   | packed triangles (io/packed_triangles.hpp), up to the end
+// Version 1 had triangles of 3 x u32.
+#include <utility>
+
+#include <meshfarm/io/packed_triangles.hpp>
 #include <meshfarm/io/part_file.hpp>
 #include <meshfarm/staging/sealed.hpp>
 #include <meshfarm/util/errors.hpp>
@@ -14,7 +19,7 @@ namespace meshfarm {
 namespace {
 
 constexpr FileKind k_kind = {'P', 'A', 'R', 'T'};
-constexpr std::uint32_t k_version = 1;
+constexpr std::uint32_t k_version = 2;
 
 }  // namespace
 
@@ -24,7 +29,9 @@ std::string encode_part(const Part& part) {
   out.put(part.boundary_vertices);
   out.put(static_cast<std::uint64_t>(part.mesh.positions.size()));
   out.put(static_cast<std::uint64_t>(part.mesh.triangles.size()));
-  put_mesh(out, part.mesh, part.positions);
+  put_positions(out, part.mesh.positions, part.positions);
+  TrianglePacker packer;
+  for (const Triangle& t : part.mesh.triangles) out.put_array(std::span(packer.pack(t)));
   return seal(k_kind, k_version, out.bytes());
 }
 
@@ -36,8 +43,11 @@ Part decode_part(std::string_view file, std::string_view what) {
   const auto vertices = in.get<std::uint64_t>();
   const auto triangles = in.get<std::uint64_t>();
   if (part.boundary_vertices > vertices) in.fail("more boundary vertices than vertices");
-  part.mesh = get_mesh(in, vertices, triangles, part.positions);
-  in.expect_end();
+  part.mesh.positions = get_positions(in, vertices, part.positions);
+  auto unpacked = unpack_triangles(in.take(in.remaining()));
+  if (!unpacked || unpacked->size() != triangles) in.fail("other triangles than promised");
+  part.mesh.triangles = std::move(*unpacked);
+  check_corners(in, part.mesh);
   return part;
 }
 

@@ -43,16 +43,21 @@ void put_mesh(ByteWriter& out, const Mesh& mesh, PositionType positions) {
 
 Mesh get_mesh(ByteReader& in, std::uint64_t vertices, std::uint64_t triangles,
               PositionType positions) {
-  if (vertices > std::numeric_limits<std::uint32_t>::max()) in.fail("too many vertices for a part");
   Mesh mesh;
   mesh.positions = get_positions(in, vertices, positions);
   mesh.triangles = in.get_array<Triangle>(triangles);
+  check_corners(in, mesh);
+  return mesh;
+}
+
+void check_corners(const ByteReader& in, const Mesh& mesh) {
+  const std::size_t vertices = mesh.positions.size();
+  if (vertices > std::numeric_limits<std::uint32_t>::max()) in.fail("too many vertices for a part");
   for (const Triangle& t : mesh.triangles) {
     if (t[0] >= vertices || t[1] >= vertices || t[2] >= vertices) {
       in.fail("a triangle uses a vertex that is not there");
     }
   }
-  return mesh;
 }
 
 PositionType get_position_type(ByteReader& in) {

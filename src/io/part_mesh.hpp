@@ -13,6 +13,9 @@ void put_mesh(ByteWriter& out, const Mesh& mesh, PositionType positions);
 Mesh get_mesh(ByteReader& in, std::uint64_t vertices, std::uint64_t triangles,
               PositionType positions);
 
+/// Fails if a corner is no vertex of the mesh.
+void check_corners(const ByteReader& in, const Mesh& mesh);
+
 /// The positions alone.
 void put_positions(ByteWriter& out, std::span<const Vec3> points, PositionType positions);
 std::vector<Vec3> get_positions(ByteReader& in, std::uint64_t count, PositionType positions);

@@ -11,6 +11,7 @@
 #include <meshfarm/geometry/mesh.hpp>
 #include <meshfarm/io/boundary_file.hpp>
 #include <meshfarm/io/mesh_source.hpp>
+#include <meshfarm/io/packed_triangles.hpp>
 #include <meshfarm/util/bucket_file.hpp>
 #include <meshfarm/util/file.hpp>
 
@@ -58,7 +59,7 @@ class MeshShares {
   std::vector<BoundaryTriangle> boundary(std::span<const BoundaryNumbers> numbers,
                                          std::uint64_t& degenerate) const;
 
-  /// The memory that holds all of a mesh.
+  /// The memory that holds all of a usual mesh.
   static std::uint64_t memory_for(std::uint64_t vertices, std::uint64_t triangles,
                                   PositionType positions);
 
@@ -80,7 +81,8 @@ class MeshShares {
   PositionType positions_;
   MappedFile map_;
   BucketFile vertices_;
-  BucketFile triangles_;
+  BucketFile triangles_;  // packed
+  std::vector<TrianglePacker> packers_;
   BucketFile boundary_vertices_;
   std::vector<std::uint64_t> next_;  // place in each share
   std::uint64_t added_ = 0;

@@ -1,0 +1,53 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+//
+// Packed triangles: meshes come in an order in which corners are near those before them, so that
+// most differences fit into 16 bits, half of what a triangle takes otherwise.
+//   triangle = three i16: first corner - first corner of the triangle before (0 before the first),
+//              second - first, third - first
+//            | escape u16 0x8000 | three u32, the corners
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <cstring>
+#include <optional>
+#include <string_view>
+#include <vector>
+
+#include <meshfarm/geometry/mesh.hpp>
+
+namespace meshfarm {
+
+inline constexpr std::uint16_t k_triangle_escape = 0x8000;
+
+class TrianglePacker {
+ public:
+  /// The bytes of the next triangle; they stand until the next call.
+  std::string_view pack(const Triangle& t) {
+    // Wraps round as the sums of who unpacks do.
+    const std::array<std::uint32_t, 3> differences = {t[0] - last_, t[1] - t[0], t[2] - t[0]};
+    last_ = t[0];
+    bool fits = true;
+    for (std::size_t k = 0; k < 3; ++k) {
+      fits = fits && differences[k] + 0x7fff <= 0xfffe;  // from -0x7fff to 0x7fff
+      words_[k] = static_cast<std::uint16_t>(differences[k]);
+    }
+    std::size_t words = 3;
+    if (!fits) {
+      words_[0] = k_triangle_escape;
+      std::memcpy(&words_[1], t.data(), sizeof t);
+      words = words_.size();
+    }
+    return {reinterpret_cast<const char*>(words_.data()), words * sizeof words_[0]};
+  }
+
+ private:
+  std::uint32_t last_ = 0;
+  std::array<std::uint16_t, 7> words_{};
+};
+
+/// All triangles of the bytes, none if these end inside of one. The corners may be anything.
+std::optional<std::vector<Triangle>> unpack_triangles(std::string_view packed);
+
+}  // namespace meshfarm
