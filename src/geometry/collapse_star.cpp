@@ -6,6 +6,8 @@ namespace meshfarm {
 namespace {
 
 constexpr double k_cos_75_squared = 0.066987298107780676;
+// Beyond this turn a look at the neighbours tells whether a triangle folds over.
+constexpr double k_cos_45_squared = 0.5;
 // Of the angle at the new vertex: near 0 and near 180 degrees alike are as good as no area.
 constexpr double k_least_sine_squared = 1e-6;
 
@@ -39,8 +41,31 @@ bool CollapseStar::is_acceptable(const Two& two, int lane, Vec3 x) {
          (size > 0 || old_size == 0);
 }
 
+/// The normal of a sliver may turn by 75 degrees again and again and so fold over in the end. One
+/// that turns much must still face the way of its new neighbours, each counted by its area.
+bool CollapseStar::is_folded(std::uint32_t kept, Vec3 x) const {
+  const Vec3Pair to = from(x);
+  Vec3Pair sum{};
+  for (std::uint32_t i = 0; i < kept; i += 2) {
+    const Vec3Pair normal = cross(minus(pairs_[1 + i / 2].p, to), minus(pairs_[1 + i / 2].q, to));
+    sum = {sum.x + normal.x, sum.y + normal.y, sum.z + normal.z};
+  }
+  const Vec3 all{sum.x[0] + sum.x[1], sum.y[0] + sum.y[1], sum.z[0] + sum.z[1]};
+  for (std::uint32_t i = 0; i < kept; ++i) {
+    const Two& two = pairs_[1 + i / 2];
+    const auto at = [&](const Vec3Pair& a) { return Vec3{a.x[i % 2], a.y[i % 2], a.z[i % 2]}; };
+    const Vec3 normal = meshfarm::cross(at(two.p) - x, at(two.q) - x);
+    const Vec3 old_normal = at(two.normal);
+    const double turn = meshfarm::dot(normal, old_normal);
+    const double sizes = squared_length(normal) * two.squared_size[i % 2];
+    if (turn * turn < k_cos_45_squared * sizes && meshfarm::dot(normal, all) <= 0) return true;
+  }
+  return false;
+}
+
 std::optional<double> CollapseStar::lost_area(std::uint32_t kept, Vec3 x) const {
   Pair twice_lost = sums_.twice_area;
+  Mask steep{};
   const Vec3Pair to = from(x);
   for (std::uint32_t i = 0; i < kept; i += 2) {
     const Two& two = pairs_[1 + i / 2];
@@ -55,7 +80,9 @@ std::optional<double> CollapseStar::lost_area(std::uint32_t kept, Vec3 x) const 
     dot(normal, two.normal, turn);
     dot(p, p, squared_p);
     dot(q, q, squared_q);
-    const Mask good = (turn > 0) & (turn * turn >= k_cos_75_squared * size * two.squared_size) &
+    const Pair sizes = size * two.squared_size;
+    steep |= turn * turn < k_cos_45_squared * sizes;
+    const Mask good = (turn > 0) & (turn * turn >= k_cos_75_squared * sizes) &
                       (size > k_least_sine_squared * (squared_p * squared_q));
     if ((good[0] & good[1]) == 0) {
       if (good[0] == 0 && !is_acceptable(two, 0, x)) return {};
@@ -66,6 +93,7 @@ std::optional<double> CollapseStar::lost_area(std::uint32_t kept, Vec3 x) const 
     root(size, length);
     twice_lost -= length;
   }
+  if ((steep[0] | steep[1]) != 0 && is_folded(kept, x)) return {};
   return 0.5 * (twice_lost[0] + twice_lost[1]);
 }
 

@@ -72,6 +72,7 @@ class CollapseStar {
   }
   static void root(const Pair& a, Pair& result) { result = Pair{std::sqrt(a[0]), std::sqrt(a[1])}; }
   void add_planes(const Two& two);
+  bool is_folded(std::uint32_t kept, Vec3 x) const;
   static bool is_acceptable(const Two& two, int lane, Vec3 x);
 
   Vec3 middle_;

@@ -35,6 +35,10 @@ constexpr double k_rough_margin = 8;
 // Less than this part of the triangles removed is not worth a rough pass.
 constexpr double k_least_rough = 0.1;
 
+// A pass over all that a limited goal allows which removes less than this part was the last: the
+// next would remove a tenth of that.
+constexpr double k_exhausted = 0.04;
+
 // The edges taken in a pass that must not overshoot, as a part of the triangles still to go: each
 // that can collapse, about six in ten, removes two.
 constexpr double k_most_of_excess = 0.7;
@@ -42,6 +46,8 @@ constexpr double k_most_of_excess = 0.7;
 // Vertices whose edges are ranked, sorted and collapsed together: they and their stars fit into a
 // core's cache. On 10M triangles this halves the time.
 constexpr std::uint32_t k_block = 4096;
+
+using Progress = std::function<bool(std::uint64_t)>;
 
 /// What one pass is to do.
 struct Pass {
@@ -70,27 +76,8 @@ class Simplifier::Impl {
     publish_seam();
   }
 
-  void reduce(const SimplifyGoal& goal, const std::function<bool(std::uint64_t)>& progress) {
-    bool rough = !seam_only_;
-    double share = k_pass_share;
-    while (may_go_on(goal)) {
-      if (rough && is_far(goal)) {
-        const auto before = static_cast<double>(mesh_.triangles.size());
-        const std::uint64_t removed = rough_pass(goal);
-        rough = static_cast<double>(removed) >= k_least_rough * before;
-        compact();
-        if (progress && !progress(mesh_.triangles.size())) break;
-        continue;
-      }
-      begin_pass();
-      const Pass pass = plan_pass(goal, share);
-      const std::uint64_t before = mesh_.triangles.size();
-      const std::uint64_t removed = collapse_edges(goal, pass);
-      compact();
-      if (progress && !progress(mesh_.triangles.size())) break;
-      if (pass.everything && is_exhausted(goal, before, removed)) break;
-      share = removed * 50 < before ? std::min(1.0, share * 2) : std::max(k_pass_share, share / 2);
-    }
+  void reduce(const SimplifyGoal& goal, const Progress& progress) {
+    if (reduce_roughly(goal, progress)) reduce_by_rank(goal, progress);
     publish_seam();
   }
 
@@ -108,6 +95,33 @@ class Simplifier::Impl {
   std::span<const std::uint8_t> seam() const { return seam_; }
 
  private:
+  /// Far from the goal. False if progress says stop.
+  bool reduce_roughly(const SimplifyGoal& goal, const Progress& progress) {
+    while (!seam_only_ && may_go_on(goal) && is_far(goal)) {
+      const auto before = static_cast<double>(mesh_.triangles.size());
+      const std::uint64_t removed = rough_pass(goal);
+      compact(removed);
+      if (removed == 0) break;
+      if (progress && !progress(mesh_.triangles.size())) return false;
+      if (static_cast<double>(removed) < k_least_rough * before) break;
+    }
+    return true;
+  }
+
+  void reduce_by_rank(const SimplifyGoal& goal, const Progress& progress) {
+    double share = k_pass_share;
+    while (may_go_on(goal)) {
+      begin_pass();
+      const Pass pass = plan_pass(goal, share);
+      const std::uint64_t before = mesh_.triangles.size();
+      const std::uint64_t removed = collapse_edges(goal, pass);
+      compact(removed);
+      if (progress && !progress(mesh_.triangles.size())) break;
+      if (pass.everything && is_exhausted(goal, before, removed)) break;
+      share = removed * 50 < before ? std::min(1.0, share * 2) : std::max(k_pass_share, share / 2);
+    }
+  }
+
   bool may_go_on(const SimplifyGoal& goal) const {
     const std::uint64_t triangles = mesh_.triangles.size();
     if (triangles <= goal.triangles || !(goal.max_cost > exhausted_cost_)) return false;
@@ -124,22 +138,26 @@ class Simplifier::Impl {
   /// triangles that held it back, no later call with this cost or less has anything left to do.
   bool is_exhausted(const SimplifyGoal& goal, std::uint64_t before, std::uint64_t removed) {
     const bool held_back = mesh_.triangles.size() - goal.triangles <= 1;
-    const bool little = std::isfinite(goal.max_cost) && removed * 100 < before && !held_back;
+    const bool little = std::isfinite(goal.max_cost) &&
+                        static_cast<double>(removed) < k_exhausted * static_cast<double>(before) &&
+                        !held_back;
     if (removed > 0 && !little) return false;
     if (!held_back) exhausted_cost_ = goal.max_cost;
     return true;
   }
 
+  static std::uint64_t last_of(const SimplifyGoal& goal) {
+    return goal.last_triangles > 0 ? goal.last_triangles : goal.triangles;
+  }
+
   bool is_far(const SimplifyGoal& goal) const {
-    const std::uint64_t last = goal.last_triangles > 0 ? goal.last_triangles : goal.triangles;
     const std::uint64_t triangles = mesh_.triangles.size();
-    return triangles > k_far * last && triangles > 2 * goal.triangles &&
+    return triangles > k_far * last_of(goal) && triangles > 2 * goal.triangles &&
            mesh_.positions.size() > 2 * k_block;
   }
 
   void build_adjacency() {
     if (!adjacency_is_current_) adjacency_.build(mesh_.triangles, mesh_.positions.size());
-    adjacency_is_current_ = false;
     creases_.update(mesh_, adjacency_, flags_);
   }
 
@@ -162,7 +180,7 @@ class Simplifier::Impl {
     const RoughPass rough({collapse_state(), touched_});
     const std::uint64_t excess = mesh_.triangles.size() - goal.triangles;
     const double left =
-        static_cast<double>(goal.triangles) / static_cast<double>(mesh_.triangles.size());
+        static_cast<double>(last_of(goal)) / static_cast<double>(mesh_.triangles.size());
     const std::optional<double> limit = rough.estimate_limit(
         judge, std::min(k_most_rough, 1 - left), goal.max_cost / k_rough_margin);
     if (!limit) return 0;
@@ -241,24 +259,29 @@ class Simplifier::Impl {
   }
 
   /// Renumbers the vertices that are left, in their order, and drops the triangles that are gone.
-  void compact() {
+  /// What stays and what goes no processor guesses: all is moved.
+  void compact(std::uint64_t removed) {
+    adjacency_is_current_ = removed == 0;
+    if (removed == 0) return;
     std::uint32_t kept = 0;
     for (std::uint32_t v = 0; v < target_.size(); ++v) {
       // A vertex merges into a smaller one, whose new number is known by now.
-      if (target_[v] != v) {
-        target_[v] = target_[target_[v]];
-        continue;
-      }
+      const std::uint32_t target = target_[v];
+      const bool stays = target == v;
       mesh_.positions[kept] = mesh_.positions[v];
       flags_[kept] = flags_[v];
-      target_[v] = kept++;
+      target_[v] = stays ? kept : target_[target];
+      kept += stays ? 1 : 0;
     }
     mesh_.positions.resize(kept);
     flags_.resize(kept);
-    std::erase_if(mesh_.triangles, [&](Triangle& t) {
-      t = {target_[t[0]], target_[t[1]], target_[t[2]]};
-      return t[0] == t[1] || t[1] == t[2] || t[2] == t[0];
-    });
+    std::size_t left = 0;
+    for (const Triangle& t : mesh_.triangles) {
+      const Triangle now = {target_[t[0]], target_[t[1]], target_[t[2]]};
+      mesh_.triangles[left] = now;
+      left += (now[0] != now[1]) & (now[1] != now[2]) & (now[2] != now[0]) ? 1 : 0;
+    }
+    mesh_.triangles.resize(left);
   }
 
   void drop_unused_vertices() {

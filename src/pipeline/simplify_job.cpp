@@ -20,8 +20,8 @@ namespace {
 constexpr std::uint8_t k_version = 2;
 constexpr std::uint64_t k_max_samples = 100'000'000;
 constexpr std::int32_t k_top_level = 52;
-// A part keeps no less than this fraction of its even share.
-constexpr std::uint64_t k_shares_per_floor = 16;
+// A part keeps no less than this fraction of its even share: what of it is flat goes in the finish.
+constexpr std::uint64_t k_shares_per_floor = 2;
 
 /// Climbs the levels and keeps a snapshot wherever the mesh changed.
 class LadderBuilder {

@@ -67,7 +67,7 @@ class Simplifier {
   Simplifier(Simplifier&&) noexcept;
 
   /// Collapses until the goal is met or nothing that is allowed is left; with a finite max_cost,
-  /// until a pass over all that it allows removes less than 1 %. May be called again with a farther
+  /// until a pass over all that it allows removes less than 4 %. May be called again with a farther
   /// goal; with one that is met, or a cost that was exhausted, it returns at once. `progress` (may
   /// be empty) is told the triangles left after each pass, and stops the work by returning false.
   void reduce(const SimplifyGoal& goal,

@@ -38,7 +38,7 @@ std::int32_t level_of(double cost, double unit);
 /// Level 0 of a mesh with this diagonal: distances of 2^-50 of it.
 double cost_unit(double diagonal);
 
-/// Simplifies one part or stream (the job's input) to a ladder that ends at 1/16 of its even share,
+/// Simplifies one part or stream (the job's input) to a ladder that ends at half its even share,
 /// or with Allocation::uniform to one rung.
 JobOutput simplify_part(const Job& job, const JobContext& context);
 
