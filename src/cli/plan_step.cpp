@@ -56,14 +56,13 @@ std::vector<WorkerGroup> groups_in(const std::string& text) {
 struct Past {
   Trace trace;
   std::optional<RunTimes> times;
-  std::optional<std::uint64_t> triangles_out;
 };
 
 Past read_past(const std::string& path) {
   Past past;
   if (std::filesystem::is_directory(path)) {
     const Stage stage = Stage::open(path);
-    past.trace = read_newest_trace(stage);
+    past.trace = read_traced_run(stage);
     past.times = read_run_times(stage, past.trace.head.run);
   } else {
     past.trace = parse_trace(read_file(path), path);

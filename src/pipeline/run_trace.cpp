@@ -1,5 +1,6 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
+#include <algorithm>
 #include <chrono>
 
 #include <meshfarm/pipeline/run_trace.hpp>
@@ -127,6 +128,26 @@ Trace read_newest_trace(const Stage& stage, std::optional<std::uint32_t> epoch) 
   }
   const TraceName name{epoch.value_or(traces.back())};
   return parse_trace(stage.read(name), stage.path(name).string());
+}
+
+Trace read_traced_run(const Stage& stage) {
+  Trace run = read_newest_trace(stage);
+  std::uint32_t workers = 0;
+  for (const TraceJoined& each : run.joined) workers = std::max(workers, each.worker);
+  std::vector<TraceDone> done;
+  for (const std::uint32_t epoch : stage.traces()) {
+    if (epoch >= run.head.epoch) continue;
+    const Trace before = read_newest_trace(stage, epoch);
+    if (before.head.run != run.head.run) continue;
+    const std::uint32_t first = workers;
+    for (const TraceJoined& each : before.joined) workers = std::max(workers, first + each.worker);
+    for (TraceDone each : before.done) {
+      each.worker += first;
+      done.push_back(each);
+    }
+  }
+  run.done.insert(run.done.begin(), done.begin(), done.end());
+  return run;
 }
 
 std::optional<RunTimes> read_run_times(const Stage& stage, std::uint64_t run) {

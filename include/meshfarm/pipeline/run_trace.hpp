@@ -45,6 +45,9 @@ void publish_summary(const Stage& stage, const RunSummary& summary);
 /// The newest trace of a stage; the one of `epoch` if that is given. Throws DataError if there is
 /// none.
 Trace read_newest_trace(const Stage& stage, std::optional<std::uint32_t> epoch = std::nullopt);
+/// The same with the jobs of all epochs of its run: a ventilator that was killed leaves a trace of
+/// its own. Workers are numbered on from epoch to epoch.
+Trace read_traced_run(const Stage& stage);
 /// The times of the newest summary of a run; nothing if there is none.
 std::optional<RunTimes> read_run_times(const Stage& stage, std::uint64_t run);
 

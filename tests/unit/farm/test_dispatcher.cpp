@@ -105,6 +105,34 @@ TEST_CASE("the worker that will be free first is served first") {
   CHECK(names(desk.sink("s", 9)) == "job 3@1 job 2@2 job 1@2 job 0@1 ");
 }
 
+TEST_CASE("those who watch are told who came, what was done in which round, and who left") {
+  const JobSource source = [](std::span<const AcceptedJob> accepted) {
+    return accepted.size() < 2 ? make_jobs(accepted.empty() ? 1 : 2) : std::vector<Job>{};
+  };
+  DispatcherOptions options;
+  options.run = k_run;
+  options.epoch = k_epoch;
+  options.tell = true;
+  Desk desk(source);
+  desk.dispatcher = Dispatcher(Plan(source, 3), options);
+  const auto told = [](const Actions& actions) {
+    const auto tells = only<Tell>(actions);
+    REQUIRE(tells.size() == 1);
+    return tells[0].event;
+  };
+  desk.sink("s", 9);
+  const Actions hello = desk.say("w", Hello{Role::worker, 0, 1, 5, "host", {}, {7, 8, 2}});
+  CHECK(std::get<WorkerJoined>(told(hello)).capacity.threads == 2);
+  desk.dispatcher.lane_opened({1}, "lane");
+  desk.credit("w", 1, 5);
+  CHECK(std::get<JobAccepted>(told(desk.accept("s", key(0), 1))).round == 0);
+  CHECK(only<Tell>(desk.accept("s", key(0), 1)).empty());  // it is not news
+  const auto second = std::get<JobAccepted>(told(desk.accept("s", key(1), 1)));
+  CHECK(second.round == 1);
+  CHECK(second.job.parameters == "job 1");
+  CHECK(second.worker == WorkerId{1});
+}
+
 TEST_CASE("a silent worker loses its jobs; those it may have had in work are suspects") {
   Desk desk(one_round(4));
   desk.sink("s", 9);

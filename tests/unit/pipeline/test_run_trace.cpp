@@ -57,6 +57,30 @@ TEST_CASE("what a ventilator tells is in the stage's trace") {
   CHECK(read.end->t == 2.5);
 }
 
+TEST_CASE("jobs that were done before a ventilator was killed belong to its run") {
+  test::TempFolder folder;
+  const Stage stage = Stage::create(folder / "stage");
+  const auto epoch = [&](std::uint32_t number, std::uint64_t run, std::uint64_t job) {
+    TraceHead head;
+    head.run = run;
+    RunTrace trace(stage, head);
+    VentilatorOptions options;
+    trace.follow(options);
+    options.event(RunBegan{number, "here"}, FarmTime(0));
+    options.event(WorkerJoined{{1}, "host", 5, {}}, FarmTime(500));
+    options.event(JobAccepted{{1}, {job}, {}, 0, 33, {}}, FarmTime(1500));
+  };
+  epoch(1, 7, 41);
+  epoch(3, 8, 42);  // another run
+  epoch(5, 7, 43);
+  const Trace run = read_traced_run(stage);
+  CHECK(run.head.epoch == 5);
+  REQUIRE(run.done.size() == 2);
+  CHECK(run.done[0].job == 41);
+  CHECK(run.done[1].job == 43);
+  CHECK(run.done[0].worker != run.done[1].worker);
+}
+
 TEST_CASE("the newest summary of a run is found again") {
   test::TempFolder folder;
   const Stage stage = Stage::create(folder / "stage");
