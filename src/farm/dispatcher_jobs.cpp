@@ -55,6 +55,11 @@ void Dispatcher::on(const PeerId& peer, const Reject& reject) {
       settle(reject.key, reject.worker);
       break;
     case FailureKind::no_space:
+      // A worker may have kept it from a run before: room may have been made since.
+      if (!holds(reject.worker, reject.key, reject.attempt)) {
+        reject_attempt(reject);
+        break;
+      }
       return finish("the stage has no room left (" + reject.failure.reason +
                         "); what is done is kept: make room, then run the same command again",
                     true);
@@ -64,6 +69,14 @@ void Dispatcher::on(const PeerId& peer, const Reject& reject) {
   }
   issue();
   look_for_end();
+}
+
+bool Dispatcher::holds(WorkerId id, JobKey key, std::uint32_t attempt) const {
+  if (!scheduler_.known(id)) return false;
+  const auto& held = scheduler_.held(id);
+  return std::any_of(held.begin(), held.end(), [&](const Scheduler::Held& each) {
+    return each.key == key && attempt_number(each.attempt) == attempt;
+  });
 }
 
 /// Only the attempt that the worker makes now counts.

@@ -134,6 +134,7 @@ class Dispatcher {
   Worker* worker_at(const PeerId& peer, WorkerId id, std::uint32_t epoch);
   bool from_sink(const PeerId& peer, std::uint32_t epoch);
   void hear(WorkerId id, Worker& worker);
+  bool holds(WorkerId id, JobKey key, std::uint32_t attempt) const;
   bool hangs(WorkerId id, const Worker& worker) const;
   bool storage_stalls() const;
   void lose_hanging(WorkerId id);

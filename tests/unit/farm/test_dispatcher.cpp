@@ -270,6 +270,11 @@ TEST_CASE("a stage without room ends the run, resumable") {
   desk.sink("s", 9);
   desk.worker("w", 1);
   desk.credit("w", 1, 1);
+  // A worker's late word from a run before: room has been made since.
+  const Actions late =
+      desk.say("s", Reject{k_epoch, {1}, 7, key(1), {"ENOSPC", FailureKind::no_space}});
+  CHECK(only<Finish>(late).empty());
+  CHECK(said_to<Done>("w", late).size() == 1);
   const Actions full =
       desk.say("s", Reject{k_epoch, {1}, 1001, key(1), {"ENOSPC", FailureKind::no_space}});
   REQUIRE(only<Finish>(full).size() == 1);
