@@ -95,11 +95,13 @@ on_host 1 "$lab_root/scripts/launch-ssh.sh" host2:1 host3:1 -- "$stage" --ratio 
   -o "$work/out2.ply" --bind 10.77.0.1 > /dev/null 2> "$work/run2.err" &
 launcher=$!
 wait_for 30 has_results "$stage" 40 || fail "no results of the third run"
-pkill -TERM -f "launch-ssh.sh host2:1 host3:1 -- $stage"
+say "it is interrupted"
+pkill -TERM -o -f "bash .*launch-ssh.sh host2:1 host3:1 -- $stage"
 code=0
 wait $launcher || code=$?
 [ $code -eq 3 ] || fail "an interrupted launcher's code is $code: $(cat "$work/run2.err")"
 wait_for 5 no_workers_left || fail "workers outlive an interrupted launcher"
+say "it is taken up"
 on_host 1 "$lab_root/scripts/launch-ssh.sh" host2:1 host3:1 -- "$stage" --ratio 0.05 \
   -o "$work/out2.ply" --bind 10.77.0.1 > /dev/null 2>&1 || fail "the run was not taken up"
 check_result "$work/out2.ply"
