@@ -23,12 +23,12 @@ find_meshfarm() {
   return 1
 }
 
-# The words of a run that its workers need too, one a line: how they prove that they belong to it.
+# The words of a run that its workers need too, one a line.
 security_words() {
   while [ $# -gt 0 ]; do
     case "$1" in
       --key-file) printf '%s\n' "$1" "${2:-}"; shift ;;
-      --key-file=* | --insecure) printf '%s\n' "$1" ;;
+      --key-file=* | --insecure | --allow-soft) printf '%s\n' "$1" ;;
     esac
     shift
   done

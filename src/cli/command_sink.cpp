@@ -41,6 +41,7 @@ class SinkCommand : public FarmCommand {
   }
 
  protected:
+  const SecurityWords& security() const override { return network_.security; }
   void serve(const Stage& stage, const std::atomic<bool>& stop) override {
     const Manifest manifest = read_manifest(stage);
     check_writable(output_);

@@ -42,6 +42,7 @@ class VentilatorCommand : public FarmCommand {
   }
 
  protected:
+  const SecurityWords& security() const override { return network_.security; }
   void serve(const Stage& stage, const std::atomic<bool>& stop) override {
     const Manifest manifest = read_manifest(stage);
     ProgressPrinter printer(talk_.progress());

@@ -7,6 +7,7 @@
 #include <meshfarm/farm/worker.hpp>
 #include <meshfarm/pipeline/benchmark.hpp>
 #include <meshfarm/pipeline/job_table.hpp>
+#include <meshfarm/staging/host_card.hpp>
 #include <meshfarm/util/errors.hpp>
 #include <meshfarm/util/log.hpp>
 #include <meshfarm/util/memory.hpp>
@@ -47,7 +48,9 @@ class WorkerCommand : public FarmCommand {
   }
 
  protected:
+  const SecurityWords& security() const override { return security_; }
   void serve(const Stage& stage, const std::atomic<bool>& stop) override {
+    leave_host_card(stage);
     WorkerOptions options;
     options.security = security_.security;
     options.patience = std::chrono::seconds(wait_s_);
@@ -67,6 +70,15 @@ class WorkerCommand : public FarmCommand {
   }
 
  private:
+  /// By these 'meshfarm doctor' finds hosts of one name.
+  static void leave_host_card(const Stage& stage) {
+    try {
+      publish_host_card(stage, this_host());
+    } catch (const IoError& error) {
+      log_debug(error.what());
+    }
+  }
+
   /// "16 jobs in 2.91 s, computing for 98.7 % of it"
   std::string account_of(const WorkerReport& report) const {
     char text[96];

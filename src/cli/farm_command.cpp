@@ -20,7 +20,9 @@ int FarmCommand::run() {
   const std::atomic<bool>& stop = stop_on_signals();
   if (talk_.quiet || supervised_) set_log(name(), LogLevel::warning);
   try {
-    serve(Stage::open(stage_), stop);
+    const Stage stage = Stage::open(stage_);
+    if (!supervised_) security().check_mount(stage_);
+    serve(stage, stop);
   } catch (const IncompleteError&) {
     if (supervised_ && (stop || sink_reports_failures())) return 3;
     throw;

@@ -20,6 +20,8 @@ class FarmCommand : public Command {
  protected:
   void add_stage(po::options_description& options, po::positional_options_description& positional);
   virtual void serve(const Stage& stage, const std::atomic<bool>& stop) = 0;
+  /// What the command was told about authentication and mounts.
+  virtual const SecurityWords& security() const = 0;
   /// Whether jobs that failed for good are another process's to report, too.
   virtual bool sink_reports_failures() const { return false; }
   /// Whether a parent of this program's own started this process and speaks for it.

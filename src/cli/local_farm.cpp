@@ -56,6 +56,7 @@ std::uint32_t default_workers() {
 int run_local_farm(const LocalFarm& farm, const std::atomic<bool>& stop) {
   // Looked at here once, so that a missing or damaged stage is one line and not one a process.
   const Stage stage = Stage::open(farm.stage);
+  farm.network.security.check_mount(farm.stage);
   const Manifest manifest =
       decode_manifest(stage.read(ManifestName{}), stage.path(ManifestName{}).string());
   const Crew crew = crew_for(farm, manifest);

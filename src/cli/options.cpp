@@ -10,6 +10,7 @@
 #include <ifaddrs.h>
 #include <net/if.h>
 
+#include <meshfarm/staging/file_system.hpp>
 #include <meshfarm/util/errors.hpp>
 
 namespace meshfarm {
@@ -183,7 +184,9 @@ void SecurityWords::add(po::options_description& options) {
       "insecure", po::bool_switch(&insecure),
       "no encryption and no authentication, for all processes of a run")(
       "insecure-network", po::bool_switch(&insecure_network),
-      "with --insecure: listen where other hosts reach it");
+      "with --insecure: listen where other hosts reach it")(
+      "allow-soft", po::bool_switch(&allow_soft),
+      "run on a soft NFS mount, where a slow server makes writes fail");
 }
 
 void SecurityWords::check() {
@@ -199,7 +202,16 @@ std::vector<std::string> SecurityWords::words() const {
   if (!key_file.empty()) words.insert(words.end(), {"--key-file", key_file});
   if (insecure) words.emplace_back("--insecure");
   if (insecure_network) words.emplace_back("--insecure-network");
+  if (allow_soft) words.emplace_back("--allow-soft");
   return words;
+}
+
+void SecurityWords::check_mount(const std::filesystem::path& stage) const {
+  const Mount mount = mount_of(stage);
+  if (allow_soft || !mount.is_nfs() || !(mount.has("soft") || mount.has("softerr"))) return;
+  throw DataError(stage.string() +
+                  ": a soft NFS mount: when its server is slow, writes fail and files end empty; "
+                  "mount it with hard ('meshfarm doctor' tells more), or --allow-soft");
 }
 
 void NetworkOptions::add(po::options_description& options) {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -63,15 +64,18 @@ struct CutWords {
   void check();
 };
 
-/// --key-file, --insecure, --insecure-network.
+/// --key-file, --insecure, --insecure-network, --allow-soft.
 struct SecurityWords {
   SecurityOptions security;
   std::string key_file;
   bool insecure = false;
   bool insecure_network = false;
+  bool allow_soft = false;
 
   void add(po::options_description& options);
   void check();
+  /// Throws DataError if the stage is on a soft NFS mount and that was not allowed.
+  void check_mount(const std::filesystem::path& stage) const;
   std::vector<std::string> words() const;
 };
 

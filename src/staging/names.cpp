@@ -31,6 +31,7 @@ struct Printer {
   }
   std::string operator()(TraceName n) const { return "log/" + six_digits(n.epoch) + ".trace"; }
   std::string operator()(SummaryName n) const { return "log/" + six_digits(n.number) + ".summary"; }
+  std::string operator()(HostName n) const { return "control/" + to_hex(n.boot) + ".host"; }
   std::string operator()(KeysName n) const { return "control/" + to_hex(n.run) + ".keys"; }
 };
 
@@ -85,6 +86,9 @@ std::optional<StagedName> scan(std::string_view text) {
     if (text.ends_with(".keys")) {
       KeysName name;
       if (in.number(name.run, 16)) return name;
+    } else if (text.ends_with(".host")) {
+      HostName name;
+      if (in.number(name.boot, 16)) return name;
     } else {
       EndpointName name;
       if (in.number(name.epoch, 10)) return name;

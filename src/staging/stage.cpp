@@ -88,9 +88,8 @@ auto patiently(const Stage& stage, const FileRef& file, const ReadPatience& pati
 }
 
 template <class Name, class Number>
-std::vector<std::uint32_t> numbers_in(const std::filesystem::path& root, std::string_view folder,
-                                      Number number) {
-  std::vector<std::uint32_t> found;
+auto numbers_in(const std::filesystem::path& root, std::string_view folder, Number number) {
+  std::vector<decltype(number(Name{}))> found;
   std::error_code error;
   for (const auto& entry : std::filesystem::directory_iterator(root / folder, error)) {
     const auto name =
@@ -174,6 +173,10 @@ std::vector<std::uint32_t> Stage::traces() const {
 std::vector<std::uint32_t> Stage::summaries() const {
   if (!has_log(root_)) return {};
   return numbers_in<SummaryName>(root_, "log", [](SummaryName n) { return n.number; });
+}
+
+std::vector<std::uint64_t> Stage::hosts() const {
+  return numbers_in<HostName>(root_, "control", [](HostName n) { return n.boot; });
 }
 
 void Stage::remove(const StagedName& name) const noexcept {

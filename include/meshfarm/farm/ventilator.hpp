@@ -18,6 +18,10 @@
 
 namespace meshfarm {
 
+/// Descriptors that each worker takes in the ventilator: its lane, how that is watched,
+/// connections.
+inline constexpr std::uint32_t k_files_per_worker = 6;
+
 /// What the farm is doing, for progress lines.
 struct FarmProgress {
   std::uint64_t jobs_done = 0;

@@ -20,6 +20,7 @@ namespace meshfarm {
 ///   results/KEY.aATTEMPT.INCARNATION  a job's output; KEY names the job by content, 16 hex digits
 ///   journal/000001                    accepted results, one file a sink incarnation
 ///   control/000001.endpoint           where a ventilator listens, one file an epoch
+///   control/ID.host                   a host that worked on this stage, 16 hex digits
 ///   control/RUN.keys                  what the processes of a run prove themselves by, 16 hex
 ///   digits
 ///   log/000001.trace                  what happened in an epoch, told by its ventilator
@@ -52,8 +53,12 @@ struct TraceName {
 struct SummaryName {
   std::uint32_t number = 0;
 };
-using StagedName = std::variant<ManifestName, BoundaryName, PartName, StreamName, ResultName,
-                                JournalName, EndpointName, KeysName, TraceName, SummaryName>;
+struct HostName {
+  std::uint64_t boot = 0;
+};
+using StagedName =
+    std::variant<ManifestName, BoundaryName, PartName, StreamName, ResultName, JournalName,
+                 EndpointName, KeysName, TraceName, SummaryName, HostName>;
 
 std::string to_string(const StagedName& name);
 /// The name that to_string made; nothing for any other text.

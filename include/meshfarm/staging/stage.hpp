@@ -61,6 +61,8 @@ class Stage {
   /// The same of traces and summaries; none in a stage that is older than they are.
   std::vector<std::uint32_t> traces() const;
   std::vector<std::uint32_t> summaries() const;
+  /// The boots of the hosts that left their cards, ascending.
+  std::vector<std::uint64_t> hosts() const;
 
   void remove(const StagedName& name) const noexcept;
 

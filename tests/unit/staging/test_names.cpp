@@ -11,7 +11,7 @@ TEST_CASE("every name that is made is parsed back") {
        {StagedName(ManifestName{}), StagedName(BoundaryName{}), StagedName(PartName{0}),
         StagedName(PartName{4'294'967'295U}), StagedName(JournalName{12}),
         StagedName(EndpointName{1'000'000}), StagedName(TraceName{3}), StagedName(SummaryName{4}),
-        StagedName(KeysName{0xfedcba9876543210ULL}),
+        StagedName(KeysName{0xfedcba9876543210ULL}), StagedName(HostName{0xfedcba9876543210ULL}),
         StagedName(ResultName{0xfedcba9876543210ULL, 3, 0x0123456789abcdefULL})}) {
     const auto parsed = parse_staged_name(to_string(name));
     REQUIRE(parsed.has_value());

@@ -1,0 +1,113 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#include <cerrno>
+#include <chrono>
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <meshfarm/staging/atomic_file.hpp>
+#include <meshfarm/staging/file_system.hpp>
+#include <meshfarm/util/errors.hpp>
+#include <meshfarm/util/file.hpp>
+
+namespace meshfarm {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double ms_since(Clock::time_point start) {
+  return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
+}
+
+double wall_clock_s() {
+  return std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
+}
+
+/// Files of a probe, removed whatever happens.
+class ProbeFile {
+ public:
+  explicit ProbeFile(std::filesystem::path path) : path_(std::move(path)) {}
+  ~ProbeFile() { ::unlink(path_.c_str()); }
+  ProbeFile(const ProbeFile&) = delete;
+  ProbeFile& operator=(const ProbeFile&) = delete;
+  const std::filesystem::path& path() const { return path_; }
+
+ private:
+  std::filesystem::path path_;
+};
+
+struct stat status_of(const std::filesystem::path& path) {
+  struct stat status {};
+  if (::stat(path.c_str(), &status) != 0) throw_errno("cannot look at", path);
+  return status;
+}
+
+RoundTrip make_round_trip(const std::filesystem::path& folder, const std::string& name,
+                          const std::string& bytes) {
+  const ProbeFile temporary(folder / ("." + name + ".tmp"));
+  const ProbeFile final_file(folder / ("." + name));
+  RoundTrip trip;
+  auto start = Clock::now();
+  Fd fd(::open(temporary.path().c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0644));
+  if (!fd) throw_errno("cannot make", temporary.path());
+  write_all(fd.get(), bytes, temporary.path());
+  trip.write = ms_since(start);
+  start = Clock::now();
+  if (::fsync(fd.get()) != 0) throw_errno("cannot sync", temporary.path());
+  if (const int error = fd.close(); error != 0) {
+    throw IoError("cannot close", temporary.path(), error);
+  }
+  trip.sync = ms_since(start);
+  start = Clock::now();
+  rename_checked(temporary.path(), final_file.path(), bytes.size());
+  trip.rename = ms_since(start);
+  start = Clock::now();
+  if (read_file(final_file.path()) != bytes) {
+    throw DataError(final_file.path().string() + ": not what was written");
+  }
+  trip.read = ms_since(start);
+  return trip;
+}
+
+/// The server's clock by the time that it gives a new file.
+double clock_ahead(const std::filesystem::path& folder, const std::string& name) {
+  const ProbeFile file(folder / ("." + name));
+  const double before = wall_clock_s();
+  Fd fd(::open(file.path().c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0644));
+  if (!fd) throw_errno("cannot make", file.path());
+  write_all(fd.get(), "x", file.path());
+  if (::fsync(fd.get()) != 0) throw_errno("cannot sync", file.path());
+  fd.close();
+  const double after = wall_clock_s();
+  const struct stat status = status_of(file.path());
+  const double theirs = static_cast<double>(status.st_mtim.tv_sec) +
+                        1e-9 * static_cast<double>(status.st_mtim.tv_nsec);
+  return theirs - (before + after) / 2;
+}
+
+}  // namespace
+
+FolderProbe probe_folder(const std::filesystem::path& folder, int count, std::size_t size_bytes) {
+  const std::string name = "doctor." + std::to_string(::getpid());
+  const std::string bytes(size_bytes, 'd');
+  FolderProbe probe;
+  try {
+    for (int i = 0; i < count; ++i) {
+      probe.trips.push_back(make_round_trip(folder, name + "." + std::to_string(i), bytes));
+    }
+    probe.clock_ahead_s = clock_ahead(folder, name + ".clock");
+    const ProbeFile secret(folder / ("." + name + ".private"));
+    const ProbeFile linked(folder / ("." + name + ".link"));
+    AtomicFile file(secret.path(), name, AtomicFile::Readers::owner);
+    file.commit();
+    probe.keeps_private = (status_of(secret.path()).st_mode & (S_IRWXG | S_IRWXO)) == 0;
+    probe.has_links = ::link(secret.path().c_str(), linked.path().c_str()) == 0;
+  } catch (const Error& error) {
+    probe.problem = error.what();
+  }
+  return probe;
+}
+
+}  // namespace meshfarm

@@ -1,0 +1,75 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#include <doctest/doctest.h>
+
+#include <meshfarm/staging/file_system.hpp>
+#include <meshfarm/util/errors.hpp>
+
+#include "support/temp_folder.hpp"
+
+using namespace meshfarm;
+
+namespace {
+
+constexpr const char* k_mountinfo =
+    "22 28 0:20 / /sys rw,relatime shared:7 - sysfs sysfs rw\n"
+    "28 1 254:1 / / rw,relatime shared:1 - ext4 /dev/vda1 rw,errors=remount-ro\n"
+    "99 28 0:52 / /nfs rw,noatime shared:9 master:2 - nfs4 server:/export "
+    "rw,vers=4.2,rsize=1048576,soft,proto=tcp\n"
+    "100 28 0:52 /a /nfs/a ro - nfs4 server:/export rw,vers=4.2\n"
+    "101 28 8:1 / /with\\040blank rw - xfs /dev/sda1 rw\n"
+    "torn 28 0:53\n";
+
+}  // namespace
+
+TEST_CASE("a mount is found by its path, with the options of both lists") {
+  const auto root = find_mount(k_mountinfo, "/nfsx/a");
+  REQUIRE(root);
+  CHECK(root->type == "ext4");
+  CHECK(root->point == "/");
+  CHECK_FALSE(root->is_nfs());
+  CHECK(find_mount(k_mountinfo, "/nfs")->has("soft"));
+  CHECK(find_mount(k_mountinfo, "/nfs/b")->value("rsize") == "1048576");
+  const auto nfs = find_mount(k_mountinfo, "/nfs/a/b");
+  REQUIRE(nfs);
+  CHECK(nfs->is_nfs());
+  CHECK(nfs->source == "server:/export");
+  CHECK(nfs->has("ro"));
+  CHECK(nfs->value("vers") == "4.2");
+  CHECK_FALSE(nfs->value("rsize"));
+  CHECK(find_mount(k_mountinfo, "/with blank/x")->type == "xfs");
+  CHECK_FALSE(find_mount("", "/"));
+}
+
+TEST_CASE("this machine's mounts and space are told") {
+  const test::TempFolder folder;
+  CHECK_FALSE(mount_of(folder.path()).type.empty());
+  CHECK(free_bytes(folder.path()) > 0);
+  CHECK_THROWS_AS(mount_of(folder / "absent"), IoError);
+  CHECK_THROWS_AS(free_bytes(folder / "absent"), IoError);
+}
+
+TEST_CASE("a probe measures, and leaves nothing behind") {
+  const test::TempFolder folder;
+  const FolderProbe probe = probe_folder(folder.path(), 3, 10'000);
+  CHECK(probe.problem.empty());
+  REQUIRE(probe.trips.size() == 3);
+  for (const RoundTrip& trip : probe.trips) {
+    CHECK(trip.write > 0);
+    CHECK(trip.sync > 0);
+    CHECK(trip.rename > 0);
+    CHECK(trip.read > 0);
+  }
+  CHECK(probe.clock_ahead_s > -1);
+  CHECK(probe.clock_ahead_s < 1);
+  CHECK(probe.keeps_private);
+  CHECK(probe.has_links);
+  CHECK(std::filesystem::is_empty(folder.path()));
+}
+
+TEST_CASE("a probe says what went wrong") {
+  const test::TempFolder folder;
+  const FolderProbe probe = probe_folder(folder / "absent", 3, 10);
+  CHECK(probe.problem.find("absent") != std::string::npos);
+  CHECK(probe.trips.empty());
+}
