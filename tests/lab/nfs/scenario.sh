@@ -1,0 +1,142 @@
+#!/usr/bin/env bash
+# Inside the kernel that boot.sh boots: runs with ventilator and sink on one NFS client and a worker
+# on each; undisturbed, then with the disk full, the server restarted, the links cut. Each ends with
+# the same bytes, or with code 3 and with the same bytes when the same command is given again.
+#   scenario.sh PROGRAM CUT-STAGE EXPECTED.ply
+set -uo pipefail
+meshfarm=$1
+cut_stage=$2
+expected=$3
+logs=$(mktemp -d)
+ventilator_side=/mnt/c1
+worker_side=/mnt/c2
+
+fail() {
+  echo "FAILED NFS $NFS_VERSION: $1"
+  tail -n 5 "$logs"/*
+  exit 1
+}
+say() {
+  echo "$(cut -d ' ' -f 1 /proc/uptime) s  NFS $NFS_VERSION: $1"
+}
+wait_for() { # SECONDS COMMAND...
+  local until=$((SECONDS + $1))
+  shift
+  until "$@"; do
+    [ $SECONDS -lt $until ] || return 1
+    sleep 0.2
+  done
+}
+# Asked of the server's own disk: a client of ours would remember the answers.
+has_results() { # STAGE COUNT
+  [ "$(find "/srv/x/$1/results" -type f ! -name '.*' | wc -l)" -ge "$2" ]
+}
+has_ended() { # PID
+  ! kill -0 "$1" 2> /dev/null
+}
+
+new_stage() { # NAME
+  cp -r "$cut_stage" "$ventilator_side/$1" || fail "no room for a stage"
+}
+# Starts the processes; sets run, workers.
+start() { # STAGE
+  workers=()
+  local side
+  for side in $worker_side $ventilator_side; do
+    "$meshfarm" worker "$side/$1" -q --threads 1 > "$logs/$1.worker.${side##*/}" 2>&1 &
+    workers+=($!)
+  done
+  "$meshfarm" run "$ventilator_side/$1" --ratio 0.05 -o "$ventilator_side/$1.ply" \
+    --bind 127.0.0.1 -q > "$logs/$1.run" 2>&1 &
+  run=$!
+}
+# Waits for the end; sets code.
+finish() { # SECONDS
+  wait_for "$1" has_ended "$run" || fail "the run does not end"
+  code=0
+  wait "$run" || code=$?
+  kill -TERM "${workers[@]}" 2> /dev/null
+  wait_for 30 has_ended "${workers[0]}" || fail "a worker does not end"
+  wait_for 30 has_ended "${workers[1]}" || fail "a worker does not end"
+}
+# After a disturbance: done, or resumable and done when asked again; then the bytes.
+check() { # STAGE
+  if [ "$code" -eq 3 ]; then
+    say "it stopped, resumable: $(tail -n 1 "$logs/$1.run")"
+    start "$1"
+    finish 90
+  fi
+  [ "$code" -eq 0 ] || fail "the code of the run is $code"
+  # By way of the other client.
+  cmp "$worker_side/$1.ply" "$expected" || fail "other bytes"
+  say "the same bytes"
+  rm -rf "${ventilator_side:?}/$1" "$ventilator_side/$1.ply"
+}
+slow_down() {
+  tc qdisc add dev s1 root netem delay "$1"
+  tc qdisc add dev s2 root netem delay "$1"
+}
+cut_link() { # CLIENT SECONDS
+  tc qdisc replace dev "s$1" root netem loss 100%
+  sleep "$2"
+  tc qdisc replace dev "s$1" root netem delay 20ms
+}
+
+say "the doctor's word on a hard mount and on a soft one"
+new_stage plain
+"$meshfarm" doctor $ventilator_side/plain > "$logs/doctor" || fail "a hard mount is called bad"
+grep -q "vers=$NFS_VERSION" "$logs/doctor" || fail "the doctor sees no NFS"
+case $NFS_VERSION in
+  3) mount -t nfs -o vers=3,nolock,mountport=20048,soft 10.9.1.1:/srv/x /media ;;
+  *) mount -t nfs -o "vers=$NFS_VERSION,soft" 10.9.1.1:/ /media ;;
+esac || fail "no soft mount"
+"$meshfarm" doctor /media/plain > "$logs/doctor" && fail "a soft mount is not called bad"
+grep -q 'BAD   soft mount' "$logs/doctor" || fail "a soft mount is not found"
+"$meshfarm" run /media/plain --ratio 0.05 > "$logs/soft" 2>&1
+code=$?
+[ $code -eq 1 ] || fail "a soft mount is not refused ($code)"
+grep -q 'soft NFS mount' "$logs/soft" || fail "a soft mount is not refused by name"
+umount /media
+
+say "an undisturbed run"
+start plain
+finish 60
+check plain
+
+slow_down 20ms
+say "the disk is full in the middle of a run"
+new_stage full
+start full
+wait_for 60 has_results full 3 || fail "no results"
+fallocate -l 1G /srv/x/filler 2> /dev/null
+dd if=/dev/zero of=/srv/x/filler2 bs=64k 2> /dev/null
+wait_for 15 has_ended "$run"
+rm -f /srv/x/filler /srv/x/filler2
+finish 90
+check full
+
+say "the server is restarted in the middle of a run"
+new_stage restart
+start restart
+wait_for 60 has_results restart 3 || fail "no results"
+rpc.nfsd 0
+sleep 3
+rpc.nfsd 4
+finish 120
+check restart
+
+say "the worker's link is cut for 20 s"
+new_stage link2
+start link2
+wait_for 60 has_results link2 3 || fail "no results"
+cut_link 2 20
+finish 120
+check link2
+
+say "the ventilator's link is cut for 20 s"
+new_stage link1
+start link1
+wait_for 60 has_results link1 3 || fail "no results"
+cut_link 1 20
+finish 120
+check link1
