@@ -46,6 +46,7 @@ class RunCommand : public Command {
     target_.check();
     if (whose_ == Workers::own) {
       network_.bind = "127.0.0.1";
+      network_.this_host_only = true;
       if (workers_ == 0) throw UsageError("--workers: from 1 to 1000");
     }
     if (workers_ > 1000) throw UsageError("--workers: at most 1000");

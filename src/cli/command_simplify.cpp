@@ -44,6 +44,7 @@ class SimplifyCommand : public Command {
     if (workers_ == 0 || workers_ > 1000) throw UsageError("--workers: from 1 to 1000");
     if (stage_.empty()) stage_ = output_ + ".stage";
     network_.bind = "127.0.0.1";
+    network_.this_host_only = true;
     network_.check();
   }
   int run() override {

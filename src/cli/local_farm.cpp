@@ -3,11 +3,16 @@
 #include "cli/local_farm.hpp"
 
 #include <algorithm>
+#include <filesystem>
 #include <thread>
+
+#include <stdlib.h>
 
 #include <meshfarm/io/manifest.hpp>
 #include <meshfarm/pipeline/budget.hpp>
+#include <meshfarm/staging/file_system.hpp>
 #include <meshfarm/staging/stage.hpp>
+#include <meshfarm/util/errors.hpp>
 #include <meshfarm/util/log.hpp>
 #include <meshfarm/util/memory.hpp>
 
@@ -47,6 +52,33 @@ Crew crew_for(const LocalFarm& farm, const Manifest& manifest) {
   return crew;
 }
 
+/// The words for a key file in a folder of this host's own, which goes with its owner. Only where
+/// the stage's file system cannot keep one for its owner alone (FAT, some network shares) and no
+/// process of another host takes part; elsewhere none, and the keys are in the stage.
+class KeysAside {
+ public:
+  KeysAside(const LocalFarm& farm, const Stage& stage) {
+    if (!farm.network.this_host_only || keeps_private(stage.root() / "control")) return;
+    std::string folder = (std::filesystem::temp_directory_path() / "meshfarm-XXXXXX").string();
+    if (::mkdtemp(folder.data()) == nullptr) throw_errno("cannot make", folder);
+    folder_ = folder;
+  }
+  ~KeysAside() {
+    std::error_code ignored;
+    if (!folder_.empty()) std::filesystem::remove_all(folder_, ignored);
+  }
+  KeysAside(const KeysAside&) = delete;
+  KeysAside& operator=(const KeysAside&) = delete;
+
+  std::vector<std::string> words() const {
+    if (folder_.empty()) return {};
+    return {"--key-file", (folder_ / "run.keys").string()};
+  }
+
+ private:
+  std::filesystem::path folder_;
+};
+
 }  // namespace
 
 std::uint32_t default_workers() {
@@ -60,18 +92,20 @@ int run_local_farm(const LocalFarm& farm, const std::atomic<bool>& stop) {
   const Manifest manifest =
       decode_manifest(stage.read(ManifestName{}), stage.path(ManifestName{}).string());
   const Crew crew = crew_for(farm, manifest);
-  std::vector<std::string> quiet = {"--supervised"};
-  if (farm.talk.quiet) quiet.emplace_back("--quiet");
+  std::vector<std::string> shared = {"--supervised"};
+  if (farm.talk.quiet) shared.emplace_back("--quiet");
 
+  const KeysAside keys(farm, stage);
+  shared = joined(shared, keys.words());
   Supervisor supervisor(stop);
   const std::vector<std::string> common =
-      joined(joined({farm.stage}, joined(farm.target.words(), farm.network.words())), quiet);
+      joined(joined({farm.stage}, joined(farm.target.words(), farm.network.words())), shared);
   supervisor.start(joined({"ventilator"}, joined(common, farm.schedule.words())));
   std::vector<std::string> sink = joined(joined({"sink"}, common), {"--output", farm.output});
   if (farm.talk.json) sink.emplace_back("--json");
   supervisor.start(sink);
   std::vector<std::string> worker =
-      joined({"worker", farm.stage}, joined(farm.network.security.words(), quiet));
+      joined({"worker", farm.stage}, joined(farm.network.security.words(), shared));
   if (crew.memory != 0) {
     worker = joined(worker, {"--memory", std::to_string(crew.memory)});
   }

@@ -86,6 +86,7 @@ struct NetworkOptions {
   std::uint16_t first_port = 0;
   std::uint16_t last_port = 0;
   SecurityWords security;
+  bool this_host_only = false;  // all processes are started here, by one that sees them through
 
   void add(po::options_description& options);
   void check();

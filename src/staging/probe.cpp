@@ -44,14 +44,19 @@ struct stat status_of(const std::filesystem::path& path) {
   return status;
 }
 
+Fd make_file(const std::filesystem::path& path, mode_t mode) {
+  Fd fd(::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, mode));
+  if (!fd) throw_errno("cannot make", path);
+  return fd;
+}
+
 RoundTrip make_round_trip(const std::filesystem::path& folder, const std::string& name,
                           const std::string& bytes) {
   const ProbeFile temporary(folder / ("." + name + ".tmp"));
   const ProbeFile final_file(folder / ("." + name));
   RoundTrip trip;
   auto start = Clock::now();
-  Fd fd(::open(temporary.path().c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0644));
-  if (!fd) throw_errno("cannot make", temporary.path());
+  Fd fd = make_file(temporary.path(), 0644);
   write_all(fd.get(), bytes, temporary.path());
   trip.write = ms_since(start);
   start = Clock::now();
@@ -75,8 +80,7 @@ RoundTrip make_round_trip(const std::filesystem::path& folder, const std::string
 double clock_ahead(const std::filesystem::path& folder, const std::string& name) {
   const ProbeFile file(folder / ("." + name));
   const double before = wall_clock_s();
-  Fd fd(::open(file.path().c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0644));
-  if (!fd) throw_errno("cannot make", file.path());
+  Fd fd = make_file(file.path(), 0644);
   write_all(fd.get(), "x", file.path());
   if (::fsync(fd.get()) != 0) throw_errno("cannot sync", file.path());
   fd.close();
@@ -89,6 +93,12 @@ double clock_ahead(const std::filesystem::path& folder, const std::string& name)
 
 }  // namespace
 
+bool keeps_private(const std::filesystem::path& folder) {
+  const ProbeFile file(folder / (".private." + std::to_string(::getpid())));
+  const Fd fd = make_file(file.path(), 0600);
+  return (status_of(file.path()).st_mode & (S_IRWXG | S_IRWXO)) == 0;
+}
+
 FolderProbe probe_folder(const std::filesystem::path& folder, int count, std::size_t size_bytes) {
   const std::string name = "doctor." + std::to_string(::getpid());
   const std::string bytes(size_bytes, 'd');
@@ -98,12 +108,11 @@ FolderProbe probe_folder(const std::filesystem::path& folder, int count, std::si
       probe.trips.push_back(make_round_trip(folder, name + "." + std::to_string(i), bytes));
     }
     probe.clock_ahead_s = clock_ahead(folder, name + ".clock");
-    const ProbeFile secret(folder / ("." + name + ".private"));
-    const ProbeFile linked(folder / ("." + name + ".link"));
-    AtomicFile file(secret.path(), name, AtomicFile::Readers::owner);
-    file.commit();
-    probe.keeps_private = (status_of(secret.path()).st_mode & (S_IRWXG | S_IRWXO)) == 0;
-    probe.has_links = ::link(secret.path().c_str(), linked.path().c_str()) == 0;
+    probe.keeps_private = keeps_private(folder);
+    const ProbeFile one(folder / ("." + name + ".one"));
+    const ProbeFile two(folder / ("." + name + ".two"));
+    make_file(one.path(), 0644);
+    probe.has_links = ::link(one.path().c_str(), two.path().c_str()) == 0;
   } catch (const Error& error) {
     probe.problem = error.what();
   }

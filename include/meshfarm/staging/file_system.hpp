@@ -32,6 +32,9 @@ Mount mount_of(const std::filesystem::path& path);
 /// Free bytes for an ordinary user. Throws IoError.
 std::uint64_t free_bytes(const std::filesystem::path& path);
 
+/// Whether a file that is made for its owner alone stays so. Throws IoError.
+bool keeps_private(const std::filesystem::path& folder);
+
 /// Milliseconds that each step of publishing one file took.
 struct RoundTrip {
   double write = 0;

@@ -67,6 +67,13 @@ TEST_CASE("a probe measures, and leaves nothing behind") {
   CHECK(std::filesystem::is_empty(folder.path()));
 }
 
+TEST_CASE("a private file leaves nothing behind either") {
+  const test::TempFolder folder;
+  CHECK(keeps_private(folder.path()));
+  CHECK(std::filesystem::is_empty(folder.path()));
+  CHECK_THROWS_AS(keeps_private(folder / "absent"), IoError);
+}
+
 TEST_CASE("a probe says what went wrong") {
   const test::TempFolder folder;
   const FolderProbe probe = probe_folder(folder / "absent", 3, 10);
