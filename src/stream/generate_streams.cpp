@@ -221,8 +221,8 @@ class Generator {
 
 std::uint32_t default_streams(std::uint64_t triangles) {
   constexpr std::uint64_t k_stream = 1'200'000;
-  constexpr std::uint64_t k_worth_dividing = 100'000;
-  constexpr std::uint64_t k_few = 8;
+  constexpr std::uint64_t k_worth_dividing = 50'000;
+  constexpr std::uint64_t k_few = 16;
   const std::uint64_t streams = std::max((triangles + k_stream - 1) / k_stream,
                                          std::min(k_few, triangles / k_worth_dividing));
   return static_cast<std::uint32_t>(std::clamp<std::uint64_t>(streams, 1, k_most_streams));
