@@ -23,6 +23,10 @@ int FarmCommand::run() {
     const Stage stage = Stage::open(stage_);
     if (!supervised_) security().check_mount(stage_);
     serve(stage, stop);
+  } catch (const IoError& error) {
+    if (!is_no_space(error)) throw;
+    throw IncompleteError(std::string(error.what()) +
+                          "; what is done is kept: make room, then run the same command again");
   } catch (const IncompleteError&) {
     if (supervised_ && (stop || sink_reports_failures())) return 3;
     throw;

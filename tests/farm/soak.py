@@ -1,0 +1,158 @@
+# SPDX-FileCopyrightText: 2026 the meshfarm authors
+# SPDX-License-Identifier: MIT
+"""See scripts/soak.sh, which calls this: soak.py PROGRAM RUNS FIRST_SEED"""
+import filecmp
+import os
+import random
+import shutil
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+
+RATIO = ["--ratio", "0.02"]
+MOST_FAULTS = 8
+LIMIT_S = 120  # a run that has not ended by then never will
+
+
+class Run:
+    """One run, its four processes, and what is done to them."""
+
+    def __init__(self, program, folder, mesh, seed):
+        self.program = program
+        self.random = random.Random(seed)
+        self.stage = os.path.join(folder, "stage")
+        self.output = os.path.join(folder, "out.ply")
+        self.log = open(os.path.join(folder, "log"), "w", encoding="utf-8")
+        shutil.rmtree(self.stage, ignore_errors=True)
+        if os.path.exists(self.output):
+            os.remove(self.output)
+        subprocess.run([program, "cut", mesh, "--stage", self.stage, "--parts", "24", "-q"],
+                       check=True, stdout=subprocess.DEVNULL)
+        self.stopped = []  # (pid, when it goes on)
+        self.done = set()
+        self.faults = 0
+        self.processes = {}
+        for name in ("ventilator", "sink", "worker 1", "worker 2"):
+            self.start(name)
+
+    def start(self, name):
+        role = name.split()[0]
+        words = [self.program, role, self.stage, "-q"]
+        if role != "worker":
+            words += RATIO + ["--bind", "127.0.0.1"]
+        words += {"ventilator": ["--heartbeat-ms", "100"],
+                  "sink": ["-o", self.output, "--wait", "30"],
+                  "worker": ["--wait", "30"]}[role]
+        self.processes[name] = subprocess.Popen(words, stdout=subprocess.DEVNULL, stderr=self.log)
+
+    def restart_dead(self):
+        for name, process in list(self.processes.items()):
+            code = process.poll()
+            if code is None or name in self.done:
+                continue
+            over = {"ventilator", "sink"} <= self.done
+            if code == 0 or (over and name.startswith("worker")):
+                self.done.add(name)
+            else:
+                self.start(name)
+
+    def disturb(self, now):
+        for pid, until in self.stopped[:]:
+            if now >= until:
+                self.signal(pid, signal.SIGCONT)
+                self.stopped.remove((pid, until))
+        if now < self.next_fault or self.faults >= MOST_FAULTS:
+            return
+        alive = [p for name, p in self.processes.items()
+                 if name not in self.done and p.poll() is None]
+        if alive:
+            process = self.random.choice(alive)
+            if self.random.random() < 0.7:
+                self.signal(process.pid, signal.SIGKILL)
+            else:
+                self.signal(process.pid, signal.SIGSTOP)
+                self.stopped.append((process.pid, now + self.random.uniform(0.05, 1)))
+            self.faults += 1
+        self.next_fault = now + self.random.uniform(0.02, 0.25)
+
+    @staticmethod
+    def signal(pid, number):
+        try:
+            os.kill(pid, number)
+        except ProcessLookupError:
+            pass
+
+    def to_the_end(self):
+        begin = time.time()
+        self.next_fault = begin + self.random.uniform(0.02, 0.15)
+        lonely_since = None
+        while not {"ventilator", "sink"} <= self.done:
+            now = time.time()
+            if now - begin > LIMIT_S:
+                return False
+            self.restart_dead()
+            # A ventilator may end just before a killed sink is back, which then needs another.
+            lonely = "ventilator" in self.done and "sink" not in self.done
+            lonely_since = (lonely_since or now) if lonely else None
+            if lonely and now - lonely_since > 3:
+                self.done.discard("ventilator")
+                self.start("ventilator")
+            self.disturb(now)
+            time.sleep(0.005)
+        return True
+
+    def leave(self):
+        """Ends what still runs; False if something does not leave on SIGTERM."""
+        willing = True
+        for pid, _ in self.stopped:
+            self.signal(pid, signal.SIGCONT)
+        for process in self.processes.values():
+            if process.poll() is None:
+                process.terminate()
+        for process in self.processes.values():
+            try:
+                process.wait(20)
+            except subprocess.TimeoutExpired:
+                willing = False
+                process.kill()
+                process.wait()
+        self.log.close()
+        return willing
+
+
+def main():
+    program, runs, first = sys.argv[1], int(sys.argv[2]), int(sys.argv[3])
+    folder = tempfile.mkdtemp(prefix="meshfarm-soak-")
+    mesh = os.path.join(folder, "mesh.ply")
+    expected = os.path.join(folder, "expected.ply")
+    subprocess.run([program, "generate", "-o", mesh, "--triangles", "300000", "-q"], check=True)
+    subprocess.run([program, "simplify", mesh, "-o", expected, "--parts", "24", "-q"] + RATIO,
+                   check=True, stdout=subprocess.DEVNULL)
+    bad = faults = 0
+    for seed in range(first, first + runs):
+        run = Run(program, folder, mesh, seed)
+        begin = time.time()
+        ended = run.to_the_end()
+        willing = run.leave()
+        faults += run.faults
+        same = ended and filecmp.cmp(run.output, expected, shallow=False)
+        if not (same and willing):
+            bad += 1
+            what = "did not end" if not ended else "does not leave" if same else "other bytes"
+            print(f"seed {seed}: {what} after {time.time() - begin:.1f} s", flush=True)
+            kept = os.path.join(folder, f"bad-{seed}")
+            shutil.copytree(run.stage, kept, dirs_exist_ok=True)
+            shutil.copy(run.log.name, kept)
+        if (seed - first + 1) % 50 == 0:
+            print(f"{seed - first + 1} runs, {faults} faults, {bad} bad", flush=True)
+    print(f"{runs} runs, {faults} faults, {bad} bad")
+    if bad == 0:
+        shutil.rmtree(folder)
+    else:
+        print(f"kept: {folder}")
+    sys.exit(1 if bad else 0)
+
+
+main()

@@ -1,0 +1,137 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+//
+// Loaded into a meshfarm process by LD_PRELOAD: the n-th write, fsync, close or rename of a file
+// below a folder fails, is cut short, or is the process's last deed. Sockets and eventfds are left
+// alone, which is why this is no job for strace. Told by the environment:
+//
+//   MESHFARM_FAULT        CALL:KIND:N    write|fsync|close|rename : an errno | short | kill | lost
+//   MESHFARM_FAULT_ROLE   only in processes of this command: worker, sink, ventilator
+//   MESHFARM_FAULT_BELOW  the folder
+//   MESHFARM_FAULT_FIRED  made when the fault happens, which it then does once; empty: in each
+//   process
+//
+// "lost" (of rename): it is done, but answered with ENOENT, as by an NFS server that restarted.
+#include <atomic>
+#include <cerrno>
+#include <csignal>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <string>
+
+#include <dlfcn.h>
+#include <fcntl.h>
+#include <unistd.h>
+
+namespace {
+
+template <class F>
+F* real(const char* name) {
+  return reinterpret_cast<F*>(::dlsym(RTLD_NEXT, name));
+}
+
+std::string text_of(const char* variable) {
+  const char* text = std::getenv(variable);
+  return text == nullptr ? "" : text;
+}
+
+struct Fault {
+  std::string call;
+  std::string kind;
+  long nth = 0;
+  std::string below;
+  std::string fired;
+  std::atomic<long> count{0};
+
+  Fault() {
+    char words[4096] = {};
+    const int fd = ::open("/proc/self/cmdline", O_RDONLY);
+    const ssize_t size = ::read(fd, words, sizeof words - 1);
+    real<int(int)>("close")(fd);
+    const char* role = size > 0 ? words + std::strlen(words) + 1 : words;
+    const std::string wanted = text_of("MESHFARM_FAULT_ROLE");
+    if (!wanted.empty() && wanted != role) return;
+    const std::string fault = text_of("MESHFARM_FAULT");
+    const std::size_t first = fault.find(':');
+    const std::size_t second = fault.find(':', first + 1);
+    if (first == std::string::npos || second == std::string::npos) return;
+    call = fault.substr(0, first);
+    kind = fault.substr(first + 1, second - first - 1);
+    nth = std::atol(fault.c_str() + second + 1);
+    below = text_of("MESHFARM_FAULT_BELOW");
+    fired = text_of("MESHFARM_FAULT_FIRED");
+  }
+
+  bool covers(const char* path) const {
+    return !below.empty() && std::strncmp(path, below.c_str(), below.size()) == 0;
+  }
+  bool covers(int fd) const {
+    if (below.empty()) return false;
+    const std::string link = "/proc/self/fd/" + std::to_string(fd);
+    char path[4096] = {};
+    return ::readlink(link.c_str(), path, sizeof path - 1) > 0 && covers(path);
+  }
+  /// Whether this call is the one. A process that shall die dies here.
+  template <class Where>
+  bool strikes(const char* name, const Where& where) {
+    if (call != name || !covers(where) || ++count != nth) return false;
+    if (!fired.empty()) {
+      const int fd = ::open(fired.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0644);
+      if (fd < 0) return false;  // it has struck in another process
+      real<int(int)>("close")(fd);
+    }
+    if (kind == "kill") ::raise(SIGKILL);
+    return true;
+  }
+  int error() const { return kind == "ENOSPC" ? ENOSPC : kind == "EDQUOT" ? EDQUOT : EIO; }
+};
+
+Fault& fault() {
+  static Fault instance;
+  return instance;
+}
+
+}  // namespace
+
+extern "C" {
+
+ssize_t write(int fd, const void* bytes, size_t size) {
+  if (fault().strikes("write", fd)) {
+    if (fault().kind == "short")
+      return real<ssize_t(int, const void*, size_t)>("write")(fd, bytes, size / 2 + size % 2);
+    errno = fault().error();
+    return -1;
+  }
+  return real<ssize_t(int, const void*, size_t)>("write")(fd, bytes, size);
+}
+
+int fsync(int fd) {
+  if (fault().strikes("fsync", fd)) {
+    errno = fault().error();
+    return -1;
+  }
+  return real<int(int)>("fsync")(fd);
+}
+
+int close(int fd) {
+  const bool strikes = fault().strikes("close", fd);
+  const int result = real<int(int)>("close")(fd);
+  if (!strikes) return result;
+  errno = fault().error();
+  return -1;
+}
+
+int rename(const char* from, const char* to) {
+  const bool strikes = fault().strikes("rename", to);
+  if (strikes && fault().kind != "lost") {
+    errno = fault().error();
+    return -1;
+  }
+  const int result = real<int(const char*, const char*)>("rename")(from, to);
+  if (!strikes) return result;
+  errno = ENOENT;
+  return -1;
+}
+
+}  // extern "C"
