@@ -102,6 +102,10 @@ void Supervisor::ended(Child& child, int status) {
     child.done = true;
     return;
   }
+  if (child.words.front() == "ventilator" && sink_done()) {
+    child.done = true;  // the output is there: nobody needs it any more
+    return;
+  }
   if (WIFSIGNALED(status) && child.restarts < k_max_restarts && !stop_) {
     ++child.restarts;
     log_warning("the " + child.words.front() + " was ended by signal " +
@@ -118,6 +122,12 @@ void Supervisor::ended(Child& child, int status) {
 bool Supervisor::has_live_worker() const {
   return std::any_of(children_.begin(), children_.end(), [](const Child& child) {
     return child.worker() && (child.pid > 0 || child.done);
+  });
+}
+
+bool Supervisor::sink_done() const {
+  return std::any_of(children_.begin(), children_.end(), [](const Child& child) {
+    return child.words.front() == "sink" && child.done;
   });
 }
 

@@ -40,6 +40,7 @@ class Supervisor {
   void end_all();
   enum class Which { all, essentials };
   bool wait_all(Which which, int timeout_ms);
+  bool sink_done() const;
   bool essentials_done() const;
   bool has_live_worker() const;
 
