@@ -159,6 +159,11 @@ TEST_CASE("the ventilator's files may fail at any call") {
   try_all("ventilator");
 }
 
+TEST_CASE("a worker whose file system hangs is left behind") {
+  CHECK(survives("worker", "write", "hang", 1));
+  CHECK(survives("worker", "fsync", "hang", 2));
+}
+
 TEST_CASE("a part that kills every worker is given up with its reason, the rest is kept") {
   const std::string stage = bench().path("run/stage");
   bench().fresh();

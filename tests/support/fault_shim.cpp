@@ -6,6 +6,7 @@
 // alone, which is why this is no job for strace. Told by the environment:
 //
 //   MESHFARM_FAULT        CALL:KIND:N    write|fsync|close|rename : an errno | short | kill | lost
+//                                        | hang
 //   MESHFARM_FAULT_ROLE   only in processes of this command: worker, sink, ventilator
 //   MESHFARM_FAULT_BELOW  the folder
 //   MESHFARM_FAULT_FIRED  made when the fault happens, which it then does once; empty: in each
@@ -82,6 +83,7 @@ struct Fault {
       real<int(int)>("close")(fd);
     }
     if (kind == "kill") ::raise(SIGKILL);
+    while (kind == "hang") ::pause();
     return true;
   }
   int error() const { return kind == "ENOSPC" ? ENOSPC : kind == "EDQUOT" ? EDQUOT : EIO; }

@@ -92,11 +92,13 @@ struct Farm {
   std::uint64_t run = 7;
   std::chrono::milliseconds heartbeat{200};
   std::chrono::milliseconds patience{20'000};
+  std::chrono::milliseconds hang{30'000};
 
   auto ventilator(JobSource source, std::function<void(const FarmProgress&)> progress = {}) {
     VentilatorOptions options;
     options.run = run;
     options.heartbeat = heartbeat;
+    options.hang = hang;
     options.progress = std::move(progress);
     return [this, source, options](const std::atomic<bool>& stop) mutable {
       options.stop = &stop;

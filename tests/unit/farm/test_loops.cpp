@@ -289,6 +289,72 @@ TEST_CASE("a worker that is stopped gives back what it holds, at once") {
   CHECK(summaries == expected_of(4));
 }
 
+TEST_CASE("a job that hangs is taken from its worker, which is told to end its process") {
+  Farm farm;
+  farm.heartbeat = std::chrono::milliseconds(50);
+  farm.hang = std::chrono::milliseconds(300);
+  std::atomic<bool> begun{false};
+  std::atomic<bool> ended{false};
+  std::string why;
+  const JobFunction hangs = [&](const Job&, const JobContext&) -> JobOutput {
+    begun = true;
+    while (!ended) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    throw IncompleteError("the test lets it go");
+  };
+  std::vector<std::string> summaries;
+  std::atomic<std::uint32_t> lost{0};
+  Part ventilator(
+      farm.ventilator(one_round(3), [&](const FarmProgress& p) { lost = p.workers_lost; }));
+  Part sink(farm.sink(one_round(3), summaries));
+  Part hung([&](const std::atomic<bool>& stop) {
+    WorkerOptions options;
+    options.stop = &stop;
+    options.abort = [&](const std::string& reason) {
+      why = reason;
+      ended = true;  // as the end of the process would
+    };
+    run_worker(farm.stage, hangs, options);
+  });
+  wait_until([&] { return ended.load(); });
+  CHECK_THROWS_AS(hung.join(), IncompleteError);
+  CHECK(begun);
+  CHECK(why.find("stood still") != std::string::npos);
+  Part worker(farm.worker());
+  sink.join();
+  ventilator.join();
+  worker.join();
+  CHECK(lost == 1);
+  CHECK(summaries == expected_of(3));
+}
+
+TEST_CASE("a worker of many threads works on as many jobs at once") {
+  Farm farm;
+  std::atomic<int> now{0};
+  std::atomic<int> most{0};
+  const JobFunction work = [&](const Job& job, const JobContext& context) {
+    const int at_once = ++now;
+    for (int seen = most; seen < at_once && !most.compare_exchange_weak(seen, at_once);) {
+    }
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    --now;
+    return do_trivial_job(job, context);
+  };
+  std::vector<std::string> summaries;
+  Part ventilator(farm.ventilator(one_round(40)));
+  Part sink(farm.sink(one_round(40), summaries));
+  Part worker([&](const std::atomic<bool>& stop) {
+    WorkerOptions options;
+    options.capacity.threads = 4;
+    options.stop = &stop;
+    CHECK(run_worker(farm.stage, work, options).jobs_done == 40);
+  });
+  sink.join();
+  ventilator.join();
+  worker.join();
+  CHECK(summaries == expected_of(40));
+  CHECK(most == 4);
+}
+
 TEST_CASE("whoever finds no ventilator says what to start") {
   Farm farm;
   farm.patience = std::chrono::milliseconds(300);
