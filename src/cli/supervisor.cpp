@@ -20,7 +20,7 @@ namespace {
 
 constexpr int k_max_restarts = 20;
 constexpr int k_grace_ms = 10'000;
-constexpr int k_last_words_ms = 2'000;
+constexpr int k_last_words_ms = 3'000;
 constexpr int k_incomplete = 3;
 
 sigset_t child_signal() {
@@ -100,6 +100,7 @@ void Supervisor::reap() {
 void Supervisor::ended(Child& child, int status) {
   if (WIFEXITED(status) && WEXITSTATUS(status) == 0) {
     child.done = true;
+    if (child.words.front() == "sink") sink_done_at_ = std::chrono::steady_clock::now();
     return;
   }
   if (child.words.front() == "ventilator" && sink_done()) {
@@ -131,7 +132,10 @@ bool Supervisor::sink_done() const {
   });
 }
 
+/// A ventilator that was killed at the very end, and started again, waits for a sink in vain.
 bool Supervisor::essentials_done() const {
+  const auto now = std::chrono::steady_clock::now();
+  if (sink_done() && now - sink_done_at_ > std::chrono::milliseconds(k_last_words_ms)) return true;
   return std::all_of(children_.begin(), children_.end(),
                      [](const Child& child) { return child.worker() || child.done; });
 }

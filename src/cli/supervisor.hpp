@@ -3,6 +3,7 @@
 #pragma once
 
 #include <atomic>
+#include <chrono>
 #include <string>
 #include <vector>
 
@@ -47,6 +48,7 @@ class Supervisor {
   const std::atomic<bool>& stop_;
   std::vector<Child> children_;
   int failure_ = 0;
+  std::chrono::steady_clock::time_point sink_done_at_;
 };
 
 }  // namespace meshfarm

@@ -66,9 +66,7 @@ void Dispatcher::worker_joins(const PeerId& peer, const Hello& hello) {
   const auto before = by_incarnation_.find(hello.incarnation);
   if (before != by_incarnation_.end()) lose(before->second, "joined again", {});
   if (const auto charge = charges_.find(hello.incarnation); charge != charges_.end()) {
-    for (const Charge& each : charge->second) {  // it lives: no job has killed it
-      plan_.forgive(each.key, each.reason);
-    }
+    plan_.forgive(charge->second.key, charge->second.reason);  // it lives: no job has killed it
     charges_.erase(charge);
   }
   const WorkerId id{next_worker_++};
@@ -217,7 +215,7 @@ void Dispatcher::lose_hanging(WorkerId id) {
   send(worker.peer, Stop{StopReason::hung});
   ++lost_workers_;
   if (beat.in_storage) {
-    scheduler_.failed_on(id, beat.still);
+    scheduler_.failed(id);
     lose(id, "waited for the stage and" + stood, {});
   } else {
     lose(id, "computed and" + stood, {beat.still});
@@ -232,7 +230,8 @@ std::vector<JobKey> Dispatcher::in_work(WorkerId id) const {
   return keys;
 }
 
-/// `suspects` are the jobs that may have cost the worker its life.
+/// `suspects` are the jobs that may have cost the worker its life. A single one is held to have; of
+/// several, each is given to a worker alone the next time, so that another loss is its own.
 void Dispatcher::lose(WorkerId id, const std::string& reason, const std::vector<JobKey>& suspects) {
   const Worker worker = std::move(workers_.at(id));
   workers_.erase(id);
@@ -243,14 +242,19 @@ void Dispatcher::lose(WorkerId id, const std::string& reason, const std::vector<
   tell(WorkerLeft{id, reason});
   const std::string why =
       "worker " + std::to_string(id.value) + " on " + worker.host + " " + reason;
-  for (const JobKey key : suspects) scheduler_.failed_on(id, key);
+  if (!suspects.empty()) scheduler_.failed(id);
+  if (suspects.size() == 1) scheduler_.avoid(id, suspects.front());
   for (const Scheduler::Held& held : scheduler_.leave(id)) {
     if (std::find(suspects.begin(), suspects.end(), held.key) == suspects.end()) {
       plan_.give_back(held.key);
       continue;
     }
-    charges_[worker.incarnation].push_back({held.key, why});
     scheduler_.suspect(held.key);
+    if (suspects.size() > 1) {
+      plan_.give_back(held.key);
+      continue;
+    }
+    charges_[worker.incarnation] = {held.key, why};
     fail(held.key, why, Failing::worker_lost);
   }
   issue();

@@ -89,7 +89,8 @@ void Dispatcher::reject_attempt(const Reject& reject) {
     return each.key == reject.key && attempt_number(each.attempt) == reject.attempt;
   });
   if (!current) return;
-  scheduler_.failed_on(reject.worker, reject.key);
+  scheduler_.failed(reject.worker);
+  scheduler_.avoid(reject.worker, reject.key);
   drop(reject.worker, reject.key);
   fail(reject.key, reject.failure.reason, Failing::attempt);
 }

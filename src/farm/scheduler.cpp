@@ -107,11 +107,14 @@ double Scheduler::estimated_speed(const Member& member) const {
   return (member.cost_done + weight) / (member.seconds_done + weight / expected);
 }
 
-void Scheduler::failed_on(WorkerId id, JobKey key) {
-  Host& host = *crew_.at(id).host;
+void Scheduler::avoid(WorkerId id, JobKey key) {
+  const std::string& host = crew_.at(id).host->name;
   auto& hosts = failed_on_[key];
-  if (std::find(hosts.begin(), hosts.end(), host.name) == hosts.end()) hosts.push_back(host.name);
-  if (++host.failures == k_failures_of_a_bad_host) rank_all();
+  if (std::find(hosts.begin(), hosts.end(), host) == hosts.end()) hosts.push_back(host);
+}
+
+void Scheduler::failed(WorkerId id) {
+  if (++crew_.at(id).host->failures == k_failures_of_a_bad_host) rank_all();
 }
 
 void Scheduler::settled(JobKey key) {

@@ -255,6 +255,10 @@ TEST_CASE("the example config files are understood") {
   CHECK(test::wait_until([&] { return has(ventilator.err(), "listens on"); }));
   ventilator.signal(SIGTERM);
   CHECK(ventilator.wait() == 3);
+  const Ran worker =
+      shell({"worker", shell.path("s"), "--config", conf + "worker.conf", "--wait", "0"});
+  CHECK(worker.code == 3);
+  CHECK(has(worker.err, "start 'meshfarm run'"));
 }
 
 TEST_CASE("a stage that holds a finished cut is not cut again") {

@@ -52,8 +52,9 @@ class Run:
             code = process.poll()
             if code is None or name in self.done:
                 continue
-            over = {"ventilator", "sink"} <= self.done
-            if code == 0 or (over and name.startswith("worker")):
+            # A worker may leave because a run was given up, and be needed when that is taken up again.
+            done = code == 0 and not name.startswith("worker")
+            if done or "sink" in self.done:
                 self.done.add(name)
             else:
                 self.start(name)

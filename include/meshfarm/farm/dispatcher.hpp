@@ -170,7 +170,7 @@ class Dispatcher {
   std::unordered_map<PeerId, WorkerId> by_peer_;
   std::unordered_map<std::uint64_t, WorkerId> by_incarnation_;
   std::set<std::pair<FarmTime, WorkerId>> by_heard_;
-  std::unordered_map<std::uint64_t, std::vector<Charge>> charges_;  // by the lost one's incarnation
+  std::unordered_map<std::uint64_t, Charge> charges_;  // by the lost one's incarnation
   std::optional<Sink> sink_;
   std::uint64_t last_sink_ = 0;  // incarnation
   std::set<std::uint64_t> replaced_sinks_;

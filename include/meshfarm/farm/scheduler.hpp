@@ -61,8 +61,11 @@ class Scheduler {
   /// It did the job that it holds in so much time (0: not known).
   void did(WorkerId id, JobKey key, std::uint32_t compute_ms, FarmTime now);
 
-  /// After three failures in a row a host gets no more jobs, as long as there are others.
-  void failed_on(WorkerId id, JobKey key);
+  /// Something failed on the worker's host. After three failures in a row it gets no more jobs, as
+  /// long as there are other hosts.
+  void failed(WorkerId id);
+  /// The job is not to be tried again on the worker's host, as long as there are others.
+  void avoid(WorkerId id, JobKey key);
   /// A job in work when a worker was lost. From now on it is given to a worker alone, so that the
   /// next loss tells whether it is to blame.
   void suspect(JobKey key) { suspects_.insert(key); }

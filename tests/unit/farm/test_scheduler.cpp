@@ -170,7 +170,8 @@ struct Desk {
   }
   void fail(std::uint32_t id, const std::string& name) {
     const JobKey key = key_of(make_job(name));
-    scheduler.failed_on({id}, key);
+    scheduler.failed({id});
+    scheduler.avoid({id}, key);
     scheduler.drop({id}, key, now);
     scheduler.set_room({id}, 1);
     plan.fail_attempt(key, "no luck", Failing::attempt);
