@@ -172,6 +172,7 @@ TEST_CASE("a part that kills every worker is given up with its reason, the rest 
   {
     const Injection injection("worker", poison);
     ::setenv("MESHFARM_FAULT_FIRED", "", 1);  // it strikes again and again
+    ::setenv("MESHFARM_FAULT_BELOW", (stage + "/results").c_str(), 1);  // once there is a job
     ran = bench().replay("run/stage", "run/out.ply");
   }
   CAPTURE(ran.err);
