@@ -279,7 +279,9 @@ class Simplifier::Impl {
     for (const Triangle& t : mesh_.triangles) {
       const Triangle now = {target_[t[0]], target_[t[1]], target_[t[2]]};
       mesh_.triangles[left] = now;
-      left += (now[0] != now[1]) & (now[1] != now[2]) & (now[2] != now[0]) ? 1 : 0;
+      const auto [a, b, c] = now;
+      const bool is_left = (a != b) & (b != c) & (c != a);
+      left += is_left ? 1 : 0;
     }
     mesh_.triangles.resize(left);
   }

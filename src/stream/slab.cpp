@@ -161,10 +161,10 @@ Part sample_slab(const SortedSlab& slab, const SweepOrder& order, std::uint64_t 
   const double share =
       std::min(1.0, static_cast<double>(triangles) /
                         static_cast<double>(std::max<std::size_t>(1, mesh.triangles.size())));
-  const auto [low, high] = sample_range(mesh.positions, order.axes[1], share, number);
+  const auto range = sample_range(mesh.positions, order.axes[1], share, number);
   const auto inside = [&](std::uint32_t v) {
     const double x = mesh.positions[v][order.axes[1]];
-    return x >= low && x <= high;
+    return x >= range.first && x <= range.second;
   };
   constexpr std::uint8_t k_in = 1;
   constexpr std::uint8_t k_out = 2;

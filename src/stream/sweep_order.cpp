@@ -18,8 +18,8 @@ void OrderProbe::look_at(std::span<const Vec3> batch) {
     if (any_) {
       for (int axis = 0; axis < 3; ++axis) {
         const auto a = static_cast<std::size_t>(axis);
-        rises_[a] = rises_[a] & (p[axis] >= last_[axis]);
-        falls_[a] = falls_[a] & (p[axis] <= last_[axis]);
+        rises_[a] = rises_[a] && p[axis] >= last_[axis];
+        falls_[a] = falls_[a] && p[axis] <= last_[axis];
       }
     }
     last_ = p;
