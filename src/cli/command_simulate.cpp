@@ -7,6 +7,7 @@
 #include <meshfarm/farm/simulated_seeds.hpp>
 #include <meshfarm/report/simulation_report.hpp>
 #include <meshfarm/util/errors.hpp>
+#include <meshfarm/util/memory.hpp>
 
 #include "cli/command.hpp"
 #include "cli/options.hpp"
@@ -77,6 +78,7 @@ class SimulateCommand : public Command {
   }
 
   int run_seeds() const {
+    split_memory_by_threads();
     const auto start = std::chrono::steady_clock::now();
     const SeedsResult result = simulate_seeds(seeds_);
     SeedsSummary summary;

@@ -72,6 +72,12 @@ void keep_freed_memory() {
 #endif
 }
 
+void split_memory_by_threads() {
+#ifdef __GLIBC__
+  ::mallopt(M_ARENA_MAX, 0);  // as many as it likes
+#endif
+}
+
 std::uint64_t available_memory() {
   const std::string old_group = group_folder("memory");
   const std::string group = group_folder("");

@@ -10,6 +10,9 @@ namespace meshfarm {
 /// follow each other, and fresh pages cost more than what is done with them (measured: half the CPU
 /// time of a cut). Called once, before there are threads. Without glibc it does nothing.
 void keep_freed_memory();
+/// And from now on each thread has memory of its own again: for threads that allocate small things
+/// all the time and share none of them, who would wait for each other.
+void split_memory_by_threads();
 
 /// Bytes that this process may still take: what the host has free, or less where a control group
 /// (version 1 or 2) holds the process to less. 0 where the system does not say.
