@@ -15,6 +15,7 @@
 #include "support/process.hpp"
 #include "support/temp_folder.hpp"
 
+using meshfarm::test::listening_ports;
 using meshfarm::test::Process;
 using meshfarm::test::Ran;
 using meshfarm::test::read_text;
@@ -89,31 +90,6 @@ bool wait_for_results(const std::string& stage, std::size_t count) {
 
 void check_result(const std::string& output) {
   CHECK(read_text(output) == bench().expected());
-}
-
-/// The tcp ports that a process listens on: its socket inodes among those of /proc/net/tcp that are
-/// in the state LISTEN (0A).
-std::vector<std::uint16_t> listening_ports(pid_t pid) {
-  const std::string process = "/proc/" + std::to_string(pid);
-  std::vector<std::string> inodes;
-  std::error_code ignored;
-  for (const auto& entry : fs::directory_iterator(process + "/fd", ignored)) {
-    const std::string target = fs::read_symlink(entry.path(), ignored).string();
-    if (target.starts_with("socket:[")) inodes.push_back(target.substr(8, target.size() - 9));
-  }
-  std::vector<std::uint16_t> ports;
-  std::ifstream table(process + "/net/tcp");
-  for (std::string line; std::getline(table, line);) {
-    std::istringstream words(line);
-    std::string slot, local, remote, state, skip, inode;
-    words >> slot >> local >> remote >> state;
-    for (int i = 0; i < 5; ++i) words >> skip;
-    words >> inode;
-    if (state != "0A" || std::find(inodes.begin(), inodes.end(), inode) == inodes.end()) continue;
-    ports.push_back(
-        static_cast<std::uint16_t>(std::stoul(local.substr(local.find(':') + 1), nullptr, 16)));
-  }
-  return ports;
 }
 
 /// Sends bytes to a port and closes; whether anyone listens does not matter.

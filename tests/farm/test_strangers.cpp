@@ -24,6 +24,7 @@
 #include "support/temp_folder.hpp"
 
 using namespace meshfarm;
+using meshfarm::test::listening_ports;
 using meshfarm::test::Process;
 using meshfarm::test::read_text;
 using meshfarm::test::run_meshfarm;
@@ -36,31 +37,6 @@ namespace {
 constexpr int k_idle_connections = 500;
 constexpr std::size_t k_flood_bytes = 80'000'000;
 constexpr std::uint64_t k_most_growth_kb = 10'240;
-
-/// The tcp ports that a process listens on: its socket inodes among those of /proc/net/tcp that are
-/// in the state LISTEN (0A).
-std::vector<std::uint16_t> listening_ports(pid_t pid) {
-  const std::string process = "/proc/" + std::to_string(pid);
-  std::vector<std::string> inodes;
-  std::error_code ignored;
-  for (const auto& entry : fs::directory_iterator(process + "/fd", ignored)) {
-    const std::string target = fs::read_symlink(entry.path(), ignored).string();
-    if (target.starts_with("socket:[")) inodes.push_back(target.substr(8, target.size() - 9));
-  }
-  std::vector<std::uint16_t> ports;
-  std::ifstream table(process + "/net/tcp");
-  for (std::string line; std::getline(table, line);) {
-    std::istringstream words(line);
-    std::array<std::string, 10> field;
-    for (std::string& each : field) words >> each;
-    if (field[3] != "0A" || std::find(inodes.begin(), inodes.end(), field[9]) == inodes.end()) {
-      continue;
-    }
-    const std::string port = field[1].substr(field[1].find(':') + 1);
-    ports.push_back(static_cast<std::uint16_t>(std::stoul(port, nullptr, 16)));
-  }
-  return ports;
-}
 
 /// "VmRSS" or "VmHWM" of a process, in KiB.
 std::uint64_t memory_kb(pid_t pid, const std::string& name) {

@@ -2,14 +2,19 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <algorithm>
+#include <array>
 #include <chrono>
 #include <csignal>
+#include <cstdint>
 #include <filesystem>
 #include <fstream>
 #include <functional>
 #include <iterator>
+#include <sstream>
 #include <stdexcept>
 #include <string>
+#include <system_error>
 #include <thread>
 #include <utility>
 #include <vector>
@@ -106,6 +111,31 @@ inline Ran run_meshfarm(const std::vector<std::string>& words, const std::filesy
   Process process(words, log);
   const int code = process.wait();
   return {code, process.out(), process.err()};
+}
+
+/// The tcp ports that a process listens on: its socket inodes among those of /proc/net/tcp that are
+/// in the state LISTEN (0A).
+inline std::vector<std::uint16_t> listening_ports(pid_t pid) {
+  const std::string process = "/proc/" + std::to_string(pid);
+  std::vector<std::string> inodes;
+  std::error_code ignored;
+  for (const auto& entry : std::filesystem::directory_iterator(process + "/fd", ignored)) {
+    const std::string target = std::filesystem::read_symlink(entry.path(), ignored).string();
+    if (target.starts_with("socket:[")) inodes.push_back(target.substr(8, target.size() - 9));
+  }
+  std::vector<std::uint16_t> ports;
+  std::ifstream table(process + "/net/tcp");
+  for (std::string line; std::getline(table, line);) {
+    std::istringstream words(line);
+    std::array<std::string, 10> field;
+    for (std::string& each : field) words >> each;
+    if (field[3] != "0A" || std::find(inodes.begin(), inodes.end(), field[9]) == inodes.end()) {
+      continue;
+    }
+    const std::string port = field[1].substr(field[1].find(':') + 1);
+    ports.push_back(static_cast<std::uint16_t>(std::stoul(port, nullptr, 16)));
+  }
+  return ports;
 }
 
 }  // namespace meshfarm::test
