@@ -39,21 +39,6 @@ Length parse_length(const std::string& text, std::string_view option) {
   return length;
 }
 
-/// "512M": a number, and perhaps K, M, G or T.
-std::uint64_t parse_bytes(const std::string& text, std::string_view option) {
-  std::uint64_t value = 0;
-  const char* last = text.data() + text.size();
-  const auto [end, error] = std::from_chars(text.data(), last, value);
-  const std::string_view units = "KMGT";
-  const std::size_t unit = end + 1 == last ? units.find(*end) : std::string_view::npos;
-  const unsigned shift = end == last ? 0 : static_cast<unsigned>(10 * (unit + 1));
-  if (error != std::errc{} || (end != last && unit == std::string_view::npos) || value == 0 ||
-      value >> (63 - shift) != 0) {
-    throw UsageError(std::string(option) + " takes a number of bytes, as 512M or 2G");
-  }
-  return value << shift;
-}
-
 /// The shortest text that reads back as the same number.
 std::string shortest(double value) {
   char text[32];
@@ -174,7 +159,8 @@ void CutWords::check() {
   stream.streams = cut.parts;
   stream.weld = cut.weld;
   stream.threads = cut.threads;
-  stream.memory_bytes = parse_bytes(memory, "--memory");
+  stream.memory_bytes = parse_size(memory, "--memory");
+  if (stream.memory_bytes == 0) throw UsageError("--memory must be above 0");
 }
 
 void SecurityWords::add(po::options_description& options) {
