@@ -1,10 +1,26 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
 #include <meshfarm/farm/job.hpp>
+#include <meshfarm/staging/staged_writer.hpp>
 #include <meshfarm/util/bytes.hpp>
 #include <meshfarm/util/checksum.hpp>
 
 namespace meshfarm {
+namespace {
+
+/// Straight to the stage.
+class StagedJobFile : public JobFile {
+ public:
+  StagedJobFile(const Stage& stage, const StagedName& name, std::string_view unique)
+      : file_(stage, name, unique) {}
+  void write(std::string_view bytes) override { file_.write(bytes); }
+  FileRef commit() override { return file_.commit(); }
+
+ private:
+  StagedWriter file_;
+};
+
+}  // namespace
 
 JobKey key_of(const Job& job) {
   // An input counts by its content, not its name: a result that was made again under another name
@@ -29,6 +45,12 @@ FileRef JobContext::publish(const StagedName& name, std::string_view bytes) cons
   const std::string unique = to_hex(incarnation);
   return storage != nullptr ? storage->publish(name, bytes, unique)
                             : stage.publish(name, bytes, unique);
+}
+
+std::unique_ptr<JobFile> JobContext::create(const StagedName& name) const {
+  const std::string unique = to_hex(incarnation);
+  if (storage != nullptr) return storage->create(name, unique);
+  return std::make_unique<StagedJobFile>(stage, name, unique);
 }
 
 }  // namespace meshfarm

@@ -6,6 +6,7 @@
 #include <new>
 #include <utility>
 
+#include <meshfarm/staging/staged_writer.hpp>
 #include <meshfarm/util/errors.hpp>
 
 #include "farm/sockets.hpp"
@@ -22,6 +23,28 @@ std::uint64_t thread_cpu_us() {
 }
 
 }  // namespace
+
+/// What is written while the job computes: storage that stalls is told apart from a job that hangs.
+class JobSlot::OutputFile : public JobFile {
+ public:
+  OutputFile(JobSlot& slot, const StagedName& name, std::string_view unique)
+      : slot_(slot), file_(slot.stage_, name, unique) {}
+  void write(std::string_view bytes) override {
+    slot_.phase_ = JobPhase::storage;
+    file_.write(bytes);
+    slot_.phase_ = JobPhase::computing;
+  }
+  FileRef commit() override {
+    slot_.end_computing();
+    FileRef file = file_.commit();
+    slot_.times_.write_ms += slot_.lap_ms();
+    return file;
+  }
+
+ private:
+  JobSlot& slot_;
+  StagedWriter file_;
+};
 
 void JobSlot::begin(const Begin& begin) {
   give_up_ = false;
@@ -124,6 +147,10 @@ FileRef JobSlot::publish(const StagedName& name, std::string_view bytes, std::st
   FileRef file = stage_.publish(name, bytes, unique);
   times_.write_ms += lap_ms();
   return file;
+}
+
+std::unique_ptr<JobFile> JobSlot::create(const StagedName& name, std::string_view unique) {
+  return std::make_unique<OutputFile>(*this, name, unique);
 }
 
 void JobSlot::end_computing() {

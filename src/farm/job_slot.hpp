@@ -5,6 +5,7 @@
 #include <atomic>
 #include <cstdint>
 #include <map>
+#include <memory>
 #include <string>
 #include <variant>
 
@@ -39,6 +40,8 @@ class JobSlot : private JobStorage {
   SlotPulse pulse() const;
 
  private:
+  class OutputFile;
+
   JobOutcome attempt(const Begin& begin);
   JobOutcome compute(const Begin& begin);
   JobOutcome checked(const Begin& begin, JobOutput output) const;
@@ -47,6 +50,7 @@ class JobSlot : private JobStorage {
   std::uint32_t lap_ms();
   std::string read(const FileRef& file) override;
   FileRef publish(const StagedName& name, std::string_view bytes, std::string_view unique) override;
+  std::unique_ptr<JobFile> create(const StagedName& name, std::string_view unique) override;
 
   const Stage& stage_;
   const JobFunction& work_;

@@ -161,7 +161,7 @@ class SinkLoop {
     std::vector<std::string> records;
     for (Checked& each : batch_) {
       try {
-        stage_.read(each.check.output.file);
+        stage_.verify(each.check.output.file);
         const Check& check = each.check;
         if (!check.from_journal) records.push_back(encode_accepted({check.key, check.output}));
       } catch (const Error& error) {

@@ -10,8 +10,8 @@
 #include <sys/syscall.h>
 #include <unistd.h>
 
-#include <meshfarm/staging/atomic_file.hpp>
 #include <meshfarm/staging/stage.hpp>
+#include <meshfarm/staging/staged_writer.hpp>
 #include <meshfarm/util/checksum.hpp>
 #include <meshfarm/util/errors.hpp>
 
@@ -65,6 +65,22 @@ std::string read_once(const std::filesystem::path& root, const FileRef& file) {
     throw DataError(path.string() + ": damaged (its checksum is not the promised one)");
   }
   return bytes;
+}
+
+void verify_once(const std::filesystem::path& root, const FileRef& file) {
+  constexpr std::size_t k_piece = std::size_t{1} << 20;
+  const std::filesystem::path path = root / file.name;
+  const Fd fd = open_once(root, file);
+  Checksum sum;
+  std::string piece(std::min<std::uint64_t>(k_piece, file.size), '\0');
+  for (std::uint64_t left = file.size; left > 0; left -= piece.size()) {
+    piece.resize(std::min<std::uint64_t>(piece.size(), left));
+    if (read_up_to(fd.get(), piece, path) < piece.size()) break;  // the sum tells
+    sum.add(piece);
+  }
+  if (sum.value() != file.hash) {
+    throw DataError(path.string() + ": damaged (its checksum is not the promised one)");
+  }
 }
 
 /// Tries again what NFS may have answered too early.
@@ -139,14 +155,17 @@ bool Stage::has_manifest() const {
 
 FileRef Stage::publish(const StagedName& name, std::string_view bytes,
                        std::string_view unique) const {
-  AtomicFile file(path(name), unique);
+  StagedWriter file(*this, name, unique);
   file.write(bytes);
-  file.commit();
-  return {to_string(name), bytes.size(), checksum(bytes)};
+  return file.commit();
 }
 
 std::string Stage::read(const FileRef& file, const ReadPatience& patience) const {
   return patiently(*this, file, patience, [&] { return read_once(root_, file); });
+}
+
+void Stage::verify(const FileRef& file, const ReadPatience& patience) const {
+  patiently(*this, file, patience, [&] { verify_once(root_, file); });
 }
 
 Fd Stage::open_told(const FileRef& file, const ReadPatience& patience) const {

@@ -1,9 +1,6 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
-#include <cerrno>
 #include <string>
-
-#include <unistd.h>
 
 #include <meshfarm/staging/staged_reader.hpp>
 #include <meshfarm/util/errors.hpp>
@@ -14,15 +11,9 @@ StagedReader::StagedReader(const Stage& stage, const FileRef& file)
     : file_(file), path_(stage.root() / file.name), fd_(stage.open_told(file)) {}
 
 void StagedReader::fill(std::span<char> buffer) {
-  std::size_t done = 0;
-  while (done < buffer.size()) {
-    const ssize_t got = ::read(fd_.get(), buffer.data() + done, buffer.size() - done);
-    if (got < 0 && errno == EINTR) continue;
-    if (got < 0) throw_errno("cannot read", path_);
-    if (got == 0) {
-      throw DataError(path_.string() + ": cut short at byte " + std::to_string(done_ + done));
-    }
-    done += static_cast<std::size_t>(got);
+  const std::size_t got = read_up_to(fd_.get(), buffer, path_);
+  if (got < buffer.size()) {
+    throw DataError(path_.string() + ": cut short at byte " + std::to_string(done_ + got));
   }
   sum_.add({buffer.data(), buffer.size()});
   done_ += buffer.size();

@@ -52,19 +52,23 @@ std::uint64_t file_size(int fd, const std::filesystem::path& path) {
   return static_cast<std::uint64_t>(status.st_size);
 }
 
-std::string read_file(int fd, const std::filesystem::path& path) {
-  std::string bytes(file_size(fd, path), '\0');
+std::size_t read_up_to(int fd, std::span<char> buffer, const std::filesystem::path& path) {
   std::size_t done = 0;
-  while (done < bytes.size()) {
-    const ssize_t got = ::read(fd, bytes.data() + done, bytes.size() - done);
+  while (done < buffer.size()) {
+    const ssize_t got = ::read(fd, buffer.data() + done, buffer.size() - done);
     if (got < 0) {
       if (errno == EINTR) continue;
       throw_errno("cannot read", path);
     }
-    if (got == 0) break;  // shorter than fstat said: the caller's size check notices
+    if (got == 0) break;
     done += static_cast<std::size_t>(got);
   }
-  bytes.resize(done);
+  return done;
+}
+
+std::string read_file(int fd, const std::filesystem::path& path) {
+  std::string bytes(file_size(fd, path), '\0');
+  bytes.resize(read_up_to(fd, bytes, path));  // shorter than fstat said: the caller checks the size
   return bytes;
 }
 

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <span>
 #include <string>
 #include <string_view>
@@ -38,11 +39,22 @@ struct JobOutput {
   std::string summary;  // <= 16 KiB, opaque to the farm
 };
 
+/// An output that is written as it is computed. Without commit() nobody ever sees it.
+class JobFile {
+ public:
+  virtual ~JobFile() = default;
+  virtual void write(std::string_view bytes) = 0;
+  /// To be called when all is computed and written: from here on the worker may begin to compute
+  /// the next job.
+  virtual FileRef commit() = 0;
+};
+
 /// How a job reaches the stage.
 class JobStorage {
  public:
   virtual ~JobStorage() = default;
   virtual std::string read(const FileRef& file) = 0;
+  virtual std::unique_ptr<JobFile> create(const StagedName& name, std::string_view unique) = 0;
   virtual FileRef publish(const StagedName& name, std::string_view bytes,
                           std::string_view unique) = 0;
 };
@@ -61,6 +73,8 @@ struct JobContext {
   /// The output, as Stage::publish. To be called when all is computed: from here on the worker may
   /// begin to compute the next job.
   FileRef publish(const StagedName& name, std::string_view bytes) const;
+  /// The output, for a job that cannot hold it.
+  std::unique_ptr<JobFile> create(const StagedName& name) const;
 };
 
 /// Thrown by a job's function when the job's input can never be done, whoever tries: the job is

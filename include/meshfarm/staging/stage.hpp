@@ -49,6 +49,8 @@ class Stage {
   /// and size and checksum must match; stale NFS answers are tried again. Throws DataError,
   /// IoError.
   std::string read(const FileRef& file, const ReadPatience& patience = {}) const;
+  /// The same in bounded memory, for who wants to know only that the file is whole.
+  void verify(const FileRef& file, const ReadPatience& patience = {}) const;
   /// Opens such a file for a reader that checks its bytes as they come; the size is checked here.
   Fd open_told(const FileRef& file, const ReadPatience& patience = {}) const;
   /// Reads a file known by name only; its seal is the check.

@@ -35,6 +35,8 @@ class Fd {
 Fd open_for_read(const std::filesystem::path& path);
 /// Writes all of it, through short writes and EINTR. Throws IoError.
 void write_all(int fd, std::string_view bytes, const std::filesystem::path& path);
+/// Reads until the buffer is full or the file ends; returns how much. Throws IoError.
+std::size_t read_up_to(int fd, std::span<char> buffer, const std::filesystem::path& path);
 /// Reads the whole file by read(). Throws IoError.
 std::string read_file(const std::filesystem::path& path);
 std::string read_file(int fd, const std::filesystem::path& path);

@@ -6,6 +6,7 @@
 #include <doctest/doctest.h>
 
 #include <meshfarm/staging/stage.hpp>
+#include <meshfarm/staging/staged_writer.hpp>
 #include <meshfarm/util/errors.hpp>
 #include <meshfarm/util/file.hpp>
 
@@ -103,4 +104,36 @@ TEST_CASE("removing a stage leaves what is not its own") {
   std::filesystem::remove(root / "mine.ply");
   remove_stage(root);
   CHECK_FALSE(std::filesystem::exists(root));
+}
+
+TEST_CASE("a file written in pieces is there only when it is whole") {
+  const test::TempFolder folder;
+  const Stage stage = Stage::create(folder.path());
+  const std::string piece(700'000, 'x');
+  FileRef file;
+  {
+    StagedWriter writer(stage, PartName{3}, "abc");
+    for (int i = 0; i < 3; ++i) writer.write(piece);
+    CHECK_FALSE(std::filesystem::exists(stage.path(PartName{3})));
+    file = writer.commit();
+  }
+  CHECK(file == stage.publish(PartName{3}, piece + piece + piece, "def"));
+  CHECK_NOTHROW(stage.verify(file));
+  { StagedWriter(stage, PartName{4}).write(piece + piece); }
+  CHECK(std::distance(std::filesystem::directory_iterator(folder.path() / "parts"), {}) == 1);
+}
+
+TEST_CASE("who only verifies a file notices the same damage") {
+  const test::TempFolder folder;
+  const Stage stage = Stage::create(folder.path());
+  const FileRef file = stage.publish(PartName{0}, std::string(3'000'000, 'x'));
+  CHECK_NOTHROW(stage.verify(file, k_no_patience));
+  std::fstream(stage.path(PartName{0}), std::ios::in | std::ios::out).seekp(2'500'000).put('y');
+  CHECK_THROWS_WITH_AS(
+      stage.verify(file, k_no_patience),
+      (stage.path(PartName{0}).string() + ": damaged (its checksum is not the promised one)")
+          .c_str(),
+      DataError);
+  std::filesystem::resize_file(stage.path(PartName{0}), 2'000'000);
+  CHECK_THROWS_AS(stage.verify(file, k_no_patience), DataError);
 }

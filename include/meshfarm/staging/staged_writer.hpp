@@ -1,0 +1,37 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include <meshfarm/staging/atomic_file.hpp>
+#include <meshfarm/staging/stage.hpp>
+#include <meshfarm/util/checksum.hpp>
+
+namespace meshfarm {
+
+/// Writes a staged file front to back, in pieces, when it is too big to be held. Others see it from
+/// commit() on, whole and synced; without that it is gone.
+class StagedWriter {
+ public:
+  /// `unique` (an incarnation) keeps the temporary names of two writers apart.
+  StagedWriter(const Stage& stage, const StagedName& name, std::string_view unique = {})
+      : name_(to_string(name)), file_(stage.path(name), unique) {}
+  /// Buffered; throws IoError.
+  void write(std::string_view bytes) {
+    file_.write(bytes);
+    sum_.add(bytes);
+  }
+  FileRef commit() {
+    file_.commit();
+    return {name_, file_.size(), sum_.value()};
+  }
+
+ private:
+  std::string name_;
+  AtomicFile file_;
+  Checksum sum_;
+};
+
+}  // namespace meshfarm
