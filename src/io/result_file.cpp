@@ -1,14 +1,28 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
 //
-// A simplified part, kind "RSLT", version 1; the payload of a sealed file:
-//   position type u8 | boundary vertices u32 | rungs u32 |
-//   rungs x (level i32 | vertices u64 | triangles u64 | free triangles u64 | error f64) |
-//   rungs x (positions | triangles)            as in a part, finest rung first
-//   area of the part f64 | samples u64 | samples, 3 numbers each, of the part's surface
+// A simplified part, kind "RSLT", little endian. It is written front to back while it is made, so
+// counts come after what they count.
+//   result  = head | rungs, finest first | 0 u8 | tail | xxh3-64 of everything before
+//   head    = "MFRM" | "RSLT" | version u32 | byte order u32 0x01020304 | position type u8 |
+//             boundary vertices u32
+//   rung    = blocks | 2 u8
+//   block   = 1 u8 | vertices u32 | triangles u32 | positions | triangles x 3 x u32
+//   tail    = positions of the boundary vertices | sets u32 | sets x samples |
+//             rungs u32 | rungs x (level i32 | vertices u64 | triangles u64 | free triangles u64 |
+//             error f64)
+//   samples = area f64 | points u32 | points, 3 numbers each, of the part's surface
+// A rung's vertices are the boundary vertices, then those of its blocks. Of a block's vertices
+// there are at most 65536, and as many triangles.
+//   Version 2. Version 1 was sealed, with the counts in front and one set of samples.
 // The summary that travels with the message:
 //   dropped degenerate u64 | dropped duplicate u64 | rungs u32 | rungs as above
+#include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstring>
+#include <limits>
+#include <utility>
 
 #include <meshfarm/io/result_file.hpp>
 #include <meshfarm/staging/sealed.hpp>
@@ -20,9 +34,16 @@
 namespace meshfarm {
 namespace {
 
+constexpr FileKind k_magic = {'M', 'F', 'R', 'M'};
 constexpr FileKind k_kind = {'R', 'S', 'L', 'T'};
-constexpr std::uint32_t k_version = 1;
+constexpr std::uint32_t k_version = 2;
+constexpr std::uint32_t k_byte_order = 0x01020304;
 constexpr std::uint32_t k_max_rungs = 256;
+constexpr std::uint32_t k_most_in_block = 65536;
+constexpr std::uint32_t k_max_sets = 1 << 20;
+constexpr std::uint8_t k_end_of_rungs = 0;
+constexpr std::uint8_t k_block = 1;
+constexpr std::uint8_t k_end_of_rung = 2;
 
 void put_rungs(ByteWriter& out, const std::vector<Rung>& rungs) {
   out.put(static_cast<std::uint32_t>(rungs.size()));
@@ -35,17 +56,19 @@ void put_rungs(ByteWriter& out, const std::vector<Rung>& rungs) {
   }
 }
 
-std::vector<Rung> get_rungs(ByteReader& in) {
-  const auto count = in.get<std::uint32_t>();
+/// From a ByteReader or a ResultReader.
+template <class Reader>
+std::vector<Rung> get_rungs(Reader& in) {
+  const auto count = in.template get<std::uint32_t>();
   if (count == 0 || count > k_max_rungs) in.fail("impossible number of rungs");
   std::vector<Rung> rungs;
   for (std::uint32_t i = 0; i < count; ++i) {
     Rung rung;
-    rung.level = in.get<std::int32_t>();
-    rung.vertices = in.get<std::uint64_t>();
-    rung.triangles = in.get<std::uint64_t>();
-    rung.free_triangles = in.get<std::uint64_t>();
-    rung.error = in.get<double>();
+    rung.level = in.template get<std::int32_t>();
+    rung.vertices = in.template get<std::uint64_t>();
+    rung.triangles = in.template get<std::uint64_t>();
+    rung.free_triangles = in.template get<std::uint64_t>();
+    rung.error = in.template get<double>();
     if (!std::isfinite(rung.error) || rung.error < 0) in.fail("impossible error");
     if (rung.free_triangles > rung.triangles) in.fail("more free triangles than triangles");
     if (i > 0 && (rung.level <= rungs.back().level || rung.triangles > rungs.back().triangles)) {
@@ -56,10 +79,135 @@ std::vector<Rung> get_rungs(ByteReader& in) {
   return rungs;
 }
 
-std::uint64_t mesh_bytes(const Rung& rung, PositionType positions) {
-  return rung.vertices * 3 * static_cast<std::uint64_t>(positions) +
-         rung.triangles * sizeof(Triangle);
-}
+/// Reads a result front to back. Whatever counts a damaged file names, no more is held than it has.
+class ResultReader {
+ public:
+  ResultReader(const Fill& fill, std::string_view what) : fill_(fill), what_(what) {}
+
+  ResultMesh read(std::size_t wanted) {
+    read_head();
+    std::vector<Rung> rungs;  // the counts alone
+    for (auto tag = get<std::uint8_t>(); tag != k_end_of_rungs; tag = get<std::uint8_t>()) {
+      if (tag == k_end_of_rung) {
+        rungs.push_back(std::exchange(counts_, {}));
+        if (rungs.size() > k_max_rungs) fail("impossible number of rungs");
+      } else if (tag == k_block) {
+        read_block(rungs.size() == wanted);
+      } else {
+        fail("neither a block nor the end of a rung");
+      }
+    }
+    read_tail(rungs);
+    if (wanted >= rungs.size()) fail("no such rung");
+    check_corners();
+    return std::move(result_);
+  }
+
+  template <class T>
+  T get() {
+    T value;
+    bytes_.resize(sizeof value);
+    take();
+    std::memcpy(&value, bytes_.data(), sizeof value);
+    return value;
+  }
+
+  [[noreturn]] void fail(const char* why) const {
+    throw DataError(std::string(what_) + ": " + why);
+  }
+
+ private:
+  void take() {
+    fill_(bytes_);
+    sum_.add(bytes_);
+  }
+
+  void read_head() {
+    if (get<FileKind>() != k_magic) fail("not a meshfarm file");
+    if (get<FileKind>() != k_kind) fail("not a result");
+    if (get<std::uint32_t>() != k_version) fail("a result of an unknown version");
+    if (get<std::uint32_t>() != k_byte_order) fail("written with another byte order");
+    positions_ = get<PositionType>();
+    if (positions_ != PositionType::float32 && positions_ != PositionType::float64) {
+      fail("unknown kind of positions");
+    }
+    result_.boundary_vertices = get<std::uint32_t>();
+  }
+
+  void read_block(bool is_wanted) {
+    const auto vertices = get<std::uint32_t>();
+    const auto triangles = get<std::uint32_t>();
+    if (vertices > k_most_in_block || triangles > k_most_in_block) fail("impossible counts");
+    counts_.vertices += vertices;
+    counts_.triangles += triangles;
+    const std::size_t point = 3 * static_cast<std::size_t>(positions_);
+    bytes_.resize(vertices * point + triangles * sizeof(Triangle));
+    take();
+    if (!is_wanted) return;
+    ByteReader in(bytes_, what_);
+    const std::vector<Vec3> more = get_positions(in, vertices, positions_);
+    inner_.insert(inner_.end(), more.begin(), more.end());
+    const auto corners = in.get_array<Triangle>(triangles);
+    result_.mesh.triangles.insert(result_.mesh.triangles.end(), corners.begin(), corners.end());
+  }
+
+  std::vector<Vec3> read_points(std::uint32_t count) {
+    std::vector<Vec3> points;
+    while (points.size() < count) {
+      const auto some = std::min<std::size_t>(k_most_in_block, count - points.size());
+      bytes_.resize(some * 3 * static_cast<std::size_t>(positions_));
+      take();
+      ByteReader in(bytes_, what_);
+      const std::vector<Vec3> more = get_positions(in, some, positions_);
+      points.insert(points.end(), more.begin(), more.end());
+    }
+    return points;
+  }
+
+  void read_tail(const std::vector<Rung>& counted) {
+    result_.mesh.positions = read_points(result_.boundary_vertices);
+    result_.mesh.positions.insert(result_.mesh.positions.end(), inner_.begin(), inner_.end());
+    inner_ = {};
+    const auto sets = get<std::uint32_t>();
+    if (sets > k_max_sets) fail("impossible number of samples");
+    for (std::uint32_t i = 0; i < sets; ++i) {
+      SurfaceSamples samples;
+      samples.area = get<double>();
+      if (!std::isfinite(samples.area) || samples.area < 0) fail("impossible area");
+      samples.points = read_points(get<std::uint32_t>());
+      result_.samples.push_back(std::move(samples));
+    }
+    const std::vector<Rung> rungs = get_rungs(*this);
+    const auto same = [&](const Rung& told, const Rung& count) {
+      return told.triangles == count.triangles &&
+             told.vertices == count.vertices + result_.boundary_vertices;
+    };
+    if (!std::equal(rungs.begin(), rungs.end(), counted.begin(), counted.end(), same)) {
+      fail("other counts than its rungs have");
+    }
+    const std::uint64_t sum = sum_.value();
+    if (get<std::uint64_t>() != sum) fail("damaged (checksum)");
+  }
+
+  void check_corners() const {
+    const std::size_t vertices = result_.mesh.positions.size();
+    if (vertices > std::numeric_limits<std::uint32_t>::max()) fail("too many vertices for a part");
+    for (const Triangle& t : result_.mesh.triangles) {
+      if (t[0] >= vertices || t[1] >= vertices || t[2] >= vertices) {
+        fail("a triangle uses a vertex that is not there");
+      }
+    }
+  }
+
+  const Fill& fill_;
+  std::string_view what_;
+  PositionType positions_ = PositionType::float32;
+  std::string bytes_;
+  Checksum sum_;
+  Rung counts_;
+  std::vector<Vec3> inner_;  // of the wanted rung: all but the boundary vertices
+  ResultMesh result_;
+};
 
 }  // namespace
 
@@ -81,48 +229,83 @@ ResultSummary decode_summary(std::string_view bytes, std::string_view what) {
   return summary;
 }
 
-void ResultEncoder::add(std::int32_t level, const Mesh& mesh, std::uint64_t free_triangles,
-                        double error) {
-  rungs_.push_back({level, mesh.positions.size(), mesh.triangles.size(), free_triangles, error});
+ResultWriter::ResultWriter(PositionType positions, std::uint32_t boundary_vertices, Write write)
+    : positions_(positions), boundary_vertices_(boundary_vertices), write_(std::move(write)) {
   ByteWriter out;
-  put_mesh(out, mesh, positions_);
-  meshes_ += out.bytes();
-}
-
-std::string ResultEncoder::finish() const {
-  ByteWriter out;
+  out.put(k_magic);
+  out.put(k_kind);
+  out.put(k_version);
+  out.put(k_byte_order);
   out.put(positions_);
   out.put(boundary_vertices_);
+  put(out.bytes());
+}
+
+void ResultWriter::put(std::string_view bytes) {
+  sum_.add(bytes);
+  write_(bytes);
+}
+
+void ResultWriter::add(std::span<const Vec3> vertices, std::span<const Triangle> triangles) {
+  rung_.vertices += vertices.size();
+  rung_.triangles += triangles.size();
+  while (!vertices.empty() || !triangles.empty()) {
+    const std::size_t points = std::min<std::size_t>(vertices.size(), k_most_in_block);
+    const std::size_t corners = std::min<std::size_t>(triangles.size(), k_most_in_block);
+    ByteWriter out;
+    out.put(k_block);
+    out.put(static_cast<std::uint32_t>(points));
+    out.put(static_cast<std::uint32_t>(corners));
+    put_positions(out, vertices.first(points), positions_);
+    out.put_array(triangles.first(corners));
+    put(out.bytes());
+    vertices = vertices.subspan(points);
+    triangles = triangles.subspan(corners);
+  }
+}
+
+void ResultWriter::end_rung(std::int32_t level, std::uint64_t free_triangles, double error) {
+  rungs_.push_back(
+      {level, boundary_vertices_ + rung_.vertices, rung_.triangles, free_triangles, error});
+  rung_ = {};
+  put({reinterpret_cast<const char*>(&k_end_of_rung), 1});
+}
+
+void ResultWriter::add_rung(std::int32_t level, const Mesh& mesh, std::uint64_t free_triangles,
+                            double error) {
+  add(std::span(mesh.positions).subspan(boundary_vertices_), mesh.triangles);
+  end_rung(level, free_triangles, error);
+}
+
+void ResultWriter::finish(std::span<const Vec3> boundary, std::span<const SurfaceSamples> samples) {
+  ByteWriter out;
+  out.put(k_end_of_rungs);
+  put_positions(out, boundary, positions_);
+  out.put(static_cast<std::uint32_t>(samples.size()));
+  for (const SurfaceSamples& set : samples) {
+    out.put(set.area);
+    out.put(static_cast<std::uint32_t>(set.points.size()));
+    put_positions(out, set.points, positions_);
+  }
   put_rungs(out, rungs_);
-  out.put_array(std::span<const char>(meshes_));
-  out.put(samples_.area);
-  out.put(static_cast<std::uint64_t>(samples_.points.size()));
-  put_positions(out, samples_.points, positions_);
-  return seal(k_kind, k_version, out.bytes());
+  put(out.bytes());
+  const std::uint64_t sum = sum_.value();
+  write_({reinterpret_cast<const char*>(&sum), sizeof sum});
+}
+
+ResultMesh read_result(const Fill& fill, std::size_t rung, std::string_view what) {
+  return ResultReader(fill, what).read(rung);
 }
 
 ResultMesh decode_result(std::string_view file, std::size_t rung, std::string_view what) {
-  ByteReader in(unseal(file, k_kind, k_version, what), what);
-  const PositionType positions = get_position_type(in);
-  ResultMesh result;
-  result.boundary_vertices = in.get<std::uint32_t>();
-  const std::vector<Rung> rungs = get_rungs(in);
-  if (rung >= rungs.size()) in.fail("no such rung");
-  for (std::size_t i = 0; i < rungs.size(); ++i) {
-    const Rung& r = rungs[i];
-    if (r.vertices > in.remaining() || r.triangles > in.remaining()) in.fail("cut short");
-    if (result.boundary_vertices > r.vertices) in.fail("more boundary vertices than vertices");
-    if (i == rung) {
-      result.mesh = get_mesh(in, r.vertices, r.triangles, positions);
-    } else {
-      in.take(mesh_bytes(r, positions));
-    }
-  }
-  result.samples.area = in.get<double>();
-  if (!std::isfinite(result.samples.area) || result.samples.area < 0) in.fail("impossible area");
-  const auto samples = in.get<std::uint64_t>();
-  result.samples.points = get_positions(in, samples, positions);
-  in.expect_end();
+  std::size_t done = 0;
+  const Fill from_file = fill_from(file, std::string(what));
+  const Fill counted = [&](std::span<char> buffer) {
+    from_file(buffer);
+    done += buffer.size();
+  };
+  ResultMesh result = read_result(counted, rung, what);
+  if (done != file.size()) throw DataError(std::string(what) + ": bytes behind its end");
   return result;
 }
 

@@ -288,16 +288,6 @@ bool is_stream(std::string_view start) {
   return start.size() >= sizeof kinds && std::memcmp(start.data(), &kinds, sizeof kinds) == 0;
 }
 
-StreamReader::Fill fill_from(std::string_view bytes, std::string what) {
-  return [bytes, what = std::move(what), done = std::size_t{0}](std::span<char> buffer) mutable {
-    if (buffer.size() > bytes.size() - done) {
-      throw DataError(what + ": cut short at byte " + std::to_string(bytes.size()));
-    }
-    std::memcpy(buffer.data(), bytes.data() + done, buffer.size());
-    done += buffer.size();
-  };
-}
-
 Part read_stream(StreamReader& reader) {
   const StreamInfo& info = reader.info();
   Part part;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <iterator>
 #include <string>
 #include <utility>
 #include <vector>
@@ -101,7 +102,7 @@ class Assembly {
         stitcher.add(part);
         summary_.dropped_degenerate += chosen[p].dropped_degenerate;
         summary_.dropped_duplicate += chosen[p].dropped_duplicate;
-        samples_.push_back(std::move(part.samples));
+        std::move(part.samples.begin(), part.samples.end(), std::back_inserter(samples_));
         ++p;
       }
       tell("stitch", static_cast<double>(p) / static_cast<double>(chosen.size()), 0);

@@ -34,7 +34,9 @@ class LadderBuilder {
         simplifier_(std::move(part.mesh), {.locked_vertices = part.boundary_vertices,
                                            .positions = part.positions,
                                            .lines = parameters.lines}),
-        result_(part.positions, part.boundary_vertices) {}
+        boundary_vertices_(part.boundary_vertices),
+        result_(part.positions, part.boundary_vertices,
+                [this](std::string_view bytes) { file_ += bytes; }) {}
 
   void build() {
     if (parameters_.allocation == Allocation::uniform) {
@@ -45,9 +47,11 @@ class LadderBuilder {
     }
   }
 
-  std::string file() {
-    result_.set_samples(std::move(samples_));
-    return result_.finish();
+  /// The whole file; the last that is asked of it.
+  std::string take_file() {
+    const std::span<const Vec3> vertices(simplifier_.mesh().positions);
+    result_.finish(vertices.first(boundary_vertices_), {&samples_, 1});
+    return std::move(file_);
   }
   ResultSummary summary() const {
     return {result_.rungs(), simplifier_.dropped_degenerate(), simplifier_.dropped_duplicate()};
@@ -93,7 +97,7 @@ class LadderBuilder {
   bool snapshot(std::int32_t level) {
     const double error = measured_error(level);
     if (error > parameters_.max_error && !result_.empty()) return false;
-    result_.add(level, simplifier_.mesh(), simplifier_.free_triangles(), error);
+    result_.add_rung(level, simplifier_.mesh(), simplifier_.free_triangles(), error);
     return true;
   }
 
@@ -109,7 +113,9 @@ class LadderBuilder {
   const JobContext& context_;
   std::uint64_t input_triangles_;
   Simplifier simplifier_;
-  ResultEncoder result_;
+  std::uint32_t boundary_vertices_;
+  std::string file_;
+  ResultWriter result_;
 };
 
 /// A part, or a stream as one. What is not whole may be read whole by the next attempt; what is
@@ -180,7 +186,7 @@ JobOutput simplify_part(const Job& job, const JobContext& context) {
   LadderBuilder ladder(std::move(part), parameters, context);
   ladder.build();
   const ResultName name{key_of(job).value, context.attempt, context.incarnation};
-  const std::string file = ladder.file();
+  const std::string file = ladder.take_file();
   return {context.publish(name, file), encode_summary(ladder.summary())};
 }
 

@@ -1,6 +1,8 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
-#include <cmath>
+#include <memory>
+#include <optional>
+#include <utility>
 
 #include <meshfarm/io/result_file.hpp>
 #include <meshfarm/io/stream_file.hpp>
@@ -19,36 +21,68 @@ constexpr std::uint8_t k_version = 1;
 constexpr std::uint64_t k_max_samples = 100'000'000;
 constexpr std::uint64_t k_max_window = std::uint64_t{1} << 30;
 
-SweptStream sweep_from(StreamReader::Fill fill, const Job& job, const JobContext& context) {
-  const SweepParameters parameters = decode_sweep_parameters(job.parameters);
-  StreamReader reader(std::move(fill), job.inputs[0].name);
-  SweepOptions options;
-  options.max_cost = parameters.max_cost;
-  options.ratio = parameters.ratio;
-  options.window_triangles = parameters.window_triangles;
-  options.samples = parameters.samples;
-  options.lines = parameters.lines;
-  options.measure = parameters.max_error > 0;
-  options.progress = context.progress;
-  return sweep(reader, options);
-}
-
-/// What is whole by its checksum and makes no sense never will, whoever reads it.
-SweptStream sweep_in_memory(const Job& job, const JobContext& context) {
-  const std::string file = context.read(job.inputs[0]);
-  try {
-    return sweep_from(fill_from(file, job.inputs[0].name), job, context);
-  } catch (const DataError& error) {
-    throw BadInputError(error.what());
+/// Sweeps from the stream to the result, holding neither.
+class SweepToFile {
+ public:
+  SweepToFile(const Job& job, const JobContext& context)
+      : job_(job),
+        context_(context),
+        parameters_(decode_sweep_parameters(job.parameters)),
+        file_(context.create(ResultName{key_of(job).value, context.attempt, context.incarnation})) {
   }
-}
 
-SweptStream sweep_bit_by_bit(const Job& job, const JobContext& context) {
-  StagedReader file(context.stage, job.inputs[0]);
-  SweptStream swept = sweep_from([&](std::span<char> buffer) { file.fill(buffer); }, job, context);
-  file.expect_end();
-  return swept;
-}
+  JobOutput run() {
+    input().size <= job_.memory ? sweep_in_memory() : sweep_bit_by_bit();
+    result_->end_rung(parameters_.level, swept_.free_triangles, swept_.error);
+    result_->finish(swept_.boundary, {&swept_.samples, 1});
+    const ResultSummary summary{result_->rungs(), swept_.dropped_degenerate,
+                                swept_.dropped_duplicate};
+    swept_ = {};
+    return {file_->commit(), encode_summary(summary)};
+  }
+
+ private:
+  const FileRef& input() const { return job_.inputs[0]; }
+
+  void sweep_from(Fill fill) {
+    StreamReader reader(std::move(fill), input().name);
+    SweepOptions options;
+    options.max_cost = parameters_.max_cost;
+    options.ratio = parameters_.ratio;
+    options.window_triangles = parameters_.window_triangles;
+    options.samples = parameters_.samples;
+    options.lines = parameters_.lines;
+    options.measure = parameters_.max_error > 0;
+    options.progress = context_.progress;
+    result_.emplace(reader.info().positions, reader.info().boundary_vertices,
+                    [this](std::string_view bytes) { file_->write(bytes); });
+    swept_ = sweep(reader, options,
+                   [this](auto vertices, auto triangles) { result_->add(vertices, triangles); });
+  }
+
+  /// What is whole by its checksum and makes no sense never will, whoever reads it.
+  void sweep_in_memory() {
+    const std::string stream = context_.read(input());
+    try {
+      sweep_from(fill_from(stream, input().name));
+    } catch (const DataError& error) {
+      throw BadInputError(error.what());
+    }
+  }
+
+  void sweep_bit_by_bit() {
+    StagedReader stream(context_.stage, input());
+    sweep_from([&](std::span<char> buffer) { stream.fill(buffer); });
+    stream.expect_end();
+  }
+
+  const Job& job_;
+  const JobContext& context_;
+  SweepParameters parameters_;
+  std::unique_ptr<JobFile> file_;
+  std::optional<ResultWriter> result_;
+  SweptStream swept_;
+};
 
 }  // namespace
 
@@ -85,17 +119,7 @@ SweepParameters decode_sweep_parameters(std::string_view bytes) {
 
 JobOutput sweep_stream(const Job& job, const JobContext& context) {
   if (job.inputs.size() != 1) throw DataError("a sweep job takes one stream");
-  SweptStream swept = job.inputs[0].size <= job.memory ? sweep_in_memory(job, context)
-                                                       : sweep_bit_by_bit(job, context);
-  const SweepParameters parameters = decode_sweep_parameters(job.parameters);
-  ResultEncoder result(swept.positions, swept.boundary_vertices);
-  result.add(parameters.level, swept.mesh, swept.free_triangles, swept.error);
-  result.set_samples(std::move(swept.samples));
-  const ResultSummary summary{result.rungs(), swept.dropped_degenerate, swept.dropped_duplicate};
-  swept.mesh = {};
-  const ResultName name{key_of(job).value, context.attempt, context.incarnation};
-  const std::string file = result.finish();
-  return {context.publish(name, file), encode_summary(summary)};
+  return SweepToFile(job, context).run();
 }
 
 }  // namespace meshfarm

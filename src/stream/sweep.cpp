@@ -30,11 +30,11 @@ enum class Role : std::uint8_t {
 
 class Sweep {
  public:
-  Sweep(StreamReader& reader, const SweepOptions& options) : reader_(reader), options_(options) {
-    result_.positions = reader.info().positions;
-    result_.boundary_vertices = reader.info().boundary_vertices;
-    result_.mesh.positions.resize(result_.boundary_vertices);
-  }
+  Sweep(StreamReader& reader, const SweepOptions& options, const SweepOutput& output)
+      : reader_(reader),
+        options_(options),
+        output_(output),
+        next_sent_(reader.info().boundary_vertices) {}
 
   SweptStream run() {
     StreamBlock block;
@@ -66,8 +66,8 @@ class Sweep {
       local_.push_back(static_cast<std::uint32_t>(buffer_.positions.size()));
       buffer_.positions.push_back(block.positions[i]);
       if (is_boundary) {
-        result_.mesh.positions[boundary_] = block.positions[i];
-        add_role(Role::boundary, boundary_++);
+        add_role(Role::boundary, static_cast<std::uint32_t>(result_.boundary.size()));
+        result_.boundary.push_back(block.positions[i]);
         if (block.boundary[next_boundary++].last_use()) local_.back() = k_none;
       } else {
         add_role(Role::open, 0);
@@ -206,9 +206,10 @@ class Sweep {
     return is_settled;
   }
 
-  /// Sends the flagged triangles on to the result. Their vertices that others need stay, locked.
+  /// Sends the flagged triangles on to the output. Their vertices that others need stay, locked.
   void send(const std::vector<std::uint8_t>& flags) {
     if (options_.measure) measure(flags);
+    Mesh piece;  // in the numbers of the result
     std::size_t kept = 0;
     for (std::size_t i = 0; i < flags.size(); ++i) {
       Triangle& t = buffer_.triangles[i];
@@ -219,8 +220,10 @@ class Sweep {
       const bool is_free = std::none_of(
           t.begin(), t.end(), [&](std::uint32_t v) { return roles_[v] == Role::boundary; });
       result_.free_triangles += is_free ? 1 : 0;
-      result_.mesh.triangles.push_back({sent(t[0]), sent(t[1]), sent(t[2])});
+      piece.triangles.push_back(
+          {sent(t[0], piece.positions), sent(t[1], piece.positions), sent(t[2], piece.positions)});
     }
+    output_(piece.positions, piece.triangles);
     buffer_.triangles.resize(kept);
     drop_unused();
   }
@@ -243,12 +246,12 @@ class Sweep {
     }
   }
 
-  /// The vertex's number in the result, where it is from now on.
-  std::uint32_t sent(std::uint32_t vertex) {
+  /// The vertex's number in the result, in which it is from now on.
+  std::uint32_t sent(std::uint32_t vertex, std::vector<Vec3>& fresh) {
     if (roles_[vertex] == Role::free) {
       roles_[vertex] = Role::sent;
-      ids_[vertex] = static_cast<std::uint32_t>(result_.mesh.positions.size());
-      result_.mesh.positions.push_back(buffer_.positions[vertex]);
+      ids_[vertex] = next_sent_++;
+      fresh.push_back(buffer_.positions[vertex]);
     }
     return ids_[vertex];
   }
@@ -270,7 +273,9 @@ class Sweep {
 
   StreamReader& reader_;
   const SweepOptions& options_;
+  const SweepOutput& output_;
   SweptStream result_;
+  std::uint32_t next_sent_;  // number in the result
   Mesh buffer_;
   std::vector<Role> roles_;         // of the buffer's vertices
   std::vector<std::uint32_t> ids_;  // of boundary vertices and sent ones: number in the result
@@ -278,8 +283,7 @@ class Sweep {
   /// are to use them.
   std::vector<std::uint32_t> local_;
   std::uint32_t first_local_ = 0;
-  std::uint32_t boundary_ = 0;  // boundary vertices read so far
-  std::uint64_t read_ = 0;      // triangles
+  std::uint64_t read_ = 0;  // triangles
   std::uint64_t sampled_ = 0;
   std::uint64_t fresh_ = 0;        // triangles that came after the last window
   std::vector<double> distances_;  // of the samples, to what has been sent so far
@@ -288,8 +292,8 @@ class Sweep {
 
 }  // namespace
 
-SweptStream sweep(StreamReader& reader, const SweepOptions& options) {
-  return Sweep(reader, options).run();
+SweptStream sweep(StreamReader& reader, const SweepOptions& options, const SweepOutput& output) {
+  return Sweep(reader, options, output).run();
 }
 
 }  // namespace meshfarm

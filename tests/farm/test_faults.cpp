@@ -7,6 +7,7 @@
 // kind of fault; else the first and a later n of each, and kills, for a quick answer.
 #include <algorithm>
 #include <cstdlib>
+#include <map>
 
 #include <doctest/doctest.h>
 
@@ -21,8 +22,6 @@ namespace fs = std::filesystem;
 
 namespace {
 
-const std::vector<std::string> k_target = {"--ratio", "0.05"};
-
 class Bench {
  public:
   Bench() {
@@ -30,31 +29,47 @@ class Bench {
     REQUIRE(meshfarm({"cut", path("mesh.ply"), "--stage", path("cut"), "--parts", "3"}).code == 0);
     fs::copy(path("cut"), path("quiet"), fs::copy_options::recursive);
     REQUIRE(replay("quiet", "quiet.ply").code == 0);
-    expected_ = read_text(path("quiet.ply"));
-    REQUIRE(expected_.size() > 1000);
+    expected_["cut"] = read_text(path("quiet.ply"));
+    REQUIRE(expected().size() > 1000);
   }
 
   std::string path(const std::string& name) const { return (folder_.path() / name).string(); }
-  const std::string& expected() const { return expected_; }
+  const std::string& expected() const { return expected_.at(stage_); }
   Ran meshfarm(std::vector<std::string> words) {
     return run_meshfarm(words, path("log" + std::to_string(++logs_)));
   }
   Ran replay(const std::string& stage, const std::string& output) {
-    std::vector<std::string> words = {"replay", path(stage), "-o", path(output), "--workers", "2"};
-    words.insert(words.end(), k_target.begin(), k_target.end());
+    std::vector<std::string> words = {"replay", path(stage), "-o", path(output)};
+    const bool streams = stage_ == "streams";
+    words.insert(words.end(),
+                 {"--workers", streams ? "1" : "2", "--ratio", streams ? "0.9" : "0.05"});
     return meshfarm(words);
   }
+  /// From now on runs are of streams, whose swept results are larger than a writer's buffer.
+  void use_streams() {
+    stage_ = "streams";
+    if (expected_.contains(stage_)) return;
+    REQUIRE(meshfarm({"generate", "-o", path("long.ply"), "--triangles", "200000"}).code == 0);
+    REQUIRE(meshfarm({"cut", path("long.ply"), "--stage", path(stage_), "--scheme", "stream",
+                      "--parts", "2", "--window", "10000"})
+                .code == 0);
+    fs::copy(path(stage_), path("swept"), fs::copy_options::recursive);
+    REQUIRE(replay("swept", "swept.ply").code == 0);
+    expected_[stage_] = read_text(path("swept.ply"));
+  }
+  void use_parts() { stage_ = "cut"; }
   /// A fresh stage, all whose files are below path("run").
   void fresh() {
     fs::remove_all(path("run"));
     fs::create_directories(path("run"));
-    fs::copy(path("cut"), path("run/stage"), fs::copy_options::recursive);
+    fs::copy(path(stage_), path("run/stage"), fs::copy_options::recursive);
     fs::remove(path("fired"));
   }
 
  private:
   TempFolder folder_;
-  std::string expected_;
+  std::string stage_ = "cut";
+  std::map<std::string, std::string> expected_;  // by stage
   int logs_ = 0;
 };
 
@@ -162,6 +177,16 @@ TEST_CASE("the ventilator's files may fail at any call") {
 TEST_CASE("a worker whose file system hangs is left behind") {
   CHECK(survives("worker", "write", "hang", 1));
   CHECK(survives("worker", "fsync", "hang", 2));
+}
+
+TEST_CASE("a worker may fail at any piece of what it writes while it sweeps") {
+  bench().use_streams();
+  // A sample's result is one write each; then come the pieces of the swept ones.
+  for (const char* kind : {"ENOSPC", "kill", "short"}) {
+    for (const int nth : {3, 4, 6}) CHECK(survives("worker", "write", kind, nth));
+  }
+  CHECK(survives("worker", "rename", "kill", 4));
+  bench().use_parts();
 }
 
 TEST_CASE("a part that kills every worker is given up with its reason, the rest is kept") {

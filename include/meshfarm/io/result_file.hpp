@@ -3,12 +3,16 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include <meshfarm/geometry/distance.hpp>
 #include <meshfarm/geometry/mesh.hpp>
+#include <meshfarm/io/fill.hpp>
+#include <meshfarm/util/checksum.hpp>
 
 namespace meshfarm {
 
@@ -31,34 +35,48 @@ struct ResultSummary {
 std::string encode_summary(const ResultSummary& summary);
 ResultSummary decode_summary(std::string_view bytes, std::string_view what);
 
-/// Gathers the rungs of a result, finest first, and makes the staged file.
-class ResultEncoder {
+/// Writes a result as it is made: its rungs, finest first, each piece by piece. Keeps nothing, so
+/// that a result may be larger than the memory. The first vertices of every rung are the part's
+/// boundary vertices, unmoved; they are written once, at the end.
+class ResultWriter {
  public:
-  ResultEncoder(PositionType positions, std::uint32_t boundary_vertices)
-      : positions_(positions), boundary_vertices_(boundary_vertices) {}
-  void add(std::int32_t level, const Mesh& mesh, std::uint64_t free_triangles, double error = 0);
-  /// Points of the part as it came, by which the error of the final mesh is measured.
-  void set_samples(SurfaceSamples samples) { samples_ = std::move(samples); }
+  using Write = std::function<void(std::string_view)>;
+
+  ResultWriter(PositionType positions, std::uint32_t boundary_vertices, Write write);
+  /// More of a rung: its next vertices, counted on from the boundary vertices, and triangles of any
+  /// of the rung's vertices, those to come included.
+  void add(std::span<const Vec3> vertices, std::span<const Triangle> triangles);
+  void end_rung(std::int32_t level, std::uint64_t free_triangles, double error = 0);
+  /// A whole rung: the mesh's first vertices are the boundary vertices.
+  void add_rung(std::int32_t level, const Mesh& mesh, std::uint64_t free_triangles,
+                double error = 0);
+  /// Samples: points of the part as it came, by which the error of the final mesh is measured.
+  void finish(std::span<const Vec3> boundary, std::span<const SurfaceSamples> samples);
+
   bool empty() const { return rungs_.empty(); }
   const std::vector<Rung>& rungs() const { return rungs_; }
-  std::string finish() const;
 
  private:
+  void put(std::string_view bytes);
+
   PositionType positions_;
   std::uint32_t boundary_vertices_;
+  Write write_;
+  Rung rung_;  // the counts of what was added of the next rung
   std::vector<Rung> rungs_;
-  std::string meshes_;
-  SurfaceSamples samples_;
+  Checksum sum_;
 };
 
 /// One rung of a result. The first `boundary_vertices` are the part's, unmoved.
 struct ResultMesh {
   Mesh mesh;
   std::uint32_t boundary_vertices = 0;
-  SurfaceSamples samples;
+  std::vector<SurfaceSamples> samples;
 };
 
 /// Reads the rung with this index. Throws DataError naming `what`.
+ResultMesh read_result(const Fill& fill, std::size_t rung, std::string_view what);
+/// The same from a file's bytes, which must end where the result does.
 ResultMesh decode_result(std::string_view file, std::size_t rung, std::string_view what);
 
 }  // namespace meshfarm

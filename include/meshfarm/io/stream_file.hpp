@@ -4,13 +4,13 @@
 
 #include <array>
 #include <cstdint>
-#include <functional>
 #include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include <meshfarm/geometry/mesh.hpp>
+#include <meshfarm/io/fill.hpp>
 #include <meshfarm/io/part_file.hpp>
 
 namespace meshfarm {
@@ -59,9 +59,6 @@ struct StreamBlock {
 /// there yet or was finalised before, a vertex that never is.
 class StreamReader {
  public:
-  /// Fills a buffer with the file's next bytes, all of it, or throws.
-  using Fill = std::function<void(std::span<char>)>;
-
   StreamReader(Fill fill, std::string what);
   const StreamInfo& info() const { return info_; }
   /// The next block, checked; false after the last.
@@ -92,9 +89,6 @@ class StreamReader {
 
 /// Whether a file begins like a stream.
 bool is_stream(std::string_view start);
-
-/// A fill that reads from bytes in memory, which must outlive it.
-StreamReader::Fill fill_from(std::string_view bytes, std::string what);
 
 /// Reads the whole stream into memory as a part, its boundary vertices first.
 Part read_stream(StreamReader& reader);

@@ -28,7 +28,8 @@ std::string encode_parameters(const SweepParameters& parameters);
 SweepParameters decode_sweep_parameters(std::string_view bytes);
 
 /// Simplifies a long stream (the job's input) in one pass, to a result of one rung. The stream is
-/// read bit by bit unless it is so short that a worker may read it ahead.
+/// read bit by bit unless it is so short that a worker may read it ahead; the result is written as
+/// the sweep passes it, so that it may be larger than the memory.
 JobOutput sweep_stream(const Job& job, const JobContext& context);
 
 }  // namespace meshfarm

@@ -5,6 +5,8 @@
 #include <cstdint>
 #include <functional>
 #include <limits>
+#include <span>
+#include <vector>
 
 #include <meshfarm/geometry/distance.hpp>
 #include <meshfarm/geometry/mesh.hpp>
@@ -30,12 +32,15 @@ struct SweepOptions {
   std::function<bool(std::uint64_t triangles)> progress;
 };
 
-/// A simplified stream. Its boundary vertices come first, unmoved, in the stream's order.
+/// Takes what a sweep has passed: the result's next vertices, counted on from its boundary
+/// vertices, and triangles of any vertices so far and of boundary vertices.
+using SweepOutput =
+    std::function<void(std::span<const Vec3> vertices, std::span<const Triangle> triangles)>;
+
+/// What is known of a simplified stream at its end.
 struct SweptStream {
-  Mesh mesh;
-  std::uint32_t boundary_vertices = 0;
+  std::vector<Vec3> boundary;        // its first vertices, unmoved, in the stream's order
   std::uint64_t free_triangles = 0;  // those without a boundary vertex
-  PositionType positions = PositionType::float32;
   SurfaceSamples samples;
   double error = 0;  // where it was to be measured
   std::uint64_t dropped_degenerate = 0;
@@ -45,8 +50,8 @@ struct SweptStream {
 /// Simplifies a stream in one pass through a bounded buffer (Wu & Kobbelt 2003; Xiong et al. 2008,
 /// 4.2): reads a window, collapses every edge that is cheap enough and whose ends are finalised and
 /// no boundary vertices, sends on what lies some rings behind the front, reads on. Quadrics are
-/// made from the buffer's current mesh, so that nothing is carried along. Throws DataError;
-/// IncompleteError if stopped.
-SweptStream sweep(StreamReader& reader, const SweepOptions& options);
+/// made from the buffer's current mesh, so that nothing is carried along; only the boundary
+/// vertices and the samples are kept to the end. Throws DataError; IncompleteError if stopped.
+SweptStream sweep(StreamReader& reader, const SweepOptions& options, const SweepOutput& output);
 
 }  // namespace meshfarm

@@ -10,23 +10,12 @@
 #include <meshfarm/io/result_file.hpp>
 #include <meshfarm/util/errors.hpp>
 
+#include "support/damage.hpp"
 #include "support/meshes.hpp"
 
 using namespace meshfarm;
 
 namespace {
-
-/// Every prefix and every single flipped bit must be refused by `decode`.
-template <class Decode>
-void check_refuses_damage(const std::string& file, Decode decode) {
-  for (std::size_t i = 0; i < file.size(); ++i) {
-    CAPTURE(i);
-    CHECK_THROWS_AS(decode(std::string_view(file).substr(0, i)), DataError);
-    std::string damaged = file;
-    damaged[i] = static_cast<char>(damaged[i] ^ (1 << (i % 8)));
-    CHECK_THROWS_AS(decode(damaged), DataError);
-  }
-}
 
 Manifest sample_manifest() {
   Manifest m;
@@ -66,8 +55,8 @@ TEST_CASE("a part comes back, in both kinds of positions") {
 }
 
 TEST_CASE("a damaged part is refused") {
-  check_refuses_damage(encode_part({test::tetrahedron(), 1, PositionType::float32}),
-                       [](std::string_view file) { return decode_part(file, "part"); });
+  test::check_refuses_damage(encode_part({test::tetrahedron(), 1, PositionType::float32}),
+                             [](std::string_view file) { return decode_part(file, "part"); });
 }
 
 TEST_CASE("a part that does not fit together is refused, though its checksum is right") {
@@ -79,31 +68,6 @@ TEST_CASE("a part that does not fit together is refused, though its checksum is 
   part.mesh.triangles[2][1] = 3;
   part.mesh.positions[0].y = std::numeric_limits<double>::quiet_NaN();
   CHECK_THROWS_AS(decode_part(encode_part(part), "part"), DataError);
-}
-
-TEST_CASE("each rung of a result comes back") {
-  ResultEncoder encoder(PositionType::float64, 2);
-  encoder.add(-1, test::icosphere(1), 60);
-  encoder.add(4, test::icosphere(0), 20);
-  encoder.add(9, test::tetrahedron(), 0);
-  encoder.set_samples({2.5, {{1, 2, 3}, {4, 5, 6}}});
-  const std::string file = encoder.finish();
-  CHECK(decode_result(file, 1, "r").samples.area == 2.5);
-  CHECK(decode_result(file, 1, "r").samples.points[1] == Vec3{4, 5, 6});
-  CHECK(decode_result(file, 0, "r").mesh.triangles == test::icosphere(1).triangles);
-  CHECK(decode_result(file, 1, "r").mesh.positions == test::icosphere(0).positions);
-  const ResultMesh last = decode_result(file, 2, "r");
-  CHECK(last.mesh.triangles == test::tetrahedron().triangles);
-  CHECK(last.boundary_vertices == 2);
-  CHECK_THROWS_AS(decode_result(file, 3, "r"), DataError);
-}
-
-TEST_CASE("a damaged result is refused") {
-  ResultEncoder encoder(PositionType::float32, 2);
-  encoder.add(0, test::octahedron(), 3);
-  encoder.add(1, test::tetrahedron(), 0);
-  check_refuses_damage(encoder.finish(),
-                       [](std::string_view file) { return decode_result(file, 1, "result"); });
 }
 
 TEST_CASE("a summary comes back, and one that contradicts itself is refused") {
@@ -126,8 +90,9 @@ TEST_CASE("boundary triangles come back, damaged ones are refused") {
                                                    {{{1, 0}, {1, 1}, {0, 0xffffffff}}}};
   CHECK(decode_boundary(encode_boundary(triangles), "b") == triangles);
   CHECK(decode_boundary(encode_boundary({}), "b").empty());
-  check_refuses_damage(encode_boundary(triangles),
-                       [](std::string_view file) { return decode_boundary(file, "boundary"); });
+  test::check_refuses_damage(encode_boundary(triangles), [](std::string_view file) {
+    return decode_boundary(file, "boundary");
+  });
 }
 
 TEST_CASE("a manifest comes back whole") {
@@ -143,8 +108,9 @@ TEST_CASE("a manifest comes back whole") {
 }
 
 TEST_CASE("a manifest that is damaged or names a file outside its place is refused") {
-  check_refuses_damage(encode_manifest(sample_manifest()),
-                       [](std::string_view file) { return decode_manifest(file, "manifest"); });
+  test::check_refuses_damage(encode_manifest(sample_manifest()), [](std::string_view file) {
+    return decode_manifest(file, "manifest");
+  });
   for (const char* name : {"../part", "/parts/000001.part", "boundary", "results/x"}) {
     Manifest m = sample_manifest();
     m.parts[0].file.name = name;

@@ -24,10 +24,31 @@ StreamMesh stream_of(const Mesh& mesh, std::uint32_t boundary = 0) {
   return sort_slab(std::move(share), {{}, Weld::exact, PositionType::float64}).stream;
 }
 
-SweptStream swept(const StreamMesh& stream, const SweepOptions& options) {
+/// A swept stream with all that it sent put together.
+struct Swept : SweptStream {
+  Mesh mesh;
+  std::uint32_t boundary_vertices = 0;
+  std::size_t pieces = 0;
+  std::size_t largest_piece = 0;  // triangles
+};
+
+Swept swept(const StreamMesh& stream, const SweepOptions& options) {
   const std::string file = encode_stream(stream);
   StreamReader reader(fill_from(file, "stream"), "stream");
-  return sweep(reader, options);
+  Swept result;
+  result.boundary_vertices = reader.info().boundary_vertices;
+  result.mesh.positions.resize(result.boundary_vertices);
+  Mesh& mesh = result.mesh;
+  static_cast<SweptStream&>(result) = sweep(reader, options, [&](auto vertices, auto triangles) {
+    mesh.positions.insert(mesh.positions.end(), vertices.begin(), vertices.end());
+    mesh.triangles.insert(mesh.triangles.end(), triangles.begin(), triangles.end());
+    ++result.pieces;
+    result.largest_piece = std::max(result.largest_piece, triangles.size());
+    for (const Triangle& t : triangles)
+      REQUIRE(*std::max_element(t.begin(), t.end()) < mesh.positions.size());
+  });
+  std::copy(result.boundary.begin(), result.boundary.end(), mesh.positions.begin());
+  return result;
 }
 
 Mesh wavy_torus() {
@@ -46,8 +67,7 @@ TEST_CASE("a sweep through any window keeps the topology and reaches about the s
   REQUIRE(whole.triangles() < mesh.triangles.size() / 4);
   for (const std::uint64_t window : {100'000, 20'000, 8'000}) {
     CAPTURE(window);
-    const SweptStream result =
-        swept(stream_of(mesh), {.max_cost = cost, .window_triangles = window});
+    const Swept result = swept(stream_of(mesh), {.max_cost = cost, .window_triangles = window});
     const Topology t = measure_topology(result.mesh);
     CHECK(t.euler == 0);
     CHECK(t.components == 1);
@@ -65,8 +85,8 @@ TEST_CASE("a sweep through any window keeps the topology and reaches about the s
 TEST_CASE("the same bytes whenever") {
   const StreamMesh stream = stream_of(wavy_torus());
   const SweepOptions options{.max_cost = 1e-9, .window_triangles = 9'000, .samples = 500};
-  const SweptStream a = swept(stream, options);
-  const SweptStream b = swept(stream, options);
+  const Swept a = swept(stream, options);
+  const Swept b = swept(stream, options);
   CHECK(a.mesh.positions == b.mesh.positions);
   CHECK(a.mesh.triangles == b.mesh.triangles);
   CHECK(a.samples.points == b.samples.points);
@@ -78,7 +98,7 @@ TEST_CASE("boundary vertices come first, in the stream's order and unmoved") {
   for (std::size_t v = 0; v < stream.boundary.size(); ++v) {
     if (stream.boundary[v] != 0) expected.push_back(stream.mesh.positions[v]);
   }
-  const SweptStream result = swept(stream, {.max_cost = 1, .window_triangles = 4'000});
+  const Swept result = swept(stream, {.max_cost = 1, .window_triangles = 4'000});
   REQUIRE(result.boundary_vertices == 3 * 151);
   for (std::size_t v = 0; v < expected.size(); ++v) {
     REQUIRE(result.mesh.positions[v] == expected[v]);
@@ -92,14 +112,22 @@ TEST_CASE("boundary vertices come first, in the stream's order and unmoved") {
 
 TEST_CASE("with a cost below nothing all stays as it came") {
   const Mesh mesh = test::grid(120, 80);
-  const SweptStream result = swept(stream_of(mesh), {.max_cost = -1, .window_triangles = 3'000});
+  const Swept result = swept(stream_of(mesh), {.max_cost = -1, .window_triangles = 3'000});
   CHECK(result.mesh.triangles.size() == mesh.triangles.size());
   CHECK(result.mesh.positions.size() == mesh.positions.size());
 }
 
+TEST_CASE("what is passed is sent on at once, window by window") {
+  const Mesh mesh = test::grid(900, 40);  // 72,000 triangles: five blocks
+  const Swept result = swept(stream_of(mesh), {.max_cost = -1, .window_triangles = 2'000});
+  CHECK(result.mesh.triangles.size() == mesh.triangles.size());
+  CHECK(result.pieces >= 5);
+  CHECK(result.largest_piece < 19'000);  // a block, and what the last one left
+}
+
 TEST_CASE("with a ratio every window keeps its share") {
   const Mesh mesh = wavy_torus();
-  const SweptStream result = swept(stream_of(mesh), {.ratio = 0.2, .window_triangles = 9'000});
+  const Swept result = swept(stream_of(mesh), {.ratio = 0.2, .window_triangles = 9'000});
   CHECK(static_cast<double>(result.mesh.triangles.size()) ==
         doctest::Approx(0.2 * static_cast<double>(mesh.triangles.size())).epsilon(0.2));
   CHECK(measure_topology(result.mesh).euler == 0);
@@ -107,7 +135,7 @@ TEST_CASE("with a ratio every window keeps its share") {
 
 TEST_CASE("samples are of the surface as it came, and the error is measured by them") {
   const Mesh mesh = wavy_torus();
-  const SweptStream result =
+  const Swept result =
       swept(stream_of(mesh),
             {.max_cost = 1e-8, .window_triangles = 9'000, .samples = 2'000, .measure = true});
   CHECK(result.samples.points.size() == 2'000);
@@ -121,7 +149,7 @@ TEST_CASE("samples are of the surface as it came, and the error is measured by t
 
 TEST_CASE("a front that is more than the window is held all the same") {
   // A closed strip swept along x whose rings of 600 vertices each are far more than the window.
-  const SweptStream result =
+  const Swept result =
       swept(stream_of(test::torus(40, 600)), {.max_cost = 1e-9, .window_triangles = 100});
   CHECK(measure_topology(result.mesh).euler == 0);
 }
@@ -131,7 +159,7 @@ TEST_CASE("duplicate triangles are dropped and counted, non-manifold edges stay"
   mesh.triangles.push_back(mesh.triangles[777]);
   mesh.triangles.push_back(
       {mesh.triangles[5'000][1], mesh.triangles[5'000][2], mesh.triangles[5'000][0]});
-  const SweptStream result = swept(stream_of(mesh), {.max_cost = 0, .window_triangles = 2'000});
+  const Swept result = swept(stream_of(mesh), {.max_cost = 0, .window_triangles = 2'000});
   CHECK(result.dropped_duplicate == 2);
   CHECK(measure_topology(result.mesh).duplicate == 0);
 }

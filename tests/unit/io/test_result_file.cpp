@@ -1,0 +1,114 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#include <algorithm>
+
+#include <doctest/doctest.h>
+
+#include <meshfarm/io/result_file.hpp>
+#include <meshfarm/util/errors.hpp>
+
+#include "support/damage.hpp"
+#include "support/meshes.hpp"
+
+using namespace meshfarm;
+
+namespace {
+
+ResultWriter writer_to(std::string& file, PositionType positions, std::uint32_t boundary) {
+  return {positions, boundary, [&file](std::string_view bytes) { file += bytes; }};
+}
+
+std::span<const Vec3> first_two(const Mesh& mesh) {
+  return std::span(mesh.positions).first(2);
+}
+
+/// A ladder of meshes that share their first two vertices.
+std::string ladder() {
+  std::vector<Mesh> meshes = {test::icosphere(1), test::icosphere(0), test::tetrahedron()};
+  std::string file;
+  ResultWriter writer = writer_to(file, PositionType::float64, 2);
+  for (Mesh& mesh : meshes) {
+    std::copy_n(meshes[0].positions.begin(), 2, mesh.positions.begin());
+    writer.add_rung(10 * static_cast<std::int32_t>(writer.rungs().size()), mesh, 2);
+  }
+  const std::vector<SurfaceSamples> samples = {{2.5, {{1, 2, 3}, {4, 5, 6}}}, {1.5, {}}};
+  writer.finish(first_two(meshes[0]), samples);
+  return file;
+}
+
+}  // namespace
+
+TEST_CASE("each rung of a result comes back") {
+  const std::string file = ladder();
+  const ResultMesh first = decode_result(file, 0, "r");
+  CHECK(first.mesh.positions == test::icosphere(1).positions);
+  CHECK(first.mesh.triangles == test::icosphere(1).triangles);
+  CHECK(first.boundary_vertices == 2);
+  REQUIRE(first.samples.size() == 2);
+  CHECK(first.samples[0].area == 2.5);
+  CHECK(first.samples[0].points[1] == Vec3{4, 5, 6});
+  CHECK(first.samples[1].points.empty());
+  const ResultMesh last = decode_result(file, 2, "r");
+  CHECK(last.mesh.triangles == test::tetrahedron().triangles);
+  CHECK(last.mesh.positions[0] == first.mesh.positions[0]);
+  CHECK(last.mesh.positions[3] == test::tetrahedron().positions[3]);
+  CHECK_THROWS_AS(decode_result(file, 3, "r"), DataError);
+}
+
+TEST_CASE("a result written piece by piece is the mesh that it would be in one") {
+  const Mesh mesh = test::grid(300, 250);  // 150,000 triangles: more than a block takes
+  std::string whole;
+  ResultWriter all = writer_to(whole, PositionType::float32, 2);
+  all.add_rung(3, mesh, 100);
+  all.finish(first_two(mesh), {});
+  std::string pieces;
+  ResultWriter some = writer_to(pieces, PositionType::float32, 2);
+  const std::span<const Vec3> vertices(mesh.positions);
+  const std::span<const Triangle> triangles(mesh.triangles);
+  some.add(vertices.subspan(2, 70'000), triangles.first(10));
+  some.add({}, triangles.subspan(10));  // of vertices that are still to come
+  some.add(vertices.subspan(70'002), {});
+  some.end_rung(3, 100);
+  some.finish(first_two(mesh), {});
+  CHECK(some.rungs()[0].vertices == mesh.positions.size());
+  CHECK(some.rungs()[0].triangles == mesh.triangles.size());
+  for (const std::string* file : {&whole, &pieces}) {
+    const ResultMesh back = decode_result(*file, 0, "r");
+    CHECK(back.mesh.positions == mesh.positions);
+    CHECK(back.mesh.triangles == mesh.triangles);
+    CHECK(back.samples.empty());
+  }
+}
+
+TEST_CASE("a damaged result is refused") {
+  std::string file;
+  ResultWriter writer = writer_to(file, PositionType::float32, 2);
+  writer.add_rung(0, test::octahedron(), 3);
+  writer.add_rung(1, test::tetrahedron(), 0);
+  const std::vector<SurfaceSamples> samples = {{2.5, {{1, 2, 3}}}};
+  writer.finish(first_two(test::octahedron()), samples);
+  test::check_refuses_damage(
+      file, [](std::string_view damaged) { return decode_result(damaged, 1, "result"); });
+  CHECK_THROWS_AS(decode_result(file + "x", 1, "result"), DataError);
+}
+
+TEST_CASE("a result that does not fit together is refused, though its checksum is right") {
+  Mesh mesh = test::tetrahedron();
+  mesh.triangles[2][1] = 4;
+  std::string file;
+  ResultWriter writer = writer_to(file, PositionType::float32, 0);
+  writer.add_rung(0, mesh, 0);
+  writer.finish({}, {});
+  CHECK_THROWS_WITH_AS(decode_result(file, 0, "r"), "r: a triangle uses a vertex that is not there",
+                       DataError);
+}
+
+TEST_CASE("a rung may be empty") {
+  std::string file;
+  ResultWriter writer = writer_to(file, PositionType::float32, 0);
+  writer.add_rung(0, test::tetrahedron(), 4);
+  writer.add_rung(1, {}, 0);
+  writer.finish({}, {});
+  CHECK(decode_result(file, 0, "r").mesh.triangles.size() == 4);
+  CHECK(decode_result(file, 1, "r").mesh.triangles.empty());
+}
