@@ -10,7 +10,7 @@
 
 #include <boost/program_options.hpp>
 
-#include <meshfarm/farm/scheduler.hpp>
+#include <meshfarm/farm/schedule.hpp>
 #include <meshfarm/farm/security.hpp>
 #include <meshfarm/partition/cut.hpp>
 #include <meshfarm/pipeline/run_options.hpp>

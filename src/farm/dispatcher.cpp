@@ -179,9 +179,11 @@ Dispatcher::Worker* Dispatcher::worker_at(const PeerId& peer, WorkerId id, std::
 }
 
 void Dispatcher::hear(WorkerId id, Worker& worker) {
-  by_heard_.erase({worker.heard, id});
+  if (worker.heard == now_) return;
+  auto node = by_heard_.extract({worker.heard, id});
   worker.heard = now_;
-  by_heard_.insert({now_, id});
+  node.value().first = now_;
+  by_heard_.insert(by_heard_.end(), std::move(node));
 }
 
 /// Whether a job in work here stands still for too long.

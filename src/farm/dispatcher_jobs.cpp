@@ -173,9 +173,9 @@ void Dispatcher::push(Scheduler::Pick pick) {
   Worker& worker = workers_.at(pick.worker);
   worker.pushed = now_;
   ++worker.sent;
-  out_.push_back(
-      PushJob{pick.worker, Assignment{options_.run, options_.epoch, worker.sent,
-                                      attempt_number(pick.job.attempt), std::move(pick.job.job)}});
+  out_.push_back(PushJob{pick.worker, pick.job.key,
+                         Assignment{options_.run, options_.epoch, worker.sent,
+                                    attempt_number(pick.job.attempt), std::move(pick.job.job)}});
 }
 
 void Dispatcher::look_for_end() {

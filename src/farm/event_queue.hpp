@@ -3,8 +3,12 @@
 #pragma once
 
 #include <algorithm>
+#include <cstddef>
 #include <cstdint>
-#include <functional>
+#include <deque>
+#include <memory>
+#include <new>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -12,59 +16,95 @@
 
 namespace meshfarm {
 
+/// A place for what will happen: a callable, kept where it lies until it is forgotten. There are
+/// millions of them, so those of usual size take no memory of their own.
+class PlannedEvent {
+ public:
+  PlannedEvent() = default;
+  PlannedEvent(const PlannedEvent&) = delete;
+  PlannedEvent& operator=(const PlannedEvent&) = delete;
+  ~PlannedEvent() { forget(); }
+
+  /// Into an empty place.
+  template <class Event>
+  void keep(Event event) {
+    if constexpr (sizeof(Event) > k_room || alignof(Event) > alignof(std::max_align_t)) {
+      keep([large = std::make_unique<Event>(std::move(event))] { (*large)(); });
+    } else {
+      ::new (static_cast<void*>(room_)) Event(std::move(event));
+      happen_ = [](void* kept) { (*static_cast<Event*>(kept))(); };
+      forget_ = [](void* kept) { static_cast<Event*>(kept)->~Event(); };
+    }
+  }
+  void happen() { happen_(room_); }
+  void forget() {
+    if (forget_ != nullptr) std::exchange(forget_, nullptr)(room_);
+  }
+
+ private:
+  static constexpr std::size_t k_room = 112;  // of a message's way to the ventilator: 88
+
+  alignas(std::max_align_t) std::byte room_[k_room];
+  void (*happen_)(void*) = nullptr;
+  void (*forget_)(void*) = nullptr;
+};
+
 /// Events of a simulation, in the order of their time and, at one time, of their planning.
 class EventQueue {
  public:
-  using Event = std::function<void()>;
-
   SimulatedTime now() const { return now_; }
   bool empty() const { return heap_.empty(); }
   std::uint64_t count() const { return count_; }
 
   /// Plans an event; a time that has passed means now.
+  template <class Event>
   void at(SimulatedTime time, Event event) {
-    std::uint32_t slot = 0;
+    PlannedEvent* place = nullptr;
     if (free_.empty()) {
-      slot = static_cast<std::uint32_t>(slots_.size());
-      slots_.push_back(std::move(event));
+      place = &places_.emplace_back();
     } else {
-      slot = free_.back();
+      place = free_.back();
       free_.pop_back();
-      slots_[slot] = std::move(event);
     }
-    heap_.push_back({std::max(time, now_), planned_++, slot});
-    std::push_heap(heap_.begin(), heap_.end(), later);
+    place->keep(std::move(event));
+    heap_.push_back({std::max(time, now_), planned_++, place});
+    std::push_heap(heap_.begin(), heap_.end(), Later{});
   }
-  void in(SimulatedTime delay, Event event) { at(now_ + delay, std::move(event)); }
+  template <class Event>
+  void in(SimulatedTime delay, Event event) {
+    at(now_ + delay, std::move(event));
+  }
 
   /// Moves the clock to the next event and lets it happen.
   void step() {
-    std::pop_heap(heap_.begin(), heap_.end(), later);
+    std::pop_heap(heap_.begin(), heap_.end(), Later{});
     const Entry next = heap_.back();
     heap_.pop_back();
     now_ = next.time;
     ++count_;
-    const Event event = std::exchange(slots_[next.slot], nullptr);
-    free_.push_back(next.slot);
-    event();
+    next.place->happen();
+    next.place->forget();
+    free_.push_back(next.place);
   }
 
  private:
   struct Entry {
     SimulatedTime time;
     std::uint64_t order;
-    std::uint32_t slot;
+    PlannedEvent* place;
   };
-  static bool later(const Entry& a, const Entry& b) {
-    return a.time != b.time ? a.time > b.time : a.order > b.order;
-  }
+  struct Later {
+    bool operator()(const Entry& a, const Entry& b) const {
+      return a.time != b.time ? a.time > b.time : a.order > b.order;
+    }
+  };
 
   SimulatedTime now_{0};
   std::uint64_t planned_ = 0;
   std::uint64_t count_ = 0;
   std::vector<Entry> heap_;
-  std::vector<Event> slots_;
-  std::vector<std::uint32_t> free_;
+  std::deque<PlannedEvent> places_;  // they stay where they are: an event may plan others
+  std::vector<PlannedEvent*> free_;
 };
 
 }  // namespace meshfarm

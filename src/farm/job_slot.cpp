@@ -106,7 +106,7 @@ JobOutcome JobSlot::compute(const Begin& begin) {
 }
 
 JobOutcome JobSlot::checked(const Begin& begin, JobOutput output) const {
-  const ResultName name{key_of(begin.job).value, begin.attempt, incarnation_};
+  const ResultName name{begin.key.value, begin.attempt, incarnation_};
   if (output.file.name != to_string(name)) {
     return JobFailure{
         clipped("its output is named '" + output.file.name + "', not '" + to_string(name) + "'"),

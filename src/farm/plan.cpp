@@ -33,9 +33,8 @@ void Plan::restart(const std::map<JobKey, JobOutput>& accepted) {
 }
 
 void Plan::advance(const std::map<JobKey, JobOutput>& accepted) {
-  for (std::vector<Job> jobs = rounds_.advance(); !jobs.empty(); jobs = rounds_.advance()) {
-    for (Job& job : jobs) {
-      const JobKey key = key_of(job);
+  for (auto jobs = rounds_.advance(); !jobs.empty(); jobs = rounds_.advance()) {
+    for (auto& [key, job] : jobs) {
       const auto [found, is_new] = entries_.try_emplace(key);
       Entry& entry = found->second;
       if (is_new) {

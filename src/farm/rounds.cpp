@@ -4,17 +4,18 @@
 
 namespace meshfarm {
 
-std::vector<Job> Rounds::advance() {
-  std::vector<Job> fresh;
+std::vector<WantedJob> Rounds::advance() {
+  std::vector<WantedJob> fresh;
   while (!complete_ && jobs_accepted_ == entries_.size() && fresh.empty()) {
     for (const JobKey key : round_) outputs_.push_back({key, entries_.at(key).output});
     round_.clear();
     std::vector<Job> jobs = source_(outputs_);
     complete_ = jobs.empty();
+    entries_.reserve(entries_.size() + jobs.size());
     for (Job& job : jobs) {
       const JobKey key = key_of(job);
       round_.push_back(key);
-      if (entries_.try_emplace(key).second) fresh.push_back(std::move(job));
+      if (entries_.try_emplace(key).second) fresh.push_back({key, std::move(job)});
     }
   }
   return fresh;

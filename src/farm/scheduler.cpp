@@ -172,12 +172,22 @@ void Scheduler::rank_all() {
 }
 
 void Scheduler::rank(WorkerId id, Member& member) {
-  if (member.rank) willing_.erase({*member.rank, id});
-  member.rank.reset();
-  if (!open(member)) return;
-  member.rank = member.cost_held / (member.speed * member.threads);
-  if (member.held.size() > member.threads) *member.rank += k_second_rank;
-  willing_.insert({*member.rank, id});
+  std::optional<double> rank;
+  if (open(member)) {
+    rank = member.cost_held / (member.speed * member.threads);
+    if (member.held.size() > member.threads) *rank += k_second_rank;
+  }
+  if (rank == member.rank) return;
+  decltype(willing_)::node_type node;
+  if (member.rank) node = willing_.extract({*member.rank, id});
+  member.rank = rank;
+  if (!rank) return;
+  if (node.empty()) {
+    willing_.insert({*rank, id});
+  } else {
+    node.value().first = *rank;
+    willing_.insert(std::move(node));
+  }
 }
 
 bool Scheduler::fits(const Member& member, std::uint64_t memory) const {

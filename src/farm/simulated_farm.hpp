@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <deque>
+#include <functional>
 #include <map>
 #include <memory>
 #include <optional>
@@ -141,8 +142,16 @@ class SimulatedFarm {
   void act(std::uint32_t index, Leave& each);
   void feel_pulse(Worker& worker);
   std::uint32_t lap_ms(InWork& in_work) const;
-  void while_in_work(Worker& worker, std::uint32_t slot, SimulatedTime time,
-                     EventQueue::Event event);
+  /// Lets it happen at that time, if the slot's job of now is still there.
+  template <class Event>
+  void while_in_work(Worker& worker, std::uint32_t slot, SimulatedTime time, const Event& event) {
+    const std::uint64_t token = worker.slots[slot]->token;
+    queue_.at(time, [this, &worker, slot, token, life = worker.life, event] {
+      when_awake(worker, life, [&worker, slot, token, event] {
+        if (worker.slots[slot] && worker.slots[slot]->token == token) event();
+      });
+    });
+  }
   void open_gate(Worker& worker);
   void begin_computing(Worker& worker, std::uint32_t slot);
   void compute(Worker& worker, std::uint32_t slot);
@@ -167,7 +176,7 @@ class SimulatedFarm {
 
   void plan_faults();
   /// Lets a fault happen again and again, so often a minute, until the faults end.
-  void repeat(double rate_per_minute, const EventQueue::Event& fault);
+  void repeat(double rate_per_minute, const std::function<void()>& fault);
 
   const JobSource& source_;
   const SimulationOptions& options_;

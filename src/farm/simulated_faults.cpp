@@ -13,7 +13,7 @@ constexpr std::chrono::milliseconds k_longest_stall{20'000};
 
 }  // namespace
 
-void SimulatedFarm::repeat(double rate_per_minute, const EventQueue::Event& fault) {
+void SimulatedFarm::repeat(double rate_per_minute, const std::function<void()>& fault) {
   if (rate_per_minute <= 0) return;
   const double minutes = -std::log(1 - dice_.fraction()) / rate_per_minute;
   const auto wait = SimulatedTime(static_cast<std::int64_t>(std::min(minutes, 1e6) * 60e6));

@@ -14,7 +14,7 @@ void SimulatedFarm::act(std::uint32_t index, Begin& each) {
   checks_.that(!worker.slots.at(each.slot), "a worker began two jobs in one slot");
   InWork& in_work = worker.slots[each.slot].emplace();
   in_work.token = ++tokens_;
-  in_work.key = key_of(each.job);
+  in_work.key = each.key;
   in_work.attempt = each.attempt;
   in_work.job = std::move(each.job);
   in_work.work = options_.work ? options_.work(in_work.job)
@@ -51,17 +51,6 @@ std::uint32_t SimulatedFarm::lap_ms(InWork& in_work) const {
   const auto since = std::chrono::duration_cast<FarmTime>(in_work.lap);
   in_work.lap = queue_.now();
   return static_cast<std::uint32_t>((farm_now() - since).count());
-}
-
-void SimulatedFarm::while_in_work(Worker& worker, std::uint32_t slot, SimulatedTime time,
-                                  EventQueue::Event event) {
-  const std::uint64_t token = worker.slots[slot]->token;
-  auto later = [this, &worker, slot, token, life = worker.life, event = std::move(event)] {
-    when_awake(worker, life, [&worker, slot, token, event] {
-      if (worker.slots[slot] && worker.slots[slot]->token == token) event();
-    });
-  };
-  queue_.at(time, std::move(later));
 }
 
 void SimulatedFarm::open_gate(Worker& worker) {

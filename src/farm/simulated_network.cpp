@@ -3,7 +3,6 @@
 #include "farm/simulated_network.hpp"
 
 #include <algorithm>
-#include <utility>
 
 namespace meshfarm {
 namespace {
@@ -12,13 +11,14 @@ constexpr std::uint64_t k_late_us = 8'000'000;
 
 }  // namespace
 
-void SimulatedWires::send(SimulatedChannel& channel, Order order, EventQueue::Event deliver) {
+/// When a message arrives that is sent now.
+SimulatedWires::Arrivals SimulatedWires::route(SimulatedChannel& channel, Order order) {
   const auto jitter = static_cast<std::uint64_t>(network_.jitter.count());
   SimulatedTime arrival = queue_.now() + network_.delay + SimulatedTime(dice_.pick(jitter));
   bool keep_order = true;
   bool twice = false;
   if (faulty()) {
-    if (dice_.chance(faults_.lose)) return;
+    if (dice_.chance(faults_.lose)) return {};
     if (dice_.chance(faults_.late)) arrival += SimulatedTime(dice_.pick(k_late_us));
     twice = dice_.chance(faults_.duplicate);
     keep_order = order == Order::kept || !dice_.chance(faults_.overtake);
@@ -27,15 +27,17 @@ void SimulatedWires::send(SimulatedChannel& channel, Order order, EventQueue::Ev
   const Cut& to = cuts_[channel.to];
   const SimulatedTime again = std::max(from.sends_again, to.hears_again);
   if (again > queue_.now()) {
-    if (from.loses || to.loses) return;
+    if (from.loses || to.loses) return {};
     arrival = std::max(arrival, again);
   }
   if (keep_order) {
     arrival = std::max(arrival, channel.last);
     channel.last = arrival;
   }
-  if (twice) queue_.at(arrival + SimulatedTime(dice_.pick(k_late_us)), deliver);
-  queue_.at(arrival, std::move(deliver));
+  Arrivals arrivals;
+  arrivals.first = arrival;
+  if (twice) arrivals.again = arrival + SimulatedTime(dice_.pick(k_late_us));
+  return arrivals;
 }
 
 void SimulatedWires::cut(std::uint32_t host, SimulatedTime until) {

@@ -3,6 +3,8 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
+#include <utility>
 #include <vector>
 
 #include <meshfarm/farm/simulation.hpp>
@@ -31,7 +33,12 @@ class SimulatedWires {
         cuts_(hosts) {}
 
   enum class Order { kept, may_change };
-  void send(SimulatedChannel& channel, Order order, EventQueue::Event deliver);
+  template <class Event>
+  void send(SimulatedChannel& channel, Order order, Event deliver) {
+    const Arrivals arrivals = route(channel, order);
+    if (arrivals.again) queue_.at(*arrivals.again, deliver);
+    if (arrivals.first) queue_.at(*arrivals.first, std::move(deliver));
+  }
   /// What the host sends or is sent is held back until then, or lost.
   void cut(std::uint32_t host, SimulatedTime until);
 
@@ -41,6 +48,11 @@ class SimulatedWires {
     SimulatedTime hears_again{0};
     bool loses = false;
   };
+  struct Arrivals {
+    std::optional<SimulatedTime> first;
+    std::optional<SimulatedTime> again;
+  };
+  Arrivals route(SimulatedChannel& channel, Order order);
   bool faulty() const { return queue_.now() < faults_.end; }
 
   const SimulatedNetwork& network_;

@@ -159,9 +159,8 @@ void SimulatedFarm::act(CloseLane& each) {
 }
 
 void SimulatedFarm::act(PushJob& each) {
-  const JobKey key = key_of(each.assignment.job);
-  checks_.pushed(each.worker, key, each.assignment);
-  note(key.value);
+  checks_.pushed(each.worker, each.key, each.assignment);
+  note(each.key.value);
   if (result_.pushes++ == 0) result_.first_push = queue_.now();
   Worker& worker = workers_[members_.at(each.worker)];
   worker.lane_channel.from = ventilator_.host;

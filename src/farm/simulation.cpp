@@ -1,6 +1,8 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
 #include <algorithm>
+#include <memory>
+#include <utility>
 
 #include <meshfarm/farm/rounds.hpp>
 #include <meshfarm/farm/simulation.hpp>
@@ -26,27 +28,32 @@ std::string simulated_summary(const Job& job) {
 JobSource simulated_jobs(std::uint64_t count) {
   const std::uint64_t last = count / 16;
   const std::uint64_t first = count - last - std::min<std::uint64_t>(count, 1);
-  return [first, last](std::span<const AcceptedJob> accepted) {
+  const auto named = [](const std::string& name, std::uint64_t many) {
     std::vector<Job> jobs;
-    if (accepted.size() < first) {
-      for (std::uint64_t i = 0; i < first; ++i) jobs.push_back(made_up("job " + std::to_string(i)));
-    } else if (accepted.size() == first) {
-      const std::string needs = accepted.empty() ? "nothing" : accepted.back().output.summary;
-      jobs.push_back(made_up("all, to " + needs));
-    } else if (accepted.size() == first + 1) {
-      for (std::uint64_t i = 0; i < last; ++i) jobs.push_back(made_up("end " + std::to_string(i)));
-    }
+    for (std::uint64_t i = 0; i < many; ++i) jobs.push_back(made_up(name + std::to_string(i)));
     return jobs;
+  };
+  // Shared by the copies of the source, of which each simulated process has one.
+  const auto shared = [](std::vector<Job> jobs) {
+    return std::make_shared<const std::vector<Job>>(std::move(jobs));
+  };
+  return [most = shared(named("job ", first)),
+          rest = shared(named("end ", last))](std::span<const AcceptedJob> accepted) {
+    if (accepted.size() < most->size()) return *most;
+    if (accepted.size() == most->size() + 1) return *rest;
+    if (accepted.size() > most->size()) return std::vector<Job>{};
+    const std::string needs = accepted.empty() ? "nothing" : accepted.back().output.summary;
+    return std::vector<Job>{made_up("all, to " + needs)};
   };
 }
 
 std::vector<std::string> expected_summaries(const JobSource& source) {
   Rounds rounds(source);
-  for (std::vector<Job> jobs = rounds.advance(); !jobs.empty(); jobs = rounds.advance()) {
-    for (const Job& job : jobs) {
+  for (auto jobs = rounds.advance(); !jobs.empty(); jobs = rounds.advance()) {
+    for (const auto& [key, job] : jobs) {
       JobOutput output;
       output.summary = simulated_summary(job);
-      rounds.accept(key_of(job), output);
+      rounds.accept(key, output);
     }
   }
   std::vector<std::string> summaries;

@@ -133,8 +133,7 @@ SinkActions SinkCore::checked(const Check& check, const std::string& problem) {
 
 /// Asks for the rounds that can be asked for; what a journal knows of them is checked at once.
 void SinkCore::want() {
-  for (const Job& job : rounds_.advance()) {
-    const JobKey key = key_of(job);
+  for (const auto& [key, job] : rounds_.advance()) {
     const auto known = journal_.find(key);
     if (known == journal_.end()) continue;
     const Check check{key, known->second, WorkerId{}, 0, true};

@@ -102,7 +102,7 @@ WorkerActions WorkerCore::on_lane(const Message& message, FarmTime now) {
     return take();
   }
   received_ = assignment->lane_seq;
-  waiting_.push_back(*assignment);
+  waiting_.push_back({key_of(assignment->job), *assignment});
   now_ = now;
   begin_next();
   raise_credit();
@@ -199,8 +199,8 @@ void WorkerCore::forget(const Done& done) {
   if (kept != unacknowledged_.end() && kept->second.result.attempt <= done.attempt) {
     unacknowledged_.erase(kept);
   }
-  std::erase_if(waiting_, [&](const Assignment& each) {
-    return each.attempt <= done.attempt && key_of(each.job) == done.key;
+  std::erase_if(waiting_, [&](const Waiting& each) {
+    return each.key == done.key && each.assignment.attempt <= done.attempt;
   });
   for (std::uint32_t slot = 0; slot < slots_.size(); ++slot) {
     const auto& job = slots_[slot];
@@ -226,13 +226,13 @@ void WorkerCore::send_result(Kept& kept, FarmTime now) {
 
 void WorkerCore::begin_next() {
   while (!waiting_.empty()) {
-    const std::uint64_t memory = waiting_.front().job.memory;
+    const std::uint64_t memory = waiting_.front().assignment.job.memory;
     const auto slot = free_slot(memory);
     if (!slot) return;
-    Assignment next = std::move(waiting_.front());
+    auto [key, next] = std::move(waiting_.front());
     waiting_.pop_front();
-    slots_[*slot] = InWork{key_of(next.job), next.attempt, memory, true, true, {}, now_};
-    act(Begin{*slot, next.attempt, std::move(next.job)});
+    slots_[*slot] = InWork{key, next.attempt, memory, true, true, {}, now_};
+    act(Begin{*slot, next.attempt, key, std::move(next.job)});
   }
 }
 

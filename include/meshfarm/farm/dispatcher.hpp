@@ -9,9 +9,9 @@
 #include <string>
 #include <unordered_map>
 #include <utility>
-#include <variant>
 #include <vector>
 
+#include <meshfarm/farm/dispatcher_actions.hpp>
 #include <meshfarm/farm/farm_event.hpp>
 #include <meshfarm/farm/plan.hpp>
 #include <meshfarm/farm/protocol.hpp>
@@ -19,37 +19,6 @@
 #include <meshfarm/farm/ventilator.hpp>
 
 namespace meshfarm {
-
-/// A peer on the control channel, as its transport names it.
-using PeerId = std::string;
-
-struct SendTo {
-  PeerId peer;
-  Message message;
-};
-/// Answered by lane_opened() or lane_failed().
-struct OpenLane {
-  WorkerId worker;
-};
-struct CloseLane {
-  WorkerId worker;
-};
-struct PushJob {
-  WorkerId worker;
-  Assignment assignment;
-};
-/// The ventilator's work is over; `failure` says why the run could not be completed, and
-/// `resumable` that the same run may be, later.
-struct Finish {
-  std::string failure;
-  bool resumable = false;
-};
-/// Nothing to do: for those who watch.
-struct Tell {
-  FarmEvent event;
-};
-using Action = std::variant<SendTo, OpenLane, CloseLane, PushJob, Finish, Tell>;
-using Actions = std::vector<Action>;
 
 struct DispatcherOptions {
   std::uint64_t run = 0;

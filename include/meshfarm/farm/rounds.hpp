@@ -15,6 +15,11 @@ struct JobKeyHash {
   std::size_t operator()(JobKey key) const { return static_cast<std::size_t>(key.value); }
 };
 
+struct WantedJob {
+  JobKey key;
+  Job job;
+};
+
 /// What a source wants, round by round, and what of it is accepted. Ventilator and sink each keep
 /// one. A job asked for twice is the same job: it is done once and its output is given twice.
 class Rounds {
@@ -23,7 +28,7 @@ class Rounds {
 
   /// Asks for the next round if all that was wanted so far is accepted. Returns the jobs that were
   /// not wanted before; none when nothing new is wanted now.
-  std::vector<Job> advance();
+  std::vector<WantedJob> advance();
   /// Marks a wanted job as accepted. False if it is not wanted, or was accepted before.
   bool accept(JobKey key, const JobOutput& output);
 

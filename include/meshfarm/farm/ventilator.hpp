@@ -12,7 +12,7 @@
 #include <meshfarm/farm/farm_event.hpp>
 #include <meshfarm/farm/job.hpp>
 #include <meshfarm/farm/protocol.hpp>
-#include <meshfarm/farm/scheduler.hpp>
+#include <meshfarm/farm/schedule.hpp>
 #include <meshfarm/farm/security.hpp>
 #include <meshfarm/staging/stage.hpp>
 

@@ -15,38 +15,9 @@
 #include <meshfarm/farm/membership.hpp>
 #include <meshfarm/farm/protocol.hpp>
 #include <meshfarm/farm/worker.hpp>
+#include <meshfarm/farm/worker_actions.hpp>
 
 namespace meshfarm {
-
-struct ConnectLane {
-  std::string address;
-};
-/// Empty: there is no sink for now.
-struct ConnectSink {
-  std::string address;
-};
-struct SendResult {
-  Result result;
-};
-/// Work on the job in this slot, which is free; answered by finished().
-struct Begin {
-  std::uint32_t slot = 0;
-  std::uint32_t attempt = 0;
-  Job job;
-};
-/// Ask the slot's job to be given up; it still answers with finished().
-struct GiveUp {
-  std::uint32_t slot = 0;
-};
-/// The end; `incomplete` says why the run is not over. If it is an abort, jobs are still in work:
-/// they do not listen, and may not be waited for.
-struct Leave {
-  std::string incomplete;
-  bool abort = false;
-};
-using WorkerAction = std::variant<Look, Dial, HangUp, Say, ConnectLane, ConnectSink, SendResult,
-                                  Begin, GiveUp, Leave>;
-using WorkerActions = std::vector<WorkerAction>;
 
 struct WorkerLimits {
   std::uint32_t buffer = 16;  // jobs that may wait beside those in work
@@ -101,6 +72,10 @@ class WorkerCore {
     SlotPulse pulse = {};
     FarmTime moved{0};  // when the pulse was last seen to change
   };
+  struct Waiting {
+    JobKey key;
+    Assignment assignment;
+  };
   struct Kept {
     Result result;
     FarmTime sent{0};
@@ -130,7 +105,7 @@ class WorkerCore {
   WorkerLimits limits_;
   WorkerActions out_;
   FarmTime now_{0};
-  std::deque<Assignment> waiting_;
+  std::deque<Waiting> waiting_;
   std::vector<std::optional<InWork>> slots_;
   std::map<JobKey, Kept> unacknowledged_;
   std::string sink_;

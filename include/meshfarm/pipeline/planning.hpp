@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include <meshfarm/farm/scheduler.hpp>
+#include <meshfarm/farm/schedule.hpp>
 #include <meshfarm/report/trace.hpp>
 
 namespace meshfarm {

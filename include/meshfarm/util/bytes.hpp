@@ -20,6 +20,8 @@ static_assert(std::endian::native == std::endian::little,
 /// Appends plain values, little endian, to a byte string.
 class ByteWriter {
  public:
+  /// Takes room for so many bytes at once.
+  void reserve(std::size_t bytes) { bytes_.reserve(bytes); }
   template <class T>
   requires std::is_trivially_copyable_v<T>
   void put(const T& value) { bytes_.append(reinterpret_cast<const char*>(&value), sizeof(T)); }

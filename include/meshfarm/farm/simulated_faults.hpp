@@ -1,0 +1,50 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <string>
+
+namespace meshfarm {
+
+/// Since the simulated start.
+using SimulatedTime = std::chrono::microseconds;
+
+/// What goes wrong until `end`. Chances are per message, job or file, rates per minute.
+struct SimulatedFaults {
+  double lose = 0;       // a message
+  double duplicate = 0;  // a message: it comes twice
+  double late = 0;       // a message: it comes seconds later, and what follows it on its channel
+  double overtake = 0;   // a result: those behind it may come first (another connection)
+
+  double crash_at_job = 0;  // the worker dies at a job
+  double fail = 0;          // a job throws
+  double hang = 0;          // a job never ends
+  double read_error = 0;    // reading a part fails
+  double write_error = 0;   // fsync or close fails, and no file is there
+  double lost_answer = 0;   // the rename was done, but is reported as failed
+  double damaged = 0;       // the file is short or damaged, and nobody was told
+  double unseen = 0;        // a told name stays invisible to its reader for 30 s and more
+  double stale = 0;         // a reader sees an old state of a file for some seconds
+  double lane_fails = 0;    // no port is free for a lane
+
+  double worker_crashes = 0;  // per worker, as are the next two
+  double worker_pauses = 0;   // as under SIGSTOP, up to 12 s
+  double host_cuts = 0;       // one direction or both, up to 12 s; TCP delivers later, or not
+  double sink_crashes = 0;
+  double sink_pauses = 0;
+  double ventilator_crashes = 0;
+  double ventilator_pauses = 0;
+  double storage_stalls = 0;  // no file operation ends for up to 20 s
+  double disk_fills = 0;      // nothing can be written for up to 20 s
+
+  std::string poison;  // the job of these parameters kills each worker that begins it
+  std::string bad;     // the job of these parameters can never be done
+  SimulatedTime end{std::chrono::seconds(30)};
+};
+
+/// A mix of faults drawn from the seed: each kind is absent, rare or frequent.
+SimulatedFaults faults_of_seed(std::uint64_t seed);
+
+}  // namespace meshfarm
