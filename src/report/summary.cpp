@@ -200,9 +200,11 @@ RunTimes parse_run_times(std::string_view text, std::string_view what) {
   try {
     const Json json = Json::parse(text);
     const Json& seconds = json.at("seconds");
+    const Json& triangles = json.at("output").at("triangles");
+    if (!triangles.is_number_unsigned()) throw DataError("its triangles are no count");
     const auto at = [&](const char* name) { return seconds.at(name).get<double>(); };
     return {std::stoull(json.at("run").get<std::string>(), nullptr, 16),
-            json.at("output").at("triangles").get<std::uint64_t>(),
+            triangles.get<std::uint64_t>(),
             at("cut"),
             at("farm"),
             at("stitch"),

@@ -10,6 +10,7 @@
 // digits. Lines of other kinds are left out, fields that are missing have their defaults.
 #include <charconv>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include <nlohmann/json.hpp>
@@ -23,7 +24,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr int k_version = 1;
+constexpr std::uint64_t k_version = 1;
 
 // --- writing
 
@@ -101,7 +102,7 @@ Json to_json(const TraceEnd& l) {
   return {{"kind", "end"}, {"t", l.t}, {"failure", l.failure}};
 }
 
-// --- reading: each field must be of its kind, as numbers of another would wrap round
+// --- reading: each field must be of its kind and fit, as other numbers would wrap round
 
 template <class T>
 void get(const Json& json, const char* name, T& value) {
@@ -112,7 +113,10 @@ void get(const Json& json, const char* name, T& value) {
   } else if constexpr (std::is_same_v<T, double>) {
     if (found->is_number()) return void(value = found->get<double>());
   } else if constexpr (std::is_unsigned_v<T>) {
-    if (found->is_number_unsigned()) return void(value = found->get<T>());
+    const bool number = found->is_number_unsigned();
+    if (number && found->get<std::uint64_t>() <= std::numeric_limits<T>::max()) {
+      return void(value = found->get<T>());
+    }
   } else {
     return void(value = found->get<T>());
   }
@@ -131,8 +135,8 @@ void get_key(const Json& json, const char* name, std::uint64_t& value) {
 
 TraceHead read_head(const Json& json) {
   TraceHead l;
-  int version = 0;
-  if (const auto found = json.find("version"); found != json.end()) version = found->get<int>();
+  std::uint64_t version = 0;
+  get(json, "version", version);
   if (version != k_version) throw DataError("a trace of an unknown version");
   get(json, "epoch", l.epoch);
   get_key(json, "run", l.run);

@@ -100,6 +100,15 @@ TEST_CASE("the newest summary of a run is found again") {
   CHECK(read_run_times(stage, 6)->finish == 3.0);
   CHECK_FALSE(read_run_times(stage, 7));
   CHECK_THROWS_AS(parse_run_times("{}", "it"), DataError);
+  const std::string seconds =
+      "\"cut\":1,\"farm\":1,\"stitch\":1,\"finish\":1,\"measure\":1,\"write\":1";
+  const auto with = [&](const char* triangles) {
+    return "{\"run\":\"5\",\"seconds\":{" + seconds + "},\"output\":{\"triangles\":" + triangles +
+           "}}";
+  };
+  CHECK(parse_run_times(with("7"), "it").triangles_out == 7);
+  CHECK_THROWS_AS(parse_run_times(with("1e30"), "it"), DataError);
+  CHECK_THROWS_AS(parse_run_times(with("-1"), "it"), DataError);
 }
 
 }  // namespace

@@ -63,6 +63,10 @@ TEST_CASE("what is no trace is refused with the line") {
   const std::string good = to_line(head()) + "\n";
   const std::pair<std::string, const char*> bad[] = {
       {"", "trace: an empty trace"},
+      {"{\"version\": 2.7e9}\n", "line 1: \"version\" is of the wrong kind"},
+      {"{\"version\": 4294967297}\n", "a trace of an unknown version"},
+      {good + "{\"kind\": \"left\", \"worker\": 4294967296}\n",
+       "line 2: \"worker\" is of the wrong"},
       {"hello\n", "trace, line 1: "},
       {"[1]\n", "trace, line 1: no JSON object"},
       {"{}\n", "line 1: a trace of an unknown version"},
