@@ -5,76 +5,57 @@
 // is the process's last deed (support/fault_shim.cpp). Each run must end, or stop with one clear
 // line and be taken up again, with the same bytes. MESHFARM_FAULTS=all tries every n with every
 // kind of fault; else the first and a later n of each, and kills, for a quick answer.
-#include <algorithm>
 #include <cstdlib>
-#include <map>
+#include <utility>
 
 #include <doctest/doctest.h>
 
+#include "support/farm_bench.hpp"
 #include "support/process.hpp"
-#include "support/temp_folder.hpp"
 
+using meshfarm::test::FarmBench;
 using meshfarm::test::Ran;
-using meshfarm::test::read_text;
-using meshfarm::test::run_meshfarm;
-using meshfarm::test::TempFolder;
 namespace fs = std::filesystem;
 
 namespace {
 
-class Bench {
+/// A small mesh, a stage that is cut of it, and how it is run.
+class Bench : public FarmBench {
  public:
-  Bench() {
-    REQUIRE(meshfarm({"generate", "-o", path("mesh.ply"), "--triangles", "20000"}).code == 0);
-    REQUIRE(meshfarm({"cut", path("mesh.ply"), "--stage", path("cut"), "--parts", "3"}).code == 0);
-    fs::copy(path("cut"), path("quiet"), fs::copy_options::recursive);
-    REQUIRE(replay("quiet", "quiet.ply").code == 0);
-    expected_["cut"] = read_text(path("quiet.ply"));
-    REQUIRE(expected().size() > 1000);
+  Bench(const std::string& triangles, const std::vector<std::string>& how_cut,
+        std::vector<std::string> how_run)
+      : FarmBench(triangles), cut_(cut(how_cut)), how_run_(std::move(how_run)) {
+    fs::copy(cut_, path("quiet"), fs::copy_options::recursive);
+    expect(replay("quiet", "quiet.ply"), path("quiet.ply"));
   }
 
-  std::string path(const std::string& name) const { return (folder_.path() / name).string(); }
-  const std::string& expected() const { return expected_.at(stage_); }
-  Ran meshfarm(std::vector<std::string> words) {
-    return run_meshfarm(words, path("log" + std::to_string(++logs_)));
-  }
   Ran replay(const std::string& stage, const std::string& output) {
     std::vector<std::string> words = {"replay", path(stage), "-o", path(output)};
-    const bool streams = stage_ == "streams";
-    words.insert(words.end(),
-                 {"--workers", streams ? "1" : "2", "--ratio", streams ? "0.9" : "0.05"});
+    words.insert(words.end(), how_run_.begin(), how_run_.end());
     return meshfarm(words);
   }
-  /// From now on runs are of streams, whose swept results are larger than a writer's buffer.
-  void use_streams() {
-    stage_ = "streams";
-    if (expected_.contains(stage_)) return;
-    REQUIRE(meshfarm({"generate", "-o", path("long.ply"), "--triangles", "200000"}).code == 0);
-    REQUIRE(meshfarm({"cut", path("long.ply"), "--stage", path(stage_), "--scheme", "stream",
-                      "--parts", "2", "--window", "10000"})
-                .code == 0);
-    fs::copy(path(stage_), path("swept"), fs::copy_options::recursive);
-    REQUIRE(replay("swept", "swept.ply").code == 0);
-    expected_[stage_] = read_text(path("swept.ply"));
-  }
-  void use_parts() { stage_ = "cut"; }
   /// A fresh stage, all whose files are below path("run").
   void fresh() {
     fs::remove_all(path("run"));
     fs::create_directories(path("run"));
-    fs::copy(path(stage_), path("run/stage"), fs::copy_options::recursive);
+    fs::copy(cut_, path("run/stage"), fs::copy_options::recursive);
     fs::remove(path("fired"));
   }
 
  private:
-  TempFolder folder_;
-  std::string stage_ = "cut";
-  std::map<std::string, std::string> expected_;  // by stage
-  int logs_ = 0;
+  std::string cut_;
+  std::vector<std::string> how_run_;
 };
 
-Bench& bench() {
-  static Bench instance;
+Bench& parts() {
+  static Bench instance("20000", {"--parts", "3"}, {"--workers", "2", "--ratio", "0.05"});
+  return instance;
+}
+
+/// Streams whose swept results are larger than a writer's buffer.
+Bench& streams() {
+  static Bench instance("200000", {"--scheme", "stream", "--parts", "2", "--window", "10000"},
+                        {"--workers", "1", "--ratio", "0.9"});
   return instance;
 }
 
@@ -86,12 +67,12 @@ bool all_of_them() {
 /// Sets the environment of the processes that are started meanwhile.
 class Injection {
  public:
-  Injection(const std::string& role, const std::string& fault) {
+  Injection(const Bench& bench, const std::string& role, const std::string& fault) {
     set("LD_PRELOAD", MESHFARM_FAULT_SHIM);
     set("MESHFARM_FAULT", fault);
     set("MESHFARM_FAULT_ROLE", role);
-    set("MESHFARM_FAULT_BELOW", bench().path("run"));
-    set("MESHFARM_FAULT_FIRED", bench().path("fired"));
+    set("MESHFARM_FAULT_BELOW", bench.path("run"));
+    set("MESHFARM_FAULT_FIRED", bench.path("fired"));
   }
   ~Injection() {
     for (const std::string& name : names_) ::unsetenv(name.c_str());
@@ -115,32 +96,33 @@ std::size_t errors_in(const std::string& text) {
 }
 
 /// Runs with the fault. False if it did not strike, as there are fewer calls than that.
-bool survives(const std::string& role, const std::string& call, const std::string& kind, int nth) {
+bool survives(Bench& bench, const std::string& role, const std::string& call,
+              const std::string& kind, int nth) {
   const std::string fault = call + ":" + kind + ":" + std::to_string(nth);
   CAPTURE(role);
   CAPTURE(fault);
-  bench().fresh();
+  bench.fresh();
   Ran ran;
   {
-    const Injection injection(role, fault);
-    ran = bench().replay("run/stage", "run/out.ply");
+    const Injection injection(bench, role, fault);
+    ran = bench.replay("run/stage", "run/out.ply");
   }
   CAPTURE(ran.code);
   CAPTURE(ran.err);
   if (ran.code == 0) {
-    CHECK(read_text(bench().path("run/out.ply")) == bench().expected());
+    bench.check_result(bench.path("run/out.ply"));
   } else {
     CHECK((ran.code == 1 || ran.code == 3));
     CHECK(errors_in(ran.err) == 1);
-    CHECK_FALSE(fs::exists(bench().path("run/out.ply")));
+    CHECK_FALSE(fs::exists(bench.path("run/out.ply")));
     const bool full = kind == "ENOSPC" || kind == "EDQUOT";
     if (full) CHECK(ran.code == 3);
-    const Ran again = bench().replay("run/stage", "run/out.ply");
+    const Ran again = bench.replay("run/stage", "run/out.ply");
     CAPTURE(again.err);
     CHECK(again.code == 0);
-    CHECK(read_text(bench().path("run/out.ply")) == bench().expected());
+    bench.check_result(bench.path("run/out.ply"));
   }
-  return fs::exists(bench().path("fired"));
+  return fs::exists(bench.path("fired"));
 }
 
 void try_all(const std::string& role) {
@@ -153,7 +135,8 @@ void try_all(const std::string& role) {
     for (const std::string& kind : kinds) {
       const int step = all_of_them() ? 1 : 2;
       const int most = all_of_them() ? 100 : 3;
-      for (int nth = 1; nth <= most && survives(role, call, kind, nth); nth += step) ++struck;
+      for (int nth = 1; nth <= most && survives(parts(), role, call, kind, nth); nth += step)
+        ++struck;
     }
   }
   MESSAGE(role, ": ", struck, " faults");
@@ -175,35 +158,33 @@ TEST_CASE("the ventilator's files may fail at any call") {
 }
 
 TEST_CASE("a worker whose file system hangs is left behind") {
-  CHECK(survives("worker", "write", "hang", 1));
-  CHECK(survives("worker", "fsync", "hang", 2));
+  CHECK(survives(parts(), "worker", "write", "hang", 1));
+  CHECK(survives(parts(), "worker", "fsync", "hang", 2));
 }
 
 TEST_CASE("a worker may fail at any piece of what it writes while it sweeps") {
-  bench().use_streams();
   // A sample's result is one write each; then come the pieces of the swept ones.
   for (const char* kind : {"ENOSPC", "kill", "short"}) {
-    for (const int nth : {3, 4, 6}) CHECK(survives("worker", "write", kind, nth));
+    for (const int nth : {3, 4, 6}) CHECK(survives(streams(), "worker", "write", kind, nth));
   }
-  CHECK(survives("worker", "rename", "kill", 4));
-  bench().use_parts();
+  CHECK(survives(streams(), "worker", "rename", "kill", 4));
 }
 
 TEST_CASE("a part that kills every worker is given up with its reason, the rest is kept") {
-  const std::string stage = bench().path("run/stage");
-  bench().fresh();
+  const std::string stage = parts().path("run/stage");
+  parts().fresh();
   const std::string poison = "write:kill:1";
   Ran ran;
   {
-    const Injection injection("worker", poison);
+    const Injection injection(parts(), "worker", poison);
     ::setenv("MESHFARM_FAULT_FIRED", "", 1);  // it strikes again and again
     ::setenv("MESHFARM_FAULT_BELOW", (stage + "/results").c_str(), 1);  // once there is a job
-    ran = bench().replay("run/stage", "run/out.ply");
+    ran = parts().replay("run/stage", "run/out.ply");
   }
   CAPTURE(ran.err);
   CHECK(ran.code == 3);
   CHECK(ran.err.find("failed for good") != std::string::npos);
   CHECK(errors_in(ran.err) == 1);
-  CHECK(bench().replay("run/stage", "run/out.ply").code == 0);
-  CHECK(read_text(bench().path("run/out.ply")) == bench().expected());
+  CHECK(parts().replay("run/stage", "run/out.ply").code == 0);
+  parts().check_result(parts().path("run/out.ply"));
 }

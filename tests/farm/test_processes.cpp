@@ -5,55 +5,36 @@
 // stopped and started again. Every run must end with the same bytes.
 #include <algorithm>
 #include <random>
-#include <sstream>
 
 #include <arpa/inet.h>
 #include <doctest/doctest.h>
 #include <netinet/in.h>
 #include <sys/socket.h>
 
+#include "support/farm_bench.hpp"
 #include "support/process.hpp"
-#include "support/temp_folder.hpp"
 
+using meshfarm::test::FarmBench;
 using meshfarm::test::listening_ports;
 using meshfarm::test::Process;
 using meshfarm::test::Ran;
-using meshfarm::test::read_text;
-using meshfarm::test::run_meshfarm;
-using meshfarm::test::TempFolder;
-using meshfarm::test::wait_until;
+using meshfarm::test::results_in;
+using meshfarm::test::wait_for_results;
 namespace fs = std::filesystem;
 
 namespace {
 
 /// A mesh of 300,000 triangles in 24 parts, its cut, and the result of an undisturbed run.
-class Bench {
+class Bench : public FarmBench {
  public:
-  Bench() {
-    REQUIRE(meshfarm({"generate", "-o", mesh(), "--triangles", "300000"}).code == 0);
-    REQUIRE(meshfarm({"simplify", mesh(), "-o", path("expected.ply"), "--ratio", "0.02", "--parts",
-                      "24", "--workers", "2"})
-                .code == 0);
-    expected_ = read_text(path("expected.ply"));
-    REQUIRE(expected_.size() > 1000);
+  Bench() : FarmBench("300000") {
+    const std::string output = path("expected.ply");
+    expect(meshfarm({"simplify", mesh(), "-o", output, "--ratio", "0.02", "--parts", "24",
+                     "--workers", "2"}),
+           output);
   }
 
-  std::string path(const std::string& name) const { return (folder_.path() / name).string(); }
-  std::string mesh() const { return path("mesh.ply"); }
-  const std::string& expected() const { return expected_; }
-  Ran meshfarm(const std::vector<std::string>& words) {
-    return run_meshfarm(words, path("log" + std::to_string(++logs_)));
-  }
-  Process start(const std::vector<std::string>& words) {
-    return Process(words, path("log" + std::to_string(++logs_)));
-  }
-
-  /// A fresh cut of the mesh.
-  std::string cut() {
-    const std::string stage = path("stage" + std::to_string(++stages_));
-    REQUIRE(meshfarm({"cut", mesh(), "--stage", stage, "--parts", "24"}).code == 0);
-    return stage;
-  }
+  std::string cut() { return FarmBench::cut({"--parts", "24"}); }
   Process ventilator(const std::string& stage) {
     return start(
         {"ventilator", stage, "--ratio", "0.02", "--bind", "127.0.0.1", "--heartbeat-ms", "150"});
@@ -62,34 +43,11 @@ class Bench {
     return start({"sink", stage, "--ratio", "0.02", "--bind", "127.0.0.1", "-o", stage + ".ply"});
   }
   Process worker(const std::string& stage) { return start({"worker", stage}); }
-
- private:
-  TempFolder folder_;
-  std::string expected_;
-  int logs_ = 0;
-  int stages_ = 0;
 };
 
 Bench& bench() {
   static Bench instance;
   return instance;
-}
-
-std::size_t files_in(const fs::path& folder) {
-  std::error_code ignored;
-  std::size_t count = 0;
-  for (const auto& entry : fs::directory_iterator(folder, ignored)) {
-    count += entry.path().filename().string().front() != '.';
-  }
-  return count;
-}
-
-bool wait_for_results(const std::string& stage, std::size_t count) {
-  return wait_until([&] { return files_in(fs::path(stage) / "results") >= count; });
-}
-
-void check_result(const std::string& output) {
-  CHECK(read_text(output) == bench().expected());
 }
 
 /// Sends bytes to a port and closes; whether anyone listens does not matter.
@@ -114,7 +72,7 @@ TEST_CASE("1, 2 and 5 workers make the same bytes") {
     const Ran ran = bench().meshfarm({"simplify", bench().mesh(), "-o", output, "--ratio", "0.02",
                                       "--parts", "24", "--workers", workers});
     CHECK(ran.code == 0);
-    check_result(output);
+    bench().check_result(output);
     CHECK_FALSE(fs::exists(output + ".stage"));
   }
 }
@@ -128,15 +86,15 @@ TEST_CASE("a cut, ventilator and sink, and two workers started by hand make the 
   CHECK(run.wait() == 0);
   CHECK(one.wait() == 0);
   CHECK(two.wait() == 0);
-  check_result(stage + ".ply");
+  bench().check_result(stage + ".ply");
 
   SUBCASE("and a replay of the same stage too, with nothing simplified again") {
-    const std::size_t results = files_in(fs::path(stage) / "results");
+    const std::size_t results = results_in(stage);
     const std::string output = stage + "-again.ply";
     const Ran ran = bench().meshfarm({"replay", stage, "-o", output, "--ratio", "0.02"});
     CHECK(ran.code == 0);
-    check_result(output);
-    CHECK(files_in(fs::path(stage) / "results") == results);
+    bench().check_result(output);
+    CHECK(results_in(stage) == results);
   }
   SUBCASE("and another target from the same cut is met") {
     const std::string output = stage + "-half.ply";
@@ -159,7 +117,7 @@ TEST_CASE("a worker killed half-way costs nothing but time") {
   CHECK(sink.wait() == 0);
   CHECK(ventilator.wait() == 0);
   CHECK(heir.wait() == 0);
-  check_result(stage + ".ply");
+  bench().check_result(stage + ".ply");
 }
 
 TEST_CASE("a worker that hangs loses its jobs to another, and its late results do no harm") {
@@ -175,7 +133,7 @@ TEST_CASE("a worker that hangs loses its jobs to another, and its late results d
   CHECK(sink.wait() == 0);
   CHECK(ventilator.wait() == 0);
   CHECK(heir.wait() == 0);
-  check_result(stage + ".ply");
+  bench().check_result(stage + ".ply");
 }
 
 TEST_CASE("sink, then ventilator, killed and started again: the run goes on") {
@@ -196,7 +154,7 @@ TEST_CASE("sink, then ventilator, killed and started again: the run goes on") {
   CHECK(ventilator.wait() == 0);
   CHECK(one.wait() == 0);
   CHECK(two.wait() == 0);
-  check_result(stage + ".ply");
+  bench().check_result(stage + ".ply");
 }
 
 TEST_CASE("everything killed, everything started again: only what was not accepted is done") {
@@ -207,12 +165,12 @@ TEST_CASE("everything killed, everything started again: only what was not accept
     Process worker = bench().worker(stage);
     REQUIRE(wait_for_results(stage, 8));
   }  // all are killed here
-  const std::size_t before = files_in(fs::path(stage) / "results");
+  const std::size_t before = results_in(stage);
   const Ran ran = bench().meshfarm({"replay", stage, "-o", stage + ".ply", "--ratio", "0.02"});
   CHECK(ran.code == 0);
-  check_result(stage + ".ply");
+  bench().check_result(stage + ".ply");
   const std::size_t journalled_before = before - 5;  // those in the worker's hands may be lost
-  CHECK(files_in(fs::path(stage) / "results") <= 24 + before - journalled_before);
+  CHECK(results_in(stage) <= 24 + before - journalled_before);
 }
 
 TEST_CASE("Ctrl-C leaves a stage that replay takes up") {
@@ -227,7 +185,7 @@ TEST_CASE("Ctrl-C leaves a stage that replay takes up") {
   CHECK_FALSE(fs::exists(output));
   const Ran ran = bench().meshfarm({"replay", stage, "-o", output, "--ratio", "0.02"});
   CHECK(ran.code == 0);
-  check_result(output);
+  bench().check_result(output);
 }
 
 TEST_CASE("a worker that is asked to leave gives back what it holds") {
@@ -241,7 +199,7 @@ TEST_CASE("a worker that is asked to leave gives back what it holds") {
   Process heir = bench().worker(stage);
   CHECK(sink.wait() == 0);
   CHECK(ventilator.wait() == 0);
-  check_result(stage + ".ply");
+  bench().check_result(stage + ".ply");
 }
 
 TEST_CASE("random bytes to every socket are refused and the run goes on") {
@@ -272,7 +230,7 @@ TEST_CASE("random bytes to every socket are refused and the run goes on") {
   CHECK(sink.wait() == 0);
   CHECK(ventilator.wait() == 0);
   CHECK(worker.wait() == 0);
-  check_result(stage + ".ply");
+  bench().check_result(stage + ".ply");
 }
 
 TEST_CASE("a staged part with a flipped byte, or cut short, is named and nothing is written") {
@@ -309,7 +267,7 @@ TEST_CASE("an accepted result that is damaged later is noticed and made again") 
   const std::string output = stage + "-again.ply";
   const Ran ran = bench().meshfarm({"replay", stage, "-o", output, "--ratio", "0.02"});
   CHECK(ran.code == 0);
-  check_result(output);
+  bench().check_result(output);
 }
 
 TEST_CASE("a damaged manifest is one clear line") {
@@ -333,5 +291,5 @@ TEST_CASE("two runs of different targets do not mix") {
   Process worker = bench().worker(stage);
   CHECK(sink.wait() == 0);
   CHECK(ventilator.wait() == 0);
-  check_result(stage + ".ply");
+  bench().check_result(stage + ".ply");
 }

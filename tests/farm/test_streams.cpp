@@ -3,77 +3,43 @@
 //
 // The stream scheme with the real program's processes. The farm is the same as for the cut, whose
 // tests are harder on it; here it is the streams, their jobs and their damage that count.
-#include <algorithm>
 #include <fstream>
 
 #include <doctest/doctest.h>
 
+#include "support/farm_bench.hpp"
 #include "support/process.hpp"
-#include "support/temp_folder.hpp"
 
+using meshfarm::test::FarmBench;
 using meshfarm::test::Process;
 using meshfarm::test::Ran;
 using meshfarm::test::read_text;
-using meshfarm::test::run_meshfarm;
-using meshfarm::test::TempFolder;
-using meshfarm::test::wait_until;
+using meshfarm::test::wait_for_results;
 namespace fs = std::filesystem;
 
 namespace {
 
 /// A mesh of 300,000 triangles, and the result of an undisturbed run: 6 streams, each swept.
-class Bench {
+class Bench : public FarmBench {
  public:
-  Bench() {
-    REQUIRE(meshfarm({"generate", "-o", mesh(), "--triangles", "300000"}).code == 0);
-    REQUIRE(meshfarm(simplify(path("expected.ply"), "2")).code == 0);
-    expected_ = read_text(path("expected.ply"));
-    REQUIRE(expected_.size() > 1000);
+  Bench() : FarmBench("300000") {
+    const std::string output = path("expected.ply");
+    expect(meshfarm(simplify(output, "2")), output);
   }
 
-  std::string path(const std::string& name) const { return (folder_.path() / name).string(); }
-  std::string mesh() const { return path("mesh.ply"); }
-  const std::string& expected() const { return expected_; }
-  Ran meshfarm(const std::vector<std::string>& words) {
-    return run_meshfarm(words, path("log" + std::to_string(++logs_)));
-  }
-  Process start(const std::vector<std::string>& words) {
-    return Process(words, path("log" + std::to_string(++logs_)));
-  }
   std::vector<std::string> simplify(const std::string& output, const std::string& workers) const {
     return {"simplify", mesh(),    "-o", output,     "--ratio", "0.02",      "--scheme",
             "stream",   "--parts", "6",  "--window", "20000",   "--workers", workers};
   }
-  std::string streams() {
-    const std::string stage = path("stage" + std::to_string(++stages_));
-    REQUIRE(meshfarm({"cut", mesh(), "--stage", stage, "--scheme", "stream", "--parts", "6",
-                      "--window", "20000"})
-                .code == 0);
-    return stage;
-  }
+  std::string streams() { return cut({"--scheme", "stream", "--parts", "6", "--window", "20000"}); }
   Ran replay(const std::string& stage) {
     return meshfarm({"replay", stage, "-o", stage + ".ply", "--ratio", "0.02", "--workers", "2"});
   }
-
- private:
-  TempFolder folder_;
-  std::string expected_;
-  int logs_ = 0;
-  int stages_ = 0;
 };
 
 Bench& bench() {
   static Bench instance;
   return instance;
-}
-
-std::size_t results_in(const std::string& stage) {
-  std::error_code ignored;
-  std::size_t count = 0;
-  for (const auto& entry : fs::directory_iterator(fs::path(stage) / "results", ignored)) {
-    count += entry.path().filename().string().front() != '.';
-  }
-  return count;
 }
 
 }  // namespace
@@ -85,7 +51,7 @@ TEST_CASE("streams: 1 and 5 workers make the same bytes as 2") {
     const Ran ran = bench().meshfarm(bench().simplify(output, workers));
     CHECK(ran.code == 0);
     CHECK(ran.out.find("streams          6, stitched to") != std::string::npos);
-    CHECK(read_text(output) == bench().expected());
+    bench().check_result(output);
     CHECK_FALSE(fs::exists(output + ".stage"));
   }
 }
@@ -95,13 +61,13 @@ TEST_CASE("streams: killed while samples are climbed and while streams are swept
   for (const std::size_t results : {2, 7, 10}) {
     Process run =
         bench().start({"replay", stage, "-o", stage + ".ply", "--ratio", "0.02", "--workers", "1"});
-    REQUIRE(wait_until([&] { return results_in(stage) >= results; }));
+    REQUIRE(wait_for_results(stage, results));
     run.signal(SIGKILL);  // its children end with it
     CHECK(run.wait() == -SIGKILL);
     CHECK_FALSE(fs::exists(stage + ".ply"));
   }
   CHECK(bench().replay(stage).code == 0);
-  CHECK(read_text(stage + ".ply") == bench().expected());
+  bench().check_result(stage + ".ply");
 }
 
 TEST_CASE("streams: a worker killed in a sweep costs nothing but time") {
@@ -109,13 +75,13 @@ TEST_CASE("streams: a worker killed in a sweep costs nothing but time") {
   Process run =
       bench().start({"run", stage, "--ratio", "0.02", "-o", stage + ".ply", "--bind", "127.0.0.1"});
   Process killed = bench().start({"worker", stage});
-  REQUIRE(wait_until([&] { return results_in(stage) >= 7; }));
+  REQUIRE(wait_for_results(stage, 7));
   killed.signal(SIGKILL);
   CHECK(killed.wait() == -SIGKILL);
   Process heir = bench().start({"worker", stage});
   CHECK(run.wait() == 0);
   CHECK(heir.wait() == 0);
-  CHECK(read_text(stage + ".ply") == bench().expected());
+  bench().check_result(stage + ".ply");
 }
 
 TEST_CASE("streams: a flipped byte or a cut is named with its place, and nothing is written") {
@@ -162,5 +128,5 @@ TEST_CASE("streams: a shuffled input makes the same streams, and the same result
   std::vector<std::string> words = bench().simplify(output, "2");
   words[1] = shuffled;
   CHECK(bench().meshfarm(words).code == 0);
-  CHECK(read_text(output) == bench().expected());
+  bench().check_result(output);
 }
