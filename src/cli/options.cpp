@@ -71,6 +71,9 @@ void TargetOptions::add(po::options_description& options) {
       "threshold: one cost threshold for all parts; uniform: the same ratio in every part")(
       "finish", po::value(&finish)->default_value(finish),
       "global: the last pass may touch everything; boundary: edges at seams only")(
+      "composition", po::value(&composition)->default_value(composition)->value_name("HOW"),
+      "of swept streams: tree: neighbours are joined by jobs, round by round; sink: by the sink, "
+      "all at once; auto: as a tree where much is at the seams")(
       "preserve-border", po::bool_switch(&run.lines.preserve_border),
       "leave the vertices on open borders as they are")(
       "crease-angle", po::value(&run.lines.crease_angle)->value_name("DEGREES"),
@@ -96,6 +99,15 @@ void TargetOptions::check() {
   if (finish != "global" && finish != "boundary") {
     throw UsageError("--finish is 'global' or 'boundary', not '" + finish + "'");
   }
+  if (composition != "auto" && composition != "tree" && composition != "sink") {
+    throw UsageError("--composition is 'auto', 'tree' or 'sink', not '" + composition + "'");
+  }
+  if (composition == "tree" &&
+      (!error.empty() || allocation == "uniform" || finish == "boundary")) {
+    throw UsageError(
+        "--composition tree goes by the one cost threshold: not with --error, --allocation uniform "
+        "or --finish boundary");
+  }
   if (!(run.lines.crease_angle >= 0 && run.lines.crease_angle < 180)) {
     throw UsageError("--crease-angle must be 0 (no creases) or more, and below 180 degrees");
   }
@@ -103,11 +115,15 @@ void TargetOptions::check() {
     run.drop_components = parse_length(drop_components, "--drop-components");
   }
   run.allocation = allocation == "uniform" ? Allocation::uniform : Allocation::threshold;
+  run.composition = composition == "auto"   ? Composition::automatic
+                    : composition == "tree" ? Composition::tree
+                                            : Composition::sink;
   run.finish = finish == "boundary" ? Finish::boundary : Finish::global;
 }
 
 std::vector<std::string> TargetOptions::words() const {
-  std::vector<std::string> words = {"--allocation", allocation, "--finish", finish};
+  std::vector<std::string> words = {"--allocation", allocation,      "--finish",
+                                    finish,         "--composition", composition};
   if (run.lines.preserve_border) words.emplace_back("--preserve-border");
   if (run.lines.crease_angle > 0) {
     words.insert(words.end(), {"--crease-angle", shortest(run.lines.crease_angle)});

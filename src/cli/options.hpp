@@ -36,14 +36,15 @@ struct TalkOptions {
   ProgressStyle progress() const;
 };
 
-/// --ratio, --triangles, --error, --allocation, --finish, --preserve-border, --crease-angle,
-/// --drop-components.
+/// --ratio, --triangles, --error, --allocation, --finish, --composition, --preserve-border,
+/// --crease-angle, --drop-components.
 struct TargetOptions {
   RunOptions run;
   std::string error;
   std::string drop_components;
   std::string allocation = "threshold";
   std::string finish = "global";
+  std::string composition = "auto";
 
   void add(po::options_description& options);
   void check();

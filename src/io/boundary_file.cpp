@@ -9,6 +9,7 @@
 #include <meshfarm/io/boundary_file.hpp>
 #include <meshfarm/staging/sealed.hpp>
 #include <meshfarm/util/bytes.hpp>
+#include <meshfarm/util/errors.hpp>
 
 namespace meshfarm {
 namespace {
@@ -50,6 +51,29 @@ std::vector<BoundaryTriangle> decode_boundary(std::string_view file, std::string
   auto triangles = in.get_array<BoundaryTriangle>(count);
   in.expect_end();
   return triangles;
+}
+
+void scan_boundary(const Fill& fill, std::string_view what,
+                   const std::function<void(const BoundaryTriangle&)>& show) {
+  constexpr std::uint64_t k_at_once = 4096;
+  std::string head(k_seal_head_bytes, '\0');
+  fill(head);
+  const std::uint64_t size = unseal_head(head, k_kind, k_version, what);
+  std::uint64_t left = 0;
+  fill({reinterpret_cast<char*>(&left), sizeof left});
+  const std::uint64_t bytes = size - sizeof left;
+  constexpr std::uint64_t k_each = sizeof(BoundaryTriangle);
+  if (size < sizeof left || bytes % k_each != 0 || left != bytes / k_each) {
+    throw DataError(std::string(what) + ": another size than its count tells");
+  }
+  std::vector<BoundaryTriangle> some;
+  for (; left > 0; left -= some.size()) {
+    some.resize(std::min(k_at_once, left));
+    fill({reinterpret_cast<char*>(some.data()), some.size() * sizeof some[0]});
+    for (const BoundaryTriangle& t : some) show(t);
+  }
+  std::uint64_t sum = 0;
+  fill({reinterpret_cast<char*>(&sum), sizeof sum});
 }
 
 }  // namespace meshfarm

@@ -131,6 +131,7 @@ class ResultReader {
     if (positions_ != PositionType::float32 && positions_ != PositionType::float64) {
       fail("unknown kind of positions");
     }
+    result_.positions = positions_;
     result_.boundary_vertices = get<std::uint32_t>();
   }
 

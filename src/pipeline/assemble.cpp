@@ -83,23 +83,30 @@ class Assembly {
     }
   }
 
-  ResultMesh read_part(const std::vector<ChosenRung>& chosen, std::size_t p) const {
-    const std::string file = stage_.read(chosen[p].file);
-    ResultMesh part = decode_result(file, chosen[p].rung, chosen[p].file.name);
-    if (part.boundary_vertices != manifest_.parts[p].boundary_vertices) {
-      throw DataError(chosen[p].file.name + ": is not the result of part " + std::to_string(p));
+  ResultMesh read_part(const ChosenRung& chosen, std::size_t first_part) const {
+    const std::string file = stage_.read(chosen.file);
+    ResultMesh part = decode_result(file, chosen.rung, chosen.file.name);
+    // Of composed streams the stitcher knows.
+    if (chosen.parts == 1 &&
+        part.boundary_vertices != manifest_.parts[first_part].boundary_vertices) {
+      throw DataError(chosen.file.name + ": is not the result of part " +
+                      std::to_string(first_part));
     }
     return part;
   }
 
   StitchedMesh stitch(const std::vector<ChosenRung>& chosen) {
     constexpr std::size_t k_read_at_once = 8;
-    Stitcher stitcher;
+    Stitcher stitcher(static_cast<std::uint32_t>(manifest_.parts.size()));
+    std::vector<std::size_t> first_part = {0};
+    for (const ChosenRung& each : chosen) first_part.push_back(first_part.back() + each.parts);
     for (std::size_t p = 0; p < chosen.size();) {
       std::vector<ResultMesh> parts(std::min(k_read_at_once, chosen.size() - p));
-      parallel_for(parts.size(), 0, [&](std::uint64_t i) { parts[i] = read_part(chosen, p + i); });
+      parallel_for(parts.size(), 0, [&](std::uint64_t i) {
+        parts[i] = read_part(chosen[p + i], first_part[p + i]);
+      });
       for (ResultMesh& part : parts) {
-        stitcher.add(part);
+        stitcher.add(part, chosen[p].parts);
         summary_.dropped_degenerate += chosen[p].dropped_degenerate;
         summary_.dropped_duplicate += chosen[p].dropped_duplicate;
         std::move(part.samples.begin(), part.samples.end(), std::back_inserter(samples_));
@@ -109,7 +116,7 @@ class Assembly {
     }
     const auto boundary = decode_boundary(stage_.read(manifest_.boundary), manifest_.boundary.name);
     StitchedMesh stitched = stitcher.finish(boundary);
-    sample_boundary(stitched.mesh, boundary.size());
+    sample_boundary(stitched.mesh, stitched.boundary_triangles);
     return stitched;
   }
 

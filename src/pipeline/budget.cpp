@@ -10,6 +10,8 @@
 #include <meshfarm/pipeline/sweep_job.hpp>
 #include <meshfarm/util/errors.hpp>
 
+#include "pipeline/compose_plan.hpp"
+
 namespace meshfarm {
 namespace {
 
@@ -71,11 +73,12 @@ class Rounds {
       swept_ ? sweep_again() : ask_again();
       if (!swept_ && asked_.empty()) begin_sweeps();
     }
+    if (asked_.empty()) compose(accepted);
   }
 
   /// The jobs of the round that is not accepted yet.
   std::vector<Job> jobs() const {
-    std::vector<Job> jobs;
+    std::vector<Job> jobs = compose_jobs_;
     for (const std::uint32_t part : asked_) {
       jobs.push_back(swept_ ? sweep_of(part) : job_of(part));
     }
@@ -83,14 +86,9 @@ class Rounds {
   }
 
   std::vector<ChosenRung> chosen() const {
-    if (!asked_.empty()) throw Error("rungs are chosen before all parts are accepted");
+    if (!jobs().empty()) throw Error("rungs are chosen before all parts are accepted");
     std::vector<ChosenRung> chosen;
-    for (std::size_t p = 0; p < results_.size(); ++p) {
-      const ResultSummary& result = results_[p];
-      const auto last = static_cast<std::uint32_t>(result.rungs.size() - 1);
-      chosen.push_back({files_[p], by_error() ? last : rung_at(result.rungs, level_),
-                        result.dropped_degenerate, result.dropped_duplicate});
-    }
+    for (const ComposedStreams& each : composed_) chosen.push_back(each.chosen);
     return chosen;
   }
 
@@ -230,6 +228,33 @@ class Rounds {
     return sum;
   }
 
+  /// What is to be stitched of each part, before anything is composed.
+  std::vector<ComposedStreams> reached() const {
+    std::vector<ComposedStreams> reached;
+    for (std::size_t p = 0; p < results_.size(); ++p) {
+      const ResultSummary& result = results_[p];
+      const auto last = static_cast<std::uint32_t>(result.rungs.size() - 1);
+      const std::uint32_t rung = by_error() ? last : rung_at(result.rungs, level_);
+      reached.push_back({{files_[p], rung, 1, result.dropped_degenerate, result.dropped_duplicate},
+                         result.rungs[rung].triangles,
+                         result.rungs[rung].free_triangles});
+    }
+    return reached;
+  }
+
+  void compose(std::span<const AcceptedJob> accepted) {
+    const ComposeGoal goal{level_, sweep_cost(level_),
+                           provision(ratio()) * static_cast<double>(target_)};
+    ComposePlan plan(manifest_, options_, goal, reached());
+    compose_jobs_ = plan.jobs();
+    while (!compose_jobs_.empty() && accepted.size() >= compose_jobs_.size()) {
+      plan.take(accepted.first(compose_jobs_.size()));
+      accepted = accepted.subspan(compose_jobs_.size());
+      compose_jobs_ = plan.jobs();
+    }
+    composed_ = plan.streams();
+  }
+
   /// Whether a part was taken past what it may be in the end.
   bool too_far(std::uint32_t part) const {
     const Rung& first = results_[part].rungs.front();
@@ -265,6 +290,8 @@ class Rounds {
   std::int32_t level_ = 0;
   bool swept_ = false;  // ladders are done, long streams are being swept
   std::vector<std::int32_t> sweep_levels_;
+  std::vector<Job> compose_jobs_;  // of the round that is not accepted yet
+  std::vector<ComposedStreams> composed_;
 };
 
 }  // namespace

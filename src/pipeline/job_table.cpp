@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include <utility>
 
+#include <meshfarm/pipeline/compose_job.hpp>
 #include <meshfarm/pipeline/job_table.hpp>
 #include <meshfarm/pipeline/simplify_job.hpp>
 #include <meshfarm/pipeline/sweep_job.hpp>
@@ -15,6 +16,7 @@ using JobPointer = JobOutput (*)(const Job&, const JobContext&);
 constexpr std::pair<std::string_view, JobPointer> k_table[] = {
     {k_simplify_kind, simplify_part},
     {k_sweep_kind, sweep_stream},
+    {k_compose_kind, compose_streams},
 };
 
 }  // namespace

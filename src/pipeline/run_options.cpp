@@ -43,6 +43,7 @@ std::uint64_t run_key(const Manifest& manifest, const RunOptions& options) {
   out.put(target_triangles(manifest, options));
   out.put(options.allocation);
   out.put(options.finish);
+  out.put(options.composition);
   put(out, options.lines);
   out.put(options.drop_components.in(manifest.box));
   out.put(options.error.in(manifest.box));

@@ -18,6 +18,21 @@ namespace {
 constexpr FileKind k_magic = {'M', 'F', 'R', 'M'};
 constexpr std::uint32_t k_byte_order = 0x01020304;
 
+std::uint64_t read_head(ByteReader& in, FileKind kind, std::uint32_t version) {
+  if (in.get<FileKind>() != k_magic) in.fail("not a meshfarm file");
+  const auto found_kind = in.get<FileKind>();
+  if (found_kind != kind) {
+    in.fail("a '" + std::string(found_kind.data(), 4) + "' file where a '" +
+            std::string(kind.data(), 4) + "' file is wanted");
+  }
+  const auto found_version = in.get<std::uint32_t>();
+  if (found_version != version) {
+    in.fail("format version " + std::to_string(found_version) + " is unknown to this meshfarm");
+  }
+  if (in.get<std::uint32_t>() != k_byte_order) in.fail("written with another byte order");
+  return in.get<std::uint64_t>();
+}
+
 }  // namespace
 
 std::string seal(FileKind kind, std::uint32_t version, std::string_view payload) {
@@ -36,24 +51,19 @@ std::string seal(FileKind kind, std::uint32_t version, std::string_view payload)
 std::string_view unseal(std::string_view file, FileKind kind, std::uint32_t version,
                         std::string_view what) {
   ByteReader in(file, what);
-  if (in.get<FileKind>() != k_magic) in.fail("not a meshfarm file");
-  const auto found_kind = in.get<FileKind>();
-  if (found_kind != kind) {
-    in.fail("a '" + std::string(found_kind.data(), 4) + "' file where a '" +
-            std::string(kind.data(), 4) + "' file is wanted");
-  }
-  const auto found_version = in.get<std::uint32_t>();
-  if (found_version != version) {
-    in.fail("format version " + std::to_string(found_version) + " is unknown to this meshfarm");
-  }
-  if (in.get<std::uint32_t>() != k_byte_order) in.fail("written with another byte order");
-  const auto size = in.get<std::uint64_t>();
+  const std::uint64_t size = read_head(in, kind, version);
   if (size > in.remaining()) in.fail("cut short");
   const std::string_view payload = in.take(size);
   const std::size_t covered = in.offset();
   if (in.get<std::uint64_t>() != checksum(file.substr(0, covered))) in.fail("damaged (checksum)");
   in.expect_end();
   return payload;
+}
+
+std::uint64_t unseal_head(std::string_view head, FileKind kind, std::uint32_t version,
+                          std::string_view what) {
+  ByteReader in(head, what);
+  return read_head(in, kind, version);
 }
 
 }  // namespace meshfarm

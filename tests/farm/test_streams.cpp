@@ -14,6 +14,7 @@ using meshfarm::test::FarmBench;
 using meshfarm::test::Process;
 using meshfarm::test::Ran;
 using meshfarm::test::read_text;
+using meshfarm::test::results_in;
 using meshfarm::test::wait_for_results;
 namespace fs = std::filesystem;
 
@@ -82,6 +83,32 @@ TEST_CASE("streams: a worker killed in a sweep costs nothing but time") {
   CHECK(run.wait() == 0);
   CHECK(heir.wait() == 0);
   bench().check_result(stage + ".ply");
+}
+
+TEST_CASE("streams: composed as a tree, by any number of workers and through kills") {
+  const auto composed = [](const std::string& stage, const std::string& workers) {
+    return std::vector<std::string>{"replay", stage,       "-o",    stage + ".ply",  "--ratio",
+                                    "0.02",   "--workers", workers, "--composition", "tree"};
+  };
+  const std::string first = bench().streams();
+  REQUIRE(bench().meshfarm(composed(first, "2")).code == 0);
+  CHECK(results_in(first) >= 6 + 6 + 2);  // six are joined to two or fewer
+  const std::string expected = read_text(first + ".ply");
+  CHECK(expected.size() == bench().expected().size());
+  for (const char* workers : {"1", "5"}) {
+    const std::string stage = bench().streams();
+    CHECK(bench().meshfarm(composed(stage, workers)).code == 0);
+    CHECK(read_text(stage + ".ply") == expected);
+  }
+  const std::string stage = bench().streams();
+  for (const std::size_t results : {11, 12, 13}) {
+    Process run = bench().start(composed(stage, "1"));
+    REQUIRE(wait_for_results(stage, results));
+    run.signal(SIGKILL);
+    run.wait();
+  }
+  CHECK(bench().meshfarm(composed(stage, "2")).code == 0);
+  CHECK(read_text(stage + ".ply") == expected);
 }
 
 TEST_CASE("streams: a flipped byte or a cut is named with its place, and nothing is written") {

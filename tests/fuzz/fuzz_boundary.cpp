@@ -8,5 +8,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   using namespace meshfarm;
   fuzz::decode_staged(data, size, {'B', 'N', 'D', 'Y'},
                       [](std::string_view file) { decode_boundary(file, "boundary"); });
+  fuzz::decode_staged(data, size, {'B', 'N', 'D', 'Y'}, [](std::string_view file) {
+    scan_boundary(fill_from(file, "boundary"), "boundary", [](const BoundaryTriangle&) {});
+  });
   return 0;
 }

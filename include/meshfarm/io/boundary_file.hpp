@@ -4,9 +4,12 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <string>
 #include <string_view>
 #include <vector>
+
+#include <meshfarm/io/fill.hpp>
 
 namespace meshfarm {
 
@@ -26,5 +29,9 @@ std::uint64_t drop_duplicates(std::vector<BoundaryTriangle>& triangles);
 /// (Xiong et al. 2008, 3.1 step 4).
 std::string encode_boundary(const std::vector<BoundaryTriangle>& triangles);
 std::vector<BoundaryTriangle> decode_boundary(std::string_view file, std::string_view what);
+/// Shows every triangle of a side file that is not to be held, in order. Whether the file is
+/// damaged its reader must find out.
+void scan_boundary(const Fill& fill, std::string_view what,
+                   const std::function<void(const BoundaryTriangle&)>& show);
 
 }  // namespace meshfarm

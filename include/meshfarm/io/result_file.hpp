@@ -71,6 +71,7 @@ class ResultWriter {
 struct ResultMesh {
   Mesh mesh;
   std::uint32_t boundary_vertices = 0;
+  PositionType positions = PositionType::float32;
   std::vector<SurfaceSamples> samples;
 };
 

@@ -20,18 +20,20 @@ namespace meshfarm {
 ///
 /// Of a long stream a sample is climbed instead, and stands for the stream by its share of the
 /// triangles; the stream itself is then swept at the level that was chosen. If the swept streams
-/// together hold less than the target, they are swept again one level finer.
+/// together hold less than the target, they are swept again one level finer. Then neighbouring
+/// streams may be composed (RunOptions::composition).
 JobSource make_job_source(const Manifest& manifest, const RunOptions& options);
 
-/// The result of a part that counts, and the rung to stitch.
+/// The result of a part, or of composed streams, that counts, and the rung to stitch.
 struct ChosenRung {
   FileRef file;
   std::uint32_t rung = 0;
+  std::uint32_t parts = 1;               // that it holds
   std::uint64_t dropped_degenerate = 0;  // in the part
   std::uint64_t dropped_duplicate = 0;
 };
 
-/// What to stitch, by part, once every job of make_job_source is accepted.
+/// What to stitch, in the order of the parts, once every job of make_job_source is accepted.
 std::vector<ChosenRung> choose_rungs(const Manifest& manifest, const RunOptions& options,
                                      std::span<const AcceptedJob> accepted);
 

@@ -22,6 +22,13 @@ enum class Finish : std::uint8_t {
   boundary,  // edges at boundary vertices only (Xiong et al. 2008, 3.3)
 };
 
+/// How swept streams become one mesh.
+enum class Composition : std::uint8_t {
+  automatic,  // as a tree where that is worth its rounds
+  tree,       // neighbours are joined by jobs of the farm first
+  sink,       // the sink joins all
+};
+
 /// A length in the mesh's unit, or as a fraction of the diagonal of its bounding box.
 struct Length {
   double value = 0;
@@ -36,6 +43,7 @@ struct RunOptions {
   Length error;  // where above 0: as few triangles as keep this distance
   Allocation allocation = Allocation::threshold;
   Finish finish = Finish::global;
+  Composition composition = Composition::automatic;
   LineOptions lines;
   Length drop_components;  // components with a smaller diagonal are left out
 };

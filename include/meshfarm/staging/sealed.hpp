@@ -22,4 +22,9 @@ std::string seal(FileKind kind, std::uint32_t version, std::string_view payload)
 std::string_view unseal(std::string_view file, FileKind kind, std::uint32_t version,
                         std::string_view what);
 
+/// For a file that is read in pieces: the payload's size by its first k_seal_head_bytes. Throws as
+/// unseal does; whether the file is damaged its reader must find out.
+std::uint64_t unseal_head(std::string_view head, FileKind kind, std::uint32_t version,
+                          std::string_view what);
+
 }  // namespace meshfarm

@@ -95,6 +95,26 @@ TEST_CASE("boundary triangles come back, damaged ones are refused") {
   });
 }
 
+TEST_CASE("boundary triangles are shown one by one, and what is no side file is refused") {
+  std::vector<BoundaryTriangle> triangles;
+  for (std::uint32_t i = 0; i < 10'000; ++i) triangles.push_back({{{0, i}, {1, i}, {2, 7}}});
+  const auto scanned = [](const std::string& file) {
+    std::vector<BoundaryTriangle> shown;
+    scan_boundary(fill_from(file, "b"), "b", [&](const auto& t) { shown.push_back(t); });
+    return shown;
+  };
+  const std::string file = encode_boundary(triangles);
+  CHECK(scanned(file) == triangles);
+  CHECK(scanned(encode_boundary({})).empty());
+  CHECK_THROWS_AS(scanned(file.substr(0, file.size() - 1)), DataError);
+  CHECK_THROWS_AS(scanned(encode_part({})), DataError);
+  for (const std::size_t place : {16, 23, 24, 31}) {  // sizes and counts
+    std::string damaged = file;
+    damaged[place] = static_cast<char>(damaged[place] ^ 0x55);
+    CHECK_THROWS_AS(scanned(damaged), DataError);
+  }
+}
+
 TEST_CASE("a manifest comes back whole") {
   const Manifest m = sample_manifest();
   const Manifest back = decode_manifest(encode_manifest(m), "manifest");

@@ -13,7 +13,9 @@
 #include <meshfarm/io/mesh_source.hpp>
 #include <meshfarm/pipeline/assemble.hpp>
 #include <meshfarm/pipeline/budget.hpp>
+#include <meshfarm/pipeline/compose_job.hpp>
 #include <meshfarm/pipeline/job_table.hpp>
+#include <meshfarm/pipeline/simplify_job.hpp>
 #include <meshfarm/pipeline/sweep_job.hpp>
 #include <meshfarm/stream/generate_streams.hpp>
 #include <meshfarm/util/errors.hpp>
@@ -93,6 +95,40 @@ TEST_CASE("swept streams, climbed streams and the uncut mesh end as good, closed
   CHECK(swept.summary.error.rms == doctest::Approx(uncut.summary.error.rms).epsilon(0.05));
 }
 
+TEST_CASE("composed as a tree, the result is as good, closed, and exact") {
+  const Mesh mesh = half_rough_torus();
+  const test::TempFolder folder;
+  const StreamOptions nine{.streams = 9, .window_triangles = 16'000};
+  RunOptions run{.triangles = 3000, .composition = Composition::sink};
+  const Made by_sink = simplify(mesh, nine, run, folder / "sink");
+  run.composition = Composition::automatic;  // too small to be worth it
+  CHECK(simplify(mesh, nine, run, folder / "auto").kinds == by_sink.kinds);
+  run.composition = Composition::tree;
+  const Made by_tree = simplify(mesh, nine, run, folder / "tree");
+  // 9 -> 3 -> 1
+  CHECK(std::count(by_sink.kinds.begin(), by_sink.kinds.end(), k_compose_kind) == 0);
+  CHECK(std::count(by_tree.kinds.begin(), by_tree.kinds.end(), k_compose_kind) >= 3);
+  CHECK(by_tree.mesh.triangles.size() == 3000);
+  const Topology t = measure_topology(by_tree.mesh);
+  CHECK(t.euler == 0);
+  CHECK(t.components == 1);
+  CHECK(t.border_edges + t.nonmanifold_edges + t.degenerate + t.duplicate == 0);
+  CHECK(by_tree.summary.stitched < by_sink.summary.stitched);
+  CHECK(by_tree.summary.stitched >= 3000);
+  CHECK(rms(mesh, by_tree.mesh) < 1.1 * rms(mesh, by_sink.mesh));
+  CHECK(by_tree.summary.error_samples >= 100'000);
+  CHECK(by_tree.summary.error.rms == doctest::Approx(by_sink.summary.error.rms).epsilon(0.1));
+}
+
+TEST_CASE("no more streams are composed than a window holds") {
+  const Mesh mesh = half_rough_torus();
+  const test::TempFolder folder;
+  const Made made = simplify(mesh, {.streams = 4, .window_triangles = 16'000},
+                             {.ratio = 0.8, .composition = Composition::tree}, folder.path());
+  CHECK(std::count(made.kinds.begin(), made.kinds.end(), k_compose_kind) == 0);
+  CHECK(made.mesh.triangles.size() == 81'920);
+}
+
 TEST_CASE("hardly anything and nearly everything can be kept") {
   const test::TempFolder folder;
   const Mesh mesh = half_rough_torus();
@@ -162,6 +198,42 @@ TEST_CASE(
   job.memory = 0;
   CHECK_THROWS_WITH_AS(do_job(job, context), "streams/000000.stream: block 1: damaged (checksum)",
                        DataError);
+}
+
+TEST_CASE("a compose job that makes no sense is refused, one whose side file is damaged fails") {
+  const test::TempFolder folder;
+  test::MemorySource source(half_rough_torus());
+  const Stage stage = Stage::create(folder.path());
+  const Manifest manifest = generate_streams(source, stage, {.streams = 3});
+  const JobContext context{stage, 1, 7, [](std::uint64_t) { return true; }};
+  ComposeParameters parameters{.all_streams = 3, .inputs = {{}, {}}, .boundary = manifest.boundary};
+  const std::string bytes = encode_parameters(parameters);
+  CHECK(decode_compose_parameters(bytes).inputs.size() == 2);
+  CHECK_THROWS_AS(decode_compose_parameters(bytes + "x"), DataError);
+  for (std::size_t size = 0; size < bytes.size(); ++size) {
+    CHECK_THROWS_AS(decode_compose_parameters(bytes.substr(0, size)), DataError);
+  }
+  parameters.inputs.resize(4);
+  CHECK_THROWS_AS(decode_compose_parameters(encode_parameters(parameters)), DataError);
+  CHECK_THROWS_AS(do_job({std::string(k_compose_kind), {}, bytes, 0, 0}, context), DataError);
+
+  Job job{std::string(k_compose_kind), {}, bytes, 0, 0};
+  for (std::size_t i = 0; i < 2; ++i) {
+    SimplifyParameters climb{.allocation = Allocation::uniform, .start_triangles = 9'000};
+    job.inputs.push_back(do_job({std::string(k_simplify_kind),
+                                 {manifest.parts[i].file},
+                                 encode_parameters(climb),
+                                 0,
+                                 0},
+                                context)
+                             .file);
+  }
+  CHECK_NOTHROW(do_job(job, context));
+  std::fstream file(stage.path(BoundaryName{}), std::ios::in | std::ios::out | std::ios::binary);
+  file.seekp(static_cast<std::streamoff>(manifest.boundary.size / 2));
+  file.put('\x55');
+  file.close();
+  CHECK_THROWS_AS(do_job(job, context), DataError);
 }
 
 TEST_CASE("a sweep job that makes no sense is refused") {

@@ -1,0 +1,196 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include <meshfarm/geometry/simplify.hpp>
+#include <meshfarm/io/boundary_file.hpp>
+#include <meshfarm/io/result_file.hpp>
+#include <meshfarm/pipeline/compose_job.hpp>
+#include <meshfarm/staging/staged_reader.hpp>
+#include <meshfarm/stitch/stitcher.hpp>
+#include <meshfarm/util/bytes.hpp>
+#include <meshfarm/util/errors.hpp>
+
+namespace meshfarm {
+namespace {
+
+// Version 1: first stream u32 | all streams u32 | inputs u32 x (streams u32 | rung u32) |
+// boundary (name | size u64 | hash u64) | level i32 | greatest cost f64 | floor u64 |
+// samples a triangle f64 | lines (run_options.hpp).
+constexpr std::uint8_t k_version = 1;
+constexpr double k_max_samples_per_triangle = 1000;
+
+class Composer {
+ public:
+  Composer(const Job& job, const JobContext& context)
+      : job_(job),
+        context_(context),
+        parameters_(decode_compose_parameters(job.parameters)),
+        stitcher_(parameters_.all_streams, parameters_.first_stream),
+        end_stream_(parameters_.first_stream) {
+    if (job.inputs.size() != parameters_.inputs.size()) {
+      throw DataError("a compose job has other inputs than its parameters name");
+    }
+    for (const ComposeInput& input : parameters_.inputs) end_stream_ += input.streams;
+  }
+
+  JobOutput run() {
+    for (std::size_t i = 0; i < job_.inputs.size(); ++i) add(i);
+    StitchedMesh stitched = stitcher_.finish(seams());
+    sample_seams(stitched);
+    const auto locked = static_cast<std::uint32_t>(stitched.open.size());
+    Simplifier simplifier(
+        open_first(std::move(stitched)),
+        {.locked_vertices = locked, .positions = positions_, .lines = parameters_.lines});
+    simplify(simplifier);
+    return write(simplifier, locked);
+  }
+
+ private:
+  void add(std::size_t i) {
+    const std::string file = context_.read(job_.inputs[i]);
+    ResultMesh result = decode_result(file, parameters_.inputs[i].rung, job_.inputs[i].name);
+    positions_ = result.positions;
+    stitcher_.add(result, parameters_.inputs[i].streams);
+    std::move(result.samples.begin(), result.samples.end(), std::back_inserter(samples_));
+  }
+
+  /// The boundary triangles that touch the group.
+  std::vector<BoundaryTriangle> seams() const {
+    std::vector<BoundaryTriangle> seams;
+    const auto is_ours = [&](const BoundaryCorner& corner) {
+      return corner.part >= parameters_.first_stream && corner.part < end_stream_;
+    };
+    StagedReader file(context_.stage, parameters_.boundary);
+    const auto fill = [&](std::span<char> buffer) { file.fill(buffer); };
+    scan_boundary(fill, parameters_.boundary.name, [&](const BoundaryTriangle& t) {
+      if (std::any_of(t.begin(), t.end(), is_ours)) seams.push_back(t);
+    });
+    file.expect_end();
+    return seams;
+  }
+
+  /// The triangles between streams are still those of the input.
+  void sample_seams(StitchedMesh& stitched) {
+    const auto count = static_cast<std::ptrdiff_t>(stitched.boundary_triangles);
+    Mesh seams;
+    seams.triangles.assign(stitched.mesh.triangles.end() - count, stitched.mesh.triangles.end());
+    const auto wanted = static_cast<std::uint64_t>(
+        std::ceil(parameters_.samples_per_triangle * static_cast<double>(count)));
+    if (wanted == 0) return;
+    std::swap(seams.positions, stitched.mesh.positions);
+    samples_.push_back(sample_surface(seams, {.samples = wanted, .threads = 1}));
+    std::swap(seams.positions, stitched.mesh.positions);
+  }
+
+  /// Renumbers the vertices, the order kept otherwise.
+  static Mesh open_first(StitchedMesh stitched) {
+    Mesh& from = stitched.mesh;
+    std::vector<std::uint32_t> number(from.positions.size(), 0);
+    Mesh mesh;
+    mesh.positions.reserve(from.positions.size());
+    for (const std::uint32_t v : stitched.open) mesh.positions.push_back(from.positions[v]);
+    for (const std::uint32_t v : stitched.open) number[v] = 1;
+    for (std::size_t v = 0; v < number.size(); ++v) {
+      if (number[v] != 0) continue;
+      number[v] = static_cast<std::uint32_t>(mesh.positions.size());
+      mesh.positions.push_back(from.positions[v]);
+    }
+    for (std::uint32_t i = 0; i < stitched.open.size(); ++i) number[stitched.open[i]] = i;
+    mesh.triangles = std::move(from.triangles);
+    for (Triangle& t : mesh.triangles) t = {number[t[0]], number[t[1]], number[t[2]]};
+    return mesh;
+  }
+
+  void simplify(Simplifier& simplifier) const {
+    const std::uint64_t before = simplifier.triangles();
+    bool given_up = false;
+    simplifier.reduce({.triangles = parameters_.floor, .max_cost = parameters_.max_cost},
+                      [&](std::uint64_t left) {
+                        given_up = !context_.progress(before - std::min(left, before));
+                        return !given_up;
+                      });
+    if (given_up) throw IncompleteError("the job was given up");
+  }
+
+  JobOutput write(const Simplifier& simplifier, std::uint32_t locked) const {
+    std::string file;
+    ResultWriter result(positions_, locked, [&](std::string_view bytes) { file += bytes; });
+    const Mesh& mesh = simplifier.mesh();
+    result.add_rung(parameters_.level, mesh, simplifier.free_triangles());
+    result.finish(std::span(mesh.positions).first(locked), samples_);
+    const ResultName name{key_of(job_).value, context_.attempt, context_.incarnation};
+    const ResultSummary summary{result.rungs(), simplifier.dropped_degenerate(),
+                                simplifier.dropped_duplicate()};
+    return {context_.publish(name, file), encode_summary(summary)};
+  }
+
+  const Job& job_;
+  const JobContext& context_;
+  ComposeParameters parameters_;
+  Stitcher stitcher_;
+  std::uint32_t end_stream_;
+  PositionType positions_ = PositionType::float32;
+  std::vector<SurfaceSamples> samples_;
+};
+
+}  // namespace
+
+std::string encode_parameters(const ComposeParameters& parameters) {
+  ByteWriter out;
+  out.put(k_version);
+  out.put(parameters.first_stream);
+  out.put(parameters.all_streams);
+  out.put(static_cast<std::uint32_t>(parameters.inputs.size()));
+  for (const ComposeInput& input : parameters.inputs) {
+    out.put(input.streams);
+    out.put(input.rung);
+  }
+  out.put_string(parameters.boundary.name);
+  out.put(parameters.boundary.size);
+  out.put(parameters.boundary.hash);
+  out.put(parameters.level);
+  out.put(parameters.max_cost);
+  out.put(parameters.floor);
+  out.put(parameters.samples_per_triangle);
+  put(out, parameters.lines);
+  return out.take();
+}
+
+ComposeParameters decode_compose_parameters(std::string_view bytes) {
+  ByteReader in(bytes, "parameters of a compose job");
+  if (in.get<std::uint8_t>() != k_version) in.fail("made by another version of meshfarm");
+  ComposeParameters parameters;
+  parameters.first_stream = in.get<std::uint32_t>();
+  parameters.all_streams = in.get<std::uint32_t>();
+  const auto inputs = in.get<std::uint32_t>();
+  std::uint64_t end = parameters.first_stream;
+  for (std::uint32_t i = 0; i < inputs; ++i) {
+    ComposeInput input;
+    input.streams = in.get<std::uint32_t>();
+    input.rung = in.get<std::uint32_t>();
+    end += input.streams;
+    if (input.streams == 0 || end > parameters.all_streams) in.fail("impossible streams");
+    parameters.inputs.push_back(input);
+  }
+  parameters.boundary.name = in.get_string();
+  parameters.boundary.size = in.get<std::uint64_t>();
+  parameters.boundary.hash = in.get<std::uint64_t>();
+  parameters.level = in.get<std::int32_t>();
+  parameters.max_cost = in.get<double>();
+  parameters.floor = in.get<std::uint64_t>();
+  parameters.samples_per_triangle = in.get<double>();
+  const double samples = parameters.samples_per_triangle;
+  if (!(samples >= 0 && samples <= k_max_samples_per_triangle)) in.fail("too many samples");
+  parameters.lines = get_lines(in);
+  in.expect_end();
+  return parameters;
+}
+
+JobOutput compose_streams(const Job& job, const JobContext& context) {
+  return Composer(job, context).run();
+}
+
+}  // namespace meshfarm

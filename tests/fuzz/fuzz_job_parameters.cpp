@@ -1,0 +1,27 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#include <meshfarm/pipeline/compose_job.hpp>
+#include <meshfarm/pipeline/simplify_job.hpp>
+#include <meshfarm/pipeline/sweep_job.hpp>
+#include <meshfarm/util/errors.hpp>
+
+namespace {
+
+template <class Decode>
+void try_to(Decode decode, std::string_view bytes) {
+  try {
+    decode(bytes);
+  } catch (const meshfarm::DataError&) {
+  }
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  using namespace meshfarm;
+  const std::string_view bytes(reinterpret_cast<const char*>(data), size);
+  try_to(decode_parameters, bytes);
+  try_to(decode_sweep_parameters, bytes);
+  try_to(decode_compose_parameters, bytes);
+  return 0;
+}
