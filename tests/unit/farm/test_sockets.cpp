@@ -1,0 +1,40 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#include <chrono>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include <doctest/doctest.h>
+
+#include "farm/sockets.hpp"
+
+namespace meshfarm::test {
+namespace {
+
+TEST_CASE("a process that is behind with its messages outlives whoever sent them") {
+  // With libzmq's own heartbeats this ended in an assertion of libzmq, and so of the process.
+  zmq::context_t here{1};
+  zmq::socket_t results = make_results_server(here, {});
+  const std::string address = bind_within(results, "127.0.0.1", {});
+  {
+    zmq::context_t there{1};
+    zmq::socket_t push = make_results_client(there, {});
+    push.set(zmq::sockopt::linger, 0);
+    push.connect(address);
+    for (std::uint64_t i = 0; i < 100'000; ++i) send(push, Ready{1, i});
+    std::vector<zmq::pollitem_t> items = {{results.handle(), 0, ZMQ_POLLIN, 0}};
+    wait_for(items, std::chrono::seconds(10));
+    std::this_thread::sleep_for(std::chrono::milliseconds(200));
+  }  // gone, with most of it not taken
+  std::this_thread::sleep_for(std::chrono::milliseconds(2500));
+  std::uint64_t next = 0;
+  while (auto received = receive(results)) {
+    REQUIRE(received->message);
+    CHECK(std::get<Ready>(*received->message).accepted == next++);
+  }
+  CHECK(next >= 500);
+}
+
+}  // namespace
+}  // namespace meshfarm::test
