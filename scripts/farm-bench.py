@@ -8,7 +8,8 @@ farm-bench.py crowd          starts 400 workers at once against one ventilator: 
 farm-bench.py slow MESH      two workers, one of which is held to 33 % of a core by a control group:
                              time of the farmed phase over the ideal (3 times; at most 1.10), which
                              is the jobs' processor time over what there was of it: 1.33 cores, less
-                             what others had while the first worker waited. Needs to be root.
+                             what others had while the first worker waited. Needs to be root, and a
+                             machine that is not overloaded.
 Exit code 1 if a bar was missed.
 """
 import argparse
@@ -196,9 +197,8 @@ def slow(arguments):
         for i in range(1, arguments.runs + 1):
             took, ideal, ideal_here = slow_once(program, stage, output, group, arguments.percent)
             good += took / ideal_here <= 1.10
-            print(f"run {i}: {took:.2f} s, {took / ideal_here:.3f} of the ideal {ideal_here:.2f} s; "
-                  f"with the machine for itself that were {ideal:.2f} s, {took / ideal:.3f}",
-                  flush=True)
+            print(f"run {i}: {took:.2f} s, {took / ideal_here:.3f} of the ideal {ideal_here:.2f} s "
+                  f"(of {ideal:.2f} s if nothing else ran here: {took / ideal:.3f})", flush=True)
     finally:
         group.remove()
         shutil.rmtree(folder)
