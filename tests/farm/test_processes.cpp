@@ -246,7 +246,7 @@ TEST_CASE("a staged part with a flipped byte, or cut short, is named and nothing
       file.put('\x55');
     }
     const Ran ran = bench().meshfarm(
-        {"replay", stage, "-o", stage + ".ply", "--ratio", "0.02", "--workers", "2"});
+        {"replay", stage, "-o", stage + ".ply", "--ratio", "0.02", "--workers", "2", "-q"});
     CHECK(ran.code == 1);
     CHECK(ran.err.find("error: 1 job failed for good: ") != std::string::npos);
     CHECK(ran.err.find("000005.part") != std::string::npos);
