@@ -47,7 +47,7 @@ class CollapseJudge {
   explicit CollapseJudge(const CollapseState& state) : state_(state) {}
 
   /// Where the merged vertex would go and at what cost, if that keeps the topology, turns no
-  /// triangle by more than 75 degrees and makes none of no area. The quadric is of the triangles
+  /// triangle by more than 60 degrees and makes none of no area. The quadric is of the triangles
   /// as they are now, each counted once.
   Collapse judge(std::uint32_t a, std::uint32_t b, const CollapseLimits& limits);
 

@@ -5,9 +5,9 @@
 namespace meshfarm {
 namespace {
 
-constexpr double k_cos_75_squared = 0.066987298107780676;
+constexpr double k_cos_60_squared = 0.25;
 // Beyond this turn a look at the neighbours tells whether a triangle folds over.
-constexpr double k_cos_45_squared = 0.5;
+constexpr double k_cos_30_squared = 0.75;
 // Of the angle at the new vertex: near 0 and near 180 degrees alike are as good as no area.
 constexpr double k_least_sine_squared = 1e-6;
 
@@ -32,7 +32,7 @@ bool CollapseStar::is_acceptable(const Two& two, int lane, Vec3 x) {
   const double size = squared_length(normal);
   const double old_size = squared_length(old_normal);
   const double turn = meshfarm::dot(normal, old_normal);
-  const bool turned = !(turn > 0 && turn * turn >= k_cos_75_squared * size * old_size);
+  const bool turned = !(turn > 0 && turn * turn >= k_cos_60_squared * size * old_size);
   if (turned && old_size > 0) return false;
   const double scale = squared_length(p - x) * squared_length(q - x);
   if (size > k_least_sine_squared * scale) return true;
@@ -41,7 +41,7 @@ bool CollapseStar::is_acceptable(const Two& two, int lane, Vec3 x) {
          (size > 0 || old_size == 0);
 }
 
-/// The normal of a sliver may turn by 75 degrees again and again and so fold over in the end. One
+/// The normal of a sliver may turn by 60 degrees again and again and so fold over in the end. One
 /// that turns much must still face the way of its new neighbours, each counted by its area.
 bool CollapseStar::is_folded(std::uint32_t kept, Vec3 x) const {
   const Vec3Pair to = from(x);
@@ -58,7 +58,7 @@ bool CollapseStar::is_folded(std::uint32_t kept, Vec3 x) const {
     const Vec3 old_normal = at(two.normal);
     const double turn = meshfarm::dot(normal, old_normal);
     const double sizes = squared_length(normal) * two.squared_size[i % 2];
-    if (turn * turn < k_cos_45_squared * sizes && meshfarm::dot(normal, all) <= 0) return true;
+    if (turn * turn < k_cos_30_squared * sizes && meshfarm::dot(normal, all) <= 0) return true;
   }
   return false;
 }
@@ -81,8 +81,8 @@ std::optional<double> CollapseStar::lost_area(std::uint32_t kept, Vec3 x) const 
     dot(p, p, squared_p);
     dot(q, q, squared_q);
     const Pair sizes = size * two.squared_size;
-    steep |= turn * turn < k_cos_45_squared * sizes;
-    const Mask good = (turn > 0) & (turn * turn >= k_cos_75_squared * sizes) &
+    steep |= turn * turn < k_cos_30_squared * sizes;
+    const Mask good = (turn > 0) & (turn * turn >= k_cos_60_squared * sizes) &
                       (size > k_least_sine_squared * (squared_p * squared_q));
     if ((good[0] & good[1]) == 0) {
       if (good[0] == 0 && !is_acceptable(two, 0, x)) return {};
