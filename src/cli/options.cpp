@@ -150,8 +150,9 @@ void CutWords::add(po::options_description& options) {
       "number of parts (default: about a million triangles each, at least 16 of a large mesh) or "
       "streams (1.2 million)")(
       "weld", po::value(&weld)->default_value(weld),
-      "exact: vertices at the same position become one; off: they stay apart")(
-      "threads", po::value(&cut.threads)->value_name("N"), "threads of the cut (default: cores)")(
+      "exact: vertices at the same position become one, but for surfaces that only touch; "
+      "off: they stay apart")("threads", po::value(&cut.threads)->value_name("N"),
+                              "threads of the cut (default: cores)")(
       "memory", po::value(&memory)->default_value(memory)->value_name("BYTES"),
       "stream: memory for the sorting, as 512M or 2G")(
       "window",

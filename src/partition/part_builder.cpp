@@ -54,6 +54,7 @@ BuiltPart build_part(MeshShare raw, PositionType positions, Weld weld_mode) {
   std::vector<std::uint32_t> representative;
   if (weld_mode == Weld::exact) {
     WeldResult welded = weld(raw.positions);
+    separate_touching(raw.triangles, raw.boundary, welded);
     representative = std::move(welded.first);
     built.merged_vertices = welded.merged;
   } else {

@@ -8,6 +8,8 @@
 #include <numeric>
 #include <utility>
 
+#include <meshfarm/geometry/weld.hpp>
+
 #include "stream/vertex_sort.hpp"
 
 namespace meshfarm {
@@ -36,21 +38,42 @@ class SlabSorter {
   void rank_vertices() {
     const std::vector<std::uint32_t> sorted =
         sorted_vertices(raw_.positions, options_.order, options_.positions);
+    const std::vector<std::uint32_t> first = weld_sorted(sorted);
     const std::size_t count = raw_.positions.size();
     rank_.resize(count);
     std::vector<Vec3>& positions = slab_.stream.mesh.positions;
     positions.reserve(count);
     for (std::size_t i = 0; i < count; ++i) {
       const std::uint32_t raw = sorted.empty() ? static_cast<std::uint32_t>(i) : sorted[i];
-      const Vec3 p = raw_.positions[raw];
-      if (options_.weld == Weld::exact && !positions.empty() && positions.back() == p) {
-        ++slab_.merged_vertices;
-      } else {
-        positions.push_back(p);
+      if (!first.empty() && first[raw] != raw) {
+        rank_[raw] = rank_[first[raw]];
+        continue;
       }
-      rank_[raw] = static_cast<std::uint32_t>(positions.size() - 1);
+      rank_[raw] = static_cast<std::uint32_t>(positions.size());
+      positions.push_back(raw_.positions[raw]);
     }
     raw_.positions = {};
+  }
+
+  /// For each vertex its lowest twin, which the sort has put before it; empty if none has any.
+  std::vector<std::uint32_t> weld_sorted(std::span<const std::uint32_t> sorted) {
+    if (options_.weld == Weld::off) return {};
+    const auto at = [&](std::size_t i) {
+      return sorted.empty() ? static_cast<std::uint32_t>(i) : sorted[i];
+    };
+    const std::vector<Vec3>& positions = raw_.positions;
+    WeldResult welded;
+    for (std::size_t i = 1; i < positions.size(); ++i) {
+      if (!(positions[at(i - 1)] == positions[at(i)])) continue;
+      if (welded.merged++ == 0) {
+        welded.first.resize(positions.size());
+        std::iota(welded.first.begin(), welded.first.end(), 0U);
+      }
+      welded.first[at(i)] = welded.first[at(i - 1)];
+    }
+    separate_touching(raw_.triangles, raw_.boundary, welded);
+    slab_.merged_vertices = welded.merged;
+    return std::move(welded.first);
   }
 
   /// Triangles by rank, the smallest corner first, without those that are degenerate.

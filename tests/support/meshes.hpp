@@ -83,6 +83,24 @@ inline Mesh torus(std::uint32_t rows, std::uint32_t columns) {
   return mesh;
 }
 
+inline void append(Mesh& mesh, const Mesh& other) {
+  const auto offset = static_cast<std::uint32_t>(mesh.positions.size());
+  mesh.positions.insert(mesh.positions.end(), other.positions.begin(), other.positions.end());
+  for (const Triangle& t : other.triangles) {
+    mesh.triangles.push_back({t[0] + offset, t[1] + offset, t[2] + offset});
+  }
+}
+
+/// A mesh beside itself reflected in a point of its surface, where the two then touch.
+inline Mesh touching_twice(const Mesh& mesh, Vec3 point) {
+  Mesh both = mesh;
+  Mesh reflected = mesh;
+  for (Vec3& p : reflected.positions) p = point * 2.0 - p;
+  for (Triangle& t : reflected.triangles) t = {t[0], t[2], t[1]};
+  append(both, reflected);
+  return both;
+}
+
 /// A flat open sheet of nx x ny unit squares in z = 0, seen from +z:
 ///
 ///     6---7---8

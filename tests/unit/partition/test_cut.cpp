@@ -137,6 +137,15 @@ TEST_CASE("coincident vertices are welded across the whole mesh, seams included"
   CHECK(vertices == soup.positions.size());
 }
 
+TEST_CASE("surfaces that touch are not welded together") {
+  const Mesh octahedron = test::octahedron();
+  const Mesh mesh = test::touching_twice(octahedron, octahedron.positions[0]);
+  const test::TempFolder folder;
+  const CutMesh touching = cut(mesh, {.parts = 1, .weld = Weld::exact}, folder.path());
+  CHECK(touching.manifest.merged_vertices == 0);
+  CHECK(touching.manifest.parts[0].vertices == 12);
+}
+
 TEST_CASE("degenerate triangles go, wherever they lie, and are counted") {
   Mesh mesh = test::torus(40, 30);
   const std::size_t clean = mesh.triangles.size();

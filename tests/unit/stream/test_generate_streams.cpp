@@ -182,6 +182,15 @@ TEST_CASE("coincident vertices are welded, degenerate and duplicate triangles dr
   CHECK(apart.manifest.boundary_triangles < made.manifest.boundary_triangles * 2);
 }
 
+TEST_CASE("surfaces that touch are not welded together") {
+  const Mesh octahedron = test::octahedron();
+  const Mesh mesh = test::touching_twice(octahedron, octahedron.positions[0]);
+  const test::TempFolder folder;
+  const Generated made = generate(mesh, {.streams = 1}, folder / "touching");
+  CHECK(made.manifest.merged_vertices == 0);
+  CHECK(made.manifest.parts[0].vertices == 12);
+}
+
 TEST_CASE("long streams get a sample: a piece of them with its edge locked") {
   const Mesh mesh = test::grid(700, 300);
   const test::TempFolder folder;
