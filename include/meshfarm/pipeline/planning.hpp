@@ -39,9 +39,9 @@ struct WorkerGroup {
 struct PlannedFarm {
   std::vector<WorkerGroup> groups;
   Schedule schedule = Schedule::dynamic;
-  double off = 0;  // the speeds are not as told: each is up to this share slower or faster
-  double delay_s = 100e-6;             // of a message
-  double file_s = 1e-3;                // of a file operation, besides its bytes
+  double off = 0;           // the speeds are not as told: each is up to this share slower or faster
+  double delay_s = 100e-6;  // of a message
+  double file_s = 1e-3;     // of a file operation, besides its bytes
   double server_bytes_per_s = 1.25e9;  // of the NFS server, shared: 10 Gbit/s
   double link_bytes_per_s = 1.25e9;    // of each host
   double message_s = 10e-6;            // of the ventilator, for each message
