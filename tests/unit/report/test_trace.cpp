@@ -75,7 +75,9 @@ TEST_CASE("what is no trace is refused with the line") {
       {good + "{\"kind\": \"done\", \"worker\": -1}\n", "line 2: \"worker\" is of the wrong kind"},
       {good + "{\"kind\": \"done\", \"job\": \"xyz\"}\n", "line 2: \"job\" is no key"},
       {good + "{\"kind\": \"state\", \"workers\": [3]}\n", "line 2: "}};
-  for (const auto& [text, message] : bad) {
+  for (const auto& each : bad) {
+    const auto& text = each.first;
+    const auto& message = each.second;
     CAPTURE(text);
     CHECK_THROWS_WITH_AS(parse_trace(text, "trace"), doctest::Contains(message), DataError);
   }
