@@ -6,6 +6,7 @@
 #include <meshfarm/pipeline/budget.hpp>
 #include <meshfarm/pipeline/run_trace.hpp>
 #include <meshfarm/util/errors.hpp>
+#include <meshfarm/util/log.hpp>
 
 #include "cli/farm_command.hpp"
 
@@ -30,6 +31,9 @@ class VentilatorCommand : public FarmCommand {
     options.add_options()("heartbeat-ms",
                           po::value(&heartbeat_ms_)->default_value(heartbeat_ms_)->value_name("N"),
                           "a worker or sink that is silent three times as long is lost");
+    options.add_options()("wait",
+                          po::value(&wait_s_)->default_value(wait_s_)->value_name("SECONDS"),
+                          "how long to look for a sink if the output was made before");
     talk_.add_quiet(options);
   }
   void check() override {
@@ -56,6 +60,8 @@ class VentilatorCommand : public FarmCommand {
     options.hang = std::chrono::seconds(schedule_.hang_s);
     options.schedule = schedule_.options;
     options.stop = &stop;
+    options.patience = std::chrono::seconds(wait_s_);
+    options.was_completed = [&, run = options.run] { return was_completed(stage, run); };
     options.progress = [&](const FarmProgress& p) { show(printer, p); };
     TraceHead head;
     head.run = options.run;
@@ -77,6 +83,12 @@ class VentilatorCommand : public FarmCommand {
   bool sink_reports_failures() const override { return true; }
 
  private:
+  static bool was_completed(const Stage& stage, std::uint64_t run) {
+    if (!read_run_times(stage, run)) return false;
+    log_info("no sink comes, and the output of this run was made before");
+    return true;
+  }
+
   static void show(ProgressPrinter& printer, const FarmProgress& p) {
     if (p.jobs_done == p.jobs_known) return printer.end();
     std::string phase =
@@ -102,6 +114,7 @@ class VentilatorCommand : public FarmCommand {
   NetworkOptions network_;
   ScheduleWords schedule_;
   std::uint32_t heartbeat_ms_ = 1000;
+  std::uint32_t wait_s_ = 60;
 };
 
 }  // namespace

@@ -44,6 +44,11 @@ Actions Dispatcher::leave() {
   return take();
 }
 
+Actions Dispatcher::end_complete() {
+  finish({}, false);
+  return take();
+}
+
 // --- joining
 
 void Dispatcher::on(const PeerId& peer, const Hello& hello) {

@@ -27,6 +27,7 @@ namespace {
 constexpr int k_messages_per_turn = 1000;
 constexpr FarmTime k_progress_every{500};
 constexpr FarmTime k_state_every{1000};
+constexpr FarmTime k_look_every{1000};
 constexpr FarmTime k_state_every_per_worker{5};
 
 /// A job that no message can carry is our caller's mistake: it is found before anything is sent.
@@ -63,6 +64,7 @@ class VentilatorLoop {
                               stage_.root().string() + ", run the same command again to go on");
       }
       turn();
+      look_for_sink(farm_clock());
     }
     if (options_.progress) options_.progress(progress());
     next_state_ = FarmTime(0);
@@ -141,6 +143,17 @@ class VentilatorLoop {
     options_.state(progress(), workers, now - start_);
   }
 
+  void look_for_sink(FarmTime now) {
+    if (!options_.was_completed || now < next_look_) return;
+    next_look_ = now + k_look_every;
+    if (dispatcher_.progress().sink_present) {
+      last_sink_ = now;
+    } else if (now - last_sink_ >= options_.patience) {
+      last_sink_ = now;
+      if (options_.was_completed()) perform(dispatcher_.end_complete());
+    }
+  }
+
   FarmProgress progress() const {
     FarmProgress progress = dispatcher_.progress();
     progress.refused = gate_.refused();
@@ -217,6 +230,8 @@ class VentilatorLoop {
   FarmTime start_ = farm_clock();
   FarmTime next_report_{0};
   FarmTime next_state_{0};
+  FarmTime next_look_{0};
+  FarmTime last_sink_ = start_;
   std::uint64_t garbage_ = 0;
   std::optional<Finish> end_;
 };

@@ -42,7 +42,7 @@ class Run:
         words = [self.program, role, self.stage, "-q"]
         if role != "worker":
             words += RATIO + ["--bind", "127.0.0.1"]
-        words += {"ventilator": ["--heartbeat-ms", "100"],
+        words += {"ventilator": ["--heartbeat-ms", "100", "--wait", "10"],
                   "sink": ["-o", self.output, "--wait", "30"],
                   "worker": ["--wait", "30"]}[role]
         self.processes[name] = subprocess.Popen(words, stdout=subprocess.DEVNULL, stderr=self.log)
@@ -145,7 +145,7 @@ def main():
             print(f"seed {seed}: {what} after {time.time() - begin:.1f} s", flush=True)
             kept = os.path.join(folder, f"bad-{seed}")
             shutil.copytree(run.stage, kept, dirs_exist_ok=True)
-            shutil.copy(run.log.name, kept)
+            shutil.copy(run.log.name, os.path.join(kept, "messages"))
         if (seed - first + 1) % 50 == 0:
             print(f"{seed - first + 1} runs, {faults} faults, {bad} bad", flush=True)
     print(f"{runs} runs, {faults} faults, {bad} bad")

@@ -4,7 +4,9 @@
 // Whole runs of the real program: ventilator, sink and workers as processes over tcp, killed,
 // stopped and started again. Every run must end with the same bytes.
 #include <algorithm>
+#include <chrono>
 #include <random>
+#include <thread>
 
 #include <arpa/inet.h>
 #include <doctest/doctest.h>
@@ -155,6 +157,30 @@ TEST_CASE("sink, then ventilator, killed and started again: the run goes on") {
   CHECK(one.wait() == 0);
   CHECK(two.wait() == 0);
   bench().check_result(stage + ".ply");
+}
+
+TEST_CASE("a ventilator started again when the sink has ended sees that the run is over") {
+  const std::string stage = bench().cut();
+  const auto start_ventilator = [&](const char* ratio) {
+    return bench().start(
+        {"ventilator", stage, "--ratio", ratio, "--bind", "127.0.0.1", "--wait", "1"});
+  };
+  Process ventilator = start_ventilator("0.02");
+  Process sink = bench().sink(stage);
+  Process worker = bench().worker(stage);
+  CHECK(sink.wait() == 0);
+  CHECK(ventilator.wait() == 0);
+  ventilator = start_ventilator("0.02");
+  worker = bench().worker(stage);
+  CHECK(ventilator.wait() == 0);
+  CHECK(worker.wait() == 0);
+  CHECK(ventilator.err().find("was made before") != std::string::npos);
+
+  // Of another target nothing was made.
+  ventilator = start_ventilator("0.03");
+  std::this_thread::sleep_for(std::chrono::seconds(3));
+  ventilator.signal(SIGTERM);
+  CHECK(ventilator.wait() == 3);
 }
 
 TEST_CASE("everything killed, everything started again: only what was not accepted is done") {

@@ -46,6 +46,8 @@ class Dispatcher {
   Actions tick(FarmTime now);
   /// Tells everybody that this ventilator leaves before the end.
   Actions leave();
+  /// Ends a run that turned out to be complete already.
+  Actions end_complete();
 
   const Plan& plan() const { return plan_; }
   const Scheduler& scheduler() const { return scheduler_; }

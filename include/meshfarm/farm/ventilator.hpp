@@ -69,6 +69,10 @@ struct VentilatorOptions {
   /// How the farm stands, once a second, or more seldom where there are hundreds of workers.
   std::function<void(const FarmProgress&, const std::vector<WorkerStatus>&, FarmTime)> state;
   const std::atomic<bool>* stop = nullptr;  // set by a signal: stop, resumable
+  /// Asked when there was no sink for `patience`: whether a sink has made the run's output already,
+  /// perhaps while a ventilator was killed and started again. Then the run ends. May be empty.
+  std::function<bool()> was_completed;
+  std::chrono::milliseconds patience{60'000};
 };
 
 /// Hands out the jobs of `source` over one lane a worker until the sink has them all and says that
