@@ -1,15 +1,18 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
 //
-// The manifest, kind "MNFT", version 2; the payload of a sealed file. Strings are u32 + characters,
+// The manifest, kind "MNFT", version 3; the payload of a sealed file. Strings are u32 + characters,
 // a file is name | size u64 | xxh3-64 u64:
 //   input | input format | scheme u8 (0 cut, 1 stream) | window u64 | position type u8 | box 6 x
 //   f64 | input vertices u64 | input triangles u64 | merged vertices u64 | dropped degenerate u64 |
 //   dropped duplicate u64 | skipped u32 x string | cut seconds f64 | boundary triangles u64 |
-//   boundary file | parts u32 x (file | vertices u64 | triangles u64 | boundary vertices u32) |
-//   samples u32 x the same: none, or one a part, its file's name empty where it has none
-// Version 1 had no scheme, window and samples.
+//   boundary file | sorting | parts u32 x (file | vertices u64 | triangles u64 | boundary vertices
+//   u32) | samples u32 x the same: none, or one a part, its file's name empty where it has none
+//   sorting = u8 0: parts and streams are there | u8 1: slabs are, and how they are to be sorted
+//   (io/sorting.hpp)
+// Version 1 had no scheme, window and samples, version 2 no sorting.
 #include <meshfarm/io/manifest.hpp>
+#include <meshfarm/io/sorting.hpp>
 #include <meshfarm/staging/sealed.hpp>
 #include <meshfarm/util/bytes.hpp>
 
@@ -19,7 +22,7 @@ namespace meshfarm {
 namespace {
 
 constexpr FileKind k_kind = {'M', 'N', 'F', 'T'};
-constexpr std::uint32_t k_version = 2;
+constexpr std::uint32_t k_version = 3;
 
 void put_file(ByteWriter& out, const FileRef& file) {
   out.put_string(file.name);
@@ -94,6 +97,8 @@ std::string encode_manifest(const Manifest& m) {
   out.put(m.cut_seconds);
   out.put(m.boundary_triangles);
   put_file(out, m.boundary);
+  out.put(static_cast<std::uint8_t>(m.sorting ? 1 : 0));
+  if (m.sorting) put(out, *m.sorting);
   put_parts(out, m.parts);
   put_parts(out, m.samples);
   return seal(k_kind, k_version, out.bytes());
@@ -121,13 +126,22 @@ Manifest decode_manifest(std::string_view file, std::string_view what) {
   m.boundary_triangles = in.get<std::uint64_t>();
   m.boundary = get_file(in);
   check_name<BoundaryName>(in, m.boundary);
+  const auto unsorted = in.get<std::uint8_t>();
+  if (unsorted > (m.scheme == Scheme::stream ? 1 : 0)) in.fail("parts are not to be sorted");
+  if (unsorted == 1) m.sorting = get_sorting(in);
   m.parts = get_parts(in);
   for (const PartEntry& part : m.parts) {
-    m.scheme == Scheme::cut ? check_name<PartName>(in, part.file)
-                            : check_name<StreamName>(in, part.file);
+    if (m.scheme == Scheme::cut) {
+      check_name<PartName>(in, part.file);
+    } else if (m.sorting) {
+      check_name<SlabName>(in, part.file);
+    } else {
+      check_name<StreamName>(in, part.file);
+    }
   }
   m.samples = get_parts(in);
-  if (!m.samples.empty() && m.samples.size() != m.parts.size()) in.fail("stray samples");
+  const std::size_t most = m.sorting ? 0 : m.parts.size();
+  if (!m.samples.empty() && m.samples.size() != most) in.fail("stray samples");
   for (const PartEntry& sample : m.samples) {
     if (!sample.file.name.empty()) check_name<PartName>(in, sample.file);
   }

@@ -13,6 +13,10 @@ constexpr std::uint64_t k_packed_bytes = 8;  // of a triangle, some of them esca
 
 }  // namespace
 
+std::uint32_t BoundaryNumbers::count() const {
+  return numbers.empty() ? 0 : *std::max_element(numbers.begin(), numbers.end()) + 1;
+}
+
 std::uint64_t MeshShares::memory_for(std::uint64_t vertices, std::uint64_t triangles,
                                      PositionType positions) {
   return vertices * (sizeof(Place) + 3 * static_cast<std::uint64_t>(positions)) +
@@ -91,6 +95,7 @@ void MeshShares::finish() {
 
 MeshShare MeshShares::read(std::uint32_t share) const {
   MeshShare read;
+  read.type = positions_;
   if (positions_ == PositionType::float64) {
     read.positions = vertices_.read<Vec3>(share);
   } else {
@@ -109,9 +114,9 @@ MeshShare MeshShares::read(std::uint32_t share) const {
 std::vector<BoundaryTriangle> MeshShares::boundary(std::span<const BoundaryNumbers> numbers,
                                                    std::uint64_t& degenerate) const {
   const auto numbered = [&](const Place& corner) -> BoundaryCorner {
-    const auto& [places, values] = numbers[corner.share];
-    const auto at = std::lower_bound(places.begin(), places.end(), corner.place) - places.begin();
-    return {corner.share, values[static_cast<std::size_t>(at)]};
+    const BoundaryNumbers& of = numbers[corner.share];
+    const auto at = std::lower_bound(of.places.begin(), of.places.end(), corner.place);
+    return {corner.share, of.numbers[static_cast<std::size_t>(at - of.places.begin())]};
   };
   std::vector<BoundaryTriangle> triangles;
   triangles.reserve(boundary_.size());

@@ -47,7 +47,7 @@ Part decode_part(std::string_view file, std::string_view what) {
   auto unpacked = unpack_triangles(in.take(in.remaining()));
   if (!unpacked || unpacked->size() != triangles) in.fail("other triangles than promised");
   part.mesh.triangles = std::move(*unpacked);
-  check_corners(in, part.mesh);
+  check_corners(in, part.mesh.positions.size(), part.mesh.triangles);
   return part;
 }
 

@@ -46,14 +46,14 @@ Mesh get_mesh(ByteReader& in, std::uint64_t vertices, std::uint64_t triangles,
   Mesh mesh;
   mesh.positions = get_positions(in, vertices, positions);
   mesh.triangles = in.get_array<Triangle>(triangles);
-  check_corners(in, mesh);
+  check_corners(in, mesh.positions.size(), mesh.triangles);
   return mesh;
 }
 
-void check_corners(const ByteReader& in, const Mesh& mesh) {
-  const std::size_t vertices = mesh.positions.size();
+void check_corners(const ByteReader& in, std::size_t vertices,
+                   std::span<const Triangle> triangles) {
   if (vertices > std::numeric_limits<std::uint32_t>::max()) in.fail("too many vertices for a part");
-  for (const Triangle& t : mesh.triangles) {
+  for (const Triangle& t : triangles) {
     if (t[0] >= vertices || t[1] >= vertices || t[2] >= vertices) {
       in.fail("a triangle uses a vertex that is not there");
     }

@@ -13,8 +13,8 @@ void put_mesh(ByteWriter& out, const Mesh& mesh, PositionType positions);
 Mesh get_mesh(ByteReader& in, std::uint64_t vertices, std::uint64_t triangles,
               PositionType positions);
 
-/// Fails if a corner is no vertex of the mesh.
-void check_corners(const ByteReader& in, const Mesh& mesh);
+/// Fails if a corner is none of so many vertices.
+void check_corners(const ByteReader& in, std::size_t vertices, std::span<const Triangle> triangles);
 
 /// The positions alone.
 void put_positions(ByteWriter& out, std::span<const Vec3> points, PositionType positions);

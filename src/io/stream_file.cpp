@@ -288,6 +288,23 @@ bool is_stream(std::string_view start) {
   return start.size() >= sizeof kinds && std::memcmp(start.data(), &kinds, sizeof kinds) == 0;
 }
 
+StreamMesh read_stream_mesh(StreamReader& reader) {
+  StreamMesh stream;
+  stream.positions = reader.info().positions;
+  StreamBlock block;
+  while (reader.next(block)) {
+    std::vector<Vec3>& positions = stream.mesh.positions;
+    const std::size_t first = positions.size();
+    positions.insert(positions.end(), block.positions.begin(), block.positions.end());
+    stream.boundary.resize(positions.size(), 0);
+    for (const StreamCorner vertex : block.boundary) stream.boundary[first + vertex.vertex()] = 1;
+    for (const auto& [a, b, c] : block.triangles) {
+      stream.mesh.triangles.push_back({a.vertex(), b.vertex(), c.vertex()});
+    }
+  }
+  return stream;
+}
+
 Part read_stream(StreamReader& reader) {
   const StreamInfo& info = reader.info();
   Part part;

@@ -21,6 +21,7 @@ struct Printer {
   std::string operator()(StreamName n) const {
     return "streams/" + six_digits(n.stream) + ".stream";
   }
+  std::string operator()(SlabName n) const { return "streams/" + six_digits(n.slab) + ".slab"; }
   std::string operator()(ResultName n) const {
     return "results/" + to_hex(n.key) + ".a" + std::to_string(n.attempt) + "." +
            to_hex(n.incarnation);
@@ -66,8 +67,10 @@ std::optional<StagedName> scan(std::string_view text) {
     PartName name;
     if (in.number(name.part, 10)) return name;
   } else if (in.word("streams/")) {
-    StreamName name;
-    if (in.number(name.stream, 10)) return name;
+    std::uint32_t number = 0;
+    if (!in.number(number, 10)) return std::nullopt;
+    if (in.word(".slab")) return SlabName{number};
+    return StreamName{number};
   } else if (in.word("results/")) {
     ResultName name;
     if (in.number(name.key, 16) && in.word(".a") && in.number(name.attempt, 10) && in.word(".") &&

@@ -7,8 +7,7 @@
 #include <vector>
 
 #include <meshfarm/geometry/mesh.hpp>
-
-#include "stream/sweep_order.hpp"
+#include <meshfarm/geometry/sweep_order.hpp>
 
 namespace meshfarm {
 

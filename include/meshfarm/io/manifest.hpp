@@ -3,11 +3,13 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include <meshfarm/geometry/mesh.hpp>
+#include <meshfarm/geometry/sweep_order.hpp>
 #include <meshfarm/staging/stage.hpp>
 
 namespace meshfarm {
@@ -18,7 +20,7 @@ enum class Scheme : std::uint8_t {
   stream,  // into slabs along the longest axis, each simplified by a sweep
 };
 
-/// One part as the cut made it, or one stream.
+/// One part as the cut made it, or one stream or slab.
 struct PartEntry {
   FileRef file;
   std::uint64_t vertices = 0;
@@ -43,7 +45,11 @@ struct Manifest {
   double cut_seconds = 0;
   std::uint64_t boundary_triangles = 0;
   FileRef boundary;
-  std::vector<PartEntry> parts;    // or streams
+  /// Of the stream scheme, where the parts are slabs that a run is to sort first: then what is
+  /// known of a stream only once it is sorted (its counts, merged vertices, dropped triangles,
+  /// samples) is still missing, and counts of triangles and vertices are those of the input.
+  std::optional<Sorting> sorting;
+  std::vector<PartEntry> parts;    // or streams, or slabs
   std::vector<PartEntry> samples;  // of long streams, by stream: a piece as a part; else no name
 
   /// Triangles that the parts and the boundary hold.

@@ -23,6 +23,7 @@ struct MeshShare {
   std::vector<Vec3> positions;
   std::vector<Triangle> triangles;
   std::vector<std::uint32_t> boundary;
+  PositionType type = PositionType::float32;  // what all positions fit
 };
 
 /// The boundary vertices of a share by their place in it, ascending, and the number that each has
@@ -30,6 +31,8 @@ struct MeshShare {
 struct BoundaryNumbers {
   std::vector<std::uint32_t> places;
   std::vector<std::uint32_t> numbers;
+  /// Of different numbers, which go from 0 on.
+  std::uint32_t count() const;
 };
 
 /// Shares a mesh out as it is scanned, in bounded memory: vertices by whatever share they are given

@@ -90,6 +90,8 @@ class StreamReader {
 /// Whether a file begins like a stream.
 bool is_stream(std::string_view start);
 
+/// Reads the whole stream into memory: what encode_stream was given.
+StreamMesh read_stream_mesh(StreamReader& reader);
 /// Reads the whole stream into memory as a part, its boundary vertices first.
 Part read_stream(StreamReader& reader);
 

@@ -17,6 +17,7 @@ namespace meshfarm {
 ///   boundary                          the boundary triangles
 ///   parts/000123.part                 a sub-mesh
 ///   streams/000123.stream             a mesh in sweep order, by --scheme stream
+///   streams/000123.slab               the same before it is sorted, by --sort farm
 ///   results/KEY.aATTEMPT.INCARNATION  a job's output; KEY names the job by content, 16 hex digits
 ///   journal/000001                    accepted results, one file a sink incarnation
 ///   control/000001.endpoint           where a ventilator listens, one file an epoch
@@ -32,6 +33,9 @@ struct PartName {
 };
 struct StreamName {
   std::uint32_t stream = 0;
+};
+struct SlabName {
+  std::uint32_t slab = 0;
 };
 struct ResultName {
   std::uint64_t key = 0;
@@ -58,7 +62,7 @@ struct HostName {
 };
 using StagedName =
     std::variant<ManifestName, BoundaryName, PartName, StreamName, ResultName, JournalName,
-                 EndpointName, KeysName, TraceName, SummaryName, HostName>;
+                 EndpointName, KeysName, TraceName, SummaryName, HostName, SlabName>;
 
 std::string to_string(const StagedName& name);
 /// The name that to_string made; nothing for any other text.

@@ -127,6 +127,35 @@ TEST_CASE("a manifest comes back whole") {
   CHECK(back.triangles() == 20 + 6 + 11);
 }
 
+TEST_CASE("a manifest of slabs tells how they are to be sorted, and of nothing else") {
+  Manifest m = sample_manifest();
+  m.scheme = Scheme::stream;
+  m.sorting = Sorting{{{2, 0, 1}, -1}, Weld::off};
+  CHECK_THROWS_AS(decode_manifest(encode_manifest(m), "manifest"), DataError);  // of parts
+  for (std::size_t i = 0; i < 2; ++i) m.parts[i].file.name = to_string(SlabName{7});
+  const Manifest back = decode_manifest(encode_manifest(m), "manifest");
+  REQUIRE(back.sorting.has_value());
+  CHECK(back.sorting->order.axes == std::array<int, 3>{2, 0, 1});
+  CHECK(back.sorting->order.sign == -1);
+  CHECK(back.sorting->weld == Weld::off);
+  CHECK(back.parts[1].file == m.parts[1].file);
+  test::check_refuses_damage(
+      encode_manifest(m), [](std::string_view file) { return decode_manifest(file, "manifest"); });
+  for (const std::array<int, 3> axes : {std::array<int, 3>{0, 1, 1}, {0, 1, 3}}) {
+    m.sorting->order.axes = axes;
+    CHECK_THROWS_AS(decode_manifest(encode_manifest(m), "manifest"), DataError);
+  }
+  m.sorting = Sorting{};
+  m.samples = m.parts;
+  CHECK_THROWS_AS(decode_manifest(encode_manifest(m), "manifest"), DataError);
+  m.samples.clear();
+  m.sorting.reset();
+  CHECK_THROWS_AS(decode_manifest(encode_manifest(m), "manifest"), DataError);  // no streams
+  m.sorting = Sorting{};
+  m.scheme = Scheme::cut;
+  CHECK_THROWS_AS(decode_manifest(encode_manifest(m), "manifest"), DataError);
+}
+
 TEST_CASE("a manifest that is damaged or names a file outside its place is refused") {
   test::check_refuses_damage(encode_manifest(sample_manifest()), [](std::string_view file) {
     return decode_manifest(file, "manifest");

@@ -1,0 +1,12 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#include <meshfarm/io/slab_file.hpp>
+
+#include "fuzz/staged_fuzzer.hpp"
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  using namespace meshfarm;
+  fuzz::decode_staged(data, size, {'S', 'L', 'A', 'B'},
+                      [](std::string_view file) { decode_slab(file, "slab"); });
+  return 0;
+}
