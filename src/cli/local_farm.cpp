@@ -37,10 +37,7 @@ struct Crew {
 Crew crew_for(const LocalFarm& farm, const Manifest& manifest) {
   const std::uint64_t memory = available_memory();
   if (farm.workers == 0 || memory == 0) return {farm.workers, 0};
-  std::uint64_t largest = 0;
-  for (const Job& job : make_job_source(manifest, farm.target.run)({})) {
-    largest = std::max(largest, job.memory);
-  }
+  const std::uint64_t largest = memory_wanted(manifest, farm.target.run);
   Crew crew{farm.workers, memory / farm.workers};
   while (crew.workers > 1 && crew.memory < largest) crew.memory = memory / --crew.workers;
   if (crew.workers < farm.workers) {

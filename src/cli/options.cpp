@@ -146,6 +146,9 @@ void CutWords::add(po::options_description& options) {
                         po::value(&scheme_word)->default_value(scheme_word)->value_name("S"),
                         "cut: compact parts, each simplified in memory; stream: slabs along the "
                         "longest axis, each swept through a bounded buffer")(
+      "sort", po::value(&sort)->default_value(sort)->value_name("WHO"),
+      "stream: here: slabs are sorted where they are cut; farm: by jobs, the first of a run, so "
+      "that other hosts help")(
       "parts", po::value(&cut.parts)->value_name("N"),
       "number of parts (default: about a million triangles each, at least 16 of a large mesh) or "
       "streams (1.2 million)")(
@@ -167,12 +170,19 @@ void CutWords::check() {
   if (weld != "exact" && weld != "off") {
     throw UsageError("--weld is 'exact' or 'off', not '" + weld + "'");
   }
+  if (sort != "here" && sort != "farm") {
+    throw UsageError("--sort is 'here' or 'farm', not '" + sort + "'");
+  }
+  if (sort == "farm" && scheme_word != "stream") {
+    throw UsageError("--sort farm goes with --scheme stream: parts of a cut are not sorted");
+  }
   scheme = scheme_word == "stream" ? Scheme::stream : Scheme::cut;
   cut.weld = weld == "off" ? Weld::off : Weld::exact;
   if (cut.parts > 1'000'000) throw UsageError("--parts: at most 1,000,000");
   if (stream.window_triangles < 1000 || stream.window_triangles > 1'000'000'000) {
     throw UsageError("--window: from 1,000 to 1,000,000,000 triangles");
   }
+  stream.sort = sort == "farm" ? SortAt::farm : SortAt::here;
   stream.streams = cut.parts;
   stream.weld = cut.weld;
   stream.threads = cut.threads;

@@ -52,12 +52,13 @@ struct TargetOptions {
   std::vector<std::string> words() const;
 };
 
-/// --scheme, --parts, --weld, --threads, --memory, --window.
+/// --scheme, --sort, --parts, --weld, --threads, --memory, --window.
 struct CutWords {
   Scheme scheme = Scheme::cut;
   CutOptions cut;
   StreamOptions stream;
   std::string scheme_word = "cut";
+  std::string sort = "here";
   std::string weld = "exact";
   std::string memory = "512M";
 

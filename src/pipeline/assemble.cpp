@@ -20,6 +20,8 @@
 #include <meshfarm/util/errors.hpp>
 #include <meshfarm/util/parallel.hpp>
 
+#include "pipeline/sort_plan.hpp"
+
 namespace meshfarm {
 namespace {
 
@@ -234,7 +236,8 @@ class Assembly {
 
 RunSummary assemble(const Stage& stage, const Manifest& manifest, const RunOptions& run,
                     std::span<const AcceptedJob> accepted, const AssembleOptions& options) {
-  return Assembly(stage, manifest, run, options).run(accepted);
+  const SortPlan sorted(manifest, accepted);
+  return Assembly(stage, sorted.manifest(), run, options).run(sorted.rest());
 }
 
 }  // namespace meshfarm

@@ -11,6 +11,7 @@
 #include <meshfarm/util/errors.hpp>
 
 #include "pipeline/compose_plan.hpp"
+#include "pipeline/sort_plan.hpp"
 
 namespace meshfarm {
 namespace {
@@ -329,13 +330,25 @@ std::int32_t common_level(std::span<const std::vector<Rung>> ladders, std::uint6
 
 JobSource make_job_source(const Manifest& manifest, const RunOptions& options) {
   return [manifest, options](std::span<const AcceptedJob> accepted) {
-    return Rounds(manifest, options, accepted).jobs();
+    const SortPlan sorted(manifest, accepted);
+    if (!sorted.jobs().empty()) return sorted.jobs();
+    return Rounds(sorted.manifest(), options, sorted.rest()).jobs();
   };
+}
+
+std::uint64_t memory_wanted(const Manifest& manifest, const RunOptions& options) {
+  std::uint64_t wanted = 0;
+  for (const Job& job : make_job_source(manifest, options)({})) {
+    wanted = std::max(wanted, job.memory);
+  }
+  return manifest.sorting ? std::max(wanted, memory_wanted(as_if_sorted(manifest), options))
+                          : wanted;
 }
 
 std::vector<ChosenRung> choose_rungs(const Manifest& manifest, const RunOptions& options,
                                      std::span<const AcceptedJob> accepted) {
-  return Rounds(manifest, options, accepted).chosen();
+  const SortPlan sorted(manifest, accepted);
+  return Rounds(sorted.manifest(), options, sorted.rest()).chosen();
 }
 
 }  // namespace meshfarm

@@ -5,6 +5,7 @@
 #include <meshfarm/pipeline/compose_job.hpp>
 #include <meshfarm/pipeline/job_table.hpp>
 #include <meshfarm/pipeline/simplify_job.hpp>
+#include <meshfarm/pipeline/sort_job.hpp>
 #include <meshfarm/pipeline/sweep_job.hpp>
 #include <meshfarm/util/errors.hpp>
 
@@ -14,8 +15,8 @@ namespace {
 using JobPointer = JobOutput (*)(const Job&, const JobContext&);
 
 constexpr std::pair<std::string_view, JobPointer> k_table[] = {
-    {k_simplify_kind, simplify_part},
-    {k_sweep_kind, sweep_stream},
+    {k_sort_kind, sort_to_stream},     {k_sample_kind, sample_stream},
+    {k_simplify_kind, simplify_part},  {k_sweep_kind, sweep_stream},
     {k_compose_kind, compose_streams},
 };
 

@@ -41,6 +41,8 @@ std::uint64_t run_key(const Manifest& manifest, const RunOptions& options) {
   ByteWriter out;
   out.put(checksum(encode_manifest(manifest)));
   out.put(target_triangles(manifest, options));
+  // Which may change once slabs are sorted, as degenerate triangles are dropped then.
+  if (manifest.sorting) out.put(options.ratio);
   out.put(options.allocation);
   out.put(options.finish);
   out.put(options.composition);

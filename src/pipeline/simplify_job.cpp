@@ -122,9 +122,8 @@ class LadderBuilder {
 /// whole by its checksum and makes no sense never will.
 Part read_part(const JobContext& context, const FileRef& input) {
   const std::string file = context.read(input);
-  const auto name = parse_staged_name(input.name);
   try {
-    if (!name || !std::holds_alternative<StreamName>(*name)) return decode_part(file, input.name);
+    if (!is_stream(file)) return decode_part(file, input.name);
     StreamReader reader(fill_from(file, input.name), input.name);
     return read_stream(reader);
   } catch (const DataError& error) {

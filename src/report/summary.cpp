@@ -103,6 +103,7 @@ const char* scheme_name(const Manifest& m) {
 }
 
 const char* parts_name(const Manifest& m) {
+  if (m.sorting) return "slabs to be sorted";
   return m.scheme == Scheme::stream ? "streams" : "parts";
 }
 
@@ -125,6 +126,7 @@ std::string render(const Manifest& m, const std::string& stage, Format format) {
         {"input", input_json(m)},
         {"scheme", scheme_name(m)},
         {"parts", m.parts.size()},
+        {"sorted", !m.sorting.has_value()},
         {"boundary_triangles", m.boundary_triangles},
         {"dropped", {{"degenerate", m.dropped_degenerate}, {"duplicate", m.dropped_duplicate}}},
         {"seconds", m.cut_seconds}};

@@ -7,8 +7,9 @@
 //   vertices    how many lie where along the axis -> slabs, one a stream
 //   vertices    index map (scratch file): slab and place in it; positions to the slab's bucket
 //   triangles   to the slab's bucket, or, when two or three slabs meet in one, to the boundary
-// Then each slab is sorted by itself, on all cores: a distribution sort, which moves everything to
-// disk and back once, as sorted runs and a merge would, but leaves nothing to merge.
+// Then each slab is sorted by itself, on all cores, or staged as it is and sorted by a job of the
+// farm (pipeline/sort_job.hpp). It is sorted by distribution rather than by merging runs: that,
+// too, moves everything to disk and back once, but leaves nothing to merge.
 #include <algorithm>
 #include <chrono>
 #include <memory>
@@ -17,23 +18,17 @@
 
 #include <meshfarm/io/boundary_file.hpp>
 #include <meshfarm/io/mesh_shares.hpp>
+#include <meshfarm/io/slab_file.hpp>
 #include <meshfarm/io/stream_file.hpp>
 #include <meshfarm/stream/generate_streams.hpp>
+#include <meshfarm/stream/slab.hpp>
 #include <meshfarm/util/errors.hpp>
 #include <meshfarm/util/parallel.hpp>
 
-#include "stream/slab.hpp"
 #include "stream/sweep_order.hpp"
 
 namespace meshfarm {
 namespace {
-
-/// What sorting a slab and encoding its stream need at most, for each triangle.
-constexpr std::uint64_t k_slab_bytes_per_triangle = 72;
-
-/// A sample's share of a stream, and the least number of triangles that tell something.
-constexpr std::uint64_t k_sample_part = 20;
-constexpr std::uint64_t k_least_sample = 60'000;
 
 constexpr std::uint32_t k_most_streams = 65'536;
 
@@ -49,7 +44,7 @@ class Generator {
     choose_slabs();
     distribute_vertices();
     distribute_triangles();
-    write_streams();
+    write_slabs();
     write_boundary();
     manifest_.cut_seconds =
         std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
@@ -87,7 +82,8 @@ class Generator {
       tell("streams: bounding box", manifest_.input_vertices, source_.info().vertices);
     });
     manifest_.box = probe.box();
-    order_ = probe.choose();
+    sorting_ = {probe.choose(), options_.weld};
+    if (options_.sort == SortAt::farm) manifest_.sorting = sorting_;
   }
 
   /// As many as asked for, but so many that one fits into half the memory.
@@ -104,7 +100,7 @@ class Generator {
   }
 
   void choose_slabs() {
-    slabs_ = std::make_unique<SlabMap>(manifest_.box, order_);
+    slabs_ = std::make_unique<SlabMap>(manifest_.box, sorting_.order);
     std::uint64_t done = 0;
     source_.scan_vertices([&](std::span<const Vec3> batch) {
       slabs_->count(batch);
@@ -146,26 +142,42 @@ class Generator {
         std::clamp<std::uint64_t>(fit, 1, options_.threads != 0 ? options_.threads : cores));
   }
 
-  void write_streams() {
+  void write_slabs() {
+    const bool sorts = options_.sort == SortAt::here;
     manifest_.parts.resize(streams_);
-    manifest_.samples.resize(streams_);
+    if (sorts) manifest_.samples.resize(streams_);
     numbers_.resize(streams_);
     std::mutex mutex;
     std::uint64_t done = 0;
     parallel_for(streams_, threads(), [&](std::uint64_t i) {
-      const auto number = static_cast<std::uint32_t>(i);
-      SortedSlab slab =
-          sort_slab(shares_->read(number), {order_, options_.weld, manifest_.positions});
-      PartEntry sample = write_sample(slab, number);
-      PartEntry entry = write_stream(slab, number);
+      MeshShare slab = shares_->read(static_cast<std::uint32_t>(i));
+      numbers_[i] = number_boundary(slab, sorting_);
+      sorts ? sort_one(std::move(slab), static_cast<std::uint32_t>(i), mutex)
+            : stage_unsorted(std::move(slab), static_cast<std::uint32_t>(i));
       const std::lock_guard lock(mutex);
-      manifest_.parts[i] = std::move(entry);
-      manifest_.samples[i] = std::move(sample);
-      numbers_[i] = std::move(slab.boundary);
-      manifest_.merged_vertices += slab.merged_vertices;
-      manifest_.dropped_degenerate += slab.dropped_degenerate;
-      tell("streams: sort", ++done, streams_);
+      tell(sorts ? "streams: sort" : "streams: stage", ++done, streams_);
     });
+  }
+
+  void sort_one(MeshShare raw, std::uint32_t number, std::mutex& mutex) {
+    SortedSlab slab = sort_slab(std::move(raw), sorting_);
+    if (slab.boundary_vertices != numbers_[number].count()) {
+      throw Error("a stream's boundary vertices are not those that were numbered");
+    }
+    manifest_.samples[number] = write_sample(slab.stream, number);
+    manifest_.parts[number] = write_stream(slab, number);
+    const std::lock_guard lock(mutex);
+    manifest_.merged_vertices += slab.merged_vertices;
+    manifest_.dropped_degenerate += slab.dropped_degenerate;
+  }
+
+  void stage_unsorted(MeshShare slab, std::uint32_t number) {
+    PartEntry& entry = manifest_.parts[number];
+    entry.vertices = slab.positions.size();
+    entry.triangles = slab.triangles.size();
+    entry.boundary_vertices = numbers_[number].count();
+    slab.boundary = numbers_[number].places;
+    entry.file = stage_.publish(SlabName{number}, encode_slab(slab));
   }
 
   PartEntry write_stream(SortedSlab& slab, std::uint32_t number) const {
@@ -180,11 +192,9 @@ class Generator {
   }
 
   /// Nothing for a short stream: it can be tried as a whole.
-  PartEntry write_sample(const SortedSlab& slab, std::uint32_t number) const {
-    const std::uint64_t triangles = slab.stream.mesh.triangles.size();
-    if (triangles <= options_.window_triangles) return {};
-    const Part part =
-        sample_slab(slab, order_, std::max(k_least_sample, triangles / k_sample_part), number);
+  PartEntry write_sample(const StreamMesh& stream, std::uint32_t number) const {
+    if (stream.mesh.triangles.size() <= options_.window_triangles) return {};
+    const Part part = sample_slab(stream, sorting_.order, number);
     PartEntry entry;
     entry.vertices = part.mesh.positions.size();
     entry.triangles = part.mesh.triangles.size();
@@ -210,7 +220,7 @@ class Generator {
   const Stage& stage_;
   const StreamOptions& options_;
   Manifest manifest_;
-  SweepOrder order_;
+  Sorting sorting_;
   std::unique_ptr<SlabMap> slabs_;
   std::uint32_t streams_ = 0;
   std::unique_ptr<MeshShares> shares_;

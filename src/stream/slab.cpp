@@ -1,7 +1,5 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
-#include "stream/slab.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -9,6 +7,7 @@
 #include <utility>
 
 #include <meshfarm/geometry/weld.hpp>
+#include <meshfarm/stream/slab.hpp>
 
 #include "stream/vertex_sort.hpp"
 
@@ -20,8 +19,8 @@ constexpr std::uint32_t k_none = std::numeric_limits<std::uint32_t>::max();
 /// Sorts a slab by the steps of run().
 class SlabSorter {
  public:
-  SlabSorter(MeshShare raw, const SlabOptions& options) : raw_(std::move(raw)), options_(options) {
-    slab_.stream.positions = options.positions;
+  SlabSorter(MeshShare raw, const Sorting& sorting) : raw_(std::move(raw)), sorting_(sorting) {
+    slab_.stream.positions = raw_.type;
   }
 
   SortedSlab run() {
@@ -37,7 +36,7 @@ class SlabSorter {
   /// The rank of each raw vertex; welded ones share it. Positions go by rank from now on.
   void rank_vertices() {
     const std::vector<std::uint32_t> sorted =
-        sorted_vertices(raw_.positions, options_.order, options_.positions);
+        sorted_vertices(raw_.positions, sorting_.order, raw_.type);
     const std::vector<std::uint32_t> first = weld_sorted(sorted);
     const std::size_t count = raw_.positions.size();
     rank_.resize(count);
@@ -57,7 +56,7 @@ class SlabSorter {
 
   /// For each vertex its lowest twin, which the sort has put before it; empty if none has any.
   std::vector<std::uint32_t> weld_sorted(std::span<const std::uint32_t> sorted) {
-    if (options_.weld == Weld::off) return {};
+    if (sorting_.weld == Weld::off) return {};
     const auto at = [&](std::size_t i) {
       return sorted.empty() ? static_cast<std::uint32_t>(i) : sorted[i];
     };
@@ -92,35 +91,27 @@ class SlabSorter {
   }
 
   void mark_boundary() {
-    std::vector<std::uint32_t>& places = slab_.boundary.places;
-    places = std::move(raw_.boundary);
-    std::sort(places.begin(), places.end());
-    places.erase(std::unique(places.begin(), places.end()), places.end());
     flags_.assign(slab_.stream.mesh.positions.size(), 0);
-    for (const std::uint32_t raw : places) flags_[rank_[raw]] = k_boundary;
+    for (const std::uint32_t raw : raw_.boundary) flags_[rank_[raw]] = k_boundary;
     for (const Triangle& t : raw_.triangles) {
       for (const std::uint32_t v : t) flags_[v] |= k_used;
     }
   }
 
-  /// Closes the gaps that unused vertices leave, and numbers the boundary vertices.
+  /// Closes the gaps that unused vertices leave.
   void number_vertices() {
     StreamMesh& stream = slab_.stream;
-    std::vector<std::uint32_t> boundary_number(flags_.size(), k_none);
     std::vector<std::uint32_t> number(flags_.size(), k_none);
     std::uint32_t kept = 0;
     for (std::uint32_t v = 0; v < flags_.size(); ++v) {
       if (flags_[v] == 0) continue;
       const bool is_boundary = (flags_[v] & k_boundary) != 0;
-      if (is_boundary) boundary_number[v] = slab_.boundary_vertices++;
+      if (is_boundary) ++slab_.boundary_vertices;
       stream.mesh.positions[kept] = stream.mesh.positions[v];
       stream.boundary.push_back(is_boundary ? 1 : 0);
       number[v] = kept++;
     }
     stream.mesh.positions.resize(kept);
-    for (const std::uint32_t raw : slab_.boundary.places) {
-      slab_.boundary.numbers.push_back(boundary_number[rank_[raw]]);
-    }
     for (Triangle& t : raw_.triangles) t = {number[t[0]], number[t[1]], number[t[2]]};
   }
 
@@ -148,7 +139,7 @@ class SlabSorter {
   static constexpr std::uint8_t k_used = 1;
   static constexpr std::uint8_t k_boundary = 2;
   MeshShare raw_;
-  const SlabOptions& options_;
+  const Sorting& sorting_;
   SortedSlab slab_;
   std::vector<std::uint32_t> rank_;
   std::vector<std::uint8_t> flags_;  // by rank
@@ -174,15 +165,43 @@ std::pair<double, double> sample_range(const std::vector<Vec3>& positions, int a
 
 }  // namespace
 
-SortedSlab sort_slab(MeshShare raw, const SlabOptions& options) {
-  return SlabSorter(std::move(raw), options).run();
+SortedSlab sort_slab(MeshShare raw, const Sorting& sorting) {
+  return SlabSorter(std::move(raw), sorting).run();
 }
 
-Part sample_slab(const SortedSlab& slab, const SweepOrder& order, std::uint64_t triangles,
-                 std::uint32_t number) {
-  const Mesh& mesh = slab.stream.mesh;
+BoundaryNumbers number_boundary(const MeshShare& raw, const Sorting& sorting) {
+  BoundaryNumbers made;
+  made.places = raw.boundary;
+  std::sort(made.places.begin(), made.places.end());
+  made.places.erase(std::unique(made.places.begin(), made.places.end()), made.places.end());
+  std::vector<Vec3> positions;
+  positions.reserve(made.places.size());
+  for (const std::uint32_t place : made.places) positions.push_back(raw.positions[place]);
+  const std::vector<std::uint32_t> sorted = sorted_vertices(positions, sorting.order, raw.type);
+  const auto at = [&](std::size_t i) {
+    return sorted.empty() ? static_cast<std::uint32_t>(i) : sorted[i];
+  };
+  made.numbers.resize(made.places.size());
+  std::uint32_t count = 0;
+  for (std::size_t i = 0; i < positions.size(); ++i) {
+    const bool welded =
+        i > 0 && sorting.weld == Weld::exact && positions[at(i - 1)] == positions[at(i)];
+    if (!welded) ++count;
+    made.numbers[at(i)] = count - 1;
+  }
+  return made;
+}
+
+std::uint64_t sample_size(std::uint64_t stream_triangles) {
+  constexpr std::uint64_t k_sample_part = 20;       // of a stream
+  constexpr std::uint64_t k_least_sample = 60'000;  // tells something
+  return std::max(k_least_sample, stream_triangles / k_sample_part);
+}
+
+Part sample_slab(const StreamMesh& stream, const SweepOrder& order, std::uint32_t number) {
+  const Mesh& mesh = stream.mesh;
   const double share =
-      std::min(1.0, static_cast<double>(triangles) /
+      std::min(1.0, static_cast<double>(sample_size(mesh.triangles.size())) /
                         static_cast<double>(std::max<std::size_t>(1, mesh.triangles.size())));
   const auto range = sample_range(mesh.positions, order.axes[1], share, number);
   const auto inside = [&](std::uint32_t v) {
@@ -193,7 +212,7 @@ Part sample_slab(const SortedSlab& slab, const SweepOrder& order, std::uint64_t 
   constexpr std::uint8_t k_out = 2;
   std::vector<std::uint8_t> seen(mesh.positions.size(), 0);
   Part part;
-  part.positions = slab.stream.positions;
+  part.positions = stream.positions;
   for (const Triangle& t : mesh.triangles) {
     const bool in = inside(t[0]) && inside(t[1]) && inside(t[2]);
     for (const std::uint32_t v : t) seen[v] |= in ? k_in : k_out;
@@ -201,7 +220,7 @@ Part sample_slab(const SortedSlab& slab, const SweepOrder& order, std::uint64_t 
   }
   std::vector<std::uint32_t> index(mesh.positions.size(), k_none);
   const auto is_edge = [&](std::uint32_t v) {
-    return (seen[v] & k_out) != 0 || slab.stream.boundary[v] != 0;
+    return (seen[v] & k_out) != 0 || stream.boundary[v] != 0;
   };
   for (const bool edge : {true, false}) {
     for (std::uint32_t v = 0; v < seen.size(); ++v) {

@@ -74,6 +74,22 @@ TEST_CASE("help and version go to stdout, and say what there is") {
   CHECK_FALSE(has(ran.out, "supervised"));
 }
 
+TEST_CASE("a cut that leaves the sorting to the farm says so, and the run then knows streams") {
+  Shell shell;
+  const std::string stage = shell.path("stage");
+  const std::string sphere = shell.path("sphere.ply");
+  REQUIRE(shell({"generate", "-o", sphere, "--triangles", "20000"}).code == 0);
+  const Ran cut = shell(
+      {"cut", sphere, "--stage", stage, "--scheme", "stream", "--sort", "farm", "--parts", "4"});
+  CHECK(cut.code == 0);
+  CHECK(has(cut.out, "4 slabs to be sorted, "));
+  CHECK(has(shell({"info", stage, "--json"}).out, "\"sorted\": false"));
+  const Ran run = shell({"replay", stage, "--ratio", "0.1", "-o", shell.path("o.ply")});
+  CHECK(run.code == 0);
+  CHECK(has(run.out, "streams          4, stitched to"));
+  CHECK(has(shell({"status", stage}).out, "8 of 8 done"));  // four of them sorted
+}
+
 TEST_CASE("a run is traced: status, report and simulate tell of it") {
   Shell shell;
   const std::string stage = shell.path("stage");
@@ -144,6 +160,8 @@ TEST_CASE("wrong usage is one line and exit 2") {
       {"simplify", cube, "-o", shell.path("o.ply"), "--ratio", "0.5", "--triangles", "3"},
       {"simplify", cube, "-o", shell.path("o.ply"), "--triangles", "-3"},
       {"simplify", cube, "-o", shell.path("o.ply"), "--ratio", "0.5", "--weld", "maybe"},
+      {"cut", cube, "--stage", shell.path("s"), "--scheme", "stream", "--sort", "there"},
+      {"cut", cube, "--stage", shell.path("s"), "--sort", "farm"},
       {"simplify", cube, "-o", shell.path("o.ply"), "--ratio", "0.5", "--workers", "0"},
       {"simplify", cube, "-o", shell.path("o.ply"), "--ratio", "0.5", "--parts", "-1"},
       {"simplify", cube, "-o", shell.path("o.ply"), "--ratio", "0.5", "--drop-components", "x"},

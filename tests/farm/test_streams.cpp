@@ -7,6 +7,8 @@
 
 #include <doctest/doctest.h>
 
+#include <meshfarm/io/stream_file.hpp>
+
 #include "support/farm_bench.hpp"
 #include "support/process.hpp"
 
@@ -33,10 +35,24 @@ class Bench : public FarmBench {
             "stream",   "--parts", "6",  "--window", "20000",   "--workers", workers};
   }
   std::string streams() { return cut({"--scheme", "stream", "--parts", "6", "--window", "20000"}); }
+  /// The same, but the farm is to sort them.
+  std::string slabs() {
+    return cut({"--scheme", "stream", "--sort", "farm", "--parts", "6", "--window", "20000"});
+  }
   Ran replay(const std::string& stage) {
     return meshfarm({"replay", stage, "-o", stage + ".ply", "--ratio", "0.02", "--workers", "2"});
   }
 };
+
+/// How many files of a stage's folder hold a stream.
+std::size_t streams_in(const std::string& stage, const char* folder) {
+  std::size_t count = 0;
+  for (const auto& entry : fs::directory_iterator(fs::path(stage) / folder)) {
+    const std::string text = read_text(entry.path().string());
+    count += entry.path().extension() != ".tmp" && meshfarm::is_stream(text);
+  }
+  return count;
+}
 
 Bench& bench() {
   static Bench instance;
@@ -109,6 +125,71 @@ TEST_CASE("streams: composed as a tree, by any number of workers and through kil
   }
   CHECK(bench().meshfarm(composed(stage, "2")).code == 0);
   CHECK(read_text(stage + ".ply") == expected);
+}
+
+TEST_CASE("streams: sorted by the farm, by any number of workers, the result is the same") {
+  for (const char* workers : {"1", "2", "5"}) {
+    CAPTURE(workers);
+    const std::string output = bench().path(std::string("farm") + workers + ".ply");
+    std::vector<std::string> words = bench().simplify(output, workers);
+    words.insert(words.end(), {"--sort", "farm"});
+    const Ran ran = bench().meshfarm(words);
+    CHECK(ran.code == 0);
+    CHECK(ran.out.find("streams          6, stitched to") != std::string::npos);
+    bench().check_result(output);
+    CHECK_FALSE(fs::exists(output + ".stage"));
+  }
+}
+
+TEST_CASE("streams: killed while the farm sorts and samples, a run goes on, and sorts only once") {
+  const std::string stage = bench().slabs();
+  CHECK(streams_in(stage, "streams") == 0);
+  for (const std::size_t results : {1, 4, 8, 11, 14, 20}) {
+    Process run =
+        bench().start({"replay", stage, "-o", stage + ".ply", "--ratio", "0.02", "--workers", "1"});
+    REQUIRE(wait_for_results(stage, results));
+    run.signal(SIGKILL);  // its children end with it
+    CHECK(run.wait() == -SIGKILL);
+    CHECK_FALSE(fs::exists(stage + ".ply"));
+  }
+  CHECK(bench().replay(stage).code == 0);
+  bench().check_result(stage + ".ply");
+
+  const std::size_t sorted = streams_in(stage, "results");
+  CHECK(sorted >= 6);
+  const std::vector<std::string> other = {"replay",         stage,     "-o",
+                                          stage + ".5.ply", "--ratio", "0.05"};
+  CHECK(bench().meshfarm(other).code == 0);
+  CHECK(streams_in(stage, "results") == sorted);
+}
+
+TEST_CASE("streams: a worker killed as it sorts costs nothing but time") {
+  const std::string stage = bench().slabs();
+  Process run =
+      bench().start({"run", stage, "--ratio", "0.02", "-o", stage + ".ply", "--bind", "127.0.0.1"});
+  Process killed = bench().start({"worker", stage});
+  REQUIRE(wait_for_results(stage, 2));
+  killed.signal(SIGKILL);
+  CHECK(killed.wait() == -SIGKILL);
+  Process heir = bench().start({"worker", stage});
+  Process other = bench().start({"worker", stage});
+  CHECK(run.wait() == 0);
+  CHECK(heir.wait() == 0);
+  CHECK(other.wait() == 0);
+  bench().check_result(stage + ".ply");
+}
+
+TEST_CASE("streams: what is damaged before it is sorted is named, and nothing is written") {
+  const std::string stage = bench().slabs();
+  std::fstream file(fs::path(stage) / "streams" / "000003.slab",
+                    std::ios::in | std::ios::out | std::ios::binary);
+  file.seekp(300'000);
+  file.put('\x55');
+  file.close();
+  const Ran ran = bench().replay(stage);
+  CHECK(ran.code == 1);
+  CHECK(ran.err.find("000003.slab") != std::string::npos);
+  CHECK_FALSE(fs::exists(stage + ".ply"));
 }
 
 TEST_CASE("streams: a flipped byte or a cut is named with its place, and nothing is written") {

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include <meshfarm/pipeline/compose_job.hpp>
 #include <meshfarm/pipeline/simplify_job.hpp>
+#include <meshfarm/pipeline/sort_job.hpp>
 #include <meshfarm/pipeline/sweep_job.hpp>
 #include <meshfarm/util/errors.hpp>
 
@@ -23,5 +24,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   try_to(decode_parameters, bytes);
   try_to(decode_sweep_parameters, bytes);
   try_to(decode_compose_parameters, bytes);
+  try_to(decode_sort_parameters, bytes);
+  try_to([](std::string_view summary) { decode_sort_summary(summary, "summary"); }, bytes);
   return 0;
 }

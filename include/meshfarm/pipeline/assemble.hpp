@@ -22,8 +22,9 @@ struct AssembleOptions {
   const std::atomic<bool>* stop = nullptr;
 };
 
-/// The end of a run: reads the chosen rungs, stitches them in the order of the parts, finishes to
-/// the target, and writes the result. Throws IncompleteError when stopped: nothing is written then.
+/// The end of a run, once every job of make_job_source is accepted: reads the chosen rungs,
+/// stitches them in the order of the parts, finishes to the target, and writes the result. Throws
+/// IncompleteError when stopped: nothing is written then.
 RunSummary assemble(const Stage& stage, const Manifest& manifest, const RunOptions& run,
                     std::span<const AcceptedJob> accepted, const AssembleOptions& options);
 

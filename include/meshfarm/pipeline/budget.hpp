@@ -22,7 +22,15 @@ namespace meshfarm {
 /// triangles; the stream itself is then swept at the level that was chosen. If the swept streams
 /// together hold less than the target, they are swept again one level finer. Then neighbouring
 /// streams may be composed (RunOptions::composition).
+///
+/// Where the stage holds slabs (Manifest::sorting), they are sorted before all that: a round of
+/// sort jobs, and one that takes samples of long streams. From there on the run is the one that
+/// sorted streams would have had.
 JobSource make_job_source(const Manifest& manifest, const RunOptions& options);
+
+/// What the largest job needs that is known of, in bytes. Where slabs are still to be sorted, what
+/// comes after that is estimated.
+std::uint64_t memory_wanted(const Manifest& manifest, const RunOptions& options);
 
 /// The result of a part, or of composed streams, that counts, and the rung to stitch.
 struct ChosenRung {

@@ -17,9 +17,16 @@ namespace meshfarm {
 
 inline constexpr std::uint64_t k_default_window = 400'000;
 
+/// Where the slabs are sorted that vertices and triangles are distributed to.
+enum class SortAt : std::uint8_t {
+  here,  // by who distributes: the stage holds streams
+  farm,  // by jobs, the first of a run, so that other hosts help: the stage holds slabs
+};
+
 struct StreamOptions {
-  std::uint32_t streams = 0;  // 0: default_streams() of the input's triangles
-  Weld weld = Weld::exact;    // vertices at the same position become one
+  std::uint32_t streams = 0;   // 0: default_streams() of the input's triangles
+  Weld weld = Weld::exact;     // vertices at the same position become one
+  SortAt sort = SortAt::here;  // the streams are the same
   std::uint64_t memory_bytes = std::uint64_t{512} << 20;
   /// What a worker's sweep holds at once. Of longer streams a sample is kept, as a part: from it
   /// the cost threshold of the sweep is found.
@@ -38,7 +45,8 @@ std::uint32_t default_streams(std::uint64_t triangles);
 /// equal size (Xiong et al. 2008, 4.1), which it publishes in the stage with the boundary side
 /// file, the manifest last. Input that comes in order is noticed: of axes that are equally long the
 /// one along which it does is taken, and it is not sorted again. The streams depend on the input
-/// and on streams, weld, memory_bytes and window_triangles only.
+/// and on streams, weld, memory_bytes and window_triangles only. With SortAt::farm the slabs are
+/// published as they come, and boundary and manifest already fit the streams that jobs will make.
 ///
 /// Out of core: vertices and triangles go to scratch files by slabs along the axis, through bounded
 /// buffers, and every slab is sorted in memory and becomes a stream; there are more streams than

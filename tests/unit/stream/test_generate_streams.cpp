@@ -7,6 +7,7 @@
 #include <doctest/doctest.h>
 
 #include <meshfarm/io/boundary_file.hpp>
+#include <meshfarm/io/slab_file.hpp>
 #include <meshfarm/io/stream_file.hpp>
 #include <meshfarm/stream/generate_streams.hpp>
 #include <meshfarm/util/errors.hpp>
@@ -180,6 +181,36 @@ TEST_CASE("coincident vertices are welded, degenerate and duplicate triangles dr
   const Generated apart = generate(soup, {.streams = 3, .weld = Weld::off}, folder / "apart");
   CHECK(apart.manifest.merged_vertices == 0);
   CHECK(apart.manifest.boundary_triangles < made.manifest.boundary_triangles * 2);
+}
+
+TEST_CASE(
+    "slabs that are not sorted keep the order of the input, and the boundary knows its vertices") {
+  const Mesh mesh = test::torus(60, 24);
+  const test::TempFolder folder;
+  const Generated sorted = generate(mesh, {.streams = 3}, folder / "sorted");
+  test::MemorySource source(mesh);
+  const Stage stage = Stage::create(folder / "slabs");
+  const Manifest slabs = generate_streams(source, stage, {.streams = 3, .sort = SortAt::farm});
+  REQUIRE(slabs.sorting.has_value());
+  CHECK(slabs.samples.empty());
+  CHECK(slabs.triangles() == mesh.triangles.size());
+  CHECK(decode_boundary(stage.read(slabs.boundary), "boundary") == sorted.boundary);
+  std::uint64_t vertices = 0;
+  for (std::size_t s = 0; s < 3; ++s) {
+    const PartEntry& entry = slabs.parts[s];
+    CHECK(entry.boundary_vertices == sorted.manifest.parts[s].boundary_vertices);
+    const MeshShare slab = decode_slab(stage.read(entry.file), "slab");
+    CHECK(slab.positions.size() == entry.vertices);
+    CHECK(slab.triangles.size() == entry.triangles);
+    CHECK(slab.boundary.size() == entry.boundary_vertices);  // none is welded
+    auto at = mesh.positions.begin();
+    for (const Vec3& p : slab.positions) {
+      at = std::find(at, mesh.positions.end(), p);
+      REQUIRE(at != mesh.positions.end());
+    }
+    vertices += entry.vertices;
+  }
+  CHECK(vertices == mesh.positions.size());
 }
 
 TEST_CASE("surfaces that touch are not welded together") {

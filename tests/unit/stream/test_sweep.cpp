@@ -7,10 +7,10 @@
 
 #include <meshfarm/geometry/simplify.hpp>
 #include <meshfarm/geometry/topology.hpp>
+#include <meshfarm/stream/slab.hpp>
 #include <meshfarm/stream/sweep.hpp>
 #include <meshfarm/util/errors.hpp>
 
-#include "stream/slab.hpp"
 #include "support/meshes.hpp"
 
 using namespace meshfarm;
@@ -21,7 +21,8 @@ namespace {
 StreamMesh stream_of(const Mesh& mesh, std::uint32_t boundary = 0) {
   MeshShare share{mesh.positions, mesh.triangles, {}};
   for (std::uint32_t v = 0; v < boundary; ++v) share.boundary.push_back(v);
-  return sort_slab(std::move(share), {{}, Weld::exact, PositionType::float64}).stream;
+  share.type = PositionType::float64;
+  return sort_slab(std::move(share), {}).stream;
 }
 
 /// A swept stream with all that it sent put together.

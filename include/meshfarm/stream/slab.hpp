@@ -1,0 +1,42 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+
+#include <meshfarm/geometry/sweep_order.hpp>
+#include <meshfarm/io/mesh_shares.hpp>
+#include <meshfarm/io/part_file.hpp>
+#include <meshfarm/io/stream_file.hpp>
+
+namespace meshfarm {
+
+/// What sorting a slab and encoding its stream need at most, for each triangle.
+inline constexpr std::uint64_t k_slab_bytes_per_triangle = 72;
+
+/// A slab in sweep order.
+struct SortedSlab {
+  StreamMesh stream;
+  std::uint32_t boundary_vertices = 0;
+  std::uint64_t merged_vertices = 0;
+  std::uint64_t dropped_degenerate = 0;
+};
+
+/// Sorts vertices, welds those that coincide (they are neighbours now), drops degenerate triangles
+/// and unused vertices, and sorts triangles by their smallest vertex, then the others: with exact
+/// welding the result does not depend on the order in which the slab came.
+SortedSlab sort_slab(MeshShare raw, const Sorting& sorting);
+
+/// The numbers that a slab's boundary vertices will have once it is sorted: these count boundary
+/// vertices alone, in sweep order. Nothing else needs to be sorted for that, as welding takes no
+/// boundary vertices at one place apart.
+BoundaryNumbers number_boundary(const MeshShare& raw, const Sorting& sorting);
+
+/// About how many triangles a sample of a stream has.
+std::uint64_t sample_size(std::uint64_t stream_triangles);
+
+/// A piece of a stream, right through its slab, as a part whose edge is locked: sample_size() by
+/// and large, from a place along the second axis that `number` decides.
+Part sample_slab(const StreamMesh& stream, const SweepOrder& order, std::uint32_t number);
+
+}  // namespace meshfarm

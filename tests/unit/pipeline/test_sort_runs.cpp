@@ -1,0 +1,222 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+//
+// Slabs that the farm sorts: to the streams, samples and boundary that the cut makes by itself.
+#include <algorithm>
+#include <fstream>
+#include <numeric>
+#include <random>
+
+#include <doctest/doctest.h>
+
+#include <meshfarm/io/slab_file.hpp>
+#include <meshfarm/pipeline/assemble.hpp>
+#include <meshfarm/pipeline/budget.hpp>
+#include <meshfarm/pipeline/job_table.hpp>
+#include <meshfarm/pipeline/sort_job.hpp>
+#include <meshfarm/stream/generate_streams.hpp>
+#include <meshfarm/util/errors.hpp>
+#include <meshfarm/util/file.hpp>
+
+#include "pipeline/sort_plan.hpp"
+#include "support/memory_source.hpp"
+#include "support/meshes.hpp"
+#include "support/temp_folder.hpp"
+
+using namespace meshfarm;
+
+namespace {
+
+/// A torus as a soup with some triangles of no area, in no order: what is to be welded and dropped
+/// lies in slabs and on the boundaries between them.
+Mesh shuffled_soup() {
+  const Mesh torus = test::torus(120, 60);
+  std::vector<Triangle> triangles = torus.triangles;
+  for (std::uint32_t i = 0; i < 2000; ++i) triangles.push_back({3 * i, 3 * i, 3 * i + 1});
+  std::shuffle(triangles.begin(), triangles.end(), std::mt19937(3));
+  Mesh soup;
+  for (const Triangle& t : triangles) {
+    const auto first = static_cast<std::uint32_t>(soup.positions.size());
+    for (const std::uint32_t v : t) soup.positions.push_back(torus.positions[v]);
+    soup.triangles.push_back({first, first + 1, first + 2});
+  }
+  return soup;
+}
+
+/// Two tori that touch in many points, where slabs meet, too.
+Mesh touching() {
+  Mesh mesh = test::torus(100, 40);
+  for (Vec3& p : mesh.positions) p.x = std::round(8 * p.x) / 8;
+  return test::touching_twice(mesh, mesh.positions[0]);
+}
+
+struct Staged {
+  Stage stage;
+  Manifest manifest;
+};
+
+Staged generate(const Mesh& mesh, StreamOptions options, SortAt sort,
+                const std::filesystem::path& folder) {
+  test::MemorySource source(mesh);
+  Stage stage = Stage::create(folder);
+  options.sort = sort;
+  Manifest manifest = generate_streams(source, stage, options);
+  // As a run finds it.
+  return {stage, decode_manifest(stage.read(ManifestName{}), "manifest")};
+}
+
+JobContext context_of(const Stage& stage) {
+  return {stage, 1, 7, [](std::uint64_t) { return true; }};
+}
+
+std::vector<AcceptedJob> do_jobs(const JobSource& source, const Stage& stage,
+                                 std::vector<std::string>* kinds = nullptr) {
+  std::vector<AcceptedJob> accepted;
+  for (std::vector<Job> jobs = source(accepted); !jobs.empty(); jobs = source(accepted)) {
+    for (const Job& job : jobs) {
+      accepted.push_back({key_of(job), do_job(job, context_of(stage))});
+      if (kinds != nullptr) kinds->push_back(job.kind);
+    }
+  }
+  return accepted;
+}
+
+bool same_content(const FileRef& a, const FileRef& b) {
+  return a.size == b.size && a.hash == b.hash;
+}
+
+void check_same(const std::vector<PartEntry>& a, const std::vector<PartEntry>& b) {
+  REQUIRE(a.size() == b.size());
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    CAPTURE(i);
+    CHECK(same_content(a[i].file, b[i].file));
+    CHECK(a[i].vertices == b[i].vertices);
+    CHECK(a[i].triangles == b[i].triangles);
+    CHECK(a[i].boundary_vertices == b[i].boundary_vertices);
+  }
+}
+
+const StreamOptions k_swept{.streams = 5, .window_triangles = 1'000};
+
+}  // namespace
+
+TEST_CASE("the farm sorts slabs to the bytes that the cut makes by itself") {
+  struct Case {
+    const char* name;
+    Mesh mesh;
+    StreamOptions options;
+  };
+  StreamOptions apart = k_swept;
+  apart.weld = Weld::off;
+  StreamOptions some_long = k_swept;
+  some_long.window_triangles = 2'830;
+  const Mesh soup = shuffled_soup();
+  const std::vector<Case> cases = {{"in order", test::torus(300, 60), k_swept},
+                                   {"soup", soup, k_swept},
+                                   {"soup, not welded", soup, apart},
+                                   {"some long", soup, some_long},
+                                   {"touching", touching(), k_swept},
+                                   {"touching, not welded", touching(), apart},
+                                   {"samples smaller than their streams",
+                                    test::grid(700, 300),
+                                    {.streams = 2, .window_triangles = 100'000}},
+                                   {"tetrahedron", test::tetrahedron(), k_swept},
+                                   {"nothing", {}, k_swept}};
+  for (const Case& each : cases) {
+    CAPTURE(each.name);
+    const test::TempFolder folder;
+    const Staged here = generate(each.mesh, each.options, SortAt::here, folder / "here");
+    const Staged farm = generate(each.mesh, each.options, SortAt::farm, folder / "farm");
+    REQUIRE(farm.manifest.sorting.has_value());
+    const auto source = [&](std::span<const AcceptedJob> accepted) {
+      return SortPlan(farm.manifest, accepted).jobs();
+    };
+    const std::vector<AcceptedJob> accepted = do_jobs(source, farm.stage);
+    const SortPlan plan(farm.manifest, accepted);
+    CHECK(plan.rest().empty());
+    CHECK_FALSE(plan.manifest().sorting.has_value());
+    check_same(plan.manifest().parts, here.manifest.parts);
+    check_same(plan.manifest().samples, here.manifest.samples);
+    CHECK(same_content(plan.manifest().boundary, here.manifest.boundary));
+    CHECK(plan.manifest().boundary_triangles == here.manifest.boundary_triangles);
+    CHECK(plan.manifest().merged_vertices == here.manifest.merged_vertices);
+    CHECK(plan.manifest().dropped_degenerate == here.manifest.dropped_degenerate);
+    CHECK(plan.manifest().dropped_duplicate == here.manifest.dropped_duplicate);
+  }
+}
+
+TEST_CASE("a run that sorts first ends as one that finds streams, and estimates what it needs") {
+  const Mesh mesh = shuffled_soup();
+  const test::TempFolder folder;
+  const Staged here = generate(mesh, k_swept, SortAt::here, folder / "here");
+  const Staged farm = generate(mesh, k_swept, SortAt::farm, folder / "farm");
+  CHECK(farm.manifest.triangles() > here.manifest.triangles());  // some are of no area
+  const RunOptions run{.ratio = 0.1};
+  CHECK(run_key(farm.manifest, run) != run_key(farm.manifest, {.ratio = 0.1000001}));
+  std::vector<std::string> results;
+  std::vector<std::vector<std::string>> kinds(2);
+  for (const Staged* staged : {&here, &farm}) {
+    const auto output = folder / "out.ply";
+    const JobSource source = make_job_source(staged->manifest, run);
+    const auto accepted = do_jobs(source, staged->stage, &kinds[results.size()]);
+    const RunSummary summary =
+        assemble(staged->stage, staged->manifest, run, accepted, {.output = output});
+    CHECK(summary.target == std::llround(0.1 * 14'400));
+    CHECK(summary.dropped_degenerate == 2000);
+    CHECK(choose_rungs(staged->manifest, run, accepted).size() == 5);
+    results.push_back(read_file(output));
+  }
+  CHECK(results[0] == results[1]);
+  const auto count = [&](std::string_view kind) {
+    return std::count(kinds[1].begin(), kinds[1].end(), kind);
+  };
+  CHECK(count(k_sort_kind) == 5);
+  CHECK(count(k_sample_kind) == 5);
+  CHECK(count(k_sort_kind) + count(k_sample_kind) ==
+        static_cast<std::ptrdiff_t>(kinds[1].size() - kinds[0].size()));
+
+  // Climbing a whole stream takes more than sorting it: who goes by the first round would be wrong.
+  const Staged whole = generate(mesh, {.streams = 1}, SortAt::farm, folder / "whole");
+  CHECK(memory_wanted(whole.manifest, run) > make_job_source(whole.manifest, run)({})[0].memory);
+}
+
+TEST_CASE("a sort job that makes no sense is refused, and so is what it cannot have made") {
+  const test::TempFolder folder;
+  const Staged farm = generate(test::torus(60, 30), k_swept, SortAt::farm, folder.path());
+  const JobContext context = context_of(farm.stage);
+  const std::string bytes = encode_parameters(SortParameters{{{{1, 2, 0}, -1}, Weld::off}, 5});
+  CHECK(decode_sort_parameters(bytes).number == 5);
+  CHECK(decode_sort_parameters(bytes).sorting.order.sign == -1);
+  CHECK_THROWS_AS(decode_sort_parameters(bytes + "x"), DataError);
+  for (std::size_t size = 0; size < bytes.size(); ++size) {
+    CHECK_THROWS_AS(decode_sort_parameters(bytes.substr(0, size)), DataError);
+  }
+  for (const std::string_view kind : {k_sort_kind, k_sample_kind}) {
+    CHECK_THROWS_AS(do_job({std::string(kind), {}, bytes, 0, 0}, context), DataError);
+    CHECK_THROWS_AS(do_job({std::string(kind), {farm.manifest.boundary}, bytes, 0, 0}, context),
+                    BadInputError);
+  }
+  const std::string summary = encode_summary(SortSummary{9, 8, 7, 6, 5});
+  CHECK(decode_sort_summary(summary, "s").dropped_degenerate == 5);
+  CHECK_THROWS_AS(decode_sort_summary(summary + "x", "s"), DataError);
+  CHECK_THROWS_AS(decode_sort_summary(encode_summary(SortSummary{9, 8, 10, 6, 5}), "s"), DataError);
+
+  std::vector<AcceptedJob> accepted;
+  for (const Job& job : make_job_source(farm.manifest, {.ratio = 0.5})({})) {
+    accepted.push_back({key_of(job), do_job(job, context)});
+  }
+  CHECK_NOTHROW(SortPlan(farm.manifest, accepted));
+  SortSummary other = decode_sort_summary(accepted[1].output.summary, "s");
+  ++other.boundary_vertices;
+  accepted[1].output.summary = encode_summary(other);
+  CHECK_THROWS_AS(SortPlan(farm.manifest, accepted), DataError);
+}
+
+TEST_CASE("a sort job that is given up publishes nothing") {
+  const test::TempFolder folder;
+  const Staged farm = generate(test::torus(60, 30), k_swept, SortAt::farm, folder.path());
+  const Job job = make_job_source(farm.manifest, {.ratio = 0.5})({})[0];
+  const JobContext given_up{farm.stage, 1, 7, [](std::uint64_t) { return false; }};
+  CHECK_THROWS_AS(do_job(job, given_up), IncompleteError);
+  CHECK(std::filesystem::is_empty(folder / "results"));
+}
