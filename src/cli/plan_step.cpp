@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "cli/plan_step.hpp"
 
+#include <algorithm>
 #include <charconv>
 #include <filesystem>
 #include <iostream>
@@ -9,6 +10,7 @@
 #include <sstream>
 
 #include <meshfarm/pipeline/run_trace.hpp>
+#include <meshfarm/pipeline/sweep_job.hpp>
 #include <meshfarm/staging/atomic_file.hpp>
 #include <meshfarm/util/errors.hpp>
 #include <meshfarm/util/file.hpp>
@@ -122,7 +124,9 @@ PlanSummary PlanWords::plan_of(const std::string& stage, const std::vector<Farm>
   if (parts != 0) jobs = as_parts(jobs, parts);
   PlanSummary plan;
   plan.stage = stage;
-  plan.scheme = past.trace.done.front().kind;
+  const bool swept = std::any_of(past.trace.done.begin(), past.trace.done.end(),
+                                 [](const TraceDone& each) { return each.kind == k_sweep_kind; });
+  plan.scheme = swept ? "stream" : "cut";
   plan.triangles_in = past.trace.head.triangles;
   plan.jobs = jobs.size();
   plan.schedule = schedule;

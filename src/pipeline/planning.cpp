@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
 #include <algorithm>
+#include <iterator>
 #include <map>
 #include <set>
 #include <string>
@@ -145,11 +146,16 @@ std::vector<PlannedJob> as_parts(std::span<const PlannedJob> jobs, std::uint64_t
 
 std::vector<PlannedJob> drawn(std::span<const PlannedJob> jobs, std::uint64_t count,
                               std::uint64_t seed) {
-  const auto first_round = static_cast<std::uint64_t>(std::count_if(
-      jobs.begin(), jobs.end(), [](const PlannedJob& job) { return job.round == 0; }));
+  std::map<std::uint32_t, double> work;
+  for (const PlannedJob& job : jobs) work[job.round] += job.compute_s;
+  const auto heaviest = std::max_element(
+      work.begin(), work.end(), [](const auto& a, const auto& b) { return a.second < b.second; });
+  std::vector<PlannedJob> from;
+  std::copy_if(jobs.begin(), jobs.end(), std::back_inserter(from),
+               [&](const PlannedJob& job) { return job.round == heaviest->first; });
   Draw draw(seed);
   std::vector<PlannedJob> sample;
-  for (std::uint64_t i = 0; i < count; ++i) sample.push_back(jobs[draw.next() % first_round]);
+  for (std::uint64_t i = 0; i < count; ++i) sample.push_back(from[draw.next() % from.size()]);
   return sample;
 }
 

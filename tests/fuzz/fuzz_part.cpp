@@ -6,7 +6,8 @@
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace meshfarm;
-  fuzz::decode_staged(data, size, {'P', 'A', 'R', 'T'},
-                      [](std::string_view file) { decode_part(file, "part"); });
+  fuzz::decode_staged(
+      data, size, {'P', 'A', 'R', 'T'}, [](std::string_view file) { decode_part(file, "part"); },
+      2);
   return 0;
 }

@@ -25,7 +25,8 @@ struct PlannedJob {
 std::vector<PlannedJob> planned_jobs(const Trace& trace);
 /// The same work, cut into so many jobs instead.
 std::vector<PlannedJob> as_parts(std::span<const PlannedJob> jobs, std::uint64_t count);
-/// So many jobs, drawn at random from the first round (the paper, 3.4.2).
+/// So many of at least one job, drawn at random from the round with the most work: of streams the
+/// sweep, not the samples before it (the paper, 3.4.2).
 std::vector<PlannedJob> drawn(std::span<const PlannedJob> jobs, std::uint64_t count,
                               std::uint64_t seed);
 

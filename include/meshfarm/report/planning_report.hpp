@@ -22,7 +22,7 @@ struct PlanLine {
 /// What a run of the past says of farms of the future.
 struct PlanSummary {
   std::string stage;
-  std::string scheme;  // of its jobs: "simplify", "stream"
+  std::string scheme;  // "cut", "stream"
   std::uint64_t triangles_in = 0;
   std::uint64_t triangles_out = 0;  // 0: not known
   std::uint64_t jobs = 0;

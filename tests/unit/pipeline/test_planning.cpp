@@ -93,6 +93,15 @@ TEST_CASE("the same work in more parts, and a draw from it") {
   const auto sample = drawn(jobs, 1000, 1);
   CHECK(sample.size() == 1000);
   CHECK(work(sample) == doctest::Approx(10 * work(jobs)).epsilon(0.02));
+
+  // Samples that are tried before the sweeps are not drawn.
+  std::vector<PlannedJob> rounds = jobs_of(3);
+  for (PlannedJob& job : rounds) job.compute_s /= 1000;
+  for (PlannedJob job : jobs) {
+    job.round = 1;
+    rounds.push_back(job);
+  }
+  for (const PlannedJob& job : drawn(rounds, 50, 1)) CHECK(job.round == 1);
 }
 
 TEST_CASE("jobs are taken from a trace: once each, by processor time, as the fastest worker's") {

@@ -17,7 +17,7 @@ bool has(const std::string& text, const std::string& part) {
 PlanSummary plan() {
   PlanSummary plan;
   plan.stage = "stage";
-  plan.scheme = "simplify";
+  plan.scheme = "cut";
   plan.triangles_in = 1'000'000;
   plan.triangles_out = 10'000;
   plan.jobs = 64;
