@@ -59,18 +59,23 @@ Bench& bench() {
   return instance;
 }
 
+void check_whole_run(const std::string& workers, const std::vector<std::string>& more) {
+  CAPTURE(workers);
+  const std::string output = bench().path("whole.ply");
+  fs::remove(output);
+  std::vector<std::string> words = bench().simplify(output, workers);
+  words.insert(words.end(), more.begin(), more.end());
+  const Ran ran = bench().meshfarm(words);
+  CHECK(ran.code == 0);
+  CHECK(ran.out.find("streams          6, stitched to") != std::string::npos);
+  bench().check_result(output);
+  CHECK_FALSE(fs::exists(output + ".stage"));
+}
+
 }  // namespace
 
 TEST_CASE("streams: 1 and 5 workers make the same bytes as 2") {
-  for (const char* workers : {"1", "5"}) {
-    CAPTURE(workers);
-    const std::string output = bench().path(std::string("w") + workers + ".ply");
-    const Ran ran = bench().meshfarm(bench().simplify(output, workers));
-    CHECK(ran.code == 0);
-    CHECK(ran.out.find("streams          6, stitched to") != std::string::npos);
-    bench().check_result(output);
-    CHECK_FALSE(fs::exists(output + ".stage"));
-  }
+  for (const char* workers : {"1", "5"}) check_whole_run(workers, {});
 }
 
 TEST_CASE("streams: killed while samples are climbed and while streams are swept, a run goes on") {
@@ -128,17 +133,7 @@ TEST_CASE("streams: composed as a tree, by any number of workers and through kil
 }
 
 TEST_CASE("streams: sorted by the farm, by any number of workers, the result is the same") {
-  for (const char* workers : {"1", "2", "5"}) {
-    CAPTURE(workers);
-    const std::string output = bench().path(std::string("farm") + workers + ".ply");
-    std::vector<std::string> words = bench().simplify(output, workers);
-    words.insert(words.end(), {"--sort", "farm"});
-    const Ran ran = bench().meshfarm(words);
-    CHECK(ran.code == 0);
-    CHECK(ran.out.find("streams          6, stitched to") != std::string::npos);
-    bench().check_result(output);
-    CHECK_FALSE(fs::exists(output + ".stage"));
-  }
+  for (const char* workers : {"1", "2", "5"}) check_whole_run(workers, {"--sort", "farm"});
 }
 
 TEST_CASE("streams: killed while the farm sorts and samples, a run goes on, and sorts only once") {

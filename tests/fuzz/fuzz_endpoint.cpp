@@ -1,32 +1,18 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
 //
-// An endpoint file from a shared folder. The checksum would stop the fuzzer at the door, so the
-// input is also tried as the payload of a sound seal.
-#include <cstdint>
+// An endpoint file from a shared folder.
 #include <cstdlib>
-#include <string>
 
 #include <meshfarm/farm/endpoint.hpp>
-#include <meshfarm/staging/sealed.hpp>
-#include <meshfarm/util/errors.hpp>
 
-namespace {
-
-void try_file(std::string_view file) {
-  try {
-    const meshfarm::Endpoint endpoint = meshfarm::decode_endpoint(file, "fuzz");
-    if (meshfarm::encode_endpoint(endpoint) != file) std::abort();
-  } catch (const meshfarm::DataError&) {
-    return;
-  }
-}
-
-}  // namespace
+#include "fuzz/staged_fuzzer.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  const std::string_view bytes(reinterpret_cast<const char*>(data), size);
-  try_file(bytes);
-  try_file(meshfarm::seal({'E', 'N', 'D', 'P'}, 2, bytes));
+  using namespace meshfarm;
+  const auto round_trip = [](std::string_view file) {
+    if (encode_endpoint(decode_endpoint(file, "fuzz")) != file) std::abort();
+  };
+  fuzz::decode_staged(data, size, {'E', 'N', 'D', 'P'}, round_trip, 2);
   return 0;
 }

@@ -1,31 +1,18 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
 //
-// A host card from a shared folder: as it is, and as the payload of a sound seal.
-#include <cstdint>
+// A host card from a shared folder.
 #include <cstdlib>
-#include <string>
 
 #include <meshfarm/staging/host_card.hpp>
-#include <meshfarm/staging/sealed.hpp>
-#include <meshfarm/util/errors.hpp>
 
-namespace {
-
-void try_file(std::string_view file) {
-  try {
-    const meshfarm::HostCard card = meshfarm::decode_host_card(file, "fuzz");
-    if (meshfarm::encode_host_card(card) != file) std::abort();
-  } catch (const meshfarm::DataError&) {
-    return;
-  }
-}
-
-}  // namespace
+#include "fuzz/staged_fuzzer.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  const std::string_view bytes(reinterpret_cast<const char*>(data), size);
-  try_file(bytes);
-  try_file(meshfarm::seal({'H', 'O', 'S', 'T'}, 1, bytes));
+  using namespace meshfarm;
+  const auto round_trip = [](std::string_view file) {
+    if (encode_host_card(decode_host_card(file, "fuzz")) != file) std::abort();
+  };
+  fuzz::decode_staged(data, size, {'H', 'O', 'S', 'T'}, round_trip, 1);
   return 0;
 }
