@@ -78,10 +78,14 @@ class InfoCommand : public Command {
     return summary;
   }
 
+  static void add(Vec3 p, FileSummary& summary) {
+    has_position(p) ? summary.box.add(p) : void(++summary.not_finite);
+  }
+
   FileSummary scanned(MeshSource& source) const {
     FileSummary summary{.path = file_, .file = {}, .box = {}, .topology = {}};
     source.scan_vertices([&](std::span<const Vec3> batch) {
-      for (const Vec3& p : batch) summary.box.add(p);
+      for (const Vec3& p : batch) add(p, summary);
     });
     source.scan_triangles(
         [&](std::span<const WideTriangle> batch) { summary.triangles += batch.size(); });
@@ -93,7 +97,7 @@ class InfoCommand : public Command {
   FileSummary whole(MeshSource& source) const {
     FileSummary summary{.path = file_, .file = {}, .box = {}, .topology = {}};
     const Mesh mesh = read_mesh(source);
-    for (const Vec3& p : mesh.positions) summary.box.add(p);
+    for (const Vec3& p : mesh.positions) add(p, summary);
     summary.triangles = mesh.triangles.size();
     summary.topology = measure_topology(mesh);
     summary.file = source.info();

@@ -1,16 +1,17 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
 //
-// The manifest, kind "MNFT", version 3; the payload of a sealed file. Strings are u32 + characters,
+// The manifest, kind "MNFT", version 4; the payload of a sealed file. Strings are u32 + characters,
 // a file is name | size u64 | xxh3-64 u64:
 //   input | input format | scheme u8 (0 cut, 1 stream) | window u64 | position type u8 | box 6 x
 //   f64 | input vertices u64 | input triangles u64 | merged vertices u64 | dropped degenerate u64 |
-//   dropped duplicate u64 | skipped u32 x string | cut seconds f64 | boundary triangles u64 |
-//   boundary file | sorting | parts u32 x (file | vertices u64 | triangles u64 | boundary vertices
-//   u32) | samples u32 x the same: none, or one a part, its file's name empty where it has none
-//   sorting = u8 0: parts and streams are there | u8 1: slabs are, and how they are to be sorted
-//   (io/sorting.hpp)
-// Version 1 had no scheme, window and samples, version 2 no sorting.
+//   dropped not finite u64 | dropped duplicate u64 | skipped u32 x string | cut seconds f64 |
+//   boundary triangles u64 | boundary file | sorting | parts u32 x (file | vertices u64 | triangles
+//   u64 | boundary vertices u32) | samples u32 x the same: none, or one a part, its file's name
+//   empty where it has none sorting = u8 0: parts and streams are there | u8 1: slabs are, and how
+//   they are to be sorted (io/sorting.hpp)
+// Version 1 had no scheme, window and samples, version 2 no sorting, version 3 no dropped not
+// finite.
 #include <meshfarm/io/manifest.hpp>
 #include <meshfarm/io/sorting.hpp>
 #include <meshfarm/staging/sealed.hpp>
@@ -22,7 +23,7 @@ namespace meshfarm {
 namespace {
 
 constexpr FileKind k_kind = {'M', 'N', 'F', 'T'};
-constexpr std::uint32_t k_version = 3;
+constexpr std::uint32_t k_version = 4;
 
 void put_file(ByteWriter& out, const FileRef& file) {
   out.put_string(file.name);
@@ -91,6 +92,7 @@ std::string encode_manifest(const Manifest& m) {
   out.put(m.input_triangles);
   out.put(m.merged_vertices);
   out.put(m.dropped_degenerate);
+  out.put(m.dropped_not_finite);
   out.put(m.dropped_duplicate);
   out.put(static_cast<std::uint32_t>(m.skipped.size()));
   for (const std::string& name : m.skipped) out.put_string(name);
@@ -119,6 +121,7 @@ Manifest decode_manifest(std::string_view file, std::string_view what) {
   m.input_triangles = in.get<std::uint64_t>();
   m.merged_vertices = in.get<std::uint64_t>();
   m.dropped_degenerate = in.get<std::uint64_t>();
+  m.dropped_not_finite = in.get<std::uint64_t>();
   m.dropped_duplicate = in.get<std::uint64_t>();
   const auto skipped = in.get<std::uint32_t>();
   for (std::uint32_t i = 0; i < skipped; ++i) m.skipped.push_back(in.get_string());

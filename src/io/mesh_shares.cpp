@@ -48,6 +48,10 @@ void MeshShares::add_vertices(std::span<const Vec3> batch, std::span<const std::
   const std::span<Place> map = map_.as_span<Place>();
   for (std::size_t i = 0; i < batch.size(); ++i) {
     const std::uint32_t share = shares[i];
+    if (share == k_no_share) {
+      map[added_++] = {k_no_share, 0};
+      continue;
+    }
     if (next_[share] > 0xfffffffe) {
       throw DataError("a part would have 2^32 vertices or more; ask for more --parts");
     }
@@ -78,7 +82,9 @@ void MeshShares::add_triangles(std::span<const WideTriangle> batch) {
     const Place a = map[t[0]];
     const Place b = map[t[1]];
     const Place c = map[t[2]];
-    if (a.share == b.share && b.share == c.share) {
+    if (a.share == k_no_share || b.share == k_no_share || c.share == k_no_share) {
+      ++dropped_;
+    } else if (a.share == b.share && b.share == c.share) {
       triangles_.append(a.share, packers_[a.share].pack({a.place, b.place, c.place}));
     } else {
       boundary_.push_back({a, b, c});

@@ -1,5 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
+#include <algorithm>
+
 #include <meshfarm/io/mesh_source.hpp>
 #include <meshfarm/util/errors.hpp>
 
@@ -30,8 +32,10 @@ Mesh read_mesh(MeshSource& source) {
   source.scan_vertices([&mesh](std::span<const Vec3> batch) {
     mesh.positions.insert(mesh.positions.end(), batch.begin(), batch.end());
   });
-  source.scan_triangles([&mesh](std::span<const WideTriangle> batch) {
+  const auto lacks = [&mesh](std::uint64_t v) { return !has_position(mesh.positions[v]); };
+  source.scan_triangles([&](std::span<const WideTriangle> batch) {
     for (const WideTriangle& triangle : batch) {
+      if (std::any_of(triangle.begin(), triangle.end(), lacks)) continue;
       mesh.triangles.push_back({static_cast<std::uint32_t>(triangle[0]),
                                 static_cast<std::uint32_t>(triangle[1]),
                                 static_cast<std::uint32_t>(triangle[2])});

@@ -32,7 +32,8 @@ class AsciiBody final : public PlyBody {
         }
       }
       end_record();
-      batch.add({xyz[0], xyz[1], xyz[2]});
+      const Vec3 p{xyz[0], xyz[1], xyz[2]};
+      batch.add(is_finite(p) ? p : k_no_position);
     }
     batch.flush();
   }
@@ -105,7 +106,6 @@ class AsciiBody final : public PlyBody {
       fail("the coordinate " + cursor_.token() + " is no number of type " +
            std::string(name_of(type)));
     }
-    if (!std::isfinite(*value)) fail("a coordinate is not finite");
     return *value;
   }
 

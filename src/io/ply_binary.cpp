@@ -71,10 +71,9 @@ class BinaryBody final : public PlyBody {
     index_ = 0;
   }
 
-  [[noreturn]] void fail(const std::string& why) const { fail_at(stream_->position(), why); }
-  [[noreturn]] void fail_at(std::uint64_t byte, const std::string& why) const {
+  [[noreturn]] void fail(const std::string& why) const {
     throw DataError(path_.string() + ": " + element_->name + " " + std::to_string(index_) +
-                    " at byte " + std::to_string(byte) + ": " + why);
+                    " at byte " + std::to_string(stream_->position()) + ": " + why);
   }
   [[noreturn]] void fail_truncated() const {
     throw DataError(path_.string() + ": truncated: the file ends at byte " +
@@ -102,10 +101,8 @@ class BinaryBody final : public PlyBody {
       const std::size_t whole = stream_->window(0).size() / layout.record_bytes;
       const auto count = std::min<std::uint64_t>({whole, room.size(), element_->count - index_});
       decode_vertices<Order>(layout, stream_->window(0).data(), room.first(count));
-      for (std::size_t i = 0; i < count; ++i) {
-        if (is_finite(room[i])) continue;
-        index_ += i;
-        fail_at(stream_->position() + i * layout.record_bytes, "a coordinate is not finite");
+      for (Vec3& p : room.first(count)) {
+        if (!is_finite(p)) p = k_no_position;
       }
       stream_->consume(count * layout.record_bytes);
       index_ += count;
@@ -120,11 +117,11 @@ class BinaryBody final : public PlyBody {
       for (std::size_t axis = 0; axis < 3; ++axis) {
         if (element_->axes[axis] != i) continue;
         xyz[axis] = load_real<Order>(property.type, need(size_of(property.type)));
-        if (!std::isfinite(xyz[axis])) fail("a coordinate is not finite");
       }
       skip(property);
     }
-    batch.add({xyz[0], xyz[1], xyz[2]});
+    const Vec3 p{xyz[0], xyz[1], xyz[2]};
+    batch.add(is_finite(p) ? p : k_no_position);
   }
 
   /// Reads as many records as are triangles, without a look at each property. Returns how many.

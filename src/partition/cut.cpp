@@ -93,7 +93,9 @@ class Cutter {
     grid_ = UniformGrid(manifest_.box, wanted == 1 ? 0 : grid_bits(wanted));
     std::uint64_t done = 0;
     source_.scan_vertices([&](std::span<const Vec3> batch) {
-      for (const Vec3& p : batch) cells_.add(grid_.cell_of(p), p);
+      for (const Vec3& p : batch) {
+        if (has_position(p)) cells_.add(grid_.cell_of(p), p);
+      }
       tell("cut: cells", done += batch.size(), manifest_.input_vertices);
     });
     cells_.finish();
@@ -115,6 +117,10 @@ class Cutter {
     source_.scan_vertices([&](std::span<const Vec3> batch) {
       parts.clear();
       for (const Vec3& p : batch) {
+        if (!has_position(p)) {
+          parts.push_back(MeshShares::k_no_share);
+          continue;
+        }
         const std::uint64_t cell = grid_.cell_of(p);
         if (cell != last_cell) part = part_of_cell_[cells_.number_of(cell)];
         last_cell = cell;
@@ -132,6 +138,7 @@ class Cutter {
       tell("cut: triangles", manifest_.input_triangles, source_.info().faces);
     });
     shares_->finish();
+    manifest_.dropped_not_finite = shares_->dropped();
   }
 
   void build_parts() {

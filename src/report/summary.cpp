@@ -115,21 +115,27 @@ void add_input(Lines& lines, const Manifest& m) {
           (m.merged_vertices != 0 ? ", " + grouped(m.merged_vertices) + " coincident ones merged"
                                   : ""));
   if (!m.skipped.empty()) lines.add("not kept", joined(m.skipped));
+  if (m.dropped_not_finite > 0) {
+    lines.add("dropped",
+              grouped(m.dropped_not_finite) + " triangles with positions that are not finite");
+  }
 }
 
 }  // namespace
 
 std::string render(const Manifest& m, const std::string& stage, Format format) {
   if (format == Format::json) {
-    const Json json = {
-        {"stage", stage},
-        {"input", input_json(m)},
-        {"scheme", scheme_name(m)},
-        {"parts", m.parts.size()},
-        {"sorted", !m.sorting.has_value()},
-        {"boundary_triangles", m.boundary_triangles},
-        {"dropped", {{"degenerate", m.dropped_degenerate}, {"duplicate", m.dropped_duplicate}}},
-        {"seconds", m.cut_seconds}};
+    const Json json = {{"stage", stage},
+                       {"input", input_json(m)},
+                       {"scheme", scheme_name(m)},
+                       {"parts", m.parts.size()},
+                       {"sorted", !m.sorting.has_value()},
+                       {"boundary_triangles", m.boundary_triangles},
+                       {"dropped",
+                        {{"degenerate", m.dropped_degenerate},
+                         {"duplicate", m.dropped_duplicate},
+                         {"not_finite", m.dropped_not_finite}}},
+                       {"seconds", m.cut_seconds}};
     return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
   }
   Lines lines;
@@ -155,6 +161,7 @@ std::string render(const RunSummary& s, Format format) {
         {"dropped",
          {{"degenerate", s.dropped_degenerate},
           {"duplicate", s.dropped_duplicate},
+          {"not_finite", m.dropped_not_finite},
           {"components", s.dropped_components.components}}},
         {"scheme", scheme_name(m)},
         {"parts", m.parts.size()},
@@ -226,6 +233,7 @@ std::string render(const FileSummary& s, Format format) {
                  {"vertices", s.file.vertices},
                  {"triangles", s.triangles},
                  {"short_faces", s.short_faces},
+                 {"not_finite", s.not_finite},
                  {"positions", s.file.positions == PositionType::float64 ? "float64" : "float32"},
                  {"attributes", s.file.skipped},
                  {"box", to_json(s.box)},
@@ -242,6 +250,9 @@ std::string render(const FileSummary& s, Format format) {
   if (s.short_faces > 0) lines.add("left out", grouped(s.short_faces) + " faces of 0 to 2 corners");
   lines.add("vertices", grouped(s.file.vertices) +
                             (s.file.positions == PositionType::float64 ? ", double" : ", float"));
+  if (s.not_finite > 0) {
+    lines.add("", grouped(s.not_finite) + " of them with a coordinate that is not finite");
+  }
   if (!s.file.skipped.empty()) lines.add("attributes", joined(s.file.skipped));
   add_box(lines, s.box);
   if (s.topology) lines.add("topology", text_of(*s.topology));

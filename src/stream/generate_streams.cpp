@@ -116,7 +116,9 @@ class Generator {
     std::uint64_t done = 0;
     source_.scan_vertices([&](std::span<const Vec3> batch) {
       slabs.clear();
-      for (const Vec3& p : batch) slabs.push_back(slabs_->slab_of(p));
+      for (const Vec3& p : batch) {
+        slabs.push_back(has_position(p) ? slabs_->slab_of(p) : MeshShares::k_no_share);
+      }
       shares_->add_vertices(batch, slabs);
       tell("streams: vertices", done += batch.size(), manifest_.input_vertices);
     });
@@ -130,6 +132,7 @@ class Generator {
       tell("streams: triangles", manifest_.input_triangles, source_.info().faces);
     });
     shares_->finish();
+    manifest_.dropped_not_finite = shares_->dropped();
   }
 
   /// As many at once as fit into the memory, going by the average.

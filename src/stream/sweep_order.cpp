@@ -14,6 +14,7 @@ constexpr double k_as_long = 0.99;
 
 void OrderProbe::look_at(std::span<const Vec3> batch) {
   for (const Vec3& p : batch) {
+    if (!has_position(p)) continue;
     box_.add(p);
     if (any_) {
       for (int axis = 0; axis < 3; ++axis) {
@@ -55,7 +56,9 @@ SlabMap::SlabMap(const Box& box, const SweepOrder& order) : order_(order), count
 }
 
 void SlabMap::count(std::span<const Vec3> batch) {
-  for (const Vec3& p : batch) ++counts_[bin_of(p)];
+  for (const Vec3& p : batch) {
+    if (has_position(p)) ++counts_[bin_of(p)];
+  }
 }
 
 std::uint32_t SlabMap::divide(std::uint32_t wanted) {

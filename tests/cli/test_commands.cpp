@@ -74,6 +74,26 @@ TEST_CASE("help and version go to stdout, and say what there is") {
   CHECK_FALSE(has(ran.out, "supervised"));
 }
 
+TEST_CASE("a NaN costs the triangles that use it, and everybody says so") {
+  Shell shell;
+  std::string text = read_text(shell.cube());
+  text.replace(text.find("0 0 0 9"), 7, "nan 0 0 9");
+  text.replace(text.find("vertex 8"), 8, "vertex 9");
+  text.replace(text.find("0 1 1 9\n"), 8, "0 1 1 9\n0 inf 0 9\n");
+  const std::string input = shell.file("nan.ply", text);
+  for (const std::string scheme : {"cut", "stream"}) {
+    const Ran ran = shell({"simplify", input, "-o", shell.path("out.ply"), "--triangles", "8",
+                           "--scheme", scheme, "--quiet"});
+    CHECK(ran.code == 0);
+    CHECK(has(ran.out, "triangles with positions that are not finite"));
+    CHECK_FALSE(has(ran.out, "dropped          0"));
+  }
+  const Ran info = shell({"info", input});
+  CHECK(info.code == 0);
+  CHECK(has(info.out, "2 of them with a coordinate that is not finite"));
+  CHECK(has(shell({"info", input, "--no-topology", "--json"}).out, "\"not_finite\": 2"));
+}
+
 TEST_CASE("a cut that leaves the sorting to the farm says so, and the run then knows streams") {
   Shell shell;
   const std::string stage = shell.path("stage");

@@ -91,6 +91,23 @@ inline void append(Mesh& mesh, const Mesh& other) {
   }
 }
 
+/// The mesh with vertices that have no position put between its own; of some, `triangles` triangles
+/// make use, of the others none.
+inline Mesh with_lost_vertices(const Mesh& mesh, std::uint32_t triangles) {
+  Mesh made;
+  for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
+    made.positions.push_back(k_no_position);
+    made.positions.push_back(mesh.positions[v]);
+  }
+  for (const auto& [a, b, c] : mesh.triangles) {
+    made.triangles.push_back({2 * a + 1, 2 * b + 1, 2 * c + 1});
+  }
+  for (std::uint32_t i = 0; i < triangles; ++i) {
+    made.triangles.push_back({2 * i, 2 * i + 1, 2 * i + (i % 2 == 0 ? 3 : 4)});
+  }
+  return made;
+}
+
 /// A mesh beside itself reflected in a point of its surface, where the two then touch.
 inline Mesh touching_twice(const Mesh& mesh, Vec3 point) {
   Mesh both = mesh;

@@ -23,6 +23,12 @@ struct Mesh {
   std::vector<Triangle> triangles;
 };
 
+/// Stands for a vertex without a position: one of its coordinates was not finite.
+inline constexpr Vec3 k_no_position{NAN, NAN, NAN};
+inline bool has_position(Vec3 p) {
+  return p.x == p.x;
+}
+
 /// The nearest number that a float can hold. Through memory, as g++ 12 drops the rounding of two
 /// neighbours when it packs them into a vector ((double)(float)x at -O2).
 inline double rounded_to_float(double x) {

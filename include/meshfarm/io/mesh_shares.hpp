@@ -49,6 +49,8 @@ class MeshShares {
   };
   explicit MeshShares(const Options& options);
 
+  /// The share of vertices that are left out, and with them the triangles that use one.
+  static constexpr std::uint32_t k_no_share = UINT32_MAX;
   /// The next vertices, and the share of each. Throws DataError if one gets 2^32.
   void add_vertices(std::span<const Vec3> batch, std::span<const std::uint32_t> shares);
   /// After all vertices.
@@ -57,6 +59,8 @@ class MeshShares {
   void finish();
   MeshShare read(std::uint32_t share) const;
 
+  /// Triangles that used a vertex that was left out.
+  std::uint64_t dropped() const { return dropped_; }
   /// The boundary triangles, in file order and by final numbers, one entry of `numbers` a share;
   /// those that have lost a corner by it are left out and counted.
   std::vector<BoundaryTriangle> boundary(std::span<const BoundaryNumbers> numbers,
@@ -89,6 +93,7 @@ class MeshShares {
   BucketFile boundary_vertices_;
   std::vector<std::uint64_t> next_;  // place in each share
   std::uint64_t added_ = 0;
+  std::uint64_t dropped_ = 0;
   std::vector<std::array<Place, 3>> boundary_;  // as the square root of the input
 };
 

@@ -38,7 +38,8 @@ class MeshSource {
  public:
   virtual ~MeshSource() = default;
   virtual const MeshFileInfo& info() const = 0;
-  /// All vertices in file order, in batches. Every coordinate is finite.
+  /// All vertices in file order, in batches. One of which a coordinate is not finite comes as
+  /// k_no_position, all others are finite.
   virtual void scan_vertices(const std::function<void(std::span<const Vec3>)>& take) = 0;
   /// All triangles in file order, in batches. Every index is below info().vertices.
   virtual void scan_triangles(const std::function<void(std::span<const WideTriangle>)>& take) = 0;
@@ -50,7 +51,8 @@ class MeshSource {
 /// malformed header, or one that claims more than the file can hold.
 std::unique_ptr<MeshSource> open_mesh(const std::filesystem::path& path);
 
-/// Reads a whole mesh into memory. Throws DataError if it has 2^32 vertices or more.
+/// Reads a whole mesh into memory, without the triangles that use a vertex without a position.
+/// Throws DataError if it has 2^32 vertices or more.
 Mesh read_mesh(MeshSource& source);
 
 }  // namespace meshfarm

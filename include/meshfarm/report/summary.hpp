@@ -48,6 +48,7 @@ struct FileSummary {
   Box box;
   std::uint64_t triangles = 0;
   std::uint64_t short_faces = 0;  // faces with fewer than three corners, left out
+  std::uint64_t not_finite = 0;   // vertices with a coordinate that is not
   std::optional<Topology> topology;
 };
 

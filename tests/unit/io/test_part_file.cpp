@@ -28,6 +28,7 @@ Manifest sample_manifest() {
   m.input_triangles = std::uint64_t{10} << 32;
   m.merged_vertices = 7;
   m.dropped_degenerate = 8;
+  m.dropped_not_finite = 12;
   m.dropped_duplicate = 9;
   m.skipped = {"vertex.red", "face.flags"};
   m.cut_seconds = 1.5;

@@ -146,6 +146,26 @@ TEST_CASE("surfaces that touch are not welded together") {
   CHECK(touching.manifest.parts[0].vertices == 12);
 }
 
+TEST_CASE(
+    "triangles with a position that is not finite go and are counted, all else is as without") {
+  const Mesh mesh = test::torus(40, 30);
+  const Mesh spoilt = test::with_lost_vertices(mesh, 7);
+  const test::TempFolder folder;
+  const CutMesh made = cut(spoilt, {.parts = 4}, folder / "spoilt");
+  CHECK(made.manifest.dropped_not_finite == 7);
+  CHECK(made.manifest.triangles() == mesh.triangles.size());
+  CHECK(made.manifest.input_triangles == mesh.triangles.size() + 7);
+  const CutMesh clean = cut(mesh, {.parts = 4}, folder / "clean");
+  CHECK(made.manifest.box.lo == clean.manifest.box.lo);
+  CHECK(made.manifest.box.hi == clean.manifest.box.hi);
+  CHECK(triangles_of(made) == triangles_of(clean));
+  CHECK(made.boundary.size() == clean.boundary.size());
+
+  Mesh lost = mesh;
+  for (Vec3& p : lost.positions) p = k_no_position;
+  CHECK(cut(lost, {.parts = 4}, folder / "lost").manifest.triangles() == 0);
+}
+
 TEST_CASE("degenerate triangles go, wherever they lie, and are counted") {
   Mesh mesh = test::torus(40, 30);
   const std::size_t clean = mesh.triangles.size();

@@ -107,6 +107,23 @@ TEST_CASE("streams and boundary together are the input") {
   CHECK(triangles_of(made) == triangles_of(mesh));
 }
 
+TEST_CASE(
+    "triangles with a position that is not finite go and are counted, all else is as without") {
+  const Mesh mesh = test::torus(90, 40);
+  const test::TempFolder folder;
+  const Generated clean = generate(mesh, {.streams = 5}, folder / "clean");
+  const Generated made =
+      generate(test::with_lost_vertices(mesh, 7), {.streams = 5}, folder / "spoilt");
+  CHECK(made.manifest.dropped_not_finite == 7);
+  CHECK(made.manifest.input_triangles == mesh.triangles.size() + 7);
+  CHECK(made.files == clean.files);
+  CHECK(made.boundary == clean.boundary);
+
+  Mesh lost = mesh;
+  for (Vec3& p : lost.positions) p = k_no_position;
+  CHECK(generate(lost, {.streams = 4}, folder / "lost").manifest.triangles() == 0);
+}
+
 TEST_CASE("streams are slabs along the longest axis, of about equal size") {
   Mesh mesh = test::torus(200, 60);
   for (Vec3& p : mesh.positions) p.y *= 3;
