@@ -2,7 +2,9 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
 #include <limits>
+#include <numeric>
 #include <string>
+#include <utility>
 
 #include <metis.h>
 #include <nanoflann.hpp>
@@ -120,6 +122,80 @@ std::vector<idx_t> run_metis(std::span<const Cell> cells, Graph graph, idx_t par
   return part;
 }
 
+/// Divides cells along their longest side, by weight, until each piece is a part.
+class Bisection {
+ public:
+  Bisection(std::span<const Cell> cells, idx_t parts) : cells_(cells), part_(cells.size(), 0) {
+    std::vector<std::uint32_t> all(cells.size());
+    std::iota(all.begin(), all.end(), 0U);
+    divide(all, parts);
+  }
+  std::vector<idx_t> take() { return std::move(part_); }
+
+ private:
+  /// `some` has at least as many cells as there are to be parts of it.
+  void divide(std::span<std::uint32_t> some, idx_t parts) {
+    if (parts == 1) {
+      for (const std::uint32_t cell : some) part_[cell] = next_;
+      ++next_;
+      return;
+    }
+    sort_along_longest(some);
+    const idx_t left = parts / 2;
+    const std::size_t at = std::clamp(split_of(some, static_cast<double>(left) / parts),
+                                      static_cast<std::size_t>(left),
+                                      some.size() - static_cast<std::size_t>(parts - left));
+    divide(some.first(at), left);
+    divide(some.subspan(at), parts - left);
+  }
+
+  void sort_along_longest(std::span<std::uint32_t> some) const {
+    Box box;
+    for (const std::uint32_t cell : some) box.add(cells_[cell].mean);
+    const Vec3 extent = box.hi - box.lo;
+    int axis = 0;
+    for (const int other : {1, 2}) axis = extent[other] > extent[axis] ? other : axis;
+    std::sort(some.begin(), some.end(), [&](std::uint32_t a, std::uint32_t b) {
+      return std::pair(cells_[a].mean[axis], a) < std::pair(cells_[b].mean[axis], b);
+    });
+  }
+
+  /// How many of the cells weigh about `share` of all.
+  std::size_t split_of(std::span<const std::uint32_t> some, double share) const {
+    double all = 0;
+    for (const std::uint32_t cell : some) all += static_cast<double>(cells_[cell].vertices);
+    double sum = 0;
+    for (std::size_t i = 0; i < some.size(); ++i) {
+      const auto weight = static_cast<double>(cells_[some[i]].vertices);
+      if (sum + 0.5 * weight > share * all) return i;
+      sum += weight;
+    }
+    return some.size();
+  }
+
+  std::span<const Cell> cells_;
+  std::vector<idx_t> part_;
+  idx_t next_ = 0;
+};
+
+/// The greatest weight of a part.
+std::uint64_t heaviest(std::span<const Cell> cells, const std::vector<idx_t>& part, idx_t parts) {
+  std::vector<std::uint64_t> weights(static_cast<std::size_t>(parts), 0);
+  for (std::size_t i = 0; i < cells.size(); ++i) weights[part[i]] += cells[i].vertices;
+  return *std::max_element(weights.begin(), weights.end());
+}
+
+/// METIS aims at even parts but promises none.
+std::vector<idx_t> balanced(std::vector<idx_t> part, std::span<const Cell> cells, idx_t parts) {
+  constexpr double k_most = 1.1;  // times the mean
+  std::uint64_t all = 0;
+  for (const Cell& cell : cells) all += cell.vertices;
+  const std::uint64_t found = heaviest(cells, part, parts);
+  if (static_cast<double>(found) * parts <= k_most * static_cast<double>(all)) return part;
+  std::vector<idx_t> other = Bisection(cells, parts).take();
+  return heaviest(cells, other, parts) < found ? other : part;
+}
+
 /// Numbers the parts in the order in which the cells meet them, without gaps.
 std::vector<std::uint32_t> renumbered(const std::vector<idx_t>& part, idx_t parts) {
   constexpr std::uint32_t k_none = std::numeric_limits<std::uint32_t>::max();
@@ -139,11 +215,9 @@ std::vector<std::uint32_t> renumbered(const std::vector<idx_t>& part, idx_t part
 std::vector<std::uint32_t> partition_cells(std::span<const Cell> cells,
                                            const CellGraphOptions& options) {
   if (options.parts <= 1 || cells.size() <= 1) return std::vector<std::uint32_t>(cells.size(), 0);
-  if (cells.size() > (std::size_t{1} << 26)) {
-    throw Error("too many grid cells to cut: " + std::to_string(cells.size()));
-  }
   const auto parts = static_cast<idx_t>(std::min<std::size_t>(options.parts, cells.size()));
-  return renumbered(run_metis(cells, graph_of(cells, options), parts), parts);
+  return renumbered(balanced(run_metis(cells, graph_of(cells, options), parts), cells, parts),
+                    parts);
 }
 
 }  // namespace meshfarm

@@ -4,21 +4,21 @@
 // The cut: Xiong, Jiang, Zhang, Shi, "Parallel Simplification of Large Meshes on PC Clusters",
 // EGPGV 2008, 3.1. Scans of the input, each in order and through bounded buffers:
 //   vertices    bounding box
-//   vertices    cells with their counts and means -> METIS -> part of each cell
+//   vertices    cells with their counts and means -> METIS -> part of each cell; once more, or a
+//               few times, where vertices are not spread as a surface is
 //   vertices    vertex map: part and raw index; positions to the part's bucket
 //   triangles   to the part's bucket, or, when two or three parts meet in one, to the boundary
 // Then each part is built from its buckets by itself, on all cores.
 #include <algorithm>
 #include <chrono>
-#include <limits>
 #include <memory>
 #include <mutex>
 
 #include <meshfarm/io/boundary_file.hpp>
 #include <meshfarm/io/mesh_shares.hpp>
 #include <meshfarm/partition/cell_graph.hpp>
+#include <meshfarm/partition/cell_tree.hpp>
 #include <meshfarm/partition/cut.hpp>
-#include <meshfarm/partition/grid.hpp>
 #include <meshfarm/util/errors.hpp>
 #include <meshfarm/util/parallel.hpp>
 
@@ -90,16 +90,21 @@ class Cutter {
     const MeshFileInfo& info = source_.info();
     const std::uint32_t wanted =
         options_.parts != 0 ? options_.parts : default_parts(std::max(info.faces, info.vertices));
-    grid_ = UniformGrid(manifest_.box, wanted == 1 ? 0 : grid_bits(wanted));
-    std::uint64_t done = 0;
-    source_.scan_vertices([&](std::span<const Vec3> batch) {
-      for (const Vec3& p : batch) {
-        if (has_position(p)) cells_.add(grid_.cell_of(p), p);
-      }
-      tell("cut: cells", done += batch.size(), manifest_.input_vertices);
-    });
-    cells_.finish();
-    part_of_cell_ = partition_cells(cells_.cells(), {.parts = wanted, .threads = options_.threads});
+    cells_ = std::make_unique<CellTree>(
+        manifest_.box,
+        CellTreeOptions{
+            .bits = wanted == 1 ? 0 : grid_bits(wanted), .parts = wanted, .weld = options_.weld});
+    do {
+      std::uint64_t done = 0;
+      source_.scan_vertices([&](std::span<const Vec3> batch) {
+        for (const Vec3& p : batch) {
+          if (has_position(p)) cells_->add(p);
+        }
+        tell("cut: cells", done += batch.size(), manifest_.input_vertices);
+      });
+    } while (cells_->refine());
+    part_of_cell_ =
+        partition_cells(cells_->cells(), {.parts = wanted, .threads = options_.threads});
     const auto last = std::max_element(part_of_cell_.begin(), part_of_cell_.end());
     parts_ = last == part_of_cell_.end() ? 0 : *last + 1;
   }
@@ -111,24 +116,17 @@ class Cutter {
         MeshShares::Options{stage_.root(), parts_, manifest_.input_vertices, manifest_.positions,
                             all <= k_memory_bytes ? all : 0});
     std::vector<std::uint32_t> parts;
-    std::uint64_t last_cell = std::numeric_limits<std::uint64_t>::max();
-    std::uint32_t part = 0;
     std::uint64_t done = 0;
     source_.scan_vertices([&](std::span<const Vec3> batch) {
       parts.clear();
       for (const Vec3& p : batch) {
-        if (!has_position(p)) {
-          parts.push_back(MeshShares::k_no_share);
-          continue;
-        }
-        const std::uint64_t cell = grid_.cell_of(p);
-        if (cell != last_cell) part = part_of_cell_[cells_.number_of(cell)];
-        last_cell = cell;
-        parts.push_back(part);
+        parts.push_back(has_position(p) ? part_of_cell_[cells_->number_of(p)]
+                                        : MeshShares::k_no_share);
       }
       shares_->add_vertices(batch, parts);
       tell("cut: vertices", done += batch.size(), manifest_.input_vertices);
     });
+    cells_.reset();
   }
 
   void distribute_triangles() {
@@ -177,8 +175,7 @@ class Cutter {
   const Stage& stage_;
   const CutOptions& options_;
   Manifest manifest_;
-  UniformGrid grid_{Box{}, 0};
-  CellTable cells_;
+  std::unique_ptr<CellTree> cells_;
   std::vector<std::uint32_t> part_of_cell_;
   std::uint32_t parts_ = 0;
   std::unique_ptr<MeshShares> shares_;

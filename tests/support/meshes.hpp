@@ -91,6 +91,16 @@ inline void append(Mesh& mesh, const Mesh& other) {
   }
 }
 
+/// The mesh and a triangle of its first two vertices and one that is `far` times its size away.
+inline Mesh with_outlier(Mesh mesh, double far) {
+  Box box;
+  for (const Vec3& p : mesh.positions) box.add(p);
+  const auto out = static_cast<std::uint32_t>(mesh.positions.size());
+  mesh.positions.push_back(box.lo - (box.hi - box.lo) * far);
+  mesh.triangles.push_back({0, 1, out});
+  return mesh;
+}
+
 /// The mesh with vertices that have no position put between its own; of some, `triangles` triangles
 /// make use, of the others none.
 inline Mesh with_lost_vertices(const Mesh& mesh, std::uint32_t triangles) {

@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include <meshfarm/partition/grid.hpp>
+#include <meshfarm/partition/cell_tree.hpp>
 
 namespace meshfarm {
 
@@ -18,7 +18,9 @@ struct CellGraphOptions {
 
 /// The part of each cell: a graph with a node a cell, weighted by its vertices, and edges to its
 /// nearest cells, cut by METIS (Karypis & Kumar 1998; Xiong et al. 2008, 3.1 step 2) with a fixed
-/// seed. Parts are numbered 0.. without gaps; there may be fewer than asked for, never more.
+/// seed; where that leaves a part too heavy the cells are halved along their longest side again and
+/// again instead: then none has more than the mean and a cell more. Parts are numbered 0.. without
+/// gaps; there may be fewer than asked for, never more.
 std::vector<std::uint32_t> partition_cells(std::span<const Cell> cells,
                                            const CellGraphOptions& options);
 

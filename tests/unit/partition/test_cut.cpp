@@ -166,6 +166,35 @@ TEST_CASE(
   CHECK(cut(lost, {.parts = 4}, folder / "lost").manifest.triangles() == 0);
 }
 
+TEST_CASE("parts come out even with vertices far out and where triangles are far smaller") {
+  const auto check_even = [](const Mesh& mesh, const std::filesystem::path& folder) {
+    const CutMesh made = cut(mesh, {.parts = 28, .threads = 1}, folder / "1");
+    REQUIRE(made.parts.size() == 28);
+    std::uint64_t most = 0;
+    for (const PartEntry& part : made.manifest.parts) most = std::max(most, part.vertices);
+    CHECK(static_cast<double>(most) * 28 <= 1.15 * static_cast<double>(mesh.positions.size()));
+    CHECK(made.manifest.triangles() == mesh.triangles.size());
+    for (const unsigned threads : {2U, 5U}) {
+      const std::filesystem::path other = folder / std::to_string(threads);
+      cut(mesh, {.parts = 28, .threads = threads}, other);
+      for (const char* name : {"parts/000000.part", "parts/000027.part", "boundary"}) {
+        CHECK(read_file(folder / "1" / name) == read_file(other / name));
+      }
+    }
+  };
+  const test::TempFolder folder;
+  for (const double far : {1e2, 1e4, 1e8}) {
+    CAPTURE(far);
+    check_even(test::with_outlier(test::grid(150, 150), far), folder / std::to_string(far));
+  }
+  Mesh dense = test::grid(150, 150);  // from left to right a hundred times closer both ways
+  for (Vec3& p : dense.positions) {
+    const double closer = std::pow(0.01, p.x / 150);
+    p = {150 * closer, p.y * closer, 0};
+  }
+  check_even(dense, folder / "dense");
+}
+
 TEST_CASE("degenerate triangles go, wherever they lie, and are counted") {
   Mesh mesh = test::torus(40, 30);
   const std::size_t clean = mesh.triangles.size();

@@ -1,0 +1,82 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <span>
+#include <vector>
+
+#include <meshfarm/geometry/weld.hpp>
+#include <meshfarm/partition/grid.hpp>
+
+namespace meshfarm {
+
+/// A cell that holds vertices.
+struct Cell {
+  std::uint64_t key = 0;       // its grid, then its index in that; cells are numbered in this order
+  std::uint64_t vertices = 0;  // its weight
+  Vec3 mean;
+  Box box;                 // of its vertices
+  std::uint32_t grid = 0;  // by which it is divided; 0 is none
+};
+
+struct CellTreeOptions {
+  unsigned bits = 0;        // of the first grid
+  std::uint32_t parts = 1;  // that the cells are for; one part's cells are never divided
+  Weld weld = Weld::exact;
+  std::size_t most_cells = std::size_t{1} << 20;
+};
+
+/// Cells that follow the data: those of a uniform grid, but in place of one with more than a 32nd
+/// of a part's vertices those of a grid over the box of just its vertices, and so on: what lies far
+/// out makes no cell coarser. Grids are coarsened where the cells would be too many; there are at
+/// most `most_cells`, and 256 a part where vertices lie close together again and again. Memory:
+/// about 110 bytes a cell. The cells depend on the set of vertices only, not on their order.
+///
+/// All vertices are added, and again as long as refine() says so; where they are spread as a
+/// surface is, once does.
+class CellTree {
+ public:
+  CellTree(const Box& box, const CellTreeOptions& options);
+  void add(Vec3 p);
+  /// Ends a scan. True if cells were divided: all vertices are to be added once more.
+  bool refine();
+
+  /// After the last scan. A single point with many vertices cannot be divided; it weighs as much as
+  /// one vertex where it will be welded to one.
+  std::span<const Cell> cells() const { return std::span(cells_).first(leaves_); }
+  /// The number of the cell that holds a vertex that was added.
+  std::uint32_t number_of(Vec3 p);
+
+ private:
+  static constexpr unsigned k_index_bits = 36;
+  static constexpr std::uint64_t k_no_key = std::numeric_limits<std::uint64_t>::max();
+
+  std::uint64_t key_of(std::uint32_t grid, Vec3 p) const {
+    return std::uint64_t{grid} << k_index_bits | grids_[grid].cell_of(p);
+  }
+  std::uint64_t descend(Vec3 p) const;
+  std::size_t slot_of(std::uint64_t key) const;
+  std::size_t place_of(std::uint64_t key);
+  void hash_all(std::size_t slots);
+  void coarsen();
+  void divide(Cell& cell);
+  void finish();
+
+  CellTreeOptions options_;
+  std::vector<UniformGrid> grids_;
+  std::uint32_t first_new_ = 0;       // grids from here on are counted into
+  std::vector<std::uint32_t> slots_;  // place in cells_ + 1; 0 is free
+  std::vector<Cell> cells_;           // mean holds the sum until finish()
+  std::size_t limit_;                 // grids are coarsened when there are more cells
+  std::size_t leaves_ = 0;            // cells that are not divided come first in the end
+  std::uint64_t heavy_ = 0;
+  unsigned scans_ = 0;
+  std::size_t last_ = 0;  // where add() was last
+  std::uint64_t last_key_ = k_no_key;
+  std::uint32_t last_number_ = 0;
+};
+
+}  // namespace meshfarm
