@@ -4,7 +4,8 @@
 // Stream generation: Xiong, Jiang, Zhang, Shi, "Parallel Simplification of Large Meshes on PC
 // Clusters", EGPGV 2008, 4.1. Scans of the input, each in order and through bounded buffers:
 //   vertices    bounding box, and whether they come in order along an axis
-//   vertices    how many lie where along the axis -> slabs, one a stream
+//   vertices    how many lie where along the axis -> slabs, one a stream; once more, or a few
+//               times, where many lie close together
 //   vertices    index map (scratch file): slab and place in it; positions to the slab's bucket
 //   triangles   to the slab's bucket, or, when two or three slabs meet in one, to the boundary
 // Then each slab is sorted by itself, on all cores, or staged as it is and sorted by a job of the
@@ -100,13 +101,15 @@ class Generator {
   }
 
   void choose_slabs() {
-    slabs_ = std::make_unique<SlabMap>(manifest_.box, sorting_.order);
-    std::uint64_t done = 0;
-    source_.scan_vertices([&](std::span<const Vec3> batch) {
-      slabs_->count(batch);
-      tell("streams: slabs", done += batch.size(), manifest_.input_vertices);
-    });
-    streams_ = slabs_->divide(wanted_streams());
+    slabs_ = std::make_unique<SlabMap>(manifest_.box, sorting_.order, wanted_streams());
+    do {
+      std::uint64_t done = 0;
+      source_.scan_vertices([&](std::span<const Vec3> batch) {
+        slabs_->count(batch);
+        tell("streams: slabs", done += batch.size(), manifest_.input_vertices);
+      });
+    } while (slabs_->refine());
+    streams_ = slabs_->divide();
   }
 
   void distribute_vertices() {

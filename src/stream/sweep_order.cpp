@@ -46,41 +46,104 @@ SweepOrder OrderProbe::choose() const {
   return order;
 }
 
-SlabMap::SlabMap(const Box& box, const SweepOrder& order) : order_(order), counts_(k_bins, 0) {
-  if (box.empty()) return;
-  const double a = order.along(box.lo);
-  const double b = order.along(box.hi);
-  low_ = std::min(a, b);
-  const double extent = std::max(a, b) - low_;
-  if (extent > 0 && std::isfinite(extent)) bins_per_unit_ = k_bins / extent;
+SlabMap::SlabMap(const Box& box, const SweepOrder& order, std::uint32_t wanted)
+    : box_(box), order_(order), wanted_(std::max(1U, wanted)) {
+  const double a = box.empty() ? 0 : order.along(box.lo);
+  const double b = box.empty() ? 0 : order.along(box.hi);
+  add_division(0, std::min(a, b), std::max(a, b), k_first_bins);
+}
+
+void SlabMap::add_division(int rank, double low, double high, std::uint32_t bins) {
+  Division division{
+      .rank = rank, .low = low, .first = static_cast<std::uint32_t>(bins_.size()), .bins = bins};
+  const double extent = high - low;
+  if (extent > 0 && std::isfinite(extent)) division.bins_per_unit = bins / extent;
+  divisions_.push_back(division);
+  bins_.resize(bins_.size() + bins);
+  targets_.resize(bins_.size(), 0);
 }
 
 void SlabMap::count(std::span<const Vec3> batch) {
   for (const Vec3& p : batch) {
-    if (has_position(p)) ++counts_[bin_of(p)];
+    if (!has_position(p)) continue;
+    const Place at = find(p);
+    if (at.division < first_new_) continue;  // an earlier scan has counted it
+    const double x = coordinate(divisions_[at.division].rank, p);
+    Bin& bin = bins_[at.bin];
+    ++bin.count;
+    bin.low = std::min(bin.low, x);
+    bin.high = std::max(bin.high, x);
   }
 }
 
-std::uint32_t SlabMap::divide(std::uint32_t wanted) {
-  std::uint64_t all = 0;
-  for (const std::uint64_t count : counts_) all += count;
-  slab_.assign(k_bins, 0);
+bool SlabMap::refine() {
+  constexpr std::uint64_t k_bins_a_slab = 16;  // at least so many, so that sizes come out even
+  constexpr unsigned k_most_scans = 32;        // numbers so far apart are no mesh
+  if (scans_++ == 0) {
+    for (const Bin& bin : bins_) all_ += bin.count;
+    heavy_ = std::max<std::uint64_t>(1, all_ / (k_bins_a_slab * wanted_));
+  }
+  const auto before = static_cast<std::uint32_t>(divisions_.size());
+  if (wanted_ > 1 && scans_ < k_most_scans) {
+    for (std::uint32_t d = first_new_; d < before; ++d) {
+      const Division division = divisions_[d];
+      for (std::uint32_t bin = division.first; bin < division.first + division.bins; ++bin) {
+        if (bins_[bin].count > heavy_) divide_bin(bin, division.rank);
+      }
+    }
+  }
+  first_new_ = before;
+  return divisions_.size() > before;
+}
+
+void SlabMap::divide_bin(std::uint32_t bin, int rank) {
+  constexpr std::uint64_t k_bins_of_a_heavy = 4;  // that one is divided into, at least
+  std::uint32_t bins = 16;
+  const std::uint64_t wanted = k_bins_of_a_heavy * (bins_[bin].count / heavy_);
+  while (bins < k_first_bins && bins < wanted) bins *= 2;
+  double low = bins_[bin].low;
+  double high = bins_[bin].high;
+  while (!(low < high)) {
+    if (++rank > 2) return;  // a single point
+    const int axis = order_.axes[static_cast<std::size_t>(rank)];
+    low = box_.lo[axis];
+    high = box_.hi[axis];
+  }
+  targets_[bin] = k_divided | static_cast<std::uint32_t>(divisions_.size());
+  add_division(rank, low, high, bins);
+}
+
+std::uint32_t SlabMap::divide() {
   std::uint64_t sum = 0;
   std::uint32_t slabs = 0;
   std::uint64_t last = 0;  // as if none were empty
-  for (std::uint32_t bin = 0; bin < k_bins; ++bin) {
-    if (counts_[bin] > 0) {
+  const auto assign = [&](std::uint32_t bin) {
+    const std::uint64_t count = bins_[bin].count;
+    if (count > 0) {
       // A bin belongs where its middle vertex does.
-      const double middle = static_cast<double>(sum) + 0.5 * static_cast<double>(counts_[bin]);
-      const auto slab = std::min<std::uint64_t>(
-          wanted - 1, static_cast<std::uint64_t>(middle / static_cast<double>(all) * wanted));
+      const double middle = static_cast<double>(sum) + 0.5 * static_cast<double>(count);
+      const auto slab =
+          std::min(wanted_ - 1, static_cast<std::uint64_t>(middle / static_cast<double>(all_) *
+                                                           static_cast<double>(wanted_)));
       if (slabs == 0 || slab > last) ++slabs;
       last = slab;
-      sum += counts_[bin];
+      sum += count;
     }
-    slab_[bin] = slabs == 0 ? 0 : slabs - 1;
+    targets_[bin] = slabs == 0 ? 0 : slabs - 1;
+  };
+  // In the order of the sweep: what a bin is divided into comes in its place.
+  std::vector<std::uint32_t> ahead;  // bins, the next one last
+  const auto look_into = [&](const Division& d) {
+    for (std::uint32_t i = d.bins; i-- > 0;) ahead.push_back(d.first + i);
+  };
+  look_into(divisions_[0]);
+  while (!ahead.empty()) {
+    const std::uint32_t bin = ahead.back();
+    ahead.pop_back();
+    const std::uint32_t target = targets_[bin];
+    (target & k_divided) != 0 ? look_into(divisions_[target & ~k_divided]) : assign(bin);
   }
-  counts_ = {};
+  bins_ = {};
   return slabs;
 }
 

@@ -145,6 +145,39 @@ TEST_CASE("streams are slabs along the longest axis, of about equal size") {
   }
 }
 
+TEST_CASE("slabs come out even with vertices far out, in many sizes, or in one plane") {
+  const auto check_even = [](const Mesh& mesh, const std::filesystem::path& folder) {
+    const Generated made = generate(mesh, {.streams = 28, .threads = 1}, folder / "1");
+    REQUIRE(made.streams.size() == 28);
+    std::uint64_t most = 0;
+    for (const PartEntry& entry : made.manifest.parts) most = std::max(most, entry.vertices);
+    CHECK(static_cast<double>(most) * 28 <= 1.15 * static_cast<double>(mesh.positions.size()));
+    CHECK(triangles_of(made) == triangles_of(mesh));
+    for (const unsigned threads : {2U, 5U}) {
+      const Generated other = generate(shuffled(mesh, threads), {.streams = 28, .threads = threads},
+                                       folder / std::to_string(threads));
+      CHECK(made.files == other.files);
+      CHECK(made.boundary == other.boundary);
+    }
+  };
+  const test::TempFolder folder;
+  const Mesh sheet = test::grid(300, 30);
+  for (const double far : {1e2, 1e4, 1e8, 1e30}) {
+    CAPTURE(far);
+    check_even(test::with_outlier(sheet, far), folder / std::to_string(far));
+  }
+  Mesh dense = sheet;  // ten thousand times closer on the right
+  for (Vec3& p : dense.positions) p.x = 300 * std::pow(1e-4, p.x / 300);
+  check_even(dense, folder / "dense");
+  Mesh wall = test::with_outlier(sheet, 1);  // all but one at one coordinate
+  for (std::size_t v = 0; v + 1 < wall.positions.size(); ++v) {
+    Vec3& p = wall.positions[v];
+    p = {0, 1e-3 * p.x, 1e-3 * p.y};
+  }
+  wall.positions.back().x = 300;  // comes last: the sweep goes the same way in any order
+  check_even(wall, folder / "wall");
+}
+
 TEST_CASE("a stream's vertices come in order, and triangles by their smallest vertex") {
   const test::TempFolder folder;
   const Generated made = generate(shuffled(test::torus(80, 30), 3), {.streams = 1}, folder.path());
