@@ -5,12 +5,14 @@
 #include <filesystem>
 #include <fstream>
 #include <iostream>
+#include <memory>
 
 #include <meshfarm/geometry/topology.hpp>
 #include <meshfarm/io/mesh_source.hpp>
 #include <meshfarm/io/stream_file.hpp>
 #include <meshfarm/report/summary.hpp>
 #include <meshfarm/staging/stage.hpp>
+#include <meshfarm/util/errors.hpp>
 #include <meshfarm/util/file.hpp>
 
 #include "cli/command.hpp"
@@ -58,10 +60,21 @@ class InfoCommand : public Command {
     return is_stream({start.data(), start.size()});
   }
 
+  /// Read, not mapped: a staged file's host may go away meanwhile.
+  Fill fill_from_file() const {
+    const auto fd = std::make_shared<Fd>(open_for_read(file_));
+    return [fd, path = file_, done = std::uint64_t{0}](std::span<char> buffer) mutable {
+      const std::size_t got = read_up_to(fd->get(), buffer, path);
+      done += got;
+      if (got < buffer.size()) {
+        throw DataError(path + ": cut short at byte " + std::to_string(done));
+      }
+    };
+  }
+
   /// Checks all of the stream on the way.
   StreamSummary read_through() const {
-    const MappedFile file = MappedFile::open(file_);
-    StreamReader reader(fill_from(file.bytes(), file_), file_);
+    StreamReader reader(fill_from_file(), file_);
     StreamSummary summary{.path = file_, .stream = reader.info(), .box = {}};
     std::uint64_t front = 0;
     StreamBlock block;

@@ -3,7 +3,9 @@
 #include "byte_stream.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cerrno>
+#include <cstring>
 
 #include <meshfarm/util/errors.hpp>
 
@@ -13,44 +15,42 @@
 namespace meshfarm {
 namespace {
 
-/// Slides over a mapped file. What is behind the window is let go of, so that a scan needs the
-/// memory of one window whatever the file's size.
-class MappedStream final : public ByteStream {
+/// Slides over a plain file, in the memory of one window.
+class PlainStream final : public ByteStream {
  public:
-  explicit MappedStream(const MappedFile& file) : file_(file), bytes_(file.bytes()) {
-    current_ = end_ = bytes_.data();
+  explicit PlainStream(const InputFile& file)
+      : file_(file), buffer_(std::make_unique_for_overwrite<char[]>(k_max_window_bytes)) {
+    current_ = end_ = buffer_.get();
   }
-  ~MappedStream() override { release_behind(); }
 
   std::uint64_t position() const override {
-    return static_cast<std::uint64_t>(current_ - bytes_.data());
+    return read_ - static_cast<std::uint64_t>(end_ - current_);
   }
-  std::optional<std::uint64_t> remaining() const override { return bytes_.size() - position(); }
+  std::optional<std::uint64_t> remaining() const override { return file_.size() - position(); }
 
  private:
   void widen(std::size_t at_least) override {
-    release_behind();
-    const std::size_t ahead = bytes_.size() - position();
-    end_ = current_ + std::min(std::max(at_least, k_step_bytes), ahead);
+    const auto held = static_cast<std::size_t>(end_ - current_);
+    std::memmove(buffer_.get(), current_, held);
+    const std::size_t wanted = std::min(std::max(at_least, k_step_bytes), k_max_window_bytes);
+    const auto more =
+        std::min<std::uint64_t>(wanted - std::min(wanted, held), file_.size() - read_);
+    file_.read(read_, {buffer_.get() + held, more});
+    read_ += more;
+    current_ = buffer_.get();
+    end_ = current_ + held + more;
   }
   bool jump(std::uint64_t count) override {
-    const std::uint64_t ahead = bytes_.size() - position();
-    release_behind();
-    current_ += std::min(count, ahead);
-    end_ = current_;
-    released_ = position() / k_page_bytes * k_page_bytes;
+    const std::uint64_t ahead = file_.size() - position();
+    read_ = position() + std::min(count, ahead);
+    current_ = end_ = buffer_.get();
     return count <= ahead;
   }
-  void release_behind() {
-    file_.release(released_, position() - released_);
-    released_ = position() / k_page_bytes * k_page_bytes;
-  }
 
-  static constexpr std::size_t k_step_bytes = std::size_t{4} << 20;
-  static constexpr std::uint64_t k_page_bytes = 4096;
-  const MappedFile& file_;
-  std::string_view bytes_;
-  std::uint64_t released_ = 0;
+  static constexpr std::size_t k_step_bytes = std::size_t{256} << 10;  // stays in the near caches
+  const InputFile& file_;
+  std::unique_ptr<char[]> buffer_;
+  std::uint64_t read_ = 0;  // up to here in the file
 };
 
 Compression compression_of(std::string_view bytes) {
@@ -68,15 +68,25 @@ InputFile::InputFile(std::filesystem::path path) : path_(std::move(path)) {
   if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status)) {
     throw DataError(path_.string() + ": not a regular file; a mesh is read more than once");
   }
-  file_ = MappedFile::open(path_);
-  compression_ = compression_of(file_.bytes());
-  if (compression_ == Compression::none) file_.advise_sequential();
-  if (compression_ == Compression::zstd) check_zstd_frames(file_.bytes(), path_);
+  fd_ = open_for_read(path_);
+  size_ = file_size(fd_.get(), path_);
+  std::array<char, 4> start{};
+  const std::size_t count = std::min<std::uint64_t>(size_, start.size());
+  read(0, std::span(start).first(count));
+  compression_ = compression_of({start.data(), count});
+  if (compression_ == Compression::zstd) check_zstd_frames(*this);
+}
+
+void InputFile::read(std::uint64_t offset, std::span<char> out) const {
+  const std::size_t got = read_at(fd_.get(), offset, out, path_);
+  if (got == out.size()) return;
+  throw DataError(path_.string() + ": became shorter while it was read: of " +
+                  std::to_string(size_) + " bytes it ends at byte " + std::to_string(offset + got));
 }
 
 std::unique_ptr<ByteStream> InputFile::open() const {
-  if (compression_ == Compression::none) return std::make_unique<MappedStream>(file_);
-  return open_compressed(file_, compression_, path_);
+  if (compression_ == Compression::none) return std::make_unique<PlainStream>(*this);
+  return open_compressed(*this);
 }
 
 std::string_view name_of(Compression compression) {

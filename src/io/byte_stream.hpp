@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string_view>
 
 #include <meshfarm/util/file.hpp>
@@ -58,12 +59,18 @@ class InputFile {
 
   const std::filesystem::path& path() const { return path_; }
   Compression compression() const { return compression_; }
-  /// The bytes as they are once decompressed. What decompression finds wrong is a DataError.
+  std::uint64_t size() const { return size_; }
+  /// The bytes as they lie in the file, which has as many. Throws IoError, and DataError if the
+  /// file has become shorter.
+  void read(std::uint64_t offset, std::span<char> out) const;
+  /// The bytes as they are once decompressed; the file must outlive the stream. What decompression
+  /// finds wrong is a DataError.
   std::unique_ptr<ByteStream> open() const;
 
  private:
   std::filesystem::path path_;
-  MappedFile file_;
+  Fd fd_;
+  std::uint64_t size_ = 0;
   Compression compression_ = Compression::none;
 };
 

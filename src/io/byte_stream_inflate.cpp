@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <exception>
 #include <new>
 #include <string>
 
@@ -21,48 +22,47 @@ namespace bio = boost::iostreams;
 
 constexpr std::streamsize k_filter_bytes = 1 << 16;
 
-/// The compressed bytes, let go of as they are read.
-class MappedDevice {
+/// The compressed bytes. The filters would pass on an error of reading as one of theirs, or swallow
+/// it: it is kept for who asks them.
+class FileDevice {
  public:
   using char_type = char;            // NOLINT(readability-identifier-naming): Boost's name
   using category = bio::source_tag;  // NOLINT(readability-identifier-naming): Boost's name
 
-  explicit MappedDevice(const MappedFile& file) : file_(&file) {}
+  FileDevice(const InputFile& file, std::exception_ptr& error) : file_(&file), error_(&error) {}
 
   std::streamsize read(char* out, std::streamsize wanted) {
-    const std::string_view bytes = file_->bytes();
-    const std::size_t count = std::min(static_cast<std::size_t>(wanted), bytes.size() - offset_);
-    if (count == 0) return -1;
-    std::memcpy(out, bytes.data() + offset_, count);
-    offset_ += count;
-    if (offset_ - released_ >= k_step_bytes) {
-      file_->release(released_, offset_ - released_);
-      released_ = offset_ / k_page_bytes * k_page_bytes;
+    const auto count = std::min(static_cast<std::uint64_t>(wanted), file_->size() - offset_);
+    if (count == 0 || *error_) return -1;
+    try {
+      file_->read(offset_, {out, count});
+    } catch (...) {
+      *error_ = std::current_exception();
+      return -1;
     }
+    offset_ += count;
     return static_cast<std::streamsize>(count);
   }
 
  private:
-  static constexpr std::size_t k_step_bytes = std::size_t{4} << 20;
-  static constexpr std::size_t k_page_bytes = 4096;
-  const MappedFile* file_;
-  std::size_t offset_ = 0;
-  std::size_t released_ = 0;
+  const InputFile* file_;
+  std::exception_ptr* error_;
+  std::uint64_t offset_ = 0;
 };
 
 class InflatedStream final : public ByteStream {
  public:
-  InflatedStream(const MappedFile& file, Compression compression, std::filesystem::path path)
-      : path_(std::move(path)),
-        compression_(compression),
+  explicit InflatedStream(const InputFile& file)
+      : path_(file.path()),
+        compression_(file.compression()),
         buffer_(std::make_unique_for_overwrite<char[]>(k_max_window_bytes)) {
-    if (compression == Compression::gzip) {
+    if (compression_ == Compression::gzip) {
       input_.push(bio::gzip_decompressor(bio::gzip::default_window_bits, k_filter_bytes),
                   k_filter_bytes);
     } else {
       input_.push(bio::zstd_decompressor(k_filter_bytes), k_filter_bytes);
     }
-    input_.push(MappedDevice(file), k_filter_bytes);
+    input_.push(FileDevice(file, read_error_), k_filter_bytes);
     current_ = end_ = buffer_.get();
   }
 
@@ -98,19 +98,22 @@ class InflatedStream final : public ByteStream {
   std::size_t inflate(char* out, std::size_t room) {
     try {
       const std::streamsize got = input_.sgetn(out, static_cast<std::streamsize>(room));
-      return got > 0 ? static_cast<std::size_t>(got) : 0;
+      if (!read_error_) return got > 0 ? static_cast<std::size_t>(got) : 0;
     } catch (const std::bad_alloc&) {
       throw;
     } catch (const std::exception&) {  // the filters' own words say nothing to a user
+      if (read_error_) std::rethrow_exception(read_error_);
       throw DataError(path_.string() + ": the " + std::string(name_of(compression_)) +
                       " data is corrupt or truncated, somewhere after byte " +
                       std::to_string(inflated_) + " of what it holds");
     }
+    std::rethrow_exception(read_error_);
   }
 
   std::filesystem::path path_;
   Compression compression_;
   std::unique_ptr<char[]> buffer_;
+  std::exception_ptr read_error_;
   bio::filtering_streambuf<bio::input> input_;
   std::uint64_t inflated_ = 0;
   bool at_end_ = false;
@@ -118,9 +121,8 @@ class InflatedStream final : public ByteStream {
 
 }  // namespace
 
-std::unique_ptr<ByteStream> open_compressed(const MappedFile& file, Compression compression,
-                                            const std::filesystem::path& path) {
-  return std::make_unique<InflatedStream>(file, compression, path);
+std::unique_ptr<ByteStream> open_compressed(const InputFile& file) {
+  return std::make_unique<InflatedStream>(file);
 }
 
 }  // namespace meshfarm

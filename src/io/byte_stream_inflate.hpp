@@ -7,8 +7,7 @@
 namespace meshfarm {
 
 /// The decompressed bytes of `file`, which must outlive the stream. Damage throws DataError naming
-/// `path` and how far decompression came.
-std::unique_ptr<ByteStream> open_compressed(const MappedFile& file, Compression compression,
-                                            const std::filesystem::path& path);
+/// the file and how far decompression came.
+std::unique_ptr<ByteStream> open_compressed(const InputFile& file);
 
 }  // namespace meshfarm

@@ -7,6 +7,7 @@
 //   skippable = 0x184D2A50..5F, a 4-byte size, then as many bytes
 #include "byte_stream_zstd.hpp"
 
+#include <algorithm>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -37,13 +38,24 @@ std::size_t frame_header_bytes(std::uint8_t descriptor) {
   return size;
 }
 
-std::optional<std::size_t> data_frame_bytes(std::string_view bytes) {
-  if (bytes.size() < 5) return std::nullopt;
-  const auto descriptor = static_cast<std::uint8_t>(bytes[4]);
-  std::size_t offset = frame_header_bytes(descriptor);
+/// Up to `count` bytes of the file at `offset`: fewer if it ends before.
+std::string bytes_at(const InputFile& file, std::uint64_t offset, std::size_t count) {
+  if (offset >= file.size()) return {};
+  std::string bytes(std::min<std::uint64_t>(count, file.size() - offset), '\0');
+  file.read(offset, bytes);
+  return bytes;
+}
+
+/// Where the data frame at `start` ends, by its blocks' headers.
+std::optional<std::uint64_t> end_of_data_frame(const InputFile& file, std::uint64_t start) {
+  const std::string head = bytes_at(file, start, 5);
+  if (head.size() < 5) return std::nullopt;
+  const auto descriptor = static_cast<std::uint8_t>(head[4]);
+  std::uint64_t offset = start + frame_header_bytes(descriptor);
   for (bool last = false; !last;) {
-    if (offset > bytes.size() || bytes.size() - offset < 3) return std::nullopt;
-    const std::uint32_t block = load(bytes.substr(offset), 3);
+    const std::string bytes = bytes_at(file, offset, 3);
+    if (bytes.size() < 3) return std::nullopt;
+    const std::uint32_t block = load(bytes, 3);
     last = (block & 1) != 0;
     const bool one_byte_repeated = (block >> 1 & 3) == 1;
     offset += 3 + (one_byte_repeated ? 1 : block >> 3);
@@ -51,13 +63,14 @@ std::optional<std::size_t> data_frame_bytes(std::string_view bytes) {
   return offset + ((descriptor & 4) != 0 ? 4 : 0);
 }
 
-/// Size of the frame that the bytes start with; nothing if they end before it does.
-std::optional<std::size_t> frame_bytes(std::string_view bytes) {
-  const bool skippable = (load(bytes, 4) & ~0xFu) == k_skippable_magic;
-  if (skippable && bytes.size() < 8) return std::nullopt;
-  const std::optional<std::size_t> size =
-      skippable ? std::size_t{8} + load(bytes.substr(4), 4) : data_frame_bytes(bytes);
-  return size && *size <= bytes.size() ? size : std::nullopt;
+/// Where the frame at `start` ends; nothing if the file ends before.
+std::optional<std::uint64_t> end_of_frame(const InputFile& file, std::uint64_t start) {
+  const std::string head = bytes_at(file, start, 8);
+  const bool skippable = (load(head, 4) & ~0xFu) == k_skippable_magic;
+  if (skippable && head.size() < 8) return std::nullopt;
+  const std::optional<std::uint64_t> end =
+      skippable ? start + 8 + load(head.substr(4), 4) : end_of_data_frame(file, start);
+  return end && *end <= file.size() ? end : std::nullopt;
 }
 
 }  // namespace
@@ -68,19 +81,19 @@ bool is_zstd(std::string_view bytes) {
   return magic == k_magic || (magic & ~0xFu) == k_skippable_magic;
 }
 
-void check_zstd_frames(std::string_view bytes, const std::filesystem::path& path) {
-  std::size_t offset = 0;
-  while (is_zstd(bytes.substr(offset))) {
-    const std::optional<std::size_t> size = frame_bytes(bytes.substr(offset));
-    if (!size) {
-      throw DataError(path.string() +
+void check_zstd_frames(const InputFile& file) {
+  std::uint64_t offset = 0;
+  while (is_zstd(bytes_at(file, offset, 4))) {
+    const std::optional<std::uint64_t> end = end_of_frame(file, offset);
+    if (!end) {
+      throw DataError(file.path().string() +
                       ": the zstd data is truncated: the frame that starts at byte " +
                       std::to_string(offset) + " has no end");
     }
-    offset += *size;
+    offset = *end;
   }
-  if (offset != bytes.size()) {
-    throw DataError(path.string() + ": the zstd data is corrupt: no frame starts at byte " +
+  if (offset != file.size()) {
+    throw DataError(file.path().string() + ": the zstd data is corrupt: no frame starts at byte " +
                     std::to_string(offset));
   }
 }

@@ -2,8 +2,9 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <filesystem>
 #include <string_view>
+
+#include "byte_stream.hpp"
 
 namespace meshfarm {
 
@@ -12,6 +13,6 @@ bool is_zstd(std::string_view bytes);
 
 /// Throws DataError unless the last frame is whole: the decompressor at hand takes a file that is
 /// cut off for one that ends. Reads the blocks' headers only.
-void check_zstd_frames(std::string_view bytes, const std::filesystem::path& path);
+void check_zstd_frames(const InputFile& file);
 
 }  // namespace meshfarm

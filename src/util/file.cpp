@@ -66,6 +66,22 @@ std::size_t read_up_to(int fd, std::span<char> buffer, const std::filesystem::pa
   return done;
 }
 
+std::size_t read_at(int fd, std::uint64_t offset, std::span<char> buffer,
+                    const std::filesystem::path& path) {
+  std::size_t done = 0;
+  while (done < buffer.size()) {
+    const ssize_t got =
+        ::pread(fd, buffer.data() + done, buffer.size() - done, static_cast<off_t>(offset + done));
+    if (got < 0) {
+      if (errno == EINTR) continue;
+      throw_errno("cannot read", path);
+    }
+    if (got == 0) break;
+    done += static_cast<std::size_t>(got);
+  }
+  return done;
+}
+
 std::string read_file(int fd, const std::filesystem::path& path) {
   std::string bytes(file_size(fd, path), '\0');
   bytes.resize(read_up_to(fd, bytes, path));  // shorter than fstat said: the caller checks the size
@@ -74,17 +90,6 @@ std::string read_file(int fd, const std::filesystem::path& path) {
 
 std::string read_file(const std::filesystem::path& path) {
   return read_file(open_for_read(path).get(), path);
-}
-
-MappedFile MappedFile::open(const std::filesystem::path& path) {
-  const Fd fd = open_for_read(path);
-  MappedFile mapped;
-  mapped.size_ = file_size(fd.get(), path);
-  if (mapped.size_ == 0) return mapped;
-  void* data = ::mmap(nullptr, mapped.size_, PROT_READ, MAP_SHARED, fd.get(), 0);
-  if (data == MAP_FAILED) throw_errno("cannot map", path);
-  mapped.data_ = static_cast<char*>(data);
-  return mapped;
 }
 
 MappedFile MappedFile::scratch(const std::filesystem::path& folder, std::uint64_t size_bytes) {
@@ -129,17 +134,6 @@ MappedFile& MappedFile::operator=(MappedFile&& other) noexcept {
   std::swap(data_, other.data_);
   std::swap(size_, other.size_);
   return *this;
-}
-
-void MappedFile::advise_sequential() const {
-  if (data_ != nullptr) ::madvise(data_, size_, MADV_SEQUENTIAL);
-}
-
-void MappedFile::release(std::uint64_t offset, std::uint64_t size) const {
-  constexpr std::uint64_t k_page = 4096;
-  const std::uint64_t first = (offset + k_page - 1) / k_page * k_page;
-  const std::uint64_t end = (offset + size) / k_page * k_page;
-  if (data_ != nullptr && first < end) ::madvise(data_ + first, end - first, MADV_DONTNEED);
 }
 
 }  // namespace meshfarm

@@ -29,7 +29,7 @@ struct MeshFileInfo {
 };
 
 /// A mesh file that is read by scanning, as often as wanted, in memory that does not depend on its
-/// size: plain files are memory-mapped, compressed ones (told by content) decompressed on the way.
+/// size: plain files are read by windows, compressed ones (told by content) decompressed on the way.
 /// Where that is slow, up to 50 MB of vertices are kept from one scan to the next.
 /// Polygons come as fans, tristrips as their triangles; a mesh without faces has no triangles.
 /// Malformed input throws DataError with the place: element, index, byte (of the decompressed file)

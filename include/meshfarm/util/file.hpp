@@ -37,18 +37,21 @@ Fd open_for_read(const std::filesystem::path& path);
 void write_all(int fd, std::string_view bytes, const std::filesystem::path& path);
 /// Reads until the buffer is full or the file ends; returns how much. Throws IoError.
 std::size_t read_up_to(int fd, std::span<char> buffer, const std::filesystem::path& path);
+/// Reads from `offset` until the buffer is full or the file ends; returns how much. Throws IoError.
+std::size_t read_at(int fd, std::uint64_t offset, std::span<char> buffer,
+                    const std::filesystem::path& path);
 /// Reads the whole file by read(). Throws IoError.
 std::string read_file(const std::filesystem::path& path);
 std::string read_file(int fd, const std::filesystem::path& path);
 std::uint64_t file_size(int fd, const std::filesystem::path& path);
 
-/// A private file mapped into memory: read-only over an existing file, or a scratch file of a given
-/// size that is unlinked as soon as it is made, so that it never outlives its owner. Or memory of
-/// no file, zero at first, of which only what is touched is taken, and all goes back at the end.
+/// A private file mapped into memory: a scratch file of a given size that is unlinked as soon as it
+/// is made, so that it never outlives its owner. Or memory of no file, zero at first, of which only
+/// what is touched is taken, and all goes back at the end. Files that others can shorten are not
+/// mapped but read: a page that is gone would be a SIGBUS.
 class MappedFile {
  public:
   MappedFile() = default;
-  static MappedFile open(const std::filesystem::path& path);
   static MappedFile scratch(const std::filesystem::path& folder, std::uint64_t size_bytes);
   static MappedFile memory(std::uint64_t size_bytes);
   ~MappedFile();
@@ -56,10 +59,6 @@ class MappedFile {
   MappedFile& operator=(MappedFile&& other) noexcept;
 
   std::string_view bytes() const { return {data_, size_}; }
-  /// Tells the kernel that the pages will be read in order.
-  void advise_sequential() const;
-  /// Lets go of the pages of [offset, offset + size): they are read again when touched.
-  void release(std::uint64_t offset, std::uint64_t size) const;
 
   template <class T>
   requires std::is_trivially_copyable_v<T> std::span<T> as_span()

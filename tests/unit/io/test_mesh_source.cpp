@@ -263,6 +263,27 @@ TEST_CASE("vertices of a plain binary file are jumped over") {
   CHECK(read_mesh(*source).triangles.empty());
 }
 
+TEST_CASE("a file that becomes shorter while it is read is an error, plain or compressed") {
+  const std::string bytes = torus_bytes();
+  for (const std::string& packed : {bytes, gzipped(bytes), zstandard(bytes)}) {
+    const TempFolder folder;
+    const std::filesystem::path path = folder / "m.ply";
+    write_file(path, packed);
+    const auto source = open_mesh(path);
+    const auto shrink = [&](std::span<const Vec3>) {
+      std::filesystem::resize_file(path, packed.size() / 8);
+    };
+    try {
+      source->scan_vertices(shrink);
+      source->scan_triangles([](std::span<const WideTriangle>) {});
+      FAIL("it was read");
+    } catch (const DataError& error) {
+      CHECK(std::string(error.what()).find("became shorter while it was read") !=
+            std::string::npos);
+    }
+  }
+}
+
 TEST_CASE("a mesh of 2^32 vertices is not read into memory") {
   struct Huge : MeshSource {
     MeshFileInfo huge;

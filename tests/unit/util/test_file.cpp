@@ -22,18 +22,22 @@ TEST_CASE("a missing file is an error that names it") {
                        IoError);
 }
 
-TEST_CASE("files are mapped and read alike") {
+TEST_CASE("a file is read as a whole, and at any place of it") {
   const test::TempFolder folder;
   const auto path = folder.path() / "file";
   std::ofstream(path, std::ios::binary) << "twelve bytes";
   CHECK(read_file(path) == "twelve bytes");
-  const MappedFile mapped = MappedFile::open(path);
-  CHECK(mapped.bytes() == "twelve bytes");
-  mapped.release(0, mapped.bytes().size());
-  CHECK(mapped.bytes() == "twelve bytes");
+  const Fd fd = open_for_read(path);
+  std::string buffer(5, '.');
+  CHECK(read_at(fd.get(), 7, buffer, path) == 5);
+  CHECK(buffer == "bytes");
+  CHECK(read_at(fd.get(), 10, buffer, path) == 2);
+  CHECK(buffer == "estes");
+  CHECK(read_at(fd.get(), 100, buffer, path) == 0);
 
   std::ofstream(folder.path() / "empty").flush();
-  CHECK(MappedFile::open(folder.path() / "empty").bytes().empty());
+  CHECK(read_file(folder.path() / "empty").empty());
+  CHECK_THROWS_AS(read_at(-1, 0, buffer, path), IoError);
 }
 
 TEST_CASE("a scratch file has no name, is zero, and keeps what is written") {
