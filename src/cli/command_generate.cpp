@@ -48,8 +48,8 @@ class GenerateCommand : public Command {
       mesh = whole(BumpyTorus(triangles_));
     } else {
       const auto source = open_mesh(from_);
-      positions = source->info().positions;
       mesh = read_mesh(*source);
+      positions = source->info().positions;
     }
     shuffle(mesh, k_seed);
     write_ply(output_, mesh, positions);

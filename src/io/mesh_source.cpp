@@ -29,9 +29,14 @@ Mesh read_mesh(MeshSource& source) {
     mesh.positions.reserve(source.info().vertices);
     mesh.triangles.reserve(source.info().faces);
   }
-  source.scan_vertices([&mesh](std::span<const Vec3> batch) {
-    mesh.positions.insert(mesh.positions.end(), batch.begin(), batch.end());
-  });
+  PositionType positions{};
+  do {
+    positions = source.info().positions;
+    mesh.positions.clear();
+    source.scan_vertices([&mesh](std::span<const Vec3> batch) {
+      mesh.positions.insert(mesh.positions.end(), batch.begin(), batch.end());
+    });
+  } while (source.info().positions != positions);
   const auto lacks = [&mesh](std::uint64_t v) { return !has_position(mesh.positions[v]); };
   source.scan_triangles([&](std::span<const WideTriangle> batch) {
     for (const WideTriangle& triangle : batch) {

@@ -10,12 +10,16 @@
 namespace meshfarm {
 namespace {
 
-/// Records of an ascii PLY file: each is one line. Blank lines do not count.
+/// Records of an ascii PLY file: each begins on a line of its own. Some writers wrap long ones;
+/// such a record must end where a line does, so that a missing value is still noticed. Blank lines
+/// do not count.
 class AsciiBody final : public PlyBody {
  public:
   AsciiBody(std::unique_ptr<ByteStream> stream, const std::filesystem::path& path,
-            const PlyHeader& header)
-      : cursor_(std::move(stream), header.line_end, header.lines + 1), path_(path) {}
+            const PlyHeader& header, AsciiFloats floats)
+      : cursor_(std::move(stream), header.line_end, header.lines + 1), path_(path) {
+    if (floats == AsciiFloats::as_doubles) cursor_.read_floats_wide();
+  }
 
   void read_vertices(const PlyElement& element, Batch<Vec3>& batch) override {
     begin(element);
@@ -58,11 +62,13 @@ class AsciiBody final : public PlyBody {
     if (element.properties.empty()) return;
     for (; index_ < element.count; ++index_) {
       next_record();
-      cursor_.skip_record();
+      for (const PlyProperty& property : element.properties) skip(property);
+      end_record();
     }
   }
 
   bool at_end() override { return !cursor_.next_record(); }
+  bool has_lost_digits() const override { return cursor_.has_lost_digits(); }
   std::string take_oddity() override { return std::exchange(oddity_, {}); }
 
  private:
@@ -71,14 +77,18 @@ class AsciiBody final : public PlyBody {
     index_ = 0;
   }
 
-  std::string place() const {
+  std::string place() const { return place_on(cursor_.line()); }
+  std::string place_on(std::uint64_t line) const {
     return path_.string() + ": " + element_->name + " " + std::to_string(index_) + " on line " +
-           std::to_string(cursor_.line());
+           std::to_string(line);
   }
   [[noreturn]] void fail(const std::string& why) const { throw DataError(place() + ": " + why); }
 
   void next_record() {
-    if (cursor_.next_record()) return;
+    if (cursor_.next_record()) {
+      line_ = cursor_.line();
+      return;
+    }
     throw DataError(path_.string() + ": truncated: the file ends on line " +
                     std::to_string(cursor_.line()) + ", before " + element_->name + " " +
                     std::to_string(index_) + " of " + std::to_string(element_->count));
@@ -86,7 +96,9 @@ class AsciiBody final : public PlyBody {
 
   /// Some writers put more on a line than they declare. What comes first is what is declared.
   void end_record() {
+    const bool is_wrapped = cursor_.line() != line_;
     if (cursor_.end_record()) return;
+    if (is_wrapped) fail_short();
     if (oddity_.empty()) {
       oddity_ = place() +
                 ": there are more values than the header says; they are not read, here "
@@ -96,7 +108,10 @@ class AsciiBody final : public PlyBody {
   }
 
   void need_value() {
-    if (!cursor_.has_value()) fail("the line ends before its last value");
+    if (!cursor_.has_value() && !cursor_.next_record()) fail_short();
+  }
+  [[noreturn]] void fail_short() const {
+    throw DataError(place_on(line_) + ": the line ends before its last value");
   }
 
   double read_coordinate(PlyType type) {
@@ -144,15 +159,16 @@ class AsciiBody final : public PlyBody {
   const std::filesystem::path& path_;
   const PlyElement* element_ = nullptr;
   std::uint64_t index_ = 0;
+  std::uint64_t line_ = 0;  // on which the record begins
   std::string oddity_;
 };
 
 }  // namespace
 
 std::unique_ptr<PlyBody> make_ascii_body(std::unique_ptr<ByteStream> stream,
-                                         const std::filesystem::path& path,
-                                         const PlyHeader& header) {
-  return std::make_unique<AsciiBody>(std::move(stream), path, header);
+                                         const std::filesystem::path& path, const PlyHeader& header,
+                                         AsciiFloats floats) {
+  return std::make_unique<AsciiBody>(std::move(stream), path, header, floats);
 }
 
 }  // namespace meshfarm

@@ -3,7 +3,10 @@
 #include "ply_ascii_cursor.hpp"
 
 #include <charconv>
+#include <cstdlib>
 #include <limits>
+
+#include <meshfarm/geometry/mesh.hpp>
 
 namespace meshfarm {
 namespace {
@@ -24,6 +27,29 @@ bool is_tiny(std::string_view text) {
   const std::size_t point = std::min(mantissa.find('.'), mantissa.size());
   const std::size_t first = std::min(mantissa.find_first_of("123456789"), mantissa.size());
   return exponent + static_cast<long>(point) - static_cast<long>(first) < 0;
+}
+
+double power_of_ten(long exponent) {
+  double power = 1;
+  for (long i = std::min(std::labs(exponent), 400L); i > 0; --i) power *= exponent < 0 ? 0.1 : 10;
+  return power;
+}
+
+/// Whether `near`, written with as many digits as `text` has for `value`, would read like that.
+bool holds_digits(double near, double value, std::string_view text) {
+  constexpr std::size_t k_short = 7;  // six digits and a point: any float holds them
+  if (text.size() <= k_short || !std::isfinite(near) || !std::isfinite(value)) return true;
+  if (std::abs(value) < static_cast<double>(std::numeric_limits<float>::min())) return true;
+  const std::size_t e = std::min(text.find_first_of("eE"), text.size());
+  long exponent = 0;
+  if (e < text.size()) {
+    const std::size_t digits = e + (text[e + 1] == '+' ? 2 : 1);
+    std::from_chars(text.data() + digits, text.data() + text.size(), exponent);
+  }
+  const std::size_t point = text.substr(0, e).find('.');
+  if (point != std::string_view::npos) exponent -= static_cast<long>(e - point - 1);
+  constexpr double k_half_a_digit = 0.5 * (1 + 1e-9);
+  return std::abs(near - value) <= k_half_a_digit * power_of_ten(exponent);
 }
 
 bool fits(double value, PlyType type) {
@@ -117,11 +143,23 @@ std::optional<T> AsciiCursor::parse() {
   return value;
 }
 
-std::optional<double> AsciiCursor::real(PlyType type) {
-  if (type == PlyType::float32) {
-    const std::optional<float> value = parse<float>();
-    return value ? std::optional<double>(*value) : std::nullopt;
+/// By way of a double, which tells what a float loses.
+std::optional<double> AsciiCursor::parse_float() {
+  const char* start = current_;
+  const std::optional<double> wide = parse<double>();
+  if (!wide) return wide;
+  // Where the nearest float of the text is not that of its nearest double digits are lost, too.
+  const double near = rounded_to_float(*wide);
+  if (near != *wide && !has_lost_digits_) {
+    const std::string_view text(start, static_cast<std::size_t>(current_ - start));
+    has_lost_digits_ = !holds_digits(near, *wide, text);
   }
+  return near;
+}
+
+std::optional<double> AsciiCursor::real(PlyType type) {
+  if (type == PlyType::float32 && !floats_are_wide_) return parse_float();
+  if (type == PlyType::float32) type = PlyType::float64;
   const char* start = current_;
   const std::optional<double> value = parse<double>();
   if (!value || type == PlyType::float64 || fits(*value, type)) return value;

@@ -33,6 +33,10 @@ class AsciiCursor {
   bool has_value();
   /// The value ahead. Nothing if it is not what is asked for; then token() tells what it is.
   std::optional<double> real(PlyType type);
+  /// A float is read as a double from now on.
+  void read_floats_wide() { floats_are_wide_ = true; }
+  /// Whether the text of a float, so far, had digits that a float does not hold.
+  bool has_lost_digits() const { return has_lost_digits_; }
   std::optional<std::int64_t> whole(PlyType type);
   void skip_value();
   std::string token() const;
@@ -43,10 +47,13 @@ class AsciiCursor {
   void refill(std::size_t at_least);
   template <class T>
   std::optional<T> parse();
+  std::optional<double> parse_float();
 
   std::unique_ptr<ByteStream> stream_;
   char line_end_;
   std::uint64_t line_;
+  bool floats_are_wide_ = false;
+  bool has_lost_digits_ = false;
   const char* begin_ = nullptr;  // the stream's window
   const char* current_ = nullptr;
   const char* end_ = nullptr;

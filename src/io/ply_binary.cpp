@@ -63,6 +63,7 @@ class BinaryBody final : public PlyBody {
   }
 
   bool at_end() override { return stream_->window(1).empty(); }
+  bool has_lost_digits() const override { return false; }
   std::string take_oddity() override { return {}; }
 
  private:

@@ -17,6 +17,7 @@ namespace meshfarm {
 namespace {
 
 constexpr std::string_view k_blanks = " \t\r\v\f";
+constexpr std::string_view k_byte_order_mark = "\xef\xbb\xbf";  // of UTF-8: some editors add it
 constexpr std::size_t k_most_names = 4096;  // each new name is compared with all before it
 
 std::string_view trimmed(std::string_view text, std::string_view what) {
@@ -54,6 +55,7 @@ class HeaderParser {
   }
 
   void find_magic() {
+    if (rest_.starts_with(k_byte_order_mark)) rest_.remove_prefix(k_byte_order_mark.size());
     while (rest_.starts_with('\n') || rest_.starts_with('\r')) {
       if (rest_.front() == '\n') ++header_.lines;
       rest_.remove_prefix(1);
@@ -212,6 +214,7 @@ const PlyElement& PlyHeader::vertices() const {
 }
 
 bool is_ply(std::string_view start) {
+  if (start.starts_with(k_byte_order_mark)) start.remove_prefix(k_byte_order_mark.size());
   start.remove_prefix(std::min(start.find_first_not_of("\r\n"), start.size()));
   if (!start.starts_with("ply")) return false;
   start = start.substr(3, start.find_first_of("\r\n") - 3);

@@ -11,6 +11,7 @@
 
 #include "ply_body.hpp"
 #include "ply_header.hpp"
+#include "ply_positions.hpp"
 
 namespace meshfarm {
 namespace {
@@ -94,20 +95,7 @@ class PlySource final : public MeshSource {
 
   void scan_vertices(const std::function<void(std::span<const Vec3>)>& take) override {
     if (!kept_.empty()) return take_kept(take);
-    std::unique_ptr<PlyBody> body = open_body();
-    std::size_t next = 0;
-    while (header_.elements[next].role != PlyRole::vertices) body->skip(header_.elements[next++]);
-    const PlyElement& vertices = header_.elements[next++];
-    std::vector<Vec3> keep;
-    const Batch<Vec3>::Take take_and_keep = [&](std::span<const Vec3> points) {
-      keep.insert(keep.end(), points.begin(), points.end());
-      take(points);
-    };
-    Batch<Vec3> batch(is_worth_keeping(vertices) ? take_and_keep : take);
-    body->read_vertices(vertices, batch);
-    warn(body->take_oddity());
-    kept_ = std::move(keep);
-    parked_ = {std::move(body), next};
+    parked_ = read_vertices(take);
   }
 
   void scan_triangles(const std::function<void(std::span<const WideTriangle>)>& take) override {
@@ -118,12 +106,17 @@ class PlySource final : public MeshSource {
       body = open_body();
       next = 0;
     }
-    TriangleMaker maker(info_.vertices, take);
+    TriangleMaker maker(info_.vertices, take, [this](std::uint64_t v) { return position_of(v); });
     for (; next < header_.elements.size(); ++next) {
       const PlyElement& element = header_.elements[next];
       has_corners(element) ? body->read_corners(element, maker) : body->skip(element);
     }
     small_faces_ = maker.small_faces();
+    if (maker.guessed_faces() > 0) {
+      warn(
+          file_.path().string() + ": " + std::to_string(maker.guessed_faces()) +
+          " polygons cross themselves, or have too many corners: they may be triangulated wrongly");
+    }
     warn(body->take_oddity());
     if (!body->at_end()) {
       warn(file_.path().string() + ": there is more in the file than its header says");
@@ -136,6 +129,42 @@ class PlySource final : public MeshSource {
     std::unique_ptr<PlyBody> body;
     std::size_t next = 0;
   };
+
+  /// Reads all vertices, and keeps them if that is worth it. Returns what follows them.
+  Parked read_vertices(const std::function<void(std::span<const Vec3>)>& take) {
+    std::unique_ptr<PlyBody> body = open_body();
+    std::size_t next = 0;
+    while (header_.elements[next].role != PlyRole::vertices) body->skip(header_.elements[next++]);
+    const PlyElement& vertices = header_.elements[next++];
+    std::vector<Vec3> keep;
+    const Batch<Vec3>::Take take_and_keep = [&](std::span<const Vec3> points) {
+      keep.insert(keep.end(), points.begin(), points.end());
+      take(points);
+    };
+    Batch<Vec3> batch(is_worth_keeping(vertices) ? take_and_keep : take);
+    body->read_vertices(vertices, batch);
+    warn(body->take_oddity());
+    if (body->has_lost_digits()) {
+      floats_ = AsciiFloats::as_doubles;  // from the next scan on
+      info_.positions = PositionType::float64;
+    } else {
+      kept_ = std::move(keep);
+    }
+    return {std::move(body), next};
+  }
+
+  /// Of polygons alone is this asked. By whatever way is there, or else by another scan.
+  Vec3 position_of(std::uint64_t vertex) {
+    if (!kept_.empty()) return kept_[vertex];
+    if (!positions_) positions_ = PlyPositions::in_file(file_, header_);
+    if (positions_) return positions_->at(vertex);
+    if (is_worth_keeping(header_.vertices())) {
+      read_vertices([](std::span<const Vec3>) {});
+      return position_of(vertex);  // a second scan, should digits have been lost
+    }
+    positions_ = PlyPositions::in_scratch([this](const auto& take) { read_vertices(take); });
+    return positions_->at(vertex);
+  }
 
   static bool has_corners(const PlyElement& element) {
     return element.role == PlyRole::faces || element.role == PlyRole::strips;
@@ -176,7 +205,7 @@ class PlySource final : public MeshSource {
     std::unique_ptr<ByteStream> stream = file_.open();
     stream->skip(header_.size_bytes);
     return header_.format == PlyFormat::ascii
-               ? make_ascii_body(std::move(stream), file_.path(), header_)
+               ? make_ascii_body(std::move(stream), file_.path(), header_, floats_)
                : make_binary_body(std::move(stream), file_.path(), header_);
   }
 
@@ -186,6 +215,8 @@ class PlySource final : public MeshSource {
   InputFile file_;
   PlyHeader header_;
   std::vector<Vec3> kept_;  // all vertices, or none
+  AsciiFloats floats_ = AsciiFloats::as_floats;
+  std::unique_ptr<PlyPositions> positions_;
   Parked parked_;
   MeshFileInfo info_;
   std::uint64_t small_faces_ = 0;

@@ -63,7 +63,6 @@ class Cutter {
     manifest_.input = options_.input_name;
     manifest_.input_format = info.format;
     if (info.compression != "none") manifest_.input_format += ", " + info.compression;
-    manifest_.positions = info.positions;
     manifest_.skipped = info.skipped;
   }
 
@@ -78,11 +77,16 @@ class Cutter {
   }
 
   void measure_box() {
-    source_.scan_vertices([&](std::span<const Vec3> batch) {
-      for (const Vec3& p : batch) manifest_.box.add(p);
-      manifest_.input_vertices += batch.size();
-      tell("cut: bounding box", manifest_.input_vertices, source_.info().vertices);
-    });
+    do {
+      manifest_.positions = source_.info().positions;
+      manifest_.box = {};
+      manifest_.input_vertices = 0;
+      source_.scan_vertices([&](std::span<const Vec3> batch) {
+        for (const Vec3& p : batch) manifest_.box.add(p);
+        manifest_.input_vertices += batch.size();
+        tell("cut: bounding box", manifest_.input_vertices, source_.info().vertices);
+      });
+    } while (source_.info().positions != manifest_.positions);
   }
 
   void choose_parts() {

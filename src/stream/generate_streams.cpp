@@ -61,7 +61,6 @@ class Generator {
     manifest_.input = options_.input_name;
     manifest_.input_format = info.format;
     if (info.compression != "none") manifest_.input_format += ", " + info.compression;
-    manifest_.positions = info.positions;
     manifest_.skipped = info.skipped;
   }
 
@@ -77,11 +76,16 @@ class Generator {
 
   void choose_order() {
     OrderProbe probe;
-    source_.scan_vertices([&](std::span<const Vec3> batch) {
-      probe.look_at(batch);
-      manifest_.input_vertices += batch.size();
-      tell("streams: bounding box", manifest_.input_vertices, source_.info().vertices);
-    });
+    do {
+      manifest_.positions = source_.info().positions;
+      probe = {};
+      manifest_.input_vertices = 0;
+      source_.scan_vertices([&](std::span<const Vec3> batch) {
+        probe.look_at(batch);
+        manifest_.input_vertices += batch.size();
+        tell("streams: bounding box", manifest_.input_vertices, source_.info().vertices);
+      });
+    } while (source_.info().positions != manifest_.positions);
     manifest_.box = probe.box();
     sorting_ = {probe.choose(), options_.weld};
     if (options_.sort == SortAt::farm) manifest_.sorting = sorting_;

@@ -29,14 +29,16 @@ struct MeshFileInfo {
 };
 
 /// A mesh file that is read by scanning, as often as wanted, in memory that does not depend on its
-/// size: plain files are read by windows, compressed ones (told by content) decompressed on the way.
-/// Where that is slow, up to 50 MB of vertices are kept from one scan to the next.
-/// Polygons come as fans, tristrips as their triangles; a mesh without faces has no triangles.
+/// size: plain files are read by windows, compressed ones (told by content) decompressed on the
+/// way. Where that is slow, up to 50 MB of vertices are kept from one scan to the next. Polygons
+/// come as triangles inside them, tristrips as theirs; a mesh without faces has no triangles.
 /// Malformed input throws DataError with the place: element, index, byte (of the decompressed file)
 /// or line. Only a scan of both vertices and triangles has seen all of the file.
 class MeshSource {
  public:
   virtual ~MeshSource() = default;
+  /// Only a scan of all vertices can tell that a text has more digits than the floats that its
+  /// header declares can hold: positions are float64 from then on, and want another scan.
   virtual const MeshFileInfo& info() const = 0;
   /// All vertices in file order, in batches. One of which a coordinate is not finite comes as
   /// k_no_position, all others are finite.

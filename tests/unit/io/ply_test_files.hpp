@@ -70,7 +70,8 @@ struct ReadFile {
 
 inline ReadFile read_path(const std::filesystem::path& path) {
   const std::unique_ptr<MeshSource> source = open_mesh(path);
-  ReadFile result{source->info(), read_mesh(*source), 0};
+  ReadFile result{{}, read_mesh(*source), 0};
+  result.info = source->info();
   result.small_faces = source->small_faces();
   return result;
 }

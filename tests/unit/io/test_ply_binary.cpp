@@ -153,6 +153,51 @@ TEST_CASE("binary strips restart at -1") {
   CHECK(read.info.faces == 2);
 }
 
+TEST_CASE("concave polygons are cut inside, wherever their corners' positions are found") {
+  // Concave at its second corner: the fan from the first would go round outside.
+  const auto faces = [](BinaryFile& file) { file.bytes({4}).ints({0, 1, 2, 3}); };
+  const std::vector<Triangle> inside{{1, 2, 3}, {0, 1, 3}};
+  for (const Order order : {Order::little, Order::big}) {
+    BinaryFile plain(order, mesh_elements(4, 1));
+    plain.floats({0, 0, 0, 1, 1, 0, 2, 0, 0, 1, 3, 0});
+    faces(plain);
+    CHECK(read_bytes(plain.text()).mesh.triangles == inside);
+
+    BinaryFile after(order, "element face 1\n" + std::string(k_corners) + "element vertex 4\n" +
+                                std::string(k_xyz));
+    faces(after);
+    after.floats({0, 0, 0, 1, 1, 0, 2, 0, 0, 1, 3, 0});
+    CHECK(read_bytes(after.text()).mesh.triangles == inside);
+
+    BinaryFile lists(order, "element vertex 4\n" + std::string(k_xyz) +
+                                "property list uchar uchar tags\nelement face 1\n" +
+                                std::string(k_corners));
+    for (const auto& [x, y] : {std::pair{0, 0}, {1, 1}, {2, 0}, {1, 3}}) {
+      lists.floats({static_cast<float>(x), static_cast<float>(y), 0}).bytes({2, 8, 9});
+    }
+    faces(lists);
+    CHECK(read_bytes(lists.text()).mesh.triangles == inside);
+  }
+  const std::string ascii = "ply\nformat ascii 1.0\n" + mesh_elements(4, 1) +
+                            "end_header\n0 0 0\n1 1 0\n2 0 0\n1 3 0\n4 0 1 2 3\n";
+  CHECK(read_bytes(ascii).mesh.triangles == inside);
+}
+
+TEST_CASE("a polygon with very many corners is read as a fan, and told") {
+  constexpr std::uint32_t k_count = 100'000;
+  BinaryFile file(BinaryFile::Order::little,
+                  replaced(mesh_elements(4, 1), "list uchar", "list int"));
+  file.floats({0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 1, 0.5F}).ints({k_count});
+  for (std::int32_t i = 0; i < static_cast<std::int32_t>(k_count); ++i) file.ints({i % 4});
+  std::vector<Triangle> triangles;
+  const std::string told = stderr_of([&] { triangles = read_bytes(file.text()).mesh.triangles; });
+  CHECK(told.find("1 polygons cross themselves, or have too many corners") != std::string::npos);
+  REQUIRE(triangles.size() == k_count - 2);
+  for (std::uint32_t i = 0; i < k_count - 2; ++i) {
+    REQUIRE(triangles[i] == Triangle{0, (i + 1) % 4, (i + 2) % 4});
+  }
+}
+
 TEST_CASE("a coordinate that is not finite costs the triangles that use it, no more") {
   const BinaryFile good = binary_square();
   const auto changed = [&good](std::size_t offset, float value) {
