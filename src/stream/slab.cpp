@@ -35,9 +35,9 @@ class SlabSorter {
  private:
   /// The rank of each raw vertex; welded ones share it. Positions go by rank from now on.
   void rank_vertices() {
-    const std::vector<std::uint32_t> sorted =
-        sorted_vertices(raw_.positions, sorting_.order, raw_.type);
+    std::vector<std::uint32_t> sorted = sorted_vertices(raw_.positions, sorting_.order, raw_.type);
     const std::vector<std::uint32_t> first = weld_sorted(sorted);
+    if (!first.empty()) order_touching(sorted, first);
     const std::size_t count = raw_.positions.size();
     rank_.resize(count);
     std::vector<Vec3>& positions = slab_.stream.mesh.positions;
@@ -73,6 +73,73 @@ class SlabSorter {
     separate_touching(raw_.triangles, raw_.boundary, welded);
     slab_.merged_vertices = welded.merged;
     return std::move(welded.first);
+  }
+
+  /// The least of a vertex's triangles, as the positions of its other two corners.
+  struct Star {
+    Vec3 next = k_no_position;
+    Vec3 prev = k_no_position;
+  };
+
+  /// Vertices at one place that were not welded, as surfaces touch there, are put in an order that
+  /// tells nothing of the input's: by their least triangles, which differ.
+  void order_touching(std::vector<std::uint32_t>& sorted, std::span<const std::uint32_t> first) {
+    const std::vector<Vec3>& positions = raw_.positions;
+    const auto at = [&](std::size_t i) {
+      return sorted.empty() ? static_cast<std::uint32_t>(i) : sorted[i];
+    };
+    std::vector<std::pair<std::size_t, std::size_t>> places;  // ranges of `sorted`
+    for (std::size_t begin = 0, end = 0; begin < positions.size(); begin = end) {
+      bool touch = false;
+      for (; end < positions.size() && positions[at(begin)] == positions[at(end)]; ++end) {
+        touch = touch || first[at(end)] != first[at(begin)];
+      }
+      if (touch) places.emplace_back(begin, end);
+    }
+    if (places.empty()) return;
+    if (sorted.empty()) {
+      sorted.resize(positions.size());
+      std::iota(sorted.begin(), sorted.end(), 0U);
+    }
+    const std::vector<Star> stars = least_stars(sorted, places, first);
+    for (const auto& [begin, end] : places) {
+      std::stable_sort(sorted.begin() + static_cast<std::ptrdiff_t>(begin),
+                       sorted.begin() + static_cast<std::ptrdiff_t>(end),
+                       [&](std::uint32_t a, std::uint32_t b) {
+                         return is_less(stars[star_[first[a]]], stars[star_[first[b]]]);
+                       });
+    }
+    star_ = {};
+  }
+
+  std::vector<Star> least_stars(std::span<const std::uint32_t> sorted,
+                                std::span<const std::pair<std::size_t, std::size_t>> places,
+                                std::span<const std::uint32_t> first) {
+    std::vector<Star> stars;
+    star_.assign(first.size(), k_none);
+    for (const auto& [begin, end] : places) {
+      for (const std::uint32_t v : sorted.subspan(begin, end - begin)) {
+        if (star_[first[v]] != k_none) continue;
+        star_[first[v]] = static_cast<std::uint32_t>(stars.size());
+        stars.emplace_back();
+      }
+    }
+    for (const Triangle& t : raw_.triangles) {
+      for (std::size_t i = 0; i < 3; ++i) {
+        const std::uint32_t number = star_[first[t[i]]];
+        if (number == k_none) continue;
+        const Star star{raw_.positions[t[(i + 1) % 3]], raw_.positions[t[(i + 2) % 3]]};
+        if (is_less(star, stars[number])) stars[number] = star;
+      }
+    }
+    return stars;
+  }
+
+  /// No triangle at all comes last.
+  bool is_less(const Star& a, const Star& b) const {
+    if (!has_position(a.next) || !has_position(b.next)) return has_position(a.next);
+    if (!(a.next == b.next)) return sorting_.order.before(a.next, b.next);
+    return sorting_.order.before(a.prev, b.prev);
   }
 
   /// Triangles by rank, the smallest corner first, without those that are degenerate.
@@ -142,6 +209,7 @@ class SlabSorter {
   const Sorting& sorting_;
   SortedSlab slab_;
   std::vector<std::uint32_t> rank_;
+  std::vector<std::uint32_t> star_;  // number of a vertex's star, where surfaces touch
   std::vector<std::uint8_t> flags_;  // by rank
 };
 

@@ -272,6 +272,24 @@ TEST_CASE("surfaces that touch are not welded together") {
   CHECK(made.manifest.parts[0].vertices == 12);
 }
 
+TEST_CASE("where surfaces touch the order of the input does not matter either") {
+  const Mesh octahedron = test::octahedron();
+  const Triangle& t = octahedron.triangles[0];
+  const Vec3 middle = (octahedron.positions[t[0]] + octahedron.positions[t[1]]) * 0.5;
+  for (const Vec3 point : {octahedron.positions[0], middle}) {
+    Mesh mesh = test::touching_twice(octahedron, point);
+    test::append(mesh, test::torus(12, 8));
+    const test::TempFolder folder;
+    const Generated first = generate(mesh, {.streams = 1}, folder / "first");
+    for (unsigned seed = 1; seed < 20; ++seed) {
+      CAPTURE(seed);
+      const Generated other =
+          generate(shuffled(mesh, seed), {.streams = 1}, folder / std::to_string(seed));
+      CHECK(first.files == other.files);
+    }
+  }
+}
+
 TEST_CASE("long streams get a sample: a piece of them with its edge locked") {
   const Mesh mesh = test::grid(700, 300);
   const test::TempFolder folder;
