@@ -60,7 +60,6 @@ class TriangleMaker {
   void begin(PlyRole role) {
     role_ = role;
     corners_ = 0;
-    face_.clear();
   }
   /// False if there is no such vertex.
   bool corner(std::int64_t index) {
@@ -95,21 +94,26 @@ class TriangleMaker {
     return role_ == PlyRole::strips && index == -1;
   }
   void add_to_face(std::uint64_t vertex) {
-    if (corners_ < k_most_corners) {
-      face_.push_back(vertex);
-      return;
+    if (corners_ < face_.size()) {
+      face_[corners_] = vertex;
+    } else if (corners_ < k_most_corners) {
+      face_.resize(2 * face_.size());
+      face_[corners_] = vertex;
+    } else {
+      add_to_fan(vertex);
     }
-    const std::uint64_t last = face_.back();
-    for (std::size_t i = 1; i + 1 < face_.size(); ++i) {
+  }
+  /// Of a face that is too long. Its first and its last corner are at the ends of face_.
+  void add_to_fan(std::uint64_t vertex) {
+    for (std::size_t i = 1; corners_ == k_most_corners && i + 1 < corners_; ++i) {
       batch_.add({face_[0], face_[i], face_[i + 1]});
     }
-    face_.resize(2);
-    batch_.add({face_[0], last, vertex});
-    face_[1] = vertex;
+    batch_.add({face_[0], face_.back(), vertex});
+    face_.back() = vertex;
   }
   void cut_face() {
     positions_.clear();
-    for (const std::uint64_t vertex : face_) positions_.push_back(position_of_(vertex));
+    for (std::size_t i = 0; i < corners_; ++i) positions_.push_back(position_of_(face_[i]));
     for (const auto& [a, b, c] : cutter_.cut(positions_)) {
       batch_.add({face_[a], face_[b], face_[c]});
     }
@@ -135,8 +139,8 @@ class TriangleMaker {
   PlyRole role_ = PlyRole::faces;
   std::uint64_t corners_ = 0;
   std::array<std::uint64_t, 2> last_{};
-  std::vector<std::uint64_t> face_;  // of a long one its first and last corner
-  std::vector<Vec3> positions_;      // of its corners
+  std::vector<std::uint64_t> face_ = std::vector<std::uint64_t>(16);  // its corners
+  std::vector<Vec3> positions_;                                       // of these
   std::uint64_t small_faces_ = 0;
   std::uint64_t long_faces_ = 0;
 };

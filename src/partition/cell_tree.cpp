@@ -52,18 +52,18 @@ std::size_t CellTree::slot_of(std::uint64_t key) const {
   return slot;
 }
 
-/// The key of the cell that holds `p` and is not divided, whether there is one yet or not.
-std::uint64_t CellTree::descend(Vec3 p) const {
-  for (std::uint32_t grid = 0;;) {
-    const std::uint64_t key = key_of(grid, p);
+/// The leaf that holds `p`, which lies in the cell `key`.
+CellTree::Leaf CellTree::descend(std::uint64_t key, Vec3 p) const {
+  while (true) {
     const std::uint32_t entry = slots_[slot_of(key)];
-    grid = entry == 0 ? 0 : cells_[entry - 1].grid;
-    if (grid == 0) return key;
+    if (entry == 0 || cells_[entry - 1].grid == 0) return {key, entry};
+    key = key_of(cells_[entry - 1].grid, p);
   }
 }
 
 void CellTree::add(Vec3 p) {
-  const std::uint64_t key = first_new_ == 0 ? key_of(0, p) : descend(p);
+  std::uint64_t key = key_of(0, p);
+  if (first_new_ > 0) key = descend(key, p).key;
   if (key >> k_index_bits < first_new_) return;  // an earlier scan has counted it
   // Neighbours in the file are often neighbours in space.
   if (last_ >= cells_.size() || cells_[last_].key != key) last_ = place_of(key);
@@ -178,14 +178,13 @@ void CellTree::finish() {
 std::uint32_t CellTree::number_of(Vec3 p) {
   const std::uint64_t key = key_of(0, p);
   if (key == last_key_) return last_number_;
-  const std::uint64_t leaf = descend(p);
-  const std::uint32_t entry = slots_[slot_of(leaf)];
-  assert(entry != 0);
-  if (leaf == key) {
+  const Leaf leaf = descend(key, p);
+  assert(leaf.entry != 0);
+  if (leaf.key == key) {
     last_key_ = key;
-    last_number_ = entry - 1;
+    last_number_ = leaf.entry - 1;
   }
-  return entry - 1;
+  return leaf.entry - 1;
 }
 
 }  // namespace meshfarm

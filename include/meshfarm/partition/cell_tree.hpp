@@ -57,7 +57,12 @@ class CellTree {
   std::uint64_t key_of(std::uint32_t grid, Vec3 p) const {
     return std::uint64_t{grid} << k_index_bits | grids_[grid].cell_of(p);
   }
-  std::uint64_t descend(Vec3 p) const;
+  /// A cell that is not divided: its key, and its place in cells_ + 1, or 0 if there is none yet.
+  struct Leaf {
+    std::uint64_t key = 0;
+    std::uint32_t entry = 0;
+  };
+  Leaf descend(std::uint64_t key, Vec3 p) const;
   std::size_t slot_of(std::uint64_t key) const;
   std::size_t place_of(std::uint64_t key);
   void hash_all(std::size_t slots);
