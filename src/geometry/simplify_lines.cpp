@@ -7,8 +7,34 @@
 
 namespace meshfarm {
 
+namespace {
+
+/// The cosine of up to 45 degrees, or the sine: its series, which begins with `term`, the term of
+/// the power `power`.
+double series(double angle, double term, int power) {
+  constexpr int k_most_terms = 12;
+  double sum = 0;
+  for (int i = 0; i < k_most_terms; ++i, power += 2) {
+    sum += term;
+    term *= -angle * angle / ((power + 1) * (power + 2));
+  }
+  return sum;
+}
+
+/// Of an angle from 0 to 180 degrees, and exactly 0 of 90. By plain arithmetic: std::cos takes
+/// other ways on other processors, and workers must agree on every bit.
+double cosine_of(double degrees) {
+  if (degrees > 90) return -cosine_of(180 - degrees);
+  constexpr double k_degree = std::numbers::pi / 180;
+  if (degrees <= 45) return series(degrees * k_degree, 1, 0);
+  const double rest = (90 - degrees) * k_degree;
+  return series(rest, rest, 1);
+}
+
+}  // namespace
+
 CreaseTest::CreaseTest(double degrees) {
-  const double cosine = std::cos(degrees * std::numbers::pi / 180);
+  const double cosine = cosine_of(degrees);
   cosine_squared_ = cosine * std::abs(cosine);
 }
 

@@ -186,6 +186,25 @@ TEST_CASE("preserved borders are as they came") {
   CHECK(check(result).border_edges == 160);
 }
 
+TEST_CASE("creases are edges of more than the angle: right angles are none at 90 degrees") {
+  // The edge along x between a flat triangle and one that is folded up by an angle.
+  const auto is_crease = [](double threshold, Vec3 left) {
+    return CreaseTest(threshold).is_crease({0, 0, 0}, {0.5, -1, 0}, {1, 0, 0}, left);
+  };
+  const Vec3 upright{0.5, 0, 1};
+  CHECK_FALSE(is_crease(90, upright));
+  CHECK(is_crease(89.999, upright));
+  CHECK_FALSE(is_crease(90.001, upright));
+  CHECK(is_crease(90, {0.5, -1e-9, 1}));
+  for (const double angle : {10.0, 30.0, 45.0, 60.0, 80.0, 100.0, 135.0, 170.0}) {
+    CAPTURE(angle);
+    const double turn = angle * std::acos(-1.0) / 180;
+    const Vec3 left{0.5, std::cos(turn), std::sin(turn)};
+    CHECK(is_crease(angle * (1 - 1e-12), left));
+    CHECK_FALSE(is_crease(angle * (1 + 1e-12), left));
+  }
+}
+
 TEST_CASE("a crease angle that is none is refused") {
   SimplifyOptions options;
   for (const double angle : {-1.0, 180.0, std::nan("")}) {
