@@ -3,15 +3,16 @@
 //
 // The manifest, kind "MNFT", version 4; the payload of a sealed file. Strings are u32 + characters,
 // a file is name | size u64 | xxh3-64 u64:
-//   input | input format | scheme u8 (0 cut, 1 stream) | window u64 | position type u8 | box 6 x
-//   f64 | input vertices u64 | input triangles u64 | merged vertices u64 | dropped degenerate u64 |
-//   dropped not finite u64 | dropped duplicate u64 | skipped u32 x string | cut seconds f64 |
-//   boundary triangles u64 | boundary file | sorting | parts u32 x (file | vertices u64 | triangles
-//   u64 | boundary vertices u32) | samples u32 x the same: none, or one a part, its file's name
-//   empty where it has none sorting = u8 0: parts and streams are there | u8 1: slabs are, and how
-//   they are to be sorted (io/sorting.hpp)
-// Version 1 had no scheme, window and samples, version 2 no sorting, version 3 no dropped not
-// finite.
+//   input | input format | scheme u8 (0 cut, 1 stream) | partitioner | window u64 | position type
+//   u8 | box 6 x f64 | input vertices u64 | input triangles u64 | merged vertices u64 | dropped
+//   degenerate u64 | dropped not finite u64 | dropped duplicate u64 | skipped u32 x string | cut
+//   seconds f64 | boundary triangles u64 | boundary file | sorting | parts u32 x (file | vertices
+//   u64 | triangles u64 | boundary vertices u32) | samples u32 x the same: none, or one a part, its
+//   file's name empty where it has none
+//   sorting = u8 0: parts and streams are there | u8 1: slabs are, and how they are to be sorted
+//   (io/sorting.hpp)
+// Version 1 had no scheme, window and samples, version 2 no sorting, version 3 no partitioner and
+// no dropped not finite.
 #include <meshfarm/io/manifest.hpp>
 #include <meshfarm/io/sorting.hpp>
 #include <meshfarm/staging/sealed.hpp>
@@ -84,6 +85,7 @@ std::string encode_manifest(const Manifest& m) {
   out.put_string(m.input);
   out.put_string(m.input_format);
   out.put(m.scheme);
+  out.put_string(m.partitioner);
   out.put(m.window_triangles);
   out.put(m.positions);
   out.put(m.box.lo);
@@ -113,6 +115,7 @@ Manifest decode_manifest(std::string_view file, std::string_view what) {
   m.input_format = in.get_string();
   m.scheme = in.get<Scheme>();
   if (m.scheme > Scheme::stream) in.fail("unknown scheme");
+  m.partitioner = in.get_string();
   m.window_triangles = in.get<std::uint64_t>();
   m.positions = get_position_type(in);
   m.box.lo = in.get<Vec3>();

@@ -212,6 +212,11 @@ std::vector<std::uint32_t> renumbered(const std::vector<idx_t>& part, idx_t part
 
 }  // namespace
 
+std::string partitioner_name() {
+  return "METIS " + std::to_string(METIS_VER_MAJOR) + "." + std::to_string(METIS_VER_MINOR) + "." +
+         std::to_string(METIS_VER_SUBMINOR);
+}
+
 std::vector<std::uint32_t> partition_cells(std::span<const Cell> cells,
                                            const CellGraphOptions& options) {
   if (options.parts <= 1 || cells.size() <= 1) return std::vector<std::uint32_t>(cells.size(), 0);

@@ -64,6 +64,7 @@ class Cutter {
     manifest_.input_format = info.format;
     if (info.compression != "none") manifest_.input_format += ", " + info.compression;
     manifest_.skipped = info.skipped;
+    manifest_.partitioner = partitioner_name();
   }
 
   void tell(std::string_view phase, std::uint64_t done, std::uint64_t all) const {

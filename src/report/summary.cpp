@@ -128,6 +128,7 @@ std::string render(const Manifest& m, const std::string& stage, Format format) {
     const Json json = {{"stage", stage},
                        {"input", input_json(m)},
                        {"scheme", scheme_name(m)},
+                       {"partitioner", m.partitioner},
                        {"parts", m.parts.size()},
                        {"sorted", !m.sorting.has_value()},
                        {"boundary_triangles", m.boundary_triangles},

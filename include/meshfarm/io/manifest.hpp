@@ -33,6 +33,7 @@ struct Manifest {
   std::string input;         // the path as it was given, for people
   std::string input_format;  // "PLY ascii, gzip"
   Scheme scheme = Scheme::cut;
+  std::string partitioner;             // of the cut: "METIS 5.1.0"
   std::uint64_t window_triangles = 0;  // of a sweep's buffer
   PositionType positions = PositionType::float32;
   Box box;

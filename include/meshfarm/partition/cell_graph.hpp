@@ -4,11 +4,15 @@
 
 #include <cstdint>
 #include <span>
+#include <string>
 #include <vector>
 
 #include <meshfarm/partition/cell_tree.hpp>
 
 namespace meshfarm {
+
+/// By what cells are partitioned, "METIS 5.1.0": another version may make other parts.
+std::string partitioner_name();
 
 struct CellGraphOptions {
   std::uint32_t parts = 1;

@@ -21,6 +21,7 @@ Manifest sample_manifest() {
   Manifest m;
   m.input = "lucy.ply";
   m.input_format = "PLY binary little endian";
+  m.partitioner = "METIS 5.1.0";
   m.positions = PositionType::float64;
   m.box.add({-1, -2, -3});
   m.box.add({1, 2, 3});
@@ -121,6 +122,8 @@ TEST_CASE("a manifest comes back whole") {
   const Manifest back = decode_manifest(encode_manifest(m), "manifest");
   CHECK(encode_manifest(back) == encode_manifest(m));
   CHECK(back.input == "lucy.ply");
+  CHECK(back.partitioner == "METIS 5.1.0");
+  CHECK(back.dropped_not_finite == 12);
   CHECK(back.input_triangles == std::uint64_t{10} << 32);
   CHECK(back.skipped == m.skipped);
   CHECK(back.parts[1].file == m.parts[1].file);

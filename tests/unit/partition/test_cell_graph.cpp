@@ -2,11 +2,13 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
 #include <set>
+#include <string>
 
 #include <doctest/doctest.h>
 
 #include <meshfarm/partition/cell_graph.hpp>
 #include <meshfarm/partition/cell_tree.hpp>
+#include <meshfarm/util/checksum.hpp>
 
 using namespace meshfarm;
 
@@ -48,6 +50,41 @@ TEST_CASE("METIS cuts a square of cells into even, whole parts, the same each ti
       CHECK(static_cast<double>(size) < 1.2 * even);
     }
   }
+}
+
+TEST_CASE("the version of METIS that parts depend on makes the parts that it always made") {
+  CHECK(partitioner_name() == "METIS 5.1.0");
+  const CellTree tree = square_of_cells(16);
+  const auto text_of = [&](std::uint32_t parts) {
+    std::string text;
+    for (const std::uint32_t p : partition_cells(tree.cells(), {.parts = parts})) {
+      text += static_cast<char>('a' + p);
+    }
+    return text;
+  };
+  const auto sum = [](const std::string& text) {
+    Checksum all;
+    all.add(text);
+    return all.value();
+  };
+  CHECK(text_of(2) ==
+        "aaaaaaaaaaaaaaaa"
+        "aaaaaaaaaaaaaaaa"
+        "aaaaaaaaaaaaaaaa"
+        "aaaaaaaaaaaaaaaa"
+        "aaaaaaaaaaaaaaaa"
+        "aaaaaaaaaaaaaaaa"
+        "bbbbbaaaaaaaaaaa"
+        "bbbbbbaaaaaaaaaa"
+        "bbbbbbbbbbaaaaaa"
+        "bbbbbbbbbbbaaaaa"
+        "bbbbbbbbbbbbbbbb"
+        "bbbbbbbbbbbbbbbb"
+        "bbbbbbbbbbbbbbbb"
+        "bbbbbbbbbbbbbbbb"
+        "bbbbbbbbbbbbbbbb"
+        "bbbbbbbbbbbbbbbb");
+  CHECK(sum(text_of(12)) == 6776605540786173613U);
 }
 
 TEST_CASE("more parts than cells, one part, no cells") {

@@ -7,6 +7,7 @@
 
 #include <meshfarm/io/boundary_file.hpp>
 #include <meshfarm/io/part_file.hpp>
+#include <meshfarm/partition/cell_graph.hpp>
 #include <meshfarm/partition/cut.hpp>
 #include <meshfarm/util/errors.hpp>
 #include <meshfarm/util/file.hpp>
@@ -80,6 +81,7 @@ TEST_CASE("parts and boundary together are the input, boundary vertices first") 
   const CutMesh made = cut(mesh, {.parts = 7}, folder.path());
   CHECK(triangles_of(made) == triangles_of(mesh));
   CHECK(made.parts.size() == 7);
+  CHECK(made.manifest.partitioner == partitioner_name());
   CHECK(made.manifest.triangles() == mesh.triangles.size());
   CHECK(made.manifest.input_vertices == mesh.positions.size());
 
