@@ -27,7 +27,7 @@ class BenchmarkCommand : public Command {
   int run() override {
     HostSummary host;
     host.speed = measure_speed();
-    host.memory = available_memory();
+    if (const auto room = available_memory()) host.memory = room->bytes;
     host.cores = default_workers();
     remember_speed(speed_folder(), speed_key(k_version), host.speed);
     std::cout << render(host, json_ ? Format::json : Format::text);

@@ -1,5 +1,6 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
+#include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
@@ -60,7 +61,7 @@ class WorkerCommand : public FarmCommand {
     // Workers of one run on one machine are equally fast, and a short run need not wait.
     const Haste haste = supervised() ? Haste::great : Haste::none;
     options.capacity.speed = speed_ != 0 ? speed_ : speed_of_this_host(k_version, haste);
-    options.capacity.memory = memory_.empty() ? available_memory() : memory_bytes_;
+    options.capacity.memory = memory_.empty() ? free_memory() : memory_bytes_;
     const WorkerReport report = run_worker(stage, do_job, options);
     if (supervised()) return;
     log_info(account_of(report));
@@ -77,6 +78,12 @@ class WorkerCommand : public FarmCommand {
     } catch (const IoError& error) {
       log_debug(error.what());
     }
+  }
+
+  /// 0 means no limit: where nothing is left, that is told by a byte.
+  static std::uint64_t free_memory() {
+    const auto room = available_memory();
+    return room ? std::max<std::uint64_t>(room->bytes, 1) : 0;
   }
 
   /// "16 jobs in 2.91 s, computing for 98.7 % of it"

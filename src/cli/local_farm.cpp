@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <thread>
 
 #include <stdlib.h>
 
@@ -12,6 +11,7 @@
 #include <meshfarm/pipeline/budget.hpp>
 #include <meshfarm/staging/file_system.hpp>
 #include <meshfarm/staging/stage.hpp>
+#include <meshfarm/util/control_groups.hpp>
 #include <meshfarm/util/errors.hpp>
 #include <meshfarm/util/log.hpp>
 #include <meshfarm/util/memory.hpp>
@@ -35,8 +35,9 @@ struct Crew {
 };
 
 Crew crew_for(const LocalFarm& farm, const Manifest& manifest) {
-  const std::uint64_t memory = available_memory();
-  if (farm.workers == 0 || memory == 0) return {farm.workers, 0};
+  const auto room = available_memory();
+  if (farm.workers == 0 || !room) return {farm.workers, 0};
+  const std::uint64_t memory = room->bytes;
   const std::uint64_t largest = memory_wanted(manifest, farm.target.run);
   Crew crew{farm.workers, memory / farm.workers};
   while (crew.workers > 1 && crew.memory < largest) crew.memory = memory / --crew.workers;
@@ -79,7 +80,7 @@ class KeysAside {
 }  // namespace
 
 std::uint32_t default_workers() {
-  return std::max(1U, std::thread::hardware_concurrency());
+  return processors();
 }
 
 int run_local_farm(const LocalFarm& farm, const std::atomic<bool>& stop) {

@@ -15,9 +15,9 @@
 #include <meshfarm/pipeline/benchmark.hpp>
 #include <meshfarm/staging/atomic_file.hpp>
 #include <meshfarm/util/checksum.hpp>
+#include <meshfarm/util/control_groups.hpp>
 #include <meshfarm/util/errors.hpp>
 #include <meshfarm/util/log.hpp>
-#include <meshfarm/util/memory.hpp>
 
 namespace meshfarm {
 namespace {
@@ -78,7 +78,7 @@ std::uint64_t measure_speed() {
 
 std::string speed_key(std::string_view program_version) {
   char limit[32];
-  std::snprintf(limit, sizeof limit, "%.2f", cpu_limit());
+  std::snprintf(limit, sizeof limit, "%.2f", group_cores().value_or(0));
   return std::string(program_version) + " | " + this_host() + " |" + cpu_model() + " | " + limit;
 }
 

@@ -15,7 +15,6 @@
 #include <chrono>
 #include <memory>
 #include <mutex>
-#include <thread>
 
 #include <meshfarm/io/boundary_file.hpp>
 #include <meshfarm/io/mesh_shares.hpp>
@@ -23,6 +22,7 @@
 #include <meshfarm/io/stream_file.hpp>
 #include <meshfarm/stream/generate_streams.hpp>
 #include <meshfarm/stream/slab.hpp>
+#include <meshfarm/util/control_groups.hpp>
 #include <meshfarm/util/errors.hpp>
 #include <meshfarm/util/parallel.hpp>
 
@@ -144,7 +144,7 @@ class Generator {
 
   /// As many at once as fit into the memory, going by the average.
   unsigned threads() const {
-    const unsigned cores = std::max(1U, std::thread::hardware_concurrency());
+    const unsigned cores = processors();
     const std::uint64_t bytes = k_slab_bytes_per_triangle * manifest_.input_triangles /
                                 std::max<std::uint64_t>(1, streams_);
     const std::uint64_t fit = options_.memory_bytes / std::max<std::uint64_t>(1, bytes);

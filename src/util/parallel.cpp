@@ -7,13 +7,14 @@
 #include <thread>
 #include <vector>
 
+#include <meshfarm/util/control_groups.hpp>
 #include <meshfarm/util/parallel.hpp>
 
 namespace meshfarm {
 
 void parallel_for(std::uint64_t count, unsigned threads,
                   const std::function<void(std::uint64_t)>& work) {
-  if (threads == 0) threads = std::max(1U, std::thread::hardware_concurrency());
+  if (threads == 0) threads = processors();
   std::atomic<std::uint64_t> next{0};
   std::mutex mutex;
   std::exception_ptr failure;

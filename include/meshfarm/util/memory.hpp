@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 
 namespace meshfarm {
 
@@ -14,14 +15,19 @@ void keep_freed_memory();
 /// all the time and share none of them, who would wait for each other.
 void split_memory_by_threads();
 
-/// Bytes that this process may still take: what the host has free, or less where a control group
-/// (version 1 or 2) holds the process to less. 0 where the system does not say.
-std::uint64_t available_memory();
+/// The pool of all processes of a host that no control group holds to less.
+inline constexpr std::uint64_t k_whole_host = 1;
+
+struct MemoryRoom {
+  std::uint64_t bytes = 0;
+  /// Names what they are taken from, on this host: processes that tell the same share them.
+  std::uint64_t pool = k_whole_host;
+};
+
+/// What this process may still take: what the host has free, or less where a control group (version
+/// 1 or 2) holds it to less. Nothing where the system does not say.
+std::optional<MemoryRoom> available_memory();
 /// Bytes of physical memory that this process uses now; 0 where the system does not say.
 std::uint64_t resident_memory();
-
-/// The share of the host's cores that a control group leaves to this process: 0.33 on a host of any
-/// size means a third of one core. 0: no limit.
-double cpu_limit();
 
 }  // namespace meshfarm
