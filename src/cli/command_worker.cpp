@@ -36,9 +36,10 @@ class WorkerCommand : public FarmCommand {
         "speed", po::value(&speed_)->value_name("N"),
         "triangles a second that this host simplifies (default: as 'meshfarm benchmark' measured)")(
         "threads", po::value(&threads_)->default_value(threads_)->value_name("N"),
-        "parts simplified at once")(
-        "memory", po::value(&memory_)->value_name("SIZE"),
-        "what parts in work may take together, as 8G (default: what the host has free)");
+        "parts simplified at once")("memory", po::value(&memory_)->value_name("SIZE"),
+                                    "what parts in work may take together, as 8G (default: this "
+                                    "worker's share of what the host "
+                                    "or its control group has free)");
     security_.add(options);
     talk_.add_quiet(options);
   }
@@ -61,7 +62,8 @@ class WorkerCommand : public FarmCommand {
     // Workers of one run on one machine are equally fast, and a short run need not wait.
     const Haste haste = supervised() ? Haste::great : Haste::none;
     options.capacity.speed = speed_ != 0 ? speed_ : speed_of_this_host(k_version, haste);
-    options.capacity.memory = memory_.empty() ? free_memory() : memory_bytes_;
+    options.capacity.memory = memory_bytes_;
+    if (memory_.empty()) take_free_memory(options.capacity);
     const WorkerReport report = run_worker(stage, do_job, options);
     if (supervised()) return;
     log_info(account_of(report));
@@ -80,10 +82,12 @@ class WorkerCommand : public FarmCommand {
     }
   }
 
-  /// 0 means no limit: where nothing is left, that is told by a byte.
-  static std::uint64_t free_memory() {
+  /// Shared with the other workers of this host, or of its control group.
+  static void take_free_memory(Capacity& capacity) {
     const auto room = available_memory();
-    return room ? std::max<std::uint64_t>(room->bytes, 1) : 0;
+    if (!room) return;
+    capacity.memory = std::max<std::uint64_t>(room->bytes, 1);  // 0 would mean no limit
+    capacity.memory_pool = room->pool;
   }
 
   /// "16 jobs in 2.91 s, computing for 98.7 % of it"

@@ -109,9 +109,10 @@ Actions Dispatcher::lane_failed(WorkerId id, const std::string& reason) {
 }
 
 void Dispatcher::welcome(WorkerId id, const Worker& worker) {
-  send(worker.peer, Welcome{id, options_.epoch, options_.run, worker.lane,
-                            sink_ ? sink_->results : std::string(),
-                            static_cast<std::uint32_t>(options_.heartbeat.count())});
+  send(
+      worker.peer,
+      Welcome{id, options_.epoch, options_.run, worker.lane, sink_ ? sink_->results : std::string(),
+              static_cast<std::uint32_t>(options_.heartbeat.count()), scheduler_.memory_share(id)});
 }
 
 void Dispatcher::sink_joins(const PeerId& peer, const Hello& hello) {
@@ -154,7 +155,8 @@ void Dispatcher::on(const PeerId& peer, const Heartbeat& beat) {
   }
   worker->beat = beat;
   if (hangs(beat.worker, *worker)) return lose_hanging(beat.worker);
-  send(peer, Alive{options_.epoch, sink_ ? sink_->results : std::string()});
+  send(peer, Alive{options_.epoch, sink_ ? sink_->results : std::string(),
+                   scheduler_.memory_share(beat.worker)});
   if (over_) send(peer, Stop{StopReason::run_over});
 }
 

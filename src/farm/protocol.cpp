@@ -37,7 +37,7 @@ auto fields(M& m) {
 }
 template <Is<Capacity> M>
 auto fields(M& m) {
-  return std::tie(m.speed, m.memory, m.threads);
+  return std::tie(m.speed, m.memory, m.threads, m.memory_pool);
 }
 template <Is<JobTimes> M>
 auto fields(M& m) {
@@ -49,7 +49,7 @@ auto fields(M& m) {
 }
 template <Is<Welcome> M>
 auto fields(M& m) {
-  return std::tie(m.worker, m.epoch, m.run, m.lane, m.sink, m.heartbeat_ms);
+  return std::tie(m.worker, m.epoch, m.run, m.lane, m.sink, m.heartbeat_ms, m.memory);
 }
 template <Is<Refused> M>
 auto fields(M& m) {
@@ -62,7 +62,7 @@ auto fields(M& m) {
 }
 template <Is<Alive> M>
 auto fields(M& m) {
-  return std::tie(m.epoch, m.sink);
+  return std::tie(m.epoch, m.sink, m.memory);
 }
 template <Is<Credit> M>
 auto fields(M& m) {

@@ -31,6 +31,10 @@ void Scheduler::join(WorkerId id, const std::string& host, const Capacity& capac
   member.host->name = host;
   member.threads = std::clamp<std::uint32_t>(capacity.threads, 1, 4096);
   member.memory = capacity.memory;
+  if (capacity.memory_pool != 0 && capacity.memory != 0) {
+    member.pool = &pools_[{host, capacity.memory_pool}];
+    ++member.pool->workers;
+  }
   member.benchmark = capacity.speed == 0 ? k_usual_speed : static_cast<double>(capacity.speed);
   member.speed = estimated_speed(member);
   ++member.host->workers;
@@ -41,13 +45,14 @@ void Scheduler::join(WorkerId id, const std::string& host, const Capacity& capac
 std::vector<Scheduler::Held> Scheduler::leave(WorkerId id) {
   const auto found = crew_.find(id);
   set_room(id, 0);
-  std::vector<Held> held = std::move(found->second.held);
+  std::vector<Held> held = found->second.held;
   for (const Held& each : held) {
     auto& holders = holders_.at(each.key);
     std::erase(holders, id);
     if (holders.empty()) holders_.erase(each.key);
   }
   --found->second.host->workers;
+  leave_pool(found->second);
   crew_.erase(found);
   if (const auto set = sets_.extract(id); !set.empty()) {
     for (const JobKey key : set.mapped()) dealt_.erase(key);
@@ -73,6 +78,7 @@ bool Scheduler::drop(WorkerId id, JobKey key, FarmTime now) {
   member.cost_held -= static_cast<double>(at->cost);
   member.held.erase(at);
   if (member.held.empty()) member.cost_held = 0;
+  pool_dropped(member);
   auto& holders = holders_.at(key);
   std::erase(holders, id);
   if (holders.empty()) holders_.erase(key);
@@ -163,6 +169,8 @@ bool Scheduler::serves(const Member& member) const {
 /// Whether it may be sent anything at all.
 bool Scheduler::open(const Member& member) const {
   if (member.room == 0 || !serves(member)) return false;
+  const Pool* pool = member.pool;
+  if (pool != nullptr && pool->by_itself != nullptr && pool->by_itself != &member) return false;
   return suspects_.empty() || member.held.size() != 1 ||
          !suspects_.contains(member.held.front().key);
 }
@@ -190,8 +198,52 @@ void Scheduler::rank(WorkerId id, Member& member) {
   }
 }
 
+std::uint64_t Scheduler::share(const Member& member) const {
+  return member.pool == nullptr ? member.memory : member.memory / member.pool->workers;
+}
+
+std::uint64_t Scheduler::memory_share(WorkerId id) const {
+  const Member& member = crew_.at(id);
+  const bool all = member.pool != nullptr && member.pool->by_itself == &member;
+  return all ? member.memory : share(member);
+}
+
+/// Up to how much memory a job may need to be given to this worker now.
+std::uint64_t Scheduler::memory_now(const Member& member) const {
+  if (member.memory == 0) return k_no_limit;
+  const std::uint32_t itself = member.held.empty() ? 0 : 1;
+  const bool others = member.pool != nullptr && member.pool->at_work > itself;
+  return others ? share(member) : member.memory;
+}
+
 bool Scheduler::fits(const Member& member, std::uint64_t memory) const {
-  return member.memory == 0 || memory <= member.memory;
+  return memory <= memory_now(member);
+}
+
+void Scheduler::pool_holds(Member& member, std::uint64_t memory) {
+  if (member.pool == nullptr) return;
+  if (member.held.size() == 1) ++member.pool->at_work;
+  if (memory <= share(member)) return;
+  member.pool->by_itself = &member;
+  rank_all();
+}
+
+void Scheduler::pool_dropped(Member& member) {
+  if (member.pool == nullptr) return;
+  if (member.held.empty()) --member.pool->at_work;
+  const std::uint64_t even = share(member);
+  const bool large = std::any_of(member.held.begin(), member.held.end(),
+                                 [&](const Held& each) { return each.memory > even; });
+  if (large || member.pool->by_itself != &member) return;
+  member.pool->by_itself = nullptr;
+  rank_all();
+}
+
+void Scheduler::leave_pool(Member& member) {
+  if (member.pool == nullptr) return;
+  if (!member.held.empty()) --member.pool->at_work;
+  if (member.pool->by_itself == &member) member.pool->by_itself = nullptr;
+  --member.pool->workers;
 }
 
 bool Scheduler::may(const Member& member, JobKey key) const {
@@ -214,6 +266,7 @@ Scheduler::Pick Scheduler::hand(WorkerId id, IssuedJob job, FarmTime now) {
   assert(member.room > 0);
   --member.room;
   member.held.push_back({job.key, job.attempt, job.job.cost, job.job.memory, std::nullopt});
+  pool_holds(member, job.job.memory);
   member.cost_held += static_cast<double>(job.job.cost);
   holders_[job.key].push_back(id);
   begin_turns(member, now);
@@ -232,7 +285,7 @@ std::optional<Scheduler::Pick> Scheduler::next(Plan& plan, FarmTime now) {
     Member& member = crew_.at(id);
     JobChoice choice;
     choice.max_cost = greatest_cost(member, now);
-    if (member.memory != 0) choice.max_memory = member.memory;
+    choice.max_memory = memory_now(member);
     const bool all_welcome = suspects_.empty() && failed_on_.empty();
     if (!all_welcome) choice.may = [&](JobKey key) { return may(member, key); };
     if (auto job = plan.issue(choice)) return hand(id, std::move(*job), now);

@@ -127,6 +127,7 @@ std::vector<Scheduler::Pick> Scheduler::second_attempts(Plan& plan, FarmTime now
   std::vector<Late> late = late_jobs(plan, now);
   for (const auto& [speed, id] : idle) {
     const Member& member = crew_.at(id);
+    if (!open(member)) continue;
     bool any_gains = false;
     const auto taken = std::find_if(late.begin(), late.end(), [&](const Late& each) {
       const double gain = each.left - static_cast<double>(each.held->cost) / member.speed;
@@ -161,7 +162,7 @@ void Scheduler::deal(const Plan& plan) {
     const auto cost = static_cast<double>(plan.job(key).cost);
     std::optional<std::pair<double, WorkerId>> best;
     for (const auto& [id, member] : crew_) {
-      if (!fits(member, plan.job(key).memory)) continue;
+      if (member.memory != 0 && plan.job(key).memory > member.memory) continue;
       const std::pair through((load[id] + cost) / (member.benchmark * member.threads), id);
       if (!best || through < *best) best = through;
     }
@@ -182,6 +183,7 @@ std::optional<Scheduler::Pick> Scheduler::next_fixed(Plan& plan, FarmTime now) {
     auto& set = sets_[id];
     while (!set.empty()) {
       const JobKey key = set.front();
+      if (!fits(crew_.at(id), plan.job(key).memory)) break;
       set.pop_front();
       dealt_.erase(key);
       if (plan.state(key) == JobState::ready) return hand(id, plan.issue(key), now);

@@ -84,7 +84,13 @@ WorkerActions WorkerCore::on_control(const Message& message, FarmTime now) {
   if (!member_.joined()) return take();
   if (const auto* done = std::get_if<Done>(&message)) forget(*done);
   if (const auto* sink = std::get_if<SinkAt>(&message)) sink_is_at(sink->results, now);
-  if (const auto* alive = std::get_if<Alive>(&message)) sink_is_at(alive->sink, now);
+  if (const auto* alive = std::get_if<Alive>(&message)) {
+    sink_is_at(alive->sink, now);
+    may_take(alive->memory);
+    now_ = now;
+    begin_next();  // there may be more room
+    raise_credit();
+  }
   return take();
 }
 
@@ -168,6 +174,7 @@ void WorkerCore::join(FarmTime now) {
   }
   received_ = 0;
   credit_ = 0;
+  may_take(welcome.memory);
   act(ConnectLane{welcome.lane});
   sink_is_at(welcome.sink, now);
   raise_credit();
@@ -209,6 +216,10 @@ void WorkerCore::forget(const Done& done) {
   raise_credit();
 }
 
+void WorkerCore::may_take(std::uint64_t memory) {
+  memory_share_ = memory == 0 ? limits_.memory : std::min(memory, limits_.memory);
+}
+
 void WorkerCore::sink_is_at(const std::string& address, FarmTime now) {
   if (sink_ == address) return;
   sink_ = address;
@@ -244,7 +255,7 @@ std::optional<std::uint32_t> WorkerCore::free_slot(std::uint64_t memory) const {
     if (slots_[slot]) taken += slots_[slot]->memory;
     if (!slots_[slot] && !found) found = slot;
   }
-  const bool fits = limits_.memory == 0 || in_work() == 0 || taken + memory <= limits_.memory;
+  const bool fits = limits_.memory == 0 || in_work() == 0 || taken + memory <= memory_share_;
   return fits ? found : std::nullopt;
 }
 

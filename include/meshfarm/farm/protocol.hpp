@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
 //
-// All that ventilator (V), workers (W) and sink (S) say to each other. Version 2.
+// All that ventilator (V), workers (W) and sink (S) say to each other. Version 3.
 //
 //   frame   = "MFMS" | version u16 | type u16 | body      one message a frame, one frame a message
 //   body    = the fields of the struct in the order of their declaration, little endian
@@ -31,7 +31,7 @@
 
 namespace meshfarm {
 
-inline constexpr std::uint16_t k_protocol_version = 2;
+inline constexpr std::uint16_t k_protocol_version = 3;
 inline constexpr std::size_t k_max_frame_bytes = 65'536;
 inline constexpr std::size_t k_max_text_bytes = 1024;          // names, addresses, reasons
 inline constexpr std::size_t k_max_summary_bytes = 16'384;     // JobOutput::summary
@@ -59,6 +59,9 @@ struct Capacity {
   std::uint64_t speed = 0;    // triangles a second of each of its threads, by benchmark
   std::uint64_t memory = 0;   // bytes for all jobs in work together
   std::uint32_t threads = 1;  // jobs computed at once
+  /// Where `memory` is not the worker's alone: those of its host that tell the same number share
+  /// it. 0: its own.
+  std::uint64_t memory_pool = 0;
 };
 
 struct Hello {
@@ -77,6 +80,7 @@ struct Welcome {
   std::string lane;
   std::string sink;  // empty as long as there is none
   std::uint32_t heartbeat_ms = 0;
+  std::uint64_t memory = 0;  // the worker's share of what it told; 0: no limit
 };
 struct Refused {
   Refusal why = Refusal::stranger;
@@ -95,7 +99,8 @@ struct Heartbeat {
 };
 struct Alive {
   std::uint32_t epoch = 0;
-  std::string sink;  // as SinkAt, for whom that did not reach
+  std::string sink;          // as SinkAt, for whom that did not reach
+  std::uint64_t memory = 0;  // as in Welcome: the share changes as others come and go
 };
 /// "I can hold what the lane brings up to this number": absolute, so loss and repetition do no
 /// harm.

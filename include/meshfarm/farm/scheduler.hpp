@@ -77,6 +77,9 @@ class Scheduler {
   /// Who makes an attempt at the job: two at most.
   std::vector<WorkerId> holders(JobKey key) const;
   std::uint64_t jobs_held() const { return holders_.size(); }
+  /// What the worker's jobs may take together: what it has, or its even share where others of its
+  /// host have the same. 0: no limit.
+  std::uint64_t memory_share(WorkerId id) const;
   /// The greatest memory that any worker has; none: no limit. Nothing if there is no worker.
   std::optional<std::uint64_t> greatest_memory() const;
   /// Hosts that get no more jobs.
@@ -89,8 +92,17 @@ class Scheduler {
     std::uint32_t workers = 0;
     std::uint32_t failures = 0;  // in a row
   };
+  struct Member;
+  /// Memory that several workers of a host have together. A job that is too large for an even share
+  /// is done while the others have nothing to do.
+  struct Pool {
+    std::uint32_t workers = 0;
+    std::uint32_t at_work = 0;          // those that hold jobs
+    const Member* by_itself = nullptr;  // holds such a job: the others get nothing
+  };
   struct Member {
     Host* host = nullptr;
+    Pool* pool = nullptr;  // none: the memory is its own
     std::uint32_t threads = 1;
     std::uint64_t memory = 0;  // 0: no limit
     double benchmark = 0;      // triangles a second and thread
@@ -116,7 +128,12 @@ class Scheduler {
     double fastest = 0;
   };
 
+  std::uint64_t share(const Member& member) const;
+  std::uint64_t memory_now(const Member& member) const;
   bool fits(const Member& member, std::uint64_t memory) const;
+  void pool_holds(Member& member, std::uint64_t memory);
+  void pool_dropped(Member& member);
+  void leave_pool(Member& member);
   bool good(const Host& host) const;
   std::vector<Late> late_jobs(const Plan& plan, FarmTime now) const;
   bool elsewhere(const std::vector<std::string>& hosts) const;
@@ -137,7 +154,8 @@ class Scheduler {
 
   SchedulerOptions options_;
   std::map<WorkerId, Member> crew_;
-  std::map<std::string, Host> hosts_;              // entries stay
+  std::map<std::string, Host> hosts_;                            // entries stay
+  std::map<std::pair<std::string, std::uint64_t>, Pool> pools_;  // by host and number; they stay
   std::set<std::pair<double, WorkerId>> willing_;  // those who read nothing ahead, then the others;
                                                    // the least laden first
   std::unordered_map<JobKey, std::vector<WorkerId>, JobKeyHash> holders_;

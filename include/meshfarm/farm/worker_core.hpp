@@ -22,8 +22,10 @@ namespace meshfarm {
 struct WorkerLimits {
   std::uint32_t buffer = 16;  // jobs that may wait beside those in work
   std::uint32_t slots = 1;    // jobs in work at once: computed, read ahead, or written
-  std::uint64_t memory = 0;   // bytes for all jobs in work together; 0: no limit
-  FarmTime grace{5000};       // how long jobs in work may take to give up when the worker leaves
+  /// Bytes for all jobs in work together, 0: no limit. Others of the host may share it: the
+  /// ventilator says how much of it is ours.
+  std::uint64_t memory = 0;
+  FarmTime grace{5000};  // how long jobs in work may take to give up when the worker leaves
 };
 
 /// What the job in a slot is at.
@@ -86,6 +88,7 @@ class WorkerCore {
   void leave(std::string incomplete);
   void abort(std::string incomplete);
   void forget(const Done& done);
+  void may_take(std::uint64_t memory);
   void sink_is_at(const std::string& address, FarmTime now);
   void send_result(Kept& kept, FarmTime now);
   void begin_next();
@@ -103,6 +106,7 @@ class WorkerCore {
 
   Membership member_;
   WorkerLimits limits_;
+  std::uint64_t memory_share_ = 0;  // of limits_.memory
   WorkerActions out_;
   FarmTime now_{0};
   std::deque<Waiting> waiting_;

@@ -16,11 +16,11 @@ std::vector<Message> one_of_each() {
   const FileRef part{"parts/000001.part", 123, 456};
   const JobOutput output{{"results/00000000000000ff.a2.0000000000000001", 9, 10}, "summary"};
   const JobFailure failure{"the disk is full", FailureKind::no_space};
-  return {Hello{Role::sink, 1, 2, 3, "host", "tcp://h:1", {4, 5, 6}},
-          Welcome{{4}, 5, 6, "tcp://h:2", "tcp://h:3", 1000},
+  return {Hello{Role::sink, 1, 2, 3, "host", "tcp://h:1", {4, 5, 6, 7}},
+          Welcome{{4}, 5, 6, "tcp://h:2", "tcp://h:3", 1000, 7},
           Refused{Refusal::replaced, "why"},
           Heartbeat{1, {2}, 3, 4, 5, {6}, 7, true, 8},
-          Alive{7, "tcp://h:5"},
+          Alive{7, "tcp://h:5", 8},
           Credit{1, {2}, 1ULL << 40},
           Release{1, {2}},
           Assignment{1, 2, 3, 4, {"simplify", {part, part}, std::string("\0\1\2", 3), 77, 88}},
@@ -102,7 +102,7 @@ TEST_CASE("strangers' frames are refused with a reason") {
   other_magic[0] = 'X';
   CHECK_THROWS_WITH_AS(decode(other_magic), doctest::Contains("not a message of ours"), DataError);
   std::string other_version = frame;
-  other_version[4] = 3;
+  other_version[4] = 2;
   CHECK_THROWS_WITH_AS(decode(other_version), doctest::Contains("version"), DataError);
   for (const char type : {'\0', '\x13', '\x7f'}) {
     std::string other_type = frame;
@@ -113,9 +113,9 @@ TEST_CASE("strangers' frames are refused with a reason") {
 }
 
 TEST_CASE("numbers on the wire never change") {
-  CHECK(encode(Stop{StopReason::leaving}) == std::string("MFMS\2\0\x12\0\2", 9));
+  CHECK(encode(Stop{StopReason::leaving}) == std::string("MFMS\3\0\x12\0\2", 9));
   CHECK(encode(Credit{1, {2}, 3}) ==
-        std::string("MFMS\2\0\6\0\1\0\0\0\2\0\0\0\3\0\0\0\0\0\0\0", 24));
+        std::string("MFMS\3\0\6\0\1\0\0\0\2\0\0\0\3\0\0\0\0\0\0\0", 24));
 }
 
 TEST_CASE("what is too long for a message is refused by the sender") {

@@ -206,6 +206,58 @@ TEST_CASE("a job is never given to a worker that it does not fit") {
   CHECK(desk.hand_out() == "big@2 ");
 }
 
+TEST_CASE("workers of one host share its memory") {
+  // Three processes that each found the same 900 bytes free.
+  Desk desk({with_memory("a", 9, 300), with_memory("b", 8, 300), with_memory("c", 7, 300)});
+  desk.join(1, "host", {0, 900, 1, 5}, 1);
+  CHECK(desk.scheduler.memory_share({1}) == 900);
+  desk.join(2, "host", {0, 900, 1, 5}, 1);
+  desk.join(3, "host", {0, 900, 1, 5}, 1);
+  CHECK(desk.scheduler.memory_share({1}) == 300);
+  SUBCASE("what fits a share goes to each") {
+    CHECK(desk.hand_out() == "a@1 b@2 c@3 ");
+    desk.scheduler.leave({3});
+    CHECK(desk.scheduler.memory_share({1}) == 450);
+  }
+  SUBCASE("other pools, other hosts and memory of one's own are not divided") {
+    desk.join(4, "host", {0, 900, 1, 6});
+    desk.join(5, "other host", {0, 900, 1, 5});
+    desk.join(6, "host", {0, 900, 1});
+    for (const std::uint32_t id : {4, 5, 6}) CHECK(desk.scheduler.memory_share({id}) == 900);
+    CHECK(desk.scheduler.memory_share({1}) == 300);
+  }
+}
+
+TEST_CASE("a job larger than a share of its host's memory is done while the others rest") {
+  Desk desk({with_memory("large", 9, 800), with_memory("small", 8, 10)});
+  desk.join(1, "host", {0, 900, 1, 5}, 1);
+  desk.join(2, "host", {0, 900, 1, 5}, 1);
+  CHECK(desk.hand_out() == "large@1 ");
+  CHECK(desk.scheduler.memory_share({1}) == 900);
+  desk.now += FarmTime(10'000);
+  CHECK(desk.hand_out().empty());
+  SUBCASE("until it is done") {
+    desk.done(1, "large");
+    desk.now += FarmTime(10'000);
+    CHECK(desk.hand_out() == "small@2 ");
+  }
+  SUBCASE("or its worker is lost") {
+    desk.scheduler.leave({1});
+    desk.now += FarmTime(10'000);
+    CHECK(desk.hand_out() == "small@2 ");
+  }
+}
+
+TEST_CASE("a job larger than a share waits for the others of the host") {
+  Desk desk({with_memory("small", 9, 10), with_memory("large", 8, 800)});
+  desk.join(1, "host", {0, 900, 1, 5}, 1);
+  desk.join(2, "host", {0, 900, 1, 5}, 1);
+  CHECK(desk.hand_out() == "small@1 ");
+  desk.done(1, "small");
+  desk.now += FarmTime(10'000);
+  CHECK(desk.hand_out() == "large@2 ");
+}
+
 TEST_CASE("a small worker finds what fits it behind very many that do not") {
   std::vector<Job> jobs = {with_memory("small", 1, 10)};
   for (int i = 0; i < 1000; ++i) {

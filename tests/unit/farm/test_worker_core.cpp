@@ -262,6 +262,24 @@ TEST_CASE("as many jobs are in work as there are slots and memory") {
   }
 }
 
+TEST_CASE("a worker that shares its host's memory keeps to its share") {
+  Bench bench(2, 3, 100);
+  bench.core.tick({}, bench.now);
+  const Endpoint there = endpoint(1);
+  bench.core.found({&there, 1}, bench.now);
+  bench.core.on_control(Welcome{{1}, 1, 7, "lane", "sink", 1000, 50}, bench.now);
+  const auto send = [&](std::uint64_t seq) {
+    Job job = make_job(std::to_string(seq));
+    job.memory = 30;
+    return only<Begin>(bench.core.on_lane(Assignment{7, 1, seq, 1, job}, bench.now)).size();
+  };
+  CHECK(send(1) == 1);
+  CHECK(send(2) == 0);
+  // Another worker has left: there is room for two.
+  const WorkerActions more = bench.core.on_control(Alive{1, "sink", 100}, bench.now);
+  CHECK(only<Begin>(more).size() == 1);
+}
+
 Heartbeat beat_in(const WorkerActions& actions) {
   for (const Say& say : only<Say>(actions)) {
     if (const auto* beat = std::get_if<Heartbeat>(&say.message)) return *beat;
