@@ -4,8 +4,10 @@
 #include <iostream>
 
 #include <meshfarm/farm/sink.hpp>
+#include <meshfarm/pipeline/algorithm.hpp>
 #include <meshfarm/pipeline/assemble.hpp>
 #include <meshfarm/pipeline/budget.hpp>
+#include <meshfarm/pipeline/job_table.hpp>
 #include <meshfarm/pipeline/run_trace.hpp>
 
 #include "cli/cut_step.hpp"
@@ -51,6 +53,8 @@ class SinkCommand : public FarmCommand {
     options.last_port = network_.last_port;
     options.security = network_.security.security;
     options.run = run_key(manifest, target_.run);
+    options.algorithm = k_algorithm_version;
+    options.inspect = check_output;
     options.patience = std::chrono::seconds(wait_s_);
     options.stop = &stop;
     const auto start = std::chrono::steady_clock::now();

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include <meshfarm/farm/ventilator.hpp>
+#include <meshfarm/pipeline/algorithm.hpp>
 #include <meshfarm/pipeline/budget.hpp>
 #include <meshfarm/pipeline/run_trace.hpp>
 #include <meshfarm/util/errors.hpp>
@@ -56,6 +57,7 @@ class VentilatorCommand : public FarmCommand {
     options.last_port = network_.last_port;
     options.security = network_.security.security;
     options.run = run_key(manifest, target_.run);
+    options.algorithm = k_algorithm_version;
     options.heartbeat = std::chrono::milliseconds(heartbeat_ms_);
     options.hang = std::chrono::seconds(schedule_.hang_s);
     options.schedule = schedule_.options;
@@ -104,6 +106,7 @@ class VentilatorCommand : public FarmCommand {
     }
     for (const std::string& host : p.bad_hosts) phase += ", no more jobs for " + host;
     if (p.storage_stalls) phase += ", the stage's storage stands still";
+    if (!p.other_build.empty()) phase += ", refused: " + p.other_build;
     if (p.refused > 0) phase += ", " + std::to_string(p.refused) + " strangers refused";
     const double all = static_cast<double>(std::max<std::uint64_t>(1, p.cost_known));
     printer.show(

@@ -6,6 +6,7 @@
 #include <cstdlib>
 
 #include <meshfarm/farm/worker.hpp>
+#include <meshfarm/pipeline/algorithm.hpp>
 #include <meshfarm/pipeline/benchmark.hpp>
 #include <meshfarm/pipeline/job_table.hpp>
 #include <meshfarm/staging/host_card.hpp>
@@ -57,6 +58,7 @@ class WorkerCommand : public FarmCommand {
     options.security = security_.security;
     options.patience = std::chrono::seconds(wait_s_);
     options.stop = &stop;
+    options.algorithm = k_algorithm_version;
     options.abort = [](const std::string& incomplete) { end_process(incomplete); };
     options.capacity.threads = threads_;
     // Workers of one run on one machine are equally fast, and a short run need not wait.

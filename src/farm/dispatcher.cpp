@@ -52,6 +52,16 @@ Actions Dispatcher::end_complete() {
 // --- joining
 
 void Dispatcher::on(const PeerId& peer, const Hello& hello) {
+  if (hello.algorithm != options_.algorithm) {
+    const std::string ours = std::to_string(options_.algorithm);
+    const std::string theirs = std::to_string(hello.algorithm);
+    other_build_ =
+        hello.host + " simplifies by version " + theirs + " of the algorithm, not " + ours;
+    return send(peer, Refused{Refusal::other_build,
+                              "it simplifies by version " + ours +
+                                  " of the algorithm, this process by version " + theirs +
+                                  ": start the same build of meshfarm on all hosts"});
+  }
   if (hello.run != options_.run && (hello.run != 0 || hello.role == Role::sink)) {
     send(peer, Refused{Refusal::other_run, "this ventilator's run is " + to_hex(options_.run)});
     return;
@@ -293,6 +303,7 @@ FarmProgress Dispatcher::progress() const {
   }
   progress.bad_hosts = scheduler_.bad_hosts();
   progress.storage_stalls = storage_stalls();
+  progress.other_build = other_build_;
   return progress;
 }
 

@@ -24,10 +24,11 @@ class StagedJobFile : public JobFile {
 
 JobKey key_of(const Job& job) {
   // An input counts by its content, not its name: a result that was made again under another name
-  // leads to the same jobs after it. Version 1 of the key's recipe comes first.
+  // leads to the same jobs after it. Version 2 of the key's recipe comes first.
   ByteWriter out;
   out.reserve(64 + 16 * job.inputs.size() + job.kind.size() + job.parameters.size());
-  out.put(std::uint32_t{1});
+  out.put(std::uint32_t{2});
+  out.put(job.algorithm);
   out.put_string(job.kind);
   out.put(static_cast<std::uint64_t>(job.inputs.size()));
   for (const FileRef& input : job.inputs) {

@@ -23,9 +23,18 @@ void read_journal(const Stage& stage, JournalName name, std::map<JobKey, JobOutp
     log_warning(what + ": its last " + std::to_string(content.torn_bytes) +
                 " bytes are torn and left out (its sink was killed while writing)");
   }
+  std::uint64_t set_aside = 0;
   for (const std::string& record : content.records) {
-    AcceptedJob job = decode_accepted(record, what);
-    accepted[job.key] = std::move(job.output);
+    try {
+      AcceptedJob job = decode_accepted(record, what);
+      accepted[job.key] = std::move(job.output);
+    } catch (const DataError& error) {
+      if (++set_aside == 1) log_warning("set aside: " + std::string(error.what()));
+    }
+  }
+  if (set_aside > 1) {
+    log_warning(what + ": " + std::to_string(set_aside) +
+                " records are set aside; their jobs are done again");
   }
 }
 

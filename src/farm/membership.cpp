@@ -82,6 +82,7 @@ Membership::Event Membership::on_refused(const Refused& refused, FarmTime now) {
       return Event::none;  // greeted again in a while
     case Refusal::other_run:
     case Refusal::replaced:
+    case Refusal::other_build:
       break;
   }
   reason_ = "the ventilator at " + dialled_->address + " refused: " + refused.reason;
@@ -138,7 +139,7 @@ std::optional<std::string> Membership::dial() {
 std::optional<Hello> Membership::hello() {
   if (!std::exchange(greet_, false)) return std::nullopt;
   return Hello{options_.role, options_.run,     options_.incarnation, options_.pid,
-               options_.host, options_.results, options_.capacity};
+               options_.host, options_.results, options_.capacity,    options_.algorithm};
 }
 
 bool Membership::beat_due(FarmTime now) {

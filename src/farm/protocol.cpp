@@ -45,7 +45,7 @@ auto fields(M& m) {
 }
 template <Is<Hello> M>
 auto fields(M& m) {
-  return std::tie(m.role, m.run, m.incarnation, m.pid, m.host, m.results, m.capacity);
+  return std::tie(m.role, m.run, m.incarnation, m.pid, m.host, m.results, m.capacity, m.algorithm);
 }
 template <Is<Welcome> M>
 auto fields(M& m) {
@@ -150,6 +150,7 @@ class Encoder {
     bytes(job.parameters, k_max_parameters_bytes, "parameters");
     field(job.cost);
     field(job.memory);
+    field(job.algorithm);
   }
   void field(const std::variant<JobOutput, JobFailure>& outcome) {
     field(static_cast<std::uint8_t>(outcome.index()));
@@ -183,7 +184,7 @@ class Decoder {
     value = raw == 1;
   }
   void field(Role& value) { choice(value, Role::sink); }
-  void field(Refusal& value) { choice(value, Refusal::replaced); }
+  void field(Refusal& value) { choice(value, Refusal::other_build); }
   void field(StopReason& value) { choice(value, StopReason::hung); }
   void field(FailureKind& value) { choice(value, FailureKind::no_space); }
   void field(std::string& text) { bytes(text, k_max_text_bytes); }
@@ -205,6 +206,7 @@ class Decoder {
     bytes(job.parameters, k_max_parameters_bytes);
     field(job.cost);
     field(job.memory);
+    field(job.algorithm);
   }
   void field(std::variant<JobOutput, JobFailure>& outcome) {
     const auto index = in_.get<std::uint8_t>();
@@ -238,17 +240,34 @@ bool decode_as(std::size_t wanted, Decoder& decoder, Message& message,
   return ((Index == wanted && (decoder.field(message.emplace<Index>()), true)) || ...);
 }
 
-}  // namespace
-
-std::string encode(const Message& message) {
+std::string encode_as(std::uint16_t version, const Message& message) {
   Encoder encoder;
   for (const char c : k_magic) encoder.field(c);
-  encoder.field(k_protocol_version);
+  encoder.field(version);
   encoder.field(static_cast<std::uint16_t>(message.index() + 1));
   std::visit([&](const auto& body) { encoder.field(body); }, message);
   std::string frame = encoder.take();
   check(frame.size(), k_max_frame_bytes, "frame");
   return frame;
+}
+
+}  // namespace
+
+std::string encode(const Message& message) {
+  return encode_as(k_protocol_version, message);
+}
+
+std::optional<std::uint16_t> other_version_of(std::string_view frame) {
+  constexpr std::size_t k_head_bytes = 8;
+  if (frame.size() < k_head_bytes || frame.size() > k_max_frame_bytes) return std::nullopt;
+  ByteReader in(frame, "message");
+  if (in.get<std::array<char, 4>>() != k_magic) return std::nullopt;
+  const auto version = in.get<std::uint16_t>();
+  return version == k_protocol_version ? std::nullopt : std::optional(version);
+}
+
+std::string encode_refusal(std::uint16_t version, std::string_view reason) {
+  return encode_as(version, Refused{Refusal::other_run, clipped(reason)});
 }
 
 Message decode(std::string_view frame) {

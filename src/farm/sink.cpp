@@ -42,8 +42,15 @@ class SinkLoop {
         gate_(context_, keys_),
         results_(make_results_server(context_, keys_)),
         link_(context_, stage, options.security),
-        core_({Role::sink, options.run, random_id(), static_cast<std::uint32_t>(::getpid()),
-               clipped(host_name()), listen(), options.patience},
+        core_({Role::sink,
+               options.run,
+               random_id(),
+               static_cast<std::uint32_t>(::getpid()),
+               clipped(host_name()),
+               listen(),
+               options.patience,
+               {},
+               options.algorithm},
               source, read_journals(stage)) {}
 
   void run() {
@@ -161,8 +168,9 @@ class SinkLoop {
     std::vector<std::string> records;
     for (Checked& each : batch_) {
       try {
-        stage_.verify(each.check.output.file);
         const Check& check = each.check;
+        if (options_.inspect) options_.inspect(check.kind, check.output);
+        stage_.verify(check.output.file);
         if (!check.from_journal) records.push_back(encode_accepted({check.key, check.output}));
       } catch (const Error& error) {
         each.problem = error.what();

@@ -108,7 +108,8 @@ void SinkCore::take_result(const Result& result) {
     ++dropped_;
     return;
   }
-  const Check check{result.key, output, result.worker, result.attempt, false, result.times};
+  const Check check{result.key, output,       result.worker,        result.attempt,
+                    false,      result.times, kinds_.at(result.key)};
   if (checking_.try_emplace(result.key, check).second) act(check);
 }
 
@@ -134,9 +135,10 @@ SinkActions SinkCore::checked(const Check& check, const std::string& problem) {
 /// Asks for the rounds that can be asked for; what a journal knows of them is checked at once.
 void SinkCore::want() {
   for (const auto& [key, job] : rounds_.advance()) {
+    kinds_[key] = job.kind;
     const auto known = journal_.find(key);
     if (known == journal_.end()) continue;
-    const Check check{key, known->second, WorkerId{}, 0, true};
+    const Check check{key, known->second, WorkerId{}, 0, true, {}, job.kind};
     if (!checking_.try_emplace(key, check).second) continue;
     ++checking_journal_;
     act(check);

@@ -224,6 +224,10 @@ std::optional<Received> receive(zmq::socket_t& socket) {
   }
   if (!frame.more()) {
     received.message = decode_quietly(frame);
+    if (!received.message) {
+      received.other_version =
+          other_version_of({static_cast<const char*>(frame.data()), frame.size()});
+    }
     return received;
   }
   while (frame.more() && receive_frame(socket, frame)) {
@@ -237,7 +241,11 @@ bool send(zmq::socket_t& socket, const Message& message) {
 }
 
 bool send(zmq::socket_t& router, std::string_view peer, const Message& message) {
-  zmq::message_t body = frame_of(message);
+  return send_frame(router, peer, encode(message));
+}
+
+bool send_frame(zmq::socket_t& router, std::string_view peer, std::string_view frame) {
+  zmq::message_t body(frame.data(), frame.size());
   try {
     if (!router.send(zmq::buffer(peer), zmq::send_flags::dontwait | zmq::send_flags::sndmore)) {
       return false;

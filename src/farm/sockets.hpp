@@ -51,7 +51,8 @@ std::string host_name();
 /// One message from a socket, with the peer's routing id if `socket` is a ROUTER.
 struct Received {
   std::string peer;
-  std::optional<Message> message;  // none: it was garbage, and is dropped
+  std::optional<Message> message;              // none: it was garbage, and is dropped
+  std::optional<std::uint16_t> other_version;  // of the protocol, that such garbage was made by
 };
 /// Takes one message without waiting; nothing if there is none.
 std::optional<Received> receive(zmq::socket_t& socket);
@@ -59,6 +60,8 @@ std::optional<Received> receive(zmq::socket_t& socket);
 bool send(zmq::socket_t& socket, const Message& message);
 /// The same to one peer of a ROUTER; false also if the peer is gone.
 bool send(zmq::socket_t& router, std::string_view peer, const Message& message);
+/// The same of a frame that was made otherwise.
+bool send_frame(zmq::socket_t& router, std::string_view peer, std::string_view frame);
 
 /// Waits until one of the items has something or the time is up; a signal ends it early.
 void wait_for(std::vector<zmq::pollitem_t>& items, std::chrono::milliseconds timeout);

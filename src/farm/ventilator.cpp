@@ -53,7 +53,7 @@ class VentilatorLoop {
         endpoint_(announce()),
         dispatcher_(Plan(checked_source(source), options.max_attempts),
                     {options.run, endpoint_.epoch, options.heartbeat, options.hang,
-                     options.schedule, static_cast<bool>(options.event)}) {}
+                     options.schedule, static_cast<bool>(options.event), options.algorithm}) {}
 
   FarmProgress run() {
     if (options_.event) options_.event(RunBegan{endpoint_.epoch, endpoint_.host}, FarmTime(0));
@@ -120,6 +120,7 @@ class VentilatorLoop {
       if (received->message) {
         perform(dispatcher_.on_message(received->peer, *received->message, now));
       } else {
+        if (received->other_version) refuse_other(*received);
         ++garbage_;
       }
     }
@@ -127,6 +128,20 @@ class VentilatorLoop {
     if (count < k_messages_per_turn) perform(dispatcher_.tick(now));
     report(now);
     tell_state(now);
+  }
+
+  /// Whoever speaks another version is told so in its own, and named here once.
+  void refuse_other(const Received& received) {
+    const std::string versions = "protocol version " + std::to_string(*received.other_version) +
+                                 ", this ventilator " + std::to_string(k_protocol_version);
+    send_frame(control_, received.peer,
+               encode_refusal(
+                   *received.other_version,
+                   "you speak " + versions + ": start the same build of meshfarm on all hosts"));
+    if (!std::exchange(told_of_others_, true)) {
+      log_warning("refused: a peer speaks " + versions +
+                  "; start the same build of meshfarm on all hosts");
+    }
   }
 
   void report(FarmTime now) {
@@ -233,6 +248,7 @@ class VentilatorLoop {
   FarmTime next_look_{0};
   FarmTime last_sink_ = start_;
   std::uint64_t garbage_ = 0;
+  bool told_of_others_ = false;
   std::optional<Finish> end_;
 };
 

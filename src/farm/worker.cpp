@@ -47,7 +47,8 @@ class WorkerLoop {
                clipped(host_name()),
                {},
                options.patience,
-               options.capacity},
+               options.capacity,
+               options.algorithm},
               limits_of(options)),
         gate_(std::max(1U, options.capacity.threads)) {
     for (std::uint32_t i = 0; i < limits_of(options).slots; ++i) {

@@ -5,6 +5,7 @@
 #include <limits>
 #include <utility>
 
+#include <meshfarm/pipeline/algorithm.hpp>
 #include <meshfarm/pipeline/budget.hpp>
 #include <meshfarm/pipeline/simplify_job.hpp>
 #include <meshfarm/pipeline/sweep_job.hpp>
@@ -331,8 +332,10 @@ std::int32_t common_level(std::span<const std::vector<Rung>> ladders, std::uint6
 JobSource make_job_source(const Manifest& manifest, const RunOptions& options) {
   return [manifest, options](std::span<const AcceptedJob> accepted) {
     const SortPlan sorted(manifest, accepted);
-    if (!sorted.jobs().empty()) return sorted.jobs();
-    return Rounds(sorted.manifest(), options, sorted.rest()).jobs();
+    std::vector<Job> jobs = sorted.jobs();
+    if (jobs.empty()) jobs = Rounds(sorted.manifest(), options, sorted.rest()).jobs();
+    for (Job& job : jobs) job.algorithm = k_algorithm_version;
+    return jobs;
   };
 }
 

@@ -1,7 +1,9 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
+#include <string>
 #include <utility>
 
+#include <meshfarm/io/result_file.hpp>
 #include <meshfarm/pipeline/compose_job.hpp>
 #include <meshfarm/pipeline/job_table.hpp>
 #include <meshfarm/pipeline/simplify_job.hpp>
@@ -27,6 +29,15 @@ JobOutput do_job(const Job& job, const JobContext& context) {
     if (kind == job.kind) return function(job, context);
   }
   throw DataError("unknown kind of job '" + job.kind + "'; is this worker of another version?");
+}
+
+void check_output(std::string_view kind, const JobOutput& output) {
+  const std::string what = "summary of " + output.file.name;
+  if (kind == k_sort_kind || kind == k_sample_kind) {
+    decode_sort_summary(output.summary, what);
+  } else {
+    decode_summary(output.summary, what);
+  }
 }
 
 }  // namespace meshfarm

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include <meshfarm/pipeline/algorithm.hpp>
 #include <meshfarm/pipeline/run_options.hpp>
 #include <meshfarm/util/bytes.hpp>
 #include <meshfarm/util/checksum.hpp>
@@ -39,6 +40,7 @@ LineOptions get_lines(ByteReader& in) {
 
 std::uint64_t run_key(const Manifest& manifest, const RunOptions& options) {
   ByteWriter out;
+  out.put(k_algorithm_version);
   out.put(checksum(encode_manifest(manifest)));
   out.put(target_triangles(manifest, options));
   // Which may change once slabs are sorted, as degenerate triangles are dropped then.

@@ -28,6 +28,7 @@ struct DispatcherOptions {
   FarmTime hang{30'000};
   SchedulerOptions schedule = {};
   bool tell = false;  // what happens, by Tell
+  std::uint32_t algorithm = 0;
 };
 
 /// The ventilator's mind: who is there, and who holds what; the Scheduler says who gets what. Pure:
@@ -149,6 +150,7 @@ class Dispatcher {
   bool finished_ = false;
   std::uint64_t dropped_ = 0;
   std::uint32_t lost_workers_ = 0;
+  std::string other_build_;  // that was refused last
 };
 
 }  // namespace meshfarm

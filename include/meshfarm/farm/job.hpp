@@ -15,8 +15,9 @@
 
 namespace meshfarm {
 
-/// Names a job by its content: checksum of kind, inputs and parameters. The same work has the same
-/// key in every run, so an accepted result is found again by a restarted or a repeated run.
+/// Names a job by its content: checksum of kind, inputs, parameters and version of the algorithm.
+/// The same work has the same key in every run, so an accepted result is found again by a restarted
+/// or a repeated run.
 struct JobKey {
   std::uint64_t value = 0;
   friend auto operator<=>(const JobKey&, const JobKey&) = default;
@@ -29,6 +30,8 @@ struct Job {
   std::string parameters;       // bytes that the job's function decodes
   std::uint64_t cost = 0;       // estimated work, in triangles
   std::uint64_t memory = 0;     // estimated need in bytes, inputs included; 0: fits everywhere
+  /// Of what does the job: another version may make other bytes of the same inputs.
+  std::uint32_t algorithm = 0;
 };
 
 JobKey key_of(const Job& job);

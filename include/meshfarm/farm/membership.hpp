@@ -21,6 +21,7 @@ struct MemberOptions {
   std::string results;  // the sink's address
   FarmTime patience{60'000};
   Capacity capacity = {};  // a worker's
+  std::uint32_t algorithm = 0;
 };
 
 /// Look at the stage's endpoints and answer with found().

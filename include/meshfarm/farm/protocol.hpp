@@ -22,6 +22,7 @@
 
 #include <chrono>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <variant>
@@ -49,7 +50,13 @@ struct WorkerId {
 
 enum class Role : std::uint8_t { worker = 1, sink = 2 };
 /// stranger: say Hello again. full: try again later. The others are final.
-enum class Refusal : std::uint8_t { stranger = 1, full = 2, other_run = 3, replaced = 4 };
+enum class Refusal : std::uint8_t {
+  stranger = 1,
+  full = 2,
+  other_run = 3,
+  replaced = 4,
+  other_build = 5
+};
 /// run_over: all is done (or given up). leaving: the ventilator was stopped; another may come.
 /// hung: a job of this worker stands still; it has lost its jobs and must end its process.
 enum class StopReason : std::uint8_t { run_over = 1, leaving = 2, hung = 3 };
@@ -70,8 +77,9 @@ struct Hello {
   std::uint64_t incarnation = 0;
   std::uint32_t pid = 0;
   std::string host;
-  std::string results;  // the sink's address
-  Capacity capacity;    // a worker's
+  std::string results;          // the sink's address
+  Capacity capacity;            // a worker's
+  std::uint32_t algorithm = 0;  // its version: results of two must not mix
 };
 struct Welcome {
   WorkerId worker;  // 0 to the sink
@@ -199,6 +207,11 @@ using Message =
 
 /// Throws DataError if a field is longer than the protocol allows.
 std::string encode(const Message& message);
+/// The version of the protocol that a frame of another one claims; nothing if it is of ours, or not
+/// of this protocol at all.
+std::optional<std::uint16_t> other_version_of(std::string_view frame);
+/// A Refused for who speaks another version: its layout, and the choice made here, are in all.
+std::string encode_refusal(std::uint16_t version, std::string_view reason);
 /// The message that is the whole frame. Throws DataError otherwise; nothing else can escape.
 Message decode(std::string_view frame);
 /// Text cut to what a message can carry.

@@ -8,6 +8,7 @@
 #include <functional>
 #include <span>
 #include <string>
+#include <string_view>
 
 #include <meshfarm/farm/job.hpp>
 #include <meshfarm/farm/security.hpp>
@@ -21,8 +22,12 @@ struct SinkOptions {
   std::uint16_t last_port = 0;
   SecurityOptions security;
   std::uint64_t run = 0;                       // must be the ventilator's
+  std::uint32_t algorithm = 0;                 // likewise
   std::chrono::milliseconds patience{60'000};  // how long to look for a ventilator
   const std::atomic<bool>* stop = nullptr;
+  /// Throws DataError if the source could not take this output of a job of that kind: then it is
+  /// not accepted, and the job is done again. May be empty.
+  std::function<void(std::string_view kind, const JobOutput&)> inspect;
 };
 
 /// Collects results: verifies each file, journals it, tells the ventilator, until every job that

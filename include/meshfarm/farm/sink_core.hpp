@@ -24,6 +24,7 @@ struct Check {
   std::uint32_t attempt = 0;  // 0: from a journal
   bool from_journal = false;
   JobTimes times = {};
+  std::string kind = {};  // of the job
 };
 /// Make the run's output of Rounds::outputs(); answered by completed().
 struct MakeOutput {};
@@ -90,6 +91,7 @@ class SinkCore {
   Membership member_;
   Rounds rounds_;
   std::map<JobKey, JobOutput> journal_;
+  std::map<JobKey, std::string> kinds_;  // of the jobs wanted
   SinkActions out_;
   Phase phase_ = Phase::collecting;
   bool begun_ = false;

@@ -36,6 +36,7 @@ struct FarmProgress {
   std::uint32_t retries = 0;
   bool sink_present = false;
   std::uint64_t refused = 0;           // connections that did not prove to belong to the run
+  std::string other_build;             // who was refused for that last, and why
   bool storage_stalls = false;         // most workers wait for the stage
   std::vector<std::string> bad_hosts;  // get no more jobs: too many failed there in a row
 };
@@ -58,7 +59,8 @@ struct VentilatorOptions {
   std::uint16_t first_port = 0;    // 0: any; else control and lanes use this one and those after
   std::uint16_t last_port = 0;
   SecurityOptions security;
-  std::uint64_t run = 0;  // the run's key: peers of another run are refused
+  std::uint64_t run = 0;        // the run's key: peers of another run are refused
+  std::uint32_t algorithm = 0;  // workers and sinks of another version are refused
   std::chrono::milliseconds heartbeat{1000};
   std::chrono::milliseconds hang{30'000};  // a job that makes no progress for so long hangs
   SchedulerOptions schedule = {};

@@ -16,7 +16,9 @@
 namespace meshfarm {
 
 struct WorkerOptions {
-  Capacity capacity;          // what the ventilator is told of this worker
+  Capacity capacity;  // what the ventilator is told of this worker
+  std::uint32_t algorithm =
+      0;                      // version of what does the jobs: a run takes workers of its own only
   std::uint32_t buffer = 16;  // jobs that may wait; a batch is asked for below 0.8 of it
   SecurityOptions security;
   /// How long to look for a ventilator, at the start and after losing one, before giving up.

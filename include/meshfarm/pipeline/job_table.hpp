@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <string_view>
+
 #include <meshfarm/farm/job.hpp>
 
 namespace meshfarm {
@@ -9,5 +11,9 @@ namespace meshfarm {
 /// Does a job by the function of its kind: the one place where the farm's jobs meet the mesh code.
 /// Throws DataError for a kind that this program does not know.
 JobOutput do_job(const Job& job, const JobContext& context);
+
+/// Throws DataError if the run could not go on from this output of a job of that kind: its summary
+/// cannot be read.
+void check_output(std::string_view kind, const JobOutput& output);
 
 }  // namespace meshfarm

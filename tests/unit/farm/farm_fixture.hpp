@@ -114,8 +114,10 @@ struct Farm {
       run_worker(stage, work, options);
     };
   }
-  auto sink(JobSource source, std::vector<std::string>& summaries) {
+  auto sink(JobSource source, std::vector<std::string>& summaries,
+            std::function<void(std::string_view, const JobOutput&)> inspect = {}) {
     SinkOptions options;
+    options.inspect = std::move(inspect);
     options.run = run;
     options.patience = patience;
     return [this, source, options, &summaries](const std::atomic<bool>& stop) mutable {

@@ -385,6 +385,22 @@ TEST_CASE("a sink that is lost stops the farm until one is back and has told wha
   }
 }
 
+TEST_CASE("a process of another build is refused, and both versions are named") {
+  Desk desk(one_round(1));
+  desk.sink("s", 9);
+  for (const Role role : {Role::worker, Role::sink}) {
+    Hello hello{role, k_run, 5, 1, "pc7", {}};
+    hello.algorithm = 3;
+    const auto refused = said_to<Refused>("w", desk.say("w", hello));
+    REQUIRE(refused.size() == 1);
+    CHECK(refused[0].why == Refusal::other_build);
+    CHECK(refused[0].reason.find("version 0 of the algorithm") != std::string::npos);
+    CHECK(refused[0].reason.find("by version 3") != std::string::npos);
+  }
+  CHECK(desk.dispatcher.progress().workers == 0);
+  CHECK(desk.dispatcher.progress().other_build.find("pc7") != std::string::npos);
+}
+
 TEST_CASE("the words of another epoch or of a stranger are dropped") {
   Desk desk(one_round(2));
   desk.sink("s", 9);

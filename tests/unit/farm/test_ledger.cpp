@@ -34,6 +34,15 @@ TEST_CASE("a record comes back as it was, cut or forged not at all") {
   CHECK_THROWS_AS(decode_accepted(encode_accepted(forged), "r"), DataError);
 }
 
+TEST_CASE("a record that does not decode is set aside, those after it count") {
+  const test::TempFolder folder;
+  const Stage stage = Stage::create(folder.path());
+  const std::vector<std::string> records = {encode_accepted(accepted(1, 1)), "of a version to come",
+                                            encode_accepted(accepted(2, 1))};
+  open_journal(stage).append_all(records);
+  CHECK(read_journals(stage).size() == 2);
+}
+
 TEST_CASE("the journals of a stage are read in order, torn and foreign ones as far as they go") {
   const test::TempFolder folder;
   const Stage stage = Stage::create(folder.path());

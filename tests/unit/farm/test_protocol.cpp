@@ -16,14 +16,14 @@ std::vector<Message> one_of_each() {
   const FileRef part{"parts/000001.part", 123, 456};
   const JobOutput output{{"results/00000000000000ff.a2.0000000000000001", 9, 10}, "summary"};
   const JobFailure failure{"the disk is full", FailureKind::no_space};
-  return {Hello{Role::sink, 1, 2, 3, "host", "tcp://h:1", {4, 5, 6, 7}},
+  return {Hello{Role::sink, 1, 2, 3, "host", "tcp://h:1", {4, 5, 6, 7}, 8},
           Welcome{{4}, 5, 6, "tcp://h:2", "tcp://h:3", 1000, 7},
           Refused{Refusal::replaced, "why"},
           Heartbeat{1, {2}, 3, 4, 5, {6}, 7, true, 8},
           Alive{7, "tcp://h:5", 8},
           Credit{1, {2}, 1ULL << 40},
           Release{1, {2}},
-          Assignment{1, 2, 3, 4, {"simplify", {part, part}, std::string("\0\1\2", 3), 77, 88}},
+          Assignment{1, 2, 3, 4, {"simplify", {part, part}, std::string("\0\1\2", 3), 77, 88, 99}},
           Result{1, 2, {3}, 4, 5, {6}, output, {7, 8, 9, 10, 11}},
           Result{1, 2, {3}, 4, 5, {6}, failure, {7, 8, 9, 10, 11}},
           Accept{1, {2}, {3}, output, {4, 5, 6, 7, 8}},
@@ -62,6 +62,7 @@ TEST_CASE("fields come back in their own places") {
   CHECK(assignment.job.parameters == std::string("\0\1\2", 3));
   CHECK(assignment.job.cost == 77);
   CHECK(assignment.job.memory == 88);
+  CHECK(assignment.job.algorithm == 99);
   const Message failed = decode(encode(one_of_each()[9]));
   const auto& failure = std::get<JobFailure>(std::get<Result>(failed).outcome);
   CHECK(failure.reason == "the disk is full");
@@ -112,6 +113,19 @@ TEST_CASE("strangers' frames are refused with a reason") {
   CHECK_THROWS_AS(decode(std::string(k_max_frame_bytes + 1, 'x')), DataError);
 }
 
+TEST_CASE("who speaks another version is told so in a frame of that version") {
+  CHECK_FALSE(other_version_of(encode(Complete{1})));
+  CHECK_FALSE(other_version_of("MFMS"));
+  CHECK_FALSE(other_version_of("GET / HTTP/1.1"));
+  std::string frame = encode(Complete{1});
+  frame[4] = 2;
+  CHECK(other_version_of(frame) == 2);
+  std::string refusal = encode_refusal(2, "why");
+  CHECK(refusal == std::string("MFMS\2\0\3\0\3\3\0\0\0why", 16));
+  refusal[4] = static_cast<char>(k_protocol_version);
+  CHECK(std::get<Refused>(decode(refusal)).reason == "why");
+}
+
 TEST_CASE("numbers on the wire never change") {
   CHECK(encode(Stop{StopReason::leaving}) == std::string("MFMS\3\0\x12\0\2", 9));
   CHECK(encode(Credit{1, {2}, 3}) ==
@@ -146,12 +160,15 @@ TEST_CASE("a job's key is its content") {
   other.cost = 4;
   CHECK(key_of(other) == key_of(job));
   CHECK(key_of(job).value ==
-        4690990379286955476ULL);  // the recipe must not change: journals are keyed by it
+        13621565660128742218ULL);  // the recipe must not change: journals are keyed by it
   other = job;
   other.kind = "stitch";
   CHECK(key_of(other) != key_of(job));
   other = job;
   other.inputs[0].hash = 3;
+  CHECK(key_of(other) != key_of(job));
+  other = job;
+  other.algorithm = 1;
   CHECK(key_of(other) != key_of(job));
   other = job;
   other.parameters = "q";

@@ -184,6 +184,30 @@ TEST_CASE("what nobody should send is dropped, whoever sends it, and the run goe
   for (std::size_t i = 0; i < 100; ++i) CHECK(summaries[i] == reversed("job " + std::to_string(i)));
 }
 
+TEST_CASE("a process of an older protocol is refused in words that it understands") {
+  Farm farm;
+  Part ventilator(farm.ventilator(one_round(1)));
+  const Endpoint endpoint = wait_for_endpoint(farm.stage);
+  zmq::context_t context;
+  zmq::socket_t control =
+      make_control_client(context, keys_to_connect(farm.stage, endpoint, {}), random_id());
+  control.connect(endpoint.address);
+  std::string hello = encode(Hello{Role::worker, 0, 5, 1, "old", {}});
+  hello[4] = 2;  // its version
+  control.send(zmq::buffer(hello), zmq::send_flags::none);
+  zmq::message_t frame;
+  control.set(zmq::sockopt::rcvtimeo, 10'000);
+  REQUIRE(control.recv(frame));
+  std::string refusal = frame.to_string();
+  CHECK(refusal[4] == 2);
+  refusal[4] = static_cast<char>(k_protocol_version);
+  const std::string reason = std::get<Refused>(decode(refusal)).reason;
+  CHECK(reason.find("protocol version 2") != std::string::npos);
+  CHECK(reason.find(std::to_string(k_protocol_version)) != std::string::npos);
+  ventilator.stop();
+  CHECK_THROWS_AS(ventilator.join(), IncompleteError);
+}
+
 TEST_CASE("a worker gets no more than its credit, and if it falls silent others do its jobs") {
   Farm farm;
   const JobSource source = one_round(20);
