@@ -23,15 +23,10 @@ find_meshfarm() {
   return 1
 }
 
-# The words of a run that its workers need too, one a line.
-security_words() {
-  while [ $# -gt 0 ]; do
-    case "$1" in
-      --key-file) printf '%s\n' "$1" "${2:-}"; shift ;;
-      --key-file=* | --insecure | --allow-soft) printf '%s\n' "$1" ;;
-    esac
-    shift
-  done
+# The words of a run that its workers need too, one a line: worker_words STAGE RUN-OPTIONS...
+# The program at hand reads the options, wherever they stand, and knows the run's key.
+worker_words() {
+  "${meshfarm:-${MESHFARM:?}}" run "$@" --worker-words
 }
 
 # A word as any POSIX shell reads it back.

@@ -16,7 +16,7 @@
 #   MESHFARM  the program, at the same path on all nodes (default: the one built beside this script)
 set -euo pipefail
 
-# A worker of the array: $MESHFARM, $MESHFARM_STAGE and the words of its security.
+# A worker of the array: $MESHFARM, $MESHFARM_STAGE and the words of its run.
 run_element() {
   exec "$MESHFARM" worker "$MESHFARM_STAGE" --threads "${SLURM_CPUS_PER_TASK:-1}" --wait 600 "$@"
 }
@@ -36,7 +36,7 @@ see_run_through() {
   done
 }
 
-# The job of the one allocation: run options, --, the words of the workers' security.
+# The job of the one allocation: run options, --, the words of its workers.
 run_allocation() {
   local options=() workers word=$MESHFARM_STAGE.slurm-$SLURM_JOB_ID.code
   while [ "$1" != -- ]; do options+=("$1"); shift; done
@@ -77,7 +77,8 @@ MESHFARM=$(find_meshfarm)
 MESHFARM_STAGE=$(realpath "$1")
 export MESHFARM MESHFARM_STAGE
 shift
-mapfile -t security < <(security_words "$@")
+words=$(worker_words "$MESHFARM_STAGE" "$@") || exit $?
+mapfile -t words <<< "$words"
 self=$(realpath "${BASH_SOURCE[0]}")
 sbatch_options=(--parsable --requeue --open-mode=append --job-name=meshfarm
   --output="$MESHFARM_STAGE.slurm-%A.log" ${sbatch_options[@]+"${sbatch_options[@]}"})
@@ -91,7 +92,7 @@ cancel() {
 launch_array() {
   trap cancel EXIT
   job=$(sbatch "${sbatch_options[@]}" --array=1-"$count" "$self" --element \
-    ${security[@]+"${security[@]}"})
+    "${words[@]}")
   job=${job%%;*}
   echo "launch-slurm.sh: job array $job, $count workers, log $MESHFARM_STAGE.slurm-$job.log" >&2
   see_run_through "$@"
@@ -107,7 +108,7 @@ launch_allocation() {
   trap 'cancel; echo "launch-slurm.sh: cancelled; the same command goes on from there" >&2; exit 3' \
     INT TERM HUP
   job=$(sbatch "${sbatch_options[@]}" --nodes="$count" --no-kill "$self" --allocation "$@" -- \
-    ${security[@]+"${security[@]}"})
+    "${words[@]}")
   job=${job%%;*}
   local log=$MESHFARM_STAGE.slurm-$job.log word=$MESHFARM_STAGE.slurm-$job.code
   echo "launch-slurm.sh: job $job on $count nodes, log $log" >&2

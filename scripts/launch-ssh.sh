@@ -38,16 +38,17 @@ remote=${MESHFARM_REMOTE:-$meshfarm}
 read -ra ssh_command <<< "${MESHFARM_SSH:-ssh}"
 stage=$(realpath "$1")
 shift
-mapfile -t security < <(security_words "$@")
+words=$(worker_words "$stage" "$@") || exit $?
+mapfile -t words <<< "$words"
 
 # What a host runs: a worker that is asked to leave once nothing holds the other end of stdin.
 remote_command() {
-  local words word
-  words="$(quoted "$remote") worker $(quoted "$stage") --threads $1"
-  for word in ${security[@]+"${security[@]}"}; do words+=" $(quoted "$word")"; done
+  local command word
+  command="$(quoted "$remote") worker $(quoted "$stage") --threads $1"
+  for word in "${words[@]}"; do command+=" $(quoted "$word")"; done
   # A background process gets no stdin of its own, so the watch reads the shell's by another number.
   # shellcheck disable=SC2016 # for the host's shell
-  printf 'exec 3<&0; %s < /dev/null 3<&- & worker=$!; %s & watch=$!; %s' "$words" \
+  printf 'exec 3<&0; %s < /dev/null 3<&- & worker=$!; %s & watch=$!; %s' "$command" \
     '{ cat <&3 > /dev/null; kill -TERM $worker; } 2> /dev/null' \
     'wait $worker; code=$?; kill $watch 2> /dev/null; exit $code'
 }

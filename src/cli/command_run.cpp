@@ -1,7 +1,12 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
 #include <filesystem>
+#include <iostream>
 
+#include <meshfarm/io/manifest.hpp>
+#include <meshfarm/pipeline/run_options.hpp>
+#include <meshfarm/staging/stage.hpp>
+#include <meshfarm/util/checksum.hpp>
 #include <meshfarm/util/errors.hpp>
 #include <meshfarm/util/log.hpp>
 
@@ -39,6 +44,10 @@ class RunCommand : public Command {
                           "worker processes started here");
     if (whose_ == Workers::of_any_host) network_.add(options);
     schedule_.add(options);
+    options.add_options()(
+        "worker-words", po::bool_switch(&worker_words_),
+        "only print, one a line, what a 'meshfarm worker STAGE' of this run is to "
+        "be started with");
     talk_.add(options);
     positional.add("stage", 1);
   }
@@ -55,6 +64,7 @@ class RunCommand : public Command {
     if (output_.empty()) output_ = (std::filesystem::path(stage_) / "result.ply").string();
   }
   int run() override {
+    if (worker_words_) return print_worker_words();
     const std::atomic<bool>& stop = stop_on_signals();
     check_writable(output_);
     const int code =
@@ -66,7 +76,17 @@ class RunCommand : public Command {
   }
 
  private:
+  int print_worker_words() const {
+    const Stage stage = Stage::open(stage_);
+    const Manifest manifest =
+        decode_manifest(stage.read(ManifestName{}), stage.path(ManifestName{}).string());
+    std::cout << "--run\n" << to_hex(run_key(manifest, target_.run)) << "\n";
+    for (const std::string& word : network_.security.words()) std::cout << word << "\n";
+    return 0;
+  }
+
   Workers whose_;
+  bool worker_words_ = false;
   std::string stage_;
   std::string output_;
   std::uint32_t workers_;

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
 #include <algorithm>
+#include <charconv>
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
@@ -41,12 +42,17 @@ class WorkerCommand : public FarmCommand {
                                     "what parts in work may take together, as 8G (default: this "
                                     "worker's share of what the host "
                                     "or its control group has free)");
+    options.add_options()(
+        "run", po::value(&run_)->value_name("KEY"),
+        "serve this run only, as 'meshfarm run --worker-words' tells it (default: "
+        "the newest of the stage)");
     security_.add(options);
     talk_.add_quiet(options);
   }
   void check() override {
     security_.check();
     if (threads_ == 0 || threads_ > 256) throw UsageError("--threads: from 1 to 256");
+    if (!run_.empty()) run_key_ = parse_run(run_);
     if (!memory_.empty()) memory_bytes_ = parse_size(memory_, "--memory");
   }
 
@@ -58,6 +64,7 @@ class WorkerCommand : public FarmCommand {
     options.security = security_.security;
     options.patience = std::chrono::seconds(wait_s_);
     options.stop = &stop;
+    options.run = run_key_;
     options.algorithm = k_algorithm_version;
     options.abort = [](const std::string& incomplete) { end_process(incomplete); };
     options.capacity.threads = threads_;
@@ -82,6 +89,16 @@ class WorkerCommand : public FarmCommand {
     } catch (const IoError& error) {
       log_debug(error.what());
     }
+  }
+
+  static std::uint64_t parse_run(const std::string& text) {
+    std::uint64_t key = 0;
+    const char* last = text.data() + text.size();
+    const auto [end, error] = std::from_chars(text.data(), last, key, 16);
+    if (error != std::errc{} || end != last || key == 0) {
+      throw UsageError("--run takes a run's key, 16 hexadecimal digits, not '" + text + "'");
+    }
+    return key;
   }
 
   /// Shared with the other workers of this host, or of its control group.
@@ -112,6 +129,8 @@ class WorkerCommand : public FarmCommand {
   std::uint32_t wait_s_ = 60;
   std::uint32_t threads_ = 1;
   std::uint64_t speed_ = 0;
+  std::string run_;
+  std::uint64_t run_key_ = 0;
   std::string memory_;
   std::uint64_t memory_bytes_ = 0;
   SecurityWords security_;

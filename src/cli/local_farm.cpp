@@ -9,8 +9,10 @@
 
 #include <meshfarm/io/manifest.hpp>
 #include <meshfarm/pipeline/budget.hpp>
+#include <meshfarm/pipeline/run_options.hpp>
 #include <meshfarm/staging/file_system.hpp>
 #include <meshfarm/staging/stage.hpp>
+#include <meshfarm/util/checksum.hpp>
 #include <meshfarm/util/control_groups.hpp>
 #include <meshfarm/util/errors.hpp>
 #include <meshfarm/util/log.hpp>
@@ -104,6 +106,7 @@ int run_local_farm(const LocalFarm& farm, const std::atomic<bool>& stop) {
   supervisor.start(sink);
   std::vector<std::string> worker =
       joined({"worker", farm.stage}, joined(farm.network.security.words(), shared));
+  worker = joined(worker, {"--run", to_hex(run_key(manifest, farm.target.run))});
   if (crew.memory != 0) {
     worker = joined(worker, {"--memory", std::to_string(crew.memory)});
   }

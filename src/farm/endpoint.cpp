@@ -5,8 +5,6 @@
 //   epoch u32 | run u64 | address text | host text | pid u32 | server key text
 //   text = length u32 | bytes
 // Version 1 had no server key.
-#include <cerrno>
-
 #include <meshfarm/farm/endpoint.hpp>
 #include <meshfarm/staging/sealed.hpp>
 #include <meshfarm/util/bytes.hpp>
@@ -55,13 +53,8 @@ Endpoint publish_endpoint(const Stage& stage, Endpoint endpoint, std::string_vie
     endpoint.epoch = epochs.empty() ? 1 : epochs.back() + 1;
     const EndpointName name{endpoint.epoch};
     const std::string bytes = encode_endpoint(endpoint);
-    try {
-      stage.publish(name, bytes, unique);
-    } catch (const IoError& error) {
-      if (error.error_number() != EEXIST) throw;
-      continue;
-    }
-    // A rename replaces: where two published one number at the same time, the file says who has it.
+    if (!stage.publish_new(name, bytes, unique)) continue;
+    // Where there are no hard links two may be told that it is theirs: the file says whose it is.
     if (stage.read(name) == bytes) return endpoint;
   }
 }

@@ -1,7 +1,9 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
 #include <algorithm>
+#include <map>
 #include <utility>
+#include <vector>
 
 #include <meshfarm/farm/membership.hpp>
 
@@ -38,7 +40,7 @@ Membership::Event Membership::tick(FarmTime now) {
     reason_ = "no answer from the ventilator at " + dialled_->address + " (host " + dialled_->host +
               ", pid " + std::to_string(dialled_->pid) + ") for ";
   } else if (seen_over_) {
-    reason_ = "the last run of this stage is over, and no ventilator came for another in ";
+    reason_ = "the runs of this stage are over, and no ventilator came for another in ";
   } else if (seen_other_run_) {
     reason_ = "only ventilators of another run (is the target the same?) were in the stage for ";
   } else {
@@ -91,23 +93,49 @@ Membership::Event Membership::on_refused(const Refused& refused, FarmTime now) {
 
 Membership::Event Membership::found(std::span<const Endpoint> endpoints, FarmTime now) {
   if (joined_) return Event::none;
-  const Endpoint* newest = nullptr;
+  std::map<std::uint64_t, const Endpoint*> newest;  // of each run that we may serve
   for (const Endpoint& endpoint : endpoints) {
     const bool ours = options_.run == 0 || endpoint.run == options_.run;
-    if (ours) newest = &endpoint;
+    if (ours) newest[endpoint.run] = &endpoint;
     seen_other_run_ = seen_other_run_ || !ours;
   }
-  if (newest == nullptr) return Event::none;
-  if (newest->address.empty()) {
-    // Whoever came after the end waits for the next run instead.
-    const bool was_there = dialled_ && dialled_->run == newest->run;
+  bool was_there = false;
+  std::vector<const Endpoint*> live;
+  for (const auto& [run, endpoint] : newest) {
+    if (!endpoint->address.empty()) {
+      live.push_back(endpoint);
+      continue;
+    }
     seen_over_ = true;
-    return was_there ? Event::run_over : Event::none;
+    was_there = was_there || (dialled_ && dialled_->run == run);
   }
-  const bool other = !dialled_ || dialled_->epoch != newest->epoch;
+  // Whoever came after the end, or was never let in, looks for another run instead.
+  if (was_there && (live.empty() || welcome_.run == dialled_->run)) return Event::run_over;
+  if (live.empty()) return Event::none;
+  std::sort(live.begin(), live.end(),
+            [](const Endpoint* a, const Endpoint* b) { return a->epoch > b->epoch; });
+  greet(*choose(live, now), now);
+  return Event::none;
+}
+
+/// The newest, which is the likeliest to be there; the next one where it does not answer. Whoever
+/// lost a ventilator stays with its run as long as that may come back.
+const Endpoint* Membership::choose(std::span<const Endpoint* const> live, FarmTime now) {
+  const bool is_new = live.front()->epoch > newest_seen_;
+  if (is_new) alone_since_ = now;
+  newest_seen_ = std::max(newest_seen_, live.front()->epoch);
+  const auto same = std::find_if(live.begin(), live.end(), [&](const Endpoint* each) {
+    return dialled_ && each->run == dialled_->run;
+  });
+  if (same == live.end() || (is_new && !lost_)) return live.front();
+  if (greetings_ < k_greetings_per_dial || std::exchange(lost_, false)) return *same;
+  return same + 1 == live.end() ? live.front() : *(same + 1);
+}
+
+void Membership::greet(const Endpoint& endpoint, FarmTime now) {
+  const bool other = !dialled_ || dialled_->epoch != endpoint.epoch;
   if (other || greetings_ >= k_greetings_per_dial) {
-    if (other) alone_since_ = now;
-    dialled_ = *newest;
+    dialled_ = endpoint;
     dial_ = true;
     greetings_ = 0;
     look_pause_ = k_first_answer;
@@ -115,7 +143,6 @@ Membership::Event Membership::found(std::span<const Endpoint> endpoints, FarmTim
   }
   ++greetings_;
   greet_ = true;
-  return Event::none;
 }
 
 bool Membership::look_due(FarmTime now) {
@@ -155,6 +182,7 @@ Membership::Event Membership::lose(FarmTime now) {
   look_pause_ = k_first_look;
   // The same endpoint is dialled again, as it may have lost us and not we it.
   greetings_ = k_greetings_per_dial;
+  lost_ = true;
   return Event::lost;
 }
 

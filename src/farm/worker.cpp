@@ -41,7 +41,7 @@ class WorkerLoop {
         context_(make_context()),
         link_(context_, stage, options.security),
         core_({Role::worker,
-               0,
+               options.run,
                incarnation_,
                static_cast<std::uint32_t>(::getpid()),
                clipped(host_name()),

@@ -160,6 +160,13 @@ FileRef Stage::publish(const StagedName& name, std::string_view bytes,
   return file.commit();
 }
 
+bool Stage::publish_new(const StagedName& name, std::string_view bytes,
+                        std::string_view unique) const {
+  StagedWriter file(*this, name, unique);
+  file.write(bytes);
+  return file.commit_new();
+}
+
 std::string Stage::read(const FileRef& file, const ReadPatience& patience) const {
   return patiently(*this, file, patience, [&] { return read_once(root_, file); });
 }

@@ -319,3 +319,22 @@ TEST_CASE("two runs of different targets do not mix") {
   CHECK(ventilator.wait() == 0);
   bench().check_result(stage + ".ply");
 }
+
+TEST_CASE("a run and two replays of one stage at once have their own workers, and each ends") {
+  const std::string stage = bench().cut();
+  Process run =
+      bench().start({"run", stage, "--ratio", "0.02", "-o", stage + ".ply", "--bind", "127.0.0.1"});
+  std::vector<Process> replays;
+  for (const char* ratio : {"0.05", "0.1"}) {
+    replays.push_back(bench().start(
+        {"replay", stage, "--ratio", ratio, "--workers", "1", "-o", stage + ratio + ".ply"}));
+  }
+  for (Process& replay : replays) CHECK(replay.wait() == 0);
+  const Ran key = bench().meshfarm({"run", stage, "--ratio", "0.02", "--worker-words"});
+  CHECK(key.code == 0);
+  REQUIRE(key.out.rfind("--run\n", 0) == 0);
+  Process worker = bench().start({"worker", stage, "--run", key.out.substr(6, 16)});
+  CHECK(run.wait() == 0);
+  CHECK(worker.wait() == 0);
+  bench().check_result(stage + ".ply");
+}

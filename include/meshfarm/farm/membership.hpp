@@ -81,6 +81,8 @@ class Membership {
 
  private:
   Event lose(FarmTime now);
+  const Endpoint* choose(std::span<const Endpoint* const> live, FarmTime now);
+  void greet(const Endpoint& endpoint, FarmTime now);
   Event on_refused(const Refused& refused, FarmTime now);
   Event on_welcome(const Welcome& welcome, FarmTime now);
 
@@ -96,6 +98,8 @@ class Membership {
   std::optional<Endpoint> dialled_;
   bool seen_over_ = false;
   bool seen_other_run_ = false;
+  std::uint32_t newest_seen_ = 0;  // epoch
+  bool lost_ = false;              // the ventilator dialled last, and not dialled again yet
   int greetings_ = 0;
   bool dial_ = false;
   bool greet_ = false;

@@ -16,7 +16,8 @@
 namespace meshfarm {
 
 struct WorkerOptions {
-  Capacity capacity;  // what the ventilator is told of this worker
+  Capacity capacity;      // what the ventilator is told of this worker
+  std::uint64_t run = 0;  // serves this run only; 0: whichever there is
   std::uint32_t algorithm =
       0;                      // version of what does the jobs: a run takes workers of its own only
   std::uint32_t buffer = 16;  // jobs that may wait; a batch is asked for below 0.8 of it

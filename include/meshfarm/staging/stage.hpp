@@ -45,6 +45,10 @@ class Stage {
   FileRef publish(const StagedName& name, std::string_view bytes,
                   std::string_view unique = {}) const;
 
+  /// The same if nobody has published the name; else false, and what is there stays.
+  bool publish_new(const StagedName& name, std::string_view bytes,
+                   std::string_view unique = {}) const;
+
   /// Reads a file that a message told of: its name must parse, it is opened beneath the stage only,
   /// and size and checksum must match; stale NFS answers are tried again. Throws DataError,
   /// IoError.

@@ -27,6 +27,8 @@ class StagedWriter {
     file_.commit();
     return {name_, file_.size(), sum_.value()};
   }
+  /// The same if nobody has the name yet; else false (AtomicFile::commit_new).
+  bool commit_new() { return file_.commit_new(); }
 
  private:
   std::string name_;

@@ -1,6 +1,10 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
 #include <fstream>
+#include <set>
+#include <string>
+#include <thread>
+#include <vector>
 
 #include <doctest/doctest.h>
 
@@ -42,6 +46,29 @@ TEST_CASE("each publisher gets an epoch of its own, above all that there are") {
   CHECK(seen[2].address == k_endpoint.address);
   publish_endpoint(stage, k_endpoint, "d");
   CHECK(list.look(stage).back().epoch == 11);
+}
+
+TEST_CASE("of many who publish at the same time each has an epoch of its own") {
+  const test::TempFolder folder;
+  const Stage stage = Stage::create(folder.path());
+  constexpr std::uint32_t k_publishers = 8;
+  constexpr std::uint32_t k_each = 10;
+  std::vector<std::vector<std::uint32_t>> epochs(k_publishers);
+  {
+    std::vector<std::jthread> threads;
+    for (std::uint32_t i = 0; i < k_publishers; ++i) {
+      threads.emplace_back([&, i] {
+        for (std::uint32_t n = 0; n < k_each; ++n) {
+          Endpoint mine = k_endpoint;
+          mine.pid = i;
+          epochs[i].push_back(publish_endpoint(stage, mine, "p" + std::to_string(i)).epoch);
+        }
+      });
+    }
+  }
+  std::set<std::uint32_t> all;
+  for (const auto& each : epochs) all.insert(each.begin(), each.end());
+  CHECK(all.size() == k_publishers * k_each);
 }
 
 TEST_CASE("an endpoint under another number than its own is left out") {
