@@ -1,30 +1,35 @@
 #!/usr/bin/env bash
 # Measures meshfarm beside its peers, and prints one table:
 #   bench.sh [--peers all|NAME,...] [--runs N] [--ratio R] [--workers N] [--install] [--kernel] INPUT.ply
-#   --peers    meshoptimizer, cgal (both of its methods), openmesh, vtk, or none: those that are
-#              installed are run, the others are named (default: all)
+#   bench.sh --corpus FOLDER [--ratios R,...] [--peers all|NAME,...] [--workers N] [--install]
+#   --peers    meshoptimizer (Debian's and npm's), cgal (both of its methods), openmesh, vtk, or
+#              none: those that are installed are run, the others are named (default: all)
 #   --runs     rounds; the programs take turns in each, and medians are shown (default: 5)
 #   --ratio    how much of the input is kept (default: 0.01)
 #   --workers  of the whole runs of meshfarm (default: 2)
-#   --install  first installs the Debian packages of the peers
+#   --install  first installs the peers: Debian packages, and meshoptimizer's newest from npm
 #   --kernel   also runs the microbenchmarks; without INPUT.ply only these
+#   --corpus   every mesh of FOLDER (.ply, .ply.gz, .ply.zst), to every ratio, by both schemes
+#   --ratios   of the corpus (default: 0.5,0.1,0.03,0.01,0.003)
 # The rows "file to file" are whole runs: everything from the start of the program to its end. The
 # others time the simplification alone, of a mesh that is read and cleaned before.
 set -euo pipefail
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 build=$root/build-bench
-known=(meshoptimizer cgal_lindstrom_turk cgal_garland_heckbert openmesh vtk)
+known=(meshoptimizer meshoptimizer_npm cgal_lindstrom_turk cgal_garland_heckbert openmesh vtk)
+npm_version=1.3.0
 
 fail_usage() {
   echo "bench.sh: $1" >&2
-  sed -n '3s/^# *//p' "$0" >&2
+  sed -n '3,4s/^# *//p' "$0" >&2
   exit 2
 }
 
 peers=all runs=5 ratio=0.01 workers=2 install=no kernel=no input=
+corpus='' ratios=0.5,0.1,0.03,0.01,0.003
 while [ $# -gt 0 ]; do
   case "$1" in
-    --peers | --runs | --ratio | --workers)
+    --peers | --runs | --ratio | --workers | --corpus | --ratios)
       [ $# -gt 1 ] || fail_usage "$1 needs a value"
       declare "${1#--}=$2"
       shift ;;
@@ -38,17 +43,21 @@ while [ $# -gt 0 ]; do
 done
 [[ $runs =~ ^[1-9][0-9]*$ ]] || fail_usage "--runs: at least 1"
 [[ $workers =~ ^[1-9][0-9]*$ ]] || fail_usage "--workers: at least 1"
-[ -n "$input" ] || [ "$kernel" = yes ] || fail_usage "INPUT.ply is missing"
+[ -n "$input$corpus" ] || [ "$kernel" = yes ] || fail_usage "INPUT.ply is missing"
+[ -z "$input" ] || [ -z "$corpus" ] || fail_usage "either INPUT.ply or --corpus"
+[ -z "$corpus" ] || [ -d "$corpus" ] || fail_usage "--corpus: $corpus is no folder"
 [ -z "$input" ] || [ -r "$input" ] || fail_usage "can't read $input"
 
 install_peers() {
   local sudo=()
   [ "$(id -u)" -eq 0 ] || sudo=(sudo)
-  "$root/scripts/packages.sh"
+  "$root/scripts/packages.sh" --npm
   DEBIAN_FRONTEND=noninteractive "${sudo[@]}" apt-get install -y --no-install-recommends \
     libmeshoptimizer-dev libcgal-dev libopenmesh-dev libvtk9-dev libbenchmark-dev libeigen3-dev \
     > "$build/install.log" 2>&1 ||
     { tail -n 5 "$build/install.log" >&2; echo "bench.sh: could not install the peers" >&2; exit 1; }
+  npm install --prefix "$build/npm" "meshoptimizer@$npm_version" > "$build/npm.log" 2>&1 ||
+    { tail -n 5 "$build/npm.log" >&2; echo "bench.sh: npm has no meshoptimizer for us" >&2; exit 1; }
 }
 
 # The names of the peers to run; those asked for that were not built are named on stderr.
@@ -107,12 +116,17 @@ if [ "$kernel" = yes ]; then
     { echo "bench.sh: Google Benchmark is not installed (--install gets it)" >&2; exit 1; }
   "$build/tests/bench/bench_kernel"
 fi
+mapfile -t names < <(choose_peers)
+if [ -n "$corpus" ]; then
+  [[ " ${names[*]} " != *" meshoptimizer "* ]] || names+=(meshoptimizer_file)
+  exec python3 "$root/tests/bench/corpus.py" "$corpus" --build "$build" --ratios "$ratios" \
+    --workers "$workers" --peers "${names[@]}"
+fi
 [ -n "$input" ] || exit 0
 
 results=$build/results
 rm -rf "$results"
 mkdir -p "$results"
-mapfile -t names < <(choose_peers)
 names=(meshfarm "${names[@]}" meshfarm_file)
 [[ " ${names[*]} " != *" meshoptimizer "* ]] || names+=(meshoptimizer_file)
 
