@@ -15,16 +15,18 @@ class GenerateCommand : public Command {
  public:
   std::string_view name() const override { return "generate"; }
   std::string_view synopsis() const override {
-    return "-o OUTPUT (--triangles N | --shuffle --from FILE)";
+    return "-o OUTPUT (--triangles N [--shape NAME] | --shuffle --from FILE)";
   }
   std::string_view summary() const override {
-    return "make a closed test surface of any size, streamed to a file";
+    return "make a test mesh of any size, streamed to a file";
   }
   void setup(po::options_description& options, po::positional_options_description&) override {
     options.add_options()("output,o", po::value(&output_)->required()->value_name("FILE"),
                           "where it goes, as PLY")(
         "triangles", po::value(&triangles_)->default_value(triangles_)->value_name("N"),
-        "about so many triangles")(
+        "about so many triangles")("shape",
+                                   po::value(&shape_)->default_value(shape_)->value_name("NAME"),
+                                   "torus, foam, dust, soup, terrain, block or shell")(
         "shuffle", po::bool_switch(&shuffle_),
         "put vertices and triangles into random order; holds the mesh in memory")(
         "from", po::value(&from_)->value_name("FILE"),
@@ -33,6 +35,7 @@ class GenerateCommand : public Command {
   }
   void check() override {
     if (!from_.empty() && !shuffle_) throw UsageError("--from goes with --shuffle");
+    shape_named(shape_);
   }
   int run() override {
     shuffle_ ? write_shuffled() : write_in_order();
@@ -45,7 +48,7 @@ class GenerateCommand : public Command {
     PositionType positions = PositionType::float32;
     Mesh mesh;
     if (from_.empty()) {
-      mesh = whole(BumpyTorus(triangles_));
+      mesh = in_memory(*generate_mesh(shape_named(shape_), triangles_));
     } else {
       const auto source = open_mesh(from_);
       mesh = read_mesh(*source);
@@ -55,41 +58,24 @@ class GenerateCommand : public Command {
     write_ply(output_, mesh, positions);
   }
 
-  static Mesh whole(const BumpyTorus& torus) {
-    if (torus.vertices() > UINT32_MAX) {
-      throw UsageError("--shuffle: a mesh of so many triangles cannot be held in memory");
-    }
-    Mesh mesh;
-    torus.for_vertices([&](std::span<const Vec3> batch) {
-      mesh.positions.insert(mesh.positions.end(), batch.begin(), batch.end());
-    });
-    torus.for_triangles([&](std::span<const WideTriangle> batch) {
-      for (const auto& [a, b, c] : batch) {
-        mesh.triangles.push_back({static_cast<std::uint32_t>(a), static_cast<std::uint32_t>(b),
-                                  static_cast<std::uint32_t>(c)});
-      }
-    });
-    return mesh;
-  }
-
   void write_in_order() const {
-    const BumpyTorus torus(triangles_);
-    PlyWriter writer(output_, {.vertices = torus.vertices(),
-                               .triangles = torus.triangles(),
+    const auto made = generate_mesh(shape_named(shape_), triangles_);
+    PlyWriter writer(output_, {.vertices = made->vertices(),
+                               .triangles = made->triangles(),
                                .positions = PositionType::float32,
                                .comment = "meshfarm generate"});
     ProgressPrinter printer(talk_.progress());
     std::uint64_t written = 0;
-    const double all = static_cast<double>(torus.vertices() + torus.triangles());
+    const auto all = static_cast<double>(made->vertices() + made->triangles());
     const auto tell = [&](std::size_t more) {
       written += more;
       printer.show({.phase = "generate", .done = static_cast<double>(written) / all});
     };
-    torus.for_vertices([&](std::span<const Vec3> batch) {
+    made->for_vertices([&](std::span<const Vec3> batch) {
       writer.vertices(batch);
       tell(batch.size());
     });
-    torus.for_triangles([&](std::span<const WideTriangle> batch) {
+    made->for_triangles([&](std::span<const WideTriangle> batch) {
       writer.triangles(batch);
       tell(batch.size());
     });
@@ -98,6 +84,7 @@ class GenerateCommand : public Command {
 
   std::string output_;
   std::uint64_t triangles_ = 1'000'000;
+  std::string shape_ = "torus";
   bool shuffle_ = false;
   std::string from_;
   TalkOptions talk_;

@@ -26,21 +26,6 @@ constexpr std::uint64_t k_triangles = 40'000;
 constexpr std::chrono::milliseconds k_duration{250};
 constexpr std::uint64_t k_usual_speed = 3'000'000;
 
-Mesh benchmark_mesh() {
-  const BumpyTorus torus(k_triangles);
-  Mesh mesh;
-  torus.for_vertices([&](std::span<const Vec3> batch) {
-    mesh.positions.insert(mesh.positions.end(), batch.begin(), batch.end());
-  });
-  torus.for_triangles([&](std::span<const std::array<std::uint64_t, 3>> batch) {
-    for (const auto& [a, b, c] : batch) {
-      mesh.triangles.push_back({static_cast<std::uint32_t>(a), static_cast<std::uint32_t>(b),
-                                static_cast<std::uint32_t>(c)});
-    }
-  });
-  return mesh;
-}
-
 std::string cpu_model() {
   std::ifstream file("/proc/cpuinfo");
   for (std::string line; std::getline(file, line);) {
@@ -62,7 +47,7 @@ std::filesystem::path file_of(const std::filesystem::path& folder, std::string_v
 
 std::uint64_t measure_speed() {
   using Clock = std::chrono::steady_clock;
-  const Mesh mesh = benchmark_mesh();
+  const Mesh mesh = in_memory(BumpyTorus(k_triangles));
   const auto collapse_away = [&] { Simplifier(mesh, {}).reduce({.triangles = 0}); };
   collapse_away();  // finds caches cold and memory fresh, as no later part will
   std::uint64_t rounds = 0;

@@ -32,18 +32,7 @@ namespace meshfarm::bench {
 namespace {
 
 Mesh torus(std::int64_t triangles) {
-  const BumpyTorus source(static_cast<std::uint64_t>(triangles));
-  Mesh mesh;
-  source.for_vertices([&](std::span<const Vec3> batch) {
-    mesh.positions.insert(mesh.positions.end(), batch.begin(), batch.end());
-  });
-  source.for_triangles([&](std::span<const std::array<std::uint64_t, 3>> batch) {
-    for (const auto& t : batch) {
-      mesh.triangles.push_back({static_cast<std::uint32_t>(t[0]), static_cast<std::uint32_t>(t[1]),
-                                static_cast<std::uint32_t>(t[2])});
-    }
-  });
-  return mesh;
+  return in_memory(BumpyTorus(static_cast<std::uint64_t>(triangles)));
 }
 
 /// A folder of our own, gone at the end.

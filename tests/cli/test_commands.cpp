@@ -341,6 +341,19 @@ TEST_CASE("generate, info and compare fit together") {
   CHECK(has(ran.out, "\"triangles\": 2000,"));
 }
 
+TEST_CASE("generate makes shapes by their names") {
+  Shell shell;
+  const std::string block = shell.path("b.ply"), mixed = shell.path("m.ply");
+  CHECK(shell({"generate", "-o", block, "--shape", "block", "--triangles", "10000"}).code == 0);
+  CHECK(has(shell({"info", block}).out, "Euler characteristic -10"));
+  CHECK(shell({"generate", "-o", mixed, "--shape", "block", "--triangles", "10000", "--shuffle"})
+            .code == 0);
+  CHECK(has(shell({"info", mixed}).out, "Euler characteristic -10"));
+  const Ran ran = shell({"generate", "-o", block, "--shape", "cube"});
+  CHECK(ran.code == 2);
+  CHECK(has(ran.err, "torus, foam, dust, soup, terrain, block, shell"));
+}
+
 TEST_CASE("benchmark tells the speed, the memory and the cores, and remembers the speed") {
   Shell shell;
   ::setenv("XDG_CACHE_HOME", shell.path("cache").c_str(), 1);

@@ -19,22 +19,7 @@ using namespace meshfarm;
 namespace {
 
 Mesh make(std::uint64_t triangles) {
-  const BumpyTorus torus(triangles);
-  Mesh mesh;
-  torus.for_vertices([&](std::span<const Vec3> batch) {
-    CHECK_FALSE(batch.empty());
-    mesh.positions.insert(mesh.positions.end(), batch.begin(), batch.end());
-  });
-  torus.for_triangles([&](std::span<const std::array<std::uint64_t, 3>> batch) {
-    CHECK_FALSE(batch.empty());
-    for (const auto& t : batch) {
-      mesh.triangles.push_back({static_cast<std::uint32_t>(t[0]), static_cast<std::uint32_t>(t[1]),
-                                static_cast<std::uint32_t>(t[2])});
-    }
-  });
-  CHECK(mesh.positions.size() == torus.vertices());
-  CHECK(mesh.triangles.size() == torus.triangles());
-  return mesh;
+  return in_memory(BumpyTorus(triangles));
 }
 
 Vec3 normal_of(const Mesh& mesh, const Triangle& t) {
