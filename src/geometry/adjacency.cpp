@@ -2,21 +2,72 @@
 // SPDX-License-Identifier: MIT
 #include "geometry/adjacency.hpp"
 
+#include <algorithm>
+
 namespace meshfarm {
 
 void Adjacency::build(std::span<const Triangle> triangles, std::size_t vertices) {
-  // Row v is counted in offsets_[v + 2] and filled through offsets_[v + 1], which then ends it.
-  offsets_.assign(vertices + 2, 0);
+  rows_.assign(vertices, {0, 0});
   corners_.resize(triangles.size() * 3);
   for (const Triangle& t : triangles) {
-    for (const std::uint32_t v : t) ++offsets_[v + 2];
+    for (const std::uint32_t v : t) ++rows_[v].end;
   }
-  for (std::size_t v = 2; v < offsets_.size(); ++v) offsets_[v] += offsets_[v - 1];
+  std::uint32_t first = 0;
+  for (Row& row : rows_) {
+    const std::uint32_t count = row.end;
+    row = {first, first};
+    first += count;
+  }
   for (const Triangle& t : triangles) {
-    corners_[offsets_[t[0] + 1]++] = {t[1], t[2]};
-    corners_[offsets_[t[1] + 1]++] = {t[2], t[0]};
-    corners_[offsets_[t[2] + 1]++] = {t[0], t[1]};
+    corners_[rows_[t[0]].end++] = {t[1], t[2]};
+    corners_[rows_[t[1]].end++] = {t[2], t[0]};
+    corners_[rows_[t[2]].end++] = {t[0], t[1]};
   }
+}
+
+void Adjacency::assign(std::uint32_t vertex, std::span<const Corner> corners) {
+  Row& row = rows_[vertex];
+  const auto count = static_cast<std::uint32_t>(corners.size());
+  if (count > row.end - row.begin) {
+    row.begin = static_cast<std::uint32_t>(corners_.size());
+    corners_.insert(corners_.end(), corners.begin(), corners.end());
+  } else {
+    std::copy(corners.begin(), corners.end(), corners_.begin() + row.begin);
+  }
+  row.end = row.begin + count;
+}
+
+std::uint32_t Adjacency::add_vertex() {
+  rows_.push_back({0, 0});
+  return static_cast<std::uint32_t>(rows_.size() - 1);
+}
+
+void Adjacency::replace(std::uint32_t vertex, std::uint32_t was, std::uint32_t now) {
+  Row& row = rows_[vertex];
+  std::uint32_t kept = row.begin;
+  for (std::uint32_t i = row.begin; i < row.end; ++i) {
+    Corner c = corners_[i];
+    if (c.next == was) c.next = now;
+    if (c.prev == was) c.prev = now;
+    if (c.next != c.prev) corners_[kept++] = c;
+  }
+  row.end = kept;
+}
+
+void Adjacency::replace(std::uint32_t vertex, Corner was, Corner now) {
+  const Row& row = rows_[vertex];
+  const auto end = corners_.begin() + row.end;
+  const auto at = std::find(corners_.begin() + row.begin, end, was);
+  if (at != end) *at = now;
+}
+
+void Adjacency::remove(std::uint32_t vertex, Corner corner) {
+  Row& row = rows_[vertex];
+  const auto end = corners_.begin() + row.end;
+  const auto at = std::find(corners_.begin() + row.begin, end, corner);
+  if (at == end) return;
+  std::copy(at + 1, end, at);
+  --row.end;
 }
 
 }  // namespace meshfarm

@@ -15,6 +15,7 @@ namespace meshfarm {
 struct Corner {
   std::uint32_t next;
   std::uint32_t prev;
+  friend bool operator==(const Corner&, const Corner&) = default;
 };
 
 /// The corners at each vertex in one flat array (compressed sparse rows), in triangle order.
@@ -22,18 +23,33 @@ class Adjacency {
  public:
   /// Keeps its memory from one build to the next.
   void build(std::span<const Triangle> triangles, std::size_t vertices);
-  std::uint32_t vertices() const {
-    return offsets_.empty() ? 0 : static_cast<std::uint32_t>(offsets_.size() - 2);
-  }
+  std::uint32_t vertices() const { return static_cast<std::uint32_t>(rows_.size()); }
   std::span<const Corner> at(std::uint32_t vertex) const {
-    return {corners_.data() + offsets_[vertex], corners_.data() + offsets_[vertex + 1]};
+    const Row& row = rows_[vertex];
+    return {corners_.data() + row.begin, corners_.data() + row.end};
   }
-  std::uint32_t count(std::uint32_t vertex) const {
-    return offsets_[vertex + 1] - offsets_[vertex];
-  }
+  std::uint32_t count(std::uint32_t vertex) const { return rows_[vertex].end - rows_[vertex].begin; }
+
+  // Changes to single vertices; the caller keeps the rows of a triangle's three vertices in step.
+
+  /// Gives a vertex other corners, which must not be a part of this. A longer row than before moves
+  /// to the end of the array.
+  void assign(std::uint32_t vertex, std::span<const Corner> corners);
+  /// Adds a vertex without corners and returns its number.
+  std::uint32_t add_vertex();
+  /// Writes `now` for `was` in the corners of a vertex, and drops those that have lost their area.
+  void replace(std::uint32_t vertex, std::uint32_t was, std::uint32_t now);
+  /// Writes `now` for one corner of a vertex.
+  void replace(std::uint32_t vertex, Corner was, Corner now);
+  /// Takes one corner from a vertex, if it is there.
+  void remove(std::uint32_t vertex, Corner corner);
 
  private:
-  std::vector<std::uint32_t> offsets_;
+  struct Row {
+    std::uint32_t begin;
+    std::uint32_t end;
+  };
+  std::vector<Row> rows_;
   std::vector<Corner> corners_;
 };
 

@@ -38,6 +38,7 @@ struct Collapse {
   std::uint32_t triangles = 0;  // that it removes: 2, at a border 1; 0 if it may not be
   Vec3 position;
   double cost = 0;
+  bool by_topology = false;  // that is why it may not be
 };
 
 /// Judges single collapses. Both ends must not have taken part in a collapse of this pass; their
@@ -45,6 +46,8 @@ struct Collapse {
 class CollapseJudge {
  public:
   explicit CollapseJudge(const CollapseState& state) : state_(state) {}
+  /// The state has moved in memory.
+  void move_to(const CollapseState& state) { state_ = state; }
 
   /// Where the merged vertex would go and at what cost, if that keeps the topology, turns no
   /// triangle by more than 60 degrees and makes none of no area. The quadric is of the triangles
@@ -73,6 +76,7 @@ class CollapseJudge {
   void add_star(std::uint32_t shared);
   void add_lines(const Ring& ring, Vec3 end, std::uint32_t without);
   Vec3 best_position(std::uint32_t a, std::uint32_t b) const;
+  Collapse at_position(Vec3 position, std::uint32_t shared, double max_cost, Turn turn) const;
 
   CollapseState state_;
   Vec3 middle_;

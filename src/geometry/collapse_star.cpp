@@ -43,16 +43,16 @@ bool CollapseStar::is_acceptable(const Two& two, int lane, Vec3 x) {
 
 /// The normal of a sliver may turn by 60 degrees again and again and so fold over in the end. One
 /// that turns much must still face the way of its new neighbours, each counted by its area.
-bool CollapseStar::is_folded(std::uint32_t kept, Vec3 x) const {
+bool CollapseStar::is_folded(std::uint32_t first, std::uint32_t kept, Vec3 x) const {
   const Vec3Pair to = from(x);
   Vec3Pair sum{};
   for (std::uint32_t i = 0; i < kept; i += 2) {
-    const Vec3Pair normal = cross(minus(pairs_[1 + i / 2].p, to), minus(pairs_[1 + i / 2].q, to));
+    const Vec3Pair normal = cross(minus(pairs_[first + i / 2].p, to), minus(pairs_[first + i / 2].q, to));
     sum = {sum.x + normal.x, sum.y + normal.y, sum.z + normal.z};
   }
   const Vec3 all{sum.x[0] + sum.x[1], sum.y[0] + sum.y[1], sum.z[0] + sum.z[1]};
   for (std::uint32_t i = 0; i < kept; ++i) {
-    const Two& two = pairs_[1 + i / 2];
+    const Two& two = pairs_[first + i / 2];
     const auto at = [&](const Vec3Pair& a) { return Vec3{a.x[i % 2], a.y[i % 2], a.z[i % 2]}; };
     const Vec3 normal = meshfarm::cross(at(two.p) - x, at(two.q) - x);
     const Vec3 old_normal = at(two.normal);
@@ -63,26 +63,27 @@ bool CollapseStar::is_folded(std::uint32_t kept, Vec3 x) const {
   return false;
 }
 
-std::optional<double> CollapseStar::lost_area(std::uint32_t kept, Vec3 x) const {
+std::optional<double> CollapseStar::lost_area_from(std::uint32_t first, std::uint32_t kept, Vec3 x,
+                                                    Turn turn) const {
   Pair twice_lost = sums_.twice_area;
   Mask steep{};
   const Vec3Pair to = from(x);
   for (std::uint32_t i = 0; i < kept; i += 2) {
-    const Two& two = pairs_[1 + i / 2];
+    const Two& two = pairs_[first + i / 2];
     const Vec3Pair p = minus(two.p, to);
     const Vec3Pair q = minus(two.q, to);
     const Vec3Pair normal = cross(p, q);
     Pair size;
-    Pair turn;
+    Pair turned;
     Pair squared_p;
     Pair squared_q;
     dot(normal, normal, size);
-    dot(normal, two.normal, turn);
+    dot(normal, two.normal, turned);
     dot(p, p, squared_p);
     dot(q, q, squared_q);
     const Pair sizes = size * two.squared_size;
-    steep |= turn * turn < k_cos_30_squared * sizes;
-    const Mask good = (turn > 0) & (turn * turn >= k_cos_60_squared * sizes) &
+    steep |= turned * turned < k_cos_30_squared * sizes;
+    const Mask good = (turned > 0) & (turned * turned >= k_cos_60_squared * sizes) &
                       (size > k_least_sine_squared * (squared_p * squared_q));
     if ((good[0] & good[1]) == 0) {
       if (good[0] == 0 && !is_acceptable(two, 0, x)) return {};
@@ -93,7 +94,8 @@ std::optional<double> CollapseStar::lost_area(std::uint32_t kept, Vec3 x) const 
     root(size, length);
     twice_lost -= length;
   }
-  if ((steep[0] | steep[1]) != 0 && is_folded(kept, x)) return {};
+  const bool any_steep = (steep[0] | steep[1]) != 0;
+  if (any_steep && (turn == Turn::narrow || is_folded(first, kept, x))) return {};
   return 0.5 * (twice_lost[0] + twice_lost[1]);
 }
 

@@ -13,6 +13,9 @@
 
 namespace meshfarm {
 
+/// How far a collapse may turn a triangle: by 60 degrees or by 30.
+enum class Turn : std::uint8_t { wide, narrow };
+
 /// The triangles round one edge, relative to its middle, two at a time in vector registers. The
 /// types are those of GNU C++, which clang has too: loops over two are vectorised by neither.
 class CollapseStar {
@@ -45,7 +48,12 @@ class CollapseStar {
 
   /// The area that is lost if both ends move to x; nothing if that spoils the shape of one of the
   /// `kept` triangles after the shared ones.
-  std::optional<double> lost_area(std::uint32_t kept, Vec3 x) const;
+  std::optional<double> lost_area(std::uint32_t kept, Vec3 x, Turn turn = Turn::wide) const {
+    return lost_area_from(1, kept, x, turn);
+  }
+  /// The same, where the kept ones begin at another pair.
+  std::optional<double> lost_area_from(std::uint32_t first, std::uint32_t kept, Vec3 x,
+                                       Turn turn) const;
 
  private:
   struct Vec3Pair {
@@ -72,7 +80,7 @@ class CollapseStar {
   }
   static void root(const Pair& a, Pair& result) { result = Pair{std::sqrt(a[0]), std::sqrt(a[1])}; }
   void add_planes(const Two& two);
-  bool is_folded(std::uint32_t kept, Vec3 x) const;
+  bool is_folded(std::uint32_t first, std::uint32_t kept, Vec3 x) const;
   static bool is_acceptable(const Two& two, int lane, Vec3 x);
 
   Vec3 middle_;

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <memory>
+#include <optional>
 #include <utility>
 
 #include <meshfarm/geometry/simplify.hpp>
@@ -10,6 +12,7 @@
 #include "geometry/adjacency.hpp"
 #include "geometry/collapse.hpp"
 #include "geometry/simplify_clean.hpp"
+#include "geometry/simplify_queue.hpp"
 #include "geometry/simplify_rank.hpp"
 #include "geometry/simplify_rough.hpp"
 
@@ -35,9 +38,21 @@ constexpr double k_rough_margin = 8;
 // Less than this part of the triangles removed is not worth a rough pass.
 constexpr double k_least_rough = 0.1;
 
-// A pass over all that a limited goal allows which removes less than this part was the last: the
-// next would remove a tenth of that.
-constexpr double k_exhausted = 0.04;
+// A pass that removes less than this part of the triangles finds that what it ranks is refused. What
+// is cheap and refused must not make room for what is dear: the rest is done in order.
+constexpr double k_least_ranked = 0.05;
+
+// From so many times the triangles of the last goal on edges collapse strictly in order; of a large
+// goal from so many times on, as long as passes have no dead ends.
+constexpr std::uint64_t k_near = 2;
+constexpr double k_near_of_large = 1.25;
+constexpr std::uint64_t k_large = 50'000;
+
+// Topology is kept if the sum of the costs, which goes with the square of the error, or the last of
+// them is then no more than so many times what it would be without. A few dear ones are no reason.
+constexpr double k_fair = 1.44;
+// With fewer refusals a collapse it is not even tried.
+constexpr double k_costly = 0.25;
 
 // The edges taken in a pass that must not overshoot, as a part of the triangles still to go: each
 // that can collapse, about six in ten, removes two.
@@ -54,7 +69,35 @@ struct Pass {
   CostKey limit = k_any_cost;
   double max_cost = 0;      // the lower of the goal's and what the limit stands for
   std::uint32_t block = 0;  // vertices
-  bool everything = false;  // nothing but the goal's own limits holds it back
+};
+
+struct EndGameOptions {
+  const CreaseLines* creases = nullptr;
+  PositionType type = PositionType::float64;
+  bool seam_only = false;
+  TopologyMode topology = TopologyMode::keep;
+};
+
+/// A mesh of its own and the queue that works on it.
+struct EndGame {
+  EndGame(const Mesh& mesh, const std::vector<std::uint8_t>& its_flags,
+          const EndGameOptions& options)
+      : positions(mesh.positions),
+        flags(its_flags),
+        queue({positions, flags, adjacency, *options.creases, options.type, options.seam_only,
+               options.topology == TopologyMode::simplify,
+               options.topology == TopologyMode::automatic ||
+                   options.topology == TopologyMode::keep_while_fair},
+              ranking) {
+    adjacency.build(mesh.triangles, positions.size());
+    queue.start(mesh.triangles);
+  }
+
+  std::vector<Vec3> positions;
+  std::vector<std::uint8_t> flags;
+  Adjacency adjacency;
+  EdgeRanking ranking;
+  CollapseQueue queue;
 };
 
 }  // namespace
@@ -66,6 +109,7 @@ class Simplifier::Impl {
         locked_(options.locked_vertices),
         type_(options.positions),
         seam_only_(!options.seam.empty()),
+        topology_(options.lines.topology),
         creases_(options.lines.crease_angle) {
     check_input(mesh_, options);
     Surface surface = clean_surface(mesh_, options, adjacency_);
@@ -77,7 +121,9 @@ class Simplifier::Impl {
   }
 
   void reduce(const SimplifyGoal& goal, const Progress& progress) {
-    if (reduce_roughly(goal, progress)) reduce_by_rank(goal, progress);
+    if (end_game_ || (reduce_roughly(goal, progress) && reduce_by_rank(goal, progress))) {
+      reduce_in_order(goal, progress);
+    }
     publish_seam();
   }
 
@@ -91,6 +137,8 @@ class Simplifier::Impl {
   }
   double max_cost() const { return max_cost_; }
   double pass_cost() const { return pass_cost_; }
+  bool simplifies_topology() const { return end_game_ && end_game_->queue.any_topology(); }
+  bool is_held_by_topology() const { return end_game_ && end_game_->queue.is_held(); }
   const Dropped& dropped() const { return dropped_; }
   std::span<const std::uint8_t> seam() const { return seam_; }
 
@@ -108,18 +156,71 @@ class Simplifier::Impl {
     return true;
   }
 
-  void reduce_by_rank(const SimplifyGoal& goal, const Progress& progress) {
-    double share = k_pass_share;
-    while (may_go_on(goal)) {
+  /// The last part of the way, strictly in order.
+  void reduce_in_order(const SimplifyGoal& goal, const Progress& progress) {
+    if (!may_go_on(goal)) return;
+    if (!end_game_) end_game_ = begin_end_game(topology_);
+    const double paid_before = end_game_->queue.paid();
+    bool goes_on = end_game_->queue.reduce(goal, progress);
+    const bool undecided = topology_ == TopologyMode::automatic && !simplifies_topology();
+    if (undecided && goes_on && is_costly_to_keep()) {
+      auto other = begin_end_game(TopologyMode::simplify);
+      goes_on = other->queue.reduce(goal, progress);
+      if (is_unfair(end_game_->queue.paid() - paid_before, other->queue, goal)) {
+        end_game_ = std::move(other);
+      }
+    }
+    publish(goal, goes_on);
+  }
+
+  /// From the mesh as it is.
+  std::unique_ptr<EndGame> begin_end_game(TopologyMode topology) {
+    return std::make_unique<EndGame>(mesh_, flags_,
+                                     EndGameOptions{&creases_, type_, seam_only_, topology});
+  }
+
+  /// Whether so much is refused to keep the topology that it is worth a try without.
+  bool is_costly_to_keep() const {
+    const CollapseQueue& queue = end_game_->queue;
+    return queue.is_held() || static_cast<double>(queue.kept_topology()) >
+                                  k_costly * static_cast<double>(queue.collapses());
+  }
+
+  /// Whether to keep the topology costs much more than to simplify it.
+  bool is_unfair(double paid, const CollapseQueue& other, const SimplifyGoal& goal) const {
+    const CollapseQueue& kept = end_game_->queue;
+    if (kept.triangles() > goal.triangles + 1) return other.triangles() < kept.triangles();
+    return paid > k_fair * other.paid() && kept.last_cost() > k_fair * other.last_cost();
+  }
+
+  void publish(const SimplifyGoal& goal, bool goes_on) {
+    const CollapseQueue& queue = end_game_->queue;
+    queue.copy_to(mesh_, flags_, locked_);
+    max_cost_ = std::max(max_cost_, queue.max_cost());
+    pass_cost_ = queue.last_cost();
+    if (queue.is_held()) exhausted_cost_ = HUGE_VAL;
+    if (goes_on && mesh_.triangles.size() > goal.triangles + 1) exhausted_cost_ = goal.max_cost;
+  }
+
+  /// As long as there is more than twice what the goal leaves, and cheap edges are not refused.
+  /// False if progress says stop.
+  bool reduce_by_rank(const SimplifyGoal& goal, const Progress& progress) {
+    while (may_go_on(goal) && !is_near(goal)) {
       begin_pass();
-      const Pass pass = plan_pass(goal, share);
+      const Pass pass = plan_pass(goal, k_pass_share);
       const std::uint64_t before = mesh_.triangles.size();
       const std::uint64_t removed = collapse_edges(goal, pass);
       compact(removed);
-      if (progress && !progress(mesh_.triangles.size())) break;
-      if (pass.everything && is_exhausted(goal, before, removed)) break;
-      share = removed * 50 < before ? std::min(1.0, share * 2) : std::max(k_pass_share, share / 2);
+      if (progress && !progress(mesh_.triangles.size())) return false;
+      if (static_cast<double>(removed) < k_least_ranked * static_cast<double>(before)) break;
     }
+    return true;
+  }
+
+  bool is_near(const SimplifyGoal& goal) const {
+    const std::uint64_t last = last_of(goal);
+    const auto of_large = static_cast<std::uint64_t>(k_near_of_large * static_cast<double>(last));
+    return mesh_.triangles.size() <= std::min(k_near * last, std::max(of_large, last + k_large));
   }
 
   bool may_go_on(const SimplifyGoal& goal) const {
@@ -132,18 +233,6 @@ class Simplifier::Impl {
     return std::any_of(flags_.begin(), flags_.end(), [](std::uint8_t flags) {
       return (flags & (k_border | k_fixed)) == k_border;
     });
-  }
-
-  /// Whether a pass over all that the goal allows was of no use. If it was not the number of
-  /// triangles that held it back, no later call with this cost or less has anything left to do.
-  bool is_exhausted(const SimplifyGoal& goal, std::uint64_t before, std::uint64_t removed) {
-    const bool held_back = mesh_.triangles.size() - goal.triangles <= 1;
-    const bool little = std::isfinite(goal.max_cost) &&
-                        static_cast<double>(removed) < k_exhausted * static_cast<double>(before) &&
-                        !held_back;
-    if (removed > 0 && !little) return false;
-    if (!held_back) exhausted_cost_ = goal.max_cost;
-    return true;
   }
 
   static std::uint64_t last_of(const SimplifyGoal& goal) {
@@ -220,7 +309,6 @@ class Simplifier::Impl {
     const double most = far ? k_most_of_excess * static_cast<double>(excess) : HUGE_VAL;
     pass.limit = share >= 1 ? k_any_cost : ranking_.estimate_limit(share, most);
     pass.max_cost = std::min(goal.max_cost, cost_of(pass.limit));
-    pass.everything = goal.max_cost <= cost_of(pass.limit);
     return pass;
   }
 
@@ -313,6 +401,7 @@ class Simplifier::Impl {
   std::uint32_t locked_;
   PositionType type_;
   bool seam_only_;
+  TopologyMode topology_;
   CreaseLines creases_;
   Dropped dropped_;
   std::vector<std::uint8_t> flags_;  // VertexFlag
@@ -321,6 +410,7 @@ class Simplifier::Impl {
   double pass_cost_ = 0;
   double exhausted_cost_ = -1;
 
+  std::unique_ptr<EndGame> end_game_;
   Adjacency adjacency_;
   bool adjacency_is_current_ = false;
   EdgeRanking ranking_;
@@ -348,6 +438,12 @@ double Simplifier::max_cost() const {
 }
 double Simplifier::pass_cost() const {
   return impl_->pass_cost();
+}
+bool Simplifier::simplifies_topology() const {
+  return impl_->simplifies_topology();
+}
+bool Simplifier::is_held_by_topology() const {
+  return impl_->is_held_by_topology();
 }
 std::uint64_t Simplifier::dropped_degenerate() const {
   return impl_->dropped().degenerate;

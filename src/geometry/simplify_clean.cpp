@@ -4,10 +4,14 @@
 
 #include <algorithm>
 #include <array>
+#include <map>
 #include <set>
 #include <utility>
 
 #include <meshfarm/util/errors.hpp>
+
+#include "geometry/fans.hpp"
+#include "geometry/orient.hpp"
 
 namespace meshfarm {
 namespace {
@@ -32,7 +36,7 @@ std::vector<std::uint32_t> vertices_with_duplicates(std::span<const std::uint8_t
   std::vector<std::uint32_t> found;
   std::vector<std::pair<std::uint32_t, std::uint32_t>> others;
   for (std::uint32_t v = 0; v < adjacency.vertices(); ++v) {
-    if ((flags[v] & k_fixed) == 0 && adjacency.count(v) != 2) continue;
+    if ((flags[v] & k_still) == 0 && adjacency.count(v) != 2) continue;
     others.clear();
     for (const Corner c : adjacency.at(v)) {
       if (c.next < v || c.prev < v) continue;
@@ -168,10 +172,56 @@ std::vector<std::uint8_t> classify_vertices(const Mesh& mesh, const SimplifyOpti
     if (!options.seam.empty() && options.seam[v] != 0) flags[v] |= k_seam;
     if (adjacency.count(v) == 0) continue;
     const Fan fan = walker.walk(adjacency.at(v));
-    if (fan == Fan::broken) flags[v] |= k_fixed;
+    if (fan == Fan::broken) flags[v] |= k_complex;
     if (fan == Fan::open) flags[v] |= options.lines.preserve_border ? k_fixed : k_border;
   }
   return flags;
+}
+
+/// Whether two triangles at an edge face opposite ways. Such an edge breaks the fans at its ends.
+bool any_turned(std::span<const std::uint8_t> flags, const Adjacency& adjacency) {
+  FanSplitter splitter;
+  for (std::uint32_t v = 0; v < flags.size(); ++v) {
+    if ((flags[v] & k_still) == 0) continue;
+    splitter.split(adjacency.at(v));
+    if (splitter.has_turned()) return true;
+  }
+  return false;
+}
+
+/// Gives each closed fan at a vertex of several a vertex of its own. Returns whether there are any.
+bool separate_closed_fans(Mesh& mesh, std::span<const std::uint8_t> flags,
+                          const Adjacency& adjacency) {
+  FanSplitter splitter;
+  FanSplitter single;
+  std::map<std::array<std::uint32_t, 3>, std::uint32_t> copies;  // by vertex and two others
+  std::vector<Corner> fan;
+  const auto vertices = static_cast<std::uint32_t>(flags.size());
+  for (std::uint32_t v = 0; v < vertices; ++v) {
+    if ((flags[v] & k_still) != k_complex) continue;
+    const std::span<const Corner> corners = adjacency.at(v);
+    const std::uint32_t fans = splitter.split(corners);
+    for (std::uint32_t f = 1; f < fans; ++f) {
+      fan.clear();
+      for (std::size_t i = 0; i < corners.size(); ++i) {
+        if (splitter.fans()[i] == f) fan.push_back(corners[i]);
+      }
+      if (single.split(fan) != 1 || single.kind() != FanSplitter::Kind::closed) continue;
+      const auto copy = static_cast<std::uint32_t>(mesh.positions.size());
+      mesh.positions.push_back(Vec3(mesh.positions[v]));
+      for (const Corner& c : fan) copies[{v, c.next, c.prev}] = copy;
+    }
+  }
+  if (copies.empty()) return false;
+  for (Triangle& t : mesh.triangles) {
+    const Triangle was = t;
+    for (std::size_t k = 0; k < 3; ++k) {
+      if ((flags[was[k]] & k_complex) == 0) continue;
+      const auto copy = copies.find({was[k], was[(k + 1) % 3], was[(k + 2) % 3]});
+      if (copy != copies.end()) t[k] = copy->second;
+    }
+  }
+  return true;
 }
 
 }  // namespace
@@ -204,11 +254,18 @@ Surface clean_surface(Mesh& mesh, const SimplifyOptions& options, Adjacency& adj
       drop_unless(mesh.triangles, [](const Triangle& t) { return !is_degenerate(t); });
   adjacency.build(mesh.triangles, mesh.positions.size());
   surface.flags = classify_vertices(mesh, options, adjacency);
+  const auto again = [&] {
+    adjacency.build(mesh.triangles, mesh.positions.size());
+    surface.flags = classify_vertices(mesh, options, adjacency);
+  };
   const std::vector<std::uint32_t> doubtful = vertices_with_duplicates(surface.flags, adjacency);
-  if (doubtful.empty()) return surface;
-  surface.dropped.duplicate = drop_duplicates_at(doubtful, mesh);
-  adjacency.build(mesh.triangles, mesh.positions.size());
-  surface.flags = classify_vertices(mesh, options, adjacency);
+  if (!doubtful.empty()) {
+    surface.dropped.duplicate = drop_duplicates_at(doubtful, mesh);
+    again();
+  }
+  if (any_turned(surface.flags, adjacency) && orient(mesh.triangles) > 0) again();
+  // With a seam pass vertices are what the caller's flags are for.
+  if (options.seam.empty() && separate_closed_fans(mesh, surface.flags, adjacency)) again();
   return surface;
 }
 

@@ -14,12 +14,16 @@ namespace meshfarm {
 
 /// What a vertex may do, one byte each; a merged vertex inherits all but that it is fixed.
 enum VertexFlag : std::uint8_t {
-  k_fixed = 1,   // neither moves nor goes, and no edge at it collapses
+  k_fixed = 1,   // neither moves nor goes
   k_border = 2,  // on an edge that has one triangle
   k_seam = 4,    // SimplifyOptions::seam
   k_crease = 8,  // on an edge sharper than LineOptions::crease_angle
-  k_corner = 16  // where creases meet or end
+  k_corner = 16,  // where creases meet or end
+  k_complex = 32  // its triangles are not one consistently oriented fan
 };
+
+/// Passes leave the edges at these vertices alone.
+constexpr std::uint8_t k_still = k_fixed | k_complex;
 
 /// Throws UsageError or DataError if options or mesh cannot be taken.
 void check_input(const Mesh& mesh, const SimplifyOptions& options);
@@ -35,11 +39,11 @@ struct Surface {
   std::vector<std::uint8_t> flags;  // VertexFlag
 };
 
-/// Drops triangles with two equal corners, then those with the vertices of an earlier one, and
-/// flags the vertices. Leaves `adjacency` built for what is left.
+/// Drops triangles with two equal corners, then those with the vertices of an earlier one; turns
+/// triangles that face another way than their neighbours; takes vertices apart where closed fans
+/// touch; and flags the vertices. Leaves `adjacency` built for what is left.
 ///
-/// Fixed are the locked, those that are not finite, and those whose triangles do not make one
-/// consistently oriented fan: ends of non-manifold edges, bow ties.
+/// Fixed are the locked and those that are not finite.
 Surface clean_surface(Mesh& mesh, const SimplifyOptions& options, Adjacency& adjacency);
 
 }  // namespace meshfarm

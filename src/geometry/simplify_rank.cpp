@@ -62,23 +62,44 @@ void EdgeRanking::sum_planes() {
 
 void EdgeRanking::sum_line_planes() {
   for (std::uint32_t v = 0; v < input_.flags.size(); ++v) {
-    const std::uint8_t flags = input_.flags[v];
-    if ((flags & k_line) == 0 || (flags & k_fixed) != 0) continue;
-    const std::span<const Corner> fan = input_.adjacency->at(v);
-    if (fan.size() > k_max_star) continue;
-    const Vec3 at = input_.positions[v];
-    Quadric planes;
-    const auto add = [&](const Corner& c, std::uint32_t end) {
-      const Vec3 normal = cross(input_.positions[c.next] - at, input_.positions[c.prev] - at);
-      add_line_plane(planes, normal, input_.positions[end] - at);
-    };
-    if ((flags & k_border) != 0) for_border_edges(fan, add);
-    for_creases_at(v, [&](const Corner& one, const Corner& other) {
-      add(one, one.prev);
-      add(other, one.prev);
-    });
-    quadrics_[v].add(FloatQuadric(planes));
+    if ((input_.flags[v] & k_line) != 0) add_line_planes(v);
   }
+}
+
+void EdgeRanking::add_line_planes(std::uint32_t vertex) {
+  const std::uint8_t flags = input_.flags[vertex];
+  const std::span<const Corner> fan = input_.adjacency->at(vertex);
+  if ((flags & k_fixed) != 0 || fan.size() > k_max_star) return;
+  const Vec3 at = input_.positions[vertex];
+  Quadric planes;
+  const auto add = [&](const Corner& c, std::uint32_t end) {
+    const Vec3 normal = cross(input_.positions[c.next] - at, input_.positions[c.prev] - at);
+    add_line_plane(planes, normal, input_.positions[end] - at);
+  };
+  if ((flags & k_border) != 0) for_border_edges(fan, add);
+  for_creases_at(vertex, [&](const Corner& one, const Corner& other) {
+    add(one, one.prev);
+    add(other, one.prev);
+  });
+  quadrics_[vertex].add(FloatQuadric(planes));
+}
+
+void EdgeRanking::move_to(std::span<const Vec3> positions, std::span<const std::uint8_t> flags) {
+  input_.positions = positions;
+  input_.flags = flags;
+  quadrics_.resize(positions.size());
+}
+
+void EdgeRanking::refresh(std::uint32_t vertex) {
+  const Vec3 at = input_.positions[vertex];
+  Quadric planes;
+  for (const Corner& c : input_.adjacency->at(vertex)) {
+    const Vec3 n = cross(input_.positions[c.next] - at, input_.positions[c.prev] - at);
+    const double twice_area = length(n);
+    if (twice_area > 0 && std::isfinite(twice_area)) planes.add(n, 0.5 / twice_area);
+  }
+  quadrics_[vertex] = FloatQuadric(planes);
+  if ((input_.flags[vertex] & k_line) != 0) add_line_planes(vertex);
 }
 
 /// The creases that the vertex is on, by the mesh as it is at the beginning of the pass.
@@ -90,14 +111,15 @@ void EdgeRanking::for_creases_at(std::uint32_t vertex, const Take& take) const {
                    *input_.creases, is_on_crease, take);
 }
 
-/// Lists the edges that may collapse of which the vertex is the smaller end.
-inline void EdgeRanking::list_edges_at(std::uint32_t vertex) {
+void EdgeRanking::list_edges_at(std::uint32_t vertex, std::uint32_t least) {
   const std::uint8_t* const all_flags = input_.flags.data();
   const Vec3* const positions = input_.positions.data();
   const FloatQuadric* const quadrics = quadrics_.data();
   const std::uint8_t flags = all_flags[vertex];
   const std::span<const Corner> fan = input_.adjacency->at(vertex);
-  if ((flags & k_fixed) != 0 || fan.size() > k_max_star) return;
+  const std::uint8_t still = input_.general ? k_fixed & flags : k_still;
+  if ((flags & still & k_still) != 0 && !input_.general) return;
+  if (fan.size() > k_max_star) return;
   // Written always, counted if wanted: which neighbours are the greater ones no processor guesses.
   const std::size_t most = listed_count_ + 2 * fan.size() + 2;
   if (listed_.size() < most) listed_.resize(2 * most);
@@ -109,10 +131,18 @@ inline void EdgeRanking::list_edges_at(std::uint32_t vertex) {
     __builtin_prefetch(positions + end);
     __builtin_prefetch(quadrics + end);
     const bool wanted =
-        (end > vertex) & ((other & (k_fixed | barred)) == 0) & (any_seam | ((other & k_seam) != 0));
+        (end >= least) & ((other & (still | barred)) == 0) & (any_seam | ((other & k_seam) != 0));
     end_of_list += wanted ? 1 : 0;
   };
-  for (const Corner& c : fan) consider(c.next, barred_beside(flags));
+  const std::uint8_t beside = input_.any_topology ? flags & k_crease : barred_beside(flags);
+  for (const Corner& c : fan) consider(c.next, beside);
+  if (input_.general && (input_.any_topology || (flags & k_still) != 0)) {
+    for (const Corner& c : fan) {
+      const bool begins = std::any_of(fan.begin(), fan.end(),
+                                      [&](const Corner& other) { return other.next == c.prev; });
+      if (!begins) consider(c.prev, beside);
+    }
+  }
   if ((flags & k_line) != 0) {
     const std::uint8_t barred = barred_along(flags);
     if ((flags & k_border) != 0) {
@@ -121,28 +151,6 @@ inline void EdgeRanking::list_edges_at(std::uint32_t vertex) {
     for_creases_at(vertex, [&](const Corner& one, const Corner&) { consider(one.prev, barred); });
   }
   listed_count_ = static_cast<std::size_t>(end_of_list - listed_.data());
-}
-
-/// Calls take(edge, cost) for the listed edges.
-template <typename Take>
-void EdgeRanking::cost_listed(const Take& take) {
-  const Vec3* const positions = input_.positions.data();
-  const std::uint8_t* const flags = input_.flags.data();
-  for (std::size_t first = 0; first < listed_count_; first += EdgeCosts::k_size) {
-    const std::size_t count = std::min(EdgeCosts::k_size, listed_count_ - first);
-    const Edge* const edges = listed_.data() + first;
-    for (std::size_t i = 0; i < count; ++i) {
-      const auto [a, b] = edges[i];
-      costs_.put(i, quadrics_[a], quadrics_[b], (positions[b] - positions[a]) * 0.5);
-    }
-    costs_.compute();
-    for (std::size_t i = 0; i < count; ++i) {
-      const Edge& e = edges[i];
-      const int unlike = (flags[e.a] ^ flags[e.b]) & (k_line | k_corner);
-      take(e, unlike == 0 ? costs_.get(i) : cost_of_line_end(e));
-    }
-  }
-  listed_count_ = 0;
 }
 
 /// The merged vertex takes the position of the one of higher rank.
@@ -164,7 +172,8 @@ std::uint64_t EdgeRanking::sample_costs(std::uint32_t one_in) {
   };
   const auto vertices = static_cast<std::uint32_t>(input_.positions.size());
   for (std::uint32_t first = 0; vertices - first >= one_in; first += one_in) {
-    list_edges_at(first + scrambled(first) % one_in);
+    const std::uint32_t vertex = first + scrambled(first) % one_in;
+    list_edges_at(vertex, vertex);
     if (listed_count_ >= k_listed_at_once) cost_listed(count);
   }
   cost_listed(count);
@@ -205,7 +214,7 @@ std::span<const RankedEdge> EdgeRanking::cheapest(std::uint32_t first, std::uint
     cost_listed(find);
   };
   for (std::uint32_t v = first; v < last; ++v) {
-    list_edges_at(v);
+    list_edges_at(v, v);
     if (listed_count_ >= k_listed_at_once) cost_all();
   }
   cost_all();

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -42,6 +43,10 @@ struct RankingInput {
   const Adjacency* adjacency = nullptr;
   const CreaseTest* creases = nullptr;
   bool seam_only = false;
+  /// Edges are judged by what can judge any: those at complex vertices are listed, too, and those
+  /// of which one end is fixed.
+  bool general = false;
+  bool any_topology = false;  // and those that would change the topology
 };
 
 /// Which edges a pass may take: those that rank and cost no more than this.
@@ -67,6 +72,21 @@ class EdgeRanking {
   std::span<const RankedEdge> cheapest(std::uint32_t first, std::uint32_t last,
                                        const RankLimits& limits);
 
+  // For a mesh that changes while its edges are ranked.
+
+  /// The mesh has more vertices than before, or they have moved in memory.
+  void move_to(std::span<const Vec3> positions, std::span<const std::uint8_t> flags);
+  /// Sums the quadric of a vertex whose star has changed.
+  void refresh(std::uint32_t vertex);
+  /// Calls take(edge) for all edges at the vertex that may collapse, in the order of its corners.
+  template <typename Take>
+  void for_edges_at(std::uint32_t vertex, const Take& take) {
+    list_edges_at(vertex, 0);
+    cost_listed([&](const Edge& e, const EdgeCost& cost) {
+      take(RankedEdge{std::min(e.a, e.b), std::max(e.a, e.b), key_of(cost.ranking)});
+    });
+  }
+
  private:
   struct Edge {
     std::uint32_t a;
@@ -74,7 +94,9 @@ class EdgeRanking {
   };
   void sum_planes();
   void sum_line_planes();
-  void list_edges_at(std::uint32_t vertex);
+  void add_line_planes(std::uint32_t vertex);
+  /// Those whose other end is `least` or greater.
+  void list_edges_at(std::uint32_t vertex, std::uint32_t least);
   template <typename Take>
   void cost_listed(const Take& take);
   template <typename Take>
@@ -93,5 +115,27 @@ class EdgeRanking {
   std::vector<RankedEdge> sorted_;
   std::vector<std::uint32_t> starts_;
 };
+
+/// Calls take(edge, cost) for the listed edges.
+template <typename Take>
+void EdgeRanking::cost_listed(const Take& take) {
+  const Vec3* const positions = input_.positions.data();
+  const std::uint8_t* const flags = input_.flags.data();
+  for (std::size_t first = 0; first < listed_count_; first += EdgeCosts::k_size) {
+    const std::size_t count = std::min(EdgeCosts::k_size, listed_count_ - first);
+    const Edge* const edges = listed_.data() + first;
+    for (std::size_t i = 0; i < count; ++i) {
+      const auto [a, b] = edges[i];
+      costs_.put(i, quadrics_[a], quadrics_[b], (positions[b] - positions[a]) * 0.5);
+    }
+    costs_.compute();
+    for (std::size_t i = 0; i < count; ++i) {
+      const Edge& e = edges[i];
+      const int unlike = (flags[e.a] ^ flags[e.b]) & (k_line | k_corner | k_fixed);
+      take(e, unlike == 0 ? costs_.get(i) : cost_of_line_end(e));
+    }
+  }
+  listed_count_ = 0;
+}
 
 }  // namespace meshfarm

@@ -24,14 +24,14 @@ std::uint32_t RoughPass::partner(std::uint32_t vertex) const {
   const CollapseState& state = state_.collapse;
   const std::uint8_t flags = state.flags[vertex];
   const std::span<const Corner> fan = state.adjacency->at(vertex);
-  if ((flags & k_fixed) != 0 || fan.size() > k_max_star) return vertex;
+  if ((flags & k_still) != 0 || fan.size() > k_max_star) return vertex;
   const Vec3 at = state.positions[vertex];
   double least = HUGE_VAL;
   std::uint32_t nearest = vertex;
   const auto consider = [&](std::uint32_t neighbour, std::uint8_t barred) {
     const std::uint32_t end = state.target[neighbour];
     const double squared = squared_length(state.positions[end] - at);
-    const bool allowed = ((state.flags[end] & (k_fixed | barred)) | state_.touched[end]) == 0;
+    const bool allowed = ((state.flags[end] & (k_still | barred)) | state_.touched[end]) == 0;
     const bool nearer = allowed & (squared < least);
     least = nearer ? squared : least;
     nearest = nearer ? end : nearest;

@@ -13,7 +13,20 @@
 
 namespace meshfarm {
 
-/// What is asked of the lines of a surface, beyond that borders keep their shape like the rest.
+/// What becomes of handles, holes, strips and pieces.
+enum class TopologyMode : std::uint8_t {
+  /// Kept if the goal can be met so at a fair error, else simplified.
+  automatic,
+  keep,
+  /// Handles and strips are pinched off, holes closed and pieces removed as soon as that is the
+  /// cheapest thing to do. What is pinched is cut apart, so that the result is no less manifold.
+  simplify,
+  /// Kept. Where most of what is cheap is refused for it, the work stops short of the goal.
+  keep_while_fair,
+};
+
+/// What is asked of the lines and the topology of a surface, beyond that borders keep their shape
+/// like the rest.
 struct LineOptions {
   /// Vertices on open borders neither move nor go.
   bool preserve_border = false;
@@ -21,6 +34,7 @@ struct LineOptions {
   /// are creases. Vertices on creases merge along them only, and where creases meet or end they
   /// stay where they are.
   double crease_angle = 0;
+  TopologyMode topology = TopologyMode::automatic;
 };
 
 struct SimplifyOptions {
@@ -50,13 +64,14 @@ struct SimplifyGoal {
   std::uint64_t last_triangles = 0;
 };
 
-/// Iterative edge collapse by quadric error (Garland & Heckbert 1997) in passes without a heap;
-/// quadrics are memoryless (Lindstrom & Turk 1999): made anew from the current mesh at each pass.
+/// Iterative edge collapse by quadric error (Garland & Heckbert 1997); quadrics are memoryless
+/// (Lindstrom & Turk 1999): made from the mesh as it is. Far from the goal edges collapse in passes
+/// without a heap, near it strictly in order of their cost.
 ///
 /// Needs about 50 bytes a triangle beside the mesh, 70 if the goal is near the input's count.
 ///
-/// The input may be dirty: degenerate and duplicate triangles are dropped and counted; non-manifold
-/// edges and vertices are locked. Topology is kept, no triangle flips, none becomes degenerate.
+/// The input may be dirty: degenerate and duplicate triangles are dropped and counted; vertices on
+/// non-manifold edges merge along these. No triangle flips, none becomes degenerate.
 /// Deterministic: same mesh, options and goals, same bytes.
 class Simplifier {
  public:
@@ -83,6 +98,10 @@ class Simplifier {
   /// The level that the mesh has reached: the last pass took what it could up to this cost. After
   /// a pass that might pay any cost it is max_cost().
   double pass_cost() const;
+  /// Whether the topology was given up.
+  bool simplifies_topology() const;
+  /// Whether it stopped as TopologyMode::keep_while_fair says.
+  bool is_held_by_topology() const;
   std::uint64_t dropped_degenerate() const;
   std::uint64_t dropped_duplicate() const;
   /// Flags of the vertices of mesh() that are, or were merged from, seam vertices.

@@ -1,0 +1,88 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#include "geometry/orient.hpp"
+
+#include <algorithm>
+#include <array>
+#include <limits>
+#include <tuple>
+#include <utility>
+
+namespace meshfarm {
+namespace {
+
+constexpr std::uint32_t k_none = std::numeric_limits<std::uint32_t>::max();
+
+/// A side of a triangle: from low to high, or the other way.
+struct Side {
+  std::uint32_t low;
+  std::uint32_t high;
+  std::uint32_t side;  // 3 x triangle + its first corner
+  bool upwards;
+};
+
+/// The triangle across each side, where it has one: 2 x triangle, plus 1 if it faces the other way.
+std::vector<std::uint32_t> find_neighbours(const std::vector<Triangle>& triangles) {
+  std::vector<Side> sides;
+  sides.reserve(3 * triangles.size());
+  for (std::uint32_t t = 0; t < triangles.size(); ++t) {
+    for (std::uint32_t k = 0; k < 3; ++k) {
+      const std::uint32_t a = triangles[t][k];
+      const std::uint32_t b = triangles[t][(k + 1) % 3];
+      sides.push_back({std::min(a, b), std::max(a, b), 3 * t + k, a < b});
+    }
+  }
+  std::sort(sides.begin(), sides.end(), [](const Side& x, const Side& y) {
+    return std::tie(x.low, x.high, x.side) < std::tie(y.low, y.high, y.side);
+  });
+  std::vector<std::uint32_t> across(sides.size(), k_none);
+  for (std::size_t first = 0, last = 0; first < sides.size(); first = last) {
+    const auto [low, high, side, upwards] = sides[first];
+    while (last < sides.size() && sides[last].low == low && sides[last].high == high) ++last;
+    if (last - first != 2) continue;
+    const Side& other = sides[first + 1];
+    const std::uint32_t turned = upwards == other.upwards ? 1 : 0;
+    across[side] = 2 * (other.side / 3) + turned;
+    across[other.side] = 2 * (side / 3) + turned;
+  }
+  return across;
+}
+
+/// Turns the smaller half of a piece, or the half without its first triangle.
+std::uint64_t turn_piece(std::vector<Triangle>& triangles, const std::vector<std::uint32_t>& piece,
+                         const std::vector<std::uint8_t>& half) {
+  const auto other = static_cast<std::uint64_t>(
+      std::count_if(piece.begin(), piece.end(), [&](std::uint32_t t) { return half[t] == 1; }));
+  const std::uint8_t turned = 2 * other > piece.size() ? 0 : 1;
+  for (const std::uint32_t t : piece) {
+    if (half[t] == turned) std::swap(triangles[t][1], triangles[t][2]);
+  }
+  return std::min<std::uint64_t>(other, piece.size() - other);
+}
+
+}  // namespace
+
+std::uint64_t orient(std::vector<Triangle>& triangles) {
+  const std::vector<std::uint32_t> across = find_neighbours(triangles);
+  constexpr std::uint8_t k_unseen = 2;
+  std::vector<std::uint8_t> half(triangles.size(), k_unseen);
+  std::vector<std::uint32_t> piece;
+  std::uint64_t turned = 0;
+  for (std::uint32_t first = 0; first < triangles.size(); ++first) {
+    if (half[first] != k_unseen) continue;
+    piece.assign(1, first);
+    half[first] = 0;
+    for (std::size_t i = 0; i < piece.size(); ++i) {
+      for (std::uint32_t k = 0; k < 3; ++k) {
+        const std::uint32_t next = across[3 * piece[i] + k];
+        if (next == k_none || half[next / 2] != k_unseen) continue;
+        half[next / 2] = static_cast<std::uint8_t>(half[piece[i]] ^ (next & 1));
+        piece.push_back(next / 2);
+      }
+    }
+    turned += turn_piece(triangles, piece, half);
+  }
+  return turned;
+}
+
+}  // namespace meshfarm

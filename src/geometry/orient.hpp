@@ -1,0 +1,17 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include <meshfarm/geometry/mesh.hpp>
+
+namespace meshfarm {
+
+/// Turns triangles so that two that share an edge of two triangles face the same way, in each piece
+/// the way that most of its triangles do. A piece that has but one side keeps a seam. Returns how
+/// many were turned. Triangles have three different vertices.
+std::uint64_t orient(std::vector<Triangle>& triangles);
+
+}  // namespace meshfarm

@@ -1,0 +1,327 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#include "geometry/simplify_queue.hpp"
+
+#include <algorithm>
+#include <numeric>
+#include <tuple>
+
+#include "geometry/simplify_clean.hpp"
+
+namespace meshfarm {
+namespace {
+
+constexpr std::uint64_t k_told_every = 4096;  // collapses
+
+// So many of the edges are ranked at a time, the cheapest; dearer ones are not kept in order. The
+// order of collapses depends on it only where an edge becomes cheaper that is not looked at.
+constexpr double k_ranked_share = 0.35;
+constexpr CostKey k_least_step = 4U << 20;  // a factor of 16
+
+// Refusals to keep the topology, a collapse, from which on all that is left is dear. A surface of
+// many handles whose result was still good had 1.6.
+constexpr std::uint64_t k_hopeless = 4;
+
+bool is_later(const QueuedEdge& x, const QueuedEdge& y) {
+  return x.is_later(y);
+}
+
+}  // namespace
+
+CollapseQueue::CollapseQueue(const QueuedMesh& mesh, EdgeRanking& ranking)
+    : mesh_(mesh), ranking_(ranking), judge_(state()), general_(state()) {}
+
+void CollapseQueue::start(std::span<const Triangle> triangles) {
+  const auto vertices = static_cast<std::uint32_t>(mesh_.positions.size());
+  triangles_ = triangles.size();
+  first_triangles_ = triangles_;
+  target_.resize(vertices);
+  std::iota(target_.begin(), target_.end(), 0U);
+  refused_.assign(vertices, 0);
+  looks_.assign(vertices, 0);
+  stale_.assign(vertices, 0);
+  heap_.clear();
+  ranking_.begin_pass({mesh_.positions, triangles, mesh_.flags, &mesh_.adjacency,
+                       &mesh_.creases.test(), mesh_.seam_only, true, mesh_.any_topology});
+  judge_.move_to(state());
+  general_.move_to(state());
+}
+
+/// The cheapest share of all edges, but those of a limit above the last one at least.
+void CollapseQueue::rank(double share, CostKey most) {
+  for (std::uint32_t v = 0; v < target_.size(); ++v) refresh(v);
+  const CostKey wanted = share < 1 ? ranking_.estimate_limit(share, HUGE_VAL) : most;
+  limit_ = std::min(most, std::max(wanted, limit_ + k_least_step));
+  heap_.clear();
+  first_.clear();
+  next_first_ = 0;
+  const auto vertices = static_cast<std::uint32_t>(target_.size());
+  for (const RankedEdge& e : ranking_.cheapest(0, vertices, {limit_, HUGE_VAL})) {
+    first_.emplace_back(e, stamp_of(e.a, e.b));
+  }
+}
+
+void CollapseQueue::refresh(std::uint32_t vertex) {
+  if (stale_[vertex] == 0) return;
+  ranking_.refresh(vertex);
+  stale_[vertex] = 0;
+}
+
+bool CollapseQueue::has_free_border() const {
+  for (std::uint32_t v = 0; v < target_.size(); ++v) {
+    if ((mesh_.flags[v] & (k_border | k_fixed)) == k_border && !is_gone(v)) return true;
+  }
+  return false;
+}
+
+void CollapseQueue::push(const RankedEdge& edge) {
+  if (edge.key > limit_) return;
+  heap_.emplace_back(edge, stamp_of(edge.a, edge.b));
+  std::push_heap(heap_.begin(), heap_.end(), is_later);
+}
+
+const QueuedEdge* CollapseQueue::next() const {
+  const bool ranked = next_first_ < first_.size();
+  if (heap_.empty()) return ranked ? &first_[next_first_] : nullptr;
+  return ranked && !first_[next_first_].is_later(heap_[0]) ? &first_[next_first_] : &heap_[0];
+}
+
+void CollapseQueue::drop_next() {
+  if (next() != heap_.data()) {
+    ++next_first_;
+    return;
+  }
+  std::pop_heap(heap_.begin(), heap_.end(), is_later);
+  heap_.pop_back();
+}
+
+CollapseState CollapseQueue::state() {
+  return {mesh_.positions, mesh_.flags, target_, &mesh_.adjacency, mesh_.type,
+          &mesh_.creases.test()};
+}
+
+Collapse CollapseQueue::judge(std::uint32_t a, std::uint32_t b, std::uint64_t most_triangles) {
+  by_general_ = ((mesh_.flags[a] | mesh_.flags[b]) & k_still) != 0;
+  if (!by_general_) {
+    const Collapse collapse = judge_.judge(a, b, {most_triangles, HUGE_VAL});
+    if (collapse.triangles > 0 || !collapse.by_topology) return collapse;
+    if (!mesh_.any_topology) {
+      ++kept_topology_;
+      return {};
+    }
+  }
+  const GeneralCollapse general = general_.judge(a, b, most_triangles);
+  by_general_ = true;
+  if (!general.changes_topology || mesh_.any_topology) return general.collapse;
+  kept_topology_ += general.collapse.triangles > 0 ? 1 : 0;
+  return {};
+}
+
+bool CollapseQueue::reduce(const SimplifyGoal& goal, const Progress& progress) {
+  const CostKey most = std::min(key_of(goal.max_cost), k_any_cost - 1);
+  double share = k_ranked_share;
+  limit_ = 0;
+  while (triangles_ > goal.triangles) {
+    const std::uint64_t before = triangles_;
+    rank(share, most);
+    const Stop stop = run(goal, progress);
+    held_ = held_ || stop == Stop::held;
+    if (stop != Stop::nothing_left) return stop != Stop::told;
+    if (limit_ >= most) return true;
+    // Dead ends: what is ranked is refused again and again.
+    if ((before - triangles_) * 50 < before) share = 1;
+  }
+  return true;
+}
+
+CollapseQueue::Stop CollapseQueue::run(const SimplifyGoal& goal, const Progress& progress) {
+  std::uint64_t collapses = 0;
+  std::optional<bool> any_border;  // asked once: one triangle too many goes at a border only
+  while (triangles_ > goal.triangles) {
+    // Something is to be left, whatever the goal.
+    const std::uint64_t excess = triangles_ - std::max<std::uint64_t>(1, goal.triangles);
+    if (excess == 0) return Stop::met;
+    if (excess == 1 && !any_border) any_border = has_free_border();
+    if (excess == 1 && !*any_border) return Stop::met;
+    if (is_hopeless()) return Stop::held;
+    const QueuedEdge* const first = next();
+    if (first == nullptr) return Stop::nothing_left;
+    const QueuedEdge queued = *first;
+    drop_next();
+    const std::uint32_t a = queued.a();
+    const std::uint32_t b = queued.b;
+    if (is_gone(a) || is_gone(b) || queued.stamp != stamp_of(a, b)) continue;
+    const Collapse collapse = judge(a, b, excess);
+    if (collapse.triangles == 0) {
+      refused_[a] = refused_[b] = 1;
+    } else if (must_wait(queued, collapse.cost)) {
+      push({a, b, key_of(collapse.cost)});
+    } else {
+      merge(a, b, collapse);
+      if (progress && ++collapses % k_told_every == 0 && !progress(triangles_)) return Stop::told;
+    }
+  }
+  return Stop::met;
+}
+
+bool CollapseQueue::is_hopeless() const {
+  return mesh_.stops_when_held && kept_topology_ > k_hopeless * collapses_ + first_triangles_;
+}
+
+/// Whether it costs more than it was ranked by, and more than the next.
+bool CollapseQueue::must_wait(const QueuedEdge& queued, double cost) const {
+  const CostKey exact = key_of(cost);
+  if (exact <= queued.key()) return false;
+  const QueuedEdge* const other = next();
+  return exact > limit_ || (other != nullptr && other->key() < exact);
+}
+
+void CollapseQueue::list_ring(std::uint32_t vertex) {
+  ring_.clear();
+  for (const Corner& c : mesh_.adjacency.at(vertex)) {
+    ring_.push_back(c.next);
+    ring_.push_back(c.prev);
+  }
+  std::sort(ring_.begin(), ring_.end());
+  ring_.erase(std::unique(ring_.begin(), ring_.end()), ring_.end());
+}
+
+/// Makes the triangles of b ones of a; those that have both go.
+void CollapseQueue::join_stars(std::uint32_t a, std::uint32_t b) {
+  list_ring(b);
+  for (const std::uint32_t v : ring_) {
+    if (v != a) mesh_.adjacency.replace(v, b, a);
+  }
+  joined_.clear();
+  for (const std::uint32_t end : {a, b}) {
+    const std::uint32_t other = end == a ? b : a;
+    for (const Corner& c : mesh_.adjacency.at(end)) {
+      if (c.next != other && c.prev != other) joined_.push_back(c);
+    }
+  }
+  mesh_.adjacency.assign(b, {});
+  mesh_.adjacency.assign(a, joined_);
+}
+
+void CollapseQueue::merge(std::uint32_t a, std::uint32_t b, const Collapse& collapse) {
+  join_stars(a, b);
+  target_[b] = a;
+  mesh_.flags[a] |= mesh_.flags[b];
+  mesh_.positions[a] = collapse.position;
+  triangles_ -= collapse.triangles;
+  max_cost_ = std::max(max_cost_, collapse.cost);
+  last_cost_ = collapse.cost;
+  paid_ += collapse.cost;
+  ++collapses_;
+  if (by_general_) tidy(a);
+  list_ring(a);
+  ranking_.refresh(a);
+  for (const std::uint32_t v : ring_) stale_[v] = 1;
+  look_again(a);
+  for (const std::uint32_t v : ring_) {
+    if (refused_[v] != 0) look_again(v);
+  }
+}
+
+/// After a collapse that may have left fans other than before: drops triangles that have become
+/// equal, and takes vertices apart that hold several fans.
+void CollapseQueue::tidy(std::uint32_t merged) {
+  tidied_.assign(general_.changed().begin(), general_.changed().end());
+  for (const auto& [next, prev] : general_.vanishing()) {
+    mesh_.adjacency.remove(merged, {next, prev});
+    mesh_.adjacency.remove(next, {prev, merged});
+    mesh_.adjacency.remove(prev, {merged, next});
+    tidied_.push_back(next);
+    tidied_.push_back(prev);
+  }
+  tidied_.push_back(merged);
+  std::sort(tidied_.begin(), tidied_.end());
+  tidied_.erase(std::unique(tidied_.begin(), tidied_.end()), tidied_.end());
+  const std::size_t before = tidied_.size();
+  for (std::size_t i = 0; i < before; ++i) tidy_star(tidied_[i]);
+  for (const std::uint32_t v : tidied_) {
+    stale_[v] = 1;
+    if (v != merged) refused_[v] = 1;
+  }
+  for (const std::uint32_t v : tidied_) {
+    if (v != merged) look_again(v);
+  }
+}
+
+void CollapseQueue::tidy_star(std::uint32_t vertex) {
+  if ((mesh_.flags[vertex] & k_fixed) != 0 || mesh_.adjacency.count(vertex) == 0) return;
+  const std::uint32_t fans = splitter_.split(mesh_.adjacency.at(vertex));
+  if (fans == 1) {
+    classify(vertex);
+    return;
+  }
+  const auto corners = mesh_.adjacency.at(vertex);
+  const std::vector<Corner> all(corners.begin(), corners.end());
+  const std::vector<std::uint32_t> fan(splitter_.fans().begin(), splitter_.fans().end());
+  for (std::uint32_t f = 0; f < fans; ++f) {
+    joined_.clear();
+    const std::uint32_t v = f == 0 ? vertex : add_copy(vertex);
+    for (std::size_t i = 0; i < all.size(); ++i) {
+      if (fan[i] != f) continue;
+      const auto [next, prev] = all[i];
+      joined_.push_back(all[i]);
+      if (f == 0) continue;
+      mesh_.adjacency.replace(next, Corner{prev, vertex}, Corner{prev, v});
+      mesh_.adjacency.replace(prev, Corner{vertex, next}, Corner{v, next});
+    }
+    mesh_.adjacency.assign(v, joined_);
+    classify(v);
+  }
+}
+
+void CollapseQueue::classify(std::uint32_t vertex) {
+  splitter_.split(mesh_.adjacency.at(vertex));
+  std::uint8_t& flags = mesh_.flags[vertex];
+  flags &= static_cast<std::uint8_t>(~(k_border | k_complex));
+  if (splitter_.kind() == FanSplitter::Kind::open) flags |= k_border;
+  if (splitter_.kind() == FanSplitter::Kind::complex) flags |= k_complex;
+}
+
+std::uint32_t CollapseQueue::add_copy(std::uint32_t vertex) {
+  const std::uint32_t copy = mesh_.adjacency.add_vertex();
+  mesh_.positions.push_back(Vec3(mesh_.positions[vertex]));
+  mesh_.flags.push_back(std::uint8_t(mesh_.flags[vertex]));
+  target_.push_back(copy);
+  refused_.push_back(0);
+  looks_.push_back(0);
+  stale_.push_back(1);
+  ranking_.move_to(mesh_.positions, mesh_.flags);
+  judge_.move_to(state());
+  general_.move_to(state());
+  tidied_.push_back(copy);
+  return copy;
+}
+
+void CollapseQueue::look_again(std::uint32_t vertex) {
+  refused_[vertex] = 0;
+  ++looks_[vertex];
+  refresh(vertex);
+  ranking_.for_edges_at(vertex, [&](const RankedEdge& edge) { push(edge); });
+}
+
+void CollapseQueue::copy_to(Mesh& mesh, std::vector<std::uint8_t>& flags,
+                            std::uint32_t locked) const {
+  mesh.positions.clear();
+  mesh.triangles.clear();
+  flags.clear();
+  std::vector<std::uint32_t> number(target_.size());
+  for (std::uint32_t v = 0; v < target_.size(); ++v) {
+    if (v >= locked && mesh_.adjacency.count(v) == 0) continue;
+    number[v] = static_cast<std::uint32_t>(mesh.positions.size());
+    mesh.positions.push_back(mesh_.positions[v]);
+    flags.push_back(mesh_.flags[v]);
+  }
+  mesh.triangles.reserve(triangles_);
+  for (std::uint32_t v = 0; v < target_.size(); ++v) {
+    for (const Corner& c : mesh_.adjacency.at(v)) {
+      if (c.next > v && c.prev > v) mesh.triangles.push_back({number[v], number[c.next], number[c.prev]});
+    }
+  }
+}
+
+}  // namespace meshfarm
