@@ -74,6 +74,9 @@ void TargetOptions::add(po::options_description& options) {
       "composition", po::value(&composition)->default_value(composition)->value_name("HOW"),
       "of swept streams: tree: neighbours are joined by jobs, round by round; sink: by the sink, "
       "all at once; auto: as a tree where much is at the seams")(
+      "topology", po::value(&topology)->default_value(topology)->value_name("HOW"),
+      "of handles, holes and pieces: keep them; simplify: close and remove them where that costs "
+      "least; auto: keep them as long as the count can be met at a fair error")(
       "preserve-border", po::bool_switch(&run.lines.preserve_border),
       "leave the vertices on open borders as they are")(
       "crease-angle", po::value(&run.lines.crease_angle)->value_name("DEGREES"),
@@ -108,6 +111,12 @@ void TargetOptions::check() {
         "--composition tree goes by the one cost threshold: not with --error, --allocation uniform "
         "or --finish boundary");
   }
+  if (topology != "auto" && topology != "keep" && topology != "simplify") {
+    throw UsageError("--topology is 'auto', 'keep' or 'simplify', not '" + topology + "'");
+  }
+  run.lines.topology = topology == "auto"   ? TopologyMode::automatic
+                       : topology == "keep" ? TopologyMode::keep
+                                            : TopologyMode::simplify;
   if (!(run.lines.crease_angle >= 0 && run.lines.crease_angle < 180)) {
     throw UsageError("--crease-angle must be 0 (no creases) or more, and below 180 degrees");
   }
@@ -124,6 +133,7 @@ void TargetOptions::check() {
 std::vector<std::string> TargetOptions::words() const {
   std::vector<std::string> words = {"--allocation", allocation,      "--finish",
                                     finish,         "--composition", composition};
+  words.insert(words.end(), {"--topology", topology});
   if (run.lines.preserve_border) words.emplace_back("--preserve-border");
   if (run.lines.crease_angle > 0) {
     words.insert(words.end(), {"--crease-angle", shortest(run.lines.crease_angle)});

@@ -36,7 +36,7 @@ struct TalkOptions {
   ProgressStyle progress() const;
 };
 
-/// --ratio, --triangles, --error, --allocation, --finish, --composition, --preserve-border,
+/// --ratio, --triangles, --error, --allocation, --finish, --composition, --topology, --preserve-border,
 /// --crease-angle, --drop-components.
 struct TargetOptions {
   RunOptions run;
@@ -45,6 +45,7 @@ struct TargetOptions {
   std::string allocation = "threshold";
   std::string finish = "global";
   std::string composition = "auto";
+  std::string topology = "auto";
 
   void add(po::options_description& options);
   void check();

@@ -16,7 +16,7 @@
 // there are at most 65536, and as many triangles.
 //   Version 2. Version 1 was sealed, with the counts in front and one set of samples.
 // The summary that travels with the message:
-//   dropped degenerate u64 | dropped duplicate u64 | rungs u32 | rungs as above
+//   dropped degenerate u64 | dropped duplicate u64 | held by topology u8 | rungs u32 | rungs as above
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -216,6 +216,7 @@ std::string encode_summary(const ResultSummary& summary) {
   ByteWriter out;
   out.put(summary.dropped_degenerate);
   out.put(summary.dropped_duplicate);
+  out.put(static_cast<std::uint8_t>(summary.held_by_topology ? 1 : 0));
   put_rungs(out, summary.rungs);
   return out.take();
 }
@@ -225,6 +226,9 @@ ResultSummary decode_summary(std::string_view bytes, std::string_view what) {
   ResultSummary summary;
   summary.dropped_degenerate = in.get<std::uint64_t>();
   summary.dropped_duplicate = in.get<std::uint64_t>();
+  const auto held = in.get<std::uint8_t>();
+  if (held > 1) in.fail("impossible summary");
+  summary.held_by_topology = held == 1;
   summary.rungs = get_rungs(in);
   in.expect_end();
   return summary;

@@ -42,7 +42,7 @@ class Assembly {
  public:
   Assembly(const Stage& stage, const Manifest& manifest, const RunOptions& run,
            const AssembleOptions& options)
-      : stage_(stage), manifest_(manifest), run_(run), options_(options) {
+      : stage_(stage), manifest_(manifest), run_(run), lines_(run.lines), options_(options) {
     summary_.manifest = manifest;
     summary_.output = options.output.string();
     summary_.target = target_triangles(manifest, run);
@@ -53,7 +53,9 @@ class Assembly {
 
   RunSummary run(std::span<const AcceptedJob> accepted) {
     Stopwatch watch;
-    StitchedMesh stitched = stitch(choose_rungs(manifest_, run_, accepted));
+    const ChosenRungs chosen = choose_rungs(manifest_, run_, accepted);
+    lines_.topology = chosen.topology;
+    StitchedMesh stitched = stitch(chosen.rungs);
     summary_.dropped_components =
         drop_small_components(stitched.mesh, run_.drop_components.in(manifest_.box));
     summary_.stitched = stitched.mesh.triangles.size();
@@ -161,7 +163,7 @@ class Assembly {
   Mesh finish_to_error(Mesh good) {
     constexpr double k_first_step = 0.7;
     constexpr double k_last_step = 0.99;
-    const SimplifyOptions options{.positions = manifest_.positions, .lines = run_.lines};
+    const SimplifyOptions options{.positions = manifest_.positions, .lines = lines_};
     bool cleaned = false;
     for (double step = k_first_step; step < k_last_step; step = std::sqrt(step)) {
       Simplifier simplifier(good, options);
@@ -184,8 +186,11 @@ class Assembly {
 
   Mesh finish(StitchedMesh stitched) {
     const std::uint64_t before = stitched.mesh.triangles.size();
-    SimplifyOptions options{.positions = manifest_.positions, .lines = run_.lines};
-    if (run_.finish == Finish::boundary) options.seam = std::move(stitched.seam);
+    SimplifyOptions options{.positions = manifest_.positions, .lines = lines_};
+    if (run_.finish == Finish::boundary) {
+      options.seam = std::move(stitched.seam);
+      options.lines.topology = TopologyMode::keep;
+    }
     Simplifier simplifier(std::move(stitched.mesh), std::move(options));
     const auto reduce_to = [&](std::uint64_t triangles) {
       simplifier.reduce({.triangles = triangles}, [&](std::uint64_t left) {
@@ -204,6 +209,8 @@ class Assembly {
     }
     summary_.dropped_degenerate += simplifier.dropped_degenerate();
     summary_.dropped_duplicate += simplifier.dropped_duplicate();
+    summary_.topology_simplified =
+        lines_.topology == TopologyMode::simplify || simplifier.simplifies_topology();
     summary_.why_not_exact = why_not_exact(before, simplifier.triangles());
     return simplifier.mesh();
   }
@@ -218,15 +225,18 @@ class Assembly {
       return "where no open border is left, triangles go in pairs";
     }
     if (run_.finish == Finish::boundary) return "nothing more can be collapsed at the seams";
-    std::string reason = "nothing more can be collapsed without changing the topology";
-    if (run_.lines.preserve_border) reason += ", the borders";
-    if (run_.lines.crease_angle > 0) reason += ", the creases";
-    return reason + " or turning a triangle over";
+    std::string kept;
+    if (run_.lines.topology == TopologyMode::keep) kept += "changing the topology, ";
+    if (run_.lines.preserve_border) kept += "moving the borders, ";
+    if (run_.lines.crease_angle > 0) kept += "moving the creases, ";
+    if (!kept.empty()) kept.replace(kept.size() - 2, 2, " or ");
+    return "nothing more can be collapsed without " + kept + "turning a triangle over";
   }
 
   const Stage& stage_;
   const Manifest& manifest_;
   const RunOptions& run_;
+  LineOptions lines_;  // as the parts were made
   const AssembleOptions& options_;
   RunSummary summary_;
   std::vector<SurfaceSamples> samples_;

@@ -28,6 +28,11 @@ constexpr double k_error_samples = 100'000;
 /// A bound is on the greatest distance, which more points find more of.
 constexpr double k_bound_samples = 400'000;
 
+/// Parts that their topology holds back are to have no more of all triangles than this at the level
+/// that is chosen, and all together no more than so many times what is wanted: one level is 1.6.
+constexpr double k_fair_share = 0.1;
+constexpr double k_fair_excess = 2;
+
 /// With a bound on the error, a ladder begins at this share of the part, or as it came if even that
 /// is too far from it; and parts may take up this share of the bound, the finish the rest.
 constexpr double k_error_start = 0.5;
@@ -62,12 +67,11 @@ class Rounds {
       : manifest_(manifest),
         options_(options),
         target_(target_triangles(manifest, options)),
+        topology_(first_topology()),
         headroom_(manifest.parts.size(), k_first_headroom),
         results_(manifest.parts.size()),
         files_(manifest.parts.size()) {
-    for (std::uint32_t p = 0; p < manifest.parts.size(); ++p) {
-      if (!is_sampled(p) || climbs_samples()) asked_.push_back(p);
-    }
+    ask_first();
     if (asked_.empty()) begin_sweeps();
     while (!asked_.empty() && accepted.size() >= asked_.size()) {
       take(accepted.first(asked_.size()));
@@ -87,10 +91,12 @@ class Rounds {
     return jobs;
   }
 
-  std::vector<ChosenRung> chosen() const {
+  ChosenRungs chosen() const {
     if (!jobs().empty()) throw Error("rungs are chosen before all parts are accepted");
-    std::vector<ChosenRung> chosen;
-    for (const ComposedStreams& each : composed_) chosen.push_back(each.chosen);
+    ChosenRungs chosen;
+    for (const ComposedStreams& each : composed_) chosen.rungs.push_back(each.chosen);
+    chosen.topology =
+        topology_ == TopologyMode::keep_while_fair ? TopologyMode::automatic : topology_;
     return chosen;
   }
 
@@ -102,8 +108,22 @@ class Rounds {
 
   bool by_error() const { return options_.error.value > 0; }
 
+  /// Which may turn out not to be fair.
+  TopologyMode first_topology() const {
+    if (options_.lines.topology != TopologyMode::automatic) return options_.lines.topology;
+    if (by_error()) return TopologyMode::keep;
+    return options_.allocation == Allocation::threshold ? TopologyMode::keep_while_fair
+                                                        : TopologyMode::automatic;
+  }
+
   /// Whether levels are to be found: the same ratio everywhere needs none.
   bool climbs_samples() const { return by_error() || options_.allocation == Allocation::threshold; }
+
+  void ask_first() {
+    for (std::uint32_t p = 0; p < manifest_.parts.size(); ++p) {
+      if (!is_sampled(p) || climbs_samples()) asked_.push_back(p);
+    }
+  }
 
   bool is_sampled(std::uint32_t part) const {
     return !manifest_.samples.empty() && !manifest_.samples[part].file.name.empty();
@@ -121,6 +141,7 @@ class Rounds {
     parameters.samples = samples_for(manifest_, options_, entry.triangles);
     parameters.cost_unit = cost_unit(manifest_.box.diagonal());
     parameters.lines = options_.lines;
+    parameters.lines.topology = topology_;
     by_error() ? set_error_bound(parameters, part) : set_share(parameters, part);
     return {std::string(k_simplify_kind),
             {entry.file},
@@ -163,6 +184,9 @@ class Rounds {
     parameters.samples = samples_for(manifest_, options_, entry.triangles);
     parameters.max_error = by_error() ? k_error_share * options_.error.in(manifest_.box) : 0;
     parameters.lines = options_.lines;
+    // One window can't tell what is fair.
+    parameters.lines.topology =
+        topology_ == TopologyMode::simplify ? TopologyMode::simplify : TopologyMode::keep;
     return {std::string(k_sweep_kind),
             {entry.file},
             encode_parameters(parameters),
@@ -245,8 +269,9 @@ class Rounds {
   }
 
   void compose(std::span<const AcceptedJob> accepted) {
-    const ComposeGoal goal{level_, sweep_cost(level_),
-                           provision(ratio()) * static_cast<double>(target_)};
+    const ComposeGoal goal{
+        level_, sweep_cost(level_), wanted(),
+        topology_ == TopologyMode::simplify ? TopologyMode::simplify : TopologyMode::keep};
     ComposePlan plan(manifest_, options_, goal, reached());
     compose_jobs_ = plan.jobs();
     while (!compose_jobs_.empty() && accepted.size() >= compose_jobs_.size()) {
@@ -267,6 +292,12 @@ class Rounds {
   void ask_again() {
     asked_.clear();
     if (!by_error()) choose_level();
+    if (topology_ == TopologyMode::keep_while_fair && is_unfair()) {
+      topology_ = TopologyMode::simplify;
+      headroom_.assign(headroom_.size(), k_first_headroom);
+      ask_first();
+      return;
+    }
     if (options_.allocation == Allocation::uniform && !by_error()) return;
     for (std::uint32_t p = 0; p < results_.size(); ++p) {
       if (!too_far(p)) continue;
@@ -275,16 +306,33 @@ class Rounds {
     }
   }
 
+  double wanted() const { return provision(ratio()) * static_cast<double>(target_); }
+
   void choose_level() {
-    const double wanted = provision(ratio()) * static_cast<double>(target_);
     std::vector<std::vector<Rung>> ladders;
     for (const ResultSummary& result : results_) ladders.push_back(result.rungs);
-    level_ = common_level(ladders, static_cast<std::uint64_t>(wanted));
+    level_ = common_level(ladders, static_cast<std::uint64_t>(wanted()));
+  }
+
+  /// Whether parts that keep their topology could not follow the others to the common level, or all
+  /// together not to the count.
+  bool is_unfair() const {
+    double held = 0;
+    bool any = false;
+    for (const ResultSummary& result : results_) {
+      if (!result.held_by_topology) continue;
+      any = true;
+      const Rung& last = result.rungs.back();
+      if (last.level < level_) held += static_cast<double>(last.free_triangles);
+    }
+    const auto all = static_cast<double>(free_triangles());
+    return any && (held > k_fair_share * all || all > k_fair_excess * wanted());
   }
 
   const Manifest& manifest_;
   const RunOptions& options_;
   std::uint64_t target_;
+  TopologyMode topology_;  // of what is asked for
   std::vector<double> headroom_;
   std::vector<ResultSummary> results_;  // the last accepted, by part
   std::vector<FileRef> files_;
@@ -348,7 +396,7 @@ std::uint64_t memory_wanted(const Manifest& manifest, const RunOptions& options)
                           : wanted;
 }
 
-std::vector<ChosenRung> choose_rungs(const Manifest& manifest, const RunOptions& options,
+ChosenRungs choose_rungs(const Manifest& manifest, const RunOptions& options,
                                      std::span<const AcceptedJob> accepted) {
   const SortPlan sorted(manifest, accepted);
   return Rounds(sorted.manifest(), options, sorted.rest()).chosen();

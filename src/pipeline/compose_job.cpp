@@ -16,10 +16,10 @@
 namespace meshfarm {
 namespace {
 
-// Version 1: first stream u32 | all streams u32 | inputs u32 x (streams u32 | rung u32) |
+// Version 2: first stream u32 | all streams u32 | inputs u32 x (streams u32 | rung u32) |
 // boundary (name | size u64 | hash u64) | level i32 | greatest cost f64 | floor u64 |
 // samples a triangle f64 | lines (run_options.hpp).
-constexpr std::uint8_t k_version = 1;
+constexpr std::uint8_t k_version = 2;
 constexpr double k_max_samples_per_triangle = 1000;
 
 class Composer {

@@ -83,6 +83,7 @@ Job ComposePlan::job_of(std::size_t first, std::size_t end) const {
       std::min(1.0, static_cast<double>(samples_for(manifest_, options_, manifest_.triangles())) /
                         static_cast<double>(std::max<std::uint64_t>(1, manifest_.triangles())));
   parameters.lines = options_.lines;
+  parameters.lines.topology = goal_.topology;
   Job job;
   job.kind = k_compose_kind;
   std::uint64_t weight = 0;

@@ -25,6 +25,7 @@ struct ComposeGoal {
   std::int32_t level = 0;
   double max_cost = 0;
   double triangles = 0;
+  TopologyMode topology = TopologyMode::keep;
 };
 
 /// Which neighbours are joined, round by round (Xiong et al. 2008, 4.3): a few at once, and no more

@@ -26,6 +26,7 @@ std::uint64_t target_triangles(const Manifest& manifest, const RunOptions& optio
 void put(ByteWriter& out, const LineOptions& lines) {
   out.put(static_cast<std::uint8_t>(lines.preserve_border ? 1 : 0));
   out.put(lines.crease_angle);
+  out.put(lines.topology);
 }
 
 LineOptions get_lines(ByteReader& in) {
@@ -35,6 +36,8 @@ LineOptions get_lines(ByteReader& in) {
   lines.preserve_border = preserve_border == 1;
   lines.crease_angle = in.get<double>();
   if (!(lines.crease_angle >= 0 && lines.crease_angle < 180)) in.fail("impossible crease angle");
+  lines.topology = in.get<TopologyMode>();
+  if (lines.topology > TopologyMode::keep_while_fair) in.fail("unknown way with the topology");
   return lines;
 }
 

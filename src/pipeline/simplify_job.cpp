@@ -15,9 +15,9 @@
 namespace meshfarm {
 namespace {
 
-// Version 2: allocation u8 | start u64 | even share u64 | samples u64 | cost unit f64 |
+// Version 3: allocation u8 | start u64 | even share u64 | samples u64 | cost unit f64 |
 // greatest error f64 | lines (run_options.hpp).
-constexpr std::uint8_t k_version = 2;
+constexpr std::uint8_t k_version = 3;
 constexpr std::uint64_t k_max_samples = 100'000'000;
 constexpr std::int32_t k_top_level = 52;
 // A part keeps no less than this fraction of its even share: what of it is flat goes in the finish.
@@ -54,7 +54,8 @@ class LadderBuilder {
     return std::move(file_);
   }
   ResultSummary summary() const {
-    return {result_.rungs(), simplifier_.dropped_degenerate(), simplifier_.dropped_duplicate()};
+    return {result_.rungs(), simplifier_.dropped_degenerate(), simplifier_.dropped_duplicate(),
+            simplifier_.is_held_by_topology()};
   }
 
  private:
@@ -79,6 +80,7 @@ class LadderBuilder {
       if (simplifier_.triangles() <= floor) return;
       if (simplifier_.free_triangles() == 0) return;
       reduce({.triangles = floor, .max_cost = level_cost(level, parameters_.cost_unit)});
+      if (simplifier_.is_held_by_topology()) return;
       if (simplifier_.triangles() < result_.rungs().back().triangles && !snapshot(level)) return;
     }
   }

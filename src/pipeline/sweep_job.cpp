@@ -15,9 +15,9 @@
 namespace meshfarm {
 namespace {
 
-// Version 1: level i32 | greatest cost f64 | ratio f64 | window u64 | samples u64 |
+// Version 2: level i32 | greatest cost f64 | ratio f64 | window u64 | samples u64 |
 // greatest error f64 | lines (run_options.hpp).
-constexpr std::uint8_t k_version = 1;
+constexpr std::uint8_t k_version = 2;
 constexpr std::uint64_t k_max_samples = 100'000'000;
 constexpr std::uint64_t k_max_window = std::uint64_t{1} << 30;
 

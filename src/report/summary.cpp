@@ -158,6 +158,7 @@ std::string render(const RunSummary& s, Format format) {
         {"max_error", s.max_error > 0 ? Json(s.max_error / m.box.diagonal()) : Json(nullptr)},
         {"exact", s.why_not_exact.empty()},
         {"why_not_exact", s.why_not_exact},
+        {"topology", s.topology_simplified ? "simplified" : "kept"},
         {"error", s.error_samples == 0 ? Json(nullptr) : error_json(s)},
         {"dropped",
          {{"degenerate", s.dropped_degenerate},
@@ -188,6 +189,9 @@ std::string render(const RunSummary& s, Format format) {
   }
   lines.add("output", s.output);
   lines.add("", grouped(s.triangles) + " triangles, " + grouped(s.vertices) + " vertices");
+  if (s.topology_simplified) {
+    lines.add("", "handles, holes or pieces were closed or removed; --topology keep keeps them");
+  }
   if (!s.why_not_exact.empty()) {
     lines.add("", grouped(s.target) + " were asked for: " + s.why_not_exact);
   }

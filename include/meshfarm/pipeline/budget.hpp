@@ -18,6 +18,9 @@ namespace meshfarm {
 /// is chosen for all. A part whose ladder begins above that level was taken too far: it is asked
 /// for again in the next round, with a finer start.
 ///
+/// Parts keep their topology first. If so much of the mesh is then held back by it that the others
+/// would pay for that, all are asked for again with the topology simplified.
+///
 /// Of a long stream a sample is climbed instead, and stands for the stream by its share of the
 /// triangles; the stream itself is then swept at the level that was chosen. If the swept streams
 /// together hold less than the target, they are swept again one level finer. Then neighbouring
@@ -41,8 +44,14 @@ struct ChosenRung {
   std::uint64_t dropped_duplicate = 0;
 };
 
-/// What to stitch, in the order of the parts, once every job of make_job_source is accepted.
-std::vector<ChosenRung> choose_rungs(const Manifest& manifest, const RunOptions& options,
+/// What to stitch, in the order of the parts, and how to finish it.
+struct ChosenRungs {
+  std::vector<ChosenRung> rungs;
+  TopologyMode topology = TopologyMode::automatic;
+};
+
+/// Once every job of make_job_source is accepted.
+ChosenRungs choose_rungs(const Manifest& manifest, const RunOptions& options,
                                      std::span<const AcceptedJob> accepted);
 
 /// How many points of a surface of so many of the input's triangles the error is measured by.

@@ -52,7 +52,8 @@ struct RunOptions {
 /// neither a ratio in (0, 1] nor a count.
 std::uint64_t target_triangles(const Manifest& manifest, const RunOptions& options);
 
-/// As they stand in a job's parameters: preserve border u8 | crease angle f64.
+/// As they stand in a job's parameters: preserve border u8 | crease angle f64 |
+/// topology u8.
 void put(ByteWriter& out, const LineOptions& lines);
 LineOptions get_lines(ByteReader& in);
 

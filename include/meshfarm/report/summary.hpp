@@ -28,6 +28,7 @@ struct RunSummary {
   std::uint64_t triangles = 0;  // triangles made
   std::uint64_t vertices = 0;
   std::string why_not_exact;             // empty when triangles == target
+  bool topology_simplified = false;      // handles, holes or pieces had to go
   DroppedComponents dropped_components;  // and their triangles before the finish
   Distance error;                        // from points of the input to the result, in its unit
   std::uint64_t error_samples = 0;       // 0: there is nothing to measure

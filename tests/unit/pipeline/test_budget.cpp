@@ -88,7 +88,7 @@ TEST_CASE("when the ladders reach the common level the run is complete") {
       accepted(jobs[0], {rung(10, 8000), rung(11, 4000), rung(12, 2000)}),
       accepted(jobs[1], {rung(9, 7000), rung(10, 900), rung(12, 100)})};
   CHECK(source(done).empty());
-  const std::vector<ChosenRung> chosen = choose_rungs(manifest, options, done);
+  const std::vector<ChosenRung> chosen = choose_rungs(manifest, options, done).rungs;
   CHECK(chosen[0].rung == 1);
   CHECK(chosen[1].rung == 1);
 }
@@ -110,7 +110,7 @@ TEST_CASE("a part that was taken too far is asked for again with a finer start")
 
   done.push_back(accepted(more[0], {rung(6, 40'000), rung(18, 6000), rung(20, 3000)}));
   CHECK(source(done).empty());
-  const std::vector<ChosenRung> chosen = choose_rungs(manifest, options, done);
+  const std::vector<ChosenRung> chosen = choose_rungs(manifest, options, done).rungs;
   CHECK(chosen[0].file.name == done[2].output.file.name);
   CHECK(chosen[0].rung == 1);
   CHECK(chosen[1].rung == 1);
@@ -141,7 +141,7 @@ TEST_CASE("with a bound on the error each part is taken as far as it allows") {
   CHECK(decode_parameters(more[0].parameters).start_triangles == 100'000);
   done.push_back(accepted(more[0], {measured(-1, 100'000, 0), measured(4, 80'000, 0.05)}));
   CHECK(source(done).empty());
-  const std::vector<ChosenRung> chosen = choose_rungs(manifest, options, done);
+  const std::vector<ChosenRung> chosen = choose_rungs(manifest, options, done).rungs;
   CHECK(chosen[0].rung == 1);
   CHECK(chosen[1].rung == 1);
   CHECK(chosen[1].file.name == done[2].output.file.name);

@@ -163,7 +163,7 @@ TEST_CASE("a run that sorts first ends as one that finds streams, and estimates 
         assemble(staged->stage, staged->manifest, run, accepted, {.output = output});
     CHECK(summary.target == std::llround(0.1 * 14'400));
     CHECK(summary.dropped_degenerate == 2000);
-    CHECK(choose_rungs(staged->manifest, run, accepted).size() == 5);
+    CHECK(choose_rungs(staged->manifest, run, accepted).rungs.size() == 5);
     results.push_back(read_file(output));
   }
   CHECK(results[0] == results[1]);
