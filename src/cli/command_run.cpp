@@ -5,6 +5,7 @@
 
 #include <meshfarm/io/manifest.hpp>
 #include <meshfarm/pipeline/run_options.hpp>
+#include <meshfarm/staging/claim.hpp>
 #include <meshfarm/staging/stage.hpp>
 #include <meshfarm/util/checksum.hpp>
 #include <meshfarm/util/errors.hpp>
@@ -67,6 +68,7 @@ class RunCommand : public Command {
     if (worker_words_) return print_worker_words();
     const std::atomic<bool>& stop = stop_on_signals();
     check_writable(output_);
+    const Claim claim(claim_of(output_), output_ + ": is being made");
     const int code =
         run_local_farm({stage_, output_, target_, network_, schedule_, talk_, workers_}, stop);
     if (code == 3) {

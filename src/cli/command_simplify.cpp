@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
 
+#include <meshfarm/staging/claim.hpp>
 #include <meshfarm/staging/stage.hpp>
 #include <meshfarm/util/errors.hpp>
 #include <meshfarm/util/log.hpp>
@@ -50,13 +51,16 @@ class SimplifyCommand : public Command {
   int run() override {
     const std::atomic<bool>& stop = stop_on_signals();
     check_writable(output_);
+    const Claim claim(claim_of(output_), output_ + ": is being made");
     cut_to_stage({input_, stage_, cut_, talk_, stop});
     const int code =
         run_local_farm({stage_, output_, target_, network_, schedule_, talk_, workers_}, stop);
     if (code == 0 && !keep_stage_) remove_stage(stage_);
     if (code == 3) {
-      log_info("stopped; the parts are kept: 'meshfarm replay " + stage_ + " -o " + output_ +
-               "' with the same options goes on from there");
+      log_info(
+          "stopped; the parts are kept: the same command goes on from there, and so does "
+          "'meshfarm replay " +
+          stage_ + " -o " + output_ + "' with the same target");
     }
     return code;
   }

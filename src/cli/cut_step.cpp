@@ -8,19 +8,40 @@
 
 #include <meshfarm/io/mesh_source.hpp>
 #include <meshfarm/partition/cut.hpp>
+#include <meshfarm/staging/claim.hpp>
 #include <meshfarm/staging/stage.hpp>
 #include <meshfarm/stream/generate_streams.hpp>
 #include <meshfarm/util/errors.hpp>
+#include <meshfarm/util/log.hpp>
+
+#include "cli/cut_record.hpp"
 
 namespace meshfarm {
 
-Manifest cut_to_stage(const CutStep& step) {
-  const auto source = open_mesh(step.input);
-  const Stage stage = Stage::create(step.stage);
-  if (stage.has_manifest()) {
-    throw DataError(step.stage + ": holds a finished cut; 'meshfarm replay " + step.stage +
+namespace {
+
+/// The cut that the stage holds, if it is the one that is wanted.
+Manifest taken_up(const Stage& stage, const CutRecord& wanted) {
+  const std::string root = stage.root().string();
+  const auto staged = read_record(stage);
+  const std::string what = staged ? difference(*staged, wanted) : "a cut of an older version";
+  if (!what.empty()) {
+    throw DataError(root + ": holds a finished cut of " + what + "; 'meshfarm replay " + root +
                     "' uses it, or remove it to cut again");
   }
+  log_info(root + " holds this cut already; it is taken up");
+  return decode_manifest(stage.read(ManifestName{}), stage.path(ManifestName{}).string());
+}
+
+}  // namespace
+
+Manifest cut_to_stage(const CutStep& step) {
+  const CutRecord wanted = record_of(step.input, step.words);
+  const Stage stage = Stage::create(step.stage);
+  const Claim claim(stage.root() / ".cut.claim", step.stage + ": is being cut");
+  if (stage.has_manifest()) return taken_up(stage, wanted);
+  const auto source = open_mesh(step.input);
+  publish_record(stage, wanted);
   ProgressPrinter printer(step.talk.progress());
   const auto with_common = [&](auto options) {
     options.input_name = step.input;

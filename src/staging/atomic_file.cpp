@@ -1,12 +1,14 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
 #include <cerrno>
+#include <random>
 
 #include <fcntl.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
 #include <meshfarm/staging/atomic_file.hpp>
+#include <meshfarm/util/checksum.hpp>
 #include <meshfarm/util/errors.hpp>
 
 namespace meshfarm {
@@ -14,10 +16,20 @@ namespace {
 
 constexpr std::size_t k_buffer_bytes = std::size_t{1} << 20;
 
+/// Processes of two containers may have one number, and one host name.
+const std::string& process_token() {
+  static const std::string token = [] {
+    std::random_device device;
+    const std::uint64_t random = (std::uint64_t{device()} << 32) | device();
+    return std::to_string(::getpid()) + "-" + to_hex(random);
+  }();
+  return token;
+}
+
 std::filesystem::path temporary_name(const std::filesystem::path& final_path,
                                      std::string_view unique) {
   std::string name = "." + final_path.filename().string() + ".";
-  name += unique.empty() ? std::to_string(::getpid()) : std::string(unique);
+  name += unique.empty() ? process_token() : std::string(unique);
   return final_path.parent_path() / (name + ".tmp");
 }
 

@@ -17,6 +17,7 @@ std::string six_digits(std::uint32_t number) {
 struct Printer {
   std::string operator()(ManifestName) const { return "manifest"; }
   std::string operator()(BoundaryName) const { return "boundary"; }
+  std::string operator()(CutName) const { return "cut"; }
   std::string operator()(PartName n) const { return "parts/" + six_digits(n.part) + ".part"; }
   std::string operator()(StreamName n) const {
     return "streams/" + six_digits(n.stream) + ".stream";
@@ -63,6 +64,7 @@ std::optional<StagedName> scan(std::string_view text) {
   Scanner in(text);
   if (text == "manifest") return ManifestName{};
   if (text == "boundary") return BoundaryName{};
+  if (text == "cut") return CutName{};
   if (in.word("parts/")) {
     PartName name;
     if (in.number(name.part, 10)) return name;

@@ -225,6 +225,7 @@ void remove_stage(const std::filesystem::path& root) {
   }
   std::filesystem::remove(root / to_string(ManifestName{}), ignored);
   std::filesystem::remove(root / to_string(BoundaryName{}), ignored);
+  std::filesystem::remove(root / to_string(CutName{}), ignored);
   std::filesystem::remove(root, ignored);
 }
 

@@ -301,11 +301,38 @@ TEST_CASE("the example config files are understood") {
 
 TEST_CASE("a stage that holds a finished cut is not cut again") {
   Shell shell;
-  CHECK(shell({"cut", shell.cube(), "--stage", shell.path("stage")}).code == 0);
-  const Ran ran = shell({"cut", shell.cube(), "--stage", shell.path("stage")});
-  CHECK(ran.code == 1);
-  CHECK(has(ran.err, "meshfarm replay"));
-  CHECK(has(shell({"info", shell.path("stage")}).out, "1 parts"));
+  const std::string cube = shell.cube();
+  const std::string stage = shell.path("stage");
+  CHECK(shell({"cut", cube, "--stage", stage}).code == 0);
+  const auto made = std::filesystem::last_write_time(stage + "/manifest");
+  SUBCASE("the same command takes it up") {
+    const Ran ran = shell({"cut", cube, "--stage", stage, "--threads", "1"});
+    CHECK(ran.code == 0);
+    CHECK(has(ran.err, "taken up"));
+    CHECK(std::filesystem::last_write_time(stage + "/manifest") == made);
+  }
+  SUBCASE("other options are refused") {
+    const Ran ran = shell({"cut", cube, "--stage", stage, "--weld", "off"});
+    CHECK(ran.code == 1);
+    CHECK(has(ran.err, "--weld exact"));
+    CHECK(has(ran.err, "meshfarm replay"));
+  }
+  SUBCASE("another input is refused") {
+    std::ofstream(cube, std::ios::app) << " ";
+    const Ran ran = shell({"cut", cube, "--stage", stage});
+    CHECK(ran.code == 1);
+    CHECK(has(ran.err, "another input"));
+  }
+  CHECK(has(shell({"info", stage}).out, "1 parts"));
+}
+
+TEST_CASE("a cut that was interrupted begins anew by itself") {
+  Shell shell;
+  const std::string stage = shell.path("stage");
+  CHECK(shell({"cut", shell.cube(), "--stage", stage}).code == 0);
+  std::filesystem::remove(stage + "/manifest");
+  CHECK(shell({"cut", shell.cube(), "--stage", stage}).code == 0);
+  CHECK(has(shell({"info", stage}).out, "1 parts"));
 }
 
 TEST_CASE("a point cloud and a mesh without anything make an empty result") {

@@ -199,6 +199,25 @@ TEST_CASE("everything killed, everything started again: only what was not accept
   CHECK(results_in(stage) <= 24 + before - journalled_before);
 }
 
+TEST_CASE("after Ctrl-C the same command goes on") {
+  const std::string output = bench().path("again.ply");
+  const std::vector<std::string> words = {"simplify", bench().mesh(), "-o", output,      "--ratio",
+                                          "0.02",     "--parts",      "24", "--workers", "1"};
+  Process simplify = bench().start(words);
+  REQUIRE(wait_for_results(output + ".stage", 3));
+  const Ran second = bench().meshfarm(words);
+  CHECK(second.code == 1);
+  CHECK(second.err.find("process " + std::to_string(simplify.pid())) != std::string::npos);
+  simplify.signal(SIGINT);
+  CHECK(simplify.wait() == 3);
+  CHECK(simplify.err().find("the same command goes on") != std::string::npos);
+  const Ran ran = bench().meshfarm(words);
+  CHECK(ran.code == 0);
+  CHECK(ran.err.find("taken up") != std::string::npos);
+  bench().check_result(output);
+  CHECK_FALSE(fs::exists(output + ".stage"));
+}
+
 TEST_CASE("Ctrl-C leaves a stage that replay takes up") {
   const std::string output = bench().path("interrupted.ply");
   Process simplify = bench().start({"simplify", bench().mesh(), "-o", output, "--ratio", "0.02",

@@ -15,6 +15,7 @@ namespace meshfarm {
 ///
 ///   manifest                          what the cut made; published last, never changed
 ///   boundary                          the boundary triangles
+///   cut                               what was cut, and how: by this the same command goes on
 ///   parts/000123.part                 a sub-mesh
 ///   streams/000123.stream             a mesh in sweep order, by --scheme stream
 ///   streams/000123.slab               the same before it is sorted, by --sort farm
@@ -28,6 +29,7 @@ namespace meshfarm {
 ///   log/000001.summary                what a run made, told by its sink
 struct ManifestName {};
 struct BoundaryName {};
+struct CutName {};
 struct PartName {
   std::uint32_t part = 0;
 };
@@ -62,7 +64,7 @@ struct HostName {
 };
 using StagedName =
     std::variant<ManifestName, BoundaryName, PartName, StreamName, ResultName, JournalName,
-                 EndpointName, KeysName, TraceName, SummaryName, HostName, SlabName>;
+                 EndpointName, KeysName, TraceName, SummaryName, HostName, SlabName, CutName>;
 
 std::string to_string(const StagedName& name);
 /// The name that to_string made; nothing for any other text.
