@@ -21,15 +21,17 @@ Actions Dispatcher::on_message(const PeerId& peer, const Message& message, FarmT
   return take();
 }
 
-Actions Dispatcher::tick(FarmTime now) {
+Actions Dispatcher::tick(FarmTime now, Inbox inbox) {
   now_ = std::max(now_, now);
   const FarmTime patience = k_silent_heartbeats * options_.heartbeat;
-  while (!finished_ && !by_heard_.empty() && by_heard_.begin()->first + patience < now_) {
+  const bool all_read = inbox == Inbox::empty;
+  while (all_read && !finished_ && !by_heard_.empty() &&
+         by_heard_.begin()->first + patience < now_) {
     const WorkerId id = by_heard_.begin()->second;
     ++lost_workers_;
     lose(id, "was silent for " + std::to_string(k_silent_heartbeats) + " heartbeats", in_work(id));
   }
-  if (!finished_ && sink_ && sink_->heard + patience < now_) lose_sink();
+  if (all_read && !finished_ && sink_ && sink_->heard + patience < now_) lose_sink();
   issue();
   if (!finished_ && sink_ && sink_->ready) {
     for (Scheduler::Pick& pick : scheduler_.second_attempts(plan_, now_)) push(std::move(pick));

@@ -150,9 +150,8 @@ void Dispatcher::fail(JobKey key, const std::string& reason, Failing failing) {
   const bool was_failed = plan_.state(key) == JobState::failed;
   plan_.fail_attempt(key, reason, failing);
   if (was_failed || plan_.state(key) != JobState::failed || !sink_ || !sink_->ready) return;
-  for (const LostJob& lost : plan_.lost()) {
-    if (lost.key == key) send(sink_->peer, JobFailed{key, clipped(lost.reasons), lost.resumable});
-  }
+  const LostJob lost = plan_.lost(key);
+  send(sink_->peer, JobFailed{key, clipped(lost.reasons), lost.resumable});
 }
 
 void Dispatcher::set_room(WorkerId id) {

@@ -123,7 +123,8 @@ void Gatekeeper::answer() {
                                             {}};
   for (std::size_t i = 0; i < reply.size(); ++i) {
     const auto more = i + 1 < reply.size() ? zmq::send_flags::sndmore : zmq::send_flags::none;
-    door_.send(zmq::buffer(reply[i]), zmq::send_flags::dontwait | more);
+    zmq::message_t frame(reply[i]);
+    send_one(door_, frame, more);
   }
 }
 

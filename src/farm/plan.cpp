@@ -164,20 +164,23 @@ bool Plan::stuck() const {
 }
 
 std::vector<LostJob> Plan::lost() const {
-  std::vector<LostJob> lost;
+  std::vector<LostJob> all;
   for (const JobKey key : wanted_) {
-    const Entry& entry = entries_.at(key);
-    if (entry.state != JobState::failed) continue;
-    // Attempts mostly fail for the same reason: it is told once.
-    std::string reasons;
-    for (auto at = entry.failures.begin(); at != entry.failures.end(); ++at) {
-      if (std::find(entry.failures.begin(), at, *at) != at) continue;
-      if (!reasons.empty()) reasons += "; ";
-      reasons += *at;
-    }
-    lost.push_back({key, entry.job.kind, reasons, entry.resumable});
+    if (entries_.at(key).state == JobState::failed) all.push_back(lost(key));
   }
-  return lost;
+  return all;
+}
+
+LostJob Plan::lost(JobKey key) const {
+  const Entry& entry = entries_.at(key);
+  // Attempts mostly fail for the same reason: it is told once.
+  std::string reasons;
+  for (auto at = entry.failures.begin(); at != entry.failures.end(); ++at) {
+    if (std::find(entry.failures.begin(), at, *at) != at) continue;
+    if (!reasons.empty()) reasons += "; ";
+    reasons += *at;
+  }
+  return {key, entry.job.kind, reasons, entry.resumable};
 }
 
 std::string failed_for_good(std::span<const std::string> reasons) {

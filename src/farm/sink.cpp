@@ -59,7 +59,9 @@ class SinkLoop {
       turn();
     }
     tell_of_strangers(gate_.refused(), garbage_);
-    if (problem_ && left_->why != SinkLeaves::Why::incomplete) std::rethrow_exception(problem_);
+    if (told_problem_ && left_->why != SinkLeaves::Why::incomplete) {
+      std::rethrow_exception(told_problem_);
+    }
     switch (left_->why) {
       case SinkLeaves::Why::complete:
         if (!left_->message.empty()) log_warning(left_->message);
@@ -138,6 +140,7 @@ class SinkLoop {
   }
 
   void disk_answers(FarmTime now) {
+    told_problem_ = problem_;
     if (std::exchange(making_output_, false)) {
       return perform(core_.completed(problem_ ? what(problem_) : SinkProblem{}, now));
     }
@@ -209,6 +212,7 @@ class SinkLoop {
   bool make_output_ = false;
   bool making_output_ = false;
   std::optional<SinkLeaves> left_;
+  std::exception_ptr told_problem_;  // as the disk thread left it when it was last idle
   // The disk thread's while it works:
   std::vector<Checked> batch_;
   std::optional<JournalWriter> journal_;

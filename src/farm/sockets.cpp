@@ -236,8 +236,19 @@ std::optional<Received> receive(zmq::socket_t& socket) {
   return received;
 }
 
+zmq::send_result_t send_one(zmq::socket_t& socket, zmq::message_t& frame, zmq::send_flags flags) {
+  for (;;) {
+    try {
+      return socket.send(frame, flags | zmq::send_flags::dontwait);
+    } catch (const zmq::error_t& error) {
+      if (error.num() != EINTR) throw;
+    }
+  }
+}
+
 bool send(zmq::socket_t& socket, const Message& message) {
-  return socket.send(frame_of(message), zmq::send_flags::dontwait).has_value();
+  zmq::message_t frame = frame_of(message);
+  return send_one(socket, frame, zmq::send_flags::none).has_value();
 }
 
 bool send(zmq::socket_t& router, std::string_view peer, const Message& message) {
@@ -247,10 +258,9 @@ bool send(zmq::socket_t& router, std::string_view peer, const Message& message) 
 bool send_frame(zmq::socket_t& router, std::string_view peer, std::string_view frame) {
   zmq::message_t body(frame.data(), frame.size());
   try {
-    if (!router.send(zmq::buffer(peer), zmq::send_flags::dontwait | zmq::send_flags::sndmore)) {
-      return false;
-    }
-    return router.send(std::move(body), zmq::send_flags::dontwait).has_value();
+    zmq::message_t head(peer.data(), peer.size());
+    if (!send_one(router, head, zmq::send_flags::sndmore)) return false;
+    return send_one(router, body, zmq::send_flags::none).has_value();
   } catch (const zmq::error_t& error) {
     if (error.num() == EHOSTUNREACH) return false;
     throw;

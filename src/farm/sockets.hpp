@@ -56,6 +56,8 @@ struct Received {
 };
 /// Takes one message without waiting; nothing if there is none.
 std::optional<Received> receive(zmq::socket_t& socket);
+/// Sends one frame without waiting, through signals; nothing if it could not be taken.
+zmq::send_result_t send_one(zmq::socket_t& socket, zmq::message_t& frame, zmq::send_flags flags);
 /// Sends without waiting; false if the message could not be taken.
 bool send(zmq::socket_t& socket, const Message& message);
 /// The same to one peer of a ROUTER; false also if the peer is gone.

@@ -124,8 +124,8 @@ class VentilatorLoop {
         ++garbage_;
       }
     }
-    // Nobody is silent whose words are still to be read.
-    if (count < k_messages_per_turn) perform(dispatcher_.tick(now));
+    const bool all_read = count < k_messages_per_turn;
+    perform(dispatcher_.tick(now, all_read ? Dispatcher::Inbox::empty : Dispatcher::Inbox::unread));
     report(now);
     tell_state(now);
   }

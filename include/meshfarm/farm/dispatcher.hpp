@@ -43,8 +43,10 @@ class Dispatcher {
   Actions on_message(const PeerId& peer, const Message& message, FarmTime now);
   Actions lane_opened(WorkerId id, const std::string& address);
   Actions lane_failed(WorkerId id, const std::string& reason);
-  /// To be called about twice a heartbeat, when all messages that are there have been given.
-  Actions tick(FarmTime now);
+  /// Whether all messages that are there have been given.
+  enum class Inbox { empty, unread };
+  /// To be called about twice a heartbeat. Nobody is held to be silent whose words may be unread.
+  Actions tick(FarmTime now, Inbox inbox = Inbox::empty);
   /// Tells everybody that this ventilator leaves before the end.
   Actions leave();
   /// Ends a run that turned out to be complete already.

@@ -107,6 +107,8 @@ class Plan {
   bool stuck() const;
   /// The jobs given up, in the order in which they were asked for.
   std::vector<LostJob> lost() const;
+  /// One that was given up.
+  LostJob lost(JobKey key) const;
   const PlanCounts& counts() const { return counts_; }
 
  private:

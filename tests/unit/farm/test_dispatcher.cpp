@@ -1,5 +1,6 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
+#include <chrono>
 #include <string>
 #include <vector>
 
@@ -263,6 +264,32 @@ TEST_CASE("a job that takes long by its estimate may stand still longer") {
   const JobKey big = key_of(make_job("big"));
   CHECK(said_to<Stop>("a", desk.say("a", standing(1, big, 299'000, false))).empty());
   CHECK(said_to<Stop>("a", desk.say("a", standing(1, big, 301'000, false))).size() == 1);
+}
+
+TEST_CASE("very many failures are told in a time that grows with their number only") {
+  constexpr int k_jobs = 20'000;
+  Desk desk(one_round(k_jobs));
+  desk.sink("s", 9);
+  desk.worker("w", 1);
+  const auto start = std::chrono::steady_clock::now();
+  for (const Job& job : make_jobs(k_jobs)) {
+    const Reject bad{k_epoch, {1}, 1, key_of(job), {"bad input", FailureKind::for_good}};
+    CHECK(said_to<JobFailed>("s", desk.say("s", bad)).size() == 1);
+  }
+  CHECK(std::chrono::steady_clock::now() - start < std::chrono::seconds(10));
+}
+
+TEST_CASE("under full load jobs go out, and nobody is silent whose words are unread") {
+  Desk desk(one_round(2));
+  desk.sink("s", 9);
+  desk.worker("w", 1);
+  desk.now += FarmTime(60'000);
+  desk.dispatcher.tick(desk.now, Dispatcher::Inbox::unread);
+  CHECK(desk.dispatcher.progress().workers == 1);
+  CHECK(desk.dispatcher.progress().sink_present);
+  desk.dispatcher.tick(desk.now);
+  CHECK(desk.dispatcher.progress().workers == 0);
+  CHECK_FALSE(desk.dispatcher.progress().sink_present);
 }
 
 TEST_CASE("a stage without room ends the run, resumable") {

@@ -1,16 +1,42 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
 #include <chrono>
+#include <csignal>
 #include <string>
 #include <thread>
 #include <vector>
 
 #include <doctest/doctest.h>
+#include <sys/time.h>
 
 #include "farm/sockets.hpp"
 
 namespace meshfarm::test {
 namespace {
+
+TEST_CASE("signals do not keep messages from being sent") {
+  struct sigaction ignore {};
+  ignore.sa_handler = [](int) {};  // without SA_RESTART: calls are interrupted
+  struct sigaction before {};
+  ::sigaction(SIGALRM, &ignore, &before);
+  const itimerval often{{0, 50}, {0, 50}};
+  ::setitimer(ITIMER_REAL, &often, nullptr);
+  zmq::context_t context = make_context();
+  zmq::socket_t server = make_control_server(context, {});
+  const std::string address = bind_within(server, "127.0.0.1", {});
+  zmq::socket_t client = make_control_client(context, {}, 7);
+  client.connect(address);
+  CHECK_NOTHROW([&] {
+    for (int i = 0; i < 100'000; ++i) {
+      send(client, Complete{1});
+      if (const auto received = receive(server)) send(server, received->peer, Complete{2});
+      receive(client);
+    }
+  }());
+  const itimerval never{};
+  ::setitimer(ITIMER_REAL, &never, nullptr);
+  ::sigaction(SIGALRM, &before, nullptr);
+}
 
 TEST_CASE("a process that is behind with its messages outlives whoever sent them") {
   // With libzmq's own heartbeats this ended in an assertion of libzmq, and so of the process.
