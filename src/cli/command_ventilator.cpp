@@ -32,9 +32,10 @@ class VentilatorCommand : public FarmCommand {
     options.add_options()("heartbeat-ms",
                           po::value(&heartbeat_ms_)->default_value(heartbeat_ms_)->value_name("N"),
                           "a worker or sink that is silent three times as long is lost");
-    options.add_options()("wait",
-                          po::value(&wait_s_)->default_value(wait_s_)->value_name("SECONDS"),
-                          "how long to look for a sink if the output was made before");
+    options.add_options()(
+        "wait", po::value(&wait_s_)->default_value(wait_s_)->value_name("SECONDS"),
+        "how long to look for a sink if the output was made before, and to wait for "
+        "a worker that has the memory for what is left");
     talk_.add_quiet(options);
   }
   void check() override {

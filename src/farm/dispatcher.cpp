@@ -35,6 +35,7 @@ Actions Dispatcher::tick(FarmTime now, Inbox inbox) {
   issue();
   if (!finished_ && sink_ && sink_->ready) {
     for (Scheduler::Pick& pick : scheduler_.second_attempts(plan_, now_)) push(std::move(pick));
+    look_for_memory();
   }
   return take();
 }

@@ -183,14 +183,40 @@ void Dispatcher::look_for_end() {
     over_ = true;
     to_workers(Stop{StopReason::run_over});
   } else if (plan_.stuck()) {
-    std::vector<std::string> reasons;
-    bool resumable = true;
-    for (const LostJob& lost : plan_.lost()) {
-      reasons.push_back(lost.kind + " " + to_hex(lost.key.value) + ": " + lost.reasons);
-      resumable = resumable && lost.resumable;
-    }
-    finish(failed_for_good(reasons), resumable);
+    const std::vector<LostJob> all = plan_.lost();
+    const bool resumable =
+        std::all_of(all.begin(), all.end(), [](const LostJob& lost) { return lost.resumable; });
+    finish(failed_for_good(reasons_of_lost()), resumable);
   }
+}
+
+/// A run of which nothing is left but jobs that fit no worker would wait for ever.
+void Dispatcher::look_for_memory() {
+  const PlanCounts& counts = plan_.counts();
+  const auto greatest = scheduler_.greatest_memory();
+  const bool too_large = greatest && counts.ready > 0 && counts.running == 0 &&
+                         plan_.ready_above(*greatest) == counts.ready;
+  if (!too_large) return too_large_since_.reset();
+  if (!too_large_since_) too_large_since_ = now_;
+  if (now_ - *too_large_since_ < options_.wait_for_memory) return;
+  const auto mib = [](std::uint64_t bytes) { return std::to_string((bytes >> 20) + 1) + " MiB"; };
+  std::string failure = std::to_string(counts.ready) +
+                        (counts.ready == 1 ? " job needs" : " jobs need") +
+                        " more memory than any worker has (" + mib(plan_.greatest_memory_ready()) +
+                        ", the largest worker has " + mib(*greatest) +
+                        "); what is done is kept: start a worker with more memory and run the "
+                        "same command again, or cut into more --parts";
+  const std::vector<std::string> reasons = reasons_of_lost();
+  if (!reasons.empty()) failure += "; besides, " + failed_for_good(reasons);
+  finish(failure, true);
+}
+
+std::vector<std::string> Dispatcher::reasons_of_lost() const {
+  std::vector<std::string> reasons;
+  for (const LostJob& lost : plan_.lost()) {
+    reasons.push_back(lost.kind + " " + to_hex(lost.key.value) + ": " + lost.reasons);
+  }
+  return reasons;
 }
 
 void Dispatcher::finish(const std::string& failure, bool resumable) {

@@ -51,9 +51,10 @@ class VentilatorLoop {
         gate_(context_, keys_),
         control_(make_control_server(context_, keys_)),
         endpoint_(announce()),
-        dispatcher_(Plan(checked_source(source), options.max_attempts),
-                    {options.run, endpoint_.epoch, options.heartbeat, options.hang,
-                     options.schedule, static_cast<bool>(options.event), options.algorithm}) {}
+        dispatcher_(
+            Plan(checked_source(source), options.max_attempts),
+            {options.run, endpoint_.epoch, options.heartbeat, options.hang, options.schedule,
+             options.patience, static_cast<bool>(options.event), options.algorithm}) {}
 
   FarmProgress run() {
     if (options_.event) options_.event(RunBegan{endpoint_.epoch, endpoint_.host}, FarmTime(0));

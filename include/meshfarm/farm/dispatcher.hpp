@@ -27,6 +27,9 @@ struct DispatcherOptions {
   /// A job that makes no progress for so long, and for three times its estimate, hangs.
   FarmTime hang{30'000};
   SchedulerOptions schedule = {};
+  /// How long jobs that are larger than any worker's memory wait for a larger worker, once nothing
+  /// else is left to do.
+  FarmTime wait_for_memory{60'000};
   bool tell = false;  // what happens, by Tell
   std::uint32_t algorithm = 0;
 };
@@ -124,6 +127,8 @@ class Dispatcher {
   void issue();
   void push(Scheduler::Pick pick);
   void look_for_end();
+  void look_for_memory();
+  std::vector<std::string> reasons_of_lost() const;
   void finish(const std::string& failure, bool resumable);
   void to_workers(const Message& message);
   void tell(FarmEvent event) {
@@ -148,6 +153,7 @@ class Dispatcher {
   std::optional<Sink> sink_;
   std::uint64_t last_sink_ = 0;  // incarnation
   std::set<std::uint64_t> replaced_sinks_;
+  std::optional<FarmTime> too_large_since_;
   bool over_ = false;
   bool finished_ = false;
   std::uint64_t dropped_ = 0;

@@ -99,6 +99,10 @@ class Plan {
   std::vector<JobKey> ready_jobs() const;
   /// How many ready jobs need more memory than this.
   std::uint64_t ready_above(std::uint64_t memory) const;
+  /// The most that any ready job needs.
+  std::uint64_t greatest_memory_ready() const {
+    return by_memory_.empty() ? 0 : by_memory_.rbegin()->first;
+  }
   /// How often the job was issued.
   std::uint32_t attempts(JobKey key) const;
   /// All jobs of all rounds are done.

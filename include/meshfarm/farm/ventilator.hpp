@@ -74,6 +74,7 @@ struct VentilatorOptions {
   /// Asked when there was no sink for `patience`: whether a sink has made the run's output already,
   /// perhaps while a ventilator was killed and started again. Then the run ends. May be empty.
   std::function<bool()> was_completed;
+  /// And how long to wait for a worker with the memory for what is left to do.
   std::chrono::milliseconds patience{60'000};
 };
 

@@ -266,6 +266,42 @@ TEST_CASE("a job that takes long by its estimate may stand still longer") {
   CHECK(said_to<Stop>("a", desk.say("a", standing(1, big, 301'000, false))).size() == 1);
 }
 
+TEST_CASE("jobs that are larger than every worker's memory end the run, resumable") {
+  const auto source = [](std::span<const AcceptedJob> accepted) {
+    std::vector<Job> jobs = make_jobs(2);
+    jobs[1].memory = std::uint64_t{800} << 20;
+    return accepted.empty() ? jobs : std::vector<Job>{};
+  };
+  Desk desk(source);
+  desk.sink("s", 9);
+  Hello small{Role::worker, 0, 1, 1, "host", {}};
+  small.capacity.memory = std::uint64_t{300} << 20;
+  desk.dispatcher.lane_opened(only<OpenLane>(desk.say("w", small))[0].worker, "lane");
+  desk.credit("w", 1, 9);
+  const auto live_on = [&] {
+    desk.now += FarmTime(1000);
+    desk.say("s", Heartbeat{k_epoch, {}, 0, 0, 0});
+    desk.say("w", Heartbeat{k_epoch, {1}, 0, 1, 0});
+    return only<Finish>(desk.dispatcher.tick(desk.now));
+  };
+  for (int i = 0; i < 100; ++i) CHECK(live_on().empty());  // something is still being done
+  SUBCASE("once nothing else is left and no larger worker came") {
+    desk.accept("s", key(0), 1);
+  }
+  SUBCASE("even if another failed for good") {
+    desk.say("s", Reject{k_epoch, {1}, 1001, key(0), {"bad input", FailureKind::for_good}});
+  }
+  std::vector<Finish> end;
+  for (int i = 0; i < 62 && end.empty(); ++i) {
+    end = live_on();
+    if (i < 58) CHECK(end.empty());
+  }
+  REQUIRE(end.size() == 1);
+  CHECK(end[0].resumable);
+  CHECK(end[0].failure.find("1 job needs more memory") != std::string::npos);
+  CHECK(end[0].failure.find("--parts") != std::string::npos);
+}
+
 TEST_CASE("very many failures are told in a time that grows with their number only") {
   constexpr int k_jobs = 20'000;
   Desk desk(one_round(k_jobs));
