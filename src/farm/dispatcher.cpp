@@ -10,6 +10,8 @@ namespace {
 
 /// Whoever is silent for this many heartbeats is lost.
 constexpr int k_silent_heartbeats = 3;
+/// Storage may take so many times as long as a computation before others are given the job.
+constexpr int k_storage_patience = 4;
 /// A job hangs that has not moved for so many times as long as it should take.
 constexpr int k_hanging_estimates = 3;
 
@@ -210,7 +212,9 @@ void Dispatcher::hear(WorkerId id, Worker& worker) {
 bool Dispatcher::hangs(WorkerId id, const Worker& worker) const {
   const Heartbeat& beat = worker.beat;
   if (FarmTime(beat.still_ms) < options_.hang) return false;
-  if (beat.in_storage) return !storage_stalls();
+  if (beat.in_storage) {
+    return FarmTime(beat.still_ms) >= k_storage_patience * options_.hang && !storage_stalls();
+  }
   double seconds = 0;
   for (const Scheduler::Held& held : scheduler_.held(id)) {
     if (held.key == beat.still) seconds = static_cast<double>(held.cost) / scheduler_.speed(id);
@@ -233,15 +237,16 @@ bool Dispatcher::storage_stalls() const {
 void Dispatcher::lose_hanging(WorkerId id) {
   const Worker& worker = workers_.at(id);
   const Heartbeat beat = worker.beat;
-  const std::string stood = " stood still for " + std::to_string(beat.still_ms / 1000) + " s";
+  const std::string seconds = std::to_string(beat.still_ms / 1000) + " s";
+  if (beat.in_storage) {
+    // Nobody is to blame for slow storage. Others get the jobs; the worker joins again, and what it
+    // waits for still counts if it comes first.
+    send(worker.peer, Refused{Refusal::stranger, "it waits for the stage; say hello again"});
+    return lose(id, "has waited for the stage for " + seconds, {});
+  }
   send(worker.peer, Stop{StopReason::hung});
   ++lost_workers_;
-  if (beat.in_storage) {
-    scheduler_.failed(id);
-    lose(id, "waited for the stage and" + stood, {});
-  } else {
-    lose(id, "computed and" + stood, {beat.still});
-  }
+  lose(id, "computed and stood still for " + seconds, {beat.still});
 }
 
 std::vector<JobKey> Dispatcher::in_work(WorkerId id) const {

@@ -4,6 +4,7 @@
 
 #include <atomic>
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <memory>
 #include <string>
@@ -13,6 +14,7 @@
 #include <meshfarm/farm/protocol.hpp>
 #include <meshfarm/farm/worker_core.hpp>
 #include <meshfarm/staging/stage.hpp>
+#include <meshfarm/staging/staged_writer.hpp>
 
 #include "farm/compute_gate.hpp"
 #include "farm/task_thread.hpp"
@@ -47,6 +49,12 @@ class JobSlot : private JobStorage {
   JobOutcome checked(const Begin& begin, JobOutput output) const;
   void read_ahead(const Job& job);
   void end_computing();
+  void write_in_pieces(StagedWriter& file, std::string_view bytes);
+  void moved(std::uint64_t bytes) { moved_.fetch_add(bytes, std::memory_order_relaxed); }
+  /// Waiting for a file is a sign of life, too: it ends.
+  std::function<void(std::uint64_t)> on_moved() {
+    return [this](std::uint64_t bytes) { moved(bytes + 1); };
+  }
   std::uint32_t lap_ms();
   std::string read(const FileRef& file) override;
   FileRef publish(const StagedName& name, std::string_view bytes, std::string_view unique) override;
@@ -57,6 +65,7 @@ class JobSlot : private JobStorage {
   ComputeGate& gate_;
   std::uint64_t incarnation_;
   std::atomic<std::uint64_t> progress_{0};
+  std::atomic<std::uint64_t> moved_{0};  // bytes to and from the stage
   std::atomic<JobPhase> phase_{JobPhase::storage};
   std::atomic<bool> give_up_{false};
   // The thread's own while it works:

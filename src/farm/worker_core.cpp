@@ -22,6 +22,7 @@ WorkerActions WorkerCore::tick(const WorkerPulse& pulse, FarmTime now) {
   if (left_ || leaving_) return take();
   feel(pulse, now);
   on(member_.tick(now), now);
+  if (credit_ == 0) raise_credit();
   if (member_.look_due(now)) act(Look{});
   if (member_.beat_due(now)) beat(pulse, now);
   if (member_.joined() && !sink_.empty()) {
@@ -42,7 +43,10 @@ void WorkerCore::beat(const WorkerPulse& pulse, FarmTime now) {
   beat.progress = pulse.progress;
   beat.rss_bytes = pulse.rss_bytes;
   for (const auto& slot : slots_) {
-    const FarmTime still = slot && !pulse.slots.empty() ? now - slot->moved : FarmTime(0);
+    // A job that was taken back may wait for storage as long as it likes.
+    const bool waits = slot && slot->pulse.phase == JobPhase::storage && !slot->on_this_lane;
+    const bool counts = slot && !waits && !pulse.slots.empty();
+    const FarmTime still = counts ? now - slot->moved : FarmTime(0);
     if (still.count() <= beat.still_ms) continue;
     beat.still = slot->key;
     beat.still_ms = static_cast<std::uint32_t>(std::min<FarmTime::rep>(still.count(), UINT32_MAX));
@@ -261,6 +265,12 @@ std::optional<std::uint32_t> WorkerCore::free_slot(std::uint64_t memory) const {
 
 void WorkerCore::raise_credit() {
   if (!member_.joined()) return;
+  // Where every slot waits for storage with what another lane brought, nothing is asked for: it
+  // would wait here, maybe for long, while others could do it.
+  const bool stuck = std::all_of(slots_.begin(), slots_.end(), [](const auto& slot) {
+    return slot && !slot->on_this_lane && slot->pulse.phase == JobPhase::storage;
+  });
+  if (stuck) return;
   std::uint64_t on_lane = 0;
   for (const auto& slot : slots_) on_lane += slot && slot->on_this_lane ? 1 : 0;
   const std::uint64_t busy = in_work();

@@ -99,7 +99,7 @@ struct Heartbeat {
   WorkerId worker;
   std::uint32_t held = 0;      // jobs not yet finished
   std::uint64_t received = 0;  // the last lane number seen
-  std::uint64_t progress = 0;  // of all compute threads, in triangles
+  std::uint64_t progress = 0;  // of all jobs in work: triangles done, bytes read and written
   JobKey still;                // of the jobs in work, the one that stands still the longest...
   std::uint32_t still_ms = 0;  // ...for so long
   bool in_storage = false;     // ...in reading or writing the stage, not in computing

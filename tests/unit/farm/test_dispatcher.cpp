@@ -237,11 +237,18 @@ TEST_CASE("a job that stands still costs its worker its jobs") {
     CHECK(desk.dispatcher.progress().workers_lost == 1);
     CHECK(names(desk.accept("s", key(0), 2)) == "job 1@2 ");  // a suspect: after the other is done
   }
-  SUBCASE("while it waits for the stage, and others do not") {
+  SUBCASE("while it waits for the stage, much longer than others: its process lives on") {
     desk.say("b", standing(2, key(0), 0, true));
-    const Actions lost = desk.say("a", standing(1, key(1), 30'000, true));
-    CHECK(said_to<Stop>("a", lost).size() == 1);
+    const Actions waits = desk.say("a", standing(1, key(1), 119'999, true));
+    CHECK(names(waits).empty());
+    CHECK(said_to<Alive>("a", waits).size() == 1);
+    const Actions lost = desk.say("a", standing(1, key(1), 120'000, true));
+    CHECK(said_to<Stop>("a", lost).empty());
+    REQUIRE(said_to<Refused>("a", lost).size() == 1);
+    CHECK(said_to<Refused>("a", lost)[0].why == Refusal::stranger);
     CHECK(names(lost) == "job 1@2 ");  // not the job's fault
+    CHECK(desk.dispatcher.progress().workers_lost == 0);
+    CHECK(desk.dispatcher.progress().bad_hosts.empty());
   }
   SUBCASE("but not while most wait for the stage") {
     desk.say("b", standing(2, key(0), 20'000, true));

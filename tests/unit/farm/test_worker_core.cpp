@@ -280,6 +280,23 @@ TEST_CASE("a worker that shares its host's memory keeps to its share") {
   CHECK(only<Begin>(more).size() == 1);
 }
 
+TEST_CASE("a worker whose every slot waits for storage asks for nothing until one is free") {
+  Bench bench(2, 2);
+  bench.join(1);
+  bench.job(1, "1");
+  bench.job(2, "2");
+  bench.core.tick({{{1, JobPhase::storage}, {1, JobPhase::storage}}}, bench.now);
+  bench.core.on_control(Refused{Refusal::stranger, "it waits for the stage"}, bench.now);
+  CHECK(credit_in(bench.join(2)) == 0);
+  SUBCASE("by the end of a job") {
+    CHECK(credit_in(bench.finish(0)) > 0);
+  }
+  SUBCASE("or as its job goes on to be computed") {
+    const WorkerPulse moving{{{1, JobPhase::computing}, {1, JobPhase::storage}}};
+    CHECK(credit_in(bench.core.tick(moving, bench.now)) > 0);
+  }
+}
+
 Heartbeat beat_in(const WorkerActions& actions) {
   for (const Say& say : only<Say>(actions)) {
     if (const auto* beat = std::get_if<Heartbeat>(&say.message)) return *beat;
@@ -316,6 +333,12 @@ TEST_CASE("a heartbeat tells of the job that stands still the longest") {
   CHECK(told.still == key_of(make_job("2")));
   CHECK(told.in_storage);
   CHECK(beat({}).still_ms == 0);  // nothing is known of the slots
+  // A ventilator that took the jobs back does not hear of them again.
+  bench.core.on_control(Refused{Refusal::stranger, "it waits for the stage"}, bench.now);
+  bench.join(2);
+  bench.now += FarmTime(1000);
+  bench.core.on_control(Alive{2, "sink"}, bench.now);
+  CHECK(beat_in(bench.core.tick({{{5, computing}, {1, storage}}, 9, 8}, bench.now)).still_ms == 0);
 }
 
 }  // namespace
