@@ -64,6 +64,7 @@ void Dispatcher::on(const PeerId& peer, const Reject& reject) {
                         "); what is done is kept: make room, then run the same command again",
                     true);
     case FailureKind::attempt:
+    case FailureKind::unread:
       reject_attempt(reject);
       break;
   }
@@ -89,9 +90,12 @@ void Dispatcher::reject_attempt(const Reject& reject) {
     return each.key == reject.key && attempt_number(each.attempt) == reject.attempt;
   });
   if (!current) return;
+  drop(reject.worker, reject.key);
+  if (reject.failure.kind == FailureKind::unread) {
+    return fail(reject.key, reject.failure.reason, Failing::unread);
+  }
   scheduler_.failed(reject.worker);
   scheduler_.avoid(reject.worker, reject.key);
-  drop(reject.worker, reject.key);
   fail(reject.key, reject.failure.reason, Failing::attempt);
 }
 

@@ -128,7 +128,7 @@ void JobSlot::read_ahead(const Job& job) {
   try {
     for (const FileRef& input : job.inputs) {
       if (give_up_) return;
-      ahead_[input.name] = stage_.read(input, {.attempts = 1});
+      ahead_[input.name] = stage_.read(input, {.attempts = 1, .moved = on_moved()});
     }
   } catch (const Error&) {
   } catch (const std::bad_alloc&) {
@@ -139,7 +139,7 @@ std::string JobSlot::read(const FileRef& file) {
   auto found = ahead_.extract(file.name);
   if (!found.empty()) return std::move(found.mapped());
   phase_ = JobPhase::storage;
-  std::string bytes = stage_.read(file);
+  std::string bytes = stage_.read(file, {.moved = on_moved()});
   phase_ = JobPhase::computing;
   return bytes;
 }

@@ -123,7 +123,7 @@ void Plan::fail_attempt(JobKey key, const std::string& reason, Failing failing) 
   if (entry.live > 0) --entry.live;
   if (!open || (entry.state == JobState::ready && !for_good)) return;
   entry.failures.push_back(reason);
-  entry.resumable = failing == Failing::worker_lost;
+  entry.resumable = failing == Failing::worker_lost || failing == Failing::unread;
   if (for_good || entry.failures.size() >= max_attempts_) {
     move_to(key, entry, JobState::failed);
   } else if (entry.live == 0) {

@@ -186,7 +186,7 @@ class Decoder {
   void field(Role& value) { choice(value, Role::sink); }
   void field(Refusal& value) { choice(value, Refusal::other_build); }
   void field(StopReason& value) { choice(value, StopReason::hung); }
-  void field(FailureKind& value) { choice(value, FailureKind::no_space); }
+  void field(FailureKind& value) { choice(value, FailureKind::unread); }
   void field(std::string& text) { bytes(text, k_max_text_bytes); }
   template <class T>
   void field(std::vector<T>& list) {

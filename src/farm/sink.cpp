@@ -27,6 +27,8 @@ constexpr int k_messages_per_turn = 1000;
 /// As many results share one sync of the journal at most.
 constexpr std::size_t k_checks_per_batch = 256;
 
+const ReadPatience k_journal_patience = {.missing = std::chrono::seconds(2)};
+
 using Complete = std::function<void(std::span<const AcceptedJob>)>;
 
 /// The sockets and the disk thread round a SinkCore, which decides everything.
@@ -83,6 +85,7 @@ class SinkLoop {
   struct Checked {
     Check check;
     std::string problem;
+    FailureKind kind = FailureKind::attempt;
   };
 
   void turn() {
@@ -129,7 +132,7 @@ class SinkLoop {
     if (!disk_.idle() || left_) return;
     if (!to_check_.empty()) {
       while (!to_check_.empty() && batch_.size() < k_checks_per_batch) {
-        batch_.push_back({std::move(to_check_.front()), {}});
+        batch_.push_back({std::move(to_check_.front()), {}, FailureKind::attempt});
         to_check_.pop_front();
       }
       disk_.start([this] { check_batch(); });
@@ -147,7 +150,7 @@ class SinkLoop {
     if (problem_) return perform(core_.fail(what(problem_)));
     for (const Checked& each : std::exchange(batch_, {})) {
       if (!each.problem.empty()) log_warning("not accepted: " + each.problem);
-      perform(core_.checked(each.check, each.problem));
+      perform(core_.checked(each.check, each.problem, each.kind));
     }
   }
 
@@ -173,11 +176,16 @@ class SinkLoop {
       try {
         const Check& check = each.check;
         if (options_.inspect) options_.inspect(check.kind, check.output);
-        stage_.verify(check.output.file);
+        // What a journal knows was there long ago: if it is gone, it is made again.
+        stage_.verify(check.output.file, check.from_journal ? k_journal_patience : ReadPatience{});
         if (!check.from_journal) records.push_back(encode_accepted({check.key, check.output}));
+      } catch (const IoError& error) {
+        each.problem = error.what();
+        each.kind = FailureKind::unread;
       } catch (const Error& error) {
         each.problem = error.what();
       } catch (const std::bad_alloc&) {
+        each.kind = FailureKind::unread;
         each.problem = "out of memory while reading " + each.check.output.file.name;
       }
     }

@@ -113,7 +113,7 @@ void SinkCore::take_result(const Result& result) {
   if (checking_.try_emplace(result.key, check).second) act(check);
 }
 
-SinkActions SinkCore::checked(const Check& check, const std::string& problem) {
+SinkActions SinkCore::checked(const Check& check, const std::string& problem, FailureKind kind) {
   checking_.erase(check.key);
   if (check.from_journal) --checking_journal_;
   if (problem.empty()) {
@@ -122,11 +122,7 @@ SinkActions SinkCore::checked(const Check& check, const std::string& problem) {
     tell(check.key, check.worker, check.times);
     want();
   } else if (!check.from_journal && told_all_) {
-    say(Reject{member_.epoch(),
-               check.worker,
-               check.attempt,
-               check.key,
-               {clipped(problem), FailureKind::attempt}});
+    say(Reject{member_.epoch(), check.worker, check.attempt, check.key, {clipped(problem), kind}});
   }
   tell_all();
   return take();

@@ -43,7 +43,8 @@ void refresh(const std::filesystem::path& folder) {
 }
 
 bool may_pass(int error_number) {
-  return error_number == ENOENT || error_number == ESTALE || error_number == EIO;
+  return error_number == ENOENT || error_number == ESTALE || error_number == EIO ||
+         error_number == ETIMEDOUT;
 }
 
 Fd open_once(const std::filesystem::path& root, const FileRef& file) {
@@ -57,18 +58,32 @@ Fd open_once(const std::filesystem::path& root, const FileRef& file) {
   return fd;
 }
 
-std::string read_once(const std::filesystem::path& root, const FileRef& file) {
+constexpr std::size_t k_piece = std::size_t{1} << 20;
+
+void tell_moved(const ReadPatience& patience, std::uint64_t bytes) {
+  if (patience.moved) patience.moved(bytes);
+}
+
+std::string read_once(const std::filesystem::path& root, const FileRef& file,
+                      const ReadPatience& patience) {
   const std::filesystem::path path = root / file.name;
   const Fd fd = open_once(root, file);
-  std::string bytes = read_file(fd.get(), path);
-  if (bytes.size() != file.size || checksum(bytes) != file.hash) {
+  std::string bytes(file.size, '\0');
+  std::size_t done = 0;
+  while (done < bytes.size()) {
+    const std::size_t want = std::min(k_piece, bytes.size() - done);
+    const std::size_t got = read_up_to(fd.get(), {bytes.data() + done, want}, path);
+    tell_moved(patience, got);
+    done += got;
+    if (got < want) break;
+  }
+  if (done != file.size || checksum(bytes) != file.hash) {
     throw DataError(path.string() + ": damaged (its checksum is not the promised one)");
   }
   return bytes;
 }
 
 void verify_once(const std::filesystem::path& root, const FileRef& file) {
-  constexpr std::size_t k_piece = std::size_t{1} << 20;
   const std::filesystem::path path = root / file.name;
   const Fd fd = open_once(root, file);
   Checksum sum;
@@ -89,16 +104,21 @@ auto patiently(const Stage& stage, const FileRef& file, const ReadPatience& pati
                const Try& try_once) {
   const auto name = parse_staged_name(file.name);
   if (!name) throw DataError("'" + file.name + "' is not a staged name");
+  constexpr int k_longest_wait_ms = 5000;
+  const auto begin = std::chrono::steady_clock::now();
   int wait_ms = patience.first_wait_ms;
-  for (int attempt = 1;; ++attempt, wait_ms *= 2) {
+  int wrong = 0;  // attempts at a file that was there
+  for (;; wait_ms = std::min(2 * wait_ms, k_longest_wait_ms)) {
     try {
       return try_once();
     } catch (const IoError& error) {
-      if (!may_pass(error.error_number()) || attempt >= patience.attempts) throw;
+      const bool over = std::chrono::steady_clock::now() - begin >= patience.missing;
+      if (!may_pass(error.error_number()) || over || patience.attempts <= 1) throw;
     } catch (const DataError&) {
-      if (attempt >= patience.attempts) throw;
+      if (++wrong >= patience.attempts) throw;
     }
     std::this_thread::sleep_for(std::chrono::milliseconds(wait_ms));
+    tell_moved(patience, 0);
     refresh(stage.path(*name).parent_path());
   }
 }
@@ -168,7 +188,7 @@ bool Stage::publish_new(const StagedName& name, std::string_view bytes,
 }
 
 std::string Stage::read(const FileRef& file, const ReadPatience& patience) const {
-  return patiently(*this, file, patience, [&] { return read_once(root_, file); });
+  return patiently(*this, file, patience, [&] { return read_once(root_, file, patience); });
 }
 
 void Stage::verify(const FileRef& file, const ReadPatience& patience) const {

@@ -33,7 +33,7 @@ struct LostJob {
   JobKey key;
   std::string kind;
   std::string reasons;
-  bool resumable = false;  // only because workers were lost over it
+  bool resumable = false;  // only because workers were lost over it, or results not read
 };
 
 /// Which of the ready jobs will do.
@@ -44,7 +44,8 @@ struct JobChoice {
 };
 
 /// What an attempt that failed says of its job. worker_lost: the worker was, and the job in work.
-enum class Failing { attempt, for_good, worker_lost };
+/// unread: nothing, its result could not be read by the sink.
+enum class Failing { attempt, for_good, worker_lost, unread };
 
 /// One line that tells of jobs given up: how many, and the reasons of the first few.
 std::string failed_for_good(std::span<const std::string> reasons);

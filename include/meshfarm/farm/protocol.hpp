@@ -130,7 +130,8 @@ struct Assignment {
   Job job;
 };
 /// attempt: another attempt may do better. for_good: none can. no_space: the stage is full.
-enum class FailureKind : std::uint8_t { attempt = 1, for_good = 2, no_space = 3 };
+/// unread: the sink cannot read the result, which says nothing of its worker.
+enum class FailureKind : std::uint8_t { attempt = 1, for_good = 2, no_space = 3, unread = 4 };
 struct JobFailure {
   std::string reason;
   FailureKind kind = FailureKind::attempt;

@@ -56,7 +56,9 @@ class SinkCore {
   SinkActions on_control(const Message& message, FarmTime now);
   SinkActions on_result(const Message& message);
   /// The answer to a Check: `problem` is empty if the file is whole and the record is on the disk.
-  SinkActions checked(const Check& check, const std::string& problem);
+  /// `kind` says whose problem it is.
+  SinkActions checked(const Check& check, const std::string& problem,
+                      FailureKind kind = FailureKind::attempt);
   /// The answer to MakeOutput.
   SinkActions completed(const SinkProblem& problem, FarmTime now);
   /// Tells the ventilator that this sink cannot go on (its journal cannot be written).

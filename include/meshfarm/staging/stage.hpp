@@ -2,8 +2,10 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <chrono>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -24,8 +26,12 @@ struct FileRef {
 
 /// How patient a reader is with a file that it was told of but does not see whole (NFS).
 struct ReadPatience {
-  int attempts = 5;
-  int first_wait_ms = 50;  // doubles each time
+  int attempts = 5;        // at a file that is there, but not as promised; 1: no waiting at all
+  int first_wait_ms = 50;  // doubles each time, up to five seconds
+  /// How long a file may be missing, or its storage fail: NFS was seen to take 30 to 60 s.
+  std::chrono::milliseconds missing{90'000};
+  /// Called with the bytes that came, and with none as long as there is still patience.
+  std::function<void(std::uint64_t bytes)> moved = {};
 };
 
 /// The shared folder of one dataset.

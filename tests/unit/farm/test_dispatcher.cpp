@@ -309,6 +309,23 @@ TEST_CASE("jobs that are larger than every worker's memory end the run, resumabl
   CHECK(end[0].failure.find("--parts") != std::string::npos);
 }
 
+TEST_CASE("a sink that cannot read blames nobody, and the run may be taken up again") {
+  Desk desk(one_round(1));
+  desk.sink("s", 9);
+  desk.worker("a", 1);
+  desk.worker("b", 2);
+  desk.credit("a", 1, 9);
+  Actions last;
+  for (std::uint32_t attempt = 1; attempt <= 3; ++attempt) {
+    CHECK(desk.dispatcher.holding() == 1);
+    last =
+        desk.say("s", Reject{k_epoch, {1}, 1000 + attempt, key(0), {"EIO", FailureKind::unread}});
+  }
+  CHECK(desk.dispatcher.progress().bad_hosts.empty());
+  REQUIRE(only<Finish>(last).size() == 1);
+  CHECK(only<Finish>(last)[0].resumable);
+}
+
 TEST_CASE("very many failures are told in a time that grows with their number only") {
   constexpr int k_jobs = 20'000;
   Desk desk(one_round(k_jobs));

@@ -1,5 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
+#include <chrono>
+#include <filesystem>
 #include <fstream>
 #include <thread>
 
@@ -16,7 +18,7 @@ using namespace meshfarm;
 
 namespace {
 
-constexpr ReadPatience k_no_patience = {.attempts = 1, .first_wait_ms = 0};
+const ReadPatience k_no_patience = {.attempts = 1, .first_wait_ms = 0};
 
 }  // namespace
 
@@ -136,4 +138,31 @@ TEST_CASE("who only verifies a file notices the same damage") {
       DataError);
   std::filesystem::resize_file(stage.path(PartName{0}), 2'000'000);
   CHECK_THROWS_AS(stage.verify(file, k_no_patience), DataError);
+}
+
+TEST_CASE("a file that is missing is waited for by the clock, and every look is a sign of life") {
+  const test::TempFolder folder;
+  const Stage stage = Stage::create(folder.path());
+  const FileRef file = stage.publish(PartName{1}, "content");
+  const auto hidden = folder / "hidden";
+  std::filesystem::rename(stage.path(PartName{1}), hidden);
+  ReadPatience patience{.first_wait_ms = 10, .missing = std::chrono::seconds(20)};
+  int looks = 0;
+  std::uint64_t bytes = 0;
+  patience.moved = [&](std::uint64_t more) {
+    bytes += more;
+    // Later than five attempts would have lasted, as a negative answer that NFS remembers.
+    if (++looks == 8) std::filesystem::rename(hidden, stage.path(PartName{1}));
+  };
+  CHECK(stage.read(file, patience) == "content");
+  CHECK(looks >= 8);
+  CHECK(bytes == 7);
+
+  std::filesystem::remove(stage.path(PartName{1}));
+  patience.missing = std::chrono::milliseconds(300);
+  const auto begin = std::chrono::steady_clock::now();
+  CHECK_THROWS_AS(stage.read(file, patience), IoError);
+  const auto took = std::chrono::steady_clock::now() - begin;
+  CHECK(took >= std::chrono::milliseconds(300));
+  CHECK(took < std::chrono::seconds(10));
 }
