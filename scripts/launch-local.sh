@@ -18,4 +18,8 @@ case "${1:-}" in
 esac
 [ $# -ge 1 ] || fail_usage "STAGE is missing"
 meshfarm=$(find_meshfarm)
+# As an option of the run it may stand anywhere.
+for word in "$@"; do
+  [[ $word != --workers && $word != --workers=* ]] || exec "$meshfarm" run "$@" --bind 127.0.0.1
+done
 exec "$meshfarm" run "$@" --bind 127.0.0.1 --workers "$workers"

@@ -16,9 +16,27 @@
 #   MESHFARM  the program, at the same path on all nodes (default: the one built beside this script)
 set -euo pipefail
 
-# A worker of the array: $MESHFARM, $MESHFARM_STAGE and the words of its run.
+# A worker of the array: run_element PROGRAM STAGE WORDS... All it needs comes as words, as a site may
+# pass no environment on (--export=NONE). A worker that left before the run was over (3: one of its
+# jobs hung, its ventilator did not answer) is started again, unless it was asked to leave.
 run_element() {
-  exec "$MESHFARM" worker "$MESHFARM_STAGE" --threads "${SLURM_CPUS_PER_TASK:-1}" --wait 600 "$@"
+  local program=$1 stage=$2 worker='' asked='' code
+  shift 2
+  trap 'asked=yes; [ -z "$worker" ] || kill -TERM "$worker" 2> /dev/null' INT TERM
+  while :; do
+    "$program" worker "$stage" --threads "${SLURM_CPUS_PER_TASK:-1}" --wait 600 "$@" &
+    worker=$!
+    code=0
+    wait "$worker" || code=$?
+    while kill -0 "$worker" 2> /dev/null; do # a signal has ended the waiting only
+      code=0
+      wait "$worker" || code=$?
+    done
+    if [ "$code" -ne 3 ] || [ -n "$asked" ]; then exit "$code"; fi
+    sleep 5 &
+    wait $! || true
+    [ -z "$asked" ] || exit "$code"
+  done
 }
 
 # Starts the run and sees it through: what asks this script to stop is the run's to obey and to tell
@@ -36,13 +54,17 @@ see_run_through() {
   done
 }
 
-# The job of the one allocation: run options, --, the words of its workers.
+# The job of the one allocation: program, stage, run options, --, the words of its workers.
 run_allocation() {
+  MESHFARM=$1
+  MESHFARM_STAGE=$2
+  shift 2
   local options=() workers word=$MESHFARM_STAGE.slurm-$SLURM_JOB_ID.code
   while [ "$1" != -- ]; do options+=("$1"); shift; done
   shift
   srun --no-kill --kill-on-bad-exit=0 --wait=0 --ntasks-per-node=1 \
-    "$MESHFARM" worker "$MESHFARM_STAGE" --threads "${SLURM_CPUS_PER_TASK:-1}" --wait 600 "$@" &
+    bash -c "$(declare -f run_element); run_element \"\$@\"" run_element \
+    "$MESHFARM" "$MESHFARM_STAGE" "$@" &
   workers=$!
   see_run_through "${options[@]}"
   echo "$code" > "$word.tmp"
@@ -75,7 +97,6 @@ shift || fail_usage "-- and the STAGE are missing"
 command -v sbatch > /dev/null || { echo "launch-slurm.sh: there is no Slurm here (sbatch)" >&2; exit 1; }
 MESHFARM=$(find_meshfarm)
 MESHFARM_STAGE=$(realpath "$1")
-export MESHFARM MESHFARM_STAGE
 shift
 words=$(worker_words "$MESHFARM_STAGE" "$@") || exit $?
 mapfile -t words <<< "$words"
@@ -91,7 +112,8 @@ cancel() {
 
 launch_array() {
   trap cancel EXIT
-  job=$(sbatch "${sbatch_options[@]}" --array=1-"$count" "$self" --element \
+  job=$(sbatch "${sbatch_options[@]}" --array=1-"$count" "$self" --element "$MESHFARM" \
+    "$MESHFARM_STAGE" \
     "${words[@]}")
   job=${job%%;*}
   echo "launch-slurm.sh: job array $job, $count workers, log $MESHFARM_STAGE.slurm-$job.log" >&2
@@ -107,7 +129,8 @@ job_state() {
 launch_allocation() {
   trap 'cancel; echo "launch-slurm.sh: cancelled; the same command goes on from there" >&2; exit 3' \
     INT TERM HUP
-  job=$(sbatch "${sbatch_options[@]}" --nodes="$count" --no-kill "$self" --allocation "$@" -- \
+  job=$(sbatch "${sbatch_options[@]}" --nodes="$count" --no-kill "$self" --allocation \
+    "$MESHFARM" "$MESHFARM_STAGE" "$@" -- \
     "${words[@]}")
   job=${job%%;*}
   local log=$MESHFARM_STAGE.slurm-$job.log word=$MESHFARM_STAGE.slurm-$job.code

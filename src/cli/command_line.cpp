@@ -7,6 +7,8 @@
 #include <new>
 #include <sstream>
 
+#include <sys/prctl.h>
+
 #include <meshfarm/cli/command_line.hpp>
 #include <meshfarm/util/errors.hpp>
 #include <meshfarm/util/log.hpp>
@@ -123,6 +125,8 @@ int dispatch(const std::vector<std::string>& words) {
 }  // namespace
 
 int run_command_line(int argc, const char* const* argv) {
+  // Whoever is started through /proc/self/exe shows as "exe" otherwise, and nobody finds it.
+  ::prctl(PR_SET_NAME, "meshfarm");
   keep_freed_memory();
   try {
     const int code = dispatch({argv + std::min(1, argc), argv + argc});

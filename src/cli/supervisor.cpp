@@ -107,10 +107,14 @@ void Supervisor::ended(Child& child, int status) {
     child.done = true;  // the output is there: nobody needs it any more
     return;
   }
-  if (WIFSIGNALED(status) && child.restarts < k_max_restarts && !stop_) {
+  // A worker that left before the end had a job that hung, or lost its ventilator.
+  const bool left = child.worker() && WIFEXITED(status) && WEXITSTATUS(status) == k_incomplete;
+  if ((WIFSIGNALED(status) || left) && child.restarts < k_max_restarts && !stop_) {
     ++child.restarts;
-    log_warning("the " + child.words.front() + " was ended by signal " +
-                std::to_string(WTERMSIG(status)) + " and is started again");
+    log_warning("the " + child.words.front() +
+                (left ? std::string(" left before the end")
+                      : " was ended by signal " + std::to_string(WTERMSIG(status))) +
+                " and is started again");
     spawn(child);
     return;
   }

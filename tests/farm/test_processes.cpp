@@ -65,6 +65,21 @@ void send_bytes(std::uint16_t port, const std::string& bytes) {
   ::close(fd);
 }
 
+/// The children of a process, by what their command lines begin with after the program's name.
+std::vector<pid_t> children_of(pid_t parent, const std::string& command) {
+  const std::string self = std::to_string(parent);
+  std::ifstream list("/proc/" + self + "/task/" + self + "/children");
+  std::vector<pid_t> found;
+  for (pid_t child = 0; list >> child;) {
+    std::ifstream words("/proc/" + std::to_string(child) + "/cmdline");
+    std::string program;
+    std::string word;
+    std::getline(std::getline(words, program, '\0'), word, '\0');
+    if (word == command) found.push_back(child);
+  }
+  return found;
+}
+
 }  // namespace
 
 TEST_CASE("1, 2 and 5 workers make the same bytes") {
@@ -355,5 +370,22 @@ TEST_CASE("a run and two replays of one stage at once have their own workers, an
   Process worker = bench().start({"worker", stage, "--run", key.out.substr(6, 16)});
   CHECK(run.wait() == 0);
   CHECK(worker.wait() == 0);
+  bench().check_result(stage + ".ply");
+}
+
+TEST_CASE("a run's processes show as meshfarm, and a worker that left before the end is replaced") {
+  const std::string stage = bench().cut();
+  Process replay =
+      bench().start({"replay", stage, "--ratio", "0.02", "--workers", "1", "-o", stage + ".ply"});
+  REQUIRE(wait_for_results(stage, 2));
+  for (const char* command : {"ventilator", "sink", "worker"}) {
+    CAPTURE(command);
+    const std::vector<pid_t> pids = children_of(replay.pid(), command);
+    REQUIRE(pids.size() == 1);
+    CHECK(meshfarm::test::read_text("/proc/" + std::to_string(pids[0]) + "/comm") == "meshfarm\n");
+    if (command == std::string("worker")) ::kill(pids[0], SIGTERM);
+  }
+  CHECK(replay.wait() == 0);
+  CHECK(replay.err().find("started again") != std::string::npos);
   bench().check_result(stage + ".ply");
 }
