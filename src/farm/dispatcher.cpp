@@ -257,8 +257,9 @@ std::vector<JobKey> Dispatcher::in_work(WorkerId id) const {
   return keys;
 }
 
-/// `suspects` are the jobs that may have cost the worker its life. A single one is held to have; of
-/// several, each is given to a worker alone the next time, so that another loss is its own.
+/// `suspects` are the jobs that may have cost the worker its life. A single one is held to have, or
+/// the one that was a suspect before; else each is given to a worker without other suspects the
+/// next time, so that another loss is its own.
 void Dispatcher::lose(WorkerId id, const std::string& reason, const std::vector<JobKey>& suspects) {
   const Worker worker = std::move(workers_.at(id));
   workers_.erase(id);
@@ -269,15 +270,16 @@ void Dispatcher::lose(WorkerId id, const std::string& reason, const std::vector<
   tell(WorkerLeft{id, reason});
   const std::string why =
       "worker " + std::to_string(id.value) + " on " + worker.host + " " + reason;
-  if (!suspects.empty()) scheduler_.failed(id);
-  if (suspects.size() == 1) scheduler_.avoid(id, suspects.front());
+  const std::optional<JobKey> blamed = the_one_to_blame(suspects);
+  if (!suspects.empty()) scheduler_.failed(id, now_);
+  if (blamed) scheduler_.avoid(id, *blamed);
   for (const Scheduler::Held& held : scheduler_.leave(id)) {
     if (std::find(suspects.begin(), suspects.end(), held.key) == suspects.end()) {
       plan_.give_back(held.key);
       continue;
     }
     scheduler_.suspect(held.key);
-    if (suspects.size() > 1) {
+    if (held.key != blamed) {
       plan_.give_back(held.key);
       continue;
     }
@@ -286,6 +288,15 @@ void Dispatcher::lose(WorkerId id, const std::string& reason, const std::vector<
   }
   issue();
   look_for_end();
+}
+
+std::optional<JobKey> Dispatcher::the_one_to_blame(const std::vector<JobKey>& suspects) const {
+  if (suspects.size() == 1) return suspects.front();
+  std::vector<JobKey> before;
+  for (const JobKey key : suspects) {
+    if (scheduler_.is_suspect(key)) before.push_back(key);
+  }
+  return before.size() == 1 ? std::optional(before.front()) : std::nullopt;
 }
 
 void Dispatcher::lose_sink() {

@@ -94,7 +94,7 @@ void Dispatcher::reject_attempt(const Reject& reject) {
   if (reject.failure.kind == FailureKind::unread) {
     return fail(reject.key, reject.failure.reason, Failing::unread);
   }
-  scheduler_.failed(reject.worker);
+  scheduler_.failed(reject.worker, now_);
   scheduler_.avoid(reject.worker, reject.key);
   fail(reject.key, reject.failure.reason, Failing::attempt);
 }

@@ -11,6 +11,10 @@ namespace meshfarm {
 namespace {
 
 constexpr std::uint32_t k_failures_of_a_bad_host = 3;
+/// What fails on a host within so long has one cause.
+constexpr FarmTime k_incident = std::chrono::seconds(10);
+/// Then a bad host is given another chance; one more incident, and it is bad again.
+constexpr FarmTime k_ban = std::chrono::minutes(5);
 /// Of a worker that does not say.
 constexpr double k_usual_speed = 1e6;
 /// A buffer is never made smaller than this, in seconds: it has to outlast the way of a message.
@@ -119,8 +123,27 @@ void Scheduler::avoid(WorkerId id, JobKey key) {
   if (std::find(hosts.begin(), hosts.end(), host) == hosts.end()) hosts.push_back(host);
 }
 
-void Scheduler::failed(WorkerId id) {
-  if (++crew_.at(id).host->failures == k_failures_of_a_bad_host) rank_all();
+void Scheduler::failed(WorkerId id, FarmTime now) {
+  Host& host = *crew_.at(id).host;
+  if (host.failures > 0 && now - host.incident < k_incident) return;
+  host.incident = now;
+  if (++host.failures != k_failures_of_a_bad_host) return;
+  next_ban_end_ = std::min(next_ban_end_, now + k_ban);
+  rank_all();
+}
+
+void Scheduler::end_bans(FarmTime now) {
+  if (now < next_ban_end_) return;
+  next_ban_end_ = FarmTime::max();
+  for (auto& [name, host] : hosts_) {
+    if (good(host)) continue;
+    if (now - host.incident >= k_ban) {
+      host.failures = k_failures_of_a_bad_host - 1;
+    } else {
+      next_ban_end_ = std::min(next_ban_end_, host.incident + k_ban);
+    }
+  }
+  rank_all();
 }
 
 void Scheduler::settled(JobKey key) {
@@ -171,8 +194,7 @@ bool Scheduler::open(const Member& member) const {
   if (member.room == 0 || !serves(member)) return false;
   const Pool* pool = member.pool;
   if (pool != nullptr && pool->by_itself != nullptr && pool->by_itself != &member) return false;
-  return suspects_.empty() || member.held.size() != 1 ||
-         !suspects_.contains(member.held.front().key);
+  return true;
 }
 
 void Scheduler::rank_all() {
@@ -247,7 +269,10 @@ void Scheduler::leave_pool(Member& member) {
 }
 
 bool Scheduler::may(const Member& member, JobKey key) const {
-  if (!member.held.empty() && suspects_.contains(key)) return false;
+  const auto is_one = [&](const Held& held) { return suspects_.contains(held.key); };
+  if (suspects_.contains(key) && std::any_of(member.held.begin(), member.held.end(), is_one)) {
+    return false;
+  }
   const auto failed = failed_on_.find(key);
   if (failed == failed_on_.end()) return true;
   const auto& hosts = failed->second;
@@ -276,6 +301,7 @@ Scheduler::Pick Scheduler::hand(WorkerId id, IssuedJob job, FarmTime now) {
 
 std::optional<Scheduler::Pick> Scheduler::next(Plan& plan, FarmTime now) {
   if (plan.counts().ready == 0 || crew_.empty()) return std::nullopt;
+  end_bans(now);
   if (options_.schedule == Schedule::fixed) return next_fixed(plan, now);
   const double left = outlook(plan, now).all_done;
   const double full = std::max(k_least_buffer, std::min(seconds(options_.horizon), left / 4));

@@ -117,6 +117,7 @@ class Dispatcher {
   void lose_hanging(WorkerId id);
   void lose(WorkerId id, const std::string& reason, const std::vector<JobKey>& suspects);
   std::vector<JobKey> in_work(WorkerId id) const;
+  std::optional<JobKey> the_one_to_blame(const std::vector<JobKey>& suspects) const;
   void lose_sink();
   std::uint32_t attempt_number(std::uint32_t attempt) const;
   void settle(JobKey key, WorkerId reporter);

@@ -52,14 +52,15 @@ class Scheduler {
   /// It did the job that it holds in so much time (0: not known).
   void did(WorkerId id, JobKey key, std::uint32_t compute_ms, FarmTime now);
 
-  /// Something failed on the worker's host. After three failures in a row it gets no more jobs, as
-  /// long as there are other hosts.
-  void failed(WorkerId id);
+  /// Something failed on the worker's host. After three incidents in a row it gets no more jobs for
+  /// some minutes, as long as there are other hosts. What fails within seconds is one incident.
+  void failed(WorkerId id, FarmTime now);
   /// The job is not to be tried again on the worker's host, as long as there are others.
   void avoid(WorkerId id, JobKey key);
-  /// A job in work when a worker was lost. From now on it is given to a worker alone, so that the
-  /// next loss tells whether it is to blame.
+  /// A job in work when a worker was lost. From now on no other suspect is given to a worker beside
+  /// it, so that the next loss tells whether it is to blame.
   void suspect(JobKey key) { suspects_.insert(key); }
+  bool is_suspect(JobKey key) const { return suspects_.contains(key); }
   void settled(JobKey key);
 
   /// What to send to whom now, if anything: the plan has issued it, and the worker holds it.
@@ -90,7 +91,8 @@ class Scheduler {
   struct Host {
     std::string name;
     std::uint32_t workers = 0;
-    std::uint32_t failures = 0;  // in a row
+    std::uint32_t failures = 0;  // incidents in a row
+    FarmTime incident{0};        // when the last one began
   };
   struct Member;
   /// Memory that several workers of a host have together. A job that is too large for an even share
@@ -135,6 +137,7 @@ class Scheduler {
   void pool_dropped(Member& member);
   void leave_pool(Member& member);
   bool good(const Host& host) const;
+  void end_bans(FarmTime now);
   std::vector<Late> late_jobs(const Plan& plan, FarmTime now) const;
   bool elsewhere(const std::vector<std::string>& hosts) const;
   bool may(const Member& member, JobKey key) const;
@@ -163,6 +166,7 @@ class Scheduler {
   std::unordered_map<JobKey, std::vector<std::string>, JobKeyHash> failed_on_;
   Outlook outlook_;
   FarmTime next_second_attempts_{0};
+  FarmTime next_ban_end_ = FarmTime::max();
   // What all workers did: how fast a host is at real jobs for what its benchmark says.
   double cost_done_ = 0;
   double benchmark_cost_done_ = 0;

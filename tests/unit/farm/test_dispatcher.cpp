@@ -147,16 +147,17 @@ TEST_CASE("a silent worker loses its jobs; those it may have had in work are sus
   CHECK(only<CloseLane>(lost)[0].worker == WorkerId{1});
   CHECK(desk.dispatcher.progress().workers_lost == 1);
   CHECK(desk.dispatcher.holding() == 0);
-  // Two were in work at most: one computed, one read ahead. Each goes out again, but alone.
-  const Actions first = desk.credit("b", 2, 4);
+  // Two were in work at most: one computed, one read ahead. They do not go out together again.
+  const Actions first = desk.credit("b", 2, 2);
   const auto again = only<PushJob>(first);
-  REQUIRE(again.size() == 1);
+  REQUIRE(again.size() == 2);
+  CHECK(again[1].assignment.job.parameters == "job 1");
   CHECK(again[0].assignment.job.parameters == "job 3");
   CHECK(again[0].assignment.attempt == 1002);  // the second attempt of the second epoch
 
   SUBCASE("innocent ones are done one by one, then all goes on as before") {
-    CHECK(names(desk.accept("s", key(3), 2)) == "job 2@2 ");
-    CHECK(names(desk.accept("s", key(2), 2)) == "job 1@2 job 0@2 ");
+    desk.accept("s", key(3), 2);
+    CHECK(names(desk.credit("b", 2, 4)) == "job 2@2 job 0@2 ");
   }
   SUBCASE("its late result is taken, and the new holder told to stop") {
     const Actions done = desk.accept("s", key(3), 1);
@@ -184,6 +185,33 @@ Actions worker_dies(Desk& desk, std::uint32_t worker) {
   desk.silence(FarmTime(1600));
   desk.say("s", Heartbeat{k_epoch, {}, 0, 0, 0});
   return desk.silence(FarmTime(1600));
+}
+
+TEST_CASE("of the jobs in work when a worker is lost the one that was a suspect before is blamed") {
+  Desk desk(one_round(3));
+  desk.sink("s", 9);
+  desk.worker("a", 1);
+  CHECK(names(desk.credit("a", 1, 2)) == "job 2@1 job 1@1 ");
+  desk.silence(FarmTime(2000));
+  desk.say("s", Heartbeat{k_epoch, {}, 0, 0, 0});
+  desk.worker("b", 2);
+  desk.silence(FarmTime(1001));
+  CHECK(names(desk.credit("b", 2, 2)) == "job 2@2 job 0@2 ");
+  desk.silence(FarmTime(1900));
+  desk.say("s", Heartbeat{k_epoch, {}, 0, 0, 0});
+  desk.silence(FarmTime(1200));
+  CHECK(desk.dispatcher.plan().state(key(2)) == JobState::ready);
+  for (const std::uint32_t id : {3, 4}) {
+    const PeerId peer = "w" + std::to_string(id);
+    desk.worker(peer, id);
+    desk.say("s", Heartbeat{k_epoch, {}, 0, 0, 0});
+    CHECK(names(desk.credit(peer, id, 1)) == "job 2@" + std::to_string(id) + " ");
+    desk.silence(FarmTime(1900));
+    desk.say("s", Heartbeat{k_epoch, {}, 0, 0, 0});
+    desk.silence(FarmTime(1200));
+  }
+  CHECK(desk.dispatcher.plan().state(key(2)) == JobState::failed);
+  CHECK(desk.dispatcher.plan().counts().failed == 1);
 }
 
 TEST_CASE("a job that three workers died of is given up") {
@@ -235,7 +263,7 @@ TEST_CASE("a job that stands still costs its worker its jobs") {
     CHECK(said_to<Stop>("a", lost)[0].why == StopReason::hung);
     CHECK(only<CloseLane>(lost).size() == 1);
     CHECK(desk.dispatcher.progress().workers_lost == 1);
-    CHECK(names(desk.accept("s", key(0), 2)) == "job 1@2 ");  // a suspect: after the other is done
+    CHECK(names(lost) == "job 1@2 ");  // a suspect now, but the other job there is none
   }
   SUBCASE("while it waits for the stage, much longer than others: its process lives on") {
     desk.say("b", standing(2, key(0), 0, true));

@@ -170,7 +170,7 @@ struct Desk {
   }
   void fail(std::uint32_t id, const std::string& name) {
     const JobKey key = key_of(make_job(name));
-    scheduler.failed({id});
+    scheduler.failed({id}, now);
     scheduler.avoid({id}, key);
     scheduler.drop({id}, key, now);
     scheduler.set_room({id}, 1);
@@ -327,16 +327,37 @@ TEST_CASE("a job that failed on a host is tried on another") {
   }
 }
 
+TEST_CASE("jobs that fail on a host at the same time are one incident") {
+  std::vector<Job> jobs;
+  for (int i = 0; i < 16; ++i) jobs.push_back(make_job(std::to_string(i)));
+  Desk desk(jobs);
+  desk.join(1, "a", {0, 0, 16}, 16);
+  desk.join(2, "other", {}, 0);
+  desk.hand_out();
+  for (int i = 0; i < 16; ++i) desk.fail(1, std::to_string(i));
+  CHECK(desk.scheduler.bad_hosts().empty());
+}
+
 TEST_CASE("a host where three jobs in a row failed gets no more, as long as there are others") {
   Desk desk({make_job("x", 9), make_job("y", 8), make_job("z", 7), make_job("w", 6)});
   desk.join(1, "bad", {}, 1);
   desk.join(2, "good", {}, 0);
   for (const std::string name : {"x", "y", "z"}) {
+    desk.now += FarmTime(10'000);
     CHECK(desk.hand_out() == name + "@1 ");
     desk.fail(1, name);
   }
   CHECK(desk.hand_out().empty());
   CHECK(desk.scheduler.bad_hosts() == std::vector<std::string>{"bad"});
+  SUBCASE("until some minutes later") {
+    desk.now += FarmTime(299'000);
+    CHECK(desk.hand_out().empty());
+    desk.now += FarmTime(2'000);
+    CHECK(desk.hand_out() == "w@1 ");
+    CHECK(desk.scheduler.bad_hosts().empty());
+    desk.fail(1, "w");
+    CHECK(desk.scheduler.bad_hosts() == std::vector<std::string>{"bad"});
+  }
   SUBCASE("the others do the rest") {
     desk.scheduler.set_room({2}, 9);
     CHECK(desk.hand_out() == "x@2 y@2 ");  // one to do, one to read ahead
@@ -348,14 +369,15 @@ TEST_CASE("a host where three jobs in a row failed gets no more, as long as ther
   }
 }
 
-TEST_CASE("a suspect is given to a worker alone") {
-  Desk desk({make_job("suspect", 9), make_job("other", 1)});
+TEST_CASE("one suspect at a time is given to a worker, beside other jobs") {
+  Desk desk({make_job("suspect", 9), make_job("other suspect", 8), make_job("job", 7)});
   desk.scheduler.suspect(key_of(make_job("suspect")));
+  desk.scheduler.suspect(key_of(make_job("other suspect")));
   desk.join(1, "a");
-  CHECK(desk.hand_out() == "suspect@1 ");
-  desk.join(2, "b");
+  CHECK(desk.hand_out() == "suspect@1 job@1 ");
+  desk.done(1, "suspect");
   desk.now += FarmTime(1000);
-  CHECK(desk.hand_out() == "other@2 ");
+  CHECK(desk.hand_out() == "other suspect@1 ");
 }
 
 }  // namespace
