@@ -5,14 +5,13 @@
 // a file is name | size u64 | xxh3-64 u64:
 //   input | input format | scheme u8 (0 cut, 1 stream) | partitioner | window u64 | position type
 //   u8 | box 6 x f64 | input vertices u64 | input triangles u64 | merged vertices u64 | dropped
-//   degenerate u64 | dropped not finite u64 | dropped duplicate u64 | skipped u32 x string | cut
-//   seconds f64 | boundary triangles u64 | boundary file | sorting | parts u32 x (file | vertices
-//   u64 | triangles u64 | boundary vertices u32) | samples u32 x the same: none, or one a part, its
-//   file's name empty where it has none
-//   sorting = u8 0: parts and streams are there | u8 1: slabs are, and how they are to be sorted
-//   (io/sorting.hpp)
-// Version 1 had no scheme, window and samples, version 2 no sorting, version 3 no partitioner and
-// no dropped not finite.
+//   degenerate u64 | coincident corners u64 | dropped not finite u64 | dropped duplicate u64 |
+//   skipped u32 x string | cut seconds f64 | boundary triangles u64 | boundary file | sorting |
+//   parts u32 x (file | vertices u64 | triangles u64 | boundary vertices u32) | samples u32 x the
+//   same: none, or one a part, its file's name empty where it has none sorting = u8 0: parts and
+//   streams are there | u8 1: slabs are, and how they are to be sorted (io/sorting.hpp)
+// Version 1 had no scheme, window and samples, version 2 no sorting, version 3 no partitioner, no
+// coincident corners and no dropped not finite.
 #include <meshfarm/io/manifest.hpp>
 #include <meshfarm/io/sorting.hpp>
 #include <meshfarm/staging/sealed.hpp>
@@ -94,6 +93,7 @@ std::string encode_manifest(const Manifest& m) {
   out.put(m.input_triangles);
   out.put(m.merged_vertices);
   out.put(m.dropped_degenerate);
+  out.put(m.coincident_corners);
   out.put(m.dropped_not_finite);
   out.put(m.dropped_duplicate);
   out.put(static_cast<std::uint32_t>(m.skipped.size()));
@@ -124,6 +124,7 @@ Manifest decode_manifest(std::string_view file, std::string_view what) {
   m.input_triangles = in.get<std::uint64_t>();
   m.merged_vertices = in.get<std::uint64_t>();
   m.dropped_degenerate = in.get<std::uint64_t>();
+  m.coincident_corners = in.get<std::uint64_t>();
   m.dropped_not_finite = in.get<std::uint64_t>();
   m.dropped_duplicate = in.get<std::uint64_t>();
   const auto skipped = in.get<std::uint32_t>();

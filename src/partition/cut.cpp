@@ -164,13 +164,16 @@ class Cutter {
       numbers_[i] = std::move(built.boundary);
       manifest_.merged_vertices += built.merged_vertices;
       manifest_.dropped_degenerate += built.dropped_degenerate;
+      manifest_.coincident_corners += built.coincident_corners;
       tell("cut: parts", ++done, parts_);
     });
   }
 
   void write_boundary() {
-    std::vector<BoundaryTriangle> triangles =
-        shares_->boundary(numbers_, manifest_.dropped_degenerate);
+    std::uint64_t degenerate = 0;
+    std::vector<BoundaryTriangle> triangles = shares_->boundary(numbers_, degenerate);
+    manifest_.dropped_degenerate += degenerate;
+    manifest_.coincident_corners += degenerate;
     manifest_.dropped_duplicate = drop_duplicates(triangles);
     manifest_.boundary_triangles = triangles.size();
     manifest_.boundary = stage_.publish(BoundaryName{}, encode_boundary(triangles));

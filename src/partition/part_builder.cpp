@@ -54,6 +54,13 @@ BuiltPart build_part(MeshShare raw, PositionType positions, Weld weld_mode) {
   std::vector<std::uint32_t> representative;
   if (weld_mode == Weld::exact) {
     WeldResult welded = weld(raw.positions);
+    built.coincident_corners = static_cast<std::uint64_t>(
+        std::count_if(raw.triangles.begin(), raw.triangles.end(), [&](const Triangle& t) {
+          const std::uint32_t a = welded.first[t[0]];
+          const std::uint32_t b = welded.first[t[1]];
+          const std::uint32_t c = welded.first[t[2]];
+          return a == b || b == c || c == a;
+        }));
     separate_touching(raw.triangles, raw.boundary, welded);
     representative = std::move(welded.first);
     built.merged_vertices = welded.merged;
@@ -62,6 +69,7 @@ BuiltPart build_part(MeshShare raw, PositionType positions, Weld weld_mode) {
     std::iota(representative.begin(), representative.end(), 0U);
   }
   built.dropped_degenerate = merge_corners(raw.triangles, representative);
+  if (weld_mode == Weld::off) built.coincident_corners = built.dropped_degenerate;
 
   built.boundary.places = std::move(raw.boundary);
   std::sort(built.boundary.places.begin(), built.boundary.places.end());

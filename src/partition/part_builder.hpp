@@ -17,6 +17,7 @@ struct BuiltPart {
   BoundaryNumbers boundary;
   std::uint64_t merged_vertices = 0;
   std::uint64_t dropped_degenerate = 0;
+  std::uint64_t coincident_corners = 0;  // triangles with two corners at one place
 };
 
 /// Welds, drops degenerate triangles and unused vertices, puts boundary vertices first.

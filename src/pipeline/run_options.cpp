@@ -18,8 +18,10 @@ std::uint64_t target_triangles(const Manifest& manifest, const RunOptions& optio
     throw UsageError(
         "give the size of the result: --ratio above 0 and up to 1, --triangles, or --error");
   }
-  // Of the clean input: what was dropped as degenerate is no triangle to keep a share of.
-  const double wanted = options.ratio * static_cast<double>(manifest.triangles());
+  // Of what in the input is a triangle: one number, however the mesh is divided.
+  const std::uint64_t left_out =
+      std::min(manifest.input_triangles, manifest.dropped_not_finite + manifest.coincident_corners);
+  const double wanted = options.ratio * static_cast<double>(manifest.input_triangles - left_out);
   return static_cast<std::uint64_t>(std::llround(wanted));
 }
 

@@ -64,6 +64,7 @@ std::string encode_summary(const SortSummary& summary) {
   out.put(summary.boundary_vertices);
   out.put(summary.merged_vertices);
   out.put(summary.dropped_degenerate);
+  out.put(summary.coincident_corners);
   return out.take();
 }
 
@@ -78,6 +79,7 @@ SortSummary decode_sort_summary(std::string_view bytes, std::string_view what) {
   }
   summary.merged_vertices = in.get<std::uint64_t>();
   summary.dropped_degenerate = in.get<std::uint64_t>();
+  summary.coincident_corners = in.get<std::uint64_t>();
   in.expect_end();
   return summary;
 }
@@ -85,8 +87,12 @@ SortSummary decode_sort_summary(std::string_view bytes, std::string_view what) {
 JobOutput sort_to_stream(const Job& job, const JobContext& context) {
   const Sorting sorting = decode_sort_parameters(job.parameters).sorting;
   SortedSlab slab = sort_slab(read_input(job, context, decode_slab), sorting);
-  const SortSummary summary{slab.stream.mesh.positions.size(), slab.stream.mesh.triangles.size(),
-                            slab.boundary_vertices, slab.merged_vertices, slab.dropped_degenerate};
+  const SortSummary summary{slab.stream.mesh.positions.size(),
+                            slab.stream.mesh.triangles.size(),
+                            slab.boundary_vertices,
+                            slab.merged_vertices,
+                            slab.dropped_degenerate,
+                            slab.coincident_corners};
   const std::string bytes = encode_stream(slab.stream);
   slab = {};
   return publish(job, context, bytes, summary);
@@ -102,7 +108,7 @@ JobOutput sample_stream(const Job& job, const JobContext& context) {
   const Part part = sample_slab(stream, parameters.sorting.order, parameters.number);
   return publish(
       job, context, encode_part(part),
-      {part.mesh.positions.size(), part.mesh.triangles.size(), part.boundary_vertices, 0, 0});
+      {part.mesh.positions.size(), part.mesh.triangles.size(), part.boundary_vertices, 0, 0, 0});
 }
 
 }  // namespace meshfarm

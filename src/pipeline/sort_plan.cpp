@@ -93,6 +93,7 @@ void SortPlan::take_streams() {
     part = entry_of(output.file, summary);
     manifest_.merged_vertices += summary.merged_vertices;
     manifest_.dropped_degenerate += summary.dropped_degenerate;
+    manifest_.coincident_corners += summary.coincident_corners;
   }
 }
 

@@ -179,6 +179,7 @@ class Generator {
     const std::lock_guard lock(mutex);
     manifest_.merged_vertices += slab.merged_vertices;
     manifest_.dropped_degenerate += slab.dropped_degenerate;
+    manifest_.coincident_corners += slab.coincident_corners;
   }
 
   void stage_unsorted(MeshShare slab, std::uint32_t number) {
@@ -214,8 +215,10 @@ class Generator {
   }
 
   void write_boundary() {
-    std::vector<BoundaryTriangle> triangles =
-        shares_->boundary(numbers_, manifest_.dropped_degenerate);
+    std::uint64_t degenerate = 0;
+    std::vector<BoundaryTriangle> triangles = shares_->boundary(numbers_, degenerate);
+    manifest_.dropped_degenerate += degenerate;
+    manifest_.coincident_corners += degenerate;
     // As the streams, these are not to tell of the order of the input.
     for (BoundaryTriangle& t : triangles) {
       std::rotate(t.begin(), std::min_element(t.begin(), t.end()), t.end());

@@ -70,9 +70,19 @@ class SlabSorter {
       }
       welded.first[at(i)] = welded.first[at(i - 1)];
     }
+    if (welded.merged > 0) count_coincident(welded.first);
     separate_touching(raw_.triangles, raw_.boundary, welded);
     slab_.merged_vertices = welded.merged;
     return std::move(welded.first);
+  }
+
+  void count_coincident(std::span<const std::uint32_t> first) {
+    for (const Triangle& t : raw_.triangles) {
+      const std::uint32_t a = first[t[0]];
+      const std::uint32_t b = first[t[1]];
+      const std::uint32_t c = first[t[2]];
+      slab_.coincident_corners += a == b || b == c || c == a;
+    }
   }
 
   /// The least of a vertex's triangles, as the positions of its other two corners.
@@ -155,6 +165,8 @@ class SlabSorter {
       return t[0] == t[1] || t[1] == t[2] || t[2] == t[0];
     });
     slab_.dropped_degenerate = before - raw_.triangles.size();
+    // Where nothing was welded only these are known, and only these are at one place.
+    slab_.coincident_corners = std::max(slab_.coincident_corners, slab_.dropped_degenerate);
   }
 
   void mark_boundary() {

@@ -83,6 +83,14 @@ inline Mesh torus(std::uint32_t rows, std::uint32_t columns) {
   return mesh;
 }
 
+/// The torus with its first ring drawn together to a neck of no width: of twice as many triangles
+/// as there are columns two corners are at one place.
+inline Mesh torus_with_neck(std::uint32_t rows, std::uint32_t columns) {
+  Mesh mesh = torus(rows, columns);
+  for (std::uint32_t i = 1; i < columns; ++i) mesh.positions[i] = mesh.positions[0];
+  return mesh;
+}
+
 inline void append(Mesh& mesh, const Mesh& other) {
   const auto offset = static_cast<std::uint32_t>(mesh.positions.size());
   mesh.positions.insert(mesh.positions.end(), other.positions.begin(), other.positions.end());

@@ -41,6 +41,9 @@ struct Manifest {
   std::uint64_t input_triangles = 0;  // after fans and strips were made triangles
   std::uint64_t merged_vertices = 0;  // coincident ones, by --weld exact
   std::uint64_t dropped_degenerate = 0;
+  /// Triangles with two corners at one place, dropped as degenerate but where surfaces touch: how
+  /// many that are depends on the seams, this does not.
+  std::uint64_t coincident_corners = 0;
   std::uint64_t dropped_not_finite = 0;  // those with a position that is not
   std::uint64_t dropped_duplicate = 0;   // boundary triangles only: workers see to the parts
   std::vector<std::string> skipped;      // properties and elements that were not kept

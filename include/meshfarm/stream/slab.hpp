@@ -20,6 +20,7 @@ struct SortedSlab {
   std::uint32_t boundary_vertices = 0;
   std::uint64_t merged_vertices = 0;
   std::uint64_t dropped_degenerate = 0;
+  std::uint64_t coincident_corners = 0;  // triangles with two corners at one place
 };
 
 /// Sorts vertices, welds those that coincide (they are neighbours now), drops degenerate triangles

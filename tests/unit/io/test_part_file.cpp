@@ -29,6 +29,7 @@ Manifest sample_manifest() {
   m.input_triangles = std::uint64_t{10} << 32;
   m.merged_vertices = 7;
   m.dropped_degenerate = 8;
+  m.coincident_corners = 13;
   m.dropped_not_finite = 12;
   m.dropped_duplicate = 9;
   m.skipped = {"vertex.red", "face.flags"};
@@ -123,6 +124,7 @@ TEST_CASE("a manifest comes back whole") {
   CHECK(encode_manifest(back) == encode_manifest(m));
   CHECK(back.input == "lucy.ply");
   CHECK(back.partitioner == "METIS 5.1.0");
+  CHECK(back.coincident_corners == 13);
   CHECK(back.dropped_not_finite == 12);
   CHECK(back.input_triangles == std::uint64_t{10} << 32);
   CHECK(back.skipped == m.skipped);

@@ -197,6 +197,15 @@ TEST_CASE("parts come out even with vertices far out and where triangles are far
   check_even(dense, folder / "dense");
 }
 
+TEST_CASE("how many triangles have two corners at one place does not depend on the seams") {
+  const test::TempFolder folder;
+  for (const std::uint32_t parts : {1U, 2U, 5U}) {
+    const CutMesh made = cut(test::torus_with_neck(40, 20), {.parts = parts, .weld = Weld::exact},
+                             folder / std::to_string(parts));
+    CHECK(made.manifest.coincident_corners == 40);
+  }
+}
+
 TEST_CASE("degenerate triangles go, wherever they lie, and are counted") {
   Mesh mesh = test::torus(40, 30);
   const std::size_t clean = mesh.triangles.size();

@@ -20,6 +20,7 @@ Manifest manifest_of(std::uint32_t parts, std::uint64_t triangles_each) {
   m.box.add({1, 1, 1});
   for (std::uint32_t p = 0; p < parts; ++p) {
     m.parts.push_back({{to_string(PartName{p}), 100, p}, triangles_each / 2, triangles_each, 10});
+    m.input_triangles += triangles_each;
   }
   return m;
 }
@@ -162,6 +163,15 @@ TEST_CASE("a stage without parts has no jobs; a target needs a ratio or a count"
   CHECK(make_job_source(manifest_of(0, 0), {.ratio = 0.5})({}).empty());
   CHECK(target_triangles(manifest_of(1, 1001), {.ratio = 0.5}) == 501);
   CHECK(target_triangles(manifest_of(1, 1000), {.triangles = 7}) == 7);
+  // Of what in the input is a triangle, however it is divided.
+  Manifest dirty = manifest_of(1, 1000);
+  dirty.parts[0].triangles = 900;
+  dirty.dropped_degenerate = 80;
+  dirty.dropped_duplicate = 20;
+  dirty.coincident_corners = 100;
+  CHECK(target_triangles(dirty, {.ratio = 0.5}) == 450);
+  dirty.dropped_not_finite = 10;
+  CHECK(target_triangles(dirty, {.ratio = 0.5}) == 445);
   CHECK_THROWS_AS(target_triangles(manifest_of(1, 1000), {}), UsageError);
   CHECK_THROWS_AS(target_triangles(manifest_of(1, 1000), {.ratio = 1.5}), UsageError);
 }

@@ -141,6 +141,7 @@ TEST_CASE("the farm sorts slabs to the bytes that the cut makes by itself") {
     CHECK(plan.manifest().boundary_triangles == here.manifest.boundary_triangles);
     CHECK(plan.manifest().merged_vertices == here.manifest.merged_vertices);
     CHECK(plan.manifest().dropped_degenerate == here.manifest.dropped_degenerate);
+    CHECK(plan.manifest().coincident_corners == here.manifest.coincident_corners);
     CHECK(plan.manifest().dropped_duplicate == here.manifest.dropped_duplicate);
   }
 }
@@ -196,10 +197,11 @@ TEST_CASE("a sort job that makes no sense is refused, and so is what it cannot h
     CHECK_THROWS_AS(do_job({std::string(kind), {farm.manifest.boundary}, bytes, 0, 0}, context),
                     BadInputError);
   }
-  const std::string summary = encode_summary(SortSummary{9, 8, 7, 6, 5});
+  const std::string summary = encode_summary(SortSummary{9, 8, 7, 6, 5, 4});
   CHECK(decode_sort_summary(summary, "s").dropped_degenerate == 5);
   CHECK_THROWS_AS(decode_sort_summary(summary + "x", "s"), DataError);
-  CHECK_THROWS_AS(decode_sort_summary(encode_summary(SortSummary{9, 8, 10, 6, 5}), "s"), DataError);
+  CHECK_THROWS_AS(decode_sort_summary(encode_summary(SortSummary{9, 8, 10, 6, 5, 4}), "s"),
+                  DataError);
 
   std::vector<AcceptedJob> accepted;
   for (const Job& job : make_job_source(farm.manifest, {.ratio = 0.5})({})) {

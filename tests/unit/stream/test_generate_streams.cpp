@@ -272,6 +272,15 @@ TEST_CASE("surfaces that touch are not welded together") {
   CHECK(made.manifest.parts[0].vertices == 12);
 }
 
+TEST_CASE("how many triangles have two corners at one place does not depend on the seams") {
+  const test::TempFolder folder;
+  for (const std::uint32_t streams : {1U, 2U, 5U}) {
+    const Generated made = generate(test::torus_with_neck(40, 20), {.streams = streams},
+                                    folder / std::to_string(streams));
+    CHECK(made.manifest.coincident_corners == 40);
+  }
+}
+
 TEST_CASE("where surfaces touch the order of the input does not matter either") {
   const Mesh octahedron = test::octahedron();
   const Triangle& t = octahedron.triangles[0];
