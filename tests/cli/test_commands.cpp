@@ -212,10 +212,10 @@ TEST_CASE("what cannot be read or written is one line and exit 1") {
   const std::string cube = shell.cube();
   const std::string text = shell.file("text.ply", "no mesh\n");
   const std::string obj = shell.file("mesh.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
-  const std::string nan =
-      shell.file("nan.ply",
+  const std::string bad =
+      shell.file("word.ply",
                  "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\n"
-                 "property float z\nend_header\n0 nan 0\n");
+                 "property float z\nend_header\n0 word 0\n");
   const std::vector<std::pair<std::vector<std::string>, std::string>> failing = {
       {{"simplify", shell.path("absent.ply"), "-o", shell.path("o.ply"), "--ratio", "0.5"},
        "absent.ply"},
@@ -223,7 +223,7 @@ TEST_CASE("what cannot be read or written is one line and exit 1") {
        "no/such/folder"},
       {{"simplify", text, "-o", shell.path("o.ply"), "--ratio", "0.5"}, "text.ply"},
       {{"simplify", obj, "-o", shell.path("o.ply"), "--ratio", "0.5"}, "mesh.obj"},
-      {{"simplify", nan, "-o", shell.path("o.ply"), "--ratio", "0.5"}, "vertex 0"},
+      {{"simplify", bad, "-o", shell.path("o.ply"), "--ratio", "0.5"}, "vertex 0"},
       {{"replay", shell.path("absent"), "--ratio", "0.5"}, "absent"},
       {{"worker", shell.path("absent")}, "absent"},
       {{"info", shell.path("absent.ply")}, "absent.ply"},
