@@ -1,0 +1,153 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <optional>
+
+#include <meshfarm/geometry/point_meter.hpp>
+
+#include "geometry/bvh.hpp"
+#include "geometry/point_grid.hpp"
+#include "geometry/point_tree.hpp"
+
+namespace meshfarm {
+namespace {
+
+/// So many triangles are first looked at by their common box where no grid helps.
+constexpr std::size_t k_run = 32;
+/// The farthest place to look at is a little beyond what is known, so that it is found again.
+constexpr double k_beyond = 1 + 0x1p-20;
+/// Of the distance between vertices: to look a little farther costs nothing, nor do larger cells.
+constexpr double k_least_reach = 0.25;
+constexpr double k_cell = 2;
+
+}  // namespace
+
+class PointMeter::Impl {
+ public:
+  Impl(std::span<const Vec3> points, const PointMeterHints& hints)
+      : hints_(hints),
+        reach_(std::max(hints.usual, k_least_reach * hints.spacing)),
+        points_(points.size()) {
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      points_[i].place = points[i];
+      points_[i].squared = reach_ * reach_;
+    }
+  }
+
+  bool begin_pass() {
+    std::vector<std::uint32_t> searching;
+    if (++pass_ == 1) {
+      searching.resize(points_.size());
+      std::iota(searching.begin(), searching.end(), 0U);
+      grid_.emplace(points_, reach_, k_cell * hints_.spacing);
+    } else if (pass_ == 2) {
+      searching = begin_last_pass();
+    }
+    tree_.emplace(points_, searching);
+    return !searching.empty();
+  }
+
+  bool wants(const Box& box) const { return tree_->wants(box); }
+
+  void show(std::span<const Vec3> positions, std::span<const Triangle> triangles) {
+    if (!grid_) return show_to_tree(positions, triangles);
+    // Of few triangles it is cheaper not to look at each vertex.
+    if (positions.size() > 2 * triangles.size()) {
+      for (const auto& [a, b, c] : triangles) {
+        offer(positions[a], positions[b], positions[c], grid_->key_of(positions[a]),
+              grid_->key_of(positions[b]), grid_->key_of(positions[c]));
+      }
+      return;
+    }
+    std::vector<std::uint64_t> keys;
+    keys.reserve(positions.size());
+    for (const Vec3& p : positions) keys.push_back(grid_->key_of(p));
+    for (const auto& [a, b, c] : triangles) {
+      offer(positions[a], positions[b], positions[c], keys[a], keys[b], keys[c]);
+    }
+  }
+
+  std::vector<double> distances() const {
+    std::vector<double> distances;
+    distances.reserve(points_.size());
+    for (const SearchingPoint& point : points_) distances.push_back(std::sqrt(point.known()));
+    return distances;
+  }
+
+ private:
+  /// What was not found near is nowhere farther than the points of the surface that are known.
+  std::vector<std::uint32_t> begin_last_pass() {
+    grid_.reset();
+    std::vector<std::uint32_t> searching;
+    for (std::uint32_t i = 0; i < points_.size(); ++i) {
+      if (points_[i].known() >= reach_ * reach_) searching.push_back(i);
+    }
+    if (searching.empty()) return {};
+    Mesh known;
+    known.positions.assign(hints_.surface.begin(), hints_.surface.end());
+    for (std::uint32_t i = 0; i < known.positions.size(); ++i) known.triangles.push_back({i, i, i});
+    const Bvh bvh(known, 0);
+    std::uint32_t guess = 0;
+    for (const std::uint32_t i : searching) {
+      const Bvh::Nearest nearest = bvh.nearest(points_[i].place, guess);
+      guess = nearest.triangle;
+      points_[i].squared = nearest.squared * k_beyond;
+    }
+    return searching;
+  }
+
+  void offer(Vec3 a, Vec3 b, Vec3 c, std::uint64_t key_a, std::uint64_t key_b,
+             std::uint64_t key_c) {
+    const PointGrid::Reach reach = grid_->reach_of(key_a, key_b, key_c);
+    if (reach == PointGrid::Reach::none) return;
+    const OfferedTriangle triangle(a, b, c);
+    reach == PointGrid::Reach::some ? grid_->offer(triangle) : tree_->offer(triangle);
+  }
+
+  void show_to_tree(std::span<const Vec3> positions, std::span<const Triangle> triangles) {
+    for (std::size_t first = 0; first < triangles.size(); first += k_run) {
+      const auto run = triangles.subspan(first, std::min(k_run, triangles.size() - first));
+      Box box;
+      for (const Triangle& t : run) {
+        for (const std::uint32_t v : t) box.add(positions[v]);
+      }
+      if (!tree_->wants(box)) continue;
+      for (const auto& [a, b, c] : run) {
+        tree_->offer(OfferedTriangle(positions[a], positions[b], positions[c]));
+      }
+    }
+  }
+
+  PointMeterHints hints_;
+  double reach_;  // of the first pass
+  std::vector<SearchingPoint> points_;
+  int pass_ = 0;
+  std::optional<PointGrid> grid_;  // of the first pass
+  std::optional<PointTree> tree_;  // of what is searching in this pass
+};
+
+PointMeter::PointMeter(std::span<const Vec3> points, const PointMeterHints& hints)
+    : impl_(std::make_unique<Impl>(points, hints)) {}
+PointMeter::~PointMeter() = default;
+PointMeter::PointMeter(PointMeter&&) noexcept = default;
+
+bool PointMeter::begin_pass() {
+  return impl_->begin_pass();
+}
+
+bool PointMeter::wants(const Box& box) const {
+  return impl_->wants(box);
+}
+
+void PointMeter::show(std::span<const Vec3> positions, std::span<const Triangle> triangles) {
+  impl_->show(positions, triangles);
+}
+
+std::vector<double> PointMeter::distances() const {
+  return impl_->distances();
+}
+
+}  // namespace meshfarm

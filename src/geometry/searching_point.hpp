@@ -1,0 +1,73 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <algorithm>
+#include <atomic>
+#include <cstdint>
+#include <vector>
+
+#include <meshfarm/geometry/mesh.hpp>
+
+#include "geometry/bvh.hpp"
+
+namespace meshfarm {
+
+/// How far a box begins from a point, squared; 0 within it. Never above the distance of anything
+/// in the box, in spite of rounding.
+inline double squared_gap(const Box& box, Vec3 p) {
+  const auto gap = [](double lo, double hi, double x) {
+    return lo > x ? lo - x : x > hi ? x - hi : 0.0;
+  };
+  const double x = gap(box.lo.x, box.hi.x, p.x);
+  const double y = gap(box.lo.y, box.hi.y, p.y);
+  const double z = gap(box.lo.z, box.hi.z, p.z);
+  return x * x + y * y + z * z;
+}
+
+/// The same of two boxes.
+inline double squared_gap(const Box& a, const Box& b) {
+  const auto gap = [](double a_lo, double a_hi, double b_lo, double b_hi) {
+    return a_lo > b_hi ? a_lo - b_hi : b_lo > a_hi ? b_lo - a_hi : 0.0;
+  };
+  const double x = gap(a.lo.x, a.hi.x, b.lo.x, b.hi.x);
+  const double y = gap(a.lo.y, a.hi.y, b.lo.y, b.hi.y);
+  const double z = gap(a.lo.z, a.hi.z, b.lo.z, b.hi.z);
+  return x * x + y * y + z * z;
+}
+
+/// A triangle that is offered to points.
+struct OfferedTriangle {
+  Vec3 a;
+  Vec3 b;
+  Vec3 c;
+  Box box;
+
+  OfferedTriangle(Vec3 first, Vec3 second, Vec3 third) : a(first), b(second), c(third) {
+    box.add(a);
+    box.add(b);
+    box.add(c);
+  }
+};
+
+/// A point and the squared distance of the nearest triangle that it was offered. Several threads
+/// may offer at a time.
+struct SearchingPoint {
+  Vec3 place;
+  std::atomic<double> squared;
+
+  double known() const { return squared.load(std::memory_order_relaxed); }
+
+  /// What counts is never below the gap to the triangle's box, by which triangles are passed over:
+  /// so the outcome does not depend on the order of the offers.
+  void offer(const OfferedTriangle& t) {
+    const double gap = squared_gap(t.box, place);
+    double now = known();
+    if (gap >= now) return;
+    const double found = std::max(gap, squared_distance(place, t.a, t.b, t.c));
+    while (found < now && !squared.compare_exchange_weak(now, found, std::memory_order_relaxed)) {
+    }
+  }
+};
+
+}  // namespace meshfarm
