@@ -86,7 +86,7 @@ void Bvh::visit_leaf(Query& query, std::uint32_t first, std::uint32_t count) con
   }
 }
 
-Bvh::Nearest Bvh::nearest(Vec3 p, std::uint32_t guess) const {
+Bvh::Nearest Bvh::nearest(Vec3 p, std::uint32_t guess, double enough) const {
   Query query(p, to_frame(p), scale_);
   const Triangle& t = mesh_.triangles[guess];
   query.offer(
@@ -95,7 +95,7 @@ Bvh::Nearest Bvh::nearest(Vec3 p, std::uint32_t guess) const {
   std::array<Entry, k_stack> stack;
   std::size_t size = 0;
   stack[size++] = {0, 0, 0};
-  while (size > 0) {
+  while (size > 0 && query.best.squared > enough) {
     const Entry top = stack[--size];
     if (top.bound >= query.limit) continue;
     if (top.count > 0) {

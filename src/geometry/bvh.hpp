@@ -28,8 +28,9 @@ class Bvh {
   };
 
   Bvh(const Mesh& mesh, unsigned threads);
-  /// The triangle nearest to `p`. A good `guess` saves time.
-  Nearest nearest(Vec3 p, std::uint32_t guess) const;
+  /// The triangle nearest to `p`, or some triangle whose squared distance is at most `enough`. A
+  /// good `guess` saves time.
+  Nearest nearest(Vec3 p, std::uint32_t guess, double enough = 0) const;
 
  private:
   // Boxes are floats, rounded outwards, in a frame where the mesh's box is centred and its longest

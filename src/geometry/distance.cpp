@@ -9,6 +9,7 @@
 #include <meshfarm/util/parallel.hpp>
 
 #include "geometry/bvh.hpp"
+#include "geometry/random_unit.hpp"
 
 namespace meshfarm {
 namespace {
@@ -49,15 +50,6 @@ void check_area(const std::vector<double>& before, const char* which) {
   }
 }
 
-/// The n-th number of a fixed random sequence, in [0, 1): splitmix64 (Steele et al. 2014).
-double random_unit(std::uint64_t n) {
-  std::uint64_t z = (n + 1) * 0x9e3779b97f4a7c15U;
-  z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9U;
-  z = (z ^ (z >> 27)) * 0x94d049bb133111ebU;
-  z ^= z >> 31;
-  return static_cast<double>(z >> 11) * 0x1p-53;
-}
-
 /// Sample n lies in the n-th of equal shares of the area, at a random place of it. Samples must be
 /// asked for in rising order.
 class Sampler {
@@ -68,9 +60,7 @@ class Sampler {
   Vec3 sample(std::uint64_t n) {
     seek((static_cast<double>(n) + random_unit(3 * n)) * share_);
     const Triangle& t = mesh_.triangles[triangle_];
-    const double root = std::sqrt(random_unit(3 * n + 1)), across = random_unit(3 * n + 2);
-    return mesh_.positions[t[0]] * (1 - root) + mesh_.positions[t[1]] * (root * (1 - across)) +
-           mesh_.positions[t[2]] * (root * across);
+    return random_place(mesh_.positions[t[0]], mesh_.positions[t[1]], mesh_.positions[t[2]], n);
   }
 
  private:
@@ -185,6 +175,18 @@ class DistanceMeter::Impl {
     return distances;
   }
 
+  double farthest(Points points, double least) const {
+    const double enough = least * least;
+    double farthest = enough;
+    std::uint32_t guess = 0;
+    for (const Vec3& p : points) {
+      const Bvh::Nearest nearest = bvh_.nearest(p, guess, enough);
+      guess = nearest.triangle;
+      farthest = std::max(farthest, nearest.squared);
+    }
+    return farthest > enough ? std::sqrt(farthest) : least;
+  }
+
  private:
   struct ChunkOfSet {
     std::size_t set = 0;
@@ -203,6 +205,10 @@ DistanceMeter::DistanceMeter(DistanceMeter&&) noexcept = default;
 
 Distance DistanceMeter::measure(Points points) const {
   return impl_->measure_each({&points, 1}).front();
+}
+
+double DistanceMeter::farthest(Points points, double least) const {
+  return impl_->farthest(points, least);
 }
 
 std::vector<Distance> DistanceMeter::measure_each(std::span<const Points> sets) const {

@@ -4,10 +4,12 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <span>
 #include <utility>
 #include <vector>
 
 #include <meshfarm/geometry/simplify.hpp>
+#include <meshfarm/geometry/surface_sampler.hpp>
 #include <meshfarm/stream/sweep.hpp>
 #include <meshfarm/util/errors.hpp>
 
@@ -34,7 +36,8 @@ class Sweep {
       : reader_(reader),
         options_(options),
         output_(output),
-        next_sent_(reader.info().boundary_vertices) {}
+        next_sent_(reader.info().boundary_vertices),
+        sampler_(options.samples) {}
 
   SweptStream run() {
     StreamBlock block;
@@ -47,9 +50,12 @@ class Sweep {
     }
     simplify_window();
     send(std::vector<std::uint8_t>(buffer_.triangles.size(), 1));
-    if (!distances_.empty()) {
-      result_.error = *std::max_element(distances_.begin(), distances_.end());
+    if (options_.measure) {
+      for (const SurfaceSampler::Sample& sample : sampler_.samples()) {
+        result_.error = std::max(result_.error, sample.distance);
+      }
     }
+    result_.samples = sampler_.take();
     return std::move(result_);
   }
 
@@ -81,7 +87,7 @@ class Sweep {
     }
     fresh_ += buffer_.triangles.size() - before;
     read_ += buffer_.triangles.size() - before;
-    take_samples(before);
+    sampler_.add(buffer_.positions, std::span(buffer_.triangles).subspan(before));
   }
 
   void add_role(Role role, std::uint32_t id) {
@@ -95,23 +101,6 @@ class Sweep {
     std::uint32_t& vertex = local_[corner.vertex() - first_local_];
     if (roles_[vertex] == Role::open) roles_[vertex] = Role::free;
     vertex = k_none;
-  }
-
-  /// Of the triangles that have come last, as they came.
-  void take_samples(std::uint64_t first) {
-    const std::uint64_t all = std::max<std::uint64_t>(1, reader_.info().triangles);
-    const std::uint64_t wanted = options_.samples * read_ / all - options_.samples * sampled_ / all;
-    sampled_ = read_;
-    Mesh fresh;
-    fresh.triangles.assign(buffer_.triangles.begin() + static_cast<std::ptrdiff_t>(first),
-                           buffer_.triangles.end());
-    if (fresh.triangles.empty() || wanted == 0) return;
-    std::swap(fresh.positions, buffer_.positions);
-    const SurfaceSamples some = sample_surface(fresh, {.samples = wanted, .threads = 1});
-    std::swap(fresh.positions, buffer_.positions);
-    result_.samples.area += some.area;
-    result_.samples.points.insert(result_.samples.points.end(), some.points.begin(),
-                                  some.points.end());
   }
 
   void simplify_window() {
@@ -235,14 +224,12 @@ class Sweep {
     for (std::size_t i = 0; i < flags.size(); ++i) {
       if (flags[i] != 0) piece.triangles.push_back(buffer_.triangles[i]);
     }
-    distances_.resize(result_.samples.points.size(), HUGE_VAL);
     if (piece.triangles.empty()) return;
     piece.positions = buffer_.positions;
     const DistanceMeter meter(piece, 1);
-    for (std::size_t i = 0; i < distances_.size(); ++i) {
-      if (distances_[i] == 0) continue;
-      const double distance = meter.measure({&result_.samples.points[i], 1}).max;
-      distances_[i] = std::min(distances_[i], distance);
+    for (SurfaceSampler::Sample& sample : sampler_.samples()) {
+      if (sample.distance == 0) continue;
+      sample.distance = std::min(sample.distance, meter.measure({&sample.point, 1}).max);
     }
   }
 
@@ -283,10 +270,9 @@ class Sweep {
   /// are to use them.
   std::vector<std::uint32_t> local_;
   std::uint32_t first_local_ = 0;
-  std::uint64_t read_ = 0;  // triangles
-  std::uint64_t sampled_ = 0;
-  std::uint64_t fresh_ = 0;        // triangles that came after the last window
-  std::vector<double> distances_;  // of the samples, to what has been sent so far
+  std::uint64_t read_ = 0;   // triangles
+  std::uint64_t fresh_ = 0;  // triangles that came after the last window
+  SurfaceSampler sampler_;   // its distances: to what has been sent so far
   bool stopped_ = false;
 };
 

@@ -51,6 +51,9 @@ class DistanceMeter {
   Distance measure(Points points) const;
   /// The distances of each set by itself, measured all at once.
   std::vector<Distance> measure_each(std::span<const Points> sets) const;
+  /// The greatest distance of the points, or `least` if none is beyond that: much cheaper than to
+  /// measure them all. On one thread.
+  double farthest(Points points, double least) const;
 
  private:
   class Impl;

@@ -139,7 +139,8 @@ TEST_CASE("samples are of the surface as it came, and the error is measured by t
   const Swept result =
       swept(stream_of(mesh),
             {.max_cost = 1e-8, .window_triangles = 9'000, .samples = 2'000, .measure = true});
-  CHECK(result.samples.points.size() == 2'000);
+  CHECK(result.samples.points.size() > 1'300);
+  CHECK(result.samples.points.size() < 2'700);
   const SurfaceSamples all = sample_surface(mesh, {.samples = 2'000});
   CHECK(result.samples.area == doctest::Approx(all.area));
   const Distance direct = DistanceMeter(result.mesh, 1).measure(result.samples.points);

@@ -1,0 +1,28 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+
+#include <meshfarm/geometry/vec.hpp>
+
+namespace meshfarm {
+
+/// The n-th number of a fixed random sequence, in [0, 1): splitmix64 (Steele et al. 2014).
+inline double random_unit(std::uint64_t n) {
+  std::uint64_t z = (n + 1) * 0x9e3779b97f4a7c15U;
+  z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9U;
+  z = (z ^ (z >> 27)) * 0x94d049bb133111ebU;
+  z ^= z >> 31;
+  return static_cast<double>(z >> 11) * 0x1p-53;
+}
+
+/// A random place of the triangle for each number: it takes the numbers 3n + 1 and 3n + 2 of the
+/// sequence.
+inline Vec3 random_place(Vec3 a, Vec3 b, Vec3 c, std::uint64_t n) {
+  const double root = std::sqrt(random_unit(3 * n + 1)), across = random_unit(3 * n + 2);
+  return a * (1 - root) + b * (root * (1 - across)) + c * (root * across);
+}
+
+}  // namespace meshfarm
