@@ -20,6 +20,7 @@
 #include <meshfarm/util/errors.hpp>
 #include <meshfarm/util/parallel.hpp>
 
+#include "pipeline/error_meter.hpp"
 #include "pipeline/sort_plan.hpp"
 
 namespace meshfarm {
@@ -66,7 +67,6 @@ class Assembly {
     summary_.vertices = result.positions.size();
     summary_.finish_seconds = watch.lap();
     summary_.error = measure_error(result);
-    for (const SurfaceSamples& part : samples_) summary_.error_samples += part.points.size();
     summary_.measure_seconds = watch.lap();
     write_ply(options_.output, result, manifest_.positions);
     summary_.write_seconds = watch.lap();
@@ -134,27 +134,11 @@ class Assembly {
     std::swap(boundary.positions, stitched.positions);
   }
 
-  /// Every set of samples counts by the area it stands for.
-  Distance measure_error(const Mesh& result) const {
-    Distance error;
-    if (result.triangles.empty()) return error;
-    std::vector<DistanceMeter::Points> points;
-    for (const SurfaceSamples& part : samples_) points.emplace_back(part.points);
-    const std::vector<Distance> distances = DistanceMeter(result, 0).measure_each(points);
+  MeasuredError measure_error(const Mesh& result) {
+    tell("measure", 0, 0);
+    ErrorMeter meter(stage_, manifest_, samples_, options_.threads);
+    MeasuredError error = meter.measure(result);
     check_stop();
-    double area = 0;
-    double squares = 0;
-    for (std::size_t i = 0; i < samples_.size(); ++i) {
-      const SurfaceSamples& part = samples_[i];
-      const Distance& d = distances[i];
-      if (!part.points.empty()) area += part.area;
-      squares += part.area * d.rms * d.rms;
-      error.mean += part.area * d.mean;
-      error.max = std::max(error.max, d.max);
-    }
-    if (!(area > 0)) return error;
-    error.rms = std::sqrt(squares / area);
-    error.mean /= area;
     return error;
   }
 
@@ -176,7 +160,7 @@ class Assembly {
         simplifier.reduce(
             {.triangles = static_cast<std::uint64_t>(static_cast<double>(before) * step)});
         tell("finish, " + std::to_string(simplifier.triangles()) + " triangles", 0, 0);
-        if (measure_error(simplifier.mesh()).max > summary_.max_error) break;
+        if (measure_error(simplifier.mesh()).greater().max > summary_.max_error) break;
         good = simplifier.mesh();
         if (simplifier.triangles() == before) return good;
       }

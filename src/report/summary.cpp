@@ -73,9 +73,13 @@ std::string text_of(const Distance& d, double diagonal) {
 }
 
 Json error_json(const RunSummary& s) {
-  Json json = to_json(s.error, s.manifest.box.diagonal());
-  json["samples"] = s.error_samples;
-  json["from"] = "input to output, fractions of the diagonal";
+  const double diagonal = s.manifest.box.diagonal();
+  Json json = to_json(s.error.greater(), diagonal);
+  json["of"] = "the greater of both directions, fractions of the diagonal";
+  json["input_to_output"] = to_json(s.error.to_output, diagonal);
+  json["input_to_output"]["samples"] = s.error.input_samples;
+  json["output_to_input"] = to_json(s.error.to_input, diagonal);
+  json["output_to_input"]["samples"] = s.error.output_samples;
   return json;
 }
 
@@ -121,6 +125,15 @@ void add_input(Lines& lines, const Manifest& m) {
   }
 }
 
+void add_error(Lines& lines, const MeasuredError& error, double diagonal) {
+  lines.add("error", text_of(error.greater(), diagonal) +
+                         "  of the diagonal, the greater of both directions");
+  lines.add("", text_of(error.to_output, diagonal) + "  from " + grouped(error.input_samples) +
+                    " points of the input to the output");
+  lines.add("", text_of(error.to_input, diagonal) + "  from " + grouped(error.output_samples) +
+                    " points of the output to the input");
+}
+
 }  // namespace
 
 std::string render(const Manifest& m, const std::string& stage, Format format) {
@@ -159,7 +172,7 @@ std::string render(const RunSummary& s, Format format) {
         {"exact", s.why_not_exact.empty()},
         {"why_not_exact", s.why_not_exact},
         {"topology", s.topology_simplified ? "simplified" : "kept"},
-        {"error", s.error_samples == 0 ? Json(nullptr) : error_json(s)},
+        {"error", s.error.input_samples == 0 ? Json(nullptr) : error_json(s)},
         {"dropped",
          {{"degenerate", s.dropped_degenerate},
           {"duplicate", s.dropped_duplicate},
@@ -195,10 +208,7 @@ std::string render(const RunSummary& s, Format format) {
   if (!s.why_not_exact.empty()) {
     lines.add("", grouped(s.target) + " were asked for: " + s.why_not_exact);
   }
-  if (s.error_samples > 0) {
-    lines.add("error", text_of(s.error, m.box.diagonal()) + "  of the diagonal, from " +
-                           grouped(s.error_samples) + " points of the input");
-  }
+  if (s.error.input_samples > 0) add_error(lines, s.error, m.box.diagonal());
   lines.add(parts_name(m), grouped(m.parts.size()) + ", stitched to " + grouped(s.stitched) +
                                " triangles before the finish");
   lines.add("time", std::string(scheme_name(m)) + " " + number(m.cut_seconds, "%.2f s") +

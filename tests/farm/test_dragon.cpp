@@ -4,6 +4,7 @@
 // The main job on a real scan: the Stanford dragon, where scripts/get-dragon.sh has fetched it. It
 // has 2,100 coincident vertices, 151 loose pieces and 4,270 border edges; welded it is one closed
 // surface.
+#include <algorithm>
 #include <cstdlib>
 
 #include <doctest/doctest.h>
@@ -57,6 +58,8 @@ TEST_CASE("the dragon to 1 %: closed, one piece, its tunnels kept, and close to 
   CHECK(number_in(compared.out, "topology_b", "duplicate") == 0);
   const double measured = number_in(compared.out, "a_to_b", "rms");
   CHECK(measured < 3.3e-4);
-  CHECK(number_in(compared.out, "b_to_a", "rms") < 3.3e-4);
-  CHECK(told == doctest::Approx(measured).epsilon(0.05));  // the summary's own figure is honest
+  const double back = number_in(compared.out, "b_to_a", "rms");
+  CHECK(back < 3.3e-4);
+  // The summary's own figure is honest.
+  CHECK(told == doctest::Approx(std::max(measured, back)).epsilon(0.05));
 }

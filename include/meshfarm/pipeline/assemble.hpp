@@ -18,6 +18,7 @@ namespace meshfarm {
 
 struct AssembleOptions {
   std::filesystem::path output;
+  unsigned threads = 0;  // to measure with, 0: one a core; nothing depends on it
   std::function<void(std::string_view phase, double done, std::uint64_t triangles)> progress;
   const std::atomic<bool>* stop = nullptr;
 };

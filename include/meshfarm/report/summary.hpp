@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -18,6 +19,21 @@ namespace meshfarm {
 
 enum class Format { text, json };
 
+/// How far the result of a run is from its input, in the mesh's unit: from points of the input to
+/// the result, and from points of the result to the input.
+struct MeasuredError {
+  Distance to_output;
+  Distance to_input;
+  std::uint64_t input_samples = 0;  // by area; 0: there is nothing to measure
+  std::uint64_t output_samples = 0;
+
+  /// Of both directions.
+  Distance greater() const {
+    return {std::max(to_output.rms, to_input.rms), std::max(to_output.mean, to_input.mean),
+            std::max(to_output.max, to_input.max)};
+  }
+};
+
 /// What a run made, for people and for programs.
 struct RunSummary {
   Manifest manifest;
@@ -30,8 +46,7 @@ struct RunSummary {
   std::string why_not_exact;             // empty when triangles == target
   bool topology_simplified = false;      // handles, holes or pieces had to go
   DroppedComponents dropped_components;  // and their triangles before the finish
-  Distance error;                        // from points of the input to the result, in its unit
-  std::uint64_t error_samples = 0;       // 0: there is nothing to measure
+  MeasuredError error;
   std::uint64_t stitched = 0;            // triangles of the stitched mesh, before the finish
   std::uint64_t dropped_degenerate = 0;  // cut, parts and finish together
   std::uint64_t dropped_duplicate = 0;

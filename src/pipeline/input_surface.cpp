@@ -1,0 +1,139 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#include "pipeline/input_surface.hpp"
+
+#include <algorithm>
+#include <string>
+#include <utility>
+
+#include <meshfarm/io/part_file.hpp>
+#include <meshfarm/io/stream_file.hpp>
+#include <meshfarm/staging/staged_reader.hpp>
+#include <meshfarm/util/errors.hpp>
+#include <meshfarm/util/parallel.hpp>
+
+namespace meshfarm {
+namespace {
+
+constexpr std::size_t k_between_at_once = 16'384;  // triangles
+
+/// The vertices of a stream that triangles to come may use, as its blocks come.
+class StreamWindow {
+ public:
+  /// Returns the block's triangles, by place in positions().
+  const std::vector<Triangle>& add(const StreamBlock& block) {
+    forget_finished();
+    positions_.insert(positions_.end(), block.positions.begin(), block.positions.end());
+    finished_.resize(positions_.size(), 0);
+    for (const StreamCorner vertex : block.boundary) {
+      if (vertex.last_use())
+        finished_[positions_.size() - block.positions.size() + vertex.vertex()] = 1;
+    }
+    triangles_.clear();
+    for (const auto& corners : block.triangles) {
+      Triangle triangle{};
+      for (std::size_t k = 0; k < 3; ++k) {
+        triangle[k] = corners[k].vertex() - first_;
+        if (corners[k].last_use()) finished_[triangle[k]] = 1;
+      }
+      triangles_.push_back(triangle);
+    }
+    return triangles_;
+  }
+  std::span<const Vec3> positions() const { return positions_; }
+
+ private:
+  void forget_finished() {
+    const auto first = std::find(finished_.begin(), finished_.end(), 0) - finished_.begin();
+    first_ += static_cast<std::uint32_t>(first);
+    positions_.erase(positions_.begin(), positions_.begin() + first);
+    finished_.erase(finished_.begin(), finished_.begin() + first);
+  }
+
+  std::uint32_t first_ = 0;  // number in the stream of the first vertex that is kept
+  std::vector<Vec3> positions_;
+  std::vector<std::uint8_t> finished_;
+  std::vector<Triangle> triangles_;
+};
+
+}  // namespace
+
+InputSurface::InputSurface(const Stage& stage, const Manifest& manifest, unsigned threads)
+    : stage_(stage), manifest_(manifest), threads_(threads) {}
+
+void InputSurface::show(const Wants& wants, const Show& show) {
+  const bool is_first = boxes_.empty();
+  boxes_.resize(manifest_.parts.size());
+  boundary_.resize(manifest_.parts.size());
+  parallel_for(manifest_.parts.size(), threads_, [&](std::uint64_t p) {
+    if (!is_first && !wants(boxes_[p])) return;
+    const auto part = static_cast<std::uint32_t>(p);
+    manifest_.scheme == Scheme::stream ? show_stream(part, show) : show_part(part, show);
+  });
+  show_between(wants, show);
+}
+
+void InputSurface::show_part(std::uint32_t p, const Show& show) {
+  const FileRef& file = manifest_.parts[p].file;
+  const Part part = decode_part(stage_.read(file), file.name);
+  const std::vector<Vec3>& positions = part.mesh.positions;
+  if (boxes_[p].empty()) {
+    for (const Vec3& v : positions) boxes_[p].add(v);
+    boundary_[p].assign(positions.begin(), positions.begin() + part.boundary_vertices);
+  }
+  show({positions, part.mesh.triangles, positions, p});
+}
+
+void InputSurface::show_stream(std::uint32_t p, const Show& show) {
+  const FileRef& file = manifest_.parts[p].file;
+  StagedReader bytes(stage_, file);
+  StreamReader reader([&](std::span<char> buffer) { bytes.fill(buffer); }, file.name);
+  StreamWindow window;
+  StreamBlock block;
+  const bool is_first = boxes_[p].empty();
+  while (reader.next(block)) {
+    if (is_first) {
+      for (const Vec3& v : block.positions) boxes_[p].add(v);
+      for (const StreamCorner v : block.boundary) {
+        boundary_[p].push_back(block.positions[v.vertex()]);
+      }
+    }
+    const std::vector<Triangle>& triangles = window.add(block);
+    show({window.positions(), triangles, block.positions, p});
+  }
+  bytes.expect_end();
+}
+
+Vec3 InputSurface::corner(const BoundaryCorner& corner) const {
+  if (corner.part >= boundary_.size() || corner.local >= boundary_[corner.part].size()) {
+    throw DataError("a boundary triangle names vertex " + std::to_string(corner.local) +
+                    " of part " + std::to_string(corner.part) +
+                    ", which is no boundary vertex there; cut the mesh again");
+  }
+  return boundary_[corner.part][corner.local];
+}
+
+/// They stand for a part after the last.
+void InputSurface::show_between(const Wants& wants, const Show& show) const {
+  Mesh some;
+  const auto flush = [&] {
+    Box box;
+    for (const Vec3& v : some.positions) box.add(v);
+    if (wants(box)) {
+      show({some.positions, some.triangles, {}, static_cast<std::uint32_t>(boundary_.size())});
+    }
+    some = {};
+  };
+  StagedReader bytes(stage_, manifest_.boundary);
+  const auto fill = [&](std::span<char> buffer) { bytes.fill(buffer); };
+  scan_boundary(fill, manifest_.boundary.name, [&](const BoundaryTriangle& t) {
+    const auto first = static_cast<std::uint32_t>(some.positions.size());
+    for (const BoundaryCorner& each : t) some.positions.push_back(corner(each));
+    some.triangles.push_back({first, first + 1, first + 2});
+    if (some.triangles.size() == k_between_at_once) flush();
+  });
+  bytes.expect_end();
+  flush();
+}
+
+}  // namespace meshfarm

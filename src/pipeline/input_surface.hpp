@@ -1,0 +1,51 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <vector>
+
+#include <meshfarm/io/boundary_file.hpp>
+#include <meshfarm/io/manifest.hpp>
+
+namespace meshfarm {
+
+/// Some of the input's triangles, and the vertices they use among others.
+struct SurfacePiece {
+  std::span<const Vec3> positions;
+  std::span<const Triangle> triangles;
+  /// Vertices that no piece of the same part showed before.
+  std::span<const Vec3> fresh;
+  std::uint32_t part = 0;
+};
+
+/// The surface of the input, read from the stage: the parts or streams, and the triangles between
+/// them. A part a thread is in memory, of streams a few blocks.
+class InputSurface {
+ public:
+  using Wants = std::function<bool(const Box&)>;
+  using Show = std::function<void(const SurfacePiece&)>;
+
+  /// The manifest must be one of sorted streams. `threads`: 0 for one a core.
+  InputSurface(const Stage& stage, const Manifest& manifest, unsigned threads);
+  /// Shows the pieces of all parts whose boxes are wanted, and the triangles between parts, from
+  /// several threads. At first, when no box is known, all parts are shown. The pieces of a part
+  /// come in order.
+  void show(const Wants& wants, const Show& show);
+
+ private:
+  void show_part(std::uint32_t part, const Show& show);
+  void show_stream(std::uint32_t part, const Show& show);
+  void show_between(const Wants& wants, const Show& show) const;
+  Vec3 corner(const BoundaryCorner& corner) const;
+
+  const Stage& stage_;
+  const Manifest& manifest_;
+  unsigned threads_;
+  std::vector<Box> boxes_;                   // of the parts, once they are known
+  std::vector<std::vector<Vec3>> boundary_;  // boundary vertices of the parts
+};
+
+}  // namespace meshfarm

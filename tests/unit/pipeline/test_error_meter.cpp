@@ -1,0 +1,97 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#include <algorithm>
+#include <cmath>
+
+#include <doctest/doctest.h>
+
+#include <meshfarm/partition/cut.hpp>
+#include <meshfarm/stream/generate_streams.hpp>
+
+#include "pipeline/error_meter.hpp"
+#include "support/memory_source.hpp"
+#include "support/meshes.hpp"
+#include "support/temp_folder.hpp"
+
+using namespace meshfarm;
+
+namespace {
+
+Manifest divide(const Mesh& mesh, Scheme scheme, const Stage& stage) {
+  test::MemorySource source(mesh);
+  if (scheme == Scheme::cut) return cut_mesh(source, stage, {.parts = 5});
+  return generate_streams(source, stage, {.streams = 5, .window_triangles = 4'000});
+}
+
+/// Measures a result against an input that is divided by the scheme.
+MeasuredError measure(const Mesh& input, const Mesh& result, Scheme scheme, unsigned threads = 2) {
+  const test::TempFolder folder;
+  const Stage stage = Stage::create(folder.path());
+  const Manifest manifest = divide(input, scheme, stage);
+  const SurfaceSamples samples = sample_surface(input, {.samples = 20'000});
+  return ErrorMeter(stage, manifest, {samples}, threads).measure(result);
+}
+
+void check_alike(const Distance& told, const Distance& expected) {
+  CHECK(told.rms == doctest::Approx(expected.rms).epsilon(0.03));
+  CHECK(told.mean == doctest::Approx(expected.mean).epsilon(0.03));
+  CHECK(told.max >= 0.9 * expected.max);
+}
+
+}  // namespace
+
+TEST_CASE("a coarse sphere is measured both ways as two meshes in memory are, by either scheme") {
+  const Mesh fine = test::icosphere(6);
+  const Mesh coarse = test::icosphere(2);
+  for (const Scheme scheme : {Scheme::cut, Scheme::stream}) {
+    const MeasuredError told = measure(fine, coarse, scheme);
+    check_alike(told.to_output, measure_distance(fine, coarse, {}));
+    check_alike(told.to_input, measure_distance(coarse, fine, {}));
+    CHECK(told.greater().max == std::max(told.to_output.max, told.to_input.max));
+    CHECK(told.input_samples == 20'000);
+    CHECK(told.output_samples > 0);
+  }
+}
+
+TEST_CASE("a vertex that was pulled out of the result is told, however thin the spike") {
+  const Mesh sheet = test::grid(120, 80);
+  Mesh spiked = sheet;
+  spiked.positions[60 * 121 + 40].z = 30;
+  for (const Scheme scheme : {Scheme::cut, Scheme::stream}) {
+    const MeasuredError same = measure(sheet, sheet, scheme);
+    CHECK(same.greater().max < 1e-9);
+    const MeasuredError told = measure(sheet, spiked, scheme);
+    CHECK(told.to_output.max < 1);
+    CHECK(told.to_input.max == doctest::Approx(30));
+    CHECK(told.to_input.rms ==
+          doctest::Approx(measure_distance(spiked, sheet, {}).rms).epsilon(0.1));
+  }
+}
+
+TEST_CASE("a vertex of the input that the result lost is told") {
+  const Mesh sheet = test::grid(120, 80);
+  Mesh spiked = sheet;
+  spiked.positions[60 * 121 + 40].z = 30;
+  for (const Scheme scheme : {Scheme::cut, Scheme::stream}) {
+    CHECK(measure(spiked, sheet, scheme).to_output.max == doctest::Approx(30));
+  }
+}
+
+TEST_CASE("the same figures from any number of threads") {
+  const Mesh fine = test::torus(120, 60);
+  const Mesh coarse = test::torus(30, 15);
+  for (const Scheme scheme : {Scheme::cut, Scheme::stream}) {
+    const MeasuredError one = measure(fine, coarse, scheme, 1);
+    const MeasuredError three = measure(fine, coarse, scheme, 3);
+    for (const auto direction : {&MeasuredError::to_output, &MeasuredError::to_input}) {
+      CHECK((one.*direction).rms == (three.*direction).rms);
+      CHECK((one.*direction).mean == (three.*direction).mean);
+      CHECK((one.*direction).max == (three.*direction).max);
+    }
+  }
+}
+
+TEST_CASE("an empty result has no error to tell") {
+  const MeasuredError told = measure(test::icosphere(3), {}, Scheme::cut);
+  CHECK(told.input_samples == 0);
+}
