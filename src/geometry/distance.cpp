@@ -187,6 +187,19 @@ class DistanceMeter::Impl {
     return farthest > enough ? std::sqrt(farthest) : least;
   }
 
+  std::vector<Vec3> beyond(Points points, double limit) const {
+    std::vector<Vec3> beyond;
+    std::uint32_t guess = 0;
+    for (const Vec3& p : points) {
+      const Bvh::Nearest nearest = bvh_.nearest(p, guess, limit * limit);
+      guess = nearest.triangle;
+      if (nearest.squared > limit * limit) beyond.push_back(p);
+    }
+    return beyond;
+  }
+
+  std::uint32_t nearest_triangle(Vec3 point) const { return bvh_.nearest(point, 0).triangle; }
+
  private:
   struct ChunkOfSet {
     std::size_t set = 0;
@@ -209,6 +222,14 @@ Distance DistanceMeter::measure(Points points) const {
 
 double DistanceMeter::farthest(Points points, double least) const {
   return impl_->farthest(points, least);
+}
+
+std::vector<Vec3> DistanceMeter::beyond(Points points, double limit) const {
+  return impl_->beyond(points, limit);
+}
+
+std::uint32_t DistanceMeter::nearest_triangle(Vec3 point) const {
+  return impl_->nearest_triangle(point);
 }
 
 std::vector<Distance> DistanceMeter::measure_each(std::span<const Points> sets) const {

@@ -21,7 +21,7 @@ constexpr std::size_t k_run = 32;
 constexpr double k_beyond = 1 + 0x1p-20;
 /// Of the distance between vertices: to look a little farther costs nothing, nor do larger cells.
 constexpr double k_least_reach = 0.25;
-constexpr double k_cell = 2;
+constexpr double k_cell = 1.5;
 
 }  // namespace
 
@@ -29,7 +29,8 @@ class PointMeter::Impl {
  public:
   Impl(std::span<const Vec3> points, const PointMeterHints& hints)
       : hints_(hints),
-        reach_(std::max(hints.usual, k_least_reach * hints.spacing)),
+        enough_(hints.enough * hints.enough),
+        reach_(k_beyond * std::max(hints.usual, k_least_reach * hints.spacing)),
         points_(points.size()) {
     for (std::size_t i = 0; i < points.size(); ++i) {
       points_[i].place = points[i];
@@ -85,18 +86,25 @@ class PointMeter::Impl {
     for (std::uint32_t i = 0; i < points_.size(); ++i) {
       if (points_[i].known() >= reach_ * reach_) searching.push_back(i);
     }
+    if (enough_ > 0 && reach_ * reach_ >= enough_) {  // farther than asked: how far does not matter
+      for (const std::uint32_t i : searching) points_[i].squared = HUGE_VAL;
+      return {};
+    }
     if (searching.empty()) return {};
     Mesh known;
     known.positions.assign(hints_.surface.begin(), hints_.surface.end());
     for (std::uint32_t i = 0; i < known.positions.size(); ++i) known.triangles.push_back({i, i, i});
     const Bvh bvh(known, 0);
     std::uint32_t guess = 0;
+    std::vector<std::uint32_t> unknown;
     for (const std::uint32_t i : searching) {
-      const Bvh::Nearest nearest = bvh.nearest(points_[i].place, guess);
+      const Bvh::Nearest nearest = bvh.nearest(points_[i].place, guess, enough_);
       guess = nearest.triangle;
-      points_[i].squared = nearest.squared * k_beyond;
+      const bool is_enough = nearest.squared <= enough_;
+      points_[i].squared = is_enough ? nearest.squared : nearest.squared * k_beyond;
+      if (!is_enough) unknown.push_back(i);
     }
-    return searching;
+    return unknown;
   }
 
   void offer(Vec3 a, Vec3 b, Vec3 c, std::uint64_t key_a, std::uint64_t key_b,
@@ -104,7 +112,8 @@ class PointMeter::Impl {
     const PointGrid::Reach reach = grid_->reach_of(key_a, key_b, key_c);
     if (reach == PointGrid::Reach::none) return;
     const OfferedTriangle triangle(a, b, c);
-    reach == PointGrid::Reach::some ? grid_->offer(triangle) : tree_->offer(triangle);
+    reach == PointGrid::Reach::some ? grid_->offer(triangle, enough_)
+                                    : tree_->offer(triangle, enough_);
   }
 
   void show_to_tree(std::span<const Vec3> positions, std::span<const Triangle> triangles) {
@@ -116,13 +125,14 @@ class PointMeter::Impl {
       }
       if (!tree_->wants(box)) continue;
       for (const auto& [a, b, c] : run) {
-        tree_->offer(OfferedTriangle(positions[a], positions[b], positions[c]));
+        tree_->offer(OfferedTriangle(positions[a], positions[b], positions[c]), enough_);
       }
     }
   }
 
   PointMeterHints hints_;
-  double reach_;  // of the first pass
+  double enough_;  // squared
+  double reach_;   // of the first pass
   std::vector<SearchingPoint> points_;
   int pass_ = 0;
   std::optional<PointGrid> grid_;  // of the first pass

@@ -94,9 +94,9 @@ bool PointTree::wants(const Box& box) const {
   });
 }
 
-void PointTree::offer(const OfferedTriangle& triangle) {
+void PointTree::offer(const OfferedTriangle& triangle, double enough) {
   visit(triangle.box, [&](SearchingPoint& point) {
-    point.offer(triangle);
+    point.offer(triangle, enough);
     return false;
   });
 }

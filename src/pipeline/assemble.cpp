@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
 #include <chrono>
-#include <cmath>
 #include <iterator>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -11,6 +11,7 @@
 #include <meshfarm/geometry/components.hpp>
 #include <meshfarm/geometry/distance.hpp>
 #include <meshfarm/geometry/simplify.hpp>
+#include <meshfarm/geometry/simplify_within.hpp>
 #include <meshfarm/io/boundary_file.hpp>
 #include <meshfarm/io/ply_writer.hpp>
 #include <meshfarm/io/result_file.hpp>
@@ -57,16 +58,19 @@ class Assembly {
     const ChosenRungs chosen = choose_rungs(manifest_, run_, accepted);
     lines_.topology = chosen.topology;
     StitchedMesh stitched = stitch(chosen.rungs);
+    make_meter();
     summary_.dropped_components =
         drop_small_components(stitched.mesh, run_.drop_components.in(manifest_.box));
     summary_.stitched = stitched.mesh.triangles.size();
     summary_.stitch_seconds = watch.lap();
-    const Mesh result = summary_.max_error > 0 ? finish_to_error(std::move(stitched.mesh))
+    const Mesh result = summary_.max_error > 0 ? finish_to_bound(std::move(stitched.mesh))
                                                : finish(std::move(stitched));
     summary_.triangles = result.triangles.size();
     summary_.vertices = result.positions.size();
     summary_.finish_seconds = watch.lap();
-    summary_.error = measure_error(result);
+    tell("measure", 0, 0);
+    summary_.error = meter_->measure(result);
+    check_stop();
     summary_.measure_seconds = watch.lap();
     write_ply(options_.output, result, manifest_.positions);
     summary_.write_seconds = watch.lap();
@@ -134,38 +138,25 @@ class Assembly {
     std::swap(boundary.positions, stitched.positions);
   }
 
-  MeasuredError measure_error(const Mesh& result) {
-    tell("measure", 0, 0);
-    ErrorMeter meter(stage_, manifest_, samples_, options_.threads);
-    MeasuredError error = meter.measure(result);
-    check_stop();
-    return error;
+  void make_meter() {
+    meter_.emplace(stage_, manifest_, std::move(samples_), options_.threads,
+                   summary_.max_error > 0 ? k_points_for_bound : ErrorPoints{});
   }
 
-  /// Takes triangles away by a share at a time as long as the error is kept, then goes on from the
-  /// last good mesh by smaller shares.
-  Mesh finish_to_error(Mesh good) {
-    constexpr double k_first_step = 0.7;
-    constexpr double k_last_step = 0.99;
-    const SimplifyOptions options{.positions = manifest_.positions, .lines = lines_};
-    bool cleaned = false;
-    for (double step = k_first_step; step < k_last_step; step = std::sqrt(step)) {
-      Simplifier simplifier(good, options);
-      if (!std::exchange(cleaned, true)) {
-        summary_.dropped_degenerate += simplifier.dropped_degenerate();
-        summary_.dropped_duplicate += simplifier.dropped_duplicate();
-      }
-      while (true) {
-        const std::uint64_t before = simplifier.triangles();
-        simplifier.reduce(
-            {.triangles = static_cast<std::uint64_t>(static_cast<double>(before) * step)});
-        tell("finish, " + std::to_string(simplifier.triangles()) + " triangles", 0, 0);
-        if (measure_error(simplifier.mesh()).greater().max > summary_.max_error) break;
-        good = simplifier.mesh();
-        if (simplifier.triangles() == before) return good;
-      }
-    }
-    return good;
+  Mesh finish_to_bound(Mesh stitched) {
+    // Between the points that are measured a surface may be a little farther.
+    constexpr double k_bound_margin = 0.92;
+    BoundedSimplifier simplifier(
+        std::move(stitched), {.positions = manifest_.positions, .lines = lines_},
+        [&](const Mesh& mesh) {
+          tell("finish, " + std::to_string(mesh.triangles.size()) + " triangles", 0, 0);
+          return meter_->strays(mesh, k_bound_margin * summary_.max_error);
+        });
+    summary_.dropped_degenerate += simplifier.dropped_degenerate();
+    summary_.dropped_duplicate += simplifier.dropped_duplicate();
+    constexpr double k_last_step = 2;
+    reduce_to_bound(simplifier, k_last_step);
+    return simplifier.mesh();
   }
 
   Mesh finish(StitchedMesh stitched) {
@@ -224,6 +215,7 @@ class Assembly {
   const AssembleOptions& options_;
   RunSummary summary_;
   std::vector<SurfaceSamples> samples_;
+  std::optional<ErrorMeter> meter_;
 };
 
 }  // namespace

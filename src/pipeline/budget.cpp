@@ -25,8 +25,8 @@ constexpr double k_more_headroom = 8;
 /// Points of the input by which the error of the result is measured: the RMS of as many varies by
 /// less than one per cent.
 constexpr double k_error_samples = 100'000;
-/// A bound is on the greatest distance, which more points find more of.
-constexpr double k_bound_samples = 400'000;
+/// A bound is on the greatest distance, which more points find more of, vertices most.
+constexpr double k_bound_samples = 200'000;
 
 /// Parts that their topology holds back are to have no more of all triangles than this at the level
 /// that is chosen, and all together no more than so many times what is wanted: one level is 1.6.
@@ -37,6 +37,9 @@ constexpr double k_fair_excess = 2;
 /// is too far from it; and parts may take up this share of the bound, the finish the rest.
 constexpr double k_error_start = 0.5;
 constexpr double k_error_share = 0.5;
+
+/// The part as it came, the last good mesh and the points that are measured.
+constexpr std::uint64_t k_bound_bytes_per_triangle = 120;
 
 /// How many times the target the parts together keep for the finish to choose from: twice where
 /// much is taken away (measured: no better with more), less where little is, as then seams are few.
@@ -147,7 +150,8 @@ class Rounds {
             {entry.file},
             encode_parameters(parameters),
             entry.triangles,
-            memory_of(entry, parameters.start_triangles)};
+            memory_of(entry, parameters.start_triangles) +
+                (by_error() ? k_bound_bytes_per_triangle * entry.triangles : 0)};
   }
 
   void set_error_bound(SimplifyParameters& parameters, std::uint32_t part) const {
@@ -155,6 +159,8 @@ class Rounds {
     const bool first = headroom_[part] == k_first_headroom;
     parameters.allocation = Allocation::threshold;
     parameters.max_error = k_error_share * options_.error.in(manifest_.box);
+    // What a sample tells is done to its stream by cost alone.
+    parameters.lock_strays = !is_sampled(part);
     parameters.start_triangles =
         first ? static_cast<std::uint64_t>(k_error_start * static_cast<double>(triangles))
               : triangles;

@@ -7,32 +7,34 @@
 #include <mutex>
 #include <utility>
 
-#include <meshfarm/geometry/point_meter.hpp>
+#include <meshfarm/util/parallel.hpp>
 
 namespace meshfarm {
 namespace {
 
-/// Points of the result: by area, which RMS and mean are made of, and vertices.
-constexpr std::uint64_t k_area_points = 40'000;
-constexpr std::uint64_t k_least_area_points = 20'000;
-constexpr std::uint64_t k_triangles_a_point = 16;  // of the input: a small one is soon measured
-constexpr std::uint64_t k_vertex_points = 40'000;
-/// Vertices of the input that are looked at, at most, for one that is farther than the samples.
-constexpr std::uint64_t k_input_vertices = 150'000;
+/// A small input is soon measured; so should its result be.
+constexpr std::uint64_t k_triangles_a_point = 16;
 /// Nearly all points of a result are nearer than so many times the RMS.
 constexpr double k_usual = 4;
-
-std::uint64_t area_points(const Manifest& manifest) {
-  return std::clamp(manifest.triangles() / k_triangles_a_point, k_least_area_points, k_area_points);
-}
+/// And than this share of a bound on the maximum.
+constexpr double k_usual_of_bound = 0.25;
+/// If more points than one for so many triangles are too far off, they are not worth naming.
+constexpr std::size_t k_triangles_a_stray = 10;
+/// Farther than this the first pass need not look: so many triangles are then near each point that
+/// the second is cheaper.
+constexpr double k_far_in_spacings = 4;
+constexpr std::uint64_t k_samples_at_once = 4096;
 
 /// Every n-th, so that there are at most so many.
-template <class T>
-std::vector<T> thinned(std::span<const T> values, std::uint64_t most) {
-  std::vector<T> thinned;
-  const std::uint64_t step = (values.size() + most - 1) / most;
-  for (std::uint64_t i = 0; i < values.size(); i += step) thinned.push_back(values[i]);
+std::vector<Vec3> thinned(std::span<const Vec3> points, std::uint64_t step) {
+  std::vector<Vec3> thinned;
+  thinned.reserve(points.size() / step + 1);
+  for (std::uint64_t i = 0; i < points.size(); i += step) thinned.push_back(points[i]);
   return thinned;
+}
+
+std::uint64_t step_for(std::uint64_t count, std::uint64_t most) {
+  return std::max<std::uint64_t>(1, (count + most - 1) / most);
 }
 
 Distance distance_of(std::span<const double> distances) {
@@ -47,19 +49,68 @@ Distance distance_of(std::span<const double> distances) {
   return {std::sqrt(sums.rms / count), sums.mean / count, sums.max};
 }
 
+/// The greatest of what several threads find.
+class Greatest {
+ public:
+  explicit Greatest(double least) : value_(least) {}
+  void add(double value) {
+    const std::lock_guard lock(mutex_);
+    value_ = std::max(value_, value);
+  }
+  double value() const {
+    const std::lock_guard lock(mutex_);
+    return value_;
+  }
+
+ private:
+  mutable std::mutex mutex_;
+  double value_;
+};
+
+/// Points that several threads find, in no order.
+class Gathered {
+ public:
+  void add(const std::vector<Vec3>& points) {
+    const std::lock_guard lock(mutex_);
+    points_.insert(points_.end(), points.begin(), points.end());
+  }
+  const std::vector<Vec3>& points() const { return points_; }
+  std::vector<Vec3> take() { return std::move(points_); }
+
+ private:
+  std::mutex mutex_;
+  std::vector<Vec3> points_;
+};
+
 }  // namespace
 
 ErrorMeter::ErrorMeter(const Stage& stage, const Manifest& manifest,
-                       std::vector<SurfaceSamples> samples, unsigned threads)
+                       std::vector<SurfaceSamples> samples, unsigned threads,
+                       const ErrorPoints& points)
     : manifest_(manifest),
       threads_(threads),
+      points_(points),
       samples_(std::move(samples)),
       input_(stage, manifest, threads) {
   for (const SurfaceSamples& part : samples_) {
     if (part.points.empty()) continue;
     area_ += part.area;
-    all_points_.insert(all_points_.end(), part.points.begin(), part.points.end());
+    surface_.insert(surface_.end(), part.points.begin(), part.points.end());
   }
+  const auto triangles = static_cast<double>(std::max<std::uint64_t>(1, manifest.triangles()));
+  spacing_ = std::sqrt(2 * area_ / triangles);
+}
+
+ErrorMeter::ResultPoints ErrorMeter::points_of(const Mesh& result) const {
+  const std::uint64_t by_area = std::clamp(manifest_.triangles() / k_triangles_a_point,
+                                           points_.least_by_area, points_.by_area);
+  SurfaceSamples samples = sample_surface(result, {.samples = by_area, .threads = threads_});
+  ResultPoints all{std::move(samples.points), 0};
+  all.by_area = all.points.size();
+  const std::vector<Vec3> vertices =
+      thinned(result.positions, step_for(result.positions.size(), points_.vertices));
+  all.points.insert(all.points.end(), vertices.begin(), vertices.end());
+  return all;
 }
 
 /// Every set of samples counts by the area it stands for.
@@ -77,9 +128,18 @@ Distance ErrorMeter::measure_samples(const DistanceMeter& meter) const {
   return {std::sqrt(error.rms / area_), error.mean / area_, error.max};
 }
 
-double ErrorMeter::farthest_sample(const Mesh& result) const {
-  if (result.triangles.empty() || !(area_ > 0)) return 0;
-  return measure_samples(DistanceMeter(result, threads_)).max;
+/// Shows the input to the points of the result, and vertices of the input to `vertices`, from
+/// several threads.
+void ErrorMeter::show_input(PointMeter& to_input,
+                            const std::function<void(std::span<const Vec3>)>& vertices) {
+  const std::uint64_t step = step_for(manifest_.input_vertices, points_.input_vertices);
+  for (bool is_first = true; to_input.begin_pass(); is_first = false) {
+    input_.show([&](const Box& box) { return to_input.wants(box); },
+                [&](const SurfacePiece& piece) {
+                  to_input.show(piece.positions, piece.triangles);
+                  if (is_first) vertices(thinned(piece.fresh, step));
+                });
+  }
 }
 
 MeasuredError ErrorMeter::measure(const Mesh& result) {
@@ -87,46 +147,52 @@ MeasuredError ErrorMeter::measure(const Mesh& result) {
   if (result.triangles.empty() || !(area_ > 0)) return error;
   const DistanceMeter to_result(result, threads_);
   error.to_output = measure_samples(to_result);
-  error.input_samples = all_points_.size();
-
-  SurfaceSamples by_area =
-      sample_surface(result, {.samples = area_points(manifest_), .threads = threads_});
-  std::vector<Vec3> points = std::move(by_area.points);
-  const std::size_t counted = points.size();
-  const std::vector<Vec3> vertices = thinned<Vec3>(result.positions, k_vertex_points);
-  points.insert(points.end(), vertices.begin(), vertices.end());
-  error.output_samples = counted;
-
-  const double triangles = static_cast<double>(std::max<std::uint64_t>(1, manifest_.triangles()));
-  const double spacing = std::sqrt(2 * area_ / triangles);
+  const ResultPoints from = points_of(result);
   // The maximum where that is within the neighbours' distance: the first pass then finds them all.
   const double usual =
-      std::max(k_usual * error.to_output.rms, std::min(2 * error.to_output.max, spacing));
-  PointMeter to_input(points, {spacing, usual, all_points_});
-  const std::uint64_t step = (manifest_.input_vertices + k_input_vertices - 1) /
-                             std::max<std::uint64_t>(1, k_input_vertices);
+      std::max(std::min(k_usual * error.to_output.rms, k_far_in_spacings * spacing_),
+               std::min(2 * error.to_output.max, spacing_));
+  PointMeter to_input(from.points, {spacing_, usual, surface_});
   const double least = error.to_output.max;
-  std::mutex mutex;
-  bool is_first = true;
-  while (to_input.begin_pass()) {
-    input_.show([&](const Box& box) { return to_input.wants(box); },
-                [&](const SurfacePiece& piece) {
-                  to_input.show(piece.positions, piece.triangles);
-                  if (!is_first) return;
-                  std::vector<Vec3> some;
-                  for (std::size_t i = 0; i < piece.fresh.size(); i += step) {
-                    some.push_back(piece.fresh[i]);
-                  }
-                  const double farthest = to_result.farthest(some, least);
-                  const std::lock_guard lock(mutex);
-                  error.to_output.max = std::max(error.to_output.max, farthest);
-                });
-    is_first = false;
-  }
+  Greatest greatest(least);
+  show_input(to_input, [&](std::span<const Vec3> vertices) {
+    greatest.add(to_result.farthest(vertices, least));
+  });
+  error.to_output.max = greatest.value();
   const std::vector<double> distances = to_input.distances();
-  error.to_input = distance_of(std::span(distances).first(counted));
-  error.to_input.max = std::max(error.to_input.max, distance_of(distances).max);
+  error.to_input = distance_of(std::span(distances).first(from.by_area));
+  error.to_input.max = distance_of(distances).max;
+  error.input_samples = surface_.size();
+  error.output_samples = from.by_area;
   return error;
+}
+
+std::optional<std::vector<Vec3>> ErrorMeter::strays(const Mesh& result, double bound) {
+  if (result.triangles.empty() || !(area_ > 0)) return std::vector<Vec3>();
+  const std::size_t most = result.triangles.size() / k_triangles_a_stray + 1;
+  const DistanceMeter to_result(result, threads_);
+  Gathered found;
+  const std::span<const Vec3> all(surface_);
+  parallel_for(
+      (all.size() + k_samples_at_once - 1) / k_samples_at_once, threads_, [&](std::uint64_t i) {
+        const std::size_t first = i * k_samples_at_once;
+        const auto some = all.subspan(first, std::min(k_samples_at_once, all.size() - first));
+        found.add(to_result.beyond(some, bound));
+      });
+  if (found.points().size() > most) return std::nullopt;
+  const ResultPoints from = points_of(result);
+  const double usual =
+      std::min(bound, std::clamp(k_usual_of_bound * bound, spacing_, k_far_in_spacings * spacing_));
+  PointMeter to_input(from.points, {spacing_, usual, surface_, bound});
+  show_input(to_input,
+             [&](std::span<const Vec3> vertices) { found.add(to_result.beyond(vertices, bound)); });
+  std::vector<Vec3> strays = found.take();
+  const std::vector<double> distances = to_input.distances();
+  for (std::size_t i = 0; i < distances.size(); ++i) {
+    if (distances[i] > bound) strays.push_back(from.points[i]);
+  }
+  if (strays.size() > most) return std::nullopt;
+  return strays;
 }
 
 }  // namespace meshfarm

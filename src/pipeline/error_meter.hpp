@@ -3,38 +3,64 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
+#include <optional>
+#include <span>
 #include <vector>
 
 #include <meshfarm/geometry/distance.hpp>
+#include <meshfarm/geometry/point_meter.hpp>
 #include <meshfarm/report/summary.hpp>
 
 #include "pipeline/input_surface.hpp"
 
 namespace meshfarm {
 
+/// How many points are looked at for the maximum: all that the sum of squares needs and more.
+struct ErrorPoints {
+  std::uint64_t least_by_area = 20'000;    // of the result if the input is small
+  std::uint64_t by_area = 40'000;          // of the result
+  std::uint64_t vertices = 40'000;         // of the result, at most
+  std::uint64_t input_vertices = 150'000;  // at most
+};
+
+/// For a bound on the error, which is one on the maximum.
+inline constexpr ErrorPoints k_points_for_bound{200'000, 200'000, 400'000, 2'000'000};
+
 /// Measures how far a result is from the input, in both directions.
 ///
 /// RMS and mean come from points that are shared out by area. Of the input the workers took them,
 /// while they had it in memory; those of the result are measured against the input as it lies in
 /// the stage, read once more. The maximum counts vertices, too, as extremes of surfaces lie there.
+/// No figure depends on the number of threads.
 class ErrorMeter {
  public:
   /// `samples`: of the input, each set standing for its area. Stage and manifest must outlive this.
   ErrorMeter(const Stage& stage, const Manifest& manifest, std::vector<SurfaceSamples> samples,
-             unsigned threads);
+             unsigned threads, const ErrorPoints& points = {});
 
   MeasuredError measure(const Mesh& result);
-  /// The greatest distance of the samples alone.
-  double farthest_sample(const Mesh& result) const;
+  /// The points, of either surface, whose distances measure() would find above the bound, if they
+  /// are not too many: much cheaper.
+  std::optional<std::vector<Vec3>> strays(const Mesh& result, double bound);
 
  private:
+  struct ResultPoints {
+    std::vector<Vec3> points;
+    std::size_t by_area = 0;  // the first of them
+  };
+
+  ResultPoints points_of(const Mesh& result) const;
   Distance measure_samples(const DistanceMeter& meter) const;
+  void show_input(PointMeter& to_input, const std::function<void(std::span<const Vec3>)>& vertices);
 
   const Manifest& manifest_;
   unsigned threads_;
+  ErrorPoints points_;
   std::vector<SurfaceSamples> samples_;
-  double area_ = 0;  // of the input
-  std::vector<Vec3> all_points_;
+  double area_ = 0;            // of the input
+  double spacing_ = 0;         // of its vertices, about
+  std::vector<Vec3> surface_;  // all samples
   InputSurface input_;
 };
 

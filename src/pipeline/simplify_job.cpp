@@ -12,11 +12,14 @@
 #include <meshfarm/util/checksum.hpp>
 #include <meshfarm/util/errors.hpp>
 
+#include "pipeline/bounded_part.hpp"
+
 namespace meshfarm {
 namespace {
 
 // Version 3: allocation u8 | start u64 | even share u64 | samples u64 | cost unit f64 |
-// greatest error f64 | lines (run_options.hpp).
+// greatest error f64 | lock strays u8 | lines (run_options.hpp).
+// Version 2 knew no topology and could not lock strays.
 constexpr std::uint8_t k_version = 3;
 constexpr std::uint64_t k_max_samples = 100'000'000;
 constexpr std::int32_t k_top_level = 52;
@@ -81,7 +84,7 @@ class LadderBuilder {
       if (simplifier_.free_triangles() == 0) return;
       reduce({.triangles = floor, .max_cost = level_cost(level, parameters_.cost_unit)});
       if (simplifier_.is_held_by_topology()) return;
-      if (simplifier_.triangles() < result_.rungs().back().triangles && !snapshot(level)) return;
+      if (simplifier_.triangles() < result_.rungs().back().triangles) snapshot(level);
     }
   }
 
@@ -94,20 +97,9 @@ class LadderBuilder {
     if (given_up) throw IncompleteError("the job was given up");
   }
 
-  /// Keeps the mesh as it is as a rung. False, and nothing kept, if it is too far from the part;
-  /// a first rung is kept whatever it is.
-  bool snapshot(std::int32_t level) {
-    const double error = measured_error(level);
-    if (error > parameters_.max_error && !result_.empty()) return false;
-    result_.add_rung(level, simplifier_.mesh(), simplifier_.free_triangles(), error);
-    return true;
-  }
-
-  double measured_error(std::int32_t level) const {
-    const bool measured = parameters_.max_error > 0 && level != k_input_level;
-    if (!measured || simplifier_.mesh().triangles.empty()) return 0;
-    // One thread: a worker is one of many on its host.
-    return DistanceMeter(simplifier_.mesh(), 1).measure(samples_.points).max;
+  /// Keeps the mesh as it is as a rung.
+  void snapshot(std::int32_t level) {
+    result_.add_rung(level, simplifier_.mesh(), simplifier_.free_triangles());
   }
 
   SurfaceSamples samples_;  // made before the part is simplified
@@ -144,6 +136,7 @@ std::string encode_parameters(const SimplifyParameters& parameters) {
   out.put(parameters.samples);
   out.put(parameters.cost_unit);
   out.put(parameters.max_error);
+  out.put(static_cast<std::uint8_t>(parameters.lock_strays ? 1 : 0));
   put(out, parameters.lines);
   return out.take();
 }
@@ -160,6 +153,7 @@ SimplifyParameters decode_parameters(std::string_view bytes) {
   if (parameters.samples > k_max_samples) in.fail("too many samples");
   parameters.cost_unit = in.get<double>();
   parameters.max_error = in.get<double>();
+  parameters.lock_strays = in.get<std::uint8_t>() != 0;
   parameters.lines = get_lines(in);
   in.expect_end();
   return parameters;
@@ -184,9 +178,13 @@ JobOutput simplify_part(const Job& job, const JobContext& context) {
   if (job.inputs.size() != 1) throw DataError("a simplify job takes one part");
   const SimplifyParameters parameters = decode_parameters(job.parameters);
   Part part = read_part(context, job.inputs[0]);
+  const ResultName name{key_of(job).value, context.attempt, context.incarnation};
+  if (parameters.max_error > 0) {
+    const BoundedPart bounded = simplify_to_bound(std::move(part), parameters, context);
+    return {context.publish(name, bounded.file), encode_summary(bounded.summary)};
+  }
   LadderBuilder ladder(std::move(part), parameters, context);
   ladder.build();
-  const ResultName name{key_of(job).value, context.attempt, context.incarnation};
   const std::string file = ladder.take_file();
   return {context.publish(name, file), encode_summary(ladder.summary())};
 }

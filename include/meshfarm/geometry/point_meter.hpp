@@ -10,12 +10,15 @@
 
 namespace meshfarm {
 
-/// What helps to find the nearest places soon; no distance depends on it.
+/// What helps to find the nearest places soon; no distance depends on it but for `enough`.
 struct PointMeterHints {
   double spacing = 0;  // of the surface's vertices, about
   double usual = 0;    // a distance that few of the points are beyond
   /// Points of the surface, at least one: no point is farther from it than from these.
   std::span<const Vec3> surface;
+  /// Where above 0, all that counts is whether a distance is above this: others are told only
+  /// roughly, and those above it perhaps as infinite.
+  double enough = 0;
 };
 
 /// Measures from points to a surface that is too large to be held: it is shown piece by piece, and
@@ -24,8 +27,8 @@ struct PointMeterHints {
 ///
 ///     while (meter.begin_pass()) for (each piece) if (meter.wants(its box)) meter.show(piece);
 ///
-/// The distances depend on points and surface only, not on hints, pieces, order or threads. Needs
-/// about 50 bytes a point.
+/// The distances depend on points and surface only, not on pieces, order or threads. Needs about 50
+/// bytes a point.
 class PointMeter {
  public:
   PointMeter(std::span<const Vec3> points, const PointMeterHints& hints);

@@ -189,13 +189,14 @@ TEST_CASE("runs of different targets have different keys") {
 }
 
 TEST_CASE("parameters come back; damaged ones are refused") {
-  const SimplifyParameters p{Allocation::uniform, 12, 3, 77, 0.25, 0.5, {true, 40}};
+  const SimplifyParameters p{Allocation::uniform, 12, 3, 77, 0.25, 0.5, true, {true, 40}};
   const std::string bytes = encode_parameters(p);
   const SimplifyParameters back = decode_parameters(bytes);
   CHECK(back.allocation == Allocation::uniform);
   CHECK(back.start_triangles == 12);
   CHECK(back.samples == 77);
   CHECK(back.cost_unit == 0.25);
+  CHECK(back.lock_strays);
   CHECK(back.max_error == 0.5);
   CHECK(back.lines.preserve_border);
   CHECK(back.lines.crease_angle == 40);

@@ -1,0 +1,69 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#include "pipeline/bounded_part.hpp"
+
+#include <algorithm>
+#include <span>
+#include <utility>
+
+#include <meshfarm/geometry/simplify_within.hpp>
+#include <meshfarm/util/errors.hpp>
+
+#include "pipeline/part_error.hpp"
+
+namespace meshfarm {
+namespace {
+
+/// The finish goes on from there.
+constexpr double k_last_step = 4;
+
+/// The highest level that a mesh has reached for which this much was paid.
+std::int32_t level_reached(double cost, double unit) {
+  if (!(cost > 0)) return k_input_level;
+  const std::int32_t level = level_of(cost, unit);
+  return level_cost(level, unit) > cost ? level - 1 : level;
+}
+
+std::uint64_t free_triangles(const Mesh& mesh, std::uint32_t locked) {
+  return static_cast<std::uint64_t>(std::count_if(
+      mesh.triangles.begin(), mesh.triangles.end(),
+      [&](const Triangle& t) { return t[0] >= locked && t[1] >= locked && t[2] >= locked; }));
+}
+
+}  // namespace
+
+BoundedPart simplify_to_bound(Part part, const SimplifyParameters& parameters,
+                              const JobContext& context) {
+  const SurfaceSamples samples =
+      sample_surface(part.mesh, {.samples = parameters.samples, .threads = 1});
+  const std::uint64_t before = part.mesh.triangles.size();
+  const PartError error(part.mesh, samples);
+  BoundedSimplifier simplifier(std::move(part.mesh),
+                               {.locked_vertices = part.boundary_vertices,
+                                .positions = part.positions,
+                                .lines = parameters.lines},
+                               [&](const Mesh& mesh) {
+                                 auto strays = error.strays(mesh, parameters.max_error);
+                                 if (strays && !strays->empty() && !parameters.lock_strays)
+                                   strays.reset();
+                                 return strays;
+                               });
+  const double cost = reduce_to_bound(simplifier, k_last_step, [&](std::uint64_t left) {
+    if (context.progress(before - std::min(left, before))) return true;
+    throw IncompleteError("the job was given up");
+  });
+
+  BoundedPart made;
+  const Mesh& mesh = simplifier.mesh();
+  ResultWriter result(part.positions, part.boundary_vertices,
+                      [&](std::string_view bytes) { made.file += bytes; });
+  const double farthest =
+      mesh.triangles.empty() ? 0 : DistanceMeter(mesh, 1).measure(samples.points).max;
+  result.add_rung(level_reached(cost, parameters.cost_unit), mesh,
+                  free_triangles(mesh, part.boundary_vertices), farthest);
+  result.finish(std::span(mesh.positions).first(part.boundary_vertices), {&samples, 1});
+  made.summary = {result.rungs(), simplifier.dropped_degenerate(), simplifier.dropped_duplicate()};
+  return made;
+}
+
+}  // namespace meshfarm

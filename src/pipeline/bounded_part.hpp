@@ -1,0 +1,24 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <string>
+
+#include <meshfarm/farm/job.hpp>
+#include <meshfarm/io/part_file.hpp>
+#include <meshfarm/io/result_file.hpp>
+#include <meshfarm/pipeline/simplify_job.hpp>
+
+namespace meshfarm {
+
+struct BoundedPart {
+  std::string file;  // a result of one rung
+  ResultSummary summary;
+};
+
+/// Simplifies a part as far as no distance between it and what it was is above
+/// SimplifyParameters::max_error, in either direction.
+BoundedPart simplify_to_bound(Part part, const SimplifyParameters& parameters,
+                              const JobContext& context);
+
+}  // namespace meshfarm
