@@ -21,7 +21,7 @@ constexpr std::size_t k_run = 32;
 constexpr double k_beyond = 1 + 0x1p-20;
 /// Of the distance between vertices: to look a little farther costs nothing, nor do larger cells.
 constexpr double k_least_reach = 0.25;
-constexpr double k_cell = 1.5;
+constexpr double k_cell = 2;
 
 }  // namespace
 

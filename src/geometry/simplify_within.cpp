@@ -1,5 +1,6 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -31,6 +32,29 @@ BoundedSimplifier::BoundedSimplifier(Mesh mesh, SimplifyOptions options, FindStr
   mesh_ = cleaned.mesh();
 }
 
+bool BoundedSimplifier::accept_strays() {
+  const std::optional<std::vector<Vec3>> strays = find_strays_(mesh_);
+  if (!strays) return false;
+  if (strays->empty()) return true;
+  first_accepted_ = options_.locked_vertices;
+  lock_round(*strays);
+  end_accepted_ = options_.locked_vertices;
+  return true;
+}
+
+bool BoundedSimplifier::is_accepted(const Triangle& triangle) const {
+  return std::all_of(triangle.begin(), triangle.end(),
+                     [&](std::uint32_t v) { return v >= first_accepted_ && v < end_accepted_; });
+}
+
+void BoundedSimplifier::drop_accepted(std::vector<Vec3>& strays) const {
+  if (first_accepted_ == end_accepted_ || strays.empty()) return;
+  const DistanceMeter meter(mesh_, 1);
+  std::erase_if(strays, [&](Vec3 stray) {
+    return is_accepted(mesh_.triangles[meter.nearest_triangle(stray)]);
+  });
+}
+
 double BoundedSimplifier::first_cost() const {
   Simplifier simplifier(mesh_, options_);
   simplifier.reduce({.triangles = static_cast<std::uint64_t>(
@@ -43,8 +67,9 @@ bool BoundedSimplifier::reduce(double max_cost, const Progress& progress) {
     Simplifier simplifier(mesh_, options_);
     simplifier.reduce({.triangles = 0, .max_cost = max_cost}, progress);
     if (simplifier.triangles() == triangles()) return true;
-    const std::optional<std::vector<Vec3>> strays = find_strays_(simplifier.mesh());
+    std::optional<std::vector<Vec3>> strays = find_strays_(simplifier.mesh());
     if (!strays) return false;
+    drop_accepted(*strays);
     if (strays->empty()) {
       mesh_ = simplifier.mesh();
       return true;

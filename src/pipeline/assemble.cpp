@@ -155,7 +155,7 @@ class Assembly {
     summary_.dropped_degenerate += simplifier.dropped_degenerate();
     summary_.dropped_duplicate += simplifier.dropped_duplicate();
     constexpr double k_last_step = 2;
-    reduce_to_bound(simplifier, k_last_step);
+    if (simplifier.accept_strays()) reduce_to_bound(simplifier, k_last_step);
     return simplifier.mesh();
   }
 

@@ -12,8 +12,6 @@
 namespace meshfarm {
 namespace {
 
-/// A small input is soon measured; so should its result be.
-constexpr std::uint64_t k_triangles_a_point = 16;
 /// Nearly all points of a result are nearer than so many times the RMS.
 constexpr double k_usual = 4;
 /// And than this share of a bound on the maximum.
@@ -102,9 +100,8 @@ ErrorMeter::ErrorMeter(const Stage& stage, const Manifest& manifest,
 }
 
 ErrorMeter::ResultPoints ErrorMeter::points_of(const Mesh& result) const {
-  const std::uint64_t by_area = std::clamp(manifest_.triangles() / k_triangles_a_point,
-                                           points_.least_by_area, points_.by_area);
-  SurfaceSamples samples = sample_surface(result, {.samples = by_area, .threads = threads_});
+  SurfaceSamples samples =
+      sample_surface(result, {.samples = points_.by_area, .threads = threads_});
   ResultPoints all{std::move(samples.points), 0};
   all.by_area = all.points.size();
   const std::vector<Vec3> vertices =

@@ -18,14 +18,13 @@ namespace meshfarm {
 
 /// How many points are looked at for the maximum: all that the sum of squares needs and more.
 struct ErrorPoints {
-  std::uint64_t least_by_area = 20'000;    // of the result if the input is small
-  std::uint64_t by_area = 40'000;          // of the result
-  std::uint64_t vertices = 40'000;         // of the result, at most
-  std::uint64_t input_vertices = 150'000;  // at most
+  std::uint64_t by_area = 50'000;          // of the result
+  std::uint64_t vertices = 30'000;         // of the result, at most
+  std::uint64_t input_vertices = 100'000;  // at most
 };
 
 /// For a bound on the error, which is one on the maximum.
-inline constexpr ErrorPoints k_points_for_bound{200'000, 200'000, 400'000, 2'000'000};
+inline constexpr ErrorPoints k_points_for_bound{200'000, 400'000, 2'000'000};
 
 /// Measures how far a result is from the input, in both directions.
 ///

@@ -125,13 +125,16 @@ void add_input(Lines& lines, const Manifest& m) {
   }
 }
 
-void add_error(Lines& lines, const MeasuredError& error, double diagonal) {
+void add_error(Lines& lines, const MeasuredError& error, double most, double diagonal) {
   lines.add("error", text_of(error.greater(), diagonal) +
                          "  of the diagonal, the greater of both directions");
   lines.add("", text_of(error.to_output, diagonal) + "  from " + grouped(error.input_samples) +
                     " points of the input to the output");
   lines.add("", text_of(error.to_input, diagonal) + "  from " + grouped(error.output_samples) +
                     " points of the output to the input");
+  if (most > 0 && error.greater().max > most) {
+    lines.add("", "the bound of " + number(most / diagonal, "%.3g") + " is not kept everywhere");
+  }
 }
 
 }  // namespace
@@ -208,7 +211,7 @@ std::string render(const RunSummary& s, Format format) {
   if (!s.why_not_exact.empty()) {
     lines.add("", grouped(s.target) + " were asked for: " + s.why_not_exact);
   }
-  if (s.error.input_samples > 0) add_error(lines, s.error, m.box.diagonal());
+  if (s.error.input_samples > 0) add_error(lines, s.error, s.max_error, m.box.diagonal());
   lines.add(parts_name(m), grouped(m.parts.size()) + ", stitched to " + grouped(s.stitched) +
                                " triangles before the finish");
   lines.add("time", std::string(scheme_name(m)) + " " + number(m.cut_seconds, "%.2f s") +

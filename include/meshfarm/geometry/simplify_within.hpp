@@ -28,6 +28,9 @@ class BoundedSimplifier {
   /// Collapses every edge up to this cost, but where that would break the bound. False, and nothing
   /// done, if it would break it in too many places. `progress` as in Simplifier::reduce.
   bool reduce(double max_cost, const Progress& progress = {});
+  /// Of a mesh that may not be good, before anything else: the places that break the bound now stay
+  /// as they are, and do not count from here on. False if they are too many.
+  bool accept_strays();
   /// The cost at which it is worth to begin.
   double first_cost() const;
 
@@ -38,12 +41,16 @@ class BoundedSimplifier {
   std::uint64_t dropped_duplicate() const { return dropped_duplicate_; }
 
  private:
+  void drop_accepted(std::vector<Vec3>& strays) const;
   void lock_round(const std::vector<Vec3>& strays);
+  bool is_accepted(const Triangle& triangle) const;
   void put_first(const std::vector<std::uint8_t>& flags);
 
   Mesh mesh_;
   SimplifyOptions options_;
   FindStrays find_strays_;
+  std::uint32_t first_accepted_ = 0;  // vertices of places that were bad from the start
+  std::uint32_t end_accepted_ = 0;
   std::uint64_t dropped_degenerate_ = 0;
   std::uint64_t dropped_duplicate_ = 0;
 };

@@ -53,6 +53,20 @@ TEST_CASE("locked vertices stay the first, in their order, when others are locke
   }
 }
 
+TEST_CASE("places that are bad from the start stay as they are and do not end the work") {
+  const Mesh mesh = sheet_with_a_needle();
+  Mesh without = mesh;
+  without.positions[40 * 81 + 40].z -= 3;
+  BoundedSimplifier strict(without, {}, vertices_beyond(mesh, 0.05));
+  reduce_to_bound(strict, 2);
+  CHECK(strict.triangles() == mesh.triangles.size());
+  BoundedSimplifier simplifier(without, {}, vertices_beyond(mesh, 0.05));
+  REQUIRE(simplifier.accept_strays());
+  reduce_to_bound(simplifier, 2);
+  CHECK(simplifier.triangles() < mesh.triangles.size() / 4);
+  CHECK(DistanceMeter(simplifier.mesh(), 1).beyond(mesh.positions, 0.05).size() == 1);
+}
+
 TEST_CASE("too many bad places: nothing is done") {
   const Mesh mesh = test::icosphere(4);
   BoundedSimplifier simplifier(mesh, {}, [](const Mesh&) { return std::nullopt; });
