@@ -25,6 +25,25 @@ constexpr double k_cell = 2;
 
 }  // namespace
 
+std::vector<Vec3> middles_of_longest_sides(const Mesh& mesh) {
+  std::vector<Vec3> middles;
+  middles.reserve(mesh.triangles.size());
+  for (const Triangle& t : mesh.triangles) {
+    std::size_t longest = 0;
+    double most = -1;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const double squared = squared_length(mesh.positions[t[(k + 1) % 3]] - mesh.positions[t[k]]);
+      if (squared > most) {
+        most = squared;
+        longest = k;
+      }
+    }
+    middles.push_back(mesh.positions[t[longest]] * 0.5 +
+                      mesh.positions[t[(longest + 1) % 3]] * 0.5);
+  }
+  return middles;
+}
+
 class PointMeter::Impl {
  public:
   Impl(std::span<const Vec3> points, const PointMeterHints& hints)

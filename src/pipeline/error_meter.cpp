@@ -107,6 +107,9 @@ ErrorMeter::ResultPoints ErrorMeter::points_of(const Mesh& result) const {
   const std::vector<Vec3> vertices =
       thinned(result.positions, step_for(result.positions.size(), points_.vertices));
   all.points.insert(all.points.end(), vertices.begin(), vertices.end());
+  const std::vector<Vec3> middles = thinned(middles_of_longest_sides(result),
+                                            step_for(result.triangles.size(), points_.vertices));
+  all.points.insert(all.points.end(), middles.begin(), middles.end());
   return all;
 }
 

@@ -18,8 +18,8 @@ namespace meshfarm {
 
 /// How many points are looked at for the maximum: all that the sum of squares needs and more.
 struct ErrorPoints {
-  std::uint64_t by_area = 50'000;          // of the result
-  std::uint64_t vertices = 30'000;         // of the result, at most
+  std::uint64_t by_area = 40'000;          // of the result
+  std::uint64_t vertices = 20'000;         // of the result, at most, and as many middles of sides
   std::uint64_t input_vertices = 100'000;  // at most
 };
 

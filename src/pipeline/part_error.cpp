@@ -49,6 +49,7 @@ std::optional<std::vector<Vec3>> PartError::strays(const Mesh& simplified, doubl
   std::vector<Vec3> points =
       sample_surface(simplified, {.samples = surface_.size(), .threads = 1}).points;
   append(points, used_vertices(simplified));
+  append(points, middles_of_longest_sides(simplified));
   PointMeter to_part(points, {spacing_, std::min(bound, 2 * spacing_), surface_, bound});
   while (to_part.begin_pass()) to_part.show(part_.positions, part_.triangles);
   const std::vector<double> distances = to_part.distances();
