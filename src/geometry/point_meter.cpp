@@ -25,21 +25,21 @@ constexpr double k_cell = 2;
 
 }  // namespace
 
-std::vector<Vec3> middles_of_longest_sides(const Mesh& mesh) {
+std::vector<Vec3> middles_of_longest_sides(std::span<const Vec3> positions,
+                                           std::span<const Triangle> triangles) {
   std::vector<Vec3> middles;
-  middles.reserve(mesh.triangles.size());
-  for (const Triangle& t : mesh.triangles) {
+  middles.reserve(triangles.size());
+  for (const Triangle& t : triangles) {
     std::size_t longest = 0;
     double most = -1;
     for (std::size_t k = 0; k < 3; ++k) {
-      const double squared = squared_length(mesh.positions[t[(k + 1) % 3]] - mesh.positions[t[k]]);
+      const double squared = squared_length(positions[t[(k + 1) % 3]] - positions[t[k]]);
       if (squared > most) {
         most = squared;
         longest = k;
       }
     }
-    middles.push_back(mesh.positions[t[longest]] * 0.5 +
-                      mesh.positions[t[(longest + 1) % 3]] * 0.5);
+    middles.push_back(positions[t[longest]] * 0.5 + positions[t[(longest + 1) % 3]] * 0.5);
   }
   return middles;
 }

@@ -107,8 +107,9 @@ ErrorMeter::ResultPoints ErrorMeter::points_of(const Mesh& result) const {
   const std::vector<Vec3> vertices =
       thinned(result.positions, step_for(result.positions.size(), points_.vertices));
   all.points.insert(all.points.end(), vertices.begin(), vertices.end());
-  const std::vector<Vec3> middles = thinned(middles_of_longest_sides(result),
-                                            step_for(result.triangles.size(), points_.vertices));
+  const std::vector<Vec3> middles =
+      thinned(middles_of_longest_sides(result.positions, result.triangles),
+              step_for(result.triangles.size(), points_.vertices));
   all.points.insert(all.points.end(), middles.begin(), middles.end());
   return all;
 }
@@ -137,7 +138,11 @@ void ErrorMeter::show_input(PointMeter& to_input,
     input_.show([&](const Box& box) { return to_input.wants(box); },
                 [&](const SurfacePiece& piece) {
                   to_input.show(piece.positions, piece.triangles);
-                  if (is_first) vertices(thinned(piece.fresh, step));
+                  if (!is_first) return;
+                  vertices(thinned(piece.fresh, step));
+                  if (step == 1) {
+                    vertices(middles_of_longest_sides(piece.positions, piece.triangles));
+                  }
                 });
   }
 }

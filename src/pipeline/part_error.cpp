@@ -34,6 +34,7 @@ std::vector<Vec3> used_vertices(const Mesh& mesh) {
 
 PartError::PartError(Mesh part, const SurfaceSamples& samples)
     : part_(std::move(part)), vertices_(used_vertices(part_)), surface_(samples.points) {
+  append(vertices_, middles_of_longest_sides(part_.positions, part_.triangles));
   const auto triangles = static_cast<double>(std::max<std::size_t>(1, part_.triangles.size()));
   spacing_ = std::sqrt(2 * samples.area / triangles);
 }
@@ -49,7 +50,7 @@ std::optional<std::vector<Vec3>> PartError::strays(const Mesh& simplified, doubl
   std::vector<Vec3> points =
       sample_surface(simplified, {.samples = surface_.size(), .threads = 1}).points;
   append(points, used_vertices(simplified));
-  append(points, middles_of_longest_sides(simplified));
+  append(points, middles_of_longest_sides(simplified.positions, simplified.triangles));
   PointMeter to_part(points, {spacing_, std::min(bound, 2 * spacing_), surface_, bound});
   while (to_part.begin_pass()) to_part.show(part_.positions, part_.triangles);
   const std::vector<double> distances = to_part.distances();

@@ -23,7 +23,7 @@ class PartError {
 
  private:
   Mesh part_;
-  std::vector<Vec3> vertices_;
+  std::vector<Vec3> vertices_;  // and middles of sides
   std::vector<Vec3> surface_;
   double spacing_ = 0;
 };

@@ -23,7 +23,8 @@ struct PointMeterHints {
 
 /// The middle of each triangle's longest side: what is far off a surface is so at its vertices or
 /// there.
-std::vector<Vec3> middles_of_longest_sides(const Mesh& mesh);
+std::vector<Vec3> middles_of_longest_sides(std::span<const Vec3> positions,
+                                           std::span<const Triangle> triangles);
 
 /// Measures from points to a surface that is too large to be held: it is shown piece by piece, and
 /// all of it once a pass. The first pass looks for what is near, the second, if any, has no limit
