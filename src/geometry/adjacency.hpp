@@ -28,7 +28,9 @@ class Adjacency {
     const Row& row = rows_[vertex];
     return {corners_.data() + row.begin, corners_.data() + row.end};
   }
-  std::uint32_t count(std::uint32_t vertex) const { return rows_[vertex].end - rows_[vertex].begin; }
+  std::uint32_t count(std::uint32_t vertex) const {
+    return rows_[vertex].end - rows_[vertex].begin;
+  }
 
   // Changes to single vertices; the caller keeps the rows of a triangle's three vertices in step.
 

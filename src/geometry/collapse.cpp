@@ -182,12 +182,13 @@ Collapse CollapseJudge::judge(std::uint32_t a, std::uint32_t b, const CollapseLi
     const Collapse best = at_position(point, shared, limits.max_cost, Turn::wide);
     if (best.triangles > 0 || !alike) return best;
   }
-  // Where the best point is far off or would spoil a triangle, one of the ends may do: without them flat faces
-  // with sharp edges are dead ends. To let them turn triangles as far costs 6 % of the error on
-  // thin bridges.
+  // Where the best point is far off or would spoil a triangle, one of the ends may do: without them
+  // flat faces with sharp edges are dead ends. To let them turn triangles as far costs 6 % of the
+  // error on thin bridges.
   const bool a_first = quadric_.cost(half * -1.0) <= quadric_.cost(half);
   constexpr Turn turn = Turn::narrow;
-  const Collapse end = at_position(state_.positions[a_first ? a : b], shared, limits.max_cost, turn);
+  const Collapse end =
+      at_position(state_.positions[a_first ? a : b], shared, limits.max_cost, turn);
   if (end.triangles > 0) return end;
   return at_position(state_.positions[a_first ? b : a], shared, limits.max_cost, turn);
 }

@@ -43,7 +43,6 @@ void GeneralJudge::list_end(std::uint32_t vertex, End& end) {
   const std::uint8_t flags = state_.flags[vertex];
   end.rank = line_rank(flags);
   if (!end.singular.empty()) end.rank = std::max(end.rank, end.singular.size() == 2 ? 1 : 2);
-  if ((flags & k_fixed) != 0) end.rank = 3;
 }
 
 void GeneralJudge::list_triangles() {
@@ -96,17 +95,9 @@ bool GeneralJudge::changes_topology() {
   const bool along = contains(a_.singular, b_.vertex);
   const bool both = !a_.singular.empty() && !b_.singular.empty();
   if (both && !along) return true;
-  const bool loop = both && std::any_of(a_.singular.begin(), a_.singular.end(), [&](auto v) {
-                      return contains(b_.singular, v);
-                    });
+  const bool loop = both && std::any_of(a_.singular.begin(), a_.singular.end(),
+                                        [&](auto v) { return contains(b_.singular, v); });
   return extra || loop || !vanishing_.empty() || staying_ == 0;
-}
-
-/// Not all triangles of a fixed vertex may be here: two fixed ones may be neighbours elsewhere.
-bool GeneralJudge::may_merge_into(const End& fixed, const End& other) const {
-  return std::all_of(other.neighbours.begin(), other.neighbours.end(), [&](std::uint32_t v) {
-    return v == fixed.vertex || (state_.flags[v] & k_fixed) == 0 || contains(changed_, v);
-  });
 }
 
 void GeneralJudge::add_star(Vec3 half) {
@@ -118,14 +109,13 @@ void GeneralJudge::add_star(Vec3 half) {
     star_.add({positions[c0.next], positions[c0.prev], positions[c1.next], positions[c1.prev]},
               sides);
   };
-  const auto kept_at = [&](std::size_t i) {
-    return i < kept_.size() ? kept_[i].corner : none;
-  };
+  const auto kept_at = [&](std::size_t i) { return i < kept_.size() ? kept_[i].corner : none; };
   const auto side = [&](std::size_t i) { return i < kept_.size() && kept_[i].at_b ? 1.0 : -1.0; };
   // Those that stay first: only they are looked at again for each position.
   for (std::size_t i = 0; i < staying_; i += 2) {
     const bool pair = i + 1 < staying_;
-    add(kept_at(i), pair ? kept_at(i + 1) : none, CollapseStar::Pair{side(i), pair ? side(i + 1) : -1.0});
+    add(kept_at(i), pair ? kept_at(i + 1) : none,
+        CollapseStar::Pair{side(i), pair ? side(i + 1) : -1.0});
   }
   for (std::size_t i = staying_; i < kept_.size(); i += 2) {
     add(kept_at(i), kept_at(i + 1), CollapseStar::Pair{side(i), side(i + 1)});
@@ -144,7 +134,8 @@ void GeneralJudge::add_lines(const End& end, const End& other, Vec3 at) {
   Quadric planes;
   const Vec3 position = state_.positions[end.vertex];
   for (const Corner& c : state_.adjacency->at(end.vertex)) {
-    const Vec3 normal = cross(state_.positions[c.next] - position, state_.positions[c.prev] - position);
+    const Vec3 normal =
+        cross(state_.positions[c.next] - position, state_.positions[c.prev] - position);
     for (const std::uint32_t v : {c.next, c.prev}) {
       const bool counted = v == other.vertex && end.vertex > other.vertex;
       if (counted || !contains(end.singular, v)) continue;
@@ -162,11 +153,11 @@ Collapse GeneralJudge::at_position(Vec3 position, Turn turn) const {
   return {removed_, position, std::max(quadric_.cost(x), lost_cost), false};
 }
 
-GeneralCollapse GeneralJudge::judge(std::uint32_t a, std::uint32_t b, std::uint64_t most_triangles) {
+GeneralCollapse GeneralJudge::judge(std::uint32_t a, std::uint32_t b,
+                                    std::uint64_t most_triangles) {
   if (state_.adjacency->count(a) + state_.adjacency->count(b) > k_max_star) return {};
   list_end(a, a_);
   list_end(b, b_);
-  if (a_.rank == 3 && b_.rank == 3) return {};
   list_triangles();
   if (shared_.empty()) return {};
   find_vanishing();
@@ -174,9 +165,6 @@ GeneralCollapse GeneralJudge::judge(std::uint32_t a, std::uint32_t b, std::uint6
   GeneralCollapse result;
   result.changes_topology = changes_topology();
   changes_ = result.changes_topology;
-  if (result.changes_topology && (a_.rank == 3 || b_.rank == 3)) return {};
-  if (a_.rank == 3 && !may_merge_into(a_, b_)) return {};
-  if (b_.rank == 3 && !may_merge_into(b_, a_)) return {};
   const Vec3 half = (state_.positions[b] - state_.positions[a]) * 0.5;
   add_star(half);
   add_lines(a_, b_, half * -1.0);
@@ -192,7 +180,8 @@ GeneralCollapse GeneralJudge::judge(std::uint32_t a, std::uint32_t b, std::uint6
   }
   const bool a_first = quadric_.cost(half * -1.0) <= quadric_.cost(half);
   collapse = at_position(state_.positions[a_first ? a : b], Turn::narrow);
-  if (collapse.triangles == 0) collapse = at_position(state_.positions[a_first ? b : a], Turn::narrow);
+  if (collapse.triangles == 0)
+    collapse = at_position(state_.positions[a_first ? b : a], Turn::narrow);
   return result;
 }
 

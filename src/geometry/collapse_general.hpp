@@ -27,6 +27,7 @@ class GeneralJudge {
   explicit GeneralJudge(const CollapseState& state) : state_(state) {}
   void move_to(const CollapseState& state) { state_ = state; }
 
+  /// Neither end may be fixed.
   GeneralCollapse judge(std::uint32_t a, std::uint32_t b, std::uint64_t most_triangles);
 
   // Of the last that was judged.
@@ -53,7 +54,6 @@ class GeneralJudge {
   void list_triangles();
   void find_vanishing();
   bool changes_topology();
-  bool may_merge_into(const End& fixed, const End& other) const;
   void add_star(Vec3 half);
   void add_lines(const End& end, const End& other, Vec3 at);
   Collapse at_position(Vec3 position, Turn turn) const;

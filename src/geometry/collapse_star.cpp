@@ -47,7 +47,8 @@ bool CollapseStar::is_folded(std::uint32_t first, std::uint32_t kept, Vec3 x) co
   const Vec3Pair to = from(x);
   Vec3Pair sum{};
   for (std::uint32_t i = 0; i < kept; i += 2) {
-    const Vec3Pair normal = cross(minus(pairs_[first + i / 2].p, to), minus(pairs_[first + i / 2].q, to));
+    const Vec3Pair normal =
+        cross(minus(pairs_[first + i / 2].p, to), minus(pairs_[first + i / 2].q, to));
     sum = {sum.x + normal.x, sum.y + normal.y, sum.z + normal.z};
   }
   const Vec3 all{sum.x[0] + sum.x[1], sum.y[0] + sum.y[1], sum.z[0] + sum.z[1]};
@@ -64,7 +65,7 @@ bool CollapseStar::is_folded(std::uint32_t first, std::uint32_t kept, Vec3 x) co
 }
 
 std::optional<double> CollapseStar::lost_area_from(std::uint32_t first, std::uint32_t kept, Vec3 x,
-                                                    Turn turn) const {
+                                                   Turn turn) const {
   Pair twice_lost = sums_.twice_area;
   Mask steep{};
   const Vec3Pair to = from(x);

@@ -75,8 +75,8 @@ std::uint32_t FanSplitter::split(std::span<const Corner> corners) {
   std::uint32_t fans = 0;
   for (std::uint32_t i = 0; i < size; ++i) fan_[i] = root(i) == i ? fans++ : fan_[root(i)];
   kind_ = complex + turned > 0 || fans > 1 || borders > 2 ? Kind::complex
-          : borders == 0                         ? Kind::closed
-                                                 : Kind::open;
+          : borders == 0                                  ? Kind::closed
+                                                          : Kind::open;
   return fans;
 }
 

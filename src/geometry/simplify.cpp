@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <memory>
+#include <numeric>
 #include <optional>
 #include <utility>
 
@@ -38,8 +38,8 @@ constexpr double k_rough_margin = 8;
 // Less than this part of the triangles removed is not worth a rough pass.
 constexpr double k_least_rough = 0.1;
 
-// A pass that removes less than this part of the triangles finds that what it ranks is refused. What
-// is cheap and refused must not make room for what is dear: the rest is done in order.
+// A pass that removes less than this part of the triangles finds that what it ranks is refused.
+// What is cheap and refused must not make room for what is dear: the rest is done in order.
 constexpr double k_least_ranked = 0.05;
 
 // From so many times the triangles of the last goal on edges collapse strictly in order; of a large
@@ -51,6 +51,8 @@ constexpr std::uint64_t k_large = 50'000;
 // Topology is kept if the sum of the costs, which goes with the square of the error, or the last of
 // them is then no more than so many times what it would be without. A few dear ones are no reason.
 constexpr double k_fair = 1.44;
+// Once it is found fair, it is thought of again when so much of the triangles is left.
+constexpr double k_decided = 0.8;
 // With fewer refusals a collapse it is not even tried.
 constexpr double k_costly = 0.25;
 
@@ -162,8 +164,8 @@ class Simplifier::Impl {
     if (!end_game_) end_game_ = begin_end_game(topology_);
     const double paid_before = end_game_->queue.paid();
     bool goes_on = end_game_->queue.reduce(goal, progress);
-    const bool undecided = topology_ == TopologyMode::automatic && !simplifies_topology();
-    if (undecided && goes_on && is_costly_to_keep()) {
+    if (goes_on && topology_ == TopologyMode::automatic && !simplifies_topology() &&
+        must_decide(goal) && is_costly_to_keep()) {
       auto other = begin_end_game(TopologyMode::simplify);
       goes_on = other->queue.reduce(goal, progress);
       if (is_unfair(end_game_->queue.paid() - paid_before, other->queue, goal)) {
@@ -177,6 +179,17 @@ class Simplifier::Impl {
   std::unique_ptr<EndGame> begin_end_game(TopologyMode topology) {
     return std::make_unique<EndGame>(mesh_, flags_,
                                      EndGameOptions{&creases_, type_, seam_only_, topology});
+  }
+
+  /// Not again for a few collapses more: one that is dear would decide for all.
+  bool must_decide(const SimplifyGoal& goal) {
+    const std::uint64_t left = end_game_->queue.triangles();
+    if (left <= goal.triangles + 1 &&
+        static_cast<double>(left) > k_decided * static_cast<double>(decided_at_)) {
+      return false;
+    }
+    decided_at_ = left;
+    return true;
   }
 
   /// Whether so much is refused to keep the topology that it is worth a try without.
@@ -409,6 +422,7 @@ class Simplifier::Impl {
   double max_cost_ = 0;
   double pass_cost_ = 0;
   double exhausted_cost_ = -1;
+  std::uint64_t decided_at_ = UINT64_MAX;  // triangles left when the topology was last thought of
 
   std::unique_ptr<EndGame> end_game_;
   Adjacency adjacency_;

@@ -10,8 +10,8 @@ namespace {
 
 // Of trace x squared half length: so that flat regions do not collapse into fans in order of their
 // indices. 1e-3 costs 15 % of the error at 10 % of the triangles; 4e-6 lets what is nearly flat go
-// before what is flat, with three times the error of a surface that is half flat. Less drowns in the
-// rounding of floats.
+// before what is flat, with three times the error of a surface that is half flat. Less drowns in
+// the rounding of floats.
 constexpr double k_length_share = 2e-7;
 
 // Of the trace, as in EdgeQuadric::best.

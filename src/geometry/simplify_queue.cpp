@@ -18,7 +18,7 @@ constexpr std::uint64_t k_told_every = 4096;  // collapses
 constexpr double k_ranked_share = 0.35;
 constexpr CostKey k_least_step = 4U << 20;  // a factor of 16
 
-// Refusals to keep the topology, a collapse, from which on all that is left is dear. A surface of
+// From so many refusals to keep the topology on, a collapse, all that is left is dear. A surface of
 // many handles whose result was still good had 1.6.
 constexpr std::uint64_t k_hopeless = 4;
 
@@ -34,7 +34,6 @@ CollapseQueue::CollapseQueue(const QueuedMesh& mesh, EdgeRanking& ranking)
 void CollapseQueue::start(std::span<const Triangle> triangles) {
   const auto vertices = static_cast<std::uint32_t>(mesh_.positions.size());
   triangles_ = triangles.size();
-  first_triangles_ = triangles_;
   target_.resize(vertices);
   std::iota(target_.begin(), target_.end(), 0U);
   refused_.assign(vertices, 0);
@@ -55,6 +54,8 @@ void CollapseQueue::rank(double share, CostKey most) {
   heap_.clear();
   first_.clear();
   next_first_ = 0;
+  kept_before_ = kept_topology_;
+  collapses_before_ = collapses_;
   const auto vertices = static_cast<std::uint32_t>(target_.size());
   for (const RankedEdge& e : ranking_.cheapest(0, vertices, {limit_, HUGE_VAL})) {
     first_.emplace_back(e, stamp_of(e.a, e.b));
@@ -96,12 +97,12 @@ void CollapseQueue::drop_next() {
 }
 
 CollapseState CollapseQueue::state() {
-  return {mesh_.positions, mesh_.flags, target_, &mesh_.adjacency, mesh_.type,
-          &mesh_.creases.test()};
+  return {mesh_.positions,  mesh_.flags, target_,
+          &mesh_.adjacency, mesh_.type,  &mesh_.creases.test()};
 }
 
 Collapse CollapseQueue::judge(std::uint32_t a, std::uint32_t b, std::uint64_t most_triangles) {
-  by_general_ = ((mesh_.flags[a] | mesh_.flags[b]) & k_still) != 0;
+  by_general_ = ((mesh_.flags[a] | mesh_.flags[b]) & k_complex) != 0;
   if (!by_general_) {
     const Collapse collapse = judge_.judge(a, b, {most_triangles, HUGE_VAL});
     if (collapse.triangles > 0 || !collapse.by_topology) return collapse;
@@ -165,7 +166,9 @@ CollapseQueue::Stop CollapseQueue::run(const SimplifyGoal& goal, const Progress&
 }
 
 bool CollapseQueue::is_hopeless() const {
-  return mesh_.stops_when_held && kept_topology_ > k_hopeless * collapses_ + first_triangles_;
+  const std::uint64_t refused = kept_topology_ - kept_before_;
+  const std::uint64_t done = collapses_ - collapses_before_;
+  return mesh_.stops_when_held && refused > k_hopeless * done + triangles_;
 }
 
 /// Whether it costs more than it was ranked by, and more than the next.
@@ -319,7 +322,8 @@ void CollapseQueue::copy_to(Mesh& mesh, std::vector<std::uint8_t>& flags,
   mesh.triangles.reserve(triangles_);
   for (std::uint32_t v = 0; v < target_.size(); ++v) {
     for (const Corner& c : mesh_.adjacency.at(v)) {
-      if (c.next > v && c.prev > v) mesh.triangles.push_back({number[v], number[c.next], number[c.prev]});
+      if (c.next > v && c.prev > v)
+        mesh.triangles.push_back({number[v], number[c.next], number[c.prev]});
     }
   }
 }

@@ -44,7 +44,7 @@ struct QueuedMesh {
   const CreaseLines& creases;
   PositionType type = PositionType::float64;
   bool seam_only = false;
-  bool any_topology = false;    // collapses may change it
+  bool any_topology = false;     // collapses may change it
   bool stops_when_held = false;  // rather than go on where most of what is cheap is refused
 };
 
@@ -114,8 +114,8 @@ class CollapseQueue {
   // date if the sum of its ends' has changed.
   std::vector<std::uint32_t> looks_;
   std::vector<std::uint8_t> stale_;  // its quadric is that of a star that has changed
-  CostKey limit_ = 0;              // dearer edges wait for the next ranking
-  std::vector<QueuedEdge> first_;  // as ranked at the start, cheapest first
+  CostKey limit_ = 0;                // dearer edges wait for the next ranking
+  std::vector<QueuedEdge> first_;    // as ranked at the start, cheapest first
   std::size_t next_first_ = 0;
   std::vector<QueuedEdge> heap_;  // those that came later
   CollapseJudge judge_;
@@ -126,7 +126,9 @@ class CollapseQueue {
   std::vector<std::uint32_t> ring_;
   std::vector<Corner> joined_;
   std::uint64_t triangles_ = 0;
-  std::uint64_t first_triangles_ = 0;
+  // As they were at the last ranking.
+  std::uint64_t kept_before_ = 0;
+  std::uint64_t collapses_before_ = 0;
   double max_cost_ = 0;
   double last_cost_ = 0;
   double paid_ = 0;

@@ -117,9 +117,8 @@ void EdgeRanking::list_edges_at(std::uint32_t vertex, std::uint32_t least) {
   const FloatQuadric* const quadrics = quadrics_.data();
   const std::uint8_t flags = all_flags[vertex];
   const std::span<const Corner> fan = input_.adjacency->at(vertex);
-  const std::uint8_t still = input_.general ? k_fixed & flags : k_still;
-  if ((flags & still & k_still) != 0 && !input_.general) return;
-  if (fan.size() > k_max_star) return;
+  const std::uint8_t still = input_.general ? std::uint8_t{k_fixed} : k_still;
+  if ((flags & still) != 0 || fan.size() > k_max_star) return;
   // Written always, counted if wanted: which neighbours are the greater ones no processor guesses.
   const std::size_t most = listed_count_ + 2 * fan.size() + 2;
   if (listed_.size() < most) listed_.resize(2 * most);
@@ -136,7 +135,8 @@ void EdgeRanking::list_edges_at(std::uint32_t vertex, std::uint32_t least) {
   };
   const std::uint8_t beside = input_.any_topology ? flags & k_crease : barred_beside(flags);
   for (const Corner& c : fan) consider(c.next, beside);
-  if (input_.general && (input_.any_topology || (flags & k_still) != 0)) {
+  if (input_.general && (input_.any_topology || (flags & k_complex) != 0)) {
+    // The last neighbours of fans that are not closed.
     for (const Corner& c : fan) {
       const bool begins = std::any_of(fan.begin(), fan.end(),
                                       [&](const Corner& other) { return other.next == c.prev; });

@@ -43,8 +43,7 @@ struct RankingInput {
   const Adjacency* adjacency = nullptr;
   const CreaseTest* creases = nullptr;
   bool seam_only = false;
-  /// Edges are judged by what can judge any: those at complex vertices are listed, too, and those
-  /// of which one end is fixed.
+  /// Edges are judged by what can judge any: those at complex vertices are listed, too.
   bool general = false;
   bool any_topology = false;  // and those that would change the topology
 };

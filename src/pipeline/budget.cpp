@@ -403,7 +403,7 @@ std::uint64_t memory_wanted(const Manifest& manifest, const RunOptions& options)
 }
 
 ChosenRungs choose_rungs(const Manifest& manifest, const RunOptions& options,
-                                     std::span<const AcceptedJob> accepted) {
+                         std::span<const AcceptedJob> accepted) {
   const SortPlan sorted(manifest, accepted);
   return Rounds(sorted.manifest(), options, sorted.rest()).chosen();
 }
