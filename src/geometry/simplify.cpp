@@ -41,6 +41,9 @@ constexpr double k_least_rough = 0.1;
 // A pass that removes less than this part of the triangles finds that what it ranks is refused.
 // What is cheap and refused must not make room for what is dear: the rest is done in order.
 constexpr double k_least_ranked = 0.05;
+// But where passes have come to the end of what a cost allows, and have left no more than this of
+// the triangles, few are refused.
+constexpr double k_healthy = 0.8;
 
 // From so many times the triangles of the last goal on edges collapse strictly in order; of a large
 // goal from so many times on, as long as passes have no dead ends.
@@ -123,9 +126,17 @@ class Simplifier::Impl {
   }
 
   void reduce(const SimplifyGoal& goal, const Progress& progress) {
-    if (end_game_ || (reduce_roughly(goal, progress) && reduce_by_rank(goal, progress))) {
-      reduce_in_order(goal, progress);
+    const std::uint64_t before = mesh_.triangles.size();
+    PassEnd end = PassEnd::near;
+    if (!end_game_) {
+      end = reduce_roughly(goal, progress) ? reduce_by_rank(goal, progress) : PassEnd::told;
     }
+    const auto left = static_cast<double>(mesh_.triangles.size());
+    const bool done =
+        end == PassEnd::told || (end == PassEnd::exhausted && topology_ != TopologyMode::simplify &&
+                                 left < k_healthy * static_cast<double>(before));
+    if (!done) reduce_in_order(goal, progress);
+    if (done && end == PassEnd::exhausted) exhausted_cost_ = goal.max_cost;
     publish_seam();
   }
 
@@ -215,19 +226,22 @@ class Simplifier::Impl {
     if (goes_on && mesh_.triangles.size() > goal.triangles + 1) exhausted_cost_ = goal.max_cost;
   }
 
-  /// As long as there is more than twice what the goal leaves, and cheap edges are not refused.
-  /// False if progress says stop.
-  bool reduce_by_rank(const SimplifyGoal& goal, const Progress& progress) {
+  enum class PassEnd : std::uint8_t { near, exhausted, dead_end, told };
+
+  /// As long as the goal is not near, and cheap edges are not refused.
+  PassEnd reduce_by_rank(const SimplifyGoal& goal, const Progress& progress) {
     while (may_go_on(goal) && !is_near(goal)) {
       begin_pass();
       const Pass pass = plan_pass(goal, k_pass_share);
       const std::uint64_t before = mesh_.triangles.size();
       const std::uint64_t removed = collapse_edges(goal, pass);
       compact(removed);
-      if (progress && !progress(mesh_.triangles.size())) return false;
-      if (static_cast<double>(removed) < k_least_ranked * static_cast<double>(before)) break;
+      if (progress && !progress(mesh_.triangles.size())) return PassEnd::told;
+      if (static_cast<double>(removed) < k_least_ranked * static_cast<double>(before)) {
+        return goal.max_cost <= cost_of(pass.limit) ? PassEnd::exhausted : PassEnd::dead_end;
+      }
     }
-    return true;
+    return PassEnd::near;
   }
 
   bool is_near(const SimplifyGoal& goal) const {

@@ -18,9 +18,9 @@ namespace meshfarm {
 
 /// How many points are looked at for the maximum: all that the sum of squares needs and more.
 struct ErrorPoints {
-  std::uint64_t by_area = 40'000;          // of the result
-  std::uint64_t vertices = 20'000;         // of the result, at most, and as many middles of sides
-  std::uint64_t input_vertices = 100'000;  // at most
+  std::uint64_t by_area = 20'000;         // of the result
+  std::uint64_t vertices = 10'000;        // of the result, at most, and as many middles of sides
+  std::uint64_t input_vertices = 30'000;  // at most
 };
 
 /// For a bound on the error, which is one on the maximum.
