@@ -39,6 +39,7 @@ struct Collapse {
   Vec3 position;
   double cost = 0;
   bool by_topology = false;  // that is why it may not be
+  double certain = -1;       // the part of the cost that is no guess; below 0: all of it
 };
 
 /// Judges single collapses. Both ends must not have taken part in a collapse of this pass; their

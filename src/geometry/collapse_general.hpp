@@ -56,6 +56,7 @@ class GeneralJudge {
   bool changes_topology();
   void add_star(Vec3 half);
   void add_lines(const End& end, const End& other, Vec3 at);
+  double loss_factor() const;
   Collapse at_position(Vec3 position, Turn turn) const;
 
   CollapseState state_;

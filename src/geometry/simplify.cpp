@@ -214,7 +214,7 @@ class Simplifier::Impl {
   bool is_unfair(double paid, const CollapseQueue& other, const SimplifyGoal& goal) const {
     const CollapseQueue& kept = end_game_->queue;
     if (kept.triangles() > goal.triangles + 1) return other.triangles() < kept.triangles();
-    return paid > k_fair * other.paid() && kept.last_cost() > k_fair * other.last_cost();
+    return paid > k_fair * other.paid() && kept.dearest() > k_fair * other.dearest();
   }
 
   void publish(const SimplifyGoal& goal, bool goes_on) {

@@ -214,7 +214,9 @@ void CollapseQueue::merge(std::uint32_t a, std::uint32_t b, const Collapse& coll
   triangles_ -= collapse.triangles;
   max_cost_ = std::max(max_cost_, collapse.cost);
   last_cost_ = collapse.cost;
-  paid_ += collapse.cost;
+  const double certain = collapse.certain < 0 ? collapse.cost : collapse.certain;
+  paid_ += certain;
+  dearest_ = std::max(dearest_, certain);
   ++collapses_;
   if (by_general_) tidy(a);
   list_ring(a);

@@ -75,8 +75,9 @@ class CollapseQueue {
   double last_cost() const { return last_cost_; }
   /// Whether it stopped because so many collapses are refused to keep the topology.
   bool is_held() const { return held_; }
-  /// The sum of the costs of all collapses.
+  /// The sum of the costs of all collapses, and the greatest, both without guesses.
   double paid() const { return paid_; }
+  double dearest() const { return dearest_; }
   std::uint64_t collapses() const { return collapses_; }
   /// Collapses that were refused to keep the topology.
   std::uint64_t kept_topology() const { return kept_topology_; }
@@ -132,6 +133,7 @@ class CollapseQueue {
   double max_cost_ = 0;
   double last_cost_ = 0;
   double paid_ = 0;
+  double dearest_ = 0;
   std::uint64_t collapses_ = 0;
   std::uint64_t kept_topology_ = 0;
   bool held_ = false;
