@@ -14,9 +14,9 @@ namespace {
 /// nobody knows how far. With 10 or 100 thin walls and bridges of scans lose 5 % more, with 1 up to
 /// twice the error.
 constexpr double k_loss_of_change = 30;
-/// A piece that goes is farther still from what is left: some 50 times its size. With 30 alone the
-/// error of scans in many pieces doubles.
-constexpr double k_loss_of_piece = 30'000;
+/// A piece that goes is farther still from what is left: some ten times its size. With 30 alone the
+/// error of scans in many pieces doubles; with 30,000 specks take the last thousand triangles.
+constexpr double k_loss_of_piece = 1000;
 
 bool contains(const std::vector<std::uint32_t>& sorted, std::uint32_t vertex) {
   return std::binary_search(sorted.begin(), sorted.end(), vertex);

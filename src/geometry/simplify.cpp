@@ -43,7 +43,7 @@ constexpr double k_least_rough = 0.1;
 constexpr double k_least_ranked = 0.05;
 // But where passes have come to the end of what a cost allows, and have left no more than this of
 // the triangles, few are refused.
-constexpr double k_healthy = 0.8;
+constexpr double k_healthy = 0.66;
 
 // From so many times the triangles of the last goal on edges collapse strictly in order; of a large
 // goal from so many times on, as long as passes have no dead ends.
