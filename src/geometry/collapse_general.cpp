@@ -103,6 +103,41 @@ bool GeneralJudge::changes_topology() {
   return extra || loop || !vanishing_.empty() || staying_ == 0;
 }
 
+/// Whether the edge from an end to a neighbour has more than one triangle on either side.
+bool GeneralJudge::is_crowded(std::uint32_t vertex, const End& end) const {
+  int begin = 0;
+  int all = 0;
+  for (const Corner& c : state_.adjacency->at(end.vertex)) {
+    begin += c.next == vertex ? 1 : 0;
+    all += has(c, vertex) ? 1 : 0;
+  }
+  return begin > 1 || all - begin > 1;
+}
+
+/// Whether two edges that were fine become one that is crowded even after what is pinched has been
+/// cut apart. A result is to be no less manifold than its input.
+bool GeneralJudge::crowds_an_edge() {
+  merged_.clear();
+  for (std::size_t i = 0; i < staying_; ++i) merged_.push_back(kept_[i].corner);
+  bool is_split = false;
+  for (const std::uint32_t v : changed_) {
+    const auto joined =
+        std::count_if(merged_.begin(), merged_.end(), [v](const Corner& c) { return has(c, v); });
+    if (joined < 2 || is_crowded(v, a_) || is_crowded(v, b_)) continue;
+    if (!is_split) splitter_.split(merged_);
+    is_split = true;
+    const std::span<const std::uint32_t> fans = splitter_.fans();
+    for (std::size_t i = 0; i < merged_.size(); ++i) {
+      for (std::size_t k = 0; k < i; ++k) {
+        const bool same_side = (merged_[i].next == v && merged_[k].next == v) ||
+                               (merged_[i].prev == v && merged_[k].prev == v);
+        if (same_side && fans[i] == fans[k]) return true;
+      }
+    }
+  }
+  return false;
+}
+
 void GeneralJudge::add_star(Vec3 half) {
   middle_ = state_.positions[a_.vertex] + half;
   star_.clear(middle_, half);
@@ -176,6 +211,7 @@ GeneralCollapse GeneralJudge::judge(std::uint32_t a, std::uint32_t b,
   GeneralCollapse result;
   result.changes_topology = changes_topology();
   changes_ = result.changes_topology;
+  if (result.changes_topology && crowds_an_edge()) return {};
   const Vec3 half = (state_.positions[b] - state_.positions[a]) * 0.5;
   add_star(half);
   add_lines(a_, b_, half * -1.0);

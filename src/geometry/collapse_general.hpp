@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "geometry/collapse.hpp"
+#include "geometry/fans.hpp"
 
 namespace meshfarm {
 
@@ -54,6 +55,8 @@ class GeneralJudge {
   void list_triangles();
   void find_vanishing();
   bool changes_topology();
+  bool is_crowded(std::uint32_t vertex, const End& end) const;
+  bool crowds_an_edge();
   void add_star(Vec3 half);
   void add_lines(const End& end, const End& other, Vec3 at);
   double loss_factor() const;
@@ -67,6 +70,8 @@ class GeneralJudge {
   std::vector<std::pair<std::uint32_t, std::uint32_t>> vanishing_;
   std::vector<std::uint32_t> changed_;
   std::vector<std::uint32_t> ends_;
+  std::vector<Corner> merged_;
+  FanSplitter splitter_;
   bool changes_ = false;
   std::uint32_t removed_ = 0;
   std::uint32_t staying_ = 0;

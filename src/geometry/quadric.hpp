@@ -90,8 +90,8 @@ struct EdgeQuadric {
   /// Holding the volume (Lindstrom & Turk 1999) at any weight gained nothing.
   Vec3 best() const { return solve(a, 1e-5 * a.trace(), b); }
 
-  /// Planes that are nearly parallel meet far away: a point farther from the middle than the edge is
-  /// long makes spikes of thin walls.
+  /// Planes that are nearly parallel meet far away: a point farther from the middle than the edge
+  /// is long makes spikes of thin walls.
   bool is_near(Vec3 x) const { return meshfarm::squared_length(x) <= squared_length; }
 
   /// The sum of weight x squared distance; differences of rounding count as none.

@@ -176,7 +176,7 @@ class Simplifier::Impl {
     const double paid_before = end_game_->queue.paid();
     bool goes_on = end_game_->queue.reduce(goal, progress);
     if (goes_on && topology_ == TopologyMode::automatic && !simplifies_topology() &&
-        must_decide(goal) && is_costly_to_keep()) {
+        must_decide(goal) && is_costly_to_keep(goal)) {
       auto other = begin_end_game(TopologyMode::simplify);
       goes_on = other->queue.reduce(goal, progress);
       if (is_unfair(end_game_->queue.paid() - paid_before, other->queue, goal)) {
@@ -204,8 +204,9 @@ class Simplifier::Impl {
   }
 
   /// Whether so much is refused to keep the topology that it is worth a try without.
-  bool is_costly_to_keep() const {
+  bool is_costly_to_keep(const SimplifyGoal& goal) const {
     const CollapseQueue& queue = end_game_->queue;
+    if (std::isinf(goal.max_cost) && queue.triangles() > goal.triangles + 1) return true;
     return queue.is_held() || static_cast<double>(queue.kept_topology()) >
                                   k_costly * static_cast<double>(queue.collapses());
   }

@@ -16,6 +16,7 @@ constexpr std::uint64_t k_told_every = 4096;  // collapses
 // So many of the edges are ranked at a time, the cheapest; dearer ones are not kept in order. The
 // order of collapses depends on it only where an edge becomes cheaper that is not looked at.
 constexpr double k_ranked_share = 0.35;
+constexpr CostKey k_greatest = k_any_cost - 1;
 constexpr CostKey k_least_step = 4U << 20;  // a factor of 16
 
 // From so many refusals to keep the topology on, a collapse, all that is left is dear. A surface of
@@ -46,18 +47,19 @@ void CollapseQueue::start(std::span<const Triangle> triangles) {
   general_.move_to(state());
 }
 
-/// The cheapest share of all edges, but those of a limit above the last one at least.
-void CollapseQueue::rank(double share, CostKey most) {
+/// The cheapest share of all edges, but those of a limit above the last one at least. What an edge
+/// ranks by may be more than the goal's cost where the edge itself costs nothing.
+void CollapseQueue::rank(double share) {
   for (std::uint32_t v = 0; v < target_.size(); ++v) refresh(v);
-  const CostKey wanted = share < 1 ? ranking_.estimate_limit(share, HUGE_VAL) : most;
-  limit_ = std::min(most, std::max(wanted, limit_ + k_least_step));
+  const CostKey wanted = share < 1 ? ranking_.estimate_limit(share, HUGE_VAL) : k_greatest;
+  limit_ = std::min(k_greatest, std::max(wanted, limit_ + k_least_step));
   heap_.clear();
   first_.clear();
   next_first_ = 0;
   kept_before_ = kept_topology_;
   collapses_before_ = collapses_;
   const auto vertices = static_cast<std::uint32_t>(target_.size());
-  for (const RankedEdge& e : ranking_.cheapest(0, vertices, {limit_, HUGE_VAL})) {
+  for (const RankedEdge& e : ranking_.cheapest(0, vertices, {limit_, most_cost_})) {
     first_.emplace_back(e, stamp_of(e.a, e.b));
   }
 }
@@ -119,16 +121,16 @@ Collapse CollapseQueue::judge(std::uint32_t a, std::uint32_t b, std::uint64_t mo
 }
 
 bool CollapseQueue::reduce(const SimplifyGoal& goal, const Progress& progress) {
-  const CostKey most = std::min(key_of(goal.max_cost), k_any_cost - 1);
+  most_cost_ = goal.max_cost;
   double share = k_ranked_share;
   limit_ = 0;
   while (triangles_ > goal.triangles) {
     const std::uint64_t before = triangles_;
-    rank(share, most);
+    rank(share);
     const Stop stop = run(goal, progress);
     held_ = held_ || stop == Stop::held;
     if (stop != Stop::nothing_left) return stop != Stop::told;
-    if (limit_ >= most) return true;
+    if (limit_ >= k_greatest) return true;
     // Dead ends: what is ranked is refused again and again.
     if ((before - triangles_) * 50 < before) share = 1;
   }
@@ -155,6 +157,8 @@ CollapseQueue::Stop CollapseQueue::run(const SimplifyGoal& goal, const Progress&
     const Collapse collapse = judge(a, b, excess);
     if (collapse.triangles == 0) {
       refused_[a] = refused_[b] = 1;
+    } else if (collapse.cost > most_cost_) {
+      continue;  // dropped until something beside it changes
     } else if (must_wait(queued, collapse.cost)) {
       push({a, b, key_of(collapse.cost)});
     } else {
@@ -256,7 +260,8 @@ void CollapseQueue::tidy(std::uint32_t merged) {
 void CollapseQueue::tidy_star(std::uint32_t vertex) {
   if ((mesh_.flags[vertex] & k_fixed) != 0 || mesh_.adjacency.count(vertex) == 0) return;
   const std::uint32_t fans = splitter_.split(mesh_.adjacency.at(vertex));
-  if (fans == 1) {
+  // What touches is cut apart only where the topology may change.
+  if (fans == 1 || !mesh_.any_topology) {
     classify(vertex);
     return;
   }
@@ -306,7 +311,7 @@ void CollapseQueue::look_again(std::uint32_t vertex) {
   refused_[vertex] = 0;
   ++looks_[vertex];
   refresh(vertex);
-  ranking_.for_edges_at(vertex, [&](const RankedEdge& edge) { push(edge); });
+  ranking_.for_edges_at(vertex, most_cost_, [&](const RankedEdge& edge) { push(edge); });
 }
 
 void CollapseQueue::copy_to(Mesh& mesh, std::vector<std::uint8_t>& flags,

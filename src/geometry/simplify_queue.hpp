@@ -85,7 +85,7 @@ class CollapseQueue {
  private:
   enum class Stop : std::uint8_t { met, nothing_left, held, told };
 
-  void rank(double share, CostKey most);
+  void rank(double share);
   Stop run(const SimplifyGoal& goal, const Progress& progress);
   bool is_hopeless() const;
   bool must_wait(const QueuedEdge& queued, double cost) const;
@@ -115,6 +115,7 @@ class CollapseQueue {
   // date if the sum of its ends' has changed.
   std::vector<std::uint32_t> looks_;
   std::vector<std::uint8_t> stale_;  // its quadric is that of a star that has changed
+  double most_cost_ = 0;             // the goal's
   CostKey limit_ = 0;                // dearer edges wait for the next ranking
   std::vector<QueuedEdge> first_;    // as ranked at the start, cheapest first
   std::size_t next_first_ = 0;

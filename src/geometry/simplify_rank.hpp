@@ -77,11 +77,13 @@ class EdgeRanking {
   void move_to(std::span<const Vec3> positions, std::span<const std::uint8_t> flags);
   /// Sums the quadric of a vertex whose star has changed.
   void refresh(std::uint32_t vertex);
-  /// Calls take(edge) for all edges at the vertex that may collapse, in the order of its corners.
+  /// Calls take(edge) for all edges at the vertex that may collapse and may cost no more than that,
+  /// in the order of its corners.
   template <typename Take>
-  void for_edges_at(std::uint32_t vertex, const Take& take) {
+  void for_edges_at(std::uint32_t vertex, double max_cost, const Take& take) {
     list_edges_at(vertex, 0);
     cost_listed([&](const Edge& e, const EdgeCost& cost) {
+      if (cost.least > max_cost) return;
       take(RankedEdge{std::min(e.a, e.b), std::max(e.a, e.b), key_of(cost.ranking)});
     });
   }

@@ -114,6 +114,7 @@ void BoundedSimplifier::put_first(const std::vector<std::uint8_t>& flags) {
 double reduce_to_bound(BoundedSimplifier& simplifier, double last_step,
                        const BoundedSimplifier::Progress& tell) {
   double cost = simplifier.first_cost();
+  if (cost == 0 && simplifier.reduce(0, tell)) cost = simplifier.first_cost();
   if (!(cost > 0) || !std::isfinite(cost)) return 0;
   cost /= k_first_step;
   for (double step = k_first_step; step >= last_step; step = std::sqrt(step)) {
@@ -124,6 +125,8 @@ double reduce_to_bound(BoundedSimplifier& simplifier, double last_step,
       cost *= step;
       const auto gain = static_cast<double>(before - simplifier.triangles());
       idle = gain < k_least_gain * static_cast<double>(before) ? idle + 1 : 0;
+      // What is flat goes for next to nothing, what comes after it is far dearer.
+      if (idle == 1) cost = std::max(cost, simplifier.first_cost() / step);
       // Of the later steps there is one: two would be a step that has broken the bound.
     } while (step == k_first_step && idle < k_most_idle);
   }

@@ -95,8 +95,8 @@ class Simplifier {
   std::uint64_t free_triangles() const;
   /// The greatest cost paid so far.
   double max_cost() const;
-  /// The level that the mesh has reached: the last pass took what it could up to this cost. After
-  /// a pass that might pay any cost it is max_cost().
+  /// The level that the mesh has reached: what the last pass might pay, or, where edges collapse
+  /// strictly in order, the cost of the last.
   double pass_cost() const;
   /// Whether the topology was given up.
   bool simplifies_topology() const;

@@ -55,7 +55,8 @@ TEST_CASE("the level reached is that of the goal, not of the last pass") {
   simplifier.reduce({0, level});
   CHECK(simplifier.triangles() > 700);
   simplifier.reduce({0});
-  CHECK(simplifier.pass_cost() == simplifier.max_cost());
+  CHECK(simplifier.pass_cost() > level);
+  CHECK(simplifier.pass_cost() <= simplifier.max_cost());
 }
 
 TEST_CASE("goals in small steps are met exactly, whatever cost they allow") {

@@ -110,6 +110,15 @@ inline void append(Mesh& mesh, const Mesh& other, Vec3 shift) {
   }
 }
 
+inline double area(const Mesh& mesh) {
+  double sum = 0;
+  for (const Triangle& t : mesh.triangles) {
+    const Vec3 a = mesh.positions[t[0]];
+    sum += length(cross(mesh.positions[t[1]] - a, mesh.positions[t[2]] - a)) / 2;
+  }
+  return sum;
+}
+
 /// What must hold for any result, counted by sets and maps: shares no code with the project.
 struct Validity {
   std::uint64_t bad_index = 0;
