@@ -1,0 +1,347 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+//
+// What becomes of handles, pieces, turned triangles and lines where sheets meet.
+#include <algorithm>
+#include <array>
+#include <map>
+
+#include <doctest/doctest.h>
+
+#include <meshfarm/geometry/distance.hpp>
+#include <meshfarm/geometry/simplify.hpp>
+
+#include "test_simplify_meshes.hpp"
+
+using namespace meshfarm;
+using namespace meshfarm::simplify_test;
+
+namespace {
+
+Simplifier reduced(const Mesh& mesh, std::uint64_t triangles,
+                   TopologyMode topology = TopologyMode::automatic) {
+  SimplifyOptions options;
+  options.lines.topology = topology;
+  Simplifier simplifier(mesh, options);
+  simplifier.reduce({triangles});
+  return simplifier;
+}
+
+double diagonal(const Mesh& mesh) {
+  Box box;
+  for (const Vec3& p : mesh.positions) box.add(p);
+  return box.diagonal();
+}
+
+/// The greater of both directions.
+Distance error_of(const Mesh& original, const Mesh& result) {
+  DistanceOptions options;
+  options.samples = 50'000;
+  options.threads = 1;
+  const Distance there = measure_distance(original, result, options);
+  const Distance back = measure_distance(result, original, options);
+  return {std::max(there.rms, back.rms), std::max(there.mean, back.mean),
+          std::max(there.max, back.max)};
+}
+
+/// A bent plate with holes x holes square holes: closed, as many handles.
+///
+///     +---------+
+///     | +-+ +-+ |
+///     | +-+ +-+ |
+///     +---------+
+Mesh perforated_plate(std::uint32_t holes) {
+  using Cell = std::array<std::uint32_t, 3>;
+  constexpr std::uint32_t k_fine = 3;  // cells across a hole
+  const std::uint32_t size = (2 * holes + 1) * k_fine;
+  // From 1 on, so that there is a cell beside each.
+  const auto is_solid = [&](const Cell& c) {
+    if (std::min({c[0], c[1], c[2]}) == 0 || std::max(c[0], c[1]) > size || c[2] > 2) return false;
+    return (c[0] - 1) / k_fine % 2 == 0 || (c[1] - 1) / k_fine % 2 == 0;
+  };
+  Mesh mesh;
+  std::map<Cell, std::uint32_t> numbers;
+  const auto number = [&](const Cell& at) {
+    const auto [found, is_new] =
+        numbers.try_emplace(at, static_cast<std::uint32_t>(mesh.positions.size()));
+    const double x = 1.0 * at[0] / size;
+    const double y = 1.0 * at[1] / size;
+    const double bend = 0.1 * std::sin(5 * x) * std::cos(4 * y);
+    if (is_new) mesh.positions.push_back({x, y, 1.0 * at[2] / size + bend});
+    return found->second;
+  };
+  const auto add_face = [&](const Cell& cell, std::size_t axis, bool is_upper) {
+    const auto at = [&](std::uint32_t i, std::uint32_t k) {
+      Cell corner = cell;
+      corner[axis] += is_upper ? 1 : 0;
+      corner[(axis + 1) % 3] += is_upper ? i : k;
+      corner[(axis + 2) % 3] += is_upper ? k : i;
+      return number(corner);
+    };
+    mesh.triangles.push_back({at(0, 0), at(1, 0), at(1, 1)});
+    mesh.triangles.push_back({at(0, 0), at(1, 1), at(0, 1)});
+  };
+  for (std::uint32_t x = 1; x <= size; ++x) {
+    for (std::uint32_t y = 1; y <= size; ++y) {
+      for (const std::uint32_t z : {1U, 2U}) {
+        const Cell cell{x, y, z};
+        if (!is_solid(cell)) continue;
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+          Cell above = cell;
+          Cell below = cell;
+          ++above[axis];
+          --below[axis];
+          if (!is_solid(above)) add_face(cell, axis, true);
+          if (!is_solid(below)) add_face(cell, axis, false);
+        }
+      }
+    }
+  }
+  return mesh;
+}
+
+Mesh plate() {
+  return perforated_plate(6);
+}
+
+/// Two spheres joined by a tube of four sides: a dumbbell.
+Mesh dumbbell() {
+  Mesh mesh = sphere(4);
+  append(mesh, sphere(4), {4, 0, 0});
+  // The triangles round the vertices that face each other make way for the tube.
+  const std::uint32_t half = static_cast<std::uint32_t>(mesh.positions.size() / 2);
+  const std::uint32_t left = 0;
+  const std::uint32_t right = half + 1;
+  const auto ring_of = [&](std::uint32_t centre) {
+    std::vector<std::uint32_t> ring;
+    for (const Triangle& t : mesh.triangles) {
+      for (const std::uint32_t v : t) {
+        if (std::find(t.begin(), t.end(), centre) != t.end() && v != centre) ring.push_back(v);
+      }
+    }
+    std::sort(ring.begin(), ring.end(), [&](std::uint32_t v, std::uint32_t w) {
+      const Vec3 p = mesh.positions[v];
+      const Vec3 q = mesh.positions[w];
+      return std::atan2(p.z, p.y) < std::atan2(q.z, q.y);
+    });
+    ring.erase(std::unique(ring.begin(), ring.end()), ring.end());
+    return ring;
+  };
+  const std::vector<std::uint32_t> from = ring_of(left);
+  const std::vector<std::uint32_t> to = ring_of(right);
+  REQUIRE(from.size() == 4);
+  REQUIRE(to.size() == 4);
+  std::erase_if(mesh.triangles, [&](const Triangle& t) {
+    return std::find(t.begin(), t.end(), left) != t.end() ||
+           std::find(t.begin(), t.end(), right) != t.end();
+  });
+  // The vertices in the middle become unused.
+  for (std::size_t k = 0; k < 4; ++k) {
+    const std::size_t n = (k + 1) % 4;
+    mesh.triangles.push_back({from[k], from[n], to[k]});
+    mesh.triangles.push_back({from[n], to[n], to[k]});
+  }
+  return mesh;
+}
+
+/// A box of 1 x 2 x 3 whose faces are grids of n x n.
+Mesh fine_box(std::uint32_t n) {
+  Mesh mesh;
+  std::map<std::array<std::uint32_t, 3>, std::uint32_t> numbers;
+  const auto number = [&](const std::array<std::uint32_t, 3>& at) {
+    const auto [found, is_new] =
+        numbers.try_emplace(at, static_cast<std::uint32_t>(mesh.positions.size()));
+    if (is_new) mesh.positions.push_back({1.0 * at[0] / n, 2.0 * at[1] / n, 3.0 * at[2] / n});
+    return found->second;
+  };
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    for (const std::uint32_t level : {0U, n}) {
+      for (std::uint32_t i = 0; i < n; ++i) {
+        for (std::uint32_t k = 0; k < n; ++k) {
+          const auto at = [&](std::uint32_t di, std::uint32_t dk) {
+            std::array<std::uint32_t, 3> all{};
+            all[axis] = level;
+            all[(axis + 1) % 3] = i + di;
+            all[(axis + 2) % 3] = k + dk;
+            return number(all);
+          };
+          Triangle one{at(0, 0), at(1, 0), at(1, 1)};
+          Triangle other{at(0, 0), at(1, 1), at(0, 1)};
+          if (level == 0) std::swap(one[1], one[2]);
+          if (level == 0) std::swap(other[1], other[2]);
+          mesh.triangles.insert(mesh.triangles.end(), {one, other});
+        }
+      }
+    }
+  }
+  return mesh;
+}
+
+/// A wavy floor and a wall that stands on its middle line.
+Mesh wall_on_floor(std::uint32_t n) {
+  Mesh mesh = wavy_grid(n, n);
+  const std::uint32_t row = n + 1;
+  const std::uint32_t base = n / 2 * row;
+  std::vector<std::uint32_t> below(row);
+  for (std::uint32_t c = 0; c <= n; ++c) below[c] = base + c;
+  for (std::uint32_t r = 1; r <= n / 2; ++r) {
+    std::vector<std::uint32_t> above;
+    for (std::uint32_t c = 0; c <= n; ++c) {
+      above.push_back(static_cast<std::uint32_t>(mesh.positions.size()));
+      mesh.positions.push_back(mesh.positions[base + c] + Vec3{0, 0, 1.0 * r / n});
+    }
+    for (std::uint32_t c = 0; c < n; ++c) {
+      mesh.triangles.push_back({below[c], below[c + 1], above[c + 1]});
+      mesh.triangles.push_back({below[c], above[c + 1], above[c]});
+    }
+    below = above;
+  }
+  return mesh;
+}
+
+}  // namespace
+
+TEST_CASE("topology: keep keeps handles at any goal") {
+  const Mesh mesh = plate();
+  const Validity before = check(mesh);
+  REQUIRE(is_clean(mesh));
+  REQUIRE(before.border_edges == 0);
+  REQUIRE(before.euler == 2 - 2 * 36);
+  for (const std::uint64_t goal : {3000U, 300U, 0U}) {
+    CAPTURE(goal);
+    const Simplifier result = reduced(mesh, goal, TopologyMode::keep);
+    CHECK(is_clean(result.mesh()));
+    CHECK(check(result.mesh()).euler == before.euler);
+    CHECK(check(result.mesh()).components == before.components);
+    CHECK(!result.simplifies_topology());
+  }
+  CHECK(reduced(mesh, 0, TopologyMode::keep).triangles() > 200);
+}
+
+TEST_CASE("topology: simplify meets goals that have no room for the handles, and stays manifold") {
+  const Mesh mesh = plate();
+  const Validity before = check(mesh);
+  for (const std::uint64_t goal : {500U, 100U, 20U}) {
+    CAPTURE(goal);
+    const Simplifier result = reduced(mesh, goal, TopologyMode::simplify);
+    CHECK(result.simplifies_topology());
+    CHECK(result.triangles() <= goal + 1);
+    CHECK(result.triangles() + 2 >= goal);
+    CHECK(is_clean(result.mesh()));
+    CHECK(check(result.mesh()).border_edges == before.border_edges);
+    CHECK(check(result.mesh()).euler > before.euler);
+  }
+}
+
+TEST_CASE("topology: automatic keeps it where the goal is easy, and only there") {
+  const Mesh mesh = plate();
+  const Validity before = check(mesh);
+  const Simplifier easy = reduced(mesh, mesh.triangles.size() / 2);
+  CHECK(!easy.simplifies_topology());
+  CHECK(check(easy.mesh()).euler == before.euler);
+  CHECK(check(easy.mesh()).components == before.components);
+  const Simplifier hard = reduced(mesh, 100);
+  CHECK(hard.simplifies_topology());
+  CHECK(hard.triangles() <= 101);
+  CHECK(is_clean(hard.mesh()));
+}
+
+TEST_CASE("topology: a second, farther goal may need it given up, too") {
+  Simplifier simplifier(torus(60, 30), {});
+  simplifier.reduce({200});
+  CHECK(simplifier.triangles() == 200);
+  CHECK(check(simplifier.mesh()).euler == 0);
+  CHECK(!simplifier.simplifies_topology());
+  simplifier.reduce({4});
+  CHECK(simplifier.simplifies_topology());
+  CHECK(simplifier.triangles() <= 5);
+}
+
+TEST_CASE("topology: about four triangles of a surface with handles are about four") {
+  for (const Mesh& mesh : {torus(60, 30), plate()}) {
+    const Simplifier result = reduced(mesh, 4);
+    CHECK(result.triangles() >= 1);
+    CHECK(result.triangles() <= 5);
+    CHECK(is_clean(result.mesh()));
+  }
+}
+
+TEST_CASE("topology: a thin bridge is kept, or pinched off and cut apart") {
+  const Mesh mesh = dumbbell();
+  REQUIRE(check(mesh).euler == 2);
+  REQUIRE(check(mesh).components == 1);
+  REQUIRE(check(mesh).crowded_edges == 0);
+  REQUIRE(check(mesh).border_edges == 0);
+  const Simplifier kept = reduced(mesh, 100, TopologyMode::keep);
+  CHECK(kept.triangles() == 100);
+  CHECK(check(kept.mesh()).euler == 2);
+  CHECK(check(kept.mesh()).components == 1);
+  const Simplifier simplified = reduced(mesh, 40, TopologyMode::simplify);
+  CHECK(simplified.triangles() == 40);
+  CHECK(is_clean(simplified.mesh()));
+  const Validity after = check(simplified.mesh());
+  CHECK(after.euler == 2 * static_cast<std::int64_t>(after.components));
+}
+
+TEST_CASE("flat faces and straight edges are exact as long as anything else can go") {
+  const Mesh box = fine_box(20);
+  REQUIRE(check(box).euler == 2);
+  REQUIRE(check(box).border_edges == 0);
+  const Simplifier result = reduced(box, box.triangles.size() / 20);
+  CHECK(result.triangles() == box.triangles.size() / 20);
+  CHECK(is_clean(result.mesh()));
+  const double most = 1e-6 * diagonal(box);
+  CHECK(DistanceMeter(result.mesh(), 1).measure(box.positions).max <= most);
+  CHECK(DistanceMeter(box, 1).measure(result.mesh().positions).max <= most);
+  CHECK(error_of(box, result.mesh()).max <= most);
+}
+
+TEST_CASE("each face twice, once a side, simplifies as once") {
+  const Mesh single = torus(80, 40);
+  const double once = error_of(single, reduced(single, 400).mesh()).rms;
+  Random random(5);
+  Mesh twice{single.positions, {}};
+  for (const Triangle& t : single.triangles) {
+    Triangle front = t;
+    Triangle back{t[1], t[0], t[2]};
+    if (random.below(2) == 0) std::swap(front, back);
+    twice.triangles.insert(twice.triangles.end(), {front, back});
+  }
+  const Simplifier result = reduced(twice, 400);
+  CHECK(result.dropped_duplicate() == single.triangles.size());
+  CHECK(result.triangles() == 400);
+  CHECK(is_clean(result.mesh()));
+  CHECK(error_of(single, result.mesh()).rms <= 1.02 * once);
+}
+
+TEST_CASE("triangles that are turned over cost nothing") {
+  const Mesh in_order = torus(80, 40);
+  const double best = error_of(in_order, reduced(in_order, 400).mesh()).rms;
+  for (const std::uint32_t per_cent : {1U, 5U, 50U}) {
+    CAPTURE(per_cent);
+    Mesh mesh = in_order;
+    Random random(per_cent);
+    for (Triangle& t : mesh.triangles) {
+      if (random.below(100) < per_cent) std::swap(t[1], t[2]);
+    }
+    const Simplifier result = reduced(mesh, 400);
+    CHECK(result.triangles() == 400);
+    CHECK(is_clean(result.mesh()));
+    CHECK(error_of(in_order, result.mesh()).rms <= 1.02 * best);
+  }
+}
+
+TEST_CASE("three sheets that meet in a line reduce along it") {
+  constexpr std::uint32_t k_size = 40;
+  const Mesh mesh = wall_on_floor(k_size);
+  REQUIRE(check(mesh).crowded_edges == k_size);
+  const Simplifier result = reduced(mesh, 400);
+  CHECK(result.triangles() == 400);
+  const Validity after = check(result.mesh());
+  CHECK(after.degenerate + after.duplicate + after.no_area + after.unused == 0);
+  CHECK(after.euler == 1);
+  CHECK(after.components == 1);
+  CHECK(after.crowded_edges >= 4);
+  CHECK(after.crowded_edges <= k_size / 2);
+  CHECK(error_of(mesh, result.mesh()).rms <= 1e-3 * diagonal(mesh));
+}
