@@ -7,6 +7,7 @@
 #include <optional>
 #include <utility>
 
+#include <meshfarm/geometry/distance.hpp>
 #include <meshfarm/geometry/simplify.hpp>
 
 #include "geometry/adjacency.hpp"
@@ -52,8 +53,11 @@ constexpr double k_near_of_large = 1.25;
 constexpr std::uint64_t k_large = 50'000;
 
 // Topology is kept if the sum of the costs, which goes with the square of the error, or the last of
-// them is then no more than so many times what it would be without. A few dear ones are no reason.
+// them is then no more than so many times what it would be without, or if the distance is. A few
+// dear ones are no reason.
 constexpr double k_fair = 1.44;
+constexpr double k_fair_distance = 1.2;
+constexpr std::uint64_t k_fair_samples = 20'000;
 // Once it is found fair, it is thought of again when so much of the triangles is left.
 constexpr double k_decided = 0.8;
 // With fewer refusals a collapse it is not even tried.
@@ -215,7 +219,24 @@ class Simplifier::Impl {
   bool is_unfair(double paid, const CollapseQueue& other, const SimplifyGoal& goal) const {
     const CollapseQueue& kept = end_game_->queue;
     if (kept.triangles() > goal.triangles + 1) return other.triangles() < kept.triangles();
-    return paid > k_fair * other.paid() && kept.dearest() > k_fair * other.dearest();
+    return paid > k_fair * other.paid() && kept.dearest() > k_fair * other.dearest() &&
+           distance_to(kept) > k_fair_distance * distance_to(other);
+  }
+
+  /// From the mesh as it is. A cost does not know how far from what is left a lost piece lies.
+  double distance_to(const CollapseQueue& queue) const {
+    Mesh result;
+    std::vector<std::uint8_t> flags;
+    queue.copy_to(result, flags, 0);
+    const auto is_measurable = [](const Mesh& mesh) {
+      return !mesh.triangles.empty() &&
+             std::all_of(mesh.positions.begin(), mesh.positions.end(), [](Vec3 p) {
+               return std::isfinite(squared_length(p) * squared_length(p));
+             });
+    };
+    if (!is_measurable(mesh_) || !is_measurable(result)) return 0;
+    const SurfaceSamples samples = sample_surface(mesh_, {k_fair_samples, 1});
+    return DistanceMeter(result, 1).measure(samples.points).rms;
   }
 
   void publish(const SimplifyGoal& goal, bool goes_on) {
