@@ -52,7 +52,8 @@ void CollapseQueue::start(std::span<const Triangle> triangles) {
 void CollapseQueue::rank(double share) {
   for (std::uint32_t v = 0; v < target_.size(); ++v) refresh(v);
   const CostKey wanted = share < 1 ? ranking_.estimate_limit(share, HUGE_VAL) : k_greatest;
-  limit_ = std::min(k_greatest, std::max(wanted, limit_ + k_least_step));
+  limit_ = std::max(wanted, limit_ + k_least_step);
+  if (limit_ >= std::min(key_of(most_cost_), k_greatest)) limit_ = k_greatest;
   heap_.clear();
   first_.clear();
   next_first_ = 0;
