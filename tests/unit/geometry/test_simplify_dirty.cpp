@@ -92,6 +92,7 @@ TEST_CASE("a spine of three wings merges along itself and stays one") {
   SimplifyOptions options;
   options.lines.topology = TopologyMode::keep;
   Simplifier simplifier(mesh, options);
+  simplifier.reduce({700});  // near the goal, so that edges collapse in order from here on
   simplifier.reduce({18});
   CHECK(simplifier.max_cost() <= 1e-12);
   const Mesh& result = simplifier.mesh();
