@@ -156,6 +156,9 @@ class Simplifier::Impl {
   double pass_cost() const { return pass_cost_; }
   bool simplifies_topology() const { return end_game_ && end_game_->queue.any_topology(); }
   bool is_held_by_topology() const { return end_game_ && end_game_->queue.is_held(); }
+  bool is_hampered_by_topology() const {
+    return end_game_ && end_game_->queue.kept_topology() > end_game_->queue.collapses();
+  }
   const Dropped& dropped() const { return dropped_; }
   std::span<const std::uint8_t> seam() const { return seam_; }
 
@@ -259,6 +262,8 @@ class Simplifier::Impl {
       const std::uint64_t removed = collapse_edges(goal, pass);
       compact(removed);
       if (progress && !progress(mesh_.triangles.size())) return PassEnd::told;
+      // What is cheap is refused: what is dear is not to be taken for it.
+      if (refused_for_topology_ > collapses_) return PassEnd::dead_end;
       if (static_cast<double>(removed) < k_least_ranked * static_cast<double>(before)) {
         return goal.max_cost <= cost_of(pass.limit) ? PassEnd::exhausted : PassEnd::dead_end;
       }
@@ -370,12 +375,15 @@ class Simplifier::Impl {
     const std::uint64_t excess = mesh_.triangles.size() - goal.triangles;
     CollapseLimits limits{excess, pass.max_cost};
     double reached = pass.max_cost;
+    collapses_ = refused_for_topology_ = 0;
     for (std::uint32_t first = 0; first < vertices && limits.triangles > 0; first += pass.block) {
       const std::uint32_t last = std::min(vertices, first + pass.block);
       for (const RankedEdge& e : ranking_.cheapest(first, last, {pass.limit, pass.max_cost})) {
         if ((touched_[e.a] | touched_[e.b]) != 0) continue;
         const Collapse collapse = judge.judge(e.a, e.b, limits);
+        refused_for_topology_ += collapse.by_topology ? 1 : 0;
         if (collapse.triangles == 0) continue;
+        ++collapses_;
         merge(e.a, e.b, collapse);
         limits.triangles -= collapse.triangles;
         const bool in_order = pass.block == vertices;
@@ -458,7 +466,9 @@ class Simplifier::Impl {
   double max_cost_ = 0;
   double pass_cost_ = 0;
   double exhausted_cost_ = -1;
-  std::uint64_t decided_at_ = UINT64_MAX;  // triangles left when the topology was last thought of
+  std::uint64_t collapses_ = 0;             // of the last pass
+  std::uint64_t refused_for_topology_ = 0;  // in the last pass
+  std::uint64_t decided_at_ = UINT64_MAX;   // triangles left when the topology was last thought of
 
   std::unique_ptr<EndGame> end_game_;
   Adjacency adjacency_;
@@ -491,6 +501,9 @@ double Simplifier::pass_cost() const {
 }
 bool Simplifier::simplifies_topology() const {
   return impl_->simplifies_topology();
+}
+bool Simplifier::is_hampered_by_topology() const {
+  return impl_->is_hampered_by_topology();
 }
 bool Simplifier::is_held_by_topology() const {
   return impl_->is_held_by_topology();

@@ -102,6 +102,8 @@ class Simplifier {
   bool simplifies_topology() const;
   /// Whether it stopped as TopologyMode::keep_while_fair says.
   bool is_held_by_topology() const;
+  /// Whether more was refused to keep the topology than collapsed, of what was done in order.
+  bool is_hampered_by_topology() const;
   std::uint64_t dropped_degenerate() const;
   std::uint64_t dropped_duplicate() const;
   /// Flags of the vertices of mesh() that are, or were merged from, seam vertices.

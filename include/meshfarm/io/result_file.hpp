@@ -30,7 +30,7 @@ struct ResultSummary {
   std::vector<Rung> rungs;
   std::uint64_t dropped_degenerate = 0;
   std::uint64_t dropped_duplicate = 0;
-  bool held_by_topology = false;  // it would have had to go on without keeping it
+  bool held_by_topology = false;  // keeping it refused more than was collapsed
 };
 
 std::string encode_summary(const ResultSummary& summary);
