@@ -36,8 +36,8 @@ struct TalkOptions {
   ProgressStyle progress() const;
 };
 
-/// --ratio, --triangles, --error, --allocation, --finish, --composition, --topology, --preserve-border,
-/// --crease-angle, --drop-components.
+/// --ratio, --triangles, --error, --allocation, --finish, --composition, --topology,
+/// --preserve-border, --crease-angle, --drop-components.
 struct TargetOptions {
   RunOptions run;
   std::string error;

@@ -16,7 +16,8 @@
 // there are at most 65536, and as many triangles.
 //   Version 2. Version 1 was sealed, with the counts in front and one set of samples.
 // The summary that travels with the message:
-//   dropped degenerate u64 | dropped duplicate u64 | held by topology u8 | rungs u32 | rungs as above
+//   dropped degenerate u64 | dropped duplicate u64 | held by topology u8 | rungs u32 |
+//   rungs as above
 #include <algorithm>
 #include <array>
 #include <cmath>

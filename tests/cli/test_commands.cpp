@@ -191,6 +191,7 @@ TEST_CASE("wrong usage is one line and exit 2") {
       {"simplify", cube, "-o", shell.path("o.ply"), "--ratio", "0.5", "--error", "1%"},
       {"simplify", cube, "-o", shell.path("o.ply"), "--error", "0"},
       {"simplify", cube, "-o", shell.path("o.ply"), "--error", "1km"},
+      {"simplify", cube, "-o", shell.path("o.ply"), "--ratio", "0.5", "--topology", "maybe"},
       {"simplify", cube, "-o", shell.path("o.ply"), "--ratio", "0.5", "--colour"},
       {"run", shell.path("s"), "--ratio", "0.5", "--ports", "9-8"},
       {"compare", cube},

@@ -52,7 +52,7 @@ struct ChosenRungs {
 
 /// Once every job of make_job_source is accepted.
 ChosenRungs choose_rungs(const Manifest& manifest, const RunOptions& options,
-                                     std::span<const AcceptedJob> accepted);
+                         std::span<const AcceptedJob> accepted);
 
 /// How many points of a surface of so many of the input's triangles the error is measured by.
 std::uint64_t samples_for(const Manifest& manifest, const RunOptions& options,

@@ -112,3 +112,24 @@ TEST_CASE("a rung may be empty") {
   CHECK(decode_result(file, 0, "r").mesh.triangles.size() == 4);
   CHECK(decode_result(file, 1, "r").mesh.triangles.empty());
 }
+
+TEST_CASE("a summary comes back; a damaged one is refused") {
+  const std::vector<Rung> rungs = {{3, 5, 10, 8, 0.5}, {4, 3, 6, 2, 0.75}};
+  for (const bool held : {false, true}) {
+    const std::string bytes = encode_summary({rungs, 7, 9, held});
+    const ResultSummary back = decode_summary(bytes, "s");
+    CHECK(back.held_by_topology == held);
+    CHECK(back.dropped_degenerate == 7);
+    CHECK(back.dropped_duplicate == 9);
+    REQUIRE(back.rungs.size() == 2);
+    CHECK(back.rungs[1].level == 4);
+    CHECK(back.rungs[1].free_triangles == 2);
+    for (std::size_t i = 0; i < bytes.size(); ++i) {
+      CHECK_THROWS_AS(decode_summary(std::string_view(bytes).substr(0, i), "s"), DataError);
+    }
+    CHECK_THROWS_AS(decode_summary(bytes + "x", "s"), DataError);
+  }
+  std::string impossible = encode_summary({rungs, 7, 9, true});
+  impossible[16] = 2;  // held: after two counts
+  CHECK_THROWS_AS(decode_summary(impossible, "s"), DataError);
+}

@@ -94,12 +94,49 @@ TEST_CASE("an odd count of a closed surface is one fewer, and the summary says w
 
 TEST_CASE("a surface that cannot go so far says so") {
   const test::TempFolder folder;
-  const Made made = simplify(test::icosphere(2), 2, {.triangles = 1}, folder.path());
-  CHECK(made.summary.triangles == 4);
-  CHECK(made.summary.why_not_exact.find("topology") != std::string::npos);
+  const Made made = simplify(test::icosphere(2), 2, {.triangles = 1}, folder.path() / "auto");
+  CHECK(made.summary.triangles == 4);  // the last piece stays
+  CHECK_FALSE(made.summary.topology_simplified);
+  CHECK_FALSE(made.summary.why_not_exact.empty());
+  const Made kept =
+      simplify(test::icosphere(2), 2, {.triangles = 1, .lines = {.topology = TopologyMode::keep}},
+               folder.path() / "keep");
+  CHECK(kept.summary.triangles == 4);
+  CHECK(kept.summary.why_not_exact.find("topology") != std::string::npos);
   const Made more = simplify(test::icosphere(1), 2, {.triangles = 500}, folder.path() / "more");
   CHECK(more.summary.triangles == 80);
   CHECK(more.summary.why_not_exact == "the input has no more");
+}
+
+TEST_CASE("pieces go where the count cannot be met with them, unless they are to be kept") {
+  Mesh mesh;
+  for (int i = 0; i < 100; ++i) {
+    const auto first = static_cast<std::uint32_t>(mesh.positions.size());
+    const Mesh sphere = test::icosphere(1);
+    for (const Vec3& p : sphere.positions) {
+      mesh.positions.push_back(p * (1 + 0.01 * i) + Vec3{i % 10 * 5.0, i / 10 * 5.0, 0});
+    }
+    for (const auto& [a, b, c] : sphere.triangles) {
+      mesh.triangles.push_back({a + first, b + first, c + first});
+    }
+  }
+  const test::TempFolder folder;
+  RunOptions run{.triangles = 200};
+  const Made simplified = simplify(mesh, 4, run, folder.path() / "auto");
+  CHECK(simplified.summary.triangles == 200);
+  CHECK(simplified.summary.topology_simplified);
+  CHECK(measure_topology(simplified.mesh).components < 100);
+  run.lines.topology = TopologyMode::keep;
+  const Made kept = simplify(mesh, 4, run, folder.path() / "keep");
+  CHECK(kept.summary.triangles == 400);
+  CHECK_FALSE(kept.summary.topology_simplified);
+  CHECK(measure_topology(kept.mesh).components == 100);
+  CHECK(kept.summary.why_not_exact.find("topology") != std::string::npos);
+  // What needs no such thing is not done.
+  const Made enough = simplify(mesh, 4, {.triangles = 2000}, folder.path() / "enough");
+  CHECK(enough.summary.triangles == 2000);
+  CHECK_FALSE(enough.summary.topology_simplified);
+  CHECK(measure_topology(enough.mesh).components == 100);
 }
 
 TEST_CASE("one threshold gives the rough corner what the flat rest does not need") {

@@ -4,6 +4,7 @@
 
 #include <meshfarm/pipeline/budget.hpp>
 #include <meshfarm/pipeline/simplify_job.hpp>
+#include <meshfarm/pipeline/sweep_job.hpp>
 #include <meshfarm/util/errors.hpp>
 
 using namespace meshfarm;
@@ -29,6 +30,18 @@ AcceptedJob accepted(const Job& job, std::vector<Rung> rungs) {
   return {key_of(job),
           {{to_string(ResultName{key_of(job).value, 1, 1}), 1, 1},
            encode_summary({std::move(rungs), 0, 0})}};
+}
+
+/// Of a part that its topology held back at its last rung.
+AcceptedJob accepted_held(const Job& job, std::vector<Rung> rungs) {
+  AcceptedJob done = accepted(job, {});
+  done.output.summary = encode_summary({std::move(rungs), 0, 0, true});
+  return done;
+}
+
+TopologyMode topology_of(const Job& job) {
+  return job.kind == k_sweep_kind ? decode_sweep_parameters(job.parameters).lines.topology
+                                  : decode_parameters(job.parameters).lines.topology;
 }
 
 }  // namespace
@@ -117,6 +130,124 @@ TEST_CASE("a part that was taken too far is asked for again with a finer start")
   CHECK(chosen[1].rung == 1);
 }
 
+TEST_CASE("parts keep their topology first, and are stitched so if that is fair") {
+  const Manifest manifest = manifest_of(2, 100'000);
+  const RunOptions options{.ratio = 0.01};
+  const JobSource source = make_job_source(manifest, options);
+  const std::vector<Job> jobs = source({});
+  for (const Job& job : jobs) CHECK(topology_of(job) == TopologyMode::keep_while_fair);
+  // 4,000 are wanted before the finish: level 11.
+  const AcceptedJob other = accepted(jobs[1], {rung(10, 7000), rung(11, 3800), rung(12, 100)});
+  const auto with = [&](AcceptedJob held) { return std::vector{std::move(held), other}; };
+  // Held above the level that is chosen: the others pay nothing.
+  const auto above = with(accepted_held(jobs[0], {rung(10, 1000), rung(11, 700)}));
+  CHECK(source(above).empty());
+  CHECK(choose_rungs(manifest, options, above).topology == TopologyMode::automatic);
+  // Held below it with less than a tenth of all triangles.
+  CHECK(source(with(accepted_held(jobs[0], {rung(10, 420)}))).empty());
+  // Below it with more, but by nothing that has to do with the topology.
+  CHECK(source(with(accepted(jobs[0], {rung(10, 1000)}))).empty());
+}
+
+TEST_CASE("where others would pay for the topology, all are asked for again without it") {
+  const Manifest manifest = manifest_of(2, 100'000);
+  const RunOptions options{.ratio = 0.01};
+  const JobSource source = make_job_source(manifest, options);
+  const std::vector<Job> jobs = source({});
+  std::vector<AcceptedJob> done = {accepted_held(jobs[0], {rung(10, 430)}),
+                                   accepted(jobs[1], {rung(10, 7000), rung(11, 3800)})};
+  const std::vector<Job> again = source(done);
+  REQUIRE(again.size() == 2);
+  for (std::size_t p = 0; p < 2; ++p) {
+    CHECK(topology_of(again[p]) == TopologyMode::simplify);
+    CHECK(again[p].inputs == jobs[p].inputs);
+    CHECK(decode_parameters(again[p].parameters).start_triangles ==
+          decode_parameters(jobs[p].parameters).start_triangles);
+    CHECK(key_of(again[p]) != key_of(jobs[p]));
+  }
+  // From there on it is a run like any other: who was taken too far is asked for again, finer.
+  done.push_back(accepted(again[0], {rung(5, 8000), rung(6, 30)}));
+  done.push_back(accepted(again[1], {rung(20, 3000), rung(21, 2000)}));
+  const std::vector<Job> finer = source(done);
+  REQUIRE(finer.size() == 1);
+  CHECK(finer[0].inputs == jobs[1].inputs);
+  CHECK(topology_of(finer[0]) == TopologyMode::simplify);
+  done.push_back(accepted(finer[0], {rung(6, 40'000), rung(20, 3000)}));
+  CHECK(source(done).empty());
+  const ChosenRungs chosen = choose_rungs(manifest, options, done);
+  CHECK(chosen.topology == TopologyMode::simplify);
+  CHECK(chosen.rungs[0].file.name == done[2].output.file.name);
+  CHECK(chosen.rungs[1].file.name == done[4].output.file.name);
+}
+
+TEST_CASE("all together may not be held at more than twice what is wanted") {
+  const Manifest manifest = manifest_of(2, 100'000);
+  const RunOptions options{.ratio = 0.01};
+  const JobSource source = make_job_source(manifest, options);
+  const std::vector<Job> jobs = source({});
+  const auto both = [&](std::uint64_t triangles) {
+    return std::vector{accepted_held(jobs[0], {rung(10, triangles / 2)}),
+                       accepted_held(jobs[1], {rung(10, triangles / 2)})};
+  };
+  CHECK(source(both(8000)).empty());
+  CHECK(source(both(8002)).size() == 2);
+}
+
+TEST_CASE("who says what becomes of the topology is asked once") {
+  const Manifest manifest = manifest_of(2, 100'000);
+  for (const TopologyMode mode : {TopologyMode::keep, TopologyMode::simplify}) {
+    const RunOptions options{.ratio = 0.01, .lines = {.topology = mode}};
+    const JobSource source = make_job_source(manifest, options);
+    const std::vector<Job> jobs = source({});
+    CHECK(topology_of(jobs[0]) == mode);
+    const std::vector done = {accepted_held(jobs[0], {rung(10, 9000)}),
+                              accepted_held(jobs[1], {rung(10, 9000)})};
+    CHECK(source(done).empty());
+    CHECK(choose_rungs(manifest, options, done).topology == mode);
+  }
+  // A bound on the error keeps it, since nothing has to be paid for a count.
+  CHECK(topology_of(make_job_source(manifest, {.error = {0.2, false}})({})[0]) ==
+        TopologyMode::keep);
+  const RunOptions uniform{.ratio = 0.01, .allocation = Allocation::uniform};
+  CHECK(topology_of(make_job_source(manifest, uniform)({})[0]) == TopologyMode::automatic);
+}
+
+TEST_CASE("long streams are swept as their samples were climbed") {
+  Manifest manifest = manifest_of(2, 100'000);
+  manifest.scheme = Scheme::stream;
+  manifest.window_triangles = 10'000;
+  for (const PartEntry& part : manifest.parts) {
+    manifest.samples.push_back(part);
+    manifest.samples.back().triangles = 10'000;
+  }
+  const RunOptions options{.ratio = 0.01, .composition = Composition::sink};
+  const JobSource source = make_job_source(manifest, options);
+  const std::vector<Job> jobs = source({});
+  // A tenth of each stream.
+  const std::vector<Job> kept =
+      source(std::vector{accepted(jobs[0], {rung(10, 400)}), accepted(jobs[1], {rung(10, 400)})});
+  REQUIRE(kept.size() == 2);
+  for (const Job& sweep : kept) {
+    REQUIRE(sweep.kind == k_sweep_kind);
+    CHECK(topology_of(sweep) == TopologyMode::keep);
+  }
+  std::vector<AcceptedJob> done = {accepted_held(jobs[0], {rung(9, 1000)}),
+                                   accepted(jobs[1], {rung(9, 500), rung(10, 400)})};
+  const std::vector<Job> again = source(done);
+  REQUIRE(again.size() == 2);
+  for (const Job& job : again) {
+    REQUIRE(job.kind == k_simplify_kind);
+    CHECK(topology_of(job) == TopologyMode::simplify);
+    done.push_back(accepted(job, {rung(10, 400)}));
+  }
+  const std::vector<Job> swept = source(done);
+  REQUIRE(swept.size() == 2);
+  for (const Job& sweep : swept) {
+    REQUIRE(sweep.kind == k_sweep_kind);
+    CHECK(topology_of(sweep) == TopologyMode::simplify);
+  }
+}
+
 TEST_CASE("a large ratio leaves the parts as they are") {
   const Manifest manifest = manifest_of(2, 1000);
   const std::vector<Job> jobs = make_job_source(manifest, {.ratio = 0.9})({});
@@ -186,10 +317,13 @@ TEST_CASE("runs of different targets have different keys") {
         run_key(manifest, {.ratio = 0.5, .lines = {.preserve_border = true}}));
   CHECK(run_key(manifest, {.ratio = 0.5}) !=
         run_key(manifest, {.ratio = 0.5, .lines = {.crease_angle = 30}}));
+  CHECK(run_key(manifest, {.ratio = 0.5}) !=
+        run_key(manifest, {.ratio = 0.5, .lines = {.topology = TopologyMode::keep}}));
 }
 
 TEST_CASE("parameters come back; damaged ones are refused") {
-  const SimplifyParameters p{Allocation::uniform, 12, 3, 77, 0.25, 0.5, true, {true, 40}};
+  const SimplifyParameters p{
+      Allocation::uniform, 12, 3, 77, 0.25, 0.5, true, {true, 40, TopologyMode::simplify}};
   const std::string bytes = encode_parameters(p);
   const SimplifyParameters back = decode_parameters(bytes);
   CHECK(back.allocation == Allocation::uniform);
@@ -200,9 +334,12 @@ TEST_CASE("parameters come back; damaged ones are refused") {
   CHECK(back.max_error == 0.5);
   CHECK(back.lines.preserve_border);
   CHECK(back.lines.crease_angle == 40);
+  CHECK(back.lines.topology == TopologyMode::simplify);
   for (std::size_t i = 0; i < bytes.size(); ++i) {
     CHECK_THROWS_AS(decode_parameters(std::string_view(bytes).substr(0, i)), DataError);
   }
   CHECK_THROWS_AS(decode_parameters(bytes + "x"), DataError);
   CHECK_THROWS_AS(decode_parameters("\x09" + bytes.substr(1)), DataError);
+  // The topology stands last.
+  CHECK_THROWS_AS(decode_parameters(bytes.substr(0, bytes.size() - 1) + "\x04"), DataError);
 }
