@@ -111,14 +111,11 @@ TEST_CASE("a surface that cannot go so far says so") {
 TEST_CASE("pieces go where the count cannot be met with them, unless they are to be kept") {
   Mesh mesh;
   for (int i = 0; i < 100; ++i) {
-    const auto first = static_cast<std::uint32_t>(mesh.positions.size());
-    const Mesh sphere = test::icosphere(1);
-    for (const Vec3& p : sphere.positions) {
-      mesh.positions.push_back(p * (1 + 0.01 * i) + Vec3{i % 10 * 5.0, i / 10 * 5.0, 0});
+    Mesh sphere = test::icosphere(1);
+    for (Vec3& p : sphere.positions) {
+      p = p * (1 + 0.01 * i) + Vec3{i % 10 * 5.0, i / 10 * 5.0, 0};
     }
-    for (const auto& [a, b, c] : sphere.triangles) {
-      mesh.triangles.push_back({a + first, b + first, c + first});
-    }
+    test::append(mesh, sphere);
   }
   const test::TempFolder folder;
   RunOptions run{.triangles = 200};

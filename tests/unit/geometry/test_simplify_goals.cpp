@@ -1,0 +1,33 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#include <doctest/doctest.h>
+
+#include <meshfarm/geometry/simplify.hpp>
+#include <meshfarm/geometry/topology.hpp>
+
+#include "support/meshes.hpp"
+
+using namespace meshfarm;
+
+TEST_CASE("a short last step does not give up a topology that was kept so far") {
+  // To remove a speck is always cheaper than the sphere's next collapse.
+  constexpr int k_specks = 60;
+  Mesh mesh = test::icosphere(4);
+  for (int i = 0; i < k_specks; ++i) {
+    Mesh speck = test::tetrahedron();
+    for (Vec3& p : speck.positions) p = p * 1e-4 + Vec3{2, 0.1 * i, 0};
+    test::append(mesh, speck);
+  }
+  Simplifier simplifier(mesh, {});
+  for (const std::uint64_t goal : {2240U, 2236U, 2232U}) {
+    CAPTURE(goal);
+    simplifier.reduce({.triangles = goal});
+    CHECK(simplifier.triangles() == goal);
+    CHECK_FALSE(simplifier.simplifies_topology());
+    CHECK(measure_topology(simplifier.mesh()).components == k_specks + 1);
+  }
+  // Where nothing else is left they go.
+  simplifier.reduce({.triangles = 100});
+  CHECK(simplifier.triangles() == 100);
+  CHECK(simplifier.simplifies_topology());
+}
