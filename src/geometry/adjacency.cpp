@@ -3,6 +3,9 @@
 #include "geometry/adjacency.hpp"
 
 #include <algorithm>
+#include <limits>
+
+#include <meshfarm/util/errors.hpp>
 
 namespace meshfarm {
 
@@ -29,6 +32,9 @@ void Adjacency::assign(std::uint32_t vertex, std::span<const Corner> corners) {
   Row& row = rows_[vertex];
   const auto count = static_cast<std::uint32_t>(corners.size());
   if (count > row.end - row.begin) {
+    if (corners_.size() + count > std::numeric_limits<std::uint32_t>::max()) {
+      throw UsageError("simplify: the mesh is too big for 32-bit indices; ask for fewer triangles");
+    }
     row.begin = static_cast<std::uint32_t>(corners_.size());
     corners_.insert(corners_.end(), corners.begin(), corners.end());
   } else {

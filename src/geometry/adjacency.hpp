@@ -35,7 +35,7 @@ class Adjacency {
   // Changes to single vertices; the caller keeps the rows of a triangle's three vertices in step.
 
   /// Gives a vertex other corners, which must not be a part of this. A longer row than before moves
-  /// to the end of the array.
+  /// to the end of the array. Throws UsageError if that is too long for 32-bit indices.
   void assign(std::uint32_t vertex, std::span<const Corner> corners);
   /// Adds a vertex without corners and returns its number.
   std::uint32_t add_vertex();
