@@ -247,8 +247,11 @@ class Simplifier::Impl {
     queue.copy_to(mesh_, flags_, locked_);
     max_cost_ = std::max(max_cost_, queue.max_cost());
     pass_cost_ = queue.last_cost();
-    if (queue.is_held()) exhausted_cost_ = HUGE_VAL;
-    if (goes_on && mesh_.triangles.size() > goal.triangles + 1) exhausted_cost_ = goal.max_cost;
+    if (queue.is_held()) {
+      exhausted_cost_ = HUGE_VAL;
+    } else if (goes_on && mesh_.triangles.size() > goal.triangles + 1) {
+      exhausted_cost_ = goal.max_cost;
+    }
   }
 
   enum class PassEnd : std::uint8_t { near, exhausted, dead_end, told };

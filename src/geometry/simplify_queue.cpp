@@ -249,10 +249,7 @@ void CollapseQueue::tidy(std::uint32_t merged) {
   tidied_.erase(std::unique(tidied_.begin(), tidied_.end()), tidied_.end());
   const std::size_t before = tidied_.size();
   for (std::size_t i = 0; i < before; ++i) tidy_star(tidied_[i]);
-  for (const std::uint32_t v : tidied_) {
-    stale_[v] = 1;
-    if (v != merged) refused_[v] = 1;
-  }
+  for (const std::uint32_t v : tidied_) stale_[v] = 1;
   for (const std::uint32_t v : tidied_) {
     if (v != merged) look_again(v);
   }
