@@ -9,6 +9,7 @@
 
 #include "geometry/collapse.hpp"
 #include "geometry/fans.hpp"
+#include "geometry/surroundings.hpp"
 
 namespace meshfarm {
 
@@ -59,8 +60,9 @@ class GeneralJudge {
   bool crowds_an_edge();
   void add_star(Vec3 half);
   void add_lines(const End& end, const End& other, Vec3 at);
-  double loss_factor() const;
   Collapse at_position(Vec3 position, Turn turn) const;
+  Collapse removal();
+  void list_removed();
 
   CollapseState state_;
   End a_;
@@ -76,6 +78,8 @@ class GeneralJudge {
   std::uint32_t removed_ = 0;
   std::uint32_t staying_ = 0;
   Vec3 middle_;
+  std::vector<std::uint32_t> removed_vertices_;  // ascending
+  Surroundings surroundings_;
   CollapseStar star_;
   EdgeQuadric quadric_;
 };

@@ -98,12 +98,14 @@ struct EdgeQuadric {
   double cost(Vec3 x) const { return unless_noise(dot(a * x - b * 2.0, x) + c); }
 
   /// Planes are endless and do not see a thin spike or tube draw back: only its tiny tip moves away
-  /// from its planes. The area that is lost tells. Without this the thin tubes of a scan shrank by
-  /// 50 times its error, a third of the RMS at 10 % of the triangles. Nor do they see the rim of a
-  /// wall without thickness slide outwards in its plane: then the area that is gained tells (ten
-  /// times the error of a CT at half of its triangles). Weights by the longest edge helped less.
+  /// from its planes. The area that is lost tells. Nor do they see the rim of a wall without
+  /// thickness slide outwards in its plane: then the area that is gained tells. With weights of 0.1
+  /// the error of CT scans is 20 % higher and the greatest distance of a dragon seven times as far;
+  /// from 1 on flat surfaces lose 5 %. Weights by the longest edge helped less.
   double cost_of_lost_area(double area) const {
-    return unless_noise(0.1 * std::abs(area) * squared_length);
+    constexpr double k_of_lost = 0.8;
+    constexpr double k_of_gained = 0.2;
+    return unless_noise((area > 0 ? k_of_lost : -k_of_gained) * area * squared_length);
   }
 
  private:
