@@ -268,6 +268,10 @@ class Simplifier::Impl {
       // What is cheap is refused: what is dear is not to be taken for it.
       if (refused_for_topology_ > collapses_) return PassEnd::dead_end;
       if (static_cast<double>(removed) < k_least_ranked * static_cast<double>(before)) {
+        if (ranks_exactly_ && goal.max_cost > cost_of(pass.limit)) {
+          ranks_exactly_ = false;
+          continue;
+        }
         return goal.max_cost <= cost_of(pass.limit) ? PassEnd::exhausted : PassEnd::dead_end;
       }
     }
@@ -348,7 +352,7 @@ class Simplifier::Impl {
   void begin_pass() {
     build_adjacency();
     ranking_.begin_pass(
-        {mesh_.positions, mesh_.triangles, flags_, &adjacency_, &creases_.test(), seam_only_});
+        {mesh_.positions, mesh_.triangles, flags_, &adjacency_, &creases_.test(), seam_only_, false, false, ranks_exactly_});
   }
 
   /// Far from the goal passes go block by block and take too few edges to overshoot it; the last
@@ -476,6 +480,9 @@ class Simplifier::Impl {
   std::unique_ptr<EndGame> end_game_;
   Adjacency adjacency_;
   bool adjacency_is_current_ = false;
+  // Ranks by bounds, so that what is flat goes before what is nearly flat. Where little of that is
+  // left most of what ranks low is dearer, and refused.
+  bool ranks_exactly_ = true;
   EdgeRanking ranking_;
   std::vector<std::uint32_t> target_;  // the vertex that a vertex becomes in this pass
   std::vector<std::uint8_t> touched_;  // took part in a collapse of this pass

@@ -14,6 +14,9 @@ namespace {
 // the rounding of floats.
 constexpr double k_length_share = 2e-7;
 
+// Where a ranking is a lower bound, and what is flat is told exactly later.
+constexpr double k_least_length_share = 1e-12;
+
 // Of the trace, as in EdgeQuadric::best.
 constexpr float k_ridge = 1e-5F;
 
@@ -27,10 +30,10 @@ double ranking_cost(double cost, double trace, double squared_half) {
 
 }  // namespace
 
-void EdgeCosts::compute() {
+void EdgeCosts::compute(bool bounds) {
   gather();
   solve();
-  weigh();
+  weigh(bounds);
 }
 
 void EdgeCosts::gather() {
@@ -85,14 +88,18 @@ void EdgeCosts::solve() {
 }
 
 /// In double, as float has not the range for an area times a squared distance.
-void EdgeCosts::weigh() {
+void EdgeCosts::weigh(bool bounds) {
   for (std::size_t i = 0; i < k_size; ++i) {
     least_[i] = least_cost(cost_[i], trace_[i], squared_[i]);
     ranking_[i] = ranking_cost(cost_[i], trace_[i], squared_[i]);
   }
+  if (!bounds) return;
+  for (std::size_t i = 0; i < k_size; ++i) {
+    ranking_[i] = least_[i] + k_least_length_share * trace_[i] * squared_[i];
+  }
 }
 
-EdgeCost cost_of_end(const FloatQuadric& other, Vec3 half) {
+EdgeCost cost_of_end(const FloatQuadric& other, Vec3 half, bool bounds) {
   const FloatQuadric& q = other;
   const Vec3 moved{q.xx * half.x + q.xy * half.y + q.xz * half.z,
                    q.xy * half.x + q.yy * half.y + q.yz * half.z,
@@ -101,7 +108,9 @@ EdgeCost cost_of_end(const FloatQuadric& other, Vec3 half) {
   if (!(trace > 0)) return {};
   const double cost = 4 * dot(moved, half) / trace;
   const double squared = squared_length(half);
-  return {least_cost(cost, trace, squared), ranking_cost(cost, trace, squared)};
+  const double least = least_cost(cost, trace, squared);
+  if (bounds) return {least, least + k_least_length_share * trace * squared};
+  return {least, ranking_cost(cost, trace, squared)};
 }
 
 }  // namespace meshfarm

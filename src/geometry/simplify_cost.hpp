@@ -65,14 +65,15 @@ class EdgeCosts {
     hy_[i] = static_cast<float>(half.y);
     hz_[i] = static_cast<float>(half.z);
   }
-  void compute();
+  /// With `bounds` a ranking is a lower bound of the cost.
+  void compute(bool bounds = false);
   EdgeCost get(std::size_t i) const { return {least_[i], ranking_[i]}; }
 
  private:
   using Lane = std::array<float, k_size>;
   void gather();
   void solve();
-  void weigh();
+  void weigh(bool bounds);
 
   std::array<FloatQuadric, k_size> a_;
   std::array<FloatQuadric, k_size> b_;
@@ -88,6 +89,6 @@ class EdgeCosts {
 };
 
 /// The cost of drawing the edge's other end to the vertex whose quadric is not counted.
-EdgeCost cost_of_end(const FloatQuadric& other, Vec3 half);
+EdgeCost cost_of_end(const FloatQuadric& other, Vec3 half, bool bounds = false);
 
 }  // namespace meshfarm

@@ -42,7 +42,7 @@ void CollapseQueue::start(std::span<const Triangle> triangles) {
   stale_.assign(vertices, 0);
   heap_.clear();
   ranking_.begin_pass({mesh_.positions, triangles, mesh_.flags, &mesh_.adjacency,
-                       &mesh_.creases.test(), mesh_.seam_only, true, mesh_.any_topology});
+                       &mesh_.creases.test(), mesh_.seam_only, true, mesh_.any_topology, true});
   judge_.move_to(state());
   general_.move_to(state());
 }

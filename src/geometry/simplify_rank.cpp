@@ -157,7 +157,7 @@ void EdgeRanking::list_edges_at(std::uint32_t vertex, std::uint32_t least) {
 EdgeCost EdgeRanking::cost_of_line_end(const Edge& e) const {
   const bool stays_at_a = line_rank(input_.flags[e.a]) > line_rank(input_.flags[e.b]);
   return cost_of_end(quadrics_[stays_at_a ? e.b : e.a],
-                     (input_.positions[e.b] - input_.positions[e.a]) * 0.5);
+                     (input_.positions[e.b] - input_.positions[e.a]) * 0.5, input_.bounds);
 }
 
 /// Counts the keys of the edges of one in so many vertices into starts_.

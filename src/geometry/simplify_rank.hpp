@@ -46,6 +46,7 @@ struct RankingInput {
   /// Edges are judged by what can judge any: those at complex vertices are listed, too.
   bool general = false;
   bool any_topology = false;  // and those that would change the topology
+  bool bounds = false;        // rank by lower bounds of the costs
 };
 
 /// Which edges a pass may take: those that rank and cost no more than this.
@@ -129,7 +130,7 @@ void EdgeRanking::cost_listed(const Take& take) {
       const auto [a, b] = edges[i];
       costs_.put(i, quadrics_[a], quadrics_[b], (positions[b] - positions[a]) * 0.5);
     }
-    costs_.compute();
+    costs_.compute(input_.bounds);
     for (std::size_t i = 0; i < count; ++i) {
       const Edge& e = edges[i];
       const int unlike = (flags[e.a] ^ flags[e.b]) & (k_line | k_corner | k_fixed);
