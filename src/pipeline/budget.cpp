@@ -32,10 +32,6 @@ constexpr double k_bound_samples = 200'000;
 /// that is chosen, and all together no more than so many times what is wanted: one level is 1.6.
 constexpr double k_fair_share = 0.1;
 constexpr double k_fair_excess = 2;
-/// Nor is more than this to be in parts that so many levels did not halve: where nothing is
-/// refused, one and a half are enough.
-constexpr double k_slow_share = 0.3;
-constexpr std::int32_t k_halving_levels = 3;
 
 /// With a bound on the error, a ladder begins at this share of the part, or as it came if even that
 /// is too far from it; and parts may take up this share of the bound, the finish the rest.
@@ -325,30 +321,18 @@ class Rounds {
   }
 
   /// Whether parts that keep their topology could not follow the others to the common level, or all
-  /// together not to the count, or that count only at a cost that rises out of proportion.
+  /// together not to the count. What is kept at too high a cost before that the finish finds out.
   bool is_unfair() const {
     double held = 0;
-    double slow = 0;
     bool any = false;
     for (const ResultSummary& result : results_) {
       if (!result.held_by_topology) continue;
       any = true;
       const Rung& last = result.rungs.back();
       if (last.level < level_) held += static_cast<double>(last.free_triangles);
-      if (is_slow(result.rungs)) {
-        slow += static_cast<double>(result.rungs[rung_at(result.rungs, level_)].free_triangles);
-      }
     }
     const auto all = static_cast<double>(free_triangles(level_));
-    return held > k_fair_share * all || slow > k_slow_share * all ||
-           (any && all > k_fair_excess * wanted());
-  }
-
-  /// Whether some levels before the chosen one there were less than twice the triangles.
-  bool is_slow(const std::vector<Rung>& ladder) const {
-    const std::int32_t before = level_ - k_halving_levels;
-    return ladder.front().level <= before && ladder[rung_at(ladder, before)].free_triangles <
-                                                 2 * ladder[rung_at(ladder, level_)].free_triangles;
+    return held > k_fair_share * all || (any && all > k_fair_excess * wanted());
   }
 
   const Manifest& manifest_;

@@ -75,8 +75,8 @@ TEST_CASE("area that is lost or gained costs") {
   EdgeQuadric q;
   q.squared_length = 2;
   q.a.add({0, 0, 1}, 1);
-  CHECK(q.cost_of_lost_area(3) == doctest::Approx(0.6));
-  CHECK(q.cost_of_lost_area(-3) == q.cost_of_lost_area(3));
+  CHECK(q.cost_of_lost_area(3) == doctest::Approx(4.8));
+  CHECK(q.cost_of_lost_area(-3) == doctest::Approx(1.2));
 }
 
 TEST_CASE("a border plane stands on the edge, perpendicular to the triangle") {
