@@ -6,8 +6,9 @@ namespace meshfarm {
 namespace {
 
 constexpr double k_cos_60_squared = 0.25;
-// Beyond this turn a look at the neighbours tells whether a triangle folds over.
 constexpr double k_cos_30_squared = 0.75;
+// Beyond this turn, of 15 degrees, a look at the neighbours tells whether a triangle folds over.
+constexpr double k_cos_15_squared = 0.933;
 // Of the angle at the new vertex: near 0 and near 180 degrees alike are as good as no area.
 constexpr double k_least_sine_squared = 1e-6;
 
@@ -59,7 +60,7 @@ bool CollapseStar::is_folded(std::uint32_t first, std::uint32_t kept, Vec3 x) co
     const Vec3 old_normal = at(two.normal);
     const double turn = meshfarm::dot(normal, old_normal);
     const double sizes = squared_length(normal) * two.squared_size[i % 2];
-    if (turn * turn < k_cos_30_squared * sizes && meshfarm::dot(normal, all) <= 0) return true;
+    if (turn * turn < k_cos_15_squared * sizes && meshfarm::dot(normal, all) <= 0) return true;
   }
   return false;
 }
@@ -68,6 +69,7 @@ std::optional<double> CollapseStar::lost_area_from(std::uint32_t first, std::uin
                                                    Turn turn) const {
   Pair twice_lost = sums_.twice_area;
   Mask steep{};
+  Mask turning{};
   const Vec3Pair to = from(x);
   for (std::uint32_t i = 0; i < kept; i += 2) {
     const Two& two = pairs_[first + i / 2];
@@ -84,6 +86,7 @@ std::optional<double> CollapseStar::lost_area_from(std::uint32_t first, std::uin
     dot(q, q, squared_q);
     const Pair sizes = size * two.squared_size;
     steep |= turned * turned < k_cos_30_squared * sizes;
+    turning |= turned * turned < k_cos_15_squared * sizes;
     const Mask good = (turned > 0) & (turned * turned >= k_cos_60_squared * sizes) &
                       (size > k_least_sine_squared * (squared_p * squared_q));
     if ((good[0] & good[1]) == 0) {
@@ -95,8 +98,8 @@ std::optional<double> CollapseStar::lost_area_from(std::uint32_t first, std::uin
     root(size, length);
     twice_lost -= length;
   }
-  const bool any_steep = (steep[0] | steep[1]) != 0;
-  if (any_steep && (turn == Turn::narrow || is_folded(first, kept, x))) return {};
+  if (turn == Turn::narrow && (steep[0] | steep[1]) != 0) return {};
+  if ((turning[0] | turning[1]) != 0 && is_folded(first, kept, x)) return {};
   return 0.5 * (twice_lost[0] + twice_lost[1]);
 }
 
