@@ -185,7 +185,7 @@ void GeneralJudge::add_lines(const End& end, const End& other, Vec3 at) {
 
 Collapse GeneralJudge::at_position(Vec3 position, Turn turn) const {
   const Vec3 x = position - middle_;
-  const std::optional<double> lost = star_.lost_area_from(0, staying_, x, turn);
+  const std::optional<double> lost = star_.lost_area_from(0, staying_, x, {.turn = turn});
   if (!lost) return {};
   const double lost_cost = quadric_.cost_of_lost_area(*lost);
   const double planes = quadric_.cost(x);

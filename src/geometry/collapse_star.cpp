@@ -6,9 +6,6 @@ namespace meshfarm {
 namespace {
 
 constexpr double k_cos_60_squared = 0.25;
-constexpr double k_cos_30_squared = 0.75;
-// Beyond this turn, of 15 degrees, a look at the neighbours tells whether a triangle folds over.
-constexpr double k_cos_15_squared = 0.933;
 // Of the angle at the new vertex: near 0 and near 180 degrees alike are as good as no area.
 constexpr double k_least_sine_squared = 1e-6;
 
@@ -44,7 +41,8 @@ bool CollapseStar::is_acceptable(const Two& two, int lane, Vec3 x) {
 
 /// The normal of a sliver may turn by 60 degrees again and again and so fold over in the end. One
 /// that turns much must still face the way of its new neighbours, each counted by its area.
-bool CollapseStar::is_folded(std::uint32_t first, std::uint32_t kept, Vec3 x) const {
+bool CollapseStar::is_folded(std::uint32_t first, std::uint32_t kept, Vec3 x,
+                             double cos_squared) const {
   const Vec3Pair to = from(x);
   Vec3Pair sum{};
   for (std::uint32_t i = 0; i < kept; i += 2) {
@@ -60,13 +58,13 @@ bool CollapseStar::is_folded(std::uint32_t first, std::uint32_t kept, Vec3 x) co
     const Vec3 old_normal = at(two.normal);
     const double turn = meshfarm::dot(normal, old_normal);
     const double sizes = squared_length(normal) * two.squared_size[i % 2];
-    if (turn * turn < k_cos_15_squared * sizes && meshfarm::dot(normal, all) <= 0) return true;
+    if (turn * turn < cos_squared * sizes && meshfarm::dot(normal, all) <= 0) return true;
   }
   return false;
 }
 
 std::optional<double> CollapseStar::lost_area_from(std::uint32_t first, std::uint32_t kept, Vec3 x,
-                                                   Turn turn) const {
+                                                   const TurnLimits& limits) const {
   Pair twice_lost = sums_.twice_area;
   Mask steep{};
   Mask turning{};
@@ -86,7 +84,7 @@ std::optional<double> CollapseStar::lost_area_from(std::uint32_t first, std::uin
     dot(q, q, squared_q);
     const Pair sizes = size * two.squared_size;
     steep |= turned * turned < k_cos_30_squared * sizes;
-    turning |= turned * turned < k_cos_15_squared * sizes;
+    turning |= turned * turned < limits.cos_squared * sizes;
     const Mask good = (turned > 0) & (turned * turned >= k_cos_60_squared * sizes) &
                       (size > k_least_sine_squared * (squared_p * squared_q));
     if ((good[0] & good[1]) == 0) {
@@ -98,8 +96,8 @@ std::optional<double> CollapseStar::lost_area_from(std::uint32_t first, std::uin
     root(size, length);
     twice_lost -= length;
   }
-  if (turn == Turn::narrow && (steep[0] | steep[1]) != 0) return {};
-  if ((turning[0] | turning[1]) != 0 && is_folded(first, kept, x)) return {};
+  if (limits.turn == Turn::narrow && (steep[0] | steep[1]) != 0) return {};
+  if ((turning[0] | turning[1]) != 0 && is_folded(first, kept, x, limits.cos_squared)) return {};
   return 0.5 * (twice_lost[0] + twice_lost[1]);
 }
 

@@ -21,6 +21,8 @@ enum class Turn : std::uint8_t { wide, narrow };
 class CollapseStar {
  public:
   static constexpr std::uint32_t k_capacity = 256;
+  static constexpr double k_cos_30_squared = 0.75;
+  static constexpr double k_cos_15_squared = 0.933;
 
   using Pair = double __attribute__((vector_size(16)));
   using Mask = std::int64_t __attribute__((vector_size(16)));  // all bits of a lane or none
@@ -49,11 +51,15 @@ class CollapseStar {
   /// The area that is lost if both ends move to x; nothing if that spoils the shape of one of the
   /// `kept` triangles after the shared ones.
   std::optional<double> lost_area(std::uint32_t kept, Vec3 x, Turn turn = Turn::wide) const {
-    return lost_area_from(1, kept, x, turn);
+    return lost_area_from(1, kept, x, {turn, k_cos_15_squared});
   }
+  struct TurnLimits {
+    Turn turn = Turn::wide;
+    double cos_squared = k_cos_30_squared;  // beyond this a look tells whether a triangle folds
+  };
   /// The same, where the kept ones begin at another pair.
   std::optional<double> lost_area_from(std::uint32_t first, std::uint32_t kept, Vec3 x,
-                                       Turn turn) const;
+                                       const TurnLimits& limits) const;
 
  private:
   struct Vec3Pair {
@@ -80,7 +86,7 @@ class CollapseStar {
   }
   static void root(const Pair& a, Pair& result) { result = Pair{std::sqrt(a[0]), std::sqrt(a[1])}; }
   void add_planes(const Two& two);
-  bool is_folded(std::uint32_t first, std::uint32_t kept, Vec3 x) const;
+  bool is_folded(std::uint32_t first, std::uint32_t kept, Vec3 x, double cos_squared) const;
   static bool is_acceptable(const Two& two, int lane, Vec3 x);
 
   Vec3 middle_;

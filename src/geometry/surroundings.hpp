@@ -3,9 +3,11 @@
 #pragma once
 
 #include <cstdint>
-#include <memory>
+#include <optional>
 #include <span>
+#include <vector>
 
+#include <meshfarm/geometry/point_index.hpp>
 #include <meshfarm/geometry/vec.hpp>
 
 #include "geometry/adjacency.hpp"
@@ -23,19 +25,16 @@ struct ShrinkingMesh {
 /// surface, where they were when it was first asked.
 class Surroundings {
  public:
-  Surroundings();
-  ~Surroundings();
-  Surroundings(Surroundings&&) noexcept;
-  Surroundings& operator=(Surroundings&&) noexcept;
-
   /// The squared distance of the nearest vertex that is left and not one of `without` (ascending);
   /// infinite if there is none.
   double squared_distance(const ShrinkingMesh& mesh, Vec3 from,
                           std::span<const std::uint32_t> without);
 
  private:
-  class Tree;
-  std::unique_ptr<Tree> tree_;
+  void list_vertices(const ShrinkingMesh& mesh);
+
+  std::vector<std::uint32_t> vertices_;  // of the points
+  std::optional<PointIndex> index_;
 };
 
 }  // namespace meshfarm

@@ -7,27 +7,14 @@
 #include <utility>
 
 #include <metis.h>
-#include <nanoflann.hpp>
 
+#include <meshfarm/geometry/point_index.hpp>
 #include <meshfarm/partition/cell_graph.hpp>
 #include <meshfarm/util/errors.hpp>
 #include <meshfarm/util/parallel.hpp>
 
 namespace meshfarm {
 namespace {
-
-/// The view of the cells' mean positions that nanoflann asks for.
-struct CellCloud {
-  std::span<const Cell> cells;
-  std::size_t kdtree_get_point_count() const { return cells.size(); }
-  double kdtree_get_pt(std::size_t i, std::size_t axis) const {
-    return cells[i].mean[static_cast<int>(axis)];
-  }
-  template <class BoundingBox>
-  bool kdtree_get_bbox(BoundingBox&) const {
-    return false;
-  }
-};
 
 /// For each cell the cells next to it, as METIS takes them: those of cell i stand from first[i] on.
 struct Graph {
@@ -37,19 +24,17 @@ struct Graph {
 
 /// The k nearest of each cell, k places a cell, itself among them or not; what is not used is -1.
 std::vector<idx_t> nearest_cells(std::span<const Cell> cells, std::size_t k, unsigned threads) {
-  using Tree = nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<double, CellCloud>,
-                                                   CellCloud, 3, std::uint32_t>;
   constexpr std::size_t k_chunk = 512;
-  const CellCloud cloud{cells};
-  const Tree tree(3, cloud);
+  std::vector<Vec3> means;
+  means.reserve(cells.size());
+  for (const Cell& cell : cells) means.push_back(cell.mean);
+  const PointIndex index(std::move(means));
   std::vector<idx_t> nearest(cells.size() * k, -1);
   parallel_for((cells.size() + k_chunk - 1) / k_chunk, threads, [&](std::uint64_t chunk) {
     std::vector<std::uint32_t> found(k);
-    std::vector<double> distances(k);
     const std::size_t end = std::min<std::size_t>(cells.size(), (chunk + 1) * k_chunk);
     for (std::size_t i = chunk * k_chunk; i < end; ++i) {
-      const double point[3] = {cells[i].mean.x, cells[i].mean.y, cells[i].mean.z};
-      const std::size_t count = tree.knnSearch(point, k, found.data(), distances.data());
+      const std::size_t count = index.nearest(cells[i].mean, found);
       for (std::size_t n = 0; n < count; ++n) nearest[i * k + n] = static_cast<idx_t>(found[n]);
     }
   });

@@ -1,0 +1,35 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include <meshfarm/geometry/vec.hpp>
+
+namespace meshfarm {
+
+/// A k-d tree over fixed points. Several threads may ask it at a time.
+class PointIndex {
+ public:
+  explicit PointIndex(std::vector<Vec3> points);
+  ~PointIndex();
+  PointIndex(PointIndex&&) noexcept;
+  PointIndex& operator=(PointIndex&&) noexcept;
+
+  /// Writes the indices of the nearest points to `found`, nearest first, and returns how many there
+  /// are: as many as it has room for, or all.
+  std::size_t nearest(Vec3 from, std::span<std::uint32_t> found) const;
+
+  /// The squared distance of the nearest point that counts; infinite if none does.
+  double squared_distance(Vec3 from, const std::function<bool(std::uint32_t point)>& counts) const;
+
+ private:
+  class Tree;
+  std::unique_ptr<Tree> tree_;
+};
+
+}  // namespace meshfarm

@@ -1,0 +1,81 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#include <array>
+#include <cmath>
+#include <utility>
+
+#include <nanoflann.hpp>
+
+#include <meshfarm/geometry/point_index.hpp>
+
+namespace meshfarm {
+namespace {
+
+/// The view of the points that nanoflann asks for.
+struct PointCloud {
+  std::vector<Vec3> points;
+  std::size_t kdtree_get_point_count() const { return points.size(); }
+  double kdtree_get_pt(std::size_t i, std::size_t axis) const {
+    return points[i][static_cast<int>(axis)];
+  }
+  template <class BoundingBox>
+  bool kdtree_get_bbox(BoundingBox&) const {
+    return false;
+  }
+};
+
+/// What a search has found so far, as nanoflann asks for it: the nearest that counts.
+class NearestThatCounts {
+ public:
+  explicit NearestThatCounts(const std::function<bool(std::uint32_t)>& counts) : counts_(counts) {}
+  bool addPoint(double squared, std::uint32_t point) {
+    if (squared < squared_ && counts_(point)) squared_ = squared;
+    return true;
+  }
+  double worstDist() const { return squared_; }
+  bool full() const { return true; }
+  std::size_t size() const { return 1; }
+
+ private:
+  const std::function<bool(std::uint32_t)>& counts_;
+  double squared_ = HUGE_VAL;
+};
+
+std::array<double, 3> array_of(Vec3 p) {
+  return {p.x, p.y, p.z};
+}
+
+}  // namespace
+
+class PointIndex::Tree {
+ public:
+  explicit Tree(std::vector<Vec3> points) : cloud_{std::move(points)}, index_(3, cloud_) {}
+  const auto& index() const { return index_; }
+
+ private:
+  PointCloud cloud_;
+  nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<double, PointCloud>, PointCloud,
+                                      3, std::uint32_t>
+      index_;
+};
+
+PointIndex::PointIndex(std::vector<Vec3> points)
+    : tree_(std::make_unique<Tree>(std::move(points))) {}
+PointIndex::~PointIndex() = default;
+PointIndex::PointIndex(PointIndex&&) noexcept = default;
+PointIndex& PointIndex::operator=(PointIndex&&) noexcept = default;
+
+std::size_t PointIndex::nearest(Vec3 from, std::span<std::uint32_t> found) const {
+  std::vector<double> squared(found.size());
+  return tree_->index().knnSearch(array_of(from).data(), found.size(), found.data(),
+                                  squared.data());
+}
+
+double PointIndex::squared_distance(Vec3 from,
+                                    const std::function<bool(std::uint32_t)>& counts) const {
+  NearestThatCounts nearest(counts);
+  tree_->index().findNeighbors(nearest, array_of(from).data(), nanoflann::SearchParams());
+  return nearest.worstDist();
+}
+
+}  // namespace meshfarm
