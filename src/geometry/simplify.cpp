@@ -351,8 +351,8 @@ class Simplifier::Impl {
 
   void begin_pass() {
     build_adjacency();
-    ranking_.begin_pass(
-        {mesh_.positions, mesh_.triangles, flags_, &adjacency_, &creases_.test(), seam_only_, false, false, ranks_exactly_});
+    ranking_.begin_pass({mesh_.positions, mesh_.triangles, flags_, &adjacency_, &creases_.test(),
+                         seam_only_, false, false, ranks_exactly_});
   }
 
   /// Far from the goal passes go block by block and take too few edges to overshoot it; the last

@@ -4,6 +4,7 @@
 // What becomes of handles, pieces, turned triangles and lines where sheets meet.
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <map>
 
 #include <doctest/doctest.h>
@@ -42,6 +43,11 @@ Distance error_of(const Mesh& original, const Mesh& result) {
   const Distance back = measure_distance(result, original, options);
   return {std::max(there.rms, back.rms), std::max(there.mean, back.mean),
           std::max(there.max, back.max)};
+}
+
+Mesh scaled(Mesh mesh, double factor) {
+  for (Vec3& p : mesh.positions) p = p * factor;
+  return mesh;
 }
 
 /// A bent plate with holes x holes square holes: closed, as many handles.
@@ -281,6 +287,38 @@ TEST_CASE("topology: a thin bridge is kept, or pinched off and cut apart") {
   CHECK(is_clean(simplified.mesh()));
   const Validity after = check(simplified.mesh());
   CHECK(after.euler == 2 * static_cast<std::int64_t>(after.components));
+}
+
+TEST_CASE("topology: of two specks that of which the rest is near goes first") {
+  const Mesh speck = scaled(sphere(1), 0.02);
+  for (const bool near_first : {true, false}) {
+    CAPTURE(near_first);
+    Mesh mesh = sphere(4);
+    const Vec3 near{1.05, 0, 0};
+    const Vec3 far{0, 3, 0};
+    append(mesh, speck, near_first ? near : far);
+    append(mesh, speck, near_first ? far : near);
+    // A result that has room for one of them.
+    const Simplifier result = reduced(mesh, 60, TopologyMode::simplify);
+    CHECK(result.triangles() == 60);
+    const auto left_round = [&](Vec3 place) {
+      const std::vector<Vec3>& p = result.mesh().positions;
+      return std::any_of(p.begin(), p.end(), [&](Vec3 v) { return length(v - place) < 0.03; });
+    };
+    CHECK(left_round(far));
+    CHECK(!left_round(near));
+  }
+}
+
+TEST_CASE("what is flat goes before what is nearly flat") {
+  const Mesh mesh = grid(100, 100, [](double x, double y) {
+    return x < 0.5 ? 0.0 : 1e-6 * std::sin(300 * x) * std::sin(300 * y);
+  });
+  SimplifyOptions options;
+  Simplifier result(mesh, options);
+  result.reduce({mesh.triangles.size() * 3 / 5});
+  CHECK(result.triangles() == mesh.triangles.size() * 3 / 5);
+  CHECK(error_of(mesh, result.mesh()).rms < 1e-9);
 }
 
 TEST_CASE("flat faces and straight edges are exact as long as anything else can go") {
