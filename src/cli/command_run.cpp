@@ -49,6 +49,7 @@ class RunCommand : public Command {
         "worker-words", po::bool_switch(&worker_words_),
         "only print, one a line, what a 'meshfarm worker STAGE' of this run is to "
         "be started with");
+    when_full_.add(options);
     talk_.add(options);
     positional.add("stage", 1);
   }
@@ -69,8 +70,8 @@ class RunCommand : public Command {
     const std::atomic<bool>& stop = stop_on_signals();
     check_writable(output_);
     const Claim claim(claim_of(output_), output_ + ": is being made");
-    const int code =
-        run_local_farm({stage_, output_, target_, network_, schedule_, talk_, workers_}, stop);
+    const int code = run_local_farm(
+        {stage_, output_, target_, network_, schedule_, when_full_, talk_, workers_}, stop);
     if (code == 3) {
       log_info("stopped; what is done is kept: the same command goes on from there");
     }
@@ -95,6 +96,7 @@ class RunCommand : public Command {
   TargetOptions target_;
   NetworkOptions network_;
   ScheduleWords schedule_;
+  FullWords when_full_;
   TalkOptions talk_;
 };
 

@@ -36,6 +36,7 @@ class SimplifyCommand : public Command {
     options.add_options()("stage", po::value(&stage_)->value_name("FOLDER"),
                           "where parts are staged (default: OUTPUT.stage)")(
         "keep-stage", po::bool_switch(&keep_stage_), "keep the stage, for replay");
+    when_full_.add(options);
     talk_.add(options);
     positional.add("input", 1);
   }
@@ -53,8 +54,8 @@ class SimplifyCommand : public Command {
     check_writable(output_);
     const Claim claim(claim_of(output_), output_ + ": is being made");
     cut_to_stage({input_, stage_, cut_, talk_, stop});
-    const int code =
-        run_local_farm({stage_, output_, target_, network_, schedule_, talk_, workers_}, stop);
+    const int code = run_local_farm(
+        {stage_, output_, target_, network_, schedule_, when_full_, talk_, workers_}, stop);
     if (code == 0 && !keep_stage_) remove_stage(stage_);
     if (code == 3) {
       log_info(
@@ -75,6 +76,7 @@ class SimplifyCommand : public Command {
   CutWords cut_;
   NetworkOptions network_;
   ScheduleWords schedule_;
+  FullWords when_full_;
   TalkOptions talk_;
 };
 

@@ -32,6 +32,7 @@ class SinkCommand : public FarmCommand {
                           "where the result goes, as PLY");
     target_.add(options);
     network_.add(options);
+    when_full_.add(options);
     options.add_options()("wait",
                           po::value(&wait_s_)->default_value(wait_s_)->value_name("SECONDS"),
                           "how long to look for a ventilator");
@@ -56,6 +57,7 @@ class SinkCommand : public FarmCommand {
     options.algorithm = k_algorithm_version;
     options.inspect = check_output;
     options.patience = std::chrono::seconds(wait_s_);
+    options.when_full = when_full_.value();
     options.stop = &stop;
     const auto start = std::chrono::steady_clock::now();
     RunSummary summary;
@@ -82,6 +84,7 @@ class SinkCommand : public FarmCommand {
   std::string output_;
   TargetOptions target_;
   NetworkOptions network_;
+  FullWords when_full_;
   std::uint32_t wait_s_ = 60;
 };
 

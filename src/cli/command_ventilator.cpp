@@ -29,6 +29,7 @@ class VentilatorCommand : public FarmCommand {
     target_.add(options);
     network_.add(options);
     schedule_.add(options);
+    when_full_.add(options);
     options.add_options()("heartbeat-ms",
                           po::value(&heartbeat_ms_)->default_value(heartbeat_ms_)->value_name("N"),
                           "a worker or sink that is silent three times as long is lost");
@@ -62,6 +63,7 @@ class VentilatorCommand : public FarmCommand {
     options.heartbeat = std::chrono::milliseconds(heartbeat_ms_);
     options.hang = std::chrono::seconds(schedule_.hang_s);
     options.schedule = schedule_.options;
+    options.when_full = when_full_.value();
     options.stop = &stop;
     options.patience = std::chrono::seconds(wait_s_);
     options.was_completed = [&, run = options.run] { return was_completed(stage, run); };
@@ -106,6 +108,7 @@ class VentilatorCommand : public FarmCommand {
       phase += ", " + std::to_string(p.jobs_too_big) + " wait for a worker with more memory";
     }
     for (const std::string& host : p.bad_hosts) phase += ", no more jobs for " + host;
+    if (p.no_room) phase += ", no room on the stage, waiting";
     if (p.storage_stalls) phase += ", the stage's storage stands still";
     if (!p.other_build.empty()) phase += ", refused: " + p.other_build;
     if (p.refused > 0) phase += ", " + std::to_string(p.refused) + " strangers refused";
@@ -117,6 +120,7 @@ class VentilatorCommand : public FarmCommand {
   TargetOptions target_;
   NetworkOptions network_;
   ScheduleWords schedule_;
+  FullWords when_full_;
   std::uint32_t heartbeat_ms_ = 1000;
   std::uint32_t wait_s_ = 60;
 };

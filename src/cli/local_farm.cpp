@@ -97,9 +97,10 @@ int run_local_farm(const LocalFarm& farm, const std::atomic<bool>& stop) {
 
   const KeysAside keys(farm, stage);
   shared = joined(shared, keys.words());
+  const std::vector<std::string> of_centre = joined(shared, farm.when_full.words());
   Supervisor supervisor(stop);
   const std::vector<std::string> common =
-      joined(joined({farm.stage}, joined(farm.target.words(), farm.network.words())), shared);
+      joined(joined({farm.stage}, joined(farm.target.words(), farm.network.words())), of_centre);
   supervisor.start(joined({"ventilator"}, joined(common, farm.schedule.words())));
   std::vector<std::string> sink = joined(joined({"sink"}, common), {"--output", farm.output});
   if (farm.talk.json) sink.emplace_back("--json");

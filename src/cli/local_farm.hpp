@@ -17,6 +17,7 @@ struct LocalFarm {
   const TargetOptions& target;
   const NetworkOptions& network;
   const ScheduleWords& schedule;
+  const FullWords& when_full;
   const TalkOptions& talk;
   std::uint32_t workers = 0;
 };

@@ -292,6 +292,16 @@ std::vector<std::string> ScheduleWords::words() const {
           "--hang-seconds",   std::to_string(hang_s)};
 }
 
+void FullWords::add(po::options_description& options) {
+  options.add_options()("no-wait", po::bool_switch(&no_wait),
+                        "where the disk is full: end with 3, to be taken up again, instead of "
+                        "waiting for room");
+}
+
+std::vector<std::string> FullWords::words() const {
+  return no_wait ? std::vector<std::string>{"--no-wait"} : std::vector<std::string>{};
+}
+
 std::uint64_t parse_size(const std::string& text, std::string_view option) {
   double value = 0;
   const char* last = text.data() + text.size();

@@ -12,6 +12,7 @@
 
 #include <meshfarm/farm/schedule.hpp>
 #include <meshfarm/farm/security.hpp>
+#include <meshfarm/farm/when_full.hpp>
 #include <meshfarm/partition/cut.hpp>
 #include <meshfarm/pipeline/run_options.hpp>
 #include <meshfarm/report/progress.hpp>
@@ -104,6 +105,15 @@ struct ScheduleWords {
 
   void add(po::options_description& options);
   void check();
+  std::vector<std::string> words() const;
+};
+
+/// --no-wait.
+struct FullWords {
+  bool no_wait = false;
+
+  void add(po::options_description& options);
+  WhenFull value() const { return no_wait ? WhenFull::end : WhenFull::wait; }
   std::vector<std::string> words() const;
 };
 

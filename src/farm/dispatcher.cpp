@@ -34,8 +34,9 @@ Actions Dispatcher::tick(FarmTime now, Inbox inbox) {
     lose(id, "was silent for " + std::to_string(k_silent_heartbeats) + " heartbeats", in_work(id));
   }
   if (all_read && !finished_ && sink_ && sink_->heard + patience < now_) lose_sink();
+  look_for_room();
   issue();
-  if (!finished_ && sink_ && sink_->ready) {
+  if (may_issue()) {
     for (Scheduler::Pick& pick : scheduler_.second_attempts(plan_, now_)) push(std::move(pick));
     look_for_memory();
   }
@@ -140,7 +141,7 @@ void Dispatcher::sink_joins(const PeerId& peer, const Hello& hello) {
       if (sink_) send(sink_->peer, Refused{Refusal::replaced, "another sink took its place"});
     }
     last_sink_ = hello.incarnation;
-    sink_ = Sink{peer, hello.incarnation, hello.results, now_, false, {}};
+    sink_ = Sink{peer, hello.incarnation, hello.results, now_, false, {}, false};
     to_workers(SinkAt{hello.results});
   }
   sink_->heard = now_;
@@ -157,6 +158,8 @@ void Dispatcher::sink_joins(const PeerId& peer, const Hello& hello) {
 void Dispatcher::on(const PeerId& peer, const Heartbeat& beat) {
   if (sink_ && sink_->peer == peer) {
     sink_->heard = now_;
+    sink_->no_room = beat.no_room;
+    issue();
     return send(peer, Alive{options_.epoch, {}});
   }
   Worker* worker = worker_at(peer, beat.worker, beat.epoch);
@@ -322,6 +325,7 @@ FarmProgress Dispatcher::progress() const {
   }
   progress.bad_hosts = scheduler_.bad_hosts();
   progress.storage_stalls = storage_stalls();
+  progress.no_room = full_ || (sink_ && sink_->no_room);
   progress.other_build = other_build_;
   return progress;
 }

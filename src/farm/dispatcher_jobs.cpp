@@ -13,6 +13,13 @@ namespace {
 /// Attempt numbers go on from epoch to epoch, so that a worker which outlives a ventilator never
 /// publishes two results under one name.
 constexpr std::uint32_t k_attempts_per_epoch = 1000;
+/// A full stage is probed so often at first, and then twice as seldom each time.
+constexpr FarmTime k_first_probe{1000};
+constexpr FarmTime k_longest_pause{5000};
+/// Where it is full again and again, the pauses grow up to this.
+constexpr FarmTime k_longest_relapse{60'000};
+constexpr std::uint64_t k_least_probe = std::uint64_t{64} << 10;
+constexpr std::uint64_t k_greatest_probe = std::uint64_t{64} << 20;
 
 }  // namespace
 
@@ -29,10 +36,12 @@ bool Dispatcher::from_sink(const PeerId& peer, std::uint32_t epoch) {
 
 void Dispatcher::on(const PeerId& peer, const Accept& accept) {
   if (!from_sink(peer, accept.epoch)) return;
+  greatest_output_ = std::max(greatest_output_, accept.output.file.size);
   if (!sink_->ready) {
     sink_->told[accept.key] = accept.output;
   } else {
     const bool fresh = plan_.accept(accept.key, accept.output);
+    if (fresh && !full_) relapses_ = 0;
     if (fresh && options_.tell && accept.worker.value != 0) {
       tell(JobAccepted{accept.worker, accept.key, plan_.job(accept.key), plan_.round(accept.key),
                        accept.output.file.size, accept.times});
@@ -58,6 +67,10 @@ void Dispatcher::on(const PeerId& peer, const Reject& reject) {
       // A worker may have kept it from a run before: room may have been made since.
       if (!holds(reject.worker, reject.key, reject.attempt)) {
         reject_attempt(reject);
+        break;
+      }
+      if (options_.when_full == WhenFull::wait) {
+        stage_is_full(reject);
         break;
       }
       return finish("the stage has no room left (" + reject.failure.reason +
@@ -164,8 +177,47 @@ void Dispatcher::set_room(WorkerId id) {
   scheduler_.set_room(id, may ? worker.credit - worker.sent : 0);
 }
 
+/// The job is ready again, and nobody is to blame.
+void Dispatcher::stage_is_full(const Reject& reject) {
+  send(workers_.at(reject.worker).peer, Done{reject.key, reject.attempt});
+  drop(reject.worker, reject.key);
+  plan_.give_back(reject.key);
+  if (full_) return;
+  FullStage full;
+  full.pause = std::min(k_first_probe * (1 << std::min(relapses_, 10U)), k_longest_relapse);
+  full.next_probe = now_ + full.pause;
+  full_ = full;
+  ++relapses_;
+}
+
+/// What is left of a result's worth of room would let all workers compute in vain: the more often
+/// it was full again, the more room is asked for.
+void Dispatcher::look_for_room() {
+  if (finished_ || !full_ || full_->probing || now_ < full_->next_probe) return;
+  full_->probing = true;
+  const std::uint64_t wanted = std::max(k_least_probe, greatest_output_)
+                               << std::min(relapses_, 10U);
+  out_.push_back(ProbeStage{std::min(wanted, k_greatest_probe)});
+}
+
+Actions Dispatcher::probed(const std::string& problem, FarmTime now) {
+  now_ = std::max(now_, now);
+  if (full_ && problem.empty()) full_.reset();
+  if (full_) {
+    full_->probing = false;
+    if (full_->pause < k_longest_pause) full_->pause = std::min(2 * full_->pause, k_longest_pause);
+    full_->next_probe = now_ + full_->pause;
+  }
+  issue();
+  return take();
+}
+
+bool Dispatcher::may_issue() const {
+  return !finished_ && sink_ && sink_->ready && !sink_->no_room && !full_;
+}
+
 void Dispatcher::issue() {
-  while (!finished_ && sink_ && sink_->ready) {
+  while (may_issue()) {
     auto pick = scheduler_.next(plan_, now_);
     if (!pick) return;
     push(std::move(*pick));

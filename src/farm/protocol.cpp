@@ -58,7 +58,7 @@ auto fields(M& m) {
 template <Is<Heartbeat> M>
 auto fields(M& m) {
   return std::tie(m.epoch, m.worker, m.held, m.received, m.progress, m.still, m.still_ms,
-                  m.in_storage, m.rss_bytes);
+                  m.in_storage, m.rss_bytes, m.no_room);
 }
 template <Is<Alive> M>
 auto fields(M& m) {

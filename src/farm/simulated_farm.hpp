@@ -121,6 +121,7 @@ class SimulatedFarm {
   void act(OpenLane& each);
   void act(CloseLane& each);
   void act(PushJob& each);
+  void act(ProbeStage& each);
   void act(Finish& each);
   void act(Tell&) {}
   Worker* worker_at(const std::string& peer);

@@ -11,6 +11,7 @@ namespace {
 /// One seed in so many takes its messages through the wire's format: the others need the time for
 /// more histories.
 constexpr std::uint64_t k_wire_every = 32;
+constexpr std::uint64_t k_ends_when_full_every = 5;
 /// A ventilator of many workers would be busy with heartbeats alone.
 constexpr std::uint32_t k_workers_per_heartbeat_ms = 2;
 
@@ -25,6 +26,8 @@ SimulationOptions farm_of(const SeedsOptions& seeds, std::uint64_t seed) {
   SimulationOptions options;
   options.seed = seed;
   options.faults = faults_of_seed(seed);
+  // Most runs wait where the disk is full; the others are started again by their user.
+  if (seed % k_ends_when_full_every == 0) options.when_full = WhenFull::end;
   options.through_wire = seed % k_wire_every == 0;
   options.heartbeat =
       std::max(options.heartbeat, FarmTime(seeds.workers / k_workers_per_heartbeat_ms));

@@ -28,7 +28,7 @@ void SimulatedFarm::start_sink() {
   member.host = "sink";
   member.results = sink_.here;
   member.patience = k_patience;
-  sink_.core = std::make_unique<SinkCore>(member, source_, journal_);
+  sink_.core = std::make_unique<SinkCore>(member, source_, journal_, options_.when_full);
   tick_sink(life);
 }
 
@@ -81,10 +81,14 @@ void SimulatedFarm::sink_act(Check& each) {
   queue_.at(there, [this, each, life = sink_.life] {
     when_awake(sink_, life, [this, each] {
       const bool whole = folder_.has_whole(each.output.file.name);
+      if (whole && !each.from_journal && folder_.full()) {
+        return sink_does(sink_.core->checked(
+            each, {"no space left on device", FailureKind::no_space}, farm_now()));
+      }
       if (whole && !each.from_journal) journal(each);
       // Killed between the journal's sync and the word to the ventilator.
       if (whole && chance(options_.faults.crash_at_job / 4)) return kill_sink();
-      sink_does(sink_.core->checked(each, whole ? "" : "the file is damaged"));
+      sink_does(sink_.core->checked(each, {whole ? "" : "the file is damaged"}, farm_now()));
     });
   });
 }
@@ -103,6 +107,9 @@ void SimulatedFarm::journal(const Check& check) {
 void SimulatedFarm::sink_act(MakeOutput&) {
   queue_.in(up_to(std::chrono::milliseconds(faulty() ? 5000 : 1)), [this, life = sink_.life] {
     when_awake(sink_, life, [this] {
+      if (folder_.full()) {
+        return sink_does(sink_.core->completed({"no space left on device", true}, farm_now()));
+      }
       const auto made = sink_.core->rounds().outputs();
       for (const AcceptedJob& each : made) {
         checks_.that(folder_.has_whole(each.output.file.name), "an accepted file is not there");

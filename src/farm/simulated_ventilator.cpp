@@ -33,6 +33,7 @@ void SimulatedFarm::start_ventilator() {
   dispatcher.epoch = ventilator_.epoch;
   dispatcher.heartbeat = options_.heartbeat;
   dispatcher.schedule = options_.schedule;
+  dispatcher.when_full = options_.when_full;
   ventilator_.core.emplace(Plan(source_, options_.max_attempts), dispatcher);
   endpoints_.push_back({ventilator_.epoch, k_run, "v" + std::to_string(epochs_), "host", 1});
   note(ventilator_.epoch);
@@ -172,6 +173,16 @@ void SimulatedFarm::act(PushJob& each) {
                   worker_does(index_of(worker), worker.core->on_lane(*letter, farm_now()));
                 });
               });
+}
+
+void SimulatedFarm::act(ProbeStage& each) {
+  const SimulatedTime written = folder_.transfer(ventilator_.host, each.bytes);
+  queue_.at(written, [this, life = ventilator_.life] {
+    when_awake(ventilator_, life, [this] {
+      const char* problem = folder_.full() ? "no space left on device" : "";
+      ventilator_does(ventilator_.core->probed(problem, farm_now()));
+    });
+  });
 }
 
 void SimulatedFarm::act(Finish& each) {

@@ -53,7 +53,7 @@ class SinkLoop {
                options.patience,
                {},
                options.algorithm},
-              source, read_journals(stage)) {}
+              source, read_journals(stage), options.when_full) {}
 
   void run() {
     while (!left_) {
@@ -84,8 +84,7 @@ class SinkLoop {
 
   struct Checked {
     Check check;
-    std::string problem;
-    FailureKind kind = FailureKind::attempt;
+    JobFailure problem = {};
   };
 
   void turn() {
@@ -132,12 +131,13 @@ class SinkLoop {
     if (!disk_.idle() || left_) return;
     if (!to_check_.empty()) {
       while (!to_check_.empty() && batch_.size() < k_checks_per_batch) {
-        batch_.push_back({std::move(to_check_.front()), {}, FailureKind::attempt});
+        batch_.push_back({std::move(to_check_.front())});
         to_check_.pop_front();
       }
       disk_.start([this] { check_batch(); });
     } else if (std::exchange(make_output_, false)) {
       making_output_ = true;
+      problem_ = nullptr;
       disk_.start([this] { make_output(); });
     }
   }
@@ -145,13 +145,28 @@ class SinkLoop {
   void disk_answers(FarmTime now) {
     told_problem_ = problem_;
     if (std::exchange(making_output_, false)) {
-      return perform(core_.completed(problem_ ? what(problem_) : SinkProblem{}, now));
+      const SinkProblem problem = problem_ ? what(problem_) : SinkProblem{};
+      perform(core_.completed(problem, now));
+      return tell_of_room(problem.text);
     }
     if (problem_) return perform(core_.fail(what(problem_)));
+    std::string no_room;
     for (const Checked& each : std::exchange(batch_, {})) {
-      if (!each.problem.empty()) log_warning("not accepted: " + each.problem);
-      perform(core_.checked(each.check, each.problem, each.kind));
+      const bool full = each.problem.kind == FailureKind::no_space;
+      if (full) no_room = each.problem.reason;
+      if (!full && !each.problem.reason.empty()) {
+        log_warning("not accepted: " + each.problem.reason);
+      }
+      perform(core_.checked(each.check, each.problem, now));
     }
+    tell_of_room(no_room);
+  }
+
+  /// Once when the waiting begins, and once when it ends.
+  void tell_of_room(const std::string& reason) {
+    const bool waits = core_.waits_for_room();
+    if (waits == std::exchange(told_of_waiting_, waits)) return;
+    log_warning(waits ? "no room, waiting: " + reason : "there is room again");
   }
 
   static SinkProblem what(const std::exception_ptr& problem) {
@@ -180,21 +195,46 @@ class SinkLoop {
         stage_.verify(check.output.file, check.from_journal ? k_journal_patience : ReadPatience{});
         if (!check.from_journal) records.push_back(encode_accepted({check.key, check.output}));
       } catch (const IoError& error) {
-        each.problem = error.what();
-        each.kind = FailureKind::unread;
+        each.problem = {error.what(), FailureKind::unread};
       } catch (const Error& error) {
-        each.problem = error.what();
+        each.problem = {error.what()};
       } catch (const std::bad_alloc&) {
-        each.kind = FailureKind::unread;
-        each.problem = "out of memory while reading " + each.check.output.file.name;
+        each.problem = {"out of memory while reading " + each.check.output.file.name,
+                        FailureKind::unread};
       }
     }
-    if (records.empty()) return;
+    if (!records.empty()) write_records(records);
+  }
+
+  void write_records(const std::vector<std::string>& records) {
     try {
-      if (!journal_) journal_.emplace(open_journal(stage_));
-      journal_->append_all(records);
+      journal_append(records);
+    } catch (const IoError& error) {
+      if (!is_no_space(error)) {
+        problem_ = std::current_exception();
+        return;
+      }
+      for (Checked& each : batch_) {
+        const bool unwritten = each.problem.reason.empty() && !each.check.from_journal;
+        if (unwritten) each.problem = {what(std::current_exception()).text, FailureKind::no_space};
+      }
     } catch (...) {
       problem_ = std::current_exception();
+    }
+  }
+
+  /// A journal that could not be written may be torn: what comes behind would not be read. So
+  /// another one is begun, and one that fails is not the end.
+  void journal_append(const std::vector<std::string>& records) {
+    for (int tries = 2;; --tries) {
+      try {
+        if (!journal_) journal_.emplace(open_journal(stage_));
+        return journal_->append_all(records);
+      } catch (const IoError& error) {
+        journal_.reset();
+        if (tries == 1 || is_no_space(error)) throw;
+        log_warning("a new journal is begun: " + std::string(error.what()));
+      }
     }
   }
 
@@ -217,6 +257,7 @@ class SinkLoop {
   SinkCore core_;
   std::deque<Check> to_check_;
   std::uint64_t garbage_ = 0;
+  bool told_of_waiting_ = false;
   bool make_output_ = false;
   bool making_output_ = false;
   std::optional<SinkLeaves> left_;

@@ -9,6 +9,15 @@
 #include <meshfarm/util/checksum.hpp>
 
 namespace meshfarm {
+namespace {
+
+/// What there is no room for is tried again after so long, and then twice as long each time.
+constexpr FarmTime k_first_pause{1000};
+constexpr FarmTime k_longest_pause{5000};
+/// The output takes longer to try.
+constexpr FarmTime k_longest_output_pause{60'000};
+
+}  // namespace
 
 SinkActions SinkCore::tick(FarmTime now) {
   if (phase_ == Phase::left) return take();
@@ -18,9 +27,13 @@ SinkActions SinkCore::tick(FarmTime now) {
   const bool busy = phase_ == Phase::making_output;
   if (event != Membership::Event::expired || !busy) on(event, now);
   if (member_.look_due(now)) act(Look{});
+  if (again_at_ && now >= *again_at_) try_again();
   if (member_.beat_due(now)) {
-    const Welcome& joined = member_.welcome();
-    say(Heartbeat{joined.epoch, WorkerId{}, 0, 0, rounds_.jobs_accepted()});
+    Heartbeat beat;
+    beat.epoch = member_.welcome().epoch;
+    beat.progress = rounds_.jobs_accepted();
+    beat.no_room = waits_for_room();
+    say(beat);
     if (told_all_) say_where_it_stands();
   }
   if (phase_ == Phase::saying_complete && say_until_ < now) {
@@ -113,16 +126,29 @@ void SinkCore::take_result(const Result& result) {
   if (checking_.try_emplace(result.key, check).second) act(check);
 }
 
-SinkActions SinkCore::checked(const Check& check, const std::string& problem, FailureKind kind) {
+SinkActions SinkCore::checked(const Check& check, const JobFailure& problem, FarmTime now) {
+  if (phase_ == Phase::left) return take();
+  if (problem.kind == FailureKind::no_space) {
+    if (when_full_ == WhenFull::end) return fail({problem.reason, true});
+    unwritten_.push_back(check);
+    wait_for_room(k_longest_pause, now);
+    return take();
+  }
+  const bool fine = problem.reason.empty();
+  if (fine && !check.from_journal) again_pause_ = FarmTime(0);
   checking_.erase(check.key);
   if (check.from_journal) --checking_journal_;
-  if (problem.empty()) {
+  if (fine) {
     if (rounds_.accept(check.key, check.output)) accepted_.push_back(check.key);
     failed_.erase(check.key);
     tell(check.key, check.worker, check.times);
     want();
   } else if (!check.from_journal && told_all_) {
-    say(Reject{member_.epoch(), check.worker, check.attempt, check.key, {clipped(problem), kind}});
+    say(Reject{member_.epoch(),
+               check.worker,
+               check.attempt,
+               check.key,
+               {clipped(problem.reason), problem.kind}});
   }
   tell_all();
   return take();
@@ -156,7 +182,7 @@ void SinkCore::say_where_it_stands() {
   say(Ready{member_.epoch(), accepted_.size()});
   if (phase_ == Phase::saying_complete) say(Complete{member_.epoch()});
   if (phase_ == Phase::saying_failed) {
-    say(Failed{member_.epoch(), clipped(problem_.text), problem_.resumable});
+    say(Failed{member_.epoch(), clipped(problem_.text), problem_.no_room});
   }
 }
 
@@ -167,11 +193,28 @@ void SinkCore::tell(JobKey key, WorkerId worker, const JobTimes& times) {
 
 SinkActions SinkCore::completed(const SinkProblem& problem, FarmTime now) {
   if (phase_ == Phase::left) return take();
+  if (problem.no_room && when_full_ == WhenFull::wait) {
+    wait_for_room(k_longest_output_pause, now);
+    return take();
+  }
+  again_pause_ = FarmTime(0);
   say_until_ = now + member_.options().patience;
   phase_ = Phase::saying_complete;
   if (!problem.text.empty()) return fail(problem);
   if (told_all_) say_where_it_stands();
   return take();
+}
+
+void SinkCore::wait_for_room(FarmTime longest, FarmTime now) {
+  if (again_at_) return;
+  again_pause_ = again_pause_.count() == 0 ? k_first_pause : std::min(2 * again_pause_, longest);
+  again_at_ = now + again_pause_;
+}
+
+void SinkCore::try_again() {
+  again_at_.reset();
+  for (Check& each : std::exchange(unwritten_, {})) act(std::move(each));
+  if (phase_ == Phase::making_output) act(MakeOutput{});
 }
 
 SinkActions SinkCore::fail(const SinkProblem& problem) {
@@ -216,7 +259,7 @@ void SinkCore::leave_for_failed_jobs() {
 }
 
 void SinkCore::leave_for_problem() {
-  leave(problem_.resumable ? SinkLeaves::Why::incomplete : SinkLeaves::Why::output_failed,
+  leave(problem_.no_room ? SinkLeaves::Why::incomplete : SinkLeaves::Why::output_failed,
         problem_.text);
 }
 

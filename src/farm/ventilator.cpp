@@ -13,6 +13,7 @@
 #include <meshfarm/farm/endpoint.hpp>
 #include <meshfarm/farm/membership.hpp>
 #include <meshfarm/farm/ventilator.hpp>
+#include <meshfarm/staging/file_system.hpp>
 #include <meshfarm/util/checksum.hpp>
 #include <meshfarm/util/errors.hpp>
 #include <meshfarm/util/log.hpp>
@@ -20,6 +21,7 @@
 #include "farm/gatekeeper.hpp"
 #include "farm/run_keys.hpp"
 #include "farm/sockets.hpp"
+#include "farm/task_thread.hpp"
 
 namespace meshfarm {
 namespace {
@@ -51,10 +53,10 @@ class VentilatorLoop {
         gate_(context_, keys_),
         control_(make_control_server(context_, keys_)),
         endpoint_(announce()),
-        dispatcher_(
-            Plan(checked_source(source), options.max_attempts),
-            {options.run, endpoint_.epoch, options.heartbeat, options.hang, options.schedule,
-             options.patience, static_cast<bool>(options.event), options.algorithm}) {}
+        dispatcher_(Plan(checked_source(source), options.max_attempts),
+                    {options.run, endpoint_.epoch, options.heartbeat, options.hang,
+                     options.schedule, options.patience, options.when_full,
+                     static_cast<bool>(options.event), options.algorithm}) {}
 
   FarmProgress run() {
     if (options_.event) options_.event(RunBegan{endpoint_.epoch, endpoint_.host}, FarmTime(0));
@@ -108,6 +110,7 @@ class VentilatorLoop {
 
   void turn() {
     std::vector<zmq::pollitem_t> items = {{control_.handle(), 0, ZMQ_POLLIN, 0}};
+    if (prober_) items.push_back({nullptr, prober_->fd(), ZMQ_POLLIN, 0});
     for (const WorkerId id : unsent_) {
       items.push_back({lanes_.at(id).socket.handle(), 0, ZMQ_POLLOUT, 0});
     }
@@ -125,6 +128,7 @@ class VentilatorLoop {
         ++garbage_;
       }
     }
+    if (prober_ && prober_->take_finished()) perform(dispatcher_.probed(probe_problem_, now));
     const bool all_read = count < k_messages_per_turn;
     perform(dispatcher_.tick(now, all_read ? Dispatcher::Inbox::empty : Dispatcher::Inbox::unread));
     report(now);
@@ -216,6 +220,18 @@ class VentilatorLoop {
     flush(each.worker);
   }
 
+  void act(const ProbeStage& each) {
+    if (!prober_) prober_.emplace();
+    prober_->start([this, bytes = each.bytes] {
+      try {
+        probe_room(stage_.root() / "results", bytes);
+        probe_problem_.clear();
+      } catch (const std::exception& error) {
+        probe_problem_ = error.what();
+      }
+    });
+  }
+
   void act(const Finish& each) { end_ = each; }
   void act(const Tell& each) {
     if (options_.event) options_.event(each.event, farm_clock() - start_);
@@ -251,6 +267,8 @@ class VentilatorLoop {
   std::uint64_t garbage_ = 0;
   bool told_of_others_ = false;
   std::optional<Finish> end_;
+  std::string probe_problem_;         // the prober's while it works
+  std::optional<TaskThread> prober_;  // once the stage was full; the last member, as it ends first
 };
 
 }  // namespace

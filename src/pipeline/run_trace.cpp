@@ -99,6 +99,7 @@ void RunTrace::state(const FarmProgress& progress, const std::vector<WorkerStatu
   line.triangles_known = progress.cost_known;
   line.sink = progress.sink_present;
   line.storage_stalls = progress.storage_stalls;
+  line.no_room = progress.no_room;
   line.bad_hosts = progress.bad_hosts;
   for (const WorkerStatus& worker : workers) line.workers.push_back(line_of(worker));
   add(line);

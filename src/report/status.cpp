@@ -60,7 +60,10 @@ std::string phase_of(const StageStatus& status, const Facts& facts) {
   }
   const TraceState& state = facts.state;
   if (!state.sink) return "waiting for the sink";
-  if (state.jobs_known > 0 && state.jobs_done == state.jobs_known) return "stitching and finishing";
+  const bool farmed = state.jobs_known > 0 && state.jobs_done == state.jobs_known;
+  if (state.no_room)
+    return farmed ? "no room for the result, waiting" : "no room on the stage, waiting";
+  if (farmed) return "stitching and finishing";
   if (state.storage_stalls) return "waiting for the storage, which stalls";
   if (state.workers.empty()) return "waiting for workers ('meshfarm worker STAGE' on any host)";
   return "simplifying";
@@ -146,6 +149,7 @@ Json as_json(const StageStatus& status) {
                   {"failed", s.jobs_failed},
                   {"retried", s.retries}};
   json["sink"] = s.sink;
+  json["no_room"] = s.no_room;
   json["bad_hosts"] = s.bad_hosts;
   json["workers_left"] = facts.workers_left;
   json["workers"] = workers;

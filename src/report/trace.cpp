@@ -94,6 +94,7 @@ Json to_json(const TraceState& l) {
           {"triangles_known", l.triangles_known},
           {"sink", l.sink},
           {"storage_stalls", l.storage_stalls},
+          {"no_room", l.no_room},
           {"bad_hosts", l.bad_hosts},
           {"workers", workers}};
 }
@@ -195,6 +196,7 @@ void read(const Json& json, TraceState& l) {
   get(json, "triangles_known", l.triangles_known);
   get(json, "sink", l.sink);
   get(json, "storage_stalls", l.storage_stalls);
+  get(json, "no_room", l.no_room);
   get(json, "bad_hosts", l.bad_hosts);
   const auto workers = json.find("workers");
   if (workers == json.end()) return;

@@ -29,8 +29,13 @@ JournalWriter::JournalWriter(std::filesystem::path path) : path_(std::move(path)
   ByteWriter head;
   head.put(k_magic);
   head.put(k_version);
-  write_all(fd_.get(), head.bytes(), path_);
-  if (::fsync(fd_.get()) != 0) throw_errno("cannot sync the journal", path_);
+  try {
+    write_all(fd_.get(), head.bytes(), path_);
+    if (::fsync(fd_.get()) != 0) throw_errno("cannot sync the journal", path_);
+  } catch (const IoError&) {
+    ::unlink(path_.c_str());  // who tries again and again would leave one behind each time
+    throw;
+  }
 }
 
 void JournalWriter::append(std::string_view record) {

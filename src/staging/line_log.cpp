@@ -18,6 +18,7 @@ namespace meshfarm {
 namespace {
 
 constexpr std::chrono::milliseconds k_write_every{500};
+constexpr std::chrono::seconds k_pause_after_error{2};
 constexpr std::chrono::seconds k_last_wait{3};
 constexpr std::size_t k_most_waiting_bytes = std::size_t{64} << 20;
 
@@ -28,41 +29,62 @@ struct LineLog::Shared {
   std::mutex mutex;
   std::condition_variable changed;
   std::string waiting;
+  std::size_t in_work = 0;  // bytes that could not be written yet
   bool end = false;
   bool ended = false;
 
+  // The thread's own:
+  Fd file;
+  off_t written = 0;  // bytes that are known to be on the disk
+  bool told = false;
+
   void run();
-  void write(Fd& file, const std::string& bytes) const;
+  void write(const std::string& bytes);
+  bool try_to_write(const std::string& bytes);
 };
 
-void LineLog::Shared::write(Fd& file, const std::string& bytes) const {
+/// What was half written before is written over by the same bytes.
+void LineLog::Shared::write(const std::string& bytes) {
   if (!file) {
     std::error_code ignored;
     std::filesystem::create_directory(path.parent_path(), ignored);
     file = Fd(::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0644));
     if (!file) throw_errno("cannot make", path);
   }
+  if (::lseek(file.get(), written, SEEK_SET) < 0) throw_errno("cannot seek in", path);
   write_all(file.get(), bytes, path);
   if (::fdatasync(file.get()) != 0) throw_errno("cannot sync", path);
+  written += static_cast<off_t>(bytes.size());
+}
+
+bool LineLog::Shared::try_to_write(const std::string& bytes) {
+  try {
+    write(bytes);
+    return true;
+  } catch (const Error& error) {
+    if (!std::exchange(told, true)) {
+      log_warning("what happens is not logged for now: " + std::string(error.what()));
+    }
+    return false;
+  }
 }
 
 void LineLog::Shared::run() {
-  Fd file;
-  bool works = true;
+  std::string bytes;
+  bool failed = false;
   std::unique_lock lock(mutex);
   while (!end || !waiting.empty()) {
-    if (!end) changed.wait_for(lock, k_write_every, [this] { return end; });
-    const std::string bytes = std::exchange(waiting, {});
+    const auto pause = failed ? std::chrono::milliseconds(k_pause_after_error) : k_write_every;
+    if (!end) changed.wait_for(lock, pause, [this] { return end; });
+    bytes += std::exchange(waiting, {});
     if (bytes.empty()) continue;
+    const bool last = end;
     lock.unlock();
-    try {
-      if (works) write(file, bytes);
-    } catch (const Error& error) {
-      // A line half written would spoil those after it; the run itself does not need them.
-      log_warning("what happens is not logged any more: " + std::string(error.what()));
-      works = false;
-    }
+    failed = !try_to_write(bytes);
+    if (!failed) bytes.clear();
     lock.lock();
+    if (last && failed) break;
+    in_work = bytes.size();
   }
   ended = true;
   changed.notify_all();
@@ -85,7 +107,7 @@ LineLog::~LineLog() {
 
 void LineLog::add(std::string_view line) {
   const std::lock_guard lock(shared_->mutex);
-  if (shared_->waiting.size() > k_most_waiting_bytes) return;
+  if (shared_->in_work + shared_->waiting.size() > k_most_waiting_bytes) return;
   shared_->waiting += line;
   shared_->waiting += '\n';
 }

@@ -1,5 +1,6 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
+#include <algorithm>
 #include <cerrno>
 #include <chrono>
 
@@ -92,6 +93,19 @@ double clock_ahead(const std::filesystem::path& folder, const std::string& name)
 }
 
 }  // namespace
+
+void probe_room(const std::filesystem::path& folder, std::uint64_t bytes) {
+  constexpr std::uint64_t k_piece = std::uint64_t{1} << 20;
+  const ProbeFile file(folder / (".room." + std::to_string(::getpid()) + ".tmp"));
+  ::unlink(file.path().c_str());  // left behind by a dead process of our number
+  Fd fd = make_file(file.path(), 0600);
+  const std::string piece(std::min(bytes, k_piece), 'r');
+  for (; bytes > 0; bytes -= std::min(bytes, k_piece)) {
+    write_all(fd.get(), std::string_view(piece).substr(0, std::min(bytes, k_piece)), file.path());
+  }
+  if (::fsync(fd.get()) != 0) throw_errno("cannot sync", file.path());
+  if (const int error = fd.close(); error != 0) throw IoError("cannot close", file.path(), error);
+}
 
 bool keeps_private(const std::filesystem::path& folder) {
   const ProbeFile file(folder / (".private." + std::to_string(::getpid())));

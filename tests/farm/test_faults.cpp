@@ -29,10 +29,13 @@ class Bench : public FarmBench {
     expect(replay("quiet", "quiet.ply"), path("quiet.ply"));
   }
 
-  Ran replay(const std::string& stage, const std::string& output) {
+  std::vector<std::string> replay_words(const std::string& stage, const std::string& output) {
     std::vector<std::string> words = {"replay", path(stage), "-o", path(output)};
     words.insert(words.end(), how_run_.begin(), how_run_.end());
-    return meshfarm(words);
+    return words;
+  }
+  Ran replay(const std::string& stage, const std::string& output) {
+    return meshfarm(replay_words(stage, output));
   }
   /// A fresh stage, all whose files are below path("run").
   void fresh() {
@@ -73,6 +76,12 @@ class Injection {
     set("MESHFARM_FAULT_ROLE", role);
     set("MESHFARM_FAULT_BELOW", bench.path("run"));
     set("MESHFARM_FAULT_FIRED", bench.path("fired"));
+  }
+  /// The disk is full as long as the file is there.
+  Injection(const std::string& below, const std::string& full_while) {
+    set("LD_PRELOAD", MESHFARM_FAULT_SHIM);
+    set("MESHFARM_FAULT_BELOW", below);
+    set("MESHFARM_FAULT_WHILE", full_while);
   }
   ~Injection() {
     for (const std::string& name : names_) ::unsetenv(name.c_str());
@@ -116,7 +125,7 @@ bool survives(Bench& bench, const std::string& role, const std::string& call,
     CHECK(errors_in(ran.err) == 1);
     CHECK_FALSE(fs::exists(bench.path("run/out.ply")));
     const bool full = kind == "ENOSPC" || kind == "EDQUOT";
-    if (full) CHECK(ran.code == 3);
+    if (full) CHECK(ran.code == 3);  // before there was a run that could wait
     const Ran again = bench.replay("run/stage", "run/out.ply");
     CAPTURE(again.err);
     CHECK(again.code == 0);
@@ -155,6 +164,57 @@ TEST_CASE("the sink's files may fail at any call") {
 
 TEST_CASE("the ventilator's files may fail at any call") {
   try_all("ventilator");
+}
+
+TEST_CASE("a disk that is full for a while is waited for, and status says so") {
+  Bench& bench = parts();
+  bench.fresh();
+  const std::string full = bench.path("full");
+  std::string where = "run/stage/results";
+  std::string phase = "no room on the stage, waiting";
+  SUBCASE("for results") {}
+  SUBCASE("for the journal") {
+    where = "run/stage/journal";
+  }
+  SUBCASE("for the result of it all") {
+    where = "run/.out.ply";
+    phase = "no room for the result, waiting";
+  }
+  std::ofstream(full) << "x";
+  const Injection injection(bench.path(where), full);
+  meshfarm::test::Process run = bench.start(bench.replay_words("run/stage", "run/out.ply"));
+  const bool waits = meshfarm::test::wait_until([&] {
+    return bench.meshfarm({"status", bench.path("run/stage")}).out.find(phase) != std::string::npos;
+  });
+  fs::remove(full);
+  CHECK(waits);
+  CHECK(run.wait() == 0);
+  CAPTURE(run.err());
+  CHECK(errors_in(run.err()) == 0);
+  bench.check_result(bench.path("run/out.ply"));
+}
+
+TEST_CASE("by --no-wait a full disk ends the run for now") {
+  Bench& bench = parts();
+  for (const char* where : {"run/stage/results", "run/stage/journal", "run/.out.ply"}) {
+    CAPTURE(where);
+    bench.fresh();
+    const std::string full = bench.path("full");
+    std::ofstream(full) << "x";
+    std::vector<std::string> words = bench.replay_words("run/stage", "run/out.ply");
+    words.emplace_back("--no-wait");
+    {
+      const Injection injection(bench.path(where), full);
+      const Ran ran = bench.meshfarm(words);
+      CAPTURE(ran.err);
+      CHECK(ran.code == 3);
+      CHECK(ran.err.find("make room") != std::string::npos);
+      CHECK(errors_in(ran.err) == 1);
+    }
+    fs::remove(full);
+    CHECK(bench.meshfarm(words).code == 0);
+    bench.check_result(bench.path("run/out.ply"));
+  }
 }
 
 TEST_CASE("a worker whose file system hangs is left behind") {

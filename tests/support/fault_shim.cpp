@@ -9,6 +9,8 @@
 //                                        | hang
 //   MESHFARM_FAULT_ROLE   only in processes of this command: worker, sink, ventilator
 //   MESHFARM_FAULT_BELOW  the folder
+//   MESHFARM_FAULT_WHILE  a file: as long as it is there, each write and fsync below
+//   the folder fails with ENOSPC, and nothing else is done
 //   MESHFARM_FAULT_FIRED  made when the fault happens, which it then does once; empty: in each
 //   process
 //
@@ -43,6 +45,7 @@ struct Fault {
   long nth = 0;
   std::string below;
   std::string fired;
+  std::string full_while;
   std::atomic<long> count{0};
 
   Fault() {
@@ -53,6 +56,8 @@ struct Fault {
     const char* role = size > 0 ? words + std::strlen(words) + 1 : words;
     const std::string wanted = text_of("MESHFARM_FAULT_ROLE");
     if (!wanted.empty() && wanted != role) return;
+    below = text_of("MESHFARM_FAULT_BELOW");
+    full_while = text_of("MESHFARM_FAULT_WHILE");
     const std::string fault = text_of("MESHFARM_FAULT");
     const std::size_t first = fault.find(':');
     const std::size_t second = fault.find(':', first + 1);
@@ -60,7 +65,6 @@ struct Fault {
     call = fault.substr(0, first);
     kind = fault.substr(first + 1, second - first - 1);
     nth = std::atol(fault.c_str() + second + 1);
-    below = text_of("MESHFARM_FAULT_BELOW");
     fired = text_of("MESHFARM_FAULT_FIRED");
   }
 
@@ -72,6 +76,10 @@ struct Fault {
     const std::string link = "/proc/self/fd/" + std::to_string(fd);
     char path[4096] = {};
     return ::readlink(link.c_str(), path, sizeof path - 1) > 0 && covers(path);
+  }
+  template <class Where>
+  bool is_full(const Where& where) const {
+    return !full_while.empty() && ::access(full_while.c_str(), F_OK) == 0 && covers(where);
   }
   /// Whether this call is the one. A process that shall die dies here.
   template <class Where>
@@ -99,6 +107,10 @@ Fault& fault() {
 extern "C" {
 
 ssize_t write(int fd, const void* bytes, size_t size) {
+  if (fault().is_full(fd)) {
+    errno = ENOSPC;
+    return -1;
+  }
   if (fault().strikes("write", fd)) {
     if (fault().kind == "short")
       return real<ssize_t(int, const void*, size_t)>("write")(fd, bytes, size / 2 + size % 2);
@@ -109,8 +121,9 @@ ssize_t write(int fd, const void* bytes, size_t size) {
 }
 
 int fsync(int fd) {
-  if (fault().strikes("fsync", fd)) {
-    errno = fault().error();
+  const bool full = fault().is_full(fd);
+  if (full || fault().strikes("fsync", fd)) {
+    errno = full ? ENOSPC : fault().error();
     return -1;
   }
   return real<int(int)>("fsync")(fd);

@@ -17,6 +17,7 @@
 #include <meshfarm/farm/protocol.hpp>
 #include <meshfarm/farm/scheduler.hpp>
 #include <meshfarm/farm/ventilator.hpp>
+#include <meshfarm/farm/when_full.hpp>
 
 namespace meshfarm {
 
@@ -30,6 +31,8 @@ struct DispatcherOptions {
   /// How long jobs that are larger than any worker's memory wait for a larger worker, once nothing
   /// else is left to do.
   FarmTime wait_for_memory{60'000};
+  /// Where the stage has no room: wait until it has, or end the run.
+  WhenFull when_full = WhenFull::wait;
   bool tell = false;  // what happens, by Tell
   std::uint32_t algorithm = 0;
 };
@@ -50,6 +53,8 @@ class Dispatcher {
   enum class Inbox { empty, unread };
   /// To be called about twice a heartbeat. Nobody is held to be silent whose words may be unread.
   Actions tick(FarmTime now, Inbox inbox = Inbox::empty);
+  /// The answer to ProbeStage: `problem` is empty if the bytes could be written.
+  Actions probed(const std::string& problem, FarmTime now);
   /// Tells everybody that this ventilator leaves before the end.
   Actions leave();
   /// Ends a run that turned out to be complete already.
@@ -84,6 +89,14 @@ class Dispatcher {
     FarmTime heard{0};
     bool ready = false;
     std::map<JobKey, JobOutput> told;
+    bool no_room = false;  // for what it writes
+  };
+  /// The stage is full: nobody is to blame, and nothing is given out until a probe could be
+  /// written.
+  struct FullStage {
+    FarmTime next_probe{0};
+    FarmTime pause{0};  // between probes
+    bool probing = false;
   };
   /// A job held to have cost a worker its life.
   struct Charge {
@@ -125,6 +138,9 @@ class Dispatcher {
   void reject_attempt(const Reject& reject);
   void fail(JobKey key, const std::string& reason, Failing failing);
   void set_room(WorkerId id);
+  void stage_is_full(const Reject& reject);
+  void look_for_room();
+  bool may_issue() const;
   void issue();
   void push(Scheduler::Pick pick);
   void look_for_end();
@@ -155,6 +171,9 @@ class Dispatcher {
   std::uint64_t last_sink_ = 0;  // incarnation
   std::set<std::uint64_t> replaced_sinks_;
   std::optional<FarmTime> too_large_since_;
+  std::optional<FullStage> full_;
+  std::uint32_t relapses_ = 0;         // full again, with no result accepted since there was room
+  std::uint64_t greatest_output_ = 0;  // bytes of a result
   bool over_ = false;
   bool finished_ = false;
   std::uint64_t dropped_ = 0;

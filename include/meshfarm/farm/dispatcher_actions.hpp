@@ -38,11 +38,15 @@ struct Finish {
   std::string failure;
   bool resumable = false;
 };
+/// Try whether so many bytes can be written to the stage; answered by probed().
+struct ProbeStage {
+  std::uint64_t bytes = 0;
+};
 /// Nothing to do: for those who watch.
 struct Tell {
   FarmEvent event;
 };
-using Action = std::variant<SendTo, OpenLane, CloseLane, PushJob, Finish, Tell>;
+using Action = std::variant<SendTo, OpenLane, CloseLane, PushJob, Finish, ProbeStage, Tell>;
 using Actions = std::vector<Action>;
 
 }  // namespace meshfarm

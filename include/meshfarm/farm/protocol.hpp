@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
 //
-// All that ventilator (V), workers (W) and sink (S) say to each other. Version 3.
+// All that ventilator (V), workers (W) and sink (S) say to each other. Version 4.
 //
 //   frame   = "MFMS" | version u16 | type u16 | body      one message a frame, one frame a message
 //   body    = the fields of the struct in the order of their declaration, little endian
@@ -32,7 +32,7 @@
 
 namespace meshfarm {
 
-inline constexpr std::uint16_t k_protocol_version = 3;
+inline constexpr std::uint16_t k_protocol_version = 4;
 inline constexpr std::size_t k_max_frame_bytes = 65'536;
 inline constexpr std::size_t k_max_text_bytes = 1024;          // names, addresses, reasons
 inline constexpr std::size_t k_max_summary_bytes = 16'384;     // JobOutput::summary
@@ -104,6 +104,7 @@ struct Heartbeat {
   std::uint32_t still_ms = 0;  // ...for so long
   bool in_storage = false;     // ...in reading or writing the stage, not in computing
   std::uint64_t rss_bytes = 0;
+  bool no_room = false;  // a sink's: there is no room for what it writes, and it waits
 };
 struct Alive {
   std::uint32_t epoch = 0;

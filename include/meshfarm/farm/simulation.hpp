@@ -16,6 +16,7 @@
 #include <meshfarm/farm/protocol.hpp>
 #include <meshfarm/farm/schedule.hpp>
 #include <meshfarm/farm/simulated_faults.hpp>
+#include <meshfarm/farm/when_full.hpp>
 
 namespace meshfarm {
 
@@ -65,6 +66,7 @@ struct SimulationOptions {
   SimulatedFaults faults;
   FarmTime heartbeat{1000};
   std::uint32_t max_attempts = 3;
+  WhenFull when_full = WhenFull::wait;
   SchedulerOptions schedule = {};
   std::uint32_t buffer = 16;      // of a worker
   double triangles_per_s = 1000;  // what a worker of speed 1 says of itself

@@ -12,6 +12,7 @@
 
 #include <meshfarm/farm/job.hpp>
 #include <meshfarm/farm/security.hpp>
+#include <meshfarm/farm/when_full.hpp>
 #include <meshfarm/staging/stage.hpp>
 
 namespace meshfarm {
@@ -24,6 +25,7 @@ struct SinkOptions {
   std::uint64_t run = 0;                       // must be the ventilator's
   std::uint32_t algorithm = 0;                 // likewise
   std::chrono::milliseconds patience{60'000};  // how long to look for a ventilator
+  WhenFull when_full = WhenFull::wait;         // of the stage, and of where the output goes
   const std::atomic<bool>* stop = nullptr;
   /// Throws DataError if the source could not take this output of a job of that kind: then it is
   /// not accepted, and the job is done again. May be empty.

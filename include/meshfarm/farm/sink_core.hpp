@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <span>
 #include <string>
 #include <utility>
@@ -13,6 +14,7 @@
 #include <meshfarm/farm/membership.hpp>
 #include <meshfarm/farm/protocol.hpp>
 #include <meshfarm/farm/rounds.hpp>
+#include <meshfarm/farm/when_full.hpp>
 
 namespace meshfarm {
 
@@ -37,7 +39,7 @@ struct SinkLeaves {
 /// Why the output, or the journal, could not be written; nothing: it was.
 struct SinkProblem {
   std::string text;
-  bool resumable = false;  // the same run may be completed later: the disk was full
+  bool no_room = false;  // the disk was full: the same run may be completed later
 };
 using SinkAction = std::variant<Look, Dial, HangUp, Say, Check, MakeOutput, SinkLeaves>;
 using SinkActions = std::vector<SinkAction>;
@@ -48,19 +50,24 @@ using SinkActions = std::vector<SinkAction>;
 class SinkCore {
  public:
   /// `journal`: what earlier sinks accepted; believed after its files are checked again.
-  SinkCore(MemberOptions member, JobSource source, std::map<JobKey, JobOutput> journal)
-      : member_(std::move(member)), rounds_(std::move(source)), journal_(std::move(journal)) {}
+  SinkCore(MemberOptions member, JobSource source, std::map<JobKey, JobOutput> journal,
+           WhenFull when_full = WhenFull::wait)
+      : member_(std::move(member)),
+        rounds_(std::move(source)),
+        journal_(std::move(journal)),
+        when_full_(when_full) {}
 
   SinkActions tick(FarmTime now);
   SinkActions found(std::span<const Endpoint> endpoints, FarmTime now);
   SinkActions on_control(const Message& message, FarmTime now);
   SinkActions on_result(const Message& message);
-  /// The answer to a Check: `problem` is empty if the file is whole and the record is on the disk.
-  /// `kind` says whose problem it is.
-  SinkActions checked(const Check& check, const std::string& problem,
-                      FailureKind kind = FailureKind::attempt);
+  /// The answer to a Check: `problem` has no reason if the file is whole and the record is on the
+  /// disk. no_space: there is no room for the record.
+  SinkActions checked(const Check& check, const JobFailure& problem, FarmTime now);
   /// The answer to MakeOutput.
   SinkActions completed(const SinkProblem& problem, FarmTime now);
+  /// Whether it waits for room on the disk, to try again then what it could not write.
+  bool waits_for_room() const { return again_pause_.count() > 0; }
   /// Tells the ventilator that this sink cannot go on (its journal cannot be written).
   SinkActions fail(const SinkProblem& problem);
   SinkActions stop();
@@ -80,6 +87,8 @@ class SinkCore {
   void tell_all();
   void say_where_it_stands();
   void tell(JobKey key, WorkerId worker, const JobTimes& times = {});
+  void wait_for_room(FarmTime longest, FarmTime now);
+  void try_again();
   void leave(SinkLeaves::Why why, std::string message);
   void leave_for_failed_jobs();
   void leave_for_problem();
@@ -103,6 +112,10 @@ class SinkCore {
   std::vector<JobKey> accepted_;        // in the order of acceptance
   std::map<JobKey, JobFailed> failed_;
   SinkProblem problem_;
+  WhenFull when_full_;
+  std::optional<FarmTime> again_at_;  // when what there was no room for is tried again
+  FarmTime again_pause_{0};           // 0: there is room
+  std::vector<Check> unwritten_;      // whose records there was no room for
   FarmTime say_until_{0};
   std::uint64_t dropped_ = 0;
 };

@@ -14,6 +14,7 @@
 #include <meshfarm/farm/protocol.hpp>
 #include <meshfarm/farm/schedule.hpp>
 #include <meshfarm/farm/security.hpp>
+#include <meshfarm/farm/when_full.hpp>
 #include <meshfarm/staging/stage.hpp>
 
 namespace meshfarm {
@@ -38,6 +39,7 @@ struct FarmProgress {
   std::uint64_t refused = 0;           // connections that did not prove to belong to the run
   std::string other_build;             // who was refused for that last, and why
   bool storage_stalls = false;         // most workers wait for the stage
+  bool no_room = false;                // the stage is full, and all wait until it is not
   std::vector<std::string> bad_hosts;  // get no more jobs: too many failed there in a row
 };
 
@@ -65,6 +67,7 @@ struct VentilatorOptions {
   std::chrono::milliseconds hang{30'000};  // a job that makes no progress for so long hangs
   SchedulerOptions schedule = {};
   std::uint32_t max_attempts = 3;                     // a job that failed this often is given up
+  WhenFull when_full = WhenFull::wait;                // of the stage
   std::function<void(const FarmProgress&)> progress;  // about twice a second; may be empty
   /// What happens, and the ventilator's age; may be empty.
   std::function<void(const FarmEvent&, FarmTime)> event;

@@ -81,6 +81,7 @@ struct TraceState {
   std::uint64_t triangles_known = 0;
   bool sink = false;
   bool storage_stalls = false;
+  bool no_room = false;  // the stage, or where the result goes, is full
   std::vector<std::string> bad_hosts;
   std::vector<Worker> workers;
 };

@@ -32,6 +32,10 @@ Mount mount_of(const std::filesystem::path& path);
 /// Free bytes for an ordinary user. Throws IoError.
 std::uint64_t free_bytes(const std::filesystem::path& path);
 
+/// Writes and syncs so many bytes and removes them again. Throws IoError if there is no room: for
+/// who has a share of the disk, free_bytes() does not tell.
+void probe_room(const std::filesystem::path& folder, std::uint64_t bytes);
+
 /// Whether a file that is made for its owner alone stays so. Throws IoError.
 bool keeps_private(const std::filesystem::path& folder);
 

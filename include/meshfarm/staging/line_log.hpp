@@ -12,7 +12,8 @@ namespace meshfarm {
 
 /// A text file of a run that others read while it grows: one writer, whole lines, only appended to.
 /// Written by a thread of its own, so that storage that stalls or is full never holds up the
-/// writer: lines that cannot be written are dropped, and the first time it is logged.
+/// writer: what cannot be written is kept, and tried again now and then. Lines are dropped only
+/// where too many wait.
 class LineLog {
  public:
   /// Makes the file, and its folder where that is missing.

@@ -72,6 +72,9 @@ check() { # STAGE
   say "the same bytes"
   rm -rf "${ventilator_side:?}/$1" "$ventilator_side/$1.ply"
 }
+says() { # STAGE WORDS
+  "$meshfarm" status "$ventilator_side/$1" 2> /dev/null | grep -q "$2"
+}
 slow_down() {
   tc qdisc add dev s1 root netem delay "$1"
   tc qdisc add dev s2 root netem delay "$1"
@@ -110,9 +113,12 @@ start full
 wait_for 60 has_results full 3 || fail "no results"
 fallocate -l 1G /srv/x/filler 2> /dev/null
 dd if=/dev/zero of=/srv/x/filler2 bs=64k 2> /dev/null
-wait_for 15 has_ended "$run"
+wait_for 30 says full 'no room' || fail "the status says nothing of it"
+sleep 15
+has_ended "$run" && fail "the run does not wait for room"
 rm -f /srv/x/filler /srv/x/filler2
 finish 90
+[ "$code" -eq 0 ] || fail "the code of the run is $code"
 check full
 
 say "the server is restarted in the middle of a run"

@@ -93,12 +93,14 @@ struct Farm {
   std::chrono::milliseconds heartbeat{200};
   std::chrono::milliseconds patience{20'000};
   std::chrono::milliseconds hang{30'000};
+  WhenFull when_full = WhenFull::wait;
 
   auto ventilator(JobSource source, std::function<void(const FarmProgress&)> progress = {}) {
     VentilatorOptions options;
     options.run = run;
     options.heartbeat = heartbeat;
     options.hang = hang;
+    options.when_full = when_full;
     options.progress = std::move(progress);
     return [this, source, options](const std::atomic<bool>& stop) mutable {
       options.stop = &stop;
@@ -118,6 +120,7 @@ struct Farm {
             std::function<void(std::string_view, const JobOutput&)> inspect = {}) {
     SinkOptions options;
     options.inspect = std::move(inspect);
+    options.when_full = when_full;
     options.run = run;
     options.patience = patience;
     return [this, source, options, &summaries](const std::atomic<bool>& stop) mutable {

@@ -6,6 +6,8 @@
 
 #include <doctest/doctest.h>
 
+#include <meshfarm/util/log.hpp>
+
 #include "farm_fixture.hpp"
 
 namespace meshfarm::test {
@@ -198,8 +200,42 @@ TEST_CASE("a job that fails for good ends the run, the others are kept") {
   CHECK(count == 1);
 }
 
-TEST_CASE("a full stage ends the run, which may be taken up again") {
+TEST_CASE("a full stage is waited for, and nobody is to blame") {
   Farm farm;
+  std::atomic<int> count{0};
+  const JobFunction work = [&](const Job& job, const JobContext& context) {
+    ++count;
+    if (count >= 5 && count <= 8) throw IoError("cannot sync", "results/x", ENOSPC);
+    return do_trivial_job(job, context);
+  };
+  CHECK(run_farm(farm, one_round(10), 1, work) == expected_of(10));
+  CHECK(count == 14);
+}
+
+TEST_CASE("an output that there is no room for is made when there is") {
+  Farm farm;
+  set_log("test", LogLevel::off);
+  Part ventilator(farm.ventilator(one_round(3)));
+  Part worker(farm.worker());
+  int tries = 0;
+  Part sink([&](const std::atomic<bool>& stop) {
+    SinkOptions options;
+    options.run = farm.run;
+    options.stop = &stop;
+    run_sink(farm.stage, one_round(3), options, [&](std::span<const AcceptedJob>) {
+      if (++tries < 3) throw IoError("cannot write", "out.ply", EDQUOT);
+    });
+  });
+  sink.join();
+  ventilator.join();
+  worker.join();
+  set_log("test", LogLevel::info);
+  CHECK(tries == 3);
+}
+
+TEST_CASE("a full stage ends a run that shall not wait, which may be taken up again") {
+  Farm farm;
+  farm.when_full = WhenFull::end;
   std::atomic<int> count{0};
   const JobFunction work = [&](const Job& job, const JobContext& context) {
     if (++count == 5) throw IoError("cannot sync", "results/x", ENOSPC);
@@ -227,6 +263,7 @@ TEST_CASE("an error in making the output reaches sink and ventilator") {
   Part sink([&](const std::atomic<bool>& stop) {
     SinkOptions options;
     options.run = farm.run;
+    options.when_full = WhenFull::end;
     options.stop = &stop;
     run_sink(farm.stage, one_round(3), options, [&](std::span<const AcceptedJob>) {
       throw IoError("cannot write", "out.ply", error_number);

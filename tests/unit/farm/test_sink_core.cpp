@@ -42,9 +42,10 @@ JobOutput output_of(JobKey of, std::uint32_t attempt = 1, std::uint64_t incarnat
 
 /// A sink with a clock, of a run of jobs "job 0", "job 1"...
 struct Bench {
-  explicit Bench(std::size_t jobs, std::map<JobKey, JobOutput> journal = {})
+  explicit Bench(std::size_t jobs, std::map<JobKey, JobOutput> journal = {},
+                 WhenFull when_full = WhenFull::wait)
       : core({Role::sink, 7, 99, 1, "h", "results", FarmTime(10'000)}, one_round(jobs),
-             std::move(journal)) {}
+             std::move(journal), when_full) {}
 
   SinkActions join(std::uint32_t epoch) {
     SinkActions all = core.tick(now);
@@ -65,7 +66,7 @@ struct Bench {
   SinkActions accept(JobKey of) {
     const auto checks = only<Check>(result(of));
     REQUIRE(checks.size() == 1);
-    return core.checked(checks[0], "");
+    return core.checked(checks[0], {}, now);
   }
   SinkActions silence(FarmTime duration) { return core.tick(now += duration); }
 
@@ -81,7 +82,7 @@ TEST_CASE("a result is told only after its file is found whole and journalled") 
   CHECK_FALSE(checks[0].from_journal);
   CHECK(checks[0].attempt == 1);
   CHECK(only<Check>(bench.result(key("job 1"))).empty());  // said again: it is being checked
-  const auto accepts = said<Accept>(bench.core.checked(checks[0], ""));
+  const auto accepts = said<Accept>(bench.core.checked(checks[0], {}, bench.now));
   REQUIRE(accepts.size() == 1);
   CHECK(accepts[0].worker == WorkerId{3});
   CHECK(accepts[0].times.compute_ms == 3);
@@ -95,7 +96,7 @@ TEST_CASE("a damaged result and a failed job are rejected with their reasons") {
   Bench bench(2);
   bench.join(1);
   const auto checks = only<Check>(bench.result(key("job 0"), 1, 4));
-  const auto damaged = said<Reject>(bench.core.checked(checks.at(0), "it is damaged"));
+  const auto damaged = said<Reject>(bench.core.checked(checks.at(0), {"it is damaged"}, bench.now));
   REQUIRE(damaged.size() == 1);
   CHECK(damaged[0].attempt == 4);
   CHECK(damaged[0].failure.reason == "it is damaged");
@@ -130,8 +131,9 @@ TEST_CASE("what a journal knows is checked again, and told to each ventilator be
   const auto checks = only<Check>(bench.join(1));
   REQUIRE(checks.size() == 2);  // what no round wants is left alone
   CHECK(checks[0].from_journal);
-  CHECK(said<Ready>(bench.core.checked(checks[0], "")).empty());  // one is still being checked
-  const SinkActions told = bench.core.checked(checks[1], "it is not there");
+  CHECK(said<Ready>(bench.core.checked(checks[0], {}, bench.now))
+            .empty());  // one is still being checked
+  const SinkActions told = bench.core.checked(checks[1], {"it is not there"}, bench.now);
   CHECK(said<Reject>(told).empty());
   CHECK(said<Accept>(told).size() == 1);
   REQUIRE(said<Ready>(told).size() == 1);
@@ -195,6 +197,57 @@ TEST_CASE("an output or a journal that cannot be written is told, and is the end
   REQUIRE(left.size() == 1);
   CHECK(left[0].message == "cannot write");
   CHECK(left[0].why == (resumable ? SinkLeaves::Why::incomplete : SinkLeaves::Why::output_failed));
+}
+
+TEST_CASE("a record that there is no room for is written again, and told only then") {
+  Bench bench(1);
+  bench.join(1);
+  const auto checks = only<Check>(bench.result(key("job 0")));
+  REQUIRE(checks.size() == 1);
+  const JobFailure full{"ENOSPC", FailureKind::no_space};
+  CHECK(bench.core.checked(checks[0], full, bench.now).empty());  // nobody is to blame
+  CHECK(bench.core.waits_for_room());
+  CHECK(only<Check>(bench.result(key("job 0"))).empty());
+  const SinkActions beats = bench.silence(FarmTime(900));
+  REQUIRE(said<Heartbeat>(beats).size() == 1);
+  CHECK(said<Heartbeat>(beats)[0].no_room);
+  const auto again = only<Check>(bench.silence(FarmTime(100)));
+  REQUIRE(again.size() == 1);
+  CHECK_FALSE(again[0].from_journal);
+  const SinkActions told = bench.core.checked(again[0], {}, bench.now);
+  CHECK(said<Accept>(told).size() == 1);
+  CHECK(only<MakeOutput>(told).size() == 1);
+  CHECK_FALSE(bench.core.waits_for_room());
+}
+
+TEST_CASE("an output that there is no room for is made again") {
+  Bench bench(1);
+  bench.join(1);
+  CHECK(only<MakeOutput>(bench.accept(key("job 0"))).size() == 1);
+  const SinkProblem full{"ENOSPC", true};
+  for (const int pause : {1000, 2000}) {
+    CHECK(said<Failed>(bench.core.completed(full, bench.now)).empty());
+    CHECK(bench.core.waits_for_room());
+    CHECK(only<MakeOutput>(bench.silence(FarmTime(pause - 1))).empty());
+    bench.core.on_control(Alive{1, {}}, bench.now);
+    CHECK(only<MakeOutput>(bench.silence(FarmTime(1))).size() == 1);
+  }
+  CHECK(said<Complete>(bench.core.completed({}, bench.now)).size() == 1);
+  CHECK_FALSE(bench.core.waits_for_room());
+}
+
+TEST_CASE("a sink that shall not wait for room ends the run") {
+  Bench bench(1, {}, WhenFull::end);
+  bench.join(1);
+  SUBCASE("for its journal") {
+    const auto checks = only<Check>(bench.result(key("job 0")));
+    const JobFailure full{"ENOSPC", FailureKind::no_space};
+    CHECK(said<Failed>(bench.core.checked(checks.at(0), full, bench.now)).size() == 1);
+  }
+  SUBCASE("for the output") {
+    bench.accept(key("job 0"));
+    CHECK(said<Failed>(bench.core.completed({"ENOSPC", true}, bench.now)).size() == 1);
+  }
 }
 
 TEST_CASE("jobs that were given up end the run, and say whether it may be taken up again") {

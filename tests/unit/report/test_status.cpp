@@ -71,6 +71,13 @@ TEST_CASE("a phase has a name") {
   CHECK(has(phase([](auto& s) { s.trace->state->workers.clear(); }), "waiting for workers"));
   CHECK(has(phase([](auto& s) { s.trace->state->jobs_done = 4; }), "stitching and finishing"));
   CHECK(has(phase([](auto& s) { s.trace->state->storage_stalls = true; }), "which stalls"));
+  CHECK(
+      has(phase([](auto& s) { s.trace->state->no_room = true; }), "no room on the stage, waiting"));
+  CHECK(has(phase([](auto& s) {
+              s.trace->state->no_room = true;
+              s.trace->state->jobs_done = 4;
+            }),
+            "no room for the result, waiting"));
   CHECK(has(phase([](auto& s) { s.trace->state->bad_hosts = {"bad"}; }), "bad hosts"));
   CHECK(has(phase([](auto& s) { s.now_unix_s = 1100; }), "no word from the ventilator for 1 min"));
   CHECK(has(phase([](auto& s) { s.trace->end = TraceEnd{11, ""}; }), "phase            done"));

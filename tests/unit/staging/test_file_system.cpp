@@ -1,6 +1,10 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
+#include <csignal>
+#include <filesystem>
+
 #include <doctest/doctest.h>
+#include <sys/resource.h>
 
 #include <meshfarm/staging/file_system.hpp>
 #include <meshfarm/util/errors.hpp>
@@ -47,6 +51,22 @@ TEST_CASE("this machine's mounts and space are told") {
   CHECK(free_bytes(folder.path()) > 0);
   CHECK_THROWS_AS(mount_of(folder / "absent"), IoError);
   CHECK_THROWS_AS(free_bytes(folder / "absent"), IoError);
+}
+
+TEST_CASE("whether there is room is found by writing") {
+  const test::TempFolder folder;
+  probe_room(folder.path(), 3'000'000);
+  CHECK(std::filesystem::is_empty(folder.path()));
+  rlimit before{};
+  REQUIRE(::getrlimit(RLIMIT_FSIZE, &before) == 0);
+  const auto old_handler = std::signal(SIGXFSZ, SIG_IGN);
+  const rlimit little{2'000'000, before.rlim_max};
+  REQUIRE(::setrlimit(RLIMIT_FSIZE, &little) == 0);
+  CHECK_THROWS_AS(probe_room(folder.path(), 3'000'000), IoError);
+  probe_room(folder.path(), 1'000'000);
+  ::setrlimit(RLIMIT_FSIZE, &before);
+  std::signal(SIGXFSZ, old_handler);
+  CHECK(std::filesystem::is_empty(folder.path()));
 }
 
 TEST_CASE("a probe measures, and leaves nothing behind") {

@@ -1,6 +1,10 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
+#include <csignal>
+#include <filesystem>
+
 #include <doctest/doctest.h>
+#include <sys/resource.h>
 
 #include <meshfarm/staging/journal.hpp>
 #include <meshfarm/util/errors.hpp>
@@ -27,6 +31,20 @@ TEST_CASE("a journal has one writer: a name that exists is refused") {
   const test::TempFolder folder;
   const JournalWriter writer(folder.path() / "journal");
   CHECK_THROWS_AS(JournalWriter(folder.path() / "journal"), IoError);
+}
+
+TEST_CASE("a journal whose head cannot be written is not left behind") {
+  const test::TempFolder folder;
+  const auto path = folder.path() / "journal";
+  rlimit before{};
+  REQUIRE(::getrlimit(RLIMIT_FSIZE, &before) == 0);
+  const auto old_handler = std::signal(SIGXFSZ, SIG_IGN);
+  const rlimit none{0, before.rlim_max};
+  REQUIRE(::setrlimit(RLIMIT_FSIZE, &none) == 0);
+  CHECK_THROWS_AS(JournalWriter{path}, IoError);
+  ::setrlimit(RLIMIT_FSIZE, &before);
+  std::signal(SIGXFSZ, old_handler);
+  CHECK_FALSE(std::filesystem::exists(path));
 }
 
 TEST_CASE("cut anywhere, the whole records before the cut are kept and the rest is counted") {

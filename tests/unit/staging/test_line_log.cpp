@@ -63,6 +63,22 @@ TEST_CASE("a log that cannot be written holds nobody up") {
   CHECK(read_file(folder / "lines") == "another's");
 }
 
+TEST_CASE("a log goes on after an error, and nothing is missing or there twice") {
+  test::TempFolder folder;
+  const auto path = folder / "lines";
+  std::ofstream(path) << "another's";
+  set_log("test", LogLevel::off);
+  LineLog log(path);
+  log.add("one");
+  std::this_thread::sleep_for(std::chrono::milliseconds(800));  // it has failed by now
+  log.add("two");
+  std::filesystem::remove(path);
+  CHECK(comes_to_hold(path, "one\ntwo\n"));
+  log.add("three");
+  CHECK(comes_to_hold(path, "one\ntwo\nthree\n"));
+  set_log("test", LogLevel::info);
+}
+
 TEST_CASE("a log without lines makes no file") {
   test::TempFolder folder;
   { const LineLog log(folder / "lines"); }

@@ -1,0 +1,13 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+
+namespace meshfarm {
+
+/// What a run does when the disk, or its owner's share of it, is full: it waits until there is
+/// room, or ends, to be taken up again.
+enum class WhenFull : std::uint8_t { wait, end };
+
+}  // namespace meshfarm
