@@ -409,6 +409,8 @@ TEST_CASE("a stage without room: nobody is blamed, and all wait for a probe that
   CHECK(only<ProbeStage>(desk.silence(FarmTime(100))).empty());  // one at a time
   CHECK(only<PushJob>(desk.dispatcher.probed("still full", desk.now)).empty());
   CHECK(only<ProbeStage>(desk.silence(FarmTime(1000))).empty());
+  desk.credit("w", 1, 9);
+  desk.say("s", Ready{k_epoch, 1});
   CHECK(only<ProbeStage>(desk.silence(FarmTime(1000))).size() == 1);
   CHECK(only<PushJob>(desk.dispatcher.probed("", desk.now)).size() == 4);
   CHECK_FALSE(desk.dispatcher.progress().no_room);
