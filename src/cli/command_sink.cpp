@@ -61,21 +61,23 @@ class SinkCommand : public FarmCommand {
     options.stop = &stop;
     const auto start = std::chrono::steady_clock::now();
     RunSummary summary;
-    run_sink(stage, make_job_source(manifest, target_.run), options,
-             [&](std::span<const AcceptedJob> accepted) {
-               const double farm =
-                   std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-               ProgressPrinter printer(talk_.progress());
-               AssembleOptions assembly;
-               assembly.output = output_;
-               assembly.stop = &stop;
-               assembly.progress = [&](std::string_view phase, double done, std::uint64_t made) {
-                 printer.show({.phase = phase, .done = done, .triangles = made});
-               };
-               summary = assemble(stage, manifest, target_.run, accepted, assembly);
-               summary.farm_seconds = farm;
-             });
+    const std::uint32_t epoch = run_sink(
+        stage, make_job_source(manifest, target_.run), options,
+        [&](std::span<const AcceptedJob> accepted) {
+          const double farm =
+              std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+          ProgressPrinter printer(talk_.progress());
+          AssembleOptions assembly;
+          assembly.output = output_;
+          assembly.stop = &stop;
+          assembly.progress = [&](std::string_view phase, double done, std::uint64_t made) {
+            printer.show({.phase = phase, .done = done, .triangles = made});
+          };
+          summary = assemble(stage, manifest, target_.run, accepted, assembly);
+          summary.farm_seconds = farm;
+        });
     summary.run = options.run;
+    summary.epoch = epoch;
     publish_summary(stage, summary);
     std::cout << render(summary, talk_.format());
   }

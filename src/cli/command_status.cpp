@@ -8,6 +8,7 @@
 
 #include <meshfarm/pipeline/run_trace.hpp>
 #include <meshfarm/report/status.hpp>
+#include <meshfarm/staging/file_system.hpp>
 #include <meshfarm/util/errors.hpp>
 
 #include "cli/command.hpp"
@@ -59,7 +60,19 @@ class StatusCommand : public Command {
     }
     const auto now = std::chrono::system_clock::now().time_since_epoch();
     status.now_unix_s = std::chrono::duration<double>(now).count();
+    status.no_room = is_silent(status) && is_full(stage);
     return status;
+  }
+
+  /// On a full disk the ventilator cannot even write that it waits for room.
+  static bool is_full(const Stage& stage) {
+    constexpr std::uint64_t k_little = 64 << 10;
+    try {
+      probe_room(stage.root() / "log", k_little);
+    } catch (const IoError& error) {
+      return is_no_space(error);
+    }
+    return false;
   }
 
   std::string stage_;

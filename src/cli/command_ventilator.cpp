@@ -89,8 +89,8 @@ class VentilatorCommand : public FarmCommand {
 
  private:
   static bool was_completed(const Stage& stage, std::uint64_t run) {
-    if (!read_run_times(stage, run)) return false;
-    log_info("no sink comes, and the output of this run was made before");
+    if (!output_was_made(stage, run)) return false;
+    log_info("no sink comes, for this run's output was made while no ventilator was there");
     return true;
   }
 

@@ -55,7 +55,7 @@ class SinkLoop {
                options.algorithm},
               source, read_journals(stage), options.when_full) {}
 
-  void run() {
+  std::uint32_t run() {
     while (!left_) {
       if (options_.stop != nullptr && options_.stop->load()) perform(core_.stop());
       turn();
@@ -67,13 +67,14 @@ class SinkLoop {
     switch (left_->why) {
       case SinkLeaves::Why::complete:
         if (!left_->message.empty()) log_warning(left_->message);
-        return;
+        break;
       case SinkLeaves::Why::incomplete:
         throw IncompleteError(left_->message);
       case SinkLeaves::Why::jobs_failed:
       case SinkLeaves::Why::output_failed:
         throw DataError(left_->message);
     }
+    return core_.epoch();
   }
 
  private:
@@ -271,10 +272,10 @@ class SinkLoop {
 
 }  // namespace
 
-void run_sink(const Stage& stage, const JobSource& source, const SinkOptions& options,
-              const std::function<void(std::span<const AcceptedJob>)>& complete) {
+std::uint32_t run_sink(const Stage& stage, const JobSource& source, const SinkOptions& options,
+                       const std::function<void(std::span<const AcceptedJob>)>& complete) {
   check_exposure(options.security, options.bind);
-  SinkLoop(stage, source, options, complete).run();
+  return SinkLoop(stage, source, options, complete).run();
 }
 
 }  // namespace meshfarm

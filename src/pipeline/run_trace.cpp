@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 
+#include <meshfarm/farm/endpoint.hpp>
 #include <meshfarm/pipeline/run_trace.hpp>
 #include <meshfarm/util/errors.hpp>
 #include <meshfarm/util/log.hpp>
@@ -149,6 +150,19 @@ Trace read_traced_run(const Stage& stage) {
   }
   run.done.insert(run.done.begin(), done.begin(), done.end());
   return run;
+}
+
+bool output_was_made(const Stage& stage, std::uint64_t run) {
+  const std::optional<RunTimes> made = read_run_times(stage, run);
+  if (!made || made->epoch == 0) return false;
+  EndpointList endpoints;
+  bool served = false;
+  for (const Endpoint& each : endpoints.look(stage)) {
+    if (each.run != run || each.epoch < made->epoch) continue;
+    if (each.address.empty()) return false;
+    served = served || each.epoch == made->epoch;
+  }
+  return served;
 }
 
 std::optional<RunTimes> read_run_times(const Stage& stage, std::uint64_t run) {

@@ -20,6 +20,8 @@ using Json = nlohmann::ordered_json;
 /// A ventilator writes at least every second, and no later than its disk: one that wrote nothing
 /// for so long is gone or cut off.
 constexpr double k_silent_s = 15;
+/// Then it may be worth finding out why.
+constexpr double k_quiet_s = 3;
 /// The rate is that of the last jobs: as many seconds, if there are jobs in them.
 constexpr double k_rate_window_s = 60;
 
@@ -54,6 +56,14 @@ std::string phase_of(const StageStatus& status, const Facts& facts) {
   const Trace& trace = *status.trace;
   if (trace.end && !trace.end->failure.empty()) return "stopped: " + trace.end->failure;
   if (trace.end) return "done";
+  if (status.no_room) {
+    std::string phase = "no room on the stage, waiting";
+    if (facts.age_s > k_silent_s) {
+      phase +=
+          "; the ventilator, if it lives, could write nothing for " + duration_text(facts.age_s);
+    }
+    return phase;
+  }
   if (facts.age_s > k_silent_s) {
     return "no word from the ventilator for " + duration_text(facts.age_s) +
            " (killed, cut off, or its storage stalls)";
@@ -149,7 +159,7 @@ Json as_json(const StageStatus& status) {
                   {"failed", s.jobs_failed},
                   {"retried", s.retries}};
   json["sink"] = s.sink;
-  json["no_room"] = s.no_room;
+  json["no_room"] = s.no_room || status.no_room;
   json["bad_hosts"] = s.bad_hosts;
   json["workers_left"] = facts.workers_left;
   json["workers"] = workers;
@@ -186,6 +196,10 @@ std::string line(const std::string& label, const std::string& value) {
 }
 
 }  // namespace
+
+bool is_silent(const StageStatus& status) {
+  return status.trace && !status.trace->end && facts_of(status).age_s > k_quiet_s;
+}
 
 bool is_over(const StageStatus& status) {
   return status.trace && status.trace->end;

@@ -168,6 +168,7 @@ std::string render(const RunSummary& s, Format format) {
   if (format == Format::json) {
     const Json json = {
         {"run", to_hex(s.run)},
+        {"epoch", s.epoch},
         {"input", input_json(m)},
         {"output", {{"path", s.output}, {"triangles", s.triangles}, {"vertices", s.vertices}}},
         {"target", s.target},
@@ -231,6 +232,7 @@ RunTimes parse_run_times(std::string_view text, std::string_view what) {
     if (!triangles.is_number_unsigned()) throw DataError("its triangles are no count");
     const auto at = [&](const char* name) { return seconds.at(name).get<double>(); };
     return {std::stoull(json.at("run").get<std::string>(), nullptr, 16),
+            json.value("epoch", std::uint32_t{0}),
             triangles.get<std::uint64_t>(),
             at("cut"),
             at("farm"),

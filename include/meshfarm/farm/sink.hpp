@@ -37,9 +37,10 @@ struct SinkOptions {
 /// journals after their files are verified again. Then calls `complete` with the outputs in the
 /// order in which `source` asked for the jobs, while it stays in touch with the ventilator, and
 /// tells the ventilator that the run is over.
+/// Returns the epoch of the ventilator that it served last.
 /// Throws IncompleteError when stopped or when the ventilator is lost, DataError when jobs failed
 /// for good.
-void run_sink(const Stage& stage, const JobSource& source, const SinkOptions& options,
-              const std::function<void(std::span<const AcceptedJob>)>& complete);
+std::uint32_t run_sink(const Stage& stage, const JobSource& source, const SinkOptions& options,
+                       const std::function<void(std::span<const AcceptedJob>)>& complete);
 
 }  // namespace meshfarm

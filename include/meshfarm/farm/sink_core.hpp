@@ -75,6 +75,8 @@ class SinkCore {
   const Rounds& rounds() const { return rounds_; }
   /// How long to wait for messages before tick() is called again, at most.
   FarmTime pause(FarmTime now) const { return member_.pause(now); }
+  /// Of the ventilator that was joined last.
+  std::uint32_t epoch() const { return member_.epoch(); }
   std::uint64_t dropped() const { return dropped_; }
 
  private:

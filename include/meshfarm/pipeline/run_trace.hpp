@@ -50,5 +50,9 @@ Trace read_newest_trace(const Stage& stage, std::optional<std::uint32_t> epoch =
 Trace read_traced_run(const Stage& stage);
 /// The times of the newest summary of a run; nothing if there is none.
 std::optional<RunTimes> read_run_times(const Stage& stage, std::uint64_t run);
+/// Whether a sink has made the run's output, and no ventilator has said since that this was the end
+/// of the run: the one that the sink served was killed. An output made in a run that is over is
+/// another's.
+bool output_was_made(const Stage& stage, std::uint64_t run);
 
 }  // namespace meshfarm

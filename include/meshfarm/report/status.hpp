@@ -19,9 +19,12 @@ struct StageStatus {
   std::optional<Trace> trace;     // none: no run began
   std::optional<RunTimes> times;  // of the trace's run; none: it is not over
   double now_unix_s = 0;
+  bool no_room = false;  // on the stage: its ventilator cannot write that it waits
 };
 
 std::string render(const StageStatus& status, Format format);
+/// Whether the run goes on and its ventilator has not written for some seconds.
+bool is_silent(const StageStatus& status);
 /// Whether there is nothing more to watch: the last run has said its last word.
 bool is_over(const StageStatus& status);
 

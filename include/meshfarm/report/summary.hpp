@@ -38,6 +38,7 @@ struct MeasuredError {
 struct RunSummary {
   Manifest manifest;
   std::uint64_t run = 0;        // its key
+  std::uint32_t epoch = 0;      // of the ventilator that its sink served
   std::string output;           // path of the result
   std::uint64_t target = 0;     // triangles asked for, 0: as few as max_error allows
   double max_error = 0;         // the greatest distance allowed, in the mesh's unit; 0: any
@@ -102,6 +103,7 @@ std::string render(const RunSummary& summary, Format format);
 /// Where a run's time went: of its summary as JSON. Seconds.
 struct RunTimes {
   std::uint64_t run = 0;
+  std::uint32_t epoch = 0;  // 0: not told, by an older version
   std::uint64_t triangles_out = 0;
   double cut = 0;
   double farm = 0;

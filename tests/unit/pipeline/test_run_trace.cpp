@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include <doctest/doctest.h>
 
+#include <meshfarm/farm/endpoint.hpp>
 #include <meshfarm/pipeline/run_trace.hpp>
 #include <meshfarm/util/errors.hpp>
 
@@ -79,6 +80,32 @@ TEST_CASE("jobs that were done before a ventilator was killed belong to its run"
   CHECK(run.done[0].job == 41);
   CHECK(run.done[1].job == 43);
   CHECK(run.done[0].worker != run.done[1].worker);
+}
+
+TEST_CASE("an output was made if its run's ventilator was killed before it heard so") {
+  test::TempFolder folder;
+  const Stage stage = Stage::create(folder / "stage");
+  CHECK_FALSE(output_was_made(stage, 5));
+  const auto announce = [&](std::uint64_t run, const std::string& address) {
+    return publish_endpoint(stage, {0, run, address, "host", 1, {}}, "u").epoch;
+  };
+  RunSummary summary;
+  summary.manifest.box.add({0, 0, 0});
+  summary.manifest.box.add({1, 1, 1});
+  summary.run = 5;
+  publish_summary(stage, summary);
+  announce(5, "tcp://a");
+  CHECK_FALSE(output_was_made(stage, 5));  // an older version does not tell its epoch
+  summary.epoch = announce(5, "tcp://b");
+  publish_summary(stage, summary);
+  announce(6, "");
+  announce(5, "tcp://c");  // started again
+  CHECK(output_was_made(stage, 5));
+  CHECK_FALSE(output_was_made(stage, 6));
+  announce(5, "");
+  CHECK_FALSE(output_was_made(stage, 5));  // that run is over
+  announce(5, "tcp://d");
+  CHECK_FALSE(output_was_made(stage, 5));
 }
 
 TEST_CASE("the newest summary of a run is found again") {

@@ -78,6 +78,12 @@ TEST_CASE("a phase has a name") {
               s.trace->state->jobs_done = 4;
             }),
             "no room for the result, waiting"));
+  CHECK(has(phase([](auto& s) { s.no_room = true; }), "no room on the stage, waiting\n"));
+  CHECK(has(phase([](auto& s) {
+              s.no_room = true;
+              s.now_unix_s = 1100;
+            }),
+            "no room on the stage, waiting; the ventilator, if it lives, could write nothing"));
   CHECK(has(phase([](auto& s) { s.trace->state->bad_hosts = {"bad"}; }), "bad hosts"));
   CHECK(has(phase([](auto& s) { s.now_unix_s = 1100; }), "no word from the ventilator for 1 min"));
   CHECK(has(phase([](auto& s) { s.trace->end = TraceEnd{11, ""}; }), "phase            done"));
