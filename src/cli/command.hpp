@@ -47,5 +47,6 @@ std::unique_ptr<Command> make_doctor_command();
 std::unique_ptr<Command> make_simulate_command();
 std::unique_ptr<Command> make_status_command();
 std::unique_ptr<Command> make_report_command();
+std::unique_ptr<Command> make_clean_command();
 
 }  // namespace meshfarm

@@ -2,13 +2,17 @@
 // SPDX-License-Identifier: MIT
 #include <chrono>
 #include <iostream>
+#include <optional>
 
 #include <meshfarm/farm/sink.hpp>
 #include <meshfarm/pipeline/algorithm.hpp>
 #include <meshfarm/pipeline/assemble.hpp>
 #include <meshfarm/pipeline/budget.hpp>
+#include <meshfarm/pipeline/clean_stage.hpp>
 #include <meshfarm/pipeline/job_table.hpp>
 #include <meshfarm/pipeline/run_trace.hpp>
+#include <meshfarm/util/errors.hpp>
+#include <meshfarm/util/log.hpp>
 
 #include "cli/cut_step.hpp"
 #include "cli/farm_command.hpp"
@@ -59,6 +63,7 @@ class SinkCommand : public FarmCommand {
     options.patience = std::chrono::seconds(wait_s_);
     options.when_full = when_full_.value();
     options.stop = &stop;
+    std::optional<SinkPresence> presence(stage);
     const auto start = std::chrono::steady_clock::now();
     RunSummary summary;
     const std::uint32_t epoch = run_sink(
@@ -79,10 +84,23 @@ class SinkCommand : public FarmCommand {
     summary.run = options.run;
     summary.epoch = epoch;
     publish_summary(stage, summary);
+    presence.reset();
+    tidy_up(stage);
     std::cout << render(summary, talk_.format());
   }
 
  private:
+  /// What this run leaves behind that no run can need.
+  static void tidy_up(const Stage& stage) {
+    CleanOptions leftovers;
+    leftovers.what = CleanWhat::leftovers;
+    try {
+      clean_stage(stage, leftovers);
+    } catch (const Error& error) {
+      log_debug(error.what());  // another does it
+    }
+  }
+
   std::string output_;
   TargetOptions target_;
   NetworkOptions network_;

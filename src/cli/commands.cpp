@@ -19,6 +19,7 @@ std::vector<std::unique_ptr<Command>> all_commands() {
   commands.push_back(make_generate_command());
   commands.push_back(make_status_command());
   commands.push_back(make_report_command());
+  commands.push_back(make_clean_command());
   commands.push_back(make_doctor_command());
   commands.push_back(make_simulate_command());
   return commands;

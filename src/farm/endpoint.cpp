@@ -1,10 +1,11 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
 //
-// An endpoint file is sealed (staging/sealed.hpp), kind "ENDP", version 2:
-//   epoch u32 | run u64 | address text | host text | pid u32 | server key text
+// An endpoint file is sealed (staging/sealed.hpp), kind "ENDP", version 3:
+//   epoch u32 | run u64 | address text | host text | pid u32 | server key text |
+//   done u8
 //   text = length u32 | bytes
-// Version 1 had no server key.
+// Version 1 had no server key, version 2 did not tell how a run had ended.
 #include <meshfarm/farm/endpoint.hpp>
 #include <meshfarm/staging/sealed.hpp>
 #include <meshfarm/util/bytes.hpp>
@@ -15,7 +16,7 @@ namespace meshfarm {
 namespace {
 
 constexpr FileKind k_kind = {'E', 'N', 'D', 'P'};
-constexpr std::uint32_t k_version = 2;
+constexpr std::uint32_t k_version = 3;
 constexpr std::size_t k_max_text_bytes = 1024;
 
 }  // namespace
@@ -28,6 +29,7 @@ std::string encode_endpoint(const Endpoint& endpoint) {
   out.put_string(endpoint.host);
   out.put(endpoint.pid);
   out.put_string(endpoint.server_key);
+  out.put(static_cast<std::uint8_t>(endpoint.done ? 1 : 0));
   return seal(k_kind, k_version, out.bytes());
 }
 
@@ -40,6 +42,9 @@ Endpoint decode_endpoint(std::string_view file, std::string_view what) {
   endpoint.host = in.get_string();
   endpoint.pid = in.get<std::uint32_t>();
   endpoint.server_key = in.get_string();
+  const auto done = in.get<std::uint8_t>();
+  if (done > 1) in.fail("neither yes nor no");
+  endpoint.done = done == 1;
   for (const std::string* text : {&endpoint.address, &endpoint.host, &endpoint.server_key}) {
     if (text->size() > k_max_text_bytes) in.fail("a text too long");
   }

@@ -1,9 +1,10 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
 //
-// A record of the sink's journal, version 1:
-//   version u32 | key u64 | name text | size u64 | hash u64 | summary text    text = length u32 |
-//   bytes
+// A record of the sink's journal, version 2:
+//   version u32 | run u64 | key u64 | name text | size u64 | hash u64 | summary text
+//   text = length u32 | bytes
+// Version 1 had no run.
 #include <cerrno>
 
 #include <meshfarm/farm/ledger.hpp>
@@ -14,20 +15,22 @@
 namespace meshfarm {
 namespace {
 
-constexpr std::uint32_t k_version = 1;
+constexpr std::uint32_t k_version = 2;
 
-void read_journal(const Stage& stage, JournalName name, std::map<JobKey, JobOutput>& accepted) {
+}  // namespace
+
+std::vector<JournalRecord> read_journal(const Stage& stage, JournalName name) {
   const std::string what = stage.path(name).string();
   const JournalContent content = parse_journal(stage.read(name), what);
   if (content.torn_bytes > 0) {
     log_warning(what + ": its last " + std::to_string(content.torn_bytes) +
                 " bytes are torn and left out (its sink was killed while writing)");
   }
+  std::vector<JournalRecord> records;
   std::uint64_t set_aside = 0;
   for (const std::string& record : content.records) {
     try {
-      AcceptedJob job = decode_accepted(record, what);
-      accepted[job.key] = std::move(job.output);
+      records.push_back(decode_record(record, what));
     } catch (const DataError& error) {
       if (++set_aside == 1) log_warning("set aside: " + std::string(error.what()));
     }
@@ -36,13 +39,14 @@ void read_journal(const Stage& stage, JournalName name, std::map<JobKey, JobOutp
     log_warning(what + ": " + std::to_string(set_aside) +
                 " records are set aside; their jobs are done again");
   }
+  return records;
 }
 
-}  // namespace
-
-std::string encode_accepted(const AcceptedJob& accepted) {
+std::string encode_record(const JournalRecord& record) {
+  const AcceptedJob& accepted = record.accepted;
   ByteWriter out;
   out.put(k_version);
+  out.put(record.run);
   out.put(accepted.key.value);
   out.put_string(accepted.output.file.name);
   out.put(accepted.output.file.size);
@@ -51,10 +55,13 @@ std::string encode_accepted(const AcceptedJob& accepted) {
   return out.take();
 }
 
-AcceptedJob decode_accepted(std::string_view record, std::string_view what) {
-  ByteReader in(record, what);
-  if (in.get<std::uint32_t>() != k_version) in.fail("a record of an unknown version");
-  AcceptedJob accepted;
+JournalRecord decode_record(std::string_view bytes, std::string_view what) {
+  ByteReader in(bytes, what);
+  const auto version = in.get<std::uint32_t>();
+  if (version != 1 && version != k_version) in.fail("a record of an unknown version");
+  JournalRecord record;
+  if (version > 1) record.run = in.get<std::uint64_t>();
+  AcceptedJob& accepted = record.accepted;
   accepted.key.value = in.get<std::uint64_t>();
   accepted.output.file.name = in.get_string();
   accepted.output.file.size = in.get<std::uint64_t>();
@@ -62,7 +69,7 @@ AcceptedJob decode_accepted(std::string_view record, std::string_view what) {
   accepted.output.summary = in.get_string();
   in.expect_end();
   if (!names_result_of(accepted.key, accepted.output.file.name)) in.fail("a forged result name");
-  return accepted;
+  return record;
 }
 
 bool names_result_of(JobKey key, std::string_view name) {
@@ -71,16 +78,19 @@ bool names_result_of(JobKey key, std::string_view name) {
   return result != nullptr && result->key == key.value;
 }
 
-std::map<JobKey, JobOutput> read_journals(const Stage& stage) {
-  std::map<JobKey, JobOutput> accepted;
+Ledger read_journals(const Stage& stage, std::uint64_t run) {
+  Ledger ledger;
   for (const std::uint32_t number : stage.journals()) {
     try {
-      read_journal(stage, {number}, accepted);
+      for (JournalRecord& each : read_journal(stage, {number})) {
+        if (each.run == run) ledger.by_run.insert(each.accepted.key);
+        ledger.accepted[each.accepted.key] = std::move(each.accepted.output);
+      }
     } catch (const Error& error) {
       log_warning("a journal is left out: " + std::string(error.what()));
     }
   }
-  return accepted;
+  return ledger;
 }
 
 JournalWriter open_journal(const Stage& stage) {

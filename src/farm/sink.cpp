@@ -44,6 +44,7 @@ class SinkLoop {
         gate_(context_, keys_),
         results_(make_results_server(context_, keys_)),
         link_(context_, stage, options.security),
+        ledger_(read_journals(stage, options.run)),
         core_({Role::sink,
                options.run,
                random_id(),
@@ -53,7 +54,7 @@ class SinkLoop {
                options.patience,
                {},
                options.algorithm},
-              source, read_journals(stage), options.when_full) {}
+              source, std::exchange(ledger_.accepted, {}), options.when_full) {}
 
   std::uint32_t run() {
     while (!left_) {
@@ -86,6 +87,7 @@ class SinkLoop {
   struct Checked {
     Check check;
     JobFailure problem = {};
+    bool to_record = false;
   };
 
   void turn() {
@@ -194,7 +196,11 @@ class SinkLoop {
         if (options_.inspect) options_.inspect(check.kind, check.output);
         // What a journal knows was there long ago: if it is gone, it is made again.
         stage_.verify(check.output.file, check.from_journal ? k_journal_patience : ReadPatience{});
-        if (!check.from_journal) records.push_back(encode_accepted({check.key, check.output}));
+        // What another run accepted is recorded as this one's, too, as long as that goes on.
+        each.to_record = !check.from_journal || !ledger_.by_run.contains(check.key);
+        if (each.to_record) {
+          records.push_back(encode_record({options_.run, {check.key, check.output}}));
+        }
       } catch (const IoError& error) {
         each.problem = {error.what(), FailureKind::unread};
       } catch (const Error& error) {
@@ -216,8 +222,8 @@ class SinkLoop {
         return;
       }
       for (Checked& each : batch_) {
-        const bool unwritten = each.problem.reason.empty() && !each.check.from_journal;
-        if (unwritten) each.problem = {what(std::current_exception()).text, FailureKind::no_space};
+        if (each.to_record)
+          each.problem = {what(std::current_exception()).text, FailureKind::no_space};
       }
     } catch (...) {
       problem_ = std::current_exception();
@@ -255,6 +261,7 @@ class SinkLoop {
   Gatekeeper gate_;
   zmq::socket_t results_;
   ControlLink link_;
+  Ledger ledger_;
   SinkCore core_;
   std::deque<Check> to_check_;
   std::uint64_t garbage_ = 0;

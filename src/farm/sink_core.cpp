@@ -135,7 +135,7 @@ SinkActions SinkCore::checked(const Check& check, const JobFailure& problem, Far
     return take();
   }
   const bool fine = problem.reason.empty();
-  if (fine && !check.from_journal) again_pause_ = FarmTime(0);
+  if (fine && !again_at_) again_pause_ = FarmTime(0);
   checking_.erase(check.key);
   if (check.from_journal) --checking_journal_;
   if (fine) {

@@ -88,7 +88,16 @@ class VentilatorLoop {
   /// Workers that were just about to join, or missed the word, see here that the run is over.
   void say_over() {
     try {
-      publish_endpoint(stage_, {0, options_.run, {}, endpoint_.host, endpoint_.pid, {}}, unique_);
+      Endpoint last_word{0, options_.run, {}, endpoint_.host, endpoint_.pid, {}};
+      last_word.done = end_->failure.empty();
+      last_word = publish_endpoint(stage_, last_word, unique_);
+      // What came before says nothing any more; workers to come need not read it.
+      EndpointList endpoints;
+      for (const Endpoint& each : endpoints.look(stage_)) {
+        if (each.run == options_.run && each.epoch < last_word.epoch) {
+          stage_.remove(EndpointName{each.epoch});
+        }
+      }
     } catch (const IoError& error) {
       log_warning("late workers cannot be told that the run is over: " + std::string(error.what()));
     }

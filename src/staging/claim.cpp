@@ -114,6 +114,14 @@ Claim::~Claim() {
   fs::remove(file_, ignored);
 }
 
+std::optional<std::string> holder_of(const fs::path& file) {
+  std::error_code ignored;
+  if (!fs::exists(file, ignored)) return std::nullopt;
+  const Owner owner = read_owner(file);
+  if (is_dead(owner)) return std::nullopt;
+  return "host " + owner.host + ", process " + std::to_string(owner.pid);
+}
+
 fs::path claim_of(const fs::path& output) {
   return output.parent_path() / ("." + output.filename().string() + ".claim");
 }

@@ -107,6 +107,14 @@ void probe_room(const std::filesystem::path& folder, std::uint64_t bytes) {
   if (const int error = fd.close(); error != 0) throw IoError("cannot close", file.path(), error);
 }
 
+std::filesystem::file_time_type clock_of(const std::filesystem::path& folder) {
+  const ProbeFile file(folder / (".clock." + std::to_string(::getpid()) + ".tmp"));
+  std::error_code error;
+  const bool made = bool(Fd(::open(file.path().c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0600)));
+  const auto time = std::filesystem::last_write_time(file.path(), error);
+  return made && !error ? time : std::filesystem::file_time_type::clock::now();
+}
+
 bool keeps_private(const std::filesystem::path& folder) {
   const ProbeFile file(folder / (".private." + std::to_string(::getpid())));
   const Fd fd = make_file(file.path(), 0600);

@@ -233,7 +233,8 @@ void Stage::remove(const StagedName& name) const noexcept {
 void remove_stage(const std::filesystem::path& root) {
   std::error_code ignored;
   const auto staged = [](const std::string& name) {
-    const bool temporary = name.find("/.") != std::string::npos && name.ends_with(".tmp");
+    const bool temporary = name.find("/.") != std::string::npos &&
+                           (name.ends_with(".tmp") || name.ends_with(".claim"));
     return temporary || parse_staged_name(name).has_value();
   };
   for (const std::string_view folder : k_stage_folders) {

@@ -383,6 +383,39 @@ TEST_CASE("a run and two replays of one stage at once have their own workers, an
   bench().check_result(stage + ".ply");
 }
 
+TEST_CASE("clean leaves what a killed run needs, and takes what finished ones made") {
+  const std::string stage = bench().cut();
+  const auto replay = [&](const char* ratio) {
+    return bench().meshfarm({"replay", stage, "--ratio", ratio, "-o", stage + ".ply", "-q"});
+  };
+  REQUIRE(replay("0.05").code == 0);
+  REQUIRE(replay("0.2").code == 0);
+  const std::size_t finished = results_in(stage);
+  Process run = bench().start({"replay", stage, "--ratio", "0.02", "-o", stage + ".ply"});
+  CHECK(wait_for_results(stage, finished + 8));
+  run.signal(SIGKILL);
+  CHECK(run.wait() == -SIGKILL);
+  // Its processes end with it, in a while.
+  const auto kept_for_sink = [&] {
+    return bench().meshfarm({"clean", stage, "--dry-run"}).out.find("a sink is at work") !=
+           std::string::npos;
+  };
+  CHECK(meshfarm::test::wait_until([&] { return !kept_for_sink(); }));
+  const std::size_t before = results_in(stage);
+  const Ran cleaned = bench().meshfarm({"clean", stage});
+  CAPTURE(cleaned.out);
+  CHECK(cleaned.code == 0);
+  CHECK(cleaned.out.find("results of finished runs") != std::string::npos);
+  CHECK(before - results_in(stage) >= finished / 2);
+  CHECK(results_in(stage) >= 1);
+  CHECK(replay("0.02").code == 0);
+  bench().check_result(stage + ".ply");
+  CHECK(bench().meshfarm({"clean", stage}).code == 0);
+  CHECK(results_in(stage) == 0);
+  CHECK(replay("0.02").code == 0);  // all is made again
+  bench().check_result(stage + ".ply");
+}
+
 TEST_CASE("a run's processes show as meshfarm, and a worker that left before the end is replaced") {
   const std::string stage = bench().cut();
   Process replay =

@@ -19,6 +19,7 @@ struct Endpoint {
   std::string host;
   std::uint32_t pid = 0;
   std::string server_key;  // public, as Z85 text; empty: whoever comes is believed (--insecure)
+  bool done = false;       // the run is over because its output was made
   friend bool operator==(const Endpoint&, const Endpoint&) = default;
 };
 

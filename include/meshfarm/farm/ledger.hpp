@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <map>
+#include <set>
 #include <span>
 #include <string>
 #include <string_view>
@@ -14,17 +15,30 @@
 
 namespace meshfarm {
 
-/// A journal record of the sink: one accepted job.
-std::string encode_accepted(const AcceptedJob& accepted);
+/// A journal record of the sink: one job that a run accepted.
+struct JournalRecord {
+  std::uint64_t run = 0;  // 0: not told, by an older version
+  AcceptedJob accepted;
+};
+
+std::string encode_record(const JournalRecord& record);
 /// Throws DataError naming `what`.
-AcceptedJob decode_accepted(std::string_view record, std::string_view what);
+JournalRecord decode_record(std::string_view record, std::string_view what);
 
 /// Whether the name is that of a result of the job.
 bool names_result_of(JobKey key, std::string_view name);
 
-/// What all journals of a stage say was accepted, the last record of a key winning. Torn tails and
-/// unreadable journals are logged and left out. Throws IoError if the folder cannot be listed.
-std::map<JobKey, JobOutput> read_journals(const Stage& stage);
+/// The records of one journal that can be read. Throws IoError, DataError.
+std::vector<JournalRecord> read_journal(const Stage& stage, JournalName name);
+
+/// What all journals of a stage say.
+struct Ledger {
+  std::map<JobKey, JobOutput> accepted;  // the last record of a key wins
+  std::set<JobKey> by_run;               // what the run in question has accepted itself
+};
+/// Torn tails and unreadable journals are logged and left out. Throws IoError if the folder cannot
+/// be listed.
+Ledger read_journals(const Stage& stage, std::uint64_t run);
 
 /// A new journal under the first number that nobody has taken.
 JournalWriter open_journal(const Stage& stage);

@@ -3,6 +3,8 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
+#include <string>
 #include <string_view>
 
 namespace meshfarm {
@@ -23,6 +25,10 @@ class Claim {
  private:
   std::filesystem::path file_;
 };
+
+/// "host H, process P" of who has the claim, as far as is known; nothing if there is none, or its
+/// owner is known to be dead.
+std::optional<std::string> holder_of(const std::filesystem::path& file);
 
 /// Where work on an output file is claimed: a hidden file beside it.
 std::filesystem::path claim_of(const std::filesystem::path& output);

@@ -36,6 +36,10 @@ std::uint64_t free_bytes(const std::filesystem::path& path);
 /// who has a share of the disk, free_bytes() does not tell.
 void probe_room(const std::filesystem::path& folder, std::uint64_t bytes);
 
+/// The time as the folder's server tells it, by a file that is made and removed; where none can be
+/// made, this host's.
+std::filesystem::file_time_type clock_of(const std::filesystem::path& folder);
+
 /// Whether a file that is made for its owner alone stays so. Throws IoError.
 bool keeps_private(const std::filesystem::path& folder);
 
