@@ -9,8 +9,10 @@
 #include <doctest/doctest.h>
 
 #include <meshfarm/farm/endpoint.hpp>
+#include <meshfarm/staging/sealed.hpp>
 #include <meshfarm/util/errors.hpp>
 
+#include "support/seeds.hpp"
 #include "support/temp_folder.hpp"
 
 namespace meshfarm {
@@ -29,6 +31,19 @@ TEST_CASE("an endpoint comes back as it was, and damaged not at all") {
     changed[i] = static_cast<char>(changed[i] ^ 4);
     CHECK_THROWS_AS(decode_endpoint(changed, "e"), DataError);
   }
+}
+
+TEST_CASE("the fuzzer begins from endpoints of this version") {
+  const std::string file = encode_endpoint(k_endpoint);
+  Endpoint over = k_endpoint;
+  over.address.clear();
+  over.done = true;
+  test::check_seed("endpoint", "file", file);
+  test::check_seed("endpoint", "over", encode_endpoint(over));
+  constexpr std::size_t k_checksum_bytes = 8;
+  test::check_seed(
+      "endpoint", "payload",
+      file.substr(k_seal_head_bytes, file.size() - k_seal_head_bytes - k_checksum_bytes));
 }
 
 TEST_CASE("each publisher gets an epoch of its own, above all that there are") {

@@ -7,6 +7,7 @@
 #include <meshfarm/farm/ledger.hpp>
 #include <meshfarm/util/errors.hpp>
 
+#include "support/seeds.hpp"
 #include "support/temp_folder.hpp"
 
 namespace meshfarm {
@@ -37,6 +38,14 @@ TEST_CASE("a record comes back as it was, cut or forged not at all") {
   }
   forged.output.file.name = accepted(2, 2).output.file.name;  // another job's
   CHECK_THROWS_AS(decode_record(record_of(forged), "r"), DataError);
+}
+
+TEST_CASE("the fuzzer begins from records of this version") {
+  const test::TempFolder folder;
+  const std::vector<std::string> records = {record_of(accepted(255, 2)), record_of(accepted(1, 1))};
+  JournalWriter(folder / "journal").append_all(records);
+  test::check_seed("journal_record", "record", records[0]);
+  test::check_seed("journal_record", "journal", read_file(folder / "journal"));
 }
 
 TEST_CASE("a record that does not decode is set aside, those after it count") {
