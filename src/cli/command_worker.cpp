@@ -16,6 +16,7 @@
 #include <meshfarm/util/memory.hpp>
 
 #include "cli/farm_command.hpp"
+#include "cli/pool_worker.hpp"
 #include "cli/version.hpp"
 
 namespace meshfarm {
@@ -24,16 +25,19 @@ namespace {
 class WorkerCommand : public FarmCommand {
  public:
   std::string_view name() const override { return "worker"; }
-  std::string_view synopsis() const override { return "STAGE"; }
+  std::string_view synopsis() const override { return "STAGE | --pool FOLDER"; }
   std::string_view summary() const override {
     return "simplify parts for a run, from any host that sees the stage";
   }
   void setup(po::options_description& options,
              po::positional_options_description& positional) override {
-    add_stage(options, positional);
-    options.add_options()("wait",
-                          po::value(&wait_s_)->default_value(wait_s_)->value_name("SECONDS"),
-                          "how long to look for a ventilator");
+    add_stage(options, positional, StageIs::optional);
+    options.add_options()(
+        "pool", po::value(&pool_)->value_name("FOLDER"),
+        "serve the stages in this folder, or linked there, one run after another: the one with "
+        "the fewest workers for its remaining work first; looks on after the end of each");
+    options.add_options()("wait", po::value(&wait_s_)->value_name("SECONDS"),
+                          "how long to look for a ventilator (default: 60; with --pool: for ever)");
     options.add_options()(
         "speed", po::value(&speed_)->value_name("N"),
         "triangles a second that this host simplifies (default: as 'meshfarm benchmark' measured)")(
@@ -51,6 +55,8 @@ class WorkerCommand : public FarmCommand {
   }
   void check() override {
     security_.check();
+    if (stage_.empty() == pool_.empty()) throw UsageError("give a STAGE, or --pool FOLDER");
+    if (!pool_.empty() && !run_.empty()) throw UsageError("--run goes with a STAGE, not --pool");
     if (threads_ == 0 || threads_ > 256) throw UsageError("--threads: from 1 to 256");
     if (!run_.empty()) run_key_ = parse_run(run_);
     if (!memory_.empty()) memory_bytes_ = parse_size(memory_, "--memory");
@@ -58,13 +64,35 @@ class WorkerCommand : public FarmCommand {
 
  protected:
   const SecurityWords& security() const override { return security_; }
+  void work(const std::atomic<bool>& stop) override {
+    if (pool_.empty()) return FarmCommand::work(stop);
+    PoolWork pool;
+    pool.folder = pool_;
+    if (wait_s_ >= 0) pool.wait = std::chrono::seconds(wait_s_);
+    pool.serve = [&](const Stage& stage, std::uint64_t run) {
+      if (!supervised()) security_.check_mount(stage.root());
+      serve_run(stage, run, k_patience_in_pool, stop);
+    };
+    serve_pool(pool, stop);
+  }
+
   void serve(const Stage& stage, const std::atomic<bool>& stop) override {
+    constexpr std::int64_t k_patience_s = 60;
+    serve_run(stage, run_key_, std::chrono::seconds(wait_s_ < 0 ? k_patience_s : wait_s_), stop);
+  }
+
+ private:
+  /// There may be others who answer.
+  static constexpr std::chrono::seconds k_patience_in_pool{10};
+
+  void serve_run(const Stage& stage, std::uint64_t run, std::chrono::seconds patience,
+                 const std::atomic<bool>& stop) const {
     leave_host_card(stage);
     WorkerOptions options;
     options.security = security_.security;
-    options.patience = std::chrono::seconds(wait_s_);
+    options.patience = patience;
     options.stop = &stop;
-    options.run = run_key_;
+    options.run = run;
     options.algorithm = k_algorithm_version;
     options.abort = [](const std::string& incomplete) { end_process(incomplete); };
     options.capacity.threads = threads_;
@@ -81,7 +109,6 @@ class WorkerCommand : public FarmCommand {
     }
   }
 
- private:
   /// By these 'meshfarm doctor' finds hosts of one name.
   static void leave_host_card(const Stage& stage) {
     try {
@@ -126,7 +153,8 @@ class WorkerCommand : public FarmCommand {
     std::_Exit(incomplete.empty() ? 0 : 3);
   }
 
-  std::uint32_t wait_s_ = 60;
+  std::string pool_;
+  std::int64_t wait_s_ = -1;  // below 0: not said
   std::uint32_t threads_ = 1;
   std::uint64_t speed_ = 0;
   std::string run_;

@@ -10,9 +10,10 @@
 namespace meshfarm {
 
 void FarmCommand::add_stage(po::options_description& options,
-                            po::positional_options_description& positional) {
-  options.add_options()("stage", po::value(&stage_)->required(), "")(
-      "supervised", po::bool_switch(&supervised_), "");
+                            po::positional_options_description& positional, StageIs stage_is) {
+  auto* stage = po::value(&stage_);
+  if (stage_is == StageIs::required) stage->required();
+  options.add_options()("stage", stage, "")("supervised", po::bool_switch(&supervised_), "");
   positional.add("stage", 1);
 }
 
@@ -20,9 +21,7 @@ int FarmCommand::run() {
   const std::atomic<bool>& stop = stop_on_signals();
   if (talk_.quiet || supervised_) set_log(name(), LogLevel::warning);
   try {
-    const Stage stage = Stage::open(stage_);
-    if (!supervised_) security().check_mount(stage_);
-    serve(stage, stop);
+    work(stop);
   } catch (const IoError& error) {
     if (!is_no_space(error)) throw;
     throw IncompleteError(std::string(error.what()) +
@@ -35,6 +34,12 @@ int FarmCommand::run() {
     throw;
   }
   return 0;
+}
+
+void FarmCommand::work(const std::atomic<bool>& stop) {
+  const Stage stage = Stage::open(stage_);
+  if (!supervised_) security().check_mount(stage_);
+  serve(stage, stop);
 }
 
 Manifest FarmCommand::read_manifest(const Stage& stage) {

@@ -18,7 +18,11 @@ class FarmCommand : public Command {
   int run() final;
 
  protected:
-  void add_stage(po::options_description& options, po::positional_options_description& positional);
+  enum class StageIs { required, optional };
+  void add_stage(po::options_description& options, po::positional_options_description& positional,
+                 StageIs stage_is = StageIs::required);
+  /// What the process is there for: to serve the stage.
+  virtual void work(const std::atomic<bool>& stop);
   virtual void serve(const Stage& stage, const std::atomic<bool>& stop) = 0;
   /// What the command was told about authentication and mounts.
   virtual const SecurityWords& security() const = 0;

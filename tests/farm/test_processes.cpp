@@ -416,6 +416,34 @@ TEST_CASE("clean leaves what a killed run needs, and takes what finished ones ma
   bench().check_result(stage + ".ply");
 }
 
+TEST_CASE("a worker of a pool serves one run after another, and looks on") {
+  const std::string pool = bench().path("pool");
+  fs::create_directory(pool);
+  std::vector<std::string> stages;
+  for (const char* name : {"one", "two"}) {
+    stages.push_back(bench().cut());
+    fs::create_directory_symlink(stages.back(), fs::path(pool) / name);
+  }
+  Process worker = bench().start({"worker", "--pool", pool});
+  std::vector<Process> centre;
+  for (const std::string& stage : stages) {
+    centre.push_back(bench().ventilator(stage));
+    centre.push_back(bench().sink(stage));
+  }
+  for (Process& each : centre) CHECK(each.wait() == 0);
+  for (const std::string& stage : stages) bench().check_result(stage + ".ply");
+  CHECK(bench().meshfarm({"clean", stages[0]}).code == 0);
+  Process ventilator = bench().ventilator(stages[0]);  // another run comes later
+  Process sink = bench().sink(stages[0]);
+  CHECK(sink.wait() == 0);
+  CHECK(ventilator.wait() == 0);
+  worker.signal(SIGTERM);
+  CHECK(worker.wait() == 0);
+  CHECK(bench().meshfarm({"worker", "--pool", pool, "--wait", "1"}).code == 0);
+  CHECK(bench().meshfarm({"worker"}).code == 2);
+  CHECK(bench().meshfarm({"worker", stages[0], "--pool", pool}).code == 2);
+}
+
 TEST_CASE("a run's processes show as meshfarm, and a worker that left before the end is replaced") {
   const std::string stage = bench().cut();
   Process replay =
