@@ -33,6 +33,7 @@ class Command {
 std::vector<std::unique_ptr<Command>> all_commands();
 
 std::unique_ptr<Command> make_simplify_command();
+std::unique_ptr<Command> make_batch_command();
 std::unique_ptr<Command> make_cut_command();
 std::unique_ptr<Command> make_run_command();
 std::unique_ptr<Command> make_replay_command();

@@ -35,7 +35,10 @@ class SimplifyCommand : public Command {
     cut_.add(options);
     options.add_options()("stage", po::value(&stage_)->value_name("FOLDER"),
                           "where parts are staged (default: OUTPUT.stage)")(
-        "keep-stage", po::bool_switch(&keep_stage_), "keep the stage, for replay");
+        "keep-stage", po::bool_switch(&keep_stage_), "keep the stage, for replay")(
+        // Started by a batch, whose crew of workers serves this run.
+        "in-batch", po::bool_switch(&in_batch_), "")("key-file",
+                                                     po::value(&network_.security.key_file), "");
     when_full_.add(options);
     talk_.add(options);
     positional.add("input", 1);
@@ -43,7 +46,9 @@ class SimplifyCommand : public Command {
   void check() override {
     target_.check();
     cut_.check();
-    if (workers_ == 0 || workers_ > 1000) throw UsageError("--workers: from 1 to 1000");
+    if (in_batch_) workers_ = 0;
+    if ((workers_ == 0 && !in_batch_) || workers_ > 1000)
+      throw UsageError("--workers: from 1 to 1000");
     if (stage_.empty()) stage_ = output_ + ".stage";
     network_.bind = "127.0.0.1";
     network_.this_host_only = true;
@@ -71,6 +76,7 @@ class SimplifyCommand : public Command {
   std::string output_;
   std::string stage_;
   bool keep_stage_ = false;
+  bool in_batch_ = false;
   std::uint32_t workers_ = default_workers();
   TargetOptions target_;
   CutWords cut_;

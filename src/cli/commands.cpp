@@ -7,6 +7,7 @@ namespace meshfarm {
 std::vector<std::unique_ptr<Command>> all_commands() {
   std::vector<std::unique_ptr<Command>> commands;
   commands.push_back(make_simplify_command());
+  commands.push_back(make_batch_command());
   commands.push_back(make_cut_command());
   commands.push_back(make_run_command());
   commands.push_back(make_worker_command());

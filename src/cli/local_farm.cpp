@@ -58,7 +58,9 @@ Crew crew_for(const LocalFarm& farm, const Manifest& manifest) {
 class KeysAside {
  public:
   KeysAside(const LocalFarm& farm, const Stage& stage) {
-    if (!farm.network.this_host_only || keeps_private(stage.root() / "control")) return;
+    if (!farm.network.this_host_only || !farm.network.security.key_file.empty() ||
+        keeps_private(stage.root() / "control"))
+      return;
     std::string folder = (std::filesystem::temp_directory_path() / "meshfarm-XXXXXX").string();
     if (::mkdtemp(folder.data()) == nullptr) throw_errno("cannot make", folder);
     folder_ = folder;

@@ -200,6 +200,15 @@ void CutWords::check() {
   if (stream.memory_bytes == 0) throw UsageError("--memory must be above 0");
 }
 
+std::vector<std::string> CutWords::words() const {
+  std::vector<std::string> words = {"--scheme", scheme_word, "--sort", sort,      "--weld",
+                                    weld,       "--memory",  memory,   "--window"};
+  words.push_back(std::to_string(stream.window_triangles));
+  if (cut.parts != 0) words.insert(words.end(), {"--parts", std::to_string(cut.parts)});
+  if (cut.threads != 0) words.insert(words.end(), {"--threads", std::to_string(cut.threads)});
+  return words;
+}
+
 void SecurityWords::add(po::options_description& options) {
   options.add_options()("key-file", po::value(&key_file)->value_name("FILE"),
                         "the keys of the run, made where they are missing; the same for all its "

@@ -66,6 +66,8 @@ struct CutWords {
 
   void add(po::options_description& options);
   void check();
+  /// The same as words for a command line.
+  std::vector<std::string> words() const;
 };
 
 /// --key-file, --insecure, --insecure-network, --allow-soft.

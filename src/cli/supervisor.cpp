@@ -3,17 +3,14 @@
 #include "cli/supervisor.hpp"
 
 #include <algorithm>
-#include <cerrno>
 #include <chrono>
 #include <csignal>
-#include <ctime>
 
-#include <sys/prctl.h>
 #include <sys/wait.h>
-#include <unistd.h>
 
-#include <meshfarm/util/errors.hpp>
 #include <meshfarm/util/log.hpp>
+
+#include "cli/child_process.hpp"
 
 namespace meshfarm {
 namespace {
@@ -23,36 +20,6 @@ constexpr int k_grace_ms = 10'000;
 constexpr int k_last_words_ms = 3'000;
 constexpr int k_incomplete = 3;
 
-sigset_t child_signal() {
-  sigset_t set;
-  sigemptyset(&set);
-  sigaddset(&set, SIGCHLD);
-  return set;
-}
-
-/// Sleeps until a child ends, a signal comes, or the time is over.
-void wait_for_child(int timeout_ms) {
-  const sigset_t set = child_signal();
-  const timespec timeout{timeout_ms / 1000, (timeout_ms % 1000) * 1'000'000L};
-  ::sigtimedwait(&set, nullptr, &timeout);
-}
-
-[[noreturn]] void become(const std::vector<std::string>& words, pid_t parent) {
-  // A process group of its own: Ctrl-C reaches the parent only, which ends its children in order.
-  ::setpgid(0, 0);
-  ::prctl(PR_SET_PDEATHSIG, SIGTERM);
-  if (::getppid() != parent) ::_exit(1);
-  const sigset_t set = child_signal();
-  ::sigprocmask(SIG_UNBLOCK, &set, nullptr);
-  std::vector<char*> argv;
-  static char program[] = "meshfarm";
-  argv.push_back(program);
-  for (const std::string& word : words) argv.push_back(const_cast<char*>(word.c_str()));
-  argv.push_back(nullptr);
-  ::execv("/proc/self/exe", argv.data());
-  ::_exit(127);
-}
-
 }  // namespace
 
 Supervisor::~Supervisor() {
@@ -60,17 +27,12 @@ Supervisor::~Supervisor() {
 }
 
 void Supervisor::start(std::vector<std::string> words) {
-  const sigset_t set = child_signal();
-  ::sigprocmask(SIG_BLOCK, &set, nullptr);
   children_.push_back({.words = std::move(words), .pid = -1, .done = false, .restarts = 0});
   spawn(children_.back());
 }
 
 void Supervisor::spawn(Child& child) {
-  const pid_t parent = ::getpid();
-  child.pid = ::fork();
-  if (child.pid < 0) throw_errno("cannot start a process for", child.words.front());
-  if (child.pid == 0) become(child.words, parent);
+  child.pid = start_child(child.words);
 }
 
 int Supervisor::run() {
