@@ -54,13 +54,15 @@ class SimulatedFarm {
     SimulatedWork work;
     JobPhase phase = JobPhase::storage;
     bool hangs = false;
-    SimulatedTime lap{0};    // the phase's begin
-    SimulatedTime begin{0};  // of computing
+    bool looks_for_file = false;  // its reader waits for a file that is not to be seen yet
+    SimulatedTime lap{0};         // the phase's begin
+    SimulatedTime begin{0};       // of computing
     JobTimes times;
   };
   struct Worker : Process {
     std::unique_ptr<WorkerCore> core;
     std::uint64_t incarnation = 0;
+    bool leaves = false;        // it was asked to
     std::string peer;           // the name of its connection; empty: hung up
     std::uint32_t dialled = 0;  // the epoch that it leads to
     std::string lane;
@@ -128,6 +130,7 @@ class SimulatedFarm {
   void run_again();
 
   void start_worker(std::uint32_t index);
+  void ask_to_leave(std::uint32_t index);
   void tick_worker(std::uint32_t index, std::uint64_t life);
   void kill_worker(std::uint32_t index);
   void worker_does(std::uint32_t index, WorkerActions actions);
@@ -175,6 +178,10 @@ class SimulatedFarm {
   void sink_act(SinkLeaves& each);
   void journal(const Check& check);
 
+  /// What a host's processes see of the stage's endpoints.
+  std::vector<Endpoint> endpoints_seen(std::uint32_t host);
+  void announce(std::uint64_t run, const std::string& address);
+  void change_other_run();
   void plan_faults();
   /// Lets a fault happen again and again, so often a minute, until the faults end.
   void repeat(double rate_per_minute, const std::function<void()>& fault);
@@ -189,6 +196,7 @@ class SimulatedFarm {
   SimulatedFolder folder_;
   SimulationChecks checks_;
   std::vector<Endpoint> endpoints_;
+  std::map<std::pair<std::uint32_t, std::uint32_t>, SimulatedTime> seen_from_;  // host, epoch
   std::uint32_t epochs_ = 0;
   std::uint64_t dials_ = 0;
   std::uint64_t tokens_ = 0;

@@ -40,6 +40,8 @@ void SimulatedFarm::plan_faults() {
     const auto host = static_cast<std::uint32_t>(dice_.pick(hosts_));
     wires_.cut(host, until(k_longest_pause));
   });
+  repeat(of_workers(faults.worker_leaves), [=, this] { ask_to_leave(any_worker()); });
+  repeat(faults.other_runs, [this] { change_other_run(); });
   repeat(faults.sink_crashes, [this] { kill_sink(); });
   repeat(faults.sink_pauses, [=, this] { pause(sink_); });
   repeat(faults.ventilator_crashes, [this] { kill_ventilator(); });
@@ -79,6 +81,10 @@ SimulatedFaults faults_of_seed(std::uint64_t seed) {
   faults.ventilator_pauses = draw(0.5, 3);
   faults.storage_stalls = draw(0.5, 2);
   faults.disk_fills = draw(0.25, 1);
+  faults.journal_error = draw(0.0005, 0.005);
+  faults.late_endpoint = draw(0.05, 0.5);
+  faults.worker_leaves = draw(0.05, 0.5);
+  faults.other_runs = draw(0.5, 4);
   const std::uint64_t hopeless = dice.pick(16);
   if (hopeless == 0) faults.poison = "job 3";
   if (hopeless == 1) faults.bad = "job 3";

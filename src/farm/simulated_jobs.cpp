@@ -20,12 +20,14 @@ void SimulatedFarm::act(std::uint32_t index, Begin& each) {
   in_work.work = options_.work ? options_.work(in_work.job)
                                : SimulatedWork{static_cast<double>(in_work.job.cost) * 1e-3, 0, 0};
   in_work.lap = queue_.now();
-  const SimulatedTime there =
-      folder_.transfer(worker.host, in_work.work.read_bytes) + folder_.visibility_delay();
+  const SimulatedTime delay = folder_.visibility_delay();
+  in_work.looks_for_file = delay.count() > 0;
+  const SimulatedTime there = folder_.transfer(worker.host, in_work.work.read_bytes) + delay;
   while_in_work(worker, each.slot, there, [this, &worker, slot = each.slot] {
     InWork& read = *worker.slots[slot];
     read.times.read_ms = lap_ms(read);
     read.phase = JobPhase::waiting;
+    read.looks_for_file = false;
     worker.gate.push_back(slot);
     open_gate(worker);
   });
@@ -38,7 +40,8 @@ void SimulatedFarm::feel_pulse(Worker& worker) {
     if (!in_work) continue;
     SlotPulse& pulse = worker.pulse.slots[i];
     pulse.phase = in_work->phase;
-    const bool moves = pulse.phase == JobPhase::computing && !in_work->hangs;
+    const bool computes = pulse.phase == JobPhase::computing && !in_work->hangs;
+    const bool moves = computes || in_work->looks_for_file;
     if (moves) {
       ++pulse.progress;
       ++worker.pulse.progress;

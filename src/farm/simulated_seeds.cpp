@@ -5,12 +5,15 @@
 #include <meshfarm/farm/simulated_seeds.hpp>
 #include <meshfarm/util/parallel.hpp>
 
+#include "farm/dice.hpp"
+
 namespace meshfarm {
 namespace {
 
 /// One seed in so many takes its messages through the wire's format: the others need the time for
 /// more histories.
 constexpr std::uint64_t k_wire_every = 32;
+constexpr std::uint64_t k_enough_for_any_job = std::uint64_t{1} << 30;
 constexpr std::uint64_t k_ends_when_full_every = 5;
 /// A ventilator of many workers would be busy with heartbeats alone.
 constexpr std::uint32_t k_workers_per_heartbeat_ms = 2;
@@ -37,6 +40,21 @@ SimulationOptions farm_of(const SeedsOptions& seeds, std::uint64_t seed) {
     worker.host = i / 2;
     worker.start = SimulatedTime(std::uint64_t{i} * 7919 % 3000 * 1000);
     options.workers.push_back(worker);
+  }
+  // Mixed in by other bits of the seed than the faults are.
+  Dice dice(seed * 0x9e37'79b9 + 1);
+  const bool fixed = dice.chance(0.15);
+  if (fixed) {
+    options.schedule.schedule = Schedule::fixed;
+    options.schedule.expect_workers = 1 + static_cast<std::uint32_t>(dice.pick(seeds.workers));
+  }
+  const std::uint64_t threads = dice.chance(0.3) ? 4 : 1;
+  const std::uint64_t memory = dice.chance(0.3) ? k_enough_for_any_job : 0;
+  const bool shared = dice.chance(0.5);
+  for (SimulatedWorker& worker : options.workers) {
+    worker.threads = 1 + static_cast<std::uint32_t>(dice.pick(threads));
+    if (memory != 0) worker.memory = memory + dice.pick(2 * memory);
+    if (memory != 0 && shared) worker.memory_pool = worker.host + 1;
   }
   return options;
 }

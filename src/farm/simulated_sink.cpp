@@ -55,7 +55,7 @@ void SimulatedFarm::sink_does(SinkActions actions) {
 }
 
 void SimulatedFarm::sink_act(Look&) {
-  sink_does(sink_.core->found(endpoints_, farm_now()));
+  sink_does(sink_.core->found(endpoints_seen(sink_.host), farm_now()));
 }
 
 void SimulatedFarm::sink_act(Dial& each) {
@@ -84,6 +84,9 @@ void SimulatedFarm::sink_act(Check& each) {
       if (whole && !each.from_journal && folder_.full()) {
         return sink_does(sink_.core->checked(
             each, {"no space left on device", FailureKind::no_space}, farm_now()));
+      }
+      if (whole && !each.from_journal && chance(options_.faults.journal_error)) {
+        return sink_does(sink_.core->fail({"cannot sync the journal", false}));
       }
       if (whole && !each.from_journal) journal(each);
       // Killed between the journal's sync and the word to the ventilator.

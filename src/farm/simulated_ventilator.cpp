@@ -22,7 +22,7 @@ std::string lane_name(std::uint32_t epoch, WorkerId id) {
 void SimulatedFarm::start_ventilator() {
   ventilator_.alive = true;
   const std::uint64_t life = ++ventilator_.life;
-  ventilator_.epoch = ++epochs_;
+  ventilator_.epoch = epochs_ + 1;
   finished_ = false;
   ++result_.runs;
   run_start_ = queue_.now();
@@ -35,9 +35,39 @@ void SimulatedFarm::start_ventilator() {
   dispatcher.schedule = options_.schedule;
   dispatcher.when_full = options_.when_full;
   ventilator_.core.emplace(Plan(source_, options_.max_attempts), dispatcher);
-  endpoints_.push_back({ventilator_.epoch, k_run, "v" + std::to_string(epochs_), "host", 1});
+  announce(k_run, "v");
   note(ventilator_.epoch);
   tick_ventilator(life);
+}
+
+/// The next epoch, of a ventilator, or by an empty address the word that its run is over.
+void SimulatedFarm::announce(std::uint64_t run, const std::string& address) {
+  const std::uint32_t epoch = ++epochs_;
+  const std::string name = address.empty() ? address : address + std::to_string(epoch);
+  endpoints_.push_back({epoch, run, name, "host", 1, {}});
+  if (options_.faults.late_endpoint <= 0 || !faulty()) return;
+  constexpr std::chrono::milliseconds k_longest{20'000};
+  for (std::uint32_t host = 0; host < hosts_; ++host) {
+    if (!chance(options_.faults.late_endpoint)) continue;
+    seen_from_[{host, epoch}] = queue_.now() + up_to(k_longest);
+  }
+}
+
+std::vector<Endpoint> SimulatedFarm::endpoints_seen(std::uint32_t host) {
+  if (seen_from_.empty()) return endpoints_;
+  std::vector<Endpoint> seen;
+  for (const Endpoint& each : endpoints_) {
+    const auto late = seen_from_.find({host, each.epoch});
+    if (late == seen_from_.end() || late->second <= queue_.now()) seen.push_back(each);
+  }
+  return seen;
+}
+
+/// Another run of the stage, whose ventilator never answers: it was killed, or is cut off.
+void SimulatedFarm::change_other_run() {
+  constexpr std::uint64_t k_runs = 3;
+  const std::uint64_t run = k_run + 1 + dice_.pick(k_runs);
+  announce(run, dice_.chance(0.5) ? "g" : "");
 }
 
 void SimulatedFarm::tick_ventilator(std::uint64_t life) {
@@ -191,7 +221,7 @@ void SimulatedFarm::act(Finish& each) {
   said_failure_ = !each.failure.empty();
   kill(ventilator_);
   ventilator_.core.reset();
-  endpoints_.push_back({++epochs_, k_run, {}, "host", 1});
+  announce(k_run, {});
   note(each.failure.size());
   // Whoever started the run reads why it failed, and starts it again.
   restarting_ = said_failure_ && run_start_ < options_.faults.end;

@@ -1,5 +1,6 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
+#include <algorithm>
 #include <utility>
 
 #include "farm/simulated_farm.hpp"
@@ -18,6 +19,7 @@ void SimulatedFarm::start_worker(std::uint32_t index) {
   if (finished_ || worker.alive) return;
   const SimulatedWorker& is = options_.workers[index];
   worker.alive = true;
+  worker.leaves = false;
   const std::uint64_t life = ++worker.life;
   worker.incarnation = dice_.next() | 1;
   worker.to_ventilator = worker.to_sink = worker.from_ventilator = worker.lane_channel = {};
@@ -31,6 +33,7 @@ void SimulatedFarm::start_worker(std::uint32_t index) {
   const double told = is.told_speed > 0 ? is.told_speed : is.speed;
   member.capacity.speed = static_cast<std::uint64_t>(told * options_.triangles_per_s);
   member.capacity.memory = is.memory;
+  member.capacity.memory_pool = is.memory_pool;
   member.capacity.threads = is.threads;
   // As in the real worker: one job more is in work than is computed.
   worker.slots.assign(is.threads + 1, std::nullopt);
@@ -66,6 +69,14 @@ void SimulatedFarm::kill_worker(std::uint32_t index) {
   queue_.in(up_to(k_down), [this, index] { start_worker(index); });
 }
 
+/// As at SIGTERM: it gives back what it holds, ends what is in work, and another comes.
+void SimulatedFarm::ask_to_leave(std::uint32_t index) {
+  Worker& worker = workers_[index];
+  if (!worker.alive || worker.asleep_until > queue_.now()) return;
+  worker.leaves = true;
+  worker_does(index, worker.core->stop());
+}
+
 void SimulatedFarm::worker_does(std::uint32_t index, WorkerActions actions) {
   Worker& worker = workers_[index];
   const std::uint64_t life = worker.life;
@@ -73,12 +84,16 @@ void SimulatedFarm::worker_does(std::uint32_t index, WorkerActions actions) {
     if (!worker.alive || worker.life != life) return;
     std::visit([&](auto& each) { act(index, each); }, action);
   }
-  if (worker.core)
-    checks_.that(worker.core->waiting() <= options_.buffer, "a worker holds too much");
+  if (!worker.core) return;
+  const auto in_work = static_cast<std::size_t>(std::count_if(
+      worker.slots.begin(), worker.slots.end(), [](const auto& slot) { return slot.has_value(); }));
+  checks_.that(worker.core->waiting() + in_work <= options_.buffer + worker.slots.size(),
+               "a worker holds too much");
 }
 
 void SimulatedFarm::act(std::uint32_t index, Look&) {
-  worker_does(index, workers_[index].core->found(endpoints_, farm_now()));
+  const std::uint32_t host = workers_[index].host;
+  worker_does(index, workers_[index].core->found(endpoints_seen(host), farm_now()));
 }
 
 void SimulatedFarm::act(std::uint32_t index, Dial& each) {
@@ -123,12 +138,14 @@ void SimulatedFarm::act(std::uint32_t index, SendResult& each) {
 void SimulatedFarm::act(std::uint32_t index, Leave& each) {
   Worker& worker = workers_[index];
   if (each.abort) return kill_worker(index);
-  checks_.that(each.incomplete.empty(), "a worker gave up looking");
+  checks_.that(each.incomplete.empty() || worker.leaves, "a worker gave up looking");
   kill(worker);
   worker.core.reset();
   worker.peer.clear();
   worker.lane.clear();
-  if (faulty()) queue_.in(k_down, [this, index] { start_worker(index); });
+  // By the late word of a run that was over, maybe, after another one has begun.
+  const bool comes_again = faulty() || worker.leaves || result_.runs > 1;
+  if (comes_again) queue_.in(k_down, [this, index] { start_worker(index); });
 }
 
 }  // namespace meshfarm

@@ -16,6 +16,7 @@ Job made_up(const std::string& name) {
   job.kind = "simulated";
   job.parameters = name;
   job.cost = 100 + checksum(name) % 900;
+  job.memory = job.cost << 20;  // 100 MiB to 1 GiB
   return job;
 }
 

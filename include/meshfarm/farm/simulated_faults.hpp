@@ -18,20 +18,24 @@ struct SimulatedFaults {
   double late = 0;       // a message: it comes seconds later, and what follows it on its channel
   double overtake = 0;   // a result: those behind it may come first (another connection)
 
-  double crash_at_job = 0;  // the worker dies at a job
-  double fail = 0;          // a job throws
-  double hang = 0;          // a job never ends
-  double read_error = 0;    // reading a part fails
-  double write_error = 0;   // fsync or close fails, and no file is there
-  double lost_answer = 0;   // the rename was done, but is reported as failed
-  double damaged = 0;       // the file is short or damaged, and nobody was told
-  double unseen = 0;        // a told name stays invisible to its reader for 30 s and more
-  double stale = 0;         // a reader sees an old state of a file for some seconds
-  double lane_fails = 0;    // no port is free for a lane
+  double crash_at_job = 0;   // the worker dies at a job
+  double fail = 0;           // a job throws
+  double hang = 0;           // a job never ends
+  double read_error = 0;     // reading a part fails
+  double write_error = 0;    // fsync or close fails, and no file is there
+  double lost_answer = 0;    // the rename was done, but is reported as failed
+  double damaged = 0;        // the file is short or damaged, and nobody was told
+  double unseen = 0;         // a told name stays invisible to its reader for 30 s and more
+  double stale = 0;          // a reader sees an old state of a file for some seconds
+  double lane_fails = 0;     // no port is free for a lane
+  double journal_error = 0;  // a record: the sink's journal cannot be written, for no lack of room
+  double late_endpoint = 0;  // a ventilator's address: a host does not see it for up to 20 s
 
   double worker_crashes = 0;  // per worker, as are the next two
   double worker_pauses = 0;   // as under SIGSTOP, up to 12 s
   double host_cuts = 0;       // one direction or both, up to 12 s; TCP delivers later, or not
+  double worker_leaves = 0;   // as at SIGTERM: it gives back what it holds; per worker
+  double other_runs = 0;      // another run of the stage begins, or ends, that nobody answers for
   double sink_crashes = 0;
   double sink_pauses = 0;
   double ventilator_crashes = 0;

@@ -32,8 +32,9 @@ struct SimulatedWorker {
   std::uint32_t host = 0;  // workers of one host are cut off together
   SimulatedTime start{0};
   std::uint32_t threads = 1;
-  std::uint64_t memory = 0;  // bytes; 0: no limit
-  double told_speed = 0;     // what it says of itself; 0: the truth
+  std::uint64_t memory = 0;       // bytes; 0: no limit
+  double told_speed = 0;          // what it says of itself; 0: the truth
+  std::uint64_t memory_pool = 0;  // shared with those of its host that tell the same; 0: its own
 };
 
 /// A message takes delay, and up to jitter more.

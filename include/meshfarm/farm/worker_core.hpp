@@ -42,7 +42,8 @@ struct WorkerPulse {
 };
 
 /// The worker's mind: its input buffer, its credit, the results that nobody acknowledged yet. Pure.
-/// Holds: at most `buffer` jobs wait beside those in work; a result is kept until Done.
+/// Holds: as many jobs as there are slots and places in the buffer, at most (more wait than these
+/// where memory keeps slots empty); a result is kept until Done.
 class WorkerCore {
  public:
   WorkerCore(MemberOptions member, const WorkerLimits& limits)

@@ -75,6 +75,66 @@ TEST_CASE("storage may be late, full, slow and wrong") {
   check_seeds({.disk_fills = 2}, 100);
 }
 
+TEST_CASE("workers may be asked to leave, and give back what they hold") {
+  check_seeds({.worker_leaves = 2}, 100);
+  check_seeds({.hang = 0.01, .worker_leaves = 2}, 50);
+}
+
+TEST_CASE("the journal may fail, and be full") {
+  check_seeds({.journal_error = 0.02}, 50);
+  check_seeds({.sink_crashes = 3, .disk_fills = 4}, 50);
+}
+
+TEST_CASE("addresses may be seen late, and lead to other runs that nobody answers for") {
+  check_seeds({.late_endpoint = 0.5, .ventilator_crashes = 6}, 100);
+  check_seeds({.other_runs = 10, .ventilator_crashes = 3}, 100);
+}
+
+TEST_CASE("readers may wait for files that are not to be seen, and nobody is held to hang") {
+  const JobSource source = simulated_jobs(60);
+  SimulationOptions options = farm_of(6, {.unseen = 0.2});
+  for (options.seed = 1; options.seed <= 20; ++options.seed) {
+    const SimulationResult result = simulate_farm(source, options);
+    REQUIRE(problem_of(result, options.faults, expected_summaries(source)) == "");
+  }
+}
+
+TEST_CASE("workers of several threads and little memory, shared or not, and a static schedule") {
+  const JobSource source = simulated_jobs(60);
+  const std::vector<std::string> expected = expected_summaries(source);
+  for (std::uint64_t seed = 1; seed <= 120; ++seed) {
+    CAPTURE(seed);
+    SimulationOptions options = farm_of(6, {.worker_crashes = 0.5, .worker_leaves = 0.5});
+    options.seed = seed;
+    if (seed % 3 == 0) options.schedule = {Schedule::fixed, 6};
+    for (SimulatedWorker& worker : options.workers) {
+      worker.threads = static_cast<std::uint32_t>(1 + seed % 4);
+      worker.memory = (std::uint64_t{1} << 30) + (seed << 20);
+      if (seed % 2 == 0) worker.memory_pool = worker.host + 1;
+    }
+    REQUIRE(problem_of(simulate_farm(source, options), options.faults, expected) == "");
+  }
+}
+
+TEST_CASE("where the disk is full a run waits, or is started again by its user") {
+  const JobSource source = simulated_jobs(200);
+  const std::vector<std::string> expected = expected_summaries(source);
+  std::uint32_t runs = 0;
+  for (std::uint64_t seed = 1; seed <= 50; ++seed) {
+    CAPTURE(seed);
+    SimulationOptions options = farm_of(6, {.disk_fills = 6});
+    options.seed = seed;
+    const SimulationResult waits = simulate_farm(source, options);
+    REQUIRE(problem_of(waits, options.faults, expected) == "");
+    CHECK(waits.runs == 1);
+    options.when_full = WhenFull::end;
+    const SimulationResult ends = simulate_farm(source, options);
+    REQUIRE(problem_of(ends, options.faults, expected) == "");
+    runs += ends.runs;
+  }
+  CHECK(runs > 50);
+}
+
 TEST_CASE("everything at once, each seed with a mix of its own") {
   const JobSource source = simulated_jobs(100);
   const std::vector<std::string> expected = expected_summaries(source);
