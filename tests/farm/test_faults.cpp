@@ -1,10 +1,11 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
 //
-// Every n-th write, fsync, close and rename of worker, sink and ventilator fails, is cut short, or
-// is the process's last deed (support/fault_shim.cpp). Each run must end, or stop with one clear
-// line and be taken up again, with the same bytes. MESHFARM_FAULTS=all tries every n with every
-// kind of fault; else the first and a later n of each, and kills, for a quick answer.
+// Every n-th call that writes, reads, makes, names or removes a file, of worker, sink and
+// ventilator, fails, is cut short, or is the process's last deed (support/fault_shim.cpp). Each run
+// must end, or stop with one clear line and be taken up again, with the same bytes.
+// MESHFARM_FAULTS=all tries every n with every kind of fault; else the first and a later n of each,
+// and kills, for a quick answer.
 #include <cstdlib>
 #include <utility>
 
@@ -134,16 +135,27 @@ bool survives(Bench& bench, const std::string& role, const std::string& call,
   return fs::exists(bench.path("fired"));
 }
 
+/// A full disk costs seconds: the quick answer tries it at few calls.
+std::vector<std::string> kinds_of(const std::string& call) {
+  std::vector<std::string> kinds = {"kill", "EIO"};
+  if (call == "read") kinds.insert(kinds.end(), {"ESTALE", "short"});
+  if (call == "write") kinds.emplace_back("short");
+  if (call == "rename" || call == "link" || call == "unlink") kinds.emplace_back("lost");
+  const bool makes = call != "read" && call != "unlink";
+  if (makes && (all_of_them() || call == "fsync")) kinds.emplace_back("ENOSPC");
+  if (!all_of_them() && call == "fsync") std::erase(kinds, "EIO");
+  return kinds;
+}
+
 void try_all(const std::string& role) {
   int struck = 0;
-  for (const std::string call : {"write", "fsync", "close", "rename"}) {
-    std::vector<std::string> kinds = {"ENOSPC", "EIO", "kill"};
-    if (call == "write") kinds.push_back("short");
-    if (call == "rename") kinds.push_back("lost");
-    if (!all_of_them()) kinds.erase(kinds.begin() + (call == "fsync" ? 1 : 0));
+  for (const std::string call :
+       {"write", "fsync", "close", "rename", "link", "open", "read", "unlink", "fdatasync"}) {
+    const std::vector<std::string> kinds = kinds_of(call);
     for (const std::string& kind : kinds) {
       const int step = all_of_them() ? 1 : 2;
-      const int most = all_of_them() ? 100 : 3;
+      const bool seldom = call == "link" || call == "open" || call == "read" || call == "unlink";
+      const int most = all_of_them() ? 100 : seldom ? 1 : 3;
       for (int nth = 1; nth <= most && survives(parts(), role, call, kind, nth); nth += step)
         ++struck;
     }

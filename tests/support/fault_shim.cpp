@@ -1,12 +1,12 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
 //
-// Loaded into a meshfarm process by LD_PRELOAD: the n-th write, fsync, close or rename of a file
-// below a folder fails, is cut short, or is the process's last deed. Sockets and eventfds are left
-// alone, which is why this is no job for strace. Told by the environment:
+// Loaded into a meshfarm process by LD_PRELOAD: the n-th call that writes, reads, makes, names or
+// removes a file below a folder fails, is cut short, or is the process's last deed. Sockets and
+// eventfds are left alone, which is why this is no job for strace. Told by the environment:
 //
-//   MESHFARM_FAULT        CALL:KIND:N    write|fsync|close|rename : an errno | short | kill | lost
-//                                        | hang
+//   MESHFARM_FAULT        CALL:KIND:N    write|fsync|close|rename|link|open|read|unlink|fdatasync :
+//                                        an errno | short | kill | lost | hang
 //   MESHFARM_FAULT_ROLE   only in processes of this command: worker, sink, ventilator
 //   MESHFARM_FAULT_BELOW  the folder
 //   MESHFARM_FAULT_WHILE  a file: as long as it is there, each write and fsync below
@@ -14,10 +14,12 @@
 //   MESHFARM_FAULT_FIRED  made when the fault happens, which it then does once; empty: in each
 //   process
 //
-// "lost" (of rename): it is done, but answered with ENOENT, as by an NFS server that restarted.
+// "lost" (of rename, link, unlink): it is done, but answered with ENOENT or EEXIST, as by an NFS
+// server that restarted. Staged files are opened by a system call of their own, which is no open.
 #include <atomic>
 #include <cerrno>
 #include <csignal>
+#include <cstdarg>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
@@ -50,8 +52,8 @@ struct Fault {
 
   Fault() {
     char words[4096] = {};
-    const int fd = ::open("/proc/self/cmdline", O_RDONLY);
-    const ssize_t size = ::read(fd, words, sizeof words - 1);
+    const int fd = real<int(const char*, int, ...)>("open")("/proc/self/cmdline", O_RDONLY);
+    const ssize_t size = real<ssize_t(int, void*, size_t)>("read")(fd, words, sizeof words - 1);
     real<int(int)>("close")(fd);
     const char* role = size > 0 ? words + std::strlen(words) + 1 : words;
     const std::string wanted = text_of("MESHFARM_FAULT_ROLE");
@@ -86,7 +88,8 @@ struct Fault {
   bool strikes(const char* name, const Where& where) {
     if (call != name || !covers(where) || ++count != nth) return false;
     if (!fired.empty()) {
-      const int fd = ::open(fired.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0644);
+      const int fd = real<int(const char*, int, ...)>("open")(
+          fired.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0644);
       if (fd < 0) return false;  // it has struck in another process
       real<int(int)>("close")(fd);
     }
@@ -94,7 +97,15 @@ struct Fault {
     while (kind == "hang") ::pause();
     return true;
   }
-  int error() const { return kind == "ENOSPC" ? ENOSPC : kind == "EDQUOT" ? EDQUOT : EIO; }
+  int error() const {
+    if (kind == "ENOSPC") return ENOSPC;
+    if (kind == "EDQUOT") return EDQUOT;
+    return kind == "ESTALE" ? ESTALE : EIO;
+  }
+  int fails() const {
+    errno = error();
+    return -1;
+  }
 };
 
 Fault& fault() {
@@ -144,6 +155,49 @@ int rename(const char* from, const char* to) {
     return -1;
   }
   const int result = real<int(const char*, const char*)>("rename")(from, to);
+  if (!strikes) return result;
+  errno = ENOENT;
+  return -1;
+}
+
+int open(const char* path, int flags, ...) {
+  mode_t mode = 0;
+  if ((flags & (O_CREAT | O_TMPFILE)) != 0) {
+    va_list rest;
+    va_start(rest, flags);
+    mode = va_arg(rest, mode_t);
+    va_end(rest);
+  }
+  if (fault().strikes("open", path)) return fault().fails();
+  return real<int(const char*, int, ...)>("open")(path, flags, mode);
+}
+
+ssize_t read(int fd, void* bytes, size_t size) {
+  if (fault().strikes("read", fd)) {
+    if (fault().kind != "short") return fault().fails();
+    size = size / 2 + size % 2;
+  }
+  return real<ssize_t(int, void*, size_t)>("read")(fd, bytes, size);
+}
+
+int fdatasync(int fd) {
+  if (fault().strikes("fdatasync", fd)) return fault().fails();
+  return real<int(int)>("fdatasync")(fd);
+}
+
+int link(const char* from, const char* to) {
+  const bool strikes = fault().strikes("link", to);
+  if (strikes && fault().kind != "lost") return fault().fails();
+  const int result = real<int(const char*, const char*)>("link")(from, to);
+  if (!strikes) return result;
+  errno = EEXIST;
+  return -1;
+}
+
+int unlink(const char* path) {
+  const bool strikes = fault().strikes("unlink", path);
+  if (strikes && fault().kind != "lost") return fault().fails();
+  const int result = real<int(const char*)>("unlink")(path);
   if (!strikes) return result;
   errno = ENOENT;
   return -1;
