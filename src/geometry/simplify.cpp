@@ -154,6 +154,9 @@ class Simplifier::Impl {
   }
   double max_cost() const { return max_cost_; }
   double pass_cost() const { return pass_cost_; }
+  std::span<const Mesh> kept() const {
+    return end_game_ ? end_game_->queue.kept() : std::span<const Mesh>();
+  }
   bool simplifies_topology() const { return end_game_ && end_game_->queue.any_topology(); }
   bool is_held_by_topology() const { return end_game_ && end_game_->queue.is_held(); }
   bool is_hampered_by_topology() const {
@@ -508,6 +511,9 @@ double Simplifier::max_cost() const {
 }
 double Simplifier::pass_cost() const {
   return impl_->pass_cost();
+}
+std::span<const Mesh> Simplifier::kept() const {
+  return impl_->kept();
 }
 bool Simplifier::simplifies_topology() const {
   return impl_->simplifies_topology();

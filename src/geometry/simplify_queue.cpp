@@ -16,6 +16,9 @@ constexpr std::uint64_t k_told_every = 4096;  // collapses
 // So many of the edges are ranked at a time, the cheapest; dearer ones are not kept in order. The
 // order of collapses depends on it only where an edge becomes cheaper that is not looked at.
 constexpr double k_ranked_share = 0.35;
+// A mesh that was kept is dropped when it has so many times the triangles that are left.
+constexpr double k_far_more = 1.3;
+
 constexpr CostKey k_greatest = k_any_cost - 1;
 constexpr CostKey k_least_step = 4U << 20;  // a factor of 16
 
@@ -163,6 +166,7 @@ CollapseQueue::Stop CollapseQueue::run(const SimplifyGoal& goal, const Progress&
     } else if (must_wait(queued, collapse.cost)) {
       push({a, b, key_of(collapse.cost)});
     } else {
+      keep(goal);
       merge(a, b, collapse);
       if (progress && ++collapses % k_told_every == 0 && !progress(triangles_)) return Stop::told;
     }
@@ -182,6 +186,21 @@ bool CollapseQueue::must_wait(const QueuedEdge& queued, double cost) const {
   if (exact <= queued.key()) return false;
   const QueuedEdge* const other = next();
   return exact > limit_ || (other != nullptr && other->key() < exact);
+}
+
+/// Before a collapse: so many triangles are not left any more.
+void CollapseQueue::keep(const SimplifyGoal& goal) {
+  bool is_due = false;
+  for (; next_kept_ < goal.keep_at.size() && triangles_ <= goal.keep_at[next_kept_]; ++next_kept_) {
+    is_due = true;
+  }
+  if (!is_due) return;
+  std::erase_if(kept_, [&](const Mesh& mesh) {
+    return static_cast<double>(mesh.triangles.size()) >
+           k_far_more * static_cast<double>(triangles_);
+  });
+  std::vector<std::uint8_t> flags;
+  copy_to(kept_.emplace_back(), flags, 0);
 }
 
 void CollapseQueue::list_ring(std::uint32_t vertex) {

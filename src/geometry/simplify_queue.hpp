@@ -78,6 +78,8 @@ class CollapseQueue {
   /// The sum of the costs of all collapses, and the greatest, both without guesses.
   double paid() const { return paid_; }
   double dearest() const { return dearest_; }
+  /// SimplifyGoal::keep_at.
+  std::span<const Mesh> kept() const { return kept_; }
   std::uint64_t collapses() const { return collapses_; }
   /// Collapses that were refused to keep the topology.
   std::uint64_t kept_topology() const { return kept_topology_; }
@@ -98,6 +100,7 @@ class CollapseQueue {
   std::uint32_t stamp_of(std::uint32_t a, std::uint32_t b) const { return looks_[a] + looks_[b]; }
   Collapse judge(std::uint32_t a, std::uint32_t b, std::uint64_t most_triangles);
   void merge(std::uint32_t a, std::uint32_t b, const Collapse& collapse);
+  void keep(const SimplifyGoal& goal);
   void tidy(std::uint32_t merged);
   void tidy_star(std::uint32_t vertex);
   void classify(std::uint32_t vertex);
@@ -128,6 +131,8 @@ class CollapseQueue {
   std::vector<std::uint32_t> ring_;
   std::vector<Corner> joined_;
   std::uint64_t triangles_ = 0;
+  std::vector<Mesh> kept_;
+  std::size_t next_kept_ = 0;  // of the goal's counts
   // As they were at the last ranking.
   std::uint64_t kept_before_ = 0;
   std::uint64_t collapses_before_ = 0;

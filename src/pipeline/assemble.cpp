@@ -12,6 +12,7 @@
 #include <meshfarm/geometry/distance.hpp>
 #include <meshfarm/geometry/simplify.hpp>
 #include <meshfarm/geometry/simplify_within.hpp>
+#include <meshfarm/geometry/topology.hpp>
 #include <meshfarm/io/boundary_file.hpp>
 #include <meshfarm/io/ply_writer.hpp>
 #include <meshfarm/io/result_file.hpp>
@@ -22,6 +23,7 @@
 #include <meshfarm/util/parallel.hpp>
 
 #include "pipeline/error_meter.hpp"
+#include "pipeline/knee.hpp"
 #include "pipeline/sort_plan.hpp"
 
 namespace meshfarm {
@@ -57,10 +59,14 @@ class Assembly {
     Stopwatch watch;
     const ChosenRungs chosen = choose_rungs(manifest_, run_, accepted);
     lines_.topology = chosen.topology;
-    StitchedMesh stitched = stitch(chosen.rungs);
-    make_meter();
-    summary_.dropped_components =
-        drop_small_components(stitched.mesh, run_.drop_components.in(manifest_.box));
+    for (const ChosenRung& each : chosen.rungs) {
+      summary_.dropped_degenerate += each.dropped_degenerate;
+      summary_.dropped_duplicate += each.dropped_duplicate;
+    }
+    std::vector<SurfaceSamples> samples;
+    StitchedMesh stitched = stitch(chosen.rungs, samples);
+    make_meter(std::move(samples));
+    summary_.dropped_components = drop_small(stitched.mesh);
     summary_.stitched = stitched.mesh.triangles.size();
     summary_.stitch_seconds = watch.lap();
     const Mesh result = summary_.max_error > 0 ? finish_to_bound(std::move(stitched.mesh))
@@ -70,6 +76,7 @@ class Assembly {
     summary_.finish_seconds = watch.lap();
     tell("measure", 0, 0);
     summary_.error = meter_->measure(result);
+    look_for_better(chosen);
     check_stop();
     summary_.measure_seconds = watch.lap();
     write_ply(options_.output, result, manifest_.positions);
@@ -103,7 +110,8 @@ class Assembly {
     return part;
   }
 
-  StitchedMesh stitch(const std::vector<ChosenRung>& chosen) {
+  StitchedMesh stitch(const std::vector<ChosenRung>& chosen,
+                      std::vector<SurfaceSamples>& samples) const {
     constexpr std::size_t k_read_at_once = 8;
     Stitcher stitcher(static_cast<std::uint32_t>(manifest_.parts.size()));
     std::vector<std::size_t> first_part = {0};
@@ -115,31 +123,35 @@ class Assembly {
       });
       for (ResultMesh& part : parts) {
         stitcher.add(part, chosen[p].parts);
-        summary_.dropped_degenerate += chosen[p].dropped_degenerate;
-        summary_.dropped_duplicate += chosen[p].dropped_duplicate;
-        std::move(part.samples.begin(), part.samples.end(), std::back_inserter(samples_));
+        std::move(part.samples.begin(), part.samples.end(), std::back_inserter(samples));
         ++p;
       }
       tell("stitch", static_cast<double>(p) / static_cast<double>(chosen.size()), 0);
     }
     const auto boundary = decode_boundary(stage_.read(manifest_.boundary), manifest_.boundary.name);
     StitchedMesh stitched = stitcher.finish(boundary);
-    sample_boundary(stitched.mesh, stitched.boundary_triangles);
+    samples.push_back(samples_of_boundary(stitched.mesh, stitched.boundary_triangles));
     return stitched;
   }
 
   /// The boundary triangles, last in the stitched mesh, are still those of the input.
-  void sample_boundary(Mesh& stitched, std::size_t count) {
+  SurfaceSamples samples_of_boundary(Mesh& stitched, std::size_t count) const {
     Mesh boundary;
     boundary.triangles.assign(stitched.triangles.end() - static_cast<std::ptrdiff_t>(count),
                               stitched.triangles.end());
     std::swap(boundary.positions, stitched.positions);
-    samples_.push_back(sample_surface(boundary, {.samples = samples_for(manifest_, run_, count)}));
+    SurfaceSamples samples =
+        sample_surface(boundary, {.samples = samples_for(manifest_, run_, count)});
     std::swap(boundary.positions, stitched.positions);
+    return samples;
   }
 
-  void make_meter() {
-    meter_.emplace(stage_, manifest_, std::move(samples_), options_.threads,
+  DroppedComponents drop_small(Mesh& stitched) const {
+    return drop_small_components(stitched, run_.drop_components.in(manifest_.box));
+  }
+
+  void make_meter(std::vector<SurfaceSamples> samples) {
+    meter_.emplace(stage_, manifest_, std::move(samples), options_.threads,
                    summary_.max_error > 0 ? k_points_for_bound : ErrorPoints{});
   }
 
@@ -159,7 +171,8 @@ class Assembly {
     return simplifier.mesh();
   }
 
-  Mesh finish(StitchedMesh stitched) {
+  /// To so many triangles, or as few as there may be.
+  Simplifier reduced(StitchedMesh stitched, std::uint64_t target) const {
     const std::uint64_t before = stitched.mesh.triangles.size();
     SimplifyOptions options{.positions = manifest_.positions, .lines = lines_};
     if (run_.finish == Finish::boundary) {
@@ -168,7 +181,9 @@ class Assembly {
     }
     Simplifier simplifier(std::move(stitched.mesh), std::move(options));
     const auto reduce_to = [&](std::uint64_t triangles) {
-      simplifier.reduce({.triangles = triangles}, [&](std::uint64_t left) {
+      SimplifyGoal goal{.triangles = triangles};
+      goal.keep_at = counts_before_knee(target);
+      simplifier.reduce(goal, [&](std::uint64_t left) {
         const std::uint64_t all = before - std::min(before, triangles);
         const std::uint64_t done = before - std::min(before, left);
         tell("finish",
@@ -177,35 +192,89 @@ class Assembly {
         return true;
       });
     };
-    reduce_to(summary_.target);
+    reduce_to(target);
     // A closed surface loses triangles in pairs: of an odd target one fewer is taken, not one more.
-    if (simplifier.triangles() == summary_.target + 1 && summary_.target > 0) {
-      reduce_to(summary_.target - 1);
-    }
+    if (simplifier.triangles() == target + 1 && target > 0) reduce_to(target - 1);
+    return simplifier;
+  }
+
+  Mesh finish(StitchedMesh stitched) {
+    const std::uint64_t before = stitched.mesh.triangles.size();
+    const Simplifier simplifier = reduced(std::move(stitched), summary_.target);
+    larger_.assign(simplifier.kept().begin(), simplifier.kept().end());
     summary_.dropped_degenerate += simplifier.dropped_degenerate();
     summary_.dropped_duplicate += simplifier.dropped_duplicate();
     summary_.topology_simplified =
         lines_.topology == TopologyMode::simplify || simplifier.simplifies_topology();
-    summary_.why_not_exact = why_not_exact(before, simplifier.triangles());
+    summary_.why_not_exact = why_not_exact(before, simplifier.mesh());
     return simplifier.mesh();
   }
 
-  std::string why_not_exact(std::uint64_t before, std::uint64_t after) const {
+  /// Finds out what a few triangles more would have had: the finish may have gone too far, or the
+  /// parts before it.
+  void look_for_better(const ChosenRungs& chosen) {
+    const double rms = summary_.error.greater().rms;
+    if (!is_visible(rms / manifest_.box.diagonal())) return;
+    for (const Mesh& mesh : larger_) tell_if_better(mesh, mesh.triangles.size());
+    larger_ = {};
+    if (summary_.better || chosen.finer.empty() || !is_plain(rms / manifest_.box.diagonal()))
+      return;
+    std::vector<SurfaceSamples> measured_already;
+    StitchedMesh stitched = stitch(chosen.finer, measured_already);
+    drop_small(stitched.mesh);
+    const auto count =
+        static_cast<std::uint64_t>(chosen.times_finer * static_cast<double>(summary_.triangles));
+    if (!may_be_better(stitched.mesh, count)) return;
+    const Simplifier simplifier = reduced(std::move(stitched), count);
+    tell_if_better(simplifier.mesh(), simplifier.triangles());
+  }
+
+  void tell_if_better(const Mesh& mesh, std::uint64_t triangles) {
+    if (!may_be_better(mesh, triangles)) return;
+    const BetterCount better{triangles, meter_->measure(mesh)};
+    if (is_past_knee(made(), {triangles, better.error.greater().rms})) summary_.better = better;
+  }
+
+  /// An estimate, of one direction only, which may be the lesser: it tells what to measure.
+  bool may_be_better(const Mesh& mesh, std::uint64_t triangles) const {
+    constexpr double k_doubt = 2;
+    return is_past_knee(made(), {triangles, meter_->estimate_rms(mesh) / k_doubt});
+  }
+
+  CountAndError made() const { return {summary_.triangles, summary_.error.greater().rms}; }
+
+  std::string why_not_exact(std::uint64_t before, const Mesh& result) const {
+    const std::uint64_t after = result.triangles.size();
     if (after == summary_.target) return {};
-    if (summary_.target > before) {
-      return summary_.dropped_components.components == 0 ? "the input has no more"
-                                                         : "no more is left of the input";
-    }
+    if (summary_.target > before) return why_no_more();
+    const Topology topology = measure_topology(result);
     if (after < summary_.target) {
-      return "where no open border is left, triangles go in pairs";
+      return topology.border_edges == 0 ? "where no open border is left, triangles go in pairs"
+                                        : "where no border may change, triangles go in pairs";
     }
     if (run_.finish == Finish::boundary) return "nothing more can be collapsed at the seams";
+    // A closed piece has four at least.
+    if (after <= 4 * topology.components) {
+      if (topology.components == 1) return "the last piece stays, and it can't be smaller";
+      if (lines_.topology == TopologyMode::keep) {
+        return "the topology is kept, and none of the " + std::to_string(topology.components) +
+               " pieces can be smaller";
+      }
+    }
     std::string kept;
     if (run_.lines.topology == TopologyMode::keep) kept += "changing the topology, ";
     if (run_.lines.preserve_border) kept += "moving the borders, ";
     if (run_.lines.crease_angle > 0) kept += "moving the creases, ";
-    if (!kept.empty()) kept.replace(kept.size() - 2, 2, " or ");
-    return "nothing more can be collapsed without " + kept + "turning a triangle over";
+    return "nothing more can be collapsed without " + kept +
+           "turning a triangle over or making one of no area";
+  }
+
+  std::string why_no_more() const {
+    const std::uint64_t dropped = summary_.dropped_degenerate + summary_.dropped_duplicate;
+    if (summary_.dropped_components.components > 0) return "no more is left of the input";
+    return summary_.target + dropped > manifest_.input_triangles
+               ? "the input has no more"
+               : "every part ends by itself at its share of the target";
   }
 
   const Stage& stage_;
@@ -214,7 +283,7 @@ class Assembly {
   LineOptions lines_;  // as the parts were made
   const AssembleOptions& options_;
   RunSummary summary_;
-  std::vector<SurfaceSamples> samples_;
+  std::vector<Mesh> larger_;  // what the result was before it was so small
   std::optional<ErrorMeter> meter_;
 };
 

@@ -33,6 +33,10 @@ constexpr double k_bound_samples = 200'000;
 constexpr double k_fair_share = 0.1;
 constexpr double k_fair_excess = 2;
 
+/// What is thought of as a finer level has so many times the triangles, and is so near.
+constexpr double k_finer = 1.2;
+constexpr std::int32_t k_most_finer = 6;
+
 /// With a bound on the error, a ladder begins at this share of the part, or as it came if even that
 /// is too far from it; and parts may take up this share of the bound, the finish the rest.
 constexpr double k_error_start = 0.5;
@@ -98,6 +102,7 @@ class Rounds {
     if (!jobs().empty()) throw Error("rungs are chosen before all parts are accepted");
     ChosenRungs chosen;
     for (const ComposedStreams& each : composed_) chosen.rungs.push_back(each.chosen);
+    add_finer(chosen);
     chosen.topology =
         topology_ == TopologyMode::keep_while_fair ? TopologyMode::automatic : topology_;
     return chosen;
@@ -258,6 +263,21 @@ class Rounds {
       sum += result.rungs[rung_at(result.rungs, level)].free_triangles;
     }
     return sum;
+  }
+
+  /// Of ladders: swept streams have one rung, and what was composed is none.
+  void add_finer(ChosenRungs& chosen) const {
+    if (by_error() || composed_.size() != results_.size()) return;
+    const std::uint64_t before = free_triangles(level_);
+    for (std::int32_t level = level_ - 1; level >= level_ - k_most_finer; --level) {
+      const auto triangles = static_cast<double>(free_triangles(level));
+      if (triangles < k_finer * static_cast<double>(before)) continue;
+      for (std::size_t p = 0; p < results_.size(); ++p) {
+        chosen.finer.push_back({files_[p], rung_at(results_[p].rungs, level)});
+      }
+      chosen.times_finer = triangles / static_cast<double>(std::max<std::uint64_t>(1, before));
+      return;
+    }
   }
 
   /// What is to be stitched of each part, before anything is composed.

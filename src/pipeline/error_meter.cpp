@@ -22,6 +22,8 @@ constexpr std::size_t k_triangles_a_stray = 10;
 /// the second is cheaper.
 constexpr double k_far_in_spacings = 4;
 constexpr std::uint64_t k_samples_at_once = 4096;
+/// A few per cent are all that an estimate may be wrong by.
+constexpr std::uint64_t k_points_for_estimate = 5'000;
 
 /// Every n-th, so that there are at most so many.
 std::vector<Vec3> thinned(std::span<const Vec3> points, std::uint64_t step) {
@@ -127,6 +129,18 @@ Distance ErrorMeter::measure_samples(const DistanceMeter& meter) const {
     error.max = std::max(error.max, d.max);
   }
   return {std::sqrt(error.rms / area_), error.mean / area_, error.max};
+}
+
+double ErrorMeter::estimate_rms(const Mesh& result) const {
+  if (result.triangles.empty() || !(area_ > 0)) return 0;
+  const DistanceMeter to_result(result, threads_);
+  const std::uint64_t step = step_for(surface_.size(), k_points_for_estimate);
+  double sum = 0;
+  for (const SurfaceSamples& part : samples_) {
+    const double rms = to_result.measure(thinned(part.points, step)).rms;
+    sum += part.area * rms * rms;
+  }
+  return std::sqrt(sum / area_);
 }
 
 /// Shows the input to the points of the result, and vertices of the input to `vertices`, from

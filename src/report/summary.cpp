@@ -72,15 +72,20 @@ std::string text_of(const Distance& d, double diagonal) {
          "  max " + number(d.max / diagonal, "%.3g");
 }
 
-Json error_json(const RunSummary& s) {
-  const double diagonal = s.manifest.box.diagonal();
-  Json json = to_json(s.error.greater(), diagonal);
+Json error_json(const MeasuredError& error, double diagonal) {
+  Json json = to_json(error.greater(), diagonal);
   json["of"] = "the greater of both directions, fractions of the diagonal";
-  json["input_to_output"] = to_json(s.error.to_output, diagonal);
-  json["input_to_output"]["samples"] = s.error.input_samples;
-  json["output_to_input"] = to_json(s.error.to_input, diagonal);
-  json["output_to_input"]["samples"] = s.error.output_samples;
+  json["input_to_output"] = to_json(error.to_output, diagonal);
+  json["input_to_output"]["samples"] = error.input_samples;
+  json["output_to_input"] = to_json(error.to_input, diagonal);
+  json["output_to_input"]["samples"] = error.output_samples;
   return json;
+}
+
+Json better_json(const RunSummary& s) {
+  if (!s.better) return nullptr;
+  return {{"triangles", s.better->triangles},
+          {"error", error_json(s.better->error, s.manifest.box.diagonal())}};
 }
 
 Json input_json(const Manifest& m) {
@@ -165,6 +170,7 @@ std::string render(const Manifest& m, const std::string& stage, Format format) {
 
 std::string render(const RunSummary& s, Format format) {
   const Manifest& m = s.manifest;
+  const std::string warning = warning_of(s);
   if (format == Format::json) {
     const Json json = {
         {"run", to_hex(s.run)},
@@ -176,7 +182,10 @@ std::string render(const RunSummary& s, Format format) {
         {"exact", s.why_not_exact.empty()},
         {"why_not_exact", s.why_not_exact},
         {"topology", s.topology_simplified ? "simplified" : "kept"},
-        {"error", s.error.input_samples == 0 ? Json(nullptr) : error_json(s)},
+        {"error",
+         s.error.input_samples == 0 ? Json(nullptr) : error_json(s.error, m.box.diagonal())},
+        {"warning", warning.empty() ? Json(nullptr) : Json(warning)},
+        {"better", better_json(s)},
         {"dropped",
          {{"degenerate", s.dropped_degenerate},
           {"duplicate", s.dropped_duplicate},
@@ -209,10 +218,11 @@ std::string render(const RunSummary& s, Format format) {
   if (s.topology_simplified) {
     lines.add("", "handles, holes or pieces were closed or removed; --topology keep keeps them");
   }
-  if (!s.why_not_exact.empty()) {
+  if (!s.why_not_exact.empty() && s.triangles <= s.target) {
     lines.add("", grouped(s.target) + " were asked for: " + s.why_not_exact);
   }
   if (s.error.input_samples > 0) add_error(lines, s.error, s.max_error, m.box.diagonal());
+  if (!warning.empty()) lines.add("warning", warning);
   lines.add(parts_name(m), grouped(m.parts.size()) + ", stitched to " + grouped(s.stitched) +
                                " triangles before the finish");
   lines.add("time", std::string(scheme_name(m)) + " " + number(m.cut_seconds, "%.2f s") +
@@ -222,6 +232,21 @@ std::string render(const RunSummary& s, Format format) {
                         number(s.measure_seconds, "%.2f s") + ", write " +
                         number(s.write_seconds, "%.2f s"));
   return lines.text();
+}
+
+std::string warning_of(const RunSummary& s) {
+  std::string warning;
+  if (s.triangles > s.target && !s.why_not_exact.empty()) {
+    warning = grouped(s.target) + " triangles were asked for, " + grouped(s.triangles) +
+              " are left: " + s.why_not_exact;
+  }
+  if (!s.better) return warning;
+  const auto rms = [&](const MeasuredError& error) {
+    return number(error.greater().rms / s.manifest.box.diagonal(), "%.2g");
+  };
+  return warning + (warning.empty() ? "" : "; ") + grouped(s.triangles) +
+         " triangles cost an error of " + rms(s.error) + "; " + grouped(s.better->triangles) +
+         " would have " + rms(s.better->error);
 }
 
 RunTimes parse_run_times(std::string_view text, std::string_view what) {

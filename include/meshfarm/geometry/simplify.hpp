@@ -62,6 +62,10 @@ struct SimplifyGoal {
   /// About how many triangles will be left when all goals that follow are met; 0: none follows.
   /// The farther the end, the less care a collapse needs.
   std::uint64_t last_triangles = 0;
+  /// Falling counts: the mesh is kept as it was when no more than so many triangles were left, if
+  /// edges collapsed strictly in order by then, and dropped again when those left are far fewer. No
+  /// result depends on it.
+  std::vector<std::uint64_t> keep_at;
 };
 
 /// Iterative edge collapse by quadric error (Garland & Heckbert 1997); quadrics are memoryless
@@ -98,6 +102,8 @@ class Simplifier {
   /// The level that the mesh has reached: what the last pass might pay, or, where edges collapse
   /// strictly in order, the cost of the last.
   double pass_cost() const;
+  /// What SimplifyGoal::keep_at asked for, in that order: the last few.
+  std::span<const Mesh> kept() const;
   /// Whether the topology was given up.
   bool simplifies_topology() const;
   /// Whether it stopped as TopologyMode::keep_while_fair says.

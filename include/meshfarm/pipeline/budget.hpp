@@ -47,6 +47,10 @@ struct ChosenRung {
 /// What to stitch, in the order of the parts, and how to finish it.
 struct ChosenRungs {
   std::vector<ChosenRung> rungs;
+  /// The same from a finer level that holds so many times the free triangles, a fifth more or
+  /// somewhat above; none if the ladders have no such level.
+  std::vector<ChosenRung> finer;
+  double times_finer = 1;
   TopologyMode topology = TopologyMode::automatic;
 };
 

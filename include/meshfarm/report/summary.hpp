@@ -34,6 +34,12 @@ struct MeasuredError {
   }
 };
 
+/// What would have been better to ask for.
+struct BetterCount {
+  std::uint64_t triangles = 0;
+  MeasuredError error;
+};
+
 /// What a run made, for people and for programs.
 struct RunSummary {
   Manifest manifest;
@@ -48,6 +54,8 @@ struct RunSummary {
   bool topology_simplified = false;      // handles, holes or pieces had to go
   DroppedComponents dropped_components;  // and their triangles before the finish
   MeasuredError error;
+  /// Where the result went to ruin and a few triangles more would not have.
+  std::optional<BetterCount> better;
   std::uint64_t stitched = 0;            // triangles of the stitched mesh, before the finish
   std::uint64_t dropped_degenerate = 0;  // cut, parts and finish together
   std::uint64_t dropped_duplicate = 0;
@@ -95,6 +103,9 @@ struct HostSummary {
   std::uint64_t memory = 0;  // bytes that are free
   std::uint32_t cores = 1;
 };
+
+/// What of a run is to be warned of, on one line; empty if nothing is.
+std::string warning_of(const RunSummary& summary);
 
 std::string render(const HostSummary& host, Format format);
 std::string render(const Manifest& manifest, const std::string& stage, Format format);

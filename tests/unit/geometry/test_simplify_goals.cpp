@@ -31,3 +31,19 @@ TEST_CASE("a short last step does not give up a topology that was kept so far") 
   CHECK(simplifier.triangles() == 100);
   CHECK(simplifier.simplifies_topology());
 }
+
+TEST_CASE("what is kept on the way is the mesh as it was, and changes no result") {
+  const Mesh mesh = test::torus(60, 40);
+  Simplifier plain(mesh, {});
+  plain.reduce({.triangles = 400});
+  Simplifier keeping(mesh, {});
+  SimplifyGoal goal{.triangles = 400};
+  goal.keep_at = {9000, 781, 625, 500};
+  keeping.reduce(goal);
+  CHECK(keeping.mesh().positions == plain.mesh().positions);
+  CHECK(keeping.mesh().triangles == plain.mesh().triangles);
+  REQUIRE(keeping.kept().size() == 2);  // those before are too far away by now
+  CHECK(keeping.kept()[0].triangles.size() == 624);
+  CHECK(keeping.kept()[1].triangles.size() == 500);
+  CHECK(measure_topology(keeping.kept()[1]).euler == 0);
+}

@@ -97,15 +97,30 @@ TEST_CASE("a surface that cannot go so far says so") {
   const Made made = simplify(test::icosphere(2), 2, {.triangles = 1}, folder.path() / "auto");
   CHECK(made.summary.triangles == 4);  // the last piece stays
   CHECK_FALSE(made.summary.topology_simplified);
-  CHECK_FALSE(made.summary.why_not_exact.empty());
+  CHECK(made.summary.why_not_exact.find("the last piece") != std::string::npos);
+  CHECK(warning_of(made.summary).find("1 triangles were asked for, 4 are left") !=
+        std::string::npos);
   const Made kept =
       simplify(test::icosphere(2), 2, {.triangles = 1, .lines = {.topology = TopologyMode::keep}},
                folder.path() / "keep");
   CHECK(kept.summary.triangles == 4);
-  CHECK(kept.summary.why_not_exact.find("topology") != std::string::npos);
   const Made more = simplify(test::icosphere(1), 2, {.triangles = 500}, folder.path() / "more");
   CHECK(more.summary.triangles == 80);
   CHECK(more.summary.why_not_exact == "the input has no more");
+  CHECK(warning_of(more.summary).empty());
+  // Each part by itself: together they may end a little below what was asked for.
+  const Made uniform =
+      simplify(test::icosphere(3), 1, {.triangles = 501, .allocation = Allocation::uniform},
+               folder.path() / "uniform");
+  CHECK(uniform.summary.triangles == 500);
+  CHECK(uniform.summary.why_not_exact.find("the input has no more") == std::string::npos);
+  // A torus has fourteen at least: no piece is as small as it can be.
+  const Made torus =
+      simplify(test::torus(12, 8), 1, {.triangles = 4, .lines = {.topology = TopologyMode::keep}},
+               folder.path() / "torus");
+  CHECK(torus.summary.triangles >= 14);
+  CHECK(torus.summary.why_not_exact.find("changing the topology") != std::string::npos);
+  CHECK_FALSE(warning_of(torus.summary).empty());
 }
 
 TEST_CASE("pieces go where the count cannot be met with them, unless they are to be kept") {
@@ -165,6 +180,55 @@ TEST_CASE("the paper's way reaches about its count without touching the inside a
   const Topology t = measure_topology(made.mesh);
   CHECK(t.euler == 0);
   CHECK(t.border_edges == 0);
+}
+
+namespace {
+
+/// Boxes in a row, each face a fine grid: 12 triangles a box would do, and no fewer.
+Mesh boxes(int count) {
+  constexpr std::uint32_t k_fine = 12;
+  Mesh mesh;
+  for (int i = 0; i < count; ++i) {
+    const double size = 1 + 0.05 * i;
+    const Vec3 at{3.0 * i, 0, 0};
+    for (int axis = 0; axis < 3; ++axis) {
+      for (const bool is_far : {false, true}) {
+        Mesh face = test::grid(k_fine, k_fine);
+        for (Vec3& p : face.positions) {
+          double c[3];
+          c[axis] = is_far ? 1 : 0;
+          c[(axis + 1) % 3] = p.x / k_fine;
+          c[(axis + 2) % 3] = p.y / k_fine;
+          p = Vec3{c[0], c[1], c[2]} * size + at;
+        }
+        if (!is_far) {
+          for (Triangle& t : face.triangles) std::swap(t[1], t[2]);
+        }
+        test::append(mesh, face);
+      }
+    }
+  }
+  return mesh;
+}
+
+}  // namespace
+
+TEST_CASE("past a knee the summary tells of the better count, and else of none") {
+  const test::TempFolder folder;
+  const Mesh mesh = boxes(30);
+  const Made few = simplify(mesh, 4, {.triangles = 330}, folder.path() / "few");
+  CHECK(few.summary.triangles == 330);
+  REQUIRE(few.summary.better);
+  CHECK(few.summary.better->triangles >= 360);
+  CHECK(few.summary.better->triangles <= 1.25 * 330);
+  CHECK(few.summary.better->error.greater().rms < 1e-3 * few.summary.error.greater().rms);
+  const Made asked =
+      simplify(mesh, 4, {.triangles = few.summary.better->triangles}, folder.path() / "asked");
+  CHECK(asked.summary.error.greater().rms < 1e-3 * few.summary.error.greater().rms);
+  CHECK_FALSE(asked.summary.better);
+  const Made smooth =
+      simplify(test::torus(100, 60), 4, {.triangles = 300}, folder.path() / "torus");
+  CHECK_FALSE(smooth.summary.better);
 }
 
 TEST_CASE("a bound on the error is kept, with few triangles, and a tighter one needs more") {

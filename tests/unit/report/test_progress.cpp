@@ -48,9 +48,33 @@ TEST_CASE("a run's summary says when the count is not the one asked for") {
   s.triangles = 1'234'567;
   CHECK(render(s, Format::text).find("asked for") == std::string::npos);
   s.why_not_exact = "for a reason";
-  CHECK(render(s, Format::text).find("101 were asked for: for a reason") != std::string::npos);
+  CHECK(render(s, Format::text)
+            .find("101 triangles were asked for, 1,234,567 are left: for a reason") !=
+        std::string::npos);
   CHECK(render(s, Format::text).find("1,234,567 triangles") != std::string::npos);
   CHECK(render(s, Format::json).find("\"exact\": false") != std::string::npos);
+  s.triangles = 100;
+  CHECK(warning_of(s).empty());
+  CHECK(render(s, Format::text).find("101 were asked for: for a reason") != std::string::npos);
+}
+
+TEST_CASE("a run's summary warns of a result that a few triangles more would have saved") {
+  RunSummary s;
+  s.manifest.box.add({0, 0, 0});
+  s.manifest.box.add({0, 0, 10});
+  s.target = s.triangles = 4000;
+  s.error.to_output.rms = 0.27;
+  s.error.input_samples = s.error.output_samples = 1000;
+  CHECK(render(s, Format::text).find("warning") == std::string::npos);
+  CHECK(render(s, Format::json).find("\"better\": null") != std::string::npos);
+  s.better = BetterCount{5200, s.error};
+  s.better->error.to_output.rms = 0.0031;
+  const std::string warning = "4,000 triangles cost an error of 0.027; 5,200 would have 0.00031";
+  CHECK(warning_of(s) == warning);
+  CHECK(render(s, Format::text).find("warning          " + warning) != std::string::npos);
+  const std::string json = render(s, Format::json);
+  CHECK(json.find("\"warning\": \"" + warning) != std::string::npos);
+  CHECK(json.find("\"triangles\": 5200") != std::string::npos);
 }
 
 TEST_CASE("an input's name may hold any bytes") {

@@ -1,0 +1,52 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#include "pipeline/knee.hpp"
+
+#include <algorithm>
+
+namespace meshfarm {
+namespace {
+
+/// From one count to the next. More than two such steps are not a little more.
+constexpr double k_step = 1.25;
+/// Passes come before so many times the goal, and the queue keeps nothing.
+constexpr double k_most = 64;
+/// A knee is worth a word if the error falls to less than this part.
+constexpr double k_least_gain = 3;
+/// An error that is less than this part of the diagonal is not seen.
+constexpr double k_visible = 1e-4;
+/// And this is seen at once.
+constexpr double k_plain = 1e-3;
+
+/// Past a knee the error falls by more than the fifth power of the triangles: with 1.5 times as
+/// many to an eighth. Of scans it is a power of 1 to 1.5, of machined parts up to 4.5.
+double least_gain(double times) {
+  return std::max(k_least_gain, times * times * times * times * times);
+}
+
+}  // namespace
+
+std::vector<std::uint64_t> counts_before_knee(std::uint64_t goal) {
+  std::vector<std::uint64_t> counts;
+  for (double more = k_step; more < k_most; more *= k_step) {
+    counts.push_back(static_cast<std::uint64_t>(more * static_cast<double>(goal)));
+  }
+  std::reverse(counts.begin(), counts.end());
+  return counts;
+}
+
+bool is_visible(double rms_of_diagonal) {
+  return rms_of_diagonal > k_visible;
+}
+
+bool is_plain(double rms_of_diagonal) {
+  return rms_of_diagonal > k_plain;
+}
+
+bool is_past_knee(const CountAndError& made, const CountAndError& better) {
+  if (made.triangles == 0 || better.triangles <= made.triangles) return false;
+  const double times = static_cast<double>(better.triangles) / static_cast<double>(made.triangles);
+  return made.rms > least_gain(times) * better.rms;
+}
+
+}  // namespace meshfarm
