@@ -1,20 +1,65 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
+#include <algorithm>
+#include <map>
 #include <vector>
 
 #include <meshfarm/geometry/components.hpp>
+#include <meshfarm/geometry/distance.hpp>
 
 #include "geometry/union_find.hpp"
 
 namespace meshfarm {
+namespace {
 
-DroppedComponents drop_small_components(Mesh& mesh, double diagonal) {
-  if (!(diagonal > 0)) return {};  // no box is smaller than nothing
+/// So many of its vertices tell what a component was.
+constexpr std::size_t k_voters = 15;
+
+UnionFind components_of(const Mesh& mesh) {
   UnionFind pieces(mesh.positions.size());
   for (const Triangle& t : mesh.triangles) {
     pieces.join(t[0], t[1]);
     pieces.join(t[1], t[2]);
   }
+  return pieces;
+}
+
+double area_of(const Mesh& mesh, const Triangle& t) {
+  const Vec3 a = mesh.positions[t[0]];
+  return 0.5 * length(cross(mesh.positions[t[1]] - a, mesh.positions[t[2]] - a));
+}
+
+/// Some vertices of each component, spread over it.
+std::map<std::uint32_t, std::vector<std::uint32_t>> voters_of(const Mesh& mesh) {
+  UnionFind pieces = components_of(mesh);
+  std::map<std::uint32_t, std::vector<std::uint32_t>> corners;
+  for (const Triangle& t : mesh.triangles) corners[pieces.find(t[0])].push_back(t[0]);
+  for (auto& [piece, all] : corners) {
+    const std::size_t step = (all.size() + k_voters - 1) / k_voters;
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < all.size(); i += step) all[kept++] = all[i];
+    all.resize(kept);
+  }
+  return corners;
+}
+
+std::uint32_t most_frequent(std::vector<std::uint32_t>& values) {
+  std::sort(values.begin(), values.end());
+  std::size_t best = 0;
+  std::uint32_t winner = values.front();
+  for (std::size_t first = 0, last = 0; first < values.size(); first = last) {
+    while (last < values.size() && values[last] == values[first]) ++last;
+    if (last - first > best) winner = values[first];
+    best = std::max(best, last - first);
+  }
+  return winner;
+}
+
+}  // namespace
+
+DroppedComponents drop_small_components(Mesh& mesh, double diagonal) {
+  if (!(diagonal > 0)) return {};  // no box is smaller than nothing
+  UnionFind pieces = components_of(mesh);
   std::vector<Box> boxes(mesh.positions.size());
   for (const Triangle& t : mesh.triangles) {
     for (const std::uint32_t corner : t) boxes[pieces.find(corner)].add(mesh.positions[corner]);
@@ -27,6 +72,33 @@ DroppedComponents drop_small_components(Mesh& mesh, double diagonal) {
     return boxes[pieces.find(t[0])].diagonal() < diagonal;
   });
   return dropped;
+}
+
+GoneComponents find_gone_components(const Mesh& before, const Mesh& after, unsigned threads) {
+  UnionFind pieces = components_of(before);
+  std::vector<double> areas(before.positions.size(), -1);  // of those that are not found again
+  GoneComponents gone;
+  for (const Triangle& t : before.triangles) {
+    double& area = areas[pieces.find(t[0])];
+    area = std::max(area, 0.0) + area_of(before, t);
+    gone.area_of_all += area_of(before, t);
+  }
+  const DistanceMeter meter(before, threads);
+  std::vector<std::uint32_t> votes;
+  for (const auto& [piece, vertices] : voters_of(after)) {
+    votes.clear();
+    for (const std::uint32_t v : vertices) {
+      const std::uint32_t nearest = meter.nearest_triangle(after.positions[v]);
+      votes.push_back(pieces.find(before.triangles[nearest][0]));
+    }
+    areas[most_frequent(votes)] = -1;
+  }
+  for (const double area : areas) {
+    if (area < 0) continue;
+    ++gone.components;
+    gone.area += area;
+  }
+  return gone;
 }
 
 }  // namespace meshfarm

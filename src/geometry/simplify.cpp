@@ -530,6 +530,9 @@ std::uint64_t Simplifier::dropped_degenerate() const {
 std::uint64_t Simplifier::dropped_duplicate() const {
   return impl_->dropped().duplicate;
 }
+std::uint64_t Simplifier::turned() const {
+  return impl_->dropped().turned;
+}
 std::span<const std::uint8_t> Simplifier::seam() const {
   return impl_->seam();
 }

@@ -263,7 +263,10 @@ Surface clean_surface(Mesh& mesh, const SimplifyOptions& options, Adjacency& adj
     surface.dropped.duplicate = drop_duplicates_at(doubtful, mesh);
     again();
   }
-  if (any_turned(surface.flags, adjacency) && orient(mesh.triangles) > 0) again();
+  if (any_turned(surface.flags, adjacency)) {
+    surface.dropped.turned = orient(mesh.triangles);
+    if (surface.dropped.turned > 0) again();
+  }
   // With a seam pass vertices are what the caller's flags are for.
   if (options.seam.empty() && separate_closed_fans(mesh, surface.flags, adjacency)) again();
   return surface;

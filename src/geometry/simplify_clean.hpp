@@ -31,6 +31,7 @@ void check_input(const Mesh& mesh, const SimplifyOptions& options);
 struct Dropped {
   std::uint64_t degenerate = 0;
   std::uint64_t duplicate = 0;
+  std::uint64_t turned = 0;  // not dropped, but made to face the other way
 };
 
 /// What a mesh is made of, once it is clean.

@@ -29,6 +29,7 @@ BoundedSimplifier::BoundedSimplifier(Mesh mesh, SimplifyOptions options, FindStr
   const Simplifier cleaned(std::move(mesh), options_);
   dropped_degenerate_ = cleaned.dropped_degenerate();
   dropped_duplicate_ = cleaned.dropped_duplicate();
+  turned_ = cleaned.turned();
   mesh_ = cleaned.mesh();
 }
 

@@ -16,8 +16,8 @@
 // there are at most 65536, and as many triangles.
 //   Version 2. Version 1 was sealed, with the counts in front and one set of samples.
 // The summary that travels with the message:
-//   dropped degenerate u64 | dropped duplicate u64 | held by topology u8 | rungs u32 |
-//   rungs as above
+//   dropped degenerate u64 | dropped duplicate u64 | held by topology u8 | turned u64 |
+//   rungs u32 | rungs as above
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -218,6 +218,7 @@ std::string encode_summary(const ResultSummary& summary) {
   out.put(summary.dropped_degenerate);
   out.put(summary.dropped_duplicate);
   out.put(static_cast<std::uint8_t>(summary.held_by_topology ? 1 : 0));
+  out.put(summary.turned);
   put_rungs(out, summary.rungs);
   return out.take();
 }
@@ -230,6 +231,7 @@ ResultSummary decode_summary(std::string_view bytes, std::string_view what) {
   const auto held = in.get<std::uint8_t>();
   if (held > 1) in.fail("impossible summary");
   summary.held_by_topology = held == 1;
+  summary.turned = in.get<std::uint64_t>();
   summary.rungs = get_rungs(in);
   in.expect_end();
   return summary;

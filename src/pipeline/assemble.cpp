@@ -62,6 +62,7 @@ class Assembly {
     for (const ChosenRung& each : chosen.rungs) {
       summary_.dropped_degenerate += each.dropped_degenerate;
       summary_.dropped_duplicate += each.dropped_duplicate;
+      summary_.turned += each.turned;
     }
     std::vector<SurfaceSamples> samples;
     StitchedMesh stitched = stitch(chosen.rungs, samples);
@@ -73,6 +74,7 @@ class Assembly {
                                                : finish(std::move(stitched));
     summary_.triangles = result.triangles.size();
     summary_.vertices = result.positions.size();
+    compare_topology(chosen.kept, result);
     summary_.finish_seconds = watch.lap();
     tell("measure", 0, 0);
     summary_.error = meter_->measure(result);
@@ -166,6 +168,7 @@ class Assembly {
         });
     summary_.dropped_degenerate += simplifier.dropped_degenerate();
     summary_.dropped_duplicate += simplifier.dropped_duplicate();
+    summary_.turned += simplifier.turned();
     constexpr double k_last_step = 2;
     if (simplifier.accept_strays()) reduce_to_bound(simplifier, k_last_step);
     return simplifier.mesh();
@@ -204,10 +207,32 @@ class Assembly {
     larger_.assign(simplifier.kept().begin(), simplifier.kept().end());
     summary_.dropped_degenerate += simplifier.dropped_degenerate();
     summary_.dropped_duplicate += simplifier.dropped_duplicate();
+    summary_.turned += simplifier.turned();
     summary_.topology_simplified =
         lines_.topology == TopologyMode::simplify || simplifier.simplifies_topology();
     summary_.why_not_exact = why_not_exact(before, simplifier.mesh());
     return simplifier.mesh();
+  }
+
+  /// What is kept need not be compared. `kept` has the input's topology, if there is any.
+  void compare_topology(const std::vector<ChosenRung>& kept, const Mesh& result) {
+    TopologyChange change;
+    change.after = measure_topology(result);
+    change.before = change.after;
+    if (summary_.topology_simplified) {
+      if (kept.empty()) return;
+      tell("topology", 0, 0);
+      std::vector<SurfaceSamples> unused;
+      StitchedMesh stitched = stitch(kept, unused);
+      drop_small(stitched.mesh);
+      // Cleans it as the finish does.
+      const Simplifier cleaned(std::move(stitched.mesh), {.positions = manifest_.positions});
+      change.before = measure_topology(cleaned.mesh());
+      if (change.before.components > 1) {
+        change.gone = find_gone_components(cleaned.mesh(), result, options_.threads);
+      }
+    }
+    summary_.topology = change;
   }
 
   /// Finds out what a few triangles more would have had: the finish may have gone too far, or the

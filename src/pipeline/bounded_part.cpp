@@ -62,7 +62,8 @@ BoundedPart simplify_to_bound(Part part, const SimplifyParameters& parameters,
   result.add_rung(level_reached(cost, parameters.cost_unit), mesh,
                   free_triangles(mesh, part.boundary_vertices), farthest);
   result.finish(std::span(mesh.positions).first(part.boundary_vertices), {&samples, 1});
-  made.summary = {result.rungs(), simplifier.dropped_degenerate(), simplifier.dropped_duplicate()};
+  made.summary = {result.rungs(), simplifier.dropped_degenerate(), simplifier.dropped_duplicate(),
+                  false, simplifier.turned()};
   return made;
 }
 

@@ -103,6 +103,7 @@ class Rounds {
     ChosenRungs chosen;
     for (const ComposedStreams& each : composed_) chosen.rungs.push_back(each.chosen);
     add_finer(chosen);
+    chosen.kept = topology_ == TopologyMode::simplify ? kept_ : chosen.rungs;
     chosen.topology =
         topology_ == TopologyMode::keep_while_fair ? TopologyMode::automatic : topology_;
     return chosen;
@@ -287,9 +288,10 @@ class Rounds {
       const ResultSummary& result = results_[p];
       const auto last = static_cast<std::uint32_t>(result.rungs.size() - 1);
       const std::uint32_t rung = by_error() ? last : rung_at(result.rungs, level_);
-      reached.push_back({{files_[p], rung, 1, result.dropped_degenerate, result.dropped_duplicate},
-                         result.rungs[rung].triangles,
-                         result.rungs[rung].free_triangles});
+      reached.push_back(
+          {{files_[p], rung, 1, result.dropped_degenerate, result.dropped_duplicate, result.turned},
+           result.rungs[rung].triangles,
+           result.rungs[rung].free_triangles});
     }
     return reached;
   }
@@ -319,6 +321,7 @@ class Rounds {
     asked_.clear();
     if (!by_error()) choose_level();
     if (topology_ == TopologyMode::keep_while_fair && is_unfair()) {
+      keep_coarsest();
       topology_ = TopologyMode::simplify;
       headroom_.assign(headroom_.size(), k_first_headroom);
       ask_first();
@@ -329,6 +332,14 @@ class Rounds {
       if (!too_far(p)) continue;
       headroom_[p] *= k_more_headroom;
       asked_.push_back(p);
+    }
+  }
+
+  /// Of what kept its topology, before it is given up. A sample of a stream tells nothing.
+  void keep_coarsest() {
+    for (std::uint32_t p = 0; p < results_.size(); ++p) {
+      if (is_sampled(p)) return kept_.clear();
+      kept_.push_back({files_[p], static_cast<std::uint32_t>(results_[p].rungs.size() - 1)});
     }
   }
 
@@ -366,6 +377,7 @@ class Rounds {
   std::int32_t level_ = 0;
   bool swept_ = false;  // ladders are done, long streams are being swept
   std::vector<std::int32_t> sweep_levels_;
+  std::vector<ChosenRung> kept_;
   std::vector<Job> compose_jobs_;  // of the round that is not accepted yet
   std::vector<ComposedStreams> composed_;
 };

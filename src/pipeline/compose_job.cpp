@@ -123,7 +123,7 @@ class Composer {
     result.finish(std::span(mesh.positions).first(locked), samples_);
     const ResultName name{key_of(job_).value, context_.attempt, context_.incarnation};
     const ResultSummary summary{result.rungs(), simplifier.dropped_degenerate(),
-                                simplifier.dropped_duplicate()};
+                                simplifier.dropped_duplicate(), false, simplifier.turned()};
     return {context_.publish(name, file), encode_summary(summary)};
   }
 

@@ -113,6 +113,7 @@ void ComposePlan::take(std::span<const AcceptedJob> round) {
       sum.chosen.parts += streams_[i].chosen.parts;
       sum.chosen.dropped_degenerate += streams_[i].chosen.dropped_degenerate;
       sum.chosen.dropped_duplicate += streams_[i].chosen.dropped_duplicate;
+      sum.chosen.turned += streams_[i].chosen.turned;
       sum.weight += streams_[i].weight;
     }
     if (end - first > 1) {
@@ -123,6 +124,7 @@ void ComposePlan::take(std::span<const AcceptedJob> round) {
       sum.chosen.rung = 0;
       sum.chosen.dropped_degenerate += summary.dropped_degenerate;
       sum.chosen.dropped_duplicate += summary.dropped_duplicate;
+      sum.chosen.turned += summary.turned;
       sum.triangles = summary.rungs.front().triangles;
     }
     composed.push_back(std::move(sum));

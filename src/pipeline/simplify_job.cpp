@@ -58,7 +58,7 @@ class LadderBuilder {
   }
   ResultSummary summary() const {
     return {result_.rungs(), simplifier_.dropped_degenerate(), simplifier_.dropped_duplicate(),
-            simplifier_.is_hampered_by_topology()};
+            simplifier_.is_hampered_by_topology(), simplifier_.turned()};
   }
 
  private:

@@ -36,7 +36,7 @@ class SweepToFile {
     result_->end_rung(parameters_.level, swept_.free_triangles, swept_.error);
     result_->finish(swept_.boundary, {&swept_.samples, 1});
     const ResultSummary summary{result_->rungs(), swept_.dropped_degenerate,
-                                swept_.dropped_duplicate};
+                                swept_.dropped_duplicate, false, swept_.turned};
     swept_ = {};
     return {file_->commit(), encode_summary(summary)};
   }

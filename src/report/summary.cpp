@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
 #include <algorithm>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -107,6 +108,66 @@ void add_box(Lines& lines, const Box& box) {
   lines.add("diagonal", number(box.diagonal(), "%.9g"));
 }
 
+/// It may have been given up, and yet nothing went.
+bool is_kept(const RunSummary& s) {
+  if (!s.topology) return !s.topology_simplified;
+  const auto& [before, after, gone] = *s.topology;
+  return before.components == after.components && before.euler == after.euler &&
+         (before.border_edges == 0) == (after.border_edges == 0);
+}
+
+/// Nothing where borders or edges that are not manifold make the Euler characteristic tell more
+/// than handles.
+std::optional<std::int64_t> handles_of(const Topology& t) {
+  if (t.border_edges + t.nonmanifold_edges > 0) return std::nullopt;
+  return (2 * static_cast<std::int64_t>(t.components) - t.euler) / 2;
+}
+
+Json topology_json(const Topology& t) {
+  const auto handles = handles_of(t);
+  return {{"components", t.components},
+          {"euler", t.euler},
+          {"handles", handles ? Json(*handles) : Json(nullptr)},
+          {"border_edges", t.border_edges},
+          {"nonmanifold_edges", t.nonmanifold_edges}};
+}
+
+Json topology_json(const RunSummary& s) {
+  if (!s.topology) return nullptr;
+  const auto& [before, after, gone] = *s.topology;
+  return {{"input", topology_json(before)},
+          {"output", topology_json(after)},
+          {"pieces_gone", gone.components},
+          {"area_gone", gone.area},
+          {"area_of_all", gone.area_of_all}};
+}
+
+std::string text_of_topology(const RunSummary& s) {
+  const std::string advice = "; --topology keep keeps them";
+  if (!s.topology) return "handles, holes or pieces were closed or removed" + advice;
+  const auto& [before, after, gone] = *s.topology;
+  std::string text;
+  const auto add = [&](const std::string& what) { text += (text.empty() ? "" : ", ") + what; };
+  if (gone.components > 0) {
+    add(grouped(gone.components) + " of " + grouped(before.components) + " pieces removed (" +
+        number(100 * gone.area / gone.area_of_all, "%.2g") + " % of the area)");
+  }
+  const std::uint64_t left = before.components - gone.components;
+  if (after.components > left) {
+    add(grouped(after.components - left) + " pieces pinched off");
+  }
+  const auto handles = handles_of(before);
+  const auto handles_left = handles_of(after);
+  if (handles && handles_left && *handles != *handles_left) {
+    add("handles from " + grouped(static_cast<std::uint64_t>(*handles)) + " to " +
+        grouped(static_cast<std::uint64_t>(*handles_left)));
+  } else if (!handles || !handles_left) {
+    add("holes and handles simplified: Euler characteristic from " + std::to_string(before.euler) +
+        " to " + std::to_string(after.euler));
+  }
+  return text + advice;
+}
+
 const char* scheme_name(const Manifest& m) {
   return m.scheme == Scheme::stream ? "stream" : "cut";
 }
@@ -181,7 +242,9 @@ std::string render(const RunSummary& s, Format format) {
         {"max_error", s.max_error > 0 ? Json(s.max_error / m.box.diagonal()) : Json(nullptr)},
         {"exact", s.why_not_exact.empty()},
         {"why_not_exact", s.why_not_exact},
-        {"topology", s.topology_simplified ? "simplified" : "kept"},
+        {"topology", is_kept(s) ? "kept" : "simplified"},
+        {"topology_change", topology_json(s)},
+        {"turned", s.turned},
         {"error",
          s.error.input_samples == 0 ? Json(nullptr) : error_json(s.error, m.box.diagonal())},
         {"warning", warning.empty() ? Json(nullptr) : Json(warning)},
@@ -210,14 +273,15 @@ std::string render(const RunSummary& s, Format format) {
     lines.add("dropped", grouped(s.dropped_degenerate) + " degenerate and " +
                              grouped(s.dropped_duplicate) + " duplicate triangles");
   }
+  if (s.turned > 0) {
+    lines.add("turned", grouped(s.turned) + " triangles that faced another way than their piece");
+  }
   if (s.dropped_components.components > 0) {
     lines.add("dropped", grouped(s.dropped_components.components) + " small components");
   }
   lines.add("output", s.output);
   lines.add("", grouped(s.triangles) + " triangles, " + grouped(s.vertices) + " vertices");
-  if (s.topology_simplified) {
-    lines.add("", "handles, holes or pieces were closed or removed; --topology keep keeps them");
-  }
+  if (!is_kept(s)) lines.add("", text_of_topology(s));
   if (!s.why_not_exact.empty() && s.triangles <= s.target) {
     lines.add("", grouped(s.target) + " were asked for: " + s.why_not_exact);
   }

@@ -117,6 +117,7 @@ class Sweep {
     buffer_ = simplifier.mesh();
     result_.dropped_degenerate += simplifier.dropped_degenerate();
     result_.dropped_duplicate += simplifier.dropped_duplicate();
+    result_.turned += simplifier.turned();
     roles_.resize(locked);
     roles_.resize(buffer_.positions.size(), Role::free);
     ids_.resize(buffer_.positions.size());

@@ -17,4 +17,16 @@ struct DroppedComponents {
 /// `diagonal`. Vertices stay where they are, used or not. Triangles must name vertices that exist.
 DroppedComponents drop_small_components(Mesh& mesh, double diagonal);
 
+/// What a connected component is by size.
+struct GoneComponents {
+  std::uint64_t components = 0;
+  double area = 0;
+  double area_of_all = 0;
+};
+
+/// Those components of `before` that no component of `after` is what is left of: each is taken for
+/// what is left of the one that most of its vertices are nearest to. Both meshes need finite
+/// coordinates, and `before` a triangle. Vertices without triangles count for nothing.
+GoneComponents find_gone_components(const Mesh& before, const Mesh& after, unsigned threads);
+
 }  // namespace meshfarm

@@ -39,6 +39,7 @@ class BoundedSimplifier {
   std::uint64_t triangles() const { return mesh_.triangles.size(); }
   std::uint64_t dropped_degenerate() const { return dropped_degenerate_; }
   std::uint64_t dropped_duplicate() const { return dropped_duplicate_; }
+  std::uint64_t turned() const { return turned_; }
 
  private:
   void drop_accepted(std::vector<Vec3>& strays) const;
@@ -53,6 +54,7 @@ class BoundedSimplifier {
   std::uint32_t end_accepted_ = 0;
   std::uint64_t dropped_degenerate_ = 0;
   std::uint64_t dropped_duplicate_ = 0;
+  std::uint64_t turned_ = 0;
 };
 
 /// Reduces by rising costs until the bound is broken in too many places or nothing more goes, to

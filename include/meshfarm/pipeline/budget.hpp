@@ -42,6 +42,7 @@ struct ChosenRung {
   std::uint32_t parts = 1;               // that it holds
   std::uint64_t dropped_degenerate = 0;  // in the part
   std::uint64_t dropped_duplicate = 0;
+  std::uint64_t turned = 0;
 };
 
 /// What to stitch, in the order of the parts, and how to finish it.
@@ -51,6 +52,9 @@ struct ChosenRungs {
   /// somewhat above; none if the ladders have no such level.
   std::vector<ChosenRung> finer;
   double times_finer = 1;
+  /// What has the topology of the input: the rungs, if the parts kept it, else those of a round
+  /// before that did; none if there was none.
+  std::vector<ChosenRung> kept;
   TopologyMode topology = TopologyMode::automatic;
 };
 

@@ -40,6 +40,13 @@ struct BetterCount {
   MeasuredError error;
 };
 
+/// What became of the topology. Of the input as it was welded and cleaned.
+struct TopologyChange {
+  Topology before;
+  Topology after;
+  GoneComponents gone;
+};
+
 /// What a run made, for people and for programs.
 struct RunSummary {
   Manifest manifest;
@@ -50,8 +57,11 @@ struct RunSummary {
   double max_error = 0;         // the greatest distance allowed, in the mesh's unit; 0: any
   std::uint64_t triangles = 0;  // triangles made
   std::uint64_t vertices = 0;
-  std::string why_not_exact;             // empty when triangles == target
-  bool topology_simplified = false;      // handles, holes or pieces had to go
+  std::string why_not_exact;         // empty when triangles == target
+  bool topology_simplified = false;  // handles, holes or pieces might go
+  /// Nothing where it is not known what the input had.
+  std::optional<TopologyChange> topology;
+  std::uint64_t turned = 0;  // triangles that faced another way than most of their piece
   DroppedComponents dropped_components;  // and their triangles before the finish
   MeasuredError error;
   /// Where the result went to ruin and a few triangles more would not have.

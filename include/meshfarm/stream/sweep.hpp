@@ -45,6 +45,7 @@ struct SweptStream {
   double error = 0;  // where it was to be measured
   std::uint64_t dropped_degenerate = 0;
   std::uint64_t dropped_duplicate = 0;
+  std::uint64_t turned = 0;
 };
 
 /// Simplifies a stream in one pass through a bounded buffer (Wu & Kobbelt 2003; Xiong et al. 2008,

@@ -42,3 +42,23 @@ TEST_CASE("a piece of just that diagonal stays, and a touching vertex joins piec
   Mesh nothing;
   CHECK(drop_small_components(nothing, 1).components == 0);
 }
+
+TEST_CASE("pieces that nothing is left of are told by number and area") {
+  Mesh before;
+  add(before, test::icosphere(3), 1, {0, 0, 0});
+  add(before, test::icosphere(2), 1, {5, 0, 0});
+  add(before, test::tetrahedron(), 0.1, {0, 5, 0});
+  Mesh after;
+  add(after, test::icosphere(1), 1.05, {0, 0, 0});
+  GoneComponents gone = find_gone_components(before, after, 1);
+  CHECK(gone.components == 2);
+  CHECK(gone.area == doctest::Approx(gone.area_of_all / 2).epsilon(0.05));
+  // Two halves of one are no two.
+  add(after, test::octahedron(), 1, {0, 0, 0});
+  CHECK(find_gone_components(before, after, 1).components == 2);
+  add(after, test::tetrahedron(), 0.1, {0, 5.01, 0});
+  gone = find_gone_components(before, after, 1);
+  CHECK(gone.components == 1);
+  CHECK(find_gone_components(before, before, 1).components == 0);
+  CHECK(find_gone_components(before, {}, 1).components == 3);
+}

@@ -116,11 +116,12 @@ TEST_CASE("a rung may be empty") {
 TEST_CASE("a summary comes back; a damaged one is refused") {
   const std::vector<Rung> rungs = {{3, 5, 10, 8, 0.5}, {4, 3, 6, 2, 0.75}};
   for (const bool held : {false, true}) {
-    const std::string bytes = encode_summary({rungs, 7, 9, held});
+    const std::string bytes = encode_summary({rungs, 7, 9, held, 11});
     const ResultSummary back = decode_summary(bytes, "s");
     CHECK(back.held_by_topology == held);
     CHECK(back.dropped_degenerate == 7);
     CHECK(back.dropped_duplicate == 9);
+    CHECK(back.turned == 11);
     REQUIRE(back.rungs.size() == 2);
     CHECK(back.rungs[1].level == 4);
     CHECK(back.rungs[1].free_triangles == 2);

@@ -138,6 +138,16 @@ TEST_CASE("pieces go where the count cannot be met with them, unless they are to
   CHECK(simplified.summary.triangles == 200);
   CHECK(simplified.summary.topology_simplified);
   CHECK(measure_topology(simplified.mesh).components < 100);
+  REQUIRE(simplified.summary.topology);
+  const auto& [before, after, gone] = *simplified.summary.topology;
+  CHECK(before.components == 100);
+  CHECK(before.euler == 200);
+  CHECK(after.components == measure_topology(simplified.mesh).components);
+  CHECK(gone.components == 100 - after.components);
+  CHECK(gone.area > 0.2 * gone.area_of_all);
+  CHECK(gone.area < 0.5 * gone.area_of_all);  // the smaller ones
+  const std::string text = render(simplified.summary, Format::text);
+  CHECK(text.find(" of 100 pieces removed") != std::string::npos);
   run.lines.topology = TopologyMode::keep;
   const Made kept = simplify(mesh, 4, run, folder.path() / "keep");
   CHECK(kept.summary.triangles == 400);
@@ -147,8 +157,23 @@ TEST_CASE("pieces go where the count cannot be met with them, unless they are to
   // What needs no such thing is not done.
   const Made enough = simplify(mesh, 4, {.triangles = 2000}, folder.path() / "enough");
   CHECK(enough.summary.triangles == 2000);
+  CHECK(enough.summary.topology->before.components == 100);
+  CHECK(render(enough.summary, Format::text).find("pieces removed") == std::string::npos);
   CHECK_FALSE(enough.summary.topology_simplified);
   CHECK(measure_topology(enough.mesh).components == 100);
+}
+
+TEST_CASE("triangles that face another way are turned, and counted") {
+  Mesh mesh = test::torus(60, 40);
+  for (std::size_t i = 0; i < mesh.triangles.size(); i += 40) {
+    std::swap(mesh.triangles[i][1], mesh.triangles[i][2]);
+  }
+  const test::TempFolder folder;
+  const Made made = simplify(mesh, 1, {.triangles = 400}, folder.path());
+  CHECK(made.summary.turned == 120);
+  CHECK(measure_topology(made.mesh).orientation_conflicts == 0);
+  CHECK(render(made.summary, Format::text).find("120 triangles that faced") != std::string::npos);
+  CHECK(render(made.summary, Format::json).find("\"turned\": 120") != std::string::npos);
 }
 
 TEST_CASE("one threshold gives the rough corner what the flat rest does not need") {
