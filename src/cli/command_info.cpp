@@ -7,7 +7,6 @@
 #include <iostream>
 #include <memory>
 
-#include <meshfarm/geometry/topology.hpp>
 #include <meshfarm/io/mesh_source.hpp>
 #include <meshfarm/io/stream_file.hpp>
 #include <meshfarm/report/summary.hpp>
@@ -16,6 +15,7 @@
 #include <meshfarm/util/file.hpp>
 
 #include "cli/command.hpp"
+#include "cli/measure_words.hpp"
 #include "cli/options.hpp"
 
 namespace meshfarm {
@@ -32,10 +32,12 @@ class InfoCommand : public Command {
              po::positional_options_description& positional) override {
     options.add_options()("file", po::value(&file_)->required(), "")(
         "no-topology", po::bool_switch(&no_topology_),
-        "counts and box only: in a bounded memory, whatever the size");
+        "counts and box only: in one scan, and without scratch files");
+    measure_.add(options);
     talk_.add(options);
     positional.add("file", 1);
   }
+  void check() override { measure_.check(); }
   int run() override {
     if (std::filesystem::is_directory(file_)) {
       const Stage stage = Stage::open(file_);
@@ -49,7 +51,7 @@ class InfoCommand : public Command {
       return 0;
     }
     const auto source = open_mesh(file_);
-    std::cout << render(no_topology_ ? scanned(*source) : whole(*source), talk_.format());
+    std::cout << render(no_topology_ ? scanned(*source) : measured(*source), talk_.format());
     return 0;
   }
 
@@ -96,7 +98,7 @@ class InfoCommand : public Command {
   }
 
   FileSummary scanned(MeshSource& source) const {
-    FileSummary summary{.path = file_, .file = {}, .box = {}, .topology = {}};
+    FileSummary summary{.path = file_, .file = {}, .box = {}};
     source.scan_vertices([&](std::span<const Vec3> batch) {
       for (const Vec3& p : batch) add(p, summary);
     });
@@ -107,19 +109,21 @@ class InfoCommand : public Command {
     return summary;
   }
 
-  FileSummary whole(MeshSource& source) const {
-    FileSummary summary{.path = file_, .file = {}, .box = {}, .topology = {}};
-    const Mesh mesh = read_mesh(source);
-    for (const Vec3& p : mesh.positions) add(p, summary);
-    summary.triangles = mesh.triangles.size();
-    summary.topology = measure_topology(mesh);
-    summary.file = source.info();
+  FileSummary measured(MeshSource& source) const {
+    const DividedSurface surface(source, measure_.divide);
+    FileSummary summary{.path = file_, .file = source.info(), .box = surface.box()};
+    summary.triangles = surface.triangles();
     summary.short_faces = source.small_faces();
+    summary.not_finite = surface.not_finite();
+    const SurfaceTopology topology = surface.measure_topology();
+    summary.welded = topology.welded;
+    summary.as_it_is = topology.as_it_is;
     return summary;
   }
 
   std::string file_;
   bool no_topology_ = false;
+  MeasureWords measure_;
   TalkOptions talk_;
 };
 

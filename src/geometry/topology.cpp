@@ -89,19 +89,19 @@ void for_proper_triangles(const Mesh& mesh, const Visit& visit) {
   }
 }
 
-void count_edges(const Mesh& mesh, Topology& topology) {
+using Sides = std::span<const std::array<std::uint32_t, 2>>;
+
+void count_edges(const Mesh& mesh, Sides sides, Topology& topology) {
   // Two buckets a vertex: the directed edges up from it and those down to it.
   Buckets<std::uint32_t> edges(2 * mesh.positions.size());
   const auto for_edges = [&](const auto& visit) {
+    const auto visit_side = [&](std::uint32_t a, std::uint32_t b) {
+      a < b ? visit(std::size_t{a} * 2, b) : visit(std::size_t{b} * 2 + 1, a);
+    };
     for_proper_triangles(mesh, [&](const Triangle& t) {
-      for (std::size_t k = 0; k < 3; ++k) {
-        const std::uint32_t a = t[k], b = t[k == 2 ? 0 : k + 1];
-        if (a < b)
-          visit(std::size_t{a} * 2, b);
-        else
-          visit(std::size_t{b} * 2 + 1, a);
-      }
+      for (std::size_t k = 0; k < 3; ++k) visit_side(t[k], t[k == 2 ? 0 : k + 1]);
     });
+    for (const auto& [a, b] : sides) visit_side(a, b);
   };
   for_edges([&](std::size_t bucket, std::uint32_t) { edges.count(bucket); });
   edges.counted();
@@ -133,7 +133,8 @@ void count_duplicates(const Mesh& mesh, Topology& topology) {
   }
 }
 
-void count_components(const Mesh& mesh, Topology& topology) {
+std::vector<std::uint32_t> count_components(const Mesh& mesh, std::span<const std::uint32_t> shared,
+                                            Topology& topology) {
   UnionFind pieces(mesh.positions.size());
   std::vector<bool> used(mesh.positions.size());
   std::uint64_t joined = 0;
@@ -142,8 +143,12 @@ void count_components(const Mesh& mesh, Topology& topology) {
     joined += pieces.join(t[0], t[1]);
     joined += pieces.join(t[1], t[2]);
   });
+  for (const std::uint32_t v : shared) used[v] = true;
   topology.used_vertices = static_cast<std::uint64_t>(std::count(used.begin(), used.end(), true));
   topology.components = topology.used_vertices - joined;
+  std::vector<std::uint32_t> roots;
+  for (const std::uint32_t v : shared) roots.push_back(pieces.find(v));
+  return roots;
 }
 
 void check_indices(const Mesh& mesh) {
@@ -158,8 +163,14 @@ void check_indices(const Mesh& mesh) {
 }  // namespace
 
 Topology measure_topology(const Mesh& mesh) {
+  return measure_piece(mesh, {}, {}).topology;
+}
+
+PieceTopology measure_piece(const Mesh& mesh, std::span<const std::array<std::uint32_t, 2>> sides,
+                            std::span<const std::uint32_t> shared) {
   check_indices(mesh);
-  Topology topology;
+  PieceTopology piece;
+  Topology& topology = piece.topology;
   topology.vertices = mesh.positions.size();
   topology.triangles = mesh.triangles.size();
   for (const Triangle& t : mesh.triangles) {
@@ -168,12 +179,12 @@ Topology measure_topology(const Mesh& mesh) {
     else
       topology.zero_area += has_no_area(mesh, t);
   }
-  count_components(mesh, topology);
-  count_edges(mesh, topology);
+  piece.roots = count_components(mesh, shared, topology);
+  count_edges(mesh, sides, topology);
   count_duplicates(mesh, topology);
   topology.euler = static_cast<std::int64_t>(topology.used_vertices - topology.edges +
                                              topology.triangles - topology.degenerate);
-  return topology;
+  return piece;
 }
 
 }  // namespace meshfarm

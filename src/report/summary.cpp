@@ -68,6 +68,19 @@ std::string text_of(const Topology& t) {
          " duplicate, Euler characteristic " + std::to_string(t.euler);
 }
 
+/// As the file has it only where that is something else.
+void add_topology(Lines& lines, const std::string& label, const Topology& welded,
+                  const Topology& as_it_is) {
+  const std::uint64_t merged = as_it_is.vertices - welded.vertices;
+  if (merged == 0 && text_of(welded) == text_of(as_it_is)) {
+    lines.add(label, text_of(welded));
+    return;
+  }
+  lines.add(label,
+            "welded (" + grouped(merged) + " coincident vertices merged): " + text_of(welded));
+  lines.add("", "as it is: " + text_of(as_it_is));
+}
+
 std::string text_of(const Distance& d, double diagonal) {
   return "rms " + number(d.rms / diagonal, "%.3g") + "  mean " + number(d.mean / diagonal, "%.3g") +
          "  max " + number(d.max / diagonal, "%.3g");
@@ -347,7 +360,8 @@ std::string render(const FileSummary& s, Format format) {
                  {"attributes", s.file.skipped},
                  {"box", to_json(s.box)},
                  {"diagonal", s.box.diagonal()}};
-    if (s.topology) json["topology"] = to_json(*s.topology);
+    if (s.welded) json["topology"] = to_json(*s.welded);
+    if (s.as_it_is) json["topology_not_welded"] = to_json(*s.as_it_is);
     return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
   }
   Lines lines;
@@ -364,7 +378,7 @@ std::string render(const FileSummary& s, Format format) {
   }
   if (!s.file.skipped.empty()) lines.add("attributes", joined(s.file.skipped));
   add_box(lines, s.box);
-  if (s.topology) lines.add("topology", text_of(*s.topology));
+  if (s.welded && s.as_it_is) add_topology(lines, "topology", *s.welded, *s.as_it_is);
   return lines.text();
 }
 
@@ -415,15 +429,17 @@ std::string render(const Comparison& c, Format format) {
                        {"diagonal", c.diagonal},
                        {"a_to_b", to_json(c.a_to_b, c.diagonal)},
                        {"b_to_a", to_json(c.b_to_a, c.diagonal)},
-                       {"topology_a", to_json(c.topology_a)},
-                       {"topology_b", to_json(c.topology_b)}};
+                       {"topology_a", to_json(c.welded_a)},
+                       {"topology_b", to_json(c.welded_b)},
+                       {"topology_not_welded_a", to_json(c.as_it_is_a)},
+                       {"topology_not_welded_b", to_json(c.as_it_is_b)}};
     return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
   }
   Lines lines;
-  lines.add("A", c.path_a + ", " + grouped(c.topology_a.triangles) + " triangles");
-  lines.add("", text_of(c.topology_a));
-  lines.add("B", c.path_b + ", " + grouped(c.topology_b.triangles) + " triangles");
-  lines.add("", text_of(c.topology_b));
+  lines.add("A", c.path_a + ", " + grouped(c.welded_a.triangles) + " triangles");
+  add_topology(lines, "", c.welded_a, c.as_it_is_a);
+  lines.add("B", c.path_b + ", " + grouped(c.welded_b.triangles) + " triangles");
+  add_topology(lines, "", c.welded_b, c.as_it_is_b);
   lines.add("A to B", text_of(c.a_to_b, c.diagonal));
   lines.add("B to A", text_of(c.b_to_a, c.diagonal));
   lines.add("unit", "A's diagonal, " + number(c.diagonal, "%.9g"));

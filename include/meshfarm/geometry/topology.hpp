@@ -2,7 +2,10 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <array>
 #include <cstdint>
+#include <span>
+#include <vector>
 
 #include <meshfarm/geometry/mesh.hpp>
 
@@ -29,5 +32,16 @@ struct Topology {
 /// Measures `mesh`. Memory: about 12 bytes a triangle and 16 a vertex.
 /// Throws DataError if a triangle names a vertex that is not there.
 Topology measure_topology(const Mesh& mesh);
+
+/// What of a mesh's topology one piece of it tells.
+struct PieceTopology {
+  Topology topology;                 // components: as if there were nothing else
+  std::vector<std::uint32_t> roots;  // of the shared vertices: a vertex that names the component
+};
+
+/// Measures a piece, some of whose vertices triangles share with other pieces. `shared` are those
+/// vertices; `sides` those sides of such triangles that go from one to another of them.
+PieceTopology measure_piece(const Mesh& mesh, std::span<const std::array<std::uint32_t, 2>> sides,
+                            std::span<const std::uint32_t> shared);
 
 }  // namespace meshfarm

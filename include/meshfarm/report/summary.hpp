@@ -84,7 +84,9 @@ struct FileSummary {
   std::uint64_t triangles = 0;
   std::uint64_t short_faces = 0;  // faces with fewer than three corners, left out
   std::uint64_t not_finite = 0;   // vertices with a coordinate that is not
-  std::optional<Topology> topology;
+  /// With coincident vertices welded as a run does, and as the file has them.
+  std::optional<Topology> welded;
+  std::optional<Topology> as_it_is;
 };
 
 /// What `info` tells of a stream.
@@ -103,8 +105,10 @@ struct Comparison {
   double diagonal = 0;  // of A's bounding box; distances are fractions of it
   Distance a_to_b;
   Distance b_to_a;
-  Topology topology_a;
-  Topology topology_b;
+  Topology welded_a;
+  Topology welded_b;
+  Topology as_it_is_a;
+  Topology as_it_is_b;
 };
 
 /// What `benchmark` tells of this host.
