@@ -41,8 +41,10 @@ class CompareCommand : public Command {
     Comparison comparison;
     comparison.path_a = a_;
     comparison.path_b = b_;
-    const DividedSurface a(*source_a, measure_.divide);
-    const DividedSurface b(*source_b, measure_.divide);
+    DivideOptions divide = measure_.divide;
+    divide.memory_bytes /= 2;  // each
+    const DividedSurface a(*source_a, divide);
+    const DividedSurface b(*source_b, divide);
     comparison.diagonal = a.box().diagonal();
     if (memory_for(a) + memory_for(b) <= measure_.divide.memory_bytes) {
       measure(read_mesh(*source_a), read_mesh(*source_b), comparison);

@@ -11,8 +11,10 @@
 #include <meshfarm/pipeline/clean_stage.hpp>
 #include <meshfarm/pipeline/job_table.hpp>
 #include <meshfarm/pipeline/run_trace.hpp>
+#include <meshfarm/pipeline/sink_need.hpp>
 #include <meshfarm/util/errors.hpp>
 #include <meshfarm/util/log.hpp>
+#include <meshfarm/util/memory.hpp>
 
 #include "cli/cut_step.hpp"
 #include "cli/farm_command.hpp"
@@ -52,6 +54,7 @@ class SinkCommand : public FarmCommand {
   void serve(const Stage& stage, const std::atomic<bool>& stop) override {
     const Manifest manifest = read_manifest(stage);
     check_writable(output_);
+    check_need(manifest);
     SinkOptions options;
     options.bind = network_.bind;
     options.first_port = network_.first_port;
@@ -99,6 +102,14 @@ class SinkCommand : public FarmCommand {
     } catch (const Error& error) {
       log_debug(error.what());  // another does it
     }
+  }
+
+  /// Before hours of farming, not after.
+  void check_need(const Manifest& manifest) const {
+    const auto room = available_memory();
+    const std::string advice =
+        check_sink_need(manifest, target_.run, room ? std::optional(room->bytes) : std::nullopt);
+    if (!advice.empty()) log_warning(advice);
   }
 
   std::string output_;

@@ -10,6 +10,7 @@
 #include <meshfarm/io/manifest.hpp>
 #include <meshfarm/pipeline/budget.hpp>
 #include <meshfarm/pipeline/run_options.hpp>
+#include <meshfarm/pipeline/sink_need.hpp>
 #include <meshfarm/staging/file_system.hpp>
 #include <meshfarm/staging/stage.hpp>
 #include <meshfarm/util/checksum.hpp>
@@ -93,6 +94,7 @@ int run_local_farm(const LocalFarm& farm, const std::atomic<bool>& stop) {
   farm.network.security.check_mount(farm.stage);
   const Manifest manifest =
       decode_manifest(stage.read(ManifestName{}), stage.path(ManifestName{}).string());
+  check_sink_need(manifest, farm.target.run, std::nullopt);  // what it advises the sink says
   const Crew crew = crew_for(farm, manifest);
   std::vector<std::string> shared = {"--supervised"};
   if (farm.talk.quiet) shared.emplace_back("--quiet");

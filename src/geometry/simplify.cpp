@@ -154,8 +154,8 @@ class Simplifier::Impl {
   }
   double max_cost() const { return max_cost_; }
   double pass_cost() const { return pass_cost_; }
-  std::span<const Mesh> kept() const {
-    return end_game_ ? end_game_->queue.kept() : std::span<const Mesh>();
+  std::vector<Mesh> take_kept() {
+    return end_game_ ? end_game_->queue.take_kept() : std::vector<Mesh>();
   }
   bool simplifies_topology() const { return end_game_ && end_game_->queue.any_topology(); }
   bool is_held_by_topology() const { return end_game_ && end_game_->queue.is_held(); }
@@ -512,8 +512,8 @@ double Simplifier::max_cost() const {
 double Simplifier::pass_cost() const {
   return impl_->pass_cost();
 }
-std::span<const Mesh> Simplifier::kept() const {
-  return impl_->kept();
+std::vector<Mesh> Simplifier::take_kept() {
+  return impl_->take_kept();
 }
 bool Simplifier::simplifies_topology() const {
   return impl_->simplifies_topology();

@@ -6,6 +6,7 @@
 #include <functional>
 #include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include <meshfarm/geometry/mesh.hpp>
@@ -79,7 +80,7 @@ class CollapseQueue {
   double paid() const { return paid_; }
   double dearest() const { return dearest_; }
   /// SimplifyGoal::keep_at.
-  std::span<const Mesh> kept() const { return kept_; }
+  std::vector<Mesh> take_kept() { return std::move(kept_); }
   std::uint64_t collapses() const { return collapses_; }
   /// Collapses that were refused to keep the topology.
   std::uint64_t kept_topology() const { return kept_topology_; }

@@ -203,8 +203,8 @@ class Assembly {
 
   Mesh finish(StitchedMesh stitched) {
     const std::uint64_t before = stitched.mesh.triangles.size();
-    const Simplifier simplifier = reduced(std::move(stitched), summary_.target);
-    larger_.assign(simplifier.kept().begin(), simplifier.kept().end());
+    Simplifier simplifier = reduced(std::move(stitched), summary_.target);
+    larger_ = simplifier.take_kept();
     summary_.dropped_degenerate += simplifier.dropped_degenerate();
     summary_.dropped_duplicate += simplifier.dropped_duplicate();
     summary_.turned += simplifier.turned();

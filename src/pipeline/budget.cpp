@@ -45,12 +45,6 @@ constexpr double k_error_share = 0.5;
 /// The part as it came, the last good mesh and the points that are measured.
 constexpr std::uint64_t k_bound_bytes_per_triangle = 120;
 
-/// How many times the target the parts together keep for the finish to choose from: twice where
-/// much is taken away (measured: no better with more), less where little is, as then seams are few.
-double provision(double ratio) {
-  return 1 + std::min(1.0, (1 - ratio) / (4 * ratio));
-}
-
 /// What a simplify job needs by and large: the part's file and its mesh (20 and 40 bytes a
 /// triangle), the simplifier (50 to 70), and the ladder, whose rungs shrink by a third or more from
 /// the first on.
@@ -383,6 +377,10 @@ class Rounds {
 };
 
 }  // namespace
+
+double provision(double ratio) {
+  return 1 + std::min(1.0, (1 - ratio) / (4 * ratio));
+}
 
 std::uint64_t samples_for(const Manifest& manifest, const RunOptions& options,
                           std::uint64_t triangles) {

@@ -11,6 +11,8 @@ namespace {
 constexpr double k_step = 1.25;
 /// Passes come before so many times the goal, and the queue keeps nothing.
 constexpr double k_most = 64;
+/// With more triangles than that, what is kept would take too much memory.
+constexpr std::uint64_t k_large = 1'000'000;
 /// A knee is worth a word if the error falls to less than this part.
 constexpr double k_least_gain = 3;
 /// An error that is less than this part of the diagonal is not seen.
@@ -28,6 +30,7 @@ double least_gain(double times) {
 
 std::vector<std::uint64_t> counts_before_knee(std::uint64_t goal) {
   std::vector<std::uint64_t> counts;
+  if (goal > k_large) return counts;
   for (double more = k_step; more < k_most; more *= k_step) {
     counts.push_back(static_cast<std::uint64_t>(more * static_cast<double>(goal)));
   }

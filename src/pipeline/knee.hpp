@@ -16,7 +16,8 @@ struct CountAndError {
 /// A knee is where a surface goes to ruin: past it the error rises out of all proportion to the
 /// triangles that are saved, as where boxes lose their corners.
 ///
-/// The counts, falling, that are worth a look when so many triangles are the goal.
+/// The counts, falling, that are worth a look when so many triangles are the goal; none of a large
+/// one.
 std::vector<std::uint64_t> counts_before_knee(std::uint64_t goal);
 
 /// Whether so few triangles more have so much less error that it is to be told. On a smooth surface

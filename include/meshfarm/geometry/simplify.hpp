@@ -103,7 +103,7 @@ class Simplifier {
   /// strictly in order, the cost of the last.
   double pass_cost() const;
   /// What SimplifyGoal::keep_at asked for, in that order: the last few.
-  std::span<const Mesh> kept() const;
+  std::vector<Mesh> take_kept();
   /// Whether the topology was given up.
   bool simplifies_topology() const;
   /// Whether it stopped as TopologyMode::keep_while_fair says.

@@ -62,6 +62,10 @@ struct ChosenRungs {
 ChosenRungs choose_rungs(const Manifest& manifest, const RunOptions& options,
                          std::span<const AcceptedJob> accepted);
 
+/// How many times the target the parts together keep for the finish to choose from: twice where
+/// much is taken away (measured: no better with more), less where little is, as then seams are few.
+double provision(double ratio);
+
 /// How many points of a surface of so many of the input's triangles the error is measured by.
 std::uint64_t samples_for(const Manifest& manifest, const RunOptions& options,
                           std::uint64_t triangles);

@@ -14,6 +14,7 @@ TEST_CASE("the counts that are looked at rise from the goal by quarters") {
   CHECK(counts.back() == 1250);
   CHECK(counts[counts.size() - 2] == 1562);
   CHECK(std::is_sorted(counts.rbegin(), counts.rend()));
+  CHECK(counts_before_knee(2'000'000).empty());
 }
 
 TEST_CASE("a knee is told of where it shows and little would mend it") {

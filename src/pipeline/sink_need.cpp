@@ -1,0 +1,63 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#include <algorithm>
+#include <cstdint>
+
+#include <meshfarm/pipeline/budget.hpp>
+#include <meshfarm/pipeline/sink_need.hpp>
+#include <meshfarm/util/errors.hpp>
+
+namespace meshfarm {
+namespace {
+
+/// What a Simplifier takes at most.
+constexpr std::uint64_t k_most_triangles = UINT32_MAX / 3 - 1;
+/// The stitched mesh and what simplifies it: measured, of the whole process, 140 to 180.
+constexpr std::uint64_t k_bytes_per_triangle = 180;
+constexpr std::uint64_t k_process_bytes = std::uint64_t{32} << 20;
+/// The level that all parts are taken to is the last with enough: up to one step has too many.
+constexpr double k_half_a_step = 1.25;
+
+std::string counted(std::uint64_t triangles) {
+  return triangles < 10'000'000 ? std::to_string(triangles)
+                                : std::to_string(triangles / 1'000'000) + " million";
+}
+
+}  // namespace
+
+std::optional<SinkNeed> sink_need(const Manifest& manifest, const RunOptions& options) {
+  if (options.error.value > 0) return std::nullopt;
+  const auto all = static_cast<double>(manifest.triangles());
+  const auto target = static_cast<double>(target_triangles(manifest, options));
+  const double times = options.allocation == Allocation::uniform
+                           ? 1.0
+                           : k_half_a_step * provision(std::min(1.0, target / std::max(1.0, all)));
+  const double stitched =
+      std::min(all, times * target + static_cast<double>(manifest.boundary_triangles));
+  const auto triangles = static_cast<std::uint64_t>(stitched);
+  return SinkNeed{triangles, k_process_bytes + k_bytes_per_triangle * triangles};
+}
+
+std::string check_sink_need(const Manifest& manifest, const RunOptions& options,
+                            std::optional<std::uint64_t> free_bytes) {
+  const auto need = sink_need(manifest, options);
+  if (!need) return {};
+  // No less than the target is stitched, whatever the levels are.
+  const std::uint64_t least = std::min(manifest.triangles(), target_triangles(manifest, options));
+  if (least > k_most_triangles) {
+    throw UsageError("a result of " + counted(least) +
+                     " triangles is too large: the sink holds at most " +
+                     counted(k_most_triangles) + "; ask for fewer");
+  }
+  if (need->triangles > k_most_triangles) {
+    return "the sink may have to stitch " + counted(need->triangles) +
+           " triangles and can hold at most " + counted(k_most_triangles) +
+           ": it may fail at the end; ask for fewer";
+  }
+  if (!free_bytes || need->bytes <= *free_bytes) return {};
+  return "the sink is going to take about " + std::to_string(need->bytes >> 20) + " MiB, " +
+         std::to_string(*free_bytes >> 20) +
+         " are free here: run it where there is more memory, or ask for fewer triangles";
+}
+
+}  // namespace meshfarm
