@@ -22,11 +22,15 @@ struct MeasuredSlab {
   std::vector<std::uint32_t> shared;
 };
 
+/// Of the triangles between slabs so many are shown at a time.
+constexpr std::size_t k_between_at_once = 100'000;
+
 /// A boundary vertex: its slab and its number there.
 using SideEnds = std::array<BoundaryCorner, 2>;
 
 std::uint64_t slabs_wanted(std::uint64_t triangles, std::uint64_t memory_bytes) {
-  constexpr std::uint64_t k_usual = 1'000'000;
+  // With smaller slabs more would lie between them, which is kept in memory.
+  constexpr std::uint64_t k_usual = 2'000'000;
   constexpr std::uint64_t k_most = 65'536;
   const std::uint64_t half = std::max<std::uint64_t>(1, memory_bytes / 2);
   const std::uint64_t least = triangles * k_slab_bytes_per_triangle / half + 1;
@@ -36,9 +40,9 @@ std::uint64_t slabs_wanted(std::uint64_t triangles, std::uint64_t memory_bytes) 
 /// Adds up what the slabs tell and what lies between them.
 class TopologySum {
  public:
-  TopologySum(const std::vector<BoundaryTriangle>& between,
-              std::span<const BoundaryNumbers> numbers)
-      : between_(between), slabs_(numbers.size()), sides_(numbers.size()) {
+  TopologySum(std::vector<BoundaryTriangle> between, std::size_t slabs)
+      : between_(std::move(between)), slabs_(slabs), sides_(slabs) {
+    crossing_.reserve(2 * between_.size());
     for (const BoundaryTriangle& t : between_) {
       for (std::size_t k = 0; k < 3; ++k) add_side(t[k], t[(k + 1) % 3]);
     }
@@ -47,7 +51,11 @@ class TopologySum {
   /// From several threads, each slab once.
   void add(std::uint32_t number, const MeasuredSlab& slab) {
     std::vector<std::array<std::uint32_t, 2>> sides;
-    for (const auto& [a, b] : sides_[number]) sides.push_back({slab.shared[a], slab.shared[b]});
+    sides.swap(sides_[number]);
+    for (auto& [a, b] : sides) {
+      a = slab.shared[a];
+      b = slab.shared[b];
+    }
     PieceTopology piece = measure_piece(slab.mesh, sides, slab.shared);
     Slab& kept = slabs_[number];
     kept.roots = std::move(piece.roots);
@@ -112,19 +120,21 @@ class TopologySum {
       sum_.nonmanifold_edges += up + down > 2;
       sum_.orientation_conflicts += (up > 1 ? up - 1 : 0) + (down > 1 ? down - 1 : 0);
     }
+    crossing_ = {};
   }
 
   /// Components that triangles between slabs join.
   void join_components() {
     std::vector<BoundaryCorner> nodes;  // slab and root
+    for (std::uint32_t s = 0; s < slabs_.size(); ++s) {
+      std::vector<std::uint32_t> roots = slabs_[s].roots;
+      std::sort(roots.begin(), roots.end());
+      roots.erase(std::unique(roots.begin(), roots.end()), roots.end());
+      for (const std::uint32_t root : roots) nodes.push_back({s, root});
+    }
     const auto node = [&](BoundaryCorner c) {
       return BoundaryCorner{c.part, slabs_[c.part].roots[c.local]};
     };
-    for (const BoundaryTriangle& t : between_) {
-      for (const BoundaryCorner& c : t) nodes.push_back(node(c));
-    }
-    std::sort(nodes.begin(), nodes.end());
-    nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
     std::vector<std::size_t> parent(nodes.size());
     std::iota(parent.begin(), parent.end(), std::size_t{0});
     const auto find = [&](BoundaryCorner c) {
@@ -151,11 +161,10 @@ class TopologySum {
       const Vec3 a = position(t[0]);
       sum_.zero_area += cross(position(t[1]) - a, position(t[2]) - a) == Vec3{} ? 1 : 0;
     }
-    std::vector<BoundaryTriangle> distinct = between_;
-    sum_.duplicate += drop_duplicates(distinct);
+    sum_.duplicate += drop_duplicates(between_);
   }
 
-  const std::vector<BoundaryTriangle>& between_;
+  std::vector<BoundaryTriangle> between_;
   std::vector<Slab> slabs_;
   std::vector<std::vector<std::array<std::uint32_t, 2>>> sides_;  // within a slab
   std::vector<SideEnds> crossing_;                                // from one to another
@@ -210,12 +219,18 @@ class DividedSurface::Impl {
     }
     std::uint64_t degenerate = 0;
     Mesh between;
+    const auto flush = [&] {
+      take(between.positions, between.triangles);
+      between.positions.clear();
+      between.triangles.clear();
+    };
     for (const BoundaryTriangle& t : shares_->boundary(numbers, degenerate)) {
+      if (between.triangles.size() == k_between_at_once) flush();
       const auto first = static_cast<std::uint32_t>(between.positions.size());
       for (const BoundaryCorner& c : t) between.positions.push_back(shared[c.part][c.local]);
       between.triangles.push_back({first, first + 1, first + 2});
     }
-    take(between.positions, between.triangles);
+    flush();
   }
 
  private:
@@ -288,8 +303,7 @@ class DividedSurface::Impl {
       numbers[i] = weld == Weld::off ? number_as_they_are(raw) : number_boundary(raw, sorting_);
     });
     std::uint64_t degenerate = 0;
-    const std::vector<BoundaryTriangle> between = shares_->boundary(numbers, degenerate);
-    TopologySum sum(between, numbers);
+    TopologySum sum(shares_->boundary(numbers, degenerate), slabs_);
     std::mutex mutex;
     parallel_for(slabs_, threads(), [&](std::uint64_t i) {
       MeshShare raw = shares_->read(static_cast<std::uint32_t>(i));
