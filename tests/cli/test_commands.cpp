@@ -3,6 +3,7 @@
 //
 // The commands as a user types them: what they print, where, and their exit codes.
 #include <algorithm>
+#include <cmath>
 
 #include <doctest/doctest.h>
 
@@ -367,6 +368,39 @@ TEST_CASE("generate, info and compare fit together") {
   const Ran ran = shell({"compare", shell.path("t.ply"), shell.path("s.ply"), "--json"});
   CHECK(ran.code == 0);
   CHECK(has(ran.out, "\"triangles\": 2000,"));
+}
+
+TEST_CASE("info and compare weld, and hold no more than they are given") {
+  Shell shell;
+  const std::string torus = shell.path("t.ply"), coarse = shell.path("s.ply");
+  CHECK(shell({"generate", "-o", torus, "--triangles", "20000"}).code == 0);
+  CHECK(shell({"simplify", torus, "-o", coarse, "--triangles", "2000", "-q"}).code == 0);
+  const std::string seam = shell.file("seam.ply",
+                                      "ply\nformat ascii 1.0\nelement vertex 6\n"
+                                      "property float x\nproperty float y\nproperty float z\n"
+                                      "element face 2\nproperty list uchar int vertex_indices\n"
+                                      "end_header\n0 0 0\n1 0 0\n0 1 0\n1 0 0\n1 1 0\n0 1 0\n"
+                                      "3 0 1 2\n3 3 4 5\n");
+  const Ran info = shell({"info", seam});
+  const std::size_t welded = info.out.find("welded (2 coincident vertices merged): 1 components");
+  REQUIRE(welded != std::string::npos);
+  CHECK(info.out.find("as it is: 2 components") > welded);
+  CHECK(info.out.find("as it is: 2 components") != std::string::npos);
+  CHECK(has(shell({"info", seam, "--json"}).out, "\"topology_not_welded\""));
+  // In many slabs, by way of scratch files.
+  const Ran little = shell({"info", torus, "--memory", "100K"});
+  CHECK(has(little.out, "1 components, 0 border edges, 0 non-manifold edges"));
+  CHECK_FALSE(has(little.out, "welded"));
+  const auto rms_of = [](const Ran& ran) {
+    const std::size_t at = ran.out.find("rms ");
+    return at == std::string::npos ? 0.0 : std::stod(ran.out.substr(at + 4));
+  };
+  const Ran held = shell({"compare", torus, coarse, "--samples", "20000"});
+  const Ran divided = shell({"compare", torus, coarse, "--samples", "20000", "--memory", "100K"});
+  CHECK(divided.code == 0);
+  CHECK(rms_of(held) > 0);
+  CHECK(std::abs(rms_of(divided) / rms_of(held) - 1) < 0.05);
+  CHECK(shell({"info", torus, "--memory", "0"}).code == 2);
 }
 
 TEST_CASE("generate makes shapes by their names") {
