@@ -6,6 +6,7 @@
 
 #include <unistd.h>
 
+#include <meshfarm/io/mesh_format.hpp>
 #include <meshfarm/io/mesh_source.hpp>
 #include <meshfarm/partition/cut.hpp>
 #include <meshfarm/staging/claim.hpp>
@@ -58,6 +59,7 @@ Manifest cut_to_stage(const CutStep& step) {
 }
 
 void check_writable(const std::string& output) {
+  check_output_format(output);
   const std::filesystem::path path(output);
   const std::filesystem::path folder = path.has_parent_path() ? path.parent_path() : ".";
   if (std::filesystem::is_directory(path))

@@ -5,18 +5,7 @@
 #include <meshfarm/io/mesh_source.hpp>
 #include <meshfarm/util/errors.hpp>
 
-#include "ply_reader.hpp"
-
 namespace meshfarm {
-
-std::unique_ptr<MeshSource> open_mesh(const std::filesystem::path& path) {
-  InputFile file(path);
-  if (is_ply_file(file)) return open_ply(std::move(file));
-  throw DataError(
-      path.string() +
-      ": unknown format; meshfarm reads PLY (ascii, binary little or big endian), plain "
-      "or compressed with gzip or zstd");
-}
 
 Mesh read_mesh(MeshSource& source) {
   if (source.info().vertices > UINT32_MAX) {
