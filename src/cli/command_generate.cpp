@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
 #include <meshfarm/geometry/generate.hpp>
-#include <meshfarm/io/mesh_source.hpp>
+#include <meshfarm/io/mesh_format.hpp>
 #include <meshfarm/io/ply_writer.hpp>
 #include <meshfarm/util/errors.hpp>
 
@@ -25,8 +25,9 @@ class GenerateCommand : public Command {
                           "where it goes, as PLY")(
         "triangles", po::value(&triangles_)->default_value(triangles_)->value_name("N"),
         "about so many triangles")("shape",
-                                   po::value(&shape_)->default_value(shape_)->value_name("NAME"),
-                                   "torus, foam, dust, soup, terrain, block or shell")(
+                                   po::value(&shape_)->default_value(shape_)->value_name(
+                                       "torus|foam|dust|soup|terrain|block|shell"),
+                                   "which surface to make")(
         "shuffle", po::bool_switch(&shuffle_),
         "put vertices and triangles into random order; holds the mesh in memory")(
         "from", po::value(&from_)->value_name("FILE"),
@@ -38,6 +39,7 @@ class GenerateCommand : public Command {
     shape_named(shape_);
   }
   int run() override {
+    check_output_format(output_);
     shuffle_ ? write_shuffled() : write_in_order();
     return 0;
   }

@@ -15,6 +15,7 @@
 #include <meshfarm/util/memory.hpp>
 
 #include "cli/command.hpp"
+#include "cli/manual.hpp"
 #include "cli/version.hpp"
 
 namespace meshfarm {
@@ -27,14 +28,17 @@ constexpr int k_incomplete = 3;
 
 std::string list_of_commands() {
   std::ostringstream out;
-  out << "meshfarm simplifies triangle meshes that are too big for one PC, on the PCs you have.\n\n"
-         "  meshfarm COMMAND [OPTIONS]        meshfarm COMMAND --help tells of one command\n\n";
+  out << "meshfarm simplifies triangle meshes that do not fit into one computer's memory.\n\n"
+         "  meshfarm COMMAND [OPTIONS]\n"
+         "  meshfarm COMMAND --help           explains one command\n\n";
   for (const auto& command : all_commands()) {
     std::string name(command->name());
     name.resize(12, ' ');
     out << "  " << name << command->summary() << "\n";
   }
-  out << "\nExit: 0 done, 1 failed, 2 wrong usage, 3 incomplete but resumable.\n";
+  out << "\nExit codes:\n";
+  for (const ExitCode& exit : exit_codes())
+    out << "  " << exit.code << "  " << exit.meaning << "\n";
   return out.str();
 }
 
@@ -75,23 +79,12 @@ void read_config(const std::string& path, const po::options_description& options
   po::store(parsed, values);
 }
 
-/// Positional arguments are options without a description: shown in the synopsis, not in the list.
-po::options_description described_only(const po::options_description& all) {
-  po::options_description shown("Options");
-  for (const auto& option : all.options()) {
-    if (!option->description().empty()) shown.add(option);
-  }
-  return shown;
-}
-
-int run_command(Command& command, const std::vector<std::string>& words) {
-  po::options_description options("Options", 100, 50);
-  po::positional_options_description positional;
-  command.setup(options, positional);
-  std::string config;
-  options.add_options()("config", po::value(&config)->value_name("FILE"),
-                        "read options from a file, NAME = VALUE")("help,h", "this text");
-  const auto parsed = po::command_line_parser(words).options(options).positional(positional).run();
+int run_command(std::unique_ptr<Command> named, const std::vector<std::string>& words) {
+  DescribedCommand described = describe(std::move(named));
+  Command& command = *described.command;
+  const po::options_description& options = *described.options;
+  const auto parsed =
+      po::command_line_parser(words).options(options).positional(described.positional).run();
   refuse_negative_numbers(parsed);
   po::variables_map values;
   po::store(parsed, values);
@@ -109,7 +102,7 @@ int run_command(Command& command, const std::vector<std::string>& words) {
 
 int dispatch(const std::vector<std::string>& words) {
   if (words.empty() || words[0] == "help" || words[0] == "--help" || words[0] == "-h") {
-    if (words.size() > 1) return run_command(*find_command(words[1]), {"--help"});
+    if (words.size() > 1) return run_command(find_command(words[1]), {"--help"});
     (words.empty() ? std::cerr : std::cout) << list_of_commands();
     return words.empty() ? k_wrong_usage : k_done;
   }
@@ -117,9 +110,13 @@ int dispatch(const std::vector<std::string>& words) {
     std::cout << "meshfarm " << k_version << "\n";
     return k_done;
   }
-  const auto command = find_command(words[0]);
+  if (words[0] == "--write-manual" && words.size() == 2) {  // for the build
+    write_manual(words[1]);
+    return k_done;
+  }
+  auto command = find_command(words[0]);
   set_log(words[0], LogLevel::info);
-  return run_command(*command, {words.begin() + 1, words.end()});
+  return run_command(std::move(command), {words.begin() + 1, words.end()});
 }
 
 }  // namespace

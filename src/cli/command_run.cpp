@@ -42,7 +42,8 @@ class RunCommand : public Command {
         "where the result goes, as PLY (default: STAGE/result.ply)");
     target_.add(options);
     options.add_options()("workers", po::value(&workers_)->default_value(workers_)->value_name("N"),
-                          "worker processes started here");
+                          whose_ == Workers::own ? "worker processes started here (default: cores)"
+                                                 : "worker processes started here");
     if (whose_ == Workers::of_any_host) network_.add(options);
     schedule_.add(options);
     options.add_options()(

@@ -67,14 +67,16 @@ void TargetOptions::add(po::options_description& options) {
       "error", po::value(&error)->value_name("LENGTH"),
       "as few triangles as keep this distance from the input (measured at points of it): in the "
       "mesh's unit, or 0.1% of the diagonal")(
-      "allocation", po::value(&allocation)->default_value(allocation),
+      "allocation",
+      po::value(&allocation)->default_value(allocation)->value_name("threshold|uniform"),
       "threshold: one cost threshold for all parts; uniform: the same ratio in every part")(
-      "finish", po::value(&finish)->default_value(finish),
+      "finish", po::value(&finish)->default_value(finish)->value_name("global|boundary"),
       "global: the last pass may touch everything; boundary: edges at seams only")(
-      "composition", po::value(&composition)->default_value(composition)->value_name("HOW"),
+      "composition",
+      po::value(&composition)->default_value(composition)->value_name("auto|tree|sink"),
       "of swept streams: tree: neighbours are joined by jobs, round by round; sink: by the sink, "
       "all at once; auto: as a tree where much is at the seams")(
-      "topology", po::value(&topology)->default_value(topology)->value_name("HOW"),
+      "topology", po::value(&topology)->default_value(topology)->value_name("auto|keep|simplify"),
       "of handles, holes and pieces: keep them; simplify: close and remove them where that costs "
       "least; auto: keep them as long as the count can be met at a fair error")(
       "preserve-border", po::bool_switch(&run.lines.preserve_border),
@@ -152,17 +154,17 @@ std::vector<std::string> TargetOptions::words() const {
 }
 
 void CutWords::add(po::options_description& options) {
-  options.add_options()("scheme",
-                        po::value(&scheme_word)->default_value(scheme_word)->value_name("S"),
-                        "cut: compact parts, each simplified in memory; stream: slabs along the "
-                        "longest axis, each swept through a bounded buffer")(
-      "sort", po::value(&sort)->default_value(sort)->value_name("WHO"),
+  options.add_options()(
+      "scheme", po::value(&scheme_word)->default_value(scheme_word)->value_name("cut|stream"),
+      "cut: compact parts, each simplified in memory; stream: slabs along the "
+      "longest axis, each swept through a bounded buffer")(
+      "sort", po::value(&sort)->default_value(sort)->value_name("here|farm"),
       "stream: here: slabs are sorted where they are cut; farm: by jobs, the first of a run, so "
       "that other hosts help")(
       "parts", po::value(&cut.parts)->value_name("N"),
       "number of parts (default: about a million triangles each, at least 16 of a large mesh) or "
       "streams (1.2 million)")(
-      "weld", po::value(&weld)->default_value(weld),
+      "weld", po::value(&weld)->default_value(weld)->value_name("exact|off"),
       "exact: vertices at the same position become one, but for surfaces that only touch; "
       "off: they stay apart")("threads", po::value(&cut.threads)->value_name("N"),
                               "threads of the cut (default: cores)")(
@@ -276,7 +278,7 @@ std::vector<std::string> NetworkOptions::words() const {
 
 void ScheduleWords::add(po::options_description& described) {
   described.add_options()(
-      "schedule", po::value(&schedule)->default_value(schedule),
+      "schedule", po::value(&schedule)->default_value(schedule)->value_name("dynamic|static"),
       "dynamic: parts go to whoever will have done them first; static: dealt out at the start in "
       "sets of equal estimated time")(
       "expect-workers",

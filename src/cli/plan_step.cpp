@@ -79,7 +79,7 @@ void PlanWords::add(po::options_description& options) {
   options.add_options()("parts", po::value(&parts)->value_name("N"),
                         "as if the dataset had been cut into so many parts");
   options.add_options()("schedule",
-                        po::value(&schedule)->default_value(schedule)->value_name("WHICH"),
+                        po::value(&schedule)->default_value(schedule)->value_name("dynamic|static"),
                         "dynamic or static");
   options.add_options()("storage", po::value(&storage)->default_value(storage)->value_name("GBIT"),
                         "Gbit/s of the shared folder's server");

@@ -246,6 +246,42 @@ TEST_CASE("what cannot be read or written is one line and exit 1") {
   }
 }
 
+TEST_CASE("an output of another format is refused before any work") {
+  Shell shell;
+  const std::string cube = shell.cube();
+  const std::string stage = shell.path("stage");
+  REQUIRE(shell({"cut", cube, "--stage", stage, "--quiet"}).code == 0);
+  const std::string output = shell.path("x.obj");
+  for (const std::vector<std::string>& words :
+       {std::vector<std::string>{"simplify", cube, "-o", output, "--ratio", "0.5"},
+        {"replay", stage, "-o", output, "--ratio", "0.5"},
+        {"run", stage, "-o", output, "--ratio", "0.5"},
+        {"sink", stage, "-o", output, "--ratio", "0.5", "--wait", "1"},
+        {"generate", "-o", output, "--triangles", "1000"}}) {
+    const Ran ran = shell(words);
+    INFO(words[0] << ": " << ran.err);
+    CHECK(ran.code == 1);
+    CHECK(lines(ran.err) == 1);
+    CHECK(has(ran.err, "cannot write .obj"));
+    CHECK_FALSE(fs::exists(output));
+    CHECK_FALSE(fs::exists(output + ".stage"));
+  }
+}
+
+TEST_CASE("the manual pages are made of the options that help shows") {
+  Shell shell;
+  const std::string manual = shell.path("manual");
+  REQUIRE(shell({"--write-manual", manual}).code == 0);
+  const std::string page = read_text(manual + "/man1/meshfarm-cut.1");
+  CHECK(has(page, "\\fB\\-\\-scheme\\fR \\fIcut|stream\\fR"));
+  CHECK(has(page, "(default: cut)"));
+  CHECK_FALSE(has(page, "\\-\\-input"));  // a positional argument
+  const std::string completion = read_text(manual + "/completions/meshfarm");
+  CHECK(has(completion, "'cut --scheme') words='cut stream'"));
+  CHECK(has(completion, "'simplify --output' | 'simplify -o') compopt -o default"));
+  CHECK(shell({"--write-manual", shell.file("file", "") + "/manual"}).code == 1);
+}
+
 TEST_CASE("a cube goes through, and what is not kept is named") {
   Shell shell;
   const Ran ran = shell(
