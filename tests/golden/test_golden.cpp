@@ -1,0 +1,219 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+//
+// Golden checksums: of what the kernel makes of small generated meshes, and of each staged format.
+// They notice bytes that have changed while the version that tells so was not raised.
+// 'scripts/renew-golden.sh' writes them anew.
+#include <cstdlib>
+#include <cstring>
+#include <fstream>
+#include <map>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include <doctest/doctest.h>
+
+#include <meshfarm/farm/endpoint.hpp>
+#include <meshfarm/geometry/generate.hpp>
+#include <meshfarm/geometry/simplify.hpp>
+#include <meshfarm/io/boundary_file.hpp>
+#include <meshfarm/io/manifest.hpp>
+#include <meshfarm/io/part_file.hpp>
+#include <meshfarm/io/result_file.hpp>
+#include <meshfarm/io/slab_file.hpp>
+#include <meshfarm/io/stream_file.hpp>
+#include <meshfarm/pipeline/algorithm.hpp>
+#include <meshfarm/staging/host_card.hpp>
+#include <meshfarm/staging/journal.hpp>
+#include <meshfarm/util/checksum.hpp>
+
+#include "support/meshes.hpp"
+#include "support/temp_folder.hpp"
+
+using namespace meshfarm;
+
+namespace {
+
+constexpr const char* k_list = MESHFARM_SOURCE_DIR "/tests/golden/checksums.txt";
+
+/// Something whose bytes are watched, and where its version is raised.
+struct Watched {
+  std::string name;
+  std::uint32_t version = 0;
+  std::uint64_t sum = 0;
+  std::string raise;
+};
+
+struct Golden {
+  std::uint32_t version = 0;
+  std::string sum;
+};
+
+template <class T>
+void add_all(Checksum& sum, const std::vector<T>& items) {
+  sum.add({reinterpret_cast<const char*>(items.data()), items.size() * sizeof(T)});
+}
+
+Watched kernel(const std::string& name, Shape shape, const LineOptions& lines, PositionType type,
+               std::uint64_t target) {
+  constexpr std::uint64_t k_triangles = 20'000;
+  Simplifier simplifier(in_memory(*generate_mesh(shape, k_triangles)),
+                        {.positions = type, .lines = lines});
+  Checksum sum;
+  // Two steps: far from the goal and near it, which go different ways.
+  for (const std::uint64_t triangles : {8 * target, target}) {
+    simplifier.reduce({.triangles = triangles, .last_triangles = target});
+    add_all(sum, simplifier.mesh().positions);
+    add_all(sum, simplifier.mesh().triangles);
+  }
+  return {"kernel/" + name, k_algorithm_version, sum.value(),
+          "k_algorithm_version in include/meshfarm/pipeline/algorithm.hpp"};
+}
+
+/// Of a file whose version stands at this byte.
+Watched format(const std::string& name, const std::string& file, std::size_t version_at,
+               const std::string& source) {
+  std::uint32_t version = 0;
+  REQUIRE(file.size() >= version_at + sizeof version);
+  std::memcpy(&version, file.data() + version_at, sizeof version);
+  return {"format/" + name, version, checksum(file), "k_version in " + source};
+}
+
+/// Of a file that begins with magic, kind and version.
+Watched staged(const std::string& name, const std::string& file, const std::string& source) {
+  return format(name, file, 8, source);
+}
+
+std::string result_bytes() {
+  std::string file;
+  ResultWriter writer(PositionType::float64, 2, [&](std::string_view bytes) { file += bytes; });
+  const Mesh mesh = test::grid(9, 7);
+  writer.add_rung(3, mesh, 20, 0.25);
+  writer.add_rung(5, mesh, 10, 0.5);
+  const std::vector<SurfaceSamples> samples = {{2.5, {{1, 2, 3}, {4, 5, 6}}}};
+  writer.finish(std::span(mesh.positions).first(2), samples);
+  const ResultSummary summary{writer.rungs(), 4, 5, true};
+  return file + encode_summary(summary);
+}
+
+StreamMesh stream() {
+  StreamMesh stream;
+  stream.mesh = test::grid(9, 7);
+  for (const Vec3& p : stream.mesh.positions) stream.boundary.push_back(p.y == 0 ? 1 : 0);
+  return stream;
+}
+
+Manifest manifest() {
+  Manifest made;
+  made.input = "in.ply";
+  made.input_format = "PLY ascii";
+  made.partitioner = "METIS";
+  made.window_triangles = 1000;
+  made.box = {{0, 1, 2}, {3, 4, 5}};
+  made.input_vertices = 10;
+  made.input_triangles = 11;
+  made.merged_vertices = 12;
+  made.dropped_degenerate = 13;
+  made.coincident_corners = 14;
+  made.dropped_not_finite = 15;
+  made.dropped_duplicate = 16;
+  made.skipped = {"red"};
+  made.cut_seconds = 0.5;
+  made.boundary_triangles = 17;
+  made.boundary = {"boundary", 18, 19};
+  made.parts = {{{"parts/000000.part", 20, 21}, 22, 23, 4}};
+  return made;
+}
+
+std::string journal_bytes() {
+  const test::TempFolder folder;
+  JournalWriter(folder.path() / "j").append("a record");
+  std::ifstream in(folder.path() / "j", std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+std::vector<Watched> all_watched() {
+  constexpr auto k_float = PositionType::float32;
+  constexpr auto k_double = PositionType::float64;
+  const Mesh sheet = test::grid(9, 7);
+  return {
+      kernel("torus", Shape::torus, {}, k_float, 300),
+      kernel("torus-double", Shape::torus, {}, k_double, 300),
+      kernel("foam", Shape::foam, {}, k_float, 1000),
+      kernel("foam-keep", Shape::foam, {.topology = TopologyMode::keep}, k_float, 2000),
+      kernel("foam-simplify", Shape::foam, {.topology = TopologyMode::simplify}, k_float, 200),
+      kernel("dust", Shape::dust, {}, k_float, 1000),
+      kernel("terrain", Shape::terrain, {}, k_float, 200),
+      kernel("terrain-border", Shape::terrain, {.preserve_border = true}, k_float, 1000),
+      kernel("block-creases", Shape::block, {.crease_angle = 40}, k_float, 1000),
+      staged("part", encode_part({sheet, 3, k_float}), "src/io/part_file.cpp"),
+      staged("boundary", encode_boundary({{{{0, 1}, {1, 2}, {2, 3}}}}), "src/io/boundary_file.cpp"),
+      staged("slab", encode_slab({sheet.positions, sheet.triangles, {1, 5}, k_double}),
+             "src/io/slab_file.cpp"),
+      staged("stream", encode_stream(stream()), "src/io/stream_file.cpp"),
+      staged("result", result_bytes(), "src/io/result_file.cpp"),
+      staged("manifest", encode_manifest(manifest()), "src/io/manifest.cpp"),
+      format("journal", journal_bytes(), 4, "src/staging/journal.cpp"),
+      staged("host-card", encode_host_card({"host", 1, 2, 3}), "src/staging/host_card.cpp"),
+      staged("endpoint", encode_endpoint({1, 2, "tcp://host:3", "host", 4, "key"}),
+             "src/farm/endpoint.cpp"),
+  };
+}
+
+/// A line each: NAME VERSION CHECKSUM.
+std::map<std::string, Golden> read_list() {
+  std::map<std::string, Golden> list;
+  std::ifstream file(k_list);
+  for (std::string line; std::getline(file, line);) {
+    std::istringstream words(line);
+    std::string name;
+    Golden golden;
+    if (words >> name >> golden.version >> golden.sum) list[name] = golden;
+  }
+  return list;
+}
+
+void write_list(const std::vector<Watched>& watched) {
+  std::ofstream file(k_list);
+  for (const Watched& it : watched) {
+    file << it.name << " " << it.version << " " << to_hex(it.sum) << "\n";
+  }
+}
+
+/// What has to be done about it; empty if its bytes are as they were.
+std::string complaint(const Watched& it, const std::map<std::string, Golden>& list) {
+  const auto golden = list.find(it.name);
+  if (golden == list.end()) return it.name + " is not in the list";
+  const bool same_bytes = golden->second.sum == to_hex(it.sum);
+  if (it.version == golden->second.version) {
+    if (same_bytes) return {};
+    return it.name + ": other bytes under the same version " + std::to_string(it.version) +
+           ": raise " + it.raise;
+  }
+  return it.name + ": its version is " + std::to_string(it.version) + ", and " +
+         std::to_string(golden->second.version) + " in the list";
+}
+
+}  // namespace
+
+TEST_CASE("no bytes change without a raised version") {
+  const std::vector<Watched> watched = all_watched();
+  const auto list = read_list();
+  const char* renew = std::getenv("MESHFARM_RENEW_GOLDEN");
+  const bool forced = renew != nullptr && std::string(renew) == "force";
+  bool may_be_written = renew != nullptr;
+  for (const Watched& it : watched) {
+    const std::string why = complaint(it, list);
+    const bool must_be_raised = why.find(": raise ") != std::string::npos;
+    if (forced || (renew != nullptr && !must_be_raised)) continue;
+    if (must_be_raised) may_be_written = false;
+    const std::string then = must_be_raised ? ", then" : ";";
+    CHECK_MESSAGE(why.empty(), (why + then + " run scripts/renew-golden.sh"));
+  }
+  if (may_be_written) {
+    write_list(watched);
+  } else {
+    CHECK(list.size() == watched.size());
+  }
+}
