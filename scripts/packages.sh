@@ -1,10 +1,10 @@
 #!/usr/bin/env bash
 # Installs the Debian packages that building, testing and the demo need, where they are missing.
-# With --fuzz also those of the fuzzers, with --lab those of tests/lab (Slurm, NFS, ssh servers: best
-# on a machine of its own), with --lint those of lint.sh.
+# With --fuzz also those of the fuzzers, with --lab those of tests/lab (Slurm, NFS and ssh servers,
+# debootstrap: best on a machine of its own), with --lint those of lint.sh.
 set -euo pipefail
 
-packages=(g++ cmake ninja-build pkg-config make
+packages=(g++ cmake ninja-build pkg-config make python3 dpkg-dev file groff-base
   libzmq3-dev cppzmq-dev libmetis-dev libboost-dev libboost-iostreams-dev
   libboost-program-options-dev doctest-dev libxxhash-dev libspdlog-dev libnanoflann-dev
   nlohmann-json3-dev zlib1g-dev libzstd-dev)
@@ -13,7 +13,7 @@ for word in "$@"; do
     --fuzz) packages+=(clang libclang-rt-dev) ;;
     --lab) packages+=(user-mode-linux uml-utilities kmod nfs-common nfs-kernel-server rpcbind
       e2fsprogs iproute2 iptables openssh-server openssh-client strace
-      slurm-wlm slurmctld slurmd slurm-client munge) ;;
+      slurm-wlm slurmctld slurmd slurm-client munge debootstrap) ;;
     --lint) packages+=(clang-format clang-tidy shellcheck) ;;
     --npm) command -v npm > /dev/null || packages+=(npm) ;;
     *) echo "packages.sh: unknown option $word" >&2; exit 2 ;;

@@ -11,7 +11,7 @@ need_commands linux.uml modprobe mkfs.ext4 rpcbind exportfs rpc.mountd rpc.nfsd 
 [ -d /usr/lib/uml/modules ] || skip "the modules of User-Mode Linux are missing"
 trap 'rm -rf "$work"' EXIT
 "$lab_here/nfs/boot.sh" 4.2 60 /bin/true > "$work/boot.log" 2>&1 ||
-  skip "User-Mode Linux does not boot here: $(tail -n 1 "$work/boot.log")"
+  skip_forbidden "User-Mode Linux does not boot here: $(tail -n 1 "$work/boot.log")"
 
 make_stage 60000 24 "$work/stage"
 failed=

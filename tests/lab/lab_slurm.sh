@@ -16,7 +16,7 @@ clean_up() {
   rm -rf "$work" 2> /dev/null || { sleep 1; rm -rf "$work"; } # what was killed may write still
 }
 trap clean_up EXIT
-hosts_up 4 2> "$work/hosts.log" || skip "no network namespaces: $(tail -n 1 "$work/hosts.log")"
+hosts_up 4 2> "$work/hosts.log" || skip_forbidden "no network namespaces: $(tail -n 1 "$work/hosts.log")"
 
 # Host 1 has the controller, 2 to 4 are nodes.
 configure_slurm() {

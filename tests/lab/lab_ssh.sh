@@ -14,7 +14,7 @@ clean_up() {
   rm -rf "$work"
 }
 trap clean_up EXIT
-hosts_up 5 2> "$work/hosts.log" || skip "no network namespaces: $(tail -n 1 "$work/hosts.log")"
+hosts_up 5 2> "$work/hosts.log" || skip_forbidden "no network namespaces: $(tail -n 1 "$work/hosts.log")"
 
 start_sshd() {
   local i
