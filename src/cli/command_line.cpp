@@ -80,9 +80,9 @@ void read_config(const std::string& path, const po::options_description& options
 }
 
 int run_command(std::unique_ptr<Command> named, const std::vector<std::string>& words) {
-  DescribedCommand described = describe(std::move(named));
+  const DescribedCommand described(std::move(named));
   Command& command = *described.command;
-  const po::options_description& options = *described.options;
+  const po::options_description& options = described.options;
   const auto parsed =
       po::command_line_parser(words).options(options).positional(described.positional).run();
   refuse_negative_numbers(parsed);

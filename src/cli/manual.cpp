@@ -39,8 +39,9 @@ std::string upper(std::string_view text) {
 
 std::string page_head(std::string_view name, std::string_view summary) {
   std::ostringstream out;
-  out << ".TH " << upper(roff(name)) << " 1 \"\" \"meshfarm " << k_version
-      << "\" \"User Commands\"\n.SH NAME\n"
+  out << ".TH " << upper(roff(name)) << R"( 1 "" "meshfarm )" << k_version
+      << R"(" "User Commands")"
+         "\n.SH NAME\n"
       << roff(name) << " \\- " << roff(summary) << "\n";
   return out.str();
 }
@@ -109,7 +110,7 @@ void put_cases(std::ostringstream& values, std::ostringstream& options,
                const DescribedCommand& described) {
   const std::string_view name = described.command->name();
   options << "    " << name << ") words='";
-  const po::options_description shown = described_only(*described.options);
+  const po::options_description shown = described_only(described.options);
   for (const auto& option : shown.options()) {
     options << long_option(*option) << " ";
     const std::string value = value_name(*option);
@@ -140,14 +141,12 @@ void write_text(const std::filesystem::path& path, const std::string& text) {
 
 }  // namespace
 
-DescribedCommand describe(std::unique_ptr<Command> command) {
-  DescribedCommand described{
-      std::move(command), std::make_unique<po::options_description>("Options", 100, 50), {}};
-  described.command->setup(*described.options, described.positional);
-  described.options->add_options()("config", po::value<std::string>()->value_name("FILE"),
-                                   "read options from a file, one NAME = VALUE a line")(
-      "help,h", "show this text");
-  return described;
+DescribedCommand::DescribedCommand(std::unique_ptr<Command> named)
+    : command(std::move(named)), options("Options", 100, 50) {
+  command->setup(options, positional);
+  options.add_options()("config", po::value<std::string>()->value_name("FILE"),
+                        "read options from a file, one NAME = VALUE a line")("help,h",
+                                                                             "show this text");
 }
 
 po::options_description described_only(const po::options_description& all) {
@@ -168,15 +167,15 @@ const std::vector<ExitCode>& exit_codes() {
   return k_codes;
 }
 
-std::string man_page(const std::vector<DescribedCommand>& commands) {
+std::string man_page(const DescribedCommands& commands) {
   std::ostringstream out;
   out << page_head("meshfarm",
                    "simplify triangle meshes that do not fit into one computer's memory")
       << ".SH SYNOPSIS\n.B meshfarm\n.I COMMAND\n[\\fIOPTIONS\\fR]\n.SH COMMANDS\n";
   std::string pages;
-  for (const DescribedCommand& described : commands) {
-    const std::string name(described.command->name());
-    out << ".TP\n\\fB" << roff(name) << "\\fR\n" << roff(described.command->summary()) << "\n";
+  for (const auto& described : commands) {
+    const std::string name(described->command->name());
+    out << ".TP\n\\fB" << roff(name) << "\\fR\n" << roff(described->command->summary()) << "\n";
     if (!pages.empty()) pages += ",\n";
     pages += ".BR meshfarm\\-" + roff(name) + " (1)";
   }
@@ -190,19 +189,19 @@ std::string man_page(const DescribedCommand& described) {
   out << page_head(name, described.command->summary()) << ".SH SYNOPSIS\n\\fBmeshfarm "
       << roff(described.command->name()) << "\\fR " << roff(described.command->synopsis())
       << "\n.SH OPTIONS\n";
-  const po::options_description shown = described_only(*described.options);
+  const po::options_description shown = described_only(described.options);
   for (const auto& option : shown.options()) out << option_entry(*option);
   out << page_foot(".BR meshfarm (1)\n");
   return out.str();
 }
 
-std::string bash_completion(const std::vector<DescribedCommand>& commands) {
+std::string bash_completion(const DescribedCommands& commands) {
   std::ostringstream values;
   std::ostringstream options;
   std::string names;
-  for (const DescribedCommand& described : commands) {
-    names += std::string(described.command->name()) + " ";
-    put_cases(values, options, described);
+  for (const auto& described : commands) {
+    names += std::string(described->command->name()) + " ";
+    put_cases(values, options, *described);
   }
   std::ostringstream out;
   out << "# bash completion of meshfarm, made by the program from its options.\n"
@@ -231,14 +230,16 @@ std::string bash_completion(const std::vector<DescribedCommand>& commands) {
 }
 
 void write_manual(const std::filesystem::path& folder) {
-  std::vector<DescribedCommand> commands;
-  for (auto& command : all_commands()) commands.push_back(describe(std::move(command)));
+  DescribedCommands commands;
+  for (auto& command : all_commands()) {
+    commands.push_back(std::make_unique<DescribedCommand>(std::move(command)));
+  }
   std::filesystem::create_directories(folder / "man1");
   std::filesystem::create_directories(folder / "completions");
   write_text(folder / "man1" / "meshfarm.1", man_page(commands));
-  for (const DescribedCommand& described : commands) {
-    const std::string name = "meshfarm-" + std::string(described.command->name()) + ".1";
-    write_text(folder / "man1" / name, man_page(described));
+  for (const auto& described : commands) {
+    const std::string name = "meshfarm-" + std::string(described->command->name()) + ".1";
+    write_text(folder / "man1" / name, man_page(*described));
   }
   write_text(folder / "completions" / "meshfarm", bash_completion(commands));
 }

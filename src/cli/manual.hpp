@@ -14,12 +14,14 @@ namespace meshfarm {
 /// A command and what setup() declared, with --config and --help. The options are bound to the
 /// command's members.
 struct DescribedCommand {
+  explicit DescribedCommand(std::unique_ptr<Command> named);
   std::unique_ptr<Command> command;
-  std::unique_ptr<po::options_description> options;
+  po::options_description options;
   po::positional_options_description positional;
 };
 
-DescribedCommand describe(std::unique_ptr<Command> command);
+/// Option descriptions cannot be moved.
+using DescribedCommands = std::vector<std::unique_ptr<DescribedCommand>>;
 
 /// The options without positional arguments, which have no description: the synopsis shows them.
 po::options_description described_only(const po::options_description& all);
@@ -32,12 +34,12 @@ struct ExitCode {
 const std::vector<ExitCode>& exit_codes();
 
 /// The manual pages (man roff) of the program and of one command.
-std::string man_page(const std::vector<DescribedCommand>& commands);
-std::string man_page(const DescribedCommand& command);
+std::string man_page(const DescribedCommands& commands);
+std::string man_page(const DescribedCommand& described);
 
 /// A completion script for bash. A value name like "cut|stream" lists the words that an option
 /// takes; FILE, FOLDER and STAGE are completed as paths.
-std::string bash_completion(const std::vector<DescribedCommand>& commands);
+std::string bash_completion(const DescribedCommands& commands);
 
 /// Writes FOLDER/man1/meshfarm*.1 and FOLDER/completions/meshfarm. Throws IoError.
 void write_manual(const std::filesystem::path& folder);

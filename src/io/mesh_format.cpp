@@ -23,9 +23,9 @@ struct MeshFormat {
   bool can_be_written;
 };
 
-constexpr std::array k_formats = {
-    MeshFormat{".ply", is_ply_file, open_ply, true},
-};
+constexpr std::array<MeshFormat, 1> k_formats = {{
+    {".ply", is_ply_file, open_ply, true},
+}};
 
 std::string lower(std::string text) {
   for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
