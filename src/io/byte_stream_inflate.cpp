@@ -22,8 +22,8 @@ namespace bio = boost::iostreams;
 
 constexpr std::streamsize k_filter_bytes = 1 << 16;
 
-/// The compressed bytes. The filters would pass on an error of reading as one of theirs, or swallow
-/// it: it is kept for who asks them.
+/// The compressed bytes. The filters would report a read error as one of their own, or ignore it,
+/// so it is kept for the caller.
 class FileDevice {
  public:
   using char_type = char;            // NOLINT(readability-identifier-naming): Boost's name

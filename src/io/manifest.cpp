@@ -17,7 +17,7 @@
 #include <meshfarm/staging/sealed.hpp>
 #include <meshfarm/util/bytes.hpp>
 
-#include "io/part_mesh.hpp"
+#include "io/staged_positions.hpp"
 
 namespace meshfarm {
 namespace {

@@ -13,7 +13,7 @@
 #include <meshfarm/staging/sealed.hpp>
 #include <meshfarm/util/errors.hpp>
 
-#include "io/part_mesh.hpp"
+#include "io/staged_positions.hpp"
 
 namespace meshfarm {
 namespace {

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
 //
-// The header of a PLY file (Turk 1994), as it is met:
+// The header of a PLY file (Turk 1994), as writers make it:
 //   header   = "ply" format line* "end_header"       lines end in LF, CR LF, or CR throughout
 //   format   = "format" ("ascii" | "binary_little_endian" | "binary_big_endian") "1.0"
 //   line     = "comment" ... | "obj_info" ... | element property*

@@ -22,7 +22,7 @@ struct PlyProperty {
   bool is_list() const { return count_type.has_value(); }
 };
 
-/// What an element is to us.
+/// What the reader does with an element.
 enum class PlyRole : std::uint8_t { other, vertices, faces, strips };
 
 struct PlyElement {

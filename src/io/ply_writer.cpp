@@ -19,7 +19,7 @@ namespace {
 constexpr std::size_t k_triangle_bytes = 1 + 3 * sizeof(std::uint32_t);
 constexpr std::size_t k_records_at_once = 8192;
 
-/// Finds out before the work, not after it, that the file cannot be put where it should.
+/// Fails before the work, not after it, if the file cannot be made.
 const std::filesystem::path& checked_path(const std::filesystem::path& path) {
   std::error_code error;
   const std::filesystem::file_status status = std::filesystem::status(path, error);

@@ -30,7 +30,7 @@
 #include <meshfarm/util/bytes.hpp>
 #include <meshfarm/util/errors.hpp>
 
-#include "io/part_mesh.hpp"
+#include "io/staged_positions.hpp"
 
 namespace meshfarm {
 namespace {

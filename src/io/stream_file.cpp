@@ -21,7 +21,7 @@
 #include <meshfarm/util/checksum.hpp>
 #include <meshfarm/util/errors.hpp>
 
-#include "io/part_mesh.hpp"
+#include "io/staged_positions.hpp"
 
 namespace meshfarm {
 namespace {
@@ -72,7 +72,7 @@ class StreamEncoder {
   }
 
  private:
-  /// Backwards, so that the first use met is the last.
+  /// Goes backwards: the first use that it meets is the last one.
   void mark_last_uses() {
     used_.assign(stream_.mesh.positions.size(), 0);
     codes_.resize(triangles_.size());

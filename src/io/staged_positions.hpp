@@ -7,16 +7,12 @@
 
 namespace meshfarm {
 
-/// A mesh within a staged file: positions as float32 or float64, then triangles as u32 triples.
-void put_mesh(ByteWriter& out, const Mesh& mesh, PositionType positions);
-/// Checks that coordinates are finite and indices in range.
-Mesh get_mesh(ByteReader& in, std::uint64_t vertices, std::uint64_t triangles,
-              PositionType positions);
+// What the formats of staged files share.
 
-/// Fails if a corner is none of so many vertices.
+/// Fails if a corner is not below `vertices`.
 void check_corners(const ByteReader& in, std::size_t vertices, std::span<const Triangle> triangles);
 
-/// The positions alone.
+/// Positions as float32 or float64. Those that are read must be finite.
 void put_positions(ByteWriter& out, std::span<const Vec3> points, PositionType positions);
 std::vector<Vec3> get_positions(ByteReader& in, std::uint64_t count, PositionType positions);
 

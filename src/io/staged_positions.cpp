@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
-#include "io/part_mesh.hpp"
+#include "io/staged_positions.hpp"
 
 #include <array>
 #include <cstring>
@@ -34,20 +34,6 @@ std::vector<Vec3> get_positions(ByteReader& in, std::uint64_t count, PositionTyp
     if (!is_finite(p)) in.fail("a coordinate is not finite");
   }
   return points;
-}
-
-void put_mesh(ByteWriter& out, const Mesh& mesh, PositionType positions) {
-  put_positions(out, mesh.positions, positions);
-  out.put_array(std::span<const Triangle>(mesh.triangles));
-}
-
-Mesh get_mesh(ByteReader& in, std::uint64_t vertices, std::uint64_t triangles,
-              PositionType positions) {
-  Mesh mesh;
-  mesh.positions = get_positions(in, vertices, positions);
-  mesh.triangles = in.get_array<Triangle>(triangles);
-  check_corners(in, mesh.positions.size(), mesh.triangles);
-  return mesh;
 }
 
 void check_corners(const ByteReader& in, std::size_t vertices,
