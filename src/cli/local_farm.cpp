@@ -3,9 +3,8 @@
 #include "cli/local_farm.hpp"
 
 #include <algorithm>
+#include <cstdlib>
 #include <filesystem>
-
-#include <stdlib.h>
 
 #include <meshfarm/io/manifest.hpp>
 #include <meshfarm/pipeline/budget.hpp>

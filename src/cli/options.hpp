@@ -105,7 +105,7 @@ struct ScheduleWords {
   std::string schedule = "dynamic";
   std::uint32_t hang_s = 30;
 
-  void add(po::options_description& options);
+  void add(po::options_description& described);
   void check();
   std::vector<std::string> words() const;
 };
