@@ -34,7 +34,7 @@ class DoctorCommand : public Command {
              po::positional_options_description& positional) override {
     options.add_options()("stage", po::value(&stage_)->required(), "")(
         "workers", po::value(&workers_)->default_value(workers_)->value_name("N"),
-        "how many workers are to join");
+        "how many workers will join");
     talk_.add(options);
     positional.add("stage", 1);
   }

@@ -22,16 +22,16 @@ class GenerateCommand : public Command {
   }
   void setup(po::options_description& options, po::positional_options_description&) override {
     options.add_options()("output,o", po::value(&output_)->required()->value_name("FILE"),
-                          "where it goes, as PLY")(
+                          "the PLY file to write")(
         "triangles", po::value(&triangles_)->default_value(triangles_)->value_name("N"),
-        "about so many triangles")("shape",
-                                   po::value(&shape_)->default_value(shape_)->value_name(
-                                       "torus|foam|dust|soup|terrain|block|shell"),
-                                   "which surface to make")(
+        "number of triangles, about")("shape",
+                                      po::value(&shape_)->default_value(shape_)->value_name(
+                                          "torus|foam|dust|soup|terrain|block|shell"),
+                                      "which surface to make")(
         "shuffle", po::bool_switch(&shuffle_),
         "put vertices and triangles into random order; holds the mesh in memory")(
         "from", po::value(&from_)->value_name("FILE"),
-        "with --shuffle: take this mesh instead of a made one");
+        "with --shuffle: read this mesh instead of making one");
     talk_.add_quiet(options);
   }
   void check() override {

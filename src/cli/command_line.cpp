@@ -58,7 +58,7 @@ std::unique_ptr<Command> find_command(std::string_view name) {
                    "'; 'meshfarm help' lists the commands");
 }
 
-/// No option takes one, and Boost would wrap it round to a huge unsigned number.
+/// No option takes a negative number, and Boost would turn it into a huge unsigned one.
 void refuse_negative_numbers(const po::basic_parsed_options<char>& parsed) {
   for (const auto& option : parsed.options) {
     for (const std::string& value : option.value) {
@@ -122,7 +122,7 @@ int dispatch(const std::vector<std::string>& words) {
 }  // namespace
 
 int run_command_line(int argc, const char* const* argv) {
-  // Whoever is started through /proc/self/exe shows as "exe" otherwise, and nobody finds it.
+  // Workers are started through /proc/self/exe, and would be listed as "exe".
   ::prctl(PR_SET_NAME, "meshfarm");
   keep_freed_memory();
   try {

@@ -21,23 +21,23 @@ class SimulateCommand : public Command {
   std::string_view name() const override { return "simulate"; }
   std::string_view synopsis() const override { return "STAGE... | --seed N | --seeds COUNT"; }
   std::string_view summary() const override {
-    return "plan a farm by a run's trace, or try the farm's logic with faults, on virtual time";
+    return "plan a farm from the trace of a run, or test the farm with faults, on virtual time";
   }
   void setup(po::options_description& options,
              po::positional_options_description& positional) override {
     options.add_options()("workers", po::value(&workers_)->value_name("LIST"),
-                          "farms to plan, as 24,240 or 16x1+8x0.33 (count x speed; default "
-                          "24,240,10000); with --seeds one number (default 24)");
+                          "farms to plan, for example 24,240 or 16x1+8x0.33 (count x speed; "
+                          "default: 24,240,10000); with --seeds one number (default: 24)");
     plan_.add(options);
     options.add_options()("seeds", po::value(&seeds_.count)->value_name("COUNT"),
-                          "as many made-up histories, each with its own mix of faults");
+                          "try so many histories, each with its own mix of faults");
     options.add_options()("seed", po::value(&seed_)->value_name("N"),
-                          "one of them, or the first of --seeds");
+                          "try this history; with --seeds: begin with it");
     options.add_options()("jobs",
                           po::value(&seeds_.jobs)->default_value(seeds_.jobs)->value_name("N"),
-                          "with --seeds: jobs of each");
+                          "with --seeds: jobs in each history");
     options.add_options()("threads", po::value(&seeds_.threads)->value_name("N"),
-                          "with --seeds: as many at once (default: one a core)");
+                          "with --seeds: histories tried at once (default: one a core)");
     talk_.add(options);
     positional.add("stage", -1);
   }

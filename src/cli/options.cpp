@@ -62,29 +62,31 @@ ProgressStyle TalkOptions::progress() const {
 
 void TargetOptions::add(po::options_description& options) {
   options.add_options()("ratio", po::value(&run.ratio)->value_name("R"),
-                        "share of the input's triangles to keep, as 0.01")(
+                        "share of the input's triangles to keep, for example 0.01")(
       "triangles", po::value(&run.triangles)->value_name("N"), "number of triangles to keep")(
       "error", po::value(&error)->value_name("LENGTH"),
-      "as few triangles as keep this distance from the input (measured at points of it): in the "
-      "mesh's unit, or 0.1% of the diagonal")(
+      "keep as few triangles as stay within this distance of the input, measured at sampled "
+      "points: "
+      "in the mesh's unit, or as a share of the diagonal, for example 0.1%")(
       "allocation",
       po::value(&allocation)->default_value(allocation)->value_name("threshold|uniform"),
-      "threshold: one cost threshold for all parts; uniform: the same ratio in every part")(
+      "threshold: the same cost threshold in all parts; uniform: the same ratio in all parts")(
       "finish", po::value(&finish)->default_value(finish)->value_name("global|boundary"),
-      "global: the last pass may touch everything; boundary: edges at seams only")(
+      "global: the last pass may change everything; boundary: only edges at seams")(
       "composition",
       po::value(&composition)->default_value(composition)->value_name("auto|tree|sink"),
-      "of swept streams: tree: neighbours are joined by jobs, round by round; sink: by the sink, "
-      "all at once; auto: as a tree where much is at the seams")(
+      "how simplified streams are joined: tree: neighbours by jobs, round by round; sink: all at "
+      "once by the sink; auto: tree if many triangles are at seams")(
       "topology", po::value(&topology)->default_value(topology)->value_name("auto|keep|simplify"),
-      "of handles, holes and pieces: keep them; simplify: close and remove them where that costs "
-      "least; auto: keep them as long as the count can be met at a fair error")(
+      "handles, holes and pieces: keep: never close or remove any; simplify: do so where it costs "
+      "least; auto: keep them as long as the target can be met at a fair error")(
       "preserve-border", po::bool_switch(&run.lines.preserve_border),
       "leave the vertices on open borders as they are")(
       "crease-angle", po::value(&run.lines.crease_angle)->value_name("DEGREES"),
-      "keep edges sharper than this where they are: their vertices merge along them only")(
+      "keep edges that are sharper than this in place: their vertices merge only along them")(
       "drop-components", po::value(&drop_components)->value_name("LENGTH"),
-      "leave out components smaller than this: in the mesh's unit, or 0.5% of the diagonal");
+      "leave out pieces smaller than this: in the mesh's unit, or as a share of the diagonal, for "
+      "example 0.5%");
 }
 
 void TargetOptions::check() {
@@ -159,20 +161,20 @@ void CutWords::add(po::options_description& options) {
       "cut: compact parts, each simplified in memory; stream: slabs along the "
       "longest axis, each swept through a bounded buffer")(
       "sort", po::value(&sort)->default_value(sort)->value_name("here|farm"),
-      "stream: here: slabs are sorted where they are cut; farm: by jobs, the first of a run, so "
-      "that other hosts help")(
+      "with --scheme stream: here: sort the slabs on this host; farm: the first jobs of a run sort "
+      "them, on all hosts")(
       "parts", po::value(&cut.parts)->value_name("N"),
-      "number of parts (default: about a million triangles each, at least 16 of a large mesh) or "
-      "streams (1.2 million)")(
+      "number of parts (default: parts of about one million triangles, and at least 16 of a large "
+      "mesh) or streams (default: 1.2 million triangles each)")(
       "weld", po::value(&weld)->default_value(weld)->value_name("exact|off"),
-      "exact: vertices at the same position become one, but for surfaces that only touch; "
-      "off: they stay apart")("threads", po::value(&cut.threads)->value_name("N"),
-                              "threads of the cut (default: cores)")(
+      "exact: merge vertices at the same position, except where surfaces only touch; off: do not "
+      "merge")("threads", po::value(&cut.threads)->value_name("N"),
+               "threads of the cut (default: cores)")(
       "memory", po::value(&memory)->default_value(memory)->value_name("BYTES"),
-      "stream: memory for the sorting, as 512M or 2G")(
+      "with --scheme stream: memory for sorting, for example 2G")(
       "window",
       po::value(&stream.window_triangles)->default_value(stream.window_triangles)->value_name("N"),
-      "stream: triangles that a worker's sweep holds at once");
+      "with --scheme stream: triangles that a worker holds at once");
 }
 
 void CutWords::check() {
@@ -213,14 +215,14 @@ std::vector<std::string> CutWords::words() const {
 
 void SecurityWords::add(po::options_description& options) {
   options.add_options()("key-file", po::value(&key_file)->value_name("FILE"),
-                        "the keys of the run, made where they are missing; the same for all its "
-                        "processes (default: in the stage)")(
+                        "file with the keys of the run, made if it is missing; the same for all "
+                        "processes of the run (default: in the stage)")(
       "insecure", po::bool_switch(&insecure),
-      "no encryption and no authentication, for all processes of a run")(
+      "use no encryption and no authentication; the same for all processes of the run")(
       "insecure-network", po::bool_switch(&insecure_network),
-      "with --insecure: listen where other hosts reach it")(
+      "with --insecure: accept connections from other hosts")(
       "allow-soft", po::bool_switch(&allow_soft),
-      "run on a soft NFS mount, where a slow server makes writes fail");
+      "accept a soft NFS mount, on which writes fail when the server is slow");
 }
 
 void SecurityWords::check() {
@@ -279,14 +281,15 @@ std::vector<std::string> NetworkOptions::words() const {
 void ScheduleWords::add(po::options_description& described) {
   described.add_options()(
       "schedule", po::value(&schedule)->default_value(schedule)->value_name("dynamic|static"),
-      "dynamic: parts go to whoever will have done them first; static: dealt out at the start in "
-      "sets of equal estimated time")(
+      "dynamic: each part goes to the worker that is expected to finish it first; static: parts "
+      "are "
+      "dealt out at the start, in sets of equal estimated time")(
       "expect-workers",
       po::value(&options.expect_workers)->default_value(options.expect_workers)->value_name("N"),
-      "how many workers a static schedule waits for before it deals out")(
+      "with --schedule static: wait for so many workers before parts are dealt out")(
       "hang-seconds", po::value(&hang_s)->default_value(hang_s)->value_name("N"),
-      "a part that makes no progress for so long, and three times its estimate, is given to "
-      "another worker");
+      "give a part to another worker after so many seconds without progress, but not before three "
+      "times its estimated time");
 }
 
 void ScheduleWords::check() {

@@ -77,7 +77,7 @@ Past read_past(const std::string& path) {
 void PlanWords::add(po::options_description& options) {
   options.add_options()("stage", po::value(&stages), "");
   options.add_options()("parts", po::value(&parts)->value_name("N"),
-                        "as if the dataset had been cut into so many parts");
+                        "plan for the mesh cut into so many parts");
   options.add_options()("schedule",
                         po::value(&schedule)->default_value(schedule)->value_name("dynamic|static"),
                         "dynamic or static");

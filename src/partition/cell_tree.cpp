@@ -94,8 +94,8 @@ void CellTree::hash_all(std::size_t slots) {
   }
 }
 
-/// Makes the grids of this scan coarser, all by the same factor: whichever vertex it is that makes
-/// the cells too many, the same grids come out.
+/// Makes all grids of this scan coarser by the same factor. So the grids do not depend on which
+/// vertex made the cells too many.
 void CellTree::coarsen() {
   bool can_again = false;
   std::vector<bool> coarser(grids_.size(), false);

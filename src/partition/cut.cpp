@@ -27,7 +27,7 @@
 namespace meshfarm {
 namespace {
 
-/// A mesh that fits into as much memory is cut without scratch files.
+/// A mesh that fits into this much memory is cut without scratch files.
 constexpr std::uint64_t k_memory_bytes = std::uint64_t{256} << 20;
 
 /// Parts of 200 to 1000 cells each: fine enough for even sizes and smooth seams.

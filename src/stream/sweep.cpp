@@ -18,11 +18,11 @@ namespace {
 
 constexpr std::uint32_t k_none = std::numeric_limits<std::uint32_t>::max();
 
-/// What lies so many rings behind the front is done: the rings nearest to it are drawn out by what
-/// is locked there, and are to be simplified again with the next window.
+/// Triangles so many rings behind the front are done. Nearer ones are distorted by the locked
+/// vertices of the front, and are simplified again with the next window.
 constexpr std::uint32_t k_kept_rings = 6;
 
-/// What a vertex of the buffer is. All but the free ones are locked.
+/// The role of a vertex in the buffer. All but free ones are locked.
 enum class Role : std::uint8_t {
   free,
   open,      // on the front: more triangles of it may come

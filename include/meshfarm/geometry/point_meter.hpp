@@ -10,25 +10,25 @@
 
 namespace meshfarm {
 
-/// What helps to find the nearest places soon; no distance depends on it but for `enough`.
+/// Hints that make the search faster. Of these only `enough` changes a distance.
 struct PointMeterHints {
   double spacing = 0;  // of the surface's vertices, about
   double usual = 0;    // a distance that few of the points are beyond
-  /// Points of the surface, at least one: no point is farther from it than from these.
+  /// Points of the surface, at least one: the distance to the nearest of them is an upper bound.
   std::span<const Vec3> surface;
-  /// Where above 0, all that counts is whether a distance is above this: others are told only
-  /// roughly, and those above it perhaps as infinite.
+  /// If above 0, distances are only exact enough to tell whether they are above this: others are
+  /// rough, and those above it may come out as infinite.
   double enough = 0;
 };
 
-/// The middle of each triangle's longest side: what is far off a surface is so at its vertices or
-/// there.
+/// The middle of each triangle's longest side. Where triangles are far from a surface, their
+/// vertices or these points usually show it.
 std::vector<Vec3> middles_of_longest_sides(std::span<const Vec3> positions,
                                            std::span<const Triangle> triangles);
 
-/// Measures from points to a surface that is too large to be held: it is shown piece by piece, and
-/// all of it once a pass. The first pass looks for what is near, the second, if any, has no limit
-/// and asks only for pieces that matter.
+/// Measures from points to a surface that does not fit into memory. The caller shows the surface
+/// piece by piece, all of it in each pass. The first pass finds what is near; a second pass, if
+/// needed, has no limit of distance and asks only for pieces that matter.
 ///
 ///     while (meter.begin_pass()) for (each piece) if (meter.wants(its box)) meter.show(piece);
 ///

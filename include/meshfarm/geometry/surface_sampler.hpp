@@ -12,9 +12,9 @@
 
 namespace meshfarm {
 
-/// Takes samples by area of a surface that comes piece by piece, whose area is known only at the
-/// end: whenever there are too many, one of each two goes, and those that follow stand for twice
-/// the area.
+/// Samples a surface by area. The surface comes piece by piece, so its area is known only at the
+/// end. Whenever there are too many samples, every second one is removed, and each sample stands
+/// for twice the area from then on.
 class SurfaceSampler {
  public:
   struct Sample {
@@ -26,7 +26,7 @@ class SurfaceSampler {
   explicit SurfaceSampler(std::uint64_t samples) : least_((2 * samples + 2) / 3) {}
   void add(std::span<const Vec3> positions, std::span<const Triangle> triangles);
   std::span<Sample> samples() { return samples_; }
-  /// The points. The last that is asked of it.
+  /// The points. Call this last.
   SurfaceSamples take();
 
  private:

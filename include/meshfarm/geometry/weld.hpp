@@ -14,7 +14,7 @@ namespace meshfarm {
 /// Whether vertices at the same position become one.
 enum class Weld { exact, off };
 
-/// Which vertices are one point.
+/// Which vertices have the same position.
 struct WeldResult {
   std::vector<std::uint32_t> first;  // for each vertex its lowest twin: itself if it has none below
   std::uint64_t merged = 0;          // vertices that have a lower twin
@@ -24,11 +24,11 @@ struct WeldResult {
 /// equals what has the same bits. Takes fewer than 2^32 positions. Memory: up to 20 bytes a vertex.
 WeldResult weld(std::span<const Vec3> positions);
 
-/// Takes back merges that would make a vertex non-manifold whose twins were manifold each: where
-/// closed surfaces touch in a point or along an edge, and where a neck of no width would be tied
-/// off. Twins part if the triangles of each, or of each set of twins that triangles of no area link,
-/// go once all round; copies of one surface stay one. Vertices named by `open` have triangles
-/// elsewhere and stay merged. Memory: 2 bytes a vertex; where any may part 5 more, and 16 for each
+/// Undoes merges that would make a vertex non-manifold although each of its twins was manifold:
+/// where closed surfaces touch at a point or along an edge, and where a neck has no width. Twins
+/// are separated if the triangles of each form a closed fan; twins linked by triangles without area
+/// count as one. Copies of one surface stay merged. So do the vertices in `open`, which have
+/// triangles elsewhere. Memory: 2 bytes a vertex; 5 more if any may be separated, and 16 for each
 /// corner of a triangle there.
 void separate_touching(std::span<const Triangle> triangles, std::span<const std::uint32_t> open,
                        WeldResult& welded);

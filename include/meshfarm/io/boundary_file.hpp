@@ -21,16 +21,16 @@ struct BoundaryCorner {
 };
 using BoundaryTriangle = std::array<BoundaryCorner, 3>;
 
-/// Keeps the first of the triangles with the same corners, in whatever order they name them.
-/// Returns how many went.
+/// Keeps the first of the triangles that have the same corners, in any order. Returns how many were
+/// removed.
 std::uint64_t drop_duplicates(std::vector<BoundaryTriangle>& triangles);
 
 /// The side file: every triangle whose corners lie in two or three parts
 /// (Xiong et al. 2008, 3.1 step 4).
 std::string encode_boundary(const std::vector<BoundaryTriangle>& triangles);
 std::vector<BoundaryTriangle> decode_boundary(std::string_view file, std::string_view what);
-/// Shows every triangle of a side file that is not to be held, in order. Whether the file is
-/// damaged its reader must find out.
+/// Shows every triangle of a side file in order, without holding the file. Does not check the
+/// file's checksum: that is up to the caller's `fill`.
 void scan_boundary(const Fill& fill, std::string_view what,
                    const std::function<void(const BoundaryTriangle&)>& show);
 

@@ -41,8 +41,8 @@ struct Manifest {
   std::uint64_t input_triangles = 0;  // after fans and strips were made triangles
   std::uint64_t merged_vertices = 0;  // coincident ones, by --weld exact
   std::uint64_t dropped_degenerate = 0;
-  /// Triangles with two corners at one place, dropped as degenerate but where surfaces touch: how
-  /// many that are depends on the seams, this does not.
+  /// Triangles with two corners at one position. They are dropped as degenerate, except where
+  /// surfaces touch. How many are dropped depends on the seams; this number does not.
   std::uint64_t coincident_corners = 0;
   std::uint64_t dropped_not_finite = 0;  // those with a position that is not
   std::uint64_t dropped_duplicate = 0;   // boundary triangles only: workers see to the parts
@@ -50,9 +50,9 @@ struct Manifest {
   double cut_seconds = 0;
   std::uint64_t boundary_triangles = 0;
   FileRef boundary;
-  /// Of the stream scheme, where the parts are slabs that a run is to sort first: then what is
-  /// known of a stream only once it is sorted (its counts, merged vertices, dropped triangles,
-  /// samples) is still missing, and counts of triangles and vertices are those of the input.
+  /// Set if the parts are slabs that a run has to sort into streams first. What is known only of a
+  /// sorted stream is then missing: merged vertices, dropped triangles and samples. Counts of
+  /// triangles and vertices are those of the input.
   std::optional<Sorting> sorting;
   std::vector<PartEntry> parts;    // or streams, or slabs
   std::vector<PartEntry> samples;  // of long streams, by stream: a piece as a part; else no name

@@ -17,8 +17,8 @@
 
 namespace meshfarm {
 
-/// What of a mesh fell to one share: vertices in file order; boundary vertices in any order, some
-/// of them named again and again.
+/// One share of a mesh. Vertices are in file order; boundary vertices are in any order, and some
+/// are named more than once.
 struct MeshShare {
   std::vector<Vec3> positions;
   std::vector<Triangle> triangles;
@@ -26,17 +26,17 @@ struct MeshShare {
   PositionType type = PositionType::float32;  // what all positions fit
 };
 
-/// The boundary vertices of a share by their place in it, ascending, and the number that each has
-/// in what was made of the share. Coincident ones may have the same.
+/// The boundary vertices of a share by their place in it, ascending, and the number of each in the
+/// part or stream that was made from the share. Coincident ones may have the same number.
 struct BoundaryNumbers {
   std::vector<std::uint32_t> places;
   std::vector<std::uint32_t> numbers;
-  /// Of different numbers, which go from 0 on.
+  /// How many different numbers there are; they go from 0 on.
   std::uint32_t count() const;
 };
 
-/// Shares a mesh out as it is scanned, in bounded memory: vertices by whatever share they are given
-/// to; a triangle goes with its vertices, or to the boundary if these are of two or three shares.
+/// Divides a mesh while it is scanned, in bounded memory. The caller assigns each vertex to a
+/// share. A triangle goes to the share of its vertices, or to the boundary if they are in several.
 /// The map from a vertex to its share and place is a mapped scratch file, or memory too.
 class MeshShares {
  public:

@@ -37,8 +37,8 @@ struct MeshFileInfo {
 class MeshSource {
  public:
   virtual ~MeshSource() = default;
-  /// Only a scan of all vertices can tell that a text has more digits than the floats that its
-  /// header declares can hold: positions are float64 from then on, and want another scan.
+  /// An ascii file may have more digits than the floats that its header declares can hold. A scan
+  /// of all vertices finds this out: positions are float64 from then on. Scan again in that case.
   virtual const MeshFileInfo& info() const = 0;
   /// All vertices in file order, in batches. One of which a coordinate is not finite comes as
   /// k_no_position, all others are finite.

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
 //
-// Packed triangles: meshes come in an order in which corners are near those before them, so that
-// most differences fit into 16 bits, half of what a triangle takes otherwise.
+// Packed triangles. In most meshes the corners of a triangle have indices near those of the
+// triangle before, so most differences fit into 16 bits: half of what three indices take.
 //   triangle = three i16: first corner - first corner of the triangle before (0 before the first),
 //              second - first, third - first
 //            | escape u16 0x8000 | three u32, the corners
@@ -25,7 +25,7 @@ class TrianglePacker {
  public:
   /// The bytes of the next triangle; they stand until the next call.
   std::string_view pack(const Triangle& t) {
-    // Wraps round as the sums of who unpacks do.
+    // May wrap round; the sums in unpack_triangles() wrap round in the same way.
     const std::array<std::uint32_t, 3> differences = {t[0] - last_, t[1] - t[0], t[2] - t[0]};
     last_ = t[0];
     bool fits = true;

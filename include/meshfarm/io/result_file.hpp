@@ -25,7 +25,7 @@ struct Rung {
   double error = 0;                  // greatest distance from the samples, where it was measured
 };
 
-/// What a simplified part tells of itself without being read: travels with the result message.
+/// What is known of a result without reading its file. Travels with the result message.
 struct ResultSummary {
   std::vector<Rung> rungs;
   std::uint64_t dropped_degenerate = 0;

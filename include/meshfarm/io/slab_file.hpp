@@ -9,8 +9,8 @@
 
 namespace meshfarm {
 
-/// A share of a mesh as a staged file, its vertices and triangles in the order they came in: that
-/// order decides between coincident vertices that are not welded. Positions must be exact in
+/// A share of a mesh as a staged file. Vertices and triangles keep the order they came in, which
+/// decides between coincident vertices that are not welded. Positions must be exact in
 /// `slab.type`; boundary vertices must be in ascending order, each once.
 std::string encode_slab(const MeshShare& slab);
 /// Throws DataError naming `what` for anything that encode_slab did not make.

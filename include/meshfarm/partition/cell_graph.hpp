@@ -11,7 +11,7 @@
 
 namespace meshfarm {
 
-/// By what cells are partitioned, "METIS 5.1.0": another version may make other parts.
+/// The partitioner and its version, "METIS 5.1.0". Another version may make other parts.
 std::string partitioner_name();
 
 struct CellGraphOptions {
@@ -20,11 +20,11 @@ struct CellGraphOptions {
   unsigned threads = 0;          // 0: one a core. The result does not depend on it.
 };
 
-/// The part of each cell: a graph with a node a cell, weighted by its vertices, and edges to its
-/// nearest cells, cut by METIS (Karypis & Kumar 1998; Xiong et al. 2008, 3.1 step 2) with a fixed
-/// seed; where that leaves a part too heavy the cells are halved along their longest side again and
-/// again instead: then none has more than the mean and a cell more. Parts are numbered 0.. without
-/// gaps; there may be fewer than asked for, never more.
+/// Returns the part of each cell. METIS (Karypis & Kumar 1998; Xiong et al. 2008, 3.1 step 2), with
+/// a fixed seed, divides a graph of the cells: nodes are weighted by their vertices, edges lead to
+/// the nearest cells. If a part gets too heavy, the cells are divided by recursive bisection along
+/// their longest side instead; then no part exceeds the mean by more than one cell. Parts are
+/// numbered from 0 without gaps; there may be fewer than asked for, never more.
 std::vector<std::uint32_t> partition_cells(std::span<const Cell> cells,
                                            const CellGraphOptions& options);
 

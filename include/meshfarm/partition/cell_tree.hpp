@@ -29,14 +29,15 @@ struct CellTreeOptions {
   std::size_t most_cells = std::size_t{1} << 20;
 };
 
-/// Cells that follow the data: those of a uniform grid, but in place of one with more than a 32nd
-/// of a part's vertices those of a grid over the box of just its vertices, and so on: what lies far
-/// out makes no cell coarser. Grids are coarsened where the cells would be too many; there are at
-/// most `most_cells`, and 256 a part where vertices lie close together again and again. Memory:
-/// about 110 bytes a cell. The cells depend on the set of vertices only, not on their order.
+/// Cells that follow the density of the vertices. The first are those of a uniform grid. A cell
+/// with more than a 32nd of a part's vertices is replaced by a finer grid over the box of its own
+/// vertices, and so on, so that an outlier makes no other cell coarser. If there are too many
+/// cells, grids are coarsened: there are at most `most_cells`, and 256 a part where vertices lie in
+/// dense spots. Memory: about 110 bytes a cell. The cells depend on the set of vertices, not on its
+/// order.
 ///
-/// All vertices are added, and again as long as refine() says so; where they are spread as a
-/// surface is, once does.
+/// Add all vertices, and again as long as refine() returns true. For vertices spread evenly over a
+/// surface, once is enough.
 class CellTree {
  public:
   CellTree(const Box& box, const CellTreeOptions& options);

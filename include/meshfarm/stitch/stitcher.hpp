@@ -17,27 +17,27 @@ struct StitchedMesh {
   /// A flag a vertex: it was a boundary vertex, locked in its part.
   std::vector<std::uint8_t> seam;
   std::uint64_t boundary_triangles = 0;  // how many were added
-  /// The vertices that boundary triangles share with parts that were not added, in the order of
-  /// part and local index: the boundary vertices of what was composed.
+  /// The vertices that boundary triangles share with parts that were not added, ordered by part and
+  /// local index: the boundary vertices of the composed mesh.
   std::vector<std::uint32_t> open;
 };
 
-/// Joins simplified parts (Xiong et al. 2008, 3.3): vertex lists are appended in the order of the
-/// parts and their starts remembered; boundary vertices kept their place at the head of each list,
-/// so the corners of the boundary triangles are found by part and local index.
+/// Joins simplified parts (Xiong et al. 2008, 3.3). Vertex lists are appended in the order of the
+/// parts. Boundary vertices come first in each list and never move, so part and local index find
+/// the corners of the boundary triangles.
 ///
-/// Neighbours may have been composed before (the same, 4.3): their boundary vertices are those that
-/// they share with others, which the same boundary triangles tell.
+/// A piece may also be several neighbours that were composed before (Xiong et al. 2008, 4.3). Its
+/// boundary vertices are those that it shares with other pieces; the boundary triangles tell which.
 class Stitcher {
  public:
-  /// Of so many parts in all, those from `first` on are going to be added.
+  /// There are `all_parts` parts; those from `first` on will be added.
   explicit Stitcher(std::uint32_t all_parts, std::uint32_t first = 0)
       : all_parts_(all_parts), first_part_(first) {}
-  /// Adds the next part, or so many that were composed. Throws DataError if the whole outgrows
-  /// 32-bit indices.
+  /// Adds the next part, or a piece composed of the next `parts` parts. Throws DataError if the
+  /// whole has too many vertices for 32-bit indices.
   void add(const ResultMesh& result, std::uint32_t parts = 1);
-  /// Adds the boundary triangles that lie between what was added; of the others those that touch it
-  /// are needed, too. Throws DataError if a corner names no boundary vertex.
+  /// Adds the boundary triangles between the pieces. `boundary` must also have those between a
+  /// piece and parts that were not added. Throws DataError if a corner is no boundary vertex.
   StitchedMesh finish(std::span<const BoundaryTriangle> boundary);
 
  private:

@@ -17,10 +17,10 @@ namespace meshfarm {
 
 inline constexpr std::uint64_t k_default_window = 400'000;
 
-/// Where the slabs are sorted that vertices and triangles are distributed to.
+/// Where slabs are sorted.
 enum class SortAt : std::uint8_t {
-  here,  // by who distributes: the stage holds streams
-  farm,  // by jobs, the first of a run, so that other hosts help: the stage holds slabs
+  here,  // by this process: the stage holds streams
+  farm,  // by the first jobs of a run, on all hosts: the stage holds slabs
 };
 
 struct StreamOptions {
@@ -28,8 +28,8 @@ struct StreamOptions {
   Weld weld = Weld::exact;     // vertices at the same position become one
   SortAt sort = SortAt::here;  // the streams are the same
   std::uint64_t memory_bytes = std::uint64_t{512} << 20;
-  /// What a worker's sweep holds at once. Of longer streams a sample is kept, as a part: from it
-  /// the cost threshold of the sweep is found.
+  /// How many triangles a worker's sweep holds at once. A sample of each longer stream is kept as a
+  /// part; from it the cost threshold of the sweep is found.
   std::uint64_t window_triangles = k_default_window;
   std::string input_name;  // kept in the manifest, for people
   unsigned threads = 0;    // 0: one a core; the streams do not depend on it
@@ -43,9 +43,9 @@ std::uint32_t default_streams(std::uint64_t triangles);
 
 /// Sorts a mesh along the longest axis of its bounding box and divides it into streams of about
 /// equal size (Xiong et al. 2008, 4.1), which it publishes in the stage with the boundary side
-/// file, the manifest last. Input that comes in order is noticed: of axes that are equally long the
-/// one along which it does is taken, and it is not sorted again. The streams depend on the input
-/// and on streams, weld, memory_bytes and window_triangles only. With SortAt::farm the slabs are
+/// file, the manifest last. If the input is already in order along one of several equally long
+/// axes, that axis is taken, and the input is not sorted again. The streams depend on the input and
+/// on streams, weld, memory_bytes and window_triangles only. With SortAt::farm the slabs are
 /// published as they come, and boundary and manifest already fit the streams that jobs will make.
 ///
 /// Out of core: vertices and triangles go to scratch files by slabs along the axis, through bounded

@@ -23,9 +23,9 @@ struct SortedSlab {
   std::uint64_t coincident_corners = 0;  // triangles with two corners at one place
 };
 
-/// Sorts vertices, welds those that coincide (they are neighbours now), drops degenerate triangles
-/// and unused vertices, and sorts triangles by their smallest vertex, then the others: with exact
-/// welding the result does not depend on the order in which the slab came.
+/// Sorts vertices, welds those that coincide (they are neighbours then), drops degenerate triangles
+/// and unused vertices, and sorts triangles by their smallest vertex, then by the others. With
+/// exact welding the result does not depend on the order of the slab.
 SortedSlab sort_slab(MeshShare raw, const Sorting& sorting);
 
 /// The numbers that a slab's boundary vertices will have once it is sorted: these count boundary
@@ -36,8 +36,8 @@ BoundaryNumbers number_boundary(const MeshShare& raw, const Sorting& sorting);
 /// About how many triangles a sample of a stream has.
 std::uint64_t sample_size(std::uint64_t stream_triangles);
 
-/// A piece of a stream, right through its slab, as a part whose edge is locked: sample_size() by
-/// and large, from a place along the second axis that `number` decides.
+/// A piece of a stream, across its whole slab, as a part whose outer vertices are locked. It has
+/// about sample_size() triangles; `number` decides where along the second axis it is taken.
 Part sample_slab(const StreamMesh& stream, const SweepOrder& order, std::uint32_t number);
 
 }  // namespace meshfarm

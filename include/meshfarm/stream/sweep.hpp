@@ -22,7 +22,7 @@ struct SweepOptions {
   /// 2008).
   double ratio = 0;
   LineOptions lines;
-  /// The buffer: so many triangles are simplified together, but for a front that alone is more.
+  /// The size of the buffer, in triangles. Exceeded only if the front alone is larger.
   std::uint64_t window_triangles = 0;
   /// Points of the stream's surface to take, by which an error can be measured.
   std::uint64_t samples = 0;

@@ -13,9 +13,9 @@
 namespace meshfarm {
 
 /// Many growing byte strings in one scratch file, through buffers of bounded size: a full buffer
-/// goes to the file's end, and its bucket remembers where. The file has no name and dies with its
-/// owner. What full buffers hold stays in memory instead as long as `memory_bytes` have room for
-/// it: to write and read it back costs more than all that is done with it.
+/// goes to the end of the file, and its bucket remembers where. The file has no name and is gone
+/// when its owner ends. Full buffers stay in memory instead as long as `memory_bytes` allow:
+/// writing and reading them back would cost more than the work itself.
 class BucketFile {
  public:
   BucketFile(const std::filesystem::path& folder, std::size_t buckets,

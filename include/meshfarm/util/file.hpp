@@ -45,10 +45,9 @@ std::string read_file(const std::filesystem::path& path);
 std::string read_file(int fd, const std::filesystem::path& path);
 std::uint64_t file_size(int fd, const std::filesystem::path& path);
 
-/// A private file mapped into memory: a scratch file of a given size that is unlinked as soon as it
-/// is made, so that it never outlives its owner. Or memory of no file, zero at first, of which only
-/// what is touched is taken, and all goes back at the end. Files that others can shorten are not
-/// mapped but read: a page that is gone would be a SIGBUS.
+/// Mapped memory. scratch() maps a file that is unlinked as soon as it is made, so that it never
+/// outlives its owner. memory() is anonymous memory, zero at first; only pages that are touched are
+/// taken. Do not map a file that another process may shorten: a missing page is a SIGBUS.
 class MappedFile {
  public:
   MappedFile() = default;

@@ -7,25 +7,24 @@
 
 namespace meshfarm {
 
-/// From now on freed memory stays with the process for the next allocation: parts of a like size
-/// follow each other, and fresh pages cost more than what is done with them (measured: half the CPU
-/// time of a cut). Called once, before there are threads. Without glibc it does nothing.
+/// Keeps freed memory in the process for later allocations: fresh pages are expensive (measured:
+/// half of the CPU time of a cut). Call once, before there are threads. Does nothing without glibc.
 void keep_freed_memory();
-/// And from now on each thread has memory of its own again: for threads that allocate small things
-/// all the time and share none of them, who would wait for each other.
+/// Gives each thread an arena of its own again. For threads that allocate often and share nothing:
+/// with one arena they would wait for each other.
 void split_memory_by_threads();
 
-/// The pool of all processes of a host that no control group holds to less.
+/// The pool of all processes of a host that no control group limits.
 inline constexpr std::uint64_t k_whole_host = 1;
 
 struct MemoryRoom {
   std::uint64_t bytes = 0;
-  /// Names what they are taken from, on this host: processes that tell the same share them.
+  /// Names the pool of memory on this host. Processes with the same pool share its bytes.
   std::uint64_t pool = k_whole_host;
 };
 
-/// What this process may still take: what the host has free, or less where a control group (version
-/// 1 or 2) holds it to less. Nothing where the system does not say.
+/// The memory that this process may still take: what the host has free, or less if a control group
+/// (version 1 or 2) limits it. Nothing if the system does not say.
 std::optional<MemoryRoom> available_memory();
 /// Bytes of physical memory that this process uses now; 0 where the system does not say.
 std::uint64_t resident_memory();
