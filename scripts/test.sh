@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # Sets up, builds and runs the tests.
 #   test.sh          every test of the release build
-#   test.sh --all    also what CI runs: warnings as errors, the labs (tests/lab), the tests under
-#                    ASan and UBSan, those of the farm under TSan, and lint.sh
+#   test.sh --all    also what CI runs: warnings as errors, lint.sh, the labs (tests/lab), golden
+#                    checksums by clang, the tests under ASan and UBSan, those of the farm under TSan
 set -euo pipefail
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 all=no
@@ -48,8 +48,16 @@ sanitized() {
   ctest --test-dir "$build" --output-on-failure -j "$jobs" --tests-regex "$3"
 }
 
+# The kernel makes the same bytes whatever compiles it.
+golden_by_clang() {
+  begin "golden checksums by clang"
+  "$root/scripts/build.sh" "$root/build-clang" "${build_options[@]}" \
+    -DCMAKE_CXX_COMPILER=clang++ -- test_golden
+  ctest --test-dir "$root/build-clang" --output-on-failure --tests-regex '^golden$'
+}
+
 packages=(--npm)
-[ "$all" = no ] || packages+=(--lab --lint)
+[ "$all" = no ] || packages+=(--lab --lint --fuzz)
 "$root/scripts/packages.sh" "${packages[@]}"
 dragon=$root/data/dragon_vrip.ply.gz
 mkdir -p "$root/data"
@@ -61,6 +69,7 @@ if [ "$all" = yes ]; then
   begin "lint"
   "$root/scripts/lint.sh"
   labs
+  golden_by_clang
   sanitized build-asan address,undefined .
   # TSan does not see into libzmq, which is not built with it.
   TSAN_OPTIONS=ignore_noninstrumented_modules=1 \
