@@ -1,8 +1,9 @@
 #!/usr/bin/env bash
 # Sets up, builds and runs the tests.
 #   test.sh          every test of the release build
-#   test.sh --all    also what CI runs: warnings as errors, lint.sh, the labs (tests/lab), golden
-#                    checksums by clang, the tests under ASan and UBSan, those of the farm under TSan
+#   test.sh --all    also what CI runs: warnings as errors, the labs (tests/lab), golden
+#                    checksums by clang, the tests under ASan and UBSan, those of the farm under
+#                    TSan, and lint.sh
 set -euo pipefail
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 all=no
@@ -66,13 +67,13 @@ mkdir -p "$root/data"
 
 release
 if [ "$all" = yes ]; then
-  begin "lint"
-  "$root/scripts/lint.sh"
   labs
   golden_by_clang
   sanitized build-asan address,undefined .
   # TSan does not see into libzmq, which is not built with it.
   TSAN_OPTIONS=ignore_noninstrumented_modules=1 \
     sanitized build-tsan thread '^unit\.(util|staging|farm)$' test_util test_staging test_farm
+  begin "lint"
+  "$root/scripts/lint.sh"
 fi
 begin "all tests passed"
