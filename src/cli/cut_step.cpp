@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "cli/cut_step.hpp"
 
+#include <cstdlib>
 #include <filesystem>
 
 #include <unistd.h>
@@ -41,6 +42,8 @@ Manifest cut_to_stage(const CutStep& step) {
   const Stage stage = Stage::create(step.stage);
   const Claim claim(stage.root() / ".cut.claim", step.stage + ": is being cut");
   if (stage.has_manifest()) return taken_up(stage, wanted);
+  // Readers of compressed and ascii files keep scratch of their own, which goes by this.
+  if (!step.words.scratch.empty()) ::setenv("TMPDIR", step.words.scratch.c_str(), 1);
   const auto source = open_mesh(step.input);
   publish_record(stage, wanted);
   ProgressPrinter printer(step.talk.progress());

@@ -174,7 +174,10 @@ void CutWords::add(po::options_description& options) {
       "with --scheme stream: memory for sorting, for example 2G")(
       "window",
       po::value(&stream.window_triangles)->default_value(stream.window_triangles)->value_name("N"),
-      "with --scheme stream: triangles that a worker holds at once");
+      "with --scheme stream: triangles that a worker holds at once")(
+      "scratch", po::value(&scratch)->value_name("FOLDER"),
+      "where the cut keeps what does not fit into memory, best on a local disk (default: $TMPDIR "
+      "if it is set and has room, otherwise the stage)");
 }
 
 void CutWords::check() {
@@ -201,6 +204,7 @@ void CutWords::check() {
   stream.weld = cut.weld;
   stream.threads = cut.threads;
   stream.memory_bytes = parse_size(memory, "--memory");
+  cut.scratch = stream.scratch = scratch;
   if (stream.memory_bytes == 0) throw UsageError("--memory must be above 0");
 }
 
@@ -209,6 +213,7 @@ std::vector<std::string> CutWords::words() const {
                                     weld,       "--memory",  memory,   "--window"};
   words.push_back(std::to_string(stream.window_triangles));
   if (cut.parts != 0) words.insert(words.end(), {"--parts", std::to_string(cut.parts)});
+  if (!scratch.empty()) words.insert(words.end(), {"--scratch", scratch});
   if (cut.threads != 0) words.insert(words.end(), {"--threads", std::to_string(cut.threads)});
   return words;
 }

@@ -54,7 +54,7 @@ struct TargetOptions {
   std::vector<std::string> words() const;
 };
 
-/// --scheme, --sort, --parts, --weld, --threads, --memory, --window.
+/// --scheme, --sort, --parts, --weld, --threads, --memory, --window, --scratch.
 struct CutWords {
   Scheme scheme = Scheme::cut;
   CutOptions cut;
@@ -63,6 +63,7 @@ struct CutWords {
   std::string sort = "here";
   std::string weld = "exact";
   std::string memory = "512M";
+  std::string scratch;
 
   void add(po::options_description& options);
   void check();

@@ -19,6 +19,7 @@
 #include <meshfarm/partition/cell_graph.hpp>
 #include <meshfarm/partition/cell_tree.hpp>
 #include <meshfarm/partition/cut.hpp>
+#include <meshfarm/staging/file_system.hpp>
 #include <meshfarm/util/errors.hpp>
 #include <meshfarm/util/parallel.hpp>
 
@@ -117,9 +118,10 @@ class Cutter {
   void distribute_vertices() {
     const std::uint64_t all =
         MeshShares::memory_for(manifest_.input_vertices, source_.info().faces, manifest_.positions);
+    const std::uint64_t memory = all <= k_memory_bytes ? all : 0;
     shares_ = std::make_unique<MeshShares>(
-        MeshShares::Options{stage_.root(), parts_, manifest_.input_vertices, manifest_.positions,
-                            all <= k_memory_bytes ? all : 0});
+        MeshShares::Options{scratch_folder(options_.scratch, stage_.root(), all - memory), parts_,
+                            manifest_.input_vertices, manifest_.positions, memory});
     std::vector<std::uint32_t> parts;
     std::uint64_t done = 0;
     source_.scan_vertices([&](std::span<const Vec3> batch) {

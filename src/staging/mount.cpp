@@ -1,15 +1,20 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
 #include <algorithm>
+#include <cerrno>
 #include <charconv>
+#include <cstdlib>
 #include <fstream>
 #include <iterator>
 #include <sstream>
+#include <system_error>
 
 #include <sys/statvfs.h>
+#include <unistd.h>
 
 #include <meshfarm/staging/file_system.hpp>
 #include <meshfarm/util/errors.hpp>
+#include <meshfarm/util/log.hpp>
 
 namespace meshfarm {
 namespace {
@@ -93,6 +98,40 @@ std::uint64_t free_bytes(const std::filesystem::path& path) {
   struct statvfs status {};
   if (::statvfs(path.c_str(), &status) != 0) throw_errno("cannot look at", path);
   return std::uint64_t{status.f_bavail} * status.f_frsize;
+}
+
+namespace {
+
+/// Why so many bytes do not go there; empty: they do.
+std::string problem_with(const std::filesystem::path& folder, std::uint64_t bytes) {
+  if (::access(folder.c_str(), W_OK | X_OK) != 0) {
+    return folder.string() + ": " + std::generic_category().message(errno);
+  }
+  const std::uint64_t room = free_bytes(folder);
+  if (room >= bytes) return {};
+  return folder.string() + " has " + std::to_string(room >> 20) + " MiB free, and scratch takes " +
+         std::to_string((bytes >> 20) + 1) + " MiB";
+}
+
+}  // namespace
+
+std::filesystem::path scratch_folder(const std::filesystem::path& wanted,
+                                     const std::filesystem::path& otherwise, std::uint64_t bytes) {
+  if (wanted.empty()) {
+    const char* own = std::getenv("TMPDIR");
+    if (own != nullptr && *own != '\0') {
+      const std::string problem = problem_with(own, bytes);
+      if (problem.empty()) return own;
+      log_info("scratch goes to " + otherwise.string() + ", not to TMPDIR: " + problem);
+    }
+  }
+  const std::filesystem::path& folder = wanted.empty() ? otherwise : wanted;
+  const std::string problem = problem_with(folder, bytes);
+  if (!problem.empty()) {
+    throw DataError("no scratch files can be made: " + problem +
+                    "; --scratch FOLDER names a disk of this host with room");
+  }
+  return folder;
 }
 
 }  // namespace meshfarm

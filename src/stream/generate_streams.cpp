@@ -20,6 +20,7 @@
 #include <meshfarm/io/mesh_shares.hpp>
 #include <meshfarm/io/slab_file.hpp>
 #include <meshfarm/io/stream_file.hpp>
+#include <meshfarm/staging/file_system.hpp>
 #include <meshfarm/stream/generate_streams.hpp>
 #include <meshfarm/stream/slab.hpp>
 #include <meshfarm/util/control_groups.hpp>
@@ -117,8 +118,11 @@ class Generator {
   }
 
   void distribute_vertices() {
-    shares_ = std::make_unique<MeshShares>(MeshShares::Options{
-        stage_.root(), streams_, manifest_.input_vertices, manifest_.positions});
+    const std::uint64_t all =
+        MeshShares::memory_for(manifest_.input_vertices, source_.info().faces, manifest_.positions);
+    shares_ = std::make_unique<MeshShares>(
+        MeshShares::Options{scratch_folder(options_.scratch, stage_.root(), all), streams_,
+                            manifest_.input_vertices, manifest_.positions});
     std::vector<std::uint32_t> slabs;
     std::uint64_t done = 0;
     source_.scan_vertices([&](std::span<const Vec3> batch) {

@@ -11,6 +11,7 @@
 
 #include <meshfarm/util/bucket_file.hpp>
 #include <meshfarm/util/errors.hpp>
+#include <meshfarm/util/file.hpp>
 
 namespace meshfarm {
 namespace {
@@ -60,6 +61,9 @@ void BucketFile::finish() {
   for (Bucket& bucket : buckets_) {
     flush(bucket);
     bucket.buffer.shrink_to_fit();
+  }
+  if (end_ > 0 && reports_late(fd_.get()) && ::fdatasync(fd_.get()) != 0) {
+    throw_errno("cannot write a scratch file in", folder_);
   }
 }
 

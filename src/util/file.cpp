@@ -1,10 +1,13 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
+#include <algorithm>
 #include <cerrno>
+#include <utility>
 
 #include <fcntl.h>
 #include <sys/mman.h>
 #include <sys/stat.h>
+#include <sys/vfs.h>
 #include <unistd.h>
 
 #include <meshfarm/util/errors.hpp>
@@ -92,6 +95,33 @@ std::string read_file(const std::filesystem::path& path) {
   return read_file(open_for_read(path).get(), path);
 }
 
+bool reports_late(int fd) {
+  constexpr decltype(std::declval<struct statfs>().f_type) k_nfs = 0x6969;
+  constexpr decltype(std::declval<struct statfs>().f_type) k_fuse = 0x65735546;
+  struct statfs status {};
+  return ::fstatfs(fd, &status) != 0 || status.f_type == k_nfs || status.f_type == k_fuse;
+}
+
+namespace {
+
+/// Blocks are reserved now: a full disk is an error here, not a SIGBUS later. Where the file system
+/// cannot reserve (NFS 3) they are written, and the server is asked whether it has them.
+void reserve(int fd, std::uint64_t size_bytes, const std::filesystem::path& folder) {
+  if (::fallocate(fd, 0, 0, static_cast<off_t>(size_bytes)) == 0) return;
+  if (errno != EOPNOTSUPP && errno != ENOSYS && errno != EINVAL) {
+    throw_errno("cannot reserve a scratch file in", folder);
+  }
+  const std::string zeros(std::size_t{1} << 20, '\0');
+  for (std::uint64_t left = size_bytes; left > 0;) {
+    const std::size_t piece = std::min<std::uint64_t>(left, zeros.size());
+    write_all(fd, std::string_view(zeros).substr(0, piece), folder);
+    left -= piece;
+  }
+  if (::fsync(fd) != 0) throw_errno("cannot reserve a scratch file in", folder);
+}
+
+}  // namespace
+
 MappedFile MappedFile::scratch(const std::filesystem::path& folder, std::uint64_t size_bytes) {
   std::string name = (folder / "scratch.XXXXXX").string();
   const Fd fd(::mkostemp(name.data(), O_CLOEXEC));
@@ -100,12 +130,7 @@ MappedFile MappedFile::scratch(const std::filesystem::path& folder, std::uint64_
   MappedFile mapped;
   mapped.size_ = size_bytes;
   if (size_bytes == 0) return mapped;
-  // Blocks are reserved now where the file system can: a full disk is an error here, not a SIGBUS.
-  int error = ::posix_fallocate(fd.get(), 0, static_cast<off_t>(size_bytes));
-  if (error == EOPNOTSUPP || error == EINVAL) {
-    error = ::ftruncate(fd.get(), static_cast<off_t>(size_bytes)) == 0 ? 0 : errno;
-  }
-  if (error != 0) throw IoError("cannot reserve a scratch file in", folder, error);
+  reserve(fd.get(), size_bytes, folder);
   void* data = ::mmap(nullptr, mapped.size_, PROT_READ | PROT_WRITE, MAP_SHARED, fd.get(), 0);
   if (data == MAP_FAILED) throw_errno("cannot map a scratch file in", folder);
   mapped.data_ = static_cast<char*>(data);

@@ -54,6 +54,24 @@ std::size_t lines(const std::string& text) {
 
 }  // namespace
 
+TEST_CASE("a cut keeps its scratch where --scratch says, or says why it cannot") {
+  Shell shell;
+  const std::string scratch = shell.path("scratch");
+  for (const char* scheme : {"cut", "stream"}) {
+    CAPTURE(scheme);
+    const std::string stage = shell.path(std::string("stage-") + scheme);
+    const std::vector<std::string> words = {"cut",     shell.cube(), "--scheme",  scheme,
+                                            "--stage", stage,        "--scratch", scratch};
+    const Ran without = shell(words);
+    CHECK(without.code == 1);
+    CHECK(has(without.err, scratch + ": No such file or directory"));
+    fs::create_directory(scratch);
+    CHECK(shell(words).code == 0);
+    CHECK(fs::is_empty(scratch));
+    fs::remove(scratch);
+  }
+}
+
 TEST_CASE("help and version go to stdout, and say what there is") {
   Shell shell;
   for (const std::vector<std::string>& words : {std::vector<std::string>{"help"}, {"--help"}}) {

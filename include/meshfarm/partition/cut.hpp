@@ -4,6 +4,7 @@
 
 #include <atomic>
 #include <cstdint>
+#include <filesystem>
 #include <functional>
 #include <string>
 #include <string_view>
@@ -16,10 +17,11 @@
 namespace meshfarm {
 
 struct CutOptions {
-  std::uint32_t parts = 0;  // 0: default_parts() of the input's triangles
-  Weld weld = Weld::exact;  // vertices at the same position become one
-  std::string input_name;   // kept in the manifest, for people
-  unsigned threads = 0;     // 0: one a core; the parts do not depend on it
+  std::uint32_t parts = 0;        // 0: default_parts() of the input's triangles
+  Weld weld = Weld::exact;        // vertices at the same position become one
+  std::string input_name;         // kept in the manifest, for people
+  unsigned threads = 0;           // 0: one a core; the parts do not depend on it
+  std::filesystem::path scratch;  // where per-vertex state goes; empty: see scratch_folder()
   /// Told what is being done and how far it is (0..1); may be empty.
   std::function<void(std::string_view phase, double done)> progress;
   const std::atomic<bool>* stop = nullptr;

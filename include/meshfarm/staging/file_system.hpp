@@ -36,6 +36,11 @@ std::uint64_t free_bytes(const std::filesystem::path& path);
 /// who has a share of the disk, free_bytes() does not tell.
 void probe_room(const std::filesystem::path& folder, std::uint64_t bytes);
 
+/// Where scratch files of so many bytes go: to `wanted`; if that is empty to $TMPDIR, where that is
+/// set and has room, else to `otherwise`. Throws DataError if there is no room, IoError.
+std::filesystem::path scratch_folder(const std::filesystem::path& wanted,
+                                     const std::filesystem::path& otherwise, std::uint64_t bytes);
+
 /// The time as the folder's server tells it, by a file that is made and removed; where none can be
 /// made, this host's.
 std::filesystem::file_time_type clock_of(const std::filesystem::path& folder);

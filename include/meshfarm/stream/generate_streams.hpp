@@ -4,6 +4,7 @@
 
 #include <atomic>
 #include <cstdint>
+#include <filesystem>
 #include <functional>
 #include <string>
 #include <string_view>
@@ -31,8 +32,9 @@ struct StreamOptions {
   /// How many triangles a worker's sweep holds at once. A sample of each longer stream is kept as a
   /// part; from it the cost threshold of the sweep is found.
   std::uint64_t window_triangles = k_default_window;
-  std::string input_name;  // kept in the manifest, for people
-  unsigned threads = 0;    // 0: one a core; the streams do not depend on it
+  std::string input_name;         // kept in the manifest, for people
+  unsigned threads = 0;           // 0: one a core; the streams do not depend on it
+  std::filesystem::path scratch;  // for what does not fit; empty: see scratch_folder()
   /// Told what is being done and how far it is (0..1); may be empty.
   std::function<void(std::string_view phase, double done)> progress;
   const std::atomic<bool>* stop = nullptr;

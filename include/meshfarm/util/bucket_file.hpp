@@ -25,7 +25,8 @@ class BucketFile {
   void put(std::size_t bucket, const T& value) {
     append(bucket, {reinterpret_cast<const char*>(&value), sizeof(T)});
   }
-  /// Writes out what is still buffered and frees the buffers; nothing is appended after.
+  /// Writes out what is still buffered and frees the buffers; nothing is appended after. Throws
+  /// IoError if not all of it is there.
   void finish();
   /// The whole bucket, as values of T. Safe from several threads after finish().
   template <class T>

@@ -45,6 +45,9 @@ std::string read_file(const std::filesystem::path& path);
 std::string read_file(int fd, const std::filesystem::path& path);
 std::uint64_t file_size(int fd, const std::filesystem::path& path);
 
+/// Whether errors of writing this file may show only at fsync, as on NFS.
+bool reports_late(int fd);
+
 /// Mapped memory. scratch() maps a file that is unlinked as soon as it is made, so that it never
 /// outlives its owner. memory() is anonymous memory, zero at first; only pages that are touched are
 /// taken. Do not map a file that another process may shorten: a missing page is a SIGBUS.

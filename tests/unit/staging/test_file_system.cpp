@@ -1,13 +1,17 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
 #include <csignal>
+#include <cstdint>
+#include <cstdlib>
 #include <filesystem>
+#include <string>
 
 #include <doctest/doctest.h>
 #include <sys/resource.h>
 
 #include <meshfarm/staging/file_system.hpp>
 #include <meshfarm/util/errors.hpp>
+#include <meshfarm/util/log.hpp>
 
 #include "support/temp_folder.hpp"
 
@@ -51,6 +55,31 @@ TEST_CASE("this machine's mounts and space are told") {
   CHECK(free_bytes(folder.path()) > 0);
   CHECK_THROWS_AS(mount_of(folder / "absent"), IoError);
   CHECK_THROWS_AS(free_bytes(folder / "absent"), IoError);
+}
+
+TEST_CASE("scratch goes where it was told, else to TMPDIR if there is room, else to the stage") {
+  const test::TempFolder folder;
+  const auto own = folder / "own";
+  const auto wanted = folder / "wanted";
+  const auto stage = folder / "stage";
+  for (const auto& each : {own, wanted, stage}) std::filesystem::create_directory(each);
+  const char* set = std::getenv("TMPDIR");
+  const std::string before = set == nullptr ? "" : set;
+  constexpr std::uint64_t k_too_much = std::uint64_t{1} << 60;
+  set_log("test", LogLevel::off);
+  ::unsetenv("TMPDIR");
+  CHECK(scratch_folder({}, stage, 1000) == stage);
+  ::setenv("TMPDIR", own.c_str(), 1);
+  CHECK(scratch_folder({}, stage, 1000) == own);
+  CHECK(scratch_folder(wanted, stage, 1000) == wanted);
+  ::setenv("TMPDIR", (folder / "absent").c_str(), 1);
+  CHECK(scratch_folder({}, stage, 1000) == stage);
+  set_log("test", LogLevel::info);
+  CHECK_THROWS_WITH_AS(scratch_folder(folder / "absent", stage, 0), doctest::Contains("absent"),
+                       DataError);
+  CHECK_THROWS_WITH_AS(scratch_folder(wanted, stage, k_too_much),
+                       doctest::Contains("--scratch FOLDER"), DataError);
+  before.empty() ? ::unsetenv("TMPDIR") : ::setenv("TMPDIR", before.c_str(), 1);
 }
 
 TEST_CASE("whether there is room is found by writing") {
