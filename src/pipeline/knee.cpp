@@ -9,8 +9,8 @@ namespace {
 
 /// From one count to the next. More than two such steps are not a little more.
 constexpr double k_step = 1.25;
-/// Passes come before so many times the goal, and the queue keeps nothing.
-constexpr double k_most = 64;
+/// Up to 86 times the goal.
+constexpr int k_steps = 20;
 /// With more triangles than that, what is kept would take too much memory.
 constexpr std::uint64_t k_large = 1'000'000;
 /// A knee is worth a word if the error falls to less than this part.
@@ -31,8 +31,10 @@ double least_gain(double times) {
 std::vector<std::uint64_t> counts_before_knee(std::uint64_t goal) {
   std::vector<std::uint64_t> counts;
   if (goal > k_large) return counts;
-  for (double more = k_step; more < k_most; more *= k_step) {
-    counts.push_back(static_cast<std::uint64_t>(more * static_cast<double>(goal)));
+  auto count = static_cast<double>(goal);
+  for (int step = 0; step < k_steps; ++step) {
+    count *= k_step;
+    counts.push_back(static_cast<std::uint64_t>(count));
   }
   std::reverse(counts.begin(), counts.end());
   return counts;

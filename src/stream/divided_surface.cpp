@@ -187,7 +187,7 @@ BoundaryNumbers number_as_they_are(const MeshShare& raw) {
 
 class DividedSurface::Impl {
  public:
-  Impl(MeshSource& source, const DivideOptions& options) : source_(source), options_(options) {
+  Impl(MeshSource& source, DivideOptions options) : source_(source), options_(std::move(options)) {
     choose_order();
     choose_slabs();
     distribute();
