@@ -229,7 +229,7 @@ class Simplifier::Impl {
            distance_to(kept) > k_fair_distance * distance_to(other);
   }
 
-  /// From the mesh as it is. A cost does not know how far from what is left a lost piece lies.
+  /// Between the mesh as it is and the queue's, the farther way. A cost does not know how far from what is left a lost piece lies.
   double distance_to(const CollapseQueue& queue) const {
     Mesh result;
     std::vector<std::uint8_t> flags;
@@ -241,8 +241,10 @@ class Simplifier::Impl {
              });
     };
     if (!is_measurable(mesh_) || !is_measurable(result)) return 0;
-    const SurfaceSamples samples = sample_surface(mesh_, {k_fair_samples, 1});
-    return DistanceMeter(result, 1).measure(samples.points).rms;
+    const auto from_to = [](const Mesh& from, const Mesh& to) {
+      return DistanceMeter(to, 1).measure(sample_surface(from, {k_fair_samples, 1}).points).rms;
+    };
+    return std::max(from_to(mesh_, result), from_to(result, mesh_));
   }
 
   void publish(const SimplifyGoal& goal, bool goes_on) {

@@ -24,7 +24,7 @@ class Bench {
     for (const char* triangles : {"20000", "100000", "40000"}) {
       const std::string input = path("mesh" + std::string(triangles) + ".ply");
       REQUIRE(meshfarm({"generate", "-o", input, "--triangles", triangles}).code == 0);
-      REQUIRE(meshfarm({"simplify", input, "-o", input + ".expected", "--ratio", "0.1"}).code == 0);
+      REQUIRE(meshfarm({"simplify", input, "-o", input + ".expected.ply", "--ratio", "0.1"}).code == 0);
       inputs.push_back(input);
     }
   }
@@ -43,7 +43,7 @@ class Bench {
     for (const std::string& input : inputs) {
       const fs::path result = fs::path(path(output)) / fs::path(input).filename();
       CAPTURE(result.string());
-      CHECK((read_text(result) == read_text(input + ".expected")));
+      CHECK((read_text(result) == read_text(input + ".expected.ply")));
     }
   }
 
