@@ -193,8 +193,7 @@ bool Scheduler::serves(const Member& member) const {
 bool Scheduler::open(const Member& member) const {
   if (member.room == 0 || !serves(member)) return false;
   const Pool* pool = member.pool;
-  if (pool != nullptr && pool->by_itself != nullptr && pool->by_itself != &member) return false;
-  return true;
+  return pool == nullptr || pool->by_itself == nullptr || pool->by_itself == &member;
 }
 
 void Scheduler::rank_all() {

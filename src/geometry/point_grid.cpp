@@ -26,7 +26,7 @@ void PointGrid::set_cells(double reach, double cell) {
   if (box.empty()) return;
   const Vec3 size = box.hi - box.lo;
   const double longest = std::max({size.x, size.y, size.z}) + 2 * reach;
-  cell = std::max({cell, 2 * reach, longest / static_cast<double>(k_axis / 2)});
+  cell = std::max({cell, 2 * reach, 2 * longest / static_cast<double>(k_axis - 1)});
   per_unit_ = cell > 0 ? 1 / cell : 1;
   origin_ = box.lo - Vec3{reach, reach, reach};
 }

@@ -28,11 +28,11 @@ struct PointCloud {
 class NearestThatCounts {
  public:
   explicit NearestThatCounts(const std::function<bool(std::uint32_t)>& counts) : counts_(counts) {}
-  bool addPoint(double squared, std::uint32_t point) {
+  bool addPoint(double squared, std::uint32_t point) {  // NOLINT(readability-identifier-naming)
     if (squared < squared_ && counts_(point)) squared_ = squared;
     return true;
   }
-  double worstDist() const { return squared_; }
+  double worstDist() const { return squared_; }  // NOLINT(readability-identifier-naming)
   bool full() const { return true; }
   std::size_t size() const { return 1; }
 

@@ -59,7 +59,7 @@ void PointTree::add_levels() {
 /// Visits the points of all leaves that may look into the box, until a visit says that it is
 /// enough; returns whether one did.
 template <class Visit>
-bool PointTree::visit(const Box& box, Visit visit_point) const {
+bool PointTree::visit(const Box& box, Visit visit_leaf) const {
   if (levels_.empty()) return false;
   struct Entry {
     std::uint32_t level;
@@ -76,7 +76,7 @@ bool PointTree::visit(const Box& box, Visit visit_point) const {
     if (top.level == 0) {
       const std::size_t end = std::min(order_.size(), first + k_children);
       for (std::size_t i = first; i < end; ++i) {
-        if (visit_point(points_[order_[i]])) return true;
+        if (visit_leaf(points_[order_[i]])) return true;
       }
       continue;
     }

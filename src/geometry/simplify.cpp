@@ -89,10 +89,9 @@ struct EndGameOptions {
 
 /// A mesh of its own and the queue that works on it.
 struct EndGame {
-  EndGame(const Mesh& mesh, const std::vector<std::uint8_t>& its_flags,
-          const EndGameOptions& options)
+  EndGame(const Mesh& mesh, std::vector<std::uint8_t> its_flags, const EndGameOptions& options)
       : positions(mesh.positions),
-        flags(its_flags),
+        flags(std::move(its_flags)),
         queue({positions, flags, adjacency, *options.creases, options.type, options.seam_only,
                options.topology == TopologyMode::simplify,
                options.topology == TopologyMode::automatic ||
@@ -229,7 +228,8 @@ class Simplifier::Impl {
            distance_to(kept) > k_fair_distance * distance_to(other);
   }
 
-  /// Between the mesh as it is and the queue's, the farther way. A cost does not know how far from what is left a lost piece lies.
+  /// Between the mesh as it is and the queue's, the farther way. A cost does not know how far from
+  /// what is left a lost piece lies.
   double distance_to(const CollapseQueue& queue) const {
     Mesh result;
     std::vector<std::uint8_t> flags;
@@ -308,7 +308,7 @@ class Simplifier::Impl {
   bool is_far(const SimplifyGoal& goal) const {
     const std::uint64_t triangles = mesh_.triangles.size();
     return triangles > k_far * last_of(goal) && triangles > 2 * goal.triangles &&
-           mesh_.positions.size() > 2 * k_block;
+           mesh_.positions.size() > 2 * std::size_t{k_block};
   }
 
   void build_adjacency() {

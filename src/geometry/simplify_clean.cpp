@@ -208,7 +208,8 @@ bool separate_closed_fans(Mesh& mesh, std::span<const std::uint8_t> flags,
       }
       if (single.split(fan) != 1 || single.kind() != FanSplitter::Kind::closed) continue;
       const auto copy = static_cast<std::uint32_t>(mesh.positions.size());
-      mesh.positions.push_back(Vec3(mesh.positions[v]));
+      const Vec3 position = mesh.positions[v];
+      mesh.positions.push_back(position);
       for (const Corner& c : fan) copies[{v, c.next, c.prev}] = copy;
     }
   }

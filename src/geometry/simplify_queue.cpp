@@ -90,7 +90,7 @@ void CollapseQueue::push(const RankedEdge& edge) {
 const QueuedEdge* CollapseQueue::next() const {
   const bool ranked = next_first_ < first_.size();
   if (heap_.empty()) return ranked ? &first_[next_first_] : nullptr;
-  return ranked && !first_[next_first_].is_later(heap_[0]) ? &first_[next_first_] : &heap_[0];
+  return ranked && !first_[next_first_].is_later(heap_[0]) ? &first_[next_first_] : heap_.data();
 }
 
 void CollapseQueue::drop_next() {
@@ -311,8 +311,10 @@ void CollapseQueue::classify(std::uint32_t vertex) {
 
 std::uint32_t CollapseQueue::add_copy(std::uint32_t vertex) {
   const std::uint32_t copy = mesh_.adjacency.add_vertex();
-  mesh_.positions.push_back(Vec3(mesh_.positions[vertex]));
-  mesh_.flags.push_back(std::uint8_t(mesh_.flags[vertex]));
+  const Vec3 position = mesh_.positions[vertex];
+  const std::uint8_t flags = mesh_.flags[vertex];
+  mesh_.positions.push_back(position);
+  mesh_.flags.push_back(flags);
   target_.push_back(copy);
   refused_.push_back(0);
   looks_.push_back(0);

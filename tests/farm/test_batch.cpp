@@ -24,7 +24,8 @@ class Bench {
     for (const char* triangles : {"20000", "100000", "40000"}) {
       const std::string input = path("mesh" + std::string(triangles) + ".ply");
       REQUIRE(meshfarm({"generate", "-o", input, "--triangles", triangles}).code == 0);
-      REQUIRE(meshfarm({"simplify", input, "-o", input + ".expected.ply", "--ratio", "0.1"}).code == 0);
+      REQUIRE(meshfarm({"simplify", input, "-o", input + ".expected.ply", "--ratio", "0.1"}).code ==
+              0);
       inputs.push_back(input);
     }
   }

@@ -23,7 +23,7 @@ struct JournalRecord {
 
 std::string encode_record(const JournalRecord& record);
 /// Throws DataError naming `what`.
-JournalRecord decode_record(std::string_view record, std::string_view what);
+JournalRecord decode_record(std::string_view bytes, std::string_view what);
 
 /// Whether the name is that of a result of the job.
 bool names_result_of(JobKey key, std::string_view name);

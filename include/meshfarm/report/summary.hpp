@@ -138,7 +138,7 @@ struct RunTimes {
   double write = 0;
 };
 /// Throws DataError naming `what`.
-RunTimes parse_run_times(std::string_view json, std::string_view what);
+RunTimes parse_run_times(std::string_view text, std::string_view what);
 
 std::string render(const FileSummary& summary, Format format);
 std::string render(const StreamSummary& summary, Format format);
