@@ -182,7 +182,7 @@ class Assembly {
       options.seam = std::move(stitched.seam);
       options.lines.topology = TopologyMode::keep;
     }
-    Simplifier simplifier(std::move(stitched.mesh), std::move(options));
+    Simplifier simplifier(std::move(stitched.mesh), options);
     const auto reduce_to = [&](std::uint64_t triangles) {
       SimplifyGoal goal{.triangles = triangles};
       goal.keep_at = counts_before_knee(target);

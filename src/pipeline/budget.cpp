@@ -50,7 +50,7 @@ constexpr std::uint64_t k_bound_bytes_per_triangle = 120;
 /// the first on.
 std::uint64_t memory_of(const PartEntry& part, std::uint64_t first_rung) {
   constexpr std::uint64_t k_process = std::uint64_t{16} << 20;
-  const std::uint64_t ladder = 3 * 20 * std::min(part.triangles, first_rung);
+  const std::uint64_t ladder = 60 * std::min(part.triangles, first_rung);
   return k_process + part.file.size + 110 * part.triangles + ladder;
 }
 

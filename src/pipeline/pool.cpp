@@ -38,10 +38,10 @@ void look_at_trace(const Stage& stage, PoolRun& run) {
 /// By a listing: a name that is looked up too early stays invisible on NFS.
 bool is_cut(const fs::path& folder) {
   std::error_code error;
-  for (const auto& entry : fs::directory_iterator(folder, error)) {
-    if (entry.path().filename() == to_string(ManifestName{})) return true;
-  }
-  return false;
+  return std::any_of(fs::directory_iterator(folder, error), fs::directory_iterator(),
+                     [](const fs::directory_entry& entry) {
+                       return entry.path().filename() == to_string(ManifestName{});
+                     });
 }
 
 void add_runs(const fs::path& folder, std::vector<PoolRun>& runs) {

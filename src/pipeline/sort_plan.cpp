@@ -42,8 +42,8 @@ bool is_longer_than_a_window(const Manifest& manifest, std::size_t stream) {
 
 }  // namespace
 
-SortPlan::SortPlan(const Manifest& manifest, std::span<const AcceptedJob> accepted)
-    : manifest_(manifest), rest_(accepted) {
+SortPlan::SortPlan(Manifest manifest, std::span<const AcceptedJob> accepted)
+    : manifest_(std::move(manifest)), rest_(accepted) {
   if (!manifest_.sorting) return;
   if (!accepts(sort_jobs())) return;
   take_streams();

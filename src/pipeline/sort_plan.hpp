@@ -16,7 +16,7 @@ namespace meshfarm {
 class SortPlan {
  public:
   /// Throws DataError for outputs that cannot be those of the slabs.
-  SortPlan(const Manifest& manifest, std::span<const AcceptedJob> accepted);
+  SortPlan(Manifest manifest, std::span<const AcceptedJob> accepted);
   /// The round that is not accepted yet; none once all is sorted.
   const std::vector<Job>& jobs() const { return jobs_; }
   /// Once all is sorted: what it would be if the cut had sorted, but for the names of the files.

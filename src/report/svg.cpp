@@ -50,10 +50,10 @@ std::string escaped(std::string_view text) {
 }
 
 Svg::Svg(double width, double height)
-    : text_("<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 " + number(width, "%.0f") +
+    : text_(R"(<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 )" + number(width, "%.0f") +
             " " + number(height, "%.0f") + "\"" + attribute("width", width) +
             attribute("height", height) +
-            " font-family=\"sans-serif\" font-size=\"12\" fill=\"#333\">\n") {}
+            R"( font-family="sans-serif" font-size="12" fill="#333">)" + "\n") {}
 
 void Svg::rect(SvgPoint at, double width, double height, std::string_view fill,
                std::string_view title) {
