@@ -263,8 +263,10 @@ void Scheduler::pool_dropped(Member& member) {
 void Scheduler::leave_pool(Member& member) {
   if (member.pool == nullptr) return;
   if (!member.held.empty()) --member.pool->at_work;
-  if (member.pool->by_itself == &member) member.pool->by_itself = nullptr;
   --member.pool->workers;
+  if (member.pool->by_itself != &member) return;
+  member.pool->by_itself = nullptr;
+  rank_all();
 }
 
 bool Scheduler::may(const Member& member, JobKey key) const {

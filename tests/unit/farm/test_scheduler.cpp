@@ -248,6 +248,17 @@ TEST_CASE("a job larger than a share of its host's memory is done while the othe
   }
 }
 
+TEST_CASE("by a fixed schedule, too, the others go on once such a job's worker is lost") {
+  Desk desk({with_memory("large", 9, 800), with_memory("small", 8, 10)},
+            {.schedule = Schedule::fixed, .expect_workers = 2});
+  desk.join(1, "host", {0, 900, 1, 5});
+  desk.join(2, "host", {0, 900, 1, 5});
+  CHECK(desk.hand_out() == "large@1 ");
+  CHECK(desk.hand_out().empty());
+  for (const auto& held : desk.scheduler.leave({1})) desk.plan.give_back(held.key);
+  CHECK(desk.hand_out() == "small@2 large@2 ");
+}
+
 TEST_CASE("a job larger than a share waits for the others of the host") {
   Desk desk({with_memory("small", 9, 10), with_memory("large", 8, 800)});
   desk.join(1, "host", {0, 900, 1, 5}, 1);
