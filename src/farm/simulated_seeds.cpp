@@ -46,7 +46,9 @@ SimulationOptions farm_of(const SeedsOptions& seeds, std::uint64_t seed) {
   const bool fixed = dice.chance(0.15);
   if (fixed) {
     options.schedule.schedule = Schedule::fixed;
-    options.schedule.expect_workers = 1 + static_cast<std::uint32_t>(dice.pick(seeds.workers));
+    // A few would be dealt more than they can do within the limit, while the others rest.
+    options.schedule.expect_workers =
+        seeds.workers - static_cast<std::uint32_t>(dice.pick(seeds.workers / 2 + 1));
   }
   const std::uint64_t threads = dice.chance(0.3) ? 4 : 1;
   const std::uint64_t memory = dice.chance(0.3) ? k_enough_for_any_job : 0;
