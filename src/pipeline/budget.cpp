@@ -346,17 +346,21 @@ class Rounds {
   }
 
   /// Whether parts that keep their topology could not follow the others to the common level, or all
-  /// together not to the count. What is kept at too high a cost before that the finish finds out.
+  /// together not to the count, or whether not even all that they could do would meet the target.
+  /// What is kept at too high a cost before that the finish finds out.
   bool is_unfair() const {
     double held = 0;
+    double least = 0;
     bool any = false;
     for (const ResultSummary& result : results_) {
+      const Rung& last = result.rungs.back();
+      least += static_cast<double>(last.free_triangles);
       if (!result.held_by_topology) continue;
       any = true;
-      const Rung& last = result.rungs.back();
       if (last.level < level_) held += static_cast<double>(last.free_triangles);
     }
     const auto all = static_cast<double>(free_triangles(level_));
+    if (any && least > static_cast<double>(target_)) return true;
     return held > k_fair_share * all || (any && all > k_fair_excess * wanted());
   }
 

@@ -186,11 +186,24 @@ TEST_CASE("all together may not be held at more than twice what is wanted") {
   const JobSource source = make_job_source(manifest, options);
   const std::vector<Job> jobs = source({});
   const auto both = [&](std::uint64_t triangles) {
-    return std::vector{accepted_held(jobs[0], {rung(10, triangles / 2)}),
-                       accepted_held(jobs[1], {rung(10, triangles / 2)})};
+    const std::vector<Rung> ladder = {rung(10, triangles / 2), rung(11, 100)};
+    return std::vector{accepted_held(jobs[0], ladder), accepted_held(jobs[1], ladder)};
   };
   CHECK(source(both(8000)).empty());
   CHECK(source(both(8002)).size() == 2);
+}
+
+TEST_CASE("parts whose topology leaves more than the target are asked for again without it") {
+  const Manifest manifest = manifest_of(2, 100'000);
+  const RunOptions options{.ratio = 0.01};  // 2,000
+  const JobSource source = make_job_source(manifest, options);
+  const std::vector<Job> jobs = source({});
+  const auto both = [&](std::uint64_t triangles) {
+    const std::vector<Rung> ladder = {rung(10, 2500), rung(14, triangles / 2)};
+    return std::vector{accepted_held(jobs[0], ladder), accepted_held(jobs[1], ladder)};
+  };
+  CHECK(source(both(2000)).empty());
+  CHECK(source(both(2002)).size() == 2);
 }
 
 TEST_CASE("who says what becomes of the topology is asked once") {
