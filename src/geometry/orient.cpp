@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <array>
 #include <limits>
-#include <tuple>
 #include <utility>
 
 namespace meshfarm {
@@ -13,37 +12,58 @@ namespace {
 
 constexpr std::uint32_t k_none = std::numeric_limits<std::uint32_t>::max();
 
-/// A side of a triangle: from low to high, or the other way.
+/// A side of a triangle at its lower vertex: to a higher one, or from it.
 struct Side {
-  std::uint32_t low;
   std::uint32_t high;
   std::uint32_t side;  // 3 x triangle + its first corner
   bool upwards;
 };
 
+/// The sides of all triangles by their lower vertex, those of one by the higher one and in order of
+/// the triangles. `starts` has one more than the vertices.
+std::vector<Side> sort_sides(const std::vector<Triangle>& triangles,
+                             std::vector<std::uint32_t>& starts) {
+  std::uint32_t highest = 0;
+  for (const Triangle& t : triangles) highest = std::max({highest, t[0], t[1], t[2]});
+  starts.assign(std::size_t{highest} + 3, 0);
+  const auto for_sides = [&](const auto& use) {
+    for (std::uint32_t t = 0; t < triangles.size(); ++t) {
+      for (std::uint32_t k = 0; k < 3; ++k)
+        use(triangles[t][k], triangles[t][(k + 1) % 3], 3 * t + k);
+    }
+  };
+  // Counted two places up, so that each start is where it belongs when the sides are placed.
+  for_sides([&](std::uint32_t a, std::uint32_t b, std::uint32_t) { ++starts[std::min(a, b) + 2]; });
+  for (std::size_t v = 2; v < starts.size(); ++v) starts[v] += starts[v - 1];
+  std::vector<Side> sides(3 * triangles.size());
+  for_sides([&](std::uint32_t a, std::uint32_t b, std::uint32_t side) {
+    sides[starts[std::min(a, b) + 1]++] = {std::max(a, b), side, a < b};
+  });
+  starts.pop_back();
+  for (std::size_t v = 0; v + 1 < starts.size(); ++v) {
+    std::sort(sides.begin() + starts[v], sides.begin() + starts[v + 1],
+              [](const Side& x, const Side& y) {
+                return x.high != y.high ? x.high < y.high : x.side < y.side;
+              });
+  }
+  return sides;
+}
+
 /// The triangle across each side, where it has one: 2 x triangle, plus 1 if it faces the other way.
 std::vector<std::uint32_t> find_neighbours(const std::vector<Triangle>& triangles) {
-  std::vector<Side> sides;
-  sides.reserve(3 * triangles.size());
-  for (std::uint32_t t = 0; t < triangles.size(); ++t) {
-    for (std::uint32_t k = 0; k < 3; ++k) {
-      const std::uint32_t a = triangles[t][k];
-      const std::uint32_t b = triangles[t][(k + 1) % 3];
-      sides.push_back({std::min(a, b), std::max(a, b), 3 * t + k, a < b});
-    }
-  }
-  std::sort(sides.begin(), sides.end(), [](const Side& x, const Side& y) {
-    return std::tie(x.low, x.high, x.side) < std::tie(y.low, y.high, y.side);
-  });
+  std::vector<std::uint32_t> starts;
+  const std::vector<Side> sides = sort_sides(triangles, starts);
   std::vector<std::uint32_t> across(sides.size(), k_none);
-  for (std::size_t first = 0, last = 0; first < sides.size(); first = last) {
-    const auto [low, high, side, upwards] = sides[first];
-    while (last < sides.size() && sides[last].low == low && sides[last].high == high) ++last;
-    if (last - first != 2) continue;
-    const Side& other = sides[first + 1];
-    const std::uint32_t turned = upwards == other.upwards ? 1 : 0;
-    across[side] = 2 * (other.side / 3) + turned;
-    across[other.side] = 2 * (side / 3) + turned;
+  for (std::size_t v = 0; v + 1 < starts.size(); ++v) {
+    for (std::size_t first = starts[v], last = first; first < starts[v + 1]; first = last) {
+      const auto [high, side, upwards] = sides[first];
+      while (last < starts[v + 1] && sides[last].high == high) ++last;
+      if (last - first != 2) continue;
+      const Side& other = sides[first + 1];
+      const std::uint32_t turned = upwards == other.upwards ? 1 : 0;
+      across[side] = 2 * (other.side / 3) + turned;
+      across[other.side] = 2 * (side / 3) + turned;
+    }
   }
   return across;
 }

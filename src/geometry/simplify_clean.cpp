@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <array>
 #include <map>
-#include <set>
 #include <utility>
 
 #include <meshfarm/util/errors.hpp>
@@ -52,11 +51,19 @@ std::vector<std::uint32_t> vertices_with_duplicates(std::span<const std::uint8_t
 std::uint64_t drop_duplicates_at(const std::vector<std::uint32_t>& vertices, Mesh& mesh) {
   std::vector<std::uint8_t> doubtful(mesh.positions.size(), 0);
   for (const std::uint32_t v : vertices) doubtful[v] = 1;
-  std::set<Triangle> seen;
-  return drop_unless(mesh.triangles, [&](Triangle t) {
+  std::vector<std::pair<Triangle, std::uint32_t>> sets;  // and where in the mesh
+  for (std::uint32_t i = 0; i < mesh.triangles.size(); ++i) {
+    Triangle t = mesh.triangles[i];
     std::sort(t.begin(), t.end());
-    return doubtful[t[0]] == 0 || seen.insert(t).second;
-  });
+    if (doubtful[t[0]] != 0) sets.emplace_back(t, i);
+  }
+  std::sort(sets.begin(), sets.end());
+  std::vector<std::uint8_t> repeated(mesh.triangles.size(), 0);
+  for (std::size_t i = 1; i < sets.size(); ++i) {
+    if (sets[i].first == sets[i - 1].first) repeated[sets[i].second] = 1;
+  }
+  std::size_t place = 0;
+  return drop_unless(mesh.triangles, [&](const Triangle&) { return repeated[place++] == 0; });
 }
 
 enum class Fan : std::uint8_t { closed, open, broken };
