@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <numeric>
 
-#include "geometry/simplify_clean.hpp"
+#include "geometry/vertex_flags.hpp"
 
 namespace meshfarm {
 namespace {

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <iterator>
 
-#include "geometry/simplify_clean.hpp"
+#include "geometry/vertex_flags.hpp"
 
 namespace meshfarm {
 namespace {

@@ -9,21 +9,9 @@
 #include <meshfarm/geometry/simplify.hpp>
 
 #include "geometry/adjacency.hpp"
+#include "geometry/vertex_flags.hpp"
 
 namespace meshfarm {
-
-/// What a vertex may do, one byte each; a merged vertex inherits all but that it is fixed.
-enum VertexFlag : std::uint8_t {
-  k_fixed = 1,    // neither moves nor goes
-  k_border = 2,   // on an edge that has one triangle
-  k_seam = 4,     // SimplifyOptions::seam
-  k_crease = 8,   // on an edge sharper than LineOptions::crease_angle
-  k_corner = 16,  // where creases meet or end
-  k_complex = 32  // its triangles are not one consistently oriented fan
-};
-
-/// Passes leave the edges at these vertices alone.
-constexpr std::uint8_t k_still = k_fixed | k_complex;
 
 /// Throws UsageError or DataError if options or mesh cannot be taken.
 void check_input(const Mesh& mesh, const SimplifyOptions& options);

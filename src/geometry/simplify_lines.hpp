@@ -9,7 +9,7 @@
 #include <meshfarm/geometry/mesh.hpp>
 
 #include "geometry/adjacency.hpp"
-#include "geometry/simplify_clean.hpp"
+#include "geometry/vertex_flags.hpp"
 
 namespace meshfarm {
 

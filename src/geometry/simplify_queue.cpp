@@ -6,7 +6,7 @@
 #include <numeric>
 #include <tuple>
 
-#include "geometry/simplify_clean.hpp"
+#include "geometry/vertex_flags.hpp"
 
 namespace meshfarm {
 namespace {

@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "geometry/collapse.hpp"
-#include "geometry/simplify_clean.hpp"
+#include "geometry/vertex_flags.hpp"
 
 namespace meshfarm {
 namespace {

@@ -118,7 +118,7 @@ class Simplifier {
   std::span<const std::uint8_t> seam() const;
 
  private:
-  class Impl;
+  struct Impl;
   std::unique_ptr<Impl> impl_;
 };
 

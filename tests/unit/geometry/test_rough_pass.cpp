@@ -11,8 +11,8 @@
 #include <meshfarm/geometry/distance.hpp>
 #include <meshfarm/geometry/simplify.hpp>
 
+#include "geometry/rough_pass.hpp"
 #include "geometry/simplify_clean.hpp"
-#include "geometry/simplify_rough.hpp"
 #include "test_simplify_meshes.hpp"
 
 using namespace meshfarm;
@@ -30,7 +30,7 @@ struct RoughBench {
   CollapseState state() {
     return {mesh.positions, flags, target, &adjacency, PositionType::float64};
   }
-  RoughPass rough() { return RoughPass({state(), touched}); }
+  RoughPartners partners() { return {state(), touched}; }
 
   Mesh mesh;
   Adjacency adjacency;
@@ -60,22 +60,22 @@ TEST_CASE("a rough pass merges a vertex with its nearest neighbour that may") {
   Mesh mesh{{{0, 0, 0}, {5, 0, 0}, {2, 3, 0}, {-2, 2, 0}, {-4, 0, 0}, {-2, -4, 0}, {3, -3, 0}},
             {{0, 1, 2}, {0, 2, 3}, {0, 3, 4}, {0, 4, 5}, {0, 5, 6}, {0, 6, 1}}};
   RoughBench bench(mesh);
-  CHECK(bench.rough().partner(0) == 3);
+  CHECK(bench.partners().of(0) == 3);
   bench.touched[3] = 1;
-  CHECK(bench.rough().partner(0) == 2);
+  CHECK(bench.partners().of(0) == 2);
   bench.flags[2] |= k_fixed;
-  CHECK(bench.rough().partner(0) == 4);
+  CHECK(bench.partners().of(0) == 4);
   // What has moved counts where it is now.
   bench.mesh.positions[5] = {0, -1, 0};
-  CHECK(bench.rough().partner(0) == 5);
+  CHECK(bench.partners().of(0) == 5);
   bench.flags[0] |= k_fixed;
-  CHECK(bench.rough().partner(0) == 0);
+  CHECK(bench.partners().of(0) == 0);
 }
 
 TEST_CASE("a rough pass takes border vertices along the border or from inside") {
   RoughBench bench(flat_grid(4, 4));
   for (std::uint32_t v = 0; v < bench.mesh.positions.size(); ++v) {
-    const std::uint32_t other = bench.rough().partner(v);
+    const std::uint32_t other = bench.partners().of(v);
     REQUIRE(other != v);
     const bool both = (bench.flags[v] & bench.flags[other] & k_border) != 0;
     if (!both) continue;
@@ -88,7 +88,7 @@ TEST_CASE("the limit of a rough pass grows with its share") {
   RoughBench bench(sheet_with_detail());
   CollapseJudge judge(bench.state());
   const auto limit = [&](double share, double most = HUGE_VAL) {
-    return bench.rough().estimate_limit(judge, share, most);
+    return bench.partners().estimate_limit(judge, share, most);
   };
   CHECK(limit(0.5) == 0);
   REQUIRE(limit(0.995).has_value());

@@ -1,0 +1,22 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+
+namespace meshfarm {
+
+/// What a vertex may do, one byte each; a merged vertex inherits all but that it is fixed.
+enum VertexFlag : std::uint8_t {
+  k_fixed = 1,    // neither moves nor goes
+  k_border = 2,   // on an edge that has one triangle
+  k_seam = 4,     // SimplifyOptions::seam
+  k_crease = 8,   // on an edge sharper than LineOptions::crease_angle
+  k_corner = 16,  // where creases meet or end
+  k_complex = 32  // its triangles are not one consistently oriented fan
+};
+
+/// Passes leave the edges at these vertices alone.
+constexpr std::uint8_t k_still = k_fixed | k_complex;
+
+}  // namespace meshfarm

@@ -1,0 +1,130 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#include "geometry/working_mesh.hpp"
+
+#include <algorithm>
+#include <numeric>
+#include <utility>
+
+#include "geometry/simplify_queue.hpp"
+
+namespace meshfarm {
+
+WorkingMesh::WorkingMesh(Mesh mesh, const SimplifyOptions& options)
+    : mesh_(std::move(mesh)),
+      locked_(options.locked_vertices),
+      type_(options.positions),
+      seam_only_(!options.seam.empty()),
+      creases_(options.lines.crease_angle) {
+  check_input(mesh_, options);
+  Surface surface = clean_surface(mesh_, options, adjacency_);
+  dropped_ = surface.dropped;
+  flags_ = std::move(surface.flags);
+  creases_.find(mesh_, adjacency_, flags_);
+  drop_unused_vertices();
+}
+
+std::uint64_t WorkingMesh::free_triangles() const {
+  const auto is_free = [&](const Triangle& t) {
+    return t[0] >= locked_ && t[1] >= locked_ && t[2] >= locked_;
+  };
+  return static_cast<std::uint64_t>(
+      std::count_if(mesh_.triangles.begin(), mesh_.triangles.end(), is_free));
+}
+
+bool WorkingMesh::is_above(std::uint64_t triangles) const {
+  const std::uint64_t now = mesh_.triangles.size();
+  return now > triangles && (now - triangles > 1 || has_free_border());
+}
+
+bool WorkingMesh::has_free_border() const {
+  return std::any_of(flags_.begin(), flags_.end(),
+                     [](std::uint8_t flags) { return (flags & (k_border | k_fixed)) == k_border; });
+}
+
+std::vector<std::uint8_t> WorkingMesh::seam() const {
+  std::vector<std::uint8_t> seam;
+  if (!seam_only_) return seam;
+  seam.resize(flags_.size());
+  std::transform(flags_.begin(), flags_.end(), seam.begin(), [](std::uint8_t flags) {
+    return static_cast<std::uint8_t>((flags & k_seam) != 0 ? 1 : 0);
+  });
+  return seam;
+}
+
+void WorkingMesh::begin_pass() {
+  if (!adjacency_is_current_) adjacency_.build(mesh_.triangles, mesh_.positions.size());
+  creases_.update(mesh_, adjacency_, flags_);
+  const std::size_t vertices = mesh_.positions.size();
+  target_.resize(vertices);
+  std::iota(target_.begin(), target_.end(), 0U);
+  touched_.assign(vertices, 0);
+}
+
+CollapseState WorkingMesh::state() {
+  return {mesh_.positions, flags_, target_, &adjacency_, type_, &creases_.test()};
+}
+
+void WorkingMesh::merge(std::uint32_t a, std::uint32_t b, const Collapse& collapse) {
+  touched_[a] = touched_[b] = 1;
+  target_[b] = a;
+  flags_[a] |= flags_[b];
+  mesh_.positions[a] = collapse.position;
+  max_cost_ = std::max(max_cost_, collapse.cost);
+}
+
+void WorkingMesh::end_pass(std::uint64_t removed, double cost) {
+  pass_cost_ = cost;
+  adjacency_is_current_ = removed == 0;
+  if (removed > 0) compact();
+}
+
+/// Renumbers the vertices that are left, in their order, and drops the triangles that are gone. All
+/// are moved: a branch on which ones stay would be mispredicted half of the time.
+void WorkingMesh::compact() {
+  std::uint32_t kept = 0;
+  for (std::uint32_t v = 0; v < target_.size(); ++v) {
+    // A vertex merges into a smaller one, whose new number is known by now.
+    const std::uint32_t target = target_[v];
+    const bool stays = target == v;
+    mesh_.positions[kept] = mesh_.positions[v];
+    flags_[kept] = flags_[v];
+    target_[v] = stays ? kept : target_[target];
+    kept += stays ? 1 : 0;
+  }
+  mesh_.positions.resize(kept);
+  flags_.resize(kept);
+  std::size_t left = 0;
+  for (const Triangle& t : mesh_.triangles) {
+    const Triangle now = {target_[t[0]], target_[t[1]], target_[t[2]]};
+    mesh_.triangles[left] = now;
+    const auto [a, b, c] = now;
+    const bool is_left = (a != b) & (b != c) & (c != a);
+    left += is_left ? 1 : 0;
+  }
+  mesh_.triangles.resize(left);
+}
+
+void WorkingMesh::drop_unused_vertices() {
+  target_.resize(mesh_.positions.size());
+  std::uint32_t kept = 0;
+  for (std::uint32_t v = 0; v < target_.size(); ++v) {
+    if (v >= locked_ && adjacency_.count(v) == 0) continue;
+    mesh_.positions[kept] = mesh_.positions[v];
+    flags_[kept] = flags_[v];
+    target_[v] = kept++;
+  }
+  adjacency_is_current_ = kept == target_.size();
+  mesh_.positions.resize(kept);
+  flags_.resize(kept);
+  for (Triangle& t : mesh_.triangles) t = {target_[t[0]], target_[t[1]], target_[t[2]]};
+}
+
+void WorkingMesh::take(const CollapseQueue& queue) {
+  queue.copy_to(mesh_, flags_, locked_);
+  adjacency_is_current_ = false;
+  max_cost_ = std::max(max_cost_, queue.max_cost());
+  pass_cost_ = queue.last_cost();
+}
+
+}  // namespace meshfarm
