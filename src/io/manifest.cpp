@@ -4,7 +4,7 @@
 // The manifest, kind "MNFT", version 4; the payload of a sealed file. Strings are u32 + characters,
 // a file is name | size u64 | xxh3-64 u64:
 //   input | input format | scheme u8 (0 cut, 1 stream) | partitioner | window u64 | position type
-//   u8 | box 6 x f64 | input vertices u64 | input triangles u64 | merged vertices u64 | dropped
+//   u8 | box 6 x f64 | input vertices u64 | input triangles u64 | coincident vertices u64 | dropped
 //   degenerate u64 | coincident corners u64 | dropped not finite u64 | dropped duplicate u64 |
 //   skipped u32 x string | cut seconds f64 | boundary triangles u64 | boundary file | sorting |
 //   parts u32 x (file | vertices u64 | triangles u64 | boundary vertices u32) | samples u32 x the
@@ -91,7 +91,7 @@ std::string encode_manifest(const Manifest& m) {
   out.put(m.box.hi);
   out.put(m.input_vertices);
   out.put(m.input_triangles);
-  out.put(m.merged_vertices);
+  out.put(m.coincident_vertices);
   out.put(m.dropped_degenerate);
   out.put(m.coincident_corners);
   out.put(m.dropped_not_finite);
@@ -122,7 +122,7 @@ Manifest decode_manifest(std::string_view file, std::string_view what) {
   m.box.hi = in.get<Vec3>();
   m.input_vertices = in.get<std::uint64_t>();
   m.input_triangles = in.get<std::uint64_t>();
-  m.merged_vertices = in.get<std::uint64_t>();
+  m.coincident_vertices = in.get<std::uint64_t>();
   m.dropped_degenerate = in.get<std::uint64_t>();
   m.coincident_corners = in.get<std::uint64_t>();
   m.dropped_not_finite = in.get<std::uint64_t>();

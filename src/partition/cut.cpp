@@ -164,7 +164,7 @@ class Cutter {
       const std::lock_guard lock(mutex);
       manifest_.parts[i] = std::move(entry);
       numbers_[i] = std::move(built.boundary);
-      manifest_.merged_vertices += built.merged_vertices;
+      manifest_.coincident_vertices += built.coincident_vertices;
       manifest_.dropped_degenerate += built.dropped_degenerate;
       manifest_.coincident_corners += built.coincident_corners;
       tell("cut: parts", ++done, parts_);

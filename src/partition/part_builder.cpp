@@ -61,9 +61,9 @@ BuiltPart build_part(MeshShare raw, PositionType positions, Weld weld_mode) {
           const std::uint32_t c = welded.first[t[2]];
           return a == b || b == c || c == a;
         }));
+    built.coincident_vertices = welded.merged;
     separate_touching(raw.triangles, raw.boundary, welded);
     representative = std::move(welded.first);
-    built.merged_vertices = welded.merged;
   } else {
     representative.resize(raw.positions.size());
     std::iota(representative.begin(), representative.end(), 0U);

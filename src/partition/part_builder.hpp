@@ -15,7 +15,7 @@ namespace meshfarm {
 struct BuiltPart {
   Part part;
   BoundaryNumbers boundary;
-  std::uint64_t merged_vertices = 0;
+  std::uint64_t coincident_vertices = 0;  // at the place of an earlier one, merged or not
   std::uint64_t dropped_degenerate = 0;
   std::uint64_t coincident_corners = 0;  // triangles with two corners at one place
 };

@@ -51,7 +51,7 @@ class Assembly {
     summary_.output = options.output.string();
     summary_.target = target_triangles(manifest, run);
     summary_.max_error = run.error.in(manifest.box);
-    summary_.dropped_degenerate = manifest.dropped_degenerate;
+    summary_.dropped_degenerate = manifest.coincident_corners;
     summary_.dropped_duplicate = manifest.dropped_duplicate;
   }
 

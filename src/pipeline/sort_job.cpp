@@ -62,7 +62,7 @@ std::string encode_summary(const SortSummary& summary) {
   out.put(summary.vertices);
   out.put(summary.triangles);
   out.put(summary.boundary_vertices);
-  out.put(summary.merged_vertices);
+  out.put(summary.coincident_vertices);
   out.put(summary.dropped_degenerate);
   out.put(summary.coincident_corners);
   return out.take();
@@ -77,7 +77,7 @@ SortSummary decode_sort_summary(std::string_view bytes, std::string_view what) {
   if (summary.boundary_vertices > summary.vertices) {
     in.fail("more boundary vertices than vertices");
   }
-  summary.merged_vertices = in.get<std::uint64_t>();
+  summary.coincident_vertices = in.get<std::uint64_t>();
   summary.dropped_degenerate = in.get<std::uint64_t>();
   summary.coincident_corners = in.get<std::uint64_t>();
   in.expect_end();
@@ -90,7 +90,7 @@ JobOutput sort_to_stream(const Job& job, const JobContext& context) {
   const SortSummary summary{slab.stream.mesh.positions.size(),
                             slab.stream.mesh.triangles.size(),
                             slab.boundary_vertices,
-                            slab.merged_vertices,
+                            slab.coincident_vertices,
                             slab.dropped_degenerate,
                             slab.coincident_corners};
   const std::string bytes = encode_stream(slab.stream);

@@ -91,7 +91,7 @@ void SortPlan::take_streams() {
       throw DataError(output.file.name + ": is not sorted from " + part.file.name);
     }
     part = entry_of(output.file, summary);
-    manifest_.merged_vertices += summary.merged_vertices;
+    manifest_.coincident_vertices += summary.coincident_vertices;
     manifest_.dropped_degenerate += summary.dropped_degenerate;
     manifest_.coincident_corners += summary.coincident_corners;
   }

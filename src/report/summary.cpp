@@ -107,7 +107,7 @@ Json input_json(const Manifest& m) {
           {"format", m.input_format},
           {"vertices", m.input_vertices},
           {"triangles", m.input_triangles},
-          {"merged_vertices", m.merged_vertices},
+          {"coincident_vertices", m.coincident_vertices},
           {"skipped", m.skipped}};
 }
 
@@ -192,11 +192,10 @@ const char* parts_name(const Manifest& m) {
 
 void add_input(Lines& lines, const Manifest& m) {
   lines.add("input", m.input + " (" + m.input_format + ")");
-  lines.add(
-      "",
-      grouped(m.input_triangles) + " triangles, " + grouped(m.input_vertices) + " vertices" +
-          (m.merged_vertices != 0 ? ", " + grouped(m.merged_vertices) + " coincident ones merged"
-                                  : ""));
+  lines.add("",
+            grouped(m.input_triangles) + " triangles, " + grouped(m.input_vertices) + " vertices" +
+                (m.coincident_vertices != 0 ? ", " + grouped(m.coincident_vertices) + " coincident"
+                                            : ""));
   if (!m.skipped.empty()) lines.add("not kept", joined(m.skipped));
   if (m.dropped_not_finite > 0) {
     lines.add("dropped",
@@ -228,7 +227,7 @@ std::string render(const Manifest& m, const std::string& stage, Format format) {
                        {"sorted", !m.sorting.has_value()},
                        {"boundary_triangles", m.boundary_triangles},
                        {"dropped",
-                        {{"degenerate", m.dropped_degenerate},
+                        {{"degenerate", m.coincident_corners},
                          {"duplicate", m.dropped_duplicate},
                          {"not_finite", m.dropped_not_finite}}},
                        {"seconds", m.cut_seconds}};

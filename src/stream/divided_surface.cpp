@@ -320,7 +320,7 @@ class DividedSurface::Impl {
       }
       sum.add(static_cast<std::uint32_t>(i), measured);
       const std::lock_guard lock(mutex);
-      merged += slab.merged_vertices;
+      merged += slab.coincident_vertices;
       degenerate += slab.dropped_degenerate;
     });
     Topology topology = sum.finish();

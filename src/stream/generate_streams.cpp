@@ -181,7 +181,7 @@ class Generator {
     manifest_.samples[number] = write_sample(slab.stream, number);
     manifest_.parts[number] = write_stream(slab, number);
     const std::lock_guard lock(mutex);
-    manifest_.merged_vertices += slab.merged_vertices;
+    manifest_.coincident_vertices += slab.coincident_vertices;
     manifest_.dropped_degenerate += slab.dropped_degenerate;
     manifest_.coincident_corners += slab.coincident_corners;
   }

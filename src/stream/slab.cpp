@@ -71,8 +71,8 @@ class SlabSorter {
       welded.first[at(i)] = welded.first[at(i - 1)];
     }
     if (welded.merged > 0) count_coincident(welded.first);
+    slab_.coincident_vertices = welded.merged;
     separate_touching(raw_.triangles, raw_.boundary, welded);
-    slab_.merged_vertices = welded.merged;
     return std::move(welded.first);
   }
 

@@ -41,7 +41,7 @@ TEST_CASE("the dragon to 1 %: closed, one piece, its tunnels kept, and close to 
   CHECK(ran.err == "");
   REQUIRE(ran.code == 0);
   CHECK(number_in(ran.out, "input", "triangles") == 871'414);
-  CHECK(number_in(ran.out, "input", "merged_vertices") == 2'100);
+  CHECK(number_in(ran.out, "input", "coincident_vertices") == 2'100);
   CHECK(number_in(ran.out, "output", "triangles") == 8'712);  // 1 % is 8,713: one more than even
   const double told = number_in(ran.out, "error", "rms");
 

@@ -113,7 +113,7 @@ Manifest manifest() {
   made.box = {{0, 1, 2}, {3, 4, 5}};
   made.input_vertices = 10;
   made.input_triangles = 11;
-  made.merged_vertices = 12;
+  made.coincident_vertices = 12;
   made.dropped_degenerate = 13;
   made.coincident_corners = 14;
   made.dropped_not_finite = 15;

@@ -39,10 +39,12 @@ struct Manifest {
   Box box;
   std::uint64_t input_vertices = 0;
   std::uint64_t input_triangles = 0;  // after fans and strips were made triangles
-  std::uint64_t merged_vertices = 0;  // coincident ones, by --weld exact
-  std::uint64_t dropped_degenerate = 0;
-  /// Triangles with two corners at one position. They are dropped as degenerate, except where
-  /// surfaces touch. How many are dropped depends on the seams; this number does not.
+  /// Vertices at the place of an earlier one, with --weld exact. They are merged, except where
+  /// surfaces touch. How many of them are depends on the seams; this number does not.
+  std::uint64_t coincident_vertices = 0;
+  std::uint64_t dropped_degenerate = 0;  // of the parts and the boundary; depends on the seams
+  /// Triangles with two corners at one position: what people are told. They are dropped as
+  /// degenerate, except where surfaces touch.
   std::uint64_t coincident_corners = 0;
   std::uint64_t dropped_not_finite = 0;  // those with a position that is not
   std::uint64_t dropped_duplicate = 0;   // boundary triangles only: workers see to the parts
@@ -51,7 +53,7 @@ struct Manifest {
   std::uint64_t boundary_triangles = 0;
   FileRef boundary;
   /// Set if the parts are slabs that a run has to sort into streams first. What is known only of a
-  /// sorted stream is then missing: merged vertices, dropped triangles and samples. Counts of
+  /// sorted stream is then missing: coincident vertices, dropped triangles and samples. Counts of
   /// triangles and vertices are those of the input.
   std::optional<Sorting> sorting;
   std::vector<PartEntry> parts;    // or streams, or slabs

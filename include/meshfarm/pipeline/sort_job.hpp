@@ -29,9 +29,9 @@ struct SortSummary {
   std::uint64_t vertices = 0;
   std::uint64_t triangles = 0;
   std::uint32_t boundary_vertices = 0;
-  std::uint64_t merged_vertices = 0;     // none of a sample
-  std::uint64_t dropped_degenerate = 0;  // none of a sample
-  std::uint64_t coincident_corners = 0;  // none of a sample
+  std::uint64_t coincident_vertices = 0;  // none of a sample
+  std::uint64_t dropped_degenerate = 0;   // none of a sample
+  std::uint64_t coincident_corners = 0;   // none of a sample
 };
 
 std::string encode_summary(const SortSummary& summary);

@@ -18,7 +18,7 @@ inline constexpr std::uint64_t k_slab_bytes_per_triangle = 72;
 struct SortedSlab {
   StreamMesh stream;
   std::uint32_t boundary_vertices = 0;
-  std::uint64_t merged_vertices = 0;
+  std::uint64_t coincident_vertices = 0;  // at the place of an earlier one, merged or not
   std::uint64_t dropped_degenerate = 0;
   std::uint64_t coincident_corners = 0;  // triangles with two corners at one place
 };

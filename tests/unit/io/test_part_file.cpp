@@ -27,7 +27,7 @@ Manifest sample_manifest() {
   m.box.add({1, 2, 3});
   m.input_vertices = std::uint64_t{5} << 32;
   m.input_triangles = std::uint64_t{10} << 32;
-  m.merged_vertices = 7;
+  m.coincident_vertices = 7;
   m.dropped_degenerate = 8;
   m.coincident_corners = 13;
   m.dropped_not_finite = 12;

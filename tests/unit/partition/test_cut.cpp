@@ -124,7 +124,7 @@ TEST_CASE("coincident vertices are welded across the whole mesh, seams included"
   const test::TempFolder folder;
   const CutMesh welded = cut(soup, {.parts = 4, .weld = Weld::exact}, folder.path() / "exact");
   CHECK(triangles_of(welded) == triangles_of(mesh));
-  CHECK(welded.manifest.merged_vertices == soup.positions.size() - mesh.positions.size());
+  CHECK(welded.manifest.coincident_vertices == soup.positions.size() - mesh.positions.size());
   std::uint64_t vertices = 0;
   for (const PartEntry& part : welded.manifest.parts) vertices += part.vertices;
   CHECK(vertices == mesh.positions.size());
@@ -133,7 +133,7 @@ TEST_CASE("coincident vertices are welded across the whole mesh, seams included"
   }
 
   const CutMesh apart = cut(soup, {.parts = 4, .weld = Weld::off}, folder.path() / "off");
-  CHECK(apart.manifest.merged_vertices == 0);
+  CHECK(apart.manifest.coincident_vertices == 0);
   vertices = 0;
   for (const PartEntry& part : apart.manifest.parts) vertices += part.vertices;
   CHECK(vertices == soup.positions.size());
@@ -144,7 +144,7 @@ TEST_CASE("surfaces that touch are not welded together") {
   const Mesh mesh = test::touching_twice(octahedron, octahedron.positions[0]);
   const test::TempFolder folder;
   const CutMesh touching = cut(mesh, {.parts = 1, .weld = Weld::exact}, folder.path());
-  CHECK(touching.manifest.merged_vertices == 0);
+  CHECK(touching.manifest.coincident_vertices == 1);
   CHECK(touching.manifest.parts[0].vertices == 12);
 }
 

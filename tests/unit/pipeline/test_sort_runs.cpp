@@ -139,7 +139,7 @@ TEST_CASE("the farm sorts slabs to the bytes that the cut makes by itself") {
     check_same(plan.manifest().samples, here.manifest.samples);
     CHECK(same_content(plan.manifest().boundary, here.manifest.boundary));
     CHECK(plan.manifest().boundary_triangles == here.manifest.boundary_triangles);
-    CHECK(plan.manifest().merged_vertices == here.manifest.merged_vertices);
+    CHECK(plan.manifest().coincident_vertices == here.manifest.coincident_vertices);
     CHECK(plan.manifest().dropped_degenerate == here.manifest.dropped_degenerate);
     CHECK(plan.manifest().coincident_corners == here.manifest.coincident_corners);
     CHECK(plan.manifest().dropped_duplicate == here.manifest.dropped_duplicate);

@@ -221,7 +221,7 @@ TEST_CASE("coincident vertices are welded, degenerate and duplicate triangles dr
   soup.triangles.push_back({0, 0, 1});
   const test::TempFolder folder;
   const Generated made = generate(soup, {.streams = 3}, folder / "welded");
-  CHECK(made.manifest.merged_vertices == soup.positions.size() - mesh.positions.size());
+  CHECK(made.manifest.coincident_vertices == soup.positions.size() - mesh.positions.size());
   CHECK(made.manifest.dropped_degenerate == 1);
   CHECK(triangles_of(made) == triangles_of(mesh));
   std::uint64_t vertices = 0;
@@ -229,7 +229,7 @@ TEST_CASE("coincident vertices are welded, degenerate and duplicate triangles dr
   CHECK(vertices == mesh.positions.size());
 
   const Generated apart = generate(soup, {.streams = 3, .weld = Weld::off}, folder / "apart");
-  CHECK(apart.manifest.merged_vertices == 0);
+  CHECK(apart.manifest.coincident_vertices == 0);
   CHECK(apart.manifest.boundary_triangles < made.manifest.boundary_triangles * 2);
 }
 
@@ -268,7 +268,7 @@ TEST_CASE("surfaces that touch are not welded together") {
   const Mesh mesh = test::touching_twice(octahedron, octahedron.positions[0]);
   const test::TempFolder folder;
   const Generated made = generate(mesh, {.streams = 1}, folder / "touching");
-  CHECK(made.manifest.merged_vertices == 0);
+  CHECK(made.manifest.coincident_vertices == 1);
   CHECK(made.manifest.parts[0].vertices == 12);
 }
 

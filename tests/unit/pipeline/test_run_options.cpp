@@ -1,0 +1,70 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#include <optional>
+#include <string>
+#include <tuple>
+
+#include <doctest/doctest.h>
+
+#include <meshfarm/geometry/generate.hpp>
+#include <meshfarm/partition/cut.hpp>
+#include <meshfarm/pipeline/run_options.hpp>
+#include <meshfarm/stream/generate_streams.hpp>
+
+#include "support/memory_source.hpp"
+#include "support/meshes.hpp"
+#include "support/temp_folder.hpp"
+
+using namespace meshfarm;
+
+namespace {
+
+/// Octahedra in a row that touch at their tips, tori pinched to a point:
+/// what a seam cuts through decides which coincident vertices are merged.
+Mesh touching_everywhere() {
+  constexpr std::uint32_t k_many = 40;
+  Mesh mesh;
+  for (std::uint32_t i = 0; i < k_many; ++i) {
+    Mesh octahedron = test::octahedron();
+    Mesh torus = test::torus_with_neck(12, 6);
+    for (Vec3& p : octahedron.positions) p.x += 2.0 * i;
+    for (Vec3& p : torus.positions) p = p * 0.1 + Vec3{2.0 * i, 3, 0};
+    test::append(mesh, octahedron);
+    test::append(mesh, torus);
+  }
+  return mesh;
+}
+
+/// What a summary tells of the input, and what a ratio asks for.
+using Told = std::tuple<std::uint64_t, std::uint64_t, std::uint64_t, std::uint64_t>;
+
+Told told_of(const Manifest& m) {
+  return {m.input_triangles, m.coincident_vertices, m.coincident_corners,
+          target_triangles(m, {.ratio = 0.1})};
+}
+
+}  // namespace
+
+TEST_CASE("one input is told and aimed at alike, however it is divided and in whatever order") {
+  const test::TempFolder folder;
+  Mesh mesh = touching_everywhere();
+  std::optional<Told> told;
+  for (const std::uint64_t seed : {0, 1, 2}) {
+    if (seed != 0) shuffle(mesh, seed);
+    for (const std::uint32_t parts : {1U, 3U, 16U}) {
+      CAPTURE(seed);
+      CAPTURE(parts);
+      const std::string name = std::to_string(seed) + "-" + std::to_string(parts);
+      test::MemorySource source(mesh);
+      const Manifest cut =
+          cut_mesh(source, Stage::create(folder / ("cut-" + name)), {.parts = parts});
+      const Manifest streams =
+          generate_streams(source, Stage::create(folder / ("streams-" + name)), {.streams = parts});
+      if (!told) told = told_of(cut);
+      CHECK(told_of(cut) == *told);
+      CHECK(told_of(streams) == *told);
+    }
+  }
+  CHECK(std::get<1>(*told) == 39 + 40 * 5);  // tips, and necks of six vertices
+  CHECK(std::get<2>(*told) == 40 * 12);
+}
