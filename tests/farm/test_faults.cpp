@@ -229,6 +229,41 @@ TEST_CASE("by --no-wait a full disk ends the run for now") {
   }
 }
 
+TEST_CASE("a disk that fails while the input is read is one line that names it, and exit 1") {
+  Bench& bench = parts();
+  bench.fresh();
+  const std::string input = bench.path("run/input.ply");
+  fs::copy(bench.mesh(), input);
+  const std::vector<std::vector<std::string>> commands = {
+      {"info", input},
+      {"compare", bench.mesh(), input},
+      {"cut", input, "--stage", bench.path("of-input")},
+      {"cut", input, "--scheme", "stream", "--stage", bench.path("of-input")},
+      {"simplify", input, "-o", bench.path("run/out.ply"), "--ratio", "0.1"}};
+  for (const std::vector<std::string>& words : commands) {
+    int nth = 1;
+    for (bool struck = true; struck; ++nth) {
+      CAPTURE(words[0]);
+      CAPTURE(nth);
+      fs::remove_all(bench.path("of-input"));
+      fs::remove(bench.path("fired"));
+      Ran ran;
+      {
+        const Injection injection(bench, words[0], "pread:EIO:" + std::to_string(nth));
+        ::setenv("MESHFARM_FAULT_BELOW", input.c_str(), 1);
+        ran = bench.meshfarm(words);
+      }
+      CAPTURE(ran.err);
+      struck = fs::exists(bench.path("fired"));
+      CHECK(ran.code == (struck ? 1 : 0));
+      CHECK(errors_in(ran.err) == (struck ? 1 : 0));
+      CHECK((ran.err.find(input + ": Input/output error") != std::string::npos) == struck);
+      CHECK(fs::exists(bench.path("of-input/manifest")) == (!struck && words[0] == "cut"));
+    }
+    CHECK(nth > 4);  // in the header, vertices and triangles
+  }
+}
+
 TEST_CASE("a worker whose file system hangs is left behind") {
   CHECK(survives(parts(), "worker", "write", "hang", 1));
   CHECK(survives(parts(), "worker", "fsync", "hang", 2));

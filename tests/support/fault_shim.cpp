@@ -5,8 +5,8 @@
 // removes a file below a folder fails, is cut short, or is the process's last deed. Sockets and
 // eventfds are left alone, which is why this is no job for strace. Told by the environment:
 //
-//   MESHFARM_FAULT        CALL:KIND:N    write|fsync|close|rename|link|open|read|unlink|fdatasync :
-//                                        an errno | short | kill | lost | hang
+//   MESHFARM_FAULT        CALL:KIND:N    write|fsync|close|rename|link|open|read|pread|unlink|
+//                                        fdatasync : an errno | short | kill | lost | hang
 //   MESHFARM_FAULT_ROLE   only in processes of this command: worker, sink, ventilator
 //   MESHFARM_FAULT_BELOW  the folder
 //   MESHFARM_FAULT_WHILE  a file: as long as it is there, each write and fsync below
@@ -178,6 +178,14 @@ ssize_t read(int fd, void* bytes, size_t size) {
     size = size / 2 + size % 2;
   }
   return real<ssize_t(int, void*, size_t)>("read")(fd, bytes, size);
+}
+
+ssize_t pread(int fd, void* bytes, size_t size, off_t offset) {
+  if (fault().strikes("pread", fd)) {
+    if (fault().kind != "short") return fault().fails();
+    size = size / 2 + size % 2;
+  }
+  return real<ssize_t(int, void*, size_t, off_t)>("pread")(fd, bytes, size, offset);
 }
 
 int fdatasync(int fd) {
