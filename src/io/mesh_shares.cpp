@@ -44,7 +44,8 @@ MeshShares::MeshShares(const Options& options, const Memory& memory)
       boundary_vertices_(options.folder, options.shares),
       next_(options.shares, 0) {}
 
-void MeshShares::add_vertices(std::span<const Vec3> batch, std::span<const std::uint32_t> shares) {
+void MeshShares::add_vertices(std::span<const Vec3> batch, std::span<const std::uint32_t> shares,
+                              std::span<const std::uint32_t> points) {
   const std::span<Place> map = map_.as_span<Place>();
   for (std::size_t i = 0; i < batch.size(); ++i) {
     const std::uint32_t share = shares[i];
@@ -55,7 +56,17 @@ void MeshShares::add_vertices(std::span<const Vec3> batch, std::span<const std::
     if (next_[share] > 0xfffffffe) {
       throw DataError("a part would have 2^32 vertices or more; ask for more --parts");
     }
-    map[added_++] = {share, static_cast<std::uint32_t>(next_[share]++)};
+    const Place place{share, static_cast<std::uint32_t>(next_[share])};
+    if (!points.empty() && points[i] != k_no_point) {
+      const auto [first, is_first] = points_.try_emplace(points[i], place);
+      if (!is_first) {
+        map[added_++] = first->second;
+        ++merged_;
+        continue;
+      }
+    }
+    map[added_++] = place;
+    ++next_[share];
     put_position(share, batch[i]);
   }
   if (added_ == map.size()) vertices_.finish();  // its buffers are of no more use

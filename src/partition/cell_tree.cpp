@@ -162,17 +162,50 @@ void CellTree::divide(Cell& cell) {
   grids_.emplace_back(cell.box, bits);
 }
 
+/// Deals the vertices of a heavy point out to cells of its own, in addition to the one it has.
+/// Their keys are past those of all grids: nobody looks for them, and they come last of the leaves.
+void CellTree::divide_points() {
+  std::vector<Cell> more;
+  for (Cell& cell : cells_) {
+    if (cell.grid != 0 || cell.vertices <= heavy_ || !is_point(cell.box)) continue;
+    if (options_.weld == Weld::exact) {
+      cell.is_one = true;
+      cell.mean = cell.mean * (1.0 / static_cast<double>(cell.vertices));
+      cell.vertices = 1;
+      continue;
+    }
+    const std::uint64_t vertices = cell.vertices;
+    const std::uint64_t cells = (vertices + heavy_ - 1) / heavy_;
+    const auto first_of = [&](std::uint64_t i) { return (vertices * i + cells - 1) / cells; };
+    dealt_[cell.key] = {vertices, cells, more.size(), 0};
+    for (std::uint64_t i = 1; i < cells; ++i) {
+      Cell piece = cell;
+      piece.key = (grids_.size() + more.size()) << k_index_bits;
+      piece.vertices = first_of(i + 1) - first_of(i);
+      piece.mean = cell.box.lo * static_cast<double>(piece.vertices);
+      more.push_back(piece);
+    }
+    cell.vertices = first_of(1);
+    cell.mean = cell.box.lo * static_cast<double>(cell.vertices);
+  }
+  cells_.insert(cells_.end(), more.begin(), more.end());
+}
+
 void CellTree::finish() {
+  if (options_.parts > 1) divide_points();
   std::sort(cells_.begin(), cells_.end(), [](const Cell& a, const Cell& b) {
     return std::tuple(a.grid != 0, a.key) < std::tuple(b.grid != 0, b.key);
   });
   for (Cell& cell : cells_) {
     leaves_ += cell.grid == 0;
     cell.mean = cell.mean * (1.0 / static_cast<double>(cell.vertices));
-    const bool welded = is_point(cell.box) && options_.weld == Weld::exact;
-    if (welded && cell.vertices > heavy_) cell.vertices = 1;
   }
-  hash_all(slots_.size());
+  std::uint64_t dealt_cells = 0;
+  for (const auto& [key, dealt] : dealt_) dealt_cells += dealt.cells - 1;
+  for (auto& [key, dealt] : dealt_) dealt.first += leaves_ - dealt_cells;
+  std::size_t slots = slots_.size();
+  while (cells_.size() * 2 > slots) slots *= 2;
+  hash_all(slots);
 }
 
 std::uint32_t CellTree::number_of(Vec3 p) {
@@ -180,6 +213,12 @@ std::uint32_t CellTree::number_of(Vec3 p) {
   if (key == last_key_) return last_number_;
   const Leaf leaf = descend(key, p);
   assert(leaf.entry != 0);
+  const auto dealt = dealt_.empty() ? dealt_.end() : dealt_.find(leaf.key);
+  if (dealt != dealt_.end()) {
+    Dealt& point = dealt->second;
+    const std::uint64_t piece = point.seen++ * point.cells / point.vertices;
+    return piece == 0 ? leaf.entry - 1 : static_cast<std::uint32_t>(point.first + piece - 1);
+  }
   if (leaf.key == key) {
     last_key_ = key;
     last_number_ = leaf.entry - 1;

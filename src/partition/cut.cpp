@@ -30,6 +30,7 @@ namespace {
 
 /// A mesh that fits into this much memory is cut without scratch files.
 constexpr std::uint64_t k_memory_bytes = std::uint64_t{256} << 20;
+constexpr std::uint32_t k_no_cell = UINT32_MAX;
 
 /// Parts of 200 to 1000 cells each: fine enough for even sizes and smooth seams.
 unsigned grid_bits(std::uint32_t parts) {
@@ -123,16 +124,24 @@ class Cutter {
         MeshShares::Options{scratch_folder(options_.scratch, stage_.root(), all - memory), parts_,
                             manifest_.input_vertices, manifest_.positions, memory});
     std::vector<std::uint32_t> parts;
+    std::vector<std::uint32_t> points;
+    const std::span<const Cell> cells = cells_->cells();
+    const bool has_points =
+        std::any_of(cells.begin(), cells.end(), [](const Cell& cell) { return cell.is_one; });
     std::uint64_t done = 0;
     source_.scan_vertices([&](std::span<const Vec3> batch) {
       parts.clear();
+      points.clear();
       for (const Vec3& p : batch) {
-        parts.push_back(has_position(p) ? part_of_cell_[cells_->number_of(p)]
-                                        : MeshShares::k_no_share);
+        const std::uint32_t cell = has_position(p) ? cells_->number_of(p) : k_no_cell;
+        parts.push_back(cell == k_no_cell ? MeshShares::k_no_share : part_of_cell_[cell]);
+        if (!has_points) continue;
+        points.push_back(cell != k_no_cell && cells[cell].is_one ? cell : MeshShares::k_no_point);
       }
-      shares_->add_vertices(batch, parts);
+      shares_->add_vertices(batch, parts, points);
       tell("cut: vertices", done += batch.size(), manifest_.input_vertices);
     });
+    manifest_.coincident_vertices = shares_->merged();
     cells_.reset();
   }
 

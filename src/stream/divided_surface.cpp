@@ -256,7 +256,8 @@ class DividedSurface::Impl {
     const std::uint64_t triangles = std::max(info.faces, info.vertices);
     map_ = std::make_unique<SlabMap>(
         box_, sorting_.order,
-        static_cast<std::uint32_t>(slabs_wanted(triangles, options_.memory_bytes)));
+        static_cast<std::uint32_t>(slabs_wanted(triangles, options_.memory_bytes)),
+        AtOnePoint::stay);
     do {
       source_.scan_vertices([&](std::span<const Vec3> batch) { map_->count(batch); });
     } while (map_->refine());
@@ -273,7 +274,7 @@ class DividedSurface::Impl {
     source_.scan_vertices([&](std::span<const Vec3> batch) {
       slabs.clear();
       for (const Vec3& p : batch) {
-        slabs.push_back(has_position(p) ? map_->slab_of(p) : MeshShares::k_no_share);
+        slabs.push_back(has_position(p) ? map_->target_of(p).slab : MeshShares::k_no_share);
       }
       shares_->add_vertices(batch, slabs);
     });

@@ -106,7 +106,9 @@ class Generator {
   }
 
   void choose_slabs() {
-    slabs_ = std::make_unique<SlabMap>(manifest_.box, sorting_.order, wanted_streams());
+    slabs_ = std::make_unique<SlabMap>(
+        manifest_.box, sorting_.order, wanted_streams(),
+        options_.weld == Weld::exact ? AtOnePoint::merge : AtOnePoint::deal);
     do {
       std::uint64_t done = 0;
       source_.scan_vertices([&](std::span<const Vec3> batch) {
@@ -123,16 +125,23 @@ class Generator {
     shares_ = std::make_unique<MeshShares>(
         MeshShares::Options{scratch_folder(options_.scratch, stage_.root(), all), streams_,
                             manifest_.input_vertices, manifest_.positions});
+    static_assert(MeshShares::k_no_point == SlabMap::k_no_point);
     std::vector<std::uint32_t> slabs;
+    std::vector<std::uint32_t> points;
     std::uint64_t done = 0;
     source_.scan_vertices([&](std::span<const Vec3> batch) {
       slabs.clear();
+      points.clear();
       for (const Vec3& p : batch) {
-        slabs.push_back(has_position(p) ? slabs_->slab_of(p) : MeshShares::k_no_share);
+        const SlabMap::Target target =
+            has_position(p) ? slabs_->target_of(p) : SlabMap::Target{MeshShares::k_no_share};
+        slabs.push_back(target.slab);
+        if (slabs_->merges()) points.push_back(target.point);
       }
-      shares_->add_vertices(batch, slabs);
+      shares_->add_vertices(batch, slabs, points);
       tell("streams: vertices", done += batch.size(), manifest_.input_vertices);
     });
+    manifest_.coincident_vertices = shares_->merged();
     slabs_.reset();
   }
 

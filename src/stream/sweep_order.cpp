@@ -46,8 +46,9 @@ SweepOrder OrderProbe::choose() const {
   return order;
 }
 
-SlabMap::SlabMap(const Box& box, const SweepOrder& order, std::uint32_t wanted)
-    : box_(box), order_(order), wanted_(std::max(1U, wanted)) {
+SlabMap::SlabMap(const Box& box, const SweepOrder& order, std::uint32_t wanted,
+                 AtOnePoint at_one_point)
+    : box_(box), order_(order), wanted_(std::max(1U, wanted)), at_one_point_(at_one_point) {
   const double a = box.empty() ? 0 : order.along(box.lo);
   const double b = box.empty() ? 0 : order.along(box.hi);
   add_division(0, std::min(a, b), std::max(a, b), k_first_bins);
@@ -104,7 +105,7 @@ void SlabMap::divide_bin(std::uint32_t bin, int rank) {
   double low = bins_[bin].low;
   double high = bins_[bin].high;
   while (!(low < high)) {
-    if (++rank > 2) return;  // a single point
+    if (++rank > 2) return add_point(bin);
     const int axis = order_.axes[static_cast<std::size_t>(rank)];
     low = box_.lo[axis];
     high = box_.hi[axis];
@@ -113,20 +114,47 @@ void SlabMap::divide_bin(std::uint32_t bin, int rank) {
   add_division(rank, low, high, bins);
 }
 
+void SlabMap::add_point(std::uint32_t bin) {
+  if (at_one_point_ == AtOnePoint::stay) return;
+  targets_[bin] = k_point | static_cast<std::uint32_t>(points_.size());
+  points_.emplace_back();
+  if (at_one_point_ == AtOnePoint::deal) return;
+  all_ -= bins_[bin].count - 1;
+  bins_[bin].count = 1;
+}
+
+SlabMap::Target SlabMap::target_of(std::uint32_t point) {
+  Point& at = points_[point];
+  if (at_one_point_ == AtOnePoint::merge) return {at.slab, point};
+  const auto number = static_cast<double>(at.before + at.seen++);
+  return {at.slab + static_cast<std::uint32_t>(even_slab(number + 0.5) - at.as_even)};
+}
+
 std::uint32_t SlabMap::divide() {
   std::uint64_t sum = 0;
   std::uint32_t slabs = 0;
   std::uint64_t last = 0;  // as if none were empty
+  const auto go_to = [&](std::uint64_t slab) {
+    if (slabs == 0 || slab > last) ++slabs;
+    last = slab;
+  };
+  const auto assign_point = [&](Point& point, std::uint64_t count) {
+    point.before = sum;
+    point.as_even = even_slab(static_cast<double>(sum) + 0.5);
+    go_to(point.as_even);
+    point.slab = slabs - 1;
+    last = even_slab(static_cast<double>(sum + count) - 0.5);
+    slabs += static_cast<std::uint32_t>(last - point.as_even);
+    sum += count;
+  };
   const auto assign = [&](std::uint32_t bin) {
     const std::uint64_t count = bins_[bin].count;
+    if ((targets_[bin] & k_point) != 0) {
+      return assign_point(points_[targets_[bin] & ~k_point], count);
+    }
     if (count > 0) {
       // A bin belongs where its middle vertex does.
-      const double middle = static_cast<double>(sum) + 0.5 * static_cast<double>(count);
-      const auto slab =
-          std::min(wanted_ - 1, static_cast<std::uint64_t>(middle / static_cast<double>(all_) *
-                                                           static_cast<double>(wanted_)));
-      if (slabs == 0 || slab > last) ++slabs;
-      last = slab;
+      go_to(even_slab(static_cast<double>(sum) + 0.5 * static_cast<double>(count)));
       sum += count;
     }
     targets_[bin] = slabs == 0 ? 0 : slabs - 1;

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
@@ -30,21 +31,38 @@ class OrderProbe {
   std::array<bool, 3> falls_ = {true, true, true};
 };
 
+/// What becomes of so many vertices at one point that they make a slab too large.
+enum class AtOnePoint : std::uint8_t {
+  stay,   // they stay together all the same
+  merge,  // they are one vertex
+  deal,   // they are dealt out, in their order, to slabs one after the other
+};
+
 /// Divides the vertices, in the order of the sweep, into slabs of about equal numbers. They are
 /// counted into bins along the axis. A bin with too many for even slabs is divided into finer ones
 /// between its ends, or, where all are at one coordinate, along the next axis: vertices far out, or
-/// many in one plane, make no slab larger. Vertices at one point are in one slab. Memory: 7 MB, and
-/// 3 KB for each slab wanted.
+/// many in one plane, make no slab larger. Memory: 7 MB, and 3 KB for each slab wanted.
 class SlabMap {
  public:
-  SlabMap(const Box& box, const SweepOrder& order, std::uint32_t wanted);
+  SlabMap(const Box& box, const SweepOrder& order, std::uint32_t wanted, AtOnePoint at_one_point);
   void count(std::span<const Vec3> batch);
   /// Ends a scan of all vertices. True if bins were divided: all are to be counted once more.
   bool refine();
   /// After the last scan: the number of slabs. None is empty, so that there may be fewer than
   /// wanted.
   std::uint32_t divide();
-  std::uint32_t slab_of(Vec3 p) const { return targets_[find(p).bin]; }
+  /// Whether there are vertices that are to be one.
+  bool merges() const { return at_one_point_ == AtOnePoint::merge && !points_.empty(); }
+  static constexpr std::uint32_t k_no_point = UINT32_MAX;
+  struct Target {
+    std::uint32_t slab = 0;
+    std::uint32_t point = k_no_point;  // all vertices of one such number are to be one
+  };
+  /// To be asked once for each vertex, in order.
+  Target target_of(Vec3 p) {
+    const std::uint32_t target = targets_[find(p).bin];
+    return (target & k_point) == 0 ? Target{target} : target_of(target & ~k_point);
+  }
 
  private:
   /// Bins of equal width between two coordinates.
@@ -65,7 +83,15 @@ class SlabMap {
     std::uint32_t division = 0;
     std::uint32_t bin = 0;
   };
+  /// A point with too many vertices.
+  struct Point {
+    std::uint64_t before = 0;  // vertices that come before it
+    std::uint64_t seen = 0;
+    std::uint32_t slab = 0;     // its first
+    std::uint64_t as_even = 0;  // the same, as if no slab were empty
+  };
   static constexpr std::uint32_t k_first_bins = 1 << 18;
+  static constexpr std::uint32_t k_point = std::uint32_t{1} << 30;    // a point, or else a slab
   static constexpr std::uint32_t k_divided = std::uint32_t{1} << 31;  // or else a slab
 
   double coordinate(int rank, Vec3 p) const {
@@ -87,14 +113,23 @@ class SlabMap {
   }
   void add_division(int rank, double low, double high, std::uint32_t bins);
   void divide_bin(std::uint32_t bin, int rank);
+  void add_point(std::uint32_t bin);
+  /// The slab of the vertex before which there are so many, as if none were empty.
+  std::uint64_t even_slab(double vertices) const {
+    return std::min(wanted_ - 1, static_cast<std::uint64_t>(vertices / static_cast<double>(all_) *
+                                                            static_cast<double>(wanted_)));
+  }
+  Target target_of(std::uint32_t point);
 
   Box box_;
   SweepOrder order_;
   std::uint64_t wanted_;
+  AtOnePoint at_one_point_;
   std::vector<Division> divisions_;
   std::uint32_t first_new_ = 0;  // divisions from here on are counted into
   std::vector<Bin> bins_;
   std::vector<std::uint32_t> targets_;  // of each bin its slab, or by what it is divided
+  std::vector<Point> points_;
   std::uint64_t all_ = 0;
   std::uint64_t heavy_ = 0;
   unsigned scans_ = 0;

@@ -109,6 +109,19 @@ inline Mesh with_outlier(Mesh mesh, double far) {
   return mesh;
 }
 
+/// The mesh and `many` triangles, each of an edge of the mesh and a vertex of its own, all of which
+/// lie at one point of it.
+inline Mesh with_crowd(Mesh mesh, std::uint32_t many) {
+  const auto crowd = static_cast<std::uint32_t>(mesh.positions.size());
+  const std::size_t triangles = mesh.triangles.size();
+  mesh.positions.insert(mesh.positions.end(), many, mesh.positions[crowd / 3]);
+  for (std::uint32_t i = 0; i < many; ++i) {
+    const Triangle t = mesh.triangles[i * 7919ULL % triangles];
+    mesh.triangles.push_back({t[0], t[1], crowd + i});
+  }
+  return mesh;
+}
+
 /// The mesh with vertices that have no position put between its own; of some, `triangles` triangles
 /// make use, of the others none.
 inline Mesh with_lost_vertices(const Mesh& mesh, std::uint32_t triangles) {

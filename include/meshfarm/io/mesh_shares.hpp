@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <span>
+#include <unordered_map>
 #include <vector>
 
 #include <meshfarm/geometry/mesh.hpp>
@@ -51,14 +52,20 @@ class MeshShares {
 
   /// The share of vertices that are left out, and with them the triangles that use one.
   static constexpr std::uint32_t k_no_share = UINT32_MAX;
-  /// The next vertices, and the share of each. Throws DataError if one gets 2^32.
-  void add_vertices(std::span<const Vec3> batch, std::span<const std::uint32_t> shares);
+  static constexpr std::uint32_t k_no_point = UINT32_MAX;
+  /// The next vertices, and the share of each. Where `points` are given, those of one number lie at
+  /// one point, in one share, and become one vertex here already: so a share stays small whatever
+  /// many there are. Throws DataError if a share gets 2^32 vertices.
+  void add_vertices(std::span<const Vec3> batch, std::span<const std::uint32_t> shares,
+                    std::span<const std::uint32_t> points = {});
   /// After all vertices.
   void add_triangles(std::span<const WideTriangle> batch);
   /// After all triangles; read() is then safe from several threads.
   void finish();
   MeshShare read(std::uint32_t share) const;
 
+  /// Vertices that became one with an earlier one.
+  std::uint64_t merged() const { return merged_; }
   /// Triangles that used a vertex that was left out.
   std::uint64_t dropped() const { return dropped_; }
   /// The boundary triangles, in file order and by final numbers, one entry of `numbers` a share;
@@ -91,8 +98,10 @@ class MeshShares {
   BucketFile triangles_;  // packed
   std::vector<TrianglePacker> packers_;
   BucketFile boundary_vertices_;
-  std::vector<std::uint64_t> next_;  // place in each share
+  std::vector<std::uint64_t> next_;                  // place in each share
+  std::unordered_map<std::uint32_t, Place> points_;  // the vertex that a point's became
   std::uint64_t added_ = 0;
+  std::uint64_t merged_ = 0;
   std::uint64_t dropped_ = 0;
   std::vector<std::array<Place, 3>> boundary_;  // as the square root of the input
 };

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <limits>
 #include <span>
+#include <unordered_map>
 #include <vector>
 
 #include <meshfarm/geometry/weld.hpp>
@@ -20,6 +21,7 @@ struct Cell {
   Vec3 mean;
   Box box;                 // of its vertices
   std::uint32_t grid = 0;  // by which it is divided; 0 is none
+  bool is_one = false;     // a point with so many vertices that they are to become one at once
 };
 
 struct CellTreeOptions {
@@ -34,7 +36,8 @@ struct CellTreeOptions {
 /// vertices, and so on, so that an outlier makes no other cell coarser. If there are too many
 /// cells, grids are coarsened: there are at most `most_cells`, and 256 a part where vertices lie in
 /// dense spots. Memory: about 110 bytes a cell. The cells depend on the set of vertices, not on its
-/// order.
+/// order. Where too many vertices lie at one point, they are taken for one if they will be welded;
+/// else they are dealt out, in their order, to cells at that point.
 ///
 /// Add all vertices, and again as long as refine() returns true. For vertices spread evenly over a
 /// surface, once is enough.
@@ -45,10 +48,10 @@ class CellTree {
   /// Ends a scan. True if cells were divided: all vertices are to be added once more.
   bool refine();
 
-  /// After the last scan. A single point with many vertices cannot be divided; it weighs as much as
-  /// one vertex where it will be welded to one.
+  /// After the last scan.
   std::span<const Cell> cells() const { return std::span(cells_).first(leaves_); }
-  /// The number of the cell that holds a vertex that was added.
+  /// The number of the cell that holds a vertex that was added. To be asked once for each, in
+  /// order.
   std::uint32_t number_of(Vec3 p);
 
  private:
@@ -69,7 +72,16 @@ class CellTree {
   void hash_all(std::size_t slots);
   void coarsen();
   void divide(Cell& cell);
+  void divide_points();
   void finish();
+
+  /// The vertices at a point, dealt out to `cells` cells.
+  struct Dealt {
+    std::uint64_t vertices = 0;
+    std::uint64_t cells = 0;
+    std::uint64_t first = 0;  // number of the first of them
+    std::uint64_t seen = 0;
+  };
 
   CellTreeOptions options_;
   std::vector<UniformGrid> grids_;
@@ -78,6 +90,7 @@ class CellTree {
   std::vector<Cell> cells_;           // mean holds the sum until finish()
   std::size_t limit_;                 // grids are coarsened when there are more cells
   std::size_t leaves_ = 0;            // cells that are not divided come first in the end
+  std::unordered_map<std::uint64_t, Dealt> dealt_;  // by the key of the cell
   std::uint64_t heavy_ = 0;
   unsigned scans_ = 0;
   std::size_t last_ = 0;  // where add() was last

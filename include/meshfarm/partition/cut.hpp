@@ -32,10 +32,10 @@ std::uint32_t default_parts(std::uint64_t triangles);
 
 /// Cuts a mesh into parts and publishes them in the stage: parts, boundary side file, manifest last
 /// (Xiong et al. 2008, 3.1). The parts depend on the input and on options.parts and options.weld
-/// only. No part has more than 1.15 times as many vertices as the mean, unless that many lie at one
-/// point. Memory: a million cells at most (1 GB while METIS works on them), and
-/// one part a thread; per-vertex state lives in mapped scratch files. Degenerate triangles are
-/// dropped and counted. Throws DataError, IoError; IncompleteError when stopped.
+/// only. No part has more than 1.15 times as many vertices as the mean, however they lie. Memory: a
+/// million cells at most (1 GB while METIS works on them), and one part a thread; per-vertex state
+/// lives in mapped scratch files. Degenerate triangles are dropped and counted. Throws DataError,
+/// IoError; IncompleteError when stopped.
 Manifest cut_mesh(MeshSource& source, const Stage& stage, const CutOptions& options);
 
 }  // namespace meshfarm

@@ -197,6 +197,34 @@ TEST_CASE("parts come out even with vertices far out and where triangles are far
   check_even(dense, folder / "dense");
 }
 
+TEST_CASE("parts come out even with many vertices at one point, welded or not") {
+  constexpr std::uint32_t k_crowd = 20'000;
+  const Mesh sheet = test::grid(150, 150);
+  const Mesh mesh = test::with_crowd(sheet, k_crowd);
+  const test::TempFolder folder;
+  for (const Weld weld : {Weld::exact, Weld::off}) {
+    const std::filesystem::path here = folder / (weld == Weld::exact ? "welded" : "apart");
+    const CutMesh made = cut(mesh, {.parts = 28, .weld = weld, .threads = 1}, here / "1");
+    REQUIRE(made.parts.size() == 28);
+    std::uint64_t most = 0;
+    std::uint64_t all = 0;
+    for (const PartEntry& part : made.manifest.parts) {
+      most = std::max(most, part.vertices);
+      all += part.vertices;
+    }
+    CHECK(all == sheet.positions.size() + (weld == Weld::off ? k_crowd : 0));
+    CHECK(static_cast<double>(most) * 28 <= 1.15 * static_cast<double>(all));
+    CHECK(made.manifest.coincident_vertices == (weld == Weld::off ? 0 : k_crowd));
+    for (const unsigned threads : {2U, 5U}) {
+      const std::filesystem::path other = here / std::to_string(threads);
+      cut(mesh, {.parts = 28, .weld = weld, .threads = threads}, other);
+      for (const char* name : {"parts/000000.part", "parts/000027.part", "boundary"}) {
+        CHECK(read_file(here / "1" / name) == read_file(other / name));
+      }
+    }
+  }
+}
+
 TEST_CASE("how many triangles have two corners at one place does not depend on the seams") {
   const test::TempFolder folder;
   for (const std::uint32_t parts : {1U, 2U, 5U}) {

@@ -178,6 +178,34 @@ TEST_CASE("slabs come out even with vertices far out, in many sizes, or in one p
   check_even(wall, folder / "wall");
 }
 
+TEST_CASE("slabs come out even with many vertices at one point, welded or not") {
+  constexpr std::uint32_t k_crowd = 20'000;
+  const Mesh sheet = test::grid(300, 30);
+  const Mesh mesh = test::with_crowd(sheet, k_crowd);
+  const test::TempFolder folder;
+  for (const Weld weld : {Weld::exact, Weld::off}) {
+    const std::filesystem::path here = folder / (weld == Weld::exact ? "welded" : "apart");
+    const Generated made = generate(mesh, {.streams = 28, .weld = weld, .threads = 1}, here / "1");
+    REQUIRE(made.streams.size() == 28);
+    std::uint64_t most = 0;
+    std::uint64_t all = 0;
+    for (const PartEntry& entry : made.manifest.parts) {
+      most = std::max(most, entry.vertices);
+      all += entry.vertices;
+    }
+    CHECK(all == sheet.positions.size() + (weld == Weld::off ? k_crowd : 0));
+    CHECK(static_cast<double>(most) * 28 <= 1.15 * static_cast<double>(all));
+    CHECK(made.manifest.coincident_vertices == (weld == Weld::off ? 0 : k_crowd));
+    for (const unsigned threads : {2U, 5U}) {
+      const Mesh other = weld == Weld::exact ? shuffled(mesh, threads) : mesh;
+      const Generated again = generate(other, {.streams = 28, .weld = weld, .threads = threads},
+                                       here / std::to_string(threads));
+      CHECK(made.files == again.files);
+      CHECK(made.boundary == again.boundary);
+    }
+  }
+}
+
 TEST_CASE("a stream's vertices come in order, and triangles by their smallest vertex") {
   const test::TempFolder folder;
   const Generated made = generate(shuffled(test::torus(80, 30), 3), {.streams = 1}, folder.path());
