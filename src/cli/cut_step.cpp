@@ -44,7 +44,9 @@ Manifest cut_to_stage(const CutStep& step) {
   if (stage.has_manifest()) return taken_up(stage, wanted);
   // Readers of compressed and ascii files keep scratch of their own, which goes by this.
   if (!step.words.scratch.empty()) ::setenv("TMPDIR", step.words.scratch.c_str(), 1);
-  const auto source = open_mesh(step.input);
+  const auto source = open_mesh(
+      step.input, {.threads = step.words.scheme == Scheme::stream ? step.words.stream.threads
+                                                                  : step.words.cut.threads});
   publish_record(stage, wanted);
   ProgressPrinter printer(step.talk.progress());
   const auto with_common = [&](auto options) {

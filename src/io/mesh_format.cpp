@@ -19,7 +19,7 @@ namespace {
 struct MeshFormat {
   std::string_view extension;
   bool (*recognises)(const InputFile& file);  // by content
-  std::unique_ptr<MeshSource> (*open)(InputFile file);
+  std::unique_ptr<MeshSource> (*open)(InputFile file, const OpenOptions& options);
   bool can_be_written;
 };
 
@@ -34,10 +34,11 @@ std::string lower(std::string text) {
 
 }  // namespace
 
-std::unique_ptr<MeshSource> open_mesh(const std::filesystem::path& path) {
+std::unique_ptr<MeshSource> open_mesh(const std::filesystem::path& path,
+                                      const OpenOptions& options) {
   InputFile file(path);
   for (const MeshFormat& format : k_formats) {
-    if (format.recognises(file)) return format.open(std::move(file));
+    if (format.recognises(file)) return format.open(std::move(file), options);
   }
   throw DataError(path.string() +
                   ": unknown format; meshfarm reads PLY (ascii, binary little or big endian), "

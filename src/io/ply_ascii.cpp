@@ -1,10 +1,16 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
+#include <algorithm>
+#include <optional>
 #include <utility>
+#include <vector>
 
+#include <meshfarm/util/control_groups.hpp>
 #include <meshfarm/util/errors.hpp>
+#include <meshfarm/util/parallel.hpp>
 
 #include "ply_ascii_cursor.hpp"
+#include "ply_ascii_pieces.hpp"
 #include "ply_body.hpp"
 
 namespace meshfarm {
@@ -13,46 +19,55 @@ namespace {
 /// Records of an ascii PLY file: each begins on a line of its own. Some writers wrap long ones;
 /// such a record must end where a line does, so that a missing value is still noticed. Blank lines
 /// do not count.
+///
+/// Whole lines are cut into pieces, which threads parse, each as a body of its own. Their records
+/// are taken in order as long as each piece before had nothing odd about it; from there to the last
+/// of those lines records are read one by one. So there is one way to read a record, and messages
+/// tell its line.
 class AsciiBody final : public PlyBody {
  public:
-  AsciiBody(std::unique_ptr<ByteStream> stream, const std::filesystem::path& path,
-            const PlyHeader& header, AsciiFloats floats)
-      : cursor_(std::move(stream), header.line_end, header.lines + 1), path_(path) {
-    if (floats == AsciiFloats::as_doubles) cursor_.read_floats_wide();
+  AsciiBody(std::unique_ptr<ByteStream> stream, const std::filesystem::path& path, char line_end,
+            std::uint64_t line, const AsciiOptions& options)
+      : cursor_(std::move(stream), line_end, line),
+        path_(path),
+        line_end_(line_end),
+        options_(options) {
+    if (options.floats == AsciiFloats::as_doubles) cursor_.read_floats_wide();
+    if (options_.threads == 0) options_.threads = processors();
   }
 
   void read_vertices(const PlyElement& element, Batch<Vec3>& batch) override {
+    const auto parse = [&](AsciiBody& body, Piece& piece) {
+      const Batch<Vec3>::Take keep = [&](std::span<const Vec3> some) {
+        piece.points.insert(piece.points.end(), some.begin(), some.end());
+      };
+      Batch<Vec3> points(keep);
+      body.read_vertices_to_end(element, points);
+    };
+    const auto take = [&](const Piece& piece) {
+      for (const Vec3& p : piece.points) batch.add(p);
+    };
+    const std::vector<std::size_t> axis_of = axes_of(element);
     begin(element);
-    std::vector<std::size_t> axis_of(element.properties.size(), 3);
-    for (std::size_t axis = 0; axis < 3; ++axis) axis_of[element.axes[axis]] = axis;
-    for (; index_ < element.count; ++index_) {
+    while (index_ < element.count) {
+      if (read_pieces(parse, take)) continue;
       next_record();
-      std::array<double, 3> xyz{};
-      for (std::size_t i = 0; i < axis_of.size(); ++i) {
-        if (axis_of[i] == 3) {
-          skip(element.properties[i]);
-        } else {
-          xyz[axis_of[i]] = read_coordinate(element.properties[i].type);
-        }
-      }
-      end_record();
-      const Vec3 p{xyz[0], xyz[1], xyz[2]};
-      batch.add(is_finite(p) ? p : k_no_position);
+      read_vertex(element, axis_of, batch);
     }
     batch.flush();
   }
 
   void read_corners(const PlyElement& element, TriangleMaker& maker) override {
+    const auto parse = [&](AsciiBody& body, Piece& piece) {
+      piece.corners.emplace(maker.vertices());
+      body.read_corners_to_end(element, *piece.corners);
+    };
+    const auto take = [&](const Piece& piece) { piece.corners->play(maker); };
     begin(element);
-    for (; index_ < element.count; ++index_) {
+    while (index_ < element.count) {
+      if (read_pieces(parse, take)) continue;
       next_record();
-      maker.begin(element.role);
-      for (std::size_t i = 0; i < element.properties.size(); ++i) {
-        const PlyProperty& property = element.properties[i];
-        i == element.index_list ? read_corner_list(property, maker) : skip(property);
-      }
-      end_record();
-      maker.end();
+      read_face(element, maker);
     }
     maker.batch().flush();
   }
@@ -68,10 +83,109 @@ class AsciiBody final : public PlyBody {
   }
 
   bool at_end() override { return !cursor_.next_record(); }
-  bool has_lost_digits() const override { return cursor_.has_lost_digits(); }
+  bool has_lost_digits() const override { return has_lost_digits_ || cursor_.has_lost_digits(); }
   std::string take_oddity() override { return std::exchange(oddity_, {}); }
 
  private:
+  /// What a thread has read.
+  struct Piece {
+    std::string_view text;
+    bool is_clean = false;
+    std::uint64_t records = 0;
+    std::uint64_t lines = 0;
+    bool has_lost_digits = false;
+    std::vector<Vec3> points;
+    std::optional<CornerRecord> corners;
+  };
+
+  static std::vector<std::size_t> axes_of(const PlyElement& element) {
+    std::vector<std::size_t> axis_of(element.properties.size(), 3);
+    for (std::size_t axis = 0; axis < 3; ++axis) axis_of[element.axes[axis]] = axis;
+    return axis_of;
+  }
+
+  /// Of a piece's body: all records.
+  void read_vertices_to_end(const PlyElement& element, Batch<Vec3>& batch) {
+    const std::vector<std::size_t> axis_of = axes_of(element);
+    begin(element);
+    while (is_at_record()) read_vertex(element, axis_of, batch);
+    batch.flush();
+  }
+  void read_corners_to_end(const PlyElement& element, CornerRecord& corners) {
+    begin(element);
+    while (is_at_record()) read_face(element, corners);
+  }
+
+  void read_vertex(const PlyElement& element, const std::vector<std::size_t>& axis_of,
+                   Batch<Vec3>& batch) {
+    std::array<double, 3> xyz{};
+    for (std::size_t i = 0; i < axis_of.size(); ++i) {
+      if (axis_of[i] == 3) {
+        skip(element.properties[i]);
+      } else {
+        xyz[axis_of[i]] = read_coordinate(element.properties[i].type);
+      }
+    }
+    end_record();
+    const Vec3 p{xyz[0], xyz[1], xyz[2]};
+    batch.add(is_finite(p) ? p : k_no_position);
+    ++index_;
+  }
+
+  template <class Maker>
+  void read_face(const PlyElement& element, Maker& maker) {
+    maker.begin(element.role);
+    for (std::size_t i = 0; i < element.properties.size(); ++i) {
+      const PlyProperty& property = element.properties[i];
+      i == element.index_list ? read_corner_list(property, maker) : skip(property);
+    }
+    end_record();
+    maker.end();
+    ++index_;
+  }
+
+  /// Takes the next records from pieces. False if the next one is to be read by itself.
+  template <class Parse, class Take>
+  bool read_pieces(const Parse& parse, const Take& take) {
+    if (options_.threads < 2 || cursor_.position() < one_by_one_to_) return false;
+    const std::string_view text = cursor_.lines_ahead();
+    const std::uint64_t start = cursor_.position();
+    one_by_one_to_ = start + std::max<std::size_t>(1, text.size());
+    if (text.size() < k_worth_dividing) return false;
+    std::vector<Piece> pieces;
+    for (const std::string_view lines : pieces_of(text, options_.threads, line_end_)) {
+      pieces.push_back({.text = lines});
+    }
+    parallel_for(pieces.size(), options_.threads,
+                 [&](std::uint64_t i) { read_piece(pieces[i], parse); });
+    for (const Piece& piece : pieces) {
+      if (!piece.is_clean || piece.records > element_->count - index_) {
+        if (++odd_texts_ == k_most_odd_texts) options_.threads = 1;
+        return cursor_.position() != start;
+      }
+      take(piece);
+      index_ += piece.records;
+      cursor_.pass(piece.text.size(), piece.lines);
+      has_lost_digits_ = has_lost_digits_ || piece.has_lost_digits;
+    }
+    return true;
+  }
+
+  template <class Parse>
+  void read_piece(Piece& piece, const Parse& parse) const {
+    AsciiBody body(std::make_unique<TextStream>(piece.text), path_, line_end_, 0,
+                   {options_.floats, 1});
+    try {
+      parse(body, piece);
+    } catch (const DataError&) {
+      return;  // it is read once more, and the message then tells its place in the file
+    }
+    piece.is_clean = body.oddity_.empty();
+    piece.records = body.index_;
+    piece.lines = body.cursor_.line();
+    piece.has_lost_digits = body.has_lost_digits();
+  }
+
   void begin(const PlyElement& element) {
     element_ = &element;
     index_ = 0;
@@ -84,11 +198,14 @@ class AsciiBody final : public PlyBody {
   }
   [[noreturn]] void fail(const std::string& why) const { throw DataError(place() + ": " + why); }
 
+  bool is_at_record() {
+    if (!cursor_.next_record()) return false;
+    line_ = cursor_.line();
+    return true;
+  }
+
   void next_record() {
-    if (cursor_.next_record()) {
-      line_ = cursor_.line();
-      return;
-    }
+    if (is_at_record()) return;
     throw DataError(path_.string() + ": truncated: the file ends on line " +
                     std::to_string(cursor_.line()) + ", before " + element_->name + " " +
                     std::to_string(index_) + " of " + std::to_string(element_->count));
@@ -124,7 +241,8 @@ class AsciiBody final : public PlyBody {
     return *value;
   }
 
-  void read_corner_list(const PlyProperty& property, TriangleMaker& maker) {
+  template <class Maker>
+  void read_corner_list(const PlyProperty& property, Maker& maker) {
     for (std::uint64_t left = read_list_length(property); left > 0; --left) {
       need_value();
       const std::optional<std::int64_t> index = cursor_.whole(property.type);
@@ -155,20 +273,29 @@ class AsciiBody final : public PlyBody {
     }
   }
 
+  static constexpr std::size_t k_worth_dividing = std::size_t{64} << 10;
+  static constexpr unsigned k_most_odd_texts = 8;  // records may be wrapped, all of them
+
   AsciiCursor cursor_;
   const std::filesystem::path& path_;
+  char line_end_;
+  AsciiOptions options_;
   const PlyElement* element_ = nullptr;
   std::uint64_t index_ = 0;
   std::uint64_t line_ = 0;  // on which the record begins
   std::string oddity_;
+  std::uint64_t one_by_one_to_ = 0;  // position in the stream
+  unsigned odd_texts_ = 0;
+  bool has_lost_digits_ = false;  // in pieces
 };
 
 }  // namespace
 
 std::unique_ptr<PlyBody> make_ascii_body(std::unique_ptr<ByteStream> stream,
                                          const std::filesystem::path& path, const PlyHeader& header,
-                                         AsciiFloats floats) {
-  return std::make_unique<AsciiBody>(std::move(stream), path, header, floats);
+                                         const AsciiOptions& options) {
+  return std::make_unique<AsciiBody>(std::move(stream), path, header.line_end, header.lines + 1,
+                                     options);
 }
 
 }  // namespace meshfarm

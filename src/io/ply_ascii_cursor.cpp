@@ -85,6 +85,17 @@ void AsciiCursor::refill(std::size_t at_least) {
   end_ = begin_ + window.size();
 }
 
+std::string_view AsciiCursor::lines_ahead() {
+  refill(ByteStream::k_max_window_bytes);
+  const std::string_view ahead(current_, static_cast<std::size_t>(end_ - current_));
+  return ahead.substr(0, ahead.rfind(line_end_) + 1);
+}
+
+void AsciiCursor::pass(std::size_t bytes, std::uint64_t lines) {
+  current_ += bytes;
+  line_ += lines;
+}
+
 bool AsciiCursor::next_record() {
   while (!has_value()) {
     if (current_ == end_) return false;

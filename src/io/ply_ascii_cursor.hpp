@@ -22,6 +22,17 @@ class AsciiCursor {
   /// The number of the line at hand, from 1.
   std::uint64_t line() const { return line_; }
 
+  /// Where the cursor stands in the stream.
+  std::uint64_t position() const {
+    return stream_->position() + static_cast<std::uint64_t>(current_ - begin_);
+  }
+
+  /// Whole lines that lie ahead, as many as one window holds; nothing if the first is too long for
+  /// that. Valid until the cursor moves by other means than pass().
+  std::string_view lines_ahead();
+  /// Steps over the first bytes of those, which have so many lines.
+  void pass(std::size_t bytes, std::uint64_t lines);
+
   /// Goes to the next line that is not blank. False if there is none.
   bool next_record();
   /// Leaves the line at hand. False if it has more values.

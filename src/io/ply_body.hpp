@@ -164,12 +164,17 @@ class PlyBody {
 /// How the text of float properties is read.
 enum class AsciiFloats : std::uint8_t { as_floats, as_doubles };
 
+struct AsciiOptions {
+  AsciiFloats floats = AsciiFloats::as_floats;
+  unsigned threads = 1;  // 0: one a core
+};
+
 /// `stream` stands at the first byte after the header; `path` must outlive the body.
 std::unique_ptr<PlyBody> make_binary_body(std::unique_ptr<ByteStream> stream,
                                           const std::filesystem::path& path,
                                           const PlyHeader& header);
 std::unique_ptr<PlyBody> make_ascii_body(std::unique_ptr<ByteStream> stream,
                                          const std::filesystem::path& path, const PlyHeader& header,
-                                         AsciiFloats floats);
+                                         const AsciiOptions& options);
 
 }  // namespace meshfarm

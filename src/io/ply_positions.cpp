@@ -3,30 +3,10 @@
 #include "ply_positions.hpp"
 
 #include <algorithm>
-#include <cerrno>
-#include <cstdlib>
-#include <filesystem>
-#include <string>
+#include <bit>
 #include <utility>
 
-#include <fcntl.h>
-#include <unistd.h>
-
-#include <meshfarm/util/errors.hpp>
-
 namespace meshfarm {
-namespace {
-
-Fd make_scratch_file(const std::filesystem::path& folder) {
-  std::string name = (folder / "meshfarm.XXXXXX").string();
-  Fd fd(::mkostemp(name.data(), O_CLOEXEC));
-  if (!fd) throw_errno("cannot make", name);
-  ::unlink(name.c_str());
-  return fd;
-}
-
-}  // namespace
-
 PlyPositions::PlyPositions(Read read, const Place& place)
     : read_(std::move(read)),
       place_(place),
@@ -48,24 +28,17 @@ std::unique_ptr<PlyPositions> PlyPositions::in_file(const InputFile& file,
   return std::unique_ptr<PlyPositions>(new PlyPositions(read, place));
 }
 
-std::unique_ptr<PlyPositions> PlyPositions::in_scratch(const Scan& scan) {
-  const std::filesystem::path folder = std::filesystem::temp_directory_path();
-  const auto fd = std::make_shared<Fd>(make_scratch_file(folder));
-  Place place{.layout = {.record_bytes = sizeof(Vec3)}};
+std::unique_ptr<PlyPositions> PlyPositions::in_scratch(const KeptPositions& kept) {
+  const bool wide = kept.type() == PositionType::float64;
+  const std::size_t size = wide ? sizeof(double) : sizeof(float);
+  Place place{.layout = {.record_bytes = 3 * size}};
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    place.layout.offsets[axis] = axis * sizeof(double);
-    place.layout.types[axis] = PlyType::float64;
+    place.layout.offsets[axis] = axis * size;
+    place.layout.types[axis] = wide ? PlyType::float64 : PlyType::float32;
   }
   if constexpr (std::endian::native == std::endian::big) place.format = PlyFormat::binary_big;
-  scan([&](std::span<const Vec3> batch) {
-    write_all(fd->get(), {reinterpret_cast<const char*>(batch.data()), batch.size_bytes()}, folder);
-    place.count += batch.size();
-  });
-  const auto read = [fd, folder](std::uint64_t offset, std::span<char> out) {
-    if (read_at(fd->get(), offset, out, folder) != out.size()) {
-      throw IoError("cannot read a scratch file in", folder, EIO);
-    }
-  };
+  place.count = kept.count();
+  const auto read = [&kept](std::uint64_t offset, std::span<char> out) { kept.read(offset, out); };
   return std::unique_ptr<PlyPositions>(new PlyPositions(read, place));
 }
 

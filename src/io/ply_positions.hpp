@@ -9,9 +9,8 @@
 #include <span>
 #include <vector>
 
-#include <meshfarm/util/file.hpp>
-
 #include "byte_stream.hpp"
+#include "kept_positions.hpp"
 #include "ply_binary_records.hpp"
 #include "ply_header.hpp"
 
@@ -21,13 +20,11 @@ namespace meshfarm {
 /// polygons need, whose corners are mostly near to each other. 1 MB.
 class PlyPositions {
  public:
-  using Scan = std::function<void(const std::function<void(std::span<const Vec3>)>&)>;
-
   /// In the mesh file itself, which must outlive this. Nothing if its vertices lie at no known
   /// place.
   static std::unique_ptr<PlyPositions> in_file(const InputFile& file, const PlyHeader& header);
-  /// In a scratch file, to which all vertices are scanned.
-  static std::unique_ptr<PlyPositions> in_scratch(const Scan& scan);
+  /// In the scratch file of what was kept, which must outlive this.
+  static std::unique_ptr<PlyPositions> in_scratch(const KeptPositions& kept);
 
   Vec3 at(std::uint64_t vertex);
 

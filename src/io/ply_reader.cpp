@@ -9,6 +9,7 @@
 #include <meshfarm/util/errors.hpp>
 #include <meshfarm/util/log.hpp>
 
+#include "kept_positions.hpp"
 #include "ply_body.hpp"
 #include "ply_header.hpp"
 #include "ply_positions.hpp"
@@ -78,7 +79,8 @@ void check_counts(const PlyHeader& header, std::uint64_t at, std::uint64_t body_
 
 class PlySource final : public MeshSource {
  public:
-  explicit PlySource(InputFile file) : file_(std::move(file)) {
+  PlySource(InputFile file, const OpenOptions& options)
+      : file_(std::move(file)), options_(options) {
     const std::unique_ptr<ByteStream> stream = file_.open();
     const std::string_view start = stream->window(ByteStream::k_max_window_bytes);
     header_ = parse_ply_header(start.substr(0, ByteStream::k_max_window_bytes), file_.path());
@@ -94,8 +96,8 @@ class PlySource final : public MeshSource {
   std::uint64_t small_faces() const override { return small_faces_; }
 
   void scan_vertices(const std::function<void(std::span<const Vec3>)>& take) override {
-    if (!kept_.empty()) return take_kept(take);
-    parked_ = read_vertices(take);
+    if (kept_) return kept_->scan(take);
+    parked_ = read_vertices(take, Keep::where_slow);
   }
 
   void scan_triangles(const std::function<void(std::span<const WideTriangle>)>& take) override {
@@ -124,6 +126,8 @@ class PlySource final : public MeshSource {
   }
 
  private:
+  enum class Keep : std::uint8_t { where_slow, all };
+
   /// A body that stands before an element.
   struct Parked {
     std::unique_ptr<PlyBody> body;
@@ -131,39 +135,49 @@ class PlySource final : public MeshSource {
   };
 
   /// Reads all vertices, and keeps them if that is worth it. Returns what follows them.
-  Parked read_vertices(const std::function<void(std::span<const Vec3>)>& take) {
+  Parked read_vertices(const std::function<void(std::span<const Vec3>)>& take, Keep keep) {
     std::unique_ptr<PlyBody> body = open_body();
     std::size_t next = 0;
     while (header_.elements[next].role != PlyRole::vertices) body->skip(header_.elements[next++]);
     const PlyElement& vertices = header_.elements[next++];
-    std::vector<Vec3> keep;
+    std::unique_ptr<KeptPositions> kept;
+    const auto to_keep = [&](const auto& work) {
+      try {
+        work();
+      } catch (const IoError& error) {
+        if (keep == Keep::all) throw;
+        // A disk that is full costs no more than another scan.
+        log_info(std::string("vertices are read more than once: ") + error.what());
+        kept.reset();
+      }
+    };
     const Batch<Vec3>::Take take_and_keep = [&](std::span<const Vec3> points) {
-      keep.insert(keep.end(), points.begin(), points.end());
+      if (kept) to_keep([&] { kept->add(points); });
       take(points);
     };
-    Batch<Vec3> batch(is_worth_keeping(vertices) ? take_and_keep : take);
+    if (keep == Keep::all || is_worth_keeping()) {
+      to_keep([&] { kept = std::make_unique<KeptPositions>(info_.positions, vertices.count); });
+    }
+    Batch<Vec3> batch(kept ? take_and_keep : take);
     body->read_vertices(vertices, batch);
     warn(body->take_oddity());
     if (body->has_lost_digits()) {
       floats_ = AsciiFloats::as_doubles;  // from the next scan on
       info_.positions = PositionType::float64;
     } else {
-      kept_ = std::move(keep);
+      kept_ = std::move(kept);
     }
     return {std::move(body), next};
   }
 
   /// Of polygons alone is this asked. By whatever way is there, or else by another scan.
   Vec3 position_of(std::uint64_t vertex) {
-    if (!kept_.empty()) return kept_[vertex];
+    if (kept_ && kept_->is_in_memory()) return kept_->in_memory()[vertex];
+    if (!positions_ && kept_) positions_ = PlyPositions::in_scratch(*kept_);
     if (!positions_) positions_ = PlyPositions::in_file(file_, header_);
     if (positions_) return positions_->at(vertex);
-    if (is_worth_keeping(header_.vertices())) {
-      read_vertices([](std::span<const Vec3>) {});
-      return position_of(vertex);  // a second scan, should digits have been lost
-    }
-    positions_ = PlyPositions::in_scratch([this](const auto& take) { read_vertices(take); });
-    return positions_->at(vertex);
+    read_vertices([](std::span<const Vec3>) {}, Keep::all);
+    return position_of(vertex);  // a second scan, should digits have been lost
   }
 
   static bool has_corners(const PlyElement& element) {
@@ -171,18 +185,10 @@ class PlySource final : public MeshSource {
   }
 
   /// To parse or to decompress again takes longer than all else that a scan is for.
-  bool is_worth_keeping(const PlyElement& vertices) const {
+  bool is_worth_keeping() const {
     const bool is_slow =
         header_.format == PlyFormat::ascii || file_.compression() != Compression::none;
-    return is_slow && vertices.count <= k_most_kept;
-  }
-
-  void take_kept(const std::function<void(std::span<const Vec3>)>& take) const {
-    for (std::span<const Vec3> left(kept_); !left.empty();) {
-      const auto batch = left.first(std::min(left.size(), k_kept_batch));
-      take(batch);
-      left = left.subspan(batch.size());
-    }
+    return is_slow && options_.scans == Scans::many;
   }
 
   void fill_info() {
@@ -205,16 +211,15 @@ class PlySource final : public MeshSource {
     std::unique_ptr<ByteStream> stream = file_.open();
     stream->skip(header_.size_bytes);
     return header_.format == PlyFormat::ascii
-               ? make_ascii_body(std::move(stream), file_.path(), header_, floats_)
+               ? make_ascii_body(std::move(stream), file_.path(), header_,
+                                 {floats_, options_.threads})
                : make_binary_body(std::move(stream), file_.path(), header_);
   }
 
-  static constexpr std::uint64_t k_most_kept = std::uint64_t{2} << 20;  // 48 MB
-  static constexpr std::size_t k_kept_batch = 8192;
-
   InputFile file_;
+  OpenOptions options_;
   PlyHeader header_;
-  std::vector<Vec3> kept_;  // all vertices, or none
+  std::unique_ptr<KeptPositions> kept_;
   AsciiFloats floats_ = AsciiFloats::as_floats;
   std::unique_ptr<PlyPositions> positions_;
   Parked parked_;
@@ -229,8 +234,8 @@ bool is_ply_file(const InputFile& file) {
   return is_ply(file.open()->window(ByteStream::k_max_window_bytes));
 }
 
-std::unique_ptr<MeshSource> open_ply(InputFile file) {
-  return std::make_unique<PlySource>(std::move(file));
+std::unique_ptr<MeshSource> open_ply(InputFile file, const OpenOptions& options) {
+  return std::make_unique<PlySource>(std::move(file), options);
 }
 
 }  // namespace meshfarm

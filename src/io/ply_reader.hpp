@@ -14,6 +14,6 @@ namespace meshfarm {
 bool is_ply_file(const InputFile& file);
 
 /// Reads the header. Throws DataError if it is malformed, or claims more than the file can hold.
-std::unique_ptr<MeshSource> open_ply(InputFile file);
+std::unique_ptr<MeshSource> open_ply(InputFile file, const OpenOptions& options);
 
 }  // namespace meshfarm

@@ -30,7 +30,8 @@ struct MeshFileInfo {
 
 /// A mesh file that is read by scanning, as often as wanted, in memory that does not depend on its
 /// size: plain files are read by windows, compressed ones (told by content) decompressed on the
-/// way. Where that is slow, up to 50 MB of vertices are kept from one scan to the next. Polygons
+/// way. Where that is slow, vertices are kept from one scan to the next: 50 MB of them in memory,
+/// more in a scratch file in $TMPDIR (or /tmp), of 12 or 24 bytes a vertex. Polygons
 /// come as triangles inside them, tristrips as theirs; a mesh without faces has no triangles.
 /// Malformed input throws DataError with the place: element, index, byte (of the decompressed file)
 /// or line. Only a scan of both vertices and triangles has seen all of the file.
@@ -49,9 +50,18 @@ class MeshSource {
   virtual std::uint64_t small_faces() const { return 0; }
 };
 
+/// How often all vertices will be scanned: for one scan nothing is kept.
+enum class Scans : std::uint8_t { one, many };
+
+struct OpenOptions {
+  Scans scans = Scans::many;
+  unsigned threads = 0;  // that parse text; 0: one a core
+};
+
 /// Opens a mesh file by its content. Throws IoError, or DataError for an unknown format, a
 /// malformed header, or one that claims more than the file can hold.
-std::unique_ptr<MeshSource> open_mesh(const std::filesystem::path& path);
+std::unique_ptr<MeshSource> open_mesh(const std::filesystem::path& path,
+                                      const OpenOptions& options = {});
 
 /// Reads a whole mesh into memory, without the triangles that use a vertex without a position.
 /// Throws DataError if it has 2^32 vertices or more.

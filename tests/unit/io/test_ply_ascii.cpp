@@ -1,5 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
+#include <cstdlib>
+#include <filesystem>
 #include <locale>
 
 #include <doctest/doctest.h>
@@ -19,6 +21,27 @@ std::string one_vertex(std::string_view type, std::string_view line) {
 
 std::vector<Triangle> triangles_of(std::string_view faces) {
   return read_bytes(ascii_square(faces)).mesh.triangles;
+}
+
+/// What so many threads make of a file: positions, triangles, and warnings or an error.
+struct ByThreads {
+  Mesh mesh;
+  PositionType positions = PositionType::float32;
+  std::string error;
+};
+
+ByThreads read_by(unsigned threads, std::string_view bytes) {
+  const TempFolder folder;
+  write_file(folder / "m.ply", bytes);
+  ByThreads made;
+  try {
+    const auto source = open_mesh(folder / "m.ply", {.threads = threads});
+    made.mesh = read_mesh(*source);
+    made.positions = source->info().positions;
+  } catch (const DataError& error) {
+    made.error = std::string(error.what()).substr(folder.path().string().size());
+  }
+  return made;
 }
 
 std::string strips(std::string_view indices) {
@@ -291,4 +314,100 @@ TEST_CASE("a long file is read through many windows, wherever they end") {
     CHECK(read.mesh.triangles.size() == 253);
     CHECK(read.mesh.triangles.back() == Triangle{0, 227'700, 228'600});
   }
+}
+
+TEST_CASE("any number of threads reads the same, and tells the same line of what is wrong") {
+  constexpr int k_count = 60'000;
+  std::vector<std::string> lines;
+  for (int i = 0; i < k_count; ++i) lines.push_back(std::to_string(i) + ".25 7 0.5");
+  for (int i = 0; i + 3 < k_count; ++i) {
+    const std::string three =
+        std::to_string(i) + " " + std::to_string(i + 1) + " " + std::to_string(i + 2);
+    lines.push_back(i % 5 == 0 ? "4 " + three + " " + std::to_string(i + 3) : "3 " + three);
+  }
+  struct Change {
+    std::size_t line;
+    std::string text;
+    std::string error;
+  };
+  const std::string at = "/m.ply: ";
+  const std::vector<Change> changes = {
+      {0, lines[0], ""},
+      {41'000, "\n\n  1 2 3 \n\t", ""},    // blank lines
+      {41'000, "1\n2\n3", ""},             // wrapped
+      {41'000, "1 2 3 4 5", ""},           // more than is declared
+      {41'000, "1 nan 3", ""},             // no position
+      {41'000, "1.123456789012 2 3", ""},  // digits that no float holds
+      {100'000, "3 0 1\n2", ""},           // wrapped
+      {100'000, "2 0 1", ""},              // no face
+      {41'000, "1 2", at + "vertex 41000 on line 41010: the line ends before its last value"},
+      {41'000, "1 x 3",
+       at + "vertex 41000 on line 41010: the coordinate 'x' is no number of type float"},
+      {100'000, "3 0 1 60000",
+       at + "face 40000 on line 100010: vertex index 60000 is out of range: there are 60000 "
+            "vertices"},
+  };
+  for (const Change& change : changes) {
+    CAPTURE(change.text);
+    std::string body;
+    for (std::size_t i = 0; i < lines.size(); ++i) {
+      body += (i == change.line ? change.text : lines[i]) + "\n";
+    }
+    const std::string bytes =
+        "ply\nformat ascii 1.0\n" + mesh_elements(k_count, k_count - 3) + "end_header\n" + body;
+    REQUIRE(bytes.size() > (2 << 20));
+    const ByThreads one = read_by(1, bytes);
+    CHECK(one.error == change.error);
+    for (const unsigned threads : {2U, 5U}) {
+      const ByThreads many = read_by(threads, bytes);
+      CHECK(many.error == one.error);
+      CHECK(many.positions == one.positions);
+      CHECK(many.mesh.triangles == one.mesh.triangles);
+      REQUIRE(many.mesh.positions.size() == one.mesh.positions.size());
+      for (std::size_t i = 0; i < one.mesh.positions.size(); ++i) {
+        const Vec3 a = one.mesh.positions[i];
+        const Vec3 b = many.mesh.positions[i];
+        REQUIRE((a == b || (!has_position(a) && !has_position(b))));
+      }
+    }
+  }
+}
+
+TEST_CASE("text is parsed once, however often its vertices are scanned and however many") {
+  constexpr std::size_t k_count = (std::size_t{2} << 20) + 10'000;  // too many to keep in memory
+  std::string bytes = "ply\nformat ascii 1.0\n" + mesh_elements(k_count, 1) + "end_header\n";
+  for (std::size_t i = 0; i < k_count; ++i) bytes += std::to_string(i % 1000) + " 0 1\n";
+  bytes += "4 0 1 2 3\n";
+  const TempFolder folder;
+  const auto count = [](MeshSource& source) {
+    std::size_t right = 0;
+    std::size_t all = 0;
+    source.scan_vertices([&](std::span<const Vec3> batch) {
+      for (const Vec3& p : batch) right += p == Vec3{static_cast<double>(all++ % 1000), 0, 1};
+    });
+    return right;
+  };
+  write_file(folder / "m.ply", bytes);
+  const auto source = open_mesh(folder / "m.ply");
+  CHECK(count(*source) == k_count);
+  std::size_t triangles = 0;
+  source->scan_triangles([&](std::span<const WideTriangle> batch) { triangles += batch.size(); });
+  CHECK(triangles == 2);
+  std::filesystem::resize_file(folder / "m.ply", bytes.size() / 2);
+  CHECK(count(*source) == k_count);
+  CHECK(std::filesystem::directory_iterator(folder.path())->path().filename() == "m.ply");
+
+  write_file(folder / "m.ply", bytes);
+  const auto once = open_mesh(folder / "m.ply", {.scans = Scans::one});
+  CHECK(count(*once) == k_count);
+  std::filesystem::resize_file(folder / "m.ply", bytes.size() / 2);
+  CHECK_THROWS_AS(count(*once), DataError);
+
+  write_file(folder / "m.ply", bytes);
+  const Quiet quiet;
+  ::setenv("TMPDIR", (folder / "none").c_str(), 1);  // no scratch: it is read again
+  const auto without = open_mesh(folder / "m.ply");
+  CHECK(count(*without) == k_count);
+  CHECK(count(*without) == k_count);
+  ::unsetenv("TMPDIR");
 }
