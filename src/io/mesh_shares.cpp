@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <utility>
 
+#include <sys/mman.h>
+
 #include <meshfarm/io/mesh_shares.hpp>
 #include <meshfarm/util/errors.hpp>
 
@@ -38,6 +40,7 @@ MeshShares::MeshShares(const Options& options, const Memory& memory)
     : positions_(options.positions),
       map_(memory.map > 0 ? MappedFile::memory(memory.map)
                           : MappedFile::scratch(options.folder, options.vertices * sizeof(Place))),
+      is_in_memory_(memory.map > 0),
       vertices_(options.folder, options.shares, memory.vertices),
       triangles_(options.folder, options.shares, memory.triangles),
       packers_(options.shares),
@@ -69,7 +72,19 @@ void MeshShares::add_vertices(std::span<const Vec3> batch, std::span<const std::
     ++next_[share];
     put_position(share, batch[i]);
   }
+  forget_pages(batch.size());
   if (added_ == map.size()) vertices_.finish();  // its buffers are of no more use
+}
+
+/// Unmaps the pages of the scratch file from time to time. What they hold stays in the page cache
+/// as long as there is room for it, which counts for nobody's memory.
+void MeshShares::forget_pages(std::size_t added) {
+  constexpr std::size_t k_seldom = std::size_t{8} << 20;
+  since_forgotten_ += added;
+  if (since_forgotten_ < k_seldom || is_in_memory_) return;
+  since_forgotten_ = 0;
+  const std::span<Place> map = map_.as_span<Place>();
+  ::madvise(map.data(), map.size_bytes(), MADV_DONTNEED);  // advice: nothing is lost if it fails
 }
 
 void MeshShares::put_position(std::uint32_t share, Vec3 p) {
@@ -102,6 +117,7 @@ void MeshShares::add_triangles(std::span<const WideTriangle> batch) {
       for (const Place& corner : {a, b, c}) boundary_vertices_.put(corner.share, corner.place);
     }
   }
+  forget_pages(batch.size());
 }
 
 void MeshShares::finish() {

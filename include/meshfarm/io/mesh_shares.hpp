@@ -38,7 +38,8 @@ struct BoundaryNumbers {
 
 /// Divides a mesh while it is scanned, in bounded memory. The caller assigns each vertex to a
 /// share. A triangle goes to the share of its vertices, or to the boundary if they are in several.
-/// The map from a vertex to its share and place is a mapped scratch file, or memory too.
+/// The map from a vertex to its share and place is a mapped scratch file, of which few pages stay
+/// mapped where the input has locality, or memory too.
 class MeshShares {
  public:
   struct Options {
@@ -91,9 +92,12 @@ class MeshShares {
   };
   MeshShares(const Options& options, const Memory& memory);
   void put_position(std::uint32_t share, Vec3 p);
+  void forget_pages(std::size_t added);
 
   PositionType positions_;
   MappedFile map_;
+  bool is_in_memory_;
+  std::size_t since_forgotten_ = 0;
   BucketFile vertices_;
   BucketFile triangles_;  // packed
   std::vector<TrianglePacker> packers_;
