@@ -5,6 +5,7 @@
 
 #include <meshfarm/farm/endpoint.hpp>
 #include <meshfarm/pipeline/run_trace.hpp>
+#include <meshfarm/staging/file_system.hpp>
 #include <meshfarm/util/errors.hpp>
 #include <meshfarm/util/log.hpp>
 
@@ -130,6 +131,15 @@ Trace read_newest_trace(const Stage& stage, std::optional<std::uint32_t> epoch) 
   }
   const TraceName name{epoch.value_or(traces.back())};
   return parse_trace(stage.read(name), stage.path(name).string());
+}
+
+std::optional<double> age_of_trace(const Stage& stage, std::uint32_t epoch) {
+  const std::filesystem::path path = stage.path(TraceName{epoch});
+  const auto now = server_clock(path.parent_path());
+  std::error_code error;
+  const auto written = std::filesystem::last_write_time(path, error);
+  if (!now || error) return std::nullopt;
+  return std::max(0.0, std::chrono::duration<double>(*now - written).count());
 }
 
 Trace read_traced_run(const Stage& stage) {

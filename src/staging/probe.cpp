@@ -107,12 +107,18 @@ void probe_room(const std::filesystem::path& folder, std::uint64_t bytes) {
   if (const int error = fd.close(); error != 0) throw IoError("cannot close", file.path(), error);
 }
 
-std::filesystem::file_time_type clock_of(const std::filesystem::path& folder) {
+std::optional<std::filesystem::file_time_type> server_clock(const std::filesystem::path& folder) {
   const ProbeFile file(folder / (".clock." + std::to_string(::getpid()) + ".tmp"));
+  ::unlink(file.path().c_str());  // left behind by a dead process of our number
+  constexpr int k_new = O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC;
+  if (!Fd(::open(file.path().c_str(), k_new, 0600))) return std::nullopt;
   std::error_code error;
-  const bool made = bool(Fd(::open(file.path().c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0600)));
   const auto time = std::filesystem::last_write_time(file.path(), error);
-  return made && !error ? time : std::filesystem::file_time_type::clock::now();
+  return error ? std::nullopt : std::optional(time);
+}
+
+std::filesystem::file_time_type clock_of(const std::filesystem::path& folder) {
+  return server_clock(folder).value_or(std::filesystem::file_time_type::clock::now());
 }
 
 bool keeps_private(const std::filesystem::path& folder) {

@@ -41,8 +41,10 @@ void probe_room(const std::filesystem::path& folder, std::uint64_t bytes);
 std::filesystem::path scratch_folder(const std::filesystem::path& wanted,
                                      const std::filesystem::path& otherwise, std::uint64_t bytes);
 
-/// The time as the folder's server tells it, by a file that is made and removed; where none can be
-/// made, this host's.
+/// The time as the folder's server tells it, by a file that is made and removed; nothing where none
+/// can be made.
+std::optional<std::filesystem::file_time_type> server_clock(const std::filesystem::path& folder);
+/// The same; where no file can be made, this host's.
 std::filesystem::file_time_type clock_of(const std::filesystem::path& folder);
 
 /// Whether a file that is made for its owner alone stays so. Throws IoError.

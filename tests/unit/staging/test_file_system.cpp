@@ -1,9 +1,11 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
+#include <chrono>
 #include <csignal>
 #include <cstdint>
 #include <cstdlib>
 #include <filesystem>
+#include <fstream>
 #include <string>
 
 #include <doctest/doctest.h>
@@ -114,6 +116,19 @@ TEST_CASE("a probe measures, and leaves nothing behind") {
   CHECK(probe.keeps_private);
   CHECK(probe.has_links);
   CHECK(std::filesystem::is_empty(folder.path()));
+}
+
+TEST_CASE("the server's clock is told by a file, or not at all") {
+  const test::TempFolder folder;
+  const auto first = server_clock(folder.path());
+  REQUIRE(first);
+  std::ofstream(folder / "later") << "x";
+  const auto later = std::filesystem::last_write_time(folder / "later");
+  CHECK(later >= *first);
+  CHECK(later - *first < std::chrono::seconds(20));
+  std::filesystem::remove(folder / "later");
+  CHECK(std::filesystem::is_empty(folder.path()));
+  CHECK_FALSE(server_clock(folder / "absent"));
 }
 
 TEST_CASE("a private file leaves nothing behind either") {
