@@ -56,9 +56,9 @@ class StatusCommand : public Command {
         decode_manifest(stage.read(ManifestName{}), stage.path(ManifestName{}).string());
     if (!stage.traces().empty()) {
       status.trace = read_newest_trace(stage);
-      status.age_s = age_of_trace(stage, status.trace->head.epoch);
       if (status.trace->end) status.times = read_run_times(stage, status.trace->head.run);
     }
+    status.now_unix_s = server_unix_s(stage.path(TraceName{1}).parent_path());
     status.no_room = is_silent(status) && is_full(stage);
     return status;
   }

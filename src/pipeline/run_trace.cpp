@@ -16,9 +16,13 @@ double seconds(FarmTime time) {
   return std::chrono::duration<double>(time).count();
 }
 
-double unix_seconds() {
+/// By a clock that whoever reads the trace can ask, too.
+double unix_seconds(const Stage& stage) {
+  const std::filesystem::path folder = stage.path(TraceName{1}).parent_path();
+  std::error_code ignored;
+  std::filesystem::create_directory(folder, ignored);
   const auto since = std::chrono::system_clock::now().time_since_epoch();
-  return std::chrono::duration<double>(std::chrono::duration_cast<FarmTime>(since)).count();
+  return server_unix_s(folder).value_or(std::chrono::duration<double>(since).count());
 }
 
 TraceLine line_of(const WorkerJoined& e, double t) {
@@ -75,7 +79,7 @@ void RunTrace::event(const FarmEvent& event, FarmTime at) {
   if (const auto* began = std::get_if<RunBegan>(&event)) {
     head_.epoch = began->epoch;
     head_.host = began->host;
-    head_.unix_s = unix_seconds();
+    head_.unix_s = unix_seconds(stage_);
     log_ = std::make_unique<LineLog>(stage_.path(TraceName{began->epoch}));
     return add(head_);
   }
@@ -131,15 +135,6 @@ Trace read_newest_trace(const Stage& stage, std::optional<std::uint32_t> epoch) 
   }
   const TraceName name{epoch.value_or(traces.back())};
   return parse_trace(stage.read(name), stage.path(name).string());
-}
-
-std::optional<double> age_of_trace(const Stage& stage, std::uint32_t epoch) {
-  const std::filesystem::path path = stage.path(TraceName{epoch});
-  const auto now = server_clock(path.parent_path());
-  std::error_code error;
-  const auto written = std::filesystem::last_write_time(path, error);
-  if (!now || error) return std::nullopt;
-  return std::max(0.0, std::chrono::duration<double>(*now - written).count());
 }
 
 Trace read_traced_run(const Stage& stage) {

@@ -37,7 +37,7 @@ struct WorkerLine {
 struct Facts {
   std::string phase;
   TraceState state;
-  double age_s = 0;   // since the trace was written; 0: it cannot be told, or there is an end
+  double age_s = 0;   // since the last word of the trace; 0: it cannot be told, or that was the end
   double rate = 0;    // triangles a second
   double eta_s = -1;  // below 0: not known
   double elapsed_s = 0;
@@ -76,8 +76,7 @@ std::string phase_of(const StageStatus& status, const Facts& facts) {
   if (farmed) return "stitching and finishing";
   if (state.storage_stalls) return "waiting for the storage, which stalls";
   if (state.workers.empty()) return "waiting for workers ('meshfarm worker STAGE' on any host)";
-  return status.age_s ? "simplifying"
-                      : "simplifying, when last heard of (how long ago cannot be told)";
+  return status.now_unix_s ? "simplifying" : "simplifying when last heard of; when, cannot be told";
 }
 
 /// Triangles a second, by the jobs that ended lately.
@@ -96,7 +95,8 @@ Facts facts_of(const StageStatus& status) {
   const Trace& trace = *status.trace;
   Facts facts;
   facts.state = trace.state.value_or(TraceState{});
-  facts.age_s = trace.end ? 0 : std::max(0.0, status.age_s.value_or(0));
+  const double now = status.now_unix_s.value_or(0) - trace.head.unix_s;
+  facts.age_s = trace.end ? 0 : std::max(0.0, now - last_time(trace));
   facts.elapsed_s = last_time(trace) + facts.age_s;
   facts.phase = phase_of(status, facts);
   facts.rate = rate_of(trace, last_time(trace));
@@ -198,7 +198,8 @@ std::string line(const std::string& label, const std::string& value) {
 }  // namespace
 
 bool is_silent(const StageStatus& status) {
-  return status.trace && !status.trace->end && status.age_s.value_or(k_silent_s) > k_quiet_s;
+  if (!status.trace || status.trace->end) return false;
+  return !status.now_unix_s || facts_of(status).age_s > k_quiet_s;
 }
 
 bool is_over(const StageStatus& status) {

@@ -117,6 +117,13 @@ std::optional<std::filesystem::file_time_type> server_clock(const std::filesyste
   return error ? std::nullopt : std::optional(time);
 }
 
+std::optional<double> server_unix_s(const std::filesystem::path& folder) {
+  const auto clock = server_clock(folder);
+  if (!clock) return std::nullopt;
+  const auto since = std::chrono::file_clock::to_sys(*clock).time_since_epoch();
+  return std::chrono::duration<double>(since).count();
+}
+
 std::filesystem::file_time_type clock_of(const std::filesystem::path& folder) {
   return server_clock(folder).value_or(std::filesystem::file_time_type::clock::now());
 }

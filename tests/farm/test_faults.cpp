@@ -206,6 +206,31 @@ TEST_CASE("a disk that is full for a while is waited for, and status says so") {
   bench.check_result(bench.path("run/out.ply"));
 }
 
+TEST_CASE("status compares no two hosts' clocks") {
+  Bench& bench = parts();
+  for (const char* ahead : {"-3600", "3600"}) {
+    CAPTURE(ahead);
+    bench.fresh();
+    const std::string stage = bench.path("run/stage");
+    ::setenv("LD_PRELOAD", MESHFARM_FAULT_SHIM, 1);
+    ::setenv("MESHFARM_FAULT_CLOCK_S", ahead, 1);
+    meshfarm::test::Process ventilator =
+        bench.start({"ventilator", stage, "--ratio", "0.05", "--bind", "127.0.0.1"});
+    ::unsetenv("LD_PRELOAD");
+    ::unsetenv("MESHFARM_FAULT_CLOCK_S");
+    const auto says = [&](const char* words) {
+      return bench.meshfarm({"status", stage}).out.find(words) != std::string::npos;
+    };
+    const auto waits = [&] { return says("waiting for the sink"); };
+    CHECK(meshfarm::test::wait_until(waits, 10));
+    ventilator.signal(SIGKILL);
+    CHECK(ventilator.wait() == -SIGKILL);
+    CHECK(says("waiting for the sink"));  // until then it was alive
+    const auto gone = [&] { return says("no word from the ventilator for 1"); };
+    CHECK(meshfarm::test::wait_until(gone, 30));
+  }
+}
+
 TEST_CASE("by --no-wait a full disk ends the run for now") {
   Bench& bench = parts();
   for (const char* where : {"run/stage/results", "run/stage/journal", "run/.out.ply"}) {

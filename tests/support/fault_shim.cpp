@@ -11,6 +11,9 @@
 //   MESHFARM_FAULT_BELOW  the folder
 //   MESHFARM_FAULT_WHILE  a file: as long as it is there, each write and fsync below
 //   the folder fails with ENOSPC, and nothing else is done
+//   MESHFARM_FAULT_DELAY_MS  each write, fsync, fdatasync, rename and link below the folder takes a
+//   while, up to so many milliseconds, told by the process's number and by the call's
+//   MESHFARM_FAULT_CLOCK_S  the host's clock is so many seconds ahead of the file server's
 //   MESHFARM_FAULT_FIRED  made when the fault happens, which it then does once; empty: in each
 //   process
 //
@@ -23,10 +26,12 @@
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <ctime>
 #include <string>
 
 #include <dlfcn.h>
 #include <fcntl.h>
+#include <poll.h>
 #include <unistd.h>
 
 namespace {
@@ -48,7 +53,9 @@ struct Fault {
   std::string below;
   std::string fired;
   std::string full_while;
+  unsigned long longest_delay_ms = 0;
   std::atomic<long> count{0};
+  std::atomic<unsigned long> delays{0};
 
   Fault() {
     char words[4096] = {};
@@ -60,6 +67,7 @@ struct Fault {
     if (!wanted.empty() && wanted != role) return;
     below = text_of("MESHFARM_FAULT_BELOW");
     full_while = text_of("MESHFARM_FAULT_WHILE");
+    longest_delay_ms = std::strtoul(text_of("MESHFARM_FAULT_DELAY_MS").c_str(), nullptr, 10);
     const std::string fault = text_of("MESHFARM_FAULT");
     const std::size_t first = fault.find(':');
     const std::size_t second = fault.find(':', first + 1);
@@ -82,6 +90,14 @@ struct Fault {
   template <class Where>
   bool is_full(const Where& where) const {
     return !full_while.empty() && ::access(full_while.c_str(), F_OK) == 0 && covers(where);
+  }
+  template <class Where>
+  void delay(const Where& where) {
+    if (longest_delay_ms == 0 || !covers(where)) return;
+    // One call in four waits: the most come at once, as the order of things is to change.
+    const unsigned long drawn =
+        (static_cast<unsigned long>(::getpid()) * 1000003 + ++delays) * 0x9e3779b97f4a7c15 >> 33;
+    if (drawn % 4 == 0) ::poll(nullptr, 0, static_cast<int>(drawn / 4 % longest_delay_ms));
   }
   /// Whether this call is the one. A process that shall die dies here.
   template <class Where>
@@ -118,6 +134,7 @@ Fault& fault() {
 extern "C" {
 
 ssize_t write(int fd, const void* bytes, size_t size) {
+  fault().delay(fd);
   if (fault().is_full(fd)) {
     errno = ENOSPC;
     return -1;
@@ -132,6 +149,7 @@ ssize_t write(int fd, const void* bytes, size_t size) {
 }
 
 int fsync(int fd) {
+  fault().delay(fd);
   const bool full = fault().is_full(fd);
   if (full || fault().strikes("fsync", fd)) {
     errno = full ? ENOSPC : fault().error();
@@ -149,6 +167,7 @@ int close(int fd) {
 }
 
 int rename(const char* from, const char* to) {
+  fault().delay(to);
   const bool strikes = fault().strikes("rename", to);
   if (strikes && fault().kind != "lost") {
     errno = fault().error();
@@ -189,11 +208,20 @@ ssize_t pread(int fd, void* bytes, size_t size, off_t offset) {
 }
 
 int fdatasync(int fd) {
+  fault().delay(fd);
   if (fault().strikes("fdatasync", fd)) return fault().fails();
   return real<int(int)>("fdatasync")(fd);
 }
 
+int clock_gettime(clockid_t clock, timespec* time) {
+  static const long ahead = std::atol(text_of("MESHFARM_FAULT_CLOCK_S").c_str());
+  const int result = real<int(clockid_t, timespec*)>("clock_gettime")(clock, time);
+  if (result == 0 && clock == CLOCK_REALTIME) time->tv_sec += ahead;
+  return result;
+}
+
 int link(const char* from, const char* to) {
+  fault().delay(to);
   const bool strikes = fault().strikes("link", to);
   if (strikes && fault().kind != "lost") return fault().fails();
   const int result = real<int(const char*, const char*)>("link")(from, to);

@@ -45,11 +45,8 @@ void publish_summary(const Stage& stage, const RunSummary& summary);
 /// The newest trace of a stage; the one of `epoch` if that is given. Throws DataError if there is
 /// none.
 Trace read_newest_trace(const Stage& stage, std::optional<std::uint32_t> epoch = std::nullopt);
-/// Seconds since the trace of that epoch was last written, by the file server's clock alone;
-/// nothing where it cannot be told, as nothing may be written beside it.
-std::optional<double> age_of_trace(const Stage& stage, std::uint32_t epoch);
-/// As read_newest_trace(), with the jobs of all epochs of its run: a ventilator that was killed
-/// leaves a trace of its own. Workers are numbered on from epoch to epoch.
+/// The same with the jobs of all epochs of its run: a ventilator that was killed leaves a trace of
+/// its own. Workers are numbered on from epoch to epoch.
 Trace read_traced_run(const Stage& stage);
 /// The times of the newest summary of a run; nothing if there is none.
 std::optional<RunTimes> read_run_times(const Stage& stage, std::uint64_t run);

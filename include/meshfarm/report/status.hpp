@@ -18,9 +18,9 @@ struct StageStatus {
   Manifest manifest;
   std::optional<Trace> trace;     // none: no run began
   std::optional<RunTimes> times;  // of the trace's run; none: it is not over
-  /// Since the trace was last written, by one clock, the file server's: the clocks of the hosts may
-  /// differ. Nothing: it cannot be told.
-  std::optional<double> age_s;
+  /// By the clock that the trace's head has its time of, as those of the hosts may differ: the file
+  /// server's. Nothing: it cannot be told.
+  std::optional<double> now_unix_s;
   bool no_room = false;  // on the stage: its ventilator cannot write that it waits
 };
 

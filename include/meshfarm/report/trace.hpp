@@ -17,7 +17,7 @@ namespace meshfarm {
 struct TraceHead {
   std::uint32_t epoch = 0;
   std::uint64_t run = 0;
-  double unix_s = 0;  // when the ventilator started
+  double unix_s = 0;  // when the ventilator started, by the file server's clock
   std::string host;   // where
   std::uint32_t heartbeat_ms = 0;
   std::string schedule;         // "dynamic", "static"

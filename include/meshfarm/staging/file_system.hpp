@@ -44,7 +44,9 @@ std::filesystem::path scratch_folder(const std::filesystem::path& wanted,
 /// The time as the folder's server tells it, by a file that is made and removed; nothing where none
 /// can be made.
 std::optional<std::filesystem::file_time_type> server_clock(const std::filesystem::path& folder);
-/// The same; where no file can be made, this host's.
+/// The same as a time_t with a fraction.
+std::optional<double> server_unix_s(const std::filesystem::path& folder);
+/// The server's clock; where no file can be made, this host's.
 std::filesystem::file_time_type clock_of(const std::filesystem::path& folder);
 
 /// Whether a file that is made for its owner alone stays so. Throws IoError.

@@ -1,9 +1,5 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
-#include <chrono>
-#include <filesystem>
-#include <fstream>
-
 #include <doctest/doctest.h>
 
 #include <meshfarm/farm/endpoint.hpp>
@@ -140,24 +136,6 @@ TEST_CASE("the newest summary of a run is found again") {
   CHECK(parse_run_times(with("7"), "it").triangles_out == 7);
   CHECK_THROWS_AS(parse_run_times(with("1e30"), "it"), DataError);
   CHECK_THROWS_AS(parse_run_times(with("-1"), "it"), DataError);
-}
-
-TEST_CASE("a trace's age is told by the file server's clock, whatever the hosts' say") {
-  test::TempFolder folder;
-  const Stage stage = Stage::create(folder / "stage");
-  CHECK_FALSE(age_of_trace(stage, 1));
-  TraceHead head;
-  head.epoch = 1;
-  head.unix_s = 4e9;  // the ventilator's host is far ahead
-  std::filesystem::create_directory(stage.path(TraceName{1}).parent_path());
-  std::ofstream(stage.path(TraceName{1})) << to_line(head) << "\n";
-  const auto age = [&] { return age_of_trace(stage, read_newest_trace(stage).head.epoch); };
-  REQUIRE(age());
-  CHECK(*age() < 50);
-  const auto written = std::filesystem::last_write_time(stage.path(TraceName{1}));
-  std::filesystem::last_write_time(stage.path(TraceName{1}), written - std::chrono::seconds(100));
-  CHECK(*age() >= 100);
-  CHECK(*age() < 150);
 }
 
 }  // namespace

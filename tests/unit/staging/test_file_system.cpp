@@ -1,9 +1,11 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
 #include <chrono>
+#include <cmath>
 #include <csignal>
 #include <cstdint>
 #include <cstdlib>
+#include <ctime>
 #include <filesystem>
 #include <fstream>
 #include <string>
@@ -129,6 +131,10 @@ TEST_CASE("the server's clock is told by a file, or not at all") {
   std::filesystem::remove(folder / "later");
   CHECK(std::filesystem::is_empty(folder.path()));
   CHECK_FALSE(server_clock(folder / "absent"));
+  const auto seconds = server_unix_s(folder.path());
+  REQUIRE(seconds);
+  CHECK(std::abs(*seconds - static_cast<double>(std::time(nullptr))) < 20);
+  CHECK_FALSE(server_unix_s(folder / "absent"));
 }
 
 TEST_CASE("a private file leaves nothing behind either") {
