@@ -1,13 +1,13 @@
 #!/usr/bin/env bash
 # Whole runs on real NFS, version 3 and 4.2, between kernels' own server and clients in User-Mode
-# Linux (nfs/boot.sh), with ventilator and workers on two clients; then with the disk full, the server
-# restarted and the links cut (nfs/scenario.sh).
+# Linux (nfs/boot.sh), with ventilator and workers on two clients; then with the disk full or slow, the
+# server restarted or away, and the links cut (nfs/scenario.sh).
 #   lab_nfs.sh PROGRAM
 # shellcheck source=tests/lab/lab.sh
 . "$(dirname "${BASH_SOURCE[0]}")/lab.sh"
 export PATH=$PATH:/usr/sbin:/sbin
 need_root
-need_commands linux.uml modprobe mkfs.ext4 rpcbind exportfs rpc.mountd rpc.nfsd mount.nfs ip tc
+need_commands linux.uml strace python3 modprobe mkfs.ext4 rpcbind exportfs rpc.mountd rpc.nfsd mount.nfs ip tc
 [ -d /usr/lib/uml/modules ] || skip "the modules of User-Mode Linux are missing"
 trap 'rm -rf "$work"' EXIT
 "$lab_here/nfs/boot.sh" 4.2 60 /bin/true > "$work/boot.log" 2>&1 ||
@@ -17,7 +17,7 @@ make_stage 60000 24 "$work/stage"
 failed=
 pids=()
 for version in 3 4.2; do
-  "$lab_here/nfs/boot.sh" $version 400 "$lab_here/nfs/scenario.sh" "$MESHFARM" "$work/stage" \
+  "$lab_here/nfs/boot.sh" $version 900 "$lab_here/nfs/scenario.sh" "$MESHFARM" "$work/stage" \
     "$work/expected.ply" > "$work/log.$version" 2>&1 &
   pids+=($!)
 done

@@ -1,7 +1,9 @@
 #!/usr/bin/env bash
 # Inside the kernel that boot.sh boots: runs with ventilator and sink on one NFS client and a worker
-# on each; undisturbed, then with the disk full, the server restarted, the links cut. Each ends with
-# the same bytes, or with code 3 and with the same bytes when the same command is given again.
+# on each; undisturbed, then with the disk full, files that take long to reach the disk, the server
+# restarted or away for long, the links cut. Each ends with the same bytes, or with code 3 and with the
+# same bytes when the same command is given again; what only takes its time must not stop a run, nor
+# cost a worker its life.
 #   scenario.sh PROGRAM CUT-STAGE EXPECTED.ply
 set -uo pipefail
 meshfarm=$1
@@ -38,15 +40,16 @@ has_ended() { # PID
 new_stage() { # NAME
   cp -r "$cut_stage" "$ventilator_side/$1" || fail "no room for a stage"
 }
-# Starts the processes; sets run, workers.
+# Starts the processes, by way of $launcher; sets run, workers.
+launcher=()
 start() { # STAGE
   workers=()
   local side
   for side in $worker_side $ventilator_side; do
-    "$meshfarm" worker "$side/$1" -q --threads 1 > "$logs/$1.worker.${side##*/}" 2>&1 &
+    "${launcher[@]}" "$meshfarm" worker "$side/$1" -q --threads 1 > "$logs/$1.worker.${side##*/}" 2>&1 &
     workers+=($!)
   done
-  "$meshfarm" run "$ventilator_side/$1" --ratio 0.05 -o "$ventilator_side/$1.ply" \
+  "${launcher[@]}" "$meshfarm" run "$ventilator_side/$1" --ratio 0.05 -o "$ventilator_side/$1.ply" \
     --bind 127.0.0.1 -q > "$logs/$1.run" 2>&1 &
   run=$!
 }
@@ -71,6 +74,19 @@ check() { # STAGE
   cmp "$worker_side/$1.ply" "$expected" || fail "other bytes"
   say "the same bytes"
   rm -rf "${ventilator_side:?}/$1" "$ventilator_side/$1.ply"
+}
+# The run was done in one go, and by the workers that it began with.
+unharmed() { # STAGE
+  [ "$code" -eq 0 ] || fail "the code of the run is $code"
+  # Once all is done they leave without a word.
+  python3 - "$ventilator_side/$1"/log/*.trace << 'END' || fail "a worker was given up"
+import json, sys
+lines = [json.loads(line) for line in open(sys.argv[1])]
+end = max(line["t"] for line in lines if line["kind"] == "done")
+left = [line for line in lines if line["kind"] == "left" and line["t"] < end]
+print(*left, sep="\n", end="")
+sys.exit(len(left) != 0)
+END
 }
 says() { # STAGE WORDS
   "$meshfarm" status "$ventilator_side/$1" 2> /dev/null | grep -q "$2"
@@ -114,12 +130,22 @@ wait_for 60 has_results full 3 || fail "no results"
 fallocate -l 1G /srv/x/filler 2> /dev/null
 dd if=/dev/zero of=/srv/x/filler2 bs=64k 2> /dev/null
 wait_for 30 says full 'no room' || fail "the status says nothing of it"
-sleep 15
+sleep 60
 has_ended "$run" && fail "the run does not wait for room"
 rm -f /srv/x/filler /srv/x/filler2
-finish 90
-[ "$code" -eq 0 ] || fail "the code of the run is $code"
+finish 150
+unharmed full
 check full
+
+say "each of the first files takes 20 s to reach the disk"
+new_stage late
+# Counted by thread: both slots of a worker, and the sink's disk.
+launcher=(strace -D -f -qq -o /dev/null -e trace=fsync -e inject=fsync:delay_exit=20000000:when=2)
+start late
+launcher=()
+finish 200
+unharmed late
+check late
 
 say "the server is restarted in the middle of a run"
 new_stage restart
@@ -130,6 +156,17 @@ sleep 3
 rpc.nfsd 4
 finish 120
 check restart
+
+say "the server is away for 90 s"
+new_stage away
+start away
+wait_for 60 has_results away 3 || fail "no results"
+rpc.nfsd 0
+sleep 90
+rpc.nfsd 4
+finish 200
+unharmed away
+check away
 
 say "the worker's link is cut for 20 s"
 new_stage link2
