@@ -35,6 +35,7 @@ Actions Dispatcher::tick(FarmTime now, Inbox inbox) {
   }
   if (all_read && !finished_ && sink_ && sink_->heard + patience < now_) lose_sink();
   look_for_room();
+  look_at_doubts();
   issue();
   if (may_issue()) {
     for (Scheduler::Pick& pick : scheduler_.second_attempts(plan_, now_)) push(std::move(pick));
@@ -141,7 +142,7 @@ void Dispatcher::sink_joins(const PeerId& peer, const Hello& hello) {
       if (sink_) send(sink_->peer, Refused{Refusal::replaced, "another sink took its place"});
     }
     last_sink_ = hello.incarnation;
-    sink_ = Sink{peer, hello.incarnation, hello.results, now_, false, {}, false};
+    sink_ = Sink{peer, hello.incarnation, hello.results, hello.host, now_, false, {}, false};
     to_workers(SinkAt{hello.results});
   }
   sink_->heard = now_;

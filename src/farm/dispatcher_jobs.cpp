@@ -20,6 +20,12 @@ constexpr FarmTime k_longest_pause{5000};
 constexpr FarmTime k_longest_relapse{60'000};
 constexpr std::uint64_t k_least_probe = std::uint64_t{64} << 10;
 constexpr std::uint64_t k_greatest_probe = std::uint64_t{64} << 20;
+/// How long a second reader may take, and how long the sink goes on trying what others can read.
+constexpr FarmTime k_second_reading{120'000};
+constexpr FarmTime k_sinks_patience{90'000};
+/// Whoever took so long to read had trouble, too.
+constexpr FarmTime k_troubled_reading{10'000};
+constexpr FarmTime k_about_the_same_time{30'000};
 
 }  // namespace
 
@@ -47,6 +53,7 @@ void Dispatcher::on(const PeerId& peer, const Accept& accept) {
                        accept.output.file.size, accept.times});
     }
   }
+  blame_who_could_not_read(accept);
   if (scheduler_.known(accept.worker)) {
     scheduler_.did(accept.worker, accept.key, accept.times.compute_ms, now_);
   }
@@ -66,7 +73,7 @@ void Dispatcher::on(const PeerId& peer, const Reject& reject) {
     case FailureKind::no_space:
       // A worker may have kept it from a run before: room may have been made since.
       if (!holds(reject.worker, reject.key, reject.attempt)) {
-        reject_attempt(reject);
+        reject_attempt(reject, Blame::nobody);
         break;
       }
       if (options_.when_full == WhenFull::wait) {
@@ -77,8 +84,14 @@ void Dispatcher::on(const PeerId& peer, const Reject& reject) {
                         "); what is done is kept: make room, then run the same command again",
                     true);
     case FailureKind::attempt:
+      if (!doubt(reject)) reject_attempt(reject, Blame::host);
+      break;
     case FailureKind::unread:
-      reject_attempt(reject);
+      if (!doubt(reject)) reject_attempt(reject, Blame::nobody);
+      break;
+    case FailureKind::no_input:
+    case FailureKind::damaged_input:
+      reject_attempt(reject, Blame::host_if_others_can);
       break;
   }
   issue();
@@ -94,22 +107,107 @@ bool Dispatcher::holds(WorkerId id, JobKey key, std::uint32_t attempt) const {
 }
 
 /// Only the attempt that the worker makes now counts.
-void Dispatcher::reject_attempt(const Reject& reject) {
+void Dispatcher::reject_attempt(const Reject& reject, Blame blame) {
   const auto reporter = workers_.find(reject.worker);
   if (reporter == workers_.end()) return;
   send(reporter->second.peer, Done{reject.key, reject.attempt});
-  const auto& held = scheduler_.held(reject.worker);
-  const bool current = std::any_of(held.begin(), held.end(), [&](const Scheduler::Held& each) {
-    return each.key == reject.key && attempt_number(each.attempt) == reject.attempt;
-  });
-  if (!current) return;
+  if (!holds(reject.worker, reject.key, reject.attempt)) return;
   drop(reject.worker, reject.key);
-  if (reject.failure.kind == FailureKind::unread) {
-    return fail(reject.key, reject.failure.reason, Failing::unread);
+  const std::string& host = reporter->second.host;
+  if (blame == Blame::host) scheduler_.host_failed(host, now_);
+  if (blame != Blame::nobody) scheduler_.avoid(reject.worker, reject.key);
+  if (blame == Blame::host_if_others_can) unread_on_[reject.key].push_back({host, now_});
+  const FailureKind kind = reject.failure.kind;
+  const bool unread = kind == FailureKind::unread || kind == FailureKind::no_input;
+  fail(reject.key, reject.failure.reason, unread ? Failing::unread : Failing::attempt);
+}
+
+// --- who can read what
+
+/// Asks another worker to read what the sink cannot. False if there is nobody to ask, or nothing to
+/// read: then what the sink says is all there is to know.
+bool Dispatcher::doubt(const Reject& reject) {
+  if (reject.file.name.empty() || !holds(reject.worker, reject.key, reject.attempt)) return false;
+  const auto known = doubts_.find({reject.key, reject.attempt});
+  if (known != doubts_.end()) {
+    // The worker tells of its result again and again, and the sink tries again.
+    Doubt& doubt = known->second;
+    const bool tried_long =
+        reject.failure.kind == FailureKind::unread || now_ - doubt.since >= k_sinks_patience;
+    if (!doubt.whole || !tried_long) return true;
+    doubts_.erase(known);
+    reject_attempt({reject.epoch,
+                    reject.worker,
+                    reject.attempt,
+                    reject.key,
+                    {reject.failure.reason, FailureKind::unread},
+                    {}},
+                   Blame::nobody);
+    return true;
   }
-  scheduler_.failed(reject.worker, now_);
-  scheduler_.avoid(reject.worker, reject.key);
-  fail(reject.key, reject.failure.reason, Failing::attempt);
+  const auto reader = second_reader(workers_.at(reject.worker));
+  if (!reader) return false;
+  doubts_[{reject.key, reject.attempt}] = {reject, *reader, now_, false};
+  send(workers_.at(*reader).peer, TryRead{reject.key, reject.attempt, reject.file});
+  return true;
+}
+
+/// Of a host that has neither written the file nor failed to read it.
+std::optional<WorkerId> Dispatcher::second_reader(const Worker& reporter) const {
+  for (const auto& [id, worker] : workers_) {
+    const bool other = worker.host != reporter.host && worker.host != sink_->host;
+    if (other && !worker.lane.empty()) return id;
+  }
+  return std::nullopt;
+}
+
+void Dispatcher::on(const PeerId& peer, const TriedRead& tried) {
+  if (worker_at(peer, tried.worker, tried.epoch) == nullptr) return;
+  const auto found = doubts_.find({tried.key, tried.attempt});
+  if (found == doubts_.end() || found->second.reader != tried.worker) return;
+  Doubt& doubt = found->second;
+  doubt.whole = tried.whole;
+  // The sink may have seen it too early: it is told of it again, and tries again for a while.
+  if (tried.whole && doubt.reject.failure.kind != FailureKind::unread) return;
+  const Reject reject = doubt.reject;
+  doubts_.erase(found);
+  reject_attempt(reject, tried.whole ? Blame::nobody : Blame::host);
+  issue();
+  look_for_end();
+}
+
+/// What no second reader says anything of is done again, and nobody is to blame.
+void Dispatcher::look_at_doubts() {
+  std::vector<Reject> unsettled;
+  std::erase_if(doubts_, [&](const auto& each) {
+    const Doubt& doubt = each.second;
+    const Reject& reject = doubt.reject;
+    if (!holds(reject.worker, reject.key, reject.attempt)) return true;
+    const bool waits = !doubt.whole && workers_.contains(doubt.reader);
+    if ((waits || doubt.whole) && now_ - doubt.since < k_second_reading) return false;
+    unsettled.push_back(reject);
+    return true;
+  });
+  for (Reject& reject : unsettled) {
+    reject.failure.kind = FailureKind::unread;
+    reject_attempt(reject, Blame::nobody);
+  }
+  if (!unsettled.empty()) look_for_end();
+}
+
+/// The job was done: who could not read what it needs has itself to blame, if it was no trouble for
+/// another at about the same time.
+void Dispatcher::blame_who_could_not_read(const Accept& accept) {
+  const auto found = unread_on_.find(accept.key);
+  const auto worker = workers_.find(accept.worker);
+  if (found == unread_on_.end() || worker == workers_.end()) return;
+  const JobTimes& times = accept.times;
+  if (FarmTime(times.read_ms) >= k_troubled_reading) return;
+  const FarmTime read = now_ - FarmTime(times.wait_ms) - FarmTime(times.compute_ms);
+  for (const Unread& unread : found->second) {
+    const bool at_once = read - unread.at < k_about_the_same_time;
+    if (at_once && unread.host != worker->second.host) scheduler_.host_failed(unread.host, now_);
+  }
 }
 
 void Dispatcher::on(const PeerId& peer, const Ready& ready) {
@@ -156,7 +254,9 @@ void Dispatcher::settle(JobKey key, WorkerId reporter) {
     plan_.give_back(key);  // where the plan does not call it done or failed: nobody runs it now
   }
   const auto state = plan_.state(key);
-  if (state == JobState::done || state == JobState::failed) scheduler_.settled(key);
+  if (state != JobState::done && state != JobState::failed) return;
+  scheduler_.settled(key);
+  unread_on_.erase(key);
 }
 
 void Dispatcher::drop(WorkerId holder, JobKey key) {

@@ -84,6 +84,10 @@ JobOutcome JobSlot::attempt(const Begin& begin) {
     outcome = compute(begin);
   } catch (const BadInputError& error) {
     outcome = JobFailure{clipped(error.what()), FailureKind::for_good};
+  } catch (const UnreadIoError& error) {
+    outcome = JobFailure{clipped(error.what()), FailureKind::no_input};
+  } catch (const UnreadDataError& error) {
+    outcome = JobFailure{clipped(error.what()), FailureKind::damaged_input};
   } catch (const IoError& error) {
     outcome = JobFailure{clipped(error.what()),
                          is_no_space(error) ? FailureKind::no_space : FailureKind::attempt};

@@ -86,7 +86,7 @@ auto fields(M& m) {
 }
 template <Is<Reject> M>
 auto fields(M& m) {
-  return std::tie(m.epoch, m.worker, m.attempt, m.key, m.failure);
+  return std::tie(m.epoch, m.worker, m.attempt, m.key, m.failure, m.file);
 }
 template <Is<Ready> M>
 auto fields(M& m) {
@@ -115,6 +115,14 @@ auto fields(M& m) {
 template <Is<Stop> M>
 auto fields(M& m) {
   return std::tie(m.why);
+}
+template <Is<TryRead> M>
+auto fields(M& m) {
+  return std::tie(m.key, m.attempt, m.file);
+}
+template <Is<TriedRead> M>
+auto fields(M& m) {
+  return std::tie(m.epoch, m.worker, m.key, m.attempt, m.whole);
 }
 
 void check(std::size_t size, std::size_t limit, std::string_view what) {
@@ -186,7 +194,7 @@ class Decoder {
   void field(Role& value) { choice(value, Role::sink); }
   void field(Refusal& value) { choice(value, Refusal::other_build); }
   void field(StopReason& value) { choice(value, StopReason::hung); }
-  void field(FailureKind& value) { choice(value, FailureKind::unread); }
+  void field(FailureKind& value) { choice(value, FailureKind::damaged_input); }
   void field(std::string& text) { bytes(text, k_max_text_bytes); }
   template <class T>
   void field(std::vector<T>& list) {

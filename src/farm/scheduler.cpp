@@ -42,7 +42,7 @@ void Scheduler::join(WorkerId id, const std::string& host, const Capacity& capac
   member.benchmark = capacity.speed == 0 ? k_usual_speed : static_cast<double>(capacity.speed);
   member.speed = estimated_speed(member);
   ++member.host->workers;
-  undealt_ = 0;
+  undealt_.clear();
   outlook_.valid_until = FarmTime(-1);
 }
 
@@ -93,7 +93,9 @@ bool Scheduler::drop(WorkerId id, JobKey key, FarmTime now) {
 
 void Scheduler::did(WorkerId id, JobKey key, std::uint32_t compute_ms, FarmTime now) {
   Member& member = crew_.at(id);
+  const bool was_bad = !good(*member.host);
   member.host->failures = 0;
+  if (was_bad) rank_all();
   const auto at = std::find_if(member.held.begin(), member.held.end(),
                                [&](const Held& each) { return each.key == key; });
   if (at == member.held.end() || at->cost == 0) return;
@@ -124,7 +126,13 @@ void Scheduler::avoid(WorkerId id, JobKey key) {
 }
 
 void Scheduler::failed(WorkerId id, FarmTime now) {
-  Host& host = *crew_.at(id).host;
+  host_failed(crew_.at(id).host->name, now);
+}
+
+void Scheduler::host_failed(const std::string& name, FarmTime now) {
+  const auto found = hosts_.find(name);
+  if (found == hosts_.end()) return;
+  Host& host = found->second;
   if (host.failures > 0 && now - host.incident < k_incident) return;
   host.incident = now;
   if (++host.failures != k_failures_of_a_bad_host) return;

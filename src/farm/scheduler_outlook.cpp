@@ -156,7 +156,7 @@ void Scheduler::deal(const Plan& plan) {
     for (const JobKey key : sets_[id]) cost += static_cast<double>(plan.job(key).cost);
     load[id] = cost;
   }
-  undealt_ = 0;
+  undealt_.clear();
   for (const JobKey key : plan.ready_jobs()) {
     if (dealt_.contains(key)) continue;
     const auto cost = static_cast<double>(plan.job(key).cost);
@@ -167,7 +167,7 @@ void Scheduler::deal(const Plan& plan) {
       if (!best || through < *best) best = through;
     }
     if (!best) {
-      ++undealt_;
+      undealt_.push_back(key);
       continue;
     }
     load[best->second] += cost;
@@ -178,7 +178,9 @@ void Scheduler::deal(const Plan& plan) {
 
 std::optional<Scheduler::Pick> Scheduler::next_fixed(Plan& plan, FarmTime now) {
   if (crew_.size() < options_.expect_workers && sets_.empty()) return std::nullopt;
-  if (plan.counts().ready > dealt_.size() + undealt_) deal(plan);
+  // Another run may have done what fits nobody here.
+  std::erase_if(undealt_, [&](JobKey key) { return plan.state(key) != JobState::ready; });
+  if (plan.counts().ready > dealt_.size() + undealt_.size()) deal(plan);
   for (const auto& [load, id] : willing_) {
     auto& set = sets_[id];
     while (!set.empty()) {

@@ -127,6 +127,7 @@ class SimulatedFarm {
   void act(Finish& each);
   void act(Tell&) {}
   Worker* worker_at(const std::string& peer);
+  SimulatedTime failing_ends() const;
   void run_again();
 
   void start_worker(std::uint32_t index);
@@ -143,6 +144,7 @@ class SimulatedFarm {
   void act(std::uint32_t index, SendResult& each);
   void act(std::uint32_t index, Begin& each);
   void act(std::uint32_t index, GiveUp& each);
+  void act(std::uint32_t index, ReadForSink& each);
   void act(std::uint32_t index, Leave& each);
   void feel_pulse(Worker& worker);
   std::uint32_t lap_ms(InWork& in_work) const;
@@ -173,7 +175,8 @@ class SimulatedFarm {
   void sink_act(Dial& each);
   void sink_act(HangUp& each);
   void sink_act(Say& each);
-  void sink_act(Check& each);
+  void sink_act(const Check& each);
+  void check_by_sick_mount(const Check& each, SimulatedTime readable);
   void sink_act(MakeOutput& each);
   void sink_act(SinkLeaves& each);
   void journal(const Check& check);
@@ -183,6 +186,9 @@ class SimulatedFarm {
   void announce(std::uint64_t run, const std::string& address);
   void change_other_run();
   void plan_faults();
+  SimulatedTime some_minutes();
+  SimulatedTime lost_part(JobKey key);
+  void look_at_bans();
   /// Lets a fault happen again and again, so often a minute, until the faults end.
   void repeat(double rate_per_minute, const std::function<void()>& fault);
 
@@ -204,6 +210,7 @@ class SimulatedFarm {
   std::vector<Worker> workers_;
   Sink sink_;
   std::map<JobKey, JobOutput> journal_;
+  std::map<JobKey, SimulatedTime> lost_parts_;
   std::unordered_map<std::string, SimulatedJob> published_;  // by the file's name
   std::map<WorkerId, std::uint32_t> members_;  // of the ventilator's epoch: whose lane it is
   SimulatedTime centre_free_{0};

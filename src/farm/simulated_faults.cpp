@@ -24,6 +24,11 @@ void SimulatedFarm::repeat(double rate_per_minute, const std::function<void()>& 
   });
 }
 
+/// Longer than a reader's patience, mostly.
+SimulatedTime SimulatedFarm::some_minutes() {
+  return std::chrono::seconds(60) + up_to(std::chrono::minutes(3));
+}
+
 void SimulatedFarm::plan_faults() {
   const SimulatedFaults& faults = options_.faults;
   const auto until = [this](std::chrono::milliseconds longest) {
@@ -46,6 +51,11 @@ void SimulatedFarm::plan_faults() {
   repeat(faults.sink_pauses, [=, this] { pause(sink_); });
   repeat(faults.ventilator_crashes, [this] { kill_ventilator(); });
   repeat(faults.ventilator_pauses, [=, this] { pause(ventilator_); });
+  const auto sicken = [this](std::uint32_t host) {
+    folder_.sicken(host, queue_.now() + some_minutes());
+  };
+  repeat(of_workers(faults.sick_mounts), [=, this] { sicken(workers_[any_worker()].host); });
+  repeat(faults.sick_sink, [=, this] { sicken(sink_.host); });
   repeat(faults.storage_stalls, [=, this] { folder_.stall(until(k_longest_stall)); });
   repeat(faults.disk_fills, [=, this] { folder_.fill(until(k_longest_stall)); });
 }
@@ -85,6 +95,11 @@ SimulatedFaults faults_of_seed(std::uint64_t seed) {
   faults.late_endpoint = draw(0.05, 0.5);
   faults.worker_leaves = draw(0.05, 0.5);
   faults.other_runs = draw(0.5, 4);
+  if (dice.pick(8) == 0) {  // they take minutes each
+    faults.sick_mounts = draw(0.01, 0.05);
+    faults.sick_sink = draw(0.05, 0.2);
+    faults.lost_parts = draw(0.0005, 0.002);
+  }
   const std::uint64_t hopeless = dice.pick(16);
   if (hopeless == 0) faults.poison = "job 3";
   if (hopeless == 1) faults.bad = "job 3";

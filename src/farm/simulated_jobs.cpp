@@ -21,8 +21,16 @@ void SimulatedFarm::act(std::uint32_t index, Begin& each) {
                                : SimulatedWork{static_cast<double>(in_work.job.cost) * 1e-3, 0, 0};
   in_work.lap = queue_.now();
   const SimulatedTime delay = folder_.visibility_delay();
-  in_work.looks_for_file = delay.count() > 0;
-  const SimulatedTime there = folder_.transfer(worker.host, in_work.work.read_bytes) + delay;
+  const SimulatedTime readable = std::max(folder_.readable(worker.host), lost_part(in_work.key));
+  in_work.looks_for_file = delay.count() > 0 || readable > queue_.now();
+  const SimulatedTime gives_up = queue_.now() + SimulatedFolder::k_patience;
+  if (readable > gives_up) {
+    return while_in_work(worker, each.slot, gives_up, [this, &worker, slot = each.slot] {
+      fail_job(worker, slot, "cannot open its part", FailureKind::no_input);
+    });
+  }
+  const SimulatedTime there =
+      std::max(folder_.transfer(worker.host, in_work.work.read_bytes) + delay, readable);
   while_in_work(worker, each.slot, there, [this, &worker, slot = each.slot] {
     InWork& read = *worker.slots[slot];
     read.times.read_ms = lap_ms(read);
@@ -31,6 +39,14 @@ void SimulatedFarm::act(std::uint32_t index, Begin& each) {
     worker.gate.push_back(slot);
     open_gate(worker);
   });
+}
+
+/// From when on the job's input can be read: the same for all who try.
+SimulatedTime SimulatedFarm::lost_part(JobKey key) {
+  if (options_.faults.lost_parts <= 0) return SimulatedTime(0);
+  const auto [lost, first] = lost_parts_.try_emplace(key);
+  if (first && chance(options_.faults.lost_parts)) lost->second = queue_.now() + some_minutes();
+  return lost->second;
 }
 
 /// The signs of life that a real worker sees of its slots: a job that goes on counts up.
@@ -75,7 +91,9 @@ void SimulatedFarm::begin_computing(Worker& worker, std::uint32_t slot) {
   if (!faults.bad.empty() && name == faults.bad) {
     return fail_job(worker, slot, "no mesh can come of this", FailureKind::for_good);
   }
-  if (chance(faults.read_error)) return fail_job(worker, slot, "cannot read");
+  if (chance(faults.read_error)) {
+    return fail_job(worker, slot, "cannot read", FailureKind::no_input);
+  }
   if (chance(faults.fail)) return fail_job(worker, slot, "no luck");
   compute(worker, slot);
 }

@@ -72,7 +72,9 @@ void SimulatedFarm::sink_act(Say& each) {
   to_ventilator(sink_, sink_.to_ventilator, sink_.peer, sink_.dialled, std::move(each.message));
 }
 
-void SimulatedFarm::sink_act(Check& each) {
+void SimulatedFarm::sink_act(const Check& each) {
+  const SimulatedTime readable = folder_.readable(sink_.host);
+  if (readable > queue_.now() && !each.from_journal) return check_by_sick_mount(each, readable);
   SimulatedTime there =
       folder_.transfer(sink_.host, each.output.file.size) + folder_.visibility_delay();
   if (options_.centre.per_result.count() > 0) {
@@ -94,6 +96,23 @@ void SimulatedFarm::sink_act(Check& each) {
       sink_does(sink_.core->checked(each, {whole ? "" : "the file is damaged"}, farm_now()));
     });
   });
+}
+
+/// Either its reader waits, maybe in vain, or it soon sees what is not there.
+void SimulatedFarm::check_by_sick_mount(const Check& each, SimulatedTime readable) {
+  const SimulatedTime gives_up = queue_.now() + SimulatedFolder::k_patience;
+  const bool damaged = dice_.chance(0.5);
+  const JobFailure problem = damaged ? JobFailure{"the file is damaged", FailureKind::attempt}
+                                     : JobFailure{"cannot open it", FailureKind::unread};
+  const SimulatedTime soon = queue_.now() + std::chrono::milliseconds(750);
+  queue_.at(damaged ? soon : std::min(gives_up, readable),
+            [this, each, problem, life = sink_.life] {
+              when_awake(sink_, life, [this, each, problem] {
+                const bool well = folder_.readable(sink_.host) <= queue_.now();
+                if (well) return sink_act(each);
+                sink_does(sink_.core->checked(each, problem, farm_now()));
+              });
+            });
 }
 
 void SimulatedFarm::journal(const Check& check) {

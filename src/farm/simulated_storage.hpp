@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <string>
 #include <unordered_map>
@@ -23,7 +24,8 @@ class SimulatedFolder {
         faults_(options.faults),
         dice_(dice),
         queue_(queue),
-        host_free_(hosts) {}
+        host_free_(hosts),
+        sick_until_(hosts) {}
 
   /// When so many bytes, asked for now by that host, are there.
   SimulatedTime transfer(std::uint32_t host, std::uint64_t bytes);
@@ -37,6 +39,13 @@ class SimulatedFolder {
   /// stays invisible, an old state stays visible.
   SimulatedTime visibility_delay();
 
+  /// How long a reader tries again what it cannot read (ReadPatience::missing).
+  static constexpr SimulatedTime k_patience{90'000'000};
+  /// From when on that host can read the files that it is told of. Or a file that is named.
+  SimulatedTime readable(std::uint32_t host) const {
+    return std::max(sick_until_[host], queue_.now());
+  }
+  void sicken(std::uint32_t host, SimulatedTime until) { sick_until_[host] = until; }
   void stall(SimulatedTime until) { stalled_until_ = until; }
   void fill(SimulatedTime until) { full_until_ = until; }
   bool full() const { return queue_.now() < full_until_; }
@@ -53,6 +62,7 @@ class SimulatedFolder {
   SimulatedTime server_free_{0};
   double server_busy_s_ = 0;
   std::vector<SimulatedTime> host_free_;
+  std::vector<SimulatedTime> sick_until_;  // by host
   SimulatedTime stalled_until_{0};
   SimulatedTime full_until_{0};
   std::unordered_map<std::string, Content> files_;

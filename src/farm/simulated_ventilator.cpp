@@ -79,8 +79,16 @@ void SimulatedFarm::tick_ventilator(std::uint64_t life) {
     return;
   }
   ventilator_does(ventilator_.core->tick(farm_now()));
+  look_at_bans();
   queue_.in(options_.heartbeat / (options_.centre.eager ? 10 : 4),
             [this, life] { tick_ventilator(life); });
+}
+
+void SimulatedFarm::look_at_bans() {
+  if (!ventilator_.core) return;
+  for (std::string& host : ventilator_.core->scheduler().bad_hosts()) {
+    result_.banned_hosts.insert(std::move(host));
+  }
 }
 
 void SimulatedFarm::kill_ventilator() {
@@ -224,8 +232,16 @@ void SimulatedFarm::act(Finish& each) {
   announce(k_run, {});
   note(each.failure.size());
   // Whoever started the run reads why it failed, and starts it again.
-  restarting_ = said_failure_ && run_start_ < options_.faults.end;
+  restarting_ = said_failure_ && run_start_ < failing_ends();
   if (restarting_) queue_.in(k_pause_between_runs, [this] { run_again(); });
+}
+
+/// Until when a run may begin that fails for faults: files that cannot be read are so for minutes.
+SimulatedTime SimulatedFarm::failing_ends() const {
+  const SimulatedFaults& faults = options_.faults;
+  const bool sick = faults.sick_mounts > 0 || faults.sick_sink > 0 || faults.lost_parts > 0;
+  const bool hopeless = !faults.poison.empty() || !faults.bad.empty();
+  return sick && !hopeless ? faults.end + std::chrono::minutes(5) : faults.end;
 }
 
 void SimulatedFarm::run_again() {

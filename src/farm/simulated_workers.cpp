@@ -135,6 +135,20 @@ void SimulatedFarm::act(std::uint32_t index, SendResult& each) {
               });
 }
 
+void SimulatedFarm::act(std::uint32_t index, ReadForSink& each) {
+  Worker& worker = workers_[index];
+  const SimulatedTime gives_up = queue_.now() + std::chrono::seconds(30);
+  const SimulatedTime there =
+      std::max(folder_.transfer(worker.host, each.what.file.size), folder_.readable(worker.host));
+  const bool readable = there <= gives_up && folder_.has_whole(each.what.file.name);
+  queue_.at(std::min(there, gives_up),
+            [this, index, what = each.what, readable, life = worker.life] {
+              when_awake(workers_[index], life, [this, index, what, readable] {
+                worker_does(index, workers_[index].core->tried(what, readable));
+              });
+            });
+}
+
 void SimulatedFarm::act(std::uint32_t index, Leave& each) {
   Worker& worker = workers_[index];
   if (each.abort) return kill_worker(index);

@@ -113,7 +113,7 @@ void SinkCore::take_result(const Result& result) {
   if (rounds_.accepted(result.key) != nullptr) return tell(result.key, result.worker);
   if (const auto* failure = std::get_if<JobFailure>(&result.outcome)) {
     if (!told_all_) return;  // the worker says it again
-    return say(Reject{member_.epoch(), result.worker, result.attempt, result.key, *failure});
+    return say(Reject{member_.epoch(), result.worker, result.attempt, result.key, *failure, {}});
   }
   const auto& output = std::get<JobOutput>(result.outcome);
   const ResultName name{result.key.value, result.attempt, result.incarnation};
@@ -148,7 +148,8 @@ SinkActions SinkCore::checked(const Check& check, const JobFailure& problem, Far
                check.worker,
                check.attempt,
                check.key,
-               {clipped(problem.reason), problem.kind}});
+               {clipped(problem.reason), problem.kind},
+               check.output.file});
   }
   tell_all();
   return take();

@@ -1,6 +1,8 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
 #include <algorithm>
+#include <deque>
+#include <exception>
 #include <memory>
 #include <optional>
 #include <utility>
@@ -18,6 +20,7 @@
 #include "farm/control_link.hpp"
 #include "farm/job_slot.hpp"
 #include "farm/sockets.hpp"
+#include "farm/task_thread.hpp"
 
 namespace meshfarm {
 namespace {
@@ -25,6 +28,8 @@ namespace {
 /// So that a flood cannot keep the clock from being looked at.
 constexpr int k_messages_per_turn = 1000;
 constexpr FarmTime k_memory_every{500};
+/// Whoever has never looked for a file before sees it when it is there.
+constexpr std::chrono::seconds k_second_readers_patience{30};
 
 /// One job more than is computed: its inputs are read ahead meanwhile, or its output is written.
 WorkerLimits limits_of(const WorkerOptions& options) {
@@ -36,7 +41,8 @@ WorkerLimits limits_of(const WorkerOptions& options) {
 class WorkerLoop {
  public:
   WorkerLoop(const Stage& stage, const JobFunction& work, const WorkerOptions& options)
-      : options_(options),
+      : stage_(stage),
+        options_(options),
         incarnation_(random_id()),
         context_(make_context()),
         link_(context_, stage, options.security),
@@ -73,12 +79,18 @@ class WorkerLoop {
   void turn() {
     std::vector<zmq::pollitem_t> items;
     for (const auto& slot : slots_) items.push_back({nullptr, slot->fd(), ZMQ_POLLIN, 0});
+    if (reader_) items.push_back({nullptr, reader_->fd(), ZMQ_POLLIN, 0});
     if (link_.socket() != nullptr) items.push_back({link_.socket()->handle(), 0, ZMQ_POLLIN, 0});
     if (lane_) items.push_back({lane_->handle(), 0, ZMQ_POLLIN, 0});
     wait_for(items, core_.pause(farm_clock()));
     const FarmTime now = farm_clock();
     for (std::uint32_t i = 0; i < slots_.size(); ++i) {
       if (slots_[i]->take_finished()) finish(i, now);
+    }
+    if (reader_ && reader_->take_finished()) {
+      perform(core_.tried(to_read_.front(), readable_));
+      to_read_.pop_front();
+      read_next();
     }
     for (int count = 0; link_.socket() != nullptr && count < k_messages_per_turn; ++count) {
       const auto received = receive(*link_.socket());
@@ -146,6 +158,24 @@ class WorkerLoop {
     slots_[each.slot]->begin(each);
   }
   void act(const GiveUp& each) { slots_[each.slot]->give_up(); }
+  void act(const ReadForSink& each) {
+    constexpr std::size_t k_most = 64;
+    if (to_read_.size() >= k_most) return;  // who asked waits for us no longer than it likes
+    to_read_.push_back(each.what);
+    if (!reader_) reader_.emplace();
+    if (reader_->idle()) read_next();
+  }
+  void read_next() {
+    if (to_read_.empty()) return;
+    reader_->start([this, file = to_read_.front().file] {
+      try {
+        stage_.verify(file, {.missing = k_second_readers_patience});
+        readable_ = true;
+      } catch (const std::exception&) {
+        readable_ = false;
+      }
+    });
+  }
   void act(const Leave& each) {
     left_ = each;
     if (each.abort && options_.abort) options_.abort(each.incomplete);
@@ -159,6 +189,7 @@ class WorkerLoop {
     }
   }
 
+  const Stage& stage_;
   const WorkerOptions& options_;
   std::uint64_t incarnation_;
   zmq::context_t context_;
@@ -173,7 +204,11 @@ class WorkerLoop {
   FarmTime next_look_at_memory_{0};
   std::uint64_t rss_bytes_ = 0;
   ComputeGate gate_;
-  std::vector<std::unique_ptr<JobSlot>> slots_;  // the last member, so that their threads end first
+  std::deque<TryRead> to_read_;  // the first is in work
+  bool readable_ = false;        // the reader's while it works
+  // The last members, so that their threads end first.
+  std::vector<std::unique_ptr<JobSlot>> slots_;
+  std::optional<TaskThread> reader_;  // once the sink could not read something
 };
 
 }  // namespace

@@ -88,6 +88,7 @@ WorkerActions WorkerCore::on_control(const Message& message, FarmTime now) {
   if (!member_.joined()) return take();
   if (const auto* done = std::get_if<Done>(&message)) forget(*done);
   if (const auto* sink = std::get_if<SinkAt>(&message)) sink_is_at(sink->results, now);
+  if (const auto* read = std::get_if<TryRead>(&message)) act(ReadForSink{*read});
   if (const auto* alive = std::get_if<Alive>(&message)) {
     sink_is_at(alive->sink, now);
     may_take(alive->memory);
@@ -138,6 +139,14 @@ WorkerActions WorkerCore::finished(std::uint32_t slot, std::variant<JobOutput, J
   now_ = now;
   begin_next();
   raise_credit();
+  return take();
+}
+
+WorkerActions WorkerCore::tried(const TryRead& what, bool whole) {
+  if (!left_ && !leaving_ && member_.joined()) {
+    const WorkerId self = member_.welcome().worker;
+    act(Say{TriedRead{member_.epoch(), self, what.key, what.attempt, whole}});
+  }
   return take();
 }
 

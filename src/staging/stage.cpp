@@ -113,9 +113,11 @@ auto patiently(const Stage& stage, const FileRef& file, const ReadPatience& pati
       return try_once();
     } catch (const IoError& error) {
       const bool over = std::chrono::steady_clock::now() - begin >= patience.missing;
-      if (!may_pass(error.error_number()) || over || patience.attempts <= 1) throw;
-    } catch (const DataError&) {
-      if (++wrong >= patience.attempts) throw;
+      if (!may_pass(error.error_number()) || over || patience.attempts <= 1) {
+        throw UnreadIoError(error);
+      }
+    } catch (const DataError& error) {
+      if (++wrong >= patience.attempts) throw UnreadDataError(error.what());
     }
     std::this_thread::sleep_for(std::chrono::milliseconds(wait_ms));
     tell_moved(patience, 0);

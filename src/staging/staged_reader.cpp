@@ -11,9 +11,14 @@ StagedReader::StagedReader(const Stage& stage, const FileRef& file)
     : file_(file), path_(stage.root() / file.name), fd_(stage.open_told(file)) {}
 
 void StagedReader::fill(std::span<char> buffer) {
-  const std::size_t got = read_up_to(fd_.get(), buffer, path_);
+  std::size_t got = 0;
+  try {
+    got = read_up_to(fd_.get(), buffer, path_);
+  } catch (const IoError& error) {
+    throw UnreadIoError(error);
+  }
   if (got < buffer.size()) {
-    throw DataError(path_.string() + ": cut short at byte " + std::to_string(done_ + got));
+    throw UnreadDataError(path_.string() + ": cut short at byte " + std::to_string(done_ + got));
   }
   sum_.add({buffer.data(), buffer.size()});
   done_ += buffer.size();
@@ -21,11 +26,11 @@ void StagedReader::fill(std::span<char> buffer) {
 
 void StagedReader::expect_end() const {
   if (done_ != file_.size) {
-    throw DataError(path_.string() + ": " + std::to_string(file_.size - done_) +
-                    " bytes too many at byte " + std::to_string(done_));
+    throw UnreadDataError(path_.string() + ": " + std::to_string(file_.size - done_) +
+                          " bytes too many at byte " + std::to_string(done_));
   }
   if (sum_.value() != file_.hash) {
-    throw DataError(path_.string() + ": damaged (its checksum is not the promised one)");
+    throw UnreadDataError(path_.string() + ": damaged (its checksum is not the promised one)");
   }
 }
 

@@ -86,6 +86,7 @@ class Dispatcher {
     PeerId peer;
     std::uint64_t incarnation = 0;
     std::string results;
+    std::string host;
     FarmTime heard{0};
     bool ready = false;
     std::map<JobKey, JobOutput> told;
@@ -97,6 +98,19 @@ class Dispatcher {
     FarmTime next_probe{0};
     FarmTime pause{0};  // between probes
     bool probing = false;
+  };
+  /// A result that the sink cannot read, or reads damaged. Before its host is blamed for that, a
+  /// worker of another host tries.
+  struct Doubt {
+    Reject reject;
+    WorkerId reader;
+    FarmTime since{0};
+    bool whole = false;  // as the reader says
+  };
+  /// A host that could not read what a job needs, and when.
+  struct Unread {
+    std::string host;
+    FarmTime at{0};
   };
   /// A job held to have cost a worker its life.
   struct Charge {
@@ -117,6 +131,7 @@ class Dispatcher {
   void on(const PeerId& peer, const Ready& ready);
   void on(const PeerId& peer, const Complete& complete);
   void on(const PeerId& peer, const Failed& failed);
+  void on(const PeerId& peer, const TriedRead& tried);
 
   void worker_joins(const PeerId& peer, const Hello& hello);
   void sink_joins(const PeerId& peer, const Hello& hello);
@@ -135,7 +150,12 @@ class Dispatcher {
   std::uint32_t attempt_number(std::uint32_t attempt) const;
   void settle(JobKey key, WorkerId reporter);
   void drop(WorkerId holder, JobKey key);
-  void reject_attempt(const Reject& reject);
+  enum class Blame { host, nobody, host_if_others_can };
+  void reject_attempt(const Reject& reject, Blame blame);
+  bool doubt(const Reject& reject);
+  std::optional<WorkerId> second_reader(const Worker& reporter) const;
+  void look_at_doubts();
+  void blame_who_could_not_read(const Accept& accept);
   void fail(JobKey key, const std::string& reason, Failing failing);
   void set_room(WorkerId id);
   void stage_is_full(const Reject& reject);
@@ -166,7 +186,9 @@ class Dispatcher {
   std::unordered_map<PeerId, WorkerId> by_peer_;
   std::unordered_map<std::uint64_t, WorkerId> by_incarnation_;
   std::set<std::pair<FarmTime, WorkerId>> by_heard_;
-  std::unordered_map<std::uint64_t, Charge> charges_;  // by the lost one's incarnation
+  std::unordered_map<std::uint64_t, Charge> charges_;         // by the lost one's incarnation
+  std::map<std::pair<JobKey, std::uint32_t>, Doubt> doubts_;  // by the attempt
+  std::map<JobKey, std::vector<Unread>> unread_on_;
   std::optional<Sink> sink_;
   std::uint64_t last_sink_ = 0;  // incarnation
   std::set<std::uint64_t> replaced_sinks_;

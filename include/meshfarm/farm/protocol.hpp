@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
 //
-// All that ventilator (V), workers (W) and sink (S) say to each other. Version 4.
+// All that ventilator (V), workers (W) and sink (S) say to each other. Version 5.
 //
 //   frame   = "MFMS" | version u16 | type u16 | body      one message a frame, one frame a message
 //   body    = the fields of the struct in the order of their declaration, little endian
@@ -16,6 +16,7 @@
 //   flow       W -> V    Credit, Release                     V -> W    Assignment (on the lane)
 //   results    W -> S    Result (repeated until Done)        S -> V    Accept | Reject
 //              V -> W    Done: the result may be forgotten
+//              V -> W    TryRead, of a result that S cannot read        W -> V  TriedRead
 //   sink       S -> V    an Accept for all it has, Ready     V -> W    SinkAt
 //   the end    V -> W,S  Stop       V -> S  JobFailed        S -> V    Complete | Failed
 #pragma once
@@ -32,7 +33,7 @@
 
 namespace meshfarm {
 
-inline constexpr std::uint16_t k_protocol_version = 4;
+inline constexpr std::uint16_t k_protocol_version = 5;
 inline constexpr std::size_t k_max_frame_bytes = 65'536;
 inline constexpr std::size_t k_max_text_bytes = 1024;          // names, addresses, reasons
 inline constexpr std::size_t k_max_summary_bytes = 16'384;     // JobOutput::summary
@@ -131,8 +132,16 @@ struct Assignment {
   Job job;
 };
 /// attempt: another attempt may do better. for_good: none can. no_space: the stage is full.
-/// unread: the sink cannot read the result, which says nothing of its worker.
-enum class FailureKind : std::uint8_t { attempt = 1, for_good = 2, no_space = 3, unread = 4 };
+/// unread: the sink cannot read the result, which says nothing of its worker. no_input,
+/// damaged_input: the worker cannot read what the job needs, or reads it damaged; others may.
+enum class FailureKind : std::uint8_t {
+  attempt = 1,
+  for_good = 2,
+  no_space = 3,
+  unread = 4,
+  no_input = 5,
+  damaged_input = 6
+};
 struct JobFailure {
   std::string reason;
   FailureKind kind = FailureKind::attempt;
@@ -168,6 +177,7 @@ struct Reject {
   std::uint32_t attempt = 0;
   JobKey key;
   JobFailure failure;
+  FileRef file;  // the result that the sink cannot read, or reads damaged; no name: it is not that
 };
 /// The sink has told all that it had accepted before; repeated with each of its heartbeats.
 struct Ready {
@@ -201,11 +211,24 @@ struct Failed {
 struct Stop {
   StopReason why = StopReason::run_over;
 };
+/// Can you read this file, which the sink cannot?
+struct TryRead {
+  JobKey key;
+  std::uint32_t attempt = 0;
+  FileRef file;
+};
+struct TriedRead {
+  std::uint32_t epoch = 0;
+  WorkerId worker;
+  JobKey key;
+  std::uint32_t attempt = 0;
+  bool whole = false;
+};
 
 /// The order gives each type its number on the wire, from 1: append only.
-using Message =
-    std::variant<Hello, Welcome, Refused, Heartbeat, Alive, Credit, Release, Assignment, Result,
-                 Accept, Reject, Ready, Done, SinkAt, JobFailed, Complete, Failed, Stop>;
+using Message = std::variant<Hello, Welcome, Refused, Heartbeat, Alive, Credit, Release, Assignment,
+                             Result, Accept, Reject, Ready, Done, SinkAt, JobFailed, Complete,
+                             Failed, Stop, TryRead, TriedRead>;
 
 /// Throws DataError if a field is longer than the protocol allows.
 std::string encode(const Message& message);

@@ -55,6 +55,7 @@ class Scheduler {
   /// Something failed on the worker's host. After three incidents in a row it gets no more jobs for
   /// some minutes, as long as there are other hosts. What fails within seconds is one incident.
   void failed(WorkerId id, FarmTime now);
+  void host_failed(const std::string& host, FarmTime now);
   /// The job is not to be tried again on the worker's host, as long as there are others.
   void avoid(WorkerId id, JobKey key);
   /// A job in work when a worker was lost. From now on no other suspect is given to a worker beside
@@ -174,7 +175,7 @@ class Scheduler {
   // A fixed schedule: who shall get what.
   std::map<WorkerId, std::deque<JobKey>> sets_;
   std::unordered_set<JobKey, JobKeyHash> dealt_;
-  std::uint64_t undealt_ = 0;  // ready jobs that fit nobody
+  std::vector<JobKey> undealt_;  // ready jobs that fit nobody
 };
 
 }  // namespace meshfarm

@@ -40,6 +40,9 @@ struct SimulatedFaults {
   double sink_pauses = 0;
   double ventilator_crashes = 0;
   double ventilator_pauses = 0;
+  double sick_mounts = 0;     // a worker's host cannot read files for up to four minutes; per host
+  double sick_sink = 0;       // the sink's host
+  double lost_parts = 0;      // per job: its input cannot be read by anybody for up to four minutes
   double storage_stalls = 0;  // no file operation ends for up to 20 s
   double disk_fills = 0;      // nothing can be written for up to 20 s
 

@@ -8,6 +8,7 @@
 #include <chrono>
 #include <cstdint>
 #include <functional>
+#include <set>
 #include <span>
 #include <string>
 #include <vector>
@@ -100,6 +101,7 @@ struct SimulationResult {
   std::uint64_t pushes = 0;  // jobs given out
   double server_busy_s = 0;  // of the storage's link
   std::uint64_t trace_hash = 0;
+  std::set<std::string> banned_hosts;  // "host3": got no more jobs at some time
   std::uint32_t runs = 0;  // after a failed one the user starts again, while there are faults
 };
 

@@ -35,6 +35,10 @@ struct Begin {
 struct GiveUp {
   std::uint32_t slot = 0;
 };
+/// Try to read a file that the sink cannot; answered by tried().
+struct ReadForSink {
+  TryRead what;
+};
 /// The end; `incomplete` says why the run is not over. If it is an abort, jobs are still in work:
 /// they do not listen, and may not be waited for.
 struct Leave {
@@ -42,7 +46,7 @@ struct Leave {
   bool abort = false;
 };
 using WorkerAction = std::variant<Look, Dial, HangUp, Say, ConnectLane, ConnectSink, SendResult,
-                                  Begin, GiveUp, Leave>;
+                                  Begin, GiveUp, ReadForSink, Leave>;
 using WorkerActions = std::vector<WorkerAction>;
 
 }  // namespace meshfarm

@@ -55,6 +55,8 @@ class WorkerCore {
   WorkerActions on_lane(const Message& message, FarmTime now);
   WorkerActions finished(std::uint32_t slot, std::variant<JobOutput, JobFailure> outcome,
                          FarmTime now, const JobTimes& times = {});
+  /// The answer to ReadForSink.
+  WorkerActions tried(const TryRead& what, bool whole);
   /// Gives back all that is held and leaves: at once, or when the jobs in work have ended.
   WorkerActions stop();
 

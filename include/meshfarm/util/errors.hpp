@@ -39,6 +39,21 @@ class IoError : public Error {
   int error_number_;
 };
 
+/// What is thrown by who reads a staged file that cannot be read, or is not what was promised, is
+/// this, too: another host may read it.
+class UnreadError {
+ public:
+  virtual ~UnreadError() = default;
+};
+class UnreadIoError : public IoError, public UnreadError {
+ public:
+  explicit UnreadIoError(const IoError& error) : IoError(error) {}
+};
+class UnreadDataError : public DataError, public UnreadError {
+ public:
+  explicit UnreadDataError(const std::string& what) : DataError(what) {}
+};
+
 /// Whether the error is that the disk, or the user's share of it, is full.
 bool is_no_space(const IoError& error);
 

@@ -31,14 +31,16 @@ std::vector<Message> one_of_each() {
           Result{1, 2, {3}, 4, 5, {6}, output, {7, 8, 9, 10, 11}},
           Result{1, 2, {3}, 4, 5, {6}, failure, {7, 8, 9, 10, 11}},
           Accept{1, {2}, {3}, output, {4, 5, 6, 7, 8}},
-          Reject{1, {2}, 3, {4}, failure},
+          Reject{1, {2}, 3, {4}, failure, {"results/x", 5, 6}},
           Ready{9, 10},
           Done{{10}, 11},
           SinkAt{"tcp://h:4"},
           JobFailed{{11}, "poison", true},
           Complete{12},
           Failed{13, "no space", true},
-          Stop{StopReason::leaving}};
+          Stop{StopReason::leaving},
+          TryRead{{12}, 13, part},
+          TriedRead{1, {2}, {3}, 4, true}};
 }
 
 TEST_CASE("every message comes back as it was") {
@@ -55,9 +57,9 @@ TEST_CASE("every message comes back as it was") {
 
 TEST_CASE("the fuzzer begins from each message of this version") {
   const std::vector<std::string> names = {
-      "hello",      "welcome",    "refused",       "heartbeat", "alive",  "credit", "release",
-      "assignment", "result_ok",  "result_failed", "accept",    "reject", "ready",  "done",
-      "sink_at",    "job_failed", "complete",      "failed",    "stop"};
+      "hello",      "welcome",    "refused",       "heartbeat", "alive",  "credit",   "release",
+      "assignment", "result_ok",  "result_failed", "accept",    "reject", "ready",    "done",
+      "sink_at",    "job_failed", "complete",      "failed",    "stop",   "try_read", "tried_read"};
   const std::vector<Message> messages = one_of_each();
   REQUIRE(names.size() == messages.size());
   for (std::size_t i = 0; i < names.size(); ++i) {
@@ -121,7 +123,7 @@ TEST_CASE("strangers' frames are refused with a reason") {
   std::string other_version = frame;
   other_version[4] = 2;
   CHECK_THROWS_WITH_AS(decode(other_version), doctest::Contains("version"), DataError);
-  for (const char type : {'\0', '\x13', '\x7f'}) {
+  for (const char type : {'\0', '\x15', '\x7f'}) {
     std::string other_type = frame;
     other_type[6] = type;
     CHECK_THROWS_WITH_AS(decode(other_type), doctest::Contains("unknown type"), DataError);
@@ -143,9 +145,9 @@ TEST_CASE("who speaks another version is told so in a frame of that version") {
 }
 
 TEST_CASE("numbers on the wire never change") {
-  CHECK(encode(Stop{StopReason::leaving}) == std::string("MFMS\4\0\x12\0\2", 9));
+  CHECK(encode(Stop{StopReason::leaving}) == std::string("MFMS\5\0\x12\0\2", 9));
   CHECK(encode(Credit{1, {2}, 3}) ==
-        std::string("MFMS\4\0\6\0\1\0\0\0\2\0\0\0\3\0\0\0\0\0\0\0", 24));
+        std::string("MFMS\5\0\6\0\1\0\0\0\2\0\0\0\3\0\0\0\0\0\0\0", 24));
 }
 
 TEST_CASE("what is too long for a message is refused by the sender") {

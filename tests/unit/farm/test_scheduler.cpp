@@ -248,6 +248,23 @@ TEST_CASE("a job larger than a share of its host's memory is done while the othe
   }
 }
 
+TEST_CASE("a host that did a job is sent jobs again at once") {
+  Desk desk({make_job("one", 1), make_job("two", 1), make_job("three", 1), make_job("four", 1)});
+  desk.join(1, "good", {}, 0);
+  desk.join(2, "bad", {}, 1);
+  REQUIRE(desk.hand_out() == "one@2 ");
+  for (int i = 0; i < 3; ++i) {
+    desk.now += FarmTime(20'000);
+    desk.scheduler.failed({2}, desk.now);
+  }
+  CHECK(desk.scheduler.bad_hosts().size() == 1);
+  desk.scheduler.set_room({2}, 1);
+  CHECK(desk.hand_out().empty());
+  desk.scheduler.did({2}, key_of(make_job("one", 1)), 1, desk.now);
+  CHECK(desk.scheduler.bad_hosts().empty());
+  CHECK(desk.hand_out() == "two@2 ");
+}
+
 TEST_CASE("by a fixed schedule, too, the others go on once such a job's worker is lost") {
   Desk desk({with_memory("large", 9, 800), with_memory("small", 8, 10)},
             {.schedule = Schedule::fixed, .expect_workers = 2});
@@ -257,6 +274,23 @@ TEST_CASE("by a fixed schedule, too, the others go on once such a job's worker i
   CHECK(desk.hand_out().empty());
   for (const auto& held : desk.scheduler.leave({1})) desk.plan.give_back(held.key);
   CHECK(desk.hand_out() == "small@2 large@2 ");
+}
+
+TEST_CASE("a fixed schedule goes on when another run has done what fits nobody here") {
+  Desk desk({}, {.schedule = Schedule::fixed, .expect_workers = 1});
+  const Job large = with_memory("large", 9, 1000);
+  desk.plan = Plan(
+      [large](std::span<const AcceptedJob> accepted) {
+        return accepted.empty()      ? std::vector<Job>{large}
+               : accepted.size() < 2 ? std::vector<Job>{make_job("next")}
+                                     : std::vector<Job>{};
+      },
+      3);
+  desk.plan.restart({});
+  desk.join(1, "host", {0, 500, 1});
+  CHECK(desk.hand_out().empty());
+  desk.plan.accept(key_of(large), output_of(key_of(large)));
+  CHECK(desk.hand_out() == "next@1 ");
 }
 
 TEST_CASE("a job larger than a share waits for the others of the host") {

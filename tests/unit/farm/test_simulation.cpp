@@ -85,6 +85,36 @@ TEST_CASE("the journal may fail, and be full") {
   check_seeds({.sink_crashes = 3, .disk_fills = 4}, 50);
 }
 
+/// As farm_of(), with a host each: in how many histories of so many a host was banned.
+int bans_in(const SimulatedFaults& faults, std::uint64_t seeds) {
+  const JobSource source = simulated_jobs(120);
+  const std::vector<std::string> expected = expected_summaries(source);
+  SimulationOptions options = farm_of(6, faults);
+  for (std::uint32_t i = 0; i < options.workers.size(); ++i) options.workers[i].host = i;
+  int bans = 0;
+  for (options.seed = 1; options.seed <= seeds; ++options.seed) {
+    CAPTURE(options.seed);
+    const SimulationResult result = simulate_farm(source, options);
+    CAPTURE(result.failure);
+    REQUIRE(problem_of(result, faults, expected) == "");
+    bans += result.banned_hosts.empty() ? 0 : 1;
+  }
+  return bans;
+}
+
+TEST_CASE("a sink that cannot read what others can costs no host its name") {
+  CHECK(bans_in({.sick_sink = 2}, 60) == 0);
+}
+
+TEST_CASE("parts that nobody can read for minutes cost no host its name") {
+  // One may be well again just when another tries: that is held against the first, but seldom.
+  CHECK(bans_in({.lost_parts = 0.15}, 60) <= 1);
+}
+
+TEST_CASE("a host that cannot read what others can only costs time") {
+  check_seeds({.sick_mounts = 0.5}, 100);
+}
+
 TEST_CASE("addresses may be seen late, and lead to other runs that nobody answers for") {
   check_seeds({.late_endpoint = 0.5, .ventilator_crashes = 6}, 100);
   check_seeds({.other_runs = 10, .ventilator_crashes = 3}, 100);

@@ -101,11 +101,13 @@ TEST_CASE("a damaged result and a failed job are rejected with their reasons") {
   CHECK(damaged[0].attempt == 4);
   CHECK(damaged[0].failure.reason == "it is damaged");
   CHECK(damaged[0].failure.kind == FailureKind::attempt);
+  CHECK(damaged[0].file == checks.at(0).output.file);  // for another reader to try
   const JobFailure full{"no room", FailureKind::no_space};
   const auto failed =
       said<Reject>(bench.core.on_result(Result{7, 1, {3}, 5, 1, key("job 1"), full, {}}));
   REQUIRE(failed.size() == 1);
   CHECK(failed[0].failure.kind == FailureKind::no_space);
+  CHECK(failed[0].file.name.empty());
   CHECK(bench.core.rounds().jobs_accepted() == 0);
 }
 

@@ -305,6 +305,23 @@ Heartbeat beat_in(const WorkerActions& actions) {
   return {};
 }
 
+TEST_CASE("what the sink cannot read is tried, and what came of it is told") {
+  Bench bench;
+  bench.join(1);
+  const FileRef file{"results/x", 5, 6};
+  const auto reads = only<ReadForSink>(bench.core.on_control(TryRead{{4}, 3, file}, bench.now));
+  REQUIRE(reads.size() == 1);
+  CHECK(reads[0].what.file == file);
+  const auto said = only<Say>(bench.core.tried(reads[0].what, true));
+  REQUIRE(said.size() == 1);
+  const auto& tried = std::get<TriedRead>(said[0].message);
+  CHECK(tried.epoch == 1);
+  CHECK(tried.worker == WorkerId{1});
+  CHECK(tried.key == JobKey{4});
+  CHECK(tried.attempt == 3);
+  CHECK(tried.whole);
+}
+
 TEST_CASE("a heartbeat tells of the job that stands still the longest") {
   Bench bench(5, 2);
   bench.join(1);
