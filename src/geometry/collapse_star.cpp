@@ -17,6 +17,9 @@ void CollapseStar::sum_planes(EdgeQuadric& quadric) const {
   quadric.a = quadric.a + Quadric{sum(s.xx), sum(s.xy), sum(s.xz), sum(s.yy), sum(s.yz), sum(s.zz)};
   quadric.b = quadric.b + Vec3{sum(s.bx), sum(s.by), sum(s.bz)};
   quadric.c += sum(s.c);
+  quadric.normals = {sum(s.nx), sum(s.ny), sum(s.nz)};
+  quadric.height = sum(s.height);
+  quadric.twice_area = sum(s.twice_area);
 }
 
 /// A sliver of the input may stay one, or nothing round it could ever collapse.

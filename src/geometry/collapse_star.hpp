@@ -45,7 +45,7 @@ class CollapseStar {
   /// First the two that both ends share. `sides` are the ends that they are at: -1 or 1.
   void add(const TwoTriangles& triangles, const Pair& sides);
 
-  /// Adds the planes.
+  /// Adds the planes, and what the volume needs.
   void sum_planes(EdgeQuadric& quadric) const;
 
   /// The area that is lost if both ends move to x; nothing if that spoils the shape of one of the
@@ -72,6 +72,7 @@ class CollapseStar {
   };
   struct Sums {
     Pair xx, xy, xz, yy, yz, zz, bx, by, bz, c, twice_area;
+    Pair nx, ny, nz, height;  // of the normals, twice the areas long
   };
 
   static Vec3Pair from(Vec3 a) { return {Pair{a.x, a.x}, Pair{a.y, a.y}, Pair{a.z, a.z}}; }
@@ -129,6 +130,10 @@ inline void CollapseStar::add_planes(const Two& two) {
   sums_.bz += n.z * wh;
   sums_.c += wh * height;
   sums_.twice_area += length;
+  sums_.nx += n.x;
+  sums_.ny += n.y;
+  sums_.nz += n.z;
+  sums_.height += height;
 }
 
 }  // namespace meshfarm
