@@ -9,6 +9,7 @@
 #include <meshfarm/geometry/distance.hpp>
 
 #include "geometry/adjacency.hpp"
+#include "geometry/collapse_guard.hpp"
 #include "geometry/simplify_rank.hpp"
 
 namespace meshfarm {
@@ -25,11 +26,14 @@ constexpr double k_decided = 0.8;
 // With fewer refusals a collapse it is not even tried.
 constexpr double k_costly = 0.25;
 
+// With a bound, so much must be gained at least.
+constexpr double k_worth = 0.8;
+
 }  // namespace
 
 /// A copy of the mesh and the queue that works on it.
 struct OrderedEnd::Trial {
-  Trial(const WorkingMesh& mesh, TopologyMode topology)
+  Trial(const WorkingMesh& mesh, TopologyMode topology, const SurfaceBound* bound)
       : positions(mesh.mesh().positions),
         flags(mesh.flags().begin(), mesh.flags().end()),
         queue({positions, flags, adjacency, mesh.creases(), mesh.type(), mesh.seam_only(),
@@ -38,6 +42,9 @@ struct OrderedEnd::Trial {
               ranking) {
     adjacency.build(mesh.mesh().triangles, positions.size());
     queue.start(mesh.mesh().triangles);
+    if (bound == nullptr) return;
+    guard.emplace(*bound);
+    queue.set_guard(*guard, mesh.mesh());
   }
 
   std::vector<Vec3> positions;
@@ -45,21 +52,22 @@ struct OrderedEnd::Trial {
   Adjacency adjacency;
   EdgeRanking ranking;
   CollapseQueue queue;
+  std::optional<CollapseGuard> guard;
 };
 
-OrderedEnd::OrderedEnd(WorkingMesh& mesh, TopologyMode topology)
-    : mesh_(mesh), topology_(topology) {}
+OrderedEnd::OrderedEnd(WorkingMesh& mesh, TopologyMode topology, const SurfaceBound* bound)
+    : mesh_(mesh), topology_(topology), bound_(bound) {}
 OrderedEnd::~OrderedEnd() = default;
 OrderedEnd::OrderedEnd(OrderedEnd&&) noexcept = default;
 
 std::optional<double> OrderedEnd::reduce(const SimplifyGoal& goal,
                                          const std::function<bool(std::uint64_t)>& progress) {
-  if (!has_begun()) trial_ = std::make_unique<Trial>(mesh_, topology_);
+  if (!has_begun()) trial_ = std::make_unique<Trial>(mesh_, topology_, bound_);
   const double paid_before = trial_->queue.paid();
   bool goes_on = trial_->queue.reduce(goal, progress);
   if (goes_on && topology_ == TopologyMode::automatic && !simplifies_topology() &&
       must_decide(goal) && is_costly_to_keep(goal)) {
-    auto other = std::make_unique<Trial>(mesh_, TopologyMode::simplify);
+    auto other = std::make_unique<Trial>(mesh_, TopologyMode::simplify, bound_);
     goes_on = other->queue.reduce(goal, progress);
     if (is_unfair(trial_->queue.paid() - paid_before, other->queue, goal)) {
       trial_ = std::move(other);
@@ -101,7 +109,9 @@ bool OrderedEnd::must_decide(const SimplifyGoal& goal) {
 /// Whether so much is refused to keep the topology that it is worth a try without.
 bool OrderedEnd::is_costly_to_keep(const SimplifyGoal& goal) const {
   const CollapseQueue& queue = trial_->queue;
-  if (std::isinf(goal.max_cost) && queue.triangles() > goal.triangles + 1) return true;
+  if (bound_ == nullptr && std::isinf(goal.max_cost) && queue.triangles() > goal.triangles + 1) {
+    return true;
+  }
   return queue.is_held() || static_cast<double>(queue.kept_topology()) >
                                 k_costly * static_cast<double>(queue.collapses());
 }
@@ -110,6 +120,9 @@ bool OrderedEnd::is_costly_to_keep(const SimplifyGoal& goal) const {
 bool OrderedEnd::is_unfair(double paid, const CollapseQueue& other,
                            const SimplifyGoal& goal) const {
   const CollapseQueue& kept = trial_->queue;
+  if (bound_ != nullptr) {
+    return static_cast<double>(other.triangles()) < k_worth * static_cast<double>(kept.triangles());
+  }
   if (kept.triangles() > goal.triangles + 1) return other.triangles() < kept.triangles();
   return paid > k_fair * other.paid() && kept.dearest() > k_fair * other.dearest() &&
          distance_to(kept) > k_fair_distance * distance_to(other);

@@ -19,7 +19,8 @@ namespace meshfarm {
 /// topology is kept, where that is left to it.
 class OrderedEnd {
  public:
-  OrderedEnd(WorkingMesh& mesh, TopologyMode topology);
+  /// `bound` may be null.
+  OrderedEnd(WorkingMesh& mesh, TopologyMode topology, const SurfaceBound* bound);
   ~OrderedEnd();
   OrderedEnd(OrderedEnd&&) noexcept;
 
@@ -44,6 +45,7 @@ class OrderedEnd {
 
   WorkingMesh& mesh_;
   TopologyMode topology_;
+  const SurfaceBound* bound_;
   std::unique_ptr<Trial> trial_;
   std::uint64_t decided_at_ = UINT64_MAX;  // triangles left when the topology was last thought of
 };

@@ -27,6 +27,13 @@ constexpr std::uint64_t k_near = 2;
 constexpr double k_near_of_large = 1.25;
 constexpr std::uint64_t k_large = 50'000;
 
+// With a bound, the passes end when it may be near for this part of the collapses.
+constexpr double k_bounded = 0.2;
+// Drifts at a vertex add up to no more than this share of a bound before.
+constexpr double k_drift_share = 0.4;
+// What a collapse at least counts for.
+constexpr double k_least_drift = 0.02;
+
 // The edges taken in a pass that must not overshoot, as a part of the triangles still to go: each
 // that can collapse, about six in ten, removes two.
 constexpr double k_most_of_excess = 0.7;
@@ -36,6 +43,9 @@ constexpr double k_most_of_excess = 0.7;
 constexpr std::uint32_t k_block = 4096;
 
 }  // namespace
+
+RankedPasses::RankedPasses(WorkingMesh& mesh, const SurfaceBound* bound)
+    : mesh_(mesh), bound_(bound), drifts_(bound != nullptr ? mesh.vertices() : 0, 0) {}
 
 RankedPasses::End RankedPasses::reduce(const SimplifyGoal& goal,
                                        const std::function<bool(std::uint64_t)>& progress) {
@@ -50,6 +60,9 @@ RankedPasses::End RankedPasses::reduce(const SimplifyGoal& goal,
     if (progress && !progress(mesh_.triangles())) return End::told;
     // What is cheap is refused: what is dear is not to be taken for it.
     if (refused_for_topology_ > collapses_) return End::dead_end;
+    if (static_cast<double>(refused_for_bound_) > k_bounded * static_cast<double>(collapses_)) {
+      return End::near;
+    }
     if (static_cast<double>(removed) < k_least_ranked * static_cast<double>(before)) {
       if (ranks_by_bounds_ && goal.max_cost > cost_of(pass.limit)) {
         ranks_by_bounds_ = false;
@@ -95,14 +108,15 @@ std::uint64_t RankedPasses::run(const SimplifyGoal& goal, const Pass& pass) {
   const std::uint64_t excess = mesh_.triangles() - goal.triangles;
   CollapseLimits limits{excess, pass.max_cost};
   double reached = pass.max_cost;
-  collapses_ = refused_for_topology_ = 0;
+  DriftMeter drifts(mesh_.state());
+  collapses_ = refused_for_topology_ = refused_for_bound_ = 0;
   for (std::uint32_t first = 0; first < vertices && limits.triangles > 0; first += pass.block) {
     const std::uint32_t last = std::min(vertices, first + pass.block);
     for (const RankedEdge& e : ranking_.cheapest(first, last, {pass.limit, pass.max_cost})) {
       if ((touched[e.a] | touched[e.b]) != 0) continue;
       const Collapse collapse = judge.judge(e.a, e.b, limits);
       refused_for_topology_ += collapse.by_topology ? 1 : 0;
-      if (collapse.triangles == 0) continue;
+      if (collapse.triangles == 0 || !may_drift(drifts, e, collapse)) continue;
       ++collapses_;
       mesh_.merge(e.a, e.b, collapse);
       limits.triangles -= collapse.triangles;
@@ -114,7 +128,31 @@ std::uint64_t RankedPasses::run(const SimplifyGoal& goal, const Pass& pass) {
   const double paid = std::isfinite(reached) ? reached : mesh_.max_cost();
   const std::uint64_t removed = excess - limits.triangles;
   mesh_.end_pass(removed, excess > 1 ? paid : mesh_.pass_cost());
+  if (removed > 0) renumber_drifts();
   return removed;
+}
+
+/// Whether there is no bound, or it is far. If so, the collapse is done.
+bool RankedPasses::may_drift(DriftMeter& meter, const RankedEdge& edge, const Collapse& collapse) {
+  if (bound_ == nullptr) return true;
+  const double least = k_least_drift * bound_->distance();
+  const double drift = meter.drift_of(edge.a, edge.b, collapse.position, least) +
+                       std::max(drifts_[edge.a], drifts_[edge.b]);
+  if (!(drift <= k_drift_share * bound_->distance())) {
+    ++refused_for_bound_;
+    return false;
+  }
+  drifts_[edge.a] = static_cast<float>(drift);
+  return true;
+}
+
+void RankedPasses::renumber_drifts() {
+  const std::span<const std::uint32_t> numbers = mesh_.numbers();
+  std::uint32_t kept = 0;
+  for (std::size_t v = 0; v < drifts_.size(); ++v) {
+    if (numbers[v] == kept) drifts_[kept++] = drifts_[v];
+  }
+  drifts_.resize(kept);
 }
 
 }  // namespace meshfarm

@@ -4,10 +4,13 @@
 
 #include <cstdint>
 #include <functional>
+#include <vector>
 
 #include <meshfarm/geometry/simplify.hpp>
+#include <meshfarm/geometry/surface_bound.hpp>
 
 #include "geometry/collapse.hpp"
+#include "geometry/collapse_drift.hpp"
 #include "geometry/simplify_rank.hpp"
 #include "geometry/working_mesh.hpp"
 
@@ -24,7 +27,8 @@ class RankedPasses {
     told        // progress said stop
   };
 
-  explicit RankedPasses(WorkingMesh& mesh) : mesh_(mesh) {}
+  /// `bound` may be null.
+  RankedPasses(WorkingMesh& mesh, const SurfaceBound* bound);
 
   End reduce(const SimplifyGoal& goal, const std::function<bool(std::uint64_t)>& progress);
 
@@ -38,14 +42,19 @@ class RankedPasses {
   bool is_near(const SimplifyGoal& goal) const;
   Pass plan(const SimplifyGoal& goal);
   std::uint64_t run(const SimplifyGoal& goal, const Pass& pass);
+  bool may_drift(DriftMeter& meter, const RankedEdge& edge, const Collapse& collapse);
+  void renumber_drifts();
 
   WorkingMesh& mesh_;
+  const SurfaceBound* bound_;
+  std::vector<float> drifts_;  // of each vertex, where there is a bound
   EdgeRanking ranking_;
   // Ranks by bounds, so that what is flat goes before what is nearly flat. Where little of that is
   // left most of what ranks low is dearer, and refused.
   bool ranks_by_bounds_ = true;
   std::uint64_t collapses_ = 0;             // of the last pass
   std::uint64_t refused_for_topology_ = 0;  // in the last pass
+  std::uint64_t refused_for_bound_ = 0;     // in the last pass
 };
 
 }  // namespace meshfarm

@@ -28,21 +28,24 @@ struct Simplifier::Impl {
   Impl(Mesh input, const SimplifyOptions& options)
       : mesh(std::move(input), options),
         topology(options.lines.topology),
-        passes(mesh),
-        end(mesh, topology),
+        bound(options.bound),
+        passes(mesh, bound),
+        end(mesh, topology, bound),
         seam(mesh.seam()) {}
 
   void reduce(const SimplifyGoal& goal, const Progress& progress) {
     if (!(goal.max_cost > exhausted_cost)) return;
     const std::uint64_t before = mesh.triangles();
     auto came_to = RankedPasses::End::near;
-    if (!end.has_begun()) {
+    const bool is_used_up = bound != nullptr && bound->options().is_used_up;
+    if (!end.has_begun() && !is_used_up) {
       const bool goes_on = reduce_roughly(goal, progress);
       came_to = goes_on ? passes.reduce(goal, progress) : RankedPasses::End::told;
     }
+    const bool is_told = came_to == RankedPasses::End::told && bound == nullptr;
     if (came_to == RankedPasses::End::exhausted && is_healthy(before)) {
       exhausted_cost = goal.max_cost;
-    } else if (came_to != RankedPasses::End::told && mesh.is_above(goal.triangles)) {
+    } else if (!is_told && mesh.is_above(goal.triangles)) {
       if (const auto cost = end.reduce(goal, progress)) exhausted_cost = *cost;
     }
     seam = mesh.seam();
@@ -50,7 +53,7 @@ struct Simplifier::Impl {
 
   /// False if progress says stop.
   bool reduce_roughly(const SimplifyGoal& goal, const Progress& progress) {
-    while (!mesh.seam_only() && mesh.is_above(goal.triangles) &&
+    while (!mesh.seam_only() && bound == nullptr && mesh.is_above(goal.triangles) &&
            RoughPass::is_worth_it(mesh, goal)) {
       const auto before = static_cast<double>(mesh.triangles());
       const std::uint64_t removed = RoughPass(mesh).run(goal);
@@ -62,12 +65,13 @@ struct Simplifier::Impl {
   }
 
   bool is_healthy(std::uint64_t before) const {
-    return topology != TopologyMode::simplify &&
+    return topology != TopologyMode::simplify && bound == nullptr &&
            static_cast<double>(mesh.triangles()) < k_healthy * static_cast<double>(before);
   }
 
   WorkingMesh mesh;
   TopologyMode topology;
+  const SurfaceBound* bound;
   RankedPasses passes;
   OrderedEnd end;
   std::vector<std::uint8_t> seam;

@@ -124,6 +124,19 @@ Collapse CollapseQueue::judge(std::uint32_t a, std::uint32_t b, std::uint64_t mo
   return {};
 }
 
+void CollapseQueue::set_guard(CollapseGuard& guard, const Mesh& mesh) {
+  guard_ = &guard;
+  guard.start(state(), mesh);
+}
+
+/// Such an edge is looked at again when one of its ends has moved, not when what is round it has.
+bool CollapseQueue::is_guarded(std::uint32_t a, std::uint32_t b, const Collapse& collapse) {
+  if (guard_ == nullptr) return false;
+  CollapseGuard::Merge merge{a, b, collapse.position, {}};
+  if (by_general_) merge.vanishing = general_.vanishing();
+  return !guard_->allows(merge);
+}
+
 bool CollapseQueue::reduce(const SimplifyGoal& goal, const Progress& progress) {
   most_cost_ = goal.max_cost;
   double share = k_ranked_share;
@@ -165,7 +178,7 @@ CollapseQueue::Stop CollapseQueue::run(const SimplifyGoal& goal, const Progress&
       continue;  // dropped until something beside it changes
     } else if (must_wait(queued, collapse.cost)) {
       push({a, b, key_of(collapse.cost)});
-    } else {
+    } else if (!is_guarded(a, b, collapse)) {
       keep(goal);
       merge(a, b, collapse);
       if (progress && ++collapses % k_told_every == 0 && !progress(triangles_)) return Stop::told;
@@ -231,6 +244,7 @@ void CollapseQueue::join_stars(std::uint32_t a, std::uint32_t b) {
 }
 
 void CollapseQueue::merge(std::uint32_t a, std::uint32_t b, const Collapse& collapse) {
+  if (guard_ != nullptr) guard_->merge();
   join_stars(a, b);
   target_[b] = a;
   mesh_.flags[a] |= mesh_.flags[b];
@@ -282,6 +296,7 @@ void CollapseQueue::tidy_star(std::uint32_t vertex) {
     classify(vertex);
     return;
   }
+  const auto first_copy = static_cast<std::uint32_t>(target_.size());
   const auto corners = mesh_.adjacency.at(vertex);
   const std::vector<Corner> all(corners.begin(), corners.end());
   const std::vector<std::uint32_t> fan(splitter_.fans().begin(), splitter_.fans().end());
@@ -299,6 +314,7 @@ void CollapseQueue::tidy_star(std::uint32_t vertex) {
     mesh_.adjacency.assign(v, joined_);
     classify(v);
   }
+  if (guard_ != nullptr) guard_->split(vertex, first_copy);
 }
 
 void CollapseQueue::classify(std::uint32_t vertex) {
@@ -322,6 +338,7 @@ std::uint32_t CollapseQueue::add_copy(std::uint32_t vertex) {
   ranking_.move_to(mesh_.positions, mesh_.flags);
   judge_.move_to(state());
   general_.move_to(state());
+  if (guard_ != nullptr) guard_->move_to(state());
   tidied_.push_back(copy);
   return copy;
 }

@@ -15,6 +15,7 @@
 #include "geometry/adjacency.hpp"
 #include "geometry/collapse.hpp"
 #include "geometry/collapse_general.hpp"
+#include "geometry/collapse_guard.hpp"
 #include "geometry/fans.hpp"
 #include "geometry/simplify_lines.hpp"
 #include "geometry/simplify_rank.hpp"
@@ -61,6 +62,8 @@ class CollapseQueue {
 
   /// Ranks all edges. `triangles` are those that the adjacency was built from.
   void start(std::span<const Triangle> triangles);
+  /// Then: what else refuses collapses. `mesh` is what the queue begins with.
+  void set_guard(CollapseGuard& guard, const Mesh& mesh);
 
   /// Collapses until the goal is met or nothing that it allows is left. May be called again. False
   /// if progress said stop.
@@ -100,6 +103,7 @@ class CollapseQueue {
   void push(const RankedEdge& edge);
   std::uint32_t stamp_of(std::uint32_t a, std::uint32_t b) const { return looks_[a] + looks_[b]; }
   Collapse judge(std::uint32_t a, std::uint32_t b, std::uint64_t most_triangles);
+  bool is_guarded(std::uint32_t a, std::uint32_t b, const Collapse& collapse);
   void merge(std::uint32_t a, std::uint32_t b, const Collapse& collapse);
   void keep(const SimplifyGoal& goal);
   void tidy(std::uint32_t merged);
@@ -126,6 +130,7 @@ class CollapseQueue {
   std::vector<QueuedEdge> heap_;  // those that came later
   CollapseJudge judge_;
   GeneralJudge general_;
+  CollapseGuard* guard_ = nullptr;
   FanSplitter splitter_;
   bool by_general_ = false;  // that one judged the last
   std::vector<std::uint32_t> tidied_;

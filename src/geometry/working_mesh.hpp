@@ -50,6 +50,9 @@ class WorkingMesh {
   void merge(std::uint32_t a, std::uint32_t b, const Collapse& collapse);
   /// `removed`: how many triangles have gone; `cost`: what the pass might pay.
   void end_pass(std::uint64_t removed, double cost);
+  /// After a pass that has removed triangles: the new number of each vertex, or that of the one it
+  /// has merged into, which is smaller than those of all that stay and follow.
+  std::span<const std::uint32_t> numbers() const { return target_; }
   /// Becomes what the queue has made of it.
   void take(const CollapseQueue& queue);
 

@@ -11,7 +11,6 @@
 #include <meshfarm/geometry/components.hpp>
 #include <meshfarm/geometry/distance.hpp>
 #include <meshfarm/geometry/simplify.hpp>
-#include <meshfarm/geometry/simplify_within.hpp>
 #include <meshfarm/geometry/topology.hpp>
 #include <meshfarm/io/boundary_file.hpp>
 #include <meshfarm/io/ply_writer.hpp>
@@ -22,6 +21,7 @@
 #include <meshfarm/util/errors.hpp>
 #include <meshfarm/util/parallel.hpp>
 
+#include "pipeline/bounded_finish.hpp"
 #include "pipeline/error_meter.hpp"
 #include "pipeline/knee.hpp"
 #include "pipeline/sort_plan.hpp"
@@ -70,7 +70,7 @@ class Assembly {
     summary_.dropped_components = drop_small(stitched.mesh);
     summary_.stitched = stitched.mesh.triangles.size();
     summary_.stitch_seconds = watch.lap();
-    const Mesh result = summary_.max_error > 0 ? finish_to_bound(std::move(stitched.mesh))
+    const Mesh result = summary_.max_error > 0 ? finish_within_bound(std::move(stitched))
                                                : finish(std::move(stitched));
     summary_.triangles = result.triangles.size();
     summary_.vertices = result.positions.size();
@@ -157,21 +157,19 @@ class Assembly {
                    summary_.max_error > 0 ? k_points_for_bound : ErrorPoints{});
   }
 
-  Mesh finish_to_bound(Mesh stitched) {
-    // Between the points that are measured a surface may be a little farther.
-    constexpr double k_bound_margin = 0.92;
-    BoundedSimplifier simplifier(
-        std::move(stitched), {.positions = manifest_.positions, .lines = lines_},
-        [&](const Mesh& mesh) {
-          tell("finish, " + std::to_string(mesh.triangles.size()) + " triangles", 0, 0);
-          return meter_->strays(mesh, k_bound_margin * summary_.max_error);
-        });
-    summary_.dropped_degenerate += simplifier.dropped_degenerate();
-    summary_.dropped_duplicate += simplifier.dropped_duplicate();
-    summary_.turned += simplifier.turned();
-    constexpr double k_last_step = 2;
-    if (simplifier.accept_strays()) reduce_to_bound(simplifier, k_last_step);
-    return simplifier.mesh();
+  Mesh finish_within_bound(StitchedMesh stitched) {
+    BoundedFinish finish =
+        finish_to_bound(stage_, manifest_, std::move(stitched),
+                        {.max_error = k_bound_share * summary_.max_error,
+                         .lines = lines_,
+                         .threads = options_.threads,
+                         .progress = [&](std::uint64_t left) {
+                           tell("finish, " + std::to_string(left) + " triangles", 0, 0);
+                         }});
+    summary_.dropped_degenerate += finish.dropped_degenerate;
+    summary_.dropped_duplicate += finish.dropped_duplicate;
+    summary_.turned += finish.turned;
+    return std::move(finish.mesh);
   }
 
   /// To so many triangles, or as few as there may be.

@@ -3,19 +3,17 @@
 #include "pipeline/bounded_part.hpp"
 
 #include <algorithm>
+#include <optional>
 #include <span>
 #include <utility>
 
-#include <meshfarm/geometry/simplify_within.hpp>
+#include <meshfarm/geometry/distance.hpp>
+#include <meshfarm/geometry/simplify.hpp>
+#include <meshfarm/geometry/surface_bound.hpp>
 #include <meshfarm/util/errors.hpp>
-
-#include "pipeline/part_error.hpp"
 
 namespace meshfarm {
 namespace {
-
-/// The finish goes on from there.
-constexpr double k_last_step = 4;
 
 /// The highest level that a mesh has reached for which this much was paid.
 std::int32_t level_reached(double cost, double unit) {
@@ -37,18 +35,13 @@ BoundedPart simplify_to_bound(Part part, const SimplifyParameters& parameters,
   const SurfaceSamples samples =
       sample_surface(part.mesh, {.samples = parameters.samples, .threads = 1});
   const std::uint64_t before = part.mesh.triangles.size();
-  const PartError error(part.mesh, samples);
-  BoundedSimplifier simplifier(std::move(part.mesh),
-                               {.locked_vertices = part.boundary_vertices,
-                                .positions = part.positions,
-                                .lines = parameters.lines},
-                               [&](const Mesh& mesh) {
-                                 auto strays = error.strays(mesh, parameters.max_error);
-                                 if (strays && !strays->empty() && !parameters.lock_strays)
-                                   strays.reset();
-                                 return strays;
-                               });
-  const double cost = reduce_to_bound(simplifier, k_last_step, [&](std::uint64_t left) {
+  std::optional<SurfaceBound> bound;
+  if (before > 0) bound.emplace(part.mesh, SurfaceBoundOptions{parameters.max_error, 1});
+  Simplifier simplifier(std::move(part.mesh), {.locked_vertices = part.boundary_vertices,
+                                               .positions = part.positions,
+                                               .lines = parameters.lines,
+                                               .bound = bound ? &*bound : nullptr});
+  simplifier.reduce({}, [&](std::uint64_t left) {
     if (context.progress(before - std::min(left, before))) return true;
     throw IncompleteError("the job was given up");
   });
@@ -59,7 +52,7 @@ BoundedPart simplify_to_bound(Part part, const SimplifyParameters& parameters,
                       [&](std::string_view bytes) { made.file += bytes; });
   const double farthest =
       mesh.triangles.empty() ? 0 : DistanceMeter(mesh, 1).measure(samples.points).max;
-  result.add_rung(level_reached(cost, parameters.cost_unit), mesh,
+  result.add_rung(level_reached(simplifier.pass_cost(), parameters.cost_unit), mesh,
                   free_triangles(mesh, part.boundary_vertices), farthest);
   result.finish(std::span(mesh.positions).first(part.boundary_vertices), {&samples, 1});
   made.summary = {result.rungs(), simplifier.dropped_degenerate(), simplifier.dropped_duplicate(),

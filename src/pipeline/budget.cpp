@@ -37,13 +37,11 @@ constexpr double k_fair_excess = 2;
 constexpr double k_finer = 1.2;
 constexpr std::int32_t k_most_finer = 6;
 
-/// With a bound on the error, a ladder begins at this share of the part, or as it came if even that
-/// is too far from it; and parts may take up this share of the bound, the finish the rest.
-constexpr double k_error_start = 0.5;
+/// Of a bound on the error, streams that are swept by cost may take up this share.
 constexpr double k_error_share = 0.5;
 
-/// The part as it came, the last good mesh and the points that are measured.
-constexpr std::uint64_t k_bound_bytes_per_triangle = 120;
+/// The part as it came, its hierarchy, and the points that stand for it, up to five a triangle.
+constexpr std::uint64_t k_bound_bytes_per_triangle = 500;
 
 /// What a simplify job needs by and large: the part's file and its mesh (20 and 40 bytes a
 /// triangle), the simplifier (50 to 70), and the ladder, whose rungs shrink by a third or more from
@@ -155,15 +153,11 @@ class Rounds {
   }
 
   void set_error_bound(SimplifyParameters& parameters, std::uint32_t part) const {
-    const std::uint64_t triangles = climbed(part).triangles;
-    const bool first = headroom_[part] == k_first_headroom;
     parameters.allocation = Allocation::threshold;
-    parameters.max_error = k_error_share * options_.error.in(manifest_.box);
     // What a sample tells is done to its stream by cost alone.
-    parameters.lock_strays = !is_sampled(part);
-    parameters.start_triangles =
-        first ? static_cast<std::uint64_t>(k_error_start * static_cast<double>(triangles))
-              : triangles;
+    const double share = is_sampled(part) ? k_error_share : k_bound_share_of_parts;
+    parameters.max_error = share * options_.error.in(manifest_.box);
+    parameters.start_triangles = climbed(part).triangles;
   }
 
   void set_share(SimplifyParameters& parameters, std::uint32_t part) const {
@@ -241,7 +235,7 @@ class Rounds {
     const std::vector<std::uint32_t> swept = std::exchange(asked_, {});
     if (by_error()) {
       for (const std::uint32_t part : swept) {
-        if (!too_far(part) || sweep_levels_[part] < 0) continue;
+        if (!swept_too_far(part) || sweep_levels_[part] < 0) continue;
         --sweep_levels_[part];
         asked_.push_back(part);
       }
@@ -304,16 +298,15 @@ class Rounds {
     composed_ = plan.streams();
   }
 
-  /// Whether a part was taken past what it may be in the end.
-  bool too_far(std::uint32_t part) const {
-    const Rung& first = results_[part].rungs.front();
-    return by_error() ? first.error > k_error_share * options_.error.in(manifest_.box)
-                      : first.level > level_;
+  /// Whether a stream was taken farther from what it was than it may be.
+  bool swept_too_far(std::uint32_t stream) const {
+    return results_[stream].rungs.front().error > k_error_share * options_.error.in(manifest_.box);
   }
 
   void ask_again() {
     asked_.clear();
-    if (!by_error()) choose_level();
+    if (by_error()) return;
+    choose_level();
     if (topology_ == TopologyMode::keep_while_fair && is_unfair()) {
       keep_coarsest();
       topology_ = TopologyMode::simplify;
@@ -321,9 +314,9 @@ class Rounds {
       ask_first();
       return;
     }
-    if (options_.allocation == Allocation::uniform && !by_error()) return;
+    if (options_.allocation == Allocation::uniform) return;
     for (std::uint32_t p = 0; p < results_.size(); ++p) {
-      if (!too_far(p)) continue;
+      if (results_[p].rungs.front().level <= level_) continue;
       headroom_[p] *= k_more_headroom;
       asked_.push_back(p);
     }

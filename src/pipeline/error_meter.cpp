@@ -14,14 +14,9 @@ namespace {
 
 /// Nearly all points of a result are nearer than so many times the RMS.
 constexpr double k_usual = 4;
-/// And than this share of a bound on the maximum.
-constexpr double k_usual_of_bound = 0.25;
-/// If more points than one for so many triangles are too far off, they are not worth naming.
-constexpr std::size_t k_triangles_a_stray = 10;
 /// Farther than this the first pass need not look: so many triangles are then near each point that
 /// the second is cheaper.
 constexpr double k_far_in_spacings = 4;
-constexpr std::uint64_t k_samples_at_once = 4096;
 /// A few per cent are all that an estimate may be wrong by.
 constexpr std::uint64_t k_points_for_estimate = 5'000;
 
@@ -65,21 +60,6 @@ class Greatest {
  private:
   mutable std::mutex mutex_;
   double value_;
-};
-
-/// Points that several threads find, in no order.
-class Gathered {
- public:
-  void add(const std::vector<Vec3>& points) {
-    const std::lock_guard lock(mutex_);
-    points_.insert(points_.end(), points.begin(), points.end());
-  }
-  const std::vector<Vec3>& points() const { return points_; }
-  std::vector<Vec3> take() { return std::move(points_); }
-
- private:
-  std::mutex mutex_;
-  std::vector<Vec3> points_;
 };
 
 }  // namespace
@@ -184,34 +164,6 @@ MeasuredError ErrorMeter::measure(const Mesh& result) {
   error.input_samples = surface_.size();
   error.output_samples = from.by_area;
   return error;
-}
-
-std::optional<std::vector<Vec3>> ErrorMeter::strays(const Mesh& result, double bound) {
-  if (result.triangles.empty() || !(area_ > 0)) return std::vector<Vec3>();
-  const std::size_t most = result.triangles.size() / k_triangles_a_stray + 1;
-  const DistanceMeter to_result(result, threads_);
-  Gathered found;
-  const std::span<const Vec3> all(surface_);
-  parallel_for(
-      (all.size() + k_samples_at_once - 1) / k_samples_at_once, threads_, [&](std::uint64_t i) {
-        const std::size_t first = i * k_samples_at_once;
-        const auto some = all.subspan(first, std::min(k_samples_at_once, all.size() - first));
-        found.add(to_result.beyond(some, bound));
-      });
-  if (found.points().size() > most) return std::nullopt;
-  const ResultPoints from = points_of(result);
-  const double usual =
-      std::min(bound, std::clamp(k_usual_of_bound * bound, spacing_, k_far_in_spacings * spacing_));
-  PointMeter to_input(from.points, {spacing_, usual, surface_, bound});
-  show_input(to_input,
-             [&](std::span<const Vec3> vertices) { found.add(to_result.beyond(vertices, bound)); });
-  std::vector<Vec3> strays = found.take();
-  const std::vector<double> distances = to_input.distances();
-  for (std::size_t i = 0; i < distances.size(); ++i) {
-    if (distances[i] > bound) strays.push_back(from.points[i]);
-  }
-  if (strays.size() > most) return std::nullopt;
-  return strays;
 }
 
 }  // namespace meshfarm

@@ -4,7 +4,6 @@
 
 #include <cstdint>
 #include <functional>
-#include <optional>
 #include <span>
 #include <vector>
 
@@ -41,9 +40,6 @@ class ErrorMeter {
   MeasuredError measure(const Mesh& result);
   /// About the RMS from the input to the result, by few points: much cheaper.
   double estimate_rms(const Mesh& result) const;
-  /// The points, of either surface, whose distances measure() would find above the bound, if they
-  /// are not too many: much cheaper.
-  std::optional<std::vector<Vec3>> strays(const Mesh& result, double bound);
 
  private:
   struct ResultPoints {

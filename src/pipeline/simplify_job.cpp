@@ -17,10 +17,10 @@
 namespace meshfarm {
 namespace {
 
-// Version 3: allocation u8 | start u64 | even share u64 | samples u64 | cost unit f64 |
-// greatest error f64 | lock strays u8 | lines (run_options.hpp).
-// Version 2 knew no topology and could not lock strays.
-constexpr std::uint8_t k_version = 3;
+// Version 4: allocation u8 | start u64 | even share u64 | samples u64 | cost unit f64 |
+// greatest error f64 | lines (run_options.hpp).
+// Version 3 could lock strays.
+constexpr std::uint8_t k_version = 4;
 constexpr std::uint64_t k_max_samples = 100'000'000;
 constexpr std::int32_t k_top_level = 52;
 // A part keeps no less than this fraction of its even share: what of it is flat goes in the finish.
@@ -136,7 +136,6 @@ std::string encode_parameters(const SimplifyParameters& parameters) {
   out.put(parameters.samples);
   out.put(parameters.cost_unit);
   out.put(parameters.max_error);
-  out.put(static_cast<std::uint8_t>(parameters.lock_strays ? 1 : 0));
   put(out, parameters.lines);
   return out.take();
 }
@@ -153,7 +152,6 @@ SimplifyParameters decode_parameters(std::string_view bytes) {
   if (parameters.samples > k_max_samples) in.fail("too many samples");
   parameters.cost_unit = in.get<double>();
   parameters.max_error = in.get<double>();
-  parameters.lock_strays = in.get<std::uint8_t>() != 0;
   parameters.lines = get_lines(in);
   in.expect_end();
   return parameters;

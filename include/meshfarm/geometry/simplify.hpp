@@ -37,6 +37,8 @@ struct LineOptions {
   TopologyMode topology = TopologyMode::automatic;
 };
 
+class SurfaceBound;
+
 struct SimplifyOptions {
   /// The first n vertices neither move nor go: they keep their indices 0..n-1.
   std::uint32_t locked_vertices = 0;
@@ -46,6 +48,9 @@ struct SimplifyOptions {
   /// (the seam-only pass of Xiong et al. 2008, 3.3). A vertex merged from a flagged one is flagged.
   std::vector<std::uint8_t> seam;
   LineOptions lines;
+  /// Where not null: collapses that would take the surface farther from this one than it allows are
+  /// refused. It must outlive the simplifier.
+  const SurfaceBound* bound = nullptr;
 };
 
 /// How far to go: whichever limit is met first.

@@ -21,7 +21,6 @@ struct SimplifyParameters {
   std::uint64_t samples = 0;          // points of the part to measure the final error by
   double cost_unit = 0;               // cost of level 0
   double max_error = 0;               // where above 0: one rung, as far as this distance is kept
-  bool lock_strays = false;           // few places that break it do not end the work elsewhere
   LineOptions lines;
 };
 

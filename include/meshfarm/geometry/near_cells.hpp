@@ -1,0 +1,36 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include <meshfarm/geometry/mesh.hpp>
+
+namespace meshfarm {
+
+/// The cells of a grid that a surface comes near to: tells quickly what of another surface may
+/// matter. 2 MB.
+class NearCells {
+ public:
+  /// Of these triangles, and what is within the distance of their boxes.
+  NearCells(std::span<const Vec3> positions, std::span<const Triangle> triangles, double distance);
+  /// Whether the box has a cell in common with what is near: it may then still be a little farther.
+  bool touch(const Box& box) const;
+
+ private:
+  using Cell = std::array<int, 3>;
+  static constexpr int k_cells = 256;  // on a side
+
+  Cell cell_of(Vec3 p) const;
+  template <typename Take>
+  static bool any_cell(Cell lo, Cell hi, const Take& take);
+
+  Box box_;
+  double size_ = 1;  // of a cell
+  std::vector<bool> near_;
+};
+
+}  // namespace meshfarm

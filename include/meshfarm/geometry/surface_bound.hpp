@@ -1,0 +1,52 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+
+#include <meshfarm/geometry/mesh.hpp>
+
+namespace meshfarm {
+
+struct SurfaceBoundOptions {
+  double distance = 0;   // above 0
+  unsigned threads = 1;  // 0: one a core. Nothing depends on it.
+  /// What is simplified may be nearly so far already, and not the surface itself.
+  bool is_used_up = false;
+};
+
+struct SurfacePoint {
+  Vec3 at;
+  std::uint32_t triangle = 0;  // that it lies on
+  /// It stands for a triangle round it, as large as this share of its own; below 0: of one that is
+  /// turned round.
+  float share = 0;
+};
+
+/// A surface, and how far one that is made of it may be from it and it from that. Needs about 100
+/// bytes a triangle, and 40 for each point.
+class SurfaceBound {
+ public:
+  /// The mesh must have a triangle and finite coordinates.
+  SurfaceBound(Mesh surface, const SurfaceBoundOptions& options);
+  ~SurfaceBound();
+  SurfaceBound(SurfaceBound&&) noexcept;
+
+  const SurfaceBoundOptions& options() const;
+  double distance() const { return options().distance; }
+  /// What stands for the surface: its vertices, and points of triangles that are so large that the
+  /// vertices alone do not tell how far they are from another surface.
+  std::span<const SurfacePoint> points() const;
+  const Mesh& surface() const;
+  /// The squared distance to the surface, or to some triangle of it if that is at most `enough`.
+  /// `guess` is a triangle near the point, becomes the one that was found, and saves time.
+  double squared_distance_to(Vec3 point, double enough, std::uint32_t& guess) const;
+
+ private:
+  class Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace meshfarm

@@ -1,0 +1,131 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#include <algorithm>
+#include <cmath>
+#include <utility>
+#include <vector>
+
+#include <meshfarm/geometry/surface_bound.hpp>
+
+#include "geometry/bvh.hpp"
+
+namespace meshfarm {
+namespace {
+
+/// Points are so far apart, in distances of the bound. Between them a surface is seldom farther off
+/// by more than a tenth.
+constexpr double k_spacing = 1.5;
+/// A small bound on large triangles does not ask for more points than this a triangle, all in all.
+constexpr double k_most_points = 4;
+
+double longest_side(const Mesh& mesh, const Triangle& t) {
+  const Vec3 a = mesh.positions[t[0]], b = mesh.positions[t[1]], c = mesh.positions[t[2]];
+  return std::sqrt(std::max({squared_length(b - a), squared_length(c - b), squared_length(a - c)}));
+}
+
+/// Into how many parts each side is divided; 0 if the vertices are enough.
+double steps_for(double side, double spacing) {
+  return side > spacing ? std::ceil(side / spacing) : 0;
+}
+
+std::vector<SurfacePoint> used_vertices(const Mesh& mesh) {
+  std::vector<std::uint8_t> used(mesh.positions.size(), 0);
+  std::vector<SurfacePoint> vertices;
+  vertices.reserve(mesh.positions.size());
+  for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
+    for (const std::uint32_t v : mesh.triangles[t]) {
+      if (std::exchange(used[v], std::uint8_t{1}) == 0)
+        vertices.push_back({mesh.positions[v], t, 0});
+    }
+  }
+  return vertices;
+}
+
+double count_inside(const Mesh& mesh, double spacing) {
+  double count = 0;
+  for (const Triangle& t : mesh.triangles) {
+    const double steps = steps_for(longest_side(mesh, t), spacing);
+    count += steps * steps;
+  }
+  return count;
+}
+
+/// The middles of the triangles that a grid divides a triangle into.
+void add_grid(const Mesh& mesh, std::uint32_t triangle, double steps,
+              std::vector<SurfacePoint>& points) {
+  const auto& [a, b, c] = mesh.triangles[triangle];
+  const Vec3 first = mesh.positions[a];
+  const Vec3 along = (mesh.positions[b] - first) * (1 / steps);
+  const Vec3 across = (mesh.positions[c] - first) * (1 / steps);
+  const auto share = static_cast<float>(1 / steps);
+  for (double i = 0; i < steps; ++i) {
+    for (double j = 0; i + j < steps; ++j) {
+      points.push_back({first + along * (i + 1.0 / 3) + across * (j + 1.0 / 3), triangle, share});
+      if (i + j + 1 < steps)
+        points.push_back(
+            {first + along * (i + 2.0 / 3) + across * (j + 2.0 / 3), triangle, -share});
+    }
+  }
+}
+
+std::vector<SurfacePoint> points_inside(const Mesh& mesh, double distance) {
+  constexpr double k_wider = 1.2;
+  const double most = k_most_points * static_cast<double>(mesh.triangles.size()) + 10'000;
+  double spacing = k_spacing * distance;
+  while (count_inside(mesh, spacing) > most) spacing *= k_wider;
+  std::vector<SurfacePoint> points;
+  for (std::uint32_t i = 0; i < mesh.triangles.size(); ++i) {
+    const double steps = steps_for(longest_side(mesh, mesh.triangles[i]), spacing);
+    if (steps > 0) add_grid(mesh, i, steps, points);
+  }
+  return points;
+}
+
+}  // namespace
+
+class SurfaceBound::Impl {
+ public:
+  Impl(Mesh surface, const SurfaceBoundOptions& options)
+      : surface_(std::move(surface)),
+        options_(options),
+        bvh_(surface_, options.threads),
+        points_(used_vertices(surface_)) {
+    const std::vector<SurfacePoint> inside = points_inside(surface_, options.distance);
+    points_.insert(points_.end(), inside.begin(), inside.end());
+  }
+
+  const SurfaceBoundOptions& options() const { return options_; }
+  std::span<const SurfacePoint> points() const { return points_; }
+  const Mesh& surface() const { return surface_; }
+  double squared_distance_to(Vec3 point, double enough, std::uint32_t& guess) const {
+    const Bvh::Nearest nearest = bvh_.nearest(point, guess, enough);
+    guess = nearest.triangle;
+    return nearest.squared;
+  }
+
+ private:
+  Mesh surface_;
+  SurfaceBoundOptions options_;
+  Bvh bvh_;
+  std::vector<SurfacePoint> points_;
+};
+
+SurfaceBound::SurfaceBound(Mesh surface, const SurfaceBoundOptions& options)
+    : impl_(std::make_unique<Impl>(std::move(surface), options)) {}
+SurfaceBound::~SurfaceBound() = default;
+SurfaceBound::SurfaceBound(SurfaceBound&&) noexcept = default;
+
+const SurfaceBoundOptions& SurfaceBound::options() const {
+  return impl_->options();
+}
+std::span<const SurfacePoint> SurfaceBound::points() const {
+  return impl_->points();
+}
+const Mesh& SurfaceBound::surface() const {
+  return impl_->surface();
+}
+double SurfaceBound::squared_distance_to(Vec3 point, double enough, std::uint32_t& guess) const {
+  return impl_->squared_distance_to(point, enough, guess);
+}
+
+}  // namespace meshfarm
