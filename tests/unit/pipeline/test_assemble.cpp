@@ -271,6 +271,17 @@ TEST_CASE("a bound on the error is kept, with few triangles, and a tighter one n
   }
 }
 
+TEST_CASE("a bound on the error leaves no dense seams") {
+  const test::TempFolder folder;
+  const Mesh torus = test::torus(200, 120);
+  const RunOptions options{.error = {0.02, false}};
+  const Made whole = simplify(torus, 1, options, folder.path() / "whole");
+  const Made parts = simplify(torus, 6, options, folder.path() / "parts");
+  CHECK(parts.summary.stitched > 2 * parts.summary.triangles);
+  CHECK(parts.summary.triangles * 10 < whole.summary.triangles * 13);
+  CHECK(parts.summary.error.greater().max <= 0.02);
+}
+
 TEST_CASE("components that are smaller than asked for are left out, and counted") {
   Mesh mesh = test::torus(60, 40);  // 2.8 wide, and dust beside it
   for (int i = 0; i < 10; ++i) {
