@@ -15,9 +15,9 @@ namespace meshfarm {
 
 /// Of a bound on the error parts and finish keep to this share: between the points that they look
 /// at a surface may be a little farther.
-inline constexpr double k_bound_share = 0.94;
+inline constexpr double k_bound_share = 0.92;
 /// And parts, as the finish looks at other points of them, to this.
-inline constexpr double k_bound_share_of_parts = 0.92;
+inline constexpr double k_bound_share_of_parts = 0.9;
 
 /// The jobs of a run, round by round (see JobSource). First every part is simplified to a ladder:
 /// snapshots at rising cost levels that are the same in all parts. From the rungs' counts one level
