@@ -14,6 +14,9 @@ constexpr std::uint32_t k_none = UINT32_MAX;
 
 constexpr std::uint32_t k_compared_at_once = 8;
 
+// Of triangles round an edge.
+constexpr std::uint32_t k_few_pairs = 3;
+
 // The neighbour of an open ring that no triangle begins at.
 template <typename Ring>
 std::uint32_t last_neighbour(const Ring& ring) {
@@ -153,11 +156,9 @@ void CollapseJudge::add_lines(const Ring& ring, Vec3 end, std::uint32_t without)
 
 /// A vertex that merges into a line from beside leaves the line as it is, and one that merges into
 /// a corner the corner.
-Vec3 CollapseJudge::best_position(std::uint32_t a, std::uint32_t b) const {
-  const int rank_a = line_rank(ring_a_.flags);
-  const int rank_b = line_rank(ring_b_.flags);
-  if (rank_a == rank_b) return rounded(middle_ + quadric_.best(), state_.type);
-  return rounded(state_.positions[rank_a > rank_b ? a : b], state_.type);
+Vec3 CollapseJudge::line_position(std::uint32_t a, std::uint32_t b) const {
+  const bool at_a = line_rank(ring_a_.flags) > line_rank(ring_b_.flags);
+  return rounded(state_.positions[at_a ? a : b], state_.type);
 }
 
 Collapse CollapseJudge::judge(std::uint32_t a, std::uint32_t b, const CollapseLimits& limits) {
@@ -176,21 +177,27 @@ Collapse CollapseJudge::judge(std::uint32_t a, std::uint32_t b, const CollapseLi
   if ((ring_a_.flags & k_line) != 0) add_lines(ring_a_, half * -1.0, k_none);
   if ((ring_b_.flags & k_line) != 0) add_lines(ring_b_, half, a);
 
-  const bool alike = line_rank(ring_a_.flags) == line_rank(ring_b_.flags);
-  const Vec3 point = best_position(a, b);
-  if (!alike || quadric_.is_near(point - middle_)) {
-    const Collapse best = at_position(point, shared, limits.max_cost, Turn::wide);
-    if (best.triangles > 0 || !alike) return best;
+  if (line_rank(ring_a_.flags) != line_rank(ring_b_.flags)) {
+    const Vec3 point = line_position(a, b);
+    return at_position(point, shared, limits.max_cost, Turn::wide);
   }
+  const auto at_near = [&](Vec3 x) {
+    if (!quadric_.is_near(x)) return Collapse{};
+    return at_position(rounded(middle_ + x, state_.type), shared, limits.max_cost, Turn::wide);
+  };
+  const Collapse best = at_near(quadric_.best());
+  if (best.triangles > 0) return best;
   // Where the best point is far off or would spoil a triangle, one of the ends may do: without them
   // flat faces with sharp edges are dead ends. To let them turn triangles as far costs 6 % of the
   // error on thin bridges.
   const bool a_first = quadric_.cost(half * -1.0) <= quadric_.cost(half);
-  constexpr Turn turn = Turn::narrow;
-  const Collapse end =
-      at_position(state_.positions[a_first ? a : b], shared, limits.max_cost, turn);
-  if (end.triangles > 0) return end;
-  return at_position(state_.positions[a_first ? b : a], shared, limits.max_cost, turn);
+  for (const std::uint32_t end : {a_first ? a : b, a_first ? b : a}) {
+    const Collapse there =
+        at_position(state_.positions[end], shared, limits.max_cost, Turn::narrow);
+    if (there.triangles > 0) return there;
+  }
+  // Of pieces that are nearly as small as can be, few collapses keep any of the volume.
+  return star_.pairs() <= k_few_pairs ? at_near(quadric_.cheapest()) : Collapse{};
 }
 
 /// Nothing if it costs more or a triangle would be spoiled.

@@ -45,6 +45,9 @@ class CollapseStar {
   /// First the two that both ends share. `sides` are the ends that they are at: -1 or 1.
   void add(const TwoTriangles& triangles, const Pair& sides);
 
+  /// Of triangles that were added.
+  std::uint32_t pairs() const { return size_; }
+
   /// Adds the planes, and what the volume needs.
   void sum_planes(EdgeQuadric& quadric) const;
 

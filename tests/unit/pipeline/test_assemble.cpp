@@ -143,7 +143,9 @@ TEST_CASE("pieces go where the count cannot be met with them, unless they are to
   CHECK(before.components == 100);
   CHECK(before.euler == 200);
   CHECK(after.components == measure_topology(simplified.mesh).components);
-  CHECK(gone.components == 100 - after.components);
+  // One that is pinched is two, so that more may go than are missing.
+  CHECK(gone.components >= 100 - after.components);
+  CHECK(gone.components < 100);
   CHECK(gone.area > 0.2 * gone.area_of_all);
   CHECK(gone.area < 0.5 * gone.area_of_all);  // the smaller ones
   const std::string text = render(simplified.summary, Format::text);
