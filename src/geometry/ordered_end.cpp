@@ -20,7 +20,7 @@ namespace {
 // dear ones are no reason.
 constexpr double k_fair = 1.44;
 constexpr double k_fair_distance = 1.2;
-constexpr std::uint64_t k_fair_samples = 5'000;
+constexpr std::uint64_t k_fair_samples = 10'000;
 // Once it is found fair, it is thought of again when so much of the triangles is left.
 constexpr double k_decided = 0.8;
 // With fewer refusals a collapse it is not even tried.

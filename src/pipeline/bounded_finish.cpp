@@ -23,16 +23,17 @@ constexpr double k_reach = 2;
 
 /// And those of no triangle, which are to go.
 std::vector<std::uint8_t> vertices_round(const Mesh& mesh, std::vector<std::uint8_t> near) {
+  std::vector<std::uint8_t> flags;
   for (int ring = 0; ring < k_rings; ++ring) {
-    const std::vector<std::uint8_t> before = near;
+    flags = near;
     for (const auto& [a, b, c] : mesh.triangles) {
-      if ((before[a] | before[b] | before[c]) != 0) near[a] = near[b] = near[c] = 1;
+      if ((flags[a] | flags[b] | flags[c]) != 0) near[a] = near[b] = near[c] = 1;
     }
   }
-  std::vector<std::uint8_t> used(near.size(), 0);
-  for (const auto& [a, b, c] : mesh.triangles) used[a] = used[b] = used[c] = 1;
-  for (std::size_t v = 0; v < used.size(); ++v) {
-    if (used[v] == 0) near[v] = 1;
+  flags.assign(near.size(), 0);  // now: of a triangle
+  for (const auto& [a, b, c] : mesh.triangles) flags[a] = flags[b] = flags[c] = 1;
+  for (std::size_t v = 0; v < near.size(); ++v) {
+    if (flags[v] == 0) near[v] = 1;
   }
   return near;
 }
