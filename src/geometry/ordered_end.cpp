@@ -124,13 +124,20 @@ bool OrderedEnd::is_unfair(double paid, const CollapseQueue& other,
     return static_cast<double>(other.triangles()) < k_worth * static_cast<double>(kept.triangles());
   }
   if (kept.triangles() > goal.triangles + 1) return other.triangles() < kept.triangles();
-  return paid > k_fair * other.paid() && kept.dearest() > k_fair * other.dearest() &&
-         distance_to(kept) > k_fair_distance * distance_to(other);
+  if (!(paid > k_fair * other.paid() && kept.dearest() > k_fair * other.dearest())) return false;
+  const double squared = squared_distance_to(other);
+  const double squared_kept = squared_distance_to(kept);
+  // Both lie no nearer to the input than the mesh as it is does. A surface's error is as one over
+  // its triangles, which tells how far that is.
+  const double times = static_cast<double>(mesh_.triangles()) /
+                       static_cast<double>(std::max<std::uint64_t>(1, other.triangles()));
+  const double before = squared / std::max(times * times - 1, 1e-6);
+  return before + squared_kept > k_fair_distance * k_fair_distance * (before + squared);
 }
 
-/// Between the mesh as it is and the queue's, the farther way. A cost does not know how far from
-/// what is left a lost piece lies.
-double OrderedEnd::distance_to(const CollapseQueue& queue) const {
+/// The squared RMS between the mesh as it is and the queue's, the farther way. A cost does not know
+/// how far from what is left a lost piece lies.
+double OrderedEnd::squared_distance_to(const CollapseQueue& queue) const {
   const Mesh& now = mesh_.mesh();
   Mesh result;
   std::vector<std::uint8_t> flags;
@@ -144,7 +151,8 @@ double OrderedEnd::distance_to(const CollapseQueue& queue) const {
   const auto from_to = [](const Mesh& from, const Mesh& to) {
     return DistanceMeter(to, 1).measure(sample_surface(from, {k_fair_samples, 1}).points).rms;
   };
-  return std::max(from_to(now, result), from_to(result, now));
+  const double rms = std::max(from_to(now, result), from_to(result, now));
+  return rms * rms;
 }
 
 }  // namespace meshfarm
