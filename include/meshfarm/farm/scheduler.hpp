@@ -55,7 +55,7 @@ class Scheduler {
   /// Something failed on the worker's host. After three incidents in a row it gets no more jobs for
   /// some minutes, as long as there are other hosts. What fails within seconds is one incident.
   void failed(WorkerId id, FarmTime now);
-  void host_failed(const std::string& host, FarmTime now);
+  void host_failed(const std::string& name, FarmTime now);
   /// The job is not to be tried again on the worker's host, as long as there are others.
   void avoid(WorkerId id, JobKey key);
   /// A job in work when a worker was lost. From now on no other suspect is given to a worker beside
