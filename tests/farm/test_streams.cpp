@@ -155,7 +155,8 @@ TEST_CASE("streams: killed while the farm sorts and samples, a run goes on, and 
   const std::vector<std::string> other = {"replay",         stage,     "-o",
                                           stage + ".5.ply", "--ratio", "0.05"};
   CHECK(bench().meshfarm(other).code == 0);
-  CHECK(streams_in(stage, "results") == sorted);
+  // What a second attempt made may have gone since; nothing has come.
+  CHECK(streams_in(stage, "results") <= sorted);
 }
 
 TEST_CASE("streams: a worker killed as it sorts costs nothing but time") {
