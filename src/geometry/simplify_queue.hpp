@@ -117,6 +117,7 @@ class CollapseQueue {
 
   QueuedMesh mesh_;
   EdgeRanking& ranking_;
+  CollapseGuard* guard_ = nullptr;
   std::vector<std::uint32_t> target_;  // the vertex that a vertex has become
   std::vector<std::uint8_t> refused_;  // an edge at the vertex was refused since it last changed
   // How often the edges at a vertex were ranked anew. Only increases, so that an entry is out of
@@ -124,15 +125,12 @@ class CollapseQueue {
   std::vector<std::uint32_t> looks_;
   std::vector<std::uint8_t> stale_;  // its quadric is that of a star that has changed
   double most_cost_ = 0;             // the goal's
-  CostKey limit_ = 0;                // dearer edges wait for the next ranking
   std::vector<QueuedEdge> first_;    // as ranked at the start, cheapest first
   std::size_t next_first_ = 0;
   std::vector<QueuedEdge> heap_;  // those that came later
   CollapseJudge judge_;
   GeneralJudge general_;
-  CollapseGuard* guard_ = nullptr;
   FanSplitter splitter_;
-  bool by_general_ = false;  // that one judged the last
   std::vector<std::uint32_t> tidied_;
   std::vector<std::uint32_t> ring_;
   std::vector<Corner> joined_;
@@ -148,6 +146,8 @@ class CollapseQueue {
   double dearest_ = 0;
   std::uint64_t collapses_ = 0;
   std::uint64_t kept_topology_ = 0;
+  CostKey limit_ = 0;        // dearer edges wait for the next ranking
+  bool by_general_ = false;  // the general judge judged the last
   bool held_ = false;
 };
 
