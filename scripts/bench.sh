@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # Measures meshfarm beside its peers, and prints one table:
 #   bench.sh [--peers all|NAME,...] [--runs N] [--ratio R] [--workers N] [--install] [--kernel] INPUT.ply
+#   bench.sh --attributes [--runs N] [--ratio R] [--workers N] [--install] INPUT.ply
 #   bench.sh --corpus FOLDER [--ratios R,...] [--peers all|NAME,...] [--workers N] [--install]
 #   --peers    meshoptimizer (Debian's and npm's), cgal (both of its methods), openmesh, vtk, or
 #              none: those that are installed are run, the others are named (default: all)
@@ -9,6 +10,8 @@
 #   --workers  of the whole runs of meshfarm (default: 2)
 #   --install  first installs the peers: Debian packages, and meshoptimizer's newest from npm
 #   --kernel   also runs the microbenchmarks; without INPUT.ply only these
+#   --attributes  colours the mesh, once with noise and once with stripes, and measures beside the
+#              peers that keep colours: meshoptimizer of npm and VTK
 #   --corpus   every mesh of FOLDER (.ply, .ply.gz, .ply.zst), to every ratio, by both schemes
 #   --ratios   of the corpus (default: 0.5,0.1,0.03,0.01,0.003)
 # The rows "file to file" are whole runs: everything from the start of the program to its end. The
@@ -21,11 +24,11 @@ npm_version=1.3.0
 
 fail_usage() {
   echo "bench.sh: $1" >&2
-  sed -n '3,4s/^# *//p' "$0" >&2
+  sed -n '3,5s/^# *//p' "$0" >&2
   exit 2
 }
 
-peers=all runs=5 ratio=0.01 workers=2 install=no kernel=no input=
+peers=all runs=5 ratio=0.01 workers=2 install=no kernel=no attributes=no input=
 corpus='' ratios=0.5,0.1,0.03,0.01,0.003
 while [ $# -gt 0 ]; do
   case "$1" in
@@ -35,6 +38,7 @@ while [ $# -gt 0 ]; do
       shift ;;
     --install) install=yes ;;
     --kernel) kernel=yes ;;
+    --attributes) attributes=yes ;;
     --help | -h) sed -n '2,/^set/{/^#/s/^# \{0,1\}//p}' "$0"; exit 0 ;;
     -*) fail_usage "unknown option $1" ;;
     *) [ -z "$input" ] || fail_usage "one INPUT.ply only"; input=$1 ;;
@@ -115,6 +119,15 @@ if [ "$kernel" = yes ]; then
   [ -x "$build/tests/bench/bench_kernel" ] ||
     { echo "bench.sh: Google Benchmark is not installed (--install gets it)" >&2; exit 1; }
   "$build/tests/bench/bench_kernel"
+fi
+if [ "$attributes" = yes ]; then
+  [ -n "$input" ] || fail_usage "--attributes: INPUT.ply is missing"
+  for kind in noise stripes; do
+    coloured=$build/$(basename "${input%.ply}")-$kind.ply
+    "$build/tests/bench/colour_mesh" "$input" "$coloured" "$kind"
+    "$0" --peers meshoptimizer_npm,vtk --runs "$runs" --ratio "$ratio" --workers "$workers" "$coloured"
+  done
+  exit 0
 fi
 mapfile -t names < <(choose_peers)
 if [ -n "$corpus" ]; then

@@ -62,8 +62,9 @@ run_allocation() {
   local options=() workers word=$MESHFARM_STAGE.slurm-$SLURM_JOB_ID.code
   while [ "$1" != -- ]; do options+=("$1"); shift; done
   shift
+  # Where no environment is passed on, srun has no PATH to find bash by.
   srun --no-kill --kill-on-bad-exit=0 --wait=0 --ntasks-per-node=1 \
-    bash -c "$(declare -f run_element); run_element \"\$@\"" run_element \
+    "$BASH" -c "$(declare -f run_element); run_element \"\$@\"" run_element \
     "$MESHFARM" "$MESHFARM_STAGE" "$@" &
   workers=$!
   see_run_through "${options[@]}"

@@ -12,6 +12,7 @@
 
 #include <sys/wait.h>
 
+#include <meshfarm/io/mesh_format.hpp>
 #include <meshfarm/report/batch_report.hpp>
 #include <meshfarm/staging/atomic_file.hpp>
 #include <meshfarm/staging/claim.hpp>
@@ -36,13 +37,14 @@ namespace fs = std::filesystem;
 /// While one file is stitched and finished the next is cut and its parts keep the crew busy.
 constexpr std::size_t k_at_once = 2;
 
-/// "folder/scan.ply.gz" becomes "scan.ply".
+/// "folder/scan.obj.gz" becomes "scan.obj"; what cannot be written becomes PLY.
 std::string output_name(const std::string& input) {
   fs::path name = fs::path(input).filename();
   for (const char* packed : {".gz", ".zst"}) {
     if (name.extension() == packed) name.replace_extension();
   }
-  return name.replace_extension(".ply").string();
+  if (!name.has_extension() || !is_output_format(name)) name.replace_extension(".ply");
+  return name.string();
 }
 
 std::string text_of(const fs::path& path) {
@@ -75,8 +77,8 @@ class BatchCommand : public Command {
              po::positional_options_description& positional) override {
     options.add_options()("input", po::value(&inputs_)->required(), "")(
         "output,o", po::value(&output_)->required()->value_name("FOLDER"),
-        "where the results go, as PLY, by the names of the files; what was done stays done when "
-        "the same command is run again");
+        "where the results go, by the names of the files and in their formats; what was done stays "
+        "done when the same command is run again");
     target_.add(options);
     options.add_options()("workers", po::value(&workers_)->default_value(workers_)->value_name("N"),
                           "worker processes (default: cores)");

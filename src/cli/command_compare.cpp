@@ -1,8 +1,11 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
+#include <algorithm>
 #include <iostream>
 
 #include <meshfarm/geometry/distance.hpp>
+#include <meshfarm/geometry/value_error.hpp>
+#include <meshfarm/io/channel_pairs.hpp>
 #include <meshfarm/io/mesh_source.hpp>
 #include <meshfarm/report/summary.hpp>
 #include <meshfarm/stream/divided_distance.hpp>
@@ -20,7 +23,9 @@ class CompareCommand : public Command {
   std::string_view name() const override { return "compare"; }
   std::string_view synopsis() const override { return "A B"; }
   std::string_view summary() const override {
-    return "sampled distances between two meshes, both ways, and the topology of both";
+    return "sampled distances between two meshes and differences of their colours, normals and "
+           "other "
+           "values, both ways, and the topology of both";
   }
   void setup(po::options_description& options,
              po::positional_options_description& positional) override {
@@ -36,20 +41,34 @@ class CompareCommand : public Command {
     measure_.check();
   }
   int run() override {
-    const auto source_a = open_mesh(a_);
-    const auto source_b = open_mesh(b_);
+    const auto source_a = open_mesh(a_, {.textures = Textures::bake});
+    const auto source_b = open_mesh(b_, {.textures = Textures::bake});
     Comparison comparison;
     comparison.path_a = a_;
     comparison.path_b = b_;
+    const ChannelPairs channels =
+        pair_channels(source_a->info().channels, source_b->info().channels);
+    comparison.channels_only_a = channels.only_a;
+    comparison.channels_only_b = channels.only_b;
     DivideOptions divide = measure_.divide;
     divide.memory_bytes /= 2;  // each
     const DividedSurface a(*source_a, divide);
     const DividedSurface b(*source_b, divide);
     comparison.diagonal = a.box().diagonal();
-    if (memory_for(a) + memory_for(b) <= measure_.divide.memory_bytes) {
+    const std::uint64_t memory = measure_.divide.memory_bytes;
+    const std::uint64_t meshes = memory_for(a, b);
+    const std::uint64_t values =
+        sizeof(float) * channels.columns_a.size() * (a.vertices() + b.vertices());
+    if (values > 0 && meshes + values <= memory) {
+      measure_all({*source_a, a.vertices()}, {*source_b, b.vertices()}, channels, comparison);
+    } else if (meshes <= memory) {
       measure(read_mesh(*source_a), read_mesh(*source_b), comparison);
     } else {
       measure(a, b, comparison);
+    }
+    if (values > 0 && comparison.channels.empty()) {
+      comparison.channels_skipped = "that takes --memory " + size_text(meshes + values) +
+                                    ", and there is " + size_text(memory);
     }
     const SurfaceTopology topology_a = a.measure_topology();
     const SurfaceTopology topology_b = b.measure_topology();
@@ -62,17 +81,64 @@ class CompareCommand : public Command {
   }
 
  private:
-  /// What it takes to hold one with its hierarchy.
-  static std::uint64_t memory_for(const DividedSurface& surface) {
-    return sizeof(Vec3) * surface.vertices() + (sizeof(Triangle) + 40) * surface.triangles();
+  struct Input {
+    MeshSource& source;
+    std::uint64_t vertices = 0;
+  };
+
+  /// What it takes to hold both, and the hierarchy of one at a time.
+  static std::uint64_t memory_for(const DividedSurface& a, const DividedSurface& b) {
+    // While it is built, with what the allocator keeps: measured.
+    constexpr std::uint64_t k_hierarchy_bytes = 72;
+    return sizeof(Vec3) * (a.vertices() + b.vertices()) +
+           sizeof(Triangle) * (a.triangles() + b.triangles()) +
+           k_hierarchy_bytes * std::max(a.triangles(), b.triangles());
+  }
+
+  /// As --memory takes it; rounded up, so that it is enough.
+  static std::string size_text(std::uint64_t bytes) {
+    const bool is_large = bytes >= std::uint64_t{10} << 20;
+    const unsigned shift = is_large ? 20 : 10;
+    const std::uint64_t units = (bytes + (std::uint64_t{1} << shift) - 1) >> shift;
+    return std::to_string(units) + (is_large ? "M" : "K");
+  }
+
+  DistanceOptions distance_options() const {
+    DistanceOptions options = distance_;
+    options.threads = measure_.divide.threads;
+    return options;
   }
 
   template <class Surface>
   void measure(const Surface& a, const Surface& b, Comparison& comparison) const {
-    DistanceOptions options = distance_;
-    options.threads = measure_.divide.threads;
-    comparison.a_to_b = measure_distance(a, b, options);
-    comparison.b_to_a = measure_distance(b, a, options);
+    comparison.a_to_b = measure_distance(a, b, distance_options());
+    comparison.b_to_a = measure_distance(b, a, distance_options());
+  }
+
+  /// Distances and channels.
+  void measure_all(const Input& input_a, const Input& input_b, const ChannelPairs& channels,
+                   Comparison& comparison) const {
+    const Mesh mesh_a = read_mesh(input_a.source);
+    const Mesh mesh_b = read_mesh(input_b.source);
+    const std::vector<float> values_a =
+        read_columns(input_a.source, channels.columns_a, input_a.vertices);
+    const std::vector<float> values_b =
+        read_columns(input_b.source, channels.columns_b, input_b.vertices);
+    std::vector<ValueGroup> groups;
+    for (const ChannelPair& pair : channels.pairs) {
+      const bool is_direction = pair.role == ChannelRole::normal;
+      groups.push_back({is_direction ? ValueKind::direction : ValueKind::numbers, pair.columns});
+    }
+    const ValuedMesh a{mesh_a, values_a};
+    const ValuedMesh b{mesh_b, values_b};
+    const SurfaceError a_to_b = measure_error(a, b, groups, distance_options());
+    const SurfaceError b_to_a = measure_error(b, a, groups, distance_options());
+    comparison.a_to_b = a_to_b.distance;
+    comparison.b_to_a = b_to_a.distance;
+    for (std::size_t i = 0; i < channels.pairs.size(); ++i) {
+      comparison.channels.push_back(
+          {channels.pairs[i].name, channels.pairs[i].role, a_to_b.values[i], b_to_a.values[i]});
+    }
   }
 
   std::string a_;

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: MIT
 #include <meshfarm/geometry/generate.hpp>
 #include <meshfarm/io/mesh_format.hpp>
-#include <meshfarm/io/ply_writer.hpp>
 #include <meshfarm/util/errors.hpp>
 
 #include "cli/command.hpp"
@@ -22,7 +21,7 @@ class GenerateCommand : public Command {
   }
   void setup(po::options_description& options, po::positional_options_description&) override {
     options.add_options()("output,o", po::value(&output_)->required()->value_name("FILE"),
-                          "the PLY file to write")(
+                          "the file to write: .ply, .glb, .gltf, .off, .obj or .stl")(
         "triangles", po::value(&triangles_)->default_value(triangles_)->value_name("N"),
         "number of triangles, about")("shape",
                                       po::value(&shape_)->default_value(shape_)->value_name(
@@ -57,15 +56,15 @@ class GenerateCommand : public Command {
       positions = source->info().positions;
     }
     shuffle(mesh, k_seed);
-    write_ply(output_, mesh, positions);
+    write_mesh(output_, mesh, positions);
   }
 
   void write_in_order() const {
     const auto made = generate_mesh(shape_named(shape_), triangles_);
-    PlyWriter writer(output_, {.vertices = made->vertices(),
-                               .triangles = made->triangles(),
-                               .positions = PositionType::float32,
-                               .comment = "meshfarm generate"});
+    const auto sink = create_mesh(output_, {.vertices = made->vertices(),
+                                            .triangles = made->triangles(),
+                                            .positions = PositionType::float32,
+                                            .comment = "meshfarm generate"});
     ProgressPrinter printer(talk_.progress());
     std::uint64_t written = 0;
     const auto all = static_cast<double>(made->vertices() + made->triangles());
@@ -74,14 +73,14 @@ class GenerateCommand : public Command {
       printer.show({.phase = "generate", .done = static_cast<double>(written) / all});
     };
     made->for_vertices([&](std::span<const Vec3> batch) {
-      writer.vertices(batch);
+      sink->vertices(batch);
       tell(batch.size());
     });
     made->for_triangles([&](std::span<const WideTriangle> batch) {
-      writer.triangles(batch);
+      sink->triangles(batch);
       tell(batch.size());
     });
-    writer.commit();
+    sink->commit();
   }
 
   std::string output_;

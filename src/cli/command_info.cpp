@@ -50,7 +50,8 @@ class InfoCommand : public Command {
       std::cout << render(read_through(), talk_.format());
       return 0;
     }
-    const auto source = open_mesh(file_, {.scans = no_topology_ ? Scans::one : Scans::many});
+    const auto source = open_mesh(
+        file_, {.scans = no_topology_ ? Scans::one : Scans::many, .textures = Textures::name});
     std::cout << render(no_topology_ ? scanned(*source) : measured(*source), talk_.format());
     return 0;
   }

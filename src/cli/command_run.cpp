@@ -39,8 +39,9 @@ class RunCommand : public Command {
              po::positional_options_description& positional) override {
     options.add_options()("stage", po::value(&stage_)->required(), "")(
         "output,o", po::value(&output_)->value_name("FILE"),
-        "where the result goes, as PLY (default: STAGE/result.ply)");
+        "where the result goes; .ply, .glb, .gltf, .off, .obj or .stl (default: STAGE/result.ply)");
     target_.add(options);
+    target_.add_attributes(options);
     options.add_options()("workers", po::value(&workers_)->default_value(workers_)->value_name("N"),
                           whose_ == Workers::own ? "worker processes started here (default: cores)"
                                                  : "worker processes started here");

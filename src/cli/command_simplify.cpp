@@ -28,7 +28,7 @@ class SimplifyCommand : public Command {
              po::positional_options_description& positional) override {
     options.add_options()("input", po::value(&input_)->required(), "")(
         "output,o", po::value(&output_)->required()->value_name("FILE"),
-        "where the result goes, as PLY");
+        "where the result goes: .ply, .glb, .gltf, .off, .obj or .stl");
     target_.add(options);
     options.add_options()("workers", po::value(&workers_)->default_value(workers_)->value_name("N"),
                           "worker processes (default: cores)");

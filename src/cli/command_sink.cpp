@@ -35,8 +35,9 @@ class SinkCommand : public FarmCommand {
              po::positional_options_description& positional) override {
     add_stage(options, positional);
     options.add_options()("output,o", po::value(&output_)->required()->value_name("FILE"),
-                          "where the result goes, as PLY");
+                          "where the result goes: .ply, .glb, .gltf, .off, .obj or .stl");
     target_.add(options);
+    target_.add_attributes(options);
     network_.add(options);
     when_full_.add(options);
     options.add_options()("wait",

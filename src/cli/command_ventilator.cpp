@@ -27,6 +27,7 @@ class VentilatorCommand : public FarmCommand {
              po::positional_options_description& positional) override {
     add_stage(options, positional);
     target_.add(options);
+    target_.add_attributes(options);
     network_.add(options);
     schedule_.add(options);
     when_full_.add(options);

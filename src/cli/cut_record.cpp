@@ -34,6 +34,8 @@ std::string options_of(const CutWords& words) {
     text += " --sort " + words.sort + " --window " + std::to_string(words.stream.window_triangles) +
             " --memory " + std::to_string(words.stream.memory_bytes);
   }
+  if (words.attributes != "auto") text += " --attributes " + words.attributes;
+  if (words.uv != "bake") text += " --uv " + words.uv;
   return text + ", algorithm " + std::to_string(k_algorithm_version);
 }
 

@@ -4,9 +4,11 @@
 
 #include <cstdlib>
 #include <filesystem>
+#include <utility>
 
 #include <unistd.h>
 
+#include <meshfarm/io/channel_choice.hpp>
 #include <meshfarm/io/mesh_format.hpp>
 #include <meshfarm/io/mesh_source.hpp>
 #include <meshfarm/partition/cut.hpp>
@@ -44,9 +46,11 @@ Manifest cut_to_stage(const CutStep& step) {
   if (stage.has_manifest()) return taken_up(stage, wanted);
   // Readers of compressed and ascii files keep scratch of their own, which goes by this.
   if (!step.words.scratch.empty()) ::setenv("TMPDIR", step.words.scratch.c_str(), 1);
-  const auto source = open_mesh(
-      step.input, {.threads = step.words.scheme == Scheme::stream ? step.words.stream.threads
-                                                                  : step.words.cut.threads});
+  auto opened = open_mesh(step.input, {.threads = step.words.cut.threads,
+                                       .channels = step.words.attributes != "none",
+                                       .textures = parse_uv(step.words.uv)});
+  tell_textures(step.input, opened->info());
+  const auto source = with_channels(std::move(opened), step.words.channels);
   publish_record(stage, wanted);
   ProgressPrinter printer(step.talk.progress());
   const auto with_common = [&](auto options) {
@@ -61,6 +65,12 @@ Manifest cut_to_stage(const CutStep& step) {
     return generate_streams(*source, stage, with_common(step.words.stream));
   }
   return cut_mesh(*source, stage, with_common(step.words.cut));
+}
+
+void tell_textures(const std::string& input, const MeshFileInfo& info) {
+  std::string names;
+  for (const std::string& name : info.textures) names += (names.empty() ? "" : ", ") + name;
+  if (!names.empty()) log_info(input + ": the vertices' colours are of the textures " + names);
 }
 
 void check_writable(const std::string& output) {

@@ -23,6 +23,9 @@ struct CutStep {
 /// stderr.
 Manifest cut_to_stage(const CutStep& step);
 
+/// Tells, in a line, which textures have become colours, if any.
+void tell_textures(const std::string& input, const MeshFileInfo& info);
+
 /// Throws IoError now rather than after an hour's work if `output` cannot be made.
 void check_writable(const std::string& output);
 

@@ -37,13 +37,14 @@ int FarmCommand::run() {
 }
 
 void FarmCommand::work(const std::atomic<bool>& stop) {
-  const Stage stage = Stage::open(stage_);
+  const Stage stage = Stage::open(stage_, patience_with_storage());
   if (!supervised_) security().check_mount(stage_);
   serve(stage, stop);
 }
 
 Manifest FarmCommand::read_manifest(const Stage& stage) {
-  return decode_manifest(stage.read(ManifestName{}), stage.path(ManifestName{}).string());
+  return decode_manifest(stage.read(ManifestName{}, patience_with_storage()),
+                         stage.path(ManifestName{}).string());
 }
 
 }  // namespace meshfarm

@@ -86,7 +86,21 @@ void TargetOptions::add(po::options_description& options) {
       "keep edges that are sharper than this in place: their vertices merge only along them")(
       "drop-components", po::value(&drop_components)->value_name("LENGTH"),
       "leave out pieces smaller than this: in the mesh's unit, or as a share of the diagonal, for "
-      "example 0.5%");
+      "example 0.5%")(
+      "colour-weight",
+      po::value(&run.colour_weight)->default_value(run.colour_weight, "0.002")->value_name("W"),
+      "how much colours count beside the shape: black for white is as bad as a move of the surface "
+      "by this share of the diagonal; 0: not at all")(
+      "normals", po::value(&normals)->default_value(normals)->value_name("blend|recompute|drop"),
+      "the normals of the result, if the input has any: blend: as near to the input's as can be; "
+      "recompute: those of the result's triangles; drop: none");
+}
+
+void TargetOptions::add_attributes(po::options_description& options) {
+  options.add_options()(
+      "attributes", po::value(&attributes)->default_value(attributes)->value_name("auto|none|LIST"),
+      "which channels of the stage the result has: auto: all that the output's format has a place "
+      "for; LIST: these, as in red,green,blue ('colours' and 'normals' stand for theirs)");
 }
 
 void TargetOptions::check() {
@@ -127,6 +141,18 @@ void TargetOptions::check() {
   if (!drop_components.empty()) {
     run.drop_components = parse_length(drop_components, "--drop-components");
   }
+  if (normals != "blend" && normals != "recompute" && normals != "drop") {
+    throw UsageError("--normals is 'blend', 'recompute' or 'drop', not '" + normals + "'");
+  }
+  run.normals = normals == "blend"       ? Normals::blend
+                : normals == "recompute" ? Normals::recompute
+                                         : Normals::drop;
+  run.channels = parse_choice(attributes, "--attributes");
+  constexpr double k_least_weight = 1e-6;
+  const bool counts = run.colour_weight >= k_least_weight && run.colour_weight <= 1;
+  if (!counts && run.colour_weight != 0) {
+    throw UsageError("--colour-weight must be 0 (the shape alone counts) or 0.000001 to 1");
+  }
   run.allocation = allocation == "uniform" ? Allocation::uniform : Allocation::threshold;
   run.composition = composition == "auto"   ? Composition::automatic
                     : composition == "tree" ? Composition::tree
@@ -142,6 +168,11 @@ std::vector<std::string> TargetOptions::words() const {
   if (run.lines.crease_angle > 0) {
     words.insert(words.end(), {"--crease-angle", shortest(run.lines.crease_angle)});
   }
+  if (run.colour_weight != k_colour_weight) {
+    words.insert(words.end(), {"--colour-weight", shortest(run.colour_weight)});
+  }
+  if (normals != "blend") words.insert(words.end(), {"--normals", normals});
+  if (attributes != "auto") words.insert(words.end(), {"--attributes", attributes});
   if (!drop_components.empty()) {
     words.insert(words.end(), {"--drop-components", drop_components});
   }
@@ -153,6 +184,12 @@ std::vector<std::string> TargetOptions::words() const {
     words.insert(words.end(), {"--ratio", shortest(run.ratio)});
   }
   return words;
+}
+
+Textures parse_uv(const std::string& text) {
+  if (text == "bake") return Textures::bake;
+  if (text == "drop") return Textures::drop;
+  throw UsageError("--uv is 'bake' or 'drop', not '" + text + "'");
 }
 
 void CutWords::add(po::options_description& options) {
@@ -168,8 +205,13 @@ void CutWords::add(po::options_description& options) {
       "mesh) or streams (default: 1.2 million triangles each)")(
       "weld", po::value(&weld)->default_value(weld)->value_name("exact|off"),
       "exact: merge vertices at the same position, except where surfaces only touch; off: do not "
-      "merge")("threads", po::value(&cut.threads)->value_name("N"),
-               "threads of the cut (default: cores)")(
+      "merge")("attributes",
+               po::value(&attributes)->default_value(attributes)->value_name("auto|none|LIST"),
+               "auto: colours, normals and other numbers that the vertices have, if the formats "
+               "have a place for them; none: positions only; LIST: these, as in red,green,blue "
+               "('colours' and 'normals' stand for theirs)")(
+      "uv", po::value(&uv)->default_value(uv)->value_name("bake|drop"), k_uv_help)(
+      "threads", po::value(&cut.threads)->value_name("N"), "threads of the cut (default: cores)")(
       "memory", po::value(&memory)->default_value(memory)->value_name("BYTES"),
       "with --scheme stream: memory for sorting, for example 2G")(
       "window",
@@ -187,6 +229,8 @@ void CutWords::check() {
   if (weld != "exact" && weld != "off") {
     throw UsageError("--weld is 'exact' or 'off', not '" + weld + "'");
   }
+  channels = parse_choice(attributes, "--attributes");
+  parse_uv(uv);
   if (sort != "here" && sort != "farm") {
     throw UsageError("--sort is 'here' or 'farm', not '" + sort + "'");
   }
@@ -212,6 +256,8 @@ std::vector<std::string> CutWords::words() const {
   std::vector<std::string> words = {"--scheme", scheme_word, "--sort", sort,      "--weld",
                                     weld,       "--memory",  memory,   "--window"};
   words.push_back(std::to_string(stream.window_triangles));
+  if (attributes != "auto") words.insert(words.end(), {"--attributes", attributes});
+  if (uv != "bake") words.insert(words.end(), {"--uv", uv});
   if (cut.parts != 0) words.insert(words.end(), {"--parts", std::to_string(cut.parts)});
   if (!scratch.empty()) words.insert(words.end(), {"--scratch", scratch});
   if (cut.threads != 0) words.insert(words.end(), {"--threads", std::to_string(cut.threads)});

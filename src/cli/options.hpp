@@ -13,6 +13,7 @@
 #include <meshfarm/farm/schedule.hpp>
 #include <meshfarm/farm/security.hpp>
 #include <meshfarm/farm/when_full.hpp>
+#include <meshfarm/io/mesh_source.hpp>
 #include <meshfarm/partition/cut.hpp>
 #include <meshfarm/pipeline/run_options.hpp>
 #include <meshfarm/report/progress.hpp>
@@ -38,9 +39,11 @@ struct TalkOptions {
 };
 
 /// --ratio, --triangles, --error, --allocation, --finish, --composition, --topology,
-/// --preserve-border, --crease-angle, --drop-components.
+/// --preserve-border, --crease-angle, --drop-components, --colour-weight, --normals.
 struct TargetOptions {
   RunOptions run;
+  std::string attributes = "auto";
+  std::string normals = "blend";
   std::string error;
   std::string drop_components;
   std::string allocation = "threshold";
@@ -49,12 +52,20 @@ struct TargetOptions {
   std::string topology = "auto";
 
   void add(po::options_description& options);
+  /// --attributes, for commands that take a stage: those that cut leave out what is not wanted.
+  void add_attributes(po::options_description& options);
   void check();
   /// The same as words for a command line.
   std::vector<std::string> words() const;
 };
 
-/// --scheme, --sort, --parts, --weld, --threads, --memory, --window, --scratch.
+/// --uv. Throws UsageError.
+Textures parse_uv(const std::string& text);
+inline constexpr const char* k_uv_help =
+    "bake: textures' colours become those of the vertices, each averaged over the vertex's share "
+    "of the surface; drop: textures are left out";
+
+/// --scheme, --sort, --parts, --weld, --attributes, --uv, --threads, --memory, --window, --scratch.
 struct CutWords {
   Scheme scheme = Scheme::cut;
   CutOptions cut;
@@ -62,6 +73,9 @@ struct CutWords {
   std::string scheme_word = "cut";
   std::string sort = "here";
   std::string weld = "exact";
+  std::string attributes = "auto";
+  std::string uv = "bake";
+  ChannelChoice channels;
   std::string memory = "512M";
   std::string scratch;
 

@@ -19,9 +19,10 @@ constexpr std::uint32_t k_version = 2;
 
 }  // namespace
 
-std::vector<JournalRecord> read_journal(const Stage& stage, JournalName name) {
+std::vector<JournalRecord> read_journal(const Stage& stage, JournalName name,
+                                        const ReadPatience& patience) {
   const std::string what = stage.path(name).string();
-  const JournalContent content = parse_journal(stage.read(name), what);
+  const JournalContent content = parse_journal(stage.read(name, patience), what);
   if (content.torn_bytes > 0) {
     log_warning(what + ": its last " + std::to_string(content.torn_bytes) +
                 " bytes are torn and left out (its sink was killed while writing)");
@@ -78,16 +79,18 @@ bool names_result_of(JobKey key, std::string_view name) {
   return result != nullptr && result->key == key.value;
 }
 
-Ledger read_journals(const Stage& stage, std::uint64_t run) {
+Ledger read_journals(const Stage& stage, std::uint64_t run, const ReadPatience& patience) {
   Ledger ledger;
-  for (const std::uint32_t number : stage.journals()) {
+  ReadPatience left = patience;
+  for (const std::uint32_t number : outlast(left, [&] { return stage.journals(); })) {
     try {
-      for (JournalRecord& each : read_journal(stage, {number})) {
+      for (JournalRecord& each : read_journal(stage, {number}, left)) {
         if (each.run == run) ledger.by_run.insert(each.accepted.key);
         ledger.accepted[each.accepted.key] = std::move(each.accepted.output);
       }
     } catch (const Error& error) {
       log_warning("a journal is left out: " + std::string(error.what()));
+      spend(left, error);
     }
   }
   return ledger;

@@ -27,6 +27,11 @@ double seconds(FarmTime time) {
   return std::chrono::duration<double>(time).count();
 }
 
+/// Of a worker that tells of so much memory.
+std::uint64_t limit_of(std::uint64_t memory) {
+  return memory == 0 ? k_no_limit : memory;
+}
+
 }  // namespace
 
 void Scheduler::join(WorkerId id, const std::string& host, const Capacity& capacity) {
@@ -42,6 +47,7 @@ void Scheduler::join(WorkerId id, const std::string& host, const Capacity& capac
   member.benchmark = capacity.speed == 0 ? k_usual_speed : static_cast<double>(capacity.speed);
   member.speed = estimated_speed(member);
   ++member.host->workers;
+  member.host->memories.insert(limit_of(member.memory));
   undealt_.clear();
   outlook_.valid_until = FarmTime(-1);
 }
@@ -55,7 +61,9 @@ std::vector<Scheduler::Held> Scheduler::leave(WorkerId id) {
     std::erase(holders, id);
     if (holders.empty()) holders_.erase(each.key);
   }
-  --found->second.host->workers;
+  Host& host = *found->second.host;
+  --host.workers;
+  host.memories.erase(host.memories.find(limit_of(found->second.memory)));
   leave_pool(found->second);
   crew_.erase(found);
   if (const auto set = sets_.extract(id); !set.empty()) {
@@ -64,7 +72,7 @@ std::vector<Scheduler::Held> Scheduler::leave(WorkerId id) {
   outlook_.valid_until = FarmTime(-1);
   const bool any_bad = std::any_of(hosts_.begin(), hosts_.end(),
                                    [&](const auto& each) { return !good(each.second); });
-  if (any_bad) rank_all();  // a bad host may be the only one now
+  if (any_bad) bans_changed();  // a bad host may be the only one now
   return held;
 }
 
@@ -95,7 +103,7 @@ void Scheduler::did(WorkerId id, JobKey key, std::uint32_t compute_ms, FarmTime 
   Member& member = crew_.at(id);
   const bool was_bad = !good(*member.host);
   member.host->failures = 0;
-  if (was_bad) rank_all();
+  if (was_bad) bans_changed();
   const auto at = std::find_if(member.held.begin(), member.held.end(),
                                [&](const Held& each) { return each.key == key; });
   if (at == member.held.end() || at->cost == 0) return;
@@ -137,7 +145,7 @@ void Scheduler::host_failed(const std::string& name, FarmTime now) {
   host.incident = now;
   if (++host.failures != k_failures_of_a_bad_host) return;
   next_ban_end_ = std::min(next_ban_end_, now + k_ban);
-  rank_all();
+  bans_changed();
 }
 
 void Scheduler::end_bans(FarmTime now) {
@@ -151,6 +159,12 @@ void Scheduler::end_bans(FarmTime now) {
       next_ban_end_ = std::min(next_ban_end_, host.incident + k_ban);
     }
   }
+  bans_changed();
+}
+
+/// Others than before may be sent jobs.
+void Scheduler::bans_changed() {
+  undealt_.clear();
   rank_all();
 }
 
@@ -163,10 +177,11 @@ bool Scheduler::good(const Host& host) const {
   return host.failures < k_failures_of_a_bad_host;
 }
 
-/// Whether there are workers on a good host that is not one of these.
-bool Scheduler::elsewhere(const std::vector<std::string>& hosts) const {
+/// Whether there are workers with so much memory on a good host that is not one of these.
+bool Scheduler::elsewhere(const std::vector<std::string>& hosts, std::uint64_t memory) const {
   return std::any_of(hosts_.begin(), hosts_.end(), [&](const auto& each) {
-    return each.second.workers > 0 && good(each.second) &&
+    const Host& host = each.second;
+    return host.workers > 0 && *host.memories.rbegin() >= memory && good(host) &&
            std::find(hosts.begin(), hosts.end(), each.first) == hosts.end();
   });
 }
@@ -183,7 +198,7 @@ std::optional<std::uint64_t> Scheduler::greatest_memory() const {
   if (crew_.empty()) return std::nullopt;
   std::uint64_t greatest = 0;
   for (const auto& [id, member] : crew_) {
-    greatest = std::max(greatest, member.memory == 0 ? k_no_limit : member.memory);
+    greatest = std::max(greatest, limit_of(member.memory));
   }
   return greatest;
 }
@@ -277,16 +292,22 @@ void Scheduler::leave_pool(Member& member) {
   rank_all();
 }
 
-bool Scheduler::may(const Member& member, JobKey key) const {
-  const auto is_one = [&](const Held& held) { return suspects_.contains(held.key); };
-  if (suspects_.contains(key) && std::any_of(member.held.begin(), member.held.end(), is_one)) {
-    return false;
-  }
+/// Where a job failed it is tried again only if no other host could do it.
+bool Scheduler::may_on_host(const Member& member, JobKey key, std::uint64_t memory) const {
   const auto failed = failed_on_.find(key);
   if (failed == failed_on_.end()) return true;
   const auto& hosts = failed->second;
   const bool here = std::find(hosts.begin(), hosts.end(), member.host->name) != hosts.end();
-  return !here || !elsewhere(hosts);
+  return !here || !elsewhere(hosts, memory);
+}
+
+bool Scheduler::has_other_suspect(const Member& member, JobKey key) const {
+  const auto is_one = [&](const Held& held) { return suspects_.contains(held.key); };
+  return suspects_.contains(key) && std::any_of(member.held.begin(), member.held.end(), is_one);
+}
+
+bool Scheduler::may(const Member& member, JobKey key, std::uint64_t memory) const {
+  return !has_other_suspect(member, key) && may_on_host(member, key, memory);
 }
 
 void Scheduler::begin_turns(Member& member, FarmTime now) {
@@ -322,7 +343,9 @@ std::optional<Scheduler::Pick> Scheduler::next(Plan& plan, FarmTime now) {
     choice.max_cost = greatest_cost(member, now);
     choice.max_memory = memory_now(member);
     const bool all_welcome = suspects_.empty() && failed_on_.empty();
-    if (!all_welcome) choice.may = [&](JobKey key) { return may(member, key); };
+    if (!all_welcome) {
+      choice.may = [&](JobKey key) { return may(member, key, plan.job(key).memory); };
+    }
     if (auto job = plan.issue(choice)) return hand(id, std::move(*job), now);
     willing_.erase(willing_.begin());  // there is nothing for it before the next outlook
     member.rank.reset();

@@ -133,7 +133,8 @@ std::vector<Scheduler::Pick> Scheduler::second_attempts(Plan& plan, FarmTime now
       const double gain = each.left - static_cast<double>(each.held->cost) / member.speed;
       const bool gains = gain >= std::max(k_least_gain, k_least_gain_share * each.left);
       any_gains = any_gains || gains;
-      return gains && fits(member, each.held->memory) && may(member, each.held->key);
+      return gains && fits(member, each.held->memory) &&
+             may(member, each.held->key, each.held->memory);
     });
     if (taken != late.end()) {
       picks.push_back(hand(id, plan.issue(taken->held->key), now));
@@ -143,55 +144,6 @@ std::vector<Scheduler::Pick> Scheduler::second_attempts(Plan& plan, FarmTime now
     }
   }
   return picks;
-}
-
-// --- the fixed schedule
-
-/// Deals out what nobody was dealt yet: the largest job first, each to whoever would then be
-/// through the earliest.
-void Scheduler::deal(const Plan& plan) {
-  std::map<WorkerId, double> load;
-  for (const auto& [id, member] : crew_) {
-    double cost = member.cost_held;
-    for (const JobKey key : sets_[id]) cost += static_cast<double>(plan.job(key).cost);
-    load[id] = cost;
-  }
-  undealt_.clear();
-  for (const JobKey key : plan.ready_jobs()) {
-    if (dealt_.contains(key)) continue;
-    const auto cost = static_cast<double>(plan.job(key).cost);
-    std::optional<std::pair<double, WorkerId>> best;
-    for (const auto& [id, member] : crew_) {
-      if (member.memory != 0 && plan.job(key).memory > member.memory) continue;
-      const std::pair through((load[id] + cost) / (member.benchmark * member.threads), id);
-      if (!best || through < *best) best = through;
-    }
-    if (!best) {
-      undealt_.push_back(key);
-      continue;
-    }
-    load[best->second] += cost;
-    sets_[best->second].push_back(key);
-    dealt_.insert(key);
-  }
-}
-
-std::optional<Scheduler::Pick> Scheduler::next_fixed(Plan& plan, FarmTime now) {
-  if (crew_.size() < options_.expect_workers && sets_.empty()) return std::nullopt;
-  // Another run may have done what fits nobody here.
-  std::erase_if(undealt_, [&](JobKey key) { return plan.state(key) != JobState::ready; });
-  if (plan.counts().ready > dealt_.size() + undealt_.size()) deal(plan);
-  for (const auto& [load, id] : willing_) {
-    auto& set = sets_[id];
-    while (!set.empty()) {
-      const JobKey key = set.front();
-      if (!fits(crew_.at(id), plan.job(key).memory)) break;
-      set.pop_front();
-      dealt_.erase(key);
-      if (plan.state(key) == JobState::ready) return hand(id, plan.issue(key), now);
-    }
-  }
-  return std::nullopt;
 }
 
 }  // namespace meshfarm

@@ -62,6 +62,7 @@ class SimulatedFarm {
   struct Worker : Process {
     std::unique_ptr<WorkerCore> core;
     std::uint64_t incarnation = 0;
+    std::uint64_t serves = 0;   // the run that it was told; 0: any
     bool leaves = false;        // it was asked to
     std::string peer;           // the name of its connection; empty: hung up
     std::uint32_t dialled = 0;  // the epoch that it leads to
@@ -80,6 +81,30 @@ class SimulatedFarm {
     std::uint32_t dialled = 0;
     SimulatedChannel to_ventilator, from_ventilator;
   };
+
+  /// A ventilator and a sink of the stage, and what is between them.
+  struct Run {
+    std::uint64_t key = 0;
+    const JobSource* source = nullptr;
+    Ventilator ventilator;
+    Sink sink;
+    SimulationChecks checks;
+    std::map<JobKey, JobOutput> journal;
+    std::map<WorkerId, std::uint32_t> members;  // of the ventilator's epoch: whose lane it is
+    SimulatedTime centre_free{0};
+    SimulatedTime sink_free{0};
+    SimulatedTime started{0};
+    SimulatedTime sink_started{0};
+    bool made_output = false;  // its sink left with that
+    std::uint32_t starts = 0;
+    bool finished = false;  // its ventilator said its last word
+    SimulatedTime finished_at{0};
+    bool restarting = false;
+    std::string failure;
+    std::vector<AcceptedJob> outputs;
+  };
+  static constexpr std::uint64_t k_first_run = 7;
+  static constexpr std::uint64_t k_other_run = 77;
 
   FarmTime farm_now() const { return std::chrono::duration_cast<FarmTime>(queue_.now()); }
   bool faulty() const { return queue_.now() < options_.faults.end; }
@@ -105,31 +130,42 @@ class SimulatedFarm {
     free = std::max(free, queue_.now()) + takes;
     queue_.at(free, event);
   }
+  std::string broken() const;
+  static bool is_over(const Run& run);
+  bool stays_behind(const Worker& worker);
   bool over() const;
+  void tell_result();
   std::uint32_t index_of(const Worker& worker) const {
     return static_cast<std::uint32_t>(&worker - workers_.data());
   }
 
-  void start_ventilator();
-  void tick_ventilator(std::uint64_t life);
-  void kill_ventilator();
+  void start_run(Run& run);
+  void start_ventilator(Run& run);
+  void tick_ventilator(Run& run, std::uint64_t life);
+  void look_for_output(Run& run);
+  void kill_ventilator(Run& run);
   void to_ventilator(const Process& sender, SimulatedChannel& channel, const std::string& peer,
                      std::uint32_t epoch, Message message);
-  void ventilator_hears(const std::string& peer, const Message& message);
-  void to_worker(Worker& worker, const std::string& peer, Message message);
-  void to_sink(const std::string& peer, Message message);
-  void ventilator_does(Actions actions);
-  void act(SendTo& each);
-  void act(OpenLane& each);
-  void act(CloseLane& each);
-  void act(PushJob& each);
-  void act(ProbeStage& each);
-  void act(Finish& each);
-  void act(Tell&) {}
+  /// The run of that epoch's ventilator; null if that is gone, or never was.
+  Run* run_at(std::uint32_t epoch);
+  void ventilator_gets(Run& run, const std::string& peer, const Letter& letter);
+  void ventilator_hears(Run& run, const std::string& peer, const Message& message);
+  void to_worker(Run& run, Worker& worker, const std::string& peer, Message message);
+  void to_sink(Run& run, const std::string& peer, Message message);
+  void ventilator_does(Run& run, Actions actions);
+  void act(Run& run, SendTo& each);
+  void act(Run& run, OpenLane& each);
+  void act(Run& run, CloseLane& each);
+  void act(Run& run, PushJob& each);
+  void act(Run& run, ProbeStage& each);
+  void act(Run& run, Finish& each);
+  void act(Run&, Tell&) {}
   Worker* worker_at(const std::string& peer);
   SimulatedTime failing_ends() const;
-  void run_again();
+  void run_again(Run& run);
 
+  std::optional<std::uint64_t> run_for(SimulatedWorker::Serves serves);
+  Run* run_of_sink(const std::string& address);
   void start_worker(std::uint32_t index);
   void ask_to_leave(std::uint32_t index);
   void tick_worker(std::uint32_t index, std::uint64_t life);
@@ -167,32 +203,32 @@ class SimulatedFarm {
   void fail_job(Worker& worker, std::uint32_t slot, const char* reason,
                 FailureKind kind = FailureKind::attempt);
 
-  void start_sink();
-  void tick_sink(std::uint64_t life);
-  void kill_sink();
-  void sink_does(SinkActions actions);
-  void sink_act(Look& each);
-  void sink_act(Dial& each);
-  void sink_act(HangUp& each);
-  void sink_act(Say& each);
-  void sink_act(const Check& each);
-  void check_by_sick_mount(const Check& each, SimulatedTime readable);
-  void sink_act(MakeOutput& each);
-  void sink_act(SinkLeaves& each);
-  void journal(const Check& check);
+  void start_sink(Run& run);
+  void tick_sink(Run& run, std::uint64_t life);
+  void kill_sink(Run& run);
+  void sink_does(Run& run, SinkActions actions);
+  void sink_act(Run& run, Look& each);
+  void sink_act(Run& run, Dial& each);
+  void sink_act(Run& run, HangUp& each);
+  void sink_act(Run& run, Say& each);
+  void sink_act(Run& run, const Check& each);
+  void check_by_sick_mount(Run& run, const Check& each, SimulatedTime readable);
+  void sink_act(Run& run, MakeOutput& each);
+  void sink_act(Run& run, SinkLeaves& each);
+  void journal(Run& run, const Check& check);
 
   /// What a host's processes see of the stage's endpoints.
   std::vector<Endpoint> endpoints_seen(std::uint32_t host);
   void announce(std::uint64_t run, const std::string& address);
   void change_other_run();
+  Run& any_run();
   void plan_faults();
   SimulatedTime some_minutes();
   SimulatedTime lost_part(JobKey key);
-  void look_at_bans();
+  void look_at_bans(const Run& run);
   /// Lets a fault happen again and again, so often a minute, until the faults end.
   void repeat(double rate_per_minute, const std::function<void()>& fault);
 
-  const JobSource& source_;
   const SimulationOptions& options_;
   SimulationResult result_;
   Dice dice_;
@@ -206,19 +242,10 @@ class SimulatedFarm {
   std::uint32_t epochs_ = 0;
   std::uint64_t dials_ = 0;
   std::uint64_t tokens_ = 0;
-  Ventilator ventilator_;
+  std::deque<Run> runs_;
   std::vector<Worker> workers_;
-  Sink sink_;
-  std::map<JobKey, JobOutput> journal_;
   std::map<JobKey, SimulatedTime> lost_parts_;
   std::unordered_map<std::string, SimulatedJob> published_;  // by the file's name
-  std::map<WorkerId, std::uint32_t> members_;  // of the ventilator's epoch: whose lane it is
-  SimulatedTime centre_free_{0};
-  SimulatedTime sink_free_{0};
-  SimulatedTime run_start_{0};
-  bool finished_ = false;  // the last run's ventilator said its last word
-  bool said_failure_ = false;
-  bool restarting_ = false;
 };
 
 }  // namespace meshfarm

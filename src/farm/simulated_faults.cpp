@@ -29,6 +29,10 @@ SimulatedTime SimulatedFarm::some_minutes() {
   return std::chrono::seconds(60) + up_to(std::chrono::minutes(3));
 }
 
+SimulatedFarm::Run& SimulatedFarm::any_run() {
+  return runs_.size() == 1 ? runs_.front() : runs_[dice_.pick(runs_.size())];
+}
+
 void SimulatedFarm::plan_faults() {
   const SimulatedFaults& faults = options_.faults;
   const auto until = [this](std::chrono::milliseconds longest) {
@@ -47,15 +51,15 @@ void SimulatedFarm::plan_faults() {
   });
   repeat(of_workers(faults.worker_leaves), [=, this] { ask_to_leave(any_worker()); });
   repeat(faults.other_runs, [this] { change_other_run(); });
-  repeat(faults.sink_crashes, [this] { kill_sink(); });
-  repeat(faults.sink_pauses, [=, this] { pause(sink_); });
-  repeat(faults.ventilator_crashes, [this] { kill_ventilator(); });
-  repeat(faults.ventilator_pauses, [=, this] { pause(ventilator_); });
+  repeat(faults.sink_crashes, [this] { kill_sink(any_run()); });
+  repeat(faults.sink_pauses, [=, this] { pause(any_run().sink); });
+  repeat(faults.ventilator_crashes, [this] { kill_ventilator(any_run()); });
+  repeat(faults.ventilator_pauses, [=, this] { pause(any_run().ventilator); });
   const auto sicken = [this](std::uint32_t host) {
     folder_.sicken(host, queue_.now() + some_minutes());
   };
   repeat(of_workers(faults.sick_mounts), [=, this] { sicken(workers_[any_worker()].host); });
-  repeat(faults.sick_sink, [=, this] { sicken(sink_.host); });
+  repeat(faults.sick_sink, [=, this] { sicken(any_run().sink.host); });
   repeat(faults.storage_stalls, [=, this] { folder_.stall(until(k_longest_stall)); });
   repeat(faults.disk_fills, [=, this] { folder_.fill(until(k_longest_stall)); });
 }

@@ -1,6 +1,8 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
 #include <algorithm>
+#include <array>
+#include <utility>
 
 #include <meshfarm/farm/simulated_seeds.hpp>
 #include <meshfarm/util/parallel.hpp>
@@ -15,6 +17,9 @@ namespace {
 constexpr std::uint64_t k_wire_every = 32;
 constexpr std::uint64_t k_enough_for_any_job = std::uint64_t{1} << 30;
 constexpr std::uint64_t k_ends_when_full_every = 5;
+/// In some of the histories another run of the stage has as many of the jobs.
+constexpr double k_two_runs = 0.2;
+constexpr std::uint64_t k_of_the_jobs = 4;
 /// A ventilator of many workers would be busy with heartbeats alone.
 constexpr std::uint32_t k_workers_per_heartbeat_ms = 2;
 
@@ -25,7 +30,37 @@ struct SeedResult {
   std::string problem;
 };
 
-SimulationOptions farm_of(const SeedsOptions& seeds, std::uint64_t seed) {
+/// The jobs of a run, and what must come of them.
+struct Task {
+  explicit Task(JobSource jobs) : source(std::move(jobs)), expected(expected_summaries(source)) {}
+  JobSource source;
+  std::vector<std::string> expected;
+};
+
+/// Another run begins somewhen; workers are told which to serve, or not, or look for themselves.
+void add_other_run(SimulationOptions& options, const JobSource& other, Dice& dice) {
+  using Serves = SimulatedWorker::Serves;
+  constexpr std::array k_kinds = {Serves::any, Serves::first, Serves::other, Serves::pool};
+  constexpr std::uint64_t k_latest_us = 20'000'000;
+  options.other = other;
+  options.other_start = SimulatedTime(dice.pick(k_latest_us));
+  for (SimulatedWorker& worker : options.workers) {
+    worker.serves = k_kinds[dice.pick(k_kinds.size())];
+  }
+  // Whoever is told nothing may all serve one run; the user of the other has one for it.
+  options.workers.front().serves = Serves::first;
+  options.workers.back().serves = Serves::other;
+  // A static schedule waits for as many workers as it was told: for those who can only come to it.
+  const auto count = [&](Serves kind) {
+    return static_cast<std::uint32_t>(
+        std::count_if(options.workers.begin(), options.workers.end(),
+                      [&](const SimulatedWorker& worker) { return worker.serves == kind; }));
+  };
+  std::uint32_t& expected = options.schedule.expect_workers;
+  expected = std::min({expected, count(Serves::first), count(Serves::other)});
+}
+
+SimulationOptions farm_of(const SeedsOptions& seeds, std::uint64_t seed, const JobSource& other) {
   SimulationOptions options;
   options.seed = seed;
   options.faults = faults_of_seed(seed);
@@ -58,20 +93,23 @@ SimulationOptions farm_of(const SeedsOptions& seeds, std::uint64_t seed) {
     if (memory != 0) worker.memory = memory + dice.pick(2 * memory);
     if (memory != 0 && shared) worker.memory_pool = worker.host + 1;
   }
+  if (seeds.workers > 1 && dice.chance(k_two_runs)) add_other_run(options, other, dice);
   return options;
 }
 
 }  // namespace
 
 SeedsResult simulate_seeds(const SeedsOptions& options) {
-  const JobSource source = simulated_jobs(options.jobs);
-  const std::vector<std::string> expected = expected_summaries(source);
+  const Task task(simulated_jobs(options.jobs));
+  const Task other(
+      simulated_jobs(std::max<std::uint64_t>(1, options.jobs / k_of_the_jobs), "other "));
   std::vector<SeedResult> each(options.count);
   parallel_for(options.count, options.threads, [&](std::uint64_t i) {
-    const SimulationOptions farm = farm_of(options, options.first + i);
-    const SimulationResult result = simulate_farm(source, farm);
+    const SimulationOptions farm = farm_of(options, options.first + i, other.source);
+    const SimulationResult result = simulate_farm(task.source, farm);
     each[i] = {result.events, std::chrono::duration<double>(result.time).count(), result.trace_hash,
-               problem_of(result, farm.faults, expected)};
+               problem_of(result, farm.faults, task.expected,
+                          farm.other ? other.expected : std::vector<std::string>{})};
   });
   SeedsResult all;
   for (std::uint64_t i = 0; i < options.count; ++i) {

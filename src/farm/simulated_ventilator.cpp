@@ -9,8 +9,8 @@
 namespace meshfarm {
 namespace {
 
-constexpr std::uint64_t k_run = 7;
 constexpr std::chrono::milliseconds k_down{8000};  // a killed process comes again within this
+constexpr std::chrono::seconds k_without_sink{60};
 constexpr std::chrono::milliseconds k_pause_between_runs{5000};
 
 std::string lane_name(std::uint32_t epoch, WorkerId id) {
@@ -19,25 +19,25 @@ std::string lane_name(std::uint32_t epoch, WorkerId id) {
 
 }  // namespace
 
-void SimulatedFarm::start_ventilator() {
-  ventilator_.alive = true;
-  const std::uint64_t life = ++ventilator_.life;
-  ventilator_.epoch = epochs_ + 1;
-  finished_ = false;
-  ++result_.runs;
-  run_start_ = queue_.now();
-  checks_.epoch_begins();
-  members_.clear();
+void SimulatedFarm::start_ventilator(Run& run) {
+  run.ventilator.alive = true;
+  const std::uint64_t life = ++run.ventilator.life;
+  run.ventilator.epoch = epochs_ + 1;
+  run.finished = false;
+  ++run.starts;
+  run.started = queue_.now();
+  run.checks.epoch_begins();
+  run.members.clear();
   DispatcherOptions dispatcher;
-  dispatcher.run = k_run;
-  dispatcher.epoch = ventilator_.epoch;
+  dispatcher.run = run.key;
+  dispatcher.epoch = run.ventilator.epoch;
   dispatcher.heartbeat = options_.heartbeat;
   dispatcher.schedule = options_.schedule;
   dispatcher.when_full = options_.when_full;
-  ventilator_.core.emplace(Plan(source_, options_.max_attempts), dispatcher);
-  announce(k_run, "v");
-  note(ventilator_.epoch);
-  tick_ventilator(life);
+  run.ventilator.core.emplace(Plan(*run.source, options_.max_attempts), dispatcher);
+  announce(run.key, "v");
+  note(run.ventilator.epoch);
+  tick_ventilator(run, life);
 }
 
 /// The next epoch, of a ventilator, or by an empty address the word that its run is over.
@@ -66,37 +66,45 @@ std::vector<Endpoint> SimulatedFarm::endpoints_seen(std::uint32_t host) {
 /// Another run of the stage, whose ventilator never answers: it was killed, or is cut off.
 void SimulatedFarm::change_other_run() {
   constexpr std::uint64_t k_runs = 3;
-  const std::uint64_t run = k_run + 1 + dice_.pick(k_runs);
-  announce(run, dice_.chance(0.5) ? "g" : "");
+  const std::uint64_t other = k_first_run + 1 + dice_.pick(k_runs);
+  announce(other, dice_.chance(0.5) ? "g" : "");
 }
 
-void SimulatedFarm::tick_ventilator(std::uint64_t life) {
-  if (!ventilator_.alive || ventilator_.life != life) return;
-  if (ventilator_.asleep_until > queue_.now()) {
+void SimulatedFarm::tick_ventilator(Run& run, std::uint64_t life) {
+  if (!run.ventilator.alive || run.ventilator.life != life) return;
+  if (run.ventilator.asleep_until > queue_.now()) {
     // Behind the messages that came meanwhile: nobody is silent whose words are still to be read.
-    queue_.at(ventilator_.asleep_until + SimulatedTime(1000),
-              [this, life] { tick_ventilator(life); });
+    queue_.at(run.ventilator.asleep_until + SimulatedTime(1000),
+              [this, &run, life] { tick_ventilator(run, life); });
     return;
   }
-  ventilator_does(ventilator_.core->tick(farm_now()));
-  look_at_bans();
+  ventilator_does(run, run.ventilator.core->tick(farm_now()));
+  look_at_bans(run);
+  look_for_output(run);
   queue_.in(options_.heartbeat / (options_.centre.eager ? 10 : 4),
-            [this, life] { tick_ventilator(life); });
+            [this, &run, life] { tick_ventilator(run, life); });
 }
 
-void SimulatedFarm::look_at_bans() {
-  if (!ventilator_.core) return;
-  for (std::string& host : ventilator_.core->scheduler().bad_hosts()) {
+/// As the real one, which finds in the stage why no sink comes.
+void SimulatedFarm::look_for_output(Run& run) {
+  const bool waits = run.made_output && !run.sink.alive && run.ventilator.core;
+  if (!waits || queue_.now() - run.started < k_without_sink) return;
+  ventilator_does(run, run.ventilator.core->end_complete());
+}
+
+void SimulatedFarm::look_at_bans(const Run& run) {
+  if (!run.ventilator.core) return;
+  for (std::string& host : run.ventilator.core->scheduler().bad_hosts()) {
     result_.banned_hosts.insert(std::move(host));
   }
 }
 
-void SimulatedFarm::kill_ventilator() {
-  if (!ventilator_.alive) return;
-  kill(ventilator_);
-  ventilator_.core.reset();
-  queue_.in(up_to(k_down), [this] {
-    if (!ventilator_.alive) start_ventilator();
+void SimulatedFarm::kill_ventilator(Run& run) {
+  if (!run.ventilator.alive) return;
+  kill(run.ventilator);
+  run.ventilator.core.reset();
+  queue_.in(up_to(k_down), [this, &run] {
+    if (!run.ventilator.alive) start_ventilator(run);
   });
 }
 
@@ -104,36 +112,46 @@ void SimulatedFarm::to_ventilator(const Process& sender, SimulatedChannel& chann
                                   const std::string& peer, std::uint32_t epoch, Message message) {
   // What a killed process had not yet given to the network is lost with it.
   const bool buffered = chance(0.5);
-  channel.to = ventilator_.host;
+  const Run* known = run_at(epoch);
+  channel.to = (known != nullptr ? *known : runs_.front()).ventilator.host;
   wires_.send(channel, SimulatedWires::Order::kept,
               [this, &sender, buffered, life = sender.life, peer, epoch,
                letter = in_envelope(std::move(message))] {
                 if (buffered && sender.life != life) return;
-                if (ventilator_.epoch != epoch) return;
-                in_its_turn(centre_free_, options_.centre.per_message, [this, peer, letter] {
-                  when_awake(ventilator_, ventilator_.life,
-                             [this, peer, letter] { ventilator_hears(peer, *letter); });
-                });
+                if (Run* run = run_at(epoch)) ventilator_gets(*run, peer, letter);
               });
 }
 
-void SimulatedFarm::ventilator_hears(const std::string& peer, const Message& message) {
+SimulatedFarm::Run* SimulatedFarm::run_at(std::uint32_t epoch) {
+  const auto at = std::find_if(runs_.begin(), runs_.end(),
+                               [&](const Run& run) { return run.ventilator.epoch == epoch; });
+  return at == runs_.end() ? nullptr : &*at;
+}
+
+void SimulatedFarm::ventilator_gets(Run& run, const std::string& peer, const Letter& letter) {
+  in_its_turn(run.centre_free, options_.centre.per_message, [this, &run, peer, letter] {
+    when_awake(run.ventilator, run.ventilator.life,
+               [this, &run, peer, letter] { ventilator_hears(run, peer, *letter); });
+  });
+}
+
+void SimulatedFarm::ventilator_hears(Run& run, const std::string& peer, const Message& message) {
   const auto* credit = std::get_if<Credit>(&message);
-  if (credit != nullptr && credit->epoch == ventilator_.epoch) {
-    checks_.credit(credit->worker, credit->up_to);
+  if (credit != nullptr && credit->epoch == run.ventilator.epoch) {
+    run.checks.credit(credit->worker, credit->up_to);
   }
   note(message.index());
-  ventilator_does(ventilator_.core->on_message(peer, message, farm_now()));
-  if (options_.centre.eager && ventilator_.alive) {
-    ventilator_does(ventilator_.core->tick(farm_now()));
+  ventilator_does(run, run.ventilator.core->on_message(peer, message, farm_now()));
+  if (options_.centre.eager && run.ventilator.alive) {
+    ventilator_does(run, run.ventilator.core->tick(farm_now()));
   }
 }
 
-void SimulatedFarm::ventilator_does(Actions actions) {
-  const std::uint64_t life = ventilator_.life;
+void SimulatedFarm::ventilator_does(Run& run, Actions actions) {
+  const std::uint64_t life = run.ventilator.life;
   for (Action& action : actions) {
-    if (!ventilator_.alive || ventilator_.life != life) return;
-    std::visit([this](auto& each) { act(each); }, action);
+    if (!run.ventilator.alive || run.ventilator.life != life) return;
+    std::visit([&](auto& each) { act(run, each); }, action);
   }
 }
 
@@ -146,25 +164,28 @@ SimulatedFarm::Worker* SimulatedFarm::worker_at(const std::string& peer) {
   return worker.alive && worker.peer == peer ? &worker : nullptr;
 }
 
-void SimulatedFarm::act(SendTo& each) {
-  if (const auto* done = std::get_if<Done>(&each.message)) checks_.told_done(each.peer, done->key);
+void SimulatedFarm::act(Run& run, SendTo& each) {
+  if (const auto* done = std::get_if<Done>(&each.message))
+    run.checks.told_done(each.peer, done->key);
   if (Worker* worker = worker_at(each.peer)) {
     if (const auto* welcome = std::get_if<Welcome>(&each.message)) {
-      checks_.welcomed(each.peer, welcome->worker);
-      members_[welcome->worker] = index_of(*worker);
+      const std::uint64_t serves = worker->serves;
+      run.checks.that(serves == 0 || serves == run.key, "a worker is taken by another run");
+      run.checks.welcomed(each.peer, welcome->worker);
+      run.members[welcome->worker] = index_of(*worker);
     }
-    to_worker(*worker, each.peer, std::move(each.message));
-  } else if (sink_.alive && sink_.peer == each.peer) {
-    to_sink(each.peer, std::move(each.message));
+    to_worker(run, *worker, each.peer, std::move(each.message));
+  } else if (run.sink.alive && run.sink.peer == each.peer) {
+    to_sink(run, each.peer, std::move(each.message));
   }
 }
 
-void SimulatedFarm::to_worker(Worker& worker, const std::string& peer, Message message) {
-  worker.from_ventilator.from = ventilator_.host;
+void SimulatedFarm::to_worker(Run& run, Worker& worker, const std::string& peer, Message message) {
+  worker.from_ventilator.from = run.ventilator.host;
   wires_.send(worker.from_ventilator, SimulatedWires::Order::kept,
-              [this, &worker, buffered = chance(0.5), life = ventilator_.life, peer,
+              [this, &run, &worker, buffered = chance(0.5), life = run.ventilator.life, peer,
                letter = in_envelope(std::move(message))] {
-                if (worker.peer != peer || (buffered && ventilator_.life != life)) return;
+                if (worker.peer != peer || (buffered && run.ventilator.life != life)) return;
                 when_awake(worker, worker.life, [this, &worker, peer, letter] {
                   if (worker.peer != peer) return;
                   worker_does(index_of(worker), worker.core->on_control(*letter, farm_now()));
@@ -172,68 +193,71 @@ void SimulatedFarm::to_worker(Worker& worker, const std::string& peer, Message m
               });
 }
 
-void SimulatedFarm::to_sink(const std::string& peer, Message message) {
-  sink_.from_ventilator.from = ventilator_.host;
-  wires_.send(sink_.from_ventilator, SimulatedWires::Order::kept,
-              [this, buffered = chance(0.5), life = ventilator_.life, peer,
+void SimulatedFarm::to_sink(Run& run, const std::string& peer, Message message) {
+  run.sink.from_ventilator.from = run.ventilator.host;
+  wires_.send(run.sink.from_ventilator, SimulatedWires::Order::kept,
+              [this, &run, buffered = chance(0.5), life = run.ventilator.life, peer,
                letter = in_envelope(std::move(message))] {
-                if (buffered && ventilator_.life != life) return;
-                when_awake(sink_, sink_.life, [this, peer, letter] {
-                  if (sink_.peer != peer) return;
-                  sink_does(sink_.core->on_control(*letter, farm_now()));
+                if (buffered && run.ventilator.life != life) return;
+                when_awake(run.sink, run.sink.life, [this, &run, peer, letter] {
+                  if (run.sink.peer != peer) return;
+                  sink_does(run, run.sink.core->on_control(*letter, farm_now()));
                 });
               });
 }
 
-void SimulatedFarm::act(OpenLane& each) {
+void SimulatedFarm::act(Run& run, OpenLane& each) {
   if (chance(options_.faults.lane_fails)) {
-    return ventilator_does(ventilator_.core->lane_failed(each.worker, "no port is free"));
+    return ventilator_does(run, run.ventilator.core->lane_failed(each.worker, "no port is free"));
   }
-  ventilator_does(
-      ventilator_.core->lane_opened(each.worker, lane_name(ventilator_.epoch, each.worker)));
+  ventilator_does(run, run.ventilator.core->lane_opened(
+                           each.worker, lane_name(run.ventilator.epoch, each.worker)));
 }
 
-void SimulatedFarm::act(CloseLane& each) {
-  checks_.lane_closed(each.worker);
+void SimulatedFarm::act(Run& run, CloseLane& each) {
+  run.checks.lane_closed(each.worker);
 }
 
-void SimulatedFarm::act(PushJob& each) {
-  checks_.pushed(each.worker, each.key, each.assignment);
+void SimulatedFarm::act(Run& run, PushJob& each) {
+  run.checks.pushed(each.worker, each.key, each.assignment);
   note(each.key.value);
   if (result_.pushes++ == 0) result_.first_push = queue_.now();
-  Worker& worker = workers_[members_.at(each.worker)];
-  worker.lane_channel.from = ventilator_.host;
-  wires_.send(worker.lane_channel, SimulatedWires::Order::kept,
-              [this, &worker, life = worker.life, name = lane_name(ventilator_.epoch, each.worker),
-               letter = in_envelope(std::move(each.assignment))] {
-                when_awake(worker, life, [this, &worker, name, letter] {
-                  if (worker.lane != name) return;
-                  worker_does(index_of(worker), worker.core->on_lane(*letter, farm_now()));
-                });
-              });
+  Worker& worker = workers_[run.members.at(each.worker)];
+  worker.lane_channel.from = run.ventilator.host;
+  wires_.send(
+      worker.lane_channel, SimulatedWires::Order::kept,
+      [this, &worker, life = worker.life, name = lane_name(run.ventilator.epoch, each.worker),
+       letter = in_envelope(std::move(each.assignment))] {
+        when_awake(worker, life, [this, &worker, name, letter] {
+          if (worker.lane != name) return;
+          worker_does(index_of(worker), worker.core->on_lane(*letter, farm_now()));
+        });
+      });
 }
 
-void SimulatedFarm::act(ProbeStage& each) {
-  const SimulatedTime written = folder_.transfer(ventilator_.host, each.bytes);
-  queue_.at(written, [this, life = ventilator_.life] {
-    when_awake(ventilator_, life, [this] {
+void SimulatedFarm::act(Run& run, ProbeStage& each) {
+  const SimulatedTime written = folder_.transfer(run.ventilator.host, each.bytes);
+  queue_.at(written, [this, &run, life = run.ventilator.life] {
+    when_awake(run.ventilator, life, [this, &run] {
       const char* problem = folder_.full() ? "no space left on device" : "";
-      ventilator_does(ventilator_.core->probed(problem, farm_now()));
+      ventilator_does(run, run.ventilator.core->probed(problem, farm_now()));
     });
   });
 }
 
-void SimulatedFarm::act(Finish& each) {
-  result_.failure = each.failure;
-  finished_ = true;
-  said_failure_ = !each.failure.empty();
-  kill(ventilator_);
-  ventilator_.core.reset();
-  announce(k_run, {});
+void SimulatedFarm::act(Run& run, Finish& each) {
+  run.failure = each.failure;
+  run.finished = true;
+  run.finished_at = queue_.now();
+  kill(run.ventilator);
+  run.ventilator.core.reset();
+  announce(run.key, {});
   note(each.failure.size());
   // Whoever started the run reads why it failed, and starts it again.
-  restarting_ = said_failure_ && run_start_ < failing_ends();
-  if (restarting_) queue_.in(k_pause_between_runs, [this] { run_again(); });
+  // A sink may tell a later ventilator of what failed while there were faults.
+  const SimulatedTime begun = std::min(run.started, run.sink_started);
+  run.restarting = !run.failure.empty() && begun < failing_ends();
+  if (run.restarting) queue_.in(k_pause_between_runs, [this, &run] { run_again(run); });
 }
 
 /// Until when a run may begin that fails for faults: files that cannot be read are so for minutes.
@@ -244,10 +268,10 @@ SimulatedTime SimulatedFarm::failing_ends() const {
   return sick && !hopeless ? faults.end + std::chrono::minutes(5) : faults.end;
 }
 
-void SimulatedFarm::run_again() {
-  restarting_ = false;
-  start_ventilator();
-  start_sink();
+void SimulatedFarm::run_again(Run& run) {
+  run.restarting = false;
+  start_ventilator(run);
+  start_sink(run);
   for (std::uint32_t i = 0; i < workers_.size(); ++i) start_worker(i);
 }
 

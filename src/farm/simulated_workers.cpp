@@ -16,8 +16,9 @@ constexpr FarmTime k_patience = std::chrono::hours(2);
 
 void SimulatedFarm::start_worker(std::uint32_t index) {
   Worker& worker = workers_[index];
-  if (finished_ || worker.alive) return;
   const SimulatedWorker& is = options_.workers[index];
+  const std::optional<std::uint64_t> serves = worker.alive ? std::nullopt : run_for(is.serves);
+  if (!serves) return;
   worker.alive = true;
   worker.leaves = false;
   const std::uint64_t life = ++worker.life;
@@ -26,6 +27,7 @@ void SimulatedFarm::start_worker(std::uint32_t index) {
   worker.to_ventilator.from = worker.to_sink.from = worker.host;
   worker.from_ventilator.to = worker.lane_channel.to = worker.host;
   MemberOptions member;
+  worker.serves = member.run = *serves;
   member.incarnation = worker.incarnation;
   member.pid = index + 1;
   member.host = "host" + std::to_string(worker.host);
@@ -45,6 +47,27 @@ void SimulatedFarm::start_worker(std::uint32_t index) {
       member,
       WorkerLimits{.buffer = options_.buffer, .slots = is.threads + 1, .memory = is.memory});
   tick_worker(index, life);
+}
+
+/// What a worker is told that starts now: a run, or 0 for any; nothing if there is none for it.
+std::optional<std::uint64_t> SimulatedFarm::run_for(SimulatedWorker::Serves serves) {
+  std::vector<std::uint64_t> unfinished;
+  for (const Run& run : runs_) {
+    if (!run.finished) unfinished.push_back(run.key);
+  }
+  const auto is_open = [&](const Run& run) { return !run.finished; };
+  switch (serves) {
+    case SimulatedWorker::Serves::any:
+      break;
+    case SimulatedWorker::Serves::first:
+      return is_open(runs_.front()) ? std::optional(runs_.front().key) : std::nullopt;
+    case SimulatedWorker::Serves::other:
+      return is_open(runs_.back()) ? std::optional(runs_.back().key) : std::nullopt;
+    case SimulatedWorker::Serves::pool:
+      if (unfinished.empty()) return std::nullopt;
+      return unfinished[dice_.pick(unfinished.size())];
+  }
+  return unfinished.empty() ? std::nullopt : std::optional<std::uint64_t>(0);
 }
 
 void SimulatedFarm::tick_worker(std::uint32_t index, std::uint64_t life) {
@@ -124,15 +147,24 @@ void SimulatedFarm::act(std::uint32_t index, ConnectSink& each) {
 void SimulatedFarm::act(std::uint32_t index, SendResult& each) {
   Worker& worker = workers_[index];
   const bool buffered = chance(0.5);
-  worker.to_sink.to = sink_.host;
+  const Run* known = run_of_sink(worker.sink);
+  worker.to_sink.to = (known != nullptr ? *known : runs_.front()).sink.host;
   wires_.send(worker.to_sink, SimulatedWires::Order::may_change,
               [this, &worker, buffered, life = worker.life, sink = worker.sink,
                letter = in_envelope(std::move(each.result))] {
                 if (buffered && worker.life != life) return;
-                if (!sink_.alive || sink_.here != sink) return;
-                when_awake(sink_, sink_.life,
-                           [this, letter] { sink_does(sink_.core->on_result(*letter)); });
+                Run* run = run_of_sink(sink);
+                if (run == nullptr || !run->sink.alive) return;
+                when_awake(run->sink, run->sink.life, [this, run, letter] {
+                  sink_does(*run, run->sink.core->on_result(*letter));
+                });
               });
+}
+
+SimulatedFarm::Run* SimulatedFarm::run_of_sink(const std::string& address) {
+  const auto at = std::find_if(runs_.begin(), runs_.end(),
+                               [&](const Run& run) { return run.sink.here == address; });
+  return at == runs_.end() ? nullptr : &*at;
 }
 
 void SimulatedFarm::act(std::uint32_t index, ReadForSink& each) {
@@ -158,7 +190,9 @@ void SimulatedFarm::act(std::uint32_t index, Leave& each) {
   worker.peer.clear();
   worker.lane.clear();
   // By the late word of a run that was over, maybe, after another one has begun.
-  const bool comes_again = faulty() || worker.leaves || result_.runs > 1;
+  const bool begun_again =
+      std::any_of(runs_.begin(), runs_.end(), [](const Run& run) { return run.starts > 1; });
+  const bool comes_again = faulty() || worker.leaves || begun_again || runs_.size() > 1;
   if (comes_again) queue_.in(k_down, [this, index] { start_worker(index); });
 }
 

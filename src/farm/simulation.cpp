@@ -20,26 +20,48 @@ Job made_up(const std::string& name) {
   return job;
 }
 
+/// Whether a run needs the job of these parameters; `summaries` are what it makes.
+bool needs(std::span<const std::string> summaries, const std::string& parameters) {
+  Job job;
+  job.parameters = parameters;
+  return !parameters.empty() &&
+         std::find(summaries.begin(), summaries.end(), simulated_summary(job)) != summaries.end();
+}
+
+/// Of one run that came to its end.
+std::string problem_of_end(const std::string& failure, std::span<const AcceptedJob> outputs,
+                           const SimulatedFaults& faults, std::span<const std::string> expected) {
+  const bool hopeless = needs(expected, faults.poison) || needs(expected, faults.bad);
+  if (hopeless) return failure.empty() ? "a job that cannot be done was done" : "";
+  if (!failure.empty()) return "it failed: " + failure;
+  const bool same = std::equal(
+      outputs.begin(), outputs.end(), expected.begin(), expected.end(),
+      [](const AcceptedJob& made, const std::string& each) { return made.output.summary == each; });
+  return same ? "" : "it ended with other bytes";
+}
+
 }  // namespace
 
 std::string simulated_summary(const Job& job) {
   return to_hex(checksum("made of " + job.parameters));
 }
 
-JobSource simulated_jobs(std::uint64_t count) {
+JobSource simulated_jobs(std::uint64_t count, const std::string& target) {
   const std::uint64_t last = count / 16;
   const std::uint64_t first = count - last - std::min<std::uint64_t>(count, 1);
-  const auto named = [](const std::string& name, std::uint64_t many) {
+  const auto named = [&](const std::string& name, std::uint64_t many, std::uint64_t common) {
     std::vector<Job> jobs;
-    for (std::uint64_t i = 0; i < many; ++i) jobs.push_back(made_up(name + std::to_string(i)));
+    for (std::uint64_t i = 0; i < many; ++i) {
+      jobs.push_back(made_up((i < common ? "" : target) + name + std::to_string(i)));
+    }
     return jobs;
   };
   // Shared by the copies of the source, of which each simulated process has one.
   const auto shared = [](std::vector<Job> jobs) {
     return std::make_shared<const std::vector<Job>>(std::move(jobs));
   };
-  return [most = shared(named("job ", first)),
-          rest = shared(named("end ", last))](std::span<const AcceptedJob> accepted) {
+  return [most = shared(named("job ", first, first / 4)),
+          rest = shared(named("end ", last, 0))](std::span<const AcceptedJob> accepted) {
     if (accepted.size() < most->size()) return *most;
     if (accepted.size() == most->size() + 1) return *rest;
     if (accepted.size() > most->size()) return std::vector<Job>{};
@@ -63,17 +85,13 @@ std::vector<std::string> expected_summaries(const JobSource& source) {
 }
 
 std::string problem_of(const SimulationResult& result, const SimulatedFaults& faults,
-                       std::span<const std::string> expected) {
+                       std::span<const std::string> expected, std::span<const std::string> other) {
   if (!result.broken.empty()) return "broken: " + result.broken;
   if (!result.ended) return "it did not come to its end";
-  if (!faults.poison.empty() || !faults.bad.empty()) {
-    return result.failure.empty() ? "a job that cannot be done was done" : "";
-  }
-  if (!result.failure.empty()) return "it failed: " + result.failure;
-  const bool same = std::equal(
-      result.outputs.begin(), result.outputs.end(), expected.begin(), expected.end(),
-      [](const AcceptedJob& made, const std::string& each) { return made.output.summary == each; });
-  return same ? "" : "it ended with other bytes";
+  std::string problem = problem_of_end(result.failure, result.outputs, faults, expected);
+  if (!problem.empty() || other.empty()) return problem;
+  problem = problem_of_end(result.other_failure, result.other_outputs, faults, other);
+  return problem.empty() ? "" : "the other run: " + problem;
 }
 
 }  // namespace meshfarm

@@ -27,7 +27,21 @@ constexpr int k_messages_per_turn = 1000;
 /// As many results share one sync of the journal at most.
 constexpr std::size_t k_checks_per_batch = 256;
 
-const ReadPatience k_journal_patience = {.missing = std::chrono::seconds(2)};
+/// Who asks the sink to stop does not wait for storage.
+ReadPatience patience_until(const std::atomic<bool>* stop) {
+  ReadPatience patience;
+  patience.moved = [stop](std::uint64_t) {
+    if (stop != nullptr && stop->load()) throw IncompleteError("stopped");
+  };
+  return patience;
+}
+
+/// What a journal knows was there long ago: if it is gone, it is made again. But storage that fails
+/// says nothing of it.
+ReadPatience journal_patience(ReadPatience patience) {
+  patience.missing = std::chrono::seconds(2);
+  return patience;
+}
 
 using Complete = std::function<void(std::span<const AcceptedJob>)>;
 
@@ -44,7 +58,9 @@ class SinkLoop {
         gate_(context_, keys_),
         results_(make_results_server(context_, keys_)),
         link_(context_, stage, options.security),
-        ledger_(read_journals(stage, options.run)),
+        patience_(patience_until(options.stop)),
+        journal_patience_(journal_patience(patience_)),
+        ledger_(read_journals(stage, options.run, journal_patience_)),
         core_({Role::sink,
                options.run,
                random_id(),
@@ -190,12 +206,13 @@ class SinkLoop {
   /// On the disk thread, as is all below.
   void check_batch() {
     std::vector<std::string> records;
+    // Nobody hears of one result before all have been looked at: they are waited for together.
+    ReadPatience patience = patience_;
     for (Checked& each : batch_) {
       try {
         const Check& check = each.check;
         if (options_.inspect) options_.inspect(check.kind, check.output);
-        // What a journal knows was there long ago: if it is gone, it is made again.
-        stage_.verify(check.output.file, check.from_journal ? k_journal_patience : ReadPatience{});
+        stage_.verify(check.output.file, check.from_journal ? journal_patience_ : patience);
         // What another run accepted is recorded as this one's, too, as long as that goes on.
         each.to_record = !check.from_journal || !ledger_.by_run.contains(check.key);
         if (each.to_record) {
@@ -203,6 +220,7 @@ class SinkLoop {
         }
       } catch (const IoError& error) {
         each.problem = {error.what(), FailureKind::unread};
+        spend(each.check.from_journal ? journal_patience_ : patience, error);
       } catch (const Error& error) {
         each.problem = {error.what()};
       } catch (const std::bad_alloc&) {
@@ -231,16 +249,17 @@ class SinkLoop {
   }
 
   /// A journal that could not be written may be torn: what comes behind would not be read. So
-  /// another one is begun, and one that fails is not the end.
+  /// another one is begun, at once and then as long as storage that fails is waited for.
   void journal_append(const std::vector<std::string>& records) {
-    for (int tries = 2;; --tries) {
+    Waiting waiting(patience_);
+    for (bool again = false;; again = true) {
       try {
         if (!journal_) journal_.emplace(open_journal(stage_));
         return journal_->append_all(records);
       } catch (const IoError& error) {
         journal_.reset();
-        if (tries == 1 || is_no_space(error)) throw;
-        log_warning("a new journal is begun: " + std::string(error.what()));
+        if (is_no_space(error) || (again && !waiting.again(error))) throw;
+        if (!again) log_warning("a new journal is begun: " + std::string(error.what()));
       }
     }
   }
@@ -261,6 +280,8 @@ class SinkLoop {
   Gatekeeper gate_;
   zmq::socket_t results_;
   ControlLink link_;
+  const ReadPatience patience_;
+  ReadPatience journal_patience_;  // the disk thread's once there is one
   Ledger ledger_;
   SinkCore core_;
   std::deque<Check> to_check_;

@@ -135,8 +135,9 @@ SinkActions SinkCore::checked(const Check& check, const JobFailure& problem, Far
     return take();
   }
   const bool fine = problem.reason.empty();
-  if (fine && !again_at_) again_pause_ = FarmTime(0);
   checking_.erase(check.key);
+  // What was tried again may be damaged by now: then nothing is left to wait for.
+  if ((fine || checking_.empty()) && !again_at_) again_pause_ = FarmTime(0);
   if (check.from_journal) --checking_journal_;
   if (fine) {
     if (rounds_.accept(check.key, check.output)) accepted_.push_back(check.key);

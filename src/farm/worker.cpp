@@ -29,7 +29,8 @@ namespace {
 constexpr int k_messages_per_turn = 1000;
 constexpr FarmTime k_memory_every{500};
 /// Whoever has never looked for a file before sees it when it is there.
-constexpr std::chrono::seconds k_second_readers_patience{30};
+const ReadPatience k_second_readers_patience = {.missing = std::chrono::seconds(30),
+                                                .failing = std::chrono::seconds(30)};
 
 /// One job more than is computed: its inputs are read ahead meanwhile, or its output is written.
 WorkerLimits limits_of(const WorkerOptions& options) {
@@ -169,7 +170,7 @@ class WorkerLoop {
     if (to_read_.empty()) return;
     reader_->start([this, file = to_read_.front().file] {
       try {
-        stage_.verify(file, {.missing = k_second_readers_patience});
+        stage_.verify(file, k_second_readers_patience);
         readable_ = true;
       } catch (const std::exception&) {
         readable_ = false;

@@ -125,6 +125,19 @@ void CollapseJudge::add_star(std::uint32_t shared) {
   }
 }
 
+/// After the star, whose places are those of the corners.
+void CollapseJudge::add_appearances(std::uint32_t a, std::uint32_t b, std::uint32_t shared) {
+  if (state_.appearances.empty()) return;
+  appearance_.clear(state_.appearance_scale);
+  const auto add = [&](std::uint32_t place, std::uint32_t vertex) {
+    const Corner& c = corners_[place];
+    appearance_.add(star_.triangle(place), state_.values_at(vertex, c));
+  };
+  for (std::uint32_t i = 0; i < shared; ++i) add(i, a);
+  for (std::uint32_t i = 0; i < kept_; ++i) add(i + 2, i < kept_of_a_ ? a : b);
+  appearance_.add_to(quadric_);
+}
+
 /// Adds the planes of the lines at one end, but for the edge to `without`.
 void CollapseJudge::add_lines(const Ring& ring, Vec3 end, std::uint32_t without) {
   std::array<Corner, k_max_star> corners;
@@ -162,6 +175,14 @@ Vec3 CollapseJudge::line_position(std::uint32_t a, std::uint32_t b) const {
 }
 
 Collapse CollapseJudge::judge(std::uint32_t a, std::uint32_t b, const CollapseLimits& limits) {
+  Collapse collapse = best_of(a, b, limits);
+  if (collapse.triangles > 0 && !state_.appearances.empty()) {
+    collapse.appearance = appearance_.at(collapse.position - middle_);
+  }
+  return collapse;
+}
+
+Collapse CollapseJudge::best_of(std::uint32_t a, std::uint32_t b, const CollapseLimits& limits) {
   if (state_.adjacency->count(a) + state_.adjacency->count(b) > k_max_star) return {};
   const std::uint32_t shared = list_star(a, b);
   if (shared > limits.triangles) return {};
@@ -174,6 +195,7 @@ Collapse CollapseJudge::judge(std::uint32_t a, std::uint32_t b, const CollapseLi
   quadric_ = {};
   quadric_.squared_length = 4 * squared_length(half);
   star_.sum_planes(quadric_);
+  add_appearances(a, b, shared);
   if ((ring_a_.flags & k_line) != 0) add_lines(ring_a_, half * -1.0, k_none);
   if ((ring_b_.flags & k_line) != 0) add_lines(ring_b_, half, a);
 
@@ -209,7 +231,8 @@ Collapse CollapseJudge::at_position(Vec3 position, std::uint32_t shared, double 
   const std::optional<double> lost = star_.lost_area(kept_, x, turn);
   if (!lost) return {};
   cost = std::max(cost, quadric_.cost_of_lost_area(*lost));
-  return cost <= max_cost ? Collapse{shared, position, cost, false} : Collapse{};
+  if (!(cost <= max_cost)) return {};
+  return {shared, position, cost, false};
 }
 
 }  // namespace meshfarm

@@ -9,6 +9,7 @@
 #include <meshfarm/geometry/mesh.hpp>
 
 #include "geometry/adjacency.hpp"
+#include "geometry/appearance_star.hpp"
 #include "geometry/collapse_star.hpp"
 #include "geometry/quadric.hpp"
 #include "geometry/simplify_lines.hpp"
@@ -27,6 +28,13 @@ struct CollapseState {
   const Adjacency* adjacency = nullptr;   // as it was when the pass began
   PositionType type = PositionType::float64;
   const CreaseTest* creases = nullptr;  // where vertices are flagged as on creases
+  std::span<Appearance> appearances;    // empty where they do not count
+  AppearanceScale appearance_scale;
+
+  /// Those of a triangle's corners, from the one at the vertex on.
+  AppearanceStar::Values values_at(std::uint32_t vertex, const Corner& c) const {
+    return {appearances[vertex], appearances[c.next], appearances[c.prev]};
+  }
 };
 
 struct CollapseLimits {
@@ -40,6 +48,7 @@ struct Collapse {
   double cost = 0;
   bool by_topology = false;  // that is why it may not be
   double certain = -1;       // the part of the cost that is no guess; below 0: all of it
+  Appearance appearance{};   // of the merged vertex, where appearances count
 };
 
 /// Judges single collapses. Both ends must not have taken part in a collapse of this pass; their
@@ -70,11 +79,14 @@ class CollapseJudge {
     Corner* kept;         // and those that have not
   };
 
+  /// Without its appearance.
+  Collapse best_of(std::uint32_t a, std::uint32_t b, const CollapseLimits& limits);
   Walk walk(const Walk& walk, Ring& ring) const;
   std::uint32_t list_star(std::uint32_t a, std::uint32_t b);
   std::uint32_t common_neighbours() const;
   bool link_allows(std::uint32_t shared) const;
   void add_star(std::uint32_t shared);
+  void add_appearances(std::uint32_t a, std::uint32_t b, std::uint32_t shared);
   void add_lines(const Ring& ring, Vec3 end, std::uint32_t without);
   Vec3 line_position(std::uint32_t a, std::uint32_t b) const;
   Collapse at_position(Vec3 position, std::uint32_t shared, double max_cost, Turn turn) const;
@@ -89,6 +101,7 @@ class CollapseJudge {
   std::uint32_t kept_ = 0;
   CollapseStar star_;
   EdgeQuadric quadric_;
+  AppearanceStar appearance_;
 };
 
 }  // namespace meshfarm

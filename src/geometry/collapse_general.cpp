@@ -164,6 +164,25 @@ void GeneralJudge::add_star(Vec3 half) {
   quadric_ = {};
   quadric_.squared_length = 4 * squared_length(half);
   star_.sum_planes(quadric_);
+  add_appearances();
+}
+
+/// After the star: triangles that stay, those that vanish and shared ones begin at even places.
+void GeneralJudge::add_appearances() {
+  if (state_.appearances.empty()) return;
+  appearance_.clear(state_.appearance_scale);
+  const auto even = [](std::size_t place) { return place + place % 2; };
+  const std::size_t vanishing = even(staying_);
+  const std::size_t shared = even(vanishing + kept_.size() - staying_);
+  const auto add = [&](std::size_t place, std::uint32_t vertex, const Corner& c) {
+    appearance_.add(star_.triangle(static_cast<std::uint32_t>(place)), state_.values_at(vertex, c));
+  };
+  for (std::size_t i = 0; i < shared_.size(); ++i) add(shared + i, a_.vertex, shared_[i]);
+  for (std::size_t i = 0; i < kept_.size(); ++i) {
+    const std::size_t place = i < staying_ ? i : vanishing + i - staying_;
+    add(place, (kept_[i].at_b ? b_ : a_).vertex, kept_[i].corner);
+  }
+  appearance_.add_to(quadric_);
 }
 
 /// Adds the planes along the singular edges of one end.
@@ -192,6 +211,7 @@ Collapse GeneralJudge::at_position(Vec3 position, Turn turn) const {
   Collapse collapse{removed_, position, 0, false};
   collapse.cost = std::max(planes, changes_ ? lost_cost * k_loss_of_change : lost_cost);
   collapse.certain = std::max(planes, lost_cost);
+  if (!state_.appearances.empty()) collapse.appearance = appearance_.at(x);
   return collapse;
 }
 

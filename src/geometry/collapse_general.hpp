@@ -59,6 +59,7 @@ class GeneralJudge {
   bool is_crowded(std::uint32_t vertex, const End& end) const;
   bool crowds_an_edge();
   void add_star(Vec3 half);
+  void add_appearances();
   void add_lines(const End& end, const End& other, Vec3 at);
   Collapse at_position(Vec3 position, Turn turn) const;
   Collapse removal();
@@ -82,6 +83,7 @@ class GeneralJudge {
   Surroundings surroundings_;
   CollapseStar star_;
   EdgeQuadric quadric_;
+  AppearanceStar appearance_;
 };
 
 }  // namespace meshfarm

@@ -9,7 +9,7 @@
 #include <meshfarm/util/parallel.hpp>
 
 #include "geometry/bvh.hpp"
-#include "geometry/simplify_clean.hpp"
+#include "geometry/vertex_flags.hpp"
 
 namespace meshfarm {
 namespace {
@@ -314,37 +314,43 @@ void CollapseGuard::split(std::uint32_t vertex, std::uint32_t first_copy) {
   moves_.resize(copies, 0);
   if (first_copy == copies) return;
   merge_ = {};
-  std::uint32_t point = std::exchange(bag_[vertex], k_none);
-  while (point != k_none) {
+  for (std::uint32_t point = std::exchange(bag_[vertex], k_none); point != k_none;) {
     const std::uint32_t following = held_[point].following;
-    const Vec3 p = held_[point].point;
-    double best = std::numeric_limits<double>::infinity();
-    Triangle nearest = {vertex, vertex, vertex};
-    const auto look = [&](std::uint32_t v) {
-      for (const Corner& c : state_.adjacency->at(v)) {
-        const double squared = squared_distance(p, state_.positions[v], state_.positions[c.next],
-                                                state_.positions[c.prev]);
-        if (squared < best) {
-          best = squared;
-          nearest = {v, c.next, c.prev};
-        }
-      }
-    };
-    look(vertex);
-    for (std::uint32_t v = first_copy; v < copies; ++v) look(v);
-    hold(point, nearest);
+    hold(point, nearest_of_copies(held_[point].point, vertex, first_copy));
     point = following;
   }
-  // What others hold of these triangles is not known any more.
   for (std::uint32_t v = first_copy; v < copies; ++v) {
     for (const Corner& c : state_.adjacency->at(v)) {
-      for (const std::uint32_t at : {c.next, c.prev}) {
-        for (std::uint32_t i = bag_[at]; i != k_none; i = held_[i].following) {
-          if (held_[i].next == vertex || held_[i].prev == vertex)
-            held_[i].next = held_[i].prev = vertex;
-        }
-      }
+      forget_triangles(c.next, vertex);
+      forget_triangles(c.prev, vertex);
     }
+  }
+}
+
+/// The triangle nearest to a point, of a vertex and its copies from `first_copy` on.
+Triangle CollapseGuard::nearest_of_copies(Vec3 point, std::uint32_t vertex,
+                                          std::uint32_t first_copy) const {
+  double best = std::numeric_limits<double>::infinity();
+  Triangle nearest = {vertex, vertex, vertex};
+  const auto look_at = [&](std::uint32_t v) {
+    for (const Corner& c : state_.adjacency->at(v)) {
+      const double squared = squared_distance(point, state_.positions[v], state_.positions[c.next],
+                                              state_.positions[c.prev]);
+      if (squared >= best) continue;
+      best = squared;
+      nearest = {v, c.next, c.prev};
+    }
+  };
+  look_at(vertex);
+  for (std::uint32_t v = first_copy; v < state_.positions.size(); ++v) look_at(v);
+  return nearest;
+}
+
+/// Of the points that `owner` holds, those near a triangle of `vertex` do not know theirs any more.
+void CollapseGuard::forget_triangles(std::uint32_t owner, std::uint32_t vertex) {
+  for (std::uint32_t i = bag_[owner]; i != k_none; i = held_[i].following) {
+    Held& held = held_[i];
+    if (held.next == vertex || held.prev == vertex) held.next = held.prev = vertex;
   }
 }
 

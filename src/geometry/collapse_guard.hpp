@@ -61,6 +61,8 @@ class CollapseGuard {
   };
 
   void hold(std::uint32_t point, const Triangle& triangle);
+  Triangle nearest_of_copies(Vec3 point, std::uint32_t vertex, std::uint32_t first_copy) const;
+  void forget_triangles(std::uint32_t owner, std::uint32_t vertex);
   Place place_on(std::uint32_t point, const Triangle& triangle) const;
   void list_star(const Merge& merge);
   bool is_end(std::uint32_t vertex) const { return vertex == merge_.a || vertex == merge_.b; }

@@ -10,6 +10,7 @@
 #include <meshfarm/geometry/vec.hpp>
 
 #include "geometry/quadric.hpp"
+#include "geometry/star_triangle.hpp"
 
 namespace meshfarm {
 
@@ -47,6 +48,9 @@ class CollapseStar {
 
   /// Of triangles that were added.
   std::uint32_t pairs() const { return size_; }
+
+  /// The triangle in this place: that of a pair's second has none where nothing was added there.
+  StarTriangle triangle(std::uint32_t place) const;
 
   /// Adds the planes, and what the volume needs.
   void sum_planes(EdgeQuadric& quadric) const;
@@ -109,6 +113,13 @@ inline void CollapseStar::add(const TwoTriangles& t, const Pair& sides) {
   two.normal = cross(minus(two.p, two.end), minus(two.q, two.end));
   dot(two.normal, two.normal, two.squared_size);
   add_planes(two);
+}
+
+inline StarTriangle CollapseStar::triangle(std::uint32_t place) const {
+  const Two& two = pairs_[place / 2];
+  const std::uint32_t lane = place % 2;
+  const auto at = [lane](const Vec3Pair& a) { return Vec3{a.x[lane], a.y[lane], a.z[lane]}; };
+  return {at(two.end), at(two.p), at(two.q), at(two.normal), two.squared_size[lane]};
 }
 
 inline void CollapseStar::add_planes(const Two& two) {

@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <utility>
+#include <vector>
 
 #include <meshfarm/geometry/distance.hpp>
 
@@ -25,9 +27,41 @@ constexpr std::uint64_t k_fair_samples = 10'000;
 constexpr double k_decided = 0.8;
 // With fewer refusals a collapse it is not even tried.
 constexpr double k_costly = 0.25;
-
 // With a bound, so much must be gained at least.
 constexpr double k_worth = 0.8;
+
+bool is_measurable(const Mesh& mesh) {
+  return !mesh.triangles.empty() &&
+         std::all_of(mesh.positions.begin(), mesh.positions.end(),
+                     [](Vec3 p) { return std::isfinite(squared_length(p) * squared_length(p)); });
+}
+
+/// Measures what became of a mesh. A cost does not know how far from what is left a lost piece
+/// lies.
+class DistanceFrom {
+ public:
+  /// `mesh` must outlive it.
+  explicit DistanceFrom(const Mesh& mesh) {
+    if (!is_measurable(mesh)) return;
+    points_ = sample_surface(mesh, {k_fair_samples, 1}).points;
+    to_mesh_.emplace(mesh, 1);
+  }
+
+  /// The squared RMS, the farther way; 0 if one of the two can't be measured.
+  double squared_to(const CollapseQueue& queue) const {
+    Mesh result;
+    std::vector<std::uint8_t> flags;
+    queue.copy_to(result, flags, 0);
+    if (!to_mesh_ || !is_measurable(result)) return 0;
+    const double there = DistanceMeter(result, 1).measure(points_).rms;
+    const double back = to_mesh_->measure(sample_surface(result, {k_fair_samples, 1}).points).rms;
+    return std::max(there, back) * std::max(there, back);
+  }
+
+ private:
+  std::vector<Vec3> points_;
+  std::optional<DistanceMeter> to_mesh_;
+};
 
 }  // namespace
 
@@ -35,10 +69,12 @@ constexpr double k_worth = 0.8;
 struct OrderedEnd::Trial {
   Trial(const WorkingMesh& mesh, TopologyMode topology, const SurfaceBound* bound)
       : positions(mesh.mesh().positions),
+        appearances(mesh.mesh().appearances),
         flags(mesh.flags().begin(), mesh.flags().end()),
         queue({positions, flags, adjacency, mesh.creases(), mesh.type(), mesh.seam_only(),
                topology == TopologyMode::simplify,
-               topology == TopologyMode::automatic || topology == TopologyMode::keep_while_fair},
+               topology == TopologyMode::automatic || topology == TopologyMode::keep_while_fair,
+               appearances, mesh.appearance_scale()},
               ranking) {
     adjacency.build(mesh.mesh().triangles, positions.size());
     queue.start(mesh.mesh().triangles);
@@ -48,6 +84,7 @@ struct OrderedEnd::Trial {
   }
 
   std::vector<Vec3> positions;
+  std::vector<Appearance> appearances;
   std::vector<std::uint8_t> flags;
   Adjacency adjacency;
   EdgeRanking ranking;
@@ -125,34 +162,15 @@ bool OrderedEnd::is_unfair(double paid, const CollapseQueue& other,
   }
   if (kept.triangles() > goal.triangles + 1) return other.triangles() < kept.triangles();
   if (!(paid > k_fair * other.paid() && kept.dearest() > k_fair * other.dearest())) return false;
-  const double squared = squared_distance_to(other);
-  const double squared_kept = squared_distance_to(kept);
+  const DistanceFrom distance(mesh_.mesh());
+  const double squared = distance.squared_to(other);
+  const double squared_kept = distance.squared_to(kept);
   // Both lie no nearer to the input than the mesh as it is does. A surface's error is as one over
   // its triangles, which tells how far that is.
   const double times = static_cast<double>(mesh_.triangles()) /
                        static_cast<double>(std::max<std::uint64_t>(1, other.triangles()));
   const double before = squared / std::max(times * times - 1, 1e-6);
   return before + squared_kept > k_fair_distance * k_fair_distance * (before + squared);
-}
-
-/// The squared RMS between the mesh as it is and the queue's, the farther way. A cost does not know
-/// how far from what is left a lost piece lies.
-double OrderedEnd::squared_distance_to(const CollapseQueue& queue) const {
-  const Mesh& now = mesh_.mesh();
-  Mesh result;
-  std::vector<std::uint8_t> flags;
-  queue.copy_to(result, flags, 0);
-  const auto is_measurable = [](const Mesh& mesh) {
-    return !mesh.triangles.empty() &&
-           std::all_of(mesh.positions.begin(), mesh.positions.end(),
-                       [](Vec3 p) { return std::isfinite(squared_length(p) * squared_length(p)); });
-  };
-  if (!is_measurable(now) || !is_measurable(result)) return 0;
-  const auto from_to = [](const Mesh& from, const Mesh& to) {
-    return DistanceMeter(to, 1).measure(sample_surface(from, {k_fair_samples, 1}).points).rms;
-  };
-  const double rms = std::max(from_to(now, result), from_to(result, now));
-  return rms * rms;
 }
 
 }  // namespace meshfarm

@@ -41,7 +41,6 @@ class OrderedEnd {
   bool must_decide(const SimplifyGoal& goal);
   bool is_costly_to_keep(const SimplifyGoal& goal) const;
   bool is_unfair(double paid, const CollapseQueue& other, const SimplifyGoal& goal) const;
-  double squared_distance_to(const CollapseQueue& queue) const;
 
   WorkingMesh& mesh_;
   TopologyMode topology_;

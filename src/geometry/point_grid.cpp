@@ -60,13 +60,13 @@ void PointGrid::add_entries(double reach) {
   }
 }
 
-void PointGrid::offer(const OfferedTriangle& triangle, double enough) {
+void PointGrid::offer(const OfferedTriangle& triangle) {
   const Cells cells(std::array{cell_of(triangle.box.lo), cell_of(triangle.box.hi)});
   cells.find([&](std::uint64_t cell) {
     if (!has(cell)) return false;
     const std::uint64_t bucket = hash_of(cell) >> bucket_shift_;
     for (std::uint32_t i = first_[bucket]; i < first_[bucket + 1]; ++i) {
-      if (entries_[i].cell == cell) points_[entries_[i].point].offer(triangle, enough);
+      if (entries_[i].cell == cell) points_[entries_[i].point].offer(triangle);
     }
     return false;
   });

@@ -36,7 +36,7 @@ class PointGrid {
     return cells.find([&](std::uint64_t cell) { return has(cell); }) ? Reach::some : Reach::none;
   }
   /// Offers a triangle of not too many cells to the points that look into them.
-  void offer(const OfferedTriangle& triangle, double enough);
+  void offer(const OfferedTriangle& triangle);
 
  private:
   static constexpr int k_axis_bits = 21;

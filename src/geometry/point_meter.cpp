@@ -48,7 +48,6 @@ class PointMeter::Impl {
  public:
   Impl(std::span<const Vec3> points, const PointMeterHints& hints)
       : hints_(hints),
-        enough_(hints.enough * hints.enough),
         reach_(k_beyond * std::max(hints.usual, k_least_reach * hints.spacing)),
         points_(points.size()) {
     for (std::size_t i = 0; i < points.size(); ++i) {
@@ -105,25 +104,18 @@ class PointMeter::Impl {
     for (std::uint32_t i = 0; i < points_.size(); ++i) {
       if (points_[i].known() >= reach_ * reach_) searching.push_back(i);
     }
-    if (enough_ > 0 && reach_ * reach_ >= enough_) {  // farther than asked: how far does not matter
-      for (const std::uint32_t i : searching) points_[i].squared = HUGE_VAL;
-      return {};
-    }
-    if (searching.empty()) return {};
+    if (searching.empty()) return searching;
     Mesh known;
     known.positions.assign(hints_.surface.begin(), hints_.surface.end());
     for (std::uint32_t i = 0; i < known.positions.size(); ++i) known.triangles.push_back({i, i, i});
     const Bvh bvh(known, 0);
     std::uint32_t guess = 0;
-    std::vector<std::uint32_t> unknown;
     for (const std::uint32_t i : searching) {
-      const Bvh::Nearest nearest = bvh.nearest(points_[i].place, guess, enough_);
+      const Bvh::Nearest nearest = bvh.nearest(points_[i].place, guess);
       guess = nearest.triangle;
-      const bool is_enough = nearest.squared <= enough_;
-      points_[i].squared = is_enough ? nearest.squared : nearest.squared * k_beyond;
-      if (!is_enough) unknown.push_back(i);
+      points_[i].squared = nearest.squared * k_beyond;
     }
-    return unknown;
+    return searching;
   }
 
   void offer(Vec3 a, Vec3 b, Vec3 c, std::uint64_t key_a, std::uint64_t key_b,
@@ -131,8 +123,7 @@ class PointMeter::Impl {
     const PointGrid::Reach reach = grid_->reach_of(key_a, key_b, key_c);
     if (reach == PointGrid::Reach::none) return;
     const OfferedTriangle triangle(a, b, c);
-    reach == PointGrid::Reach::some ? grid_->offer(triangle, enough_)
-                                    : tree_->offer(triangle, enough_);
+    reach == PointGrid::Reach::some ? grid_->offer(triangle) : tree_->offer(triangle);
   }
 
   void show_to_tree(std::span<const Vec3> positions, std::span<const Triangle> triangles) {
@@ -144,14 +135,13 @@ class PointMeter::Impl {
       }
       if (!tree_->wants(box)) continue;
       for (const auto& [a, b, c] : run) {
-        tree_->offer(OfferedTriangle(positions[a], positions[b], positions[c]), enough_);
+        tree_->offer(OfferedTriangle(positions[a], positions[b], positions[c]));
       }
     }
   }
 
   PointMeterHints hints_;
-  double enough_;  // squared
-  double reach_;   // of the first pass
+  double reach_;  // of the first pass
   std::vector<SearchingPoint> points_;
   int pass_ = 0;
   std::optional<PointGrid> grid_;  // of the first pass

@@ -94,9 +94,9 @@ bool PointTree::wants(const Box& box) const {
   });
 }
 
-void PointTree::offer(const OfferedTriangle& triangle, double enough) {
+void PointTree::offer(const OfferedTriangle& triangle) {
   visit(triangle.box, [&](SearchingPoint& point) {
-    point.offer(triangle, enough);
+    point.offer(triangle);
     return false;
   });
 }

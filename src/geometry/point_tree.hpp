@@ -20,7 +20,7 @@ class PointTree {
   /// Whether something in the box may be nearer to a point than what it knows.
   bool wants(const Box& box) const;
   /// Offers the triangle to all points that it may be the nearest to.
-  void offer(const OfferedTriangle& triangle, double enough);
+  void offer(const OfferedTriangle& triangle);
 
  private:
   struct Node {

@@ -39,6 +39,9 @@ struct Quadric {
   friend Quadric operator-(const Quadric& a, const Quadric& b) {
     return {a.xx - b.xx, a.xy - b.xy, a.xz - b.xz, a.yy - b.yy, a.yz - b.yz, a.zz - b.zz};
   }
+  friend Quadric operator*(const Quadric& a, double s) {
+    return {a.xx * s, a.xy * s, a.xz * s, a.yy * s, a.yz * s, a.zz * s};
+  }
   friend Vec3 operator*(const Quadric& a, Vec3 x) {
     return {a.xx * x.x + a.xy * x.y + a.xz * x.z, a.xy * x.x + a.yy * x.y + a.yz * x.z,
             a.xz * x.x + a.yz * x.y + a.zz * x.z};
@@ -94,9 +97,9 @@ struct EdgeQuadric {
   /// A ridge of 1e-3 cost 6 % of the error at 10 % of the triangles; 1e-6 or 1e-8 gained nothing.
   Vec3 cheapest() const { return solve(a, ridge(), b); }
 
-  /// A third of the way from there to where the volume is kept (Lindstrom & Turk 1998): what is
-  /// round swells where only planes count. That saves a third of the error on thin pins, 2 to 11 %
-  /// on CT and indoor scans, and costs up to 2 % on a dragon. Half of the way saves 1 to 4 % more
+  /// Three tenths of the way from there to where the volume is kept (Lindstrom & Turk 1998): what
+  /// is round swells where only planes count. That saves a third of the error on thin pins, 2 to 11
+  /// % on CT and indoor scans, and costs up to 2 % on a dragon. Half of the way saves 1 to 4 % more
   /// there and costs as much again on the dragon.
   Vec3 best() const {
     constexpr double k_least_normal =

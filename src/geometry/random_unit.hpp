@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <array>
 #include <cmath>
 #include <cstdint>
 
@@ -18,11 +19,17 @@ inline double random_unit(std::uint64_t n) {
   return static_cast<double>(z >> 11) * 0x1p-53;
 }
 
-/// A random place of the triangle for each number: it takes the numbers 3n + 1 and 3n + 2 of the
-/// sequence.
-inline Vec3 random_place(Vec3 a, Vec3 b, Vec3 c, std::uint64_t n) {
+/// The corners' shares in a random place of a triangle, for each number: it takes the numbers 3n +
+/// 1 and 3n + 2 of the sequence.
+inline std::array<double, 3> random_shares(std::uint64_t n) {
   const double root = std::sqrt(random_unit(3 * n + 1)), across = random_unit(3 * n + 2);
-  return a * (1 - root) + b * (root * (1 - across)) + c * (root * across);
+  return {1 - root, root * (1 - across), root * across};
+}
+
+/// That place.
+inline Vec3 random_place(Vec3 a, Vec3 b, Vec3 c, std::uint64_t n) {
+  const auto [of_a, of_b, of_c] = random_shares(n);
+  return a * of_a + b * of_b + c * of_c;
 }
 
 }  // namespace meshfarm

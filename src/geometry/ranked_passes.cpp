@@ -53,7 +53,8 @@ RankedPasses::End RankedPasses::reduce(const SimplifyGoal& goal,
     mesh_.begin_pass();
     ranking_.begin_pass({mesh_.mesh().positions, mesh_.mesh().triangles, mesh_.flags(),
                          &mesh_.adjacency(), &mesh_.creases().test(), mesh_.seam_only(), false,
-                         false, ranks_by_bounds_});
+                         false, ranks_by_bounds_, mesh_.mesh().appearances,
+                         mesh_.appearance_scale()});
     const Pass pass = plan(goal);
     const std::uint64_t before = mesh_.triangles();
     const std::uint64_t removed = run(goal, pass);

@@ -50,8 +50,8 @@ struct OfferedTriangle {
   }
 };
 
-/// A point and the squared distance of the nearest triangle that it was offered; once that is
-/// within `enough` squared it is content. Several threads may offer at a time.
+/// A point and the squared distance of the nearest triangle that it was offered. Several threads
+/// may offer at a time.
 struct SearchingPoint {
   Vec3 place;
   std::atomic<double> squared;
@@ -60,9 +60,9 @@ struct SearchingPoint {
 
   /// What counts is never below the gap to the triangle's box, by which triangles are passed over:
   /// so the outcome does not depend on the order of the offers.
-  void offer(const OfferedTriangle& t, double enough) {
+  void offer(const OfferedTriangle& t) {
     double now = known();
-    if (now <= enough) return;
+    if (now <= 0) return;
     const double gap = squared_gap(t.box, place);
     if (gap >= now) return;
     const double found = std::max(gap, squared_distance(place, t.a, t.b, t.c));

@@ -217,6 +217,10 @@ bool separate_closed_fans(Mesh& mesh, std::span<const std::uint8_t> flags,
       const auto copy = static_cast<std::uint32_t>(mesh.positions.size());
       const Vec3 position = mesh.positions[v];
       mesh.positions.push_back(position);
+      if (!mesh.appearances.empty()) {
+        const Appearance appearance = mesh.appearances[v];
+        mesh.appearances.push_back(appearance);
+      }
       for (const Corner& c : fan) copies[{v, c.next, c.prev}] = copy;
     }
   }
@@ -241,6 +245,9 @@ void check_input(const Mesh& mesh, const SimplifyOptions& options) {
   }
   if (options.locked_vertices > vertices) {
     throw UsageError("simplify: more locked vertices than the mesh has");
+  }
+  if (!mesh.appearances.empty() && mesh.appearances.size() != vertices) {
+    throw UsageError("simplify: the appearances are not one a vertex");
   }
   if (!options.seam.empty() && options.seam.size() != vertices) {
     throw UsageError("simplify: the seam flags are not one a vertex");

@@ -45,7 +45,8 @@ void CollapseQueue::start(std::span<const Triangle> triangles) {
   stale_.assign(vertices, 0);
   heap_.clear();
   ranking_.begin_pass({mesh_.positions, triangles, mesh_.flags, &mesh_.adjacency,
-                       &mesh_.creases.test(), mesh_.seam_only, true, mesh_.any_topology, true});
+                       &mesh_.creases.test(), mesh_.seam_only, true, mesh_.any_topology, true,
+                       mesh_.appearances, mesh_.appearance_scale});
   judge_.move_to(state());
   general_.move_to(state());
 }
@@ -103,8 +104,8 @@ void CollapseQueue::drop_next() {
 }
 
 CollapseState CollapseQueue::state() {
-  return {mesh_.positions,  mesh_.flags, target_,
-          &mesh_.adjacency, mesh_.type,  &mesh_.creases.test()};
+  return {mesh_.positions, mesh_.flags,           target_,           &mesh_.adjacency,
+          mesh_.type,      &mesh_.creases.test(), mesh_.appearances, mesh_.appearance_scale};
 }
 
 Collapse CollapseQueue::judge(std::uint32_t a, std::uint32_t b, std::uint64_t most_triangles) {
@@ -249,6 +250,7 @@ void CollapseQueue::merge(std::uint32_t a, std::uint32_t b, const Collapse& coll
   target_[b] = a;
   mesh_.flags[a] |= mesh_.flags[b];
   mesh_.positions[a] = collapse.position;
+  if (!mesh_.appearances.empty()) mesh_.appearances[a] = collapse.appearance;
   triangles_ -= collapse.triangles;
   max_cost_ = std::max(max_cost_, collapse.cost);
   last_cost_ = collapse.cost;
@@ -331,11 +333,15 @@ std::uint32_t CollapseQueue::add_copy(std::uint32_t vertex) {
   const std::uint8_t flags = mesh_.flags[vertex];
   mesh_.positions.push_back(position);
   mesh_.flags.push_back(flags);
+  if (!mesh_.appearances.empty()) {
+    const Appearance appearance = mesh_.appearances[vertex];
+    mesh_.appearances.push_back(appearance);
+  }
   target_.push_back(copy);
   refused_.push_back(0);
   looks_.push_back(0);
   stale_.push_back(1);
-  ranking_.move_to(mesh_.positions, mesh_.flags);
+  ranking_.move_to(mesh_.positions, mesh_.flags, mesh_.appearances);
   judge_.move_to(state());
   general_.move_to(state());
   if (guard_ != nullptr) guard_->move_to(state());
@@ -354,12 +360,14 @@ void CollapseQueue::copy_to(Mesh& mesh, std::vector<std::uint8_t>& flags,
                             std::uint32_t locked) const {
   mesh.positions.clear();
   mesh.triangles.clear();
+  mesh.appearances.clear();
   flags.clear();
   std::vector<std::uint32_t> number(target_.size());
   for (std::uint32_t v = 0; v < target_.size(); ++v) {
     if (v >= locked && mesh_.adjacency.count(v) == 0) continue;
     number[v] = static_cast<std::uint32_t>(mesh.positions.size());
     mesh.positions.push_back(mesh_.positions[v]);
+    if (!mesh_.appearances.empty()) mesh.appearances.push_back(mesh_.appearances[v]);
     flags.push_back(mesh_.flags[v]);
   }
   mesh.triangles.reserve(triangles_);

@@ -46,8 +46,10 @@ struct QueuedMesh {
   const CreaseLines& creases;
   PositionType type = PositionType::float64;
   bool seam_only = false;
-  bool any_topology = false;     // collapses may change it
-  bool stops_when_held = false;  // rather than go on where most of what is cheap is refused
+  bool any_topology = false;             // collapses may change it
+  bool stops_when_held = false;          // rather than go on where most of what is cheap is refused
+  std::vector<Appearance>& appearances;  // empty where they do not count
+  AppearanceScale appearance_scale;
 };
 
 /// Collapses edges strictly in order of their cost: what was refused, or has become cheaper, is

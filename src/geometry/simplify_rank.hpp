@@ -10,6 +10,7 @@
 #include <meshfarm/geometry/mesh.hpp>
 
 #include "geometry/adjacency.hpp"
+#include "geometry/appearance_star.hpp"
 #include "geometry/simplify_cost.hpp"
 #include "geometry/simplify_lines.hpp"
 
@@ -45,8 +46,10 @@ struct RankingInput {
   bool seam_only = false;
   /// Edges are judged by what can judge any: those at complex vertices are listed, too.
   bool general = false;
-  bool any_topology = false;  // and those that would change the topology
-  bool bounds = false;        // rank by lower bounds of the costs
+  bool any_topology = false;                // and those that would change the topology
+  bool bounds = false;                      // rank by lower bounds of the costs
+  std::span<const Appearance> appearances;  // empty where they do not count
+  AppearanceScale appearance_scale;
 };
 
 /// Which edges a pass may take: those that rank and cost no more than this.
@@ -75,7 +78,8 @@ class EdgeRanking {
   // For a mesh that changes while its edges are ranked.
 
   /// The mesh has more vertices than before, or they have moved in memory.
-  void move_to(std::span<const Vec3> positions, std::span<const std::uint8_t> flags);
+  void move_to(std::span<const Vec3> positions, std::span<const std::uint8_t> flags,
+               std::span<const Appearance> appearances);
   /// Sums the quadric of a vertex whose star has changed.
   void refresh(std::uint32_t vertex);
   /// Calls take(edge) for all edges at the vertex that may collapse and may cost no more than that,
@@ -96,6 +100,7 @@ class EdgeRanking {
   };
   void sum_planes();
   void sum_line_planes();
+  Quadric appearance_at(std::uint32_t vertex);
   void add_line_planes(std::uint32_t vertex);
   /// Those whose other end is `least` or greater.
   void list_edges_at(std::uint32_t vertex, std::uint32_t least);
@@ -112,6 +117,7 @@ class EdgeRanking {
   std::vector<Edge> listed_;  // the first listed_count_
   std::size_t listed_count_ = 0;
   EdgeCosts costs_;
+  AppearanceStar star_;
   std::vector<RankedEdge> found_;  // the first found_count_
   std::size_t found_count_ = 0;
   std::vector<RankedEdge> sorted_;

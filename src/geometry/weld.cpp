@@ -5,6 +5,7 @@
 #include <cassert>
 #include <limits>
 
+#include <meshfarm/geometry/place_hash.hpp>
 #include <meshfarm/geometry/weld.hpp>
 
 namespace meshfarm {
@@ -13,28 +14,6 @@ namespace {
 constexpr std::uint32_t k_empty = std::numeric_limits<std::uint32_t>::max();
 // So many slots are fetched ahead of their use: the table is bigger than the near caches.
 constexpr std::size_t k_ahead = 16;
-
-struct Key {
-  std::uint64_t x, y, z;
-  friend bool operator==(const Key&, const Key&) = default;
-};
-
-Key key_of(Vec3 p) {
-  // Adding 0.0 turns -0.0 into 0.0 and leaves all else.
-  return {std::bit_cast<std::uint64_t>(p.x + 0.0), std::bit_cast<std::uint64_t>(p.y + 0.0),
-          std::bit_cast<std::uint64_t>(p.z + 0.0)};
-}
-
-std::uint64_t mixed(std::uint64_t h) {
-  h ^= h >> 32;
-  h *= 0xd6e8feb86659fd93U;
-  return h ^ (h >> 32);
-}
-
-// Coordinates from a grid differ in few bits, all of them high: each is mixed before the next.
-std::uint64_t hash_of(const Key& key) {
-  return mixed(mixed(mixed(key.x) + key.y) + key.z) * 0x9e3779b97f4a7c15U;
-}
 
 /// Open addressing with linear probing, never more than half full.
 class Table {
@@ -62,15 +41,16 @@ WeldResult weld(std::span<const Vec3> positions) {
   std::array<std::size_t, k_ahead> homes{};
   const auto look_ahead = [&](std::size_t i) {
     if (i >= positions.size()) return;
-    homes[i % k_ahead] = table.home(hash_of(key_of(positions[i])));
+    homes[i % k_ahead] = table.home(hash_of(PlaceKey(positions[i])));
     table.prefetch(homes[i % k_ahead]);
   };
   for (std::size_t i = 0; i < k_ahead; ++i) look_ahead(i);
   for (std::size_t i = 0; i < positions.size(); ++i) {
     std::size_t slot = homes[i % k_ahead];
     look_ahead(i + k_ahead);
-    const Key key = key_of(positions[i]);
-    while (table[slot] != k_empty && key_of(positions[table[slot]]) != key) slot = table.next(slot);
+    const PlaceKey key(positions[i]);
+    while (table[slot] != k_empty && PlaceKey(positions[table[slot]]) != key)
+      slot = table.next(slot);
     // Vertices come in order, so the one in the table is the lowest of its twins.
     if (table[slot] == k_empty) {
       table[slot] = static_cast<std::uint32_t>(i);

@@ -15,8 +15,10 @@ WorkingMesh::WorkingMesh(Mesh mesh, const SimplifyOptions& options)
       locked_(options.locked_vertices),
       type_(options.positions),
       seam_only_(!options.seam.empty()),
+      appearance_scale_(options.lines.appearance_scale),
       creases_(options.lines.crease_angle) {
   check_input(mesh_, options);
+  if (!(appearance_scale_.length > 0)) mesh_.appearances = {};
   Surface surface = clean_surface(mesh_, options, adjacency_);
   dropped_ = surface.dropped;
   flags_ = std::move(surface.flags);
@@ -62,7 +64,8 @@ void WorkingMesh::begin_pass() {
 }
 
 CollapseState WorkingMesh::state() {
-  return {mesh_.positions, flags_, target_, &adjacency_, type_, &creases_.test()};
+  return {mesh_.positions, flags_,           target_,           &adjacency_,
+          type_,           &creases_.test(), mesh_.appearances, appearance_scale_};
 }
 
 void WorkingMesh::merge(std::uint32_t a, std::uint32_t b, const Collapse& collapse) {
@@ -70,6 +73,7 @@ void WorkingMesh::merge(std::uint32_t a, std::uint32_t b, const Collapse& collap
   target_[b] = a;
   flags_[a] |= flags_[b];
   mesh_.positions[a] = collapse.position;
+  if (!mesh_.appearances.empty()) mesh_.appearances[a] = collapse.appearance;
   max_cost_ = std::max(max_cost_, collapse.cost);
 }
 
@@ -87,13 +91,11 @@ void WorkingMesh::compact() {
     // A vertex merges into a smaller one, whose new number is known by now.
     const std::uint32_t target = target_[v];
     const bool stays = target == v;
-    mesh_.positions[kept] = mesh_.positions[v];
-    flags_[kept] = flags_[v];
+    move_vertex(v, kept);
     target_[v] = stays ? kept : target_[target];
     kept += stays ? 1 : 0;
   }
-  mesh_.positions.resize(kept);
-  flags_.resize(kept);
+  keep_vertices(kept);
   std::size_t left = 0;
   for (const Triangle& t : mesh_.triangles) {
     const Triangle now = {target_[t[0]], target_[t[1]], target_[t[2]]};
@@ -105,18 +107,29 @@ void WorkingMesh::compact() {
   mesh_.triangles.resize(left);
 }
 
+void WorkingMesh::move_vertex(std::uint32_t from, std::uint32_t to) {
+  mesh_.positions[to] = mesh_.positions[from];
+  flags_[to] = flags_[from];
+  if (!mesh_.appearances.empty()) mesh_.appearances[to] = mesh_.appearances[from];
+}
+
+/// The first ones.
+void WorkingMesh::keep_vertices(std::uint32_t count) {
+  mesh_.positions.resize(count);
+  flags_.resize(count);
+  if (!mesh_.appearances.empty()) mesh_.appearances.resize(count);
+}
+
 void WorkingMesh::drop_unused_vertices() {
   target_.resize(mesh_.positions.size());
   std::uint32_t kept = 0;
   for (std::uint32_t v = 0; v < target_.size(); ++v) {
     if (v >= locked_ && adjacency_.count(v) == 0) continue;
-    mesh_.positions[kept] = mesh_.positions[v];
-    flags_[kept] = flags_[v];
+    move_vertex(v, kept);
     target_[v] = kept++;
   }
   adjacency_is_current_ = kept == target_.size();
-  mesh_.positions.resize(kept);
-  flags_.resize(kept);
+  keep_vertices(kept);
   for (Triangle& t : mesh_.triangles) t = {target_[t[0]], target_[t[1]], target_[t[2]]};
 }
 

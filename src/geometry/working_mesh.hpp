@@ -32,6 +32,7 @@ class WorkingMesh {
   const Adjacency& adjacency() const { return adjacency_; }       // as of the last begin_pass()
   const CreaseLines& creases() const { return creases_; }
   PositionType type() const { return type_; }
+  const AppearanceScale& appearance_scale() const { return appearance_scale_; }
   bool seam_only() const { return seam_only_; }
   const Dropped& dropped() const { return dropped_; }
   /// Those that no locked vertex has.
@@ -65,11 +66,14 @@ class WorkingMesh {
   bool has_free_border() const;
   void compact();
   void drop_unused_vertices();
+  void move_vertex(std::uint32_t from, std::uint32_t to);
+  void keep_vertices(std::uint32_t count);
 
   Mesh mesh_;
   std::uint32_t locked_;
   PositionType type_;
   bool seam_only_;
+  AppearanceScale appearance_scale_;
   CreaseLines creases_;
   Dropped dropped_;
   std::vector<std::uint8_t> flags_;

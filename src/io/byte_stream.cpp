@@ -89,6 +89,16 @@ std::unique_ptr<ByteStream> InputFile::open() const {
   return open_compressed(*this);
 }
 
+bool has_extension(const InputFile& file, std::string_view extension) {
+  const auto matches = [extension](const std::filesystem::path& path) {
+    const std::string own = path.extension().string();
+    return std::equal(own.begin(), own.end(), extension.begin(), extension.end(),
+                      [](char a, char b) { return a == b || (a | 0x20) == b; });
+  };
+  return matches(file.path()) ||
+         (file.compression() != Compression::none && matches(file.path().stem()));
+}
+
 std::string_view name_of(Compression compression) {
   switch (compression) {
     case Compression::none:

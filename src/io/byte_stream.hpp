@@ -74,6 +74,10 @@ class InputFile {
   Compression compression_ = Compression::none;
 };
 
+/// Whether the name ends so, in any case of letters, or so and with what it is compressed by:
+/// "mesh.stl", "mesh.STL.gz".
+bool has_extension(const InputFile& file, std::string_view extension);
+
 /// "none", "gzip", "zstd"
 std::string_view name_of(Compression compression);
 

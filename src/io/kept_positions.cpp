@@ -4,14 +4,11 @@
 
 #include <algorithm>
 #include <cerrno>
-#include <cstdlib>
-#include <string>
-#include <system_error>
-
-#include <fcntl.h>
-#include <unistd.h>
+#include <utility>
 
 #include <meshfarm/util/errors.hpp>
+
+#include "scratch_file.hpp"
 
 namespace meshfarm {
 namespace {
@@ -19,22 +16,13 @@ namespace {
 constexpr std::uint64_t k_most_in_memory = std::uint64_t{2} << 20;  // 48 MB
 constexpr std::size_t k_batch = 8192;
 
-Fd make_scratch_file(const std::filesystem::path& folder) {
-  std::string name = (folder / "meshfarm.XXXXXX").string();
-  Fd fd(::mkostemp(name.data(), O_CLOEXEC));
-  if (!fd) throw_errno("cannot make", name);
-  ::unlink(name.c_str());
-  return fd;
-}
-
 }  // namespace
 
 KeptPositions::KeptPositions(PositionType type, std::uint64_t vertices) : type_(type) {
   if (vertices <= k_most_in_memory) return;
-  std::error_code error;
-  folder_ = std::filesystem::temp_directory_path(error);
-  if (error) throw IoError("cannot keep scratch in", folder_, error.value());
-  file_ = make_scratch_file(folder_);
+  ScratchFile scratch = make_scratch_file();
+  folder_ = std::move(scratch.folder);
+  file_ = std::move(scratch.fd);
 }
 
 void KeptPositions::add(std::span<const Vec3> batch) {

@@ -1,17 +1,18 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
 //
-// The manifest, kind "MNFT", version 4; the payload of a sealed file. Strings are u32 + characters,
+// The manifest, kind "MNFT", version 5; the payload of a sealed file. Strings are u32 + characters,
 // a file is name | size u64 | xxh3-64 u64:
 //   input | input format | scheme u8 (0 cut, 1 stream) | partitioner | window u64 | position type
 //   u8 | box 6 x f64 | input vertices u64 | input triangles u64 | coincident vertices u64 | dropped
 //   degenerate u64 | coincident corners u64 | dropped not finite u64 | dropped duplicate u64 |
+//   channels u32 x (name | type u8, its bytes | role u8), if any: file | points u64 |
 //   skipped u32 x string | cut seconds f64 | boundary triangles u64 | boundary file | sorting |
 //   parts u32 x (file | vertices u64 | triangles u64 | boundary vertices u32) | samples u32 x the
 //   same: none, or one a part, its file's name empty where it has none sorting = u8 0: parts and
 //   streams are there | u8 1: slabs are, and how they are to be sorted (io/sorting.hpp)
 // Version 1 had no scheme, window and samples, version 2 no sorting, version 3 no partitioner, no
-// coincident corners and no dropped not finite.
+// coincident corners and no dropped not finite, version 4 no channels.
 #include <meshfarm/io/manifest.hpp>
 #include <meshfarm/io/sorting.hpp>
 #include <meshfarm/staging/sealed.hpp>
@@ -23,7 +24,7 @@ namespace meshfarm {
 namespace {
 
 constexpr FileKind k_kind = {'M', 'N', 'F', 'T'};
-constexpr std::uint32_t k_version = 4;
+constexpr std::uint32_t k_version = 5;
 
 void put_file(ByteWriter& out, const FileRef& file) {
   out.put_string(file.name);
@@ -44,6 +45,39 @@ template <class Name>
 void check_name(const ByteReader& in, const FileRef& file) {
   const auto name = parse_staged_name(file.name);
   if (!name || !std::holds_alternative<Name>(*name)) in.fail("not the name of a staged file");
+}
+
+void put_channels(ByteWriter& out, const StagedChannels& staged) {
+  out.put(static_cast<std::uint32_t>(staged.channels.size()));
+  for (const Channel& channel : staged.channels) {
+    out.put_string(channel.name);
+    out.put(channel.type);
+    out.put(channel.role);
+  }
+  if (staged.channels.empty()) return;
+  put_file(out, staged.file);
+  out.put(staged.points);
+}
+
+StagedChannels get_channels(ByteReader& in) {
+  StagedChannels staged;
+  const auto count = in.get<std::uint32_t>();
+  for (std::uint32_t i = 0; i < count; ++i) {
+    Channel channel;
+    channel.name = in.get_string();
+    channel.type = in.get<ChannelType>();
+    channel.role = in.get<ChannelRole>();
+    const bool is_known = channel.type == ChannelType::uint8 ||
+                          channel.type == ChannelType::uint16 ||
+                          channel.type == ChannelType::float32;
+    if (!is_known || channel.role > ChannelRole::quality) in.fail("an unknown kind of channel");
+    staged.channels.push_back(std::move(channel));
+  }
+  if (staged.channels.empty()) return staged;
+  staged.file = get_file(in);
+  check_name<ChannelsName>(in, staged.file);
+  staged.points = in.get<std::uint64_t>();
+  return staged;
 }
 
 void put_parts(ByteWriter& out, const std::vector<PartEntry>& parts) {
@@ -96,6 +130,7 @@ std::string encode_manifest(const Manifest& m) {
   out.put(m.coincident_corners);
   out.put(m.dropped_not_finite);
   out.put(m.dropped_duplicate);
+  put_channels(out, m.channels);
   out.put(static_cast<std::uint32_t>(m.skipped.size()));
   for (const std::string& name : m.skipped) out.put_string(name);
   out.put(m.cut_seconds);
@@ -127,6 +162,7 @@ Manifest decode_manifest(std::string_view file, std::string_view what) {
   m.coincident_corners = in.get<std::uint64_t>();
   m.dropped_not_finite = in.get<std::uint64_t>();
   m.dropped_duplicate = in.get<std::uint64_t>();
+  m.channels = get_channels(in);
   const auto skipped = in.get<std::uint32_t>();
   for (std::uint32_t i = 0; i < skipped; ++i) m.skipped.push_back(in.get_string());
   m.cut_seconds = in.get<double>();

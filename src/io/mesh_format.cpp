@@ -3,33 +3,90 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <iterator>
 #include <memory>
 #include <string>
 #include <string_view>
+#include <utility>
+#include <vector>
 
 #include <meshfarm/io/mesh_format.hpp>
 #include <meshfarm/io/mesh_source.hpp>
+#include <meshfarm/io/ply_writer.hpp>
 #include <meshfarm/util/errors.hpp>
 
+#include "io/gltf_reader.hpp"
+#include "io/mesh_writers.hpp"
+#include "io/obj_reader.hpp"
 #include "io/ply_reader.hpp"
+#include "io/stl_reader.hpp"
 
 namespace meshfarm {
 namespace {
 
+bool keeps_any(std::span<const Channel> /*all*/, const Channel& /*channel*/) {
+  return true;
+}
+
+bool keeps_colour(std::span<const Channel> all, const Channel& channel) {
+  const auto columns = colour_columns(all);
+  return columns && std::any_of(columns->begin(), columns->end(),
+                                [&](std::size_t column) { return all[column] == channel; });
+}
+
+bool keeps_none(std::span<const Channel> /*all*/, const Channel& /*channel*/) {
+  return false;
+}
+
+/// What has a second way to be written in has a second row, without a name. What is only read has
+/// no extension. What is sure of its content comes before what asks for the name, too.
 struct MeshFormat {
+  std::string_view name;  // as the user is told it
   std::string_view extension;
   bool (*recognises)(const InputFile& file);  // by content
   std::unique_ptr<MeshSource> (*open)(InputFile file, const OpenOptions& options);
-  bool can_be_written;
+  std::unique_ptr<MeshSink> (*create)(const std::filesystem::path& path,
+                                      const MeshSinkOptions& options);
+  bool (*keeps)(std::span<const Channel> all, const Channel& channel);  // when it is written
 };
 
-constexpr std::array<MeshFormat, 1> k_formats = {{
-    {".ply", is_ply_file, open_ply, true},
-}};
+constexpr std::array k_formats = {
+    MeshFormat{"PLY", ".ply", is_ply_file, open_ply, create_ply, keeps_any},
+    MeshFormat{"GLB", ".glb", is_glb_file, open_glb, create_glb, is_gltf_channel},
+    MeshFormat{"glTF", ".gltf", is_gltf_file, open_gltf, create_gltf, is_gltf_channel},
+    MeshFormat{"OFF", ".off", is_off_file, open_off, create_off, keeps_colour},
+    MeshFormat{"OBJ", ".obj", is_obj_file, open_obj, create_obj, keeps_colour},
+    MeshFormat{"STL", ".stl", is_ascii_stl_file, open_ascii_stl, create_stl, keeps_none},
+    MeshFormat{"", "", is_binary_stl_file, open_binary_stl, nullptr, nullptr},
+};
 
 std::string lower(std::string text) {
   for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
   return text;
+}
+
+/// "a, b and c"
+std::string listed(std::string_view MeshFormat::*what) {
+  std::vector<std::string_view> words;
+  for (const MeshFormat& format : k_formats) {
+    if (!(format.*what).empty()) words.push_back(format.*what);
+  }
+  std::string text;
+  for (std::size_t i = 0; i < words.size(); ++i) {
+    if (i > 0) text += i + 1 == words.size() ? " and " : ", ";
+    text += words[i];
+  }
+  return text;
+}
+
+/// Null if there is none.
+const MeshFormat* find_output_format(const std::filesystem::path& path) {
+  const std::string extension = lower(path.extension().string());
+  if (extension.empty()) return k_formats.data();
+  const auto* const found =
+      std::find_if(k_formats.begin(), k_formats.end(),
+                   [&](const MeshFormat& format) { return format.extension == extension; });
+  return found == k_formats.end() ? nullptr : found;
 }
 
 }  // namespace
@@ -40,19 +97,46 @@ std::unique_ptr<MeshSource> open_mesh(const std::filesystem::path& path,
   for (const MeshFormat& format : k_formats) {
     if (format.recognises(file)) return format.open(std::move(file), options);
   }
-  throw DataError(path.string() +
-                  ": unknown format; meshfarm reads PLY (ascii, binary little or big endian), "
-                  "plain or compressed with gzip or zstd");
+  throw DataError(path.string() + ": unknown format; meshfarm reads " + listed(&MeshFormat::name) +
+                  ", plain or compressed with gzip or zstd");
+}
+
+bool is_output_format(const std::filesystem::path& path) {
+  return find_output_format(path) != nullptr;
 }
 
 void check_output_format(const std::filesystem::path& path) {
-  const std::string extension = lower(path.extension().string());
-  if (extension.empty()) return;
-  for (const MeshFormat& format : k_formats) {
-    if (extension == format.extension && format.can_be_written) return;
-  }
-  throw DataError(path.string() + ": cannot write " + extension +
-                  "; meshfarm writes PLY, not compressed: name the output .ply");
+  if (is_output_format(path)) return;
+  throw DataError(path.string() + ": cannot write " + path.extension().string() +
+                  "; meshfarm writes " + listed(&MeshFormat::extension) + ", not compressed");
+}
+
+std::vector<Channel> kept_channels(const std::filesystem::path& path,
+                                   std::span<const Channel> channels) {
+  check_output_format(path);
+  const MeshFormat& format = *find_output_format(path);
+  std::vector<Channel> kept;
+  std::copy_if(channels.begin(), channels.end(), std::back_inserter(kept),
+               [&](const Channel& channel) { return format.keeps(channels, channel); });
+  return kept;
+}
+
+std::unique_ptr<MeshSink> create_mesh(const std::filesystem::path& path,
+                                      const MeshSinkOptions& options) {
+  check_output_format(path);
+  return find_output_format(path)->create(path, options);
+}
+
+void write_mesh(const std::filesystem::path& path, const Mesh& mesh, PositionType positions,
+                const std::vector<Channel>& channels, std::span<const float> values) {
+  const auto sink = create_mesh(path, {.vertices = mesh.positions.size(),
+                                       .triangles = mesh.triangles.size(),
+                                       .positions = positions,
+                                       .comment = {},
+                                       .channels = channels});
+  sink->vertices(mesh.positions, values);
+  sink->triangles(mesh.triangles);
+  sink->commit();
 }
 
 }  // namespace meshfarm

@@ -38,4 +38,23 @@ Mesh read_mesh(MeshSource& source) {
   return mesh;
 }
 
+bool has_appearances(const MeshSource& source) {
+  return !AppearanceColumns(source.info().channels).empty();
+}
+
+void scan_appearances(MeshSource& source, const std::function<void(const VertexView&)>& take) {
+  const AppearanceColumns columns(source.info().channels);
+  if (columns.empty()) return source.scan_vertices(take);
+  const std::size_t channels = source.info().channels.size();
+  std::vector<Appearance> appearances;
+  source.scan_channels([&](const ChannelPoints& batch) {
+    appearances.clear();
+    const std::span<const float> values(batch.values);
+    for (std::size_t i = 0; i < batch.points.size(); ++i) {
+      appearances.push_back(columns.of(values.subspan(i * channels, channels)));
+    }
+    take({batch.points, appearances});
+  });
+}
+
 }  // namespace meshfarm

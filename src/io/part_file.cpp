@@ -2,9 +2,9 @@
 // SPDX-License-Identifier: MIT
 //
 // A part, kind "PART", version 2; the payload of a sealed file:
-//   position type u8 (4 float32, 8 float64) | boundary vertices u32 | vertices u64 | triangles u64
-//   | positions, 3 numbers a vertex, boundary vertices first
-//   | packed triangles (io/packed_triangles.hpp), up to the end
+//   vertex format u8 (io/staged_positions.hpp) | boundary vertices u32 | vertices u64 | triangles
+//   u64 | positions, 3 numbers a vertex, boundary vertices first | appearances, 4 x u16 a vertex |
+//   packed triangles (io/packed_triangles.hpp), up to the end
 // Version 1 had triangles of 3 x u32.
 #include <utility>
 
@@ -25,11 +25,12 @@ constexpr std::uint32_t k_version = 2;
 
 std::string encode_part(const Part& part) {
   ByteWriter out;
-  out.put(part.positions);
+  const VertexFormat format{part.positions, !part.mesh.appearances.empty()};
+  put_vertex_format(out, format);
   out.put(part.boundary_vertices);
   out.put(static_cast<std::uint64_t>(part.mesh.positions.size()));
   out.put(static_cast<std::uint64_t>(part.mesh.triangles.size()));
-  put_positions(out, part.mesh.positions, part.positions);
+  put_vertices(out, VertexView(part.mesh), format);
   TrianglePacker packer;
   for (const Triangle& t : part.mesh.triangles) out.put_array(std::span(packer.pack(t)));
   return seal(k_kind, k_version, out.bytes());
@@ -38,12 +39,13 @@ std::string encode_part(const Part& part) {
 Part decode_part(std::string_view file, std::string_view what) {
   ByteReader in(unseal(file, k_kind, k_version, what), what);
   Part part;
-  part.positions = get_position_type(in);
+  const VertexFormat format = get_vertex_format(in);
+  part.positions = format.positions;
   part.boundary_vertices = in.get<std::uint32_t>();
   const auto vertices = in.get<std::uint64_t>();
   const auto triangles = in.get<std::uint64_t>();
   if (part.boundary_vertices > vertices) in.fail("more boundary vertices than vertices");
-  part.mesh.positions = get_positions(in, vertices, part.positions);
+  get_vertices(in, vertices, format, part.mesh.positions, part.mesh.appearances);
   auto unpacked = unpack_triangles(in.take(in.remaining()));
   if (!unpacked || unpacked->size() != triangles) in.fail("other triangles than promised");
   part.mesh.triangles = std::move(*unpacked);

@@ -10,8 +10,8 @@
 #include <meshfarm/util/parallel.hpp>
 
 #include "ply_ascii_cursor.hpp"
-#include "ply_ascii_pieces.hpp"
 #include "ply_body.hpp"
+#include "text_pieces.hpp"
 
 namespace meshfarm {
 namespace {
@@ -33,6 +33,7 @@ class AsciiBody final : public PlyBody {
         line_end_(line_end),
         options_(options) {
     if (options.floats == AsciiFloats::as_doubles) cursor_.read_floats_wide();
+    if (options.has_comments) cursor_.pass_comments();
     if (options_.threads == 0) options_.threads = processors();
   }
 
@@ -53,6 +54,24 @@ class AsciiBody final : public PlyBody {
       if (read_pieces(parse, take)) continue;
       next_record();
       read_vertex(element, axis_of, batch);
+    }
+    batch.flush();
+  }
+
+  void read_channels(const PlyElement& element, std::span<const PlyChannel> channels,
+                     ChannelBatch& batch) override {
+    begin(element);
+    ChannelRow row(element, channels);
+    for (; index_ < element.count; ++index_) {
+      next_record();
+      for (std::size_t i = 0; i < element.properties.size(); ++i) {
+        const PlyProperty& property = element.properties[i];
+        // A colour of bytes may have a point all the same.
+        const PlyType type = row.is_axis(i) ? property.type : PlyType::float64;
+        row.wants(i) ? row.set(i, read_coordinate(type)) : skip(property);
+      }
+      end_record();
+      row.add_to(batch);
     }
     batch.flush();
   }
@@ -84,7 +103,15 @@ class AsciiBody final : public PlyBody {
 
   bool at_end() override { return !cursor_.next_record(); }
   bool has_lost_digits() const override { return has_lost_digits_ || cursor_.has_lost_digits(); }
-  std::string take_oddity() override { return std::exchange(oddity_, {}); }
+  std::string take_oddity() override {
+    if (oddity_.empty() && has_more_) {
+      has_more_ = false;
+      return path_.string() + ": there are values after the " +
+             (element_->role == PlyRole::vertices ? "positions" : "corners of faces") +
+             ", colours maybe; they are not read";
+    }
+    return std::exchange(oddity_, {});
+  }
 
  private:
   /// What a thread has read.
@@ -94,6 +121,7 @@ class AsciiBody final : public PlyBody {
     std::uint64_t records = 0;
     std::uint64_t lines = 0;
     bool has_lost_digits = false;
+    bool has_more = false;
     std::vector<Vec3> points;
     std::optional<CornerRecord> corners;
   };
@@ -134,7 +162,7 @@ class AsciiBody final : public PlyBody {
 
   template <class Maker>
   void read_face(const PlyElement& element, Maker& maker) {
-    maker.begin(element.role);
+    maker.begin(corner_order(element));
     for (std::size_t i = 0; i < element.properties.size(); ++i) {
       const PlyProperty& property = element.properties[i];
       i == element.index_list ? read_corner_list(property, maker) : skip(property);
@@ -167,6 +195,7 @@ class AsciiBody final : public PlyBody {
       index_ += piece.records;
       cursor_.pass(piece.text.size(), piece.lines);
       has_lost_digits_ = has_lost_digits_ || piece.has_lost_digits;
+      has_more_ = has_more_ || piece.has_more;
     }
     return true;
   }
@@ -174,7 +203,7 @@ class AsciiBody final : public PlyBody {
   template <class Parse>
   void read_piece(Piece& piece, const Parse& parse) const {
     AsciiBody body(std::make_unique<TextStream>(piece.text), path_, line_end_, 0,
-                   {options_.floats, 1});
+                   {options_.floats, 1, options_.has_comments});
     try {
       parse(body, piece);
     } catch (const DataError&) {
@@ -184,6 +213,7 @@ class AsciiBody final : public PlyBody {
     piece.records = body.index_;
     piece.lines = body.cursor_.line();
     piece.has_lost_digits = body.has_lost_digits();
+    piece.has_more = body.has_more_;
   }
 
   void begin(const PlyElement& element) {
@@ -216,7 +246,8 @@ class AsciiBody final : public PlyBody {
     const bool is_wrapped = cursor_.line() != line_;
     if (cursor_.end_record()) return;
     if (is_wrapped) fail_short();
-    if (oddity_.empty()) {
+    has_more_ = has_more_ || element_->more == MoreValues::told;
+    if (oddity_.empty() && element_->more == MoreValues::odd) {
       oddity_ = place() +
                 ": there are more values than the header says; they are not read, here "
                 "and further on";
@@ -287,6 +318,7 @@ class AsciiBody final : public PlyBody {
   std::uint64_t one_by_one_to_ = 0;  // position in the stream
   unsigned odd_texts_ = 0;
   bool has_lost_digits_ = false;  // in pieces
+  bool has_more_ = false;         // values than are read, and that is to be told
 };
 
 }  // namespace

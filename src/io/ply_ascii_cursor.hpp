@@ -19,6 +19,9 @@ class AsciiCursor {
   AsciiCursor(std::unique_ptr<ByteStream> stream, char line_end, std::uint64_t line)
       : stream_(std::move(stream)), line_end_(line_end), line_(line) {}
 
+  /// What follows a '#' that begins a value is passed over from now on, to the end of its line.
+  void pass_comments() { has_comments_ = true; }
+
   /// The number of the line at hand, from 1.
   std::uint64_t line() const { return line_; }
 
@@ -55,6 +58,8 @@ class AsciiCursor {
  private:
   bool is_blank(char c) const { return c != line_end_ && (c == ' ' || (c >= '\t' && c <= '\r')); }
   bool ends_value(const char* at) const { return at == end_ || *at == line_end_ || is_blank(*at); }
+  bool is_at_comment() const { return has_comments_ && *current_ == '#'; }
+  void leave_line();
   void refill(std::size_t at_least);
   template <class T>
   std::optional<T> parse();
@@ -63,6 +68,7 @@ class AsciiCursor {
   std::unique_ptr<ByteStream> stream_;
   char line_end_;
   std::uint64_t line_;
+  bool has_comments_ = false;
   bool floats_are_wide_ = false;
   bool has_lost_digits_ = false;
   const char* begin_ = nullptr;  // the stream's window

@@ -32,6 +32,23 @@ class BinaryBody final : public PlyBody {
     batch.flush();
   }
 
+  void read_channels(const PlyElement& element, std::span<const PlyChannel> channels,
+                     ChannelBatch& batch) override {
+    begin(element);
+    ChannelRow row(element, channels);
+    for (; index_ < element.count; ++index_) {
+      for (std::size_t i = 0; i < element.properties.size(); ++i) {
+        const PlyProperty& property = element.properties[i];
+        if (row.wants(i)) {
+          row.set(i, load_real<Order>(property.type, need(size_of(property.type))));
+        }
+        skip(property);
+      }
+      row.add_to(batch);
+    }
+    batch.flush();
+  }
+
   void read_corners(const PlyElement& element, TriangleMaker& maker) override {
     begin(element);
     const std::optional<TriangleLayout> layout = triangle_layout(element);
@@ -140,7 +157,7 @@ class BinaryBody final : public PlyBody {
   }
 
   void read_polygon(TriangleMaker& maker) {
-    maker.begin(element_->role);
+    maker.begin(corner_order(*element_));
     for (std::size_t i = 0; i < element_->properties.size(); ++i) {
       const PlyProperty& property = element_->properties[i];
       i == element_->index_list ? read_corner_list(property, maker) : skip(property);

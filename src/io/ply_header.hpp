@@ -25,6 +25,13 @@ struct PlyProperty {
 /// What the reader does with an element.
 enum class PlyRole : std::uint8_t { other, vertices, faces, strips };
 
+/// What it means that a line of text has more values than are declared.
+enum class MoreValues : std::uint8_t {
+  odd,   // it is told, with the line
+  told,  // it is told that they are not read
+  known  // it is expected
+};
+
 struct PlyElement {
   std::string name;
   std::uint64_t count = 0;
@@ -32,6 +39,7 @@ struct PlyElement {
   PlyRole role = PlyRole::other;
   std::array<std::size_t, 3> axes{};  // of vertices: the properties x, y, z
   std::size_t index_list = 0;         // of faces and strips: the property with the corners
+  MoreValues more = MoreValues::odd;
 
   bool has_lists() const;
   /// Bytes that a record takes in a file; with lists or as text, the fewest it can take.
@@ -44,6 +52,8 @@ struct PlyHeader {
   std::uint64_t size_bytes = 0;
   std::uint64_t lines = 0;
   char line_end = '\n';
+  bool has_comments = false;          // text from '#' to the end of the line, in the body too
+  std::string title;                  // of what is read like a PLY file, but is none
   std::vector<std::string> oddities;  // what was let pass; each a line for the user
 
   const PlyElement& vertices() const;

@@ -9,10 +9,11 @@
 #include <meshfarm/util/errors.hpp>
 #include <meshfarm/util/log.hpp>
 
-#include "kept_positions.hpp"
+#include "off_header.hpp"
 #include "ply_body.hpp"
 #include "ply_header.hpp"
 #include "ply_positions.hpp"
+#include "vertex_store.hpp"
 
 namespace meshfarm {
 namespace {
@@ -38,12 +39,16 @@ PositionType position_type(const PlyElement& vertices) {
   return PositionType::float32;
 }
 
-bool is_used(const PlyElement& element, std::size_t property) {
+bool is_used(const PlyElement& element, std::size_t property,
+             std::span<const PlyChannel> channels) {
   if (element.role != PlyRole::vertices) return property == element.index_list;
-  return std::find(element.axes.begin(), element.axes.end(), property) != element.axes.end();
+  return std::find(element.axes.begin(), element.axes.end(), property) != element.axes.end() ||
+         std::any_of(channels.begin(), channels.end(),
+                     [&](const PlyChannel& channel) { return channel.property == property; });
 }
 
-std::vector<std::string> skipped_names(const PlyHeader& header) {
+std::vector<std::string> skipped_names(const PlyHeader& header,
+                                       std::span<const PlyChannel> channels) {
   std::vector<std::string> names;
   for (const PlyElement& element : header.elements) {
     if (element.role == PlyRole::other) {
@@ -51,7 +56,8 @@ std::vector<std::string> skipped_names(const PlyHeader& header) {
       continue;
     }
     for (std::size_t i = 0; i < element.properties.size(); ++i) {
-      if (!is_used(element, i)) names.push_back(element.name + "." + element.properties[i].name);
+      if (!is_used(element, i, channels))
+        names.push_back(element.name + "." + element.properties[i].name);
     }
   }
   return names;
@@ -77,27 +83,39 @@ void check_counts(const PlyHeader& header, std::uint64_t at, std::uint64_t body_
   }
 }
 
+/// PLY files, and those whose header says as much in other words: OFF.
 class PlySource final : public MeshSource {
  public:
-  PlySource(InputFile file, const OpenOptions& options)
+  using ParseHeader = PlyHeader (*)(std::string_view start, const std::filesystem::path& path);
+
+  PlySource(InputFile file, const OpenOptions& options, ParseHeader parse_header)
       : file_(std::move(file)), options_(options) {
     const std::unique_ptr<ByteStream> stream = file_.open();
     const std::string_view start = stream->window(ByteStream::k_max_window_bytes);
-    header_ = parse_ply_header(start.substr(0, ByteStream::k_max_window_bytes), file_.path());
+    header_ = parse_header(start.substr(0, ByteStream::k_max_window_bytes), file_.path());
     for (const std::string& oddity : header_.oddities) warn(oddity);
     stream->consume(header_.size_bytes);
     if (const std::optional<std::uint64_t> body_bytes = stream->remaining()) {
       check_counts(header_, header_.size_bytes, *body_bytes, file_.path());
     }
     fill_info();
+    if (has_more_digits_than_floats()) read_as_doubles();
   }
 
   const MeshFileInfo& info() const override { return info_; }
   std::uint64_t small_faces() const override { return small_faces_; }
 
   void scan_vertices(const std::function<void(std::span<const Vec3>)>& take) override {
-    if (kept_) return kept_->scan(take);
-    parked_ = read_vertices(take, Keep::where_slow);
+    if (store_.is_filled()) return store_.scan(take);
+    parked_ = read_vertices(take, is_worth_keeping() ? Keep::where_possible : Keep::no);
+  }
+
+  void scan_channels(const std::function<void(const ChannelPoints&)>& take) override {
+    const std::unique_ptr<PlyBody> body = open_body();
+    std::size_t next = 0;
+    while (header_.elements[next].role != PlyRole::vertices) body->skip(header_.elements[next++]);
+    ChannelBatch batch(take);
+    body->read_channels(header_.elements[next], channels_, batch);
   }
 
   void scan_triangles(const std::function<void(std::span<const WideTriangle>)>& take) override {
@@ -114,11 +132,7 @@ class PlySource final : public MeshSource {
       has_corners(element) ? body->read_corners(element, maker) : body->skip(element);
     }
     small_faces_ = maker.small_faces();
-    if (maker.guessed_faces() > 0) {
-      warn(
-          file_.path().string() + ": " + std::to_string(maker.guessed_faces()) +
-          " polygons cross themselves, or have too many corners: they may be triangulated wrongly");
-    }
+    if (maker.guessed_faces() > 0) warn(maker.guess_warning(file_.path()));
     warn(body->take_oddity());
     if (!body->at_end()) {
       warn(file_.path().string() + ": there is more in the file than its header says");
@@ -126,7 +140,7 @@ class PlySource final : public MeshSource {
   }
 
  private:
-  enum class Keep : std::uint8_t { where_slow, all };
+  using Keep = VertexStore::Keep;
 
   /// A body that stands before an element.
   struct Parked {
@@ -134,49 +148,53 @@ class PlySource final : public MeshSource {
     std::size_t next = 0;
   };
 
-  /// Reads all vertices, and keeps them if that is worth it. Returns what follows them.
+  /// Reads all vertices. Returns what follows them.
   Parked read_vertices(const std::function<void(std::span<const Vec3>)>& take, Keep keep) {
     std::unique_ptr<PlyBody> body = open_body();
     std::size_t next = 0;
     while (header_.elements[next].role != PlyRole::vertices) body->skip(header_.elements[next++]);
     const PlyElement& vertices = header_.elements[next++];
-    std::unique_ptr<KeptPositions> kept;
-    const auto to_keep = [&](const auto& work) {
-      try {
-        work();
-      } catch (const IoError& error) {
-        if (keep == Keep::all) throw;
-        // A disk that is full costs no more than another scan.
-        log_info(std::string("vertices are read more than once: ") + error.what());
-        kept.reset();
-      }
-    };
-    const Batch<Vec3>::Take take_and_keep = [&](std::span<const Vec3> points) {
-      if (kept) to_keep([&] { kept->add(points); });
-      take(points);
-    };
-    if (keep == Keep::all || is_worth_keeping()) {
-      to_keep([&] { kept = std::make_unique<KeptPositions>(info_.positions, vertices.count); });
-    }
-    Batch<Vec3> batch(kept ? take_and_keep : take);
-    body->read_vertices(vertices, batch);
+    store_.fill({info_.positions, vertices.count, keep}, take, [&](const VertexStore::Take& pass) {
+      Batch<Vec3> batch(pass);
+      body->read_vertices(vertices, batch);
+      return !body->has_lost_digits();
+    });
     warn(body->take_oddity());
-    if (body->has_lost_digits()) {
-      floats_ = AsciiFloats::as_doubles;  // from the next scan on
-      info_.positions = PositionType::float64;
-    } else {
-      kept_ = std::move(kept);
-    }
+    if (body->has_lost_digits()) read_as_doubles();  // from the next scan on
     return {std::move(body), next};
+  }
+
+  void read_as_doubles() {
+    floats_ = AsciiFloats::as_doubles;
+    info_.positions = PositionType::float64;
+  }
+
+  /// Whether the first vertices show it already: then not all of them are read twice.
+  bool has_more_digits_than_floats() const {
+    constexpr std::uint64_t k_few = 1024;
+    if (header_.format != PlyFormat::ascii || info_.positions != PositionType::float32)
+      return false;
+    const PlyElement& first = header_.elements.front();
+    if (first.role != PlyRole::vertices) return false;
+    PlyElement few = first;
+    few.count = std::min(few.count, k_few);
+    const std::unique_ptr<PlyBody> body = open_body(1);
+    const Batch<Vec3>::Take nothing = [](std::span<const Vec3>) {};
+    Batch<Vec3> batch(nothing);
+    try {
+      body->read_vertices(few, batch);
+    } catch (const DataError&) {
+      return false;  // the scan that is asked for tells what is wrong
+    }
+    return body->has_lost_digits();
   }
 
   /// Of polygons alone is this asked. By whatever way is there, or else by another scan.
   Vec3 position_of(std::uint64_t vertex) {
-    if (kept_ && kept_->is_in_memory()) return kept_->in_memory()[vertex];
-    if (!positions_ && kept_) positions_ = PlyPositions::in_scratch(*kept_);
+    if (store_.is_filled()) return store_.at(vertex);
     if (!positions_) positions_ = PlyPositions::in_file(file_, header_);
     if (positions_) return positions_->at(vertex);
-    read_vertices([](std::span<const Vec3>) {}, Keep::all);
+    read_vertices([](std::span<const Vec3>) {}, Keep::always);
     return position_of(vertex);  // a second scan, should digits have been lost
   }
 
@@ -192,11 +210,13 @@ class PlySource final : public MeshSource {
   }
 
   void fill_info() {
-    info_.format = name_of(header_.format);
+    info_.format = header_.title.empty() ? name_of(header_.format) : header_.title;
     info_.compression = name_of(file_.compression());
     info_.vertices = header_.vertices().count;
     info_.positions = position_type(header_.vertices());
-    info_.skipped = skipped_names(header_);
+    if (options_.channels) channels_ = channels_of(header_.vertices());
+    for (const PlyChannel& each : channels_) info_.channels.push_back(each.channel);
+    info_.skipped = skipped_names(header_, channels_);
     for (const PlyElement& element : header_.elements) {
       if (has_corners(element)) info_.faces += element.count;
     }
@@ -207,19 +227,21 @@ class PlySource final : public MeshSource {
     if (!line.empty() && warnings_.insert(line).second) log_warning(line);
   }
 
-  std::unique_ptr<PlyBody> open_body() const {
+  std::unique_ptr<PlyBody> open_body() const { return open_body(options_.threads); }
+  std::unique_ptr<PlyBody> open_body(unsigned threads) const {
     std::unique_ptr<ByteStream> stream = file_.open();
     stream->skip(header_.size_bytes);
     return header_.format == PlyFormat::ascii
                ? make_ascii_body(std::move(stream), file_.path(), header_,
-                                 {floats_, options_.threads})
+                                 {floats_, threads, header_.has_comments})
                : make_binary_body(std::move(stream), file_.path(), header_);
   }
 
   InputFile file_;
   OpenOptions options_;
   PlyHeader header_;
-  std::unique_ptr<KeptPositions> kept_;
+  std::vector<PlyChannel> channels_;
+  VertexStore store_;
   AsciiFloats floats_ = AsciiFloats::as_floats;
   std::unique_ptr<PlyPositions> positions_;
   Parked parked_;
@@ -235,7 +257,15 @@ bool is_ply_file(const InputFile& file) {
 }
 
 std::unique_ptr<MeshSource> open_ply(InputFile file, const OpenOptions& options) {
-  return std::make_unique<PlySource>(std::move(file), options);
+  return std::make_unique<PlySource>(std::move(file), options, parse_ply_header);
+}
+
+bool is_off_file(const InputFile& file) {
+  return is_off(file.open()->window(ByteStream::k_max_window_bytes));
+}
+
+std::unique_ptr<MeshSource> open_off(InputFile file, const OpenOptions& options) {
+  return std::make_unique<PlySource>(std::move(file), options, parse_off_header);
 }
 
 }  // namespace meshfarm

@@ -13,7 +13,12 @@ namespace meshfarm {
 /// Whether the file starts like a PLY file.
 bool is_ply_file(const InputFile& file);
 
-/// Reads the header. Throws DataError if it is malformed, or claims more than the file can hold.
+/// Whether the file starts like an OFF file.
+bool is_off_file(const InputFile& file);
+
+/// These read the header. They throw DataError if it is malformed, or claims more than the file can
+/// hold.
 std::unique_ptr<MeshSource> open_ply(InputFile file, const OpenOptions& options);
+std::unique_ptr<MeshSource> open_off(InputFile file, const OpenOptions& options);
 
 }  // namespace meshfarm

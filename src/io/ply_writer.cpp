@@ -3,58 +3,52 @@
 //
 // What is written:
 //   header  = "ply" "format binary_little_endian 1.0" ["comment" text]
-//             "element vertex" N, property (float | double) x, y, z
+//             "element vertex" N, property (float | double) x, y, z,
+//             property (uchar | ushort | float) of each channel
 //             "element face" M, property list uchar (int | uint) vertex_indices "end_header"
-//   vertex  = x y z;  face = 3 a b c
-#include <cerrno>
+//   vertex  = x y z values;  face = 3 a b c
+#include <algorithm>
 #include <cstring>
 
 #include <meshfarm/io/ply_writer.hpp>
-#include <meshfarm/staging/atomic_file.hpp>
 #include <meshfarm/util/errors.hpp>
+
+#include "file_sink.hpp"
 
 namespace meshfarm {
 namespace {
 
 constexpr std::size_t k_triangle_bytes = 1 + 3 * sizeof(std::uint32_t);
-constexpr std::size_t k_records_at_once = 8192;
 
-/// Fails before the work, not after it, if the file cannot be made.
-const std::filesystem::path& checked_path(const std::filesystem::path& path) {
-  std::error_code error;
-  const std::filesystem::file_status status = std::filesystem::status(path, error);
-  if (path.empty()) throw IoError("cannot write", path, ENOENT);
-  if (std::filesystem::is_directory(status)) throw IoError("cannot write", path, EISDIR);
-  if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status)) {
-    throw IoError("cannot replace what is not a regular file:", path, EINVAL);
-  }
-  const std::filesystem::path folder = path.has_parent_path() ? path.parent_path() : ".";
-  if (!std::filesystem::is_directory(folder, error)) {
-    const bool exists = std::filesystem::exists(folder, error);
-    throw IoError("cannot write", path, exists ? ENOTDIR : ENOENT);
-  }
-  if (!path.has_filename()) throw IoError("cannot write", path, EISDIR);
-  return path;
-}
-
-const PlyWriterOptions& checked_options(const PlyWriterOptions& options) {
+const MeshSinkOptions& checked_vertices(const MeshSinkOptions& options) {
   if (options.vertices > std::uint64_t{1} << 32) {
     throw UsageError("a PLY file with " + std::to_string(options.vertices) +
                      " vertices cannot be written: its indices have 32 bits");
   }
-  if (options.comment.find_first_of("\r\n") != std::string::npos) {
-    throw UsageError("the comment of a PLY file is one line");
-  }
   return options;
 }
 
-std::string header_text(const PlyWriterOptions& options) {
+std::string_view name_of(ChannelType type) {
+  if (type == ChannelType::float32) return "float";
+  return type == ChannelType::uint8 ? "uchar" : "ushort";
+}
+
+std::size_t vertex_bytes(const MeshSinkOptions& options) {
+  std::size_t bytes = 3 * static_cast<std::size_t>(options.positions);
+  for (const Channel& channel : options.channels) bytes += static_cast<std::size_t>(channel.type);
+  return bytes;
+}
+
+std::string header_text(const MeshSinkOptions& options) {
   const std::string type = options.positions == PositionType::float32 ? "float" : "double";
   const std::string index = options.vertices <= std::uint64_t{1} << 31 ? "int" : "uint";
   std::string text = "ply\nformat binary_little_endian 1.0\n";
   if (!options.comment.empty()) text += "comment " + options.comment + "\n";
   text += "element vertex " + std::to_string(options.vertices) + "\n";
   for (const char* axis : {"x", "y", "z"}) text += "property " + type + " " + axis + "\n";
+  for (const Channel& channel : options.channels) {
+    text += "property " + std::string(name_of(channel.type)) + " " + channel.name + "\n";
+  }
   text += "element face " + std::to_string(options.triangles) + "\n";
   return text + "property list uchar " + index + " vertex_indices\nend_header\n";
 }
@@ -67,111 +61,75 @@ char* encode(const Vec3& vertex, char* out) {
   return out + sizeof xyz;
 }
 
-}  // namespace
+template <class T>
+char* encode(float value, char* out) {
+  const T narrow = static_cast<T>(value);
+  std::memcpy(out, &narrow, sizeof narrow);
+  return out + sizeof narrow;
+}
 
-class PlyWriter::Impl {
+char* encode(ChannelType type, float value, char* out) {
+  const float whole = rounded_to(type, value);
+  if (type == ChannelType::float32) return encode<float>(whole, out);
+  return type == ChannelType::uint8 ? encode<std::uint8_t>(whole, out)
+                                    : encode<std::uint16_t>(whole, out);
+}
+
+class PlySink final : public FileSink {
  public:
-  Impl(const std::filesystem::path& path, const PlyWriterOptions& options)
-      : path_(path), options_(checked_options(options)), file_(checked_path(path)) {
-    file_.write(header_text(options_));
-  }
-
-  void vertices(std::span<const Vec3> batch) {
-    vertices_ = counted(vertices_, batch.size(), options_.vertices, "vertices");
-    for (; !batch.empty(); batch = batch.subspan(std::min(batch.size(), k_records_at_once))) {
-      char* out = buffer_.data();
-      for (const Vec3& vertex : batch.first(std::min(batch.size(), k_records_at_once))) {
-        out = options_.positions == PositionType::float32 ? encode<float>(vertex, out)
-                                                          : encode<double>(vertex, out);
-      }
-      write_up_to(out);
-    }
-  }
-
-  template <class AnyTriangle>
-  void triangles(std::span<const AnyTriangle> batch) {
-    if (vertices_ != options_.vertices) wrong_count(vertices_, options_.vertices, "vertices");
-    triangles_ = counted(triangles_, batch.size(), options_.triangles, "triangles");
-    for (; !batch.empty(); batch = batch.subspan(std::min(batch.size(), k_records_at_once))) {
-      char* out = buffer_.data();
-      for (const AnyTriangle& triangle : batch.first(std::min(batch.size(), k_records_at_once))) {
-        *out++ = 3;
-        for (const auto index : triangle) {
-          if (index >= options_.vertices) wrong_index(index);
-          const auto narrow = static_cast<std::uint32_t>(index);
-          std::memcpy(out, &narrow, sizeof narrow);
-          out += sizeof narrow;
-        }
-      }
-      write_up_to(out);
-    }
-  }
-
-  void commit() {
-    if (vertices_ != options_.vertices) wrong_count(vertices_, options_.vertices, "vertices");
-    if (triangles_ != options_.triangles) wrong_count(triangles_, options_.triangles, "triangles");
-    file_.commit();
+  PlySink(const std::filesystem::path& path, const MeshSinkOptions& options)
+      : FileSink(path, checked_vertices(options)) {
+    write(header_text(options));
   }
 
  private:
-  std::uint64_t counted(std::uint64_t before, std::uint64_t more, std::uint64_t promised,
-                        const char* what) const {
-    if (more > promised - before) wrong_count(before + more, promised, what);
-    return before + more;
-  }
-  [[noreturn]] void wrong_count(std::uint64_t written, std::uint64_t promised,
-                                const char* what) const {
-    throw DataError(path_.string() + ": " + std::to_string(written) + " " + what +
-                    " were given to be written, but " + std::to_string(promised) +
-                    " were promised");
-  }
-  [[noreturn]] void wrong_index(std::uint64_t index) const {
-    throw DataError(path_.string() + ": a triangle to be written has vertex " +
-                    std::to_string(index) + " of " + std::to_string(options_.vertices));
-  }
-  void write_up_to(const char* end) {
-    file_.write({buffer_.data(), static_cast<std::size_t>(end - buffer_.data())});
+  void put(std::span<const Vec3> batch, std::span<const float> values) override {
+    char* out = buffer_.data();
+    const float* value = values.data();
+    for (const Vec3& vertex : batch) {
+      out = options().positions == PositionType::float32 ? encode<float>(vertex, out)
+                                                         : encode<double>(vertex, out);
+      for (const Channel& channel : options().channels) out = encode(channel.type, *value++, out);
+    }
+    write_up_to(out);
   }
 
-  std::filesystem::path path_;
-  PlyWriterOptions options_;
-  AtomicFile file_;
+  void put(std::span<const WideTriangle> batch) override {
+    char* out = buffer_.data();
+    for (const WideTriangle& triangle : batch) {
+      *out++ = 3;
+      for (const std::uint64_t index : triangle) {
+        const auto narrow = static_cast<std::uint32_t>(index);
+        std::memcpy(out, &narrow, sizeof narrow);
+        out += sizeof narrow;
+      }
+    }
+    write_up_to(out);
+  }
+
+  void write_up_to(const char* end) {
+    write({buffer_.data(), static_cast<std::size_t>(end - buffer_.data())});
+  }
+
   std::vector<char> buffer_ =
-      std::vector<char>(k_records_at_once * std::max(k_triangle_bytes, sizeof(Vec3)));
-  std::uint64_t vertices_ = 0;
-  std::uint64_t triangles_ = 0;
+      std::vector<char>(k_most_at_once * std::max(k_triangle_bytes, vertex_bytes(options())));
 };
 
-PlyWriter::PlyWriter(const std::filesystem::path& path, const PlyWriterOptions& options)
-    : impl_(std::make_unique<Impl>(path, options)) {}
+}  // namespace
 
-PlyWriter::~PlyWriter() = default;
-
-void PlyWriter::vertices(std::span<const Vec3> batch) {
-  impl_->vertices(batch);
-}
-
-void PlyWriter::triangles(std::span<const WideTriangle> batch) {
-  impl_->triangles(batch);
-}
-
-void PlyWriter::triangles(std::span<const Triangle> batch) {
-  impl_->triangles(batch);
-}
-
-void PlyWriter::commit() {
-  impl_->commit();
+std::unique_ptr<MeshSink> create_ply(const std::filesystem::path& path,
+                                     const MeshSinkOptions& options) {
+  return std::make_unique<PlySink>(path, options);
 }
 
 void write_ply(const std::filesystem::path& path, const Mesh& mesh, PositionType positions) {
-  PlyWriterOptions options;
-  options.vertices = mesh.positions.size();
-  options.triangles = mesh.triangles.size();
-  options.positions = positions;
-  PlyWriter writer(path, options);
-  writer.vertices(mesh.positions);
-  writer.triangles(mesh.triangles);
-  writer.commit();
+  const auto sink = create_ply(path, {.vertices = mesh.positions.size(),
+                                      .triangles = mesh.triangles.size(),
+                                      .positions = positions,
+                                      .comment = {}});
+  sink->vertices(mesh.positions);
+  sink->triangles(mesh.triangles);
+  sink->commit();
 }
 
 }  // namespace meshfarm

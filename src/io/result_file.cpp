@@ -4,14 +4,15 @@
 // A simplified part, kind "RSLT", little endian. It is written front to back while it is made, so
 // counts come after what they count.
 //   result  = head | rungs, finest first | 0 u8 | tail | xxh3-64 of everything before
-//   head    = "MFRM" | "RSLT" | version u32 | byte order u32 0x01020304 | position type u8 |
+//   head    = "MFRM" | "RSLT" | version u32 | byte order u32 0x01020304 | vertex format u8 |
 //             boundary vertices u32
 //   rung    = blocks | 2 u8
-//   block   = 1 u8 | vertices u32 | triangles u32 | positions | triangles x 3 x u32
-//   tail    = positions of the boundary vertices | sets u32 | sets x samples |
+//   block   = 1 u8 | vertices u32 | triangles u32 | vertices | triangles x 3 x u32
+//   tail    = the boundary vertices | sets u32 | sets x samples |
 //             rungs u32 | rungs x (level i32 | vertices u64 | triangles u64 | free triangles u64 |
 //             error f64)
 //   samples = area f64 | points u32 | points, 3 numbers each, of the part's surface
+// Vertices are their positions, then their appearances, 4 x u16 each, if the format says so.
 // A rung's vertices are the boundary vertices, then those of its blocks. Of a block's vertices
 // there are at most 65536, and as many triangles.
 //   Version 2. Version 1 was sealed, with the counts in front and one set of samples.
@@ -23,6 +24,7 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <optional>
 #include <utility>
 
 #include <meshfarm/io/result_file.hpp>
@@ -128,11 +130,10 @@ class ResultReader {
     if (get<FileKind>() != k_kind) fail("not a result");
     if (get<std::uint32_t>() != k_version) fail("a result of an unknown version");
     if (get<std::uint32_t>() != k_byte_order) fail("written with another byte order");
-    positions_ = get<PositionType>();
-    if (positions_ != PositionType::float32 && positions_ != PositionType::float64) {
-      fail("unknown kind of positions");
-    }
-    result_.positions = positions_;
+    const std::optional<VertexFormat> format = vertex_format_of(get<std::uint8_t>());
+    if (!format) fail("unknown kind of positions");
+    format_ = *format;
+    result_.positions = format_.positions;
     result_.boundary_vertices = get<std::uint32_t>();
   }
 
@@ -142,13 +143,11 @@ class ResultReader {
     if (vertices > k_most_in_block || triangles > k_most_in_block) fail("impossible counts");
     counts_.vertices += vertices;
     counts_.triangles += triangles;
-    const std::size_t point = 3 * static_cast<std::size_t>(positions_);
-    bytes_.resize(vertices * point + triangles * sizeof(Triangle));
+    bytes_.resize(vertices * format_.bytes() + triangles * sizeof(Triangle));
     take();
     if (!is_wanted) return;
     ByteReader in(bytes_, what_);
-    const std::vector<Vec3> more = get_positions(in, vertices, positions_);
-    inner_.insert(inner_.end(), more.begin(), more.end());
+    get_vertices(in, vertices, format_, inner_.positions, inner_.appearances);
     const auto corners = in.get_array<Triangle>(triangles);
     result_.mesh.triangles.insert(result_.mesh.triangles.end(), corners.begin(), corners.end());
   }
@@ -157,18 +156,35 @@ class ResultReader {
     std::vector<Vec3> points;
     while (points.size() < count) {
       const auto some = std::min<std::size_t>(k_most_in_block, count - points.size());
-      bytes_.resize(some * 3 * static_cast<std::size_t>(positions_));
+      bytes_.resize(some * 3 * static_cast<std::size_t>(format_.positions));
       take();
       ByteReader in(bytes_, what_);
-      const std::vector<Vec3> more = get_positions(in, some, positions_);
+      const std::vector<Vec3> more = get_positions(in, some, format_.positions);
       points.insert(points.end(), more.begin(), more.end());
     }
     return points;
   }
 
+  void read_boundary_vertices() {
+    Mesh& mesh = result_.mesh;
+    mesh.positions = read_points(result_.boundary_vertices);
+    if (!format_.appearances) return;
+    while (mesh.appearances.size() < result_.boundary_vertices) {
+      const auto some = std::min<std::size_t>(k_most_in_block,
+                                              result_.boundary_vertices - mesh.appearances.size());
+      bytes_.resize(some * sizeof(Appearance));
+      take();
+      const auto more = ByteReader(bytes_, what_).get_array<Appearance>(some);
+      mesh.appearances.insert(mesh.appearances.end(), more.begin(), more.end());
+    }
+  }
+
   void read_tail(const std::vector<Rung>& counted) {
-    result_.mesh.positions = read_points(result_.boundary_vertices);
-    result_.mesh.positions.insert(result_.mesh.positions.end(), inner_.begin(), inner_.end());
+    read_boundary_vertices();
+    Mesh& mesh = result_.mesh;
+    mesh.positions.insert(mesh.positions.end(), inner_.positions.begin(), inner_.positions.end());
+    mesh.appearances.insert(mesh.appearances.end(), inner_.appearances.begin(),
+                            inner_.appearances.end());
     inner_ = {};
     const auto sets = get<std::uint32_t>();
     if (sets > k_max_sets) fail("impossible number of samples");
@@ -203,11 +219,11 @@ class ResultReader {
 
   const Fill& fill_;
   std::string_view what_;
-  PositionType positions_ = PositionType::float32;
+  VertexFormat format_;
   std::string bytes_;
   Checksum sum_;
   Rung counts_;
-  std::vector<Vec3> inner_;  // of the wanted rung: all but the boundary vertices
+  Mesh inner_;  // of the wanted rung: all vertices but the boundary vertices
   ResultMesh result_;
 };
 
@@ -237,15 +253,15 @@ ResultSummary decode_summary(std::string_view bytes, std::string_view what) {
   return summary;
 }
 
-ResultWriter::ResultWriter(PositionType positions, std::uint32_t boundary_vertices, Write write)
-    : positions_(positions), boundary_vertices_(boundary_vertices), write_(std::move(write)) {
+ResultWriter::ResultWriter(const Vertices& vertices, Write write)
+    : vertices_(vertices), write_(std::move(write)) {
   ByteWriter out;
   out.put(k_magic);
   out.put(k_kind);
   out.put(k_version);
   out.put(k_byte_order);
-  out.put(positions_);
-  out.put(boundary_vertices_);
+  put_vertex_format(out, {vertices_.positions, vertices_.appearances});
+  out.put(vertices_.boundary);
   put(out.bytes());
 }
 
@@ -254,46 +270,46 @@ void ResultWriter::put(std::string_view bytes) {
   write_(bytes);
 }
 
-void ResultWriter::add(std::span<const Vec3> vertices, std::span<const Triangle> triangles) {
+void ResultWriter::add(VertexView vertices, std::span<const Triangle> triangles) {
   rung_.vertices += vertices.size();
   rung_.triangles += triangles.size();
-  while (!vertices.empty() || !triangles.empty()) {
+  while (vertices.size() > 0 || !triangles.empty()) {
     const std::size_t points = std::min<std::size_t>(vertices.size(), k_most_in_block);
     const std::size_t corners = std::min<std::size_t>(triangles.size(), k_most_in_block);
     ByteWriter out;
     out.put(k_block);
     out.put(static_cast<std::uint32_t>(points));
     out.put(static_cast<std::uint32_t>(corners));
-    put_positions(out, vertices.first(points), positions_);
+    put_vertices(out, vertices.part(0, points), {vertices_.positions, vertices_.appearances});
     out.put_array(triangles.first(corners));
     put(out.bytes());
-    vertices = vertices.subspan(points);
+    vertices = vertices.part(points);
     triangles = triangles.subspan(corners);
   }
 }
 
 void ResultWriter::end_rung(std::int32_t level, std::uint64_t free_triangles, double error) {
   rungs_.push_back(
-      {level, boundary_vertices_ + rung_.vertices, rung_.triangles, free_triangles, error});
+      {level, vertices_.boundary + rung_.vertices, rung_.triangles, free_triangles, error});
   rung_ = {};
   put({reinterpret_cast<const char*>(&k_end_of_rung), 1});
 }
 
 void ResultWriter::add_rung(std::int32_t level, const Mesh& mesh, std::uint64_t free_triangles,
                             double error) {
-  add(std::span(mesh.positions).subspan(boundary_vertices_), mesh.triangles);
+  add(VertexView(mesh).part(vertices_.boundary), mesh.triangles);
   end_rung(level, free_triangles, error);
 }
 
-void ResultWriter::finish(std::span<const Vec3> boundary, std::span<const SurfaceSamples> samples) {
+void ResultWriter::finish(const VertexView& boundary, std::span<const SurfaceSamples> samples) {
   ByteWriter out;
   out.put(k_end_of_rungs);
-  put_positions(out, boundary, positions_);
+  put_vertices(out, boundary, {vertices_.positions, vertices_.appearances});
   out.put(static_cast<std::uint32_t>(samples.size()));
   for (const SurfaceSamples& set : samples) {
     out.put(set.area);
     out.put(static_cast<std::uint32_t>(set.points.size()));
-    put_positions(out, set.points, positions_);
+    put_positions(out, set.points, vertices_.positions);
   }
   put_rungs(out, rungs_);
   put(out.bytes());

@@ -6,7 +6,14 @@
 #include <cstring>
 #include <limits>
 
+#include <meshfarm/util/errors.hpp>
+
 namespace meshfarm {
+namespace {
+
+constexpr std::uint8_t k_appearances = 16;
+
+}  // namespace
 
 void put_positions(ByteWriter& out, std::span<const Vec3> points, PositionType positions) {
   if (positions == PositionType::float64) return out.put_array(points);
@@ -52,6 +59,49 @@ PositionType get_position_type(ByteReader& in) {
     in.fail("unknown kind of positions");
   }
   return type;
+}
+
+std::size_t VertexFormat::bytes() const {
+  return 3 * static_cast<std::size_t>(positions) + (appearances ? sizeof(Appearance) : 0);
+}
+
+void put_vertex_format(ByteWriter& out, VertexFormat format) {
+  const int byte = static_cast<int>(format.positions) + (format.appearances ? k_appearances : 0);
+  out.put(static_cast<std::uint8_t>(byte));
+}
+
+std::optional<VertexFormat> vertex_format_of(std::uint8_t byte) {
+  VertexFormat format;
+  format.appearances = (byte & k_appearances) != 0;
+  format.positions = static_cast<PositionType>(byte & ~k_appearances);
+  if (format.positions != PositionType::float32 && format.positions != PositionType::float64) {
+    return std::nullopt;
+  }
+  return format;
+}
+
+VertexFormat get_vertex_format(ByteReader& in) {
+  const std::optional<VertexFormat> format = vertex_format_of(in.get<std::uint8_t>());
+  if (!format) in.fail("unknown kind of positions");
+  return *format;
+}
+
+void put_vertices(ByteWriter& out, const VertexView& vertices, VertexFormat format) {
+  put_positions(out, vertices.positions, format.positions);
+  if (!format.appearances) return;
+  if (vertices.appearances.size() != vertices.size()) {
+    throw Error("vertices without the appearances that their file promises");
+  }
+  out.put_array(vertices.appearances);
+}
+
+void get_vertices(ByteReader& in, std::uint64_t count, VertexFormat format,
+                  std::vector<Vec3>& positions, std::vector<Appearance>& appearances) {
+  const std::vector<Vec3> more = get_positions(in, count, format.positions);
+  positions.insert(positions.end(), more.begin(), more.end());
+  if (!format.appearances) return;
+  const auto beside = in.get_array<Appearance>(count);
+  appearances.insert(appearances.end(), beside.begin(), beside.end());
 }
 
 }  // namespace meshfarm

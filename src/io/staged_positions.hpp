@@ -2,6 +2,11 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
 #include <meshfarm/geometry/mesh.hpp>
 #include <meshfarm/util/bytes.hpp>
 
@@ -17,5 +22,23 @@ void put_positions(ByteWriter& out, std::span<const Vec3> points, PositionType p
 std::vector<Vec3> get_positions(ByteReader& in, std::uint64_t count, PositionType positions);
 
 PositionType get_position_type(ByteReader& in);
+
+/// What is kept of a vertex: a byte, 4 or 8 for the type of the positions, and 16 more if there are
+/// appearances, too.
+struct VertexFormat {
+  PositionType positions = PositionType::float32;
+  bool appearances = false;
+  std::size_t bytes() const;  // of one vertex
+};
+void put_vertex_format(ByteWriter& out, VertexFormat format);
+VertexFormat get_vertex_format(ByteReader& in);
+/// Nothing of a byte that is none.
+std::optional<VertexFormat> vertex_format_of(std::uint8_t byte);
+
+/// All positions, then all appearances.
+void put_vertices(ByteWriter& out, const VertexView& vertices, VertexFormat format);
+/// Appends what follows.
+void get_vertices(ByteReader& in, std::uint64_t count, VertexFormat format,
+                  std::vector<Vec3>& positions, std::vector<Appearance>& appearances);
 
 }  // namespace meshfarm

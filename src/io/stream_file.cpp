@@ -3,11 +3,12 @@
 //
 // A stream, version 1, little endian. Vertices are numbered as they come.
 //   stream = head | blocks, until the head's counts are reached | nothing more
-//   head   = "MFRM" | "STRM" | version u32 | byte order u32 0x01020304 | position type u8 |
+//   head   = "MFRM" | "STRM" | version u32 | byte order u32 0x01020304 | vertex format u8 |
 //            boundary vertices u32 | vertices u64 | triangles u64 | sum
 //   block  = vertices u32 | boundary vertices u32 | triangles u32 | positions, 3 numbers a vertex |
-//            boundary vertices, ascending, u32: 2 x place among the block's vertices, + 1 if no
-//            triangle uses it | triangles x 3 x u32: 2 x vertex, + 1 at its last use | sum
+//            appearances, 4 x u16 a vertex, if the format says so | boundary vertices, ascending,
+//            u32: 2 x place among the block's vertices, + 1 if no triangle uses it | triangles x 3
+//            x u32: 2 x vertex, + 1 at its last use | sum
 //   sum    = xxh3-64 of the sum before it (none in the head) and what stands between the two
 // Of a block's vertices there are at most 65536, and as many triangles; it is never empty. Every
 // vertex is finalised once: where it comes if no triangle uses it, else at its last use.
@@ -51,7 +52,9 @@ std::uint64_t next_sum(std::uint64_t sum, std::string_view piece) {
 class StreamEncoder {
  public:
   explicit StreamEncoder(const StreamMesh& stream)
-      : stream_(stream), triangles_(stream.mesh.triangles) {
+      : stream_(stream),
+        format_{stream.positions, !stream.mesh.appearances.empty()},
+        triangles_(stream.mesh.triangles) {
     if (stream.mesh.positions.size() >= k_most_vertices) {
       throw UsageError("a stream would have 2^31 vertices or more; ask for more of them");
     }
@@ -119,7 +122,7 @@ class StreamEncoder {
     out.put(k_kind);
     out.put(k_version);
     out.put(k_byte_order);
-    out.put(stream_.positions);
+    put_vertex_format(out, format_);
     out.put(static_cast<std::uint32_t>(
         std::count(stream_.boundary.begin(), stream_.boundary.end(), 1)));
     out.put(static_cast<std::uint64_t>(stream_.mesh.positions.size()));
@@ -127,8 +130,7 @@ class StreamEncoder {
     sum_ = checksum(out.bytes());
     out.put(sum_);
     const std::size_t all =
-        stream_.mesh.positions.size() * 3 * static_cast<std::size_t>(stream_.positions) +
-        triangles_.size() * sizeof(Triangle);
+        stream_.mesh.positions.size() * format_.bytes() + triangles_.size() * sizeof(Triangle);
     file_.reserve(all + all / 64 + 4096);
     file_ += out.bytes();
   }
@@ -142,8 +144,8 @@ class StreamEncoder {
     out.put(end_vertex - vertices_);
     out.put(static_cast<std::uint32_t>(boundary.size()));
     out.put(static_cast<std::uint32_t>(end - first));
-    const std::span<const Vec3> positions(stream_.mesh.positions);
-    put_positions(out, positions.subspan(vertices_, end_vertex - vertices_), stream_.positions);
+    const VertexView all(stream_.mesh);
+    put_vertices(out, all.part(vertices_, end_vertex - vertices_), format_);
     out.put_array(std::span<const std::uint32_t>(boundary));
     out.put_array(std::span<const Triangle>(codes_).subspan(first, end - first));
     sum_ = next_sum(sum_, out.bytes());
@@ -153,6 +155,7 @@ class StreamEncoder {
   }
 
   const StreamMesh& stream_;
+  VertexFormat format_;
   const std::vector<Triangle>& triangles_;
   std::vector<std::uint8_t> used_;
   std::vector<Triangle> codes_;
@@ -185,7 +188,9 @@ void StreamReader::read_head() {
   if (in.get<std::uint32_t>() != k_version) in.fail("a stream of an unknown version");
   if (in.get<std::uint32_t>() != k_byte_order) in.fail("written with another byte order");
   sum_ = checksum(std::string_view(bytes_).substr(0, k_head_bytes));
-  info_.positions = get_position_type(in);
+  const VertexFormat format = get_vertex_format(in);
+  info_.positions = format.positions;
+  info_.appearances = format.appearances;
   info_.boundary_vertices = in.get<std::uint32_t>();
   info_.vertices = in.get<std::uint64_t>();
   info_.triangles = in.get<std::uint64_t>();
@@ -210,8 +215,8 @@ bool StreamReader::next(StreamBlock& block) {
   if (vertices > info_.vertices - vertices_ || triangles > info_.triangles - triangles_) {
     fail("more than the head of the stream says");
   }
-  const std::size_t point = 3 * static_cast<std::size_t>(info_.positions);
-  const std::size_t size = k_block_head_bytes + vertices * point +
+  const VertexFormat format{info_.positions, info_.appearances};
+  const std::size_t size = k_block_head_bytes + vertices * format.bytes() +
                            boundary * sizeof(std::uint32_t) + triangles * sizeof(Triangle);
   bytes_.resize(size + k_sum_bytes);
   fill_(std::span<char>(bytes_).subspan(k_block_head_bytes));
@@ -221,7 +226,9 @@ bool StreamReader::next(StreamBlock& block) {
   if (stored != sum_) fail("damaged (checksum)");
   ByteReader in(bytes_, what_);
   in.take(k_block_head_bytes);
-  block.positions = get_positions(in, vertices, info_.positions);
+  block.positions.clear();
+  block.appearances.clear();
+  get_vertices(in, vertices, format, block.positions, block.appearances);
   block.boundary = in.get_array<StreamCorner>(boundary);
   block.triangles = in.get_array<std::array<StreamCorner, 3>>(triangles);
   add_vertices(block);
@@ -296,6 +303,8 @@ StreamMesh read_stream_mesh(StreamReader& reader) {
     std::vector<Vec3>& positions = stream.mesh.positions;
     const std::size_t first = positions.size();
     positions.insert(positions.end(), block.positions.begin(), block.positions.end());
+    stream.mesh.appearances.insert(stream.mesh.appearances.end(), block.appearances.begin(),
+                                   block.appearances.end());
     stream.boundary.resize(positions.size(), 0);
     for (const StreamCorner vertex : block.boundary) stream.boundary[first + vertex.vertex()] = 1;
     for (const auto& [a, b, c] : block.triangles) {
@@ -311,6 +320,7 @@ Part read_stream(StreamReader& reader) {
   part.positions = info.positions;
   part.boundary_vertices = info.boundary_vertices;
   part.mesh.positions.resize(info.boundary_vertices);
+  if (info.appearances) part.mesh.appearances.resize(info.boundary_vertices);
   std::vector<std::uint32_t> number;  // in the part, of each vertex of the stream
   std::uint32_t boundary = 0;
   StreamBlock block;
@@ -320,10 +330,12 @@ Part read_stream(StreamReader& reader) {
       if (next_boundary < block.boundary.size() && block.boundary[next_boundary].vertex() == i) {
         ++next_boundary;
         part.mesh.positions[boundary] = block.positions[i];
+        if (info.appearances) part.mesh.appearances[boundary] = block.appearances[i];
         number.push_back(boundary++);
       } else {
         number.push_back(static_cast<std::uint32_t>(part.mesh.positions.size()));
         part.mesh.positions.push_back(block.positions[i]);
+        if (info.appearances) part.mesh.appearances.push_back(block.appearances[i]);
       }
     }
     for (const auto& [a, b, c] : block.triangles) {

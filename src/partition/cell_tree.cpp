@@ -169,6 +169,7 @@ void CellTree::divide_points() {
   for (Cell& cell : cells_) {
     if (cell.grid != 0 || cell.vertices <= heavy_ || !is_point(cell.box)) continue;
     if (options_.weld == Weld::exact) {
+      if (cell.vertices < k_crowd) continue;
       cell.is_one = true;
       cell.mean = cell.mean * (1.0 / static_cast<double>(cell.vertices));
       cell.vertices = 1;

@@ -53,6 +53,7 @@ class Cutter {
     distribute_triangles();
     build_parts();
     write_boundary();
+    write_channels();
     manifest_.cut_seconds =
         std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     stage_.publish(ManifestName{}, encode_manifest(manifest_));
@@ -117,22 +118,23 @@ class Cutter {
   }
 
   void distribute_vertices() {
-    const std::uint64_t all =
-        MeshShares::memory_for(manifest_.input_vertices, source_.info().faces, manifest_.positions);
+    const std::uint64_t all = MeshShares::memory_for(manifest_.input_vertices, source_.info().faces,
+                                                     manifest_.positions, has_appearances(source_));
     const std::uint64_t memory = all <= k_memory_bytes ? all : 0;
     shares_ = std::make_unique<MeshShares>(
         MeshShares::Options{scratch_folder(options_.scratch, stage_.root(), all - memory), parts_,
-                            manifest_.input_vertices, manifest_.positions, memory});
+                            manifest_.input_vertices, manifest_.positions, memory,
+                            MeshShares::SeamsFor::all, has_appearances(source_)});
     std::vector<std::uint32_t> parts;
     std::vector<std::uint32_t> points;
     const std::span<const Cell> cells = cells_->cells();
     const bool has_points =
         std::any_of(cells.begin(), cells.end(), [](const Cell& cell) { return cell.is_one; });
     std::uint64_t done = 0;
-    source_.scan_vertices([&](std::span<const Vec3> batch) {
+    scan_appearances(source_, [&](const VertexView& batch) {
       parts.clear();
       points.clear();
-      for (const Vec3& p : batch) {
+      for (const Vec3& p : batch.positions) {
         const std::uint32_t cell = has_position(p) ? cells_->number_of(p) : k_no_cell;
         parts.push_back(cell == k_no_cell ? MeshShares::k_no_share : part_of_cell_[cell]);
         if (!has_points) continue;
@@ -162,7 +164,8 @@ class Cutter {
     std::uint64_t done = 0;
     parallel_for(parts_, options_.threads, [&](std::uint64_t i) {
       const auto number = static_cast<std::uint32_t>(i);
-      BuiltPart built = build_part(shares_->read(number), manifest_.positions, options_.weld);
+      BuiltPart built =
+          build_part(shares_->read(number, options_.weld), manifest_.positions, options_.weld);
       PartEntry entry;
       entry.vertices = built.part.mesh.positions.size();
       entry.triangles = built.part.mesh.triangles.size();
@@ -181,13 +184,19 @@ class Cutter {
   }
 
   void write_boundary() {
-    std::uint64_t degenerate = 0;
-    std::vector<BoundaryTriangle> triangles = shares_->boundary(numbers_, degenerate);
-    manifest_.dropped_degenerate += degenerate;
-    manifest_.coincident_corners += degenerate;
+    SharedTriangles shared = shares_->boundary(numbers_);
+    std::vector<BoundaryTriangle>& triangles = shared.triangles;
+    manifest_.dropped_degenerate += shared.degenerate;
+    manifest_.coincident_corners += shared.coincident;
     manifest_.dropped_duplicate = drop_duplicates(triangles);
     manifest_.boundary_triangles = triangles.size();
     manifest_.boundary = stage_.publish(BoundaryName{}, encode_boundary(triangles));
+  }
+
+  void write_channels() {
+    manifest_.channels = stage_channels(source_, stage_, [&](std::uint64_t done) {
+      tell("cut: colours and other channels", done, manifest_.input_vertices);
+    });
   }
 
   MeshSource& source_;

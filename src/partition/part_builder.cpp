@@ -52,6 +52,7 @@ std::uint32_t number_vertices(const std::vector<Triangle>& triangles,
 BuiltPart build_part(MeshShare raw, PositionType positions, Weld weld_mode) {
   BuiltPart built;
   std::vector<std::uint32_t> representative;
+  std::vector<std::uint32_t> point;  // as it, before any were taken apart
   if (weld_mode == Weld::exact) {
     WeldResult welded = weld(raw.positions);
     built.coincident_corners = static_cast<std::uint64_t>(
@@ -62,7 +63,9 @@ BuiltPart build_part(MeshShare raw, PositionType positions, Weld weld_mode) {
           return a == b || b == c || c == a;
         }));
     built.coincident_vertices = welded.merged;
+    if (!raw.apart.empty()) point = welded.first;
     separate_touching(raw.triangles, raw.boundary, welded);
+    keep_apart(raw.apart, welded.first);
     representative = std::move(welded.first);
   } else {
     representative.resize(raw.positions.size());
@@ -88,11 +91,23 @@ BuiltPart build_part(MeshShare raw, PositionType positions, Weld weld_mode) {
   for (std::size_t i = 0; i < number.size(); ++i) {
     if (number[i] != k_unused) part.mesh.positions[number[i]] = raw.positions[i];
   }
+  if (!raw.appearances.empty()) {
+    part.mesh.appearances.resize(used);
+    // Of vertices that become one the least counts, whatever their order.
+    for (std::size_t i = 0; i < number.size(); ++i) {
+      Appearance& of_one = raw.appearances[representative[i]];
+      of_one = std::min(of_one, raw.appearances[i]);
+    }
+    for (std::size_t i = 0; i < number.size(); ++i) {
+      if (number[i] != k_unused) part.mesh.appearances[number[i]] = raw.appearances[i];
+    }
+  }
   for (Triangle& t : raw.triangles) t = {number[t[0]], number[t[1]], number[t[2]]};
   part.mesh.triangles = std::move(raw.triangles);
   built.boundary.numbers.reserve(built.boundary.places.size());
   for (const std::uint32_t b : built.boundary.places) {
     built.boundary.numbers.push_back(number[representative[b]]);
+    if (!point.empty()) built.boundary.points.push_back(point[b]);
   }
   return built;
 }

@@ -13,7 +13,7 @@
 #include <meshfarm/geometry/simplify.hpp>
 #include <meshfarm/geometry/topology.hpp>
 #include <meshfarm/io/boundary_file.hpp>
-#include <meshfarm/io/ply_writer.hpp>
+#include <meshfarm/io/mesh_format.hpp>
 #include <meshfarm/io/result_file.hpp>
 #include <meshfarm/pipeline/assemble.hpp>
 #include <meshfarm/pipeline/budget.hpp>
@@ -22,6 +22,7 @@
 #include <meshfarm/util/parallel.hpp>
 
 #include "pipeline/bounded_finish.hpp"
+#include "pipeline/channel_values.hpp"
 #include "pipeline/error_meter.hpp"
 #include "pipeline/knee.hpp"
 #include "pipeline/sort_plan.hpp"
@@ -46,7 +47,11 @@ class Assembly {
  public:
   Assembly(const Stage& stage, const Manifest& manifest, const RunOptions& run,
            const AssembleOptions& options)
-      : stage_(stage), manifest_(manifest), run_(run), lines_(run.lines), options_(options) {
+      : stage_(stage),
+        manifest_(manifest),
+        run_(run),
+        lines_(lines_of(manifest, run)),
+        options_(options) {
     summary_.manifest = manifest;
     summary_.output = options.output.string();
     summary_.target = target_triangles(manifest, run);
@@ -81,7 +86,7 @@ class Assembly {
     look_for_better(chosen);
     check_stop();
     summary_.measure_seconds = watch.lap();
-    write_ply(options_.output, result, manifest_.positions);
+    write(result);
     summary_.write_seconds = watch.lap();
     return std::move(summary_);
   }
@@ -210,6 +215,25 @@ class Assembly {
         lines_.topology == TopologyMode::simplify || simplifier.simplifies_topology();
     summary_.why_not_exact = why_not_exact(before, simplifier.mesh());
     return simplifier.mesh();
+  }
+
+  void write(const Mesh& result) {
+    const ChannelFitting fitting{chosen_columns(manifest_, run_), run_.normals, options_.threads};
+    const std::vector<Channel> chosen = channels_at(manifest_.channels.channels, fitting.columns);
+    const std::vector<Channel> kept = kept_channels(options_.output, chosen);
+    for (const Channel& channel : manifest_.channels.channels) {
+      if (std::find(chosen.begin(), chosen.end(), channel) != chosen.end()) continue;
+      summary_.channels_not_wanted.push_back(channel.name);
+    }
+    if (kept.empty()) return write_mesh(options_.output, result, manifest_.positions);
+    const ChannelValues fitted = fit_channels(stage_, manifest_, result, fitting, [&](double done) {
+      tell("colours and other channels", done, 0);
+    });
+    for (std::size_t i = 0; i < chosen.size(); ++i) {
+      if (std::find(kept.begin(), kept.end(), chosen[i]) == kept.end()) continue;
+      summary_.channels.push_back({chosen[i].name, fitted.rms[i]});
+    }
+    write_mesh(options_.output, result, manifest_.positions, chosen, fitted.values);
   }
 
   /// What is kept need not be compared. `kept` has the input's topology, if there is any.

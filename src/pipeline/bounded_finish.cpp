@@ -42,19 +42,20 @@ std::vector<std::uint8_t> vertices_round(const Mesh& mesh, std::vector<std::uint
 /// many are not.
 std::uint32_t put_last(Mesh& mesh, const std::vector<std::uint8_t>& flags) {
   std::vector<std::uint32_t> number(flags.size());
-  std::vector<Vec3> positions;
-  positions.reserve(flags.size());
+  Mesh ordered;
+  ordered.positions.reserve(flags.size());
   std::uint32_t first = 0;
   for (const std::uint8_t wanted : {std::uint8_t{0}, std::uint8_t{1}}) {
     for (std::uint32_t v = 0; v < flags.size(); ++v) {
       if (flags[v] != wanted) continue;
-      number[v] = static_cast<std::uint32_t>(positions.size());
-      positions.push_back(mesh.positions[v]);
+      number[v] = static_cast<std::uint32_t>(ordered.positions.size());
+      append_vertex(VertexView(mesh), v, ordered);
     }
-    if (wanted == 0) first = static_cast<std::uint32_t>(positions.size());
+    if (wanted == 0) first = static_cast<std::uint32_t>(ordered.positions.size());
   }
   for (Triangle& t : mesh.triangles) t = {number[t[0]], number[t[1]], number[t[2]]};
-  mesh.positions = std::move(positions);
+  mesh.positions = std::move(ordered.positions);
+  mesh.appearances = std::move(ordered.appearances);
   return first;
 }
 

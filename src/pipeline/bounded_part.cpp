@@ -22,12 +22,6 @@ std::int32_t level_reached(double cost, double unit) {
   return level_cost(level, unit) > cost ? level - 1 : level;
 }
 
-std::uint64_t free_triangles(const Mesh& mesh, std::uint32_t locked) {
-  return static_cast<std::uint64_t>(std::count_if(
-      mesh.triangles.begin(), mesh.triangles.end(),
-      [&](const Triangle& t) { return t[0] >= locked && t[1] >= locked && t[2] >= locked; }));
-}
-
 }  // namespace
 
 BoundedPart simplify_to_bound(Part part, const SimplifyParameters& parameters,
@@ -35,6 +29,7 @@ BoundedPart simplify_to_bound(Part part, const SimplifyParameters& parameters,
   const SurfaceSamples samples =
       sample_surface(part.mesh, {.samples = parameters.samples, .threads = 1});
   const std::uint64_t before = part.mesh.triangles.size();
+  const ResultWriter::Vertices vertices = vertices_of(part);
   std::optional<SurfaceBound> bound;
   if (before > 0) bound.emplace(part.mesh, SurfaceBoundOptions{parameters.max_error, 1});
   Simplifier simplifier(std::move(part.mesh), {.locked_vertices = part.boundary_vertices,
@@ -48,13 +43,12 @@ BoundedPart simplify_to_bound(Part part, const SimplifyParameters& parameters,
 
   BoundedPart made;
   const Mesh& mesh = simplifier.mesh();
-  ResultWriter result(part.positions, part.boundary_vertices,
-                      [&](std::string_view bytes) { made.file += bytes; });
+  ResultWriter result(vertices, [&](std::string_view bytes) { made.file += bytes; });
   const double farthest =
       mesh.triangles.empty() ? 0 : DistanceMeter(mesh, 1).measure(samples.points).max;
   result.add_rung(level_reached(simplifier.pass_cost(), parameters.cost_unit), mesh,
-                  free_triangles(mesh, part.boundary_vertices), farthest);
-  result.finish(std::span(mesh.positions).first(part.boundary_vertices), {&samples, 1});
+                  simplifier.free_triangles(), farthest);
+  result.finish(VertexView(mesh).part(0, vertices.boundary), {&samples, 1});
   made.summary = {result.rungs(), simplifier.dropped_degenerate(), simplifier.dropped_duplicate(),
                   false, simplifier.turned()};
   return made;

@@ -8,10 +8,10 @@
 #include <meshfarm/pipeline/algorithm.hpp>
 #include <meshfarm/pipeline/budget.hpp>
 #include <meshfarm/pipeline/simplify_job.hpp>
-#include <meshfarm/pipeline/sweep_job.hpp>
 #include <meshfarm/util/errors.hpp>
 
 #include "pipeline/compose_plan.hpp"
+#include "pipeline/part_jobs.hpp"
 #include "pipeline/sort_plan.hpp"
 
 namespace meshfarm {
@@ -37,27 +37,6 @@ constexpr double k_fair_excess = 2;
 constexpr double k_finer = 1.2;
 constexpr std::int32_t k_most_finer = 6;
 
-/// Of a bound on the error, streams that are swept by cost may take up this share.
-constexpr double k_error_share = 0.5;
-
-/// The part as it came, its hierarchy, and the points that stand for it, up to five a triangle.
-constexpr std::uint64_t k_bound_bytes_per_triangle = 500;
-
-/// What a simplify job needs by and large: the part's file and its mesh (20 and 40 bytes a
-/// triangle), the simplifier (50 to 70), and the ladder, whose rungs shrink by a third or more from
-/// the first on.
-std::uint64_t memory_of(const PartEntry& part, std::uint64_t first_rung) {
-  constexpr std::uint64_t k_process = std::uint64_t{16} << 20;
-  const std::uint64_t ladder = 60 * std::min(part.triangles, first_rung);
-  return k_process + part.file.size + 110 * part.triangles + ladder;
-}
-
-/// The window as it comes and as it is simplified, and what was sent on from it.
-std::uint64_t memory_of_sweep(std::uint64_t window_triangles) {
-  constexpr std::uint64_t k_process = std::uint64_t{16} << 20;
-  return k_process + 150 * window_triangles;
-}
-
 /// What a run knows after some of its rounds: derived from the accepted outputs alone, so that
 /// ventilator and sink, restarted or not, agree.
 class Rounds {
@@ -65,7 +44,7 @@ class Rounds {
   Rounds(const Manifest& manifest, const RunOptions& options, std::span<const AcceptedJob> accepted)
       : manifest_(manifest),
         options_(options),
-        target_(target_triangles(manifest, options)),
+        part_jobs_(manifest, options),
         topology_(first_topology()),
         headroom_(manifest.parts.size(), k_first_headroom),
         results_(manifest.parts.size()),
@@ -85,7 +64,8 @@ class Rounds {
   std::vector<Job> jobs() const {
     std::vector<Job> jobs = compose_jobs_;
     for (const std::uint32_t part : asked_) {
-      jobs.push_back(swept_ ? sweep_of(part) : job_of(part));
+      jobs.push_back(swept_ ? part_jobs_.sweep(part, sweep_levels_[part], topology_)
+                            : part_jobs_.climb(part, headroom_[part], topology_));
     }
     return jobs;
   }
@@ -102,109 +82,26 @@ class Rounds {
   }
 
  private:
-  double ratio() const {
-    return std::min(1.0, static_cast<double>(target_) / static_cast<double>(std::max<std::uint64_t>(
-                                                            1, manifest_.triangles())));
-  }
-
-  bool by_error() const { return options_.error.value > 0; }
-
   /// Which may turn out not to be fair.
   TopologyMode first_topology() const {
     if (options_.lines.topology != TopologyMode::automatic) return options_.lines.topology;
-    if (by_error()) return TopologyMode::keep;
+    if (part_jobs_.by_error()) return TopologyMode::keep;
     return options_.allocation == Allocation::threshold ? TopologyMode::keep_while_fair
                                                         : TopologyMode::automatic;
   }
 
-  /// Whether levels are to be found: the same ratio everywhere needs none.
-  bool climbs_samples() const { return by_error() || options_.allocation == Allocation::threshold; }
-
   void ask_first() {
     for (std::uint32_t p = 0; p < manifest_.parts.size(); ++p) {
-      if (!is_sampled(p) || climbs_samples()) asked_.push_back(p);
+      if (!part_jobs_.is_sampled(p) || part_jobs_.climbs_samples()) asked_.push_back(p);
     }
-  }
-
-  bool is_sampled(std::uint32_t part) const {
-    return !manifest_.samples.empty() && !manifest_.samples[part].file.name.empty();
-  }
-
-  /// What is climbed: the part, or a sample of a long stream.
-  const PartEntry& climbed(std::uint32_t part) const {
-    return is_sampled(part) ? manifest_.samples[part] : manifest_.parts[part];
-  }
-
-  Job job_of(std::uint32_t part) const {
-    const PartEntry& entry = climbed(part);
-    SimplifyParameters parameters;
-    parameters.allocation = options_.allocation;
-    parameters.samples = samples_for(manifest_, options_, entry.triangles);
-    parameters.cost_unit = cost_unit(manifest_.box.diagonal());
-    parameters.lines = options_.lines;
-    parameters.lines.topology = topology_;
-    by_error() ? set_error_bound(parameters, part) : set_share(parameters, part);
-    return {std::string(k_simplify_kind),
-            {entry.file},
-            encode_parameters(parameters),
-            entry.triangles,
-            memory_of(entry, parameters.start_triangles) +
-                (by_error() ? k_bound_bytes_per_triangle * entry.triangles : 0)};
-  }
-
-  void set_error_bound(SimplifyParameters& parameters, std::uint32_t part) const {
-    parameters.allocation = Allocation::threshold;
-    // What a sample tells is done to its stream by cost alone.
-    const double share = is_sampled(part) ? k_error_share : k_bound_share_of_parts;
-    parameters.max_error = share * options_.error.in(manifest_.box);
-    parameters.start_triangles = climbed(part).triangles;
-  }
-
-  void set_share(SimplifyParameters& parameters, std::uint32_t part) const {
-    const PartEntry& entry = climbed(part);
-    const double share = ratio() * static_cast<double>(entry.triangles);
-    parameters.share_triangles = static_cast<std::uint64_t>(share);
-    double start = share;
-    if (options_.allocation == Allocation::threshold) {
-      start = share * headroom_[part] * provision(ratio()) / 2 + 2.0 * entry.boundary_vertices;
-      if (start > 0.7 * static_cast<double>(entry.triangles)) {
-        start = static_cast<double>(entry.triangles);
-      }
-    }
-    parameters.start_triangles = static_cast<std::uint64_t>(start);
-  }
-
-  Job sweep_of(std::uint32_t part) const {
-    const PartEntry& entry = manifest_.parts[part];
-    SweepParameters parameters;
-    parameters.level = sweep_levels_[part];
-    parameters.max_cost = sweep_cost(parameters.level);
-    if (!climbs_samples()) parameters.ratio = ratio();
-    parameters.window_triangles = manifest_.window_triangles;
-    parameters.samples = samples_for(manifest_, options_, entry.triangles);
-    parameters.max_error = by_error() ? k_error_share * options_.error.in(manifest_.box) : 0;
-    parameters.lines = options_.lines;
-    // One window can't tell what is fair.
-    parameters.lines.topology =
-        topology_ == TopologyMode::simplify ? TopologyMode::simplify : TopologyMode::keep;
-    return {std::string(k_sweep_kind),
-            {entry.file},
-            encode_parameters(parameters),
-            entry.triangles,
-            memory_of_sweep(manifest_.window_triangles)};
-  }
-
-  /// Nothing is so cheap that the rung of a part as it came would have lost it.
-  double sweep_cost(std::int32_t level) const {
-    return level < 0 ? -1 : level_cost(level, cost_unit(manifest_.box.diagonal()));
   }
 
   void begin_sweeps() {
     swept_ = true;
     sweep_levels_.assign(results_.size(), level_);
     for (std::uint32_t p = 0; p < results_.size(); ++p) {
-      if (!is_sampled(p)) continue;
-      if (by_error()) sweep_levels_[p] = results_[p].rungs.back().level;
+      if (!part_jobs_.is_sampled(p)) continue;
+      if (part_jobs_.by_error()) sweep_levels_[p] = results_[p].rungs.back().level;
       asked_.push_back(p);
     }
   }
@@ -215,7 +112,7 @@ class Rounds {
       const JobOutput& output = round[i].output;
       results_[part] = decode_summary(output.summary, "summary of " + output.file.name);
       files_[part] = output.file;
-      if (!swept_ && is_sampled(part)) stand_for_stream(part);
+      if (!swept_ && part_jobs_.is_sampled(part)) stand_for_stream(part);
     }
   }
 
@@ -233,13 +130,14 @@ class Rounds {
   /// Where too few triangles are left for the target, or a stream is too far from what it was.
   void sweep_again() {
     const std::vector<std::uint32_t> swept = std::exchange(asked_, {});
-    if (by_error()) {
+    if (part_jobs_.by_error()) {
       for (const std::uint32_t part : swept) {
         if (!swept_too_far(part) || sweep_levels_[part] < 0) continue;
         --sweep_levels_[part];
         asked_.push_back(part);
       }
-    } else if (climbs_samples() && level_ >= 0 && free_triangles(level_) < target_) {
+    } else if (part_jobs_.climbs_samples() && level_ >= 0 &&
+               free_triangles(level_) < part_jobs_.target()) {
       --level_;
       sweep_levels_.assign(results_.size(), level_);
       asked_ = swept;
@@ -256,7 +154,7 @@ class Rounds {
 
   /// Of ladders: swept streams have one rung, and what was composed is none.
   void add_finer(ChosenRungs& chosen) const {
-    if (by_error() || composed_.size() != results_.size()) return;
+    if (part_jobs_.by_error() || composed_.size() != results_.size()) return;
     const std::uint64_t before = free_triangles(level_);
     for (std::int32_t level = level_ - 1; level >= level_ - k_most_finer; --level) {
       const auto triangles = static_cast<double>(free_triangles(level));
@@ -275,7 +173,7 @@ class Rounds {
     for (std::size_t p = 0; p < results_.size(); ++p) {
       const ResultSummary& result = results_[p];
       const auto last = static_cast<std::uint32_t>(result.rungs.size() - 1);
-      const std::uint32_t rung = by_error() ? last : rung_at(result.rungs, level_);
+      const std::uint32_t rung = part_jobs_.by_error() ? last : rung_at(result.rungs, level_);
       reached.push_back(
           {{files_[p], rung, 1, result.dropped_degenerate, result.dropped_duplicate, result.turned},
            result.rungs[rung].triangles,
@@ -286,7 +184,7 @@ class Rounds {
 
   void compose(std::span<const AcceptedJob> accepted) {
     const ComposeGoal goal{
-        level_, sweep_cost(level_), wanted(),
+        level_, part_jobs_.sweep_cost(level_), wanted(),
         topology_ == TopologyMode::simplify ? TopologyMode::simplify : TopologyMode::keep};
     ComposePlan plan(manifest_, options_, goal, reached());
     compose_jobs_ = plan.jobs();
@@ -305,7 +203,7 @@ class Rounds {
 
   void ask_again() {
     asked_.clear();
-    if (by_error()) return;
+    if (part_jobs_.by_error()) return;
     choose_level();
     if (topology_ == TopologyMode::keep_while_fair && is_unfair()) {
       keep_coarsest();
@@ -325,12 +223,14 @@ class Rounds {
   /// Of what kept its topology, before it is given up. A sample of a stream tells nothing.
   void keep_coarsest() {
     for (std::uint32_t p = 0; p < results_.size(); ++p) {
-      if (is_sampled(p)) return kept_.clear();
+      if (part_jobs_.is_sampled(p)) return kept_.clear();
       kept_.push_back({files_[p], static_cast<std::uint32_t>(results_[p].rungs.size() - 1)});
     }
   }
 
-  double wanted() const { return provision(ratio()) * static_cast<double>(target_); }
+  double wanted() const {
+    return provision(part_jobs_.ratio()) * static_cast<double>(part_jobs_.target());
+  }
 
   void choose_level() {
     std::vector<std::vector<Rung>> ladders;
@@ -353,13 +253,13 @@ class Rounds {
       if (last.level < level_) held += static_cast<double>(last.free_triangles);
     }
     const auto all = static_cast<double>(free_triangles(level_));
-    if (any && least > static_cast<double>(target_)) return true;
+    if (any && least > static_cast<double>(part_jobs_.target())) return true;
     return held > k_fair_share * all || (any && all > k_fair_excess * wanted());
   }
 
   const Manifest& manifest_;
   const RunOptions& options_;
-  std::uint64_t target_;
+  PartJobs part_jobs_;
   TopologyMode topology_;  // of what is asked for
   std::vector<double> headroom_;
   std::vector<ResultSummary> results_;  // the last accepted, by part

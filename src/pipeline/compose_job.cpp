@@ -16,10 +16,10 @@
 namespace meshfarm {
 namespace {
 
-// Version 2: first stream u32 | all streams u32 | inputs u32 x (streams u32 | rung u32) |
+// Version 3: first stream u32 | all streams u32 | inputs u32 x (streams u32 | rung u32) |
 // boundary (name | size u64 | hash u64) | level i32 | greatest cost f64 | floor u64 |
 // samples a triangle f64 | lines (run_options.hpp).
-constexpr std::uint8_t k_version = 2;
+constexpr std::uint8_t k_version = 3;
 constexpr double k_max_samples_per_triangle = 1000;
 
 class Composer {
@@ -91,12 +91,12 @@ class Composer {
     std::vector<std::uint32_t> number(from.positions.size(), 0);
     Mesh mesh;
     mesh.positions.reserve(from.positions.size());
-    for (const std::uint32_t v : stitched.open) mesh.positions.push_back(from.positions[v]);
+    for (const std::uint32_t v : stitched.open) append_vertex(VertexView(from), v, mesh);
     for (const std::uint32_t v : stitched.open) number[v] = 1;
     for (std::size_t v = 0; v < number.size(); ++v) {
       if (number[v] != 0) continue;
       number[v] = static_cast<std::uint32_t>(mesh.positions.size());
-      mesh.positions.push_back(from.positions[v]);
+      append_vertex(VertexView(from), v, mesh);
     }
     for (std::uint32_t i = 0; i < stitched.open.size(); ++i) number[stitched.open[i]] = i;
     mesh.triangles = std::move(from.triangles);
@@ -117,10 +117,11 @@ class Composer {
 
   JobOutput write(const Simplifier& simplifier, std::uint32_t locked) const {
     std::string file;
-    ResultWriter result(positions_, locked, [&](std::string_view bytes) { file += bytes; });
     const Mesh& mesh = simplifier.mesh();
+    ResultWriter result({positions_, !mesh.appearances.empty(), locked},
+                        [&](std::string_view bytes) { file += bytes; });
     result.add_rung(parameters_.level, mesh, simplifier.free_triangles());
-    result.finish(std::span(mesh.positions).first(locked), samples_);
+    result.finish(VertexView(mesh).part(0, locked), samples_);
     const ResultName name{key_of(job_).value, context_.attempt, context_.incarnation};
     const ResultSummary summary{result.rungs(), simplifier.dropped_degenerate(),
                                 simplifier.dropped_duplicate(), false, simplifier.turned()};

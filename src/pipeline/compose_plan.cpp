@@ -82,7 +82,7 @@ Job ComposePlan::job_of(std::size_t first, std::size_t end) const {
   parameters.samples_per_triangle =
       std::min(1.0, static_cast<double>(samples_for(manifest_, options_, manifest_.triangles())) /
                         static_cast<double>(std::max<std::uint64_t>(1, manifest_.triangles())));
-  parameters.lines = options_.lines;
+  parameters.lines = lines_of(manifest_, options_);
   parameters.lines.topology = goal_.topology;
   Job job;
   job.kind = k_compose_kind;
@@ -99,7 +99,8 @@ Job ComposePlan::job_of(std::size_t first, std::size_t end) const {
   parameters.floor = static_cast<std::uint64_t>(goal_.triangles * static_cast<double>(weight) /
                                                 static_cast<double>(weight_));
   job.parameters = encode_parameters(parameters);
-  job.memory = memory_of_composition(bytes, job.cost);
+  job.memory =
+      memory_of_composition(bytes, job.cost) + memory_of_appearances(parameters.lines, job.cost);
   return job;
 }
 

@@ -10,6 +10,16 @@
 #include <meshfarm/util/errors.hpp>
 
 namespace meshfarm {
+namespace {
+
+/// At the default weight sharp edges of colours cost the shape up to a third of its error. Greater
+/// ones are for users to whom colours matter more than that: by them such edges are kept as well.
+double steepest_of(double colour_weight) {
+  const double relative = colour_weight / RunOptions{}.colour_weight;
+  return AppearanceScale{}.steepest * relative * std::sqrt(relative);
+}
+
+}  // namespace
 
 std::uint64_t target_triangles(const Manifest& manifest, const RunOptions& options) {
   if (options.triangles != 0) return options.triangles;
@@ -25,10 +35,38 @@ std::uint64_t target_triangles(const Manifest& manifest, const RunOptions& optio
   return static_cast<std::uint64_t>(std::llround(wanted));
 }
 
+std::vector<std::size_t> chosen_columns(const Manifest& manifest, const RunOptions& options) {
+  const std::vector<Channel>& channels = manifest.channels.channels;
+  std::vector<std::size_t> columns = chosen_columns(options.channels, channels);
+  if (options.normals == Normals::drop) {
+    std::erase_if(columns, [&](std::size_t i) { return channels[i].role == ChannelRole::normal; });
+  }
+  return columns;
+}
+
+LineOptions lines_of(const Manifest& manifest, const RunOptions& options) {
+  LineOptions lines = options.lines;
+  const double length = options.colour_weight * manifest.box.diagonal();
+  const std::vector<Channel> chosen =
+      channels_at(manifest.channels.channels, chosen_columns(manifest, options));
+  const bool has_colours = !AppearanceColumns(chosen).empty();
+  if (!has_colours || !(length > 0 && std::isfinite(length))) return lines;
+  lines.appearance_scale.length = length;
+  lines.appearance_scale.steepest = steepest_of(options.colour_weight);
+  return lines;
+}
+
+std::uint64_t memory_of_appearances(const LineOptions& lines, std::uint64_t triangles) {
+  constexpr std::uint64_t k_copies = 4;
+  return lines.appearance_scale.length > 0 ? k_copies * sizeof(Appearance) / 2 * triangles : 0;
+}
+
 void put(ByteWriter& out, const LineOptions& lines) {
   out.put(static_cast<std::uint8_t>(lines.preserve_border ? 1 : 0));
   out.put(lines.crease_angle);
   out.put(lines.topology);
+  out.put(lines.appearance_scale.length);
+  out.put(lines.appearance_scale.steepest);
 }
 
 LineOptions get_lines(ByteReader& in) {
@@ -40,6 +78,13 @@ LineOptions get_lines(ByteReader& in) {
   if (!(lines.crease_angle >= 0 && lines.crease_angle < 180)) in.fail("impossible crease angle");
   lines.topology = in.get<TopologyMode>();
   if (lines.topology > TopologyMode::keep_while_fair) in.fail("unknown way with the topology");
+  AppearanceScale& scale = lines.appearance_scale;
+  scale.length = in.get<double>();
+  scale.steepest = in.get<double>();
+  const auto is_weight = [](double x) { return x >= 0 && std::isfinite(x); };
+  if (!is_weight(scale.length) || !is_weight(scale.steepest)) {
+    in.fail("impossible weight of appearances");
+  }
   return lines;
 }
 
@@ -53,9 +98,16 @@ std::uint64_t run_key(const Manifest& manifest, const RunOptions& options) {
   out.put(options.allocation);
   out.put(options.finish);
   out.put(options.composition);
-  put(out, options.lines);
+  put(out, lines_of(manifest, options));
   out.put(options.drop_components.in(manifest.box));
   out.put(options.error.in(manifest.box));
+  // Where all are kept as they come, this says nothing: keys are those of older versions.
+  if (!options.channels.all || options.normals != Normals::blend) {
+    out.put(options.normals);
+    for (const std::size_t column : chosen_columns(manifest, options)) {
+      out.put(static_cast<std::uint64_t>(column));
+    }
+  }
   const std::uint64_t key = checksum(out.bytes());
   return key == 0 ? 1 : key;  // 0 means "any run" to the farm
 }

@@ -26,8 +26,9 @@ double unix_seconds(const Stage& stage) {
 }
 
 TraceLine line_of(const WorkerJoined& e, double t) {
-  return TraceJoined{
-      t, e.worker.value, e.host, e.pid, e.capacity.speed, e.capacity.memory, e.capacity.threads};
+  const Capacity& has = e.capacity;
+  return TraceJoined{t,         e.worker.value, e.host,          e.pid,
+                     has.speed, has.memory,     has.memory_pool, has.threads};
 }
 
 TraceLine line_of(const WorkerLeft& e, double t) {

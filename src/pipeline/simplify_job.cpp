@@ -17,10 +17,10 @@
 namespace meshfarm {
 namespace {
 
-// Version 4: allocation u8 | start u64 | even share u64 | samples u64 | cost unit f64 |
+// Version 5: allocation u8 | start u64 | even share u64 | samples u64 | cost unit f64 |
 // greatest error f64 | lines (run_options.hpp).
-// Version 3 could lock strays.
-constexpr std::uint8_t k_version = 4;
+// Version 4 knew no appearances.
+constexpr std::uint8_t k_version = 5;
 constexpr std::uint64_t k_max_samples = 100'000'000;
 constexpr std::int32_t k_top_level = 52;
 // A part keeps no less than this fraction of its even share: what of it is flat goes in the finish.
@@ -34,12 +34,11 @@ class LadderBuilder {
         parameters_(parameters),
         context_(context),
         input_triangles_(part.mesh.triangles.size()),
+        vertices_(vertices_of(part)),
         simplifier_(std::move(part.mesh), {.locked_vertices = part.boundary_vertices,
                                            .positions = part.positions,
                                            .lines = parameters.lines}),
-        boundary_vertices_(part.boundary_vertices),
-        result_(part.positions, part.boundary_vertices,
-                [this](std::string_view bytes) { file_ += bytes; }) {}
+        result_(vertices_, [this](std::string_view bytes) { file_ += bytes; }) {}
 
   void build() {
     if (parameters_.allocation == Allocation::uniform) {
@@ -52,8 +51,7 @@ class LadderBuilder {
 
   /// The whole file; the last that is asked of it.
   std::string take_file() {
-    const std::span<const Vec3> vertices(simplifier_.mesh().positions);
-    result_.finish(vertices.first(boundary_vertices_), {&samples_, 1});
+    result_.finish(VertexView(simplifier_.mesh()).part(0, vertices_.boundary), {&samples_, 1});
     return std::move(file_);
   }
   ResultSummary summary() const {
@@ -106,8 +104,8 @@ class LadderBuilder {
   const SimplifyParameters& parameters_;
   const JobContext& context_;
   std::uint64_t input_triangles_;
+  ResultWriter::Vertices vertices_;
   Simplifier simplifier_;
-  std::uint32_t boundary_vertices_;
   std::string file_;
   ResultWriter result_;
 };
@@ -176,6 +174,7 @@ JobOutput simplify_part(const Job& job, const JobContext& context) {
   if (job.inputs.size() != 1) throw DataError("a simplify job takes one part");
   const SimplifyParameters parameters = decode_parameters(job.parameters);
   Part part = read_part(context, job.inputs[0]);
+  if (!(parameters.lines.appearance_scale.length > 0)) part.mesh.appearances = {};
   const ResultName name{key_of(job).value, context.attempt, context.incarnation};
   if (parameters.max_error > 0) {
     const BoundedPart bounded = simplify_to_bound(std::move(part), parameters, context);

@@ -15,9 +15,9 @@
 namespace meshfarm {
 namespace {
 
-// Version 2: level i32 | greatest cost f64 | ratio f64 | window u64 | samples u64 |
+// Version 3: level i32 | greatest cost f64 | ratio f64 | window u64 | samples u64 |
 // greatest error f64 | lines (run_options.hpp).
-constexpr std::uint8_t k_version = 2;
+constexpr std::uint8_t k_version = 3;
 constexpr std::uint64_t k_max_samples = 100'000'000;
 constexpr std::uint64_t k_max_window = std::uint64_t{1} << 30;
 
@@ -34,7 +34,7 @@ class SweepToFile {
   JobOutput run() {
     input().size <= job_.memory ? sweep_in_memory() : sweep_bit_by_bit();
     result_->end_rung(parameters_.level, swept_.free_triangles, swept_.error);
-    result_->finish(swept_.boundary, {&swept_.samples, 1});
+    result_->finish(VertexView(swept_.boundary), {&swept_.samples, 1});
     const ResultSummary summary{result_->rungs(), swept_.dropped_degenerate,
                                 swept_.dropped_duplicate, false, swept_.turned};
     swept_ = {};
@@ -54,10 +54,15 @@ class SweepToFile {
     options.lines = parameters_.lines;
     options.measure = parameters_.max_error > 0;
     options.progress = context_.progress;
-    result_.emplace(reader.info().positions, reader.info().boundary_vertices,
-                    [this](std::string_view bytes) { file_->write(bytes); });
-    swept_ = sweep(reader, options,
-                   [this](auto vertices, auto triangles) { result_->add(vertices, triangles); });
+    const StreamInfo& info = reader.info();
+    result_.emplace(
+        ResultWriter::Vertices{info.positions,
+                               info.appearances && parameters_.lines.appearance_scale.length > 0,
+                               info.boundary_vertices},
+        [this](std::string_view bytes) { file_->write(bytes); });
+    swept_ = sweep(reader, options, [this](const VertexView& vertices, auto triangles) {
+      result_->add(vertices, triangles);
+    });
   }
 
   /// What is whole by its checksum and makes no sense never will, whoever reads it.

@@ -5,86 +5,14 @@
 #include <utility>
 #include <vector>
 
-#include <nlohmann/json.hpp>
-
 #include <meshfarm/report/summary.hpp>
 #include <meshfarm/util/checksum.hpp>
 #include <meshfarm/util/errors.hpp>
 
-#include "report/lines.hpp"
+#include "report/summary_words.hpp"
 
 namespace meshfarm {
 namespace {
-
-using Json = nlohmann::ordered_json;
-
-/// A table of "label  value" lines.
-class Lines {
- public:
-  void add(const std::string& label, const std::string& value) {
-    std::string padded = label;
-    padded.resize(std::max<std::size_t>(padded.size(), 16), ' ');
-    text_ += padded + " " + value + "\n";
-  }
-  const std::string& text() const { return text_; }
-
- private:
-  std::string text_;
-};
-
-std::string joined(const std::vector<std::string>& words) {
-  std::string text;
-  for (const std::string& word : words) text += (text.empty() ? "" : ", ") + word;
-  return text;
-}
-
-Json to_json(const Box& box) {
-  if (box.empty()) return nullptr;
-  return {{"lo", {box.lo.x, box.lo.y, box.lo.z}}, {"hi", {box.hi.x, box.hi.y, box.hi.z}}};
-}
-
-Json to_json(const Topology& t) {
-  return {{"vertices", t.vertices},
-          {"unused_vertices", t.vertices - t.used_vertices},
-          {"triangles", t.triangles},
-          {"components", t.components},
-          {"euler", t.euler},
-          {"border_edges", t.border_edges},
-          {"nonmanifold_edges", t.nonmanifold_edges},
-          {"orientation_conflicts", t.orientation_conflicts},
-          {"degenerate", t.degenerate},
-          {"zero_area", t.zero_area},
-          {"duplicate", t.duplicate}};
-}
-
-Json to_json(const Distance& d, double diagonal) {
-  return {{"rms", d.rms / diagonal}, {"mean", d.mean / diagonal}, {"max", d.max / diagonal}};
-}
-
-std::string text_of(const Topology& t) {
-  return grouped(t.components) + " components, " + grouped(t.border_edges) + " border edges, " +
-         grouped(t.nonmanifold_edges) + " non-manifold edges, " + grouped(t.degenerate) +
-         " degenerate, " + grouped(t.zero_area) + " of zero area, " + grouped(t.duplicate) +
-         " duplicate, Euler characteristic " + std::to_string(t.euler);
-}
-
-/// As the file has it only where that is something else.
-void add_topology(Lines& lines, const std::string& label, const Topology& welded,
-                  const Topology& as_it_is) {
-  const std::uint64_t merged = as_it_is.vertices - welded.vertices;
-  if (merged == 0 && text_of(welded) == text_of(as_it_is)) {
-    lines.add(label, text_of(welded));
-    return;
-  }
-  lines.add(label,
-            "welded (" + grouped(merged) + " coincident vertices merged): " + text_of(welded));
-  lines.add("", "as it is: " + text_of(as_it_is));
-}
-
-std::string text_of(const Distance& d, double diagonal) {
-  return "rms " + number(d.rms / diagonal, "%.3g") + "  mean " + number(d.mean / diagonal, "%.3g") +
-         "  max " + number(d.max / diagonal, "%.3g");
-}
 
 Json error_json(const MeasuredError& error, double diagonal) {
   Json json = to_json(error.greater(), diagonal);
@@ -108,17 +36,8 @@ Json input_json(const Manifest& m) {
           {"vertices", m.input_vertices},
           {"triangles", m.input_triangles},
           {"coincident_vertices", m.coincident_vertices},
+          {"channels", names_of(m.channels.channels)},
           {"skipped", m.skipped}};
-}
-
-void add_box(Lines& lines, const Box& box) {
-  if (box.empty()) return;
-  const auto range = [](double lo, double hi) {
-    return "[" + number(lo, "%.9g") + ", " + number(hi, "%.9g") + "]";
-  };
-  lines.add("bounding box", range(box.lo.x, box.hi.x) + " x " + range(box.lo.y, box.hi.y) + " x " +
-                                range(box.lo.z, box.hi.z));
-  lines.add("diagonal", number(box.diagonal(), "%.9g"));
 }
 
 /// It may have been given up, and yet nothing went.
@@ -153,6 +72,14 @@ Json topology_json(const RunSummary& s) {
           {"pieces_gone", gone.components},
           {"area_gone", gone.area},
           {"area_of_all", gone.area_of_all}};
+}
+
+Json channels_json(const RunSummary& s) {
+  Json json = Json::array();
+  for (const ChannelError& channel : s.channels) {
+    json.push_back({{"name", channel.name}, {"rms", channel.rms}});
+  }
+  return json;
 }
 
 std::string text_of_topology(const RunSummary& s) {
@@ -215,6 +142,27 @@ void add_error(Lines& lines, const MeasuredError& error, double most, double dia
   }
 }
 
+void add_channels(Lines& lines, const RunSummary& s) {
+  std::string kept;
+  for (const ChannelError& channel : s.channels) {
+    kept += (kept.empty() ? "" : ", ") + channel.name + " " + number(channel.rms, "%.3g");
+  }
+  if (!kept.empty()) lines.add("channels", kept + "  RMS from the input's vertices");
+  std::vector<std::string> lost = names_of(s.manifest.channels.channels);
+  std::erase_if(lost, [&](const std::string& name) {
+    return std::any_of(s.channels.begin(), s.channels.end(),
+                       [&](const ChannelError& channel) { return channel.name == name; });
+  });
+  const std::vector<std::string>& not_wanted = s.channels_not_wanted;
+  std::erase_if(lost, [&](const std::string& name) {
+    return std::find(not_wanted.begin(), not_wanted.end(), name) != not_wanted.end();
+  });
+  if (!not_wanted.empty()) lines.add("not kept", joined(not_wanted) + ": not asked for");
+  if (!lost.empty()) {
+    lines.add("not kept", joined(lost) + ": the output's format has no place for them");
+  }
+}
+
 }  // namespace
 
 std::string render(const Manifest& m, const std::string& stage, Format format) {
@@ -231,7 +179,7 @@ std::string render(const Manifest& m, const std::string& stage, Format format) {
                          {"duplicate", m.dropped_duplicate},
                          {"not_finite", m.dropped_not_finite}}},
                        {"seconds", m.cut_seconds}};
-    return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+    return dumped(json);
   }
   Lines lines;
   add_input(lines, m);
@@ -259,6 +207,7 @@ std::string render(const RunSummary& s, Format format) {
         {"turned", s.turned},
         {"error",
          s.error.input_samples == 0 ? Json(nullptr) : error_json(s.error, m.box.diagonal())},
+        {"channels", channels_json(s)},
         {"warning", warning.empty() ? Json(nullptr) : Json(warning)},
         {"better", better_json(s)},
         {"dropped",
@@ -277,7 +226,7 @@ std::string render(const RunSummary& s, Format format) {
           {"finish", s.finish_seconds},
           {"measure", s.measure_seconds},
           {"write", s.write_seconds}}}};
-    return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+    return dumped(json);
   }
   Lines lines;
   add_input(lines, m);
@@ -298,6 +247,7 @@ std::string render(const RunSummary& s, Format format) {
     lines.add("", grouped(s.target) + " were asked for: " + s.why_not_exact);
   }
   if (s.error.input_samples > 0) add_error(lines, s.error, s.max_error, m.box.diagonal());
+  add_channels(lines, s);
   if (!warning.empty()) lines.add("warning", warning);
   lines.add(parts_name(m), grouped(m.parts.size()) + ", stitched to " + grouped(s.stitched) +
                                " triangles before the finish");
@@ -344,105 +294,6 @@ RunTimes parse_run_times(std::string_view text, std::string_view what) {
   } catch (const std::exception& error) {
     throw DataError(std::string(what) + ": no summary of a run: " + error.what());
   }
-}
-
-std::string render(const FileSummary& s, Format format) {
-  if (format == Format::json) {
-    Json json = {{"path", s.path},
-                 {"format", s.file.format},
-                 {"compression", s.file.compression},
-                 {"vertices", s.file.vertices},
-                 {"triangles", s.triangles},
-                 {"short_faces", s.short_faces},
-                 {"not_finite", s.not_finite},
-                 {"positions", s.file.positions == PositionType::float64 ? "float64" : "float32"},
-                 {"attributes", s.file.skipped},
-                 {"box", to_json(s.box)},
-                 {"diagonal", s.box.diagonal()}};
-    if (s.welded) json["topology"] = to_json(*s.welded);
-    if (s.as_it_is) json["topology_not_welded"] = to_json(*s.as_it_is);
-    return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
-  }
-  Lines lines;
-  lines.add("file", s.path);
-  lines.add("format",
-            s.file.format +
-                (s.file.compression == "none" ? "" : ", compressed by " + s.file.compression));
-  lines.add("triangles", grouped(s.triangles));
-  if (s.short_faces > 0) lines.add("left out", grouped(s.short_faces) + " faces of 0 to 2 corners");
-  lines.add("vertices", grouped(s.file.vertices) +
-                            (s.file.positions == PositionType::float64 ? ", double" : ", float"));
-  if (s.not_finite > 0) {
-    lines.add("", grouped(s.not_finite) + " of them with a coordinate that is not finite");
-  }
-  if (!s.file.skipped.empty()) lines.add("attributes", joined(s.file.skipped));
-  add_box(lines, s.box);
-  if (s.welded && s.as_it_is) add_topology(lines, "topology", *s.welded, *s.as_it_is);
-  return lines.text();
-}
-
-std::string render(const HostSummary& host, Format format) {
-  if (format == Format::json) {
-    const Json json = {
-        {"triangles_per_second", host.speed}, {"free_memory", host.memory}, {"cores", host.cores}};
-    return json.dump(2) + "\n";
-  }
-  Lines lines;
-  lines.add("speed", grouped(host.speed) + " triangles/s, one thread");
-  lines.add("free memory", grouped(host.memory >> 20) + " MiB");
-  lines.add("cores", std::to_string(host.cores));
-  return lines.text();
-}
-
-std::string render(const StreamSummary& s, Format format) {
-  if (format == Format::json) {
-    const Json json = {
-        {"path", s.path},
-        {"format", "meshfarm stream"},
-        {"vertices", s.stream.vertices},
-        {"boundary_vertices", s.stream.boundary_vertices},
-        {"triangles", s.stream.triangles},
-        {"positions", s.stream.positions == PositionType::float64 ? "float64" : "float32"},
-        {"box", to_json(s.box)},
-        {"blocks", s.blocks},
-        {"widest_front", s.widest_front}};
-    return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
-  }
-  Lines lines;
-  lines.add("file", s.path);
-  lines.add("format", "meshfarm stream, " + grouped(s.blocks) + " blocks");
-  lines.add("triangles", grouped(s.stream.triangles));
-  lines.add("vertices",
-            grouped(s.stream.vertices) +
-                (s.stream.positions == PositionType::float64 ? ", double, " : ", float, ") +
-                grouped(s.stream.boundary_vertices) + " of them boundary vertices");
-  add_box(lines, s.box);
-  lines.add("widest front", grouped(s.widest_front) + " vertices");
-  return lines.text();
-}
-
-std::string render(const Comparison& c, Format format) {
-  if (format == Format::json) {
-    const Json json = {{"a", c.path_a},
-                       {"b", c.path_b},
-                       {"diagonal", c.diagonal},
-                       {"a_to_b", to_json(c.a_to_b, c.diagonal)},
-                       {"b_to_a", to_json(c.b_to_a, c.diagonal)},
-                       {"topology_a", to_json(c.welded_a)},
-                       {"topology_b", to_json(c.welded_b)},
-                       {"topology_not_welded_a", to_json(c.as_it_is_a)},
-                       {"topology_not_welded_b", to_json(c.as_it_is_b)}};
-    return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
-  }
-  Lines lines;
-  lines.add("A", c.path_a + ", " + grouped(c.welded_a.triangles) + " triangles");
-  add_topology(lines, "", c.welded_a, c.as_it_is_a);
-  lines.add("B", c.path_b + ", " + grouped(c.welded_b.triangles) + " triangles");
-  add_topology(lines, "", c.welded_b, c.as_it_is_b);
-  lines.add("A to B", text_of(c.a_to_b, c.diagonal));
-  lines.add("B to A", text_of(c.b_to_a, c.diagonal));
-  lines.add("unit", "A's diagonal, " + number(c.diagonal, "%.9g"));
-  return lines.text();
 }
 
 }  // namespace meshfarm

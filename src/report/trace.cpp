@@ -42,8 +42,9 @@ Json to_json(const TraceHead& l) {
 }
 
 Json to_json(const TraceJoined& l) {
-  return {{"kind", "joined"}, {"t", l.t},         {"worker", l.worker}, {"host", l.host},
-          {"pid", l.pid},     {"speed", l.speed}, {"memory", l.memory}, {"threads", l.threads}};
+  return {{"kind", "joined"},   {"t", l.t},       {"worker", l.worker},
+          {"host", l.host},     {"pid", l.pid},   {"speed", l.speed},
+          {"memory", l.memory}, {"pool", l.pool}, {"threads", l.threads}};
 }
 
 Json to_json(const TraceLeft& l) {
@@ -156,6 +157,7 @@ void read(const Json& json, TraceJoined& l) {
   get(json, "pid", l.pid);
   get(json, "speed", l.speed);
   get(json, "memory", l.memory);
+  get(json, "pool", l.pool);
   get(json, "threads", l.threads);
 }
 

@@ -73,15 +73,31 @@ void AtomicFile::write(std::string_view bytes) {
   }
 }
 
+void AtomicFile::overwrite(std::uint64_t offset, std::string_view bytes) {
+  flush();
+  while (!bytes.empty()) {
+    const ssize_t count =
+        ::pwrite(fd_.get(), bytes.data(), bytes.size(), static_cast<off_t>(offset));
+    if (count < 0 && errno == EINTR) continue;
+    if (count < 0) throw_errno("cannot write", temporary_path_);
+    bytes.remove_prefix(static_cast<std::size_t>(count));
+    offset += static_cast<std::uint64_t>(count);
+  }
+}
+
 void AtomicFile::flush() {
   write_all(fd_.get(), buffer_, temporary_path_);
   flushed_ += buffer_.size();
   buffer_.clear();
 }
 
-void AtomicFile::sync_and_close() {
+void AtomicFile::sync() {
   flush();
   if (::fsync(fd_.get()) != 0) throw_errno("cannot sync", temporary_path_);
+}
+
+void AtomicFile::sync_and_close() {
+  sync();
   // From here on the destructor has nothing to close, so a failure must clean up by itself.
   const int close_error = fd_.close();
   if (close_error == 0) return;

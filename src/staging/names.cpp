@@ -18,6 +18,7 @@ struct Printer {
   std::string operator()(ManifestName) const { return "manifest"; }
   std::string operator()(BoundaryName) const { return "boundary"; }
   std::string operator()(CutName) const { return "cut"; }
+  std::string operator()(ChannelsName) const { return "channels"; }
   std::string operator()(PartName n) const { return "parts/" + six_digits(n.part) + ".part"; }
   std::string operator()(StreamName n) const {
     return "streams/" + six_digits(n.stream) + ".stream";
@@ -65,6 +66,7 @@ std::optional<StagedName> scan(std::string_view text) {
   if (text == "manifest") return ManifestName{};
   if (text == "boundary") return BoundaryName{};
   if (text == "cut") return CutName{};
+  if (text == "channels") return ChannelsName{};
   if (in.word("parts/")) {
     PartName name;
     if (in.number(name.part, 10)) return name;

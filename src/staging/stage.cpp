@@ -2,8 +2,6 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
 #include <cerrno>
-#include <chrono>
-#include <thread>
 
 #include <fcntl.h>
 #include <linux/openat2.h>
@@ -40,11 +38,6 @@ void refresh(const std::filesystem::path& folder) {
   for (auto entry = std::filesystem::directory_iterator(folder, ignored);
        !ignored && entry != std::filesystem::directory_iterator(); entry.increment(ignored)) {
   }
-}
-
-bool may_pass(int error_number) {
-  return error_number == ENOENT || error_number == ESTALE || error_number == EIO ||
-         error_number == ETIMEDOUT;
 }
 
 Fd open_once(const std::filesystem::path& root, const FileRef& file) {
@@ -104,23 +97,16 @@ auto patiently(const Stage& stage, const FileRef& file, const ReadPatience& pati
                const Try& try_once) {
   const auto name = parse_staged_name(file.name);
   if (!name) throw DataError("'" + file.name + "' is not a staged name");
-  constexpr int k_longest_wait_ms = 5000;
-  const auto begin = std::chrono::steady_clock::now();
-  int wait_ms = patience.first_wait_ms;
-  int wrong = 0;  // attempts at a file that was there
-  for (;; wait_ms = std::min(2 * wait_ms, k_longest_wait_ms)) {
+  Waiting waiting(patience);
+  for (int wrong = 0;;) {  // attempts at a file that was there
     try {
       return try_once();
     } catch (const IoError& error) {
-      const bool over = std::chrono::steady_clock::now() - begin >= patience.missing;
-      if (!may_pass(error.error_number()) || over || patience.attempts <= 1) {
-        throw UnreadIoError(error);
-      }
+      if (!waiting.again(error)) throw UnreadIoError(error);
     } catch (const DataError& error) {
       if (++wrong >= patience.attempts) throw UnreadDataError(error.what());
+      waiting.pause();
     }
-    std::this_thread::sleep_for(std::chrono::milliseconds(wait_ms));
-    tell_moved(patience, 0);
     refresh(stage.path(*name).parent_path());
   }
 }
@@ -137,6 +123,16 @@ auto numbers_in(const std::filesystem::path& root, std::string_view folder, Numb
   if (error) throw IoError("cannot list", root / folder, error.value());
   std::sort(found.begin(), found.end());
   return found;
+}
+
+/// What stands there. Not to know is not the same as that nothing does.
+std::filesystem::file_type type_of(const std::filesystem::path& path) {
+  std::error_code error;
+  const auto type = std::filesystem::status(path, error).type();
+  if (type == std::filesystem::file_type::none) {
+    throw IoError("cannot look at", path, error.value());
+  }
+  return type;
 }
 
 bool has_log(const std::filesystem::path& root) {
@@ -156,17 +152,18 @@ Stage Stage::create(const std::filesystem::path& root) {
   return Stage(root);
 }
 
-Stage Stage::open(const std::filesystem::path& root) {
+Stage Stage::open(const std::filesystem::path& root, const ReadPatience& patience) {
   Stage stage(root);
-  std::error_code error;
-  if (!std::filesystem::is_directory(root, error)) {
-    throw DataError(root.string() + ": no such folder; make a stage with 'meshfarm cut'");
-  }
-  if (!stage.has_manifest()) {
-    throw DataError(root.string() +
-                    ": holds no manifest, so it is no stage or its cut did not end; "
-                    "make it with 'meshfarm cut'");
-  }
+  outlast(patience, [&] {
+    if (type_of(root) != std::filesystem::file_type::directory) {
+      throw DataError(root.string() + ": no such folder; make a stage with 'meshfarm cut'");
+    }
+    if (type_of(stage.path(ManifestName{})) == std::filesystem::file_type::not_found) {
+      throw DataError(root.string() +
+                      ": holds no manifest, so it is no stage or its cut did not end; "
+                      "make it with 'meshfarm cut'");
+    }
+  });
   return stage;
 }
 
@@ -201,8 +198,9 @@ Fd Stage::open_told(const FileRef& file, const ReadPatience& patience) const {
   return patiently(*this, file, patience, [&] { return open_once(root_, file); });
 }
 
-std::string Stage::read(const StagedName& name) const {
-  return read_file(open_beneath(root_, to_string(name)).get(), path(name));
+std::string Stage::read(const StagedName& name, const ReadPatience& patience) const {
+  return outlast(patience,
+                 [&] { return read_file(open_beneath(root_, to_string(name)).get(), path(name)); });
 }
 
 std::vector<std::uint32_t> Stage::journals() const {

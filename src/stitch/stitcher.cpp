@@ -32,6 +32,13 @@ void Stitcher::add(const ResultMesh& result, std::uint32_t parts) {
   pieces_.push_back({parts, offset, result.boundary_vertices, {}});
   mesh.positions.insert(mesh.positions.end(), result.mesh.positions.begin(),
                         result.mesh.positions.end());
+  if (!result.mesh.appearances.empty()) {
+    mesh.appearances.resize(first);
+    mesh.appearances.insert(mesh.appearances.end(), result.mesh.appearances.begin(),
+                            result.mesh.appearances.end());
+  } else if (!mesh.appearances.empty()) {
+    mesh.appearances.resize(mesh.positions.size());
+  }
   for (const Triangle& t : result.mesh.triangles) {
     mesh.triangles.push_back({t[0] + offset, t[1] + offset, t[2] + offset});
   }

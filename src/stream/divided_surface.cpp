@@ -11,166 +11,24 @@
 #include <meshfarm/util/control_groups.hpp>
 #include <meshfarm/util/parallel.hpp>
 
+#include "stream/shared_vertices.hpp"
 #include "stream/sweep_order.hpp"
+#include "stream/topology_sum.hpp"
 
 namespace meshfarm {
 namespace {
 
-/// A slab as it is measured: what its boundary vertices are, in the order of their numbers.
-struct MeasuredSlab {
-  Mesh mesh;
-  std::vector<std::uint32_t> shared;
-};
-
 /// Of the triangles between slabs so many are shown at a time.
 constexpr std::size_t k_between_at_once = 100'000;
 
-/// A boundary vertex: its slab and its number there.
-using SideEnds = std::array<BoundaryCorner, 2>;
-
 std::uint64_t slabs_wanted(std::uint64_t triangles, std::uint64_t memory_bytes) {
-  // With smaller slabs more would lie between them, which is kept in memory.
+  // With smaller slabs more would lie between them, which is read twice and more.
   constexpr std::uint64_t k_usual = 2'000'000;
   constexpr std::uint64_t k_most = 65'536;
   const std::uint64_t half = std::max<std::uint64_t>(1, memory_bytes / 2);
   const std::uint64_t least = triangles * k_slab_bytes_per_triangle / half + 1;
   return std::min(k_most, std::max(least, triangles / k_usual + 1));
 }
-
-/// Adds up what the slabs tell and what lies between them.
-class TopologySum {
- public:
-  TopologySum(std::vector<BoundaryTriangle> between, std::size_t slabs)
-      : between_(std::move(between)), slabs_(slabs), sides_(slabs) {
-    crossing_.reserve(2 * between_.size());
-    for (const BoundaryTriangle& t : between_) {
-      for (std::size_t k = 0; k < 3; ++k) add_side(t[k], t[(k + 1) % 3]);
-    }
-  }
-
-  /// From several threads, each slab once.
-  void add(std::uint32_t number, const MeasuredSlab& slab) {
-    std::vector<std::array<std::uint32_t, 2>> sides;
-    sides.swap(sides_[number]);
-    for (auto& [a, b] : sides) {
-      a = slab.shared[a];
-      b = slab.shared[b];
-    }
-    PieceTopology piece = measure_piece(slab.mesh, sides, slab.shared);
-    Slab& kept = slabs_[number];
-    kept.roots = std::move(piece.roots);
-    for (const std::uint32_t v : slab.shared) kept.positions.push_back(slab.mesh.positions[v]);
-    const std::lock_guard lock(mutex_);
-    add(piece.topology);
-  }
-
-  Topology finish() {
-    count_crossing_sides();
-    join_components();
-    count_triangles_between();
-    sum_.euler = static_cast<std::int64_t>(sum_.used_vertices - sum_.edges + sum_.triangles -
-                                           sum_.degenerate);
-    return sum_;
-  }
-
- private:
-  /// Of the shared vertices, by their numbers.
-  struct Slab {
-    std::vector<std::uint32_t> roots;
-    std::vector<Vec3> positions;
-  };
-
-  void add_side(BoundaryCorner a, BoundaryCorner b) {
-    if (a.part == b.part) {
-      sides_[a.part].push_back({a.local, b.local});
-    } else {
-      crossing_.push_back({a, b});
-    }
-  }
-
-  void add(const Topology& t) {
-    sum_.used_vertices += t.used_vertices;
-    sum_.triangles += t.triangles;
-    sum_.degenerate += t.degenerate;
-    sum_.zero_area += t.zero_area;
-    sum_.duplicate += t.duplicate;
-    sum_.edges += t.edges;
-    sum_.border_edges += t.border_edges;
-    sum_.nonmanifold_edges += t.nonmanifold_edges;
-    sum_.orientation_conflicts += t.orientation_conflicts;
-    sum_.components += t.components;
-  }
-
-  void count_crossing_sides() {
-    const auto ordered = [](const SideEnds& side) {
-      return std::pair(std::min(side[0], side[1]), std::max(side[0], side[1]));
-    };
-    std::sort(crossing_.begin(), crossing_.end(), [&](const SideEnds& x, const SideEnds& y) {
-      return ordered(x) != ordered(y) ? ordered(x) < ordered(y) : x < y;
-    });
-    for (std::size_t first = 0, last = 0; first < crossing_.size(); first = last) {
-      std::size_t up = 0;
-      for (; last < crossing_.size() && ordered(crossing_[last]) == ordered(crossing_[first]);
-           ++last) {
-        up += crossing_[last][0] < crossing_[last][1] ? 1 : 0;
-      }
-      const std::size_t down = last - first - up;
-      ++sum_.edges;
-      sum_.border_edges += up + down == 1;
-      sum_.nonmanifold_edges += up + down > 2;
-      sum_.orientation_conflicts += (up > 1 ? up - 1 : 0) + (down > 1 ? down - 1 : 0);
-    }
-    crossing_ = {};
-  }
-
-  /// Components that triangles between slabs join.
-  void join_components() {
-    std::vector<BoundaryCorner> nodes;  // slab and root
-    for (std::uint32_t s = 0; s < slabs_.size(); ++s) {
-      std::vector<std::uint32_t> roots = slabs_[s].roots;
-      std::sort(roots.begin(), roots.end());
-      roots.erase(std::unique(roots.begin(), roots.end()), roots.end());
-      for (const std::uint32_t root : roots) nodes.push_back({s, root});
-    }
-    const auto node = [&](BoundaryCorner c) {
-      return BoundaryCorner{c.part, slabs_[c.part].roots[c.local]};
-    };
-    std::vector<std::size_t> parent(nodes.size());
-    std::iota(parent.begin(), parent.end(), std::size_t{0});
-    const auto find = [&](BoundaryCorner c) {
-      const auto at = std::lower_bound(nodes.begin(), nodes.end(), node(c));
-      auto i = static_cast<std::size_t>(at - nodes.begin());
-      while (parent[i] != i) i = parent[i] = parent[parent[i]];
-      return i;
-    };
-    for (const BoundaryTriangle& t : between_) {
-      for (std::size_t k = 1; k < 3; ++k) {
-        const std::size_t a = find(t[0]);
-        const std::size_t b = find(t[k]);
-        if (a == b) continue;
-        parent[std::max(a, b)] = std::min(a, b);
-        --sum_.components;
-      }
-    }
-  }
-
-  void count_triangles_between() {
-    sum_.triangles += between_.size();
-    const auto position = [&](BoundaryCorner c) { return slabs_[c.part].positions[c.local]; };
-    for (const BoundaryTriangle& t : between_) {
-      const Vec3 a = position(t[0]);
-      sum_.zero_area += cross(position(t[1]) - a, position(t[2]) - a) == Vec3{} ? 1 : 0;
-    }
-    sum_.duplicate += drop_duplicates(between_);
-  }
-
-  std::vector<BoundaryTriangle> between_;
-  std::vector<Slab> slabs_;
-  std::vector<std::vector<std::array<std::uint32_t, 2>>> sides_;  // within a slab
-  std::vector<SideEnds> crossing_;                                // from one to another
-  Topology sum_;
-  std::mutex mutex_;
-};
 
 /// The numbers of boundary vertices where none is welded.
 BoundaryNumbers number_as_they_are(const MeshShare& raw) {
@@ -209,26 +67,32 @@ class DividedSurface::Impl {
 
   void show(
       const std::function<void(std::span<const Vec3>, std::span<const Triangle>)>& take) const {
-    std::vector<BoundaryNumbers> numbers(slabs_);
-    std::vector<std::vector<Vec3>> shared(slabs_);
+    SharedVertices shared(options_.folder, slabs_);
     for (std::uint32_t i = 0; i < slabs_; ++i) {
-      const MeshShare raw = shares_->read(i);
-      numbers[i] = number_as_they_are(raw);
-      for (const std::uint32_t v : numbers[i].places) shared[i].push_back(raw.positions[v]);
+      const MeshShare raw = shares_->read(i, Weld::off);
+      std::vector<SharedVertex> vertices;
+      for (const std::uint32_t v : number_as_they_are(raw).places) {
+        vertices.push_back({v, 0, 0, raw.positions[v]});
+      }
+      shared.add(i, vertices);
       take(raw.positions, raw.triangles);
     }
-    std::uint64_t degenerate = 0;
+    shared.finish();
     Mesh between;
     const auto flush = [&] {
       take(between.positions, between.triangles);
       between.positions.clear();
       between.triangles.clear();
     };
-    for (const BoundaryTriangle& t : shares_->boundary(numbers, degenerate)) {
-      if (between.triangles.size() == k_between_at_once) flush();
-      const auto first = static_cast<std::uint32_t>(between.positions.size());
-      for (const BoundaryCorner& c : t) between.positions.push_back(shared[c.part][c.local]);
-      between.triangles.push_back({first, first + 1, first + 2});
+    for (std::uint32_t i = 0; i < slabs_; ++i) {
+      shared.forget_below(i);
+      for (const SeamTriangle& t : shares_->seam(i)) {
+        if (std::min({t[0].share, t[1].share, t[2].share}) != i) continue;
+        if (between.triangles.size() == k_between_at_once) flush();
+        const auto first = static_cast<std::uint32_t>(between.positions.size());
+        for (const SharePlace v : t) between.positions.push_back(shared.at(v).position);
+        between.triangles.push_back({first, first + 1, first + 2});
+      }
     }
     flush();
   }
@@ -267,9 +131,9 @@ class DividedSurface::Impl {
   void distribute() {
     const MeshFileInfo& info = source_.info();
     const std::uint64_t all = MeshShares::memory_for(vertices_, info.faces, info.positions);
-    shares_ = std::make_unique<MeshShares>(
-        MeshShares::Options{options_.folder, slabs_, vertices_, info.positions,
-                            all <= options_.memory_bytes / 4 ? all : 0});
+    shares_ = std::make_unique<MeshShares>(MeshShares::Options{
+        options_.folder, slabs_, vertices_, info.positions,
+        all <= options_.memory_bytes / 4 ? all : 0, MeshShares::SeamsFor::each_share});
     std::vector<std::uint32_t> slabs;
     source_.scan_vertices([&](std::span<const Vec3> batch) {
       slabs.clear();
@@ -295,22 +159,18 @@ class DividedSurface::Impl {
     return static_cast<unsigned>(std::clamp<std::uint64_t>(fit, 1, most));
   }
 
-  /// Boundary vertices are numbered first, as a slab's edges are counted with those of triangles
-  /// that lie in it in part.
   Topology sum_of(Weld weld, std::uint64_t& merged) const {
-    std::vector<BoundaryNumbers> numbers(slabs_);
-    parallel_for(slabs_, threads(), [&](std::uint64_t i) {
-      const MeshShare raw = shares_->read(static_cast<std::uint32_t>(i));
-      numbers[i] = weld == Weld::off ? number_as_they_are(raw) : number_boundary(raw, sorting_);
-    });
+    TopologySum sum(*shares_, options_.folder, slabs_);
     std::uint64_t degenerate = 0;
-    TopologySum sum(shares_->boundary(numbers, degenerate), slabs_);
     std::mutex mutex;
     parallel_for(slabs_, threads(), [&](std::uint64_t i) {
-      MeshShare raw = shares_->read(static_cast<std::uint32_t>(i));
+      const auto number = static_cast<std::uint32_t>(i);
+      MeshShare raw = shares_->read(number, weld);
+      const BoundaryNumbers numbers =
+          weld == Weld::off ? number_as_they_are(raw) : number_boundary(raw, sorting_);
       if (weld == Weld::off) {
-        sum.add(static_cast<std::uint32_t>(i),
-                {{std::move(raw.positions), std::move(raw.triangles)}, numbers[i].places});
+        sum.add(number, {{std::move(raw.positions), std::move(raw.triangles)}, numbers.places},
+                numbers);
         return;
       }
       SortedSlab slab = sort_slab(std::move(raw), sorting_);
@@ -319,9 +179,9 @@ class DividedSurface::Impl {
       for (std::uint32_t v = 0; v < stream.boundary.size(); ++v) {
         if (stream.boundary[v] != 0) measured.shared.push_back(v);
       }
-      sum.add(static_cast<std::uint32_t>(i), measured);
+      sum.add(number, measured, numbers);
       const std::lock_guard lock(mutex);
-      merged += slab.coincident_vertices;
+      merged += slab.merged_vertices;
       degenerate += slab.dropped_degenerate;
     });
     Topology topology = sum.finish();

@@ -48,6 +48,7 @@ class Generator {
     distribute_triangles();
     write_slabs();
     write_boundary();
+    write_channels();
     manifest_.cut_seconds =
         std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     stage_.publish(ManifestName{}, encode_manifest(manifest_));
@@ -100,7 +101,8 @@ class Generator {
     const std::uint64_t wanted =
         options_.streams != 0 ? options_.streams : default_streams(triangles);
     const std::uint64_t half = std::max<std::uint64_t>(1, options_.memory_bytes / 2);
-    const std::uint64_t least = triangles * k_slab_bytes_per_triangle / half + 1;
+    const std::uint64_t least =
+        triangles * slab_bytes_per_triangle(has_appearances(source_)) / half + 1;
     return static_cast<std::uint32_t>(
         std::min<std::uint64_t>(k_most_streams, std::max(wanted, least)));
   }
@@ -120,19 +122,19 @@ class Generator {
   }
 
   void distribute_vertices() {
-    const std::uint64_t all =
-        MeshShares::memory_for(manifest_.input_vertices, source_.info().faces, manifest_.positions);
-    shares_ = std::make_unique<MeshShares>(
-        MeshShares::Options{scratch_folder(options_.scratch, stage_.root(), all), streams_,
-                            manifest_.input_vertices, manifest_.positions});
+    const std::uint64_t all = MeshShares::memory_for(manifest_.input_vertices, source_.info().faces,
+                                                     manifest_.positions, has_appearances(source_));
+    shares_ = std::make_unique<MeshShares>(MeshShares::Options{
+        scratch_folder(options_.scratch, stage_.root(), all), streams_, manifest_.input_vertices,
+        manifest_.positions, 0, MeshShares::SeamsFor::all, has_appearances(source_)});
     static_assert(MeshShares::k_no_point == SlabMap::k_no_point);
     std::vector<std::uint32_t> slabs;
     std::vector<std::uint32_t> points;
     std::uint64_t done = 0;
-    source_.scan_vertices([&](std::span<const Vec3> batch) {
+    scan_appearances(source_, [&](const VertexView& batch) {
       slabs.clear();
       points.clear();
-      for (const Vec3& p : batch) {
+      for (const Vec3& p : batch.positions) {
         const SlabMap::Target target =
             has_position(p) ? slabs_->target_of(p) : SlabMap::Target{MeshShares::k_no_share};
         slabs.push_back(target.slab);
@@ -158,8 +160,8 @@ class Generator {
   /// As many at once as fit into the memory, going by the average.
   unsigned threads() const {
     const unsigned cores = processors();
-    const std::uint64_t bytes = k_slab_bytes_per_triangle * manifest_.input_triangles /
-                                std::max<std::uint64_t>(1, streams_);
+    const std::uint64_t bytes = slab_bytes_per_triangle(has_appearances(source_)) *
+                                manifest_.input_triangles / std::max<std::uint64_t>(1, streams_);
     const std::uint64_t fit = options_.memory_bytes / std::max<std::uint64_t>(1, bytes);
     return static_cast<unsigned>(
         std::clamp<std::uint64_t>(fit, 1, options_.threads != 0 ? options_.threads : cores));
@@ -173,7 +175,7 @@ class Generator {
     std::mutex mutex;
     std::uint64_t done = 0;
     parallel_for(streams_, threads(), [&](std::uint64_t i) {
-      MeshShare slab = shares_->read(static_cast<std::uint32_t>(i));
+      MeshShare slab = shares_->read(static_cast<std::uint32_t>(i), sorting_.weld);
       numbers_[i] = number_boundary(slab, sorting_);
       sorts ? sort_one(std::move(slab), static_cast<std::uint32_t>(i), mutex)
             : stage_unsorted(std::move(slab), static_cast<std::uint32_t>(i));
@@ -228,10 +230,10 @@ class Generator {
   }
 
   void write_boundary() {
-    std::uint64_t degenerate = 0;
-    std::vector<BoundaryTriangle> triangles = shares_->boundary(numbers_, degenerate);
-    manifest_.dropped_degenerate += degenerate;
-    manifest_.coincident_corners += degenerate;
+    SharedTriangles shared = shares_->boundary(numbers_);
+    std::vector<BoundaryTriangle>& triangles = shared.triangles;
+    manifest_.dropped_degenerate += shared.degenerate;
+    manifest_.coincident_corners += shared.coincident;
     // As the streams, these are not to tell of the order of the input.
     for (BoundaryTriangle& t : triangles) {
       std::rotate(t.begin(), std::min_element(t.begin(), t.end()), t.end());
@@ -240,6 +242,12 @@ class Generator {
     manifest_.dropped_duplicate = drop_duplicates(triangles);
     manifest_.boundary_triangles = triangles.size();
     manifest_.boundary = stage_.publish(BoundaryName{}, encode_boundary(triangles));
+  }
+
+  void write_channels() {
+    manifest_.channels = stage_channels(source_, stage_, [&](std::uint64_t done) {
+      tell("streams: colours and other channels", done, manifest_.input_vertices);
+    });
   }
 
   MeshSource& source_;

@@ -16,6 +16,14 @@ namespace {
 
 constexpr std::uint32_t k_none = std::numeric_limits<std::uint32_t>::max();
 
+/// None for a vertex that is merged with all that lie at its point.
+std::uint32_t sheet_of(std::uint32_t place, const std::vector<ApartVertex>& apart) {
+  const auto at =
+      std::lower_bound(apart.begin(), apart.end(), place,
+                       [](const ApartVertex& v, std::uint32_t wanted) { return v.place < wanted; });
+  return at != apart.end() && at->place == place ? at->sheet : k_none;
+}
+
 /// Sorts a slab by the steps of run().
 class SlabSorter {
  public:
@@ -46,11 +54,20 @@ class SlabSorter {
       const std::uint32_t raw = sorted.empty() ? static_cast<std::uint32_t>(i) : sorted[i];
       if (!first.empty() && first[raw] != raw) {
         rank_[raw] = rank_[first[raw]];
+        if (!raw_.appearances.empty()) {
+          Appearance& of_one = slab_.stream.mesh.appearances[rank_[raw]];
+          of_one = std::min(of_one, raw_.appearances[raw]);
+        }
         continue;
       }
       rank_[raw] = static_cast<std::uint32_t>(positions.size());
       positions.push_back(raw_.positions[raw]);
+      if (!raw_.appearances.empty()) {
+        slab_.stream.mesh.appearances.push_back(raw_.appearances[raw]);
+      }
     }
+    raw_.appearances = {};
+    slab_.merged_vertices = count - positions.size();
     raw_.positions = {};
   }
 
@@ -73,6 +90,7 @@ class SlabSorter {
     if (welded.merged > 0) count_coincident(welded.first);
     slab_.coincident_vertices = welded.merged;
     separate_touching(raw_.triangles, raw_.boundary, welded);
+    keep_apart(raw_.apart, welded.first);
     return std::move(welded.first);
   }
 
@@ -92,7 +110,7 @@ class SlabSorter {
   };
 
   /// Vertices at one place that were not welded, as surfaces touch there, are put in an order that
-  /// tells nothing of the input's: by their least triangles, which differ.
+  /// tells nothing of the input's: by their sheets, or by their least triangles, which differ.
   void order_touching(std::vector<std::uint32_t>& sorted, std::span<const std::uint32_t> first) {
     const std::vector<Vec3>& positions = raw_.positions;
     const auto at = [&](std::size_t i) {
@@ -116,6 +134,8 @@ class SlabSorter {
       std::stable_sort(sorted.begin() + static_cast<std::ptrdiff_t>(begin),
                        sorted.begin() + static_cast<std::ptrdiff_t>(end),
                        [&](std::uint32_t a, std::uint32_t b) {
+                         const std::uint32_t sheet = sheet_of(a, raw_.apart);
+                         if (sheet != k_none) return sheet < sheet_of(b, raw_.apart);
                          return is_less(stars[star_[first[a]]], stars[star_[first[b]]]);
                        });
     }
@@ -187,10 +207,14 @@ class SlabSorter {
       const bool is_boundary = (flags_[v] & k_boundary) != 0;
       if (is_boundary) ++slab_.boundary_vertices;
       stream.mesh.positions[kept] = stream.mesh.positions[v];
+      if (!stream.mesh.appearances.empty()) {
+        stream.mesh.appearances[kept] = stream.mesh.appearances[v];
+      }
       stream.boundary.push_back(is_boundary ? 1 : 0);
       number[v] = kept++;
     }
     stream.mesh.positions.resize(kept);
+    if (!stream.mesh.appearances.empty()) stream.mesh.appearances.resize(kept);
     for (Triangle& t : raw_.triangles) t = {number[t[0]], number[t[1]], number[t[2]]};
   }
 
@@ -257,17 +281,28 @@ BoundaryNumbers number_boundary(const MeshShare& raw, const Sorting& sorting) {
   std::vector<Vec3> positions;
   positions.reserve(made.places.size());
   for (const std::uint32_t place : made.places) positions.push_back(raw.positions[place]);
-  const std::vector<std::uint32_t> sorted = sorted_vertices(positions, sorting.order, raw.type);
-  const auto at = [&](std::size_t i) {
-    return sorted.empty() ? static_cast<std::uint32_t>(i) : sorted[i];
-  };
+  std::vector<std::uint32_t> sorted = sorted_vertices(positions, sorting.order, raw.type);
+  if (sorted.empty()) {
+    sorted.resize(positions.size());
+    std::iota(sorted.begin(), sorted.end(), 0U);
+  }
+  const bool welds = sorting.weld == Weld::exact;
   made.numbers.resize(made.places.size());
+  if (!raw.apart.empty()) made.points.resize(made.places.size());
   std::uint32_t count = 0;
-  for (std::size_t i = 0; i < positions.size(); ++i) {
-    const bool welded =
-        i > 0 && sorting.weld == Weld::exact && positions[at(i - 1)] == positions[at(i)];
-    if (!welded) ++count;
-    made.numbers[at(i)] = count - 1;
+  for (std::size_t begin = 0, end = 0; begin < sorted.size(); begin = end) {
+    while (end < sorted.size() && positions[sorted[begin]] == positions[sorted[end]]) ++end;
+    const auto sheet = [&](std::uint32_t i) { return sheet_of(made.places[i], raw.apart); };
+    const std::span<std::uint32_t> point = std::span(sorted).subspan(begin, end - begin);
+    if (point.size() > 1 && !raw.apart.empty()) {
+      std::stable_sort(point.begin(), point.end(),
+                       [&](std::uint32_t a, std::uint32_t b) { return sheet(a) < sheet(b); });
+    }
+    for (std::size_t i = 0; i < point.size(); ++i) {
+      if (i == 0 || !welds || sheet(point[i - 1]) != sheet(point[i])) ++count;
+      made.numbers[point[i]] = count - 1;
+      if (!raw.apart.empty()) made.points[point[i]] = point[0];
+    }
   }
   return made;
 }
@@ -307,6 +342,7 @@ Part sample_slab(const StreamMesh& stream, const SweepOrder& order, std::uint32_
       if ((seen[v] & k_in) == 0 || is_edge(v) != edge) continue;
       index[v] = static_cast<std::uint32_t>(part.mesh.positions.size());
       part.mesh.positions.push_back(mesh.positions[v]);
+      if (!mesh.appearances.empty()) part.mesh.appearances.push_back(mesh.appearances[v]);
     }
     if (edge) part.boundary_vertices = static_cast<std::uint32_t>(part.mesh.positions.size());
   }

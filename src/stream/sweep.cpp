@@ -42,6 +42,7 @@ class Sweep {
   SweptStream run() {
     StreamBlock block;
     while (reader_.next(block)) {
+      if (!(options_.lines.appearance_scale.length > 0)) block.appearances.clear();
       append(block);
       if (buffer_.triangles.size() >= options_.window_triangles && fresh_ >= least_fresh()) {
         simplify_window();
@@ -70,10 +71,10 @@ class Sweep {
       const bool is_boundary =
           next_boundary < block.boundary.size() && block.boundary[next_boundary].vertex() == i;
       local_.push_back(static_cast<std::uint32_t>(buffer_.positions.size()));
-      buffer_.positions.push_back(block.positions[i]);
+      append_vertex(VertexView(block.positions, block.appearances), i, buffer_);
       if (is_boundary) {
-        add_role(Role::boundary, static_cast<std::uint32_t>(result_.boundary.size()));
-        result_.boundary.push_back(block.positions[i]);
+        add_role(Role::boundary, static_cast<std::uint32_t>(result_.boundary.positions.size()));
+        append_vertex(VertexView(block.positions, block.appearances), i, result_.boundary);
         if (block.boundary[next_boundary++].last_use()) local_.back() = k_none;
       } else {
         add_role(Role::open, 0);
@@ -167,13 +168,14 @@ class Sweep {
     std::vector<std::uint32_t> ids;
     for (const std::uint32_t v : order) {
       number[v] = static_cast<std::uint32_t>(ordered.positions.size());
-      ordered.positions.push_back(buffer_.positions[v]);
+      append_vertex(VertexView(buffer_), v, ordered);
       roles.push_back(roles_[v]);
       ids.push_back(ids_[v]);
     }
     for (Triangle& t : buffer_.triangles) t = {number[t[0]], number[t[1]], number[t[2]]};
     for (std::uint32_t& v : local_) v = v == k_none ? k_none : number[v];
     buffer_.positions = std::move(ordered.positions);
+    buffer_.appearances = std::move(ordered.appearances);
     roles_ = std::move(roles);
     ids_ = std::move(ids);
   }
@@ -210,10 +212,9 @@ class Sweep {
       const bool is_free = std::none_of(
           t.begin(), t.end(), [&](std::uint32_t v) { return roles_[v] == Role::boundary; });
       result_.free_triangles += is_free ? 1 : 0;
-      piece.triangles.push_back(
-          {sent(t[0], piece.positions), sent(t[1], piece.positions), sent(t[2], piece.positions)});
+      piece.triangles.push_back({sent(t[0], piece), sent(t[1], piece), sent(t[2], piece)});
     }
-    output_(piece.positions, piece.triangles);
+    output_(VertexView(piece), piece.triangles);
     buffer_.triangles.resize(kept);
     drop_unused();
   }
@@ -235,11 +236,11 @@ class Sweep {
   }
 
   /// The vertex's number in the result, in which it is from now on.
-  std::uint32_t sent(std::uint32_t vertex, std::vector<Vec3>& fresh) {
+  std::uint32_t sent(std::uint32_t vertex, Mesh& fresh) {
     if (roles_[vertex] == Role::free) {
       roles_[vertex] = Role::sent;
       ids_[vertex] = next_sent_++;
-      fresh.push_back(buffer_.positions[vertex]);
+      append_vertex(VertexView(buffer_), vertex, fresh);
     }
     return ids_[vertex];
   }

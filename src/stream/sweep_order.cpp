@@ -116,6 +116,7 @@ void SlabMap::divide_bin(std::uint32_t bin, int rank) {
 
 void SlabMap::add_point(std::uint32_t bin) {
   if (at_one_point_ == AtOnePoint::stay) return;
+  if (at_one_point_ == AtOnePoint::merge && bins_[bin].count < k_crowd) return;
   targets_[bin] = k_point | static_cast<std::uint32_t>(points_.size());
   points_.emplace_back();
   if (at_one_point_ == AtOnePoint::deal) return;

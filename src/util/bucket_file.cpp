@@ -73,16 +73,27 @@ std::uint64_t BucketFile::size(std::size_t bucket) const {
   return sum;
 }
 
-void BucketFile::read_into(std::size_t bucket, char* to) const {
+void BucketFile::read_into(std::size_t bucket, std::uint64_t from, std::uint64_t size,
+                           char* to) const {
   const std::string_view memory = memory_.bytes();
   for (const Extent& extent : buckets_[bucket].extents) {
-    if (extent.offset < memory.size()) {
-      std::memcpy(to, memory.data() + extent.offset, extent.size);
-    } else {
-      read_file_into(extent.offset - memory.size(), extent.size, to);
+    if (size == 0) return;
+    if (from >= extent.size) {
+      from -= extent.size;
+      continue;
     }
-    to += extent.size;
+    const std::uint64_t some = std::min(size, extent.size - from);
+    const std::uint64_t offset = extent.offset + from;
+    if (extent.offset < memory.size()) {
+      std::memcpy(to, memory.data() + offset, some);
+    } else {
+      read_file_into(offset - memory.size(), some, to);
+    }
+    to += some;
+    size -= some;
+    from = 0;
   }
+  if (size > 0) throw Error("a scratch file has no such value");
 }
 
 void BucketFile::read_file_into(std::uint64_t offset, std::uint64_t size, char* to) const {

@@ -128,7 +128,12 @@ std::uint64_t memory_limit(const Group& group) {
       named_number(group.folder / "memory.stat", "hierarchical_memory_limit").value_or(k_no_limit));
 }
 
-std::optional<std::uint64_t> memory_room(const Group& group) {
+struct LimitedRoom {
+  std::uint64_t limit = 0;
+  std::uint64_t room = 0;
+};
+
+std::optional<LimitedRoom> memory_room(const Group& group) {
   const std::uint64_t limit = memory_limit(group);
   if (limit >= k_no_limit) return std::nullopt;
   const bool two = group.version == Version::two;
@@ -138,7 +143,7 @@ std::optional<std::uint64_t> memory_room(const Group& group) {
   auto cache = named_number(stat, two ? "inactive_file" : "total_inactive_file");
   if (!cache && !two) cache = named_number(stat, "inactive_file");
   const std::uint64_t used = *usage - std::min(*usage, cache.value_or(0));
-  return limit - std::min(limit, used);
+  return LimitedRoom{limit, limit - std::min(limit, used)};
 }
 
 std::optional<double> core_limit(const Group& group) {
@@ -168,9 +173,17 @@ std::uint64_t name_of(const Group& group) {
 
 std::optional<GroupMemory> group_memory(const GroupView& view) {
   std::optional<GroupMemory> least;
+  std::uint64_t limit = 0;
   for_each_group(view, "memory", [&](const Group& group) {
-    const auto room = memory_room(group);
-    if (room && (!least || *room < least->room)) least = GroupMemory{*room, name_of(group)};
+    const auto of = memory_room(group);
+    if (!of) return;
+    // Slurm gives a job, its steps and its tasks the same limit. The job fills up first, as it
+    // holds all that is in them, but the counts are read one after the other and may say otherwise
+    // for a moment. Yet its workers must name the same group.
+    const bool holds_the_least = least && of->limit <= limit;
+    if (least && !holds_the_least && of->room >= least->room) return;
+    least = GroupMemory{least ? std::min(of->room, least->room) : of->room, name_of(group)};
+    limit = of->limit;
   });
   return least;
 }

@@ -4,6 +4,7 @@
 // The inner loops on generated meshes, one thread unless told otherwise; items are triangles, or
 // vertices where a line says so.
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
@@ -59,10 +60,22 @@ void count_items(benchmark::State& state, std::size_t items) {
   state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(items));
 }
 
-/// Arguments: triangles, percent of them that are kept.
+/// Waves in three colours, a few triangles long.
+Appearance waves(Vec3 p) {
+  const auto wave = [](double x) {
+    return static_cast<std::uint16_t>(257 * static_cast<int>(127.5 + 127 * std::sin(60 * x)));
+  };
+  return {wave(p.x), wave(p.y), wave(p.z), 0};
+}
+
+/// Arguments: triangles, percent of them that are kept, whether they are coloured.
 void simplify(benchmark::State& state) {
-  const Mesh mesh = torus(state.range(0));
+  Mesh mesh = torus(state.range(0));
   SimplifyOptions options;
+  if (state.range(2) != 0) {
+    for (const Vec3& p : mesh.positions) mesh.appearances.push_back(waves(p));
+    options.lines.appearance_scale.length = 0.01;
+  }
   options.positions = PositionType::float32;
   SimplifyGoal goal;
   goal.triangles = mesh.triangles.size() * static_cast<std::uint64_t>(state.range(1)) / 100;
@@ -77,8 +90,8 @@ void simplify(benchmark::State& state) {
   count_items(state, mesh.triangles.size());
 }
 BENCHMARK(simplify)
-    ->ArgNames({"triangles", "percent"})
-    ->ArgsProduct({{50'000, 200'000, 1'000'000}, {10, 1}})
+    ->ArgNames({"triangles", "percent", "coloured"})
+    ->ArgsProduct({{50'000, 200'000, 1'000'000}, {10, 1}, {0, 1}})
     ->Unit(benchmark::kMillisecond);
 
 /// Vertices of which there are no twins, and six of each.

@@ -12,7 +12,7 @@ import sys
 
 WHOLE_RUN = "_file"
 HEAD = ["tool", "CPU s", "wall s", "peak RSS MB", "triangles", "RMS 1e-6", "max 1e-6",
-        "non-manifold edges", "degenerate", "duplicate", "components", "Euler"]
+        "non-manifold edges", "degenerate", "duplicate", "components", "Euler", "colour PSNR dB"]
 
 
 def millionths(value):
@@ -47,6 +47,10 @@ class Row:
         self.rms = max(way["rms"] for way in both_ways)
         self.max = max(way["max"] for way in both_ways)
         self.topology = comparison["topology_b"]
+        # Of colours that do not differ at all there is none.
+        noise = [way["psnr"] for channel in comparison["channels"]
+                 for way in (channel["a_to_b"], channel["b_to_a"]) if way.get("psnr") is not None]
+        self.psnr = min(noise, default=None)
 
     def cells(self):
         if self.failed:
@@ -55,7 +59,8 @@ class Row:
         return [self.title, f"{self.cpu:.2f}", f"{self.wall:.2f}", f"{self.rss:.0f}",
                 f"{t['triangles']:,}", millionths(self.rms), millionths(self.max),
                 f"{t['nonmanifold_edges']:,}", f"{t['degenerate'] + t['zero_area']:,}",
-                f"{t['duplicate']:,}", f"{t['components']:,}", f"{t['euler']:,}"]
+                f"{t['duplicate']:,}", f"{t['components']:,}", f"{t['euler']:,}",
+                "" if self.psnr is None else f"{self.psnr:.2f}"]
 
     def ratios_to(self, other):
         texts = [f"CPU {self.cpu / other.cpu:.2f}", f"wall {self.wall / other.wall:.2f}"]
@@ -67,7 +72,10 @@ class Row:
 
 def print_table(rows):
     table = [HEAD] + [row.cells() for row in rows]
-    widths = [max(len(line[column]) for line in table) for column in range(len(HEAD))]
+    if all(line[-1] == "" for line in table[1:]):  # no colours
+        table = [line[:-1] for line in table]
+    head = table[0]
+    widths = [max(len(line[column]) for line in table) for column in range(len(head))]
     rule = ["-" * widths[0]] + ["-" * (width - 1) + ":" for width in widths[1:]]
     for line in [table[0], rule] + table[1:]:
         padded = [line[0].ljust(widths[0])]
@@ -97,6 +105,8 @@ def main():
     spreads = [max(row.cpu_all) / min(row.cpu_all) - 1 for row in measured if len(row.cpu_all) > 1]
     if spreads:
         print(f"CPU time varied by up to {max(spreads):.0%} between the rounds of a tool.")
+    if any(row.psnr is not None for row in measured):
+        print("Colour PSNR: the lesser of both directions, at points of the surfaces.")
     if any(row.name == "meshoptimizer" for row in measured):
         print_ratios(rows)
     return 1 if len(measured) < len(rows) else 0

@@ -3,6 +3,7 @@
 //
 // The commands as a user types them: what they print, where, and their exit codes.
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include <doctest/doctest.h>
@@ -77,8 +78,9 @@ TEST_CASE("help and version go to stdout, and say what there is") {
   for (const std::vector<std::string>& words : {std::vector<std::string>{"help"}, {"--help"}}) {
     const Ran ran = shell(words);
     CHECK(ran.code == 0);
-    for (const char* command : {"simplify", "cut", "run", "worker", "replay", "ventilator", "sink",
-                                "info", "compare", "generate", "simulate", "status", "report"}) {
+    for (const char* command :
+         {"simplify", "cut", "run", "worker", "replay", "ventilator", "sink", "info", "compare",
+          "convert", "generate", "simulate", "status", "report"}) {
       CHECK(has(ran.out, command));
     }
   }
@@ -212,6 +214,8 @@ TEST_CASE("wrong usage is one line and exit 2") {
       {"simplify", cube, "-o", shell.path("o.ply"), "--error", "1km"},
       {"simplify", cube, "-o", shell.path("o.ply"), "--ratio", "0.5", "--topology", "maybe"},
       {"simplify", cube, "-o", shell.path("o.ply"), "--ratio", "0.5", "--colour"},
+      {"simplify", cube, "-o", shell.path("o.ply"), "--ratio", "0.5", "--uv", "keep"},
+      {"convert", cube, shell.path("o.ply"), "--uv", "keep"},
       {"run", shell.path("s"), "--ratio", "0.5", "--ports", "9-8"},
       {"compare", cube},
   };
@@ -231,7 +235,9 @@ TEST_CASE("what cannot be read or written is one line and exit 1") {
   Shell shell;
   const std::string cube = shell.cube();
   const std::string text = shell.file("text.ply", "no mesh\n");
-  const std::string obj = shell.file("mesh.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+  const std::string obj = shell.file("mesh.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 9\n");
+  const std::string off = shell.file("mesh.off", "OFF\n3 x 0\n");
+  const std::string stl = shell.file("mesh.stl", "solid x\nfacet normal 0 0 1\nouter\n");
   const std::string bad =
       shell.file("word.ply",
                  "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\n"
@@ -242,7 +248,9 @@ TEST_CASE("what cannot be read or written is one line and exit 1") {
       {{"simplify", cube, "-o", shell.path("no/such/folder/o.ply"), "--ratio", "0.5"},
        "no/such/folder"},
       {{"simplify", text, "-o", shell.path("o.ply"), "--ratio", "0.5"}, "text.ply"},
-      {{"simplify", obj, "-o", shell.path("o.ply"), "--ratio", "0.5"}, "mesh.obj"},
+      {{"simplify", obj, "-o", shell.path("o.ply"), "--ratio", "0.5"}, "mesh.obj: line 4: "},
+      {{"simplify", off, "-o", shell.path("o.ply"), "--ratio", "0.5"}, "mesh.off: line 2: "},
+      {{"simplify", stl, "-o", shell.path("o.ply"), "--ratio", "0.5"}, "mesh.stl: line 4: "},
       {{"simplify", bad, "-o", shell.path("o.ply"), "--ratio", "0.5"}, "vertex 0"},
       {{"replay", shell.path("absent"), "--ratio", "0.5"}, "absent"},
       {{"worker", shell.path("absent")}, "absent"},
@@ -269,7 +277,7 @@ TEST_CASE("an output of another format is refused before any work") {
   const std::string cube = shell.cube();
   const std::string stage = shell.path("stage");
   REQUIRE(shell({"cut", cube, "--stage", stage, "--quiet"}).code == 0);
-  const std::string output = shell.path("x.obj");
+  const std::string output = shell.path("x.fbx");
   for (const std::vector<std::string>& words :
        {std::vector<std::string>{"simplify", cube, "-o", output, "--ratio", "0.5"},
         {"replay", stage, "-o", output, "--ratio", "0.5"},
@@ -280,7 +288,7 @@ TEST_CASE("an output of another format is refused before any work") {
     INFO(words[0] << ": " << ran.err);
     CHECK(ran.code == 1);
     CHECK(lines(ran.err) == 1);
-    CHECK(has(ran.err, "cannot write .obj"));
+    CHECK(has(ran.err, "cannot write .fbx"));
     CHECK_FALSE(fs::exists(output));
     CHECK_FALSE(fs::exists(output + ".stage"));
   }
@@ -302,11 +310,15 @@ TEST_CASE("the manual pages are made of the options that help shows") {
 
 TEST_CASE("a cube goes through, and what is not kept is named") {
   Shell shell;
-  const Ran ran = shell(
-      {"simplify", shell.cube(), "-o", shell.path("o.ply"), "--ratio", "1", "--workers", "1"});
+  const std::vector<std::string> words = {
+      "simplify", shell.cube(), "-o", shell.path("o.ply"), "--ratio", "1", "--workers", "1"};
+  const Ran ran = shell(words);
   CHECK(ran.code == 0);
   CHECK(has(ran.out, "12 triangles, 8 vertices"));
-  CHECK(has(ran.out, "vertex.red"));
+  CHECK(has(ran.out, "channels         red 0"));
+  std::vector<std::string> without = words;
+  without.insert(without.end(), {"--attributes", "none"});
+  CHECK(has(shell(without).out, "not kept         vertex.red"));
   const Ran info = shell({"info", shell.path("o.ply"), "--json"});
   CHECK(info.code == 0);
   CHECK(has(info.out, "\"euler\": 2"));
@@ -422,6 +434,78 @@ TEST_CASE("generate, info and compare fit together") {
   const Ran ran = shell({"compare", shell.path("t.ply"), shell.path("s.ply"), "--json"});
   CHECK(ran.code == 0);
   CHECK(has(ran.out, "\"triangles\": 2000,"));
+}
+
+TEST_CASE("one mesh has one result, as whatever format it comes and goes") {
+  Shell shell;
+  const auto path = [&](const char* name) { return shell.path(name); };
+  const auto simplified = [&](const char* from, const char* to) {
+    CAPTURE(from);
+    const Ran ran = shell({"simplify", path(from), "-o", path(to), "--triangles", "2000"});
+    CHECK(ran.code == 0);
+    return read_text(path(to));
+  };
+  REQUIRE(shell({"generate", "-o", path("t.ply"), "--triangles", "20000"}).code == 0);
+  for (const char* name : {"t.obj", "t.off", "t.glb", "t.gltf", "t.stl"}) {
+    CHECK(shell({"convert", path("t.ply"), path(name), "--quiet"}).code == 0);
+  }
+  CHECK(shell({"convert", path("t.stl"), path("soup.ply")}).code == 0);
+  const std::string result = simplified("t.ply", "from-ply.ply");
+  CHECK(simplified("t.obj", "from-obj.ply") == result);
+  CHECK(simplified("t.off", "from-off.ply") == result);
+  CHECK(simplified("t.glb", "from-glb.ply") == result);
+  CHECK(simplified("t.gltf", "from-gltf.ply") == result);
+  // A soup has other vertices, and so other parts.
+  const std::string from_soup = simplified("t.stl", "from-stl.ply");
+  CHECK(from_soup == simplified("soup.ply", "from-soup.ply"));
+  CHECK(has(shell({"info", path("from-stl.ply")}).out, "triangles        2,000\n"));
+  for (const char* name : {"r.obj", "r.off", "r.glb", "r.gltf"}) {
+    simplified("t.ply", name);
+    CHECK(shell({"convert", path(name), path("r.ply")}).code == 0);
+    CHECK(read_text(path("r.ply")) == result);
+  }
+  simplified("t.ply", "r.stl");
+  CHECK(has(shell({"compare", path("r.stl"), path("from-ply.ply"), "--samples", "1000"}).out,
+            "1 components, 0 border edges, 0 non-manifold edges"));
+}
+
+TEST_CASE("generate makes the same mesh in all formats") {
+  Shell shell;
+  for (const char* name : {"t.ply", "t.obj", "t.off"}) {
+    CHECK(shell({"generate", "-o", shell.path(name), "--triangles", "5000"}).code == 0);
+  }
+  CHECK(shell({"convert", shell.path("t.ply"), shell.path("a.off")}).code == 0);
+  CHECK(shell({"convert", shell.path("t.obj"), shell.path("b.off")}).code == 0);
+  CHECK(read_text(shell.path("a.off")) == read_text(shell.path("t.off")));
+  CHECK(read_text(shell.path("b.off")) == read_text(shell.path("t.off")));
+}
+
+TEST_CASE("convert names what it leaves out, and refuses what it cannot do in a line") {
+  Shell shell;
+  const std::string mesh = shell.path("m.obj");
+  std::ofstream(mesh)
+      << "v 0 0 0\nv 1 0 0\nv 0 1 0\nv nan 0 0\nvn 0 0 1\nf 1 2 3\nf 1 2\nf 1 2 4\n";
+  const Ran ran = shell({"convert", mesh, shell.path("m.stl")});
+  CHECK(ran.code == 0);
+  CHECK(ran.out.empty());
+  CHECK(has(ran.err, "m.obj: not kept: normals (1)"));
+  CHECK(has(ran.err, "m.obj: left out: 1 faces of 0 to 2 corners"));
+  CHECK(has(ran.err, "m.obj: left out: 1 triangles with positions that are not finite"));
+  CHECK(fs::file_size(shell.path("m.stl")) == 84 + 50);
+  std::ofstream(mesh, std::ios::app) << "f 1 2 9\n";
+  for (const auto& [from, to, why] :
+       {std::array<std::string, 3>{mesh, shell.path("x.ply"), "line 9: vertex index 9 is out of"},
+        {mesh, shell.path("x.ply.gz"),
+         "cannot write .gz; meshfarm writes .ply, .glb, .gltf, .off, .obj and .stl"},
+        {shell.path("none"), shell.path("x.ply"), "No such file"},
+        {mesh, shell.path("none/x.ply"), "No such file"}}) {
+    const Ran refused = shell({"convert", from, to});
+    CHECK(refused.code == 1);
+    CHECK(lines(refused.err) == 1);
+    CHECK(has(refused.err, why));
+    CHECK_FALSE(fs::exists(shell.path("x.ply")));
+  }
+  CHECK(shell({"convert", mesh}).code == 2);
 }
 
 TEST_CASE("info and compare weld, and hold no more than they are given") {

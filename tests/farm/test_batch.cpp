@@ -144,3 +144,25 @@ TEST_CASE("files that would become one, or be written over, are refused") {
   CHECK(over.code == 2);
   CHECK(bench().meshfarm({"batch", mesh, "--ratio", "0.1"}).code == 2);
 }
+
+TEST_CASE("the results of a batch are in the formats of the files, or PLY") {
+  const std::string mesh = bench().inputs[0];
+  const std::string obj = bench().path("mesh20000.obj");
+  REQUIRE(bench().meshfarm({"convert", mesh, obj}).code == 0);
+  const std::string glb = bench().path("mesh20000.glb");
+  REQUIRE(bench().meshfarm({"convert", mesh, glb}).code == 0);
+  const std::string other = bench().path("other.mesh");
+  fs::copy_file(mesh, other);
+  const Ran ran = bench().meshfarm(bench().words({mesh, obj, glb, other}, "formats"));
+  CAPTURE(ran.err);
+  CHECK(ran.code == 0);
+  const std::string expected = read_text(mesh + ".expected.ply");
+  const fs::path results = bench().path("formats");
+  CHECK((read_text(results / "mesh20000.ply") == expected));
+  CHECK((read_text(results / "other.ply") == expected));
+  const std::string back = bench().path("back.ply");
+  for (const char* name : {"mesh20000.obj", "mesh20000.glb"}) {
+    REQUIRE(bench().meshfarm({"convert", (results / name).string(), back}).code == 0);
+    CHECK((read_text(back) == expected));
+  }
+}

@@ -13,6 +13,6 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const auto round_trip = [](std::string_view file) {
     if (encode_endpoint(decode_endpoint(file, "fuzz")) != file) std::abort();
   };
-  fuzz::decode_staged(data, size, {'E', 'N', 'D', 'P'}, round_trip, 3);
+  fuzz::decode_staged(data, size, {'E', 'N', 'D', 'P'}, round_trip);
   return 0;
 }

@@ -6,8 +6,7 @@
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace meshfarm;
-  fuzz::decode_staged(
-      data, size, {'M', 'N', 'F', 'T'},
-      [](std::string_view file) { decode_manifest(file, "manifest"); }, 3);
+  fuzz::decode_staged(data, size, {'M', 'N', 'F', 'T'},
+                      [](std::string_view file) { decode_manifest(file, "manifest"); });
   return 0;
 }

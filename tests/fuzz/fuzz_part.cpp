@@ -6,8 +6,7 @@
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace meshfarm;
-  fuzz::decode_staged(
-      data, size, {'P', 'A', 'R', 'T'}, [](std::string_view file) { decode_part(file, "part"); },
-      2);
+  fuzz::decode_staged(data, size, {'P', 'A', 'R', 'T'},
+                      [](std::string_view file) { decode_part(file, "part"); });
   return 0;
 }

@@ -12,19 +12,21 @@
 namespace meshfarm::fuzz {
 
 /// Gives a decoder the bytes as a file, and once more sealed as the payload of a file of its kind,
-/// so that the checksum does not keep the fuzzer from what lies behind it. Only DataError may come
-/// out.
+/// so that the checksum does not keep the fuzzer from what lies behind it: in each version, of
+/// which it takes its own. Only DataError may come out.
 template <class Decode>
-void decode_staged(const std::uint8_t* data, std::size_t size, FileKind kind, Decode decode,
-                   std::uint32_t version = 1) {
+void decode_staged(const std::uint8_t* data, std::size_t size, FileKind kind, Decode decode) {
+  constexpr std::uint32_t k_most_versions = 9;
   const std::string_view bytes(reinterpret_cast<const char*>(data), size);
   try {
     decode(bytes);
   } catch (const DataError&) {
   }
-  try {
-    decode(seal(kind, version, bytes));
-  } catch (const DataError&) {
+  for (std::uint32_t version = 1; version <= k_most_versions; ++version) {
+    try {
+      decode(seal(kind, version, bytes));
+    } catch (const DataError&) {
+    }
   }
 }
 

@@ -58,8 +58,15 @@ void add_all(Checksum& sum, const std::vector<T>& items) {
 Watched kernel(const std::string& name, Shape shape, const LineOptions& lines, PositionType type,
                std::uint64_t target) {
   constexpr std::uint64_t k_triangles = 20'000;
-  Simplifier simplifier(in_memory(*generate_mesh(shape, k_triangles)),
-                        {.positions = type, .lines = lines});
+  Mesh mesh = in_memory(*generate_mesh(shape, k_triangles));
+  if (lines.appearance_scale.length > 0) {
+    for (std::uint32_t v = 0; v < mesh.positions.size(); ++v) {
+      const auto noise = static_cast<std::uint16_t>(v * 2654435769U >> 20);
+      const auto band = static_cast<std::uint16_t>(mesh.positions[v].x > 0 ? 60'000 : 0);
+      mesh.appearances.push_back({noise, band, 0, 1});
+    }
+  }
+  Simplifier simplifier(std::move(mesh), {.positions = type, .lines = lines});
   Checksum sum;
   // Two steps: far from the goal and near it, which go different ways.
   for (const std::uint64_t triangles : {8 * target, target}) {
@@ -87,7 +94,8 @@ Watched staged(const std::string& name, const std::string& file, const std::stri
 
 std::string result_bytes() {
   std::string file;
-  ResultWriter writer(PositionType::float64, 2, [&](std::string_view bytes) { file += bytes; });
+  ResultWriter writer({PositionType::float64, false, 2},
+                      [&](std::string_view bytes) { file += bytes; });
   const Mesh mesh = test::grid(9, 7);
   writer.add_rung(3, mesh, 20, 0.25);
   writer.add_rung(5, mesh, 10, 0.5);
@@ -118,7 +126,8 @@ Manifest manifest() {
   made.coincident_corners = 14;
   made.dropped_not_finite = 15;
   made.dropped_duplicate = 16;
-  made.skipped = {"red"};
+  made.channels = {{{"red", ChannelType::uint8, ChannelRole::colour}}, {"channels", 24, 25}, 26};
+  made.skipped = {"face.flags"};
   made.cut_seconds = 0.5;
   made.boundary_triangles = 17;
   made.boundary = {"boundary", 18, 19};
@@ -147,9 +156,11 @@ std::vector<Watched> all_watched() {
       kernel("terrain", Shape::terrain, {}, k_float, 200),
       kernel("terrain-border", Shape::terrain, {.preserve_border = true}, k_float, 1000),
       kernel("block-creases", Shape::block, {.crease_angle = 40}, k_float, 1000),
+      kernel("terrain-colours", Shape::terrain, {.appearance_scale = {0.005}}, k_float, 1000),
+      kernel("torus-colours", Shape::torus, {.appearance_scale = {0.02}}, k_float, 300),
       staged("part", encode_part({sheet, 3, k_float}), "src/io/part_file.cpp"),
       staged("boundary", encode_boundary({{{{0, 1}, {1, 2}, {2, 3}}}}), "src/io/boundary_file.cpp"),
-      staged("slab", encode_slab({sheet.positions, sheet.triangles, {1, 5}, k_double}),
+      staged("slab", encode_slab({sheet.positions, sheet.triangles, {1, 5}, k_double, {{2, 0}}}),
              "src/io/slab_file.cpp"),
       staged("stream", encode_stream(stream()), "src/io/stream_file.cpp"),
       staged("result", result_bytes(), "src/io/result_file.cpp"),

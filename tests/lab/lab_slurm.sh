@@ -4,75 +4,25 @@
 #   lab_slurm.sh PROGRAM
 # shellcheck source=tests/lab/lab.sh
 . "$(dirname "${BASH_SOURCE[0]}")/lab.sh"
-export PATH=$PATH:/usr/sbin:/sbin
+# shellcheck source=tests/lab/slurm.sh
+. "$(dirname "${BASH_SOURCE[0]}")/slurm.sh"
 need_root
 need_commands ip nsenter slurmctld slurmd sbatch scancel squeue srun munged strace
 
-slurm=$work/slurm
 # shellcheck disable=SC2317 # reached by the trap
 clean_up() {
-  hosts_down
-  [ ! -s "$slurm/munged.pid" ] || kill "$(cat "$slurm/munged.pid")" 2> /dev/null || true
+  slurm_down
   rm -rf "$work" 2> /dev/null || { sleep 1; rm -rf "$work"; } # what was killed may write still
 }
 trap clean_up EXIT
 hosts_up 4 2> "$work/hosts.log" || skip_forbidden "no network namespaces: $(tail -n 1 "$work/hosts.log")"
 
-# Host 1 has the controller, 2 to 4 are nodes.
-configure_slurm() {
-  cat << END
-ClusterName=lab
-SlurmctldHost=${hosts_prefix}1(10.77.0.1)
-SlurmUser=root
-SlurmdUser=root
-AuthType=auth/munge
-CredType=cred/munge
-AuthInfo=socket=$slurm/munge.sock
-SlurmctldPidFile=$slurm/slurmctld.pid
-SlurmdPidFile=$slurm/slurmd-%n.pid
-StateSaveLocation=$slurm/state
-SlurmdSpoolDir=$slurm/spool-%n
-SlurmctldLogFile=$slurm/slurmctld.log
-SlurmdLogFile=$slurm/slurmd-%n.log
-SwitchType=switch/none
-MpiDefault=none
+slurm_up 4 2> "$work/slurm.log" << END || skip "Slurm does not start: $(tail -n 1 "$work/slurm.log")"
 ProctrackType=proctrack/linuxproc
 TaskPlugin=task/none
-SelectType=select/cons_tres
 SelectTypeParameters=CR_Core
-SlurmdParameters=config_overrides
-ReturnToService=2
-SlurmdTimeout=10
-SchedulerParameters=sched_interval=2,bf_interval=2,batch_sched_delay=0
-KillWait=3
+NodeName=${hosts_prefix}[2-4] NodeAddr=10.77.0.[2-4] CPUs=1 RealMemory=2000 State=UNKNOWN
 END
-  echo "NodeName=${hosts_prefix}[2-4] NodeAddr=10.77.0.[2-4] CPUs=1 RealMemory=2000 State=UNKNOWN"
-  echo "PartitionName=lab Nodes=${hosts_prefix}[2-4] Default=YES MaxTime=60 State=UP"
-}
-start_slurm() {
-  mkdir -p "$slurm/state"
-  chmod 755 "$work" "$slurm"
-  configure_slurm > "$slurm/slurm.conf"
-  dd if=/dev/urandom of="$slurm/key" bs=128 count=1 status=none
-  chmod 600 "$slurm/key"
-  munged --force --key-file="$slurm/key" --socket="$slurm/munge.sock" \
-    --pid-file="$slurm/munged.pid" --log-file="$slurm/munged.log" --seed-file="$slurm/seed"
-  export SLURM_CONF=$slurm/slurm.conf
-  on_host 1 slurmctld -c
-  for i in 2 3 4; do start_node "$i"; done
-}
-start_node() {
-  mkdir -p "$slurm/spool-$hosts_prefix$1"
-  on_host "$1" slurmd
-}
-nodes_idle() {
-  [ "$(on_host 1 sinfo --noheader --format %T --Node | grep -c '^idle$')" -ge "$1" ]
-}
-no_jobs() {
-  [ -z "$(on_host 1 squeue --noheader)" ]
-}
-
-start_slurm 2> "$work/slurm.log" || skip "Slurm does not start: $(tail -n 1 "$work/slurm.log")"
 wait_for 30 nodes_idle 3 || fail "no idle nodes: $(on_host 1 sinfo)"
 make_slow_program "$work/slow-meshfarm" 250
 
@@ -81,7 +31,9 @@ run_shape() { # SHAPE STAGE
   local stage=$2 launcher code=0
   make_stage 200000 80 "$stage"
   say "a run in the shape '$1' on three nodes"
-  MESHFARM=$work/slow-meshfarm on_host 1 "$lab_root/scripts/launch-slurm.sh" "$1" 3 -- "$stage" \
+  # Some sites pass no environment on.
+  MESHFARM=$work/slow-meshfarm on_host 1 "$lab_root/scripts/launch-slurm.sh" "$1" 3 \
+    --export=NONE -- "$stage" \
     --ratio 0.05 -o "$stage.ply" > "$stage.out" 2>&1 &
   launcher=$!
   wait_for 60 has_results "$stage" 15 || fail "no results: $(cat "$stage".*)"

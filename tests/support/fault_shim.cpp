@@ -11,6 +11,9 @@
 //   MESHFARM_FAULT_BELOW  the folder
 //   MESHFARM_FAULT_WHILE  a file: as long as it is there, each write and fsync below
 //   the folder fails with ENOSPC, and nothing else is done
+//   MESHFARM_FAULT_SICK   a file: as long as it is there, the mount is sick: nothing below the
+//   folder is found or opened (ESTALE) or read (EIO)
+//   MESHFARM_FAULT_HOST   the host's name
 //   MESHFARM_FAULT_DELAY_MS  each write, fsync, fdatasync, rename and link below the folder takes a
 //   while, up to so many milliseconds, told by the process's number and by the call's
 //   MESHFARM_FAULT_CLOCK_S  the host's clock is so many seconds ahead of the file server's
@@ -18,7 +21,8 @@
 //   process
 //
 // "lost" (of rename, link, unlink): it is done, but answered with ENOENT or EEXIST, as by an NFS
-// server that restarted. Staged files are opened by a system call of their own, which is no open.
+// server that restarted. Staged files are opened by a system call of their own, which is no open,
+// but the sick mount knows it.
 #include <atomic>
 #include <cerrno>
 #include <csignal>
@@ -29,9 +33,12 @@
 #include <ctime>
 #include <string>
 
+#include <dirent.h>
 #include <dlfcn.h>
 #include <fcntl.h>
 #include <poll.h>
+#include <sys/stat.h>
+#include <sys/syscall.h>
 #include <unistd.h>
 
 namespace {
@@ -53,6 +60,7 @@ struct Fault {
   std::string below;
   std::string fired;
   std::string full_while;
+  std::string sick_while;
   unsigned long longest_delay_ms = 0;
   std::atomic<long> count{0};
   std::atomic<unsigned long> delays{0};
@@ -67,6 +75,7 @@ struct Fault {
     if (!wanted.empty() && wanted != role) return;
     below = text_of("MESHFARM_FAULT_BELOW");
     full_while = text_of("MESHFARM_FAULT_WHILE");
+    sick_while = text_of("MESHFARM_FAULT_SICK");
     longest_delay_ms = std::strtoul(text_of("MESHFARM_FAULT_DELAY_MS").c_str(), nullptr, 10);
     const std::string fault = text_of("MESHFARM_FAULT");
     const std::size_t first = fault.find(':');
@@ -90,6 +99,17 @@ struct Fault {
   template <class Where>
   bool is_full(const Where& where) const {
     return !full_while.empty() && ::access(full_while.c_str(), F_OK) == 0 && covers(where);
+  }
+  template <class Where>
+  bool is_sick(const Where& where) const {
+    return !sick_while.empty() && ::access(sick_while.c_str(), F_OK) == 0 && covers(where);
+  }
+  bool is_sick(int folder, const char* name) const {
+    if (sick_while.empty()) return false;
+    const std::string link = "/proc/self/fd/" + std::to_string(folder);
+    char path[4096] = {};
+    if (::readlink(link.c_str(), path, sizeof path - 1) <= 0) return false;
+    return is_sick((std::string(path) + "/" + name).c_str());
   }
   template <class Where>
   void delay(const Where& where) {
@@ -120,6 +140,10 @@ struct Fault {
   }
   int fails() const {
     errno = error();
+    return -1;
+  }
+  static int is_stale() {
+    errno = ESTALE;
     return -1;
   }
 };
@@ -187,11 +211,51 @@ int open(const char* path, int flags, ...) {
     mode = va_arg(rest, mode_t);
     va_end(rest);
   }
+  if (fault().is_sick(path)) return Fault::is_stale();
   if (fault().strikes("open", path)) return fault().fails();
   return real<int(const char*, int, ...)>("open")(path, flags, mode);
 }
 
+/// The system call by which staged files are opened; others go through as they are.
+long syscall(long number, ...) {
+  va_list rest;
+  va_start(rest, number);
+  long words[6];
+  for (long& word : words) word = va_arg(rest, long);
+  va_end(rest);
+  if (number == SYS_openat2 &&
+      fault().is_sick(static_cast<int>(words[0]), reinterpret_cast<const char*>(words[1]))) {
+    return Fault::is_stale();
+  }
+  static auto* const next = real<long(long, ...)>("syscall");
+  return next(number, words[0], words[1], words[2], words[3], words[4], words[5]);
+}
+
+DIR* opendir(const char* path) {
+  if (fault().is_sick(path)) {
+    errno = ESTALE;
+    return nullptr;
+  }
+  return real<DIR*(const char*)>("opendir")(path);
+}
+
+int stat(const char* path, struct stat* status) {
+  if (fault().is_sick(path)) return Fault::is_stale();
+  return real<int(const char*, struct stat*)>("stat")(path, status);
+}
+
+int gethostname(char* name, size_t size) {
+  static const std::string told = text_of("MESHFARM_FAULT_HOST");
+  if (told.empty()) return real<int(char*, size_t)>("gethostname")(name, size);
+  std::snprintf(name, size, "%s", told.c_str());
+  return 0;
+}
+
 ssize_t read(int fd, void* bytes, size_t size) {
+  if (fault().is_sick(fd)) {
+    errno = EIO;
+    return -1;
+  }
   if (fault().strikes("read", fd)) {
     if (fault().kind != "short") return fault().fails();
     size = size / 2 + size % 2;
@@ -200,6 +264,10 @@ ssize_t read(int fd, void* bytes, size_t size) {
 }
 
 ssize_t pread(int fd, void* bytes, size_t size, off_t offset) {
+  if (fault().is_sick(fd)) {
+    errno = EIO;
+    return -1;
+  }
   if (fault().strikes("pread", fd)) {
     if (fault().kind != "short") return fault().fails();
     size = size / 2 + size % 2;

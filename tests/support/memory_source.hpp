@@ -42,6 +42,8 @@ class MemorySource : public MeshSource {
  private:
   static constexpr std::size_t k_batch = 100;
   Mesh mesh_;
+
+ protected:
   MeshFileInfo info_;
 };
 

@@ -99,6 +99,30 @@ inline void append(Mesh& mesh, const Mesh& other) {
   }
 }
 
+/// A torus of which each third ring is drawn together to a point: its necks have no width.
+inline Mesh torus_with_necks(std::uint32_t rows, std::uint32_t columns) {
+  Mesh mesh = torus(rows, columns);
+  for (std::uint32_t row = 0; row < rows; row += 3) {
+    for (std::uint32_t i = 1; i < columns; ++i) {
+      mesh.positions[row * columns + i] = mesh.positions[row * columns];
+    }
+  }
+  return mesh;
+}
+
+/// A row of octahedra, each of which touches the next by a tip, or by an edge.
+inline Mesh touching_row(std::uint32_t count, bool at_edges) {
+  const Mesh first = octahedron();
+  const Vec3 step = at_edges ? Vec3{1, 1, 0} : Vec3{2, 0, 0};
+  Mesh row;
+  for (std::uint32_t i = 0; i < count; ++i) {
+    Mesh next = first;
+    for (Vec3& p : next.positions) p = p + step * static_cast<double>(i);
+    append(row, next);
+  }
+  return row;
+}
+
 /// The mesh and a triangle of its first two vertices and one that is `far` times its size away.
 inline Mesh with_outlier(Mesh mesh, double far) {
   Box box;
@@ -147,6 +171,16 @@ inline Mesh touching_twice(const Mesh& mesh, Vec3 point) {
   for (Triangle& t : reflected.triangles) t = {t[0], t[2], t[1]};
   append(both, reflected);
   return both;
+}
+
+/// One for each of so many vertices, all different.
+inline std::vector<Appearance> appearances(std::size_t count) {
+  std::vector<Appearance> made(count);
+  for (std::size_t v = 0; v < count; ++v) {
+    made[v] = {static_cast<std::uint16_t>(v), static_cast<std::uint16_t>(v >> 16), 7,
+               static_cast<std::uint16_t>(~v)};
+  }
+  return made;
 }
 
 /// A flat open sheet of nx x ny unit squares in z = 0, seen from +z:

@@ -29,16 +29,18 @@ JournalRecord decode_record(std::string_view bytes, std::string_view what);
 bool names_result_of(JobKey key, std::string_view name);
 
 /// The records of one journal that can be read. Throws IoError, DataError.
-std::vector<JournalRecord> read_journal(const Stage& stage, JournalName name);
+std::vector<JournalRecord> read_journal(const Stage& stage, JournalName name,
+                                        const ReadPatience& patience = {.attempts = 1});
 
 /// What all journals of a stage say.
 struct Ledger {
   std::map<JobKey, JobOutput> accepted;  // the last record of a key wins
   std::set<JobKey> by_run;               // what the run in question has accepted itself
 };
-/// Torn tails and unreadable journals are logged and left out. Throws IoError if the folder cannot
-/// be listed.
-Ledger read_journals(const Stage& stage, std::uint64_t run);
+/// A storage that fails is waited for, once for all journals. Torn tails, and journals that still
+/// cannot be read, are logged and left out. Throws IoError if the folder cannot be listed.
+Ledger read_journals(const Stage& stage, std::uint64_t run,
+                     const ReadPatience& patience = {.attempts = 1});
 
 /// A new journal under the first number that nobody has taken.
 JournalWriter open_journal(const Stage& stage);

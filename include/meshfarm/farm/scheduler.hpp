@@ -92,8 +92,9 @@ class Scheduler {
   struct Host {
     std::string name;
     std::uint32_t workers = 0;
-    std::uint32_t failures = 0;  // incidents in a row
-    FarmTime incident{0};        // when the last one began
+    std::multiset<std::uint64_t> memories;  // of its workers
+    std::uint32_t failures = 0;             // incidents in a row
+    FarmTime incident{0};                   // when the last one began
   };
   struct Member;
   /// Memory that several workers of a host have together. A job that is too large for an even share
@@ -140,10 +141,13 @@ class Scheduler {
   bool good(const Host& host) const;
   void end_bans(FarmTime now);
   std::vector<Late> late_jobs(const Plan& plan, FarmTime now) const;
-  bool elsewhere(const std::vector<std::string>& hosts) const;
-  bool may(const Member& member, JobKey key) const;
+  bool elsewhere(const std::vector<std::string>& hosts, std::uint64_t memory = 0) const;
+  bool may_on_host(const Member& member, JobKey key, std::uint64_t memory) const;
+  bool has_other_suspect(const Member& member, JobKey key) const;
+  bool may(const Member& member, JobKey key, std::uint64_t memory) const;
   void rank(WorkerId id, Member& member);
   void rank_all();
+  void bans_changed();
   bool serves(const Member& member) const;
   bool open(const Member& member) const;
   void begin_turns(Member& member, FarmTime now);
@@ -155,6 +159,8 @@ class Scheduler {
   Pick hand(WorkerId id, IssuedJob job, FarmTime now);
   std::optional<Pick> next_fixed(Plan& plan, FarmTime now);
   void deal(const Plan& plan);
+  void take_back(const Plan& plan);
+  std::optional<JobKey> next_of_set(WorkerId id, const Plan& plan);
 
   SchedulerOptions options_;
   std::map<WorkerId, Member> crew_;
@@ -174,8 +180,8 @@ class Scheduler {
   double jobs_done_ = 0;
   // A fixed schedule: who shall get what.
   std::map<WorkerId, std::deque<JobKey>> sets_;
-  std::unordered_set<JobKey, JobKeyHash> dealt_;
-  std::vector<JobKey> undealt_;  // ready jobs that fit nobody
+  std::unordered_map<JobKey, WorkerId, JobKeyHash> dealt_;  // what the sets hold
+  std::vector<JobKey> undealt_;                             // ready jobs that fit nobody
 };
 
 }  // namespace meshfarm

@@ -29,6 +29,10 @@ struct SimulatedWork {
 };
 
 struct SimulatedWorker {
+  /// Which run it is told to serve: whichever it finds, this or that one, or as a worker of a pool
+  /// one that has work, chosen anew each time it starts.
+  enum class Serves : std::uint8_t { any, first, other, pool };
+
   double speed = 1;
   std::uint32_t host = 0;  // workers of one host are cut off together
   SimulatedTime start{0};
@@ -36,6 +40,7 @@ struct SimulatedWorker {
   std::uint64_t memory = 0;       // bytes; 0: no limit
   double told_speed = 0;          // what it says of itself; 0: the truth
   std::uint64_t memory_pool = 0;  // shared with those of its host that tell the same; 0: its own
+  Serves serves = Serves::any;
 };
 
 /// A message takes delay, and up to jitter more.
@@ -76,6 +81,8 @@ struct SimulationOptions {
   SimulatedTime limit{std::chrono::minutes(20)};
   std::function<SimulatedWork(const Job&)> work;  // empty: the job's cost in milliseconds
   bool through_wire = false;                      // encode and decode each message
+  JobSource other;               // of another run of the same stage at the same time; empty: none
+  SimulatedTime other_start{0};  // when its ventilator comes
 };
 
 /// One attempt that was accepted.
@@ -93,6 +100,8 @@ struct SimulationResult {
   std::string broken;   // the first invariant that was, if any
   std::string failure;  // the last run's, empty: all was done
   std::vector<AcceptedJob> outputs;
+  std::string other_failure;  // of the other run
+  std::vector<AcceptedJob> other_outputs;
   std::vector<SimulatedJob> jobs;  // in the order in which they were accepted
   SimulatedTime first_push{0};     // the first job went out
   SimulatedTime last_accept{0};    // the last result was accepted
@@ -111,13 +120,16 @@ SimulationResult simulate_farm(const JobSource& source, const SimulationOptions&
 /// What a simulated job makes: told by its parameters alone.
 std::string simulated_summary(const Job& job);
 /// Made-up jobs of 0.1 to 1 s in three rounds: most, then one that depends on all of them, then the
-/// rest. The first are named "job 0", "job 1"...
-JobSource simulated_jobs(std::uint64_t count);
+/// rest. The first are named "job 0", "job 1"... With a target's name, as of another run of the
+/// same stage, only a quarter of the first are these; all others have that name in theirs.
+JobSource simulated_jobs(std::uint64_t count, const std::string& target = "");
 /// The outputs' summaries of a run in which nothing goes wrong, by hand.
 std::vector<std::string> expected_summaries(const JobSource& source);
 /// What is wrong with a simulated history: an invariant was broken, it did not come to its end, or
-/// the end is not the one that it must have. Empty: nothing.
+/// the end is not the one that it must have. Empty: nothing. `other`: expected of the other run;
+/// empty: there was none.
 std::string problem_of(const SimulationResult& result, const SimulatedFaults& faults,
-                       std::span<const std::string> expected);
+                       std::span<const std::string> expected,
+                       std::span<const std::string> other = {});
 
 }  // namespace meshfarm

@@ -54,8 +54,6 @@ class DistanceMeter {
   /// The greatest distance of the points, or `least` if none is beyond that: much cheaper than to
   /// measure them all. On one thread.
   double farthest(Points points, double least) const;
-  /// The points that are farther than `limit`, in their order. On one thread.
-  std::vector<Vec3> beyond(Points points, double limit) const;
   /// The index of the triangle that is nearest to the point.
   std::uint32_t nearest_triangle(Vec3 point) const;
 

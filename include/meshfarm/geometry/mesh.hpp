@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include <meshfarm/geometry/vec.hpp>
@@ -17,11 +18,41 @@ using Triangle = std::array<std::uint32_t, 3>;
 /// coordinate exactly representable as float, so that writing it loses nothing.
 enum class PositionType : std::uint8_t { float32 = 4, float64 = 8 };
 
+/// What a surface looks like at a vertex, as far as simplification is to keep it: up to four
+/// numbers that are blended over the triangles, each from 0 to 65535 over the whole range of its
+/// channel.
+using Appearance = std::array<std::uint16_t, 4>;
+
 /// A triangle mesh in memory. Local indices are 32-bit: a mesh in memory is a part or a result.
 struct Mesh {
   std::vector<Vec3> positions;
   std::vector<Triangle> triangles;
+  std::vector<Appearance> appearances = {};  // one a vertex, or none at all
 };
+
+/// Vertices of some mesh, and their appearances if it has any.
+struct VertexView {
+  VertexView() = default;
+  VertexView(std::span<const Vec3> of_positions, std::span<const Appearance> of_appearances = {})
+      : positions(of_positions), appearances(of_appearances) {}
+  VertexView(const std::vector<Vec3>& of_positions) : positions(of_positions) {}
+  explicit VertexView(const Mesh& mesh)
+      : positions(mesh.positions), appearances(mesh.appearances) {}
+
+  std::size_t size() const { return positions.size(); }
+  VertexView part(std::size_t first, std::size_t count = std::dynamic_extent) const {
+    return {positions.subspan(first, count),
+            appearances.empty() ? appearances : appearances.subspan(first, count)};
+  }
+
+  std::span<const Vec3> positions;
+  std::span<const Appearance> appearances;
+};
+
+inline void append_vertex(const VertexView& from, std::size_t vertex, Mesh& to) {
+  to.positions.push_back(from.positions[vertex]);
+  if (!from.appearances.empty()) to.appearances.push_back(from.appearances[vertex]);
+}
 
 /// Stands for a vertex without a position: one of its coordinates was not finite.
 inline constexpr Vec3 k_no_position{NAN, NAN, NAN};

@@ -16,9 +16,6 @@ struct PointMeterHints {
   double usual = 0;    // a distance that few of the points are beyond
   /// Points of the surface, at least one: the distance to the nearest of them is an upper bound.
   std::span<const Vec3> surface;
-  /// If above 0, distances are only exact enough to tell whether they are above this: others are
-  /// rough, and those above it may come out as infinite.
-  double enough = 0;
 };
 
 /// The middle of each triangle's longest side. Where triangles are far from a surface, their

@@ -25,6 +25,17 @@ enum class TopologyMode : std::uint8_t {
   keep_while_fair,
 };
 
+/// How much appearances count beside the shape.
+struct AppearanceScale {
+  /// The length of a move of the surface that is as bad as an error of an appearance by its whole
+  /// range. Where it is 0 appearances are dropped, and only the shape counts.
+  double length = 0;
+  /// Steeper gradients, of an appearance as such a length over a length, count as if they were no
+  /// steeper: else a sharp line between two colours would be the worse the finer the mesh, and
+  /// noise would drown the shape.
+  double steepest = 0.2;
+};
+
 /// What is asked of the lines and the topology of a surface, beyond that borders keep their shape
 /// like the rest.
 struct LineOptions {
@@ -35,6 +46,7 @@ struct LineOptions {
   /// stay where they are.
   double crease_angle = 0;
   TopologyMode topology = TopologyMode::automatic;
+  AppearanceScale appearance_scale;
 };
 
 class SurfaceBound;

@@ -14,6 +14,10 @@ namespace meshfarm {
 /// Whether vertices at the same position become one.
 enum class Weld { exact, off };
 
+/// Fewer vertices than these at one point may turn out to be apart (separate_touching). So many are
+/// made one wherever else they would have to fit into one memory.
+inline constexpr std::uint64_t k_crowd = 256;
+
 /// Which vertices have the same position.
 struct WeldResult {
   std::vector<std::uint32_t> first;  // for each vertex its lowest twin: itself if it has none below

@@ -3,11 +3,31 @@
 #pragma once
 
 #include <filesystem>
+#include <memory>
+
+#include <meshfarm/geometry/mesh.hpp>
+#include <meshfarm/io/mesh_sink.hpp>
 
 namespace meshfarm {
 
-/// Throws DataError if a file of this name would not be what its extension says. A name without an
-/// extension is PLY.
+/// Whether a file of this name can be written as what its extension says: .ply, .glb, .gltf,
+/// .off, .obj or .stl. A name without an extension is PLY.
+bool is_output_format(const std::filesystem::path& path);
+
+/// Throws DataError if not.
 void check_output_format(const std::filesystem::path& path);
+
+/// Those of the channels that a file of this name has a place for. Throws as above.
+std::vector<Channel> kept_channels(const std::filesystem::path& path,
+                                   std::span<const Channel> channels);
+
+/// Begins a mesh file in the format of its extension. Throws DataError as above, IoError for a path
+/// that cannot be written, and UsageError for more than the format can count.
+std::unique_ptr<MeshSink> create_mesh(const std::filesystem::path& path,
+                                      const MeshSinkOptions& options);
+
+/// Writes a whole mesh by create_mesh().
+void write_mesh(const std::filesystem::path& path, const Mesh& mesh, PositionType positions,
+                const std::vector<Channel>& channels = {}, std::span<const float> values = {});
 
 }  // namespace meshfarm

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include <meshfarm/geometry/mesh.hpp>
+#include <meshfarm/geometry/weld.hpp>
 #include <meshfarm/io/boundary_file.hpp>
 #include <meshfarm/io/mesh_source.hpp>
 #include <meshfarm/io/packed_triangles.hpp>
@@ -18,6 +19,14 @@
 
 namespace meshfarm {
 
+/// A vertex that does not become one with all that lie at its point, as surfaces touch there or a
+/// neck has no width (geometry/weld.hpp, separate_touching).
+struct ApartVertex {
+  std::uint32_t place = 0;
+  std::uint32_t sheet = 0;  // those of one sheet become one
+  friend bool operator==(const ApartVertex&, const ApartVertex&) = default;
+};
+
 /// One share of a mesh. Vertices are in file order; boundary vertices are in any order, and some
 /// are named more than once.
 struct MeshShare {
@@ -25,15 +34,39 @@ struct MeshShare {
   std::vector<Triangle> triangles;
   std::vector<std::uint32_t> boundary;
   PositionType type = PositionType::float32;  // what all positions fit
+  /// At the points of boundary vertices, ascending: all vertices of a point or none. The sheets of
+  /// a point are numbered in an order that tells nothing of the input's.
+  std::vector<ApartVertex> apart;
+  std::vector<Appearance> appearances = {};  // one a vertex, or none
 };
+
+/// Undoes the merges of vertices that stay apart: `first` is that of a WeldResult.
+void keep_apart(std::span<const ApartVertex> apart, std::span<std::uint32_t> first);
 
 /// The boundary vertices of a share by their place in it, ascending, and the number of each in the
 /// part or stream that was made from the share. Coincident ones may have the same number.
 struct BoundaryNumbers {
   std::vector<std::uint32_t> places;
   std::vector<std::uint32_t> numbers;
+  /// Where some stay apart: the same for vertices at one point, whatever their numbers.
+  std::vector<std::uint32_t> points;
   /// How many different numbers there are; they go from 0 on.
   std::uint32_t count() const;
+};
+
+/// A vertex by its share and its place there.
+struct SharePlace {
+  std::uint32_t share = 0;
+  std::uint32_t place = 0;
+  friend auto operator<=>(const SharePlace&, const SharePlace&) = default;
+};
+using SeamTriangle = std::array<SharePlace, 3>;
+
+/// Triangles between shares; those that have lost a corner are left out.
+struct SharedTriangles {
+  std::vector<BoundaryTriangle> triangles;
+  std::uint64_t degenerate = 0;  // that were left out
+  std::uint64_t coincident = 0;  // with two corners at one point, left out or not
 };
 
 /// Divides a mesh while it is scanned, in bounded memory. The caller assigns each vertex to a
@@ -42,12 +75,17 @@ struct BoundaryNumbers {
 /// mapped where the input has locality, or memory too.
 class MeshShares {
  public:
+  /// What will be asked for of the boundary triangles: boundary(), for which they are kept in
+  /// memory, or seam() alone.
+  enum class SeamsFor : std::uint8_t { all, each_share };
   struct Options {
     std::filesystem::path folder;  // for scratch files
     std::uint32_t shares = 0;
     std::uint64_t vertices = 0;  // exactly as many are added
     PositionType positions = PositionType::float32;
     std::uint64_t memory_bytes = 0;  // of what is shared out; the rest goes to scratch files
+    SeamsFor seams = SeamsFor::all;
+    bool appearances = false;  // whether vertices have any
   };
   explicit MeshShares(const Options& options);
 
@@ -57,57 +95,67 @@ class MeshShares {
   /// The next vertices, and the share of each. Where `points` are given, those of one number lie at
   /// one point, in one share, and become one vertex here already: so a share stays small whatever
   /// many there are. Throws DataError if a share gets 2^32 vertices.
-  void add_vertices(std::span<const Vec3> batch, std::span<const std::uint32_t> shares,
+  void add_vertices(const VertexView& batch, std::span<const std::uint32_t> shares,
                     std::span<const std::uint32_t> points = {});
   /// After all vertices.
   void add_triangles(std::span<const WideTriangle> batch);
   /// After all triangles; read() is then safe from several threads.
   void finish();
-  MeshShare read(std::uint32_t share) const;
+  /// For exact welding with what stays apart at the seams, where a share alone does not have all
+  /// triangles of a vertex: decided by all of them, so the same in whatever shares.
+  MeshShare read(std::uint32_t share, Weld weld) const;
+
+  /// The boundary triangles that have a corner in this share, in file order; as safe as read().
+  std::vector<SeamTriangle> seam(std::uint32_t share) const;
 
   /// Vertices that became one with an earlier one.
   std::uint64_t merged() const { return merged_; }
   /// Triangles that used a vertex that was left out.
   std::uint64_t dropped() const { return dropped_; }
-  /// The boundary triangles, in file order and by final numbers, one entry of `numbers` a share;
-  /// those that have lost a corner by it are left out and counted.
-  std::vector<BoundaryTriangle> boundary(std::span<const BoundaryNumbers> numbers,
-                                         std::uint64_t& degenerate) const;
+  /// The boundary triangles, in file order and by final numbers, one entry of `numbers` a share.
+  SharedTriangles boundary(std::span<const BoundaryNumbers> numbers) const;
 
   /// The memory that holds all of a usual mesh.
   static std::uint64_t memory_for(std::uint64_t vertices, std::uint64_t triangles,
-                                  PositionType positions);
+                                  PositionType positions, bool appearances = false);
 
  private:
-  struct Place {
-    std::uint32_t share = 0;
-    std::uint32_t place = 0;
-  };
   /// How the memory is divided; nothing for the map where it does not fit as a whole.
   struct Memory {
     explicit Memory(const Options& options);
     std::uint64_t map = 0;
     std::uint64_t vertices = 0;
+    std::uint64_t appearances = 0;
     std::uint64_t triangles = 0;
+  };
+  /// What the vertices of a point became, and the least of their appearances.
+  struct PointVertex {
+    SharePlace place;
+    Appearance least{};
   };
   MeshShares(const Options& options, const Memory& memory);
   void put_position(std::uint32_t share, Vec3 p);
+  void put_seam_triangle(const SeamTriangle& t);
+  Vec3 position_of(SharePlace vertex) const;
   void forget_pages(std::size_t added);
 
   PositionType positions_;
+  SeamsFor seams_for_;
   MappedFile map_;
   bool is_in_memory_;
+  bool has_appearances_;
   std::size_t since_forgotten_ = 0;
   BucketFile vertices_;
+  BucketFile appearances_;
   BucketFile triangles_;  // packed
   std::vector<TrianglePacker> packers_;
-  BucketFile boundary_vertices_;
-  std::vector<std::uint64_t> next_;                  // place in each share
-  std::unordered_map<std::uint32_t, Place> points_;  // the vertex that a point's became
+  BucketFile seams_;                 // the boundary triangles at each share
+  std::vector<std::uint64_t> next_;  // place in each share
+  std::unordered_map<std::uint32_t, PointVertex> points_;
   std::uint64_t added_ = 0;
   std::uint64_t merged_ = 0;
   std::uint64_t dropped_ = 0;
-  std::vector<std::array<Place, 3>> boundary_;  // as the square root of the input
+  std::vector<SeamTriangle> boundary_;  // as the square root of the input
 };
 
 }  // namespace meshfarm

@@ -12,20 +12,24 @@
 #include <vector>
 
 #include <meshfarm/geometry/mesh.hpp>
+#include <meshfarm/io/channel.hpp>
 
 namespace meshfarm {
 
 /// A triangle of a whole mesh: 64-bit vertex indices.
 using WideTriangle = std::array<std::uint64_t, 3>;
 
-/// What a mesh file's header promises, and what the reader makes of it.
+/// What a mesh file's header promises, or a count of the file tells, and what the reader makes of
+/// it.
 struct MeshFileInfo {
   std::string format;       // "PLY ascii", "PLY binary little endian", ...
   std::string compression;  // "none", "gzip", "zstd"
   std::uint64_t vertices = 0;
   std::uint64_t faces = 0;  // polygons or strips, before they are made triangles
   PositionType positions = PositionType::float32;
-  std::vector<std::string> skipped;  // "vertex.red", "face.flags", "material (5 elements)"
+  std::vector<Channel> channels;      // of the vertices
+  std::vector<std::string> skipped;   // "face.flags", "material (5 elements)", "normals (120)"
+  std::vector<std::string> textures;  // that the colours are of: "atlas.jpg (4096 x 4096)"
 };
 
 /// A mesh file that is read by scanning, as often as wanted, in memory that does not depend on its
@@ -38,28 +42,47 @@ struct MeshFileInfo {
 class MeshSource {
  public:
   virtual ~MeshSource() = default;
-  /// An ascii file may have more digits than the floats that its header declares can hold. A scan
-  /// of all vertices finds this out: positions are float64 from then on. Scan again in that case.
+  /// A text may have more digits than the floats that it is taken to hold. A scan of all vertices
+  /// finds this out: positions are float64 from then on. Scan again in that case.
   virtual const MeshFileInfo& info() const = 0;
   /// All vertices in file order, in batches. One of which a coordinate is not finite comes as
   /// k_no_position, all others are finite.
   virtual void scan_vertices(const std::function<void(std::span<const Vec3>)>& take) = 0;
   /// All triangles in file order, in batches. Every index is below info().vertices.
   virtual void scan_triangles(const std::function<void(std::span<const WideTriangle>)>& take) = 0;
+  /// All vertices in file order with their values of info().channels, in batches. Positions are as
+  /// those of scan_vertices.
+  virtual void scan_channels(const std::function<void(const ChannelPoints&)>& take) {
+    static_cast<void>(take);
+  }
   /// How many faces had fewer than three corners and were left out by the last scan_triangles().
   virtual std::uint64_t small_faces() const { return 0; }
 };
 
+/// Whether vertices have colours.
+bool has_appearances(const MeshSource& source);
+/// All vertices in file order, in batches, with their appearances if they have any.
+void scan_appearances(MeshSource& source, const std::function<void(const VertexView&)>& take);
+
 /// How often all vertices will be scanned: for one scan nothing is kept.
 enum class Scans : std::uint8_t { one, many };
+
+/// What becomes of textures: their colours become those of the vertices, or they are left out, or
+/// they are only looked at, to be named.
+enum class Textures : std::uint8_t { bake, drop, name };
 
 struct OpenOptions {
   Scans scans = Scans::many;
   unsigned threads = 0;  // that parse text; 0: one a core
+  bool channels = true;  // else they count as skipped
+  Textures textures = Textures::drop;
 };
 
-/// Opens a mesh file by its content. Throws IoError, or DataError for an unknown format, a
-/// malformed header, or one that claims more than the file can hold.
+/// Opens a mesh file by its content; of an STL that is damaged, or of an OBJ that is empty, the
+/// name counts, too. A file without a header that counts is read once for that, and one with
+/// textures to bake is scanned for these, in memory for some of their pictures. Throws IoError, or
+/// DataError for an unknown format, a malformed header, or one that claims more than the file can
+/// hold.
 std::unique_ptr<MeshSource> open_mesh(const std::filesystem::path& path,
                                       const OpenOptions& options = {});
 

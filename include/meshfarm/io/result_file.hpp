@@ -12,6 +12,7 @@
 #include <meshfarm/geometry/distance.hpp>
 #include <meshfarm/geometry/mesh.hpp>
 #include <meshfarm/io/fill.hpp>
+#include <meshfarm/io/part_file.hpp>
 #include <meshfarm/util/checksum.hpp>
 
 namespace meshfarm {
@@ -44,16 +45,22 @@ class ResultWriter {
  public:
   using Write = std::function<void(std::string_view)>;
 
-  ResultWriter(PositionType positions, std::uint32_t boundary_vertices, Write write);
+  /// What the vertices have: appearances or none.
+  struct Vertices {
+    PositionType positions = PositionType::float32;
+    bool appearances = false;
+    std::uint32_t boundary = 0;
+  };
+  ResultWriter(const Vertices& vertices, Write write);
   /// More of a rung: its next vertices, counted on from the boundary vertices, and triangles of any
   /// of the rung's vertices, those to come included.
-  void add(std::span<const Vec3> vertices, std::span<const Triangle> triangles);
+  void add(VertexView vertices, std::span<const Triangle> triangles);
   void end_rung(std::int32_t level, std::uint64_t free_triangles, double error = 0);
   /// A whole rung: the mesh's first vertices are the boundary vertices.
   void add_rung(std::int32_t level, const Mesh& mesh, std::uint64_t free_triangles,
                 double error = 0);
   /// Samples: points of the part as it came, by which the error of the final mesh is measured.
-  void finish(std::span<const Vec3> boundary, std::span<const SurfaceSamples> samples);
+  void finish(const VertexView& boundary, std::span<const SurfaceSamples> samples);
 
   bool empty() const { return rungs_.empty(); }
   const std::vector<Rung>& rungs() const { return rungs_; }
@@ -61,13 +68,17 @@ class ResultWriter {
  private:
   void put(std::string_view bytes);
 
-  PositionType positions_;
-  std::uint32_t boundary_vertices_;
+  Vertices vertices_;
   Write write_;
   Rung rung_;  // the counts of what was added of the next rung
   std::vector<Rung> rungs_;
   Checksum sum_;
 };
+
+/// Those of a result of this part.
+inline ResultWriter::Vertices vertices_of(const Part& part) {
+  return {part.positions, !part.mesh.appearances.empty(), part.boundary_vertices};
+}
 
 /// One rung of a result. The first `boundary_vertices` are the part's, unmoved.
 struct ResultMesh {

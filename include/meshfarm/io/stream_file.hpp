@@ -19,6 +19,7 @@ namespace meshfarm {
 /// (Xiong et al. 2008, 4; streaming meshes: Isenburg & Lindstrom 2005).
 struct StreamInfo {
   PositionType positions = PositionType::float32;
+  bool appearances = false;  // whether vertices have any
   std::uint64_t vertices = 0;
   std::uint64_t triangles = 0;
   std::uint32_t boundary_vertices = 0;  // shared with other streams
@@ -47,6 +48,7 @@ struct StreamCorner {
 /// A piece of a stream: new vertices, then triangles of these and of earlier ones.
 struct StreamBlock {
   std::vector<Vec3> positions;  // of the next vertices
+  std::vector<Appearance> appearances;
   /// Which of these, ascending and by their place here, are boundary vertices; "last use" is said
   /// of those that no triangle uses.
   std::vector<StreamCorner> boundary;

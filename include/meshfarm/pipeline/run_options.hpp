@@ -2,9 +2,12 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <vector>
 
 #include <meshfarm/geometry/simplify.hpp>
+#include <meshfarm/io/channel_choice.hpp>
 #include <meshfarm/io/manifest.hpp>
 #include <meshfarm/util/bytes.hpp>
 
@@ -29,12 +32,22 @@ enum class Composition : std::uint8_t {
   sink,       // the sink joins all
 };
 
+/// What becomes of the input's normals.
+enum class Normals : std::uint8_t {
+  blend,      // fitted to the input's, as other channels are
+  recompute,  // those of the result's triangles, on the side that the input's are on
+  drop,
+};
+
 /// A length in the mesh's unit, or as a fraction of the diagonal of its bounding box.
 struct Length {
   double value = 0;
   bool of_diagonal = false;
   double in(const Box& box) const { return of_diagonal ? value * box.diagonal() : value; }
 };
+
+/// RunOptions::colour_weight, where none is asked for.
+inline constexpr double k_colour_weight = 0.002;
 
 /// What a run is asked to make of a stage.
 struct RunOptions {
@@ -46,14 +59,28 @@ struct RunOptions {
   Composition composition = Composition::automatic;
   LineOptions lines;
   Length drop_components;  // components with a smaller diagonal are left out
+  /// Black for white is as bad as a move of the surface by this share of the bounding box's
+  /// diagonal. 0: colours do not count.
+  double colour_weight = k_colour_weight;
+  ChannelChoice channels;  // of those that the stage has
+  Normals normals = Normals::blend;
 };
 
 /// The number of triangles that the result shall have. Throws UsageError if the options name
 /// neither a ratio in (0, 1] nor a count.
 std::uint64_t target_triangles(const Manifest& manifest, const RunOptions& options);
 
+/// Which of the stage's channels the result is to have. Throws UsageError as io's chosen_columns().
+std::vector<std::size_t> chosen_columns(const Manifest& manifest, const RunOptions& options);
+
+/// The run's lines, and how much the colours of the stage count: none do if none is chosen.
+LineOptions lines_of(const Manifest& manifest, const RunOptions& options);
+
+/// What appearances add to the memory of a job on so many triangles: four copies at most.
+std::uint64_t memory_of_appearances(const LineOptions& lines, std::uint64_t triangles);
+
 /// As they stand in a job's parameters: preserve border u8 | crease angle f64 |
-/// topology u8.
+/// topology u8 | length of appearances f64.
 void put(ByteWriter& out, const LineOptions& lines);
 LineOptions get_lines(ByteReader& in);
 

@@ -7,10 +7,13 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include <meshfarm/geometry/components.hpp>
 #include <meshfarm/geometry/distance.hpp>
 #include <meshfarm/geometry/topology.hpp>
+#include <meshfarm/geometry/value_error.hpp>
+#include <meshfarm/io/channel.hpp>
 #include <meshfarm/io/manifest.hpp>
 #include <meshfarm/io/mesh_source.hpp>
 #include <meshfarm/io/stream_file.hpp>
@@ -47,6 +50,13 @@ struct TopologyChange {
   GoneComponents gone;
 };
 
+/// A channel of the result, and by how much it misses the input's: the root mean square, in the
+/// channel's own unit.
+struct ChannelError {
+  std::string name;
+  double rms = 0;
+};
+
 /// What a run made, for people and for programs.
 struct RunSummary {
   Manifest manifest;
@@ -64,6 +74,8 @@ struct RunSummary {
   std::uint64_t turned = 0;  // triangles that faced another way than most of their piece
   DroppedComponents dropped_components;  // and their triangles before the finish
   MeasuredError error;
+  std::vector<ChannelError> channels;            // that were written
+  std::vector<std::string> channels_not_wanted;  // of the stage's, their names
   /// Where the result went to ruin and a few triangles more would not have.
   std::optional<BetterCount> better;
   std::uint64_t stitched = 0;            // triangles of the stitched mesh, before the finish
@@ -98,6 +110,15 @@ struct StreamSummary {
   std::uint64_t widest_front = 0;  // vertices that are there and not finalised, at most
 };
 
+/// By how much channels of two meshes differ, at the points where distances are measured.
+struct ChannelDifference {
+  std::string name;  // "colours" and "normals" of three channels, else the channel's
+  ChannelRole role = ChannelRole::quality;
+  /// Colours as shares of their full range, normals in degrees, others in their own unit.
+  ValueError a_to_b;
+  ValueError b_to_a;
+};
+
 /// What `compare` tells of two meshes.
 struct Comparison {
   std::string path_a;
@@ -109,6 +130,10 @@ struct Comparison {
   Topology welded_b;
   Topology as_it_is_a;
   Topology as_it_is_b;
+  std::vector<ChannelDifference> channels;  // that both have
+  std::string channels_skipped;             // why both have channels that were not compared
+  std::vector<std::string> channels_only_a;
+  std::vector<std::string> channels_only_b;
 };
 
 /// What `benchmark` tells of this host.

@@ -31,6 +31,7 @@ struct TraceJoined {
   std::uint32_t pid = 0;
   std::uint64_t speed = 0;   // triangles a second and thread, by benchmark
   std::uint64_t memory = 0;  // bytes
+  std::uint64_t pool = 0;  // its memory is also that of workers of its host with the same; 0: none
   std::uint32_t threads = 1;
 };
 struct TraceLeft {

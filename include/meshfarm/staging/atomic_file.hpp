@@ -29,6 +29,10 @@ class AtomicFile {
 
   /// Buffered; throws IoError.
   void write(std::string_view bytes);
+  /// Replaces bytes that were written before; throws IoError.
+  void overwrite(std::uint64_t offset, std::string_view bytes);
+  /// What was written is on the disk, or could not be: throws IoError. Nothing is published.
+  void sync();
   std::uint64_t size() const { return flushed_ + buffer_.size(); }
   void commit();
   /// The same if nobody has the name yet; else false, and what is there stays. Of two writers one

@@ -16,6 +16,7 @@ namespace meshfarm {
 ///   manifest                          what the cut made; published last, never changed
 ///   boundary                          the boundary triangles
 ///   cut                               what was cut, and how: by this the same command goes on
+///   channels                          the input's vertices with their colours and other values
 ///   parts/000123.part                 a sub-mesh
 ///   streams/000123.stream             a mesh in sweep order, by --scheme stream
 ///   streams/000123.slab               the same before it is sorted, by --sort farm
@@ -30,6 +31,7 @@ namespace meshfarm {
 struct ManifestName {};
 struct BoundaryName {};
 struct CutName {};
+struct ChannelsName {};
 struct PartName {
   std::uint32_t part = 0;
 };
@@ -62,9 +64,9 @@ struct SummaryName {
 struct HostName {
   std::uint64_t boot = 0;
 };
-using StagedName =
-    std::variant<ManifestName, BoundaryName, PartName, StreamName, ResultName, JournalName,
-                 EndpointName, KeysName, TraceName, SummaryName, HostName, SlabName, CutName>;
+using StagedName = std::variant<ManifestName, BoundaryName, PartName, StreamName, ResultName,
+                                JournalName, EndpointName, KeysName, TraceName, SummaryName,
+                                HostName, SlabName, CutName, ChannelsName>;
 
 std::string to_string(const StagedName& name);
 /// The name that to_string made; nothing for any other text.

@@ -2,16 +2,15 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <chrono>
 #include <cstdint>
 #include <filesystem>
-#include <functional>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include <meshfarm/staging/names.hpp>
+#include <meshfarm/staging/patience.hpp>
 #include <meshfarm/util/file.hpp>
 
 namespace meshfarm {
@@ -24,23 +23,15 @@ struct FileRef {
   friend bool operator==(const FileRef&, const FileRef&) = default;
 };
 
-/// How patient a reader is with a file that it was told of but does not see whole (NFS).
-struct ReadPatience {
-  int attempts = 5;        // at a file that is there, but not as promised; 1: no waiting at all
-  int first_wait_ms = 50;  // doubles each time, up to five seconds
-  /// How long a file may be missing, or its storage fail: NFS was seen to take 30 to 60 s.
-  std::chrono::milliseconds missing{90'000};
-  /// Called with the bytes that came, and with none as long as there is still patience.
-  std::function<void(std::uint64_t bytes)> moved = {};
-};
-
 /// The shared folder of one dataset.
 class Stage {
  public:
   /// Makes the folder and its sub-folders where they are missing. Throws IoError.
   static Stage create(const std::filesystem::path& root);
-  /// An existing stage. Throws DataError if the folder holds no manifest.
-  static Stage open(const std::filesystem::path& root);
+  /// An existing stage. Throws DataError if the folder holds no manifest, IoError if the storage
+  /// does not say, in spite of all patience.
+  static Stage open(const std::filesystem::path& root,
+                    const ReadPatience& patience = {.attempts = 1});
 
   const std::filesystem::path& root() const { return root_; }
   std::filesystem::path path(const StagedName& name) const { return root_ / to_string(name); }
@@ -63,8 +54,8 @@ class Stage {
   void verify(const FileRef& file, const ReadPatience& patience = {}) const;
   /// Opens such a file for a reader that checks its bytes as they come; the size is checked here.
   Fd open_told(const FileRef& file, const ReadPatience& patience = {}) const;
-  /// Reads a file known by name only; its seal is the check.
-  std::string read(const StagedName& name) const;
+  /// Reads a file known by name only; its seal is the check. Throws IoError.
+  std::string read(const StagedName& name, const ReadPatience& patience = {.attempts = 1}) const;
 
   /// The numbers of the journals or endpoints there are, ascending. Lists the folder, which also
   /// makes an NFS client look again.

@@ -13,12 +13,17 @@ namespace meshfarm {
 
 /// What sorting a slab and encoding its stream need at most, for each triangle.
 inline constexpr std::uint64_t k_slab_bytes_per_triangle = 72;
+/// The same where vertices may have appearances: two copies and the encoded ones.
+constexpr std::uint64_t slab_bytes_per_triangle(bool has_appearances) {
+  return k_slab_bytes_per_triangle + (has_appearances ? 2 * sizeof(Appearance) : 0);
+}
 
 /// A slab in sweep order.
 struct SortedSlab {
   StreamMesh stream;
   std::uint32_t boundary_vertices = 0;
   std::uint64_t coincident_vertices = 0;  // at the place of an earlier one, merged or not
+  std::uint64_t merged_vertices = 0;      // those of them that were
   std::uint64_t dropped_degenerate = 0;
   std::uint64_t coincident_corners = 0;  // triangles with two corners at one place
 };
@@ -29,8 +34,8 @@ struct SortedSlab {
 SortedSlab sort_slab(MeshShare raw, const Sorting& sorting);
 
 /// The numbers that a slab's boundary vertices will have once it is sorted: these count boundary
-/// vertices alone, in sweep order. Nothing else needs to be sorted for that, as welding takes no
-/// boundary vertices at one place apart.
+/// vertices alone, in sweep order. Nothing else needs to be sorted for that, as the slab tells
+/// which of those at one point stay apart.
 BoundaryNumbers number_boundary(const MeshShare& raw, const Sorting& sorting);
 
 /// About how many triangles a sample of a stream has.

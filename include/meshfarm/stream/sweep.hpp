@@ -35,11 +35,11 @@ struct SweepOptions {
 /// Takes what a sweep has passed: the result's next vertices, counted on from its boundary
 /// vertices, and triangles of any vertices so far and of boundary vertices.
 using SweepOutput =
-    std::function<void(std::span<const Vec3> vertices, std::span<const Triangle> triangles)>;
+    std::function<void(const VertexView& vertices, std::span<const Triangle> triangles)>;
 
 /// What is known of a simplified stream at its end.
 struct SweptStream {
-  std::vector<Vec3> boundary;        // its first vertices, unmoved, in the stream's order
+  Mesh boundary;                     // its first vertices, unmoved, in the stream's order
   std::uint64_t free_triangles = 0;  // those without a boundary vertex
   SurfaceSamples samples;
   double error = 0;  // where it was to be measured

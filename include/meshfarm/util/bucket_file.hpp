@@ -32,8 +32,15 @@ class BucketFile {
   template <class T>
   std::vector<T> read(std::size_t bucket) const {
     std::vector<T> values(size(bucket) / sizeof(T));
-    read_into(bucket, reinterpret_cast<char*>(values.data()));
+    read_into(bucket, 0, size(bucket), reinterpret_cast<char*>(values.data()));
     return values;
+  }
+  /// The value at this index of a bucket of values of T. As safe as read(), and slow.
+  template <class T>
+  T read_one(std::size_t bucket, std::uint64_t index) const {
+    T value;
+    read_into(bucket, index * sizeof(T), sizeof(T), reinterpret_cast<char*>(&value));
+    return value;
   }
   std::uint64_t size(std::size_t bucket) const;
 
@@ -47,7 +54,7 @@ class BucketFile {
     std::vector<Extent> extents;
   };
   void flush(Bucket& bucket);
-  void read_into(std::size_t bucket, char* to) const;
+  void read_into(std::size_t bucket, std::uint64_t from, std::uint64_t size, char* to) const;
   void read_file_into(std::uint64_t offset, std::uint64_t size, char* to) const;
 
   std::filesystem::path folder_;

@@ -10,9 +10,14 @@ namespace meshfarm::bench {
 namespace {
 
 Mesh simplify(Task task, Stopwatch& watch) {
-  watch.start();
   SimplifyOptions options;
   options.positions = task.positions;
+  Box box;
+  for (const Vec3& p : task.mesh.positions) box.add(p);
+  // The default of --colour-weight.
+  if (!task.mesh.appearances.empty())
+    options.lines.appearance_scale.length = 0.002 * box.diagonal();
+  watch.start();
   Simplifier simplifier(std::move(task.mesh), options);
   SimplifyGoal goal;
   goal.triangles = task.target;

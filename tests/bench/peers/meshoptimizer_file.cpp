@@ -90,22 +90,22 @@ void simplify(Arrays& mesh, double ratio) {
 }
 
 void write(const std::string& path, Arrays& mesh) {
-  PlyWriterOptions options;
+  MeshSinkOptions options;
   options.vertices =
       meshopt_optimizeVertexFetch(mesh.positions.data(), mesh.indices.data(), mesh.indices.size(),
                                   mesh.positions.data(), mesh.positions.size() / 3, k_stride);
   options.triangles = mesh.indices.size() / 3;
-  PlyWriter writer(path, options);
+  const auto writer = create_ply(path, options);
   for (std::size_t v = 0; v < options.vertices; ++v) {
     const float* p = &mesh.positions[3 * v];
     const Vec3 position{p[0], p[1], p[2]};
-    writer.vertices({&position, 1});
+    writer->vertices({&position, 1});
   }
   for (std::size_t i = 0; i < mesh.indices.size(); i += 3) {
     const Triangle triangle{mesh.indices[i], mesh.indices[i + 1], mesh.indices[i + 2]};
-    writer.triangles(std::span<const Triangle>(&triangle, 1));
+    writer->triangles(std::span<const Triangle>(&triangle, 1));
   }
-  writer.commit();
+  writer->commit();
 }
 
 Outcome run(const CommandLine& command) {

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "peer.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
@@ -11,12 +12,16 @@
 #include <utility>
 
 #include <meshfarm/geometry/weld.hpp>
+#include <meshfarm/io/channel.hpp>
+#include <meshfarm/io/mesh_sink.hpp>
 #include <meshfarm/io/mesh_source.hpp>
 #include <meshfarm/io/ply_writer.hpp>
 #include <meshfarm/util/errors.hpp>
 
 namespace meshfarm::bench {
 namespace {
+
+constexpr float k_range = 65535;  // of an appearance's numbers
 
 double seconds(clockid_t clock) {
   timespec now{};
@@ -40,12 +45,38 @@ Mesh cleaned(const Mesh& raw) {
   for (std::size_t vertex = 0; vertex < index.size(); ++vertex) {
     if (index[vertex] == k_unused) continue;
     index[vertex] = static_cast<std::uint32_t>(clean.positions.size());
-    clean.positions.push_back(raw.positions[vertex]);
+    append_vertex(VertexView(raw), vertex, clean);
   }
   for (Triangle& t : clean.triangles) {
     for (std::uint32_t& vertex : t) vertex = index[vertex];
   }
   return clean;
+}
+
+Mesh read_coloured(MeshSource& source) {
+  Mesh mesh = read_mesh(source);
+  if (!has_appearances(source)) return mesh;
+  scan_appearances(source, [&](const VertexView& batch) {
+    mesh.appearances.insert(mesh.appearances.end(), batch.appearances.begin(),
+                            batch.appearances.end());
+  });
+  return mesh;
+}
+
+void write_coloured(const std::string& path, const Mesh& mesh, PositionType positions) {
+  std::vector<Channel> colours;
+  for (const char* name : {"red", "green", "blue"}) {
+    colours.push_back({name, ChannelType::uint8, ChannelRole::colour});
+  }
+  const auto sink =
+      create_ply(path, {mesh.positions.size(), mesh.triangles.size(), positions, "", colours});
+  std::vector<float> values;
+  for (const Appearance& appearance : mesh.appearances) {
+    for (const float level : colour_of(appearance)) values.push_back(level * 255);
+  }
+  sink->vertices(mesh.positions, values);
+  sink->triangles(mesh.triangles);
+  sink->commit();
 }
 
 double parse_ratio(const char* text) {
@@ -65,11 +96,15 @@ CommandLine parse(int argc, char** argv) {
 Outcome simplify_file(const Peer& peer, const CommandLine& command) {
   const auto source = open_mesh(command.input);
   const PositionType positions = source->info().positions;
-  Task task{cleaned(read_mesh(*source)), 0, positions};
+  Task task{cleaned(read_coloured(*source)), 0, positions};
   task.target = share_of(task.mesh.triangles.size(), command.ratio);
   Outcome outcome{peer.tool, peer.version, {}, 0};
   const Mesh result = peer.simplify(std::move(task), outcome.watch);
-  write_ply(command.output, result, positions);
+  if (result.appearances.empty()) {
+    write_ply(command.output, result, positions);
+  } else {
+    write_coloured(command.output, result, positions);
+  }
   outcome.triangles = result.triangles.size();
   return outcome;
 }
@@ -92,6 +127,19 @@ void Stopwatch::start() {
 void Stopwatch::stop() {
   cpu_s_ += seconds(CLOCK_PROCESS_CPUTIME_ID);
   wall_s_ += seconds(CLOCK_MONOTONIC);
+}
+
+std::array<float, 3> colour_of(const Appearance& appearance) {
+  return {static_cast<float>(appearance[0]) / k_range, static_cast<float>(appearance[1]) / k_range,
+          static_cast<float>(appearance[2]) / k_range};
+}
+
+Appearance appearance_of(std::span<const float, 3> colour) {
+  Appearance made{};
+  for (std::size_t i = 0; i < colour.size(); ++i) {
+    made[i] = static_cast<std::uint16_t>(std::lround(k_range * std::clamp(colour[i], 0.0F, 1.0F)));
+  }
+  return made;
 }
 
 std::uint64_t share_of(std::uint64_t triangles, double ratio) {

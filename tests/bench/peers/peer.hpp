@@ -2,8 +2,10 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <functional>
+#include <span>
 #include <string>
 
 #include <meshfarm/geometry/mesh.hpp>
@@ -25,7 +27,8 @@ class Stopwatch {
 
 /// What every peer is given: the same clean mesh, and how many triangles are wanted of it.
 struct Task {
-  /// Coincident vertices are one, no triangle has two equal corners, every vertex is used.
+  /// Coincident vertices are one, no triangle has two equal corners, every vertex is used. With the
+  /// colours of the input, if it has any: a peer that cannot take them gives back none.
   Mesh mesh;
   std::uint64_t target = 0;
   PositionType positions = PositionType::float32;
@@ -51,6 +54,10 @@ struct Outcome {
   Stopwatch watch;
   std::uint64_t triangles = 0;
 };
+
+/// The first three numbers of an appearance, from 0 to 1.
+std::array<float, 3> colour_of(const Appearance& appearance);
+Appearance appearance_of(std::span<const float, 3> colour);
 
 /// How many triangles are wanted; meshfarm's own rule.
 std::uint64_t share_of(std::uint64_t triangles, double ratio);

@@ -4,7 +4,9 @@
 #include <cstdint>
 
 #include <vtkCellArray.h>
+#include <vtkFloatArray.h>
 #include <vtkNew.h>
+#include <vtkPointData.h>
 #include <vtkPoints.h>
 #include <vtkPolyData.h>
 #include <vtkQuadricDecimation.h>
@@ -30,6 +32,13 @@ void fill(vtkPolyData& out, const Mesh& mesh) {
   }
   out.SetPoints(points);
   out.SetPolys(cells);
+  if (mesh.appearances.empty()) return;
+  vtkNew<vtkFloatArray> colours;
+  colours->SetNumberOfComponents(3);
+  for (const Appearance& appearance : mesh.appearances) {
+    colours->InsertNextTypedTuple(colour_of(appearance).data());
+  }
+  out.GetPointData()->SetScalars(colours);
 }
 
 Mesh from_vtk(vtkPolyData& in) {
@@ -38,6 +47,13 @@ Mesh from_vtk(vtkPolyData& in) {
     std::array<double, 3> p{};
     in.GetPoint(v, p.data());
     out.positions.push_back({p[0], p[1], p[2]});
+  }
+  if (auto* const colours = vtkFloatArray::SafeDownCast(in.GetPointData()->GetScalars())) {
+    for (vtkIdType v = 0; v < in.GetNumberOfPoints(); ++v) {
+      std::array<float, 3> colour{};
+      colours->GetTypedTuple(v, colour.data());
+      out.appearances.push_back(appearance_of(colour));
+    }
   }
   vtkCellArray* cells = in.GetPolys();
   for (vtkIdType c = 0; c < cells->GetNumberOfCells(); ++c) {
@@ -55,8 +71,11 @@ Mesh simplify(Task task, Stopwatch& watch) {
   vtkNew<vtkPolyData> mesh;
   fill(*mesh, task.mesh);
   const double before = static_cast<double>(task.mesh.triangles.size());
+  const bool coloured = !task.mesh.appearances.empty();
   task.mesh = {};
   vtkNew<vtkQuadricDecimation> decimation;
+  // Scalars with their default weight, nothing else.
+  decimation->SetAttributeErrorMetric(coloured);
   decimation->SetInputData(mesh);
   decimation->SetTargetReduction(1 - static_cast<double>(task.target) / before);
   watch.start();

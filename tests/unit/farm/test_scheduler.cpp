@@ -7,22 +7,10 @@
 
 #include <doctest/doctest.h>
 
-#include <meshfarm/farm/scheduler.hpp>
-
-#include "farm_fixture.hpp"
+#include "scheduler_desk.hpp"
 
 namespace meshfarm::test {
 namespace {
-
-JobOutput output_of(JobKey key) {
-  return {{to_string(ResultName{key.value, 1, 1}), 1, 1}, "made"};
-}
-
-JobSource source_of(std::vector<Job> jobs) {
-  return [jobs = std::move(jobs)](std::span<const AcceptedJob> accepted) {
-    return accepted.empty() ? jobs : std::vector<Job>{};
-  };
-}
 
 /// Workers that do exactly as they are told, on virtual time; each holds up to 16 jobs.
 class Shop {
@@ -141,60 +129,6 @@ TEST_CASE("a fixed schedule without surprises is close to the ideal, too") {
   CHECK(mixed_farm(512, {.schedule = Schedule::fixed, .expect_workers = 24}) <= 1.03);
 }
 
-/// A plan with a scheduler and short words.
-struct Desk {
-  explicit Desk(std::vector<Job> jobs, const SchedulerOptions& options = {})
-      : plan(source_of(std::move(jobs)), 3), scheduler(options) {
-    plan.restart({});
-  }
-  void join(std::uint32_t id, const std::string& host, const Capacity& capacity = {},
-            std::uint64_t room = 9) {
-    scheduler.join({id}, host, capacity);
-    scheduler.set_room({id}, room);
-  }
-  /// All that can be handed out now: "name@worker ".
-  std::string hand_out() {
-    std::string names;
-    while (const auto pick = scheduler.next(plan, now)) {
-      names += pick->job.job.parameters + "@" + std::to_string(pick->worker.value) + " ";
-    }
-    return names;
-  }
-  std::string second_attempts() {
-    now += FarmTime(100);  // often enough asked
-    std::string names;
-    for (const auto& pick : scheduler.second_attempts(plan, now)) {
-      names += pick.job.job.parameters + "@" + std::to_string(pick.worker.value) + " ";
-    }
-    return names;
-  }
-  void fail(std::uint32_t id, const std::string& name) {
-    const JobKey key = key_of(make_job(name));
-    scheduler.failed({id}, now);
-    scheduler.avoid({id}, key);
-    scheduler.drop({id}, key, now);
-    scheduler.set_room({id}, 1);
-    plan.fail_attempt(key, "no luck", Failing::attempt);
-  }
-  void done(std::uint32_t id, const std::string& name) {
-    const JobKey key = key_of(make_job(name));
-    scheduler.did({id}, key, 1, now);
-    scheduler.drop({id}, key, now);
-    scheduler.settled(key);
-    plan.accept(key, output_of(key));
-  }
-
-  Plan plan;
-  Scheduler scheduler;
-  FarmTime now{0};
-};
-
-Job with_memory(const std::string& name, std::uint64_t cost, std::uint64_t memory) {
-  Job job = make_job(name, cost);
-  job.memory = memory;
-  return job;
-}
-
 TEST_CASE("a job is never given to a worker that it does not fit") {
   Desk desk({with_memory("big", 9, 1000), with_memory("small", 1, 10)});
   desk.join(1, "a", {0, 500, 1});
@@ -263,34 +197,6 @@ TEST_CASE("a host that did a job is sent jobs again at once") {
   desk.scheduler.did({2}, key_of(make_job("one", 1)), 1, desk.now);
   CHECK(desk.scheduler.bad_hosts().empty());
   CHECK(desk.hand_out() == "two@2 ");
-}
-
-TEST_CASE("by a fixed schedule, too, the others go on once such a job's worker is lost") {
-  Desk desk({with_memory("large", 9, 800), with_memory("small", 8, 10)},
-            {.schedule = Schedule::fixed, .expect_workers = 2});
-  desk.join(1, "host", {0, 900, 1, 5});
-  desk.join(2, "host", {0, 900, 1, 5});
-  CHECK(desk.hand_out() == "large@1 ");
-  CHECK(desk.hand_out().empty());
-  for (const auto& held : desk.scheduler.leave({1})) desk.plan.give_back(held.key);
-  CHECK(desk.hand_out() == "small@2 large@2 ");
-}
-
-TEST_CASE("a fixed schedule goes on when another run has done what fits nobody here") {
-  Desk desk({}, {.schedule = Schedule::fixed, .expect_workers = 1});
-  const Job large = with_memory("large", 9, 1000);
-  desk.plan = Plan(
-      [large](std::span<const AcceptedJob> accepted) {
-        return accepted.empty()      ? std::vector<Job>{large}
-               : accepted.size() < 2 ? std::vector<Job>{make_job("next")}
-                                     : std::vector<Job>{};
-      },
-      3);
-  desk.plan.restart({});
-  desk.join(1, "host", {0, 500, 1});
-  CHECK(desk.hand_out().empty());
-  desk.plan.accept(key_of(large), output_of(key_of(large)));
-  CHECK(desk.hand_out() == "next@1 ");
 }
 
 TEST_CASE("a job larger than a share waits for the others of the host") {
@@ -370,6 +276,15 @@ TEST_CASE("a job that failed on a host is tried on another") {
   SUBCASE("and else there again") {
     CHECK(desk.hand_out() == "job@1 ");
   }
+}
+
+TEST_CASE("a job that failed where alone it fits is tried there again") {
+  Desk desk({with_memory("large", 9, 800)});
+  desk.join(1, "large host", {0, 900, 1}, 1);
+  desk.join(2, "small host", {0, 500, 1}, 1);
+  CHECK(desk.hand_out() == "large@1 ");
+  desk.fail(1, "large");
+  CHECK(desk.hand_out() == "large@1 ");
 }
 
 TEST_CASE("jobs that fail on a host at the same time are one incident") {

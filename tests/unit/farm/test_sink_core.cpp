@@ -222,6 +222,23 @@ TEST_CASE("a record that there is no room for is written again, and told only th
   CHECK_FALSE(bench.core.waits_for_room());
 }
 
+TEST_CASE("a sink does not wait for room when what it had none for is damaged by then") {
+  Bench bench(2);
+  bench.join(1);
+  const auto checks = only<Check>(bench.result(key("job 0")));
+  const auto more = only<Check>(bench.result(key("job 1")));
+  const JobFailure full{"ENOSPC", FailureKind::no_space};
+  bench.core.checked(checks.at(0), full, bench.now);
+  bench.core.checked(more.at(0), full, bench.now);
+  const auto again = only<Check>(bench.silence(FarmTime(1000)));
+  REQUIRE(again.size() == 2);
+  const JobFailure damaged{"it is damaged", FailureKind::attempt};
+  CHECK(said<Reject>(bench.core.checked(again[0], damaged, bench.now)).size() == 1);
+  CHECK(bench.core.waits_for_room());  // the other may still find none
+  CHECK(said<Reject>(bench.core.checked(again[1], damaged, bench.now)).size() == 1);
+  CHECK_FALSE(bench.core.waits_for_room());
+}
+
 TEST_CASE("an output that there is no room for is made again") {
   Bench bench(1);
   bench.join(1);

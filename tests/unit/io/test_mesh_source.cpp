@@ -1,42 +1,18 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
-#include <boost/iostreams/copy.hpp>
-#include <boost/iostreams/device/array.hpp>
-#include <boost/iostreams/device/back_inserter.hpp>
-#include <boost/iostreams/filter/gzip.hpp>
-#include <boost/iostreams/filter/zstd.hpp>
-#include <boost/iostreams/filtering_streambuf.hpp>
 #include <doctest/doctest.h>
 #include <support/meshes.hpp>
 #include <sys/stat.h>
 
 #include <meshfarm/io/ply_writer.hpp>
 
+#include "compressed.hpp"
 #include "ply_test_files.hpp"
 
 using namespace meshfarm;
 using namespace meshfarm::test;
 
 namespace {
-
-namespace bio = boost::iostreams;
-
-template <class Filter>
-std::string compressed(std::string_view bytes) {
-  std::string result;
-  bio::filtering_streambuf<bio::output> out;
-  out.push(Filter());
-  out.push(bio::back_inserter(result));
-  bio::copy(bio::array_source(bytes.data(), bytes.size()), out);
-  return result;
-}
-
-std::string gzipped(std::string_view bytes) {
-  return compressed<bio::gzip_compressor>(bytes);
-}
-std::string zstandard(std::string_view bytes) {
-  return compressed<bio::zstd_compressor>(bytes);
-}
 
 std::string torus_bytes() {
   const TempFolder folder;
@@ -157,13 +133,15 @@ TEST_CASE("a compressed header cannot make us allocate what it claims") {
 
 TEST_CASE("unknown formats are refused with what is supported") {
   const std::string why =
-      "m.ply: unknown format; meshfarm reads PLY (ascii, binary little or big endian), plain or "
-      "compressed with gzip or zstd";
-  for (const auto text : {"", "\n\n", "v 0 0 0\nf 1 1 1\n", "solid x\nendsolid x\n", "OFF\n0 0 0\n",
-                          "plying\n", "PLY\n", " ply\n", "p", "\x1f", "\x28\xb5\x2f"}) {
+      "m.ply: unknown format; meshfarm reads PLY, GLB, glTF, OFF, OBJ and STL, plain or compressed "
+      "with gzip "
+      "or zstd";
+  for (const auto text :
+       {"", "\n\n", "vertex 0 0 0\n", "v\n", "solid x\n", "solid x\nsurface\n", "OFFICE 1\n",
+        "off\n0 0 0\n", "plying\n", "PLY\n", " ply\n", "p", "\x1f", "\x28\xb5\x2f"}) {
     CHECK(refusal(text) == why);
   }
-  CHECK(refusal(gzipped("v 0 0 0\n")) == why);
+  CHECK(refusal(gzipped("V 0 0 0\n")) == why);
   CHECK(refusal(zstandard("")) == why);
 }
 

@@ -32,6 +32,7 @@ Manifest sample_manifest() {
   m.coincident_corners = 13;
   m.dropped_not_finite = 12;
   m.dropped_duplicate = 9;
+  m.channels = {{{"red", ChannelType::uint8, ChannelRole::colour}}, {"channels", 5, 6}, 7};
   m.skipped = {"vertex.red", "face.flags"};
   m.cut_seconds = 1.5;
   m.boundary_triangles = 11;
@@ -127,6 +128,9 @@ TEST_CASE("a manifest comes back whole") {
   CHECK(back.coincident_corners == 13);
   CHECK(back.dropped_not_finite == 12);
   CHECK(back.input_triangles == std::uint64_t{10} << 32);
+  CHECK(back.channels.channels == m.channels.channels);
+  CHECK(back.channels.file == m.channels.file);
+  CHECK(back.channels.points == 7);
   CHECK(back.skipped == m.skipped);
   CHECK(back.parts[1].file == m.parts[1].file);
   CHECK(back.box.hi == Vec3{1, 2, 3});
@@ -172,4 +176,17 @@ TEST_CASE("a manifest that is damaged or names a file outside its place is refus
     CAPTURE(name);
     CHECK_THROWS_AS(decode_manifest(encode_manifest(m), "manifest"), DataError);
   }
+}
+
+TEST_CASE("a part's appearances come back, and cost nothing where there are none") {
+  Part part{test::icosphere(1), 5, PositionType::float32};
+  for (Vec3& p : part.mesh.positions) p = rounded(p, part.positions);
+  const std::string plain = encode_part(part);
+  part.mesh.appearances = test::appearances(part.mesh.positions.size());
+  const std::string file = encode_part(part);
+  CHECK(file.size() == plain.size() + sizeof(Appearance) * part.mesh.positions.size());
+  const Part back = decode_part(file, "part");
+  CHECK(back.mesh.appearances == part.mesh.appearances);
+  CHECK(back.mesh.positions == part.mesh.positions);
+  CHECK(decode_part(plain, "part").mesh.appearances.empty());
 }

@@ -12,8 +12,8 @@ using namespace meshfarm::test;
 
 namespace {
 
-PlyWriterOptions options_for(std::uint64_t vertices, std::uint64_t triangles) {
-  PlyWriterOptions options;
+MeshSinkOptions options_for(std::uint64_t vertices, std::uint64_t triangles) {
+  MeshSinkOptions options;
   options.vertices = vertices;
   options.triangles = triangles;
   return options;
@@ -46,14 +46,14 @@ TEST_CASE("what is written is what is read") {
 
 TEST_CASE("the written bytes are these") {
   const TempFolder folder;
-  PlyWriterOptions options = options_for(4, 2);
+  MeshSinkOptions options = options_for(4, 2);
   options.comment = "made by a test";
-  PlyWriter writer(folder / "m.ply", options);
-  writer.vertices(k_square_vertices);
-  writer.triangles(std::span<const Triangle>(k_square_triangles).first(1));
+  const auto writer = create_ply(folder / "m.ply", options);
+  writer->vertices(k_square_vertices);
+  writer->triangles(std::span<const Triangle>(k_square_triangles).first(1));
   const std::vector<WideTriangle> last{{2, 1, 3}};
-  writer.triangles(std::span<const WideTriangle>(last));
-  writer.commit();
+  writer->triangles(std::span<const WideTriangle>(last));
+  writer->commit();
   CHECK(read_file(folder / "m.ply") == replaced(binary_square().text(), "element vertex",
                                                 "comment made by a test\nelement vertex"));
 }
@@ -68,17 +68,17 @@ TEST_CASE("batches of any size make the same file") {
   const TempFolder folder;
   const Mesh mesh = torus(100, 200);
   write_ply(folder / "whole.ply", mesh, PositionType::float32);
-  PlyWriter writer(folder / "pieces.ply",
-                   options_for(mesh.positions.size(), mesh.triangles.size()));
+  const auto writer =
+      create_ply(folder / "pieces.ply", options_for(mesh.positions.size(), mesh.triangles.size()));
   for (std::size_t i = 0; i < mesh.positions.size(); i += 7) {
-    writer.vertices(
+    writer->vertices(
         std::span(mesh.positions).subspan(i, std::min<std::size_t>(7, mesh.positions.size() - i)));
   }
-  writer.vertices({});
+  writer->vertices({});
   for (const Triangle& triangle : mesh.triangles) {
-    writer.triangles(std::span<const Triangle>(&triangle, 1));
+    writer->triangles(std::span<const Triangle>(&triangle, 1));
   }
-  writer.commit();
+  writer->commit();
   CHECK(read_file(folder / "pieces.ply") == read_file(folder / "whole.ply"));
 }
 
@@ -86,8 +86,8 @@ TEST_CASE("the index type follows the vertex count") {
   const TempFolder folder;
   // Looks into the unfinished file: nobody wants to wait for 2^31 vertices.
   const auto index_type = [&folder](std::uint64_t vertices) {
-    PlyWriter writer(folder / "m.ply", options_for(vertices, 0));
-    writer.vertices(std::vector<Vec3>(200'000));
+    const auto writer = create_ply(folder / "m.ply", options_for(vertices, 0));
+    writer->vertices(std::vector<Vec3>(200'000));
     const auto unfinished = std::filesystem::directory_iterator(folder.path())->path();
     const std::string header = read_file(unfinished).substr(0, 200);
     const std::size_t type = header.find("uchar ") + 6;
@@ -97,7 +97,7 @@ TEST_CASE("the index type follows the vertex count") {
   CHECK(index_type((std::uint64_t{1} << 31) + 1) == "uint");
   CHECK(index_type(std::uint64_t{1} << 32) == "uint");
   CHECK_THROWS_WITH_AS(
-      PlyWriter(folder / "m.ply", options_for((std::uint64_t{1} << 32) + 1, 0)),
+      create_ply(folder / "m.ply", options_for((std::uint64_t{1} << 32) + 1, 0)),
       "a PLY file with 4294967297 vertices cannot be written: its indices have 32 bits",
       UsageError);
 }
@@ -106,17 +106,17 @@ TEST_CASE("counts other than promised are an error, and nothing is left behind")
   const TempFolder folder;
   const std::string path = (folder / "m.ply").string();
   {
-    PlyWriter writer(path, options_for(4, 2));
+    const auto writer = create_ply(path, options_for(4, 2));
     CHECK_THROWS_WITH_AS(
-        writer.triangles(std::span<const Triangle>(k_square_triangles)),
+        writer->triangles(std::span<const Triangle>(k_square_triangles)),
         (path + ": 0 vertices were given to be written, but 4 were promised").c_str(), DataError);
-    writer.vertices(k_square_vertices);
+    writer->vertices(k_square_vertices);
     CHECK_THROWS_WITH_AS(
-        writer.vertices(std::span(k_square_vertices).first(1)),
+        writer->vertices(std::span(k_square_vertices).first(1)),
         (path + ": 5 vertices were given to be written, but 4 were promised").c_str(), DataError);
-    writer.triangles(std::span<const Triangle>(k_square_triangles).first(1));
+    writer->triangles(std::span<const Triangle>(k_square_triangles).first(1));
     CHECK_THROWS_WITH_AS(
-        writer.commit(),
+        writer->commit(),
         (path + ": 1 triangles were given to be written, but 2 were promised").c_str(), DataError);
   }
   CHECK(files_in(folder) == 0);
@@ -125,10 +125,10 @@ TEST_CASE("counts other than promised are an error, and nothing is left behind")
 TEST_CASE("an index out of range is an error") {
   const TempFolder folder;
   const std::string path = (folder / "m.ply").string();
-  PlyWriter writer(path, options_for(4, 1));
-  writer.vertices(k_square_vertices);
+  const auto writer = create_ply(path, options_for(4, 1));
+  writer->vertices(k_square_vertices);
   const std::vector<WideTriangle> bad{{0, 1, (std::uint64_t{1} << 32) + 2}};
-  CHECK_THROWS_WITH_AS(writer.triangles(std::span<const WideTriangle>(bad)),
+  CHECK_THROWS_WITH_AS(writer->triangles(std::span<const WideTriangle>(bad)),
                        (path + ": a triangle to be written has vertex 4294967298 of 4").c_str(),
                        DataError);
 }
@@ -137,8 +137,8 @@ TEST_CASE("without commit there is no file, and an old one stays") {
   const TempFolder folder;
   write_file(folder / "m.ply", "old");
   {
-    PlyWriter writer(folder / "m.ply", options_for(4, 0));
-    writer.vertices(k_square_vertices);
+    const auto writer = create_ply(folder / "m.ply", options_for(4, 0));
+    writer->vertices(k_square_vertices);
   }
   CHECK(files_in(folder) == 1);
   CHECK(read_file(folder / "m.ply") == "old");
@@ -152,7 +152,7 @@ TEST_CASE("a path that cannot be written is an IoError before any work is done")
   write_file(folder / "file", "");
   const auto told = [](const std::filesystem::path& path) {
     try {
-      const PlyWriter writer(path, options_for(0, 0));
+      const auto writer = create_ply(path, options_for(0, 0));
       return std::string("nothing");
     } catch (const IoError& error) {
       return std::string(error.what());
@@ -171,7 +171,7 @@ TEST_CASE("a path that cannot be written is an IoError before any work is done")
 
 TEST_CASE("a comment of two lines would be two header lines") {
   const TempFolder folder;
-  PlyWriterOptions options = options_for(0, 0);
+  MeshSinkOptions options = options_for(0, 0);
   options.comment = "one\nelement vertex 7";
-  CHECK_THROWS_AS(PlyWriter(folder / "m.ply", options), UsageError);
+  CHECK_THROWS_AS(create_ply(folder / "m.ply", options), UsageError);
 }

@@ -15,7 +15,7 @@ using namespace meshfarm;
 namespace {
 
 ResultWriter writer_to(std::string& file, PositionType positions, std::uint32_t boundary) {
-  return {positions, boundary, [&file](std::string_view bytes) { file += bytes; }};
+  return {{positions, false, boundary}, [&file](std::string_view bytes) { file += bytes; }};
 }
 
 std::span<const Vec3> first_two(const Mesh& mesh) {
@@ -133,4 +133,17 @@ TEST_CASE("a summary comes back; a damaged one is refused") {
   std::string impossible = encode_summary({rungs, 7, 9, true});
   impossible[16] = 2;  // held: after two counts
   CHECK_THROWS_AS(decode_summary(impossible, "s"), DataError);
+}
+
+TEST_CASE("each vertex of a result has the appearance that it had") {
+  Mesh mesh = test::grid(300, 250);
+  mesh.appearances = test::appearances(mesh.positions.size());
+  std::string file;
+  ResultWriter writer({PositionType::float32, true, 70'000},
+                      [&file](std::string_view bytes) { file += bytes; });
+  writer.add_rung(0, mesh, 0);
+  writer.finish(VertexView(mesh).part(0, 70'000), {});
+  const ResultMesh back = decode_result(file, 0, "r");
+  CHECK(back.mesh.positions == mesh.positions);
+  CHECK(back.mesh.appearances == mesh.appearances);
 }

@@ -21,6 +21,8 @@ MeshShare sample_slab(const Mesh& mesh, PositionType type) {
   for (const Vec3& p : mesh.positions) slab.positions.push_back(rounded(p, type));
   slab.triangles = mesh.triangles;
   slab.boundary = {0, 2, 3};
+  slab.positions[1] = slab.positions[0];
+  slab.apart = {{0, 1}, {1, 0}, {3, 2}};
   return slab;
 }
 
@@ -33,6 +35,7 @@ TEST_CASE("a slab comes back in the order it had, in both kinds of positions") {
     CHECK(back.positions == slab.positions);
     CHECK(back.triangles == slab.triangles);
     CHECK(back.boundary == slab.boundary);
+    CHECK(back.apart == slab.apart);
     CHECK(back.type == type);
   }
   CHECK(decode_slab(encode_slab({}), "slab").positions.empty());
@@ -62,4 +65,19 @@ TEST_CASE("a slab that does not fit together is refused, though its checksum is 
     bad.boundary = boundary;
     refuses(bad);
   }
+  for (const std::vector<ApartVertex>& apart :
+       {std::vector<ApartVertex>{{4, 0}}, {{2, 0}, {1, 0}}, {{0, 1}}, {{0, 0}, {2, 0}}}) {
+    bad = good;
+    bad.apart = apart;
+    refuses(bad);
+  }
+}
+
+TEST_CASE("a slab's appearances come back") {
+  MeshShare slab = sample_slab(test::icosphere(1), PositionType::float32);
+  slab.appearances = test::appearances(slab.positions.size());
+  const MeshShare back = decode_slab(encode_slab(slab), "slab");
+  CHECK(back.appearances == slab.appearances);
+  CHECK(back.positions == slab.positions);
+  CHECK(back.apart == slab.apart);
 }

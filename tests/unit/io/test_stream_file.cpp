@@ -222,3 +222,21 @@ TEST_CASE("counts that cannot be are refused before anything is made of them") {
   file[8] = 9;
   CHECK(refusal(resealed(file)).find("unknown version") != std::string::npos);
 }
+
+TEST_CASE("a stream's appearances come back") {
+  StreamMesh stream = sheet(300, 200);
+  stream.mesh.appearances = test::appearances(stream.mesh.positions.size());
+  const std::string file = encode_stream(stream);
+  StreamReader whole(fill_from(file, "stream"), "stream");
+  CHECK(whole.info().appearances);
+  CHECK(read_stream_mesh(whole).mesh.appearances == stream.mesh.appearances);
+  // As a part: boundary vertices first.
+  StreamReader reader(fill_from(file, "stream"), "stream");
+  const Part part = read_stream(reader);
+  REQUIRE(part.mesh.appearances.size() == part.mesh.positions.size());
+  for (std::size_t v = 0; v < part.mesh.positions.size(); ++v) {
+    const Vec3 p = part.mesh.positions[v];
+    const auto was = static_cast<std::size_t>(p.y * 301 + p.x);
+    REQUIRE(part.mesh.appearances[v] == stream.mesh.appearances[was]);
+  }
+}

@@ -5,6 +5,7 @@
 
 #include <doctest/doctest.h>
 
+#include <meshfarm/geometry/topology.hpp>
 #include <meshfarm/io/boundary_file.hpp>
 #include <meshfarm/io/part_file.hpp>
 #include <meshfarm/partition/cell_graph.hpp>
@@ -13,6 +14,7 @@
 #include <meshfarm/util/file.hpp>
 
 #include "partition/part_builder.hpp"
+#include "support/joined.hpp"
 #include "support/memory_source.hpp"
 #include "support/meshes.hpp"
 #include "support/temp_folder.hpp"
@@ -146,6 +148,33 @@ TEST_CASE("surfaces that touch are not welded together") {
   const CutMesh touching = cut(mesh, {.parts = 1, .weld = Weld::exact}, folder.path());
   CHECK(touching.manifest.coincident_vertices == 1);
   CHECK(touching.manifest.parts[0].vertices == 12);
+}
+
+TEST_CASE("where surfaces touch at seams it is decided as if there were none") {
+  const Mesh tips = test::touching_row(40, false);
+  const Mesh edges = test::touching_row(40, true);
+  const Mesh necks = test::torus_with_necks(60, 5);
+  for (const Mesh& mesh : {tips, edges, necks}) {
+    const Topology whole = measure_topology(mesh);
+    CAPTURE(whole.components);
+    const test::TempFolder folder;
+    for (const std::uint32_t parts : {1U, 4U, 16U}) {
+      for (unsigned seed = 0; seed < 5; ++seed) {
+        CAPTURE(parts);
+        CAPTURE(seed);
+        const CutMesh made = cut(seed == 0 ? mesh : test::shuffled(mesh, seed), {.parts = parts},
+                                 folder / std::to_string(8 * parts + seed));
+        const Topology got = measure_topology(test::joined(made.parts, made.boundary));
+        CHECK(got.used_vertices == whole.used_vertices);
+        CHECK(got.triangles == whole.triangles);
+        CHECK(got.components == whole.components);
+        CHECK(got.euler == whole.euler);
+        CHECK(got.nonmanifold_edges == 0);
+        CHECK(made.manifest.coincident_vertices == test::count_coincident(mesh));
+        CHECK(made.manifest.coincident_corners == test::count_flat(mesh));
+      }
+    }
+  }
 }
 
 TEST_CASE(

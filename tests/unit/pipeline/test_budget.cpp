@@ -323,9 +323,50 @@ TEST_CASE("runs of different targets have different keys") {
         run_key(manifest, {.ratio = 0.5, .lines = {.topology = TopologyMode::keep}}));
 }
 
+TEST_CASE("runs of different channels have different keys") {
+  Manifest manifest = manifest_of(1, 1000);
+  manifest.box = {{0, 0, 0}, {1, 1, 1}};
+  manifest.channels.channels = {{"red", ChannelType::uint8, ChannelRole::colour},
+                                {"heat", ChannelType::float32, ChannelRole::quality}};
+  const auto key_of = [&](const std::string& choice, Normals normals) {
+    return run_key(manifest,
+                   {.ratio = 0.5, .channels = parse_choice(choice, ""), .normals = normals});
+  };
+  const std::uint64_t usual = key_of("auto", Normals::blend);
+  CHECK(usual == run_key(manifest, {.ratio = 0.5}));
+  CHECK(usual != key_of("auto", Normals::recompute));
+  CHECK(usual != key_of("red", Normals::blend));
+  CHECK(key_of("red", Normals::blend) != key_of("heat", Normals::blend));
+  CHECK(key_of("red", Normals::blend) != key_of("none", Normals::blend));
+  CHECK_THROWS_AS(key_of("blue", Normals::blend), UsageError);
+  // Colours that are not wanted do not count.
+  const auto weight_of = [&](const std::string& choice) {
+    return lines_of(manifest, {.ratio = 0.5, .channels = parse_choice(choice, "")})
+        .appearance_scale.length;
+  };
+  CHECK(weight_of("auto") > 0);
+  CHECK(weight_of("red") == weight_of("auto"));
+  CHECK(weight_of("heat") == 0);
+}
+
+TEST_CASE("the more colours weigh, the steeper ones count") {
+  Manifest manifest;
+  manifest.channels.channels = {{"red", ChannelType::uint8, ChannelRole::colour}};
+  manifest.box.add({0, 0, 0});
+  manifest.box.add({3, 4, 0});
+  const auto scale_of = [&](double weight) {
+    return lines_of(manifest, {.colour_weight = weight}).appearance_scale;
+  };
+  CHECK(scale_of(0.002).length == doctest::Approx(0.01));
+  CHECK(scale_of(0.002).steepest == AppearanceScale{}.steepest);
+  CHECK(scale_of(0.008).length == doctest::Approx(0.04));
+  CHECK(scale_of(0.008).steepest == doctest::Approx(8 * AppearanceScale{}.steepest));
+  CHECK(scale_of(0).length == 0);
+}
+
 TEST_CASE("parameters come back; damaged ones are refused") {
   const SimplifyParameters p{
-      Allocation::uniform, 12, 3, 77, 0.25, 0.5, {true, 40, TopologyMode::simplify}};
+      Allocation::uniform, 12, 3, 77, 0.25, 0.5, {true, 40, TopologyMode::simplify, {0.75, 1.5}}};
   const std::string bytes = encode_parameters(p);
   const SimplifyParameters back = decode_parameters(bytes);
   CHECK(back.allocation == Allocation::uniform);
@@ -336,11 +377,18 @@ TEST_CASE("parameters come back; damaged ones are refused") {
   CHECK(back.lines.preserve_border);
   CHECK(back.lines.crease_angle == 40);
   CHECK(back.lines.topology == TopologyMode::simplify);
+  CHECK(back.lines.appearance_scale.length == 0.75);
+  CHECK(back.lines.appearance_scale.steepest == 1.5);
   for (std::size_t i = 0; i < bytes.size(); ++i) {
     CHECK_THROWS_AS(decode_parameters(std::string_view(bytes).substr(0, i)), DataError);
   }
   CHECK_THROWS_AS(decode_parameters(bytes + "x"), DataError);
   CHECK_THROWS_AS(decode_parameters("\x09" + bytes.substr(1)), DataError);
-  // The topology stands last.
-  CHECK_THROWS_AS(decode_parameters(bytes.substr(0, bytes.size() - 1) + "\x04"), DataError);
+  // The topology stands last but for the two numbers of appearances.
+  std::string other = bytes;
+  other[bytes.size() - 2 * sizeof(double) - 1] = 4;
+  CHECK_THROWS_AS(decode_parameters(other), DataError);
+  other = bytes;
+  other.back() = static_cast<char>(0xff);
+  CHECK_THROWS_AS(decode_parameters(other), DataError);
 }

@@ -3,6 +3,7 @@
 #include <filesystem>
 
 #include <doctest/doctest.h>
+#include <unistd.h>
 
 #include <meshfarm/staging/atomic_file.hpp>
 #include <meshfarm/util/errors.hpp>
@@ -33,6 +34,45 @@ TEST_CASE("commit publishes all that was written") {
   CHECK(file.size() == 8 + large.size());
   file.commit();
   CHECK(read_file(path) == "head" + large + "tail");
+}
+
+TEST_CASE("what is synced is in the temporary file, and not published") {
+  const test::TempFolder folder;
+  AtomicFile file(folder / "file");
+  file.write("all of it");
+  file.sync();
+  CHECK_FALSE(std::filesystem::exists(folder / "file"));
+  CHECK(read_file(std::filesystem::directory_iterator(folder.path())->path()) == "all of it");
+  file.write(", and more");
+  file.commit();
+  CHECK(read_file(folder / "file") == "all of it, and more");
+}
+
+TEST_CASE("what was written can be replaced, whether it is buffered or not") {
+  const test::TempFolder folder;
+  const auto path = folder.path() / "file";
+  AtomicFile file(path);
+  const std::string large(3'000'000, 'x');
+  file.write("head" + large);
+  file.write("tail");
+  file.overwrite(1, "EA");
+  file.overwrite(4 + large.size(), "T");
+  file.write("!");
+  CHECK(file.size() == 9 + large.size());
+  file.commit();
+  CHECK(read_file(path) == "hEAd" + large + "Tail!");
+}
+
+TEST_CASE("processes of equal numbers in two containers write under names of their own") {
+  const test::TempFolder folder;
+  const AtomicFile file(folder / "file");
+  const auto name = std::filesystem::directory_iterator(folder.path())->path().filename().string();
+  const auto dash = name.find(std::to_string(::getpid()) + "-");
+  REQUIRE(dash != std::string::npos);
+  // Beside the number it has one that is drawn: sixteen hexadecimal digits.
+  const auto drawn = name.substr(name.find('-', dash) + 1, 16);
+  CHECK(drawn.size() == 16);
+  CHECK(drawn.find_first_not_of("0123456789abcdef") == std::string::npos);
 }
 
 TEST_CASE("a temporary file left by a dead writer of our name is no obstacle") {

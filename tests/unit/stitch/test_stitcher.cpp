@@ -151,3 +151,15 @@ TEST_CASE("a composed result that is not of these parts is refused") {
                        "tell of 4",
                        DataError);
 }
+
+TEST_CASE("appearances are joined, and those of a part without any are black") {
+  Stitcher stitcher(3);
+  ResultMesh coloured = half(0, -1);
+  coloured.mesh.appearances = {{1}, {2}, {3}, {4}};
+  stitcher.add(half(1, 1));
+  stitcher.add(coloured);
+  stitcher.add(ResultMesh{});
+  const StitchedMesh stitched = stitcher.finish({});
+  const std::vector<Appearance> expected = {{}, {}, {}, {}, {1}, {2}, {3}, {4}};
+  CHECK(stitched.mesh.appearances == expected);
+}

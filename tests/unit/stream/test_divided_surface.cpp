@@ -71,6 +71,15 @@ TEST_CASE("slabs together tell the topology of the whole") {
   }
 }
 
+TEST_CASE("where surfaces touch at seams they are apart, as in the whole") {
+  for (const Mesh& mesh : {test::touching_row(400, false), test::touching_row(400, true),
+                           test::torus_with_necks(300, 5)}) {
+    const SurfaceTopology both = measured(mesh, k_little);
+    check_same(both.welded, measure_topology(mesh));
+    CHECK(both.welded.vertices == mesh.positions.size());
+  }
+}
+
 TEST_CASE("a soup is one surface, once it is welded") {
   const Mesh mesh = test::torus(50, 30);
   const Mesh soup = soup_of(mesh);

@@ -6,14 +6,17 @@
 
 #include <doctest/doctest.h>
 
+#include <meshfarm/geometry/topology.hpp>
 #include <meshfarm/io/boundary_file.hpp>
 #include <meshfarm/io/slab_file.hpp>
 #include <meshfarm/io/stream_file.hpp>
 #include <meshfarm/stream/generate_streams.hpp>
+#include <meshfarm/stream/slab.hpp>
 #include <meshfarm/util/errors.hpp>
 #include <meshfarm/util/file.hpp>
 
 #include "stream/sweep_order.hpp"
+#include "support/joined.hpp"
 #include "support/memory_source.hpp"
 #include "support/meshes.hpp"
 #include "support/temp_folder.hpp"
@@ -76,24 +79,6 @@ std::vector<Corners> triangles_of(const Generated& made) {
   return all;
 }
 
-/// Vertices and triangles in another order, triangles turned, too.
-Mesh shuffled(const Mesh& mesh, unsigned seed) {
-  std::mt19937 random(seed);
-  std::vector<std::uint32_t> order(mesh.positions.size());
-  std::iota(order.begin(), order.end(), 0U);
-  std::shuffle(order.begin(), order.end(), random);
-  Mesh made;
-  made.positions.resize(order.size());
-  for (std::size_t v = 0; v < order.size(); ++v) made.positions[order[v]] = mesh.positions[v];
-  for (Triangle t : mesh.triangles) {
-    t = {order[t[0]], order[t[1]], order[t[2]]};
-    std::rotate(t.begin(), t.begin() + random() % 3, t.end());
-    made.triangles.push_back(t);
-  }
-  std::shuffle(made.triangles.begin(), made.triangles.end(), random);
-  return made;
-}
-
 }  // namespace
 
 TEST_CASE("streams and boundary together are the input") {
@@ -154,8 +139,9 @@ TEST_CASE("slabs come out even with vertices far out, in many sizes, or in one p
     CHECK(static_cast<double>(most) * 28 <= 1.15 * static_cast<double>(mesh.positions.size()));
     CHECK(triangles_of(made) == triangles_of(mesh));
     for (const unsigned threads : {2U, 5U}) {
-      const Generated other = generate(shuffled(mesh, threads), {.streams = 28, .threads = threads},
-                                       folder / std::to_string(threads));
+      const Generated other =
+          generate(test::shuffled(mesh, threads), {.streams = 28, .threads = threads},
+                   folder / std::to_string(threads));
       CHECK(made.files == other.files);
       CHECK(made.boundary == other.boundary);
     }
@@ -197,7 +183,7 @@ TEST_CASE("slabs come out even with many vertices at one point, welded or not") 
     CHECK(static_cast<double>(most) * 28 <= 1.15 * static_cast<double>(all));
     CHECK(made.manifest.coincident_vertices == (weld == Weld::off ? 0 : k_crowd));
     for (const unsigned threads : {2U, 5U}) {
-      const Mesh other = weld == Weld::exact ? shuffled(mesh, threads) : mesh;
+      const Mesh other = weld == Weld::exact ? test::shuffled(mesh, threads) : mesh;
       const Generated again = generate(other, {.streams = 28, .weld = weld, .threads = threads},
                                        here / std::to_string(threads));
       CHECK(made.files == again.files);
@@ -208,7 +194,8 @@ TEST_CASE("slabs come out even with many vertices at one point, welded or not") 
 
 TEST_CASE("a stream's vertices come in order, and triangles by their smallest vertex") {
   const test::TempFolder folder;
-  const Generated made = generate(shuffled(test::torus(80, 30), 3), {.streams = 1}, folder.path());
+  const Generated made =
+      generate(test::shuffled(test::torus(80, 30), 3), {.streams = 1}, folder.path());
   StreamReader reader(fill_from(made.files[0], "stream"), "stream");
   StreamBlock block;
   double last = -HUGE_VAL;
@@ -230,8 +217,10 @@ TEST_CASE("the order of the input and the number of threads do not matter") {
   const Mesh mesh = test::torus(70, 30);
   const test::TempFolder folder;
   const Generated first = generate(mesh, {.streams = 4, .threads = 1}, folder / "a");
-  const Generated second = generate(shuffled(mesh, 1), {.streams = 4, .threads = 3}, folder / "b");
-  const Generated third = generate(shuffled(mesh, 2), {.streams = 4, .threads = 2}, folder / "c");
+  const Generated second =
+      generate(test::shuffled(mesh, 1), {.streams = 4, .threads = 3}, folder / "b");
+  const Generated third =
+      generate(test::shuffled(mesh, 2), {.streams = 4, .threads = 2}, folder / "c");
   CHECK(first.files == second.files);
   CHECK(first.files == third.files);
   CHECK(first.boundary == second.boundary);
@@ -321,9 +310,62 @@ TEST_CASE("where surfaces touch the order of the input does not matter either") 
     for (unsigned seed = 1; seed < 20; ++seed) {
       CAPTURE(seed);
       const Generated other =
-          generate(shuffled(mesh, seed), {.streams = 1}, folder / std::to_string(seed));
+          generate(test::shuffled(mesh, seed), {.streams = 1}, folder / std::to_string(seed));
       CHECK(first.files == other.files);
     }
+  }
+}
+
+TEST_CASE("where surfaces touch at seams it is decided as if there were none") {
+  const Mesh tips = test::touching_row(40, false);
+  const Mesh edges = test::touching_row(40, true);
+  const Mesh necks = test::torus_with_necks(60, 5);
+  for (const Mesh& mesh : {tips, edges, necks}) {
+    const Topology whole = measure_topology(mesh);
+    CAPTURE(whole.components);
+    const test::TempFolder folder;
+    for (const std::uint32_t streams : {1U, 4U, 16U}) {
+      std::string files;
+      for (unsigned seed = 0; seed < 5; ++seed) {
+        CAPTURE(streams);
+        CAPTURE(seed);
+        const Generated made =
+            generate(seed == 0 ? mesh : test::shuffled(mesh, seed), {.streams = streams},
+                     folder / std::to_string(8 * streams + seed));
+        const Topology got = measure_topology(test::joined(made.streams, made.boundary));
+        CHECK(got.used_vertices == whole.used_vertices);
+        CHECK(got.triangles == whole.triangles);
+        CHECK(got.components == whole.components);
+        CHECK(got.euler == whole.euler);
+        CHECK(got.nonmanifold_edges == 0);
+        CHECK(made.manifest.coincident_vertices == test::count_coincident(mesh));
+        CHECK(made.manifest.coincident_corners == test::count_flat(mesh));
+        std::string all;
+        for (const std::string& file : made.files) all += file;
+        if (seed == 0) files = all;
+        CHECK(all == files);
+      }
+    }
+  }
+}
+
+TEST_CASE("slabs tell what stays apart at their seams to whoever sorts them") {
+  for (const Mesh& mesh : {test::touching_row(40, true), test::torus_with_necks(60, 5)}) {
+    const test::TempFolder folder;
+    const Generated here = generate(mesh, {.streams = 16}, folder / "here");
+    test::MemorySource source(test::shuffled(mesh, 1));
+    const Stage stage = Stage::create(folder / "slabs");
+    const Manifest slabs = generate_streams(source, stage, {.streams = 16, .sort = SortAt::farm});
+    bool some_stay_apart = false;
+    for (std::size_t s = 0; s < slabs.parts.size(); ++s) {
+      MeshShare slab = decode_slab(stage.read(slabs.parts[s].file), "slab");
+      some_stay_apart = some_stay_apart || !slab.apart.empty();
+      const SortedSlab sorted = sort_slab(std::move(slab), *slabs.sorting);
+      CHECK(encode_stream(sorted.stream) == here.files[s]);
+      CHECK(sorted.boundary_vertices == slabs.parts[s].boundary_vertices);
+    }
+    CHECK(some_stay_apart);
+    CHECK(decode_boundary(stage.read(slabs.boundary), "boundary") == here.boundary);
   }
 }
 

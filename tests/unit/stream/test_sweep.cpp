@@ -39,16 +39,21 @@ Swept swept(const StreamMesh& stream, const SweepOptions& options) {
   Swept result;
   result.boundary_vertices = reader.info().boundary_vertices;
   result.mesh.positions.resize(result.boundary_vertices);
+  const bool counts = reader.info().appearances && options.lines.appearance_scale.length > 0;
+  if (counts) result.mesh.appearances.resize(result.boundary_vertices);
   Mesh& mesh = result.mesh;
   static_cast<SweptStream&>(result) = sweep(reader, options, [&](auto vertices, auto triangles) {
-    mesh.positions.insert(mesh.positions.end(), vertices.begin(), vertices.end());
+    for (std::size_t v = 0; v < vertices.size(); ++v) append_vertex(vertices, v, mesh);
     mesh.triangles.insert(mesh.triangles.end(), triangles.begin(), triangles.end());
     ++result.pieces;
     result.largest_piece = std::max(result.largest_piece, triangles.size());
     for (const Triangle& t : triangles)
       REQUIRE(*std::max_element(t.begin(), t.end()) < mesh.positions.size());
   });
-  std::copy(result.boundary.begin(), result.boundary.end(), mesh.positions.begin());
+  std::copy(result.boundary.positions.begin(), result.boundary.positions.end(),
+            mesh.positions.begin());
+  std::copy(result.boundary.appearances.begin(), result.boundary.appearances.end(),
+            mesh.appearances.begin());
   return result;
 }
 
@@ -171,4 +176,55 @@ TEST_CASE("a sweep that is given up says so") {
                                                   .window_triangles = 5'000,
                                                   .progress = [](std::uint64_t) { return false; }}),
                   IncompleteError);
+}
+
+TEST_CASE("a sweep keeps what its vertices look like") {
+  // Black on one side of a line, white on the other: the line stays where it is.
+  Mesh sheet = test::grid(200, 60);
+  for (const Vec3& p : sheet.positions) {
+    const bool is_white = p.x + 0.5 * p.y > 100;
+    sheet.appearances.push_back(is_white ? Appearance{65535, 65535, 65535, 0} : Appearance{});
+  }
+  MeshShare share{sheet.positions, sheet.triangles, {0, 1, 2}};
+  share.appearances = sheet.appearances;
+  share.type = PositionType::float64;
+  const StreamMesh stream = sort_slab(std::move(share), {}).stream;
+  SweepOptions options;
+  options.ratio = 0.1;
+  options.window_triangles = 4000;
+  options.lines.appearance_scale.length = 10;
+  const Swept made = swept(stream, options);
+  REQUIRE(made.mesh.appearances.size() == made.mesh.positions.size());
+  std::size_t wrong = 0;
+  for (std::size_t v = 0; v < made.mesh.positions.size(); ++v) {
+    const Vec3 p = made.mesh.positions[v];
+    const double from_line = p.x + 0.5 * p.y - 100.25;
+    if (std::abs(from_line) < 2) continue;
+    wrong += (made.mesh.appearances[v][0] > 32768) == (from_line > 0) ? 0 : 1;
+  }
+  CHECK(wrong == 0);
+  options.lines.appearance_scale.length = 0;
+  CHECK(swept(stream, options).mesh.appearances.empty());
+}
+
+TEST_CASE("of vertices that become one the appearance does not depend on the order") {
+  Mesh soup;
+  for (const Triangle& t : test::grid(4, 4).triangles) {
+    const auto first = static_cast<std::uint32_t>(soup.positions.size());
+    for (const std::uint32_t v : t) soup.positions.push_back(test::grid(4, 4).positions[v]);
+    soup.triangles.push_back({first, first + 1, first + 2});
+  }
+  soup.appearances = test::appearances(soup.positions.size());
+  const auto sorted = [](const Mesh& mesh) {
+    MeshShare share{mesh.positions, mesh.triangles, {}};
+    share.appearances = mesh.appearances;
+    share.type = PositionType::float64;
+    return encode_stream(sort_slab(std::move(share), {}).stream);
+  };
+  Mesh turned = soup;
+  std::reverse(turned.positions.begin(), turned.positions.end());
+  std::reverse(turned.appearances.begin(), turned.appearances.end());
+  const auto last = static_cast<std::uint32_t>(soup.positions.size()) - 1;
+  for (Triangle& t : turned.triangles) t = {last - t[0], last - t[1], last - t[2]};
+  CHECK(sorted(soup) == sorted(turned));
 }

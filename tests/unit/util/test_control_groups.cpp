@@ -86,6 +86,29 @@ TEST_CASE("the least room of all groups above counts, and names its group") {
   CHECK(one.room() == 400);
 }
 
+TEST_CASE("of groups with one limit the outer one is named, whatever is counted at the moment") {
+  MadeGroups slurm("4:memory:/job_1/step_0/task_0", k_one);
+  const std::string job = "sys/fs/cgroup/memory/job_1/";
+  const auto put = [&](const std::string& group, const std::string& limit,
+                       const std::string& used) {
+    slurm.put(group + "memory.limit_in_bytes", limit);
+    slurm.put(group + "memory.usage_in_bytes", used);
+    slurm.put(group + "memory.stat", "hierarchical_memory_limit 2000");
+  };
+  put(job, "2000", "300");
+  put(job + "step_0/", "2000", "250");
+  put(job + "step_0/task_0/", std::to_string(0x7ffffffffffff000), "120");
+  const auto before = group_memory(slurm.view());
+  CHECK(before->room == 1700);
+  put(job + "step_0/", "2000", "310");  // somebody ended before the job's count was read
+  const auto after = group_memory(slurm.view());
+  CHECK(after->room == 1690);
+  CHECK(after->group == before->group);
+  put(job + "step_0/", "500", "310");  // a step with less than the job has
+  CHECK(group_memory(slurm.view())->room == 190);
+  CHECK(group_memory(slurm.view())->group != before->group);
+}
+
 TEST_CASE("a container that does not see the groups above hears of their limit in version 1") {
   MadeGroups one("4:memory:/docker/abc",
                  "31 23 0:28 /docker/abc /sys/fs/cgroup/memory ro - cgroup cgroup rw,memory");

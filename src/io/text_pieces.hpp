@@ -10,7 +10,6 @@
 #include <vector>
 
 #include "byte_stream.hpp"
-#include "ply_body.hpp"
 
 namespace meshfarm {
 
@@ -33,43 +32,6 @@ class TextStream final : public ByteStream {
     return false;
   }
   const char* begin_;
-};
-
-/// Takes corners as a TriangleMaker does, to hand them on to one later.
-class CornerRecord {
- public:
-  explicit CornerRecord(std::uint64_t vertices) : vertices_(vertices) {}
-
-  void begin(PlyRole role) {
-    role_ = role;
-    lengths_.push_back(0);
-  }
-  bool corner(std::int64_t index) {
-    if (static_cast<std::uint64_t>(index) >= vertices_ &&
-        (role_ != PlyRole::strips || index != -1)) {
-      return false;
-    }
-    corners_.push_back(index);
-    ++lengths_.back();
-    return true;
-  }
-  void end() {}
-  std::uint64_t vertices() const { return vertices_; }
-
-  void play(TriangleMaker& maker) const {
-    const std::int64_t* next = corners_.data();
-    for (const std::uint32_t length : lengths_) {
-      maker.begin(role_);
-      for (std::uint32_t i = 0; i < length; ++i) maker.corner(*next++);
-      maker.end();
-    }
-  }
-
- private:
-  std::uint64_t vertices_;
-  PlyRole role_ = PlyRole::faces;
-  std::vector<std::uint32_t> lengths_;
-  std::vector<std::int64_t> corners_;
 };
 
 /// Text as so many pieces of about equal size, each of whole lines; fewer if lines are long.

@@ -1,0 +1,54 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include <meshfarm/geometry/distance.hpp>
+#include <meshfarm/geometry/mesh.hpp>
+
+namespace meshfarm {
+
+/// How columns of values are compared.
+enum class ValueKind : std::uint8_t {
+  numbers,    // by their differences
+  direction,  // three columns, by the angle between two vectors, in degrees
+};
+
+/// Columns that are compared as one: of a colour three.
+struct ValueGroup {
+  ValueKind kind = ValueKind::numbers;
+  std::size_t columns = 1;
+};
+
+/// A mesh and the values of its vertices: the columns of all groups of each vertex, one after the
+/// other.
+struct ValuedMesh {
+  const Mesh& mesh;
+  std::span<const float> values;
+};
+
+/// What lies between the values of two surfaces, over sampled points and the group's columns.
+struct ValueError {
+  double rms = 0;
+  double mean = 0;
+  double max = 0;
+  /// The points where both surfaces have values: finite numbers, vectors that are not 0.
+  std::uint64_t samples = 0;
+};
+
+struct SurfaceError {
+  Distance distance;
+  std::vector<ValueError> values;  // by group
+};
+
+/// Measures distances as measure_distance does, to the bit, and at the same points by how much the
+/// values differ: blended linearly over the triangle at the point, and at the nearest point of
+/// `to`. Memory and errors are those of measure_distance.
+SurfaceError measure_error(const ValuedMesh& from, const ValuedMesh& to,
+                           std::span<const ValueGroup> groups, const DistanceOptions& options);
+
+}  // namespace meshfarm

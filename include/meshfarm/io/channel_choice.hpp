@@ -1,0 +1,47 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <meshfarm/io/channel.hpp>
+#include <meshfarm/io/mesh_source.hpp>
+
+namespace meshfarm {
+
+/// Which of a mesh's channels are wanted.
+struct ChannelChoice {
+  bool all = true;
+  std::vector<std::string> names;  // if not all; "colours" and "normals" stand for theirs
+
+  bool operator==(const ChannelChoice&) const = default;
+};
+
+/// "auto", "none", or names with commas between them. Throws UsageError for an empty name; `option`
+/// is for the message.
+ChannelChoice parse_choice(std::string_view text, std::string_view option);
+
+/// Where the chosen stand among the channels, in rising order. Throws UsageError for a name that is
+/// not there, with those that are, and for a part of a normal.
+std::vector<std::size_t> chosen_columns(const ChannelChoice& choice,
+                                        std::span<const Channel> channels);
+
+/// Those channels.
+std::vector<Channel> channels_at(std::span<const Channel> channels,
+                                 std::span<const std::size_t> columns);
+
+/// The values of these columns alone, of values of `width` columns.
+std::vector<float> values_at(std::span<const float> values, std::size_t width,
+                             std::span<const std::size_t> columns);
+
+/// The mesh with the chosen channels only; the others count as skipped. Throws UsageError as
+/// chosen_columns does.
+std::unique_ptr<MeshSource> with_channels(std::unique_ptr<MeshSource> source,
+                                          const ChannelChoice& choice);
+
+}  // namespace meshfarm

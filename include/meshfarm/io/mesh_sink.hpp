@@ -1,0 +1,40 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include <meshfarm/geometry/mesh.hpp>
+#include <meshfarm/io/mesh_source.hpp>
+
+namespace meshfarm {
+
+struct MeshSinkOptions {
+  std::uint64_t vertices = 0;  // exactly as many must be written
+  std::uint64_t triangles = 0;
+  PositionType positions = PositionType::float32;
+  std::string comment;  // one line, may be empty; not every format has a place for it
+  std::vector<Channel> channels = {};  // of the vertices; see kept_channels()
+};
+
+/// A mesh file that is written in batches, in memory that does not depend on its size: all
+/// vertices, then all triangles. It appears under its name only at commit(), whole and synced;
+/// without commit() nothing is left behind.
+class MeshSink {
+ public:
+  virtual ~MeshSink() = default;
+  /// These throw IoError if something cannot be written, and DataError for more vertices or
+  /// triangles than promised, and for an index that no vertex has.
+  virtual void vertices(std::span<const Vec3> batch) = 0;
+  /// With the values of all channels of each vertex, one vertex after the other.
+  virtual void vertices(std::span<const Vec3> batch, std::span<const float> values) = 0;
+  virtual void triangles(std::span<const WideTriangle> batch) = 0;
+  virtual void triangles(std::span<const Triangle> batch) = 0;
+  /// Throws IoError if anything could not be written, DataError if the counts are not as promised.
+  virtual void commit() = 0;
+};
+
+}  // namespace meshfarm

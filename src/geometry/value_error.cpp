@@ -1,0 +1,160 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include <meshfarm/geometry/channel_fit.hpp>
+#include <meshfarm/geometry/value_error.hpp>
+#include <meshfarm/util/errors.hpp>
+#include <meshfarm/util/parallel.hpp>
+
+#include "geometry/area_sampler.hpp"
+#include "geometry/bvh.hpp"
+#include "geometry/distance_sums.hpp"
+#include "geometry/random_unit.hpp"
+
+namespace meshfarm {
+namespace {
+
+struct ValueSums {
+  double squares = 0;
+  double sum = 0;
+  double max = 0;
+  std::uint64_t samples = 0;
+
+  void add(const ValueSums& other) {
+    squares += other.squares;
+    sum += other.sum;
+    max = std::max(max, other.max);
+    samples += other.samples;
+  }
+  /// Of a point, or of one of its columns.
+  void add_difference(double difference) {
+    squares += difference * difference;
+    sum += difference;
+    max = std::max(max, difference);
+  }
+  ValueError over(const ValueGroup& group) const {
+    const std::size_t differences = group.kind == ValueKind::direction ? 1 : group.columns;
+    const auto count = static_cast<double>(std::max<std::uint64_t>(1, samples * differences));
+    return {std::sqrt(squares / count), sum / count, max, samples};
+  }
+};
+
+struct ChunkSums {
+  DistanceSums distance;
+  std::vector<ValueSums> values;
+};
+
+bool all_finite(std::span<const double> values) {
+  return std::all_of(values.begin(), values.end(),
+                     [](double value) { return std::isfinite(value); });
+}
+
+/// The angle between two vectors; not finite where one of them is 0.
+double degrees_between(std::span<const double> a, std::span<const double> b) {
+  const Vec3 u{a[0], a[1], a[2]};
+  const Vec3 v{b[0], b[1], b[2]};
+  if (!(squared_length(u) > 0) || !(squared_length(v) > 0)) return NAN;
+  return std::atan2(length(cross(u, v)), dot(u, v)) * (180 / std::acos(-1.0));
+}
+
+void compare(const ValueGroup& group, std::span<const double> a, std::span<const double> b,
+             ValueSums& sums) {
+  if (group.kind == ValueKind::direction) {
+    const double degrees = degrees_between(a, b);
+    if (!std::isfinite(degrees)) return;
+    sums.add_difference(degrees);
+  } else {
+    if (!all_finite(a) || !all_finite(b)) return;
+    for (std::size_t i = 0; i < a.size(); ++i) sums.add_difference(std::abs(a[i] - b[i]));
+  }
+  ++sums.samples;
+}
+
+class Comparer {
+ public:
+  Comparer(const ValuedMesh& from, const ValuedMesh& to, std::span<const ValueGroup> groups,
+           unsigned threads)
+      : from_(from), to_(to), groups_(groups), bvh_(to.mesh, threads) {
+    for (const ValueGroup& group : groups) columns_ += group.columns;
+  }
+
+  ChunkSums compare_chunk(AreaSampler sampler, std::uint64_t samples, std::uint64_t chunk) const {
+    ChunkSums sums{{}, std::vector<ValueSums>(groups_.size())};
+    std::vector<double> here(columns_);
+    std::vector<double> there(columns_);
+    const std::uint64_t end = std::min(samples, (chunk + 1) * k_samples_a_chunk);
+    std::uint32_t guess = 0;
+    for (std::uint64_t n = chunk * k_samples_a_chunk; n < end; ++n) {
+      const Vec3 point = sampler.sample(n);
+      const Bvh::Nearest nearest = bvh_.nearest(point, guess);
+      guess = nearest.triangle;
+      sums.distance.add({nearest.squared, std::sqrt(nearest.squared), nearest.squared});
+      blend(from_, from_.mesh.triangles[sampler.triangle()], random_shares(n), here);
+      const Triangle& t = to_.mesh.triangles[guess];
+      const std::vector<Vec3>& at = to_.mesh.positions;
+      blend(to_, t, nearest_shares(point, at[t[0]], at[t[1]], at[t[2]]), there);
+      compare_all(here, there, sums.values);
+    }
+    return sums;
+  }
+
+ private:
+  void blend(const ValuedMesh& mesh, const Triangle& triangle, const std::array<double, 3>& shares,
+             std::span<double> values) const {
+    std::fill(values.begin(), values.end(), 0.0);
+    for (std::size_t k = 0; k < 3; ++k) {
+      // A corner without a share may have a value that is not finite.
+      if (shares[k] == 0) continue;
+      const auto of_vertex = mesh.values.subspan(triangle[k] * columns_, columns_);
+      for (std::size_t i = 0; i < columns_; ++i) {
+        values[i] += shares[k] * static_cast<double>(of_vertex[i]);
+      }
+    }
+  }
+
+  void compare_all(std::span<const double> a, std::span<const double> b,
+                   std::vector<ValueSums>& sums) const {
+    std::size_t first = 0;
+    for (std::size_t g = 0; g < groups_.size(); ++g) {
+      const std::size_t count = groups_[g].columns;
+      compare(groups_[g], a.subspan(first, count), b.subspan(first, count), sums[g]);
+      first += count;
+    }
+  }
+
+  const ValuedMesh& from_;
+  const ValuedMesh& to_;
+  std::span<const ValueGroup> groups_;
+  std::size_t columns_ = 0;
+  Bvh bvh_;
+};
+
+}  // namespace
+
+SurfaceError measure_error(const ValuedMesh& from, const ValuedMesh& to,
+                           std::span<const ValueGroup> groups, const DistanceOptions& options) {
+  if (options.samples == 0) throw UsageError("distances need at least one sample");
+  const std::vector<double> before = areas_before(from.mesh, options.threads, "from");
+  check_area(before, "from");
+  check_area(areas_before(to.mesh, options.threads, "to"), "to");
+  const Comparer comparer(from, to, groups, options.threads);
+  const AreaSampler sampler(from.mesh, before, options.samples);
+  std::vector<ChunkSums> chunks(chunks_of(options.samples));
+  parallel_for(chunks.size(), options.threads, [&](std::uint64_t chunk) {
+    chunks[chunk] = comparer.compare_chunk(sampler, options.samples, chunk);
+  });
+  DistanceSums distance;
+  std::vector<ValueSums> sums(groups.size());
+  for (const ChunkSums& chunk : chunks) {
+    distance.add(chunk.distance);
+    for (std::size_t g = 0; g < groups.size(); ++g) sums[g].add(chunk.values[g]);
+  }
+  SurfaceError error{distance.over(options.samples), {}};
+  for (std::size_t g = 0; g < groups.size(); ++g) error.values.push_back(sums[g].over(groups[g]));
+  return error;
+}
+
+}  // namespace meshfarm

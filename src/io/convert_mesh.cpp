@@ -1,0 +1,121 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#include <algorithm>
+#include <memory>
+#include <vector>
+
+#include <meshfarm/io/convert_mesh.hpp>
+#include <meshfarm/io/mesh_format.hpp>
+
+namespace meshfarm {
+namespace {
+
+/// Which vertices have no position. Takes no memory before the first of them.
+class WithoutPosition {
+ public:
+  void add(std::uint64_t first, std::span<const Vec3> batch) {
+    for (std::size_t i = 0; i < batch.size(); ++i) {
+      if (has_position(batch[i])) continue;
+      lacks_.resize(std::max<std::uint64_t>(lacks_.size(), first + i + 1));
+      lacks_[first + i] = true;
+    }
+  }
+  bool has_any_of(const WideTriangle& triangle) const {
+    return std::any_of(triangle.begin(), triangle.end(),
+                       [this](std::uint64_t v) { return v < lacks_.size() && lacks_[v]; });
+  }
+  bool empty() const { return lacks_.empty(); }
+
+ private:
+  std::vector<bool> lacks_;
+};
+
+class Conversion {
+ public:
+  Conversion(MeshSource& source, const std::function<void(double)>& progress)
+      : source_(source), progress_(progress) {}
+
+  Converted write(const std::filesystem::path& output) {
+    count_vertices();
+    scan_triangles([&](std::span<const WideTriangle> batch) { made_.triangles += batch.size(); });
+    made_.small_faces = source_.small_faces();
+    made_.dropped_not_finite = dropped_;
+    const auto sink = create_mesh(output, {.vertices = made_.vertices,
+                                           .triangles = made_.triangles,
+                                           .positions = made_.positions,
+                                           .comment = {},
+                                           .channels = source_.info().channels});
+    made_.channels = kept_channels(output, source_.info().channels);
+    write_vertices(*sink);
+    scan_triangles([&](std::span<const WideTriangle> batch) { sink->triangles(batch); });
+    sink->commit();
+    return made_;
+  }
+
+ private:
+  void write_vertices(MeshSink& sink) {
+    if (source_.info().channels.empty()) {
+      return source_.scan_vertices([&](std::span<const Vec3> batch) {
+        sink.vertices(batch);
+        tell(batch.size());
+      });
+    }
+    source_.scan_channels([&](const ChannelPoints& batch) {
+      sink.vertices(batch.points, batch.values);
+      tell(batch.points.size());
+    });
+  }
+
+  void count_vertices() {
+    do {
+      made_.positions = source_.info().positions;
+      made_.vertices = 0;
+      without_ = {};
+      source_.scan_vertices([&](std::span<const Vec3> batch) {
+        without_.add(made_.vertices, batch);
+        made_.vertices += batch.size();
+        tell(batch.size());
+      });
+    } while (source_.info().positions != made_.positions);
+  }
+
+  /// Of the triangles whose vertices all have positions.
+  void scan_triangles(const std::function<void(std::span<const WideTriangle>)>& take) {
+    dropped_ = 0;
+    source_.scan_triangles([&](std::span<const WideTriangle> batch) {
+      tell(batch.size());
+      if (without_.empty()) return take(batch);
+      kept_.clear();
+      for (const WideTriangle& triangle : batch) {
+        if (!without_.has_any_of(triangle)) kept_.push_back(triangle);
+      }
+      dropped_ += batch.size() - kept_.size();
+      take(kept_);
+    });
+  }
+
+  /// All is scanned twice. Polygons have more triangles than faces, so it is a guess.
+  void tell(std::size_t more) {
+    done_ += more;
+    const MeshFileInfo& info = source_.info();
+    const double all = 2 * (static_cast<double>(info.vertices) + static_cast<double>(info.faces));
+    progress_(std::min(1.0, static_cast<double>(done_) / std::max(1.0, all)));
+  }
+
+  MeshSource& source_;
+  const std::function<void(double)>& progress_;
+  Converted made_;
+  WithoutPosition without_;
+  std::vector<WideTriangle> kept_;  // of a batch
+  std::uint64_t dropped_ = 0;
+  std::uint64_t done_ = 0;
+};
+
+}  // namespace
+
+Converted convert_mesh(MeshSource& source, const std::filesystem::path& output,
+                       const std::function<void(double)>& progress) {
+  return Conversion(source, progress).write(output);
+}
+
+}  // namespace meshfarm

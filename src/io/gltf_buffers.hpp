@@ -1,0 +1,68 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <string>
+#include <utility>
+
+#include "byte_stream.hpp"
+#include "gltf_buffer.hpp"
+#include "gltf_json.hpp"
+#include "gltf_meshopt.hpp"
+
+namespace meshfarm {
+
+/// What a .glb or .gltf file is made of.
+struct GltfContainer {
+  std::string format;  // "GLB", "glTF"
+  std::string json;
+  std::uint64_t json_start = 0;        // in the file
+  std::shared_ptr<GltfBuffer> binary;  // of a .glb that has such a chunk
+};
+
+/// The largest JSON that is read; it is held in memory, in some times its size.
+inline constexpr std::uint64_t k_most_gltf_json = std::uint64_t{64} << 20;
+
+/// Whether the file begins as a .glb does.
+bool is_glb_file(const InputFile& file);
+/// Whether the file is text, and its first character that of a JSON object.
+bool is_gltf_file(const InputFile& file);
+
+/// A compressed .glb is copied to a scratch file without a name in $TMPDIR (or /tmp). Throws
+/// DataError with the byte for what is malformed.
+GltfContainer open_glb_container(const std::shared_ptr<const InputFile>& file);
+GltfContainer open_gltf_container(const InputFile& file);
+
+/// The buffers of a document, opened when they are asked for: those of images need not be there.
+/// Of files beside the document no more than a few are open at a time.
+class GltfBuffers {
+ public:
+  GltfBuffers(const std::filesystem::path& path, std::shared_ptr<const GltfBuffer> binary)
+      : folder_(path.parent_path()),
+        binary_(std::move(binary)),
+        files_(std::make_shared<GltfFiles>()) {}
+
+  /// A buffer view. Its buffer may lie in a file beside the document or in a "data:" URI; folders
+  /// above and other hosts are refused. One that is compressed by EXT_meshopt_compression is
+  /// decompressed once. Throws IoError or DataError.
+  std::shared_ptr<const GltfBuffer> open_view(const GltfValue& document, std::uint64_t index);
+  /// The file beside the document, or the "data:" URI, that a value names.
+  std::shared_ptr<const GltfBuffer> open_uri(const GltfValue& uri) const;
+
+ private:
+  std::shared_ptr<const GltfBuffer> open(const GltfValue& document, std::uint64_t index);
+  std::shared_ptr<const GltfBuffer> open_buffer(const GltfValue& buffer, bool is_first) const;
+
+  std::filesystem::path folder_;
+  std::shared_ptr<const GltfBuffer> binary_;
+  std::shared_ptr<GltfFiles> files_;
+  GltfMeshopt meshopt_;
+  std::map<std::uint64_t, std::shared_ptr<const GltfBuffer>> opened_;
+  std::map<std::uint64_t, std::shared_ptr<const GltfBuffer>> views_;
+};
+
+}  // namespace meshfarm

@@ -1,0 +1,52 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include <meshfarm/io/channel.hpp>
+#include <meshfarm/io/mesh_sink.hpp>
+
+namespace meshfarm {
+
+/// The bytes of the one mesh that is written, as the counts and the channels tell:
+///   { vertex }, { triangle }
+///   vertex   = float x y z [float nx ny nz] [colour], relative to the node's translation
+///   colour   = uint16 r g b a, if all have 8 bits; else float r g b [a]. "extras" of the accessor
+///              tell the bits, so that they come back as so many.
+///   triangle = (uint16 | uint32) a b c
+struct GltfLayout {
+  std::uint64_t vertices = 0;
+  std::uint64_t triangles = 0;
+  std::optional<std::array<std::size_t, 3>> normals;  // where they stand among the channels
+  std::optional<std::array<std::size_t, 3>> colours;
+  std::optional<std::size_t> alpha;
+  ChannelType colour_type = ChannelType::uint8;  // the finest of the components'
+  std::size_t colour_bytes = 0;
+  std::size_t vertex_bytes = 0;
+  std::size_t index_bytes = 0;
+
+  explicit GltfLayout(const MeshSinkOptions& options);
+
+  std::uint64_t vertices_bytes() const { return vertices * vertex_bytes; }
+  std::uint64_t indices_bytes() const { return triangles * 3 * index_bytes; }
+  std::uint64_t binary_bytes() const { return vertices_bytes() + indices_bytes(); }
+};
+
+/// What is known at the end.
+struct GltfBounds {
+  std::optional<std::array<double, 3>> translation;
+  std::array<double, 3> lo{};
+  std::array<double, 3> hi{};
+};
+
+/// The document of that mesh. Its buffer is a file if there is a `uri`.
+std::string gltf_document(const GltfLayout& layout, const GltfBounds& bounds,
+                          std::string_view comment, std::string_view uri = {});
+
+}  // namespace meshfarm

@@ -1,0 +1,65 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <meshfarm/io/channel.hpp>
+
+#include "gltf_column.hpp"
+#include "gltf_json.hpp"
+
+namespace meshfarm {
+
+/// Vertices that one or more primitives of a mesh use.
+struct GltfVertices {
+  GltfColumn positions;
+  std::optional<GltfColumn> normals;
+  std::optional<GltfColumn> colours;
+  ChannelType colour_type = ChannelType::uint8;  // that keeps what they say
+  std::uint64_t first = 0;                       // among those of the mesh
+  std::uint64_t texture_colours = 0;             // where theirs begin: see sample_gltf_textures()
+};
+
+enum class GltfMode : std::uint8_t { triangles = 4, strip = 5, fan = 6 };
+
+/// The triangles of a primitive.
+struct GltfTriangles {
+  std::string place;            // for messages
+  std::uint64_t primitive = 0;  // among those of the mesh
+  GltfMode mode = GltfMode::triangles;
+  std::size_t vertices = 0;  // which of GltfMesh::vertices
+  std::optional<GltfColumn> indices;
+  std::uint64_t corners = 0;
+
+  std::uint64_t count() const {
+    if (mode == GltfMode::triangles) return corners / 3;
+    return corners < 3 ? 0 : corners - 2;
+  }
+};
+
+struct GltfMesh {
+  std::vector<GltfVertices> vertices;
+  std::vector<GltfTriangles> triangles;
+  std::uint64_t vertex_count = 0;
+  std::uint64_t triangle_count = 0;
+};
+
+/// What is left out of the meshes, by what it is, and of how many primitives.
+using GltfSkipped = std::map<std::string, std::uint64_t>;
+
+/// A mesh of the document; primitives with the same attributes share their vertices. Throws
+/// DataError with the place for what is malformed.
+GltfMesh read_gltf_mesh(const GltfValue& document, std::uint64_t mesh, GltfBuffers& buffers,
+                        GltfSkipped& skipped);
+
+/// Refuses a document that cannot be read without an extension that is not known here, and one of
+/// another version than 2, or that only a reader of a later one than 2.0 can read.
+void check_gltf(const GltfValue& document);
+
+}  // namespace meshfarm

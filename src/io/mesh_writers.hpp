@@ -1,0 +1,38 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <filesystem>
+#include <memory>
+
+#include <meshfarm/io/mesh_sink.hpp>
+
+namespace meshfarm {
+
+/// A binary STL. Coordinates are rounded to float, whatever `positions` says. Normals are those of
+/// the triangles, zero where one has no area. More than 2^32 - 1 triangles are a UsageError: the
+/// count in the file has 32 bits. Positions are kept as KeptPositions keeps them.
+std::unique_ptr<MeshSink> create_stl(const std::filesystem::path& path,
+                                     const MeshSinkOptions& options);
+
+/// An OBJ with positions and triangles, and the fewest digits that give the same floats or doubles.
+std::unique_ptr<MeshSink> create_obj(const std::filesystem::path& path,
+                                     const MeshSinkOptions& options);
+
+/// A .glb with one mesh. Positions are floats; of doubles those relative to the first, which
+/// becomes the node's translation. Normals are made 1 long. Colours of 8 bits become 16 linear
+/// bits, others floats. More than 4 GiB are a UsageError.
+std::unique_ptr<MeshSink> create_glb(const std::filesystem::path& path,
+                                     const MeshSinkOptions& options);
+/// The same as a .gltf and a .bin of the same name beside it, which is replaced, too. 2^32 vertices
+/// are a UsageError.
+std::unique_ptr<MeshSink> create_gltf(const std::filesystem::path& path,
+                                      const MeshSinkOptions& options);
+/// Whether both have a place for the channel: colours with their alpha, and normals.
+bool is_gltf_channel(std::span<const Channel> all, const Channel& channel);
+
+/// An ascii OFF, with digits as in OBJ.
+std::unique_ptr<MeshSink> create_off(const std::filesystem::path& path,
+                                     const MeshSinkOptions& options);
+
+}  // namespace meshfarm

@@ -1,0 +1,128 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+//
+// What is read of a library, one statement a line; names may have blanks in them:
+//   "newmtl" name
+//   "Kd" r g b
+//   "map_Kd" { option } file
+//   option = "-o" u [v [w]] | "-s" u [v [w]] | "-clamp" on|off | others, which are passed over
+#include "mtl.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <span>
+#include <utility>
+
+#include "text_blocks.hpp"
+#include "text_numbers.hpp"
+
+namespace meshfarm {
+namespace {
+
+constexpr std::string_view k_blanks = " \t\r\v\f";
+
+std::string_view trimmed(std::string_view text) {
+  const std::size_t first = text.find_first_not_of(k_blanks);
+  if (first == std::string_view::npos) return {};
+  return text.substr(first, text.find_last_not_of(k_blanks) + 1 - first);
+}
+
+/// The text's first word, which is taken off it.
+std::string_view take_word(std::string_view& text) {
+  text = trimmed(text);
+  const std::string_view word = text.substr(0, text.find_first_of(k_blanks));
+  text = trimmed(text.substr(word.size()));
+  return word;
+}
+
+bool is_word(std::string_view text, std::string_view lower) {
+  return std::equal(text.begin(), text.end(), lower.begin(), lower.end(), [](char a, char b) {
+    return a == b || (a >= 'A' && a <= 'Z' && a + ('a' - 'A') == b);
+  });
+}
+
+std::optional<double> number_of(std::string_view word) {
+  double value = 0;
+  if (word.empty()) return std::nullopt;
+  const char* const end = word.data() + word.size();
+  if (read_number(word.data(), end, value) != end || !std::isfinite(value)) return std::nullopt;
+  return value;
+}
+
+/// Up to three numbers, as many as there are; the first two count. Those that are not there stay.
+void take_numbers(std::string_view& text, std::array<double, 2>& values) {
+  for (std::size_t i = 0; i < 3; ++i) {
+    std::string_view rest = text;
+    const std::optional<double> value = number_of(take_word(rest));
+    if (!value || rest.empty()) return;  // what is last is the file
+    if (i < values.size()) values[i] = *value;
+    text = rest;
+  }
+}
+
+std::size_t arguments_of(std::string_view option) {
+  return is_word(option, "-mm") ? 2 : 1;
+}
+
+void read_map(std::string_view text, MtlMaterial& material) {
+  while (text.starts_with('-')) {
+    std::string_view rest = text;
+    const std::string_view option = take_word(rest);
+    if (rest.empty()) break;  // a file with an odd name
+    text = rest;
+    std::array<double, 2> ignored{};
+    if (is_word(option, "-s")) {
+      take_numbers(text, material.scale);
+    } else if (is_word(option, "-o")) {
+      take_numbers(text, material.offset);
+    } else if (is_word(option, "-t")) {
+      take_numbers(text, ignored);
+    } else if (is_word(option, "-clamp")) {
+      material.is_clamped = is_word(take_word(text), "on");
+    } else {
+      for (std::size_t i = 0; i < arguments_of(option); ++i) take_word(text);
+    }
+  }
+  if (text.size() > 1 && text.front() == '"' && text.back() == '"') {
+    text = text.substr(1, text.size() - 2);
+  }
+  material.map = text;
+}
+
+void read_colour(std::string_view text, MtlMaterial& material) {
+  std::array<double, 3> colour{};
+  for (std::size_t i = 0; i < colour.size(); ++i) {
+    const std::optional<double> value = number_of(take_word(text));
+    // "Kd 0.5" is grey; "Kd spectral FILE" is not read.
+    if (!value && i == 0) return;
+    colour[i] = value ? *value : colour[0];
+  }
+  material.colour = colour;
+}
+
+}  // namespace
+
+std::vector<MtlMaterial> parse_mtl(std::string_view text) {
+  std::vector<MtlMaterial> made;
+  const char line_end = line_end_of(text);
+  if (text.starts_with("\xef\xbb\xbf")) text.remove_prefix(3);
+  while (!text.empty()) {
+    const std::size_t end = std::min(text.find(line_end), text.size());
+    std::string_view line = text.substr(0, end);
+    text.remove_prefix(std::min(end + 1, text.size()));
+    const std::string_view word = take_word(line);
+    if (is_word(word, "newmtl")) {
+      made.push_back({.name = std::string(line)});
+    } else if (made.empty()) {
+      continue;
+    } else if (is_word(word, "kd")) {
+      read_colour(line, made.back());
+    } else if (is_word(word, "map_kd")) {
+      read_map(line, made.back());
+    }
+  }
+  return made;
+}
+
+}  // namespace meshfarm

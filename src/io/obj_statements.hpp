@@ -1,0 +1,45 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <set>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+namespace meshfarm {
+
+/// How many statements of which kind an OBJ text has.
+struct ObjStatements {
+  std::uint64_t vertices = 0;
+  std::uint64_t faces = 0;
+  bool has_relative = false;  // a face may have a relative index
+  bool has_colours = false;   // a vertex has one
+  bool has_weights = false;
+  std::vector<std::pair<std::string, std::uint64_t>> others;  // by their first words
+  std::vector<std::string> libraries;                         // what follows "mtllib", up to some
+  std::set<std::string, std::less<>> materials;               // what follows "usemtl", up to some
+
+  /// Counts those of a text of whole statements. Throws TextError for what is none.
+  void count(std::string_view text, char line_end);
+  /// Adds what follows.
+  void add(const ObjStatements& next);
+  /// How many statements that begin with the word, of `others`.
+  std::uint64_t count_of(std::string_view word) const;
+  /// "vertex.colour", "normals (435,545)", ...
+  std::vector<std::string> skipped_names(bool keeps_colours) const;
+
+ private:
+  void add_name(std::string_view word, std::string_view name);
+};
+
+/// What stands between `at`, in the text, and the end of its line, without blanks around it.
+std::string_view rest_of_line(const char* at, std::string_view text, char line_end);
+
+/// Whether OBJ has statements that begin with the word.
+bool is_obj_statement(std::string_view word);
+
+}  // namespace meshfarm

@@ -1,0 +1,46 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "byte_stream.hpp"
+#include "obj_statements.hpp"
+#include "text_blocks.hpp"
+#include "texture_colours.hpp"
+
+namespace meshfarm {
+
+/// The materials of an OBJ's libraries that its faces use.
+struct ObjMaterials {
+  static constexpr std::size_t k_none = 0;  // the material of faces that have none
+
+  std::vector<TextureImage> images;
+  std::vector<TextureMaterial> materials{TextureMaterial{}};
+  std::map<std::string, std::size_t, std::less<>> numbers;  // by name
+};
+
+/// Libraries that are not there, or cannot be read, are named by `warn` and passed over.
+ObjMaterials read_obj_materials(const std::filesystem::path& path, const ObjStatements& statements,
+                                const std::function<void(const std::string& line)>& warn);
+
+/// An OBJ's text, to be read again and again.
+struct ObjText {
+  const InputFile& file;
+  TextUnits units;
+  unsigned threads = 1;
+  TextBlocks blocks() const { return {file, units, threads}; }
+};
+
+/// Samples the textures of an OBJ that has some. Null if none can be read. A malformed face gives
+/// no colour: who reads the faces tells of it.
+std::unique_ptr<TextureColours> sample_obj_textures(const ObjText& text,
+                                                    const ObjStatements& statements,
+                                                    const ObjMaterials& materials);
+
+}  // namespace meshfarm

@@ -1,0 +1,58 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <span>
+#include <system_error>
+
+#include <sys/mman.h>
+
+#include <meshfarm/util/errors.hpp>
+#include <meshfarm/util/file.hpp>
+
+namespace meshfarm {
+
+/// Items, zero at first, that are written and read in any order: a few in memory, more in a scratch
+/// file without a name in $TMPDIR (or /tmp).
+template <class T>
+class ScratchArray {
+ public:
+  ScratchArray() = default;
+  /// Throws IoError.
+  explicit ScratchArray(std::uint64_t count) {
+    constexpr std::uint64_t k_most_in_memory = std::uint64_t{48} << 20;
+    is_in_memory_ = count <= k_most_in_memory / sizeof(T);
+    if (is_in_memory_) {
+      map_ = MappedFile::memory(count * sizeof(T));
+      return;
+    }
+    std::error_code error;
+    const std::filesystem::path folder = std::filesystem::temp_directory_path(error);
+    if (error) throw IoError("cannot keep scratch in", folder, error.value());
+    map_ = MappedFile::scratch(folder, count * sizeof(T));
+  }
+
+  std::span<T> items() { return map_.as_span<T>(); }
+  std::uint64_t size() { return items().size(); }
+
+  /// To be told of so many uses. Now and then what is in the scratch file is given back: it stays
+  /// in the page cache as long as there is room for it, which counts for nobody's memory.
+  void used(std::size_t count) {
+    constexpr std::size_t k_seldom = std::size_t{4} << 20;
+    since_ += count;
+    if (since_ < k_seldom || is_in_memory_) return;
+    since_ = 0;
+    const std::span<T> all = items();
+    ::madvise(all.data(), all.size_bytes(), MADV_DONTNEED);  // advice: nothing is lost
+  }
+
+ private:
+  MappedFile map_;
+  bool is_in_memory_ = true;
+  std::size_t since_ = 0;
+};
+
+}  // namespace meshfarm

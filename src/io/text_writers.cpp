@@ -1,0 +1,112 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+//
+// What is written:
+//   OBJ: ["#" comment], { "v" x y z [r g b] }, { "f" a b c }, from 1; colours from 0 to 1
+//   OFF: ["C"] "OFF", vertices triangles 0, { x y z [r g b a] }, { 3 a b c }, from 0; colours are
+//        whole numbers up to 255, or floats up to 1 if the channels are
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <string>
+
+#include "file_sink.hpp"
+#include "mesh_writers.hpp"
+#include "text_numbers.hpp"
+
+namespace meshfarm {
+namespace {
+
+/// How one format's lines differ from another's.
+struct TextForm {
+  std::string_view before_vertex;
+  std::string_view before_triangle;
+  std::uint64_t first_index = 0;
+  bool has_levels = false;  // colours as whole numbers, and an alpha after them
+};
+
+class TextSink final : public FileSink {
+ public:
+  TextSink(const std::filesystem::path& path, const MeshSinkOptions& options, const TextForm& form,
+           std::string_view header)
+      : FileSink(path, options), form_(form), colour_(colour_columns(options.channels)) {
+    write(header);
+  }
+
+ private:
+  void put(std::span<const Vec3> batch, std::span<const float> values) override {
+    for (const Vec3& p : batch) {
+      begin_line(form_.before_vertex);
+      for (const double x : {p.x, p.y, p.z}) {
+        out_ = write_coordinate(out_, x, options().positions);
+        *out_++ = ' ';
+      }
+      if (colour_) add_colour(values.first(options().channels.size()));
+      values = values.subspan(options().channels.size());
+      end_line();
+    }
+    flush();
+  }
+
+  void add_colour(std::span<const float> of_vertex) {
+    bool whole = form_.has_levels;
+    for (const std::size_t column : *colour_) {
+      const ChannelType type = options().channels[column].type;
+      whole = form_.has_levels && type != ChannelType::float32;
+      const float level = colour_level(type, of_vertex[column]);
+      add_value(whole ? std::round(level * 255.0F) : level);
+    }
+    if (form_.has_levels) add_value(whole ? 255.0F : 1.0F);
+  }
+
+  void add_value(float value) {
+    out_ = std::to_chars(out_, out_ + k_longest_coordinate, value).ptr;
+    *out_++ = ' ';
+  }
+
+  void put(std::span<const WideTriangle> batch) override {
+    for (const WideTriangle& triangle : batch) {
+      begin_line(form_.before_triangle);
+      for (const std::uint64_t index : triangle) {
+        out_ = std::to_chars(out_, out_ + k_longest_coordinate, index + form_.first_index).ptr;
+        *out_++ = ' ';
+      }
+      end_line();
+    }
+    flush();
+  }
+
+  void begin_line(std::string_view word) { out_ = std::copy(word.begin(), word.end(), out_); }
+  /// In the place of the last blank.
+  void end_line() { out_[-1] = '\n'; }
+  void flush() {
+    write({buffer_.data(), static_cast<std::size_t>(out_ - buffer_.data())});
+    out_ = buffer_.data();
+  }
+
+  static constexpr std::size_t k_longest_line = 2 + 7 * (k_longest_coordinate + 1);
+  TextForm form_;
+  std::optional<std::array<std::size_t, 3>> colour_;  // where it stands among the channels
+  std::vector<char> buffer_ = std::vector<char>(k_most_at_once * k_longest_line);
+  char* out_ = buffer_.data();
+};
+
+}  // namespace
+
+std::unique_ptr<MeshSink> create_obj(const std::filesystem::path& path,
+                                     const MeshSinkOptions& options) {
+  const std::string header = options.comment.empty() ? "" : "# " + options.comment + "\n";
+  return std::make_unique<TextSink>(path, options, TextForm{"v ", "f ", 1, false}, header);
+}
+
+std::unique_ptr<MeshSink> create_off(const std::filesystem::path& path,
+                                     const MeshSinkOptions& options) {
+  const std::string header = std::string(colour_columns(options.channels) ? "COFF\n" : "OFF\n") +
+                             std::to_string(options.vertices) + " " +
+                             std::to_string(options.triangles) + " 0\n";
+  return std::make_unique<TextSink>(path, options, TextForm{"", "3 ", 0, true}, header);
+}
+
+}  // namespace meshfarm

@@ -1,0 +1,194 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <meshfarm/io/mesh_source.hpp>
+
+#include "polygon.hpp"
+
+namespace meshfarm {
+
+/// What corners in a row are: those of a polygon, or of a triangle strip (-1 begins another).
+enum class CornerOrder : std::uint8_t { face, strip };
+
+/// Collects items and hands them on in batches.
+template <class T>
+class Batch {
+ public:
+  using Take = std::function<void(std::span<const T>)>;
+
+  explicit Batch(const Take& take) : take_(take), items_(k_most_items) {}
+
+  void add(const T& item) {
+    items_[size_] = item;
+    added(1);
+  }
+  /// Room for items that the caller writes and then counts with added().
+  std::span<T> room() { return std::span(items_).subspan(size_); }
+  void added(std::size_t count) {
+    size_ += count;
+    if (size_ == k_most_items) flush();
+  }
+  void flush() {
+    if (size_ > 0) take_(std::span(items_).first(size_));
+    size_ = 0;
+  }
+
+ private:
+  static constexpr std::size_t k_most_items = 8192;  // stays in the second-level cache
+  const Take& take_;
+  std::vector<T> items_;
+  std::size_t size_ = 0;
+};
+
+/// Makes triangles of the corners of faces and strips. Of a face with more than three corners the
+/// positions are asked for; it is kept up to k_most_corners, and a longer one is taken for a fan.
+class TriangleMaker {
+ public:
+  using PositionOf = std::function<Vec3(std::uint64_t vertex)>;
+  static constexpr std::size_t k_most_corners = 1 << 16;
+
+  TriangleMaker(std::uint64_t vertices, const Batch<WideTriangle>::Take& take,
+                PositionOf position_of)
+      : vertices_(vertices), batch_(take), position_of_(std::move(position_of)) {}
+
+  void begin(CornerOrder order) {
+    order_ = order;
+    corners_ = 0;
+  }
+  /// False if there is no such vertex.
+  bool corner(std::int64_t index) {
+    const auto vertex = static_cast<std::uint64_t>(index);
+    if (vertex >= vertices_) return restart(index);
+    order_ == CornerOrder::strip ? add_to_strip(vertex) : add_to_face(vertex);
+    ++corners_;
+    return true;
+  }
+  void end() {
+    if (order_ != CornerOrder::face) return;
+    if (corners_ < 3) {
+      ++small_faces_;
+    } else if (corners_ == 3) {
+      batch_.add({face_[0], face_[1], face_[2]});
+    } else if (corners_ <= k_most_corners) {
+      cut_face();
+    } else {
+      ++long_faces_;
+    }
+  }
+
+  std::uint64_t vertices() const { return vertices_; }
+  std::uint64_t small_faces() const { return small_faces_; }
+  /// Faces that became fans although that may be wrong.
+  std::uint64_t guessed_faces() const { return long_faces_ + cutter_.failed(); }
+  /// What to tell of them.
+  std::string guess_warning(const std::filesystem::path& path) const {
+    return path.string() + ": " + std::to_string(guessed_faces()) +
+           " polygons cross themselves, or have too many corners: they may be triangulated wrongly";
+  }
+  Batch<WideTriangle>& batch() { return batch_; }
+
+ private:
+  bool restart(std::int64_t index) {
+    corners_ = 0;
+    return order_ == CornerOrder::strip && index == -1;
+  }
+  void add_to_face(std::uint64_t vertex) {
+    if (corners_ < face_.size()) {
+      face_[corners_] = vertex;
+    } else if (corners_ < k_most_corners) {
+      face_.resize(2 * face_.size());
+      face_[corners_] = vertex;
+    } else {
+      add_to_fan(vertex);
+    }
+  }
+  /// Of a face that is too long. Its first and its last corner are at the ends of face_.
+  void add_to_fan(std::uint64_t vertex) {
+    for (std::size_t i = 1; corners_ == k_most_corners && i + 1 < corners_; ++i) {
+      batch_.add({face_[0], face_[i], face_[i + 1]});
+    }
+    batch_.add({face_[0], face_.back(), vertex});
+    face_.back() = vertex;
+  }
+  void cut_face() {
+    positions_.clear();
+    for (std::size_t i = 0; i < corners_; ++i) positions_.push_back(position_of_(face_[i]));
+    for (const auto& [a, b, c] : cutter_.cut(positions_)) {
+      batch_.add({face_[a], face_[b], face_[c]});
+    }
+  }
+  void add_to_strip(std::uint64_t vertex) {
+    if (corners_ < 2) {
+      last_[corners_] = vertex;
+      return;
+    }
+    // Every second triangle of a strip runs the other way round. A repeated vertex is how strips
+    // are joined into one, not a face.
+    const bool odd = corners_ % 2 != 0;
+    if (last_[0] != last_[1] && last_[1] != vertex && last_[0] != vertex) {
+      batch_.add({last_[odd ? 1 : 0], last_[odd ? 0 : 1], vertex});
+    }
+    last_ = {last_[1], vertex};
+  }
+
+  std::uint64_t vertices_;
+  Batch<WideTriangle> batch_;
+  PositionOf position_of_;
+  PolygonCutter cutter_;
+  CornerOrder order_ = CornerOrder::face;
+  std::uint64_t corners_ = 0;
+  std::array<std::uint64_t, 2> last_{};
+  std::vector<std::uint64_t> face_ = std::vector<std::uint64_t>(16);  // its corners
+  std::vector<Vec3> positions_;                                       // of these
+  std::uint64_t small_faces_ = 0;
+  std::uint64_t long_faces_ = 0;
+};
+
+/// Takes corners as a TriangleMaker does, to hand them on to one later.
+class CornerRecord {
+ public:
+  explicit CornerRecord(std::uint64_t vertices) : vertices_(vertices) {}
+
+  void begin(CornerOrder order) {
+    order_ = order;
+    lengths_.push_back(0);
+  }
+  bool corner(std::int64_t index) {
+    if (static_cast<std::uint64_t>(index) >= vertices_ &&
+        (order_ != CornerOrder::strip || index != -1)) {
+      return false;
+    }
+    corners_.push_back(index);
+    ++lengths_.back();
+    return true;
+  }
+  void end() {}
+  std::uint64_t vertices() const { return vertices_; }
+
+  void play(TriangleMaker& maker) const {
+    const std::int64_t* next = corners_.data();
+    for (const std::uint32_t length : lengths_) {
+      maker.begin(order_);
+      for (std::uint32_t i = 0; i < length; ++i) maker.corner(*next++);
+      maker.end();
+    }
+  }
+
+ private:
+  std::uint64_t vertices_;
+  CornerOrder order_ = CornerOrder::face;
+  std::vector<std::uint32_t> lengths_;
+  std::vector<std::int64_t> corners_;
+};
+
+}  // namespace meshfarm

@@ -1,0 +1,117 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#include "pipeline/part_jobs.hpp"
+
+#include <algorithm>
+
+#include <meshfarm/pipeline/budget.hpp>
+#include <meshfarm/pipeline/sweep_job.hpp>
+
+namespace meshfarm {
+namespace {
+
+/// The part as it came, its hierarchy, and the points that stand for it, up to five a triangle.
+constexpr std::uint64_t k_bound_bytes_per_triangle = 500;
+
+/// What a simplify job needs by and large: the part's file and its mesh (20 and 40 bytes a
+/// triangle), the simplifier (50 to 70), and the ladder, whose rungs shrink by a third or more from
+/// the first on.
+std::uint64_t memory_of(const PartEntry& part, std::uint64_t first_rung) {
+  constexpr std::uint64_t k_process = std::uint64_t{16} << 20;
+  const std::uint64_t ladder = 60 * std::min(part.triangles, first_rung);
+  return k_process + part.file.size + 110 * part.triangles + ladder;
+}
+
+/// The window as it comes and as it is simplified, and what was sent on from it.
+std::uint64_t memory_of_sweep(std::uint64_t window_triangles) {
+  constexpr std::uint64_t k_process = std::uint64_t{16} << 20;
+  return k_process + 150 * window_triangles;
+}
+
+}  // namespace
+
+PartJobs::PartJobs(const Manifest& manifest, const RunOptions& options)
+    : manifest_(manifest), options_(options), target_(target_triangles(manifest, options)) {}
+
+double PartJobs::ratio() const {
+  return std::min(1.0, static_cast<double>(target_) /
+                           static_cast<double>(std::max<std::uint64_t>(1, manifest_.triangles())));
+}
+
+bool PartJobs::is_sampled(std::uint32_t part) const {
+  return !manifest_.samples.empty() && !manifest_.samples[part].file.name.empty();
+}
+
+/// What is climbed: the part, or a sample of a long stream.
+const PartEntry& PartJobs::climbed(std::uint32_t part) const {
+  return is_sampled(part) ? manifest_.samples[part] : manifest_.parts[part];
+}
+
+Job PartJobs::climb(std::uint32_t part, double headroom, TopologyMode topology) const {
+  const PartEntry& entry = climbed(part);
+  SimplifyParameters parameters;
+  parameters.allocation = options_.allocation;
+  parameters.samples = samples_for(manifest_, options_, entry.triangles);
+  parameters.cost_unit = cost_unit(manifest_.box.diagonal());
+  parameters.lines = lines_of(manifest_, options_);
+  parameters.lines.topology = topology;
+  by_error() ? set_error_bound(parameters, part) : set_share(parameters, part, headroom);
+  return {std::string(k_simplify_kind),
+          {entry.file},
+          encode_parameters(parameters),
+          entry.triangles,
+          memory_of(entry, parameters.start_triangles) +
+              memory_of_appearances(parameters.lines, entry.triangles) +
+              (by_error() ? k_bound_bytes_per_triangle * entry.triangles : 0)};
+}
+
+void PartJobs::set_error_bound(SimplifyParameters& parameters, std::uint32_t part) const {
+  parameters.allocation = Allocation::threshold;
+  // What a sample tells is done to its stream by cost alone.
+  const double share = is_sampled(part) ? k_error_share : k_bound_share_of_parts;
+  parameters.max_error = share * options_.error.in(manifest_.box);
+  parameters.start_triangles = climbed(part).triangles;
+}
+
+void PartJobs::set_share(SimplifyParameters& parameters, std::uint32_t part,
+                         double headroom) const {
+  const PartEntry& entry = climbed(part);
+  const double share = ratio() * static_cast<double>(entry.triangles);
+  parameters.share_triangles = static_cast<std::uint64_t>(share);
+  double start = share;
+  if (options_.allocation == Allocation::threshold) {
+    start = share * headroom * provision(ratio()) / 2 + 2.0 * entry.boundary_vertices;
+    if (start > 0.7 * static_cast<double>(entry.triangles)) {
+      start = static_cast<double>(entry.triangles);
+    }
+  }
+  parameters.start_triangles = static_cast<std::uint64_t>(start);
+}
+
+Job PartJobs::sweep(std::uint32_t part, std::int32_t level, TopologyMode topology) const {
+  const PartEntry& entry = manifest_.parts[part];
+  SweepParameters parameters;
+  parameters.level = level;
+  parameters.max_cost = sweep_cost(parameters.level);
+  if (!climbs_samples()) parameters.ratio = ratio();
+  parameters.window_triangles = manifest_.window_triangles;
+  parameters.samples = samples_for(manifest_, options_, entry.triangles);
+  parameters.max_error = by_error() ? k_error_share * options_.error.in(manifest_.box) : 0;
+  parameters.lines = lines_of(manifest_, options_);
+  // One window can't tell what is fair.
+  parameters.lines.topology =
+      topology == TopologyMode::simplify ? TopologyMode::simplify : TopologyMode::keep;
+  return {std::string(k_sweep_kind),
+          {entry.file},
+          encode_parameters(parameters),
+          entry.triangles,
+          memory_of_sweep(manifest_.window_triangles) +
+              memory_of_appearances(parameters.lines, manifest_.window_triangles)};
+}
+
+/// Nothing is so cheap that the rung of a part as it came would have lost it.
+double PartJobs::sweep_cost(std::int32_t level) const {
+  return level < 0 ? -1 : level_cost(level, cost_unit(manifest_.box.diagonal()));
+}
+
+}  // namespace meshfarm

@@ -1,0 +1,50 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+
+#include <meshfarm/farm/job.hpp>
+#include <meshfarm/io/manifest.hpp>
+#include <meshfarm/pipeline/run_options.hpp>
+#include <meshfarm/pipeline/simplify_job.hpp>
+
+namespace meshfarm {
+
+/// Of a bound on the error, streams that are swept by cost may take up this share.
+constexpr double k_error_share = 0.5;
+
+/// Makes the jobs of single parts and streams, and knows what in them follows from the run's
+/// options alone.
+class PartJobs {
+ public:
+  /// Both must outlive this.
+  PartJobs(const Manifest& manifest, const RunOptions& options);
+
+  std::uint64_t target() const { return target_; }
+  /// Of the triangles that are there, those that are wanted.
+  double ratio() const;
+  bool by_error() const { return options_.error.value > 0; }
+  /// Whether levels are to be found: the same ratio everywhere needs none.
+  bool climbs_samples() const { return by_error() || options_.allocation == Allocation::threshold; }
+  bool is_sampled(std::uint32_t part) const;
+
+  /// Climbs the ladder of a part, or of a sample of a long stream, from so many times its even
+  /// share.
+  Job climb(std::uint32_t part, double headroom, TopologyMode topology) const;
+  /// Sweeps a long stream, to a level.
+  Job sweep(std::uint32_t part, std::int32_t level, TopologyMode topology) const;
+  /// What a collapse may cost in a sweep to this level; below 0 if none is to be made.
+  double sweep_cost(std::int32_t level) const;
+
+ private:
+  const PartEntry& climbed(std::uint32_t part) const;
+  void set_error_bound(SimplifyParameters& parameters, std::uint32_t part) const;
+  void set_share(SimplifyParameters& parameters, std::uint32_t part, double headroom) const;
+
+  const Manifest& manifest_;
+  const RunOptions& options_;
+  std::uint64_t target_;
+};
+
+}  // namespace meshfarm

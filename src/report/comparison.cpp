@@ -1,0 +1,104 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#include <cmath>
+
+#include <meshfarm/report/summary.hpp>
+
+#include "report/summary_words.hpp"
+
+namespace meshfarm {
+namespace {
+
+/// The peak signal-to-noise ratio, of shares of the full range; infinite without a difference.
+double psnr_of(const ValueError& error) {
+  return -20 * std::log10(error.rms);
+}
+
+std::string text_of(const ValueError& error, ChannelRole role) {
+  if (error.samples == 0) return "no point where both have a value";
+  const std::string max = "  max " + number(error.max, "%.3g");
+  switch (role) {
+    case ChannelRole::colour:
+      return "PSNR " + number(psnr_of(error), "%.2f") + " dB  rms " + number(error.rms, "%.3g") +
+             max + " of the full range";
+    case ChannelRole::normal:
+      return "mean " + number(error.mean, "%.3g") + max + " degrees";
+    case ChannelRole::quality:
+      break;
+  }
+  return "rms " + number(error.rms, "%.3g") + max;
+}
+
+Json to_json(const ValueError& error, ChannelRole role) {
+  Json json = {{"samples", error.samples}};
+  if (error.samples == 0) return json;
+  switch (role) {
+    case ChannelRole::colour:
+      json["psnr"] = error.rms > 0 ? Json(psnr_of(error)) : Json(nullptr);
+      json["rms"] = error.rms;
+      break;
+    case ChannelRole::normal:
+      json["mean_degrees"] = error.mean;
+      json["max_degrees"] = error.max;
+      return json;
+    case ChannelRole::quality:
+      json["rms"] = error.rms;
+      break;
+  }
+  json["max"] = error.max;
+  return json;
+}
+
+Json channels_json(const Comparison& c) {
+  Json json = Json::array();
+  for (const ChannelDifference& channel : c.channels) {
+    json.push_back({{"name", channel.name},
+                    {"a_to_b", to_json(channel.a_to_b, channel.role)},
+                    {"b_to_a", to_json(channel.b_to_a, channel.role)}});
+  }
+  return json;
+}
+
+void add_channels(Lines& lines, const Comparison& c) {
+  for (const ChannelDifference& channel : c.channels) {
+    lines.add(channel.name + " A to B", text_of(channel.a_to_b, channel.role));
+    lines.add(channel.name + " B to A", text_of(channel.b_to_a, channel.role));
+  }
+  if (!c.channels_skipped.empty()) lines.add("channels", "not compared: " + c.channels_skipped);
+  if (!c.channels_only_a.empty()) lines.add("only A has", joined(c.channels_only_a));
+  if (!c.channels_only_b.empty()) lines.add("only B has", joined(c.channels_only_b));
+}
+
+}  // namespace
+
+std::string render(const Comparison& c, Format format) {
+  if (format == Format::json) {
+    const Json skipped = c.channels_skipped.empty() ? Json(nullptr) : Json(c.channels_skipped);
+    const Json json = {{"a", c.path_a},
+                       {"b", c.path_b},
+                       {"diagonal", c.diagonal},
+                       {"a_to_b", to_json(c.a_to_b, c.diagonal)},
+                       {"b_to_a", to_json(c.b_to_a, c.diagonal)},
+                       {"channels", channels_json(c)},
+                       {"channels_not_compared", skipped},
+                       {"channels_only_a", c.channels_only_a},
+                       {"channels_only_b", c.channels_only_b},
+                       {"topology_a", to_json(c.welded_a)},
+                       {"topology_b", to_json(c.welded_b)},
+                       {"topology_not_welded_a", to_json(c.as_it_is_a)},
+                       {"topology_not_welded_b", to_json(c.as_it_is_b)}};
+    return dumped(json);
+  }
+  Lines lines;
+  lines.add("A", c.path_a + ", " + grouped(c.welded_a.triangles) + " triangles");
+  add_topology(lines, "", c.welded_a, c.as_it_is_a);
+  lines.add("B", c.path_b + ", " + grouped(c.welded_b.triangles) + " triangles");
+  add_topology(lines, "", c.welded_b, c.as_it_is_b);
+  lines.add("A to B", text_of(c.a_to_b, c.diagonal));
+  lines.add("B to A", text_of(c.b_to_a, c.diagonal));
+  lines.add("unit", "A's diagonal, " + number(c.diagonal, "%.9g"));
+  add_channels(lines, c);
+  return lines.text();
+}
+
+}  // namespace meshfarm

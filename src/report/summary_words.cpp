@@ -1,0 +1,71 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#include "report/summary_words.hpp"
+
+namespace meshfarm {
+
+std::string joined(const std::vector<std::string>& words) {
+  std::string text;
+  for (const std::string& word : words) text += (text.empty() ? "" : ", ") + word;
+  return text;
+}
+
+std::vector<std::string> names_of(const std::vector<Channel>& channels) {
+  std::vector<std::string> names;
+  names.reserve(channels.size());
+  for (const Channel& channel : channels) names.push_back(channel.name);
+  return names;
+}
+
+Json to_json(const Box& box) {
+  if (box.empty()) return nullptr;
+  return {{"lo", {box.lo.x, box.lo.y, box.lo.z}}, {"hi", {box.hi.x, box.hi.y, box.hi.z}}};
+}
+
+Json to_json(const Topology& t) {
+  return {{"vertices", t.vertices},
+          {"unused_vertices", t.vertices - t.used_vertices},
+          {"triangles", t.triangles},
+          {"components", t.components},
+          {"euler", t.euler},
+          {"border_edges", t.border_edges},
+          {"nonmanifold_edges", t.nonmanifold_edges},
+          {"orientation_conflicts", t.orientation_conflicts},
+          {"degenerate", t.degenerate},
+          {"zero_area", t.zero_area},
+          {"duplicate", t.duplicate}};
+}
+
+Json to_json(const Distance& d, double diagonal) {
+  return {{"rms", d.rms / diagonal}, {"mean", d.mean / diagonal}, {"max", d.max / diagonal}};
+}
+
+std::string text_of(const Topology& t) {
+  return grouped(t.components) + " components, " + grouped(t.border_edges) + " border edges, " +
+         grouped(t.nonmanifold_edges) + " non-manifold edges, " + grouped(t.degenerate) +
+         " degenerate, " + grouped(t.zero_area) + " of zero area, " + grouped(t.duplicate) +
+         " duplicate, Euler characteristic " + std::to_string(t.euler);
+}
+
+void add_topology(Lines& lines, const std::string& label, const Topology& welded,
+                  const Topology& as_it_is) {
+  const std::uint64_t merged = as_it_is.vertices - welded.vertices;
+  if (merged == 0 && text_of(welded) == text_of(as_it_is)) {
+    lines.add(label, text_of(welded));
+    return;
+  }
+  lines.add(label,
+            "welded (" + grouped(merged) + " coincident vertices merged): " + text_of(welded));
+  lines.add("", "as it is: " + text_of(as_it_is));
+}
+
+std::string text_of(const Distance& d, double diagonal) {
+  return "rms " + number(d.rms / diagonal, "%.3g") + "  mean " + number(d.mean / diagonal, "%.3g") +
+         "  max " + number(d.max / diagonal, "%.3g");
+}
+
+std::string dumped(const Json& json) {
+  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+}  // namespace meshfarm

@@ -1,0 +1,53 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+#include <meshfarm/geometry/distance.hpp>
+#include <meshfarm/geometry/mesh.hpp>
+#include <meshfarm/geometry/topology.hpp>
+#include <meshfarm/io/channel.hpp>
+
+#include "report/lines.hpp"
+
+namespace meshfarm {
+
+// What the summaries of runs and of meshes share.
+
+using Json = nlohmann::ordered_json;
+
+/// A table of "label  value" lines.
+class Lines {
+ public:
+  void add(const std::string& label, const std::string& value) {
+    std::string padded = label;
+    padded.resize(std::max<std::size_t>(padded.size(), 16), ' ');
+    text_ += padded + " " + value + "\n";
+  }
+  const std::string& text() const { return text_; }
+
+ private:
+  std::string text_;
+};
+
+/// "a, b, c"
+std::string joined(const std::vector<std::string>& words);
+std::vector<std::string> names_of(const std::vector<Channel>& channels);
+
+Json to_json(const Box& box);
+Json to_json(const Topology& topology);
+/// As fractions of the diagonal.
+Json to_json(const Distance& distance, double diagonal);
+std::string text_of(const Topology& topology);
+/// As the file has it only where that is something else than the welded.
+void add_topology(Lines& lines, const std::string& label, const Topology& welded,
+                  const Topology& as_it_is);
+std::string text_of(const Distance& distance, double diagonal);
+/// What is written to a file or a terminal; text that is no UTF-8 is replaced.
+std::string dumped(const Json& json);
+
+}  // namespace meshfarm

@@ -1,0 +1,178 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+//
+// What `meshfarm compare` tells of the channels of two files.
+#include <cmath>
+#include <functional>
+
+#include <doctest/doctest.h>
+
+#include <meshfarm/io/mesh_format.hpp>
+
+#include "support/meshes.hpp"
+#include "support/process.hpp"
+#include "support/temp_folder.hpp"
+
+using namespace meshfarm;
+using test::Ran;
+
+namespace {
+
+const std::vector<Channel> k_channels = {{"red", ChannelType::uint8, ChannelRole::colour},
+                                         {"green", ChannelType::uint8, ChannelRole::colour},
+                                         {"blue", ChannelType::uint8, ChannelRole::colour},
+                                         {"nx", ChannelType::float32, ChannelRole::normal},
+                                         {"ny", ChannelType::float32, ChannelRole::normal},
+                                         {"nz", ChannelType::float32, ChannelRole::normal},
+                                         {"heat", ChannelType::float32, ChannelRole::quality}};
+
+/// A vertex's colour grows linearly by 4 levels a unit.
+std::vector<float> values_at(Vec3 p) {
+  const auto level = static_cast<float>(100 + 4 * p.x);
+  return {level, level, static_cast<float>(4 * p.y), 0, 0, 1, static_cast<float>(p.x / 3)};
+}
+
+class Bench {
+ public:
+  std::string path(const std::string& name) const { return (folder_.path() / name).string(); }
+  /// A sheet of 24 x 24 units with values, cut into squares of this width.
+  void write(const std::string& name, std::uint32_t width,
+             const std::function<std::vector<float>(Vec3)>& value) const {
+    Mesh mesh = test::grid(24 / width, 24 / width);
+    std::vector<float> values;
+    for (Vec3& p : mesh.positions) {
+      p = p * width;
+      const std::vector<float> here = value(p);
+      values.insert(values.end(), here.begin(), here.end());
+    }
+    write_mesh(path(name), mesh, PositionType::float32, k_channels, values);
+  }
+  Ran compare(const std::string& a, const std::string& b,
+              const std::vector<std::string>& more = {}) {
+    std::vector<std::string> words = {"compare", path(a), path(b), "--samples", "20000"};
+    words.insert(words.end(), more.begin(), more.end());
+    return run(words);
+  }
+  Ran run(const std::vector<std::string>& words) {
+    return test::run_meshfarm(words, folder_.path() / ("log" + std::to_string(++logs_)));
+  }
+
+ private:
+  test::TempFolder folder_;
+  int logs_ = 0;
+};
+
+bool has(const std::string& text, const std::string& part) {
+  return text.find(part) != std::string::npos;
+}
+
+double number_after(const std::string& text, const std::string& words) {
+  const std::size_t at = text.find(words);
+  REQUIRE(at != std::string::npos);
+  return std::stod(text.substr(at + words.size()));
+}
+
+}  // namespace
+
+TEST_CASE("compare finds no difference between a linear picture on few triangles and on many") {
+  Bench bench;
+  bench.write("fine.ply", 1, values_at);
+  bench.write("coarse.ply", 8, values_at);
+  const Ran ran = bench.compare("fine.ply", "coarse.ply");
+  CHECK(ran.code == 0);
+  CHECK(number_after(ran.out, "colours A to B   PSNR ") > 120);
+  CHECK(number_after(ran.out, "colours B to A   PSNR ") > 120);
+  CHECK(number_after(ran.out, "normals A to B   mean ") < 1e-4);
+  CHECK(number_after(ran.out, "heat A to B      rms ") < 1e-5);
+  CHECK_FALSE(has(ran.out, "only"));
+  CHECK(has(bench.compare("fine.ply", "fine.ply").out, "colours A to B   PSNR "));
+}
+
+TEST_CASE("compare tells a difference that is the same everywhere as the formulas do") {
+  Bench bench;
+  const double turn = 20 * std::acos(-1.0) / 180;
+  bench.write("a.ply", 1, values_at);
+  bench.write("b.ply", 2, [&](Vec3 p) {
+    std::vector<float> values = values_at(p);
+    for (std::size_t i = 0; i < 3; ++i) values[i] += 8;
+    values[4] = static_cast<float>(std::sin(turn));
+    values[5] = static_cast<float>(std::cos(turn));
+    values[6] += 0.25F;
+    return values;
+  });
+  const double psnr = 20 * std::log10(255.0 / 8);
+  const Ran text = bench.compare("a.ply", "b.ply");
+  for (const std::string direction : {"A to B", "B to A"}) {
+    CAPTURE(direction);
+    CHECK(std::abs(number_after(text.out, "colours " + direction + "   PSNR ") - psnr) < 0.006);
+    CHECK(number_after(text.out, "normals " + direction + "   mean ") ==
+          doctest::Approx(20).epsilon(1e-3));
+    CHECK(number_after(text.out, "heat " + direction + "      rms ") == doctest::Approx(0.25));
+  }
+  const Ran json = bench.compare("a.ply", "b.ply", {"--json"});
+  CHECK(json.code == 0);
+  CHECK(number_after(json.out, "\"psnr\": ") == doctest::Approx(psnr).epsilon(1e-5));
+  CHECK(number_after(json.out, "\"mean_degrees\": ") == doctest::Approx(20).epsilon(1e-5));
+  CHECK(number_after(json.out, "\"max_degrees\": ") == doctest::Approx(20).epsilon(1e-5));
+  CHECK(has(json.out, "\"channels_not_compared\": null"));
+}
+
+TEST_CASE("compare reads the channels of all formats, and names what only one has") {
+  Bench bench;
+  bench.write("a.ply", 1, values_at);
+  for (const std::string name : {"b.obj", "b.off", "b.glb"}) {
+    CAPTURE(name);
+    REQUIRE(bench.run({"convert", bench.path("a.ply"), bench.path(name), "-q"}).code == 0);
+    const Ran ran = bench.compare("a.ply", name);
+    CHECK(ran.code == 0);
+    CHECK(number_after(ran.out, "colours A to B   PSNR ") > 120);
+    const bool has_normals = name == "b.glb";
+    CHECK(has(ran.out,
+              has_normals ? "only A has       heat\n" : "only A has       nx, ny, nz, heat"));
+    CHECK(has(ran.out, "normals A to B ") == has_normals);
+    CHECK(has(bench.compare(name, "a.ply").out, "only B has "));
+  }
+}
+
+TEST_CASE("compare has not a word about channels where there are none in both") {
+  Bench bench;
+  bench.write("a.ply", 1, values_at);
+  REQUIRE(bench.run({"convert", bench.path("a.ply"), bench.path("b.stl"), "-q"}).code == 0);
+  const Ran none = bench.compare("b.stl", "b.stl");
+  CHECK(none.code == 0);
+  CHECK_FALSE(has(none.out, "colours"));
+  CHECK_FALSE(has(none.out, "channels"));
+  CHECK_FALSE(has(none.out, "only"));
+  // No need of the memory that channels would take.
+  const Ran little = bench.compare("b.stl", "a.ply", {"--memory", "10K"});
+  CHECK(little.code == 0);
+  CHECK_FALSE(has(little.out, "not compared"));
+}
+
+TEST_CASE("compare says in a line that channels do not fit into its memory, and what is enough") {
+  Bench bench;
+  bench.write("a.ply", 1, values_at);
+  bench.write("b.ply", 2, values_at);
+  const auto compare_in = [&](const std::string& memory) {
+    return bench.compare("a.ply", "b.ply", {"--memory", memory});
+  };
+  const Ran full = compare_in("1M");
+  CHECK(has(full.out, "PSNR"));
+  // Neither the distances in memory nor those of slabs need the channels.
+  for (const std::string memory : {"130K", "30K"}) {
+    CAPTURE(memory);
+    const Ran little = compare_in(memory);
+    CHECK(little.code == 0);
+    CHECK(little.err.empty());
+    CHECK_FALSE(has(little.out, "PSNR"));
+    const std::string words = "channels         not compared: that takes --memory ";
+    const auto enough = static_cast<int>(number_after(little.out, words));
+    std::string line = words;
+    line.append(std::to_string(enough)).append("K, and there is ").append(memory).append("\n");
+    CHECK(has(little.out, line));
+    CHECK(has(compare_in(std::to_string(enough) + "K").out, "PSNR"));
+    CHECK_FALSE(has(compare_in(std::to_string(enough - 1) + "K").out, "PSNR"));
+  }
+  CHECK(has(bench.compare("a.ply", "b.ply", {"--memory", "30K", "--json"}).out,
+            "\"channels_not_compared\": \"that takes"));
+}

@@ -1,0 +1,158 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+//
+// What textures become, from the input to the output of real runs.
+#include <array>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <string_view>
+
+#include <doctest/doctest.h>
+
+#include <meshfarm/io/mesh_source.hpp>
+
+#include "support/process.hpp"
+#include "support/temp_folder.hpp"
+
+using namespace meshfarm;
+using test::Ran;
+namespace fs = std::filesystem;
+
+namespace {
+
+/// One texel: 255, 128, 0.
+constexpr std::string_view k_orange(
+    "\x89PNG\r\n\x1a\n\0\0\0\x0dIHDR\0\0\0\1\0\0\0\1\x08\2\0\0\0\x90\x77\x53\xde"
+    "\0\0\0\x0cIDAT\x78\x9c\x63\xf8\xdf\xc0\0\0\4\1\1\x80\xc5\x2a\x18\x5d"
+    "\0\0\0\0IEND\xae\x42\x60\x82",
+    69);
+
+class Model {
+ public:
+  /// A hilly grid, with texture coordinates.
+  Model() {
+    constexpr int k_side = 60;
+    std::ofstream obj(path("m.obj"));
+    obj << "mtllib m.mtl\nusemtl skin\n";
+    for (int y = 0; y < k_side; ++y) {
+      for (int x = 0; x < k_side; ++x) {
+        obj << "v " << x << " " << y << " " << 0.1 * ((x * x + 3 * y) % 7) << "\n";
+        obj << "vt " << x / 60.0 << " " << y / 60.0 << "\n";
+      }
+    }
+    for (int y = 1; y < k_side; ++y) {
+      for (int x = 1; x < k_side; ++x) {
+        const int a = (y - 1) * k_side + x;
+        for (const auto& [i, k] :
+             {std::array{a + 1, a + k_side + 1}, {a + k_side + 1, a + k_side}}) {
+          obj << "f " << a << "/" << a << " " << i << "/" << i << " " << k << "/" << k << "\n";
+        }
+      }
+    }
+    std::ofstream(path("m.mtl")) << "newmtl skin\nmap_Kd skin.png\n";
+    std::ofstream(path("skin.png"), std::ios::binary) << k_orange;
+  }
+  std::string path(const std::string& name) const { return (folder_ / name).string(); }
+  Ran run(const std::vector<std::string>& words) {
+    return test::run_meshfarm(words, folder_ / ("log" + std::to_string(++logs_)));
+  }
+
+ private:
+  test::TempFolder folder_;
+  int logs_ = 0;
+};
+
+bool has(const std::string& text, const std::string& part) {
+  return text.find(part) != std::string::npos;
+}
+
+/// Whether all of its vertices are of that one texel.
+bool is_orange(const std::string& path) {
+  const auto source = open_mesh(path);
+  if (source->info().channels.size() != 3) return false;
+  std::uint64_t vertices = 0;
+  bool are_all = true;
+  source->scan_channels([&](const ChannelPoints& batch) {
+    vertices += batch.points.size();
+    for (std::size_t i = 0; i < batch.values.size(); i += 3) {
+      const std::array<long, 3> levels{std::lround(batch.values[i]),
+                                       std::lround(batch.values[i + 1]),
+                                       std::lround(batch.values[i + 2])};
+      are_all = are_all && levels == std::array<long, 3>{255, 128, 0};
+    }
+  });
+  return are_all && vertices == source->info().vertices && vertices > 0;
+}
+
+}  // namespace
+
+TEST_CASE("a textured OBJ comes back coloured, by either scheme and as any format") {
+  Model model;
+  for (const std::string scheme : {"cut", "stream"}) {
+    const std::string output = model.path(scheme + ".glb");
+    const Ran ran = model.run({"simplify", model.path("m.obj"), "-o", output, "--ratio", "0.1",
+                               "--workers", "1", "--scheme", scheme});
+    CHECK(ran.code == 0);
+    CHECK(has(ran.err, "the vertices' colours are of the textures skin.png (1 x 1)"));
+    CHECK(has(ran.out, "channels         red 0, green 0, blue 0"));
+    CHECK(is_orange(output));
+  }
+  const Ran ran = model.run({"convert", model.path("m.obj"), model.path("m.ply")});
+  CHECK(ran.code == 0);
+  CHECK(has(ran.err, "skin.png (1 x 1)"));
+  CHECK(is_orange(model.path("m.ply")));
+  const Ran compared = model.run({"compare", model.path("m.obj"), model.path("cut.glb")});
+  CHECK(compared.code == 0);
+  const std::string words = "colours A to B   PSNR ";
+  const std::size_t at = compared.out.find(words);
+  REQUIRE(at != std::string::npos);
+  CHECK(std::stod(compared.out.substr(at + words.size())) > 100);  // dB
+  const Ran info = model.run({"info", model.path("m.obj"), "--no-topology"});
+  CHECK(has(info.out, "textures         skin.png (1 x 1)"));
+}
+
+TEST_CASE("textures are left out where that is asked for, or there is no place for colours") {
+  Model model;
+  const std::vector<std::string> words = {
+      "simplify", model.path("m.obj"), "-o", model.path("o.ply"), "--ratio",
+      "0.1",      "--workers",         "1"};
+  for (const std::vector<std::string>& more :
+       {std::vector<std::string>{"--uv", "drop"}, {"--attributes", "none"}}) {
+    std::vector<std::string> all = words;
+    all.insert(all.end(), more.begin(), more.end());
+    const Ran ran = model.run(all);
+    CHECK(ran.code == 0);
+    CHECK_FALSE(has(ran.err, "skin.png"));
+    CHECK(has(ran.out, "texture coordinates (3600)"));
+    CHECK(open_mesh(model.path("o.ply"))->info().channels.empty());
+  }
+  const Ran ran = model.run({"convert", model.path("m.obj"), model.path("m.stl")});
+  CHECK(ran.code == 0);
+  CHECK_FALSE(has(ran.err, "skin.png"));
+  CHECK(model.run({"convert", model.path("m.obj"), model.path("m.ply"), "--uv", "drop"}).code == 0);
+  CHECK(open_mesh(model.path("m.ply"))->info().channels.empty());
+}
+
+TEST_CASE("a picture that is not there is told, and the mesh is made without it") {
+  Model model;
+  fs::remove(model.path("skin.png"));
+  const Ran ran = model.run({"simplify", model.path("m.obj"), "-o", model.path("o.ply"), "--ratio",
+                             "0.1", "--workers", "1"});
+  CHECK(ran.code == 0);
+  CHECK(has(ran.err, "the texture skin.png: no such file"));
+  CHECK(open_mesh(model.path("o.ply"))->info().channels.empty());
+  fs::remove(model.path("m.mtl"));
+  const Ran without = model.run({"convert", model.path("m.obj"), model.path("o.obj")});
+  CHECK(without.code == 0);
+  CHECK(has(without.err, "the material library 'm.mtl' is not beside it"));
+}
+
+TEST_CASE("a stage that was cut with textures is not one without") {
+  Model model;
+  CHECK(model.run({"cut", model.path("m.obj"), "--stage", model.path("s")}).code == 0);
+  const Ran other =
+      model.run({"cut", model.path("m.obj"), "--stage", model.path("s"), "--uv", "drop"});
+  CHECK(other.code == 1);
+  CHECK(has(other.err, "other options"));
+}

@@ -1,0 +1,10 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#include "io/stl_reader.hpp"
+#include "mesh_fuzzer.hpp"
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  return meshfarm::fuzz::fuzz_mesh(data, size, [](const std::string& path) {
+    return meshfarm::open_ascii_stl(meshfarm::InputFile(path), {.threads = 2});
+  });
+}

@@ -1,0 +1,147 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include <doctest/doctest.h>
+
+#include <meshfarm/geometry/value_error.hpp>
+#include <meshfarm/util/errors.hpp>
+
+#include "support/meshes.hpp"
+
+using namespace meshfarm;
+
+namespace {
+
+constexpr DistanceOptions k_options{.samples = 20'000, .threads = 2};
+const std::vector<ValueGroup> k_number = {{ValueKind::numbers, 1}};
+const std::vector<ValueGroup> k_vector = {{ValueKind::direction, 3}};
+
+template <class Value>
+std::vector<float> values_at(const Mesh& mesh, Value value) {
+  std::vector<float> values;
+  for (const Vec3& p : mesh.positions) values.push_back(static_cast<float>(value(p)));
+  return values;
+}
+
+std::vector<float> vectors(const Mesh& mesh, Vec3 direction) {
+  std::vector<float> values;
+  for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
+    for (const double x : {direction.x, direction.y, direction.z}) {
+      values.push_back(static_cast<float>(x));
+    }
+  }
+  return values;
+}
+
+}  // namespace
+
+TEST_CASE("what is linear is the same on any triangles of a plane") {
+  const Mesh fine = test::grid(12, 12);
+  Mesh coarse = test::grid(3, 3);
+  for (Vec3& p : coarse.positions) p = p * 4;
+  const auto slope = [](Vec3 p) { return 0.05 * p.x - 0.02 * p.y + 0.3; };
+  const std::vector<float> of_fine = values_at(fine, slope);
+  const std::vector<float> of_coarse = values_at(coarse, slope);
+  const ValuedMesh a{fine, of_fine};
+  const ValuedMesh b{coarse, of_coarse};
+  for (const SurfaceError& error :
+       {measure_error(a, b, k_number, k_options), measure_error(b, a, k_number, k_options)}) {
+    CHECK(error.values[0].samples == k_options.samples);
+    CHECK(error.values[0].max < 1e-6);
+    CHECK(error.distance.max < 1e-12);
+  }
+}
+
+TEST_CASE("a slope against none has the error that the formula says") {
+  const Mesh sheet = test::grid(10, 10);
+  const std::vector<float> slope = values_at(sheet, [](Vec3 p) { return p.x / 10; });
+  const std::vector<float> none(sheet.positions.size(), 0);
+  const ValueError error =
+      measure_error({sheet, slope}, {sheet, none}, k_number, k_options).values[0];
+  CHECK(error.mean == doctest::Approx(0.5).epsilon(0.01));
+  CHECK(error.rms == doctest::Approx(1 / std::sqrt(3)).epsilon(0.01));
+  CHECK(error.max <= 1);
+  CHECK(error.max > 0.98);
+}
+
+TEST_CASE("the columns of a group are compared as one, those of another by themselves") {
+  const Mesh sheet = test::grid(4, 4);
+  std::vector<float> a;
+  std::vector<float> b;
+  for (std::size_t v = 0; v < sheet.positions.size(); ++v) {
+    a.insert(a.end(), {0, 0, 0, 5});
+    b.insert(b.end(), {3, 0, 0, 7});
+  }
+  const std::vector<ValueGroup> groups = {{ValueKind::numbers, 3}, {ValueKind::numbers, 1}};
+  const SurfaceError error = measure_error({sheet, a}, {sheet, b}, groups, k_options);
+  REQUIRE(error.values.size() == 2);
+  CHECK(error.values[0].rms == doctest::Approx(std::sqrt(3)));
+  CHECK(error.values[0].mean == doctest::Approx(1));
+  CHECK(error.values[0].max == doctest::Approx(3));
+  CHECK(error.values[1].rms == doctest::Approx(2));
+}
+
+TEST_CASE("directions differ by an angle, however long they are") {
+  const Mesh sheet = test::grid(4, 4);
+  const double turn = 30 * std::acos(-1.0) / 180;
+  const std::vector<float> up = vectors(sheet, {0, 0, 2});
+  const std::vector<float> tilted = vectors(sheet, {std::sin(turn), 0, std::cos(turn)});
+  const ValueError error =
+      measure_error({sheet, up}, {sheet, tilted}, k_vector, k_options).values[0];
+  CHECK(error.mean == doctest::Approx(30).epsilon(1e-5));
+  CHECK(error.max == doctest::Approx(30).epsilon(1e-5));
+  const std::vector<float> down = vectors(sheet, {0, 0, -1});
+  CHECK(measure_error({sheet, up}, {sheet, down}, k_vector, k_options).values[0].max ==
+        doctest::Approx(180));
+}
+
+TEST_CASE("points where a surface has no value are left out") {
+  const Mesh sheet = test::grid(10, 10);
+  std::vector<float> half = values_at(sheet, [](Vec3) { return 1; });
+  for (std::size_t v = 0; v < half.size(); ++v) {
+    if (sheet.positions[v].x > 5) half[v] = std::numeric_limits<float>::quiet_NaN();
+  }
+  const std::vector<float> none(sheet.positions.size(), 0);
+  const ValueError error =
+      measure_error({sheet, half}, {sheet, none}, k_number, k_options).values[0];
+  CHECK(error.samples == doctest::Approx(k_options.samples / 2.0).epsilon(0.01));
+  CHECK(error.rms == doctest::Approx(1));
+  const std::vector<float> zero = vectors(sheet, {0, 0, 0});
+  const std::vector<float> up = vectors(sheet, {0, 0, 1});
+  const ValueError no_direction =
+      measure_error({sheet, up}, {sheet, zero}, k_vector, k_options).values[0];
+  CHECK(no_direction.samples == 0);
+  CHECK(no_direction.max == 0);
+}
+
+TEST_CASE("distances are those without values, and threads change nothing") {
+  const Mesh fine = test::icosphere(4);
+  const Mesh coarse = test::icosphere(2);
+  const std::vector<float> a = values_at(fine, [](Vec3 p) { return p.x; });
+  const std::vector<float> b = values_at(coarse, [](Vec3 p) { return p.x; });
+  const Distance distance = measure_distance(fine, coarse, k_options);
+  const SurfaceError one =
+      measure_error({fine, a}, {coarse, b}, k_number, {.samples = 20'000, .threads = 1});
+  const SurfaceError more =
+      measure_error({fine, a}, {coarse, b}, k_number, {.samples = 20'000, .threads = 4});
+  CHECK(one.distance.rms == distance.rms);
+  CHECK(one.distance.mean == distance.mean);
+  CHECK(one.distance.max == distance.max);
+  CHECK(one.values[0].rms == more.values[0].rms);
+  CHECK(one.values[0].max == more.values[0].max);
+  CHECK(one.values[0].rms > 0.001);
+}
+
+TEST_CASE("without samples or area there is nothing to compare") {
+  const Mesh sheet = test::grid(2, 2);
+  const std::vector<float> values(sheet.positions.size(), 0);
+  CHECK_THROWS_AS(measure_error({sheet, values}, {sheet, values}, k_number, {.samples = 0}),
+                  UsageError);
+  const Mesh flat{{{0, 0, 0}, {1, 0, 0}, {2, 0, 0}}, {{0, 1, 2}}};
+  const std::vector<float> of_flat(3, 0);
+  CHECK_THROWS_AS(measure_error({flat, of_flat}, {sheet, values}, k_number, k_options), DataError);
+  CHECK_THROWS_AS(measure_error({sheet, values}, {flat, of_flat}, k_number, k_options), DataError);
+}

@@ -1,0 +1,103 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#include <meshfarm/util/errors.hpp>
+
+#include "io/texture_colours.hpp"
+#include "picture_files.hpp"
+
+using namespace meshfarm;
+using namespace meshfarm::test;
+
+namespace {
+
+constexpr std::array<TexturePoint, 3> k_places{{{0.1, 0.1}, {0.9, 0.1}, {0.1, 0.9}}};
+
+TextureImage image_of(const Texel& texel) {
+  return {"one", [bytes = png_of(picture_of(16, 16, [texel](auto, auto) { return texel; }))] {
+            return bytes;
+          }};
+}
+
+TextureImage lost_image() {
+  return {"lost", []() -> std::string { throw DataError("it is not there"); }};
+}
+
+struct Sampled {
+  std::size_t pictures = 0;
+  int scans = 0;
+  std::vector<std::optional<LinearColour>> colours;
+};
+
+/// Of a triangle for each material, each with its own vertices, and of a vertex without any.
+Sampled sample(const std::vector<TextureImage>& images,
+               const std::vector<TextureMaterial>& materials,
+               const TextureColours::Options& options) {
+  Sampled made;
+  TextureColours colours(3 * materials.size() + 1, "m");
+  made.pictures =
+      colours.sample(images, materials, options,
+                     [&](const TextureColours::IsWanted&, const TextureColours::Add& add) {
+                       ++made.scans;
+                       for (std::size_t i = 0; i < materials.size(); ++i) {
+                         add({.vertices = {3 * i, 3 * i + 1, 3 * i + 2}, .places = k_places}, i);
+                       }
+                     });
+  for (std::size_t v = 0; v <= 3 * materials.size(); ++v) made.colours.push_back(colours.of(v));
+  return made;
+}
+
+const std::vector<TextureMaterial> k_materials{
+    {.image = 0}, {.image = 1}, {.image = 2, .plain = {0.25F, 0, 0}}, {.plain = {0, 0.5F, 0}}};
+
+}  // namespace
+
+TEST_CASE("pictures are held as many at a time as the memory allows, to the same colours") {
+  const std::vector<TextureImage> images{image_of({255, 0, 0}), image_of({0, 255, 0}),
+                                         lost_image()};
+  const Sampled at_once = sample(images, k_materials, {});
+  CHECK(at_once.pictures == 2);
+  CHECK(at_once.scans == 2);  // for pictures, and for what has none
+  const Sampled one_by_one = sample(images, k_materials, {.memory_bytes = 1});
+  CHECK(one_by_one.scans == 3);
+  CHECK(one_by_one.colours == at_once.colours);
+  for (std::size_t i = 0; i < 3; ++i) {
+    CHECK(at_once.colours[i] == LinearColour{1, 0, 0});
+    CHECK(at_once.colours[3 + i] == LinearColour{0, 1, 0});
+    CHECK(at_once.colours[6 + i] == LinearColour{0.25F, 0, 0});
+    CHECK(at_once.colours[9 + i] == LinearColour{0, 0.5F, 0});
+  }
+  CHECK_FALSE(at_once.colours.back());
+}
+
+TEST_CASE("what has no picture is left to itself where that is asked for") {
+  const std::vector<TextureImage> images{image_of({255, 0, 0}), lost_image(), lost_image()};
+  const Sampled made = sample(images, k_materials, {.plain = TextureColours::Plain::left});
+  CHECK(made.pictures == 1);
+  CHECK(made.scans == 1);
+  CHECK(made.colours[0] == LinearColour{1, 0, 0});
+  for (std::size_t v = 3; v < made.colours.size(); ++v) CHECK_FALSE(made.colours[v]);
+}
+
+TEST_CASE("without any picture nothing is coloured, and nothing scanned") {
+  const Sampled made = sample({lost_image(), lost_image(), lost_image()}, k_materials, {});
+  CHECK(made.pictures == 0);
+  CHECK(made.scans == 0);
+  CHECK_FALSE(made.colours[9]);
+}
+
+TEST_CASE("a vertex counts its triangles by their areas on the texture") {
+  const Picture halves = picture_of(64, 64, [](std::uint32_t x, auto) {
+    return x < 32 ? Texel{255, 0, 0} : Texel{0, 255, 0};
+  });
+  TextureColours colours(5, "m");
+  const auto scan = [](const TextureColours::IsWanted&, const TextureColours::Add& add) {
+    add({.vertices = {0, 1, 2}, .places = {{{0, 0}, {0.25, 0}, {0, 0.75}}}}, 0);
+    add({.vertices = {0, 3, 4}, .places = {{{1, 0}, {0.75, 0}, {1, 0.25}}}}, 0);
+  };
+  const std::vector<TextureImage> images{{"halves", [&] { return png_of(halves); }}};
+  CHECK(colours.sample(images, {{.image = 0}}, {}, scan) == 1);
+  const auto shared = colours.of(0);
+  REQUIRE(shared);
+  CHECK((*shared)[0] == doctest::Approx(0.75));
+  CHECK((*shared)[1] == doctest::Approx(0.25));
+}
