@@ -44,7 +44,7 @@ class ChosenChannels : public MeshSource {
   void scan_vertices(const std::function<void(std::span<const Vec3>)>& take) override {
     source_->scan_vertices(take);
   }
-  void scan_triangles(const std::function<void(std::span<const WideTriangle>)>& take) override {
+  void scan_triangles(const std::function<void(const TriangleView&)>& take) override {
     source_->scan_triangles(take);
   }
   void scan_channels(const std::function<void(const ChannelPoints&)>& take) override {

@@ -80,7 +80,7 @@ class Conversion {
   }
 
   /// Of the triangles whose vertices all have positions.
-  void scan_triangles(const std::function<void(std::span<const WideTriangle>)>& take) {
+  void scan_triangles(const std::function<void(const TriangleView&)>& take) {
     dropped_ = 0;
     source_.scan_triangles([&](std::span<const WideTriangle> batch) {
       tell(batch.size());

@@ -147,9 +147,9 @@ class GltfEncoder : public FileSink {
     write_up_to(out);
   }
 
-  void put(std::span<const WideTriangle> batch) override {
+  void put(const TriangleView& batch) override {
     char* out = buffer_.data();
-    for (const WideTriangle& triangle : batch) {
+    for (const WideTriangle& triangle : batch.corners) {
       for (const std::uint64_t index : triangle) {
         std::memcpy(out, &index, layout_.index_bytes);  // its low bytes
         out += layout_.index_bytes;

@@ -153,7 +153,7 @@ class GltfSource final : public MeshSource {
     });
   }
 
-  void scan_triangles(const std::function<void(std::span<const WideTriangle>)>& take) override {
+  void scan_triangles(const std::function<void(const TriangleView&)>& take) override {
     Batch<WideTriangle> batch(take);
     std::uint64_t first = 0;
     for (const GltfInstance& instance : instances_) {

@@ -22,7 +22,7 @@ using GltfMeshes = std::map<std::uint64_t, GltfMesh>;
 /// Scans the triangles of a primitive of a mesh.
 using GltfScan =
     std::function<void(const GltfTriangles& triangles, const GltfVertices& vertices,
-                       const std::function<void(std::span<const WideTriangle>)>& take)>;
+                       const std::function<void(const TriangleView&)>& take)>;
 
 /// The pictures that colour the meshes, as lines for the user.
 std::vector<std::string> describe_gltf_textures(const GltfValue& document, GltfBuffers& buffers,

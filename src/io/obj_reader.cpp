@@ -103,7 +103,7 @@ class ObjSource final : public TextSource {
 
   std::uint64_t small_faces() const override { return small_faces_; }
 
-  void scan_triangles(const std::function<void(std::span<const WideTriangle>)>& take) override {
+  void scan_triangles(const std::function<void(const TriangleView&)>& take) override {
     TriangleMaker maker(info().vertices, take, [this](std::uint64_t v) { return position_of(v); });
     TextBlocks text = blocks();
     std::uint64_t before = 0;

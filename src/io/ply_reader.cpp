@@ -118,7 +118,7 @@ class PlySource final : public MeshSource {
     body->read_channels(header_.elements[next], channels_, batch);
   }
 
-  void scan_triangles(const std::function<void(std::span<const WideTriangle>)>& take) override {
+  void scan_triangles(const std::function<void(const TriangleView&)>& take) override {
     // Goes on where the last scan of the vertices stopped, if that is before all triangles.
     auto [body, next] = std::exchange(parked_, {});
     const auto first = std::find_if(header_.elements.begin(), header_.elements.end(), has_corners);

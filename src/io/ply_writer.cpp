@@ -94,9 +94,9 @@ class PlySink final : public FileSink {
     write_up_to(out);
   }
 
-  void put(std::span<const WideTriangle> batch) override {
+  void put(const TriangleView& batch) override {
     char* out = buffer_.data();
-    for (const WideTriangle& triangle : batch) {
+    for (const WideTriangle& triangle : batch.corners) {
       *out++ = 3;
       for (const std::uint64_t index : triangle) {
         const auto narrow = static_cast<std::uint32_t>(index);

@@ -91,7 +91,7 @@ class AsciiStl final : public TextSource {
     look_at_digits();
   }
 
-  void scan_triangles(const std::function<void(std::span<const WideTriangle>)>& take) override {
+  void scan_triangles(const std::function<void(const TriangleView&)>& take) override {
     take_soup(info().faces, take);
   }
 

@@ -75,7 +75,7 @@ class BinaryStlSource final : public MeshSource {
     });
   }
 
-  void scan_triangles(const std::function<void(std::span<const WideTriangle>)>& take) override {
+  void scan_triangles(const std::function<void(const TriangleView&)>& take) override {
     take_soup(info_.faces, take);
   }
 
@@ -144,7 +144,7 @@ class BinaryStlSource final : public MeshSource {
 }  // namespace
 
 void take_soup(std::uint64_t triangles,
-               const std::function<void(std::span<const WideTriangle>)>& take) {
+               const std::function<void(const TriangleView&)>& take) {
   Batch<WideTriangle> batch(take);
   for (std::uint64_t t = 0; t < triangles; ++t) batch.add({3 * t, 3 * t + 1, 3 * t + 2});
   batch.flush();

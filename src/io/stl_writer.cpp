@@ -63,10 +63,10 @@ class StlSink final : public FileSink {
     rounded_.clear();
   }
 
-  void put(std::span<const WideTriangle> batch) override {
+  void put(const TriangleView& batch) override {
     if (!lookup_) lookup_ = std::make_unique<PositionLookup>(kept_);
     char* out = buffer_.data();
-    for (const WideTriangle& t : batch) {
+    for (const WideTriangle& t : batch.corners) {
       const Vec3 a = lookup_->at(t[0]);
       const Vec3 b = lookup_->at(t[1]);
       const Vec3 c = lookup_->at(t[2]);

@@ -66,8 +66,8 @@ class TextSink final : public FileSink {
     *out_++ = ' ';
   }
 
-  void put(std::span<const WideTriangle> batch) override {
-    for (const WideTriangle& triangle : batch) {
+  void put(const TriangleView& batch) override {
+    for (const WideTriangle& triangle : batch.corners) {
       begin_line(form_.before_triangle);
       for (const std::uint64_t index : triangle) {
         out_ = std::to_chars(out_, out_ + k_longest_coordinate, index + form_.first_index).ptr;

@@ -27,7 +27,7 @@ class MemorySource : public MeshSource {
       take(all.subspan(i, std::min(k_batch, all.size() - i)));
     }
   }
-  void scan_triangles(const std::function<void(std::span<const WideTriangle>)>& take) override {
+  void scan_triangles(const std::function<void(const TriangleView&)>& take) override {
     std::vector<WideTriangle> batch;
     for (const Triangle& t : mesh_.triangles) {
       batch.push_back({t[0], t[1], t[2]});

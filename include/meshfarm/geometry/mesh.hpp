@@ -23,11 +23,16 @@ enum class PositionType : std::uint8_t { float32 = 4, float64 = 8 };
 /// channel.
 using Appearance = std::array<std::uint16_t, 4>;
 
+/// What a triangle belongs to, a material or a region. Only whether two are the same counts while a
+/// mesh is simplified.
+using Label = std::uint32_t;
+
 /// A triangle mesh in memory. Local indices are 32-bit: a mesh in memory is a part or a result.
 struct Mesh {
   std::vector<Vec3> positions;
   std::vector<Triangle> triangles;
   std::vector<Appearance> appearances = {};  // one a vertex, or none at all
+  std::vector<Label> labels = {};            // one a triangle, or none at all
 };
 
 /// Vertices of some mesh, and their appearances if it has any.

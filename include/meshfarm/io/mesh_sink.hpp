@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -17,7 +18,8 @@ struct MeshSinkOptions {
   std::uint64_t triangles = 0;
   PositionType positions = PositionType::float32;
   std::string comment;  // one line, may be empty; not every format has a place for it
-  std::vector<Channel> channels = {};  // of the vertices; see kept_channels()
+  std::vector<Channel> channels = {};       // of the vertices; see kept_channels()
+  std::optional<LabelMeaning> labels = {};  // of the triangles
 };
 
 /// A mesh file that is written in batches, in memory that does not depend on its size: all
@@ -31,8 +33,9 @@ class MeshSink {
   virtual void vertices(std::span<const Vec3> batch) = 0;
   /// With the values of all channels of each vertex, one vertex after the other.
   virtual void vertices(std::span<const Vec3> batch, std::span<const float> values) = 0;
-  virtual void triangles(std::span<const WideTriangle> batch) = 0;
-  virtual void triangles(std::span<const Triangle> batch) = 0;
+  /// With one label each if the options have any, else with none.
+  virtual void triangles(const TriangleView& batch) = 0;
+  virtual void triangles(std::span<const Triangle> batch, std::span<const Label> labels = {}) = 0;
   /// Throws IoError if anything could not be written, DataError if the counts are not as promised.
   virtual void commit() = 0;
 };

@@ -7,17 +7,16 @@
 #include <filesystem>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
 #include <meshfarm/geometry/mesh.hpp>
 #include <meshfarm/io/channel.hpp>
+#include <meshfarm/io/labels.hpp>
 
 namespace meshfarm {
-
-/// A triangle of a whole mesh: 64-bit vertex indices.
-using WideTriangle = std::array<std::uint64_t, 3>;
 
 /// What a mesh file's header promises, or a count of the file tells, and what the reader makes of
 /// it.
@@ -27,9 +26,10 @@ struct MeshFileInfo {
   std::uint64_t vertices = 0;
   std::uint64_t faces = 0;  // polygons or strips, before they are made triangles
   PositionType positions = PositionType::float32;
-  std::vector<Channel> channels;      // of the vertices
-  std::vector<std::string> skipped;   // "face.flags", "material (5 elements)", "normals (120)"
-  std::vector<std::string> textures;  // that the colours are of: "atlas.jpg (4096 x 4096)"
+  std::vector<Channel> channels;       // of the vertices
+  std::optional<LabelMeaning> labels;  // of the triangles
+  std::vector<std::string> skipped;    // "face.flags", "material (5 elements)", "normals (120)"
+  std::vector<std::string> textures;   // that the colours are of: "atlas.jpg (4096 x 4096)"
 };
 
 /// A mesh file that is read by scanning, as often as wanted, in memory that does not depend on its
@@ -48,8 +48,9 @@ class MeshSource {
   /// All vertices in file order, in batches. One of which a coordinate is not finite comes as
   /// k_no_position, all others are finite.
   virtual void scan_vertices(const std::function<void(std::span<const Vec3>)>& take) = 0;
-  /// All triangles in file order, in batches. Every index is below info().vertices.
-  virtual void scan_triangles(const std::function<void(std::span<const WideTriangle>)>& take) = 0;
+  /// All triangles in file order, in batches, with their labels if info() has any. Every index is
+  /// below info().vertices.
+  virtual void scan_triangles(const std::function<void(const TriangleView&)>& take) = 0;
   /// All vertices in file order with their values of info().channels, in batches. Positions are as
   /// those of scan_vertices.
   virtual void scan_channels(const std::function<void(const ChannelPoints&)>& take) {

@@ -267,7 +267,7 @@ TEST_CASE("a mesh of 2^32 vertices is not read into memory") {
     MeshFileInfo huge;
     const MeshFileInfo& info() const override { return huge; }
     void scan_vertices(const std::function<void(std::span<const Vec3>)>&) override { FAIL("read"); }
-    void scan_triangles(const std::function<void(std::span<const WideTriangle>)>&) override {}
+    void scan_triangles(const std::function<void(const TriangleView&)>&) override {}
   } source;
   source.huge.vertices = std::uint64_t{1} << 32;
   CHECK_THROWS_AS(read_mesh(source), DataError);
