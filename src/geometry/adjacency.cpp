@@ -9,7 +9,8 @@
 
 namespace meshfarm {
 
-void Adjacency::build(std::span<const Triangle> triangles, std::size_t vertices) {
+void Adjacency::build(std::span<const Triangle> triangles, std::size_t vertices,
+                      std::span<const Label> labels) {
   rows_.assign(vertices, {0, 0});
   corners_.resize(triangles.size() * 3);
   for (const Triangle& t : triangles) {
@@ -26,9 +27,22 @@ void Adjacency::build(std::span<const Triangle> triangles, std::size_t vertices)
     corners_[rows_[t[1]].end++] = {t[2], t[0]};
     corners_[rows_[t[2]].end++] = {t[0], t[1]};
   }
+  put_labels(triangles, labels);
 }
 
-void Adjacency::assign(std::uint32_t vertex, std::span<const Corner> corners) {
+/// Beside the corners, in their order.
+void Adjacency::put_labels(std::span<const Triangle> triangles, std::span<const Label> labels) {
+  labels_.resize(labels.empty() ? 0 : corners_.size());
+  if (labels.empty()) return;
+  std::vector<std::uint32_t> next(rows_.size());
+  for (std::size_t v = 0; v < rows_.size(); ++v) next[v] = rows_[v].begin;
+  for (std::size_t i = 0; i < triangles.size(); ++i) {
+    for (const std::uint32_t v : triangles[i]) labels_[next[v]++] = labels[i];
+  }
+}
+
+void Adjacency::assign(std::uint32_t vertex, const CornerFan& fan) {
+  const std::span<const Corner> corners = fan.corners;
   Row& row = rows_[vertex];
   const auto count = static_cast<std::uint32_t>(corners.size());
   if (count > row.end - row.begin) {
@@ -37,8 +51,10 @@ void Adjacency::assign(std::uint32_t vertex, std::span<const Corner> corners) {
     }
     row.begin = static_cast<std::uint32_t>(corners_.size());
     corners_.insert(corners_.end(), corners.begin(), corners.end());
+    labels_.insert(labels_.end(), fan.labels.begin(), fan.labels.end());
   } else {
     std::copy(corners.begin(), corners.end(), corners_.begin() + row.begin);
+    std::copy(fan.labels.begin(), fan.labels.end(), labels_.begin() + row.begin);
   }
   row.end = row.begin + count;
 }
@@ -55,7 +71,9 @@ void Adjacency::replace(std::uint32_t vertex, std::uint32_t was, std::uint32_t n
     Corner c = corners_[i];
     if (c.next == was) c.next = now;
     if (c.prev == was) c.prev = now;
-    if (c.next != c.prev) corners_[kept++] = c;
+    if (c.next == c.prev) continue;
+    if (!labels_.empty()) labels_[kept] = labels_[i];
+    corners_[kept++] = c;
   }
   row.end = kept;
 }
@@ -72,6 +90,10 @@ void Adjacency::remove(std::uint32_t vertex, Corner corner) {
   const auto end = corners_.begin() + row.end;
   const auto at = std::find(corners_.begin() + row.begin, end, corner);
   if (at == end) return;
+  if (!labels_.empty()) {
+    const auto label = labels_.begin() + (at - corners_.begin());
+    std::copy(label + 1, labels_.begin() + row.end, label);
+  }
   std::copy(at + 1, end, at);
   --row.end;
 }

@@ -18,11 +18,30 @@ struct Corner {
   friend bool operator==(const Corner&, const Corner&) = default;
 };
 
+/// The corners at a vertex, and the labels of their triangles if these have any.
+struct CornerFan {
+  std::span<const Corner> corners;
+  std::span<const Label> labels;
+
+  /// Whether two of the triangles have other labels.
+  bool differ(std::size_t i, std::size_t k) const {
+    return !labels.empty() && labels[i] != labels[k];
+  }
+};
+
 /// The corners at each vertex in one flat array (compressed sparse rows), in triangle order.
 class Adjacency {
  public:
-  /// Keeps its memory from one build to the next.
-  void build(std::span<const Triangle> triangles, std::size_t vertices);
+  /// Keeps its memory from one build to the next. Labels: one a triangle, or none.
+  void build(std::span<const Triangle> triangles, std::size_t vertices,
+             std::span<const Label> labels = {});
+  bool has_labels() const { return !labels_.empty(); }
+  /// The corners with their labels.
+  CornerFan fan_at(std::uint32_t vertex) const {
+    const Row& row = rows_[vertex];
+    if (labels_.empty()) return {at(vertex), {}};
+    return {at(vertex), {labels_.data() + row.begin, labels_.data() + row.end}};
+  }
   std::uint32_t vertices() const { return static_cast<std::uint32_t>(rows_.size()); }
   std::span<const Corner> at(std::uint32_t vertex) const {
     const Row& row = rows_[vertex];
@@ -34,9 +53,10 @@ class Adjacency {
 
   // Changes to single vertices; the caller keeps the rows of a triangle's three vertices in step.
 
-  /// Gives a vertex other corners, which must not be a part of this. A longer row than before moves
-  /// to the end of the array. Throws UsageError if that is too long for 32-bit indices.
-  void assign(std::uint32_t vertex, std::span<const Corner> corners);
+  /// Gives a vertex other corners, which must not be a part of this, with labels if there are any.
+  /// A longer row than before moves to the end of the array. Throws UsageError if that is too long
+  /// for 32-bit indices.
+  void assign(std::uint32_t vertex, const CornerFan& fan);
   /// Adds a vertex without corners and returns its number.
   std::uint32_t add_vertex();
   /// Writes `now` for `was` in the corners of a vertex, and drops those that have lost their area.
@@ -51,8 +71,11 @@ class Adjacency {
     std::uint32_t begin;
     std::uint32_t end;
   };
+  void put_labels(std::span<const Triangle> triangles, std::span<const Label> labels);
+
   std::vector<Row> rows_;
   std::vector<Corner> corners_;
+  std::vector<Label> labels_;  // one a corner, or none
 };
 
 /// Calls take(corner, end) for the edges of one fan that have one triangle: none if it is closed,

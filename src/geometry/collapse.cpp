@@ -138,8 +138,21 @@ void CollapseJudge::add_appearances(std::uint32_t a, std::uint32_t b, std::uint3
   appearance_.add_to(quadric_);
 }
 
+/// Those of the triangles of the vertex's ring, in its order; none where there are none.
+std::span<const Label> CollapseJudge::labels_of(std::uint32_t vertex,
+                                                std::span<Label> buffer) const {
+  const CornerFan fan = state_.adjacency->fan_at(vertex);
+  std::size_t size = 0;
+  for (std::size_t i = 0; i < fan.labels.size(); ++i) {
+    const Corner& c = fan.corners[i];
+    if (state_.target[c.next] != state_.target[c.prev]) buffer[size++] = fan.labels[i];
+  }
+  return buffer.first(size);
+}
+
 /// Adds the planes of the lines at one end, but for the edge to `without`.
-void CollapseJudge::add_lines(const Ring& ring, Vec3 end, std::uint32_t without) {
+void CollapseJudge::add_lines(const Ring& ring, std::uint32_t vertex, Vec3 end,
+                              std::uint32_t without) {
   std::array<Corner, k_max_star> corners;
   for (std::uint32_t i = 0; i < ring.size; ++i) corners[i] = {ring.next[i], ring.prev[i]};
   const std::span<const Corner> fan(corners.data(), ring.size);
@@ -158,8 +171,9 @@ void CollapseJudge::add_lines(const Ring& ring, Vec3 end, std::uint32_t without)
     const auto is_other_on_crease = [&](std::uint32_t neighbour) {
       return neighbour != without && (state_.flags[neighbour] & k_crease) != 0;
     };
-    for_crease_edges(fan, at, state_.positions, *state_.creases, is_other_on_crease,
-                     [&](const Corner& one, const Corner& other) {
+    std::array<Label, k_max_star> labels;
+    for_crease_edges({fan, labels_of(vertex, labels)}, at, state_.positions, *state_.creases,
+                     is_other_on_crease, [&](const Corner& one, const Corner& other) {
                        add(one, one.prev);
                        add(other, one.prev);
                      });
@@ -196,8 +210,8 @@ Collapse CollapseJudge::best_of(std::uint32_t a, std::uint32_t b, const Collapse
   quadric_.squared_length = 4 * squared_length(half);
   star_.sum_planes(quadric_);
   add_appearances(a, b, shared);
-  if ((ring_a_.flags & k_line) != 0) add_lines(ring_a_, half * -1.0, k_none);
-  if ((ring_b_.flags & k_line) != 0) add_lines(ring_b_, half, a);
+  if ((ring_a_.flags & k_line) != 0) add_lines(ring_a_, a, half * -1.0, k_none);
+  if ((ring_b_.flags & k_line) != 0) add_lines(ring_b_, b, half, a);
 
   if (line_rank(ring_a_.flags) != line_rank(ring_b_.flags)) {
     const Vec3 point = line_position(a, b);

@@ -87,7 +87,8 @@ class CollapseJudge {
   bool link_allows(std::uint32_t shared) const;
   void add_star(std::uint32_t shared);
   void add_appearances(std::uint32_t a, std::uint32_t b, std::uint32_t shared);
-  void add_lines(const Ring& ring, Vec3 end, std::uint32_t without);
+  std::span<const Label> labels_of(std::uint32_t vertex, std::span<Label> buffer) const;
+  void add_lines(const Ring& ring, std::uint32_t vertex, Vec3 end, std::uint32_t without);
   Vec3 line_position(std::uint32_t a, std::uint32_t b) const;
   Collapse at_position(Vec3 position, std::uint32_t shared, double max_cost, Turn turn) const;
 

@@ -68,8 +68,8 @@ DroppedComponents drop_small_components(Mesh& mesh, double diagonal) {
   for (const Box& box : boxes) {
     if (!box.empty() && box.diagonal() < diagonal) ++dropped.components;
   }
-  dropped.triangles = std::erase_if(mesh.triangles, [&](const Triangle& t) {
-    return boxes[pieces.find(t[0])].diagonal() < diagonal;
+  dropped.triangles = keep_triangles(mesh, [&](std::size_t i) {
+    return !(boxes[pieces.find(mesh.triangles[i][0])].diagonal() < diagonal);
   });
   return dropped;
 }

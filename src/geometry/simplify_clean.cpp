@@ -19,15 +19,6 @@ bool is_degenerate(const Triangle& t) {
   return t[0] == t[1] || t[1] == t[2] || t[2] == t[0];
 }
 
-template <typename Keep>
-std::uint64_t drop_unless(std::vector<Triangle>& triangles, const Keep& keep) {
-  const auto last = std::remove_if(triangles.begin(), triangles.end(),
-                                   [&](const Triangle& t) { return !keep(t); });
-  const auto dropped = static_cast<std::uint64_t>(triangles.end() - last);
-  triangles.erase(last, triangles.end());
-  return dropped;
-}
-
 /// The vertices that are the smallest of two triangles with the same vertices, ascending. The two
 /// together are a fan of their own, so that only bad fans and fans of two need a look.
 std::vector<std::uint32_t> vertices_with_duplicates(std::span<const std::uint8_t> flags,
@@ -62,8 +53,7 @@ std::uint64_t drop_duplicates_at(const std::vector<std::uint32_t>& vertices, Mes
   for (std::size_t i = 1; i < sets.size(); ++i) {
     if (sets[i].first == sets[i - 1].first) repeated[sets[i].second] = 1;
   }
-  std::size_t place = 0;
-  return drop_unless(mesh.triangles, [&](const Triangle&) { return repeated[place++] == 0; });
+  return keep_triangles(mesh, [&](std::size_t i) { return repeated[i] == 0; });
 }
 
 enum class Fan : std::uint8_t { closed, open, broken };
@@ -249,6 +239,9 @@ void check_input(const Mesh& mesh, const SimplifyOptions& options) {
   if (!mesh.appearances.empty() && mesh.appearances.size() != vertices) {
     throw UsageError("simplify: the appearances are not one a vertex");
   }
+  if (!mesh.labels.empty() && mesh.labels.size() != mesh.triangles.size()) {
+    throw UsageError("simplify: the labels are not one a triangle");
+  }
   if (!options.seam.empty() && options.seam.size() != vertices) {
     throw UsageError("simplify: the seam flags are not one a vertex");
   }
@@ -266,11 +259,11 @@ void check_input(const Mesh& mesh, const SimplifyOptions& options) {
 Surface clean_surface(Mesh& mesh, const SimplifyOptions& options, Adjacency& adjacency) {
   Surface surface;
   surface.dropped.degenerate =
-      drop_unless(mesh.triangles, [](const Triangle& t) { return !is_degenerate(t); });
-  adjacency.build(mesh.triangles, mesh.positions.size());
+      keep_triangles(mesh, [&](std::size_t i) { return !is_degenerate(mesh.triangles[i]); });
+  adjacency.build(mesh.triangles, mesh.positions.size(), mesh.labels);
   surface.flags = classify_vertices(mesh, options, adjacency);
   const auto again = [&] {
-    adjacency.build(mesh.triangles, mesh.positions.size());
+    adjacency.build(mesh.triangles, mesh.positions.size(), mesh.labels);
     surface.flags = classify_vertices(mesh, options, adjacency);
   };
   const std::vector<std::uint32_t> doubtful = vertices_with_duplicates(surface.flags, adjacency);

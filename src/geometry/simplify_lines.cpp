@@ -34,8 +34,9 @@ double cosine_of(double degrees) {
 }  // namespace
 
 CreaseTest::CreaseTest(double degrees) {
+  constexpr double k_below_all = -2;
   const double cosine = cosine_of(degrees);
-  cosine_squared_ = cosine * std::abs(cosine);
+  cosine_squared_ = degrees > 0 ? cosine * std::abs(cosine) : k_below_all;
 }
 
 void CreaseLines::find(const Mesh& mesh, const Adjacency& adjacency,
@@ -44,7 +45,7 @@ void CreaseLines::find(const Mesh& mesh, const Adjacency& adjacency,
   for (std::uint32_t v = 0; v < flags.size(); ++v) {
     // Of an edge between two vertices each end sees it; one of them is enough.
     const auto is_greater = [v](std::uint32_t end) { return end > v; };
-    for_crease_edges(adjacency.at(v), mesh.positions[v], mesh.positions, sharp_, is_greater,
+    for_crease_edges(adjacency.fan_at(v), mesh.positions[v], mesh.positions, sharp_, is_greater,
                      [&](const Corner& one, const Corner&) {
                        flags[v] |= k_crease;
                        flags[one.prev] |= k_crease;
@@ -61,8 +62,8 @@ void CreaseLines::update(const Mesh& mesh, const Adjacency& adjacency,
   for (std::uint32_t v = 0; v < flags.size(); ++v) {
     if (!is_on_crease(v)) continue;
     int creases = 0;
-    for_crease_edges(adjacency.at(v), mesh.positions[v], mesh.positions, still_sharp_, is_on_crease,
-                     [&](const Corner&, const Corner&) { ++creases; });
+    for_crease_edges(adjacency.fan_at(v), mesh.positions[v], mesh.positions, still_sharp_,
+                     is_on_crease, [&](const Corner&, const Corner&) { ++creases; });
     flags[v] &= static_cast<std::uint8_t>(~(k_crease | k_corner));
     if (creases == 0) continue;
     flags[v] |= k_crease;

@@ -32,10 +32,10 @@ inline std::uint8_t barred_along(std::uint8_t flags) {
   return (flags & k_corner) != 0 ? k_corner : 0;
 }
 
-/// Tells creases: inner edges whose two triangles' normals differ by more than an angle.
+/// Tells creases by the angle: inner edges whose two triangles' normals differ by more.
 class CreaseTest {
  public:
-  /// `degrees` in (0, 180).
+  /// `degrees` in (0, 180), or 0: no edge is one.
   explicit CreaseTest(double degrees);
 
   /// Of the edge from `at` to `end`, between the triangles (at, right, end) and (at, end, left).
@@ -52,29 +52,33 @@ class CreaseTest {
   double cosine_squared_;  // with the cosine's sign
 };
 
-/// Calls take(one, other) for the edges of a fan at the vertex at `at` that are creases: the
-/// triangle that ends at the edge and the one that begins there, so that the edge's other end is
-/// one.prev == other.next. `is_candidate` says which ends to look at.
+/// Calls take(one, other) for the edges of a fan at the vertex at `at` that are creases, or lie
+/// between two labels: the triangle that ends at the edge and the one that begins there, so that
+/// the edge's other end is one.prev == other.next. `is_candidate` says which ends to look at.
 template <typename Candidate, typename Take>
-void for_crease_edges(std::span<const Corner> fan, Vec3 at, std::span<const Vec3> positions,
+void for_crease_edges(const CornerFan& fan, Vec3 at, std::span<const Vec3> positions,
                       const CreaseTest& test, const Candidate& is_candidate, const Take& take) {
-  for (const Corner& one : fan) {
+  for (std::size_t i = 0; i < fan.corners.size(); ++i) {
+    const Corner& one = fan.corners[i];
     if (!is_candidate(one.prev)) continue;
-    for (const Corner& other : fan) {
+    for (std::size_t k = 0; k < fan.corners.size(); ++k) {
+      const Corner& other = fan.corners[k];
       if (other.next != one.prev) continue;
-      if (test.is_crease(at, positions[one.next], positions[one.prev], positions[other.prev])) {
+      if (fan.differ(i, k) ||
+          test.is_crease(at, positions[one.next], positions[one.prev], positions[other.prev])) {
         take(one, other);
       }
     }
   }
 }
 
-/// Keeps the flags of creases true while the mesh is simplified.
+/// Keeps the flags of creases true while the mesh is simplified. Where labels meet is a crease,
+/// whatever the angle.
 class CreaseLines {
  public:
-  /// An angle of 0 means no creases.
-  explicit CreaseLines(double degrees)
-      : exists_(degrees > 0), sharp_(exists_ ? degrees : 90), still_sharp_(sharp_angle(degrees)) {}
+  /// An angle of 0 means no creases but these.
+  CreaseLines(double degrees, bool labels)
+      : exists_(degrees > 0 || labels), sharp_(degrees), still_sharp_(degrees / 2) {}
 
   bool exist() const { return exists_; }
   /// By which lines that are once found are followed: sooner or later some edge of a line is less
@@ -87,8 +91,6 @@ class CreaseLines {
   void update(const Mesh& mesh, const Adjacency& adjacency, std::vector<std::uint8_t>& flags) const;
 
  private:
-  static double sharp_angle(double degrees) { return degrees > 0 ? degrees / 2 : 90; }
-
   bool exists_;
   CreaseTest sharp_;
   CreaseTest still_sharp_;

@@ -234,14 +234,22 @@ void CollapseQueue::join_stars(std::uint32_t a, std::uint32_t b) {
     if (v != a) mesh_.adjacency.replace(v, b, a);
   }
   joined_.clear();
+  joined_labels_.clear();
   for (const std::uint32_t end : {a, b}) {
     const std::uint32_t other = end == a ? b : a;
-    for (const Corner& c : mesh_.adjacency.at(end)) {
-      if (c.next != other && c.prev != other) joined_.push_back(c);
+    const CornerFan fan = mesh_.adjacency.fan_at(end);
+    for (std::size_t i = 0; i < fan.corners.size(); ++i) {
+      const Corner& c = fan.corners[i];
+      if (c.next != other && c.prev != other) join(fan, i);
     }
   }
   mesh_.adjacency.assign(b, {});
-  mesh_.adjacency.assign(a, joined_);
+  mesh_.adjacency.assign(a, {joined_, joined_labels_});
+}
+
+void CollapseQueue::join(const CornerFan& fan, std::size_t place) {
+  joined_.push_back(fan.corners[place]);
+  if (!fan.labels.empty()) joined_labels_.push_back(fan.labels[place]);
 }
 
 void CollapseQueue::merge(std::uint32_t a, std::uint32_t b, const Collapse& collapse) {
@@ -299,21 +307,23 @@ void CollapseQueue::tidy_star(std::uint32_t vertex) {
     return;
   }
   const auto first_copy = static_cast<std::uint32_t>(target_.size());
-  const auto corners = mesh_.adjacency.at(vertex);
-  const std::vector<Corner> all(corners.begin(), corners.end());
+  const CornerFan star = mesh_.adjacency.fan_at(vertex);
+  const std::vector<Corner> all(star.corners.begin(), star.corners.end());
+  const std::vector<Label> labels(star.labels.begin(), star.labels.end());
   const std::vector<std::uint32_t> fan(splitter_.fans().begin(), splitter_.fans().end());
   for (std::uint32_t f = 0; f < fans; ++f) {
     joined_.clear();
+    joined_labels_.clear();
     const std::uint32_t v = f == 0 ? vertex : add_copy(vertex);
     for (std::size_t i = 0; i < all.size(); ++i) {
       if (fan[i] != f) continue;
       const auto [next, prev] = all[i];
-      joined_.push_back(all[i]);
+      join({all, labels}, i);
       if (f == 0) continue;
       mesh_.adjacency.replace(next, Corner{prev, vertex}, Corner{prev, v});
       mesh_.adjacency.replace(prev, Corner{vertex, next}, Corner{v, next});
     }
-    mesh_.adjacency.assign(v, joined_);
+    mesh_.adjacency.assign(v, {joined_, joined_labels_});
     classify(v);
   }
   if (guard_ != nullptr) guard_->split(vertex, first_copy);
@@ -361,6 +371,7 @@ void CollapseQueue::copy_to(Mesh& mesh, std::vector<std::uint8_t>& flags,
   mesh.positions.clear();
   mesh.triangles.clear();
   mesh.appearances.clear();
+  mesh.labels.clear();
   flags.clear();
   std::vector<std::uint32_t> number(target_.size());
   for (std::uint32_t v = 0; v < target_.size(); ++v) {
@@ -372,9 +383,12 @@ void CollapseQueue::copy_to(Mesh& mesh, std::vector<std::uint8_t>& flags,
   }
   mesh.triangles.reserve(triangles_);
   for (std::uint32_t v = 0; v < target_.size(); ++v) {
-    for (const Corner& c : mesh_.adjacency.at(v)) {
-      if (c.next > v && c.prev > v)
-        mesh.triangles.push_back({number[v], number[c.next], number[c.prev]});
+    const CornerFan fan = mesh_.adjacency.fan_at(v);
+    for (std::size_t i = 0; i < fan.corners.size(); ++i) {
+      const Corner& c = fan.corners[i];
+      if (c.next < v || c.prev < v) continue;
+      mesh.triangles.push_back({number[v], number[c.next], number[c.prev]});
+      if (!fan.labels.empty()) mesh.labels.push_back(fan.labels[i]);
     }
   }
 }

@@ -114,6 +114,7 @@ class CollapseQueue {
   std::uint32_t add_copy(std::uint32_t vertex);
   void join_stars(std::uint32_t a, std::uint32_t b);
   void list_ring(std::uint32_t vertex);
+  void join(const CornerFan& fan, std::size_t place);
   void look_again(std::uint32_t vertex);
   CollapseState state();
 
@@ -136,6 +137,7 @@ class CollapseQueue {
   std::vector<std::uint32_t> tidied_;
   std::vector<std::uint32_t> ring_;
   std::vector<Corner> joined_;
+  std::vector<Label> joined_labels_;
   std::uint64_t triangles_ = 0;
   std::vector<Mesh> kept_;
   std::size_t next_kept_ = 0;  // of the goal's counts

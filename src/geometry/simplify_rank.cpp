@@ -133,7 +133,7 @@ template <typename Take>
 void EdgeRanking::for_creases_at(std::uint32_t vertex, const Take& take) const {
   if ((input_.flags[vertex] & k_crease) == 0) return;
   const auto is_on_crease = [&](std::uint32_t end) { return (input_.flags[end] & k_crease) != 0; };
-  for_crease_edges(input_.adjacency->at(vertex), input_.positions[vertex], input_.positions,
+  for_crease_edges(input_.adjacency->fan_at(vertex), input_.positions[vertex], input_.positions,
                    *input_.creases, is_on_crease, take);
 }
 

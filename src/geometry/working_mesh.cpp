@@ -16,7 +16,7 @@ WorkingMesh::WorkingMesh(Mesh mesh, const SimplifyOptions& options)
       type_(options.positions),
       seam_only_(!options.seam.empty()),
       appearance_scale_(options.lines.appearance_scale),
-      creases_(options.lines.crease_angle) {
+      creases_(options.lines.crease_angle, !mesh_.labels.empty()) {
   check_input(mesh_, options);
   if (!(appearance_scale_.length > 0)) mesh_.appearances = {};
   Surface surface = clean_surface(mesh_, options, adjacency_);
@@ -55,7 +55,9 @@ std::vector<std::uint8_t> WorkingMesh::seam() const {
 }
 
 void WorkingMesh::begin_pass() {
-  if (!adjacency_is_current_) adjacency_.build(mesh_.triangles, mesh_.positions.size());
+  if (!adjacency_is_current_) {
+    adjacency_.build(mesh_.triangles, mesh_.positions.size(), mesh_.labels);
+  }
   creases_.update(mesh_, adjacency_, flags_);
   const std::size_t vertices = mesh_.positions.size();
   target_.resize(vertices);
@@ -97,14 +99,17 @@ void WorkingMesh::compact() {
   }
   keep_vertices(kept);
   std::size_t left = 0;
-  for (const Triangle& t : mesh_.triangles) {
+  for (std::size_t i = 0; i < mesh_.triangles.size(); ++i) {
+    const Triangle t = mesh_.triangles[i];
     const Triangle now = {target_[t[0]], target_[t[1]], target_[t[2]]};
     mesh_.triangles[left] = now;
+    if (!mesh_.labels.empty()) mesh_.labels[left] = mesh_.labels[i];
     const auto [a, b, c] = now;
     const bool is_left = (a != b) & (b != c) & (c != a);
     left += is_left ? 1 : 0;
   }
   mesh_.triangles.resize(left);
+  if (!mesh_.labels.empty()) mesh_.labels.resize(left);
 }
 
 void WorkingMesh::move_vertex(std::uint32_t from, std::uint32_t to) {

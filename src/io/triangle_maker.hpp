@@ -26,7 +26,7 @@ class Batch {
  public:
   using Take = std::function<void(std::span<const T>)>;
 
-  explicit Batch(const Take& take) : take_(take), items_(k_most_items) {}
+  explicit Batch(Take take) : take_(std::move(take)), items_(k_most_items) {}
 
   void add(const T& item) {
     items_[size_] = item;
@@ -45,7 +45,7 @@ class Batch {
 
  private:
   static constexpr std::size_t k_most_items = 8192;  // stays in the second-level cache
-  const Take& take_;
+  Take take_;
   std::vector<T> items_;
   std::size_t size_ = 0;
 };

@@ -134,7 +134,7 @@ TEST_CASE("flags tell creases and their corners") {
   Mesh mesh = cube;
   Adjacency adjacency;
   std::vector<std::uint8_t> flags = clean_surface(mesh, {}, adjacency).flags;
-  CreaseLines(60).find(mesh, adjacency, flags);
+  CreaseLines(60, false).find(mesh, adjacency, flags);
   for (std::uint32_t v = 0; v < flags.size(); ++v) {
     const Vec3 p = mesh.positions[v];
     const auto whole = [](double c) { return static_cast<int>(std::lround(c)); };

@@ -1,0 +1,149 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numbers>
+#include <set>
+#include <utility>
+#include <vector>
+
+#include <doctest/doctest.h>
+
+#include <meshfarm/geometry/simplify.hpp>
+#include <meshfarm/util/errors.hpp>
+
+#include "test_simplify_meshes.hpp"
+
+using namespace meshfarm;
+using namespace meshfarm::simplify_test;
+
+namespace {
+
+Vec3 centre_of(const Mesh& mesh, const Triangle& t) {
+  return (mesh.positions[t[0]] + mesh.positions[t[1]] + mesh.positions[t[2]]) * (1.0 / 3);
+}
+
+template <typename LabelAt>
+Mesh labelled(Mesh mesh, const LabelAt& label_at) {
+  for (const Triangle& t : mesh.triangles) mesh.labels.push_back(label_at(centre_of(mesh, t)));
+  return mesh;
+}
+
+Label octant(Vec3 p) {
+  return (p.x > 0 ? 1U : 0U) + (p.y > 0 ? 2U : 0U) + (p.z > 0 ? 4U : 0U);
+}
+
+Mesh simplified(const Mesh& mesh, std::uint64_t triangles,
+                TopologyMode topology = TopologyMode::automatic) {
+  SimplifyOptions options;
+  options.lines.topology = topology;
+  Simplifier simplifier(mesh, options);
+  simplifier.reduce({.triangles = triangles});
+  return simplifier.mesh();
+}
+
+using Line = std::pair<Vec3, Vec3>;
+
+/// The edges between triangles of two labels.
+std::vector<Line> lines_of(const Mesh& mesh) {
+  std::map<std::pair<std::uint32_t, std::uint32_t>, std::set<Label>> edges;
+  for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
+    const Triangle& t = mesh.triangles[i];
+    for (std::size_t k = 0; k < 3; ++k) {
+      edges[std::minmax(t[k], t[(k + 1) % 3])].insert(mesh.labels[i]);
+    }
+  }
+  std::vector<Line> lines;
+  for (const auto& [edge, labels] : edges) {
+    if (labels.size() < 2) continue;
+    lines.emplace_back(mesh.positions[edge.first], mesh.positions[edge.second]);
+  }
+  return lines;
+}
+
+double length_of(const std::vector<Line>& lines) {
+  double sum = 0;
+  for (const auto& [a, b] : lines) sum += length(b - a);
+  return sum;
+}
+
+std::map<Label, double> areas_of(const Mesh& mesh) {
+  std::map<Label, double> areas;
+  for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
+    const auto [a, b, c] = mesh.triangles[i];
+    const Vec3 at = mesh.positions[a];
+    areas[mesh.labels[i]] += length(cross(mesh.positions[b] - at, mesh.positions[c] - at)) / 2;
+  }
+  return areas;
+}
+
+const std::vector<TopologyMode> k_modes = {TopologyMode::automatic, TopologyMode::keep,
+                                           TopologyMode::simplify};
+
+}  // namespace
+
+TEST_CASE("lines between labels stay where they are") {
+  const Mesh ball = labelled(sphere(5), octant);
+  REQUIRE(ball.triangles.size() == 8192);
+  for (const TopologyMode mode : k_modes) {
+    for (const std::uint64_t target : {2000, 400, 120}) {
+      CAPTURE(target);
+      const Mesh result = simplified(ball, target, mode);
+      CHECK(result.triangles.size() <= target);
+      CHECK(result.triangles.size() + 2 > target);
+      REQUIRE(result.labels.size() == result.triangles.size());
+      CHECK(is_clean(result));
+      for (std::size_t i = 0; i < result.triangles.size(); ++i) {
+        CHECK(octant(centre_of(result, result.triangles[i])) == result.labels[i]);
+      }
+      // Three great circles, in which chords take the place of arcs.
+      CHECK(length_of(lines_of(result)) == doctest::Approx(6 * std::numbers::pi).epsilon(0.05));
+      for (const auto& [a, b] : lines_of(result)) {
+        const Vec3 m = (a + b) * 0.5;
+        CHECK(std::min({std::abs(m.x), std::abs(m.y), std::abs(m.z)}) < 0.002);
+      }
+    }
+  }
+}
+
+TEST_CASE("a jagged region keeps its area and its place") {
+  const auto is_inside = [](Vec3 p) -> Label { return std::hypot(p.x - 0.5, p.y - 0.5) < 0.3; };
+  const Mesh flat = labelled(wavy_grid(100, 100), is_inside);
+  const double before = areas_of(flat).at(1);
+  for (const TopologyMode mode : k_modes) {
+    const Mesh result = simplified(flat, 400, mode);
+    CHECK(result.triangles.size() <= 400);
+    CHECK(areas_of(result).at(1) == doctest::Approx(before).epsilon(0.02));
+    for (const auto& [a, b] : lines_of(result)) {
+      for (const Vec3 p : {a, b}) CHECK(std::abs(std::hypot(p.x - 0.5, p.y - 0.5) - 0.3) < 0.03);
+    }
+  }
+}
+
+TEST_CASE("labels that are all the same change nothing") {
+  const Mesh mesh = wavy_grid(60, 60);
+  const Mesh plain = simplified(mesh, 500);
+  const Mesh result = simplified(labelled(mesh, [](Vec3) { return 7U; }), 500);
+  CHECK(result.positions == plain.positions);
+  CHECK(result.triangles == plain.triangles);
+  CHECK(result.labels == std::vector<Label>(plain.triangles.size(), 7));
+}
+
+TEST_CASE("labels go with their triangles where these are dropped") {
+  Mesh mesh = labelled(torus(40, 20), [](Vec3 p) { return p.z > 0 ? 1U : 0U; });
+  const double before = areas_of(mesh).at(1);
+  // A degenerate one in front, one twice, and a piece that is dropped below.
+  mesh.triangles.insert(mesh.triangles.begin(), {{0, 0, 1}, mesh.triangles[5]});
+  mesh.labels.insert(mesh.labels.begin(), {9, mesh.labels[5]});
+  const Mesh result = simplified(mesh, 1500);
+  REQUIRE(result.labels.size() == result.triangles.size());
+  CHECK(areas_of(result).size() == 2);
+  CHECK(areas_of(result).at(1) == doctest::Approx(before).epsilon(0.01));
+}
+
+TEST_CASE("labels must be one a triangle") {
+  Mesh mesh = tetrahedron();
+  mesh.labels = {1, 2};
+  CHECK_THROWS_AS(Simplifier(mesh, {}), UsageError);
+}
