@@ -16,9 +16,10 @@ WorkingMesh::WorkingMesh(Mesh mesh, const SimplifyOptions& options)
       type_(options.positions),
       seam_only_(!options.seam.empty()),
       appearance_scale_(options.lines.appearance_scale),
-      creases_(options.lines.crease_angle, !mesh_.labels.empty()) {
+      creases_(options.lines.crease_angle, options.lines.keep_labels && !mesh_.labels.empty()) {
   check_input(mesh_, options);
   if (!(appearance_scale_.length > 0)) mesh_.appearances = {};
+  if (!options.lines.keep_labels) mesh_.labels = {};
   Surface surface = clean_surface(mesh_, options, adjacency_);
   dropped_ = surface.dropped;
   flags_ = std::move(surface.flags);

@@ -35,21 +35,26 @@ struct Mesh {
   std::vector<Label> labels = {};            // one a triangle, or none at all
 };
 
-/// Keeps the triangles, with their labels, for whose index keep(index) is true; each is asked for
-/// once, in order. Returns how many have gone.
+/// Keeps the triangles, with their labels if there are any, for whose index keep(index) is true;
+/// each is asked for once, in order. Returns how many have gone.
 template <typename Keep>
-std::size_t keep_triangles(Mesh& mesh, const Keep& keep) {
+std::size_t keep_triangles(std::vector<Triangle>& triangles, std::vector<Label>& labels,
+                           const Keep& keep) {
   std::size_t kept = 0;
-  const std::size_t all = mesh.triangles.size();
+  const std::size_t all = triangles.size();
   for (std::size_t i = 0; i < all; ++i) {
     if (!keep(i)) continue;
-    mesh.triangles[kept] = mesh.triangles[i];
-    if (!mesh.labels.empty()) mesh.labels[kept] = mesh.labels[i];
+    triangles[kept] = triangles[i];
+    if (!labels.empty()) labels[kept] = labels[i];
     ++kept;
   }
-  mesh.triangles.resize(kept);
-  if (!mesh.labels.empty()) mesh.labels.resize(kept);
+  triangles.resize(kept);
+  if (!labels.empty()) labels.resize(kept);
   return all - kept;
+}
+template <typename Keep>
+std::size_t keep_triangles(Mesh& mesh, const Keep& keep) {
+  return keep_triangles(mesh.triangles, mesh.labels, keep);
 }
 
 /// Vertices of some mesh, and their appearances if it has any.

@@ -47,6 +47,9 @@ struct LineOptions {
   double crease_angle = 0;
   TopologyMode topology = TopologyMode::automatic;
   AppearanceScale appearance_scale;
+  /// Vertices where triangles of two labels meet merge along these lines only, so that regions keep
+  /// their shape. If not, labels are dropped.
+  bool keep_labels = true;
 };
 
 class SurfaceBound;
