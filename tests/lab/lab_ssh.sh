@@ -42,6 +42,9 @@ workers_left() {
 no_workers_left() {
   ! workers_left
 }
+no_run_left() {
+  ! pgrep -f "$MESHFARM run $stage" > /dev/null
+}
 # Lines with the time at which each came.
 stamped() {
   local line
@@ -90,11 +93,13 @@ pkill -KILL -f "launch-ssh.sh host2:1 host3:1 -- $stage"
 wait_for 30 no_workers_left || fail "workers outlive a killed launcher"
 
 say "an interrupted one leaves a stage that the same command takes up"
-pkill -TERM -f "meshfarm run $stage" || true
+pkill -TERM -f "$MESHFARM run $stage" || true
+# It leaves the output to the next only when it is gone.
+wait_for 20 no_run_left || fail "a run that was asked to leave is still there"
 on_host 1 "$lab_root/scripts/launch-ssh.sh" host2:1 host3:1 -- "$stage" --ratio 0.05 \
   -o "$work/out2.ply" --bind 10.77.0.1 > /dev/null 2> "$work/run2.err" &
 launcher=$!
-wait_for 30 has_results "$stage" 40 || fail "no results of the third run"
+wait_for 30 has_results "$stage" 40 || fail "no results of the third run: $(cat "$work/run2.err")"
 say "it is interrupted"
 pkill -TERM -o -f "bash .*launch-ssh.sh host2:1 host3:1 -- $stage"
 code=0
