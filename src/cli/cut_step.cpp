@@ -48,6 +48,7 @@ Manifest cut_to_stage(const CutStep& step) {
   if (!step.words.scratch.empty()) ::setenv("TMPDIR", step.words.scratch.c_str(), 1);
   auto opened = open_mesh(step.input, {.threads = step.words.cut.threads,
                                        .channels = step.words.attributes != "none",
+                                       .labels = step.words.attributes != "none",
                                        .textures = parse_uv(step.words.uv)});
   tell_textures(step.input, opened->info());
   const auto source = with_channels(std::move(opened), step.words.channels);

@@ -16,8 +16,8 @@ bool means(std::string_view name, const Channel& channel) {
          (name == "normals" && channel.role == ChannelRole::normal);
 }
 
-std::string names_of(std::span<const Channel> channels) {
-  std::string names;
+std::string names_of(std::span<const Channel> channels, const std::optional<LabelMeaning>& labels) {
+  std::string names = labels ? labels->name : "";
   for (const Channel& channel : channels) names += (names.empty() ? "" : ", ") + channel.name;
   return names.empty() ? "none" : names;
 }
@@ -26,8 +26,11 @@ class ChosenChannels : public MeshSource {
  public:
   ChosenChannels(std::unique_ptr<MeshSource> source, const ChannelChoice& choice)
       : source_(std::move(source)),
-        columns_(chosen_columns(choice, source_->info().channels)),
+        columns_(chosen_columns(choice, source_->info().channels, source_->info().labels)),
         info_(source_->info()) {
+    if (info_.labels && !chooses_labels(choice, *info_.labels)) {
+      info_.skipped.push_back(std::exchange(info_.labels, {})->name);
+    }
     const std::vector<Channel> all = std::exchange(info_.channels, {});
     info_.channels = channels_at(all, columns_);
     for (std::size_t i = 0; i < all.size(); ++i) {
@@ -45,7 +48,8 @@ class ChosenChannels : public MeshSource {
     source_->scan_vertices(take);
   }
   void scan_triangles(const std::function<void(const TriangleView&)>& take) override {
-    source_->scan_triangles(take);
+    if (info_.labels || !source_->info().labels) return source_->scan_triangles(take);
+    source_->scan_triangles([&take](const TriangleView& batch) { take(batch.corners); });
   }
   void scan_channels(const std::function<void(const ChannelPoints&)>& take) override {
     if (columns_.empty()) return;
@@ -81,13 +85,20 @@ ChannelChoice parse_choice(std::string_view text, std::string_view option) {
   }
 }
 
+bool chooses_labels(const ChannelChoice& choice, const LabelMeaning& labels) {
+  return choice.all ||
+         std::find(choice.names.begin(), choice.names.end(), labels.name) != choice.names.end();
+}
+
 std::vector<std::size_t> chosen_columns(const ChannelChoice& choice,
-                                        std::span<const Channel> channels) {
+                                        std::span<const Channel> channels,
+                                        const std::optional<LabelMeaning>& labels) {
   for (const std::string& name : choice.names) {
+    if (labels && name == labels->name) continue;
     if (std::none_of(channels.begin(), channels.end(),
                      [&](const Channel& channel) { return means(name, channel); })) {
       throw UsageError("--attributes: there is no channel '" + name +
-                       "'; there are: " + names_of(channels));
+                       "'; there are: " + names_of(channels, labels));
     }
   }
   std::vector<std::size_t> columns;

@@ -7,12 +7,13 @@
 //   u8 | box 6 x f64 | input vertices u64 | input triangles u64 | coincident vertices u64 | dropped
 //   degenerate u64 | coincident corners u64 | dropped not finite u64 | dropped duplicate u64 |
 //   channels u32 x (name | type u8, its bytes | role u8), if any: file | points u64 |
-//   skipped u32 x string | cut seconds f64 | boundary triangles u64 | boundary file | sorting |
-//   parts u32 x (file | vertices u64 | triangles u64 | boundary vertices u32) | samples u32 x the
-//   same: none, or one a part, its file's name empty where it has none sorting = u8 0: parts and
-//   streams are there | u8 1: slabs are, and how they are to be sorted (io/sorting.hpp)
+//   labels u8 0, or 1 | name | materials u32 x (name | colour 4 x f32) | skipped u32 x string | cut
+//   seconds f64 | boundary triangles u64 | boundary file | sorting | parts u32 x (file | vertices
+//   u64 | triangles u64 | boundary vertices u32) | samples u32 x the same: none, or one a part, its
+//   file's name empty where it has none sorting = u8 0: parts and streams are there | u8 1: slabs
+//   are, and how they are to be sorted (io/sorting.hpp)
 // Version 1 had no scheme, window and samples, version 2 no sorting, version 3 no partitioner, no
-// coincident corners and no dropped not finite, version 4 no channels.
+// coincident corners and no dropped not finite, version 4 no channels and labels.
 #include <meshfarm/io/manifest.hpp>
 #include <meshfarm/io/sorting.hpp>
 #include <meshfarm/staging/sealed.hpp>
@@ -80,6 +81,33 @@ StagedChannels get_channels(ByteReader& in) {
   return staged;
 }
 
+void put_labels(ByteWriter& out, const std::optional<LabelMeaning>& labels) {
+  out.put(static_cast<std::uint8_t>(labels ? 1 : 0));
+  if (!labels) return;
+  out.put_string(labels->name);
+  out.put(static_cast<std::uint32_t>(labels->materials.size()));
+  for (const Material& material : labels->materials) {
+    out.put_string(material.name);
+    out.put(material.colour);
+  }
+}
+
+std::optional<LabelMeaning> get_labels(ByteReader& in) {
+  const auto has_any = in.get<std::uint8_t>();
+  if (has_any > 1) in.fail("labels or none, but not this");
+  if (has_any == 0) return std::nullopt;
+  LabelMeaning labels;
+  labels.name = in.get_string();
+  const auto count = in.get<std::uint32_t>();
+  for (std::uint32_t i = 0; i < count; ++i) {
+    Material material;
+    material.name = in.get_string();
+    material.colour = in.get<std::array<float, 4>>();
+    labels.materials.push_back(std::move(material));
+  }
+  return labels;
+}
+
 void put_parts(ByteWriter& out, const std::vector<PartEntry>& parts) {
   out.put(static_cast<std::uint32_t>(parts.size()));
   for (const PartEntry& part : parts) {
@@ -131,6 +159,7 @@ std::string encode_manifest(const Manifest& m) {
   out.put(m.dropped_not_finite);
   out.put(m.dropped_duplicate);
   put_channels(out, m.channels);
+  put_labels(out, m.labels);
   out.put(static_cast<std::uint32_t>(m.skipped.size()));
   for (const std::string& name : m.skipped) out.put_string(name);
   out.put(m.cut_seconds);
@@ -163,6 +192,7 @@ Manifest decode_manifest(std::string_view file, std::string_view what) {
   m.dropped_not_finite = in.get<std::uint64_t>();
   m.dropped_duplicate = in.get<std::uint64_t>();
   m.channels = get_channels(in);
+  m.labels = get_labels(in);
   const auto skipped = in.get<std::uint32_t>();
   for (std::uint32_t i = 0; i < skipped; ++i) m.skipped.push_back(in.get_string());
   m.cut_seconds = in.get<double>();

@@ -48,14 +48,15 @@ struct MeshFormat {
   std::unique_ptr<MeshSink> (*create)(const std::filesystem::path& path,
                                       const MeshSinkOptions& options);
   bool (*keeps)(std::span<const Channel> all, const Channel& channel);  // when it is written
+  bool keeps_labels = false;
 };
 
 constexpr std::array k_formats = {
-    MeshFormat{"PLY", ".ply", is_ply_file, open_ply, create_ply, keeps_any},
-    MeshFormat{"GLB", ".glb", is_glb_file, open_glb, create_glb, is_gltf_channel},
-    MeshFormat{"glTF", ".gltf", is_gltf_file, open_gltf, create_gltf, is_gltf_channel},
+    MeshFormat{"PLY", ".ply", is_ply_file, open_ply, create_ply, keeps_any, true},
+    MeshFormat{"GLB", ".glb", is_glb_file, open_glb, create_glb, is_gltf_channel, true},
+    MeshFormat{"glTF", ".gltf", is_gltf_file, open_gltf, create_gltf, is_gltf_channel, true},
     MeshFormat{"OFF", ".off", is_off_file, open_off, create_off, keeps_colour},
-    MeshFormat{"OBJ", ".obj", is_obj_file, open_obj, create_obj, keeps_colour},
+    MeshFormat{"OBJ", ".obj", is_obj_file, open_obj, create_obj, keeps_colour, true},
     MeshFormat{"STL", ".stl", is_ascii_stl_file, open_ascii_stl, create_stl, keeps_none},
     MeshFormat{"", "", is_binary_stl_file, open_binary_stl, nullptr, nullptr},
 };
@@ -121,6 +122,11 @@ std::vector<Channel> kept_channels(const std::filesystem::path& path,
   return kept;
 }
 
+bool keeps_labels(const std::filesystem::path& path) {
+  check_output_format(path);
+  return find_output_format(path)->keeps_labels;
+}
+
 std::unique_ptr<MeshSink> create_mesh(const std::filesystem::path& path,
                                       const MeshSinkOptions& options) {
   check_output_format(path);
@@ -128,14 +134,17 @@ std::unique_ptr<MeshSink> create_mesh(const std::filesystem::path& path,
 }
 
 void write_mesh(const std::filesystem::path& path, const Mesh& mesh, PositionType positions,
-                const std::vector<Channel>& channels, std::span<const float> values) {
-  const auto sink = create_mesh(path, {.vertices = mesh.positions.size(),
-                                       .triangles = mesh.triangles.size(),
-                                       .positions = positions,
-                                       .comment = {},
-                                       .channels = channels});
+                const std::vector<Channel>& channels, std::span<const float> values,
+                const std::optional<LabelMeaning>& labels) {
+  MeshSinkOptions options{.vertices = mesh.positions.size(),
+                          .triangles = mesh.triangles.size(),
+                          .positions = positions,
+                          .comment = {},
+                          .channels = channels};
+  if (!mesh.labels.empty()) options.labels = labels ? labels : LabelMeaning{"label", {}};
+  const auto sink = create_mesh(path, options);
   sink->vertices(mesh.positions, values);
-  sink->triangles(mesh.triangles);
+  sink->triangles(mesh.triangles, mesh.labels);
   sink->commit();
 }
 

@@ -23,10 +23,10 @@ std::uint32_t BoundaryNumbers::count() const {
 }
 
 std::uint64_t MeshShares::memory_for(std::uint64_t vertices, std::uint64_t triangles,
-                                     PositionType positions, bool appearances) {
+                                     PositionType positions, bool appearances, bool labels) {
   return vertices * (sizeof(SharePlace) + 3 * static_cast<std::uint64_t>(positions) +
                      (appearances ? sizeof(Appearance) : 0)) +
-         triangles * k_packed_bytes;
+         triangles * (k_packed_bytes + (labels ? sizeof(Label) : 0));
 }
 
 MeshShares::Memory::Memory(const Options& options) {
@@ -37,7 +37,9 @@ MeshShares::Memory::Memory(const Options& options) {
   vertices = std::min(left, 3 * static_cast<std::uint64_t>(options.positions) * options.vertices);
   left -= vertices;
   appearances = std::min(left, options.appearances ? sizeof(Appearance) * options.vertices : 0);
-  triangles = left - appearances;
+  left -= appearances;
+  labels = std::min(left, sizeof(Label) * options.labels);
+  triangles = left - labels;
 }
 
 MeshShares::MeshShares(const Options& options) : MeshShares(options, Memory(options)) {}
@@ -50,8 +52,10 @@ MeshShares::MeshShares(const Options& options, const Memory& memory)
                : MappedFile::scratch(options.folder, options.vertices * sizeof(SharePlace))),
       is_in_memory_(memory.map > 0),
       has_appearances_(options.appearances),
+      has_labels_(options.labels > 0),
       vertices_(options.folder, options.shares, memory.vertices),
       appearances_(options.folder, options.appearances ? options.shares : 0, memory.appearances),
+      labels_(options.folder, options.labels > 0 ? options.shares : 0, memory.labels),
       triangles_(options.folder, options.shares, memory.triangles),
       packers_(options.shares),
       seams_(options.folder, options.shares),
@@ -115,7 +119,8 @@ void MeshShares::put_position(std::uint32_t share, Vec3 p) {
   }
 }
 
-void MeshShares::add_triangles(std::span<const WideTriangle> batch) {
+void MeshShares::add_triangles(const TriangleView& triangles) {
+  const std::span<const WideTriangle> batch = triangles.corners;
   if (added_ < map_.as_span<const SharePlace>().size()) throw DataError(k_changed);
   const std::span<const SharePlace> map = map_.as_span<const SharePlace>();
   // Where the input has no locality each look-up misses the caches: several are kept under way.
@@ -132,8 +137,10 @@ void MeshShares::add_triangles(std::span<const WideTriangle> batch) {
       ++dropped_;
     } else if (a.share == b.share && b.share == c.share) {
       triangles_.append(a.share, packers_[a.share].pack({a.place, b.place, c.place}));
+      if (has_labels_) labels_.put(a.share, triangles.labels[i]);
     } else {
       put_seam_triangle({a, b, c});
+      if (has_labels_) boundary_labels_.push_back(triangles.labels[i]);
     }
   }
   forget_pages(batch.size());
@@ -150,6 +157,7 @@ void MeshShares::put_seam_triangle(const SeamTriangle& t) {
 
 void MeshShares::finish() {
   triangles_.finish();
+  labels_.finish();
   seams_.finish();
   map_ = {};
 }
@@ -174,6 +182,7 @@ MeshShare MeshShares::read(std::uint32_t share, Weld weld) const {
   auto triangles = unpack_triangles({packed.data(), packed.size()});
   if (!triangles) throw Error("a share's triangles are not those that were put");
   read.triangles = std::move(*triangles);
+  if (has_labels_) read.labels = labels_.read<Label>(share);
   const std::vector<SeamTriangle> outer = seam(share);
   for (const SeamTriangle& t : outer) {
     for (const SharePlace& corner : t) {
@@ -209,7 +218,8 @@ SharedTriangles MeshShares::boundary(std::span<const BoundaryNumbers> numbers) c
   };
   SharedTriangles made;
   made.triangles.reserve(boundary_.size());
-  for (const SeamTriangle& t : boundary_) {
+  for (std::size_t place = 0; place < boundary_.size(); ++place) {
+    const SeamTriangle& t = boundary_[place];
     BoundaryTriangle corners;
     BoundaryTriangle points;
     for (std::size_t i = 0; i < 3; ++i) {
@@ -223,6 +233,7 @@ SharedTriangles MeshShares::boundary(std::span<const BoundaryNumbers> numbers) c
       ++made.degenerate;
     } else {
       made.triangles.push_back(corners);
+      if (has_labels_) made.labels.push_back(boundary_labels_[place]);
     }
   }
   return made;

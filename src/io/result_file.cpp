@@ -7,12 +7,13 @@
 //   head    = "MFRM" | "RSLT" | version u32 | byte order u32 0x01020304 | vertex format u8 |
 //             boundary vertices u32
 //   rung    = blocks | 2 u8
-//   block   = 1 u8 | vertices u32 | triangles u32 | vertices | triangles x 3 x u32
+//   block   = 1 u8 | vertices u32 | triangles u32 | vertices | triangles x 3 x u32 | labels
 //   tail    = the boundary vertices | sets u32 | sets x samples |
 //             rungs u32 | rungs x (level i32 | vertices u64 | triangles u64 | free triangles u64 |
 //             error f64)
 //   samples = area f64 | points u32 | points, 3 numbers each, of the part's surface
-// Vertices are their positions, then their appearances, 4 x u16 each, if the format says so.
+// Vertices are their positions, then their appearances, 4 x u16 each, if the format says so, and
+// labels u32 a triangle.
 // A rung's vertices are the boundary vertices, then those of its blocks. Of a block's vertices
 // there are at most 65536, and as many triangles.
 //   Version 2. Version 1 was sealed, with the counts in front and one set of samples.
@@ -143,13 +144,17 @@ class ResultReader {
     if (vertices > k_most_in_block || triangles > k_most_in_block) fail("impossible counts");
     counts_.vertices += vertices;
     counts_.triangles += triangles;
-    bytes_.resize(vertices * format_.bytes() + triangles * sizeof(Triangle));
+    bytes_.resize(vertices * format_.bytes() +
+                  triangles * (sizeof(Triangle) + (format_.labels ? sizeof(Label) : 0)));
     take();
     if (!is_wanted) return;
     ByteReader in(bytes_, what_);
     get_vertices(in, vertices, format_, inner_.positions, inner_.appearances);
     const auto corners = in.get_array<Triangle>(triangles);
     result_.mesh.triangles.insert(result_.mesh.triangles.end(), corners.begin(), corners.end());
+    if (!format_.labels) return;
+    const auto labels = in.get_array<Label>(triangles);
+    result_.mesh.labels.insert(result_.mesh.labels.end(), labels.begin(), labels.end());
   }
 
   std::vector<Vec3> read_points(std::uint32_t count) {
@@ -260,7 +265,7 @@ ResultWriter::ResultWriter(const Vertices& vertices, Write write)
   out.put(k_kind);
   out.put(k_version);
   out.put(k_byte_order);
-  put_vertex_format(out, {vertices_.positions, vertices_.appearances});
+  put_vertex_format(out, {vertices_.positions, vertices_.appearances, vertices_.labels});
   out.put(vertices_.boundary);
   put(out.bytes());
 }
@@ -270,7 +275,11 @@ void ResultWriter::put(std::string_view bytes) {
   write_(bytes);
 }
 
-void ResultWriter::add(VertexView vertices, std::span<const Triangle> triangles) {
+void ResultWriter::add(VertexView vertices, std::span<const Triangle> triangles,
+                       std::span<const Label> labels) {
+  if (labels.size() != (vertices_.labels ? triangles.size() : 0)) {
+    throw Error("triangles without the labels that their file promises");
+  }
   rung_.vertices += vertices.size();
   rung_.triangles += triangles.size();
   while (vertices.size() > 0 || !triangles.empty()) {
@@ -282,6 +291,10 @@ void ResultWriter::add(VertexView vertices, std::span<const Triangle> triangles)
     out.put(static_cast<std::uint32_t>(corners));
     put_vertices(out, vertices.part(0, points), {vertices_.positions, vertices_.appearances});
     out.put_array(triangles.first(corners));
+    if (vertices_.labels) {
+      out.put_array(labels.first(corners));
+      labels = labels.subspan(corners);
+    }
     put(out.bytes());
     vertices = vertices.part(points);
     triangles = triangles.subspan(corners);
@@ -297,7 +310,7 @@ void ResultWriter::end_rung(std::int32_t level, std::uint64_t free_triangles, do
 
 void ResultWriter::add_rung(std::int32_t level, const Mesh& mesh, std::uint64_t free_triangles,
                             double error) {
-  add(VertexView(mesh).part(vertices_.boundary), mesh.triangles);
+  add(VertexView(mesh).part(vertices_.boundary), mesh.triangles, mesh.labels);
   end_rung(level, free_triangles, error);
 }
 

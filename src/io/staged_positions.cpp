@@ -12,6 +12,7 @@ namespace meshfarm {
 namespace {
 
 constexpr std::uint8_t k_appearances = 16;
+constexpr std::uint8_t k_labels = 32;
 
 }  // namespace
 
@@ -66,14 +67,16 @@ std::size_t VertexFormat::bytes() const {
 }
 
 void put_vertex_format(ByteWriter& out, VertexFormat format) {
-  const int byte = static_cast<int>(format.positions) + (format.appearances ? k_appearances : 0);
+  const int byte = static_cast<int>(format.positions) + (format.appearances ? k_appearances : 0) +
+                   (format.labels ? k_labels : 0);
   out.put(static_cast<std::uint8_t>(byte));
 }
 
 std::optional<VertexFormat> vertex_format_of(std::uint8_t byte) {
   VertexFormat format;
   format.appearances = (byte & k_appearances) != 0;
-  format.positions = static_cast<PositionType>(byte & ~k_appearances);
+  format.labels = (byte & k_labels) != 0;
+  format.positions = static_cast<PositionType>(byte & ~(k_appearances | k_labels));
   if (format.positions != PositionType::float32 && format.positions != PositionType::float64) {
     return std::nullopt;
   }

@@ -23,11 +23,12 @@ std::vector<Vec3> get_positions(ByteReader& in, std::uint64_t count, PositionTyp
 
 PositionType get_position_type(ByteReader& in);
 
-/// What is kept of a vertex: a byte, 4 or 8 for the type of the positions, and 16 more if there are
-/// appearances, too.
+/// What is kept of a mesh: a byte, 4 or 8 for the type of the positions, 16 more if vertices have
+/// appearances, and 32 more if triangles have labels.
 struct VertexFormat {
   PositionType positions = PositionType::float32;
   bool appearances = false;
+  bool labels = false;
   std::size_t bytes() const;  // of one vertex
 };
 void put_vertex_format(ByteWriter& out, VertexFormat format);

@@ -118,13 +118,15 @@ class Cutter {
   }
 
   void distribute_vertices() {
-    const std::uint64_t all = MeshShares::memory_for(manifest_.input_vertices, source_.info().faces,
-                                                     manifest_.positions, has_appearances(source_));
+    const bool has_labels = source_.info().labels.has_value();
+    const std::uint64_t faces = std::max<std::uint64_t>(source_.info().faces, 1);
+    const std::uint64_t all = MeshShares::memory_for(
+        manifest_.input_vertices, faces, manifest_.positions, has_appearances(source_), has_labels);
     const std::uint64_t memory = all <= k_memory_bytes ? all : 0;
-    shares_ = std::make_unique<MeshShares>(
-        MeshShares::Options{scratch_folder(options_.scratch, stage_.root(), all - memory), parts_,
-                            manifest_.input_vertices, manifest_.positions, memory,
-                            MeshShares::SeamsFor::all, has_appearances(source_)});
+    shares_ = std::make_unique<MeshShares>(MeshShares::Options{
+        scratch_folder(options_.scratch, stage_.root(), all - memory), parts_,
+        manifest_.input_vertices, manifest_.positions, memory, MeshShares::SeamsFor::all,
+        has_appearances(source_), has_labels ? faces : 0});
     std::vector<std::uint32_t> parts;
     std::vector<std::uint32_t> points;
     const std::span<const Cell> cells = cells_->cells();
@@ -148,7 +150,7 @@ class Cutter {
   }
 
   void distribute_triangles() {
-    source_.scan_triangles([&](std::span<const WideTriangle> batch) {
+    source_.scan_triangles([&](const TriangleView& batch) {
       shares_->add_triangles(batch);
       manifest_.input_triangles += batch.size();
       tell("cut: triangles", manifest_.input_triangles, source_.info().faces);
@@ -188,9 +190,10 @@ class Cutter {
     std::vector<BoundaryTriangle>& triangles = shared.triangles;
     manifest_.dropped_degenerate += shared.degenerate;
     manifest_.coincident_corners += shared.coincident;
-    manifest_.dropped_duplicate = drop_duplicates(triangles);
+    manifest_.dropped_duplicate = drop_duplicates(triangles, shared.labels);
     manifest_.boundary_triangles = triangles.size();
-    manifest_.boundary = stage_.publish(BoundaryName{}, encode_boundary(triangles));
+    manifest_.boundary = stage_.publish(BoundaryName{}, encode_boundary(triangles, shared.labels));
+    manifest_.labels = source_.info().labels;
   }
 
   void write_channels() {

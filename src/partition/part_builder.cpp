@@ -14,15 +14,14 @@ namespace {
 constexpr std::uint32_t k_unused = std::numeric_limits<std::uint32_t>::max();
 
 /// Replaces each corner by its representative; drops triangles that lose a corner by it.
-std::uint64_t merge_corners(std::vector<Triangle>& triangles,
-                            const std::vector<std::uint32_t>& representative) {
-  const std::size_t before = triangles.size();
-  for (Triangle& t : triangles) {
+std::uint64_t merge_corners(Mesh& mesh, const std::vector<std::uint32_t>& representative) {
+  for (Triangle& t : mesh.triangles) {
     for (std::uint32_t& corner : t) corner = representative[corner];
   }
-  std::erase_if(triangles,
-                [](const Triangle& t) { return t[0] == t[1] || t[1] == t[2] || t[2] == t[0]; });
-  return before - triangles.size();
+  return keep_triangles(mesh, [&](std::size_t i) {
+    const auto [a, b, c] = mesh.triangles[i];
+    return a != b && b != c && c != a;
+  });
 }
 
 /// Numbers the representatives that are used: boundary first, each group in raw order.
@@ -71,7 +70,10 @@ BuiltPart build_part(MeshShare raw, PositionType positions, Weld weld_mode) {
     representative.resize(raw.positions.size());
     std::iota(representative.begin(), representative.end(), 0U);
   }
-  built.dropped_degenerate = merge_corners(raw.triangles, representative);
+  Mesh& mesh = built.part.mesh;
+  mesh.triangles = std::move(raw.triangles);
+  mesh.labels = std::move(raw.labels);
+  built.dropped_degenerate = merge_corners(mesh, representative);
   if (weld_mode == Weld::off) built.coincident_corners = built.dropped_degenerate;
 
   built.boundary.places = std::move(raw.boundary);
@@ -84,26 +86,25 @@ BuiltPart build_part(MeshShare raw, PositionType positions, Weld weld_mode) {
   Part& part = built.part;
   part.positions = positions;
   part.boundary_vertices =
-      number_vertices(raw.triangles, built.boundary.places, representative, number);
+      number_vertices(mesh.triangles, built.boundary.places, representative, number);
   const auto used =
       number.size() - static_cast<std::size_t>(std::count(number.begin(), number.end(), k_unused));
-  part.mesh.positions.resize(used);
+  mesh.positions.resize(used);
   for (std::size_t i = 0; i < number.size(); ++i) {
-    if (number[i] != k_unused) part.mesh.positions[number[i]] = raw.positions[i];
+    if (number[i] != k_unused) mesh.positions[number[i]] = raw.positions[i];
   }
   if (!raw.appearances.empty()) {
-    part.mesh.appearances.resize(used);
+    mesh.appearances.resize(used);
     // Of vertices that become one the least counts, whatever their order.
     for (std::size_t i = 0; i < number.size(); ++i) {
       Appearance& of_one = raw.appearances[representative[i]];
       of_one = std::min(of_one, raw.appearances[i]);
     }
     for (std::size_t i = 0; i < number.size(); ++i) {
-      if (number[i] != k_unused) part.mesh.appearances[number[i]] = raw.appearances[i];
+      if (number[i] != k_unused) mesh.appearances[number[i]] = raw.appearances[i];
     }
   }
-  for (Triangle& t : raw.triangles) t = {number[t[0]], number[t[1]], number[t[2]]};
-  part.mesh.triangles = std::move(raw.triangles);
+  for (Triangle& t : mesh.triangles) t = {number[t[0]], number[t[1]], number[t[2]]};
   built.boundary.numbers.reserve(built.boundary.places.size());
   for (const std::uint32_t b : built.boundary.places) {
     built.boundary.numbers.push_back(number[representative[b]]);

@@ -135,8 +135,11 @@ class Assembly {
       }
       tell("stitch", static_cast<double>(p) / static_cast<double>(chosen.size()), 0);
     }
-    const auto boundary = decode_boundary(stage_.read(manifest_.boundary), manifest_.boundary.name);
-    StitchedMesh stitched = stitcher.finish(boundary);
+    std::vector<Label> labels;
+    const auto boundary =
+        decode_boundary(stage_.read(manifest_.boundary), manifest_.boundary.name, labels);
+    if (!lines_.keep_labels) labels.clear();
+    StitchedMesh stitched = stitcher.finish(boundary, labels);
     samples.push_back(samples_of_boundary(stitched.mesh, stitched.boundary_triangles));
     return stitched;
   }
@@ -225,7 +228,10 @@ class Assembly {
       if (std::find(chosen.begin(), chosen.end(), channel) != chosen.end()) continue;
       summary_.channels_not_wanted.push_back(channel.name);
     }
-    if (kept.empty()) return write_mesh(options_.output, result, manifest_.positions);
+    const std::optional<LabelMeaning> labels = chosen_labels(manifest_, run_);
+    if (kept.empty()) {
+      return write_mesh(options_.output, result, manifest_.positions, {}, {}, labels);
+    }
     const ChannelValues fitted = fit_channels(stage_, manifest_, result, fitting, [&](double done) {
       tell("colours and other channels", done, 0);
     });
@@ -233,7 +239,7 @@ class Assembly {
       if (std::find(kept.begin(), kept.end(), chosen[i]) == kept.end()) continue;
       summary_.channels.push_back({chosen[i].name, fitted.rms[i]});
     }
-    write_mesh(options_.output, result, manifest_.positions, chosen, fitted.values);
+    write_mesh(options_.output, result, manifest_.positions, chosen, fitted.values, labels);
   }
 
   /// What is kept need not be compared. `kept` has the input's topology, if there is any.

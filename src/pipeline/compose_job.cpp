@@ -38,7 +38,8 @@ class Composer {
 
   JobOutput run() {
     for (std::size_t i = 0; i < job_.inputs.size(); ++i) add(i);
-    StitchedMesh stitched = stitcher_.finish(seams());
+    const Seams seams = read_seams();
+    StitchedMesh stitched = stitcher_.finish(seams.triangles, seams.labels);
     sample_seams(stitched);
     const auto locked = static_cast<std::uint32_t>(stitched.open.size());
     Simplifier simplifier(
@@ -57,16 +58,22 @@ class Composer {
     std::move(result.samples.begin(), result.samples.end(), std::back_inserter(samples_));
   }
 
-  /// The boundary triangles that touch the group.
-  std::vector<BoundaryTriangle> seams() const {
-    std::vector<BoundaryTriangle> seams;
+  /// The boundary triangles that touch the group, and their labels if they have any.
+  struct Seams {
+    std::vector<BoundaryTriangle> triangles;
+    std::vector<Label> labels;
+  };
+  Seams read_seams() const {
+    Seams seams;
     const auto is_ours = [&](const BoundaryCorner& corner) {
       return corner.part >= parameters_.first_stream && corner.part < end_stream_;
     };
     StagedReader file(context_.stage, parameters_.boundary);
     const auto fill = [&](std::span<char> buffer) { file.fill(buffer); };
-    scan_boundary(fill, parameters_.boundary.name, [&](const BoundaryTriangle& t) {
-      if (std::any_of(t.begin(), t.end(), is_ours)) seams.push_back(t);
+    scan_boundary(fill, parameters_.boundary.name, [&](const BoundaryTriangle& t, Label label) {
+      if (std::none_of(t.begin(), t.end(), is_ours)) return;
+      seams.triangles.push_back(t);
+      if (parameters_.lines.keep_labels) seams.labels.push_back(label);
     });
     file.expect_end();
     return seams;
@@ -100,6 +107,7 @@ class Composer {
     }
     for (std::uint32_t i = 0; i < stitched.open.size(); ++i) number[stitched.open[i]] = i;
     mesh.triangles = std::move(from.triangles);
+    mesh.labels = std::move(from.labels);
     for (Triangle& t : mesh.triangles) t = {number[t[0]], number[t[1]], number[t[2]]};
     return mesh;
   }
@@ -118,7 +126,7 @@ class Composer {
   JobOutput write(const Simplifier& simplifier, std::uint32_t locked) const {
     std::string file;
     const Mesh& mesh = simplifier.mesh();
-    ResultWriter result({positions_, !mesh.appearances.empty(), locked},
+    ResultWriter result({positions_, !mesh.appearances.empty(), locked, !mesh.labels.empty()},
                         [&](std::string_view bytes) { file += bytes; });
     result.add_rung(parameters_.level, mesh, simplifier.free_triangles());
     result.finish(VertexView(mesh).part(0, locked), samples_);

@@ -100,7 +100,7 @@ Job ComposePlan::job_of(std::size_t first, std::size_t end) const {
                                                 static_cast<double>(weight_));
   job.parameters = encode_parameters(parameters);
   job.memory =
-      memory_of_composition(bytes, job.cost) + memory_of_appearances(parameters.lines, job.cost);
+      memory_of_composition(bytes, job.cost) + memory_of_channels(parameters.lines, job.cost);
   return job;
 }
 

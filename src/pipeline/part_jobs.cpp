@@ -61,7 +61,7 @@ Job PartJobs::climb(std::uint32_t part, double headroom, TopologyMode topology) 
           encode_parameters(parameters),
           entry.triangles,
           memory_of(entry, parameters.start_triangles) +
-              memory_of_appearances(parameters.lines, entry.triangles) +
+              memory_of_channels(parameters.lines, entry.triangles) +
               (by_error() ? k_bound_bytes_per_triangle * entry.triangles : 0)};
 }
 
@@ -106,7 +106,7 @@ Job PartJobs::sweep(std::uint32_t part, std::int32_t level, TopologyMode topolog
           encode_parameters(parameters),
           entry.triangles,
           memory_of_sweep(manifest_.window_triangles) +
-              memory_of_appearances(parameters.lines, manifest_.window_triangles)};
+              memory_of_channels(parameters.lines, manifest_.window_triangles)};
 }
 
 /// Nothing is so cheap that the rung of a part as it came would have lost it.

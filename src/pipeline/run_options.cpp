@@ -37,15 +37,21 @@ std::uint64_t target_triangles(const Manifest& manifest, const RunOptions& optio
 
 std::vector<std::size_t> chosen_columns(const Manifest& manifest, const RunOptions& options) {
   const std::vector<Channel>& channels = manifest.channels.channels;
-  std::vector<std::size_t> columns = chosen_columns(options.channels, channels);
+  std::vector<std::size_t> columns = chosen_columns(options.channels, channels, manifest.labels);
   if (options.normals == Normals::drop) {
     std::erase_if(columns, [&](std::size_t i) { return channels[i].role == ChannelRole::normal; });
   }
   return columns;
 }
 
+std::optional<LabelMeaning> chosen_labels(const Manifest& manifest, const RunOptions& options) {
+  if (!manifest.labels || !chooses_labels(options.channels, *manifest.labels)) return std::nullopt;
+  return manifest.labels;
+}
+
 LineOptions lines_of(const Manifest& manifest, const RunOptions& options) {
   LineOptions lines = options.lines;
+  lines.keep_labels = chosen_labels(manifest, options).has_value();
   const double length = options.colour_weight * manifest.box.diagonal();
   const std::vector<Channel> chosen =
       channels_at(manifest.channels.channels, chosen_columns(manifest, options));
@@ -56,9 +62,13 @@ LineOptions lines_of(const Manifest& manifest, const RunOptions& options) {
   return lines;
 }
 
-std::uint64_t memory_of_appearances(const LineOptions& lines, std::uint64_t triangles) {
+std::uint64_t memory_of_channels(const LineOptions& lines, std::uint64_t triangles) {
   constexpr std::uint64_t k_copies = 4;
-  return lines.appearance_scale.length > 0 ? k_copies * sizeof(Appearance) / 2 * triangles : 0;
+  const std::uint64_t of_vertices =
+      lines.appearance_scale.length > 0 ? k_copies * sizeof(Appearance) / 2 : 0;
+  // Those at the corners of the triangles, too.
+  const std::uint64_t of_triangles = lines.keep_labels ? (k_copies + 3) * sizeof(Label) : 0;
+  return (of_vertices + of_triangles) * triangles;
 }
 
 void put(ByteWriter& out, const LineOptions& lines) {
@@ -67,6 +77,7 @@ void put(ByteWriter& out, const LineOptions& lines) {
   out.put(lines.topology);
   out.put(lines.appearance_scale.length);
   out.put(lines.appearance_scale.steepest);
+  out.put(static_cast<std::uint8_t>(lines.keep_labels ? 1 : 0));
 }
 
 LineOptions get_lines(ByteReader& in) {
@@ -85,6 +96,9 @@ LineOptions get_lines(ByteReader& in) {
   if (!is_weight(scale.length) || !is_weight(scale.steepest)) {
     in.fail("impossible weight of appearances");
   }
+  const auto keep_labels = in.get<std::uint8_t>();
+  if (keep_labels > 1) in.fail("impossible options of labels");
+  lines.keep_labels = keep_labels == 1;
   return lines;
 }
 

@@ -19,7 +19,7 @@ namespace {
 
 // Version 5: allocation u8 | start u64 | even share u64 | samples u64 | cost unit f64 |
 // greatest error f64 | lines (run_options.hpp).
-// Version 4 knew no appearances.
+// Version 4 knew no appearances and labels.
 constexpr std::uint8_t k_version = 5;
 constexpr std::uint64_t k_max_samples = 100'000'000;
 constexpr std::int32_t k_top_level = 52;
@@ -175,6 +175,7 @@ JobOutput simplify_part(const Job& job, const JobContext& context) {
   const SimplifyParameters parameters = decode_parameters(job.parameters);
   Part part = read_part(context, job.inputs[0]);
   if (!(parameters.lines.appearance_scale.length > 0)) part.mesh.appearances = {};
+  if (!parameters.lines.keep_labels) part.mesh.labels = {};
   const ResultName name{key_of(job).value, context.attempt, context.incarnation};
   if (parameters.max_error > 0) {
     const BoundedPart bounded = simplify_to_bound(std::move(part), parameters, context);

@@ -17,9 +17,9 @@ namespace {
 constexpr std::uint64_t k_sort_share = 4;
 constexpr std::uint64_t k_sample_share = 15;
 
-std::uint64_t memory_of_sort(const PartEntry& slab, bool has_appearances) {
+std::uint64_t memory_of_sort(const PartEntry& slab, std::uint64_t bytes_per_triangle) {
   constexpr std::uint64_t k_process = std::uint64_t{16} << 20;
-  return k_process + slab.file.size + slab_bytes_per_triangle(has_appearances) * slab.triangles;
+  return k_process + slab.file.size + bytes_per_triangle * slab.triangles;
 }
 
 /// The stream as it is read, its mesh (24 bytes a triangle, twice that as it grows), the sample.
@@ -54,13 +54,14 @@ SortPlan::SortPlan(Manifest manifest, std::span<const AcceptedJob> accepted)
 
 std::vector<Job> SortPlan::sort_jobs() const {
   std::vector<Job> jobs;
-  const bool has_appearances = !AppearanceColumns(manifest_.channels.channels).empty();
+  const std::uint64_t bytes_per_triangle = slab_bytes_per_triangle(
+      !AppearanceColumns(manifest_.channels.channels).empty(), manifest_.labels.has_value());
   for (const PartEntry& slab : manifest_.parts) {
     jobs.push_back({std::string(k_sort_kind),
                     {slab.file},
                     encode_parameters(SortParameters{*manifest_.sorting, 0}),
                     1 + slab.triangles / k_sort_share,
-                    memory_of_sort(slab, has_appearances)});
+                    memory_of_sort(slab, bytes_per_triangle)});
   }
   return jobs;
 }

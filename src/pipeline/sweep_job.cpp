@@ -56,13 +56,14 @@ class SweepToFile {
     options.progress = context_.progress;
     const StreamInfo& info = reader.info();
     result_.emplace(
-        ResultWriter::Vertices{info.positions,
-                               info.appearances && parameters_.lines.appearance_scale.length > 0,
-                               info.boundary_vertices},
+        ResultWriter::Vertices{
+            info.positions, info.appearances && parameters_.lines.appearance_scale.length > 0,
+            info.boundary_vertices, info.labels && parameters_.lines.keep_labels},
         [this](std::string_view bytes) { file_->write(bytes); });
-    swept_ = sweep(reader, options, [this](const VertexView& vertices, auto triangles) {
-      result_->add(vertices, triangles);
-    });
+    swept_ =
+        sweep(reader, options, [this](const VertexView& vertices, auto triangles, auto labels) {
+          result_->add(vertices, triangles, labels);
+        });
   }
 
   /// What is whole by its checksum and makes no sense never will, whoever reads it.

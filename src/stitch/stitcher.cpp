@@ -39,6 +39,7 @@ void Stitcher::add(const ResultMesh& result, std::uint32_t parts) {
   } else if (!mesh.appearances.empty()) {
     mesh.appearances.resize(mesh.positions.size());
   }
+  mesh.labels.insert(mesh.labels.end(), result.mesh.labels.begin(), result.mesh.labels.end());
   for (const Triangle& t : result.mesh.triangles) {
     mesh.triangles.push_back({t[0] + offset, t[1] + offset, t[2] + offset});
   }
@@ -91,10 +92,12 @@ std::uint32_t Stitcher::vertex_of(const BoundaryCorner& corner) const {
   return piece.first_vertex + corner.local;
 }
 
-StitchedMesh Stitcher::finish(std::span<const BoundaryTriangle> boundary) {
+StitchedMesh Stitcher::finish(std::span<const BoundaryTriangle> boundary,
+                              std::span<const Label> labels) {
   find_corners(boundary);
   std::vector<BoundaryCorner> open;
-  for (const BoundaryTriangle& t : boundary) {
+  for (std::size_t i = 0; i < boundary.size(); ++i) {
+    const BoundaryTriangle& t = boundary[i];
     const std::array<std::uint32_t, 3> pieces = {piece_of(t[0]), piece_of(t[1]), piece_of(t[2])};
     const auto elsewhere = std::count(pieces.begin(), pieces.end(), k_elsewhere);
     if (elsewhere > 0) {
@@ -103,6 +106,7 @@ StitchedMesh Stitcher::finish(std::span<const BoundaryTriangle> boundary) {
       }
     } else if (pieces[0] != pieces[1] || pieces[1] != pieces[2] || pieces_[pieces[0]].parts == 1) {
       stitched_.mesh.triangles.push_back({vertex_of(t[0]), vertex_of(t[1]), vertex_of(t[2])});
+      if (!labels.empty()) stitched_.mesh.labels.push_back(labels[i]);
       ++stitched_.boundary_triangles;
     }
   }

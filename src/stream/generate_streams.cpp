@@ -27,6 +27,7 @@
 #include <meshfarm/util/errors.hpp>
 #include <meshfarm/util/parallel.hpp>
 
+#include "stream/sort_with_labels.hpp"
 #include "stream/sweep_order.hpp"
 
 namespace meshfarm {
@@ -101,10 +102,13 @@ class Generator {
     const std::uint64_t wanted =
         options_.streams != 0 ? options_.streams : default_streams(triangles);
     const std::uint64_t half = std::max<std::uint64_t>(1, options_.memory_bytes / 2);
-    const std::uint64_t least =
-        triangles * slab_bytes_per_triangle(has_appearances(source_)) / half + 1;
+    const std::uint64_t least = triangles * bytes_per_triangle() / half + 1;
     return static_cast<std::uint32_t>(
         std::min<std::uint64_t>(k_most_streams, std::max(wanted, least)));
+  }
+
+  std::uint64_t bytes_per_triangle() const {
+    return slab_bytes_per_triangle(has_appearances(source_), source_.info().labels.has_value());
   }
 
   void choose_slabs() {
@@ -122,11 +126,14 @@ class Generator {
   }
 
   void distribute_vertices() {
-    const std::uint64_t all = MeshShares::memory_for(manifest_.input_vertices, source_.info().faces,
-                                                     manifest_.positions, has_appearances(source_));
+    const bool has_labels = source_.info().labels.has_value();
+    const std::uint64_t faces = std::max<std::uint64_t>(source_.info().faces, 1);
+    const std::uint64_t all = MeshShares::memory_for(
+        manifest_.input_vertices, faces, manifest_.positions, has_appearances(source_), has_labels);
     shares_ = std::make_unique<MeshShares>(MeshShares::Options{
         scratch_folder(options_.scratch, stage_.root(), all), streams_, manifest_.input_vertices,
-        manifest_.positions, 0, MeshShares::SeamsFor::all, has_appearances(source_)});
+        manifest_.positions, 0, MeshShares::SeamsFor::all, has_appearances(source_),
+        has_labels ? faces : 0});
     static_assert(MeshShares::k_no_point == SlabMap::k_no_point);
     std::vector<std::uint32_t> slabs;
     std::vector<std::uint32_t> points;
@@ -148,7 +155,7 @@ class Generator {
   }
 
   void distribute_triangles() {
-    source_.scan_triangles([&](std::span<const WideTriangle> batch) {
+    source_.scan_triangles([&](const TriangleView& batch) {
       shares_->add_triangles(batch);
       manifest_.input_triangles += batch.size();
       tell("streams: triangles", manifest_.input_triangles, source_.info().faces);
@@ -160,8 +167,8 @@ class Generator {
   /// As many at once as fit into the memory, going by the average.
   unsigned threads() const {
     const unsigned cores = processors();
-    const std::uint64_t bytes = slab_bytes_per_triangle(has_appearances(source_)) *
-                                manifest_.input_triangles / std::max<std::uint64_t>(1, streams_);
+    const std::uint64_t bytes =
+        bytes_per_triangle() * manifest_.input_triangles / std::max<std::uint64_t>(1, streams_);
     const std::uint64_t fit = options_.memory_bytes / std::max<std::uint64_t>(1, bytes);
     return static_cast<unsigned>(
         std::clamp<std::uint64_t>(fit, 1, options_.threads != 0 ? options_.threads : cores));
@@ -238,10 +245,11 @@ class Generator {
     for (BoundaryTriangle& t : triangles) {
       std::rotate(t.begin(), std::min_element(t.begin(), t.end()), t.end());
     }
-    std::sort(triangles.begin(), triangles.end());
-    manifest_.dropped_duplicate = drop_duplicates(triangles);
+    sort_with_labels(triangles, shared.labels);
+    manifest_.dropped_duplicate = drop_duplicates(triangles, shared.labels);
     manifest_.boundary_triangles = triangles.size();
-    manifest_.boundary = stage_.publish(BoundaryName{}, encode_boundary(triangles));
+    manifest_.boundary = stage_.publish(BoundaryName{}, encode_boundary(triangles, shared.labels));
+    manifest_.labels = source_.info().labels;
   }
 
   void write_channels() {

@@ -9,6 +9,7 @@
 #include <meshfarm/geometry/weld.hpp>
 #include <meshfarm/stream/slab.hpp>
 
+#include "stream/sort_with_labels.hpp"
 #include "stream/vertex_sort.hpp"
 
 namespace meshfarm {
@@ -174,17 +175,16 @@ class SlabSorter {
 
   /// Triangles by rank, the smallest corner first, without those that are degenerate.
   void rank_triangles() {
-    const std::size_t before = raw_.triangles.size();
-    std::erase_if(raw_.triangles, [&](Triangle& t) {
+    slab_.dropped_degenerate = keep_triangles(raw_.triangles, raw_.labels, [&](std::size_t i) {
+      Triangle& t = raw_.triangles[i];
       t = {rank_[t[0]], rank_[t[1]], rank_[t[2]]};
       if (t[1] < t[0] && t[1] < t[2]) {
         t = {t[1], t[2], t[0]};
       } else if (t[2] < t[0] && t[2] < t[1]) {
         t = {t[2], t[0], t[1]};
       }
-      return t[0] == t[1] || t[1] == t[2] || t[2] == t[0];
+      return t[0] != t[1] && t[1] != t[2] && t[2] != t[0];
     });
-    slab_.dropped_degenerate = before - raw_.triangles.size();
     // Where nothing was welded only these are known, and only these are at one place.
     slab_.coincident_corners = std::max(slab_.coincident_corners, slab_.dropped_degenerate);
   }
@@ -222,6 +222,10 @@ class SlabSorter {
   void sort_triangles() {
     std::vector<Triangle>& from = raw_.triangles;
     std::vector<Triangle>& to = slab_.stream.mesh.triangles;
+    if (!raw_.labels.empty()) {
+      sort_with_labels(from, raw_.labels);
+      slab_.stream.mesh.labels = std::move(raw_.labels);
+    }
     if (std::is_sorted(from.begin(), from.end())) {
       to = std::move(from);
       return;
@@ -328,10 +332,13 @@ Part sample_slab(const StreamMesh& stream, const SweepOrder& order, std::uint32_
   std::vector<std::uint8_t> seen(mesh.positions.size(), 0);
   Part part;
   part.positions = stream.positions;
-  for (const Triangle& t : mesh.triangles) {
+  for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
+    const Triangle& t = mesh.triangles[i];
     const bool in = inside(t[0]) && inside(t[1]) && inside(t[2]);
     for (const std::uint32_t v : t) seen[v] |= in ? k_in : k_out;
-    if (in) part.mesh.triangles.push_back(t);
+    if (!in) continue;
+    part.mesh.triangles.push_back(t);
+    if (!mesh.labels.empty()) part.mesh.labels.push_back(mesh.labels[i]);
   }
   std::vector<std::uint32_t> index(mesh.positions.size(), k_none);
   const auto is_edge = [&](std::uint32_t v) {

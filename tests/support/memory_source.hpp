@@ -19,6 +19,7 @@ class MemorySource : public MeshSource {
     info_.vertices = mesh_.positions.size();
     info_.faces = mesh_.triangles.size();
     info_.positions = positions;
+    if (!mesh_.labels.empty()) info_.labels = LabelMeaning{"region", {}};
   }
   const MeshFileInfo& info() const override { return info_; }
   void scan_vertices(const std::function<void(std::span<const Vec3>)>& take) override {
@@ -28,15 +29,12 @@ class MemorySource : public MeshSource {
     }
   }
   void scan_triangles(const std::function<void(const TriangleView&)>& take) override {
-    std::vector<WideTriangle> batch;
-    for (const Triangle& t : mesh_.triangles) {
-      batch.push_back({t[0], t[1], t[2]});
-      if (batch.size() == k_batch) {
-        take(batch);
-        batch.clear();
-      }
+    std::vector<WideTriangle> all;
+    for (const Triangle& t : mesh_.triangles) all.push_back({t[0], t[1], t[2]});
+    const TriangleView triangles(all, mesh_.labels);
+    for (std::size_t i = 0; i < all.size(); i += k_batch) {
+      take(triangles.part(i, std::min(k_batch, all.size() - i)));
     }
-    if (!batch.empty()) take(batch);
   }
 
  private:

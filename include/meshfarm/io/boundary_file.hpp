@@ -5,10 +5,12 @@
 #include <array>
 #include <cstdint>
 #include <functional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include <meshfarm/geometry/mesh.hpp>
 #include <meshfarm/io/fill.hpp>
 
 namespace meshfarm {
@@ -21,17 +23,22 @@ struct BoundaryCorner {
 };
 using BoundaryTriangle = std::array<BoundaryCorner, 3>;
 
-/// Keeps the first of the triangles that have the same corners, in any order. Returns how many were
-/// removed.
+/// Keeps the first of the triangles that have the same corners, in any order; of labels, if there
+/// are any, those of the triangles that stay. Returns how many were removed.
+std::uint64_t drop_duplicates(std::vector<BoundaryTriangle>& triangles, std::vector<Label>& labels);
 std::uint64_t drop_duplicates(std::vector<BoundaryTriangle>& triangles);
 
 /// The side file: every triangle whose corners lie in two or three parts
-/// (Xiong et al. 2008, 3.1 step 4).
-std::string encode_boundary(const std::vector<BoundaryTriangle>& triangles);
+/// (Xiong et al. 2008, 3.1 step 4), and one label each, or none.
+std::string encode_boundary(const std::vector<BoundaryTriangle>& triangles,
+                            std::span<const Label> labels = {});
 std::vector<BoundaryTriangle> decode_boundary(std::string_view file, std::string_view what);
-/// Shows every triangle of a side file in order, without holding the file. Does not check the
-/// file's checksum: that is up to the caller's `fill`.
+/// With the labels that the file has.
+std::vector<BoundaryTriangle> decode_boundary(std::string_view file, std::string_view what,
+                                              std::vector<Label>& labels);
+/// Shows every triangle of a side file in order, with its label or 0, without holding the file.
+/// Does not check the file's checksum: that is up to the caller's `fill`.
 void scan_boundary(const Fill& fill, std::string_view what,
-                   const std::function<void(const BoundaryTriangle&)>& show);
+                   const std::function<void(const BoundaryTriangle&, Label)>& show);
 
 }  // namespace meshfarm

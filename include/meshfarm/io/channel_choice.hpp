@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -14,7 +15,7 @@
 
 namespace meshfarm {
 
-/// Which of a mesh's channels are wanted.
+/// Which of a mesh's channels are wanted, and its triangles' labels among them.
 struct ChannelChoice {
   bool all = true;
   std::vector<std::string> names;  // if not all; "colours" and "normals" stand for theirs
@@ -26,10 +27,14 @@ struct ChannelChoice {
 /// is for the message.
 ChannelChoice parse_choice(std::string_view text, std::string_view option);
 
-/// Where the chosen stand among the channels, in rising order. Throws UsageError for a name that is
-/// not there, with those that are, and for a part of a normal.
+/// Where the chosen stand among the channels, in rising order. Throws UsageError for a name that
+/// neither a channel nor the labels have, with those that are there, and for a part of a normal.
 std::vector<std::size_t> chosen_columns(const ChannelChoice& choice,
-                                        std::span<const Channel> channels);
+                                        std::span<const Channel> channels,
+                                        const std::optional<LabelMeaning>& labels = {});
+
+/// Whether labels are wanted, by their name.
+bool chooses_labels(const ChannelChoice& choice, const LabelMeaning& labels);
 
 /// Those channels.
 std::vector<Channel> channels_at(std::span<const Channel> channels,
@@ -39,8 +44,8 @@ std::vector<Channel> channels_at(std::span<const Channel> channels,
 std::vector<float> values_at(std::span<const float> values, std::size_t width,
                              std::span<const std::size_t> columns);
 
-/// The mesh with the chosen channels only; the others count as skipped. Throws UsageError as
-/// chosen_columns does.
+/// The mesh with the chosen channels and labels only; the others count as skipped. Throws
+/// UsageError as chosen_columns does.
 std::unique_ptr<MeshSource> with_channels(std::unique_ptr<MeshSource> source,
                                           const ChannelChoice& choice);
 

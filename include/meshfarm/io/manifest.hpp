@@ -11,6 +11,7 @@
 #include <meshfarm/geometry/mesh.hpp>
 #include <meshfarm/geometry/sweep_order.hpp>
 #include <meshfarm/io/channel_file.hpp>
+#include <meshfarm/io/labels.hpp>
 #include <meshfarm/staging/stage.hpp>
 
 namespace meshfarm {
@@ -50,6 +51,7 @@ struct Manifest {
   std::uint64_t dropped_not_finite = 0;  // those with a position that is not
   std::uint64_t dropped_duplicate = 0;   // boundary triangles only: workers see to the parts
   StagedChannels channels;               // of the input's vertices
+  std::optional<LabelMeaning> labels;    // of the triangles of parts and boundary
   std::vector<std::string> skipped;      // properties and elements that were not kept
   double cut_seconds = 0;
   std::uint64_t boundary_triangles = 0;

@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <memory>
+#include <optional>
 
 #include <meshfarm/geometry/mesh.hpp>
 #include <meshfarm/io/mesh_sink.hpp>
@@ -21,13 +22,18 @@ void check_output_format(const std::filesystem::path& path);
 std::vector<Channel> kept_channels(const std::filesystem::path& path,
                                    std::span<const Channel> channels);
 
+/// Whether a file of this name has a place for triangles' labels. Throws as above.
+bool keeps_labels(const std::filesystem::path& path);
+
 /// Begins a mesh file in the format of its extension. Throws DataError as above, IoError for a path
 /// that cannot be written, and UsageError for more than the format can count.
 std::unique_ptr<MeshSink> create_mesh(const std::filesystem::path& path,
                                       const MeshSinkOptions& options);
 
-/// Writes a whole mesh by create_mesh().
+/// Writes a whole mesh by create_mesh(), with its labels if it has any; without a meaning they are
+/// only numbers.
 void write_mesh(const std::filesystem::path& path, const Mesh& mesh, PositionType positions,
-                const std::vector<Channel>& channels = {}, std::span<const float> values = {});
+                const std::vector<Channel>& channels = {}, std::span<const float> values = {},
+                const std::optional<LabelMeaning>& labels = {});
 
 }  // namespace meshfarm

@@ -76,6 +76,7 @@ struct OpenOptions {
   Scans scans = Scans::many;
   unsigned threads = 0;  // that parse text; 0: one a core
   bool channels = true;  // else they count as skipped
+  bool labels = true;    // the same
   Textures textures = Textures::drop;
 };
 
@@ -87,7 +88,8 @@ struct OpenOptions {
 std::unique_ptr<MeshSource> open_mesh(const std::filesystem::path& path,
                                       const OpenOptions& options = {});
 
-/// Reads a whole mesh into memory, without the triangles that use a vertex without a position.
+/// Reads a whole mesh into memory, with its triangles' labels if info() has any, and without the
+/// triangles that use a vertex without a position.
 /// Throws DataError if it has 2^32 vertices or more.
 Mesh read_mesh(MeshSource& source);
 

@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include <meshfarm/geometry/simplify.hpp>
@@ -73,14 +74,19 @@ std::uint64_t target_triangles(const Manifest& manifest, const RunOptions& optio
 /// Which of the stage's channels the result is to have. Throws UsageError as io's chosen_columns().
 std::vector<std::size_t> chosen_columns(const Manifest& manifest, const RunOptions& options);
 
-/// The run's lines, and how much the colours of the stage count: none do if none is chosen.
+/// The stage's labels, if the result is to have them.
+std::optional<LabelMeaning> chosen_labels(const Manifest& manifest, const RunOptions& options);
+
+/// The run's lines, and how much the colours and labels of the stage count: none do if none is
+/// chosen.
 LineOptions lines_of(const Manifest& manifest, const RunOptions& options);
 
-/// What appearances add to the memory of a job on so many triangles: four copies at most.
-std::uint64_t memory_of_appearances(const LineOptions& lines, std::uint64_t triangles);
+/// What appearances and labels add to the memory of a job on so many triangles: four copies at
+/// most.
+std::uint64_t memory_of_channels(const LineOptions& lines, std::uint64_t triangles);
 
 /// As they stand in a job's parameters: preserve border u8 | crease angle f64 |
-/// topology u8 | length of appearances f64.
+/// topology u8 | length of appearances f64 | steepest f64 | keep labels u8.
 void put(ByteWriter& out, const LineOptions& lines);
 LineOptions get_lines(ByteReader& in);
 

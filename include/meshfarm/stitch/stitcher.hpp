@@ -38,7 +38,9 @@ class Stitcher {
   void add(const ResultMesh& result, std::uint32_t parts = 1);
   /// Adds the boundary triangles between the pieces. `boundary` must also have those between a
   /// piece and parts that were not added. Throws DataError if a corner is no boundary vertex.
-  StitchedMesh finish(std::span<const BoundaryTriangle> boundary);
+  /// Labels: one a boundary triangle, or none.
+  StitchedMesh finish(std::span<const BoundaryTriangle> boundary,
+                      std::span<const Label> labels = {});
 
  private:
   /// What was added by one call.

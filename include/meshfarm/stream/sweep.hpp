@@ -33,9 +33,10 @@ struct SweepOptions {
 };
 
 /// Takes what a sweep has passed: the result's next vertices, counted on from its boundary
-/// vertices, and triangles of any vertices so far and of boundary vertices.
+/// vertices, and triangles of any vertices so far and of boundary vertices, with their labels.
 using SweepOutput =
-    std::function<void(const VertexView& vertices, std::span<const Triangle> triangles)>;
+    std::function<void(const VertexView& vertices, std::span<const Triangle> triangles,
+                       std::span<const Label> labels)>;
 
 /// What is known of a simplified stream at its end.
 struct SweptStream {

@@ -47,7 +47,7 @@ TEST_CASE("a large map is not held in memory, and knows all vertices") {
   CHECK(most < before + (std::uint64_t{80} << 20));
   for (std::uint64_t i = 0; i + 4 < k_batches; ++i) {
     const WideTriangle even = {i * k_batch, (i + 2) * k_batch, (i + 4) * k_batch};
-    shares.add_triangles({&even, 1});
+    shares.add_triangles(std::span(&even, 1));
   }
   shares.finish();
   for (const std::uint32_t share : {0U, 1U}) {

@@ -33,6 +33,7 @@ Manifest sample_manifest() {
   m.dropped_not_finite = 12;
   m.dropped_duplicate = 9;
   m.channels = {{{"red", ChannelType::uint8, ChannelRole::colour}}, {"channels", 5, 6}, 7};
+  m.labels = LabelMeaning{"material", {{"stone", {0.5, 0.25, 1, 1}}, {"glass", {}}}};
   m.skipped = {"vertex.red", "face.flags"};
   m.cut_seconds = 1.5;
   m.boundary_triangles = 11;
@@ -56,6 +57,17 @@ TEST_CASE("a part comes back, in both kinds of positions") {
   }
   const Part empty = decode_part(encode_part({}), "part");
   CHECK(empty.mesh.triangles.empty());
+}
+
+TEST_CASE("labels come back with a part") {
+  Part part{test::icosphere(1), 5, PositionType::float32};
+  for (Vec3& p : part.mesh.positions) p = rounded(p, part.positions);
+  for (Label i = 0; i < part.mesh.triangles.size(); ++i) part.mesh.labels.push_back(~i);
+  const std::string file = encode_part(part);
+  const Part back = decode_part(file, "part");
+  CHECK(back.mesh.labels == part.mesh.labels);
+  CHECK(back.mesh.triangles == part.mesh.triangles);
+  test::check_refuses_damage(file, [](std::string_view bytes) { return decode_part(bytes, "p"); });
 }
 
 TEST_CASE("a damaged part is refused") {
@@ -94,6 +106,13 @@ TEST_CASE("boundary triangles come back, damaged ones are refused") {
                                                    {{{1, 0}, {1, 1}, {0, 0xffffffff}}}};
   CHECK(decode_boundary(encode_boundary(triangles), "b") == triangles);
   CHECK(decode_boundary(encode_boundary({}), "b").empty());
+  std::vector<Label> labels = {9};
+  CHECK(decode_boundary(encode_boundary(triangles), "b", labels) == triangles);
+  CHECK(labels.empty());
+  const std::vector<Label> two = {7, 0xffffffff};
+  CHECK(decode_boundary(encode_boundary(triangles, two), "b", labels) == triangles);
+  CHECK(labels == two);
+  CHECK_THROWS_AS(decode_boundary(encode_boundary(triangles, {{7}}), "b", labels), DataError);
   test::check_refuses_damage(encode_boundary(triangles), [](std::string_view file) {
     return decode_boundary(file, "boundary");
   });
@@ -104,12 +123,13 @@ TEST_CASE("boundary triangles are shown one by one, and what is no side file is 
   for (std::uint32_t i = 0; i < 10'000; ++i) triangles.push_back({{{0, i}, {1, i}, {2, 7}}});
   const auto scanned = [](const std::string& file) {
     std::vector<BoundaryTriangle> shown;
-    scan_boundary(fill_from(file, "b"), "b", [&](const auto& t) { shown.push_back(t); });
+    scan_boundary(fill_from(file, "b"), "b", [&](const auto& t, Label) { shown.push_back(t); });
     return shown;
   };
   const std::string file = encode_boundary(triangles);
   CHECK(scanned(file) == triangles);
   CHECK(scanned(encode_boundary({})).empty());
+  CHECK(scanned(encode_boundary(triangles, std::vector<Label>(10'000, 3))) == triangles);
   CHECK_THROWS_AS(scanned(file.substr(0, file.size() - 1)), DataError);
   CHECK_THROWS_AS(scanned(encode_part({})), DataError);
   for (const std::size_t place : {16, 23, 24, 31}) {  // sizes and counts
@@ -131,6 +151,7 @@ TEST_CASE("a manifest comes back whole") {
   CHECK(back.channels.channels == m.channels.channels);
   CHECK(back.channels.file == m.channels.file);
   CHECK(back.channels.points == 7);
+  CHECK(back.labels == m.labels);
   CHECK(back.skipped == m.skipped);
   CHECK(back.parts[1].file == m.parts[1].file);
   CHECK(back.box.hi == Vec3{1, 2, 3});

@@ -46,17 +46,19 @@ struct CutMesh {
   Manifest manifest;
   std::vector<Part> parts;
   std::vector<BoundaryTriangle> boundary;
+  std::vector<Label> boundary_labels;
 };
 
 CutMesh cut(Mesh mesh, const CutOptions& options, const std::filesystem::path& folder,
             PositionType positions = PositionType::float64) {
   test::MemorySource source(std::move(mesh), positions);
   const Stage stage = Stage::create(folder);
-  CutMesh made{cut_mesh(source, stage, options), {}, {}};
+  CutMesh made{cut_mesh(source, stage, options), {}, {}, {}};
   for (const PartEntry& entry : made.manifest.parts) {
     made.parts.push_back(decode_part(stage.read(entry.file), "part"));
   }
-  made.boundary = decode_boundary(stage.read(made.manifest.boundary), "boundary");
+  made.boundary =
+      decode_boundary(stage.read(made.manifest.boundary), "boundary", made.boundary_labels);
   return made;
 }
 
@@ -73,6 +75,26 @@ std::vector<Corners> triangles_of(const CutMesh& made) {
   for (const auto& [a, b, c] : made.boundary) all.push_back(corners_of(at(a), at(b), at(c)));
   std::sort(all.begin(), all.end());
   return all;
+}
+
+/// Those with this label.
+std::vector<Corners> triangles_of(const Mesh& mesh, Label label) {
+  Mesh some = mesh;
+  keep_triangles(some, [&](std::size_t i) { return mesh.labels[i] == label; });
+  return triangles_of(some);
+}
+
+std::vector<Corners> triangles_of(const CutMesh& made, Label label) {
+  CutMesh some = made;
+  for (Part& part : some.parts) {
+    const std::vector<Label> labels = part.mesh.labels;
+    keep_triangles(part.mesh, [&](std::size_t i) { return labels[i] == label; });
+  }
+  some.boundary.clear();
+  for (std::size_t i = 0; i < made.boundary.size(); ++i) {
+    if (made.boundary_labels[i] == label) some.boundary.push_back(made.boundary[i]);
+  }
+  return triangles_of(some);
 }
 
 }  // namespace
@@ -102,6 +124,23 @@ TEST_CASE("parts and boundary together are the input, boundary vertices first") 
     CHECK(*used[p].rbegin() == made.parts[p].boundary_vertices - 1);
     CHECK(made.manifest.parts[p].triangles == made.parts[p].mesh.triangles.size());
   }
+}
+
+TEST_CASE("labels go with their triangles") {
+  Mesh mesh = test::torus(60, 40);
+  for (std::uint32_t i = 0; i < mesh.triangles.size(); ++i) mesh.labels.push_back(i % 7);
+  Mesh dirty = mesh;
+  dirty.triangles.insert(dirty.triangles.begin(), {{0, 0, 1}, {5, 6, 5}});
+  dirty.labels.insert(dirty.labels.begin(), {100, 101});
+  const test::TempFolder folder;
+  const CutMesh made = cut(dirty, {.parts = 7}, folder.path());
+  REQUIRE(made.manifest.labels.has_value());
+  CHECK(made.manifest.labels->name == "region");
+  CHECK(made.boundary_labels.size() == made.boundary.size());
+  for (Label label = 0; label < 7; ++label) {
+    CHECK(triangles_of(made, label) == triangles_of(mesh, label));
+  }
+  CHECK(triangles_of(made, 100).empty());
 }
 
 TEST_CASE("the same cut from any number of threads") {

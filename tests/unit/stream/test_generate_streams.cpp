@@ -81,6 +81,49 @@ std::vector<Corners> triangles_of(const Generated& made) {
 
 }  // namespace
 
+TEST_CASE("labels go with their triangles, whatever their order, sorted here or by the farm") {
+  Mesh mesh = test::torus(90, 40);
+  const auto label_of = [](const Vec3& a, const Vec3& b, const Vec3& c) {
+    return static_cast<Label>(std::lround(20 + 5 * (a.x + b.x + c.x)));
+  };
+  for (const auto& [a, b, c] : mesh.triangles) {
+    mesh.labels.push_back(label_of(mesh.positions[a], mesh.positions[b], mesh.positions[c]));
+  }
+  Mesh turned = mesh;
+  std::reverse(turned.triangles.begin(), turned.triangles.end());
+  std::reverse(turned.labels.begin(), turned.labels.end());
+  const test::TempFolder folder;
+  const Generated made = generate(mesh, {.streams = 5}, folder / "made");
+  const Generated other = generate(turned, {.streams = 5}, folder / "other");
+  CHECK(made.files == other.files);
+  const Stage stage = Stage::open(folder / "made");
+  std::vector<Label> labels;
+  const auto boundary = decode_boundary(stage.read(made.manifest.boundary), "boundary", labels);
+  REQUIRE(labels.size() == boundary.size());
+  const auto at = [&](const BoundaryCorner& corner) {
+    return made.streams[corner.part].mesh.positions[corner.local];
+  };
+  for (std::size_t i = 0; i < boundary.size(); ++i) {
+    const auto& [a, b, c] = boundary[i];
+    CHECK(labels[i] == label_of(at(a), at(b), at(c)));
+  }
+  for (const Part& part : made.streams) {
+    REQUIRE(part.mesh.labels.size() == part.mesh.triangles.size());
+    for (std::size_t i = 0; i < part.mesh.triangles.size(); ++i) {
+      const auto& [a, b, c] = part.mesh.triangles[i];
+      const std::vector<Vec3>& p = part.mesh.positions;
+      CHECK(part.mesh.labels[i] == label_of(p[a], p[b], p[c]));
+    }
+  }
+  test::MemorySource source(mesh);
+  const Stage unsorted = Stage::create(folder / "slabs");
+  const Manifest slabs = generate_streams(source, unsorted, {.streams = 5, .sort = SortAt::farm});
+  for (std::size_t i = 0; i < slabs.parts.size(); ++i) {
+    MeshShare slab = decode_slab(unsorted.read(slabs.parts[i].file), "slab");
+    CHECK(encode_stream(sort_slab(std::move(slab), *slabs.sorting).stream) == made.files[i]);
+  }
+}
+
 TEST_CASE("streams and boundary together are the input") {
   const Mesh mesh = test::torus(90, 40);
   const test::TempFolder folder;

@@ -42,14 +42,16 @@ Swept swept(const StreamMesh& stream, const SweepOptions& options) {
   const bool counts = reader.info().appearances && options.lines.appearance_scale.length > 0;
   if (counts) result.mesh.appearances.resize(result.boundary_vertices);
   Mesh& mesh = result.mesh;
-  static_cast<SweptStream&>(result) = sweep(reader, options, [&](auto vertices, auto triangles) {
-    for (std::size_t v = 0; v < vertices.size(); ++v) append_vertex(vertices, v, mesh);
-    mesh.triangles.insert(mesh.triangles.end(), triangles.begin(), triangles.end());
-    ++result.pieces;
-    result.largest_piece = std::max(result.largest_piece, triangles.size());
-    for (const Triangle& t : triangles)
-      REQUIRE(*std::max_element(t.begin(), t.end()) < mesh.positions.size());
-  });
+  static_cast<SweptStream&>(result) =
+      sweep(reader, options, [&](auto vertices, auto triangles, auto labels) {
+        for (std::size_t v = 0; v < vertices.size(); ++v) append_vertex(vertices, v, mesh);
+        mesh.triangles.insert(mesh.triangles.end(), triangles.begin(), triangles.end());
+        mesh.labels.insert(mesh.labels.end(), labels.begin(), labels.end());
+        ++result.pieces;
+        result.largest_piece = std::max(result.largest_piece, triangles.size());
+        for (const Triangle& t : triangles)
+          REQUIRE(*std::max_element(t.begin(), t.end()) < mesh.positions.size());
+      });
   std::copy(result.boundary.positions.begin(), result.boundary.positions.end(),
             mesh.positions.begin());
   std::copy(result.boundary.appearances.begin(), result.boundary.appearances.end(),
@@ -64,6 +66,23 @@ Mesh wavy_torus() {
 }
 
 }  // namespace
+
+TEST_CASE("a sweep keeps the labels of its triangles and the lines between them") {
+  Mesh mesh = test::torus(240, 120);
+  const auto label_at = [](const Mesh& of, const Triangle& t) {
+    return of.positions[t[0]].y + of.positions[t[1]].y + of.positions[t[2]].y > 0 ? 5U : 3U;
+  };
+  for (const Triangle& t : mesh.triangles) mesh.labels.push_back(label_at(mesh, t));
+  SweepOptions options{.max_cost = 1e-8, .window_triangles = 8'000};
+  const Mesh result = swept(stream_of(mesh), options).mesh;
+  REQUIRE(result.triangles.size() < mesh.triangles.size() / 4);
+  REQUIRE(result.labels.size() == result.triangles.size());
+  for (std::size_t i = 0; i < result.triangles.size(); ++i) {
+    CHECK(result.labels[i] == label_at(result, result.triangles[i]));
+  }
+  options.lines.keep_labels = false;
+  CHECK(swept(stream_of(mesh), options).mesh.labels.empty());
+}
 
 TEST_CASE("a sweep through any window keeps the topology and reaches about the same count") {
   const Mesh mesh = wavy_torus();  // 57,600 triangles
