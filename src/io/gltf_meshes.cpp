@@ -59,6 +59,7 @@ class MeshReader {
     GltfTriangles triangles{
         .place = primitive.place(), .primitive = number, .mode = static_cast<GltfMode>(mode)};
     triangles.vertices = vertices_of(attributes);
+    triangles.material = primitive.whole_or("material", GltfTriangles::k_no_material);
     const std::uint64_t vertices = mesh_.vertices[triangles.vertices].positions.rows;
     triangles.corners = vertices;
     if (const auto indices = primitive.find("indices")) {

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include <meshfarm/io/channel.hpp>
+#include <meshfarm/io/labels.hpp>
 
 #include "gltf_column.hpp"
 #include "gltf_json.hpp"
@@ -30,12 +31,16 @@ enum class GltfMode : std::uint8_t { triangles = 4, strip = 5, fan = 6 };
 
 /// The triangles of a primitive.
 struct GltfTriangles {
+  static constexpr std::uint64_t k_no_material = UINT64_MAX;
+
   std::string place;            // for messages
   std::uint64_t primitive = 0;  // among those of the mesh
   GltfMode mode = GltfMode::triangles;
   std::size_t vertices = 0;  // which of GltfMesh::vertices
   std::optional<GltfColumn> indices;
   std::uint64_t corners = 0;
+  std::uint64_t material = k_no_material;  // of the document
+  Label label = 0;                         // see label_gltf_meshes()
 
   std::uint64_t count() const {
     if (mode == GltfMode::triangles) return corners / 3;

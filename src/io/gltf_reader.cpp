@@ -13,6 +13,7 @@
 
 #include <meshfarm/util/errors.hpp>
 
+#include "gltf_materials.hpp"
 #include "gltf_meshes.hpp"
 #include "gltf_scene.hpp"
 #include "gltf_textures.hpp"
@@ -55,8 +56,7 @@ struct GltfChannels {
 /// Makes triangles of the corners of a primitive.
 class Corners {
  public:
-  Corners(const GltfTriangles& triangles, std::uint64_t first, bool is_mirror,
-          Batch<WideTriangle>& batch)
+  Corners(const GltfTriangles& triangles, std::uint64_t first, bool is_mirror, TriangleBatch& batch)
       : mode_(triangles.mode), first_(first), is_mirror_(is_mirror), batch_(batch) {}
 
   void add(std::span<const std::uint32_t> vertices) {
@@ -97,7 +97,7 @@ class Corners {
   GltfMode mode_;
   std::uint64_t first_;
   bool is_mirror_;
-  Batch<WideTriangle>& batch_;
+  TriangleBatch& batch_;
   std::array<std::uint64_t, 2> last_{};
   std::uint64_t hub_ = 0;
   std::uint64_t count_ = 0;
@@ -117,6 +117,8 @@ class GltfSource final : public MeshSource {
     GltfSkipped skipped;
     read_meshes(document, buffers, skipped);
     read_textures(document, buffers, options);
+    if (options.labels && !texture_colours_) labels_ = label_gltf_meshes(document, meshes_);
+    info_.labels = labels_.meaning;
     find_channels(options, skipped);
     skip_others(document, skipped);
     for (const auto& [what, count] : skipped) {
@@ -154,13 +156,14 @@ class GltfSource final : public MeshSource {
   }
 
   void scan_triangles(const std::function<void(const TriangleView&)>& take) override {
-    Batch<WideTriangle> batch(take);
+    TriangleBatch batch(take);
     std::uint64_t first = 0;
     for (const GltfInstance& instance : instances_) {
       const GltfMesh& mesh = meshes_.at(instance.mesh);
       for (const GltfTriangles& triangles : mesh.triangles) {
         const GltfVertices& vertices = mesh.vertices[triangles.vertices];
         Corners corners(triangles, first + vertices.first, instance.transform.is_mirror(), batch);
+        if (info_.labels) batch.label(triangles.label);
         read_corners(triangles, vertices.positions.rows, corners);
       }
       first += mesh.vertex_count;
@@ -200,7 +203,7 @@ class GltfSource final : public MeshSource {
     if (options.textures == Textures::bake) {
       const auto scan = [this](const GltfTriangles& triangles, const GltfVertices& vertices,
                                const auto& take) {
-        Batch<WideTriangle> batch(take);
+        TriangleBatch batch(take);
         Corners corners(triangles, 0, false, batch);
         read_corners(triangles, vertices.positions.rows, corners);
         batch.flush();
@@ -237,11 +240,11 @@ class GltfSource final : public MeshSource {
   }
 
   void skip_others(const GltfValue& document, GltfSkipped& skipped) const {
-    // Our own files have one that says no more than that the mesh is not of metal.
-    const nlohmann::json plain = {{"pbrMetallicRoughness", {{"metallicFactor", 0}}}};
+    std::size_t materials = 0;
     for (std::size_t i = 0; i < document.size_of("materials"); ++i) {
-      if (document.at("materials").item(i).json() != plain) ++skipped["materials"];
+      materials += is_plain_gltf_material(document.at("materials").item(i).json()) ? 0 : 1;
     }
+    if (materials > labels_.materials) skipped["materials"] = materials - labels_.materials;
     const std::size_t sampled = texture_colours_ ? info_.textures.size() : 0;
     for (const char* name : {"textures", "images"}) {
       const std::size_t count = document.size_of(name);
@@ -364,6 +367,7 @@ class GltfSource final : public MeshSource {
   GltfChannels channels_;
   std::vector<GltfInstance> instances_;
   GltfMeshes meshes_;
+  GltfLabels labels_;
   std::unique_ptr<TextureColours> texture_colours_;
   GltfColumnReader reader_;
   std::vector<std::array<double, 4>> rows_;

@@ -27,9 +27,11 @@ Mesh read_mesh(MeshSource& source) {
     });
   } while (source.info().positions != positions);
   const auto lacks = [&mesh](std::uint64_t v) { return !has_position(mesh.positions[v]); };
-  source.scan_triangles([&](std::span<const WideTriangle> batch) {
-    for (const WideTriangle& triangle : batch) {
+  source.scan_triangles([&](const TriangleView& batch) {
+    for (std::size_t i = 0; i < batch.size(); ++i) {
+      const WideTriangle& triangle = batch.corners[i];
       if (std::any_of(triangle.begin(), triangle.end(), lacks)) continue;
+      if (!batch.labels.empty()) mesh.labels.push_back(batch.labels[i]);
       mesh.triangles.push_back({static_cast<std::uint32_t>(triangle[0]),
                                 static_cast<std::uint32_t>(triangle[1]),
                                 static_cast<std::uint32_t>(triangle[2])});

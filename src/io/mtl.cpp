@@ -4,6 +4,7 @@
 // What is read of a library, one statement a line; names may have blanks in them:
 //   "newmtl" name
 //   "Kd" r g b
+//   "d" alpha, or "Tr" 1 - alpha if there is no "d"
 //   "map_Kd" { option } file
 //   option = "-o" u [v [w]] | "-s" u [v [w]] | "-clamp" on|off | others, which are passed over
 #include "mtl.hpp"
@@ -101,10 +102,19 @@ void read_colour(std::string_view text, MtlMaterial& material) {
   material.colour = colour;
 }
 
+/// 0 to 1.
+std::optional<double> alpha_of(std::string_view text) {
+  std::string_view word = take_word(text);
+  if (is_word(word, "-halo")) word = take_word(text);
+  const std::optional<double> value = number_of(word);
+  return value ? std::optional(std::clamp(*value, 0.0, 1.0)) : std::nullopt;
+}
+
 }  // namespace
 
 std::vector<MtlMaterial> parse_mtl(std::string_view text) {
   std::vector<MtlMaterial> made;
+  bool has_alpha = false;  // the last material
   const char line_end = line_end_of(text);
   if (text.starts_with("\xef\xbb\xbf")) text.remove_prefix(3);
   while (!text.empty()) {
@@ -114,10 +124,16 @@ std::vector<MtlMaterial> parse_mtl(std::string_view text) {
     const std::string_view word = take_word(line);
     if (is_word(word, "newmtl")) {
       made.push_back({.name = std::string(line)});
+      has_alpha = false;
     } else if (made.empty()) {
       continue;
     } else if (is_word(word, "kd")) {
       read_colour(line, made.back());
+    } else if (is_word(word, "d")) {
+      if (const auto alpha = alpha_of(line)) made.back().alpha = *alpha;
+      has_alpha = true;
+    } else if (is_word(word, "tr") && !has_alpha) {
+      if (const auto opposite = alpha_of(line)) made.back().alpha = 1 - *opposite;
     } else if (is_word(word, "map_kd")) {
       read_map(line, made.back());
     }

@@ -13,6 +13,7 @@ namespace meshfarm {
 struct MtlMaterial {
   std::string name;
   std::array<double, 3> colour{1, 1, 1};  // Kd, as sRGB from 0 to 1
+  double alpha = 1;                       // d, or 1 - Tr
   std::string map;                        // map_Kd: the picture's file; may be empty
   std::array<double, 2> scale{1, 1};      // of map_Kd: u becomes u scale + offset
   std::array<double, 2> offset{0, 0};

@@ -4,6 +4,7 @@
 // What is read:
 //   "v" x y z [w] [r g b]
 //   "f" { v["/"[vt]["/"[vn]]] }   from 1, or backwards from the last vertex before the line: -1
+//   "usemtl" name                 of the faces that follow; or "g" or "o", if there is none
 // Textures are read by obj_textures.cpp. All other statements are counted and passed over. '#'
 // begins a comment, and a backslash at a line's end joins the next line to it.
 #include "obj_reader.hpp"
@@ -67,6 +68,7 @@ class ObjSource final : public TextSource {
   ObjSource(InputFile file, const OpenOptions& options)
       : TextSource(std::move(file), options, "OBJ", ends_statement) {
     ObjStatements all;
+    all.begin_text();
     TextBlocks text = blocks();
     for_pieces<ObjStatements>(
         text, threads(),
@@ -78,9 +80,9 @@ class ObjSource final : public TextSource {
     has_relative_ = all.has_relative;
     counted().vertices = all.vertices;
     counted().faces = all.faces;
-    counted().skipped = all.skipped_names(options.channels);
     look_at_digits();
-    if (options.channels) read_textures(all, options.textures);
+    read_materials(all, options);
+    counted().skipped = all.skipped_names(options.channels, label_words_);
     if (!options.channels || !(all.has_colours || texture_colours_)) return;
     for (const char* name : {"red", "green", "blue"}) {
       counted().channels.push_back({name, ChannelType::uint8, ChannelRole::colour});
@@ -105,6 +107,7 @@ class ObjSource final : public TextSource {
 
   void scan_triangles(const std::function<void(const TriangleView&)>& take) override {
     TriangleMaker maker(info().vertices, take, [this](std::uint64_t v) { return position_of(v); });
+    if (info().labels) maker.label(label_names_.label_of("").value_or(0));
     TextBlocks text = blocks();
     std::uint64_t before = 0;
     for_pieces<Faces>(
@@ -133,11 +136,35 @@ class ObjSource final : public TextSource {
     return is_finite(p) ? p : k_no_position;
   }
 
-  void read_textures(const ObjStatements& all, Textures wanted) {
-    if (wanted == Textures::drop || all.libraries.empty()) return;
-    if (all.count_of("vt") == 0 || all.materials.empty()) return;
-    const ObjMaterials materials =
-        read_obj_materials(file().path(), all, [this](const std::string& line) { warn(line); });
+  void read_materials(ObjStatements& all, const OpenOptions& options) {
+    const auto is_name = [](const std::string& name) { return !name.empty(); };
+    const std::vector<std::string>& names = all.materials.names();
+    const bool has_materials = std::any_of(names.begin(), names.end(), is_name);
+    const bool may_have_textures = options.channels && options.textures != Textures::drop &&
+                                   has_materials && all.count_of("vt") > 0;
+    std::vector<ObjLibraryMaterial> materials;
+    if (has_materials && (may_have_textures || options.labels)) {
+      materials =
+          read_obj_libraries(file().path(), all, [this](const std::string& line) { warn(line); });
+    }
+    if (may_have_textures) read_textures(all, options.textures, texture_materials(materials));
+    if (!options.labels || texture_colours_) return;
+    if (has_materials) {
+      if (all.materials.has_too_many()) return;
+      counted().labels = meaning_of_materials(all.materials, materials);
+      label_names_ = std::move(all.materials);
+      label_words_ = {"usemtl", "mtllib"};
+    } else {
+      const bool are_groups = all.groups.names().size() > 1;
+      ObjNames& groups = are_groups ? all.groups : all.objects;
+      if (groups.names().size() < 2 || groups.has_too_many()) return;
+      counted().labels = meaning_of_groups(groups);
+      label_names_ = std::move(groups);
+      label_words_ = {are_groups ? "g" : "o"};
+    }
+  }
+
+  void read_textures(const ObjStatements& all, Textures wanted, const ObjMaterials& materials) {
     if (materials.images.empty()) return;
     if (wanted == Textures::bake) {
       texture_colours_ =
@@ -206,10 +233,15 @@ class ObjSource final : public TextSource {
   void parse_faces(std::string_view text, Faces& made) const {
     made.faces.clear();
     VertexRange vertices{made.vertices_before, info().vertices};
+    const std::string_view label_word = label_words_.empty() ? "" : label_words_.front();
     TextScanner scanner(text, line_end());
     for (; scanner.next_value(); scanner.next_line()) {
       const std::string_view word = scanner.word();
       if (word == "v") ++vertices.before;
+      if (word == label_word) {
+        const auto label = label_names_.label_of(rest_of_line(scanner.at(), text, line_end()));
+        if (label) made.faces.label(*label);
+      }
       if (word != "f") continue;
       made.corners.clear();
       while (scanner.has_value()) made.corners.push_back(read_corner(scanner, vertices));
@@ -220,6 +252,8 @@ class ObjSource final : public TextSource {
   bool has_relative_ = false;
   std::uint64_t small_faces_ = 0;
   std::unique_ptr<TextureColours> texture_colours_;
+  ObjNames label_names_;
+  std::vector<std::string_view> label_words_;  // the statements that are for labels, first theirs
 };
 
 }  // namespace

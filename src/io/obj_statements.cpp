@@ -91,6 +91,9 @@ void ObjStatements::count(std::string_view text, char line_end) {
       has_weights = has_weights || values == 4 || values == 7;
     } else if (word == "f") {
       ++faces;
+      materials.face();
+      groups.face();
+      objects.face();
       if (has_relative) continue;
       scanner.next_line();
       const auto length = static_cast<std::size_t>(scanner.at() - start);
@@ -102,18 +105,26 @@ void ObjStatements::count(std::string_view text, char line_end) {
         scanner.fail(shown(word) + " begins no statement of OBJ");
       }
       if (!add_to(others, word, 1)) scanner.fail("too many kinds of statements that OBJ has not");
-      if (word == "usemtl" || word == "mtllib") {
+      if (word == "usemtl" || word == "mtllib" || word == "g" || word == "o") {
         add_name(word, rest_of_line(scanner.at(), text, line_end));
       }
     }
   }
 }
 
+void ObjStatements::begin_text() {
+  for (ObjNames* names : {&materials, &groups, &objects}) names->begin_text();
+}
+
 void ObjStatements::add_name(std::string_view word, std::string_view name) {
-  if (word == "usemtl") {
-    if (materials.size() < k_most_names && !materials.contains(name)) materials.emplace(name);
-  } else if (libraries.size() < k_most_names &&
-             std::find(libraries.begin(), libraries.end(), name) == libraries.end()) {
+  if (word == "mtllib") return add_library(name);
+  if (word == "usemtl") return materials.set(name);
+  (word == "g" ? groups : objects).set(name);
+}
+
+void ObjStatements::add_library(std::string_view name) {
+  if (libraries.size() < k_most_names &&
+      std::find(libraries.begin(), libraries.end(), name) == libraries.end()) {
     libraries.emplace_back(name);
   }
 }
@@ -125,8 +136,10 @@ std::uint64_t ObjStatements::count_of(std::string_view word) const {
 }
 
 void ObjStatements::add(const ObjStatements& next) {
-  for (const std::string& name : next.libraries) add_name("mtllib", name);
-  for (const std::string& name : next.materials) add_name("usemtl", name);
+  for (const std::string& name : next.libraries) add_library(name);
+  materials.add(next.materials);
+  groups.add(next.groups);
+  objects.add(next.objects);
   has_colours = has_colours || next.has_colours;
   has_weights = has_weights || next.has_weights;
   vertices += next.vertices;
@@ -139,11 +152,13 @@ void ObjStatements::add(const ObjStatements& next) {
   }
 }
 
-std::vector<std::string> ObjStatements::skipped_names(bool keeps_colours) const {
+std::vector<std::string> ObjStatements::skipped_names(
+    bool keeps_colours, std::span<const std::string_view> kept) const {
   std::vector<std::string> names;
   if (has_colours && !keeps_colours) names.emplace_back("vertex.colour");
   if (has_weights) names.emplace_back("vertex.weight");
   for (const auto& [word, count] : others) {
+    if (std::find(kept.begin(), kept.end(), word) != kept.end()) continue;
     const auto known = std::find_if(k_names.begin(), k_names.end(),
                                     [&w = word](const auto& name) { return name.first == w; });
     const std::string name(known == k_names.end() ? std::string_view(word) : known->second);

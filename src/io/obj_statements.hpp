@@ -4,11 +4,13 @@
 
 #include <cstdint>
 #include <functional>
-#include <set>
+#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
+
+#include "obj_names.hpp"
 
 namespace meshfarm {
 
@@ -21,18 +23,24 @@ struct ObjStatements {
   bool has_weights = false;
   std::vector<std::pair<std::string, std::uint64_t>> others;  // by their first words
   std::vector<std::string> libraries;                         // what follows "mtllib", up to some
-  std::set<std::string, std::less<>> materials;               // what follows "usemtl", up to some
+  ObjNames materials;                                         // what follows "usemtl"
+  ObjNames groups;                                            // "g"
+  ObjNames objects;                                           // "o"
 
+  /// At the start of a whole text.
+  void begin_text();
   /// Counts those of a text of whole statements. Throws TextError for what is none.
   void count(std::string_view text, char line_end);
   /// Adds what follows.
   void add(const ObjStatements& next);
   /// How many statements that begin with the word, of `others`.
   std::uint64_t count_of(std::string_view word) const;
-  /// "vertex.colour", "normals (435,545)", ...
-  std::vector<std::string> skipped_names(bool keeps_colours) const;
+  /// "vertex.colour", "normals (435,545)", ... `kept`: words of statements that are not skipped.
+  std::vector<std::string> skipped_names(bool keeps_colours,
+                                         std::span<const std::string_view> kept = {}) const;
 
  private:
+  void add_library(std::string_view name);
   void add_name(std::string_view word, std::string_view name);
 };
 

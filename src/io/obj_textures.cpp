@@ -51,71 +51,6 @@ TextureImage image_beside(const std::filesystem::path& folder, const std::string
           }};
 }
 
-class Libraries {
- public:
-  Libraries(const std::filesystem::path& path, const ObjStatements& statements,
-            const std::function<void(const std::string& line)>& warn)
-      : path_(path), statements_(statements), warn_(warn) {}
-
-  ObjMaterials read() {
-    for (const std::string& names : statements_.libraries) add_named(names);
-    return std::move(made_);
-  }
-
- private:
-  /// One file with blanks in its name, or more than one.
-  void add_named(const std::string& names) {
-    const std::filesystem::path folder = path_.parent_path();
-    if (const auto whole = find_beside(folder, names)) return add(*whole);
-    constexpr std::string_view k_blanks = " \t";
-    std::string_view rest = names;
-    while (!rest.empty()) {
-      const std::string_view name = rest.substr(0, rest.find_first_of(k_blanks));
-      rest.remove_prefix(name.size());
-      rest.remove_prefix(std::min(rest.find_first_not_of(k_blanks), rest.size()));
-      if (const auto found = find_beside(folder, name)) {
-        add(*found);
-      } else {
-        warn_(path_.string() + ": the material library " + shown(names) +
-              " is not beside it: its materials have no colour");
-        return;
-      }
-    }
-  }
-
-  void add(const std::filesystem::path& library) {
-    // The mesh is of use without.
-    try {
-      for (const MtlMaterial& material : parse_mtl(read_beside(library))) {
-        add(material, library.parent_path());
-      }
-    } catch (const Error& error) {
-      warn_(error.what());
-    }
-  }
-
-  void add(const MtlMaterial& material, const std::filesystem::path& folder) {
-    if (!statements_.materials.contains(material.name)) return;
-    const auto [at, is_new] = made_.numbers.try_emplace(material.name, made_.materials.size());
-    if (!is_new) return;
-    TextureMaterial made = made_of(material);
-    if (!material.map.empty()) made.image = image_of(folder, material.map);
-    made_.materials.push_back(made);
-  }
-
-  std::size_t image_of(const std::filesystem::path& folder, const std::string& name) {
-    const auto [at, is_new] = images_.try_emplace({folder.string(), name}, made_.images.size());
-    if (is_new) made_.images.push_back(image_beside(folder, name));
-    return at->second;
-  }
-
-  const std::filesystem::path& path_;
-  const ObjStatements& statements_;
-  const std::function<void(const std::string& line)>& warn_;
-  std::map<std::pair<std::string, std::string>, std::size_t> images_;
-  ObjMaterials made_;
-};
-
 /// How many vertices and places come before something.
 struct Counts {
   std::uint64_t vertices = 0;
@@ -337,9 +272,21 @@ class Sampling {
 
 }  // namespace
 
-ObjMaterials read_obj_materials(const std::filesystem::path& path, const ObjStatements& statements,
-                                const std::function<void(const std::string& line)>& warn) {
-  return Libraries(path, statements, warn).read();
+ObjMaterials texture_materials(std::span<const ObjLibraryMaterial> materials) {
+  ObjMaterials made;
+  std::map<std::pair<std::string, std::string>, std::size_t> images;
+  for (const auto& [material, folder] : materials) {
+    TextureMaterial each = made_of(material);
+    if (!material.map.empty()) {
+      const auto [at, is_new] =
+          images.try_emplace({folder.string(), material.map}, made.images.size());
+      if (is_new) made.images.push_back(image_beside(folder, material.map));
+      each.image = at->second;
+    }
+    made.numbers.emplace(material.name, made.materials.size());
+    made.materials.push_back(each);
+  }
+  return made;
 }
 
 std::unique_ptr<TextureColours> sample_obj_textures(const ObjText& text,

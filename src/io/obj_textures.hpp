@@ -3,13 +3,14 @@
 #pragma once
 
 #include <cstddef>
-#include <functional>
 #include <map>
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "byte_stream.hpp"
+#include "obj_libraries.hpp"
 #include "obj_statements.hpp"
 #include "text_blocks.hpp"
 #include "texture_colours.hpp"
@@ -25,9 +26,7 @@ struct ObjMaterials {
   std::map<std::string, std::size_t, std::less<>> numbers;  // by name
 };
 
-/// Libraries that are not there, or cannot be read, are named by `warn` and passed over.
-ObjMaterials read_obj_materials(const std::filesystem::path& path, const ObjStatements& statements,
-                                const std::function<void(const std::string& line)>& warn);
+ObjMaterials texture_materials(std::span<const ObjLibraryMaterial> materials);
 
 /// An OBJ's text, to be read again and again.
 struct ObjText {

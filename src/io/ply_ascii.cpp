@@ -165,7 +165,13 @@ class AsciiBody final : public PlyBody {
     maker.begin(corner_order(element));
     for (std::size_t i = 0; i < element.properties.size(); ++i) {
       const PlyProperty& property = element.properties[i];
-      i == element.index_list ? read_corner_list(property, maker) : skip(property);
+      if (i == element.index_list) {
+        read_corner_list(property, maker);
+      } else if (i == element.label) {
+        maker.label(read_label(property));
+      } else {
+        skip(property);
+      }
     }
     end_record();
     maker.end();
@@ -274,7 +280,11 @@ class AsciiBody final : public PlyBody {
 
   template <class Maker>
   void read_corner_list(const PlyProperty& property, Maker& maker) {
-    for (std::uint64_t left = read_list_length(property); left > 0; --left) {
+    std::uint64_t left = read_list_length(property);
+    if (element_->has_late_label() && left > TriangleMaker::k_most_held_corners) {
+      fail(TriangleMaker::k_too_long_for_label);
+    }
+    for (; left > 0; --left) {
       need_value();
       const std::optional<std::int64_t> index = cursor_.whole(property.type);
       if (!index) fail("the vertex index " + cursor_.token() + " is not a whole number");
@@ -283,6 +293,17 @@ class AsciiBody final : public PlyBody {
              std::to_string(maker.vertices()) + " vertices");
       }
     }
+  }
+
+  /// What is below zero wraps around.
+  Label read_label(const PlyProperty& property) {
+    need_value();
+    const std::optional<std::int64_t> value = cursor_.whole(property.type);
+    if (!value) fail(property.name + " is " + cursor_.token() + ", which is not a whole number");
+    if (*value < INT32_MIN || *value > std::int64_t{UINT32_MAX}) {
+      fail(property.name + " is " + std::to_string(*value) + ", which has more than 32 bits");
+    }
+    return static_cast<Label>(*value);
   }
 
   std::uint64_t read_list_length(const PlyProperty& property) {

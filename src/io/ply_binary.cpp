@@ -150,9 +150,14 @@ class BinaryBody final : public PlyBody {
         {window.size() / layout.record_bytes, room.size(), element_->count - index_});
     const std::size_t count =
         decode_triangles<Order>(layout, window.data(), maker.vertices(), room.first(most));
+    if (element_->label) {
+      decode_labels<Order>(layout, window.data(), maker.batch().label_room().first(count));
+      maker.batch().added_with_labels(count);
+    } else {
+      maker.batch().added(count);
+    }
     stream_->consume(count * layout.record_bytes);
     index_ += count;
-    maker.batch().added(count);
     return count;
   }
 
@@ -160,6 +165,9 @@ class BinaryBody final : public PlyBody {
     maker.begin(corner_order(*element_));
     for (std::size_t i = 0; i < element_->properties.size(); ++i) {
       const PlyProperty& property = element_->properties[i];
+      if (i == element_->label) {
+        maker.label(load_label<Order>(property.type, need(size_of(property.type))));
+      }
       i == element_->index_list ? read_corner_list(property, maker) : skip(property);
     }
     maker.end();
@@ -167,7 +175,11 @@ class BinaryBody final : public PlyBody {
 
   void read_corner_list(const PlyProperty& property, TriangleMaker& maker) {
     const std::size_t size = size_of(property.type);
-    for (std::uint64_t left = read_list_length(property); left > 0;) {
+    std::uint64_t left = read_list_length(property);
+    if (element_->has_late_label() && left > TriangleMaker::k_most_held_corners) {
+      fail(TriangleMaker::k_too_long_for_label);
+    }
+    while (left > 0) {
       const char* bytes = need(size);
       const std::size_t count = std::min(left, items_in(stream_->window(0).size(), property.type));
       for (std::size_t i = 0; i < count; ++i) {

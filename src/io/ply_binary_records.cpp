@@ -91,6 +91,10 @@ std::optional<TriangleLayout> triangle_layout(const PlyElement& element) {
   layout.count_bytes = size_of(*corners.count_type);
   layout.index_type = corners.type;
   for (std::size_t i = 0; i < element.properties.size(); ++i) {
+    if (i == element.label) {
+      layout.label_offset = layout.record_bytes;
+      layout.label_type = element.properties[i].type;
+    }
     if (i == element.index_list) {
       layout.list_offset = layout.record_bytes;
       layout.record_bytes += layout.count_bytes + 3 * size_of(corners.type);
@@ -120,5 +124,18 @@ template std::size_t decode_triangles<std::endian::little>(const TriangleLayout&
                                                            std::uint64_t, std::span<WideTriangle>);
 template std::size_t decode_triangles<std::endian::big>(const TriangleLayout&, const char*,
                                                         std::uint64_t, std::span<WideTriangle>);
+
+template <std::endian Order>
+void decode_labels(const TriangleLayout& layout, const char* records, std::span<Label> out) {
+  const char* bytes = records + layout.label_offset;
+  for (Label& label : out) {
+    label = load_label<Order>(layout.label_type, bytes);
+    bytes += layout.record_bytes;
+  }
+}
+
+template void decode_labels<std::endian::little>(const TriangleLayout&, const char*,
+                                                 std::span<Label>);
+template void decode_labels<std::endian::big>(const TriangleLayout&, const char*, std::span<Label>);
 
 }  // namespace meshfarm

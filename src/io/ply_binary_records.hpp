@@ -33,6 +33,8 @@ struct TriangleLayout {
   std::size_t list_offset = 0;
   std::size_t count_bytes = 0;          // 1, 2 or 4
   PlyType index_type = PlyType::int32;  // int32 or uint32
+  std::size_t label_offset = 0;         // if they have labels
+  PlyType label_type = PlyType::int32;
 };
 
 /// Nothing if the records are not of that kind.
@@ -43,5 +45,15 @@ std::optional<TriangleLayout> triangle_layout(const PlyElement& element);
 template <std::endian Order>
 std::size_t decode_triangles(const TriangleLayout& layout, const char* records,
                              std::uint64_t vertices, std::span<WideTriangle> out);
+
+/// The labels of as many records.
+template <std::endian Order>
+void decode_labels(const TriangleLayout& layout, const char* records, std::span<Label> out);
+
+/// A whole number as it lies in a file; one below zero wraps around.
+template <std::endian Order>
+Label load_label(PlyType type, const char* bytes) {
+  return with_ply_value<Order>(type, bytes, [](auto value) { return static_cast<Label>(value); });
+}
 
 }  // namespace meshfarm

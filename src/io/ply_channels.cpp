@@ -58,4 +58,22 @@ std::vector<PlyChannel> channels_of(const PlyElement& vertices) {
   return channels;
 }
 
+std::optional<std::size_t> label_of(const PlyElement& faces) {
+  static constexpr std::array<std::string_view, 11> k_labels{
+      "material_index", "material",  "label",     "region",   "segment",     "group",
+      "class",          "texnumber", "object_id", "category", "component_id"};
+  static constexpr std::array<std::string_view, 5> k_others{"flags", "red", "green", "blue",
+                                                            "alpha"};
+  std::vector<std::size_t> numbers;
+  for (std::size_t i = 0; i < faces.properties.size(); ++i) {
+    const PlyProperty& property = faces.properties[i];
+    if (property.is_list() || !is_integer(property.type) || size_of(property.type) > 4) continue;
+    if (is_one_of(k_labels, property.name)) return i;
+    numbers.push_back(i);
+  }
+  const bool is_clear =
+      numbers.size() == 1 && !is_one_of(k_others, faces.properties[numbers[0]].name);
+  return is_clear ? std::optional(numbers[0]) : std::nullopt;
+}
+
 }  // namespace meshfarm

@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <span>
 #include <utility>
 #include <vector>
@@ -26,6 +27,10 @@ struct PlyChannel {
 /// The properties of the vertices that can be blended: colours, normals, and other floats, but not
 /// texture coordinates, which seams divide, nor whole numbers, which may be labels.
 std::vector<PlyChannel> channels_of(const PlyElement& vertices);
+
+/// The property of the faces that says what they belong to: by its name, or because no other is a
+/// whole number. Nothing if there is none.
+std::optional<std::size_t> label_of(const PlyElement& faces);
 
 /// Collects points and their values and hands them on in batches.
 class ChannelBatch {

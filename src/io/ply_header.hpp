@@ -39,8 +39,10 @@ struct PlyElement {
   PlyRole role = PlyRole::other;
   std::array<std::size_t, 3> axes{};  // of vertices: the properties x, y, z
   std::size_t index_list = 0;         // of faces and strips: the property with the corners
+  std::optional<std::size_t> label;   // of faces: the property that is read as their label
   MoreValues more = MoreValues::odd;
 
+  bool has_late_label() const { return label && *label > index_list; }
   bool has_lists() const;
   /// Bytes that a record takes in a file; with lists or as text, the fewest it can take.
   std::uint64_t record_bytes(PlyFormat format) const;

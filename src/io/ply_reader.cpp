@@ -41,7 +41,9 @@ PositionType position_type(const PlyElement& vertices) {
 
 bool is_used(const PlyElement& element, std::size_t property,
              std::span<const PlyChannel> channels) {
-  if (element.role != PlyRole::vertices) return property == element.index_list;
+  if (element.role != PlyRole::vertices) {
+    return property == element.index_list || property == element.label;
+  }
   return std::find(element.axes.begin(), element.axes.end(), property) != element.axes.end() ||
          std::any_of(channels.begin(), channels.end(),
                      [&](const PlyChannel& channel) { return channel.property == property; });
@@ -127,6 +129,7 @@ class PlySource final : public MeshSource {
       next = 0;
     }
     TriangleMaker maker(info_.vertices, take, [this](std::uint64_t v) { return position_of(v); });
+    if (first != header_.elements.end() && first->has_late_label()) maker.hold_long_faces();
     for (; next < header_.elements.size(); ++next) {
       const PlyElement& element = header_.elements[next];
       has_corners(element) ? body->read_corners(element, maker) : body->skip(element);
@@ -216,10 +219,23 @@ class PlySource final : public MeshSource {
     info_.positions = position_type(header_.vertices());
     if (options_.channels) channels_ = channels_of(header_.vertices());
     for (const PlyChannel& each : channels_) info_.channels.push_back(each.channel);
+    if (options_.labels) find_labels();
     info_.skipped = skipped_names(header_, channels_);
     for (const PlyElement& element : header_.elements) {
       if (has_corners(element)) info_.faces += element.count;
     }
+  }
+
+  /// Strips have none, and all triangles or none have labels.
+  void find_labels() {
+    PlyElement* faces = nullptr;
+    for (PlyElement& element : header_.elements) {
+      if (!has_corners(element) || element.count == 0) continue;
+      if (element.role == PlyRole::strips) return;
+      faces = &element;
+    }
+    if (faces == nullptr || !(faces->label = label_of(*faces))) return;
+    info_.labels = LabelMeaning{faces->properties[*faces->label].name, {}};
   }
 
   /// A file is scanned more than once, but each warning about it is given once.

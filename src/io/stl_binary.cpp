@@ -143,9 +143,8 @@ class BinaryStlSource final : public MeshSource {
 
 }  // namespace
 
-void take_soup(std::uint64_t triangles,
-               const std::function<void(const TriangleView&)>& take) {
-  Batch<WideTriangle> batch(take);
+void take_soup(std::uint64_t triangles, const std::function<void(const TriangleView&)>& take) {
+  TriangleBatch batch(take);
   for (std::uint64_t t = 0; t < triangles; ++t) batch.add({3 * t, 3 * t + 1, 3 * t + 2});
   batch.flush();
 }

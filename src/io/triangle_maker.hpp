@@ -14,6 +14,7 @@
 #include <meshfarm/io/mesh_source.hpp>
 
 #include "polygon.hpp"
+#include "triangle_batch.hpp"
 
 namespace meshfarm {
 
@@ -52,15 +53,21 @@ class Batch {
 
 /// Makes triangles of the corners of faces and strips. Of a face with more than three corners the
 /// positions are asked for; it is kept up to k_most_corners, and a longer one is taken for a fan.
+/// The label of a face is that of the batch when its triangles are made: at its end, or earlier if
+/// it is longer than that.
 class TriangleMaker {
  public:
   using PositionOf = std::function<Vec3(std::uint64_t vertex)>;
   static constexpr std::size_t k_most_corners = 1 << 16;
+  static constexpr std::size_t k_most_held_corners = 1 << 24;
+  static constexpr const char* k_too_long_for_label =
+      "it has more than 16,777,216 corners, and its label only after them";
 
-  TriangleMaker(std::uint64_t vertices, const Batch<WideTriangle>::Take& take,
-                PositionOf position_of)
+  TriangleMaker(std::uint64_t vertices, const TriangleBatch::Take& take, PositionOf position_of)
       : vertices_(vertices), batch_(take), position_of_(std::move(position_of)) {}
 
+  /// Makes triangles of a face at its end, whatever its length: its label is not known before.
+  void hold_long_faces() { most_kept_ = k_most_held_corners; }
   void begin(CornerOrder order) {
     order_ = order;
     corners_ = 0;
@@ -83,8 +90,14 @@ class TriangleMaker {
       cut_face();
     } else {
       ++long_faces_;
+      for (std::size_t i = 1; corners_ <= most_kept_ && i + 1 < corners_; ++i) {
+        batch_.add({face_[0], face_[i], face_[i + 1]});
+      }
     }
   }
+
+  /// Of the face at hand, and of those that follow.
+  void label(Label label) { batch_.label(label); }
 
   std::uint64_t vertices() const { return vertices_; }
   std::uint64_t small_faces() const { return small_faces_; }
@@ -95,7 +108,7 @@ class TriangleMaker {
     return path.string() + ": " + std::to_string(guessed_faces()) +
            " polygons cross themselves, or have too many corners: they may be triangulated wrongly";
   }
-  Batch<WideTriangle>& batch() { return batch_; }
+  TriangleBatch& batch() { return batch_; }
 
  private:
   bool restart(std::int64_t index) {
@@ -105,7 +118,7 @@ class TriangleMaker {
   void add_to_face(std::uint64_t vertex) {
     if (corners_ < face_.size()) {
       face_[corners_] = vertex;
-    } else if (corners_ < k_most_corners) {
+    } else if (corners_ < most_kept_) {
       face_.resize(2 * face_.size());
       face_[corners_] = vertex;
     } else {
@@ -114,7 +127,7 @@ class TriangleMaker {
   }
   /// Of a face that is too long. Its first and its last corner are at the ends of face_.
   void add_to_fan(std::uint64_t vertex) {
-    for (std::size_t i = 1; corners_ == k_most_corners && i + 1 < corners_; ++i) {
+    for (std::size_t i = 1; corners_ == most_kept_ && i + 1 < corners_; ++i) {
       batch_.add({face_[0], face_[i], face_[i + 1]});
     }
     batch_.add({face_[0], face_.back(), vertex});
@@ -142,11 +155,12 @@ class TriangleMaker {
   }
 
   std::uint64_t vertices_;
-  Batch<WideTriangle> batch_;
+  TriangleBatch batch_;
   PositionOf position_of_;
   PolygonCutter cutter_;
   CornerOrder order_ = CornerOrder::face;
   std::uint64_t corners_ = 0;
+  std::uint64_t most_kept_ = k_most_corners;  // of a face
   std::array<std::uint64_t, 2> last_{};
   std::vector<std::uint64_t> face_ = std::vector<std::uint64_t>(16);  // its corners
   std::vector<Vec3> positions_;                                       // of these
@@ -154,7 +168,7 @@ class TriangleMaker {
   std::uint64_t long_faces_ = 0;
 };
 
-/// Takes corners as a TriangleMaker does, to hand them on to one later.
+/// Takes corners as a TriangleMaker does, and labels of faces, to hand them on to one later.
 class CornerRecord {
  public:
   explicit CornerRecord(std::uint64_t vertices) : vertices_(vertices) {}
@@ -173,13 +187,16 @@ class CornerRecord {
     return true;
   }
   void end() {}
+  /// Of the face at hand. All have one, or none has.
+  void label(Label label) { labels_.push_back(label); }
   std::uint64_t vertices() const { return vertices_; }
 
   void play(TriangleMaker& maker) const {
     const std::int64_t* next = corners_.data();
-    for (const std::uint32_t length : lengths_) {
+    for (std::size_t face = 0; face < lengths_.size(); ++face) {
       maker.begin(order_);
-      for (std::uint32_t i = 0; i < length; ++i) maker.corner(*next++);
+      if (!labels_.empty()) maker.label(labels_[face]);
+      for (std::uint32_t i = 0; i < lengths_[face]; ++i) maker.corner(*next++);
       maker.end();
     }
   }
@@ -189,6 +206,7 @@ class CornerRecord {
   CornerOrder order_ = CornerOrder::face;
   std::vector<std::uint32_t> lengths_;
   std::vector<std::int64_t> corners_;
+  std::vector<Label> labels_;
 };
 
 }  // namespace meshfarm

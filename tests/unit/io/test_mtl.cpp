@@ -51,3 +51,14 @@ TEST_CASE("a malformed library has what can be read of it") {
   CHECK(made[0].colour == std::array<double, 3>{1, 1, 1});
   CHECK(made[0].map.empty());
 }
+
+TEST_CASE("d is the alpha of a material, or else what Tr leaves of 1") {
+  const auto made = parse_mtl(
+      "newmtl a\nd 0.25\nTr 0\nnewmtl b\nTr 0.25\nnewmtl c\nTr 1\nD -halo 0.5\n"
+      "newmtl d\nnewmtl e\nd 7\nnewmtl f\nd x\n");
+  REQUIRE(made.size() == 6);
+  CHECK(made[0].alpha == 0.25);
+  CHECK(made[1].alpha == 0.75);
+  CHECK(made[2].alpha == 0.5);
+  for (std::size_t i = 3; i < 6; ++i) CHECK(made[i].alpha == 1);
+}

@@ -1,0 +1,30 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstddef>
+#include <optional>
+
+#include <nlohmann/json.hpp>
+
+#include <meshfarm/io/labels.hpp>
+
+#include "gltf_json.hpp"
+#include "gltf_textures.hpp"
+
+namespace meshfarm {
+
+/// Whether a material says no more than that the mesh is not of metal, as those of our own files
+/// without labels do. It counts as none.
+bool is_plain_gltf_material(const nlohmann::json& material);
+
+struct GltfLabels {
+  std::optional<LabelMeaning> meaning;
+  std::size_t materials = 0;  // of the document that have become labels
+};
+
+/// Makes the materials of the meshes' triangles their labels, in the document's order; those
+/// without one come last. Nothing if none has one. Throws DataError for what is malformed.
+GltfLabels label_gltf_meshes(const GltfValue& document, GltfMeshes& meshes);
+
+}  // namespace meshfarm
