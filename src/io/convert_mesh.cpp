@@ -37,17 +37,19 @@ class Conversion {
 
   Converted write(const std::filesystem::path& output) {
     count_vertices();
-    scan_triangles([&](std::span<const WideTriangle> batch) { made_.triangles += batch.size(); });
+    scan_triangles([&](const TriangleView& batch) { made_.triangles += batch.size(); });
     made_.small_faces = source_.small_faces();
     made_.dropped_not_finite = dropped_;
+    made_.channels = kept_channels(output, source_.info().channels);
+    made_.has_labels = source_.info().labels && keeps_labels(output);
     const auto sink = create_mesh(output, {.vertices = made_.vertices,
                                            .triangles = made_.triangles,
                                            .positions = made_.positions,
                                            .comment = {},
-                                           .channels = source_.info().channels});
-    made_.channels = kept_channels(output, source_.info().channels);
+                                           .channels = source_.info().channels,
+                                           .labels = source_.info().labels});
     write_vertices(*sink);
-    scan_triangles([&](std::span<const WideTriangle> batch) { sink->triangles(batch); });
+    scan_triangles([&](const TriangleView& batch) { sink->triangles(batch); });
     sink->commit();
     return made_;
   }
@@ -82,15 +84,18 @@ class Conversion {
   /// Of the triangles whose vertices all have positions.
   void scan_triangles(const std::function<void(const TriangleView&)>& take) {
     dropped_ = 0;
-    source_.scan_triangles([&](std::span<const WideTriangle> batch) {
+    source_.scan_triangles([&](const TriangleView& batch) {
       tell(batch.size());
       if (without_.empty()) return take(batch);
       kept_.clear();
-      for (const WideTriangle& triangle : batch) {
-        if (!without_.has_any_of(triangle)) kept_.push_back(triangle);
+      kept_labels_.clear();
+      for (std::size_t i = 0; i < batch.size(); ++i) {
+        if (without_.has_any_of(batch.corners[i])) continue;
+        kept_.push_back(batch.corners[i]);
+        if (!batch.labels.empty()) kept_labels_.push_back(batch.labels[i]);
       }
       dropped_ += batch.size() - kept_.size();
-      take(kept_);
+      take({kept_, kept_labels_});
     });
   }
 
@@ -107,6 +112,7 @@ class Conversion {
   Converted made_;
   WithoutPosition without_;
   std::vector<WideTriangle> kept_;  // of a batch
+  std::vector<Label> kept_labels_;  // of these
   std::uint64_t dropped_ = 0;
   std::uint64_t done_ = 0;
 };

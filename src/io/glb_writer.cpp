@@ -8,7 +8,8 @@
 //   vertex and triangle are as gltf_document.hpp has them
 // Of a .gltf they are a file beside it, and the document is the .gltf.
 // The translation and the bounds are known at the end: the document of a .glb is written again
-// then, into the place that its longest form would take.
+// then, into the place that its longest form would take. Where triangles have labels nothing is
+// written before the end, and what comes is kept.
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -17,6 +18,7 @@
 #include <cstdint>
 #include <cstring>
 #include <filesystem>
+#include <functional>
 #include <initializer_list>
 #include <limits>
 #include <memory>
@@ -33,7 +35,9 @@
 
 #include "file_sink.hpp"
 #include "gltf_document.hpp"
+#include "gltf_parts.hpp"
 #include "mesh_writers.hpp"
+#include "scratch_array.hpp"
 #include "srgb.hpp"
 
 namespace meshfarm {
@@ -57,7 +61,7 @@ std::uint64_t document_bytes(const GltfLayout& layout, const MeshSinkOptions& op
   const Numbers longest{k_longest, k_longest, k_longest};
   GltfBounds bounds{.lo = longest, .hi = longest};
   if (options.positions == PositionType::float64) bounds.translation = longest;
-  return padded(gltf_document(layout, bounds, options.comment).size());
+  return padded(gltf_document(layout, bounds, {.comment = options.comment}).size());
 }
 
 void warn_of_viewers(const std::filesystem::path& path, std::uint64_t bytes) {
@@ -117,9 +121,22 @@ std::string percent_encoded(std::string_view text) {
 class GltfEncoder : public FileSink {
  public:
   GltfEncoder(const std::filesystem::path& path, const MeshSinkOptions& options)
-      : FileSink(path, options), layout_(options) {}
+      : FileSink(path, options), layout_(options) {
+    if (options.labels) parts_.emplace(*options.labels, options.triangles);
+  }
 
  protected:
+  bool has_labels() const { return parts_.has_value(); }
+  /// When all is put: what the document says.
+  GltfWords words(std::string uri = {}) {
+    GltfWords made{.comment = options().comment, .uri = std::move(uri)};
+    if (parts_) made.parts = parts_->finish(path());
+    return made;
+  }
+  /// After that.
+  void write_triangles(const std::function<void(std::string_view)>& to) {
+    if (parts_) parts_->write(layout_.index_bytes, to);
+  }
   const GltfLayout& layout() const { return layout_; }
   /// When all is put.
   GltfBounds bounds() const {
@@ -148,6 +165,7 @@ class GltfEncoder : public FileSink {
   }
 
   void put(const TriangleView& batch) override {
+    if (parts_) return parts_->add(batch);
     char* out = buffer_.data();
     for (const WideTriangle& triangle : batch.corners) {
       for (const std::uint64_t index : triangle) {
@@ -233,6 +251,7 @@ class GltfEncoder : public FileSink {
   }
 
   GltfLayout layout_;
+  std::optional<GltfParts> parts_;  // if there are labels
   std::optional<Vec3> filler_;
   std::optional<Vec3> origin_;
   Numbers lo_{HUGE_VAL, HUGE_VAL, HUGE_VAL};
@@ -246,24 +265,53 @@ class GlbSink final : public GltfEncoder {
   GlbSink(const std::filesystem::path& path, const MeshSinkOptions& options)
       : GltfEncoder(path, checked_glb(path, options)),
         json_bytes_(document_bytes(layout(), options)) {
-    const std::uint64_t binary = padded(layout().binary_bytes());
-    const bool has_binary = layout().vertices > 0;
-    write_words(
-        {0x46546c67, 2,
-         static_cast<std::uint32_t>(k_json_at + json_bytes_ + (has_binary ? 8 + binary : 0)),
-         static_cast<std::uint32_t>(json_bytes_), 0x4e4f534a});
-    write(std::string(json_bytes_, ' '));
-    if (has_binary) write_words({static_cast<std::uint32_t>(binary), 0x004e4942});
+    if (has_labels()) {
+      kept_ = ScratchArray<char>(layout().vertices_bytes());
+    } else {
+      begin(std::string(json_bytes_, ' '));
+    }
   }
 
  private:
-  void write_body(std::string_view bytes) override { write(bytes); }
+  /// All that is before the vertices. The document is padded.
+  void begin(std::string_view document) {
+    const std::uint64_t binary = padded(layout().binary_bytes());
+    const bool has_binary = layout().vertices > 0;
+    const std::uint64_t bytes = k_json_at + document.size() + (has_binary ? 8 + binary : 0);
+    if (bytes > k_most_bytes) throw UsageError(path().string() + ": is longer than 4 GiB");
+    write_words({0x46546c67, 2, static_cast<std::uint32_t>(bytes),
+                 static_cast<std::uint32_t>(document.size()), 0x4e4f534a});
+    write(document);
+    if (has_binary) write_words({static_cast<std::uint32_t>(binary), 0x004e4942});
+  }
+
+  void write_body(std::string_view bytes) override {
+    if (!has_labels()) return write(bytes);
+    std::copy(bytes.begin(), bytes.end(),
+              kept_.items().begin() + static_cast<std::ptrdiff_t>(kept_bytes_));
+    kept_bytes_ += bytes.size();
+    kept_.used(bytes.size());
+  }
 
   void finish() override {
+    std::string text = gltf_document(layout(), bounds(), words());
+    text.resize(has_labels() ? padded(text.size()) : json_bytes_, ' ');
+    if (has_labels()) {
+      begin(text);
+      write_kept();
+      write_triangles([this](std::string_view bytes) { write(bytes); });
+    }
     write(std::string(padded(layout().binary_bytes()) - layout().binary_bytes(), '\0'));
-    std::string text = gltf_document(layout(), bounds(), options().comment);
-    text.resize(json_bytes_, ' ');
-    overwrite(k_json_at, text);
+    if (!has_labels()) overwrite(k_json_at, text);
+  }
+
+  void write_kept() {
+    constexpr std::uint64_t k_at_once = std::uint64_t{1} << 20;
+    for (std::uint64_t first = 0; first < kept_bytes_; first += k_at_once) {
+      const std::uint64_t count = std::min(k_at_once, kept_bytes_ - first);
+      write({kept_.items().data() + first, count});
+      kept_.used(count);
+    }
   }
 
   void write_words(std::initializer_list<std::uint32_t> words) {
@@ -273,6 +321,8 @@ class GlbSink final : public GltfEncoder {
   }
 
   std::uint64_t json_bytes_;
+  ScratchArray<char> kept_;  // vertices, if there are labels
+  std::uint64_t kept_bytes_ = 0;
 };
 
 class GltfSink final : public GltfEncoder {
@@ -288,8 +338,9 @@ class GltfSink final : public GltfEncoder {
   /// The document is the last to come. One that is there already must not be found with the new
   /// bytes; it goes when nothing is left to do but to rename.
   void finish() override {
-    write(gltf_document(layout(), bounds(), options().comment,
-                        percent_encoded(binary_path_.filename().native())));
+    write(gltf_document(layout(), bounds(),
+                        words(percent_encoded(binary_path_.filename().native()))));
+    write_triangles([this](std::string_view bytes) { binary_.write(bytes); });
     sync();
     binary_.sync();
     if (layout().vertices == 0) return;

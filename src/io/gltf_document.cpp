@@ -25,11 +25,10 @@ Json accessor(const GltfLayout& layout, std::size_t offset, int type, const char
           {"type", shape}};
 }
 
-/// Accessors and what a primitive says of them.
-void add_mesh(const GltfLayout& layout, const GltfBounds& bounds, std::string_view uri,
-              Json& document) {
+/// The accessors of the vertices and what a primitive says of them.
+Json add_vertices(const GltfLayout& layout, const GltfBounds& bounds, Json& accessors) {
   Json attributes = {{"POSITION", 0}};
-  Json accessors = Json::array({accessor(layout, 0, k_float, "VEC3")});
+  accessors = Json::array({accessor(layout, 0, k_float, "VEC3")});
   accessors[0]["min"] = bounds.lo;
   accessors[0]["max"] = bounds.hi;
   if (layout.normals) {
@@ -45,6 +44,49 @@ void add_mesh(const GltfLayout& layout, const GltfBounds& bounds, std::string_vi
     const int bits = layout.colour_type == ChannelType::uint16 ? 16 : 32;
     accessors.back()["extras"] = {{k_srgb_bits_extra, are_bytes ? 8 : bits}};
   }
+  return attributes;
+}
+
+/// Of the indices of triangles.
+Json index_accessor(const GltfLayout& layout, std::uint64_t first, std::uint64_t count) {
+  Json made = {{"bufferView", 1}};
+  if (first > 0) made["byteOffset"] = 3 * first * layout.index_bytes;
+  made["componentType"] = layout.index_bytes == 2 ? k_uint16 : k_uint32;
+  made["count"] = 3 * count;
+  made["type"] = "SCALAR";
+  return made;
+}
+
+Json material_of(const Material& material) {
+  Json made = {{"name", material.name}, {"pbrMetallicRoughness", Json::object()}};
+  if (material.colour != Material().colour) {
+    made["pbrMetallicRoughness"]["baseColorFactor"] = material.colour;
+  }
+  made["pbrMetallicRoughness"]["metallicFactor"] = 0;
+  if (material.colour[3] < 1) made["alphaMode"] = "BLEND";
+  return made;
+}
+
+/// The primitives, one a part, with their accessors and their materials.
+Json add_primitives(const GltfLayout& layout, std::span<const GltfPart> parts,
+                    const Json& attributes, Json& document) {
+  Json primitives = Json::array();
+  std::uint64_t first = 0;
+  for (const GltfPart& part : parts) {
+    primitives.push_back({{"attributes", attributes},
+                          {"indices", document["accessors"].size()},
+                          {"material", primitives.size()}});
+    document["accessors"].push_back(index_accessor(layout, first, part.triangles));
+    document["materials"].push_back(material_of(part.material));
+    first += part.triangles;
+  }
+  return primitives;
+}
+
+void add_mesh(const GltfLayout& layout, const GltfBounds& bounds, const GltfWords& words,
+              Json& document) {
+  Json accessors;
+  const Json attributes = add_vertices(layout, bounds, accessors);
   Json primitive = {{"attributes", attributes}};
   Json views = Json::array({{{"buffer", 0},
                              {"byteLength", layout.vertices_bytes()},
@@ -52,10 +94,7 @@ void add_mesh(const GltfLayout& layout, const GltfBounds& bounds, std::string_vi
                              {"target", 34962}}});
   if (layout.triangles > 0) {
     primitive["indices"] = accessors.size();
-    accessors.push_back({{"bufferView", 1},
-                         {"componentType", layout.index_bytes == 2 ? k_uint16 : k_uint32},
-                         {"count", 3 * layout.triangles},
-                         {"type", "SCALAR"}});
+    if (words.parts.empty()) accessors.push_back(index_accessor(layout, 0, layout.triangles));
     views.push_back({{"buffer", 0},
                      {"byteOffset", layout.vertices_bytes()},
                      {"byteLength", layout.indices_bytes()},
@@ -68,9 +107,13 @@ void add_mesh(const GltfLayout& layout, const GltfBounds& bounds, std::string_vi
   // Else it would be taken for metal, which is black where nothing is around it.
   document["materials"] = Json::array({{{"pbrMetallicRoughness", {{"metallicFactor", 0}}}}});
   document["accessors"] = accessors;
+  if (!words.parts.empty()) {
+    document["materials"] = Json::array();
+    document["meshes"][0]["primitives"] = add_primitives(layout, words.parts, attributes, document);
+  }
   document["bufferViews"] = views;
   Json buffer = Json::object();
-  if (!uri.empty()) buffer["uri"] = uri;
+  if (!words.uri.empty()) buffer["uri"] = words.uri;
   buffer["byteLength"] = layout.binary_bytes();
   document["buffers"] = Json::array({buffer});
 }
@@ -101,9 +144,9 @@ GltfLayout::GltfLayout(const MeshSinkOptions& options)
 }
 
 std::string gltf_document(const GltfLayout& layout, const GltfBounds& bounds,
-                          std::string_view comment, std::string_view uri) {
+                          const GltfWords& words) {
   std::string generator = "meshfarm";
-  if (!comment.empty()) generator += ": " + std::string(comment);
+  if (!words.comment.empty()) generator += ": " + words.comment;
   Json document = {{"asset", {{"version", "2.0"}, {"generator", generator}}}, {"scene", 0}};
   if (layout.vertices == 0) {
     document["scenes"] = Json::array({Json::object()});
@@ -112,7 +155,7 @@ std::string gltf_document(const GltfLayout& layout, const GltfBounds& bounds,
     if (bounds.translation) node["translation"] = *bounds.translation;
     document["scenes"] = Json::array({{{"nodes", {0}}}});
     document["nodes"] = Json::array({node});
-    add_mesh(layout, bounds, uri, document);
+    add_mesh(layout, bounds, words, document);
   }
   return document.dump(-1, ' ', false, Json::error_handler_t::replace);
 }

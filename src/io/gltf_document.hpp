@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
-#include <string_view>
+#include <vector>
 
 #include <meshfarm/io/channel.hpp>
 #include <meshfarm/io/mesh_sink.hpp>
@@ -19,7 +19,7 @@ namespace meshfarm {
 ///   vertex   = float x y z [float nx ny nz] [colour], relative to the node's translation
 ///   colour   = uint16 r g b a, if all have 8 bits; else float r g b [a]. "extras" of the accessor
 ///              tell the bits, so that they come back as so many.
-///   triangle = (uint16 | uint32) a b c
+///   triangle = (uint16 | uint32) a b c; if they have labels, material by material
 struct GltfLayout {
   std::uint64_t vertices = 0;
   std::uint64_t triangles = 0;
@@ -45,8 +45,20 @@ struct GltfBounds {
   std::array<double, 3> hi{};
 };
 
-/// The document of that mesh. Its buffer is a file if there is a `uri`.
+/// Triangles that follow each other, and are drawn with a material.
+struct GltfPart {
+  Material material;
+  std::uint64_t triangles = 0;
+};
+
+struct GltfWords {
+  std::string comment;
+  std::string uri = {};              // of the file that is the buffer, if it is one
+  std::vector<GltfPart> parts = {};  // all triangles, or none if they have no labels
+};
+
+/// The document of that mesh.
 std::string gltf_document(const GltfLayout& layout, const GltfBounds& bounds,
-                          std::string_view comment, std::string_view uri = {});
+                          const GltfWords& words);
 
 }  // namespace meshfarm

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <cstdint>
 #include <iterator>
 #include <memory>
 #include <string>
@@ -38,6 +39,9 @@ bool keeps_none(std::span<const Channel> /*all*/, const Channel& /*channel*/) {
   return false;
 }
 
+/// What of labels a format has a place for.
+enum class KeptLabels : std::uint8_t { none, numbers, all };
+
 /// What has a second way to be written in has a second row, without a name. What is only read has
 /// no extension. What is sure of its content comes before what asks for the name, too.
 struct MeshFormat {
@@ -48,15 +52,16 @@ struct MeshFormat {
   std::unique_ptr<MeshSink> (*create)(const std::filesystem::path& path,
                                       const MeshSinkOptions& options);
   bool (*keeps)(std::span<const Channel> all, const Channel& channel);  // when it is written
-  bool keeps_labels = false;
+  KeptLabels labels = KeptLabels::none;                                 // the same
 };
 
 constexpr std::array k_formats = {
-    MeshFormat{"PLY", ".ply", is_ply_file, open_ply, create_ply, keeps_any, true},
-    MeshFormat{"GLB", ".glb", is_glb_file, open_glb, create_glb, is_gltf_channel, true},
-    MeshFormat{"glTF", ".gltf", is_gltf_file, open_gltf, create_gltf, is_gltf_channel, true},
+    MeshFormat{"PLY", ".ply", is_ply_file, open_ply, create_ply, keeps_any, KeptLabels::numbers},
+    MeshFormat{"GLB", ".glb", is_glb_file, open_glb, create_glb, is_gltf_channel, KeptLabels::all},
+    MeshFormat{"glTF", ".gltf", is_gltf_file, open_gltf, create_gltf, is_gltf_channel,
+               KeptLabels::all},
     MeshFormat{"OFF", ".off", is_off_file, open_off, create_off, keeps_colour},
-    MeshFormat{"OBJ", ".obj", is_obj_file, open_obj, create_obj, keeps_colour, true},
+    MeshFormat{"OBJ", ".obj", is_obj_file, open_obj, create_obj, keeps_colour, KeptLabels::all},
     MeshFormat{"STL", ".stl", is_ascii_stl_file, open_ascii_stl, create_stl, keeps_none},
     MeshFormat{"", "", is_binary_stl_file, open_binary_stl, nullptr, nullptr},
 };
@@ -124,7 +129,12 @@ std::vector<Channel> kept_channels(const std::filesystem::path& path,
 
 bool keeps_labels(const std::filesystem::path& path) {
   check_output_format(path);
-  return find_output_format(path)->keeps_labels;
+  return find_output_format(path)->labels != KeptLabels::none;
+}
+
+bool keeps_materials(const std::filesystem::path& path) {
+  check_output_format(path);
+  return find_output_format(path)->labels == KeptLabels::all;
 }
 
 std::unique_ptr<MeshSink> create_mesh(const std::filesystem::path& path,

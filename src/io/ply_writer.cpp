@@ -5,9 +5,11 @@
 //   header  = "ply" "format binary_little_endian 1.0" ["comment" text]
 //             "element vertex" N, property (float | double) x, y, z,
 //             property (uchar | ushort | float) of each channel
-//             "element face" M, property list uchar (int | uint) vertex_indices "end_header"
-//   vertex  = x y z values;  face = 3 a b c
+//             "element face" M, property list uchar (int | uint) vertex_indices,
+//             property (uchar | ushort | uint) of the labels "end_header"
+//   vertex  = x y z values;  face = 3 a b c [label]
 #include <algorithm>
+#include <bit>
 #include <cstring>
 
 #include <meshfarm/io/ply_writer.hpp>
@@ -18,6 +20,7 @@
 namespace meshfarm {
 namespace {
 
+static_assert(std::endian::native == std::endian::little);
 constexpr std::size_t k_triangle_bytes = 1 + 3 * sizeof(std::uint32_t);
 
 const MeshSinkOptions& checked_vertices(const MeshSinkOptions& options) {
@@ -39,6 +42,27 @@ std::size_t vertex_bytes(const MeshSinkOptions& options) {
   return bytes;
 }
 
+/// Of what the materials need, where it is known how many there are.
+std::size_t label_bytes(const MeshSinkOptions& options) {
+  if (!options.labels) return 0;
+  const std::size_t count = options.labels->materials.size();
+  if (count == 0 || count > std::size_t{UINT16_MAX} + 1) return 4;
+  return count > std::size_t{UINT8_MAX} + 1 ? 2 : 1;
+}
+
+/// As a word of its own. Materials have the name that other programs give them.
+std::string label_line(const MeshSinkOptions& options) {
+  std::string name = options.labels->name;
+  for (char& c : name) {
+    if (static_cast<unsigned char>(c) <= ' ') c = '_';
+  }
+  if (name == "material") name = "material_index";
+  if (name.empty() || name == "vertex_indices") name = "label";
+  const std::size_t bytes = label_bytes(options);
+  const std::string type = bytes == 4 ? "uint" : bytes == 2 ? "ushort" : "uchar";
+  return "property " + type + " " + name + "\n";
+}
+
 std::string header_text(const MeshSinkOptions& options) {
   const std::string type = options.positions == PositionType::float32 ? "float" : "double";
   const std::string index = options.vertices <= std::uint64_t{1} << 31 ? "int" : "uint";
@@ -50,7 +74,9 @@ std::string header_text(const MeshSinkOptions& options) {
     text += "property " + std::string(name_of(channel.type)) + " " + channel.name + "\n";
   }
   text += "element face " + std::to_string(options.triangles) + "\n";
-  return text + "property list uchar " + index + " vertex_indices\nend_header\n";
+  text += "property list uchar " + index + " vertex_indices\n";
+  if (options.labels) text += label_line(options);
+  return text + "end_header\n";
 }
 
 template <class Real>
@@ -96,13 +122,16 @@ class PlySink final : public FileSink {
 
   void put(const TriangleView& batch) override {
     char* out = buffer_.data();
-    for (const WideTriangle& triangle : batch.corners) {
+    for (std::size_t i = 0; i < batch.size(); ++i) {
       *out++ = 3;
-      for (const std::uint64_t index : triangle) {
+      for (const std::uint64_t index : batch.corners[i]) {
         const auto narrow = static_cast<std::uint32_t>(index);
         std::memcpy(out, &narrow, sizeof narrow);
         out += sizeof narrow;
       }
+      if (label_bytes_ == 0) continue;
+      std::memcpy(out, &batch.labels[i], label_bytes_);  // its low bytes
+      out += label_bytes_;
     }
     write_up_to(out);
   }
@@ -111,8 +140,9 @@ class PlySink final : public FileSink {
     write({buffer_.data(), static_cast<std::size_t>(end - buffer_.data())});
   }
 
-  std::vector<char> buffer_ =
-      std::vector<char>(k_most_at_once * std::max(k_triangle_bytes, vertex_bytes(options())));
+  std::size_t label_bytes_ = label_bytes(options());
+  std::vector<char> buffer_ = std::vector<char>(
+      k_most_at_once * std::max(k_triangle_bytes + label_bytes_, vertex_bytes(options())));
 };
 
 }  // namespace

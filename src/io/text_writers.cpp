@@ -2,7 +2,8 @@
 // SPDX-License-Identifier: MIT
 //
 // What is written:
-//   OBJ: ["#" comment], { "v" x y z [r g b] }, { "f" a b c }, from 1; colours from 0 to 1
+//   OBJ: ["#" comment], { "v" x y z [r g b] }, { "f" a b c }, from 1; colours from 0 to 1; labels
+//        as obj_labels.cpp has them
 //   OFF: ["C"] "OFF", vertices triangles 0, { x y z [r g b a] }, { 3 a b c }, from 0; colours are
 //        whole numbers up to 255, or floats up to 1 if the channels are
 #include <array>
@@ -11,9 +12,13 @@
 #include <limits>
 #include <optional>
 #include <string>
+#include <system_error>
+
+#include <meshfarm/util/errors.hpp>
 
 #include "file_sink.hpp"
 #include "mesh_writers.hpp"
+#include "obj_labels.hpp"
 #include "text_numbers.hpp"
 
 namespace meshfarm {
@@ -25,6 +30,7 @@ struct TextForm {
   std::string_view before_triangle;
   std::uint64_t first_index = 0;
   bool has_levels = false;  // colours as whole numbers, and an alpha after them
+  bool has_labels = false;  // of triangles
 };
 
 class TextSink final : public FileSink {
@@ -33,6 +39,9 @@ class TextSink final : public FileSink {
            std::string_view header)
       : FileSink(path, options), form_(form), colour_(colour_columns(options.channels)) {
     write(header);
+    if (!form.has_labels || !options.labels) return;
+    labels_.emplace(path, *options.labels);
+    write(labels_->header());
   }
 
  private:
@@ -67,15 +76,35 @@ class TextSink final : public FileSink {
   }
 
   void put(const TriangleView& batch) override {
-    for (const WideTriangle& triangle : batch.corners) {
+    for (std::size_t i = 0; i < batch.size(); ++i) {
+      if (labels_) add_statement(batch.labels[i]);
       begin_line(form_.before_triangle);
-      for (const std::uint64_t index : triangle) {
+      for (const std::uint64_t index : batch.corners[i]) {
         out_ = std::to_chars(out_, out_ + k_longest_coordinate, index + form_.first_index).ptr;
         *out_++ = ' ';
       }
       end_line();
     }
     flush();
+  }
+
+  void add_statement(Label label) {
+    const std::string_view statement = labels_->statement(label);
+    if (statement.empty()) return;
+    flush();
+    write(statement);
+  }
+
+  /// The OBJ is the last to come. One that is there already must not be found with the new library;
+  /// it goes when nothing is left to do but to rename.
+  void finish() override {
+    if (!labels_) return;
+    labels_->finish();
+    sync();
+    std::error_code error;
+    std::filesystem::remove(path(), error);
+    if (error) throw IoError("cannot replace", path(), error.value());
+    labels_->commit();
   }
 
   void begin_line(std::string_view word) { out_ = std::copy(word.begin(), word.end(), out_); }
@@ -89,6 +118,7 @@ class TextSink final : public FileSink {
   static constexpr std::size_t k_longest_line = 2 + 7 * (k_longest_coordinate + 1);
   TextForm form_;
   std::optional<std::array<std::size_t, 3>> colour_;  // where it stands among the channels
+  std::optional<ObjLabels> labels_;
   std::vector<char> buffer_ = std::vector<char>(k_most_at_once * k_longest_line);
   char* out_ = buffer_.data();
 };
@@ -98,7 +128,7 @@ class TextSink final : public FileSink {
 std::unique_ptr<MeshSink> create_obj(const std::filesystem::path& path,
                                      const MeshSinkOptions& options) {
   const std::string header = options.comment.empty() ? "" : "# " + options.comment + "\n";
-  return std::make_unique<TextSink>(path, options, TextForm{"v ", "f ", 1, false}, header);
+  return std::make_unique<TextSink>(path, options, TextForm{"v ", "f ", 1, false, true}, header);
 }
 
 std::unique_ptr<MeshSink> create_off(const std::filesystem::path& path,
@@ -106,7 +136,7 @@ std::unique_ptr<MeshSink> create_off(const std::filesystem::path& path,
   const std::string header = std::string(colour_columns(options.channels) ? "COFF\n" : "OFF\n") +
                              std::to_string(options.vertices) + " " +
                              std::to_string(options.triangles) + " 0\n";
-  return std::make_unique<TextSink>(path, options, TextForm{"", "3 ", 0, true}, header);
+  return std::make_unique<TextSink>(path, options, TextForm{"", "3 ", 0, true, false}, header);
 }
 
 }  // namespace meshfarm

@@ -24,6 +24,8 @@ std::vector<Channel> kept_channels(const std::filesystem::path& path,
 
 /// Whether a file of this name has a place for triangles' labels. Throws as above.
 bool keeps_labels(const std::filesystem::path& path);
+/// Whether also for the names and the colours of their materials.
+bool keeps_materials(const std::filesystem::path& path);
 
 /// Begins a mesh file in the format of its extension. Throws DataError as above, IoError for a path
 /// that cannot be written, and UsageError for more than the format can count.

@@ -1,0 +1,48 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <meshfarm/io/labels.hpp>
+#include <meshfarm/staging/atomic_file.hpp>
+
+#include "label_materials.hpp"
+#include "label_names.hpp"
+
+namespace meshfarm {
+
+/// The labels of an OBJ that is written: "usemtl" statements, and beside it a library of the same
+/// name, "mesh.mtl"; or "g" statements if they are groups.
+class ObjLabels {
+ public:
+  /// Begins the library. Throws IoError.
+  ObjLabels(const std::filesystem::path& obj, const LabelMeaning& meaning);
+
+  /// What stands at the start of the OBJ.
+  std::string header() const;
+  /// What stands before a triangle of this label: a line, or nothing if the one before has the
+  /// same.
+  std::string_view statement(Label label);
+  /// Writes the library, under a temporary name yet.
+  void finish();
+  void commit();
+
+ private:
+  const std::string& line_of(std::size_t place);
+  std::string library_text();
+
+  std::filesystem::path obj_;
+  bool are_groups_;
+  LabelMaterials materials_;
+  FreeNames free_names_;
+  std::vector<std::string> lines_;  // of each material; empty until it is used
+  std::optional<std::size_t> last_;
+  std::optional<AtomicFile> library_;
+};
+
+}  // namespace meshfarm
