@@ -41,8 +41,9 @@ class ConvertCommand : public Command {
     if (talk_.quiet) set_log(name(), LogLevel::warning);
     // What the output has no place for need not be made.
     const bool has_place = !kept_channels(output_, k_colour).empty();
-    const auto source = open_mesh(
-        input_, {.threads = threads_, .textures = has_place ? parse_uv(uv_) : Textures::drop});
+    const auto source = open_mesh(input_, {.threads = threads_,
+                                           .labels = keeps_labels(output_),
+                                           .textures = has_place ? parse_uv(uv_) : Textures::drop});
     tell_textures(input_, source->info());
     ProgressPrinter printer(talk_.progress());
     const Converted made = convert_mesh(
@@ -60,6 +61,9 @@ class ConvertCommand : public Command {
       const bool is_kept =
           std::find(made.channels.begin(), made.channels.end(), channel) != made.channels.end();
       if (!is_kept) add("vertex." + channel.name);
+    }
+    if (made.has_labels && !input.labels->materials.empty() && !keeps_materials(output_)) {
+      add("names and colours of " + input.labels->name + "s");
     }
     for (const std::string& name : input.skipped) add(name);
     if (!names.empty()) log_info(input_ + ": not kept: " + names);

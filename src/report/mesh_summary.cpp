@@ -17,6 +17,29 @@ void add_box(Lines& lines, const Box& box) {
   lines.add("diagonal", number(box.diagonal(), "%.9g"));
 }
 
+std::vector<std::string> material_names(const LabelMeaning& labels) {
+  std::vector<std::string> names;
+  for (const Material& material : labels.materials) names.push_back(material.name);
+  return names;
+}
+
+/// "material: 3 (stone, glass, steel)"; of many the first.
+std::string text_of(const LabelMeaning& labels) {
+  constexpr std::size_t k_most_names = 16;
+  if (labels.materials.empty()) return labels.name + ": numbers";
+  std::vector<std::string> names = material_names(labels);
+  if (names.size() > k_most_names) {
+    names.resize(k_most_names);
+    names.emplace_back("...");
+  }
+  return labels.name + ": " + grouped(labels.materials.size()) + " (" + joined(names) + ")";
+}
+
+Json to_json(const std::optional<LabelMeaning>& labels) {
+  if (!labels) return nullptr;
+  return {{"name", labels->name}, {"materials", material_names(*labels)}};
+}
+
 }  // namespace
 
 std::string render(const FileSummary& s, Format format) {
@@ -30,6 +53,7 @@ std::string render(const FileSummary& s, Format format) {
                  {"not_finite", s.not_finite},
                  {"positions", s.file.positions == PositionType::float64 ? "float64" : "float32"},
                  {"channels", names_of(s.file.channels)},
+                 {"labels", to_json(s.file.labels)},
                  {"textures", s.file.textures},
                  {"skipped", s.file.skipped},
                  {"box", to_json(s.box)},
@@ -51,6 +75,7 @@ std::string render(const FileSummary& s, Format format) {
     lines.add("", grouped(s.not_finite) + " of them with a coordinate that is not finite");
   }
   if (!s.file.channels.empty()) lines.add("channels", joined(names_of(s.file.channels)));
+  if (s.file.labels) lines.add("labels", text_of(*s.file.labels));
   if (!s.file.textures.empty()) lines.add("textures", joined(s.file.textures));
   if (!s.file.skipped.empty()) lines.add("not kept", joined(s.file.skipped));
   add_box(lines, s.box);
