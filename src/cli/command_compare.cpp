@@ -41,8 +41,8 @@ class CompareCommand : public Command {
     measure_.check();
   }
   int run() override {
-    const auto source_a = open_mesh(a_, {.textures = Textures::bake});
-    const auto source_b = open_mesh(b_, {.textures = Textures::bake});
+    const auto source_a = open_mesh(a_, {.labels = false, .textures = Textures::bake});
+    const auto source_b = open_mesh(b_, {.labels = false, .textures = Textures::bake});
     Comparison comparison;
     comparison.path_a = a_;
     comparison.path_b = b_;

@@ -51,7 +51,7 @@ class GenerateCommand : public Command {
     if (from_.empty()) {
       mesh = in_memory(*generate_mesh(shape_named(shape_), triangles_));
     } else {
-      const auto source = open_mesh(from_);
+      const auto source = open_mesh(from_, {.labels = false});
       mesh = read_mesh(*source);
       positions = source->info().positions;
     }

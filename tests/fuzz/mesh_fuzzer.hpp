@@ -37,10 +37,15 @@ inline void scan(MeshSource& source) {
     valued += batch.points.size();
   });
   require(channels == 0 || valued == vertices);
-  source.scan_triangles([vertices](std::span<const WideTriangle> batch) {
+  const std::optional<LabelMeaning>& labels = source.info().labels;
+  source.scan_triangles([vertices, &labels](const TriangleView& batch) {
     require(batch.size() <= 65'536);
-    for (const WideTriangle& triangle : batch) {
+    for (const WideTriangle& triangle : batch.corners) {
       for (const std::uint64_t index : triangle) require(index < vertices);
+    }
+    require(batch.labels.size() == (labels ? batch.size() : 0));
+    for (const Label label : batch.labels) {
+      require(labels->materials.empty() || label < labels->materials.size());
     }
   });
 }
