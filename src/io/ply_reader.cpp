@@ -129,7 +129,10 @@ class PlySource final : public MeshSource {
       next = 0;
     }
     TriangleMaker maker(info_.vertices, take, [this](std::uint64_t v) { return position_of(v); });
-    if (first != header_.elements.end() && first->has_late_label()) maker.hold_long_faces();
+    if (std::any_of(header_.elements.begin(), header_.elements.end(),
+                    [](const PlyElement& element) { return element.has_late_label(); })) {
+      maker.hold_long_faces();
+    }
     for (; next < header_.elements.size(); ++next) {
       const PlyElement& element = header_.elements[next];
       has_corners(element) ? body->read_corners(element, maker) : body->skip(element);
