@@ -246,3 +246,14 @@ TEST_CASE("what is malformed about a texture is a line that names it") {
   grid = {.image = png_of(halves()), .attributes = R"("TEXCOORD_0":0)"};
   CHECK(refusal(grid).find("its texture coordinates are not of VEC2") != std::string::npos);
 }
+
+TEST_CASE("a GLB's materials are labels only where its textures are not colours") {
+  const TempFolder folder;
+  write_file(folder / "m.glb", TexturedGrid{.image = png_of(gradient(64))}.glb());
+  const auto labels_with = [&](Textures textures) {
+    return open_mesh(folder / "m.glb", {.textures = textures})->info().labels;
+  };
+  CHECK_FALSE(labels_with(Textures::bake));
+  CHECK(labels_with(Textures::drop) == LabelMeaning{"material", {{.name = "material 0"}}});
+  CHECK(labels_with(Textures::name));
+}

@@ -221,3 +221,15 @@ TEST_CASE("malformed faces and coordinates are told by who reads the faces") {
   CHECK(refusal("f 1/1 x 3/3\n").find("no whole number") != std::string::npos);
   CHECK(refusal("f 1/99 2/-99 3/0\nvt x y\nvt\n") == "");
 }
+
+TEST_CASE("an OBJ's materials are labels only where its textures are not colours") {
+  Model model(grid_obj());
+  model.with("m.mtl", k_skin).with("skin.png", png_of(gradient(64)));
+  CHECK_FALSE(model.open()->info().labels);
+  CHECK(read_mesh(*model.open()).labels.empty());
+  for (const Textures textures : {Textures::drop, Textures::name}) {
+    CHECK(model.open(textures)->info().labels == LabelMeaning{"material", {{.name = "skin"}}});
+  }
+  const Quiet quiet;
+  CHECK(model.with("skin.png", "no picture").open()->info().labels);
+}
