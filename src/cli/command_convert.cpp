@@ -6,6 +6,7 @@
 #include <meshfarm/io/convert_mesh.hpp>
 #include <meshfarm/io/mesh_format.hpp>
 #include <meshfarm/util/log.hpp>
+#include <meshfarm/util/text.hpp>
 
 #include "cli/command.hpp"
 #include "cli/cut_step.hpp"
@@ -55,18 +56,17 @@ class ConvertCommand : public Command {
 
  private:
   void tell_what_is_left_out(const Converted& made, const MeshFileInfo& input) const {
-    std::string names;
-    const auto add = [&](const std::string& name) { names += (names.empty() ? "" : ", ") + name; };
+    std::vector<std::string> names;
     for (const Channel& channel : input.channels) {
       const bool is_kept =
           std::find(made.channels.begin(), made.channels.end(), channel) != made.channels.end();
-      if (!is_kept) add("vertex." + channel.name);
+      if (!is_kept) names.push_back("vertex." + channel.name);
     }
     if (made.has_labels && !input.labels->materials.empty() && !keeps_materials(output_)) {
-      add("names and colours of " + input.labels->name + "s");
+      names.push_back("names and colours of " + input.labels->name + "s");
     }
-    for (const std::string& name : input.skipped) add(name);
-    if (!names.empty()) log_info(input_ + ": not kept: " + names);
+    names.insert(names.end(), input.skipped.begin(), input.skipped.end());
+    if (!names.empty()) log_info(input_ + ": not kept: " + joined(names));
     if (made.small_faces > 0) {
       log_warning(input_ + ": left out: " + std::to_string(made.small_faces) +
                   " faces of 0 to 2 corners");

@@ -17,6 +17,7 @@
 #include <meshfarm/stream/generate_streams.hpp>
 #include <meshfarm/util/errors.hpp>
 #include <meshfarm/util/log.hpp>
+#include <meshfarm/util/text.hpp>
 
 #include "cli/cut_record.hpp"
 
@@ -69,9 +70,8 @@ Manifest cut_to_stage(const CutStep& step) {
 }
 
 void tell_textures(const std::string& input, const MeshFileInfo& info) {
-  std::string names;
-  for (const std::string& name : info.textures) names += (names.empty() ? "" : ", ") + name;
-  if (!names.empty()) log_info(input + ": the vertices' colours are of the textures " + names);
+  if (info.textures.empty()) return;
+  log_info(input + ": the vertices' colours are of the textures " + joined(info.textures));
 }
 
 void check_writable(const std::string& output) {

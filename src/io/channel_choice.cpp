@@ -5,6 +5,7 @@
 
 #include <meshfarm/io/channel_choice.hpp>
 #include <meshfarm/util/errors.hpp>
+#include <meshfarm/util/text.hpp>
 
 namespace meshfarm {
 namespace {
@@ -17,9 +18,10 @@ bool means(std::string_view name, const Channel& channel) {
 }
 
 std::string names_of(std::span<const Channel> channels, const std::optional<LabelMeaning>& labels) {
-  std::string names = labels ? labels->name : "";
-  for (const Channel& channel : channels) names += (names.empty() ? "" : ", ") + channel.name;
-  return names.empty() ? "none" : names;
+  std::vector<std::string> names;
+  if (labels) names.push_back(labels->name);
+  for (const Channel& channel : channels) names.push_back(channel.name);
+  return names.empty() ? "none" : joined(names);
 }
 
 class ChosenChannels : public MeshSource {

@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include <meshfarm/report/doctor.hpp>
+#include <meshfarm/util/text.hpp>
 
 #include "report/lines.hpp"
 
@@ -216,11 +217,6 @@ class Doctor {
     std::size_t unit = 0;
     for (; value >= 999.5 && unit + 1 < k_units.size(); ++unit) value /= 1000;
     return number(value, value < 10 && unit > 0 ? "%.1f " : "%.0f ") + k_units.at(unit);
-  }
-  static std::string joined(const std::vector<std::string>& words) {
-    std::string text;
-    for (const std::string& word : words) text += (text.empty() ? "" : ", ") + word;
-    return text;
   }
 
   const DoctorFacts& facts_;

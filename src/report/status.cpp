@@ -9,6 +9,7 @@
 #include <meshfarm/report/progress.hpp>
 #include <meshfarm/report/status.hpp>
 #include <meshfarm/util/checksum.hpp>
+#include <meshfarm/util/text.hpp>
 
 #include "report/lines.hpp"
 
@@ -227,10 +228,9 @@ std::string render(const StageStatus& status, Format format) {
         line("rate", with_unit(facts.rate) + " triangles/s" +
                          (facts.eta_s < 0 ? "" : ", farm done in " + duration_text(facts.eta_s)));
   }
-  std::string hosts;
-  for (const std::string& host : s.bad_hosts) hosts += (hosts.empty() ? "" : ", ") + host;
-  if (!hosts.empty())
-    text += line("bad hosts", hosts + ": get no more jobs, too many failed there");
+  if (!s.bad_hosts.empty()) {
+    text += line("bad hosts", joined(s.bad_hosts) + ": get no more jobs, too many failed there");
+  }
   if (status.times) {
     text += line("last summary", "farm " + number(status.times->farm, "%.2f s") + ", stitch " +
                                      number(status.times->stitch, "%.2f s") + ", finish " +

@@ -11,6 +11,7 @@
 #include <meshfarm/geometry/mesh.hpp>
 #include <meshfarm/geometry/topology.hpp>
 #include <meshfarm/io/channel.hpp>
+#include <meshfarm/util/text.hpp>
 
 #include "report/lines.hpp"
 
@@ -34,8 +35,6 @@ class Lines {
   std::string text_;
 };
 
-/// "a, b, c"
-std::string joined(const std::vector<std::string>& words);
 std::vector<std::string> names_of(const std::vector<Channel>& channels);
 
 Json to_json(const Box& box);
