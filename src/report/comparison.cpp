@@ -9,7 +9,13 @@
 namespace meshfarm {
 namespace {
 
-/// The peak signal-to-noise ratio, of shares of the full range; infinite without a difference.
+/// Values that are equal may differ once they are blended at a point, by rounding.
+bool are_equal(const ValueError& colours) {
+  constexpr double k_rounding = 1e-9;  // less than floats tell apart
+  return colours.max < k_rounding;
+}
+
+/// The peak signal-to-noise ratio, of shares of the full range.
 double psnr_of(const ValueError& error) {
   return -20 * std::log10(error.rms);
 }
@@ -19,6 +25,7 @@ std::string text_of(const ValueError& error, ChannelRole role) {
   const std::string max = "  max " + number(error.max, "%.3g");
   switch (role) {
     case ChannelRole::colour:
+      if (are_equal(error)) return "exact";
       return "PSNR " + number(psnr_of(error), "%.2f") + " dB  rms " + number(error.rms, "%.3g") +
              max + " of the full range";
     case ChannelRole::normal:
@@ -34,7 +41,7 @@ Json to_json(const ValueError& error, ChannelRole role) {
   if (error.samples == 0) return json;
   switch (role) {
     case ChannelRole::colour:
-      json["psnr"] = error.rms > 0 ? Json(psnr_of(error)) : Json(nullptr);
+      json["psnr"] = are_equal(error) ? Json(nullptr) : Json(psnr_of(error));
       json["rms"] = error.rms;
       break;
     case ChannelRole::normal:
