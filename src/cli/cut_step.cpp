@@ -4,6 +4,8 @@
 
 #include <cstdlib>
 #include <filesystem>
+#include <memory>
+#include <system_error>
 #include <utility>
 
 #include <unistd.h>
@@ -38,13 +40,12 @@ Manifest taken_up(const Stage& stage, const CutRecord& wanted) {
   return decode_manifest(stage.read(ManifestName{}), stage.path(ManifestName{}).string());
 }
 
-}  // namespace
+bool holds_cut(const std::filesystem::path& stage) {
+  std::error_code ignored;
+  return std::filesystem::exists(stage / to_string(ManifestName{}), ignored);
+}
 
-Manifest cut_to_stage(const CutStep& step) {
-  const CutRecord wanted = record_of(step.input, step.words);
-  const Stage stage = Stage::create(step.stage);
-  const Claim claim(stage.root() / ".cut.claim", step.stage + ": is being cut");
-  if (stage.has_manifest()) return taken_up(stage, wanted);
+std::unique_ptr<MeshSource> open_input(const CutStep& step) {
   // Readers of compressed and ascii files keep scratch of their own, which goes by this.
   if (!step.words.scratch.empty()) ::setenv("TMPDIR", step.words.scratch.c_str(), 1);
   auto opened = open_mesh(step.input, {.threads = step.words.cut.threads,
@@ -52,7 +53,19 @@ Manifest cut_to_stage(const CutStep& step) {
                                        .labels = step.words.attributes != "none",
                                        .textures = parse_uv(step.words.uv)});
   tell_textures(step.input, opened->info());
-  const auto source = with_channels(std::move(opened), step.words.channels);
+  return with_channels(std::move(opened), step.words.channels);
+}
+
+}  // namespace
+
+Manifest cut_to_stage(const CutStep& step) {
+  const CutRecord wanted = record_of(step.input, step.words);
+  // An input that cannot be read, or has not what is asked for, leaves no stage behind.
+  std::unique_ptr<MeshSource> source = holds_cut(step.stage) ? nullptr : open_input(step);
+  const Stage stage = Stage::create(step.stage);
+  const Claim claim(stage.root() / ".cut.claim", step.stage + ": is being cut");
+  if (stage.has_manifest()) return taken_up(stage, wanted);
+  if (!source) source = open_input(step);
   publish_record(stage, wanted);
   ProgressPrinter printer(step.talk.progress());
   const auto with_common = [&](auto options) {

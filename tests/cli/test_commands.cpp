@@ -73,6 +73,27 @@ TEST_CASE("a cut keeps its scratch where --scratch says, or says why it cannot")
   }
 }
 
+TEST_CASE("a channel that the input has not, or no input, leaves no stage behind") {
+  Shell shell;
+  const std::string stage = shell.path("stage");
+  const std::string output = shell.path("out.ply");
+  const std::string cube = shell.cube();
+  const Ran cut = shell({"cut", cube, "--stage", stage, "--attributes", "red,blue"});
+  CHECK(cut.code == 2);
+  CHECK(has(cut.err, "--attributes: there is no channel 'blue'; there are: "));
+  CHECK_FALSE(fs::exists(stage));
+  const Ran simplify = shell({"simplify", cube, "-o", output, "--ratio", "1", "--attributes", "x"});
+  CHECK(simplify.code == 2);
+  CHECK(has(simplify.err, "--attributes: there is no channel 'x'; there are: "));
+  CHECK_FALSE(fs::exists(output + ".stage"));
+  CHECK(shell({"cut", shell.file("bad.ply", "ply\n"), "--stage", stage}).code == 1);
+  CHECK_FALSE(fs::exists(stage));
+  // With a cut that is finished the channels are of the stage.
+  REQUIRE(shell({"cut", cube, "--stage", stage}).code == 0);
+  CHECK(shell({"cut", cube, "--stage", stage}).code == 0);
+  CHECK(shell({"cut", cube, "--stage", stage, "--attributes", "x"}).code == 1);
+}
+
 TEST_CASE("help and version go to stdout, and say what there is") {
   Shell shell;
   for (const std::vector<std::string>& words : {std::vector<std::string>{"help"}, {"--help"}}) {
