@@ -208,8 +208,9 @@ class GltfSource final : public MeshSource {
         read_corners(triangles, vertices.positions.rows, corners);
         batch.flush();
       };
-      texture_colours_ = sample_gltf_textures(document, buffers, meshes_,
-                                              place_.substr(0, place_.size() - 2), scan);
+      texture_colours_ =
+          sample_gltf_textures(document, buffers, meshes_, place_.substr(0, place_.size() - 2),
+                               scan, options.picture_bytes);
       if (!texture_colours_) return;
     }
     info_.textures = describe_gltf_textures(

@@ -275,8 +275,8 @@ std::vector<std::string> describe_gltf_textures(const GltfValue& document, GltfB
 
 std::unique_ptr<TextureColours> sample_gltf_textures(const GltfValue& document,
                                                      GltfBuffers& buffers, GltfMeshes& meshes,
-                                                     const std::string& path,
-                                                     const GltfScan& scan) {
+                                                     const std::string& path, const GltfScan& scan,
+                                                     std::uint64_t picture_bytes) {
   std::uint64_t vertices = 0;
   for (auto& [number, mesh] : meshes) {
     for (GltfVertices& each : mesh.vertices) {
@@ -307,8 +307,8 @@ std::unique_ptr<TextureColours> sample_gltf_textures(const GltfValue& document,
       });
     }
   };
-  const std::size_t sampled =
-      colours->sample(surfaces.images(), surfaces.materials(), {}, scan_all);
+  const std::size_t sampled = colours->sample(surfaces.images(), surfaces.materials(),
+                                              {.picture_bytes = picture_bytes}, scan_all);
   return sampled > 0 ? std::move(colours) : nullptr;
 }
 

@@ -20,9 +20,8 @@ namespace meshfarm {
 using GltfMeshes = std::map<std::uint64_t, GltfMesh>;
 
 /// Scans the triangles of a primitive of a mesh.
-using GltfScan =
-    std::function<void(const GltfTriangles& triangles, const GltfVertices& vertices,
-                       const std::function<void(const TriangleView&)>& take)>;
+using GltfScan = std::function<void(const GltfTriangles& triangles, const GltfVertices& vertices,
+                                    const std::function<void(const TriangleView&)>& take)>;
 
 /// The pictures that colour the meshes, as lines for the user.
 std::vector<std::string> describe_gltf_textures(const GltfValue& document, GltfBuffers& buffers,
@@ -33,6 +32,7 @@ std::vector<std::string> describe_gltf_textures(const GltfValue& document, GltfB
 /// malformed, but not for pictures.
 std::unique_ptr<TextureColours> sample_gltf_textures(const GltfValue& document,
                                                      GltfBuffers& buffers, GltfMeshes& meshes,
-                                                     const std::string& path, const GltfScan& scan);
+                                                     const std::string& path, const GltfScan& scan,
+                                                     std::uint64_t picture_bytes);
 
 }  // namespace meshfarm

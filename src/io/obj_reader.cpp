@@ -147,7 +147,7 @@ class ObjSource final : public TextSource {
       materials =
           read_obj_libraries(file().path(), all, [this](const std::string& line) { warn(line); });
     }
-    if (may_have_textures) read_textures(all, options.textures, texture_materials(materials));
+    if (may_have_textures) read_textures(all, options, texture_materials(materials));
     if (!options.labels || texture_colours_) return;
     if (has_materials) {
       if (all.materials.has_too_many()) return;
@@ -164,11 +164,12 @@ class ObjSource final : public TextSource {
     }
   }
 
-  void read_textures(const ObjStatements& all, Textures wanted, const ObjMaterials& materials) {
+  void read_textures(const ObjStatements& all, const OpenOptions& options,
+                     const ObjMaterials& materials) {
     if (materials.images.empty()) return;
-    if (wanted == Textures::bake) {
-      texture_colours_ =
-          sample_obj_textures({file(), {line_end(), ends_statement}, threads()}, all, materials);
+    if (options.textures == Textures::bake) {
+      texture_colours_ = sample_obj_textures({file(), {line_end(), ends_statement}, threads()}, all,
+                                             materials, options.picture_bytes);
       if (!texture_colours_) return;
     }
     counted().textures = describe(

@@ -92,16 +92,17 @@ class Sampling {
         materials_(materials),
         places_(statements.count_of("vt")) {}
 
-  std::unique_ptr<TextureColours> run() {
+  std::unique_ptr<TextureColours> run(std::uint64_t picture_bytes) {
     read_places();
     auto colours =
         std::make_unique<TextureColours>(statements_.vertices, text_.file.path().string());
     const auto plain =
         statements_.has_colours ? TextureColours::Plain::left : TextureColours::Plain::coloured;
-    const std::size_t sampled =
-        colours->sample(materials_.images, materials_.materials, {.plain = plain},
-                        [this](const TextureColours::IsWanted& is_wanted,
-                               const TextureColours::Add& add) { scan(is_wanted, add); });
+    const std::size_t sampled = colours->sample(
+        materials_.images, materials_.materials, {.plain = plain, .picture_bytes = picture_bytes},
+        [this](const TextureColours::IsWanted& is_wanted, const TextureColours::Add& add) {
+          scan(is_wanted, add);
+        });
     return sampled > 0 ? std::move(colours) : nullptr;
   }
 
@@ -291,8 +292,9 @@ ObjMaterials texture_materials(std::span<const ObjLibraryMaterial> materials) {
 
 std::unique_ptr<TextureColours> sample_obj_textures(const ObjText& text,
                                                     const ObjStatements& statements,
-                                                    const ObjMaterials& materials) {
-  return Sampling(text, statements, materials).run();
+                                                    const ObjMaterials& materials,
+                                                    std::uint64_t picture_bytes) {
+  return Sampling(text, statements, materials).run(picture_bytes);
 }
 
 }  // namespace meshfarm

@@ -40,6 +40,7 @@ struct ObjText {
 /// no colour: who reads the faces tells of it.
 std::unique_ptr<TextureColours> sample_obj_textures(const ObjText& text,
                                                     const ObjStatements& statements,
-                                                    const ObjMaterials& materials);
+                                                    const ObjMaterials& materials,
+                                                    std::uint64_t picture_bytes);
 
 }  // namespace meshfarm

@@ -20,11 +20,12 @@ namespace meshfarm {
 template <class T>
 class ScratchArray {
  public:
+  static constexpr std::uint64_t k_most_in_memory = std::uint64_t{48} << 20;  // bytes
+
   ScratchArray() = default;
   /// Throws IoError.
-  explicit ScratchArray(std::uint64_t count) {
-    constexpr std::uint64_t k_most_in_memory = std::uint64_t{48} << 20;
-    is_in_memory_ = count <= k_most_in_memory / sizeof(T);
+  explicit ScratchArray(std::uint64_t count, std::uint64_t most_in_memory = k_most_in_memory) {
+    is_in_memory_ = count <= most_in_memory / sizeof(T);
     if (is_in_memory_) {
       map_ = MappedFile::memory(count * sizeof(T));
       return;

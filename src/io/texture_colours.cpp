@@ -23,8 +23,8 @@ using Group = std::vector<std::size_t>;
 class Pictures {
  public:
   Pictures(std::vector<TextureImage> images, const std::vector<TextureMaterial>& materials,
-           const std::string& path)
-      : images_(std::move(images)), sizes_(images_.size()), path_(path) {
+           std::uint64_t most_bytes, const std::string& path)
+      : images_(std::move(images)), sizes_(images_.size()), most_bytes_(most_bytes), path_(path) {
     for (const TextureMaterial& material : materials) {
       if (material.has_image()) sizes_[material.image] = 1;
     }
@@ -78,11 +78,13 @@ class Pictures {
   /// Colours that come or not as the memory is would make another result on another host.
   void check_memory(std::size_t image) const {
     const std::optional<MemoryRoom> room = available_memory();
-    if (!room || sizes_[image] <= room->bytes / 2) return;
+    const std::uint64_t most = most_bytes_ != 0 ? most_bytes_ : room ? room->bytes / 2 : UINT64_MAX;
+    if (sizes_[image] <= most) return;
     throw DataError(path_ + ": the texture " + images_[image].name + " takes " +
-                    std::to_string(sizes_[image] >> 20) + " MiB of memory, more than half of the " +
-                    std::to_string(room->bytes >> 20) +
-                    " MiB that are free: make it smaller, or leave textures out with --uv drop");
+                    std::to_string(sizes_[image] >> 20) + " MiB of memory, more than the " +
+                    std::to_string(most >> 20) + " MiB that it may take" +
+                    (most_bytes_ != 0 ? "" : ", half of what is free") +
+                    ": make it smaller, or leave textures out with --uv drop");
   }
 
   void warn(std::size_t image, const std::string& why) const {
@@ -94,6 +96,7 @@ class Pictures {
 
   std::vector<TextureImage> images_;
   std::vector<std::uint64_t> sizes_;
+  std::uint64_t most_bytes_;
   const std::string& path_;
 };
 
@@ -102,7 +105,7 @@ class Pictures {
 std::size_t TextureColours::sample(std::vector<TextureImage> images,
                                    std::vector<TextureMaterial> materials, const Options& options,
                                    const Scan& scan) {
-  Pictures pictures(std::move(images), materials, path_);
+  Pictures pictures(std::move(images), materials, options.picture_bytes, path_);
   std::size_t sampled = 0;
   std::vector<bool> is_done(materials.size());
   for (const Group& group : pictures.groups(options.memory_bytes)) {

@@ -57,8 +57,8 @@ class TextureColours {
   /// `add(triangle, material)` for all triangles, in the same order each time, at least those of
   /// materials for which `is_wanted(material)`. Pictures are decoded as many at a time as the
   /// options allow; which ones are together depends on nothing else. One that is missing or damaged
-  /// is named in a warning, and its materials have none. Throws DataError for one that does not fit
-  /// into the memory that is free. Returns how many pictures were sampled; if none, no colours are
+  /// is named in a warning, and its materials have none. Throws DataError for one that takes more
+  /// memory than it may. Returns how many pictures were sampled; if none, no colours are
   /// made.
   using IsWanted = std::function<bool(std::size_t material)>;
   using Add = std::function<void(const TexturedTriangle& triangle, std::size_t material)>;
@@ -68,6 +68,7 @@ class TextureColours {
   struct Options {
     Plain plain = Plain::coloured;
     std::uint64_t memory_bytes = std::uint64_t{512} << 20;  // of the pictures at a time; at least 1
+    std::uint64_t picture_bytes = 0;  // most that a picture may take; 0: half of the free memory
   };
   std::size_t sample(std::vector<TextureImage> images, std::vector<TextureMaterial> materials,
                      const Options& options, const Scan& scan);

@@ -78,6 +78,7 @@ struct OpenOptions {
   bool channels = true;  // else they count as skipped
   bool labels = true;    // the same
   Textures textures = Textures::drop;
+  std::uint64_t picture_bytes = 0;  // most that a picture may take; 0: half of the free memory
 };
 
 /// Opens a mesh file by its content; of an STL that is damaged, or of an OBJ that is empty, the

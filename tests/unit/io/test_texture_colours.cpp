@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
 #include <meshfarm/util/errors.hpp>
+#include <meshfarm/util/memory.hpp>
 
 #include "io/texture_colours.hpp"
 #include "picture_files.hpp"
@@ -100,4 +101,43 @@ TEST_CASE("a vertex counts its triangles by their areas on the texture") {
   REQUIRE(shared);
   CHECK((*shared)[0] == doctest::Approx(0.75));
   CHECK((*shared)[1] == doctest::Approx(0.25));
+}
+
+namespace {
+
+/// A PNG with alpha that ends where its texels would begin.
+TextureImage claimed(std::uint32_t side) {
+  std::string bytes("\x89PNG\r\n\x1a\n\0\0\0\x0dIHDR", 16);
+  for (int of_two = 0; of_two < 2; ++of_two) {
+    for (int shift = 24; shift >= 0; shift -= 8) bytes += static_cast<char>(side >> shift);
+  }
+  bytes += std::string("\x08\x06\0\0\0\0\0\0\0", 9);
+  return {"large", [bytes] { return bytes; }};
+}
+
+}  // namespace
+
+TEST_CASE("a picture that takes more memory than it may is refused before it is decoded") {
+  const std::vector<TextureMaterial> materials{{.image = 0}};
+  const TextureColours::Options options{.picture_bytes = std::uint64_t{12} << 20};
+  CHECK_THROWS_WITH_AS(sample({claimed(2000)}, materials, options),
+                       "m: the texture large takes 15 MiB of memory, more than the 12 MiB that it "
+                       "may take: make it smaller, or leave textures out with --uv drop",
+                       DataError);
+  CHECK(sample({claimed(1000)}, materials, options).pictures == 0);  // damaged
+  CHECK(sample({image_of({255, 0, 0})}, materials, options).pictures == 1);
+}
+
+TEST_CASE("without another limit a picture may take half of the memory that is free") {
+  const std::vector<TextureMaterial> materials{{.image = 0}};
+  const std::optional<MemoryRoom> room = available_memory();
+  constexpr std::uint64_t k_bytes = std::uint64_t{32'000} * 32'000 * 4;
+  if (room && k_bytes > room->bytes) {
+    CHECK_THROWS_WITH_AS(sample({claimed(32'000)}, materials, {}),
+                         doctest::Contains("MiB that it may take, half of what is free: make it"),
+                         DataError);
+  } else if (!room || k_bytes < room->bytes / 4) {
+    CHECK(sample({claimed(32'000)}, materials, {}).pictures == 0);
+  }
+  CHECK(sample({claimed(60'000)}, materials, {}).pictures == 0);  // of too many texels for any
 }
