@@ -6,19 +6,28 @@
 #include "io/gltf_reader.hpp"
 #include "mesh_fuzzer.hpp"
 
+namespace {
+
+std::unique_ptr<meshfarm::MeshSource> open_any(const std::string& path,
+                                               const meshfarm::OpenOptions& options) {
+  meshfarm::InputFile file(path);
+  return meshfarm::is_glb_file(file) ? meshfarm::open_glb(std::move(file), options)
+                                     : meshfarm::open_gltf(std::move(file), options);
+}
+
+}  // namespace
+
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   return meshfarm::fuzz::fuzz_mesh(data, size, [](const std::string& path) {
-    meshfarm::InputFile file(path);
-    // Textures are named, not sampled: a small picture may have any number of texels.
-    const meshfarm::OpenOptions options{.textures = meshfarm::Textures::name};
-    std::unique_ptr<meshfarm::MeshSource> source =
-        meshfarm::is_glb_file(file) ? meshfarm::open_glb(std::move(file), options)
-                                    : meshfarm::open_gltf(std::move(file), options);
+    auto source = open_any(path, {.textures = meshfarm::Textures::name});
+    const std::uint64_t most = std::max(source->info().vertices, source->info().faces);
     // Some nodes and primitives may show one mesh any number of times.
     constexpr std::uint64_t k_most = 1 << 20;
-    if (std::max(source->info().vertices, source->info().faces) > k_most) {
-      throw meshfarm::DataError("too large to be scanned in time");
-    }
-    return source;
+    if (most > k_most) throw meshfarm::DataError("too large to be scanned in time");
+    // A small picture may have any number of texels, and so may a triangle.
+    constexpr std::uint64_t k_most_sampled = 1 << 9;
+    if (source->info().textures.empty() || most > k_most_sampled) return source;
+    return open_any(path, {.textures = meshfarm::Textures::bake,
+                           .picture_bytes = meshfarm::fuzz::k_most_picture_bytes});
   });
 }

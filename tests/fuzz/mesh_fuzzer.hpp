@@ -17,6 +17,9 @@
 
 namespace meshfarm::fuzz {
 
+/// Of one picture that is sampled.
+inline constexpr std::uint64_t k_most_picture_bytes = 1 << 18;
+
 inline void require(bool holds) {
   if (!holds) std::abort();
 }
