@@ -172,8 +172,9 @@ class ObjSource final : public TextSource {
                                              materials, options.picture_bytes);
       if (!texture_colours_) return;
     }
-    counted().textures = describe(
-        materials.images, wanted == Textures::bake ? LostPictures::left : LostPictures::told);
+    counted().textures =
+        describe(materials.images,
+                 options.textures == Textures::bake ? LostPictures::left : LostPictures::told);
   }
 
   /// Where there is a texture its colours count, not those of the vertices: writers that have both

@@ -229,6 +229,11 @@ class Assembly {
       summary_.channels_not_wanted.push_back(channel.name);
     }
     const std::optional<LabelMeaning> labels = chosen_labels(manifest_, run_);
+    if (labels && keeps_labels(options_.output)) {
+      summary_.labels = {labels->name, {}};
+      if (keeps_materials(options_.output)) summary_.labels = labels;
+    }
+    if (manifest_.labels && !labels) summary_.channels_not_wanted.push_back(manifest_.labels->name);
     if (kept.empty()) {
       return write_mesh(options_.output, result, manifest_.positions, {}, {}, labels);
     }

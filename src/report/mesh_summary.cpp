@@ -17,29 +17,6 @@ void add_box(Lines& lines, const Box& box) {
   lines.add("diagonal", number(box.diagonal(), "%.9g"));
 }
 
-std::vector<std::string> material_names(const LabelMeaning& labels) {
-  std::vector<std::string> names;
-  for (const Material& material : labels.materials) names.push_back(material.name);
-  return names;
-}
-
-/// "material: 3 (stone, glass, steel)"; of many the first.
-std::string text_of(const LabelMeaning& labels) {
-  constexpr std::size_t k_most_names = 16;
-  if (labels.materials.empty()) return labels.name + ": numbers";
-  std::vector<std::string> names = material_names(labels);
-  if (names.size() > k_most_names) {
-    names.resize(k_most_names);
-    names.emplace_back("...");
-  }
-  return labels.name + ": " + grouped(labels.materials.size()) + " (" + joined(names) + ")";
-}
-
-Json to_json(const std::optional<LabelMeaning>& labels) {
-  if (!labels) return nullptr;
-  return {{"name", labels->name}, {"materials", material_names(*labels)}};
-}
-
 }  // namespace
 
 std::string render(const FileSummary& s, Format format) {

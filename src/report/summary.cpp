@@ -37,6 +37,7 @@ Json input_json(const Manifest& m) {
           {"triangles", m.input_triangles},
           {"coincident_vertices", m.coincident_vertices},
           {"channels", names_of(m.channels.channels)},
+          {"labels", to_json(m.labels)},
           {"skipped", m.skipped}};
 }
 
@@ -148,7 +149,12 @@ void add_channels(Lines& lines, const RunSummary& s) {
     kept += (kept.empty() ? "" : ", ") + channel.name + " " + number(channel.rms, "%.3g");
   }
   if (!kept.empty()) lines.add("channels", kept + "  RMS from the input's vertices");
+  if (s.labels) lines.add("labels", text_of(*s.labels));
   std::vector<std::string> lost = names_of(s.manifest.channels.channels);
+  if (s.manifest.labels && !s.labels) lost.push_back(s.manifest.labels->name);
+  if (s.labels && s.labels->materials != s.manifest.labels->materials) {
+    lost.push_back("names and colours of " + s.labels->name + "s");
+  }
   std::erase_if(lost, [&](const std::string& name) {
     return std::any_of(s.channels.begin(), s.channels.end(),
                        [&](const ChannelError& channel) { return channel.name == name; });
@@ -208,6 +214,7 @@ std::string render(const RunSummary& s, Format format) {
         {"error",
          s.error.input_samples == 0 ? Json(nullptr) : error_json(s.error, m.box.diagonal())},
         {"channels", channels_json(s)},
+        {"labels", to_json(s.labels)},
         {"warning", warning.empty() ? Json(nullptr) : Json(warning)},
         {"better", better_json(s)},
         {"dropped",

@@ -3,6 +3,15 @@
 #include "report/summary_words.hpp"
 
 namespace meshfarm {
+namespace {
+
+std::vector<std::string> material_names(const LabelMeaning& labels) {
+  std::vector<std::string> names;
+  for (const Material& material : labels.materials) names.push_back(material.name);
+  return names;
+}
+
+}  // namespace
 
 std::vector<std::string> names_of(const std::vector<Channel>& channels) {
   std::vector<std::string> names;
@@ -60,6 +69,22 @@ std::string text_of(const Distance& d, double diagonal) {
 
 std::string dumped(const Json& json) {
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+std::string text_of(const LabelMeaning& labels) {
+  constexpr std::size_t k_most_names = 16;
+  if (labels.materials.empty()) return labels.name + ": numbers";
+  std::vector<std::string> names = material_names(labels);
+  if (names.size() > k_most_names) {
+    names.resize(k_most_names);
+    names.emplace_back("...");
+  }
+  return labels.name + ": " + grouped(labels.materials.size()) + " (" + joined(names) + ")";
+}
+
+Json to_json(const std::optional<LabelMeaning>& labels) {
+  if (!labels) return nullptr;
+  return {{"name", labels->name}, {"materials", material_names(*labels)}};
 }
 
 }  // namespace meshfarm

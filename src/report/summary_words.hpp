@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -11,6 +12,7 @@
 #include <meshfarm/geometry/mesh.hpp>
 #include <meshfarm/geometry/topology.hpp>
 #include <meshfarm/io/channel.hpp>
+#include <meshfarm/io/labels.hpp>
 #include <meshfarm/util/text.hpp>
 
 #include "report/lines.hpp"
@@ -37,6 +39,10 @@ class Lines {
 
 std::vector<std::string> names_of(const std::vector<Channel>& channels);
 
+/// "material: 3 (stone, glass, steel)"; of many the first.
+std::string text_of(const LabelMeaning& labels);
+/// Null where there are none.
+Json to_json(const std::optional<LabelMeaning>& labels);
 Json to_json(const Box& box);
 Json to_json(const Topology& topology);
 /// As fractions of the diagonal.

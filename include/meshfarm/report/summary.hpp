@@ -75,7 +75,8 @@ struct RunSummary {
   DroppedComponents dropped_components;  // and their triangles before the finish
   MeasuredError error;
   std::vector<ChannelError> channels;            // that were written
-  std::vector<std::string> channels_not_wanted;  // of the stage's, their names
+  std::optional<LabelMeaning> labels;            // that were written
+  std::vector<std::string> channels_not_wanted;  // of the stage's and its labels, their names
   /// Where the result went to ruin and a few triangles more would not have.
   std::optional<BetterCount> better;
   std::uint64_t stitched = 0;            // triangles of the stitched mesh, before the finish

@@ -1,0 +1,169 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+//
+// What triangles belong to, from the input to the output of real runs.
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <doctest/doctest.h>
+
+#include <meshfarm/io/mesh_format.hpp>
+#include <meshfarm/io/mesh_source.hpp>
+
+#include "support/meshes.hpp"
+#include "support/process.hpp"
+#include "support/temp_folder.hpp"
+
+using namespace meshfarm;
+using test::Ran;
+using test::read_text;
+
+namespace {
+
+const LabelMeaning k_materials{
+    "material",
+    {{"stone", {0.5F, 0.25F, 1, 1}}, {"glass", {0, 1, 0, 0.5F}}, {"steel", {1, 1, 1, 1}}}};
+
+/// Three slices of a sphere.
+Label slice_at(Vec3 p) {
+  return p.z > 0.4 ? 2 : (p.z > -0.2 ? 1 : 0);
+}
+
+Vec3 centre_of(const Mesh& mesh, const Triangle& t) {
+  return (mesh.positions[t[0]] + mesh.positions[t[1]] + mesh.positions[t[2]]) * (1.0 / 3);
+}
+
+/// The edges between two materials.
+std::vector<std::pair<Vec3, Vec3>> lines_of(const Mesh& mesh) {
+  std::map<std::pair<std::uint32_t, std::uint32_t>, std::set<Label>> edges;
+  for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
+    const Triangle& t = mesh.triangles[i];
+    for (std::size_t k = 0; k < 3; ++k) {
+      edges[std::minmax(t[k], t[(k + 1) % 3])].insert(mesh.labels[i]);
+    }
+  }
+  std::vector<std::pair<Vec3, Vec3>> lines;
+  for (const auto& [edge, labels] : edges) {
+    if (labels.size() > 1)
+      lines.emplace_back(mesh.positions[edge.first], mesh.positions[edge.second]);
+  }
+  return lines;
+}
+
+class Bench {
+ public:
+  Bench() {
+    for (const char* each : {"1", "3"}) std::filesystem::create_directories(path(each));
+    Mesh mesh = test::icosphere(6);
+    for (Vec3& p : mesh.positions) p = rounded(p, PositionType::float32);
+    for (const Triangle& t : mesh.triangles) mesh.labels.push_back(slice_at(centre_of(mesh, t)));
+    write_mesh(path("in.obj"), mesh, PositionType::float32, {}, {}, k_materials);
+  }
+  std::string path(const std::string& name) const { return (folder_.path() / name).string(); }
+  Ran operator()(const std::vector<std::string>& words) {
+    return test::run_meshfarm(words, folder_.path() / ("log" + std::to_string(++logs_)));
+  }
+  Ran simplify(const std::string& output, const std::vector<std::string>& more) {
+    std::vector<std::string> words = {"simplify", path("in.obj"), "-o",      path(output),
+                                      "--ratio",  "0.02",         "--parts", "6"};
+    words.insert(words.end(), more.begin(), more.end());
+    return (*this)(words);
+  }
+
+ private:
+  test::TempFolder folder_;
+  int logs_ = 0;
+};
+
+bool has(const std::string& text, const std::string& part) {
+  return text.find(part) != std::string::npos;
+}
+
+void check_slices(const std::string& path) {
+  const auto source = open_mesh(path);
+  REQUIRE(source->info().labels.has_value());
+  const Mesh mesh = read_mesh(*source);
+  CHECK(mesh.triangles.size() == 1638);
+  REQUIRE(mesh.labels.size() == mesh.triangles.size());
+  std::size_t wrong = 0;
+  for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
+    wrong += slice_at(centre_of(mesh, mesh.triangles[i])) != mesh.labels[i] ? 1 : 0;
+  }
+  CHECK(wrong == 0);
+  // The lines of the input are jagged by its triangles' size.
+  double length_of_lines = 0;
+  for (const auto& [a, b] : lines_of(mesh)) {
+    const double z = (a.z + b.z) / 2;
+    CHECK(std::min(std::abs(z - 0.4), std::abs(z + 0.2)) < 0.03);
+    length_of_lines += length(b - a);
+  }
+  const double circles = 2 * 3.14159265 * (std::sqrt(1 - 0.16) + std::sqrt(1 - 0.04));
+  CHECK(length_of_lines == doctest::Approx(circles).epsilon(0.1));
+}
+
+}  // namespace
+
+TEST_CASE("materials come back with their lines, the same from any number of workers") {
+  Bench bench;
+  for (const std::string scheme : {"cut", "stream"}) {
+    for (const std::string sort : {"here", "farm"}) {
+      if (scheme == "cut" && sort == "farm") continue;
+      CAPTURE(scheme);
+      CAPTURE(sort);
+      std::vector<std::string> words = {"--scheme", scheme};
+      if (scheme == "stream") words.insert(words.end(), {"--sort", sort});
+      std::vector<std::string> one = words;
+      one.insert(one.end(), {"--workers", "1"});
+      std::vector<std::string> three = words;
+      three.insert(three.end(), {"--workers", "3"});
+      const Ran ran = bench.simplify("1/out.obj", one);
+      CHECK(ran.code == 0);
+      CHECK(has(ran.out, "labels           material: 3 (stone, glass, steel)"));
+      check_slices(bench.path("1/out.obj"));
+      const auto back = open_mesh(bench.path("1/out.obj"));
+      CHECK(back->info().labels->materials.size() == 3);
+      CHECK(bench.simplify("3/out.obj", three).code == 0);
+      for (const std::string name : {"/out.obj", "/out.mtl"}) {
+        CHECK(read_text(bench.path("1" + name)) == read_text(bench.path("3" + name)));
+      }
+    }
+  }
+}
+
+TEST_CASE("materials within a bound of the error, and as GLB and PLY") {
+  Bench bench;
+  CHECK(bench({"simplify", bench.path("in.obj"), "-o", bench.path("out.glb"), "--error", "0.5%",
+               "--parts", "6"})
+            .code == 0);
+  const Mesh mesh = read_mesh(*open_mesh(bench.path("out.glb")));
+  REQUIRE(mesh.labels.size() == mesh.triangles.size());
+  CHECK(std::set<Label>(mesh.labels.begin(), mesh.labels.end()).size() == 3);
+  const Ran ran = bench.simplify("out.ply", {});
+  CHECK(has(ran.out, "labels           material: numbers"));
+  CHECK(has(ran.out, "names and colours of materials"));
+  check_slices(bench.path("out.ply"));
+}
+
+TEST_CASE("materials that are not wanted hold nothing back, and it is said") {
+  Bench bench;
+  const Ran none = bench.simplify("none.ply", {"--attributes", "none"});
+  CHECK(none.code == 0);
+  CHECK(read_mesh(*open_mesh(bench.path("none.ply"))).labels.empty());
+  CHECK(has(none.out, "not kept"));
+  const Ran stl = bench.simplify("out.stl", {});
+  CHECK(stl.code == 0);
+  CHECK(has(stl.out, "material: the output's format has no place for them"));
+
+  CHECK(bench({"cut", bench.path("in.obj"), "--stage", bench.path("stage"), "--parts", "6"}).code ==
+        0);
+  const Ran replay = bench({"replay", bench.path("stage"), "-o", bench.path("replay.ply"),
+                            "--ratio", "0.02", "--attributes", "none"});
+  CHECK(replay.code == 0);
+  CHECK(has(replay.out, "not kept         material: not asked for"));
+  CHECK(read_mesh(*open_mesh(bench.path("replay.ply"))).labels.empty());
+}
