@@ -27,6 +27,7 @@
 #include "cli/cut_record.hpp"
 #include "cli/local_farm.hpp"
 #include "cli/options.hpp"
+#include "cli/output_words.hpp"
 #include "cli/signals.hpp"
 
 namespace meshfarm {
@@ -79,6 +80,7 @@ class BatchCommand : public Command {
         "output,o", po::value(&output_)->required()->value_name("FOLDER"),
         "where the results go, by the names of the files and in their formats; what was done stays "
         "done when the same command is run again");
+    output_words_.add(options);
     target_.add(options);
     options.add_options()("workers", po::value(&workers_)->default_value(workers_)->value_name("N"),
                           "worker processes (default: cores)");
@@ -163,6 +165,7 @@ class BatchCommand : public Command {
     std::string text = std::to_string(record.size) + " " + std::to_string(record.changed_ns) + " " +
                        std::to_string(record.sum) + " " + record.options;
     for (const std::string& word : target_.words()) text += " " + word;
+    for (const std::string& word : output_words_.words()) text += " " + word;
     return text;
   }
 
@@ -216,7 +219,8 @@ class BatchCommand : public Command {
     const BatchReport::File& file = report_.files[task.file];
     std::vector<std::string> words = {"simplify", file.input, "-o",     file.output, "--stage",
                                       task.stage, "-q",       "--json", "--in-batch"};
-    for (const auto& more : {target_.words(), cut_.words(), when_full_.words(), keys}) {
+    for (const auto& more :
+         {target_.words(), cut_.words(), when_full_.words(), output_words_.words(), keys}) {
       words.insert(words.end(), more.begin(), more.end());
     }
     task.began = std::chrono::steady_clock::now();
@@ -266,6 +270,7 @@ class BatchCommand : public Command {
   std::vector<std::string> inputs_;
   std::string output_;
   std::uint32_t workers_ = default_workers();
+  OutputWords output_words_;
   TargetOptions target_;
   CutWords cut_;
   FullWords when_full_;

@@ -11,6 +11,7 @@
 #include "cli/command.hpp"
 #include "cli/cut_step.hpp"
 #include "cli/options.hpp"
+#include "cli/output_words.hpp"
 
 namespace meshfarm {
 namespace {
@@ -33,6 +34,7 @@ class ConvertCommand : public Command {
         "threads", po::value(&threads_)->default_value(threads_)->value_name("N"),
         "that parse text (0: one a core)")(
         "uv", po::value(&uv_)->default_value(uv_)->value_name("bake|drop"), k_uv_help);
+    output_words_.add(options);
     talk_.add_quiet(options);
     positional.add("input", 1).add("output", 1);
   }
@@ -48,7 +50,8 @@ class ConvertCommand : public Command {
     tell_textures(input_, source->info());
     ProgressPrinter printer(talk_.progress());
     const Converted made = convert_mesh(
-        *source, output_, [&](double done) { printer.show({.phase = "convert", .done = done}); });
+        *source, output_, [&](double done) { printer.show({.phase = "convert", .done = done}); },
+        output_words_.packing());
     printer.end();
     tell_what_is_left_out(made, source->info());
     return 0;
@@ -81,6 +84,7 @@ class ConvertCommand : public Command {
   std::string output_;
   std::string uv_ = "bake";
   unsigned threads_ = 0;
+  OutputWords output_words_;
   TalkOptions talk_;
 };
 

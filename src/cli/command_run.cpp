@@ -40,6 +40,7 @@ class RunCommand : public Command {
     options.add_options()("stage", po::value(&stage_)->required(), "")(
         "output,o", po::value(&output_)->value_name("FILE"),
         "where the result goes; .ply, .glb, .gltf, .off, .obj or .stl (default: STAGE/result.ply)");
+    output_words_.add(options);
     target_.add(options);
     target_.add_attributes(options);
     options.add_options()("workers", po::value(&workers_)->default_value(workers_)->value_name("N"),
@@ -73,7 +74,8 @@ class RunCommand : public Command {
     check_writable(output_);
     const Claim claim(claim_of(output_), output_ + ": is being made");
     const int code = run_local_farm(
-        {stage_, output_, target_, network_, schedule_, when_full_, talk_, workers_}, stop);
+        {stage_, output_, output_words_, target_, network_, schedule_, when_full_, talk_, workers_},
+        stop);
     if (code == 3) {
       log_info("stopped; what is done is kept: the same command goes on from there");
     }
@@ -95,6 +97,7 @@ class RunCommand : public Command {
   std::string stage_;
   std::string output_;
   std::uint32_t workers_;
+  OutputWords output_words_;
   TargetOptions target_;
   NetworkOptions network_;
   ScheduleWords schedule_;

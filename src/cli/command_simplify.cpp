@@ -29,6 +29,7 @@ class SimplifyCommand : public Command {
     options.add_options()("input", po::value(&input_)->required(), "")(
         "output,o", po::value(&output_)->required()->value_name("FILE"),
         "where the result goes: .ply, .glb, .gltf, .off, .obj or .stl");
+    output_words_.add(options);
     target_.add(options);
     options.add_options()("workers", po::value(&workers_)->default_value(workers_)->value_name("N"),
                           "worker processes (default: cores)");
@@ -60,7 +61,8 @@ class SimplifyCommand : public Command {
     const Claim claim(claim_of(output_), output_ + ": is being made");
     cut_to_stage({input_, stage_, cut_, talk_, stop});
     const int code = run_local_farm(
-        {stage_, output_, target_, network_, schedule_, when_full_, talk_, workers_}, stop);
+        {stage_, output_, output_words_, target_, network_, schedule_, when_full_, talk_, workers_},
+        stop);
     if (code == 0 && !keep_stage_) remove_stage(stage_);
     if (code == 3) {
       log_info(
@@ -78,6 +80,7 @@ class SimplifyCommand : public Command {
   bool keep_stage_ = false;
   bool in_batch_ = false;
   std::uint32_t workers_ = default_workers();
+  OutputWords output_words_;
   TargetOptions target_;
   CutWords cut_;
   NetworkOptions network_;

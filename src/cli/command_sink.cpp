@@ -18,6 +18,7 @@
 
 #include "cli/cut_step.hpp"
 #include "cli/farm_command.hpp"
+#include "cli/output_words.hpp"
 
 namespace meshfarm {
 namespace {
@@ -36,6 +37,7 @@ class SinkCommand : public FarmCommand {
     add_stage(options, positional);
     options.add_options()("output,o", po::value(&output_)->required()->value_name("FILE"),
                           "where the result goes: .ply, .glb, .gltf, .off, .obj or .stl");
+    output_words_.add(options);
     target_.add(options);
     target_.add_attributes(options);
     network_.add(options);
@@ -77,7 +79,7 @@ class SinkCommand : public FarmCommand {
               std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
           ProgressPrinter printer(talk_.progress());
           AssembleOptions assembly;
-          assembly.output = output_;
+          assembly.output = {output_, output_words_.packing()};
           assembly.stop = &stop;
           assembly.progress = [&](std::string_view phase, double done, std::uint64_t made) {
             printer.show({.phase = phase, .done = done, .triangles = made});
@@ -114,6 +116,7 @@ class SinkCommand : public FarmCommand {
   }
 
   std::string output_;
+  OutputWords output_words_;
   TargetOptions target_;
   NetworkOptions network_;
   FullWords when_full_;

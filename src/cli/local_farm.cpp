@@ -106,6 +106,7 @@ int run_local_farm(const LocalFarm& farm, const std::atomic<bool>& stop) {
       joined(joined({farm.stage}, joined(farm.target.words(), farm.network.words())), of_centre);
   supervisor.start(joined({"ventilator"}, joined(common, farm.schedule.words())));
   std::vector<std::string> sink = joined(joined({"sink"}, common), {"--output", farm.output});
+  sink = joined(sink, farm.words_of_output.words());
   if (farm.talk.json) sink.emplace_back("--json");
   supervisor.start(sink);
   std::vector<std::string> worker =

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "cli/options.hpp"
+#include "cli/output_words.hpp"
 
 namespace meshfarm {
 
@@ -14,6 +15,7 @@ namespace meshfarm {
 struct LocalFarm {
   std::string stage;
   std::string output;
+  const OutputWords& words_of_output;
   const TargetOptions& target;
   const NetworkOptions& network;
   const ScheduleWords& schedule;

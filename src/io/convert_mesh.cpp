@@ -35,7 +35,7 @@ class Conversion {
   Conversion(MeshSource& source, const std::function<void(double)>& progress)
       : source_(source), progress_(progress) {}
 
-  Converted write(const std::filesystem::path& output) {
+  Converted write(const std::filesystem::path& output, Packing packing) {
     count_vertices();
     scan_triangles([&](const TriangleView& batch) { made_.triangles += batch.size(); });
     made_.small_faces = source_.small_faces();
@@ -47,7 +47,8 @@ class Conversion {
                                            .positions = made_.positions,
                                            .comment = {},
                                            .channels = source_.info().channels,
-                                           .labels = source_.info().labels});
+                                           .labels = source_.info().labels,
+                                           .packing = packing});
     write_vertices(*sink);
     scan_triangles([&](const TriangleView& batch) { sink->triangles(batch); });
     sink->commit();
@@ -120,8 +121,8 @@ class Conversion {
 }  // namespace
 
 Converted convert_mesh(MeshSource& source, const std::filesystem::path& output,
-                       const std::function<void(double)>& progress) {
-  return Conversion(source, progress).write(output);
+                       const std::function<void(double)>& progress, Packing packing) {
+  return Conversion(source, progress).write(output, packing);
 }
 
 }  // namespace meshfarm

@@ -27,6 +27,7 @@
 #include <string>
 #include <string_view>
 #include <system_error>
+#include <utility>
 #include <vector>
 
 #include <meshfarm/staging/atomic_file.hpp>
@@ -34,6 +35,7 @@
 #include <meshfarm/util/log.hpp>
 
 #include "file_sink.hpp"
+#include "glb_compressed.hpp"
 #include "gltf_document.hpp"
 #include "gltf_parts.hpp"
 #include "mesh_writers.hpp"
@@ -70,8 +72,8 @@ void warn_of_viewers(const std::filesystem::path& path, std::uint64_t bytes) {
               ": a glTF of more than 2 GiB is written; many programs cannot open it");
 }
 
-const MeshSinkOptions& checked_glb(const std::filesystem::path& path,
-                                   const MeshSinkOptions& options) {
+/// The length of the file, checked.
+std::uint64_t checked_glb_bytes(const std::filesystem::path& path, const MeshSinkOptions& options) {
   const GltfLayout layout(options);
   const bool is_counted = options.vertices < k_most_items && options.triangles < k_most_items;
   const std::uint64_t bytes =
@@ -81,7 +83,12 @@ const MeshSinkOptions& checked_glb(const std::filesystem::path& path,
                      " vertices and " + std::to_string(options.triangles) +
                      " triangles cannot be written: it would be longer than 4 GiB; a .gltf may be");
   }
-  warn_of_viewers(path, bytes);
+  return bytes;
+}
+
+const MeshSinkOptions& checked_glb(const std::filesystem::path& path,
+                                   const MeshSinkOptions& options) {
+  warn_of_viewers(path, checked_glb_bytes(path, options));
   return options;
 }
 
@@ -325,6 +332,23 @@ class GlbSink final : public GltfEncoder {
   std::uint64_t kept_bytes_ = 0;
 };
 
+/// Keeps all bytes until the end.
+class CompressedGlbSink final : public GltfEncoder {
+ public:
+  CompressedGlbSink(const std::filesystem::path& path, const MeshSinkOptions& options)
+      : GltfEncoder(path, options) {
+    binary_.reserve(layout().binary_bytes());
+  }
+
+ private:
+  void write_body(std::string_view bytes) override { binary_ += bytes; }
+  void finish() override {
+    write(compressed_glb(layout(), bounds(), options().comment, std::move(binary_)));
+  }
+
+  std::string binary_;
+};
+
 class GltfSink final : public GltfEncoder {
  public:
   GltfSink(const std::filesystem::path& path, const MeshSinkOptions& options)
@@ -368,6 +392,9 @@ bool is_gltf_channel(std::span<const Channel> all, const Channel& channel) {
 
 std::unique_ptr<MeshSink> create_glb(const std::filesystem::path& path,
                                      const MeshSinkOptions& options) {
+  if (options.packing == Packing::compressed && can_compress_glb(GltfLayout(options))) {
+    return std::make_unique<CompressedGlbSink>(path, options);
+  }
   return std::make_unique<GlbSink>(path, options);
 }
 

@@ -146,13 +146,20 @@ std::unique_ptr<MeshSink> create_mesh(const std::filesystem::path& path,
 void write_mesh(const std::filesystem::path& path, const Mesh& mesh, PositionType positions,
                 const std::vector<Channel>& channels, std::span<const float> values,
                 const std::optional<LabelMeaning>& labels) {
+  write_mesh(MeshOutput{path}, mesh, positions, channels, values, labels);
+}
+
+void write_mesh(const MeshOutput& output, const Mesh& mesh, PositionType positions,
+                const std::vector<Channel>& channels, std::span<const float> values,
+                const std::optional<LabelMeaning>& labels) {
   MeshSinkOptions options{.vertices = mesh.positions.size(),
                           .triangles = mesh.triangles.size(),
                           .positions = positions,
                           .comment = {},
-                          .channels = channels};
+                          .channels = channels,
+                          .packing = output.packing};
   if (!mesh.labels.empty()) options.labels = labels ? labels : LabelMeaning{"label", {}};
-  const auto sink = create_mesh(path, options);
+  const auto sink = create_mesh(output, options);
   sink->vertices(mesh.positions, values);
   sink->triangles(mesh.triangles, mesh.labels);
   sink->commit();

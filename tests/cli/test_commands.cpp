@@ -462,13 +462,14 @@ TEST_CASE("one mesh has one result, as whatever format it comes and goes") {
   const auto path = [&](const char* name) { return shell.path(name); };
   const auto simplified = [&](const char* from, const char* to) {
     CAPTURE(from);
-    const Ran ran = shell({"simplify", path(from), "-o", path(to), "--triangles", "2000"});
+    const Ran ran =
+        shell({"simplify", path(from), "-o", path(to), "--triangles", "2000", "--plain"});
     CHECK(ran.code == 0);
     return read_text(path(to));
   };
   REQUIRE(shell({"generate", "-o", path("t.ply"), "--triangles", "20000"}).code == 0);
   for (const char* name : {"t.obj", "t.off", "t.glb", "t.gltf", "t.stl"}) {
-    CHECK(shell({"convert", path("t.ply"), path(name), "--quiet"}).code == 0);
+    CHECK(shell({"convert", path("t.ply"), path(name), "--quiet", "--plain"}).code == 0);
   }
   CHECK(shell({"convert", path("t.stl"), path("soup.ply")}).code == 0);
   const std::string result = simplified("t.ply", "from-ply.ply");
@@ -488,6 +489,32 @@ TEST_CASE("one mesh has one result, as whatever format it comes and goes") {
   simplified("t.ply", "r.stl");
   CHECK(has(shell({"compare", path("r.stl"), path("from-ply.ply"), "--samples", "1000"}).out,
             "1 components, 0 border edges, 0 non-manifold edges"));
+}
+
+TEST_CASE("a GLB is compressed, but with --plain") {
+  Shell shell;
+  const std::string ply = shell.path("t.ply");
+  const std::string stage = shell.path("stage");
+  REQUIRE(shell({"generate", "-o", ply, "--triangles", "20000"}).code == 0);
+  REQUIRE(shell({"cut", ply, "--stage", stage}).code == 0);
+  const std::vector<std::vector<std::string>> commands = {
+      {"convert", ply, shell.path("c.glb")},
+      {"simplify", ply, "-o", shell.path("s.glb"), "--ratio", "0.5"},
+      {"replay", stage, "-o", shell.path("r.glb"), "--ratio", "0.5"}};
+  for (std::vector<std::string> words : commands) {
+    const std::string output = shell.path(words[0].substr(0, 1) + ".glb");
+    CAPTURE(output);
+    CHECK(shell(words).code == 0);
+    const std::string made = read_text(output);
+    CHECK(has(made, "EXT_meshopt_compression"));
+    CHECK(shell(words).code == 0);
+    CHECK((read_text(output) == made));
+    words.emplace_back("--plain");
+    CHECK(shell(words).code == 0);
+    const std::string plain = read_text(output);
+    CHECK_FALSE(has(plain, "EXT_meshopt_compression"));
+    CHECK(made.size() < plain.size() / 2);
+  }
 }
 
 TEST_CASE("generate makes the same mesh in all formats") {

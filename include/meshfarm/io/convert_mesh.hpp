@@ -7,6 +7,7 @@
 #include <functional>
 #include <vector>
 
+#include <meshfarm/io/mesh_sink.hpp>
 #include <meshfarm/io/mesh_source.hpp>
 
 namespace meshfarm {
@@ -27,6 +28,7 @@ struct Converted {
 /// nothing is joined; in GLB and glTF triangles with labels are ordered by these. `progress` is
 /// told the share that is done. Throws as open_mesh() and create_mesh() do.
 Converted convert_mesh(MeshSource& source, const std::filesystem::path& output,
-                       const std::function<void(double)>& progress);
+                       const std::function<void(double)>& progress,
+                       Packing packing = Packing::plain);
 
 }  // namespace meshfarm

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <string>
 
 #include <meshfarm/geometry/mesh.hpp>
 #include <meshfarm/io/mesh_sink.hpp>
@@ -27,6 +28,15 @@ bool keeps_labels(const std::filesystem::path& path);
 /// Whether also for the names and the colours of their materials.
 bool keeps_materials(const std::filesystem::path& path);
 
+/// Where a mesh goes, and how.
+struct MeshOutput {
+  std::filesystem::path path;
+  Packing packing = Packing::plain;
+
+  operator const std::filesystem::path&() const { return path; }  // NOLINT: for who only names it
+  std::string string() const { return path.string(); }
+};
+
 /// Begins a mesh file in the format of its extension. Throws DataError as above, IoError for a path
 /// that cannot be written, and UsageError for more than the format can count.
 std::unique_ptr<MeshSink> create_mesh(const std::filesystem::path& path,
@@ -35,6 +45,9 @@ std::unique_ptr<MeshSink> create_mesh(const std::filesystem::path& path,
 /// Writes a whole mesh by create_mesh(), with its labels if it has any; without a meaning they are
 /// only numbers.
 void write_mesh(const std::filesystem::path& path, const Mesh& mesh, PositionType positions,
+                const std::vector<Channel>& channels = {}, std::span<const float> values = {},
+                const std::optional<LabelMeaning>& labels = {});
+void write_mesh(const MeshOutput& output, const Mesh& mesh, PositionType positions,
                 const std::vector<Channel>& channels = {}, std::span<const float> values = {},
                 const std::optional<LabelMeaning>& labels = {});
 

@@ -13,6 +13,11 @@
 
 namespace meshfarm {
 
+/// How a GLB is written. Compressed: positions as whole numbers of 16 bits where these are fine
+/// enough, normals of 8 bits, and all of it through meshoptimizer's codecs. It is made in memory;
+/// what is too large for that is plain.
+enum class Packing : std::uint8_t { plain, compressed };
+
 struct MeshSinkOptions {
   std::uint64_t vertices = 0;  // exactly as many must be written
   std::uint64_t triangles = 0;
@@ -20,11 +25,12 @@ struct MeshSinkOptions {
   std::string comment;  // one line, may be empty; not every format has a place for it
   std::vector<Channel> channels = {};       // of the vertices; see kept_channels()
   std::optional<LabelMeaning> labels = {};  // of the triangles
+  Packing packing = Packing::plain;         // of no other format than GLB
 };
 
 /// A mesh file that is written in batches, in memory that does not depend on its size: all
-/// vertices, then all triangles. It appears under its name only at commit(), whole and synced;
-/// without commit() nothing is left behind.
+/// vertices, then all triangles (but see Packing). It appears under its name only at commit(),
+/// whole and synced; without commit() nothing is left behind.
 class MeshSink {
  public:
   virtual ~MeshSink() = default;

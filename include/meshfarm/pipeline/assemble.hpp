@@ -4,20 +4,20 @@
 
 #include <atomic>
 #include <cstdint>
-#include <filesystem>
 #include <functional>
 #include <span>
 #include <string_view>
 
 #include <meshfarm/farm/job.hpp>
 #include <meshfarm/io/manifest.hpp>
+#include <meshfarm/io/mesh_format.hpp>
 #include <meshfarm/pipeline/run_options.hpp>
 #include <meshfarm/report/summary.hpp>
 
 namespace meshfarm {
 
 struct AssembleOptions {
-  std::filesystem::path output;
+  MeshOutput output;
   unsigned threads = 0;  // to measure with, 0: one a core; nothing depends on it
   std::function<void(std::string_view phase, double done, std::uint64_t triangles)> progress;
   const std::atomic<bool>* stop = nullptr;
