@@ -57,6 +57,7 @@ class SinkCommand : public FarmCommand {
   void serve(const Stage& stage, const std::atomic<bool>& stop) override {
     const Manifest manifest = read_manifest(stage);
     check_writable(output_);
+    check_output_fits(output_, manifest, target_.run);
     check_need(manifest);
     SinkOptions options;
     options.bind = network_.bind;

@@ -93,6 +93,7 @@ int run_local_farm(const LocalFarm& farm, const std::atomic<bool>& stop) {
   farm.network.security.check_mount(farm.stage);
   const Manifest manifest =
       decode_manifest(stage.read(ManifestName{}), stage.path(ManifestName{}).string());
+  check_output_fits(farm.output, manifest, farm.target.run);
   check_sink_need(manifest, farm.target.run, std::nullopt);  // what it advises the sink says
   const Crew crew = crew_for(farm, manifest);
   std::vector<std::string> shared = {"--supervised"};

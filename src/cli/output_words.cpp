@@ -2,6 +2,11 @@
 // SPDX-License-Identifier: MIT
 #include "cli/output_words.hpp"
 
+#include <algorithm>
+
+#include <meshfarm/io/channel_choice.hpp>
+#include <meshfarm/io/mesh_format.hpp>
+
 namespace meshfarm {
 
 void OutputWords::add(po::options_description& options) {
@@ -12,6 +17,18 @@ void OutputWords::add(po::options_description& options) {
 
 std::vector<std::string> OutputWords::words() const {
   return plain ? std::vector<std::string>{"--plain"} : std::vector<std::string>{};
+}
+
+void check_output_fits(const std::string& output, const Manifest& manifest, const RunOptions& run) {
+  const std::uint64_t triangles =
+      std::min(target_triangles(manifest, run), manifest.input_triangles);
+  const std::vector<Channel> chosen =
+      channels_at(manifest.channels.channels, chosen_columns(manifest, run));
+  check_fits(output, {.vertices = triangles / 2,
+                      .triangles = triangles,
+                      .positions = manifest.positions,
+                      .comment = {},
+                      .channels = kept_channels(output, chosen)});
 }
 
 }  // namespace meshfarm

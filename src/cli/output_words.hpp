@@ -7,7 +7,9 @@
 
 #include <boost/program_options.hpp>
 
+#include <meshfarm/io/manifest.hpp>
 #include <meshfarm/io/mesh_sink.hpp>
+#include <meshfarm/pipeline/run_options.hpp>
 
 namespace meshfarm {
 
@@ -22,5 +24,9 @@ struct OutputWords {
   /// The same as words for a command line.
   std::vector<std::string> words() const;
 };
+
+/// Throws UsageError before the farm's work if its result will be more than the output's format can
+/// count. A result has half as many vertices as triangles, more or less.
+void check_output_fits(const std::string& output, const Manifest& manifest, const RunOptions& run);
 
 }  // namespace meshfarm

@@ -390,6 +390,10 @@ bool is_gltf_channel(std::span<const Channel> all, const Channel& channel) {
          (alpha && all[*alpha] == channel);
 }
 
+void check_fits_glb(const std::filesystem::path& path, const MeshSinkOptions& options) {
+  checked_glb_bytes(path, options);
+}
+
 std::unique_ptr<MeshSink> create_glb(const std::filesystem::path& path,
                                      const MeshSinkOptions& options) {
   if (options.packing == Packing::compressed && can_compress_glb(GltfLayout(options))) {

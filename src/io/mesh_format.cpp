@@ -143,6 +143,10 @@ std::unique_ptr<MeshSink> create_mesh(const std::filesystem::path& path,
   return find_output_format(path)->create(path, options);
 }
 
+void check_fits(const std::filesystem::path& path, const MeshSinkOptions& options) {
+  if (find_output_format(path)->create == create_glb) check_fits_glb(path, options);
+}
+
 void write_mesh(const std::filesystem::path& path, const Mesh& mesh, PositionType positions,
                 const std::vector<Channel>& channels, std::span<const float> values,
                 const std::optional<LabelMeaning>& labels) {

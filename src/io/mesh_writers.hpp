@@ -24,6 +24,8 @@ std::unique_ptr<MeshSink> create_obj(const std::filesystem::path& path,
 /// bits, others floats. More than 4 GiB are a UsageError.
 std::unique_ptr<MeshSink> create_glb(const std::filesystem::path& path,
                                      const MeshSinkOptions& options);
+/// Throws the UsageError of create_glb().
+void check_fits_glb(const std::filesystem::path& path, const MeshSinkOptions& options);
 /// The same as a .gltf and a .bin of the same name beside it, which is replaced, too. 2^32 vertices
 /// are a UsageError.
 std::unique_ptr<MeshSink> create_gltf(const std::filesystem::path& path,

@@ -37,6 +37,9 @@ struct MeshOutput {
   std::string string() const { return path.string(); }
 };
 
+/// Throws UsageError for more than the format can count, as create_mesh() will.
+void check_fits(const std::filesystem::path& path, const MeshSinkOptions& options);
+
 /// Begins a mesh file in the format of its extension. Throws DataError as above, IoError for a path
 /// that cannot be written, and UsageError for more than the format can count.
 std::unique_ptr<MeshSink> create_mesh(const std::filesystem::path& path,

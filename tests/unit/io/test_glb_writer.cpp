@@ -298,6 +298,14 @@ TEST_CASE("more than 4 GiB are refused before anything is written") {
                            .c_str(),
                        UsageError);
   CHECK_THROWS_AS(create(1ULL << 62, 1), UsageError);
+  // Before there is anything to write.
+  CHECK_THROWS_AS(check_fits(folder / "m.glb", {.vertices = 1, .triangles = 715'827'850}),
+                  UsageError);
+  for (const char* name : {"m.glb", "m.GLB"}) {
+    check_fits(folder / name, {.vertices = 1, .triangles = 357'913'900});
+  }
+  check_fits(folder / "m.gltf", {.vertices = 1, .triangles = 715'827'850});
+  check_fits(folder / "m", {.vertices = 1, .triangles = 715'827'850});
   CHECK_THROWS_AS(create(1, 1ULL << 63), UsageError);
   const std::string told = stderr_of([&] { create(100'000'000, 200'000'000); });
   CHECK(told.find("m.glb: a glTF of more than 2 GiB is written") != std::string::npos);
