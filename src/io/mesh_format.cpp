@@ -144,6 +144,7 @@ std::unique_ptr<MeshSink> create_mesh(const std::filesystem::path& path,
 }
 
 void check_fits(const std::filesystem::path& path, const MeshSinkOptions& options) {
+  check_output_format(path);
   if (find_output_format(path)->create == create_glb) check_fits_glb(path, options);
 }
 

@@ -491,32 +491,6 @@ TEST_CASE("one mesh has one result, as whatever format it comes and goes") {
             "1 components, 0 border edges, 0 non-manifold edges"));
 }
 
-TEST_CASE("a GLB is compressed, but with --plain") {
-  Shell shell;
-  const std::string ply = shell.path("t.ply");
-  const std::string stage = shell.path("stage");
-  REQUIRE(shell({"generate", "-o", ply, "--triangles", "20000"}).code == 0);
-  REQUIRE(shell({"cut", ply, "--stage", stage}).code == 0);
-  const std::vector<std::vector<std::string>> commands = {
-      {"convert", ply, shell.path("c.glb")},
-      {"simplify", ply, "-o", shell.path("s.glb"), "--ratio", "0.5"},
-      {"replay", stage, "-o", shell.path("r.glb"), "--ratio", "0.5"}};
-  for (std::vector<std::string> words : commands) {
-    const std::string output = shell.path(words[0].substr(0, 1) + ".glb");
-    CAPTURE(output);
-    CHECK(shell(words).code == 0);
-    const std::string made = read_text(output);
-    CHECK(has(made, "EXT_meshopt_compression"));
-    CHECK(shell(words).code == 0);
-    CHECK((read_text(output) == made));
-    words.emplace_back("--plain");
-    CHECK(shell(words).code == 0);
-    const std::string plain = read_text(output);
-    CHECK_FALSE(has(plain, "EXT_meshopt_compression"));
-    CHECK(made.size() < plain.size() / 2);
-  }
-}
-
 TEST_CASE("generate makes the same mesh in all formats") {
   Shell shell;
   for (const char* name : {"t.ply", "t.obj", "t.off"}) {

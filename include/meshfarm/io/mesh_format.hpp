@@ -37,7 +37,7 @@ struct MeshOutput {
   std::string string() const { return path.string(); }
 };
 
-/// Throws UsageError for more than the format can count, as create_mesh() will.
+/// Throws UsageError for a GLB that is too large, as create_mesh() will, and DataError as above.
 void check_fits(const std::filesystem::path& path, const MeshSinkOptions& options);
 
 /// Begins a mesh file in the format of its extension. Throws DataError as above, IoError for a path
