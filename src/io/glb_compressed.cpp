@@ -148,7 +148,7 @@ class Packer {
   Packer(const GltfLayout& layout, const GltfBounds& bounds, std::string_view comment)
       : layout_(layout),
         bounds_(bounds),
-        document_(Json::parse(gltf_document(layout, bounds, comment))) {
+        document_(Json::parse(gltf_document(layout, bounds, {.comment = std::string(comment)}))) {
     document_["bufferViews"] = Json::array();
   }
 
@@ -336,8 +336,9 @@ class Packer {
 
 }  // namespace
 
-bool can_compress_glb(const GltfLayout& layout) {
-  return layout.vertices > 0 && layout.triangles > 0 && layout.binary_bytes() <= k_most_bytes;
+bool can_compress_glb(const MeshSinkOptions& options) {
+  const std::uint64_t bytes = GltfLayout(options).binary_bytes();
+  return options.vertices > 0 && options.triangles > 0 && !options.labels && bytes <= k_most_bytes;
 }
 
 std::string compressed_glb(const GltfLayout& layout, const GltfBounds& bounds,

@@ -10,8 +10,9 @@
 
 namespace meshfarm {
 
-/// Whether a mesh is small enough to be compressed, which is done in memory, and has triangles.
-bool can_compress_glb(const GltfLayout& layout);
+/// Whether a mesh is small enough to be compressed, which is done in memory, and has triangles but
+/// no labels.
+bool can_compress_glb(const MeshSinkOptions& options);
 
 /// A whole .glb of the mesh whose plain bytes are `binary`, by KHR_mesh_quantization and
 /// EXT_meshopt_compression. Takes twice the memory of these bytes.

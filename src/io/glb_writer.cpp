@@ -380,23 +380,13 @@ class GltfSink final : public GltfEncoder {
 
 }  // namespace
 
-bool is_gltf_channel(std::span<const Channel> all, const Channel& channel) {
-  const auto is_any_of = [&](const std::optional<std::array<std::size_t, 3>>& columns) {
-    return columns && std::any_of(columns->begin(), columns->end(),
-                                  [&](std::size_t column) { return all[column] == channel; });
-  };
-  const std::optional<std::size_t> alpha = alpha_column(all);
-  return is_any_of(normal_columns(all)) || is_any_of(colour_columns(all)) ||
-         (alpha && all[*alpha] == channel);
-}
-
 void check_fits_glb(const std::filesystem::path& path, const MeshSinkOptions& options) {
   checked_glb_bytes(path, options);
 }
 
 std::unique_ptr<MeshSink> create_glb(const std::filesystem::path& path,
                                      const MeshSinkOptions& options) {
-  if (options.packing == Packing::compressed && can_compress_glb(GltfLayout(options))) {
+  if (options.packing == Packing::compressed && can_compress_glb(options)) {
     return std::make_unique<CompressedGlbSink>(path, options);
   }
   return std::make_unique<GlbSink>(path, options);

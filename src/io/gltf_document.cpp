@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "gltf_json.hpp"
+#include "mesh_writers.hpp"
 
 namespace meshfarm {
 namespace {
@@ -158,6 +159,16 @@ std::string gltf_document(const GltfLayout& layout, const GltfBounds& bounds,
     add_mesh(layout, bounds, words, document);
   }
   return document.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
+bool is_gltf_channel(std::span<const Channel> all, const Channel& channel) {
+  const auto is_any_of = [&](const std::optional<std::array<std::size_t, 3>>& columns) {
+    return columns && std::any_of(columns->begin(), columns->end(),
+                                  [&](std::size_t column) { return all[column] == channel; });
+  };
+  const std::optional<std::size_t> alpha = alpha_column(all);
+  return is_any_of(normal_columns(all)) || is_any_of(colour_columns(all)) ||
+         (alpha && all[*alpha] == channel);
 }
 
 }  // namespace meshfarm
