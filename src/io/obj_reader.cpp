@@ -90,6 +90,7 @@ class ObjSource final : public TextSource {
   }
 
   void scan_channels(const std::function<void(const ChannelPoints&)>& take) override {
+    if (info().channels.empty()) return;
     const bool wide = info().positions == PositionType::float64;
     TextBlocks text = blocks();
     std::uint64_t first = 0;
