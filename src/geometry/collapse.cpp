@@ -158,24 +158,25 @@ void CollapseJudge::add_lines(const Ring& ring, std::uint32_t vertex, Vec3 end,
   const std::span<const Corner> fan(corners.data(), ring.size);
   const Vec3 at = middle_ + end;
   Quadric planes;
-  const auto add = [&](const Corner& c, std::uint32_t neighbour) {
+  const auto add = [&](const Corner& c, std::uint32_t neighbour, double weight) {
     add_line_plane(planes, cross(state_.positions[c.next] - at, state_.positions[c.prev] - at),
-                   state_.positions[neighbour] - at);
+                   state_.positions[neighbour] - at, weight);
   };
   if (ring.border()) {
     for_border_edges(fan, [&](const Corner& c, std::uint32_t neighbour) {
-      if (neighbour != without) add(c, neighbour);
+      if (neighbour != without) add(c, neighbour, 1);
     });
   }
   if ((ring.flags & k_crease) != 0) {
     const auto is_other_on_crease = [&](std::uint32_t neighbour) {
       return neighbour != without && (state_.flags[neighbour] & k_crease) != 0;
     };
+    const double weight = crease_weight(state_.adjacency->has_labels());
     std::array<Label, k_max_star> labels;
     for_crease_edges({fan, labels_of(vertex, labels)}, at, state_.positions, *state_.creases,
                      is_other_on_crease, [&](const Corner& one, const Corner& other) {
-                       add(one, one.prev);
-                       add(other, one.prev);
+                       add(one, one.prev, weight);
+                       add(other, one.prev, weight);
                      });
   }
   quadric_.add(planes, end);

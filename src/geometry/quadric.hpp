@@ -65,12 +65,13 @@ inline Vec3 solve(const Quadric& a, double ridge, Vec3 b) {
 }
 
 /// The plane through an edge of a border or crease perpendicular to a triangle there, as heavy as
-/// three squares on the edge: keeps the line where it is. Adds nothing for a triangle of no area.
-inline void add_line_plane(Quadric& quadric, Vec3 triangle_normal, Vec3 edge) {
+/// three squares on the edge, times `weight`: keeps the line where it is. Adds nothing for a
+/// triangle of no area.
+inline void add_line_plane(Quadric& quadric, Vec3 triangle_normal, Vec3 edge, double weight = 1) {
   constexpr double k_weight = 3;
   const Vec3 n = cross(triangle_normal, edge);
   const double scale = squared_length(n);
-  if (scale > 0 && std::isfinite(scale)) quadric.add(n, k_weight * squared_length(edge) / scale);
+  if (scale > 0 && std::isfinite(scale)) quadric.add(n, weight * k_weight * squared_length(edge) / scale);
 }
 
 /// The planes round an edge, about its middle: x costs x'Ax - 2 b'x + c.

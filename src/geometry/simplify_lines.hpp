@@ -52,6 +52,13 @@ class CreaseTest {
   double cosine_squared_;  // with the cosine's sign
 };
 
+/// How much the planes along the creases of a mesh count: those between labels are all that is
+/// seen of these, and are to be as exact as the surface is.
+inline double crease_weight(bool has_labels) {
+  constexpr double k_of_labels = 4;
+  return has_labels ? k_of_labels : 1;
+}
+
 /// Calls take(one, other) for the edges of a fan at the vertex at `at` that are creases, or lie
 /// between two labels: the triangle that ends at the edge and the one that begins there, so that
 /// the edge's other end is one.prev == other.next. `is_candidate` says which ends to look at.

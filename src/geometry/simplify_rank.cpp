@@ -95,14 +95,17 @@ void EdgeRanking::add_line_planes(std::uint32_t vertex) {
   if ((flags & k_fixed) != 0 || fan.size() > k_max_star) return;
   const Vec3 at = input_.positions[vertex];
   Quadric planes;
-  const auto add = [&](const Corner& c, std::uint32_t end) {
+  const auto add = [&](const Corner& c, std::uint32_t end, double weight) {
     const Vec3 normal = cross(input_.positions[c.next] - at, input_.positions[c.prev] - at);
-    add_line_plane(planes, normal, input_.positions[end] - at);
+    add_line_plane(planes, normal, input_.positions[end] - at, weight);
   };
-  if ((flags & k_border) != 0) for_border_edges(fan, add);
+  if ((flags & k_border) != 0) {
+    for_border_edges(fan, [&](const Corner& c, std::uint32_t end) { add(c, end, 1); });
+  }
+  const double weight = crease_weight(input_.adjacency->has_labels());
   for_creases_at(vertex, [&](const Corner& one, const Corner& other) {
-    add(one, one.prev);
-    add(other, one.prev);
+    add(one, one.prev, weight);
+    add(other, one.prev, weight);
   });
   quadrics_[vertex].add(FloatQuadric(planes));
 }

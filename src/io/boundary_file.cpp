@@ -102,7 +102,7 @@ void scan_items(const Fill& fill, std::uint64_t count, const Show& show) {
 }  // namespace
 
 void scan_boundary(const Fill& fill, std::string_view what,
-                   const std::function<void(const BoundaryTriangle&, Label)>& show) {
+                   const std::function<void(const BoundaryTriangle&, std::optional<Label>)>& show) {
   std::string head(k_seal_head_bytes, '\0');
   fill(head);
   const std::uint64_t size = unseal_head(head, k_kind, k_version, what);
@@ -111,7 +111,8 @@ void scan_boundary(const Fill& fill, std::string_view what,
   const std::uint64_t bytes = size - sizeof count;
   const auto holds = [&](std::uint64_t each) { return bytes % each == 0 && count == bytes / each; };
   if (size >= sizeof count && holds(sizeof(BoundaryTriangle))) {
-    scan_items<BoundaryTriangle>(fill, count, [&](const BoundaryTriangle& t) { show(t, 0); });
+    scan_items<BoundaryTriangle>(fill, count,
+                                 [&](const BoundaryTriangle& t) { show(t, std::nullopt); });
   } else if (size >= sizeof count && holds(sizeof(LabelledTriangle))) {
     scan_items<LabelledTriangle>(
         fill, count, [&](const LabelledTriangle& each) { show(each.triangle, each.label); });

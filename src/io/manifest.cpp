@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
 //
-// The manifest, kind "MNFT", version 5; the payload of a sealed file. Strings are u32 + characters,
+// The manifest, kind "MNFT", version 6; the payload of a sealed file. Strings are u32 + characters,
 // a file is name | size u64 | xxh3-64 u64:
 //   input | input format | scheme u8 (0 cut, 1 stream) | partitioner | window u64 | position type
 //   u8 | box 6 x f64 | input vertices u64 | input triangles u64 | coincident vertices u64 | dropped
@@ -13,7 +13,8 @@
 //   file's name empty where it has none sorting = u8 0: parts and streams are there | u8 1: slabs
 //   are, and how they are to be sorted (io/sorting.hpp)
 // Version 1 had no scheme, window and samples, version 2 no sorting, version 3 no partitioner, no
-// coincident corners and no dropped not finite, version 4 no channels and labels.
+// coincident corners and no dropped not finite, version 4 no channels, version 5 no
+// labels.
 #include <meshfarm/io/manifest.hpp>
 #include <meshfarm/io/sorting.hpp>
 #include <meshfarm/staging/sealed.hpp>
@@ -25,7 +26,7 @@ namespace meshfarm {
 namespace {
 
 constexpr FileKind k_kind = {'M', 'N', 'F', 'T'};
-constexpr std::uint32_t k_version = 5;
+constexpr std::uint32_t k_version = 6;
 
 void put_file(ByteWriter& out, const FileRef& file) {
   out.put_string(file.name);

@@ -70,11 +70,12 @@ class Composer {
     };
     StagedReader file(context_.stage, parameters_.boundary);
     const auto fill = [&](std::span<char> buffer) { file.fill(buffer); };
-    scan_boundary(fill, parameters_.boundary.name, [&](const BoundaryTriangle& t, Label label) {
-      if (std::none_of(t.begin(), t.end(), is_ours)) return;
-      seams.triangles.push_back(t);
-      if (parameters_.lines.keep_labels) seams.labels.push_back(label);
-    });
+    scan_boundary(fill, parameters_.boundary.name,
+                  [&](const BoundaryTriangle& t, std::optional<Label> label) {
+                    if (std::none_of(t.begin(), t.end(), is_ours)) return;
+                    seams.triangles.push_back(t);
+                    if (label && parameters_.lines.keep_labels) seams.labels.push_back(*label);
+                  });
     file.expect_end();
     return seams;
   }

@@ -5,6 +5,7 @@
 #include <array>
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -36,9 +37,10 @@ std::vector<BoundaryTriangle> decode_boundary(std::string_view file, std::string
 /// With the labels that the file has.
 std::vector<BoundaryTriangle> decode_boundary(std::string_view file, std::string_view what,
                                               std::vector<Label>& labels);
-/// Shows every triangle of a side file in order, with its label or 0, without holding the file.
+/// Shows every triangle of a side file in order, with its label if it has one, without holding the
+/// file.
 /// Does not check the file's checksum: that is up to the caller's `fill`.
 void scan_boundary(const Fill& fill, std::string_view what,
-                   const std::function<void(const BoundaryTriangle&, Label)>& show);
+                   const std::function<void(const BoundaryTriangle&, std::optional<Label>)>& show);
 
 }  // namespace meshfarm

@@ -123,7 +123,8 @@ TEST_CASE("boundary triangles are shown one by one, and what is no side file is 
   for (std::uint32_t i = 0; i < 10'000; ++i) triangles.push_back({{{0, i}, {1, i}, {2, 7}}});
   const auto scanned = [](const std::string& file) {
     std::vector<BoundaryTriangle> shown;
-    scan_boundary(fill_from(file, "b"), "b", [&](const auto& t, Label) { shown.push_back(t); });
+    scan_boundary(fill_from(file, "b"), "b",
+                  [&](const auto& t, std::optional<Label>) { shown.push_back(t); });
     return shown;
   };
   const std::string file = encode_boundary(triangles);

@@ -365,8 +365,13 @@ TEST_CASE("the more colours weigh, the steeper ones count") {
 }
 
 TEST_CASE("parameters come back; damaged ones are refused") {
-  const SimplifyParameters p{
-      Allocation::uniform, 12, 3, 77, 0.25, 0.5, {true, 40, TopologyMode::simplify, {0.75, 1.5}}};
+  const SimplifyParameters p{Allocation::uniform,
+                             12,
+                             3,
+                             77,
+                             0.25,
+                             0.5,
+                             {true, 40, TopologyMode::simplify, {0.75, 1.5}, false}};
   const std::string bytes = encode_parameters(p);
   const SimplifyParameters back = decode_parameters(bytes);
   CHECK(back.allocation == Allocation::uniform);
@@ -379,16 +384,20 @@ TEST_CASE("parameters come back; damaged ones are refused") {
   CHECK(back.lines.topology == TopologyMode::simplify);
   CHECK(back.lines.appearance_scale.length == 0.75);
   CHECK(back.lines.appearance_scale.steepest == 1.5);
+  CHECK_FALSE(back.lines.keep_labels);
   for (std::size_t i = 0; i < bytes.size(); ++i) {
     CHECK_THROWS_AS(decode_parameters(std::string_view(bytes).substr(0, i)), DataError);
   }
   CHECK_THROWS_AS(decode_parameters(bytes + "x"), DataError);
   CHECK_THROWS_AS(decode_parameters("\x09" + bytes.substr(1)), DataError);
-  // The topology stands last but for the two numbers of appearances.
+  // The topology stands last but for the two numbers of appearances and what is said of labels.
   std::string other = bytes;
-  other[bytes.size() - 2 * sizeof(double) - 1] = 4;
+  other[bytes.size() - 2 * sizeof(double) - 2] = 4;
   CHECK_THROWS_AS(decode_parameters(other), DataError);
   other = bytes;
-  other.back() = static_cast<char>(0xff);
+  other.back() = 2;
+  CHECK_THROWS_AS(decode_parameters(other), DataError);
+  other = bytes;
+  other[bytes.size() - 2] = static_cast<char>(0xff);
   CHECK_THROWS_AS(decode_parameters(other), DataError);
 }

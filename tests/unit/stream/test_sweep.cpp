@@ -22,6 +22,7 @@ StreamMesh stream_of(const Mesh& mesh, std::uint32_t boundary = 0) {
   MeshShare share{mesh.positions, mesh.triangles, {}};
   for (std::uint32_t v = 0; v < boundary; ++v) share.boundary.push_back(v);
   share.type = PositionType::float64;
+  share.labels = mesh.labels;
   return sort_slab(std::move(share), {}).stream;
 }
 
@@ -238,6 +239,7 @@ TEST_CASE("of vertices that become one the appearance does not depend on the ord
     MeshShare share{mesh.positions, mesh.triangles, {}};
     share.appearances = mesh.appearances;
     share.type = PositionType::float64;
+  share.labels = mesh.labels;
     return encode_stream(sort_slab(std::move(share), {}).stream);
   };
   Mesh turned = soup;
