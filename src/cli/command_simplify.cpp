@@ -45,6 +45,7 @@ class SimplifyCommand : public Command {
     positional.add("input", 1);
   }
   void check() override {
+    target_.attributes = cut_.attributes;
     target_.check();
     cut_.check();
     if (in_batch_) workers_ = 0;

@@ -71,7 +71,8 @@ inline void add_line_plane(Quadric& quadric, Vec3 triangle_normal, Vec3 edge, do
   constexpr double k_weight = 3;
   const Vec3 n = cross(triangle_normal, edge);
   const double scale = squared_length(n);
-  if (scale > 0 && std::isfinite(scale)) quadric.add(n, weight * k_weight * squared_length(edge) / scale);
+  if (scale > 0 && std::isfinite(scale))
+    quadric.add(n, weight * k_weight * squared_length(edge) / scale);
 }
 
 /// The planes round an edge, about its middle: x costs x'Ax - 2 b'x + c.

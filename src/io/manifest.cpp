@@ -7,11 +7,11 @@
 //   u8 | box 6 x f64 | input vertices u64 | input triangles u64 | coincident vertices u64 | dropped
 //   degenerate u64 | coincident corners u64 | dropped not finite u64 | dropped duplicate u64 |
 //   channels u32 x (name | type u8, its bytes | role u8), if any: file | points u64 |
-//   labels u8 0, or 1 | name | materials u32 x (name | colour 4 x f32) | skipped u32 x string | cut
-//   seconds f64 | boundary triangles u64 | boundary file | sorting | parts u32 x (file | vertices
-//   u64 | triangles u64 | boundary vertices u32) | samples u32 x the same: none, or one a part, its
-//   file's name empty where it has none sorting = u8 0: parts and streams are there | u8 1: slabs
-//   are, and how they are to be sorted (io/sorting.hpp)
+//   labels u8 0, or 1 | name | materials u32 x (name | colour 4 x f32) | label corners u64 |
+//   skipped u32 x string | cut seconds f64 | boundary triangles u64 | boundary file | sorting |
+//   parts u32 x (file | vertices u64 | triangles u64 | boundary vertices u32) | samples u32 x the
+//   same: none, or one a part, its file's name empty where it has none sorting = u8 0: parts and
+//   streams are there | u8 1: slabs are, and how they are to be sorted (io/sorting.hpp)
 // Version 1 had no scheme, window and samples, version 2 no sorting, version 3 no partitioner, no
 // coincident corners and no dropped not finite, version 4 no channels, version 5 no
 // labels.
@@ -161,6 +161,7 @@ std::string encode_manifest(const Manifest& m) {
   out.put(m.dropped_duplicate);
   put_channels(out, m.channels);
   put_labels(out, m.labels);
+  out.put(m.label_corners);
   out.put(static_cast<std::uint32_t>(m.skipped.size()));
   for (const std::string& name : m.skipped) out.put_string(name);
   out.put(m.cut_seconds);
@@ -194,6 +195,7 @@ Manifest decode_manifest(std::string_view file, std::string_view what) {
   m.dropped_duplicate = in.get<std::uint64_t>();
   m.channels = get_channels(in);
   m.labels = get_labels(in);
+  m.label_corners = in.get<std::uint64_t>();
   const auto skipped = in.get<std::uint32_t>();
   for (std::uint32_t i = 0; i < skipped; ++i) m.skipped.push_back(in.get_string());
   m.cut_seconds = in.get<double>();

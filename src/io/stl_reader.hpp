@@ -15,8 +15,7 @@ namespace meshfarm {
 
 /// The triangles of a soup, as STL is one: triangle t has the vertices 3 t, 3 t + 1 and 3 t + 2.
 /// Vertices at one point are joined by a weld only.
-void take_soup(std::uint64_t triangles,
-               const std::function<void(const TriangleView&)>& take);
+void take_soup(std::uint64_t triangles, const std::function<void(const TriangleView&)>& take);
 
 /// Whether the file is text with facets.
 bool is_ascii_stl_file(const InputFile& file);

@@ -14,6 +14,7 @@
 #include <memory>
 #include <mutex>
 
+#include <meshfarm/geometry/label_corners.hpp>
 #include <meshfarm/io/boundary_file.hpp>
 #include <meshfarm/io/mesh_shares.hpp>
 #include <meshfarm/partition/cell_graph.hpp>
@@ -168,6 +169,9 @@ class Cutter {
       const auto number = static_cast<std::uint32_t>(i);
       BuiltPart built =
           build_part(shares_->read(number, options_.weld), manifest_.positions, options_.weld);
+      const Mesh& mesh = built.part.mesh;
+      const std::uint64_t corners =
+          count_label_corners(mesh.triangles, mesh.labels, mesh.positions.size());
       PartEntry entry;
       entry.vertices = built.part.mesh.positions.size();
       entry.triangles = built.part.mesh.triangles.size();
@@ -181,6 +185,7 @@ class Cutter {
       manifest_.coincident_vertices += built.coincident_vertices;
       manifest_.dropped_degenerate += built.dropped_degenerate;
       manifest_.coincident_corners += built.coincident_corners;
+      manifest_.label_corners += corners;
       tell("cut: parts", ++done, parts_);
     });
   }

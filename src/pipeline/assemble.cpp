@@ -233,7 +233,10 @@ class Assembly {
       summary_.labels = {labels->name, {}};
       if (keeps_materials(options_.output)) summary_.labels = labels;
     }
-    if (manifest_.labels && !labels) summary_.channels_not_wanted.push_back(manifest_.labels->name);
+    summary_.labels_too_fine = are_labels_too_fine(manifest_, run_);
+    if (manifest_.labels && !labels && !summary_.labels_too_fine) {
+      summary_.channels_not_wanted.push_back(manifest_.labels->name);
+    }
     if (kept.empty()) {
       return write_mesh(options_.output, result, manifest_.positions, {}, {}, labels);
     }
@@ -323,6 +326,7 @@ class Assembly {
     if (run_.lines.topology == TopologyMode::keep) kept += "changing the topology, ";
     if (run_.lines.preserve_border) kept += "moving the borders, ";
     if (run_.lines.crease_angle > 0) kept += "moving the creases, ";
+    if (lines_.keep_labels) kept += "moving the lines between labels, ";
     return "nothing more can be collapsed without " + kept +
            "turning a triangle over or making one of no area";
   }

@@ -44,8 +44,17 @@ std::vector<std::size_t> chosen_columns(const Manifest& manifest, const RunOptio
   return columns;
 }
 
+bool are_labels_too_fine(const Manifest& manifest, const RunOptions& options) {
+  // A closed surface has twice as many triangles as vertices. More than a third of them could not
+  // be chosen.
+  constexpr std::uint64_t k_triangles_per_corner = 6;
+  if (!manifest.labels || !options.channels.all || options.error.value > 0) return false;
+  return k_triangles_per_corner * manifest.label_corners > target_triangles(manifest, options);
+}
+
 std::optional<LabelMeaning> chosen_labels(const Manifest& manifest, const RunOptions& options) {
   if (!manifest.labels || !chooses_labels(options.channels, *manifest.labels)) return std::nullopt;
+  if (are_labels_too_fine(manifest, options)) return std::nullopt;
   return manifest.labels;
 }
 

@@ -151,7 +151,13 @@ void add_channels(Lines& lines, const RunSummary& s) {
   if (!kept.empty()) lines.add("channels", kept + "  RMS from the input's vertices");
   if (s.labels) lines.add("labels", text_of(*s.labels));
   std::vector<std::string> lost = names_of(s.manifest.channels.channels);
-  if (s.manifest.labels && !s.labels) lost.push_back(s.manifest.labels->name);
+  if (s.labels_too_fine) {
+    const std::string& name = s.manifest.labels->name;
+    lines.add("not kept", name + ": its lines hold about " + grouped(s.manifest.label_corners) +
+                              " vertices in place; --attributes " + name + " keeps it");
+  } else if (s.manifest.labels && !s.labels) {
+    lost.push_back(s.manifest.labels->name);
+  }
   if (s.labels && s.labels->materials != s.manifest.labels->materials) {
     lost.push_back("names and colours of " + s.labels->name + "s");
   }

@@ -16,6 +16,7 @@
 #include <memory>
 #include <mutex>
 
+#include <meshfarm/geometry/label_corners.hpp>
 #include <meshfarm/io/boundary_file.hpp>
 #include <meshfarm/io/mesh_shares.hpp>
 #include <meshfarm/io/slab_file.hpp>
@@ -184,9 +185,12 @@ class Generator {
     parallel_for(streams_, threads(), [&](std::uint64_t i) {
       MeshShare slab = shares_->read(static_cast<std::uint32_t>(i), sorting_.weld);
       numbers_[i] = number_boundary(slab, sorting_);
+      const std::uint64_t corners =
+          count_label_corners(slab.triangles, slab.labels, slab.positions.size());
       sorts ? sort_one(std::move(slab), static_cast<std::uint32_t>(i), mutex)
             : stage_unsorted(std::move(slab), static_cast<std::uint32_t>(i));
       const std::lock_guard lock(mutex);
+      manifest_.label_corners += corners;
       tell(sorts ? "streams: sort" : "streams: stage", ++done, streams_);
     });
   }

@@ -162,6 +162,32 @@ TEST_CASE("materials within a bound of the error, and as GLB and PLY") {
   check_slices(bench.path("out.ply"), materials_of(bench.path("in.obj")));
 }
 
+TEST_CASE("labels that would leave no choice are dropped, unless they are asked for") {
+  Bench bench;
+  Mesh mesh = test::icosphere(4);  // 5,120 triangles
+  for (Label i = 0; i < mesh.triangles.size(); ++i) mesh.labels.push_back(i / 2);
+  write_mesh(bench.path("fine.ply"), mesh, PositionType::float64, {}, {},
+             LabelMeaning{"region", {}});
+  for (const std::string scheme : {"cut", "stream"}) {
+    CAPTURE(scheme);
+    const std::string out = bench.path("fine-" + scheme + ".ply");
+    std::vector<std::string> words = {
+        "simplify", bench.path("fine.ply"), "-o", out, "--ratio", "0.1", "--parts", "3", "--scheme",
+        scheme};
+    const Ran ran = bench(words);
+    CHECK(ran.code == 0);
+    CHECK(has(ran.out, "region: its lines hold about "));
+    const Mesh free = read_mesh(*open_mesh(out));
+    CHECK(free.labels.empty());
+    CHECK(free.triangles.size() == 512);
+    words.insert(words.end(), {"--stage", bench.path("stage-" + scheme), "--attributes", "region"});
+    CHECK(bench(words).code == 0);
+    const Mesh held = read_mesh(*open_mesh(out));
+    CHECK(held.labels.size() == held.triangles.size());
+    CHECK(held.triangles.size() > 2000);
+  }
+}
+
 TEST_CASE("materials that are not wanted hold nothing back, and it is said") {
   Bench bench;
   const Ran none = bench.simplify("none.ply", {"--attributes", "none"});

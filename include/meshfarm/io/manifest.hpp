@@ -52,6 +52,7 @@ struct Manifest {
   std::uint64_t dropped_duplicate = 0;   // boundary triangles only: workers see to the parts
   StagedChannels channels;               // of the input's vertices
   std::optional<LabelMeaning> labels;    // of the triangles of parts and boundary
+  std::uint64_t label_corners = 0;       // vertices that these hold where they are
   std::vector<std::string> skipped;      // properties and elements that were not kept
   double cut_seconds = 0;
   std::uint64_t boundary_triangles = 0;

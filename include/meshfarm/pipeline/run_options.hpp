@@ -74,6 +74,11 @@ std::uint64_t target_triangles(const Manifest& manifest, const RunOptions& optio
 /// Which of the stage's channels the result is to have. Throws UsageError as io's chosen_columns().
 std::vector<std::size_t> chosen_columns(const Manifest& manifest, const RunOptions& options);
 
+/// Whether the stage's labels hold so many vertices where they are that the number of triangles
+/// would not be met, or only at their cost. They are dropped then, unless they are asked for by
+/// name, or the error is what is given.
+bool are_labels_too_fine(const Manifest& manifest, const RunOptions& options);
+
 /// The stage's labels, if the result is to have them.
 std::optional<LabelMeaning> chosen_labels(const Manifest& manifest, const RunOptions& options);
 

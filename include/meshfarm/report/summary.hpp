@@ -76,6 +76,7 @@ struct RunSummary {
   MeasuredError error;
   std::vector<ChannelError> channels;            // that were written
   std::optional<LabelMeaning> labels;            // that were written
+  bool labels_too_fine = false;                  // so they were dropped
   std::vector<std::string> channels_not_wanted;  // of the stage's and its labels, their names
   /// Where the result went to ruin and a few triangles more would not have.
   std::optional<BetterCount> better;

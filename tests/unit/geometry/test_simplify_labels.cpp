@@ -10,6 +10,7 @@
 
 #include <doctest/doctest.h>
 
+#include <meshfarm/geometry/label_corners.hpp>
 #include <meshfarm/geometry/simplify.hpp>
 #include <meshfarm/util/errors.hpp>
 
@@ -140,6 +141,19 @@ TEST_CASE("labels go with their triangles where these are dropped") {
   REQUIRE(result.labels.size() == result.triangles.size());
   CHECK(areas_of(result).size() == 2);
   CHECK(areas_of(result).at(1) == doctest::Approx(before).epsilon(0.01));
+}
+
+TEST_CASE("corners are where labels hold a vertex") {
+  const auto corners_of = [](const Mesh& mesh) {
+    return count_label_corners(mesh.triangles, mesh.labels, mesh.positions.size());
+  };
+  CHECK(corners_of(sphere(3)) == 0);
+  const Mesh ball = labelled(sphere(3), octant);
+  CHECK(corners_of(ball) == 6);
+  CHECK(corners_of(labelled(sphere(3), [](Vec3 p) -> Label { return p.z > 0 ? 7 : 3; })) == 0);
+  Mesh fine = sphere(3);
+  for (Label i = 0; i < fine.triangles.size(); ++i) fine.labels.push_back(i);
+  CHECK(corners_of(fine) == fine.positions.size());
 }
 
 TEST_CASE("labels must be one a triangle") {

@@ -34,6 +34,7 @@ Manifest sample_manifest() {
   m.dropped_duplicate = 9;
   m.channels = {{{"red", ChannelType::uint8, ChannelRole::colour}}, {"channels", 5, 6}, 7};
   m.labels = LabelMeaning{"material", {{"stone", {0.5, 0.25, 1, 1}}, {"glass", {}}}};
+  m.label_corners = std::uint64_t{3} << 32;
   m.skipped = {"vertex.red", "face.flags"};
   m.cut_seconds = 1.5;
   m.boundary_triangles = 11;
@@ -153,6 +154,7 @@ TEST_CASE("a manifest comes back whole") {
   CHECK(back.channels.file == m.channels.file);
   CHECK(back.channels.points == 7);
   CHECK(back.labels == m.labels);
+  CHECK(back.label_corners == m.label_corners);
   CHECK(back.skipped == m.skipped);
   CHECK(back.parts[1].file == m.parts[1].file);
   CHECK(back.box.hi == Vec3{1, 2, 3});

@@ -239,7 +239,7 @@ TEST_CASE("of vertices that become one the appearance does not depend on the ord
     MeshShare share{mesh.positions, mesh.triangles, {}};
     share.appearances = mesh.appearances;
     share.type = PositionType::float64;
-  share.labels = mesh.labels;
+    share.labels = mesh.labels;
     return encode_stream(sort_slab(std::move(share), {}).stream);
   };
   Mesh turned = soup;
