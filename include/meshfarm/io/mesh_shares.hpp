@@ -101,7 +101,7 @@ class MeshShares {
   void add_vertices(const VertexView& batch, std::span<const std::uint32_t> shares,
                     std::span<const std::uint32_t> points = {});
   /// After all vertices.
-  void add_triangles(const TriangleView& batch);
+  void add_triangles(const TriangleView& triangles);
   /// After all triangles; read() is then safe from several threads.
   void finish();
   /// For exact welding with what stays apart at the seams, where a share alone does not have all
