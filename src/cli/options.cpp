@@ -99,8 +99,9 @@ void TargetOptions::add(po::options_description& options) {
 void TargetOptions::add_attributes(po::options_description& options) {
   options.add_options()(
       "attributes", po::value(&attributes)->default_value(attributes)->value_name("auto|none|LIST"),
-      "which channels of the stage the result has: auto: all that the output's format has a place "
-      "for; LIST: these, as in red,green,blue ('colours' and 'normals' stand for theirs)");
+      "which channels and labels of the stage the result has: auto: all that the output's format "
+      "has "
+      "a place for; LIST: these, as in red,green,blue ('colours' and 'normals' stand for theirs)");
 }
 
 void TargetOptions::check() {
@@ -205,12 +206,12 @@ void CutWords::add(po::options_description& options) {
       "mesh) or streams (default: 1.2 million triangles each)")(
       "weld", po::value(&weld)->default_value(weld)->value_name("exact|off"),
       "exact: merge vertices at the same position, except where surfaces only touch; off: do not "
-      "merge")("attributes",
-               po::value(&attributes)->default_value(attributes)->value_name("auto|none|LIST"),
-               "auto: colours, normals and other numbers that the vertices have, if the formats "
-               "have a place for them; none: positions only; LIST: these, as in red,green,blue "
-               "('colours' and 'normals' stand for theirs)")(
-      "uv", po::value(&uv)->default_value(uv)->value_name("bake|drop"), k_uv_help)(
+      "merge")(
+      "attributes", po::value(&attributes)->default_value(attributes)->value_name("auto|none|LIST"),
+      "auto: colours, normals and other numbers that the vertices have, and materials or "
+      "other labels of triangles, if the formats have a place for them; none: positions "
+      "only; LIST: these, as in red,green,blue ('colours' and 'normals' stand for "
+      "theirs)")("uv", po::value(&uv)->default_value(uv)->value_name("bake|drop"), k_uv_help)(
       "threads", po::value(&cut.threads)->value_name("N"), "threads of the cut (default: cores)")(
       "memory", po::value(&memory)->default_value(memory)->value_name("BYTES"),
       "with --scheme stream: memory for sorting, for example 2G")(
