@@ -2,49 +2,19 @@
 // SPDX-License-Identifier: MIT
 //
 // What is said of the attributes of a mesh, and of what is left out of it.
-#include <algorithm>
 #include <array>
-#include <cmath>
+#include <filesystem>
+#include <string>
 
 #include <doctest/doctest.h>
 
-#include "support/process.hpp"
-#include "support/temp_folder.hpp"
+#include "support/shell.hpp"
 
+using meshfarm::test::has;
+using meshfarm::test::lines;
 using meshfarm::test::Ran;
-using meshfarm::test::read_text;
-using meshfarm::test::run_meshfarm;
-using meshfarm::test::TempFolder;
+using meshfarm::test::Shell;
 namespace fs = std::filesystem;
-namespace test = meshfarm::test;
-
-namespace {
-
-class Shell {
- public:
-  Ran operator()(const std::vector<std::string>& words) {
-    return run_meshfarm(words, folder_.path() / ("log" + std::to_string(++logs_)));
-  }
-  std::string path(const std::string& name) const { return (folder_.path() / name).string(); }
-  std::string file(const std::string& name, const std::string& text) const {
-    std::ofstream(path(name), std::ios::binary) << text;
-    return path(name);
-  }
-
- private:
-  TempFolder folder_;
-  int logs_ = 0;
-};
-
-bool has(const std::string& text, const std::string& part) {
-  return text.find(part) != std::string::npos;
-}
-
-std::size_t lines(const std::string& text) {
-  return static_cast<std::size_t>(std::count(text.begin(), text.end(), '\n'));
-}
-
-}  // namespace
 
 TEST_CASE("info names the labels of triangles, and convert what it leaves out of them") {
   Shell shell;
