@@ -76,7 +76,7 @@ struct OrderedEnd::Trial {
                topology == TopologyMode::automatic || topology == TopologyMode::keep_while_fair,
                appearances, mesh.appearance_scale()},
               ranking) {
-    adjacency.build(mesh.mesh().triangles, positions.size(), mesh.mesh().labels);
+    adjacency.build(mesh.mesh().triangles, positions.size(), mesh.mesh().columns.labels);
     queue.start(mesh.mesh().triangles);
     if (bound == nullptr) return;
     guard.emplace(*bound);

@@ -239,8 +239,9 @@ void check_input(const Mesh& mesh, const SimplifyOptions& options) {
   if (!mesh.appearances.empty() && mesh.appearances.size() != vertices) {
     throw UsageError("simplify: the appearances are not one a vertex");
   }
-  if (!mesh.labels.empty() && mesh.labels.size() != mesh.triangles.size()) {
-    throw UsageError("simplify: the labels are not one a triangle");
+  const TriangleColumnsView columns = mesh.columns;
+  if (!columns.fits(columns.set(), mesh.triangles.size())) {
+    throw UsageError("simplify: the columns are not one a triangle");
   }
   if (!options.seam.empty() && options.seam.size() != vertices) {
     throw UsageError("simplify: the seam flags are not one a vertex");
@@ -260,10 +261,10 @@ Surface clean_surface(Mesh& mesh, const SimplifyOptions& options, Adjacency& adj
   Surface surface;
   surface.dropped.degenerate =
       keep_triangles(mesh, [&](std::size_t i) { return !is_degenerate(mesh.triangles[i]); });
-  adjacency.build(mesh.triangles, mesh.positions.size(), mesh.labels);
+  adjacency.build(mesh.triangles, mesh.positions.size(), mesh.columns.labels);
   surface.flags = classify_vertices(mesh, options, adjacency);
   const auto again = [&] {
-    adjacency.build(mesh.triangles, mesh.positions.size(), mesh.labels);
+    adjacency.build(mesh.triangles, mesh.positions.size(), mesh.columns.labels);
     surface.flags = classify_vertices(mesh, options, adjacency);
   };
   const std::vector<std::uint32_t> doubtful = vertices_with_duplicates(surface.flags, adjacency);

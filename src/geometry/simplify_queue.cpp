@@ -371,7 +371,7 @@ void CollapseQueue::copy_to(Mesh& mesh, std::vector<std::uint8_t>& flags,
   mesh.positions.clear();
   mesh.triangles.clear();
   mesh.appearances.clear();
-  mesh.labels.clear();
+  mesh.columns.labels.clear();
   flags.clear();
   std::vector<std::uint32_t> number(target_.size());
   for (std::uint32_t v = 0; v < target_.size(); ++v) {
@@ -388,7 +388,7 @@ void CollapseQueue::copy_to(Mesh& mesh, std::vector<std::uint8_t>& flags,
       const Corner& c = fan.corners[i];
       if (c.next < v || c.prev < v) continue;
       mesh.triangles.push_back({number[v], number[c.next], number[c.prev]});
-      if (!fan.labels.empty()) mesh.labels.push_back(fan.labels[i]);
+      if (!fan.labels.empty()) mesh.columns.labels.push_back(fan.labels[i]);
     }
   }
 }

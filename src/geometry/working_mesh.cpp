@@ -16,10 +16,11 @@ WorkingMesh::WorkingMesh(Mesh mesh, const SimplifyOptions& options)
       type_(options.positions),
       seam_only_(!options.seam.empty()),
       appearance_scale_(options.lines.appearance_scale),
-      creases_(options.lines.crease_angle, options.lines.keep_labels && !mesh_.labels.empty()) {
+      creases_(options.lines.crease_angle,
+               options.lines.columns.labels && !mesh_.columns.labels.empty()) {
   check_input(mesh_, options);
   if (!(appearance_scale_.length > 0)) mesh_.appearances = {};
-  if (!options.lines.keep_labels) mesh_.labels = {};
+  mesh_.columns.keep({options.lines.columns.labels, false});
   Surface surface = clean_surface(mesh_, options, adjacency_);
   dropped_ = surface.dropped;
   flags_ = std::move(surface.flags);
@@ -57,7 +58,7 @@ std::vector<std::uint8_t> WorkingMesh::seam() const {
 
 void WorkingMesh::begin_pass() {
   if (!adjacency_is_current_) {
-    adjacency_.build(mesh_.triangles, mesh_.positions.size(), mesh_.labels);
+    adjacency_.build(mesh_.triangles, mesh_.positions.size(), mesh_.columns.labels);
   }
   creases_.update(mesh_, adjacency_, flags_);
   const std::size_t vertices = mesh_.positions.size();
@@ -104,13 +105,13 @@ void WorkingMesh::compact() {
     const Triangle t = mesh_.triangles[i];
     const Triangle now = {target_[t[0]], target_[t[1]], target_[t[2]]};
     mesh_.triangles[left] = now;
-    if (!mesh_.labels.empty()) mesh_.labels[left] = mesh_.labels[i];
+    mesh_.columns.move(i, left);
     const auto [a, b, c] = now;
     const bool is_left = (a != b) & (b != c) & (c != a);
     left += is_left ? 1 : 0;
   }
   mesh_.triangles.resize(left);
-  if (!mesh_.labels.empty()) mesh_.labels.resize(left);
+  mesh_.columns.resize(left);
 }
 
 void WorkingMesh::move_vertex(std::uint32_t from, std::uint32_t to) {

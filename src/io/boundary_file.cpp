@@ -2,8 +2,11 @@
 // SPDX-License-Identifier: MIT
 //
 // The boundary side file, kind "BNDY", version 1; the payload of a sealed file:
-//   triangles u64 | triangles x (3 x (part u32 | local index u32) | label u32, if all have one)
+//   triangles u64 | triangles x (3 x (part u32 | local index u32) | label u32, if all have one |
+//   texture coordinates 6 x f32, if all have them)
+// The size of a triangle tells what they have.
 #include <algorithm>
+#include <optional>
 #include <utility>
 
 #include <meshfarm/io/boundary_file.hpp>
@@ -11,26 +14,45 @@
 #include <meshfarm/util/bytes.hpp>
 #include <meshfarm/util/errors.hpp>
 
+#include "io/staged_positions.hpp"
+
 namespace meshfarm {
 namespace {
 
 constexpr FileKind k_kind = {'B', 'N', 'D', 'Y'};
 constexpr std::uint32_t k_version = 1;
 
-struct LabelledTriangle {
-  BoundaryTriangle triangle;
-  Label label = 0;
-};
+/// Of a file of so many bytes beside its count; nothing if its triangles are of no known size.
+std::optional<ColumnSet> columns_of(std::uint64_t count, std::uint64_t bytes) {
+  if (count == 0) return bytes == 0 ? std::optional<ColumnSet>(ColumnSet{}) : std::nullopt;
+  if (bytes % count != 0) return std::nullopt;
+  for (const ColumnSet set : {ColumnSet{}, {true, false}, {false, true}, {true, true}}) {
+    if (bytes / count == sizeof(BoundaryTriangle) + set.bytes()) return set;
+  }
+  return std::nullopt;
+}
+
+/// Reads triangles with their columns.
+void get_triangles(ByteReader& in, std::uint64_t count, const ColumnSet& set,
+                   std::vector<BoundaryTriangle>& triangles, TriangleColumns& columns) {
+  if (!set.any()) {
+    triangles = in.get_array<BoundaryTriangle>(count);
+    return;
+  }
+  for (std::uint64_t i = 0; i < count; ++i) {
+    triangles.push_back(in.get<BoundaryTriangle>());
+    get_columns(in, 1, set, columns);
+  }
+}
 
 }  // namespace
 
 std::uint64_t drop_duplicates(std::vector<BoundaryTriangle>& triangles) {
-  std::vector<Label> none;
+  TriangleColumns none;
   return drop_duplicates(triangles, none);
 }
 
-std::uint64_t drop_duplicates(std::vector<BoundaryTriangle>& triangles,
-                              std::vector<Label>& labels) {
+std::uint64_t drop_duplicates(std::vector<BoundaryTriangle>& triangles, TriangleColumns& columns) {
   std::vector<std::pair<BoundaryTriangle, std::size_t>> sorted;
   sorted.reserve(triangles.size());
   for (std::size_t i = 0; i < triangles.size(); ++i) {
@@ -43,81 +65,65 @@ std::uint64_t drop_duplicates(std::vector<BoundaryTriangle>& triangles,
   for (std::size_t i = 1; i < sorted.size(); ++i) {
     if (sorted[i].first == sorted[i - 1].first) duplicate[sorted[i].second] = true;
   }
-  const std::size_t before = triangles.size();
-  std::size_t index = 0;
-  std::erase_if(triangles, [&](const BoundaryTriangle&) { return duplicate[index++]; });
-  index = 0;
-  std::erase_if(labels, [&](Label) { return duplicate[index++]; });
-  return before - triangles.size();
+  return keep_triangles(triangles, columns, [&](std::size_t i) { return !duplicate[i]; });
 }
 
 std::string encode_boundary(const std::vector<BoundaryTriangle>& triangles,
-                            std::span<const Label> labels) {
+                            const TriangleColumnsView& columns) {
   ByteWriter out;
   out.put(static_cast<std::uint64_t>(triangles.size()));
-  if (labels.empty()) out.put_array(std::span<const BoundaryTriangle>(triangles));
-  for (std::size_t i = 0; i < labels.size(); ++i)
-    out.put(LabelledTriangle{triangles[i], labels[i]});
+  if (columns.empty()) {
+    out.put_array(std::span<const BoundaryTriangle>(triangles));
+    return seal(k_kind, k_version, out.bytes());
+  }
+  for (std::size_t i = 0; i < triangles.size(); ++i) {
+    out.put(triangles[i]);
+    put_columns(out, columns.part(i, 1));
+  }
   return seal(k_kind, k_version, out.bytes());
 }
 
 std::vector<BoundaryTriangle> decode_boundary(std::string_view file, std::string_view what) {
-  std::vector<Label> labels;
-  return decode_boundary(file, what, labels);
+  TriangleColumns columns;
+  return decode_boundary(file, what, columns);
 }
 
 std::vector<BoundaryTriangle> decode_boundary(std::string_view file, std::string_view what,
-                                              std::vector<Label>& labels) {
+                                              TriangleColumns& columns) {
   ByteReader in(unseal(file, k_kind, k_version, what), what);
-  labels.clear();
+  columns.clear();
   const auto count = in.get<std::uint64_t>();
-  if (in.remaining() / sizeof(LabelledTriangle) != count || count == 0) {
-    auto triangles = in.get_array<BoundaryTriangle>(count);
-    in.expect_end();
-    return triangles;
-  }
+  const std::optional<ColumnSet> set = columns_of(count, in.remaining());
+  if (!set) in.fail("another size than its count tells");
   std::vector<BoundaryTriangle> triangles;
-  for (const LabelledTriangle& each : in.get_array<LabelledTriangle>(count)) {
-    triangles.push_back(each.triangle);
-    labels.push_back(each.label);
-  }
-  in.expect_end();
+  get_triangles(in, count, *set, triangles, columns);
   return triangles;
 }
 
-namespace {
-
-/// Shows `count` items, some at a time.
-template <typename T, typename Show>
-void scan_items(const Fill& fill, std::uint64_t count, const Show& show) {
-  constexpr std::uint64_t k_at_once = 4096;
-  std::vector<T> some;
-  for (std::uint64_t left = count; left > 0; left -= some.size()) {
-    some.resize(std::min(k_at_once, left));
-    fill({reinterpret_cast<char*>(some.data()), some.size() * sizeof some[0]});
-    for (const T& item : some) show(item);
-  }
-}
-
-}  // namespace
-
 void scan_boundary(const Fill& fill, std::string_view what,
-                   const std::function<void(const BoundaryTriangle&, std::optional<Label>)>& show) {
+                   const std::function<void(std::span<const BoundaryTriangle>,
+                                            const TriangleColumnsView&)>& show) {
+  constexpr std::uint64_t k_at_once = 4096;
   std::string head(k_seal_head_bytes, '\0');
   fill(head);
   const std::uint64_t size = unseal_head(head, k_kind, k_version, what);
   std::uint64_t count = 0;
   fill({reinterpret_cast<char*>(&count), sizeof count});
-  const std::uint64_t bytes = size - sizeof count;
-  const auto holds = [&](std::uint64_t each) { return bytes % each == 0 && count == bytes / each; };
-  if (size >= sizeof count && holds(sizeof(BoundaryTriangle))) {
-    scan_items<BoundaryTriangle>(fill, count,
-                                 [&](const BoundaryTriangle& t) { show(t, std::nullopt); });
-  } else if (size >= sizeof count && holds(sizeof(LabelledTriangle))) {
-    scan_items<LabelledTriangle>(
-        fill, count, [&](const LabelledTriangle& each) { show(each.triangle, each.label); });
-  } else {
-    throw DataError(std::string(what) + ": another size than its count tells");
+  const std::optional<ColumnSet> set =
+      size < sizeof count ? std::nullopt : columns_of(count, size - sizeof count);
+  if (!set) throw DataError(std::string(what) + ": another size than its count tells");
+  std::string bytes;
+  std::vector<BoundaryTriangle> triangles;
+  TriangleColumns columns;
+  for (std::uint64_t left = count; left > 0; left -= triangles.size()) {
+    const std::uint64_t some = std::min(k_at_once, left);
+    bytes.resize(some * (sizeof(BoundaryTriangle) + set->bytes()));
+    fill(bytes);
+    ByteReader in(bytes, what);
+    triangles.clear();
+    columns.clear();
+    get_triangles(in, some, *set, triangles, columns);
+    show(triangles, columns);
   }
   std::uint64_t sum = 0;
   fill({reinterpret_cast<char*>(&sum), sizeof sum});

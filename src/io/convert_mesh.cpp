@@ -89,14 +89,14 @@ class Conversion {
       tell(batch.size());
       if (without_.empty()) return take(batch);
       kept_.clear();
-      kept_labels_.clear();
+      kept_columns_.clear();
       for (std::size_t i = 0; i < batch.size(); ++i) {
         if (without_.has_any_of(batch.corners[i])) continue;
         kept_.push_back(batch.corners[i]);
-        if (!batch.labels.empty()) kept_labels_.push_back(batch.labels[i]);
+        kept_columns_.append(batch.columns, i);
       }
       dropped_ += batch.size() - kept_.size();
-      take({kept_, kept_labels_});
+      take({kept_, kept_columns_});
     });
   }
 
@@ -113,7 +113,7 @@ class Conversion {
   Converted made_;
   WithoutPosition without_;
   std::vector<WideTriangle> kept_;  // of a batch
-  std::vector<Label> kept_labels_;  // of these
+  TriangleColumns kept_columns_;    // of these
   std::uint64_t dropped_ = 0;
   std::uint64_t done_ = 0;
 };

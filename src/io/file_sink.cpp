@@ -61,20 +61,20 @@ void FileSink::vertices(std::span<const Vec3> batch, std::span<const float> valu
 void FileSink::triangles(const TriangleView& batch) {
   check_count(vertices_, options_.vertices, "vertices");
   check_indices(batch);
-  check_labels(batch);
+  check_columns(batch);
   triangles_ = counted(triangles_, batch.size(), options_.triangles, "triangles");
   for (std::size_t first = 0; first < batch.size(); first += k_most_at_once) {
     put(batch.part(first, std::min(batch.size() - first, k_most_at_once)));
   }
 }
 
-void FileSink::triangles(std::span<const Triangle> batch, std::span<const Label> labels) {
+void FileSink::triangles(std::span<const Triangle> batch, const TriangleColumnsView& columns) {
   std::size_t first = 0;
   do {
     const std::size_t count = std::min(batch.size() - first, k_most_at_once);
     wide_.clear();
     for (const Triangle& t : batch.subspan(first, count)) wide_.push_back({t[0], t[1], t[2]});
-    triangles({wide_, labels.empty() ? labels : labels.subspan(first, count)});
+    triangles({wide_, columns.part(first, count)});
     first += count;
   } while (first < batch.size());
 }
@@ -108,13 +108,13 @@ void FileSink::check_indices(std::span<const WideTriangle> batch) const {
   }
 }
 
-void FileSink::check_labels(const TriangleView& batch) const {
-  if (batch.labels.size() != (options_.labels ? batch.size() : 0)) {
-    throw UsageError("each triangle needs a label, or none does");
+void FileSink::check_columns(const TriangleView& batch) const {
+  if (!batch.columns.fits({options_.labels.has_value(), options_.uvs}, batch.size())) {
+    throw UsageError("all triangles need the columns that were promised, and no others");
   }
   const std::size_t materials = options_.labels ? options_.labels->materials.size() : 0;
   if (materials == 0) return;
-  for (const Label label : batch.labels) {
+  for (const Label label : batch.columns.labels) {
     if (label < materials) continue;
     throw DataError(path_.string() + ": a triangle to be written has material " +
                     std::to_string(label) + " of " + std::to_string(materials));

@@ -25,12 +25,12 @@ class FileSink : public MeshSink {
   void vertices(std::span<const Vec3> batch) final;
   void vertices(std::span<const Vec3> batch, std::span<const float> values) final;
   void triangles(const TriangleView& batch) final;
-  void triangles(std::span<const Triangle> batch, std::span<const Label> labels) final;
+  void triangles(std::span<const Triangle> batch, const TriangleColumnsView& columns) final;
   void commit() final;
 
  protected:
   /// Of checked counts and indices, k_most_at_once at most.
-  /// Formats that have no place for the channels' values, or for labels, leave them out.
+  /// Formats that have no place for the channels' values, or for columns, leave them out.
   virtual void put(std::span<const Vec3> batch, std::span<const float> values) = 0;
   virtual void put(const TriangleView& batch) = 0;
   /// When all is put.
@@ -50,7 +50,7 @@ class FileSink : public MeshSink {
                         const char* what) const;
   void check_count(std::uint64_t written, std::uint64_t promised, const char* what) const;
   void check_indices(std::span<const WideTriangle> batch) const;
-  void check_labels(const TriangleView& batch) const;
+  void check_columns(const TriangleView& batch) const;
 
   std::filesystem::path path_;
   MeshSinkOptions options_;

@@ -7,7 +7,9 @@
 //   u8 | box 6 x f64 | input vertices u64 | input triangles u64 | coincident vertices u64 | dropped
 //   degenerate u64 | coincident corners u64 | dropped not finite u64 | dropped duplicate u64 |
 //   channels u32 x (name | type u8, its bytes | role u8), if any: file | points u64 |
-//   labels u8 0, or 1 | name | materials u32 x (name | colour 4 x f32) | label corners u64 |
+//   columns u8: 1 labels, 2 texture coordinates | of labels: name | materials u32 x (name | colour
+//   4 x f32 | with texture coordinates wrap u8 u8 | maps u32 x (use u8 | picture u32)) | label
+//   corners u64 | of texture coordinates: corners u64 | pictures u32 x (name | file) |
 //   skipped u32 x string | cut seconds f64 | boundary triangles u64 | boundary file | sorting |
 //   parts u32 x (file | vertices u64 | triangles u64 | boundary vertices u32) | samples u32 x the
 //   same: none, or one a part, its file's name empty where it has none sorting = u8 0: parts and
@@ -82,31 +84,91 @@ StagedChannels get_channels(ByteReader& in) {
   return staged;
 }
 
-void put_labels(ByteWriter& out, const std::optional<LabelMeaning>& labels) {
-  out.put(static_cast<std::uint8_t>(labels ? 1 : 0));
-  if (!labels) return;
-  out.put_string(labels->name);
-  out.put(static_cast<std::uint32_t>(labels->materials.size()));
-  for (const Material& material : labels->materials) {
-    out.put_string(material.name);
-    out.put(material.colour);
+constexpr std::uint8_t k_labels = 1;
+constexpr std::uint8_t k_uvs = 2;
+
+void put_material(ByteWriter& out, const Material& material, bool uvs) {
+  out.put_string(material.name);
+  out.put(material.colour);
+  if (!uvs) return;
+  out.put(material.wrap_u);
+  out.put(material.wrap_v);
+  out.put(static_cast<std::uint32_t>(material.maps.size()));
+  for (const MaterialMap& map : material.maps) {
+    out.put(map.use);
+    out.put(map.picture);
   }
 }
 
-std::optional<LabelMeaning> get_labels(ByteReader& in) {
-  const auto has_any = in.get<std::uint8_t>();
-  if (has_any > 1) in.fail("labels or none, but not this");
-  if (has_any == 0) return std::nullopt;
+Material get_material(ByteReader& in, bool uvs) {
+  Material material;
+  material.name = in.get_string();
+  material.colour = in.get<std::array<float, 4>>();
+  if (!uvs) return material;
+  material.wrap_u = in.get<TextureWrap>();
+  material.wrap_v = in.get<TextureWrap>();
+  if (std::max(material.wrap_u, material.wrap_v) > TextureWrap::clamp) in.fail("unknown wrapping");
+  const auto maps = in.get<std::uint32_t>();
+  for (std::uint32_t i = 0; i < maps; ++i) {
+    const auto use = in.get<MapUse>();
+    if (use > MapUse::emission) in.fail("a picture of no known use");
+    material.maps.push_back({use, in.get<std::uint32_t>()});
+  }
+  return material;
+}
+
+/// What triangles have beside their corners.
+void put_columns(ByteWriter& out, const Manifest& m) {
+  out.put(static_cast<std::uint8_t>((m.labels ? k_labels : 0) | (m.uvs ? k_uvs : 0)));
+  if (m.labels) {
+    out.put_string(m.labels->name);
+    out.put(static_cast<std::uint32_t>(m.labels->materials.size()));
+    for (const Material& material : m.labels->materials) put_material(out, material, m.uvs);
+  }
+  out.put(m.label_corners);
+  if (!m.uvs) return;
+  out.put(m.uv_corners);
+  out.put(static_cast<std::uint32_t>(m.pictures.size()));
+  for (const StagedPicture& picture : m.pictures) {
+    out.put_string(picture.name);
+    put_file(out, picture.file);
+  }
+}
+
+LabelMeaning get_labels(ByteReader& in, bool uvs) {
   LabelMeaning labels;
   labels.name = in.get_string();
   const auto count = in.get<std::uint32_t>();
-  for (std::uint32_t i = 0; i < count; ++i) {
-    Material material;
-    material.name = in.get_string();
-    material.colour = in.get<std::array<float, 4>>();
-    labels.materials.push_back(std::move(material));
-  }
+  for (std::uint32_t i = 0; i < count; ++i) labels.materials.push_back(get_material(in, uvs));
   return labels;
+}
+
+void get_pictures(ByteReader& in, Manifest& m) {
+  const auto count = in.get<std::uint32_t>();
+  for (std::uint32_t i = 0; i < count; ++i) {
+    StagedPicture picture;
+    picture.name = in.get_string();
+    picture.file = get_file(in);
+    check_name<PictureName>(in, picture.file);
+    m.pictures.push_back(std::move(picture));
+  }
+  if (!m.labels) return;
+  for (const Material& material : m.labels->materials) {
+    for (const MaterialMap& map : material.maps) {
+      if (map.picture >= m.pictures.size()) in.fail("a material with a picture that is not there");
+    }
+  }
+}
+
+void get_columns(ByteReader& in, Manifest& m) {
+  const auto columns = in.get<std::uint8_t>();
+  if (columns > (k_labels | k_uvs)) in.fail("unknown columns of triangles");
+  m.uvs = (columns & k_uvs) != 0;
+  if ((columns & k_labels) != 0) m.labels = get_labels(in, m.uvs);
+  m.label_corners = in.get<std::uint64_t>();
+  if (!m.uvs) return;
+  m.uv_corners = in.get<std::uint64_t>();
+  get_pictures(in, m);
 }
 
 void put_parts(ByteWriter& out, const std::vector<PartEntry>& parts) {
@@ -160,8 +222,7 @@ std::string encode_manifest(const Manifest& m) {
   out.put(m.dropped_not_finite);
   out.put(m.dropped_duplicate);
   put_channels(out, m.channels);
-  put_labels(out, m.labels);
-  out.put(m.label_corners);
+  put_columns(out, m);
   out.put(static_cast<std::uint32_t>(m.skipped.size()));
   for (const std::string& name : m.skipped) out.put_string(name);
   out.put(m.cut_seconds);
@@ -194,8 +255,7 @@ Manifest decode_manifest(std::string_view file, std::string_view what) {
   m.dropped_not_finite = in.get<std::uint64_t>();
   m.dropped_duplicate = in.get<std::uint64_t>();
   m.channels = get_channels(in);
-  m.labels = get_labels(in);
-  m.label_corners = in.get<std::uint64_t>();
+  get_columns(in, m);
   const auto skipped = in.get<std::uint32_t>();
   for (std::uint32_t i = 0; i < skipped; ++i) m.skipped.push_back(in.get_string());
   m.cut_seconds = in.get<double>();

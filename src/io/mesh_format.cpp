@@ -163,10 +163,11 @@ void write_mesh(const MeshOutput& output, const Mesh& mesh, PositionType positio
                           .comment = {},
                           .channels = channels,
                           .packing = output.packing};
-  if (!mesh.labels.empty()) options.labels = labels ? labels : LabelMeaning{"label", {}};
+  if (!mesh.columns.labels.empty()) options.labels = labels ? labels : LabelMeaning{"label", {}};
+  options.uvs = !mesh.columns.uvs.empty();
   const auto sink = create_mesh(output, options);
   sink->vertices(mesh.positions, values);
-  sink->triangles(mesh.triangles, mesh.labels);
+  sink->triangles(mesh.triangles, mesh.columns);
   sink->commit();
 }
 

@@ -23,10 +23,11 @@ std::uint32_t BoundaryNumbers::count() const {
 }
 
 std::uint64_t MeshShares::memory_for(std::uint64_t vertices, std::uint64_t triangles,
-                                     PositionType positions, bool appearances, bool labels) {
+                                     PositionType positions, bool appearances,
+                                     const ColumnSet& columns) {
   return vertices * (sizeof(SharePlace) + 3 * static_cast<std::uint64_t>(positions) +
                      (appearances ? sizeof(Appearance) : 0)) +
-         triangles * (k_packed_bytes + (labels ? sizeof(Label) : 0));
+         triangles * (k_packed_bytes + columns.bytes());
 }
 
 MeshShares::Memory::Memory(const Options& options) {
@@ -38,8 +39,10 @@ MeshShares::Memory::Memory(const Options& options) {
   left -= vertices;
   appearances = std::min(left, options.appearances ? sizeof(Appearance) * options.vertices : 0);
   left -= appearances;
-  labels = std::min(left, sizeof(Label) * options.labels);
-  triangles = left - labels;
+  labels = std::min(left, options.columns.labels ? sizeof(Label) * options.triangles : 0);
+  left -= labels;
+  uvs = std::min(left, options.columns.uvs ? sizeof(CornerUvs) * options.triangles : 0);
+  triangles = left - uvs;
 }
 
 MeshShares::MeshShares(const Options& options) : MeshShares(options, Memory(options)) {}
@@ -52,10 +55,11 @@ MeshShares::MeshShares(const Options& options, const Memory& memory)
                : MappedFile::scratch(options.folder, options.vertices * sizeof(SharePlace))),
       is_in_memory_(memory.map > 0),
       has_appearances_(options.appearances),
-      has_labels_(options.labels > 0),
+      columns_(options.columns),
       vertices_(options.folder, options.shares, memory.vertices),
       appearances_(options.folder, options.appearances ? options.shares : 0, memory.appearances),
-      labels_(options.folder, options.labels > 0 ? options.shares : 0, memory.labels),
+      labels_(options.folder, options.columns.labels ? options.shares : 0, memory.labels),
+      uvs_(options.folder, options.columns.uvs ? options.shares : 0, memory.uvs),
       triangles_(options.folder, options.shares, memory.triangles),
       packers_(options.shares),
       seams_(options.folder, options.shares),
@@ -137,10 +141,11 @@ void MeshShares::add_triangles(const TriangleView& triangles) {
       ++dropped_;
     } else if (a.share == b.share && b.share == c.share) {
       triangles_.append(a.share, packers_[a.share].pack({a.place, b.place, c.place}));
-      if (has_labels_) labels_.put(a.share, triangles.labels[i]);
+      if (columns_.labels) labels_.put(a.share, triangles.columns.labels[i]);
+      if (columns_.uvs) uvs_.put(a.share, triangles.columns.uvs[i]);
     } else {
       put_seam_triangle({a, b, c});
-      if (has_labels_) boundary_labels_.push_back(triangles.labels[i]);
+      boundary_columns_.append(triangles.columns, i);
     }
   }
   forget_pages(batch.size());
@@ -158,6 +163,7 @@ void MeshShares::put_seam_triangle(const SeamTriangle& t) {
 void MeshShares::finish() {
   triangles_.finish();
   labels_.finish();
+  uvs_.finish();
   seams_.finish();
   map_ = {};
 }
@@ -182,7 +188,8 @@ MeshShare MeshShares::read(std::uint32_t share, Weld weld) const {
   auto triangles = unpack_triangles({packed.data(), packed.size()});
   if (!triangles) throw Error("a share's triangles are not those that were put");
   read.triangles = std::move(*triangles);
-  if (has_labels_) read.labels = labels_.read<Label>(share);
+  if (columns_.labels) read.columns.labels = labels_.read<Label>(share);
+  if (columns_.uvs) read.columns.uvs = uvs_.read<CornerUvs>(share);
   const std::vector<SeamTriangle> outer = seam(share);
   for (const SeamTriangle& t : outer) {
     for (const SharePlace& corner : t) {
@@ -233,7 +240,7 @@ SharedTriangles MeshShares::boundary(std::span<const BoundaryNumbers> numbers) c
       ++made.degenerate;
     } else {
       made.triangles.push_back(corners);
-      if (has_labels_) made.labels.push_back(boundary_labels_[place]);
+      made.columns.append(boundary_columns_, place);
     }
   }
   return made;

@@ -31,7 +31,7 @@ Mesh read_mesh(MeshSource& source) {
     for (std::size_t i = 0; i < batch.size(); ++i) {
       const WideTriangle& triangle = batch.corners[i];
       if (std::any_of(triangle.begin(), triangle.end(), lacks)) continue;
-      if (!batch.labels.empty()) mesh.labels.push_back(batch.labels[i]);
+      mesh.columns.append(batch.columns, i);
       mesh.triangles.push_back({static_cast<std::uint32_t>(triangle[0]),
                                 static_cast<std::uint32_t>(triangle[1]),
                                 static_cast<std::uint32_t>(triangle[2])});

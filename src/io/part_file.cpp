@@ -4,7 +4,8 @@
 // A part, kind "PART", version 2; the payload of a sealed file:
 //   vertex format u8 (io/staged_positions.hpp) | boundary vertices u32 | vertices u64 | triangles
 //   u64 | positions, 3 numbers a vertex, boundary vertices first | appearances, 4 x u16 a vertex |
-//   labels, u32 a triangle | packed triangles (io/packed_triangles.hpp), up to the end
+//   labels, u32 a triangle | texture coordinates, 6 x f32 a triangle |
+//   packed triangles (io/packed_triangles.hpp), up to the end
 // Version 1 had triangles of 3 x u32.
 #include <utility>
 
@@ -26,13 +27,13 @@ constexpr std::uint32_t k_version = 2;
 std::string encode_part(const Part& part) {
   ByteWriter out;
   const VertexFormat format{part.positions, !part.mesh.appearances.empty(),
-                            !part.mesh.labels.empty()};
+                            part.mesh.columns.set()};
   put_vertex_format(out, format);
   out.put(part.boundary_vertices);
   out.put(static_cast<std::uint64_t>(part.mesh.positions.size()));
   out.put(static_cast<std::uint64_t>(part.mesh.triangles.size()));
   put_vertices(out, VertexView(part.mesh), format);
-  out.put_array(std::span<const Label>(part.mesh.labels));
+  put_columns(out, part.mesh.columns);
   TrianglePacker packer;
   for (const Triangle& t : part.mesh.triangles) out.put_array(std::span(packer.pack(t)));
   return seal(k_kind, k_version, out.bytes());
@@ -48,7 +49,7 @@ Part decode_part(std::string_view file, std::string_view what) {
   const auto triangles = in.get<std::uint64_t>();
   if (part.boundary_vertices > vertices) in.fail("more boundary vertices than vertices");
   get_vertices(in, vertices, format, part.mesh.positions, part.mesh.appearances);
-  if (format.labels) part.mesh.labels = in.get_array<Label>(triangles);
+  get_columns(in, triangles, format.columns, part.mesh.columns);
   auto unpacked = unpack_triangles(in.take(in.remaining()));
   if (!unpacked || unpacked->size() != triangles) in.fail("other triangles than promised");
   part.mesh.triangles = std::move(*unpacked);

@@ -130,7 +130,7 @@ class PlySink final : public FileSink {
         out += sizeof narrow;
       }
       if (label_bytes_ == 0) continue;
-      std::memcpy(out, &batch.labels[i], label_bytes_);  // its low bytes
+      std::memcpy(out, &batch.columns.labels[i], label_bytes_);  // its low bytes
       out += label_bytes_;
     }
     write_up_to(out);

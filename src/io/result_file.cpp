@@ -7,13 +7,13 @@
 //   head    = "MFRM" | "RSLT" | version u32 | byte order u32 0x01020304 | vertex format u8 |
 //             boundary vertices u32
 //   rung    = blocks | 2 u8
-//   block   = 1 u8 | vertices u32 | triangles u32 | vertices | triangles x 3 x u32 | labels
+//   block   = 1 u8 | vertices u32 | triangles u32 | vertices | triangles x 3 x u32 | columns
 //   tail    = the boundary vertices | sets u32 | sets x samples |
 //             rungs u32 | rungs x (level i32 | vertices u64 | triangles u64 | free triangles u64 |
 //             error f64)
 //   samples = area f64 | points u32 | points, 3 numbers each, of the part's surface
-// Vertices are their positions, then their appearances, 4 x u16 each, if the format says so, and
-// labels u32 a triangle.
+// Vertices are their positions, then their appearances, 4 x u16 each, if the format says so.
+// Columns are labels, u32 a triangle, then texture coordinates, 6 x f32 a triangle, if it says so.
 // A rung's vertices are the boundary vertices, then those of its blocks. Of a block's vertices
 // there are at most 65536, and as many triangles.
 //   Version 2. Version 1 was sealed, with the counts in front and one set of samples.
@@ -145,16 +145,14 @@ class ResultReader {
     counts_.vertices += vertices;
     counts_.triangles += triangles;
     bytes_.resize(vertices * format_.bytes() +
-                  triangles * (sizeof(Triangle) + (format_.labels ? sizeof(Label) : 0)));
+                  triangles * (sizeof(Triangle) + format_.columns.bytes()));
     take();
     if (!is_wanted) return;
     ByteReader in(bytes_, what_);
     get_vertices(in, vertices, format_, inner_.positions, inner_.appearances);
     const auto corners = in.get_array<Triangle>(triangles);
     result_.mesh.triangles.insert(result_.mesh.triangles.end(), corners.begin(), corners.end());
-    if (!format_.labels) return;
-    const auto labels = in.get_array<Label>(triangles);
-    result_.mesh.labels.insert(result_.mesh.labels.end(), labels.begin(), labels.end());
+    get_columns(in, triangles, format_.columns, result_.mesh.columns);
   }
 
   std::vector<Vec3> read_points(std::uint32_t count) {
@@ -265,7 +263,7 @@ ResultWriter::ResultWriter(const Vertices& vertices, Write write)
   out.put(k_kind);
   out.put(k_version);
   out.put(k_byte_order);
-  put_vertex_format(out, {vertices_.positions, vertices_.appearances, vertices_.labels});
+  put_vertex_format(out, {vertices_.positions, vertices_.appearances, vertices_.columns});
   out.put(vertices_.boundary);
   put(out.bytes());
 }
@@ -276,13 +274,13 @@ void ResultWriter::put(std::string_view bytes) {
 }
 
 void ResultWriter::add(VertexView vertices, std::span<const Triangle> triangles,
-                       std::span<const Label> labels) {
-  if (labels.size() != (vertices_.labels ? triangles.size() : 0)) {
-    throw Error("triangles without the labels that their file promises");
+                       const TriangleColumnsView& columns) {
+  if (!columns.fits(vertices_.columns, triangles.size())) {
+    throw Error("triangles without the columns that their file promises");
   }
   rung_.vertices += vertices.size();
   rung_.triangles += triangles.size();
-  while (vertices.size() > 0 || !triangles.empty()) {
+  for (std::size_t done = 0; vertices.size() > 0 || !triangles.empty();) {
     const std::size_t points = std::min<std::size_t>(vertices.size(), k_most_in_block);
     const std::size_t corners = std::min<std::size_t>(triangles.size(), k_most_in_block);
     ByteWriter out;
@@ -291,10 +289,8 @@ void ResultWriter::add(VertexView vertices, std::span<const Triangle> triangles,
     out.put(static_cast<std::uint32_t>(corners));
     put_vertices(out, vertices.part(0, points), {vertices_.positions, vertices_.appearances});
     out.put_array(triangles.first(corners));
-    if (vertices_.labels) {
-      out.put_array(labels.first(corners));
-      labels = labels.subspan(corners);
-    }
+    put_columns(out, columns.part(done, corners));
+    done += corners;
     put(out.bytes());
     vertices = vertices.part(points);
     triangles = triangles.subspan(corners);
@@ -310,7 +306,7 @@ void ResultWriter::end_rung(std::int32_t level, std::uint64_t free_triangles, do
 
 void ResultWriter::add_rung(std::int32_t level, const Mesh& mesh, std::uint64_t free_triangles,
                             double error) {
-  add(VertexView(mesh).part(vertices_.boundary), mesh.triangles, mesh.labels);
+  add(VertexView(mesh).part(vertices_.boundary), mesh.triangles, mesh.columns);
   end_rung(level, free_triangles, error);
 }
 

@@ -5,7 +5,7 @@
 //   vertex format u8 (io/staged_positions.hpp) | vertices u64 | boundary vertices u64 | triangles
 //   u64 | vertices apart u64 | positions, 3 numbers a vertex | appearances, 4 x u16 a vertex |
 //   boundary vertices u32, ascending | vertices apart, each vertex u32 and sheet u32, ascending |
-//   labels, u32 a triangle, if the format says so |
+//   labels, u32 a triangle, and texture coordinates, 6 x f32, if the format says so |
 //   packed triangles (io/packed_triangles.hpp), up to the end
 // Version 1 had no vertices apart.
 #include <utility>
@@ -45,10 +45,10 @@ void check_apart(const ByteReader& in, const MeshShare& slab) {
 std::string encode_slab(const MeshShare& slab) {
   constexpr std::uint64_t k_usual_triangle = 8;  // bytes
   ByteWriter out;
-  const VertexFormat format{slab.type, !slab.appearances.empty(), !slab.labels.empty()};
+  const VertexFormat format{slab.type, !slab.appearances.empty(), slab.columns.set()};
   out.reserve(64 + format.bytes() * slab.positions.size() +
-              sizeof(std::uint32_t) * slab.boundary.size() + sizeof(Label) * slab.labels.size() +
-              k_usual_triangle * slab.triangles.size());
+              sizeof(std::uint32_t) * slab.boundary.size() +
+              (format.columns.bytes() + k_usual_triangle) * slab.triangles.size());
   put_vertex_format(out, format);
   out.put(static_cast<std::uint64_t>(slab.positions.size()));
   out.put(static_cast<std::uint64_t>(slab.boundary.size()));
@@ -57,7 +57,7 @@ std::string encode_slab(const MeshShare& slab) {
   put_vertices(out, {slab.positions, slab.appearances}, format);
   out.put_array(std::span<const std::uint32_t>(slab.boundary));
   out.put_array(std::span<const ApartVertex>(slab.apart));
-  out.put_array(std::span<const Label>(slab.labels));
+  put_columns(out, slab.columns);
   TrianglePacker packer;
   for (const Triangle& t : slab.triangles) out.put_array(std::span(packer.pack(t)));
   return seal(k_kind, k_version, out.bytes());
@@ -80,7 +80,7 @@ MeshShare decode_slab(std::string_view file, std::string_view what) {
   }
   slab.apart = in.get_array<ApartVertex>(apart);
   check_apart(in, slab);
-  if (format.labels) slab.labels = in.get_array<Label>(triangles);
+  get_columns(in, triangles, format.columns, slab.columns);
   auto unpacked = unpack_triangles(in.take(in.remaining()));
   if (!unpacked || unpacked->size() != triangles) in.fail("other triangles than promised");
   slab.triangles = std::move(*unpacked);

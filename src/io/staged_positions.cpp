@@ -13,6 +13,7 @@ namespace {
 
 constexpr std::uint8_t k_appearances = 16;
 constexpr std::uint8_t k_labels = 32;
+constexpr std::uint8_t k_uvs = 64;
 
 }  // namespace
 
@@ -68,15 +69,15 @@ std::size_t VertexFormat::bytes() const {
 
 void put_vertex_format(ByteWriter& out, VertexFormat format) {
   const int byte = static_cast<int>(format.positions) + (format.appearances ? k_appearances : 0) +
-                   (format.labels ? k_labels : 0);
+                   (format.columns.labels ? k_labels : 0) + (format.columns.uvs ? k_uvs : 0);
   out.put(static_cast<std::uint8_t>(byte));
 }
 
 std::optional<VertexFormat> vertex_format_of(std::uint8_t byte) {
   VertexFormat format;
   format.appearances = (byte & k_appearances) != 0;
-  format.labels = (byte & k_labels) != 0;
-  format.positions = static_cast<PositionType>(byte & ~(k_appearances | k_labels));
+  format.columns = {(byte & k_labels) != 0, (byte & k_uvs) != 0};
+  format.positions = static_cast<PositionType>(byte & ~(k_appearances | k_labels | k_uvs));
   if (format.positions != PositionType::float32 && format.positions != PositionType::float64) {
     return std::nullopt;
   }
@@ -87,6 +88,24 @@ VertexFormat get_vertex_format(ByteReader& in) {
   const std::optional<VertexFormat> format = vertex_format_of(in.get<std::uint8_t>());
   if (!format) in.fail("unknown kind of positions");
   return *format;
+}
+
+void put_columns(ByteWriter& out, const TriangleColumnsView& columns) {
+  out.put_array(columns.labels);
+  out.put_array(columns.uvs);
+}
+
+void get_columns(ByteReader& in, std::uint64_t triangles, const ColumnSet& set,
+                 TriangleColumns& columns) {
+  TriangleColumns more;
+  if (set.labels) more.labels = in.get_array<Label>(triangles);
+  if (set.uvs) more.uvs = in.get_array<CornerUvs>(triangles);
+  for (const CornerUvs& corners : more.uvs) {
+    for (const auto& [u, v] : corners) {
+      if (!std::isfinite(u) || !std::isfinite(v)) in.fail("impossible texture coordinates");
+    }
+  }
+  columns.append(more);
 }
 
 void put_vertices(ByteWriter& out, const VertexView& vertices, VertexFormat format) {

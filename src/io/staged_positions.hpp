@@ -24,17 +24,23 @@ std::vector<Vec3> get_positions(ByteReader& in, std::uint64_t count, PositionTyp
 PositionType get_position_type(ByteReader& in);
 
 /// What is kept of a mesh: a byte, 4 or 8 for the type of the positions, 16 more if vertices have
-/// appearances, and 32 more if triangles have labels.
+/// appearances, 32 more if triangles have labels, and 64 more if they have texture coordinates.
 struct VertexFormat {
   PositionType positions = PositionType::float32;
   bool appearances = false;
-  bool labels = false;
+  ColumnSet columns = {};     // of the triangles
   std::size_t bytes() const;  // of one vertex
 };
 void put_vertex_format(ByteWriter& out, VertexFormat format);
 VertexFormat get_vertex_format(ByteReader& in);
 /// Nothing of a byte that is none.
 std::optional<VertexFormat> vertex_format_of(std::uint8_t byte);
+
+/// All labels, u32 each, then all texture coordinates, 6 x f32 each.
+void put_columns(ByteWriter& out, const TriangleColumnsView& columns);
+/// Appends them. Fails for texture coordinates that are not finite.
+void get_columns(ByteReader& in, std::uint64_t triangles, const ColumnSet& set,
+                 TriangleColumns& columns);
 
 /// All positions, then all appearances.
 void put_vertices(ByteWriter& out, const VertexView& vertices, VertexFormat format);

@@ -8,8 +8,8 @@
 //   block  = vertices u32 | boundary vertices u32 | triangles u32 | positions, 3 numbers a vertex |
 //            appearances, 4 x u16 a vertex, if the format says so | boundary vertices, ascending,
 //            u32: 2 x place among the block's vertices, + 1 if no triangle uses it | triangles x 3
-//            x u32: 2 x vertex, + 1 at its last use | labels, u32 a triangle, if the format says so
-//            | sum
+//            x u32: 2 x vertex, + 1 at its last use | labels, u32 a triangle, and texture
+//            coordinates, 6 x f32, if the format says so | sum
 //   sum    = xxh3-64 of the sum before it (none in the head) and what stands between the two
 // Of a block's vertices there are at most 65536, and as many triangles; it is never empty. Every
 // vertex is finalised once: where it comes if no triangle uses it, else at its last use.
@@ -51,14 +51,14 @@ std::uint64_t next_sum(std::uint64_t sum, std::string_view piece) {
 }
 
 std::size_t triangle_bytes(const VertexFormat& format) {
-  return sizeof(Triangle) + (format.labels ? sizeof(Label) : 0);
+  return sizeof(Triangle) + format.columns.bytes();
 }
 
 class StreamEncoder {
  public:
   explicit StreamEncoder(const StreamMesh& stream)
       : stream_(stream),
-        format_{stream.positions, !stream.mesh.appearances.empty(), !stream.mesh.labels.empty()},
+        format_{stream.positions, !stream.mesh.appearances.empty(), stream.mesh.columns.set()},
         triangles_(stream.mesh.triangles) {
     if (stream.mesh.positions.size() >= k_most_vertices) {
       throw UsageError("a stream would have 2^31 vertices or more; ask for more of them");
@@ -153,9 +153,8 @@ class StreamEncoder {
     put_vertices(out, all.part(vertices_, end_vertex - vertices_), format_);
     out.put_array(std::span<const std::uint32_t>(boundary));
     out.put_array(std::span<const Triangle>(codes_).subspan(first, end - first));
-    if (format_.labels) {
-      out.put_array(std::span<const Label>(stream_.mesh.labels).subspan(first, end - first));
-    }
+    const TriangleColumnsView columns = stream_.mesh.columns;
+    put_columns(out, columns.part(first, end - first));
     sum_ = next_sum(sum_, out.bytes());
     out.put(sum_);
     file_ += out.bytes();
@@ -199,7 +198,7 @@ void StreamReader::read_head() {
   const VertexFormat format = get_vertex_format(in);
   info_.positions = format.positions;
   info_.appearances = format.appearances;
-  info_.labels = format.labels;
+  info_.columns = format.columns;
   info_.boundary_vertices = in.get<std::uint32_t>();
   info_.vertices = in.get<std::uint64_t>();
   info_.triangles = in.get<std::uint64_t>();
@@ -224,7 +223,7 @@ bool StreamReader::next(StreamBlock& block) {
   if (vertices > info_.vertices - vertices_ || triangles > info_.triangles - triangles_) {
     fail("more than the head of the stream says");
   }
-  const VertexFormat format{info_.positions, info_.appearances, info_.labels};
+  const VertexFormat format{info_.positions, info_.appearances, info_.columns};
   const std::size_t size = k_block_head_bytes + vertices * format.bytes() +
                            boundary * sizeof(std::uint32_t) + triangles * triangle_bytes(format);
   bytes_.resize(size + k_sum_bytes);
@@ -240,7 +239,8 @@ bool StreamReader::next(StreamBlock& block) {
   get_vertices(in, vertices, format, block.positions, block.appearances);
   block.boundary = in.get_array<StreamCorner>(boundary);
   block.triangles = in.get_array<std::array<StreamCorner, 3>>(triangles);
-  block.labels = in.get_array<Label>(info_.labels ? triangles : 0);
+  block.columns.clear();
+  get_columns(in, triangles, format.columns, block.columns);
   add_vertices(block);
   for (std::size_t i = 0; i < block.triangles.size(); ++i) finish_corners(block.triangles[i], i);
   ++block_;
@@ -320,7 +320,7 @@ StreamMesh read_stream_mesh(StreamReader& reader) {
     for (const auto& [a, b, c] : block.triangles) {
       stream.mesh.triangles.push_back({a.vertex(), b.vertex(), c.vertex()});
     }
-    stream.mesh.labels.insert(stream.mesh.labels.end(), block.labels.begin(), block.labels.end());
+    stream.mesh.columns.append(block.columns);
   }
   return stream;
 }
@@ -352,7 +352,7 @@ Part read_stream(StreamReader& reader) {
     for (const auto& [a, b, c] : block.triangles) {
       part.mesh.triangles.push_back({number[a.vertex()], number[b.vertex()], number[c.vertex()]});
     }
-    part.mesh.labels.insert(part.mesh.labels.end(), block.labels.begin(), block.labels.end());
+    part.mesh.columns.append(block.columns);
   }
   return part;
 }

@@ -77,7 +77,7 @@ class TextSink final : public FileSink {
 
   void put(const TriangleView& batch) override {
     for (std::size_t i = 0; i < batch.size(); ++i) {
-      if (labels_) add_statement(batch.labels[i]);
+      if (labels_) add_statement(batch.columns.labels[i]);
       begin_line(form_.before_triangle);
       for (const std::uint64_t index : batch.corners[i]) {
         out_ = std::to_chars(out_, out_ + k_longest_coordinate, index + form_.first_index).ptr;

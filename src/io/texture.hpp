@@ -14,12 +14,11 @@
 #include <cstdint>
 #include <optional>
 
+#include <meshfarm/io/labels.hpp>
+
 #include "picture.hpp"
 
 namespace meshfarm {
-
-/// What a texture shows beyond its sides.
-enum class TextureWrap : std::uint8_t { repeat, mirror, clamp };
 
 /// A place on a texture: 0 to 1 from the left, and from the top.
 struct TexturePoint {

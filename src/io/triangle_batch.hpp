@@ -48,7 +48,8 @@ class TriangleBatch {
   }
   void flush() {
     if (!labels_.empty()) fill_labels();
-    if (size_ > 0) take_({std::span(triangles_).first(size_), std::span(labels_).first(labelled_)});
+    if (size_ > 0)
+      take_({std::span(triangles_).first(size_), {std::span(labels_).first(labelled_), {}}});
     size_ = 0;
     labelled_ = 0;
   }

@@ -119,15 +119,15 @@ class Cutter {
   }
 
   void distribute_vertices() {
-    const bool has_labels = source_.info().labels.has_value();
+    const ColumnSet columns = source_.info().columns();
     const std::uint64_t faces = std::max<std::uint64_t>(source_.info().faces, 1);
     const std::uint64_t all = MeshShares::memory_for(
-        manifest_.input_vertices, faces, manifest_.positions, has_appearances(source_), has_labels);
+        manifest_.input_vertices, faces, manifest_.positions, has_appearances(source_), columns);
     const std::uint64_t memory = all <= k_memory_bytes ? all : 0;
-    shares_ = std::make_unique<MeshShares>(MeshShares::Options{
-        scratch_folder(options_.scratch, stage_.root(), all - memory), parts_,
-        manifest_.input_vertices, manifest_.positions, memory, MeshShares::SeamsFor::all,
-        has_appearances(source_), has_labels ? faces : 0});
+    shares_ = std::make_unique<MeshShares>(
+        MeshShares::Options{scratch_folder(options_.scratch, stage_.root(), all - memory), parts_,
+                            manifest_.input_vertices, manifest_.positions, memory,
+                            MeshShares::SeamsFor::all, has_appearances(source_), columns, faces});
     std::vector<std::uint32_t> parts;
     std::vector<std::uint32_t> points;
     const std::span<const Cell> cells = cells_->cells();
@@ -171,7 +171,7 @@ class Cutter {
           build_part(shares_->read(number, options_.weld), manifest_.positions, options_.weld);
       const Mesh& mesh = built.part.mesh;
       const std::uint64_t corners =
-          count_label_corners(mesh.triangles, mesh.labels, mesh.positions.size());
+          count_label_corners(mesh.triangles, mesh.columns.labels, mesh.positions.size());
       PartEntry entry;
       entry.vertices = built.part.mesh.positions.size();
       entry.triangles = built.part.mesh.triangles.size();
@@ -195,9 +195,9 @@ class Cutter {
     std::vector<BoundaryTriangle>& triangles = shared.triangles;
     manifest_.dropped_degenerate += shared.degenerate;
     manifest_.coincident_corners += shared.coincident;
-    manifest_.dropped_duplicate = drop_duplicates(triangles, shared.labels);
+    manifest_.dropped_duplicate = drop_duplicates(triangles, shared.columns);
     manifest_.boundary_triangles = triangles.size();
-    manifest_.boundary = stage_.publish(BoundaryName{}, encode_boundary(triangles, shared.labels));
+    manifest_.boundary = stage_.publish(BoundaryName{}, encode_boundary(triangles, shared.columns));
     manifest_.labels = source_.info().labels;
   }
 

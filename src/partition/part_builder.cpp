@@ -72,7 +72,7 @@ BuiltPart build_part(MeshShare raw, PositionType positions, Weld weld_mode) {
   }
   Mesh& mesh = built.part.mesh;
   mesh.triangles = std::move(raw.triangles);
-  mesh.labels = std::move(raw.labels);
+  mesh.columns = std::move(raw.columns);
   built.dropped_degenerate = merge_corners(mesh, representative);
   if (weld_mode == Weld::off) built.coincident_corners = built.dropped_degenerate;
 

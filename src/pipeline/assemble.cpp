@@ -135,11 +135,11 @@ class Assembly {
       }
       tell("stitch", static_cast<double>(p) / static_cast<double>(chosen.size()), 0);
     }
-    std::vector<Label> labels;
+    TriangleColumns columns;
     const auto boundary =
-        decode_boundary(stage_.read(manifest_.boundary), manifest_.boundary.name, labels);
-    if (!lines_.keep_labels) labels.clear();
-    StitchedMesh stitched = stitcher.finish(boundary, labels);
+        decode_boundary(stage_.read(manifest_.boundary), manifest_.boundary.name, columns);
+    columns.keep(lines_.columns);
+    StitchedMesh stitched = stitcher.finish(boundary, columns);
     samples.push_back(samples_of_boundary(stitched.mesh, stitched.boundary_triangles));
     return stitched;
   }
@@ -326,7 +326,7 @@ class Assembly {
     if (run_.lines.topology == TopologyMode::keep) kept += "changing the topology, ";
     if (run_.lines.preserve_border) kept += "moving the borders, ";
     if (run_.lines.crease_angle > 0) kept += "moving the creases, ";
-    if (lines_.keep_labels) kept += "moving the lines between labels, ";
+    if (lines_.columns.labels) kept += "moving the lines between labels, ";
     return "nothing more can be collapsed without " + kept +
            "turning a triangle over or making one of no area";
   }

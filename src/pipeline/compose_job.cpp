@@ -39,7 +39,7 @@ class Composer {
   JobOutput run() {
     for (std::size_t i = 0; i < job_.inputs.size(); ++i) add(i);
     const Seams seams = read_seams();
-    StitchedMesh stitched = stitcher_.finish(seams.triangles, seams.labels);
+    StitchedMesh stitched = stitcher_.finish(seams.triangles, seams.columns);
     sample_seams(stitched);
     const auto locked = static_cast<std::uint32_t>(stitched.open.size());
     Simplifier simplifier(
@@ -58,10 +58,10 @@ class Composer {
     std::move(result.samples.begin(), result.samples.end(), std::back_inserter(samples_));
   }
 
-  /// The boundary triangles that touch the group, and their labels if they have any.
+  /// The boundary triangles that touch the group.
   struct Seams {
     std::vector<BoundaryTriangle> triangles;
-    std::vector<Label> labels;
+    TriangleColumns columns;
   };
   Seams read_seams() const {
     Seams seams;
@@ -70,13 +70,17 @@ class Composer {
     };
     StagedReader file(context_.stage, parameters_.boundary);
     const auto fill = [&](std::span<char> buffer) { file.fill(buffer); };
-    scan_boundary(fill, parameters_.boundary.name,
-                  [&](const BoundaryTriangle& t, std::optional<Label> label) {
-                    if (std::none_of(t.begin(), t.end(), is_ours)) return;
-                    seams.triangles.push_back(t);
-                    if (label && parameters_.lines.keep_labels) seams.labels.push_back(*label);
-                  });
+    const auto take = [&](std::span<const BoundaryTriangle> some,
+                          const TriangleColumnsView& columns) {
+      for (std::size_t i = 0; i < some.size(); ++i) {
+        if (std::none_of(some[i].begin(), some[i].end(), is_ours)) continue;
+        seams.triangles.push_back(some[i]);
+        seams.columns.append(columns, i);
+      }
+    };
+    scan_boundary(fill, parameters_.boundary.name, take);
     file.expect_end();
+    seams.columns.keep(parameters_.lines.columns);
     return seams;
   }
 
@@ -108,7 +112,7 @@ class Composer {
     }
     for (std::uint32_t i = 0; i < stitched.open.size(); ++i) number[stitched.open[i]] = i;
     mesh.triangles = std::move(from.triangles);
-    mesh.labels = std::move(from.labels);
+    mesh.columns = std::move(from.columns);
     for (Triangle& t : mesh.triangles) t = {number[t[0]], number[t[1]], number[t[2]]};
     return mesh;
   }
@@ -127,7 +131,7 @@ class Composer {
   JobOutput write(const Simplifier& simplifier, std::uint32_t locked) const {
     std::string file;
     const Mesh& mesh = simplifier.mesh();
-    ResultWriter result({positions_, !mesh.appearances.empty(), locked, !mesh.labels.empty()},
+    ResultWriter result({positions_, !mesh.appearances.empty(), locked, mesh.columns.set()},
                         [&](std::string_view bytes) { file += bytes; });
     result.add_rung(parameters_.level, mesh, simplifier.free_triangles());
     result.finish(VertexView(mesh).part(0, locked), samples_);

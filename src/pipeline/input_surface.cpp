@@ -127,11 +127,13 @@ void InputSurface::show_between(const Wants& wants, const Show& show) const {
   StagedReader bytes(stage_, manifest_.boundary);
   const auto fill = [&](std::span<char> buffer) { bytes.fill(buffer); };
   scan_boundary(fill, manifest_.boundary.name,
-                [&](const BoundaryTriangle& t, std::optional<Label>) {
-                  const auto first = static_cast<std::uint32_t>(some.positions.size());
-                  for (const BoundaryCorner& each : t) some.positions.push_back(corner(each));
-                  some.triangles.push_back({first, first + 1, first + 2});
-                  if (some.triangles.size() == k_between_at_once) flush();
+                [&](std::span<const BoundaryTriangle> triangles, const TriangleColumnsView&) {
+                  for (const BoundaryTriangle& t : triangles) {
+                    const auto first = static_cast<std::uint32_t>(some.positions.size());
+                    for (const BoundaryCorner& each : t) some.positions.push_back(corner(each));
+                    some.triangles.push_back({first, first + 1, first + 2});
+                    if (some.triangles.size() == k_between_at_once) flush();
+                  }
                 });
   bytes.expect_end();
   flush();

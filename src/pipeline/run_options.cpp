@@ -19,6 +19,10 @@ double steepest_of(double colour_weight) {
   return AppearanceScale{}.steepest * relative * std::sqrt(relative);
 }
 
+// Of the columns that lines keep.
+constexpr std::uint8_t k_labels = 1;
+constexpr std::uint8_t k_uvs = 2;
+
 }  // namespace
 
 std::uint64_t target_triangles(const Manifest& manifest, const RunOptions& options) {
@@ -60,7 +64,7 @@ std::optional<LabelMeaning> chosen_labels(const Manifest& manifest, const RunOpt
 
 LineOptions lines_of(const Manifest& manifest, const RunOptions& options) {
   LineOptions lines = options.lines;
-  lines.keep_labels = chosen_labels(manifest, options).has_value();
+  lines.columns.labels = chosen_labels(manifest, options).has_value();
   const double length = options.colour_weight * manifest.box.diagonal();
   const std::vector<Channel> chosen =
       channels_at(manifest.channels.channels, chosen_columns(manifest, options));
@@ -76,7 +80,7 @@ std::uint64_t memory_of_channels(const LineOptions& lines, std::uint64_t triangl
   const std::uint64_t of_vertices =
       lines.appearance_scale.length > 0 ? k_copies * sizeof(Appearance) / 2 : 0;
   // Those at the corners of the triangles, too.
-  const std::uint64_t of_triangles = lines.keep_labels ? (k_copies + 3) * sizeof(Label) : 0;
+  const std::uint64_t of_triangles = (k_copies + 3) * lines.columns.bytes();
   return (of_vertices + of_triangles) * triangles;
 }
 
@@ -86,7 +90,8 @@ void put(ByteWriter& out, const LineOptions& lines) {
   out.put(lines.topology);
   out.put(lines.appearance_scale.length);
   out.put(lines.appearance_scale.steepest);
-  out.put(static_cast<std::uint8_t>(lines.keep_labels ? 1 : 0));
+  out.put(static_cast<std::uint8_t>((lines.columns.labels ? k_labels : 0) |
+                                    (lines.columns.uvs ? k_uvs : 0)));
 }
 
 LineOptions get_lines(ByteReader& in) {
@@ -105,9 +110,9 @@ LineOptions get_lines(ByteReader& in) {
   if (!is_weight(scale.length) || !is_weight(scale.steepest)) {
     in.fail("impossible weight of appearances");
   }
-  const auto keep_labels = in.get<std::uint8_t>();
-  if (keep_labels > 1) in.fail("impossible options of labels");
-  lines.keep_labels = keep_labels == 1;
+  const auto columns = in.get<std::uint8_t>();
+  if (columns > (k_labels | k_uvs)) in.fail("impossible columns of triangles");
+  lines.columns = {(columns & k_labels) != 0, (columns & k_uvs) != 0};
   return lines;
 }
 

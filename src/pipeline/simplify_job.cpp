@@ -175,7 +175,7 @@ JobOutput simplify_part(const Job& job, const JobContext& context) {
   const SimplifyParameters parameters = decode_parameters(job.parameters);
   Part part = read_part(context, job.inputs[0]);
   if (!(parameters.lines.appearance_scale.length > 0)) part.mesh.appearances = {};
-  if (!parameters.lines.keep_labels) part.mesh.labels = {};
+  part.mesh.columns.keep(parameters.lines.columns);
   const ResultName name{key_of(job).value, context.attempt, context.incarnation};
   if (parameters.max_error > 0) {
     const BoundedPart bounded = simplify_to_bound(std::move(part), parameters, context);

@@ -55,7 +55,7 @@ SortPlan::SortPlan(Manifest manifest, std::span<const AcceptedJob> accepted)
 std::vector<Job> SortPlan::sort_jobs() const {
   std::vector<Job> jobs;
   const std::uint64_t bytes_per_triangle = slab_bytes_per_triangle(
-      !AppearanceColumns(manifest_.channels.channels).empty(), manifest_.labels.has_value());
+      !AppearanceColumns(manifest_.channels.channels).empty(), manifest_.columns());
   for (const PartEntry& slab : manifest_.parts) {
     jobs.push_back({std::string(k_sort_kind),
                     {slab.file},

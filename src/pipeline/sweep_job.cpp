@@ -58,11 +58,11 @@ class SweepToFile {
     result_.emplace(
         ResultWriter::Vertices{
             info.positions, info.appearances && parameters_.lines.appearance_scale.length > 0,
-            info.boundary_vertices, info.labels && parameters_.lines.keep_labels},
+            info.boundary_vertices, info.columns.and_in(parameters_.lines.columns)},
         [this](std::string_view bytes) { file_->write(bytes); });
     swept_ =
-        sweep(reader, options, [this](const VertexView& vertices, auto triangles, auto labels) {
-          result_->add(vertices, triangles, labels);
+        sweep(reader, options, [this](const VertexView& vertices, auto triangles, auto columns) {
+          result_->add(vertices, triangles, columns);
         });
   }
 

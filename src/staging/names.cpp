@@ -20,6 +20,9 @@ struct Printer {
   std::string operator()(CutName) const { return "cut"; }
   std::string operator()(ChannelsName) const { return "channels"; }
   std::string operator()(PartName n) const { return "parts/" + six_digits(n.part) + ".part"; }
+  std::string operator()(PictureName n) const {
+    return "parts/" + six_digits(n.picture) + ".picture";
+  }
   std::string operator()(StreamName n) const {
     return "streams/" + six_digits(n.stream) + ".stream";
   }
@@ -68,8 +71,10 @@ std::optional<StagedName> scan(std::string_view text) {
   if (text == "cut") return CutName{};
   if (text == "channels") return ChannelsName{};
   if (in.word("parts/")) {
-    PartName name;
-    if (in.number(name.part, 10)) return name;
+    std::uint32_t number = 0;
+    if (!in.number(number, 10)) return std::nullopt;
+    if (in.word(".picture")) return PictureName{number};
+    return PartName{number};
   } else if (in.word("streams/")) {
     std::uint32_t number = 0;
     if (!in.number(number, 10)) return std::nullopt;

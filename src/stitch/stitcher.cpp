@@ -39,7 +39,7 @@ void Stitcher::add(const ResultMesh& result, std::uint32_t parts) {
   } else if (!mesh.appearances.empty()) {
     mesh.appearances.resize(mesh.positions.size());
   }
-  mesh.labels.insert(mesh.labels.end(), result.mesh.labels.begin(), result.mesh.labels.end());
+  mesh.columns.append(result.mesh.columns);
   for (const Triangle& t : result.mesh.triangles) {
     mesh.triangles.push_back({t[0] + offset, t[1] + offset, t[2] + offset});
   }
@@ -93,7 +93,7 @@ std::uint32_t Stitcher::vertex_of(const BoundaryCorner& corner) const {
 }
 
 StitchedMesh Stitcher::finish(std::span<const BoundaryTriangle> boundary,
-                              std::span<const Label> labels) {
+                              const TriangleColumnsView& columns) {
   find_corners(boundary);
   std::vector<BoundaryCorner> open;
   for (std::size_t i = 0; i < boundary.size(); ++i) {
@@ -106,7 +106,7 @@ StitchedMesh Stitcher::finish(std::span<const BoundaryTriangle> boundary,
       }
     } else if (pieces[0] != pieces[1] || pieces[1] != pieces[2] || pieces_[pieces[0]].parts == 1) {
       stitched_.mesh.triangles.push_back({vertex_of(t[0]), vertex_of(t[1]), vertex_of(t[2])});
-      if (!labels.empty()) stitched_.mesh.labels.push_back(labels[i]);
+      stitched_.mesh.columns.append(columns, i);
       ++stitched_.boundary_triangles;
     }
   }

@@ -28,7 +28,7 @@
 #include <meshfarm/util/errors.hpp>
 #include <meshfarm/util/parallel.hpp>
 
-#include "stream/sort_with_labels.hpp"
+#include "stream/sort_with_columns.hpp"
 #include "stream/sweep_order.hpp"
 
 namespace meshfarm {
@@ -109,7 +109,7 @@ class Generator {
   }
 
   std::uint64_t bytes_per_triangle() const {
-    return slab_bytes_per_triangle(has_appearances(source_), source_.info().labels.has_value());
+    return slab_bytes_per_triangle(has_appearances(source_), source_.info().columns());
   }
 
   void choose_slabs() {
@@ -127,14 +127,14 @@ class Generator {
   }
 
   void distribute_vertices() {
-    const bool has_labels = source_.info().labels.has_value();
+    const ColumnSet columns = source_.info().columns();
     const std::uint64_t faces = std::max<std::uint64_t>(source_.info().faces, 1);
     const std::uint64_t all = MeshShares::memory_for(
-        manifest_.input_vertices, faces, manifest_.positions, has_appearances(source_), has_labels);
-    shares_ = std::make_unique<MeshShares>(MeshShares::Options{
-        scratch_folder(options_.scratch, stage_.root(), all), streams_, manifest_.input_vertices,
-        manifest_.positions, 0, MeshShares::SeamsFor::all, has_appearances(source_),
-        has_labels ? faces : 0});
+        manifest_.input_vertices, faces, manifest_.positions, has_appearances(source_), columns);
+    shares_ = std::make_unique<MeshShares>(
+        MeshShares::Options{scratch_folder(options_.scratch, stage_.root(), all), streams_,
+                            manifest_.input_vertices, manifest_.positions, 0,
+                            MeshShares::SeamsFor::all, has_appearances(source_), columns, faces});
     static_assert(MeshShares::k_no_point == SlabMap::k_no_point);
     std::vector<std::uint32_t> slabs;
     std::vector<std::uint32_t> points;
@@ -186,7 +186,7 @@ class Generator {
       MeshShare slab = shares_->read(static_cast<std::uint32_t>(i), sorting_.weld);
       numbers_[i] = number_boundary(slab, sorting_);
       const std::uint64_t corners =
-          count_label_corners(slab.triangles, slab.labels, slab.positions.size());
+          count_label_corners(slab.triangles, slab.columns.labels, slab.positions.size());
       sorts ? sort_one(std::move(slab), static_cast<std::uint32_t>(i), mutex)
             : stage_unsorted(std::move(slab), static_cast<std::uint32_t>(i));
       const std::lock_guard lock(mutex);
@@ -249,10 +249,10 @@ class Generator {
     for (BoundaryTriangle& t : triangles) {
       std::rotate(t.begin(), std::min_element(t.begin(), t.end()), t.end());
     }
-    sort_with_labels(triangles, shared.labels);
-    manifest_.dropped_duplicate = drop_duplicates(triangles, shared.labels);
+    sort_with_columns(triangles, shared.columns);
+    manifest_.dropped_duplicate = drop_duplicates(triangles, shared.columns);
     manifest_.boundary_triangles = triangles.size();
-    manifest_.boundary = stage_.publish(BoundaryName{}, encode_boundary(triangles, shared.labels));
+    manifest_.boundary = stage_.publish(BoundaryName{}, encode_boundary(triangles, shared.columns));
     manifest_.labels = source_.info().labels;
   }
 

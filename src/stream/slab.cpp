@@ -9,7 +9,7 @@
 #include <meshfarm/geometry/weld.hpp>
 #include <meshfarm/stream/slab.hpp>
 
-#include "stream/sort_with_labels.hpp"
+#include "stream/sort_with_columns.hpp"
 #include "stream/vertex_sort.hpp"
 
 namespace meshfarm {
@@ -175,18 +175,27 @@ class SlabSorter {
 
   /// Triangles by rank, the smallest corner first, without those that are degenerate.
   void rank_triangles() {
-    slab_.dropped_degenerate = keep_triangles(raw_.triangles, raw_.labels, [&](std::size_t i) {
+    slab_.dropped_degenerate = keep_triangles(raw_.triangles, raw_.columns, [&](std::size_t i) {
       Triangle& t = raw_.triangles[i];
       t = {rank_[t[0]], rank_[t[1]], rank_[t[2]]};
       if (t[1] < t[0] && t[1] < t[2]) {
         t = {t[1], t[2], t[0]};
+        turn_columns(i, 1);
       } else if (t[2] < t[0] && t[2] < t[1]) {
         t = {t[2], t[0], t[1]};
+        turn_columns(i, 2);
       }
       return t[0] != t[1] && t[1] != t[2] && t[2] != t[0];
     });
     // Where nothing was welded only these are known, and only these are at one place.
     slab_.coincident_corners = std::max(slab_.coincident_corners, slab_.dropped_degenerate);
+  }
+
+  /// After the triangle's first corner has become that which was so many on.
+  void turn_columns(std::size_t triangle, int corners) {
+    if (raw_.columns.uvs.empty()) return;
+    CornerUvs& uvs = raw_.columns.uvs[triangle];
+    std::rotate(uvs.begin(), uvs.begin() + corners, uvs.end());
   }
 
   void mark_boundary() {
@@ -222,9 +231,9 @@ class SlabSorter {
   void sort_triangles() {
     std::vector<Triangle>& from = raw_.triangles;
     std::vector<Triangle>& to = slab_.stream.mesh.triangles;
-    if (!raw_.labels.empty()) {
-      sort_with_labels(from, raw_.labels);
-      slab_.stream.mesh.labels = std::move(raw_.labels);
+    if (!raw_.columns.empty()) {
+      sort_with_columns(from, raw_.columns);
+      slab_.stream.mesh.columns = std::move(raw_.columns);
     }
     if (std::is_sorted(from.begin(), from.end())) {
       to = std::move(from);
@@ -338,7 +347,7 @@ Part sample_slab(const StreamMesh& stream, const SweepOrder& order, std::uint32_
     for (const std::uint32_t v : t) seen[v] |= in ? k_in : k_out;
     if (!in) continue;
     part.mesh.triangles.push_back(t);
-    if (!mesh.labels.empty()) part.mesh.labels.push_back(mesh.labels[i]);
+    part.mesh.columns.append(mesh.columns, i);
   }
   std::vector<std::uint32_t> index(mesh.positions.size(), k_none);
   const auto is_edge = [&](std::uint32_t v) {

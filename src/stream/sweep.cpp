@@ -43,7 +43,7 @@ class Sweep {
     StreamBlock block;
     while (reader_.next(block)) {
       if (!(options_.lines.appearance_scale.length > 0)) block.appearances.clear();
-      if (!options_.lines.keep_labels) block.labels.clear();
+      block.columns.keep(options_.lines.columns);
       append(block);
       if (buffer_.triangles.size() >= options_.window_triangles && fresh_ >= least_fresh()) {
         simplify_window();
@@ -87,7 +87,7 @@ class Sweep {
         if (corner.last_use()) finish(corner);
       }
     }
-    buffer_.labels.insert(buffer_.labels.end(), block.labels.begin(), block.labels.end());
+    buffer_.columns.append(block.columns);
     fresh_ += buffer_.triangles.size() - before;
     read_ += buffer_.triangles.size() - before;
     sampler_.add(buffer_.positions, std::span(buffer_.triangles).subspan(before));
@@ -208,19 +208,19 @@ class Sweep {
     for (std::size_t i = 0; i < flags.size(); ++i) {
       Triangle& t = buffer_.triangles[i];
       if (flags[i] == 0) {
-        if (!buffer_.labels.empty()) buffer_.labels[kept] = buffer_.labels[i];
+        buffer_.columns.move(i, kept);
         buffer_.triangles[kept++] = t;
         continue;
       }
-      if (!buffer_.labels.empty()) piece.labels.push_back(buffer_.labels[i]);
+      piece.columns.append(buffer_.columns, i);
       const bool is_free = std::none_of(
           t.begin(), t.end(), [&](std::uint32_t v) { return roles_[v] == Role::boundary; });
       result_.free_triangles += is_free ? 1 : 0;
       piece.triangles.push_back({sent(t[0], piece), sent(t[1], piece), sent(t[2], piece)});
     }
-    output_(VertexView(piece), piece.triangles, piece.labels);
+    output_(VertexView(piece), piece.triangles, piece.columns);
     buffer_.triangles.resize(kept);
-    if (!buffer_.labels.empty()) buffer_.labels.resize(kept);
+    buffer_.columns.resize(kept);
     drop_unused();
   }
 

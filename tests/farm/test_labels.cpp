@@ -51,7 +51,7 @@ std::vector<std::pair<Vec3, Vec3>> lines_of(const Mesh& mesh) {
   for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
     const Triangle& t = mesh.triangles[i];
     for (std::size_t k = 0; k < 3; ++k) {
-      edges[std::minmax(t[k], t[(k + 1) % 3])].insert(mesh.labels[i]);
+      edges[std::minmax(t[k], t[(k + 1) % 3])].insert(mesh.columns.labels[i]);
     }
   }
   std::vector<std::pair<Vec3, Vec3>> lines;
@@ -68,7 +68,8 @@ class Bench {
     for (const char* each : {"1", "3"}) std::filesystem::create_directories(path(each));
     Mesh mesh = test::icosphere(6);
     for (Vec3& p : mesh.positions) p = rounded(p, PositionType::float32);
-    for (const Triangle& t : mesh.triangles) mesh.labels.push_back(slice_at(centre_of(mesh, t)));
+    for (const Triangle& t : mesh.triangles)
+      mesh.columns.labels.push_back(slice_at(centre_of(mesh, t)));
     write_mesh(path("in.obj"), mesh, PositionType::float32, {}, {}, k_materials);
   }
   std::string path(const std::string& name) const { return (folder_.path() / name).string(); }
@@ -103,13 +104,15 @@ void check_slices(const std::string& path, const std::vector<Material>& material
   REQUIRE(source->info().labels.has_value());
   const Mesh mesh = read_mesh(*source);
   CHECK(mesh.triangles.size() == 1638);
-  REQUIRE(mesh.labels.size() == mesh.triangles.size());
+  REQUIRE(mesh.columns.labels.size() == mesh.triangles.size());
   std::size_t wrong = 0;
   for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
     const Vec3 centre = centre_of(mesh, mesh.triangles[i]);
     if (distance_to_line(centre.z) < k_jags) continue;
-    REQUIRE(mesh.labels[i] < materials.size());
-    wrong += materials[mesh.labels[i]].name != k_materials.materials[slice_at(centre)].name ? 1 : 0;
+    REQUIRE(mesh.columns.labels[i] < materials.size());
+    wrong += materials[mesh.columns.labels[i]].name != k_materials.materials[slice_at(centre)].name
+                 ? 1
+                 : 0;
   }
   CHECK(wrong == 0);
   double length_of_lines = 0;
@@ -154,8 +157,8 @@ TEST_CASE("materials within a bound of the error, and as GLB and PLY") {
                "--parts", "6"})
             .code == 0);
   const Mesh mesh = read_mesh(*open_mesh(bench.path("out.glb")));
-  REQUIRE(mesh.labels.size() == mesh.triangles.size());
-  CHECK(std::set<Label>(mesh.labels.begin(), mesh.labels.end()).size() == 3);
+  REQUIRE(mesh.columns.labels.size() == mesh.triangles.size());
+  CHECK(std::set<Label>(mesh.columns.labels.begin(), mesh.columns.labels.end()).size() == 3);
   const Ran ran = bench.simplify("out.ply", {});
   CHECK(has(ran.out, "labels           material: numbers"));
   CHECK(has(ran.out, "names and colours of materials"));
@@ -165,7 +168,7 @@ TEST_CASE("materials within a bound of the error, and as GLB and PLY") {
 TEST_CASE("labels that would leave no choice are dropped, unless they are asked for") {
   Bench bench;
   Mesh mesh = test::icosphere(4);  // 5,120 triangles
-  for (Label i = 0; i < mesh.triangles.size(); ++i) mesh.labels.push_back(i / 2);
+  for (Label i = 0; i < mesh.triangles.size(); ++i) mesh.columns.labels.push_back(i / 2);
   write_mesh(bench.path("fine.ply"), mesh, PositionType::float64, {}, {},
              LabelMeaning{"region", {}});
   for (const std::string scheme : {"cut", "stream"}) {

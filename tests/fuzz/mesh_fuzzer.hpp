@@ -46,8 +46,8 @@ inline void scan(MeshSource& source) {
     for (const WideTriangle& triangle : batch.corners) {
       for (const std::uint64_t index : triangle) require(index < vertices);
     }
-    require(batch.labels.size() == (labels ? batch.size() : 0));
-    for (const Label label : batch.labels) {
+    require(batch.columns.labels.size() == (labels ? batch.size() : 0));
+    for (const Label label : batch.columns.labels) {
       require(labels->materials.empty() || label < labels->materials.size());
     }
   });

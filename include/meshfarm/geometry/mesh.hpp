@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -27,34 +28,109 @@ using Appearance = std::array<std::uint16_t, 4>;
 /// mesh is simplified.
 using Label = std::uint32_t;
 
+/// A place on a picture, counted in its sizes from its lower left corner. May be beyond its sides.
+using Uv = std::array<float, 2>;
+/// Those of a triangle's three corners.
+using CornerUvs = std::array<Uv, 3>;
+
+/// Which columns triangles have beside their corners.
+struct ColumnSet {
+  bool labels = false;
+  bool uvs = false;
+
+  constexpr bool any() const { return labels || uvs; }
+  ColumnSet and_in(const ColumnSet& other) const {
+    return {labels && other.labels, uvs && other.uvs};
+  }
+  /// Of one triangle.
+  constexpr std::size_t bytes() const { return (labels ? sizeof(Label) : 0) + (uvs ? sizeof(CornerUvs) : 0); }
+  friend bool operator==(const ColumnSet&, const ColumnSet&) = default;
+};
+
+/// What some triangles have beside their corners: each column has one entry a triangle, or none at
+/// all.
+struct TriangleColumnsView {
+  std::span<const Label> labels;
+  std::span<const CornerUvs> uvs;
+
+  bool empty() const { return labels.empty() && uvs.empty(); }
+  ColumnSet set() const { return {!labels.empty(), !uvs.empty()}; }
+  /// Whether these are the columns that so many triangles of the set have.
+  bool fits(const ColumnSet& columns, std::size_t triangles) const {
+    return labels.size() == (columns.labels ? triangles : 0) &&
+           uvs.size() == (columns.uvs ? triangles : 0);
+  }
+  TriangleColumnsView part(std::size_t first, std::size_t count = std::dynamic_extent) const {
+    return {labels.empty() ? labels : labels.subspan(first, count),
+            uvs.empty() ? uvs : uvs.subspan(first, count)};
+  }
+};
+
+/// The same, and all that moves triangles moves these with them.
+struct TriangleColumns {
+  std::vector<Label> labels;
+  std::vector<CornerUvs> uvs;
+
+  bool empty() const { return labels.empty() && uvs.empty(); }
+  ColumnSet set() const { return {!labels.empty(), !uvs.empty()}; }
+  operator TriangleColumnsView() const { return {labels, uvs}; }
+  void append(const TriangleColumnsView& more) {
+    labels.insert(labels.end(), more.labels.begin(), more.labels.end());
+    uvs.insert(uvs.end(), more.uvs.begin(), more.uvs.end());
+  }
+  /// One triangle's.
+  void append(const TriangleColumnsView& from, std::size_t triangle) {
+    if (!from.labels.empty()) labels.push_back(from.labels[triangle]);
+    if (!from.uvs.empty()) uvs.push_back(from.uvs[triangle]);
+  }
+  void move(std::size_t from, std::size_t to) {
+    if (!labels.empty()) labels[to] = labels[from];
+    if (!uvs.empty()) uvs[to] = uvs[from];
+  }
+  /// Leaves columns that are empty as they are.
+  void resize(std::size_t triangles) {
+    if (!labels.empty()) labels.resize(triangles);
+    if (!uvs.empty()) uvs.resize(triangles);
+  }
+  /// Drops the columns that are not in the set.
+  void keep(const ColumnSet& set) {
+    if (!set.labels) labels = {};
+    if (!set.uvs) uvs = {};
+  }
+  void clear() {
+    labels.clear();
+    uvs.clear();
+  }
+};
+
 /// A triangle mesh in memory. Local indices are 32-bit: a mesh in memory is a part or a result.
 struct Mesh {
   std::vector<Vec3> positions;
   std::vector<Triangle> triangles;
   std::vector<Appearance> appearances = {};  // one a vertex, or none at all
-  std::vector<Label> labels = {};            // one a triangle, or none at all
+  TriangleColumns columns = {};              // of the triangles
 };
 
-/// Keeps the triangles, with their labels if there are any, for whose index keep(index) is true;
-/// each is asked for once, in order. Returns how many have gone.
-template <typename Keep>
-std::size_t keep_triangles(std::vector<Triangle>& triangles, std::vector<Label>& labels,
+/// Keeps the triangles, with their columns, for whose index keep(index) is true; each is asked for
+/// once, in order. Returns how many have gone.
+template <typename AnyTriangle, typename Keep>
+std::size_t keep_triangles(std::vector<AnyTriangle>& triangles, TriangleColumns& columns,
                            const Keep& keep) {
   std::size_t kept = 0;
   const std::size_t all = triangles.size();
   for (std::size_t i = 0; i < all; ++i) {
     if (!keep(i)) continue;
     triangles[kept] = triangles[i];
-    if (!labels.empty()) labels[kept] = labels[i];
+    columns.move(i, kept);
     ++kept;
   }
   triangles.resize(kept);
-  if (!labels.empty()) labels.resize(kept);
+  columns.resize(kept);
   return all - kept;
 }
 template <typename Keep>
 std::size_t keep_triangles(Mesh& mesh, const Keep& keep) {
-  return keep_triangles(mesh.triangles, mesh.labels, keep);
+  return keep_triangles(mesh.triangles, mesh.columns, keep);
 }
 
 /// Vertices of some mesh, and their appearances if it has any.

@@ -47,9 +47,10 @@ struct LineOptions {
   double crease_angle = 0;
   TopologyMode topology = TopologyMode::automatic;
   AppearanceScale appearance_scale;
-  /// Vertices where triangles of two labels meet merge along these lines only, so that regions keep
-  /// their shape. If not, labels are dropped.
-  bool keep_labels = true;
+  /// The columns that triangles keep. Vertices where triangles of two labels meet, or two charts of
+  /// texture coordinates, merge along these lines only, so that regions keep their shape; those
+  /// between charts stay on their places of both pictures. Other columns are dropped.
+  ColumnSet columns{true, true};
 };
 
 class SurfaceBound;

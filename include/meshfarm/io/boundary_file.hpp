@@ -5,7 +5,6 @@
 #include <array>
 #include <cstdint>
 #include <functional>
-#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -24,23 +23,23 @@ struct BoundaryCorner {
 };
 using BoundaryTriangle = std::array<BoundaryCorner, 3>;
 
-/// Keeps the first of the triangles that have the same corners, in any order; of labels, if there
-/// are any, those of the triangles that stay. Returns how many were removed.
-std::uint64_t drop_duplicates(std::vector<BoundaryTriangle>& triangles, std::vector<Label>& labels);
+/// Keeps the first of the triangles that have the same corners, in any order; of their
+/// columns those of the triangles that stay. Returns how many were removed.
+std::uint64_t drop_duplicates(std::vector<BoundaryTriangle>& triangles, TriangleColumns& columns);
 std::uint64_t drop_duplicates(std::vector<BoundaryTriangle>& triangles);
 
 /// The side file: every triangle whose corners lie in two or three parts
-/// (Xiong et al. 2008, 3.1 step 4), and one label each, or none.
+/// (Xiong et al. 2008, 3.1 step 4), and their columns.
 std::string encode_boundary(const std::vector<BoundaryTriangle>& triangles,
-                            std::span<const Label> labels = {});
+                            const TriangleColumnsView& columns = {});
 std::vector<BoundaryTriangle> decode_boundary(std::string_view file, std::string_view what);
-/// With the labels that the file has.
+/// With the columns that the file has.
 std::vector<BoundaryTriangle> decode_boundary(std::string_view file, std::string_view what,
-                                              std::vector<Label>& labels);
-/// Shows every triangle of a side file in order, with its label if it has one, without holding the
-/// file.
-/// Does not check the file's checksum: that is up to the caller's `fill`.
-void scan_boundary(const Fill& fill, std::string_view what,
-                   const std::function<void(const BoundaryTriangle&, std::optional<Label>)>& show);
+                                              TriangleColumns& columns);
+/// Shows every triangle of a side file in order, some at a time with their columns, without holding
+/// the file. Does not check the file's checksum: that is up to the caller's `fill`.
+void scan_boundary(
+    const Fill& fill, std::string_view what,
+    const std::function<void(std::span<const BoundaryTriangle>, const TriangleColumnsView&)>& show);
 
 }  // namespace meshfarm

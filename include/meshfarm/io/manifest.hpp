@@ -30,6 +30,12 @@ struct PartEntry {
   std::uint32_t boundary_vertices = 0;
 };
 
+/// A picture of the input's materials.
+struct StagedPicture {
+  std::string name;  // of the file that it was
+  FileRef file;
+};
+
 /// What a cut made of one input: everything a run needs to know. Published last, never changed.
 struct Manifest {
   std::string input;         // the path as it was given, for people
@@ -53,6 +59,9 @@ struct Manifest {
   StagedChannels channels;               // of the input's vertices
   std::optional<LabelMeaning> labels;    // of the triangles of parts and boundary
   std::uint64_t label_corners = 0;       // vertices that these hold where they are
+  bool uvs = false;                      // whether these triangles have texture coordinates
+  std::uint64_t uv_corners = 0;          // vertices that labels and charts hold where they are
+  std::vector<StagedPicture> pictures;   // of the labels' materials
   std::vector<std::string> skipped;      // properties and elements that were not kept
   double cut_seconds = 0;
   std::uint64_t boundary_triangles = 0;
@@ -64,6 +73,8 @@ struct Manifest {
   std::vector<PartEntry> parts;    // or streams, or slabs
   std::vector<PartEntry> samples;  // of long streams, by stream: a piece as a part; else no name
 
+  /// Which columns triangles have.
+  ColumnSet columns() const { return {labels.has_value(), uvs}; }
   /// Triangles that the parts and the boundary hold.
   std::uint64_t triangles() const;
 };

@@ -38,7 +38,7 @@ struct MeshShare {
   /// a point are numbered in an order that tells nothing of the input's.
   std::vector<ApartVertex> apart;
   std::vector<Appearance> appearances = {};  // one a vertex, or none
-  std::vector<Label> labels = {};            // one a triangle, or none
+  TriangleColumns columns = {};              // of the triangles
 };
 
 /// Undoes the merges of vertices that stay apart: `first` is that of a WeldResult.
@@ -66,7 +66,7 @@ using SeamTriangle = std::array<SharePlace, 3>;
 /// Triangles between shares; those that have lost a corner are left out.
 struct SharedTriangles {
   std::vector<BoundaryTriangle> triangles;
-  std::vector<Label> labels;     // one a triangle, or none
+  TriangleColumns columns;       // of these
   std::uint64_t degenerate = 0;  // that were left out
   std::uint64_t coincident = 0;  // with two corners at one point, left out or not
 };
@@ -87,8 +87,9 @@ class MeshShares {
     PositionType positions = PositionType::float32;
     std::uint64_t memory_bytes = 0;  // of what is shared out; the rest goes to scratch files
     SeamsFor seams = SeamsFor::all;
-    bool appearances = false;  // whether vertices have any
-    std::uint64_t labels = 0;  // about how many there are; 0: triangles have none
+    bool appearances = false;     // whether vertices have any
+    ColumnSet columns = {};       // of the triangles
+    std::uint64_t triangles = 0;  // about how many there are, if they have columns
   };
   explicit MeshShares(const Options& options);
 
@@ -121,7 +122,7 @@ class MeshShares {
   /// The memory that holds all of a usual mesh.
   static std::uint64_t memory_for(std::uint64_t vertices, std::uint64_t triangles,
                                   PositionType positions, bool appearances = false,
-                                  bool labels = false);
+                                  const ColumnSet& columns = {});
 
  private:
   /// How the memory is divided; nothing for the map where it does not fit as a whole.
@@ -131,6 +132,7 @@ class MeshShares {
     std::uint64_t vertices = 0;
     std::uint64_t appearances = 0;
     std::uint64_t labels = 0;
+    std::uint64_t uvs = 0;
     std::uint64_t triangles = 0;
   };
   /// What the vertices of a point became, and the least of their appearances.
@@ -149,11 +151,12 @@ class MeshShares {
   MappedFile map_;
   bool is_in_memory_;
   bool has_appearances_;
-  bool has_labels_;
+  ColumnSet columns_;
   std::size_t since_forgotten_ = 0;
   BucketFile vertices_;
   BucketFile appearances_;
   BucketFile labels_;
+  BucketFile uvs_;
   BucketFile triangles_;  // packed
   std::vector<TrianglePacker> packers_;
   BucketFile seams_;                 // the boundary triangles at each share
@@ -163,7 +166,7 @@ class MeshShares {
   std::uint64_t merged_ = 0;
   std::uint64_t dropped_ = 0;
   std::vector<SeamTriangle> boundary_;  // as the square root of the input
-  std::vector<Label> boundary_labels_;
+  TriangleColumns boundary_columns_;
 };
 
 }  // namespace meshfarm

@@ -26,6 +26,8 @@ struct MeshSinkOptions {
   std::vector<Channel> channels = {};       // of the vertices; see kept_channels()
   std::optional<LabelMeaning> labels = {};  // of the triangles
   Packing packing = Packing::plain;         // of no other format than GLB
+  bool uvs = false;                         // whether triangles have texture coordinates
+  PictureFiles pictures = {};                   // of the labels' materials
 };
 
 /// A mesh file that is written in batches, in memory that does not depend on its size: all
@@ -39,9 +41,10 @@ class MeshSink {
   virtual void vertices(std::span<const Vec3> batch) = 0;
   /// With the values of all channels of each vertex, one vertex after the other.
   virtual void vertices(std::span<const Vec3> batch, std::span<const float> values) = 0;
-  /// With one label each if the options have any, else with none.
+  /// With the columns that the options say, and no others.
   virtual void triangles(const TriangleView& batch) = 0;
-  virtual void triangles(std::span<const Triangle> batch, std::span<const Label> labels = {}) = 0;
+  virtual void triangles(std::span<const Triangle> batch,
+                         const TriangleColumnsView& columns = {}) = 0;
   /// Throws IoError if anything could not be written, DataError if the counts are not as promised.
   virtual void commit() = 0;
 };

@@ -28,8 +28,12 @@ struct MeshFileInfo {
   PositionType positions = PositionType::float32;
   std::vector<Channel> channels;       // of the vertices
   std::optional<LabelMeaning> labels;  // of the triangles
-  std::vector<std::string> skipped;    // "face.flags", "material (5 elements)", "normals (120)"
-  std::vector<std::string> textures;   // that the colours are of: "atlas.jpg (4096 x 4096)"
+  bool uvs = false;                    // whether triangles have texture coordinates
+  PictureFiles pictures;                   // of the materials, with Textures::keep
+  /// Which columns triangles have.
+  ColumnSet columns() const { return {labels.has_value(), uvs}; }
+  std::vector<std::string> skipped;   // "face.flags", "material (5 elements)", "normals (120)"
+  std::vector<std::string> textures;  // that the colours are of: "atlas.jpg (4096 x 4096)"
 };
 
 /// A mesh file that is read by scanning, as often as wanted, in memory that does not depend on its
@@ -48,7 +52,7 @@ class MeshSource {
   /// All vertices in file order, in batches. One of which a coordinate is not finite comes as
   /// k_no_position, all others are finite.
   virtual void scan_vertices(const std::function<void(std::span<const Vec3>)>& take) = 0;
-  /// All triangles in file order, in batches, with their labels if info() has any. Every index is
+  /// All triangles in file order, in batches, with the columns that info() says. Every index is
   /// below info().vertices.
   virtual void scan_triangles(const std::function<void(const TriangleView&)>& take) = 0;
   /// All vertices in file order with their values of info().channels, in batches. Positions are as
@@ -69,8 +73,9 @@ void scan_appearances(MeshSource& source, const std::function<void(const VertexV
 enum class Scans : std::uint8_t { one, many };
 
 /// What becomes of textures: their colours become those of the vertices, or they are left out, or
-/// they are only looked at, to be named.
-enum class Textures : std::uint8_t { bake, drop, name };
+/// they are only looked at, to be named, or kept: triangles have texture coordinates then, and
+/// labels that name the materials.
+enum class Textures : std::uint8_t { bake, drop, name, keep };
 
 struct OpenOptions {
   Scans scans = Scans::many;
@@ -89,9 +94,8 @@ struct OpenOptions {
 std::unique_ptr<MeshSource> open_mesh(const std::filesystem::path& path,
                                       const OpenOptions& options = {});
 
-/// Reads a whole mesh into memory, with its triangles' labels if info() has any, and without the
-/// triangles that use a vertex without a position.
-/// Throws DataError if it has 2^32 vertices or more.
+/// Reads a whole mesh into memory, with its triangles' columns, and without the triangles that use
+/// a vertex without a position. Throws DataError if it has 2^32 vertices or more.
 Mesh read_mesh(MeshSource& source);
 
 }  // namespace meshfarm

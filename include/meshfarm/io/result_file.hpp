@@ -45,18 +45,18 @@ class ResultWriter {
  public:
   using Write = std::function<void(std::string_view)>;
 
-  /// What the mesh has: appearances or none, labels or none.
+  /// What the mesh has.
   struct Vertices {
     PositionType positions = PositionType::float32;
     bool appearances = false;
     std::uint32_t boundary = 0;
-    bool labels = false;
+    ColumnSet columns = {};
   };
   ResultWriter(const Vertices& vertices, Write write);
   /// More of a rung: its next vertices, counted on from the boundary vertices, and triangles of any
-  /// of the rung's vertices, those to come included; with one label each if there are any.
+  /// of the rung's vertices, those to come included; with the columns that the mesh has.
   void add(VertexView vertices, std::span<const Triangle> triangles,
-           std::span<const Label> labels = {});
+           const TriangleColumnsView& columns = {});
   void end_rung(std::int32_t level, std::uint64_t free_triangles, double error = 0);
   /// A whole rung: the mesh's first vertices are the boundary vertices.
   void add_rung(std::int32_t level, const Mesh& mesh, std::uint64_t free_triangles,
@@ -80,7 +80,7 @@ class ResultWriter {
 /// Those of a result of this part.
 inline ResultWriter::Vertices vertices_of(const Part& part) {
   return {part.positions, !part.mesh.appearances.empty(), part.boundary_vertices,
-          !part.mesh.labels.empty()};
+          part.mesh.columns.set()};
 }
 
 /// One rung of a result. The first `boundary_vertices` are the part's, unmoved.

@@ -20,7 +20,7 @@ namespace meshfarm {
 struct StreamInfo {
   PositionType positions = PositionType::float32;
   bool appearances = false;  // whether vertices have any
-  bool labels = false;       // whether triangles have any
+  ColumnSet columns = {};    // of the triangles
   std::uint64_t vertices = 0;
   std::uint64_t triangles = 0;
   std::uint32_t boundary_vertices = 0;  // shared with other streams
@@ -54,7 +54,7 @@ struct StreamBlock {
   /// of those that no triangle uses.
   std::vector<StreamCorner> boundary;
   std::vector<std::array<StreamCorner, 3>> triangles;
-  std::vector<Label> labels;  // one a triangle, or none
+  TriangleColumns columns;  // of the triangles
 };
 
 /// Reads a stream block by block. Holds a block and a few bytes for each vertex from the oldest

@@ -18,6 +18,7 @@ namespace meshfarm {
 ///   cut                               what was cut, and how: by this the same command goes on
 ///   channels                          the input's vertices with their colours and other values
 ///   parts/000123.part                 a sub-mesh
+///   parts/000123.picture              a picture of the input's materials, as it was
 ///   streams/000123.stream             a mesh in sweep order, by --scheme stream
 ///   streams/000123.slab               the same before it is sorted, by --sort farm
 ///   results/KEY.aATTEMPT.INCARNATION  a job's output; KEY names the job by content, 16 hex digits
@@ -34,6 +35,9 @@ struct CutName {};
 struct ChannelsName {};
 struct PartName {
   std::uint32_t part = 0;
+};
+struct PictureName {
+  std::uint32_t picture = 0;
 };
 struct StreamName {
   std::uint32_t stream = 0;
@@ -66,7 +70,7 @@ struct HostName {
 };
 using StagedName = std::variant<ManifestName, BoundaryName, PartName, StreamName, ResultName,
                                 JournalName, EndpointName, KeysName, TraceName, SummaryName,
-                                HostName, SlabName, CutName, ChannelsName>;
+                                HostName, SlabName, CutName, ChannelsName, PictureName>;
 
 std::string to_string(const StagedName& name);
 /// The name that to_string made; nothing for any other text.

@@ -40,7 +40,7 @@ class Stitcher {
   /// piece and parts that were not added. Throws DataError if a corner is no boundary vertex.
   /// Labels: one a boundary triangle, or none.
   StitchedMesh finish(std::span<const BoundaryTriangle> boundary,
-                      std::span<const Label> labels = {});
+                      const TriangleColumnsView& columns = {});
 
  private:
   /// What was added by one call.

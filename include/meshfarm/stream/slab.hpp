@@ -14,10 +14,10 @@ namespace meshfarm {
 /// What sorting a slab and encoding its stream need at most, for each triangle.
 inline constexpr std::uint64_t k_slab_bytes_per_triangle = 72;
 /// The same where vertices may have appearances, two copies and the encoded ones, and where
-/// triangles have labels, which are sorted with them.
-constexpr std::uint64_t slab_bytes_per_triangle(bool has_appearances, bool has_labels) {
+/// triangles have columns, which are sorted with them.
+constexpr std::uint64_t slab_bytes_per_triangle(bool has_appearances, const ColumnSet& columns) {
   return k_slab_bytes_per_triangle + (has_appearances ? 2 * sizeof(Appearance) : 0) +
-         (has_labels ? sizeof(Triangle) + 3 * sizeof(Label) : 0);
+         (columns.any() ? sizeof(Triangle) + 3 * columns.bytes() : 0);
 }
 
 /// A slab in sweep order.

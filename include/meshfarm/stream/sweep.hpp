@@ -33,10 +33,10 @@ struct SweepOptions {
 };
 
 /// Takes what a sweep has passed: the result's next vertices, counted on from its boundary
-/// vertices, and triangles of any vertices so far and of boundary vertices, with their labels.
+/// vertices, and triangles of any vertices so far and of boundary vertices, with their columns.
 using SweepOutput =
     std::function<void(const VertexView& vertices, std::span<const Triangle> triangles,
-                       std::span<const Label> labels)>;
+                       const TriangleColumnsView& columns)>;
 
 /// What is known of a simplified stream at its end.
 struct SweptStream {

@@ -27,7 +27,8 @@ Vec3 centre_of(const Mesh& mesh, const Triangle& t) {
 
 template <typename LabelAt>
 Mesh labelled(Mesh mesh, const LabelAt& label_at) {
-  for (const Triangle& t : mesh.triangles) mesh.labels.push_back(label_at(centre_of(mesh, t)));
+  for (const Triangle& t : mesh.triangles)
+    mesh.columns.labels.push_back(label_at(centre_of(mesh, t)));
   return mesh;
 }
 
@@ -52,7 +53,7 @@ std::vector<Line> lines_of(const Mesh& mesh) {
   for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
     const Triangle& t = mesh.triangles[i];
     for (std::size_t k = 0; k < 3; ++k) {
-      edges[std::minmax(t[k], t[(k + 1) % 3])].insert(mesh.labels[i]);
+      edges[std::minmax(t[k], t[(k + 1) % 3])].insert(mesh.columns.labels[i]);
     }
   }
   std::vector<Line> lines;
@@ -74,7 +75,8 @@ std::map<Label, double> areas_of(const Mesh& mesh) {
   for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
     const auto [a, b, c] = mesh.triangles[i];
     const Vec3 at = mesh.positions[a];
-    areas[mesh.labels[i]] += length(cross(mesh.positions[b] - at, mesh.positions[c] - at)) / 2;
+    areas[mesh.columns.labels[i]] +=
+        length(cross(mesh.positions[b] - at, mesh.positions[c] - at)) / 2;
   }
   return areas;
 }
@@ -93,10 +95,10 @@ TEST_CASE("lines between labels stay where they are") {
       const Mesh result = simplified(ball, target, mode);
       CHECK(result.triangles.size() <= target);
       CHECK(result.triangles.size() + 2 > target);
-      REQUIRE(result.labels.size() == result.triangles.size());
+      REQUIRE(result.columns.labels.size() == result.triangles.size());
       CHECK(is_clean(result));
       for (std::size_t i = 0; i < result.triangles.size(); ++i) {
-        CHECK(octant(centre_of(result, result.triangles[i])) == result.labels[i]);
+        CHECK(octant(centre_of(result, result.triangles[i])) == result.columns.labels[i]);
       }
       // Three great circles, in which chords take the place of arcs.
       CHECK(length_of(lines_of(result)) == doctest::Approx(6 * std::numbers::pi).epsilon(0.05));
@@ -128,7 +130,7 @@ TEST_CASE("labels that are all the same change nothing") {
   const Mesh result = simplified(labelled(mesh, [](Vec3) { return 7U; }), 500);
   CHECK(result.positions == plain.positions);
   CHECK(result.triangles == plain.triangles);
-  CHECK(result.labels == std::vector<Label>(plain.triangles.size(), 7));
+  CHECK(result.columns.labels == std::vector<Label>(plain.triangles.size(), 7));
 }
 
 TEST_CASE("labels go with their triangles where these are dropped") {
@@ -136,28 +138,28 @@ TEST_CASE("labels go with their triangles where these are dropped") {
   const double before = areas_of(mesh).at(1);
   // A degenerate one in front, one twice, and a piece that is dropped below.
   mesh.triangles.insert(mesh.triangles.begin(), {{0, 0, 1}, mesh.triangles[5]});
-  mesh.labels.insert(mesh.labels.begin(), {9, mesh.labels[5]});
+  mesh.columns.labels.insert(mesh.columns.labels.begin(), {9, mesh.columns.labels[5]});
   const Mesh result = simplified(mesh, 1500);
-  REQUIRE(result.labels.size() == result.triangles.size());
+  REQUIRE(result.columns.labels.size() == result.triangles.size());
   CHECK(areas_of(result).size() == 2);
   CHECK(areas_of(result).at(1) == doctest::Approx(before).epsilon(0.01));
 }
 
 TEST_CASE("corners are where labels hold a vertex") {
   const auto corners_of = [](const Mesh& mesh) {
-    return count_label_corners(mesh.triangles, mesh.labels, mesh.positions.size());
+    return count_label_corners(mesh.triangles, mesh.columns.labels, mesh.positions.size());
   };
   CHECK(corners_of(sphere(3)) == 0);
   const Mesh ball = labelled(sphere(3), octant);
   CHECK(corners_of(ball) == 6);
   CHECK(corners_of(labelled(sphere(3), [](Vec3 p) -> Label { return p.z > 0 ? 7 : 3; })) == 0);
   Mesh fine = sphere(3);
-  for (Label i = 0; i < fine.triangles.size(); ++i) fine.labels.push_back(i);
+  for (Label i = 0; i < fine.triangles.size(); ++i) fine.columns.labels.push_back(i);
   CHECK(corners_of(fine) == fine.positions.size());
 }
 
 TEST_CASE("labels must be one a triangle") {
   Mesh mesh = tetrahedron();
-  mesh.labels = {1, 2};
+  mesh.columns.labels = {1, 2};
   CHECK_THROWS_AS(Simplifier(mesh, {}), UsageError);
 }

@@ -45,7 +45,7 @@ nlohmann::json json_of(const std::string& glb) {
 
 TEST_CASE("materials that primitives have are labels, in the document's order") {
   const ReadFile read = read_glb(two_primitives(",\"material\":2", ",\"material\":1", k_materials));
-  CHECK(read.mesh.labels == Labels{1, 0});
+  CHECK(read.mesh.columns.labels == Labels{1, 0});
   REQUIRE(read.info.labels);
   CHECK(
       *read.info.labels ==
@@ -55,14 +55,14 @@ TEST_CASE("materials that primitives have are labels, in the document's order") 
 
 TEST_CASE("primitives without a material have one of their own") {
   const ReadFile read = read_glb(two_primitives("", ",\"material\":0", k_materials));
-  CHECK(read.mesh.labels == Labels{1, 0});
+  CHECK(read.mesh.columns.labels == Labels{1, 0});
   CHECK(read.info.labels->materials == std::vector<Material>{{"stone"}, {"default"}});
   const ReadFile plain =
       read_glb(two_primitives(",\"material\":3", ",\"material\":0", k_materials));
-  CHECK(plain.mesh.labels == Labels{1, 0});
+  CHECK(plain.mesh.columns.labels == Labels{1, 0});
   CHECK_FALSE(read_glb(two_primitives("", "", k_materials)).info.labels);
   CHECK_FALSE(read_glb(two_primitives(",\"material\":3", "", k_materials)).info.labels);
-  CHECK(read_glb(two_primitives("", "", "")).mesh.labels.empty());
+  CHECK(read_glb(two_primitives("", "", "")).mesh.columns.labels.empty());
 }
 
 TEST_CASE("each node that shows a mesh shows its materials") {
@@ -70,7 +70,7 @@ TEST_CASE("each node that shows a mesh shows its materials") {
   json = with(json, R"("nodes":[0])", R"("nodes":[0,1])");
   json = with(json, R"([{"mesh":0}])", R"([{"mesh":0},{"mesh":0,"scale":[-1,1,1]}])");
   const ReadFile read = read_glb(json);
-  CHECK(read.mesh.labels == Labels{1, 0, 1, 0});
+  CHECK(read.mesh.columns.labels == Labels{1, 0, 1, 0});
   CHECK(read.mesh.triangles.size() == 4);
 }
 
@@ -101,14 +101,14 @@ TEST_CASE("labels that are not wanted are materials that are skipped") {
 TEST_CASE("a GLB has a primitive of each material that triangles have") {
   const TempFolder folder;
   Mesh mesh = tetrahedron();
-  mesh.labels = {2, 0, 2, 0};
+  mesh.columns.labels = {2, 0, 2, 0};
   const LabelMeaning meaning{"material", {{"stone"}, {"never"}, {"glass", {0.5F, 0.25F, 1, 0.5F}}}};
   for (const char* name : {"m.glb", "m.gltf"}) {
     write_mesh(folder / name, mesh, PositionType::float32, {}, {}, meaning);
     const ReadFile read = read_path(folder / name);
     CHECK(read.mesh.positions == mesh.positions);
     CHECK(read.mesh.triangles == std::vector<Triangle>{{0, 1, 3}, {1, 2, 3}, {0, 2, 1}, {0, 3, 2}});
-    CHECK(read.mesh.labels == Labels{0, 0, 1, 1});
+    CHECK(read.mesh.columns.labels == Labels{0, 0, 1, 1});
     CHECK(read.info.labels ==
           LabelMeaning{"material", {{"stone"}, {"glass", {0.5F, 0.25F, 1, 0.5F}}}});
     CHECK(read.info.skipped.empty());
@@ -128,7 +128,7 @@ TEST_CASE("a GLB of labels that are numbers has materials named by them") {
   const TempFolder folder;
   Mesh mesh = torus(60, 90);
   for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
-    mesh.labels.push_back(static_cast<Label>(5 + 10 * (i % 300)));
+    mesh.columns.labels.push_back(static_cast<Label>(5 + 10 * (i % 300)));
   }
   write_mesh(folder / "m.glb", mesh, PositionType::float64, {}, {}, LabelMeaning{"region", {}});
   const ReadFile read = read_path(folder / "m.glb");
@@ -139,7 +139,7 @@ TEST_CASE("a GLB of labels that are numbers has materials named by them") {
   std::size_t at = 0;
   for (Label label = 0; label < 300; ++label) {
     for (std::size_t i = label; i < mesh.triangles.size(); i += 300) {
-      CHECK(read.mesh.labels[at] == label);
+      CHECK(read.mesh.columns.labels[at] == label);
       CHECK(read.mesh.triangles[at++] == mesh.triangles[i]);
     }
   }

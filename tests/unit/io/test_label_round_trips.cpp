@@ -23,9 +23,10 @@ Converted convert(const std::filesystem::path& from, const std::filesystem::path
 
 /// The label of each triangle, whatever their order.
 std::map<Triangle, Label> labelled(const Mesh& mesh) {
-  REQUIRE(mesh.labels.size() == mesh.triangles.size());
+  REQUIRE(mesh.columns.labels.size() == mesh.triangles.size());
   std::map<Triangle, Label> made;
-  for (std::size_t i = 0; i < mesh.labels.size(); ++i) made[mesh.triangles[i]] = mesh.labels[i];
+  for (std::size_t i = 0; i < mesh.columns.labels.size(); ++i)
+    made[mesh.triangles[i]] = mesh.columns.labels[i];
   return made;
 }
 
@@ -33,7 +34,7 @@ std::map<Triangle, Label> labelled(const Mesh& mesh) {
 Mesh banded() {
   Mesh mesh = torus(40, 60);
   for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
-    mesh.labels.push_back(static_cast<Label>(i / 7 % 5));
+    mesh.columns.labels.push_back(static_cast<Label>(i / 7 % 5));
   }
   return mesh;
 }
@@ -84,7 +85,7 @@ TEST_CASE("triangles that are left out take their labels with them") {
              "f 1 2\nf 3 2 1\n");
   const Converted made = convert(folder / "a.obj", folder / "a.ply");
   CHECK(made.dropped_not_finite == 2);
-  CHECK(read_path(folder / "a.ply").mesh.labels == std::vector<Label>{0, 1});
+  CHECK(read_path(folder / "a.ply").mesh.columns.labels == std::vector<Label>{0, 1});
 }
 
 TEST_CASE("formats without a place for labels leave them out") {
@@ -105,16 +106,16 @@ TEST_CASE("labels are chosen among the channels by their name") {
   const TempFolder folder;
   const std::vector<Channel> channels{{"heat", ChannelType::float32, ChannelRole::quality}};
   Mesh mesh = tetrahedron();
-  mesh.labels = {3, 3, 4, 3};
+  mesh.columns.labels = {3, 3, 4, 3};
   write_mesh(folder / "m.ply", mesh, PositionType::float32, channels, std::vector<float>(4),
              LabelMeaning{"region", {}});
   const auto chosen = [&](std::string_view words) {
     return with_channels(open_mesh(folder / "m.ply"), parse_choice(words, "--attributes"));
   };
-  CHECK(read_mesh(*chosen("auto")).labels == mesh.labels);
+  CHECK(read_mesh(*chosen("auto")).labels == mesh.columns.labels);
   const auto only = chosen("region");
   CHECK(only->info().channels.empty());
-  CHECK(read_mesh(*only).labels == mesh.labels);
+  CHECK(read_mesh(*only).labels == mesh.columns.labels);
   for (const char* words : {"none", "heat"}) {
     const auto without = chosen(words);
     CHECK_FALSE(without->info().labels);

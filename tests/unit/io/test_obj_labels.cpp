@@ -80,19 +80,19 @@ TEST_CASE("materials of an OBJ are labels, those before the first have a name of
   const ReadFile read = read_obj(
       "f 1 2 3\nusemtl never\nusemtl red one\nf 1 2 4 3\nusemtl default\nf 2 4 3\nusemtl red one\n"
       "g x\nf 1 2 3\ng y\nf 1 2 3\n");
-  CHECK(read.mesh.labels == Labels{0, 1, 1, 2, 1, 1});
+  CHECK(read.mesh.columns.labels == Labels{0, 1, 1, 2, 1, 1});
   REQUIRE(read.info.labels);
   CHECK(read.info.labels->name == "material");
   CHECK(names_of(read.info.labels) == Names{"default_2", "red one", "default"});
   CHECK(read.info.skipped == Names{"groups (2)"});
   const ReadFile one = read_obj("usemtl stone\nf 1 2 3\n");
-  CHECK(one.mesh.labels == Labels{0});
+  CHECK(one.mesh.columns.labels == Labels{0});
   CHECK(names_of(one.info.labels) == Names{"stone"});
 }
 
 TEST_CASE("groups of an OBJ are labels if there are more than one and no materials") {
   const ReadFile read = read_obj("o one\ng a b\nf 1 2 3\ng c\nf 1 2 3\nf 2 3 4\ng a b\nf 1 2 3\n");
-  CHECK(read.mesh.labels == Labels{0, 1, 1, 0});
+  CHECK(read.mesh.columns.labels == Labels{0, 1, 1, 0});
   REQUIRE(read.info.labels);
   CHECK(read.info.labels->name == "group");
   CHECK(names_of(read.info.labels) == Names{"a b", "c"});
@@ -139,7 +139,7 @@ TEST_CASE("names go on across the blocks of a text, however many threads read it
 TEST_CASE("an OBJ is written with its materials and their library") {
   const TempFolder folder;
   Mesh mesh = tetrahedron();
-  mesh.labels = {1, 1, 3, 1};
+  mesh.columns.labels = {1, 1, 3, 1};
   const LabelMeaning meaning{"material",
                              {{"unused"},
                               {"red wall", {1, linear(0.5), 0, 1}},
@@ -152,7 +152,7 @@ TEST_CASE("an OBJ is written with its materials and their library") {
   CHECK(read_file(folder / "my m.mtl") ==
         "newmtl red_wall\nKd 1 0.5 0\nd 1\nnewmtl red_wall_2\nKd 0.8 0 0\nd 0.5\n");
   const ReadFile read = read_path(folder / "my m.obj");
-  CHECK(read.mesh.labels == Labels{0, 0, 1, 0});
+  CHECK(read.mesh.columns.labels == Labels{0, 0, 1, 0});
   CHECK(read.info.labels->materials ==
         std::vector<Material>{{"red_wall", {1, linear(0.5), 0, 1}},
                               {"red_wall_2", {linear(0.8), 0, 0, 0.5F}}});
@@ -161,17 +161,17 @@ TEST_CASE("an OBJ is written with its materials and their library") {
 TEST_CASE("groups are written as groups, and labels that are numbers as materials") {
   const TempFolder folder;
   Mesh mesh = tetrahedron();
-  mesh.labels = {1, 1, 0, 1};
+  mesh.columns.labels = {1, 1, 0, 1};
   write_mesh(folder / "m.obj", mesh, PositionType::float32, {}, {},
              LabelMeaning{"group", {{"a"}, {"b"}}});
   CHECK(read_file(folder / "m.obj") ==
         "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\ng b\nf 1 3 2\nf 1 2 4\ng a\nf 1 4 3\ng b\nf 2 3 4\n");
   CHECK_FALSE(std::filesystem::exists(folder / "m.mtl"));
-  mesh.labels = {7, 7, UINT32_MAX, 7};
+  mesh.columns.labels = {7, 7, UINT32_MAX, 7};
   write_mesh(folder / "n.obj", mesh, PositionType::float32, {}, {}, LabelMeaning{"region", {}});
   const ReadFile read = read_path(folder / "n.obj");
   CHECK(names_of(read.info.labels) == Names{"region_7", "region_4294967295"});
-  CHECK(read.mesh.labels == Labels{0, 0, 1, 0});
+  CHECK(read.mesh.columns.labels == Labels{0, 0, 1, 0});
 }
 
 TEST_CASE("nothing of an OBJ is left behind if it is not whole") {

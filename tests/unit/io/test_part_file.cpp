@@ -33,7 +33,7 @@ Manifest sample_manifest() {
   m.dropped_not_finite = 12;
   m.dropped_duplicate = 9;
   m.channels = {{{"red", ChannelType::uint8, ChannelRole::colour}}, {"channels", 5, 6}, 7};
-  m.labels = LabelMeaning{"material", {{"stone", {0.5, 0.25, 1, 1}}, {"glass", {}}}};
+  m.columns.labels = LabelMeaning{"material", {{"stone", {0.5, 0.25, 1, 1}}, {"glass", {}}}};
   m.label_corners = std::uint64_t{3} << 32;
   m.skipped = {"vertex.red", "face.flags"};
   m.cut_seconds = 1.5;
@@ -63,10 +63,10 @@ TEST_CASE("a part comes back, in both kinds of positions") {
 TEST_CASE("labels come back with a part") {
   Part part{test::icosphere(1), 5, PositionType::float32};
   for (Vec3& p : part.mesh.positions) p = rounded(p, part.positions);
-  for (Label i = 0; i < part.mesh.triangles.size(); ++i) part.mesh.labels.push_back(~i);
+  for (Label i = 0; i < part.mesh.triangles.size(); ++i) part.mesh.columns.labels.push_back(~i);
   const std::string file = encode_part(part);
   const Part back = decode_part(file, "part");
-  CHECK(back.mesh.labels == part.mesh.labels);
+  CHECK(back.mesh.columns.labels == part.mesh.columns.labels);
   CHECK(back.mesh.triangles == part.mesh.triangles);
   test::check_refuses_damage(file, [](std::string_view bytes) { return decode_part(bytes, "p"); });
 }
@@ -153,7 +153,7 @@ TEST_CASE("a manifest comes back whole") {
   CHECK(back.channels.channels == m.channels.channels);
   CHECK(back.channels.file == m.channels.file);
   CHECK(back.channels.points == 7);
-  CHECK(back.labels == m.labels);
+  CHECK(back.columns.labels == m.columns.labels);
   CHECK(back.label_corners == m.label_corners);
   CHECK(back.skipped == m.skipped);
   CHECK(back.parts[1].file == m.parts[1].file);

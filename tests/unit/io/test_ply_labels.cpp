@@ -61,13 +61,13 @@ TEST_CASE("a whole number that faces have is their label, by its name or because
 TEST_CASE("ascii labels are those of all triangles of a face") {
   const ReadFile read = read_bytes(ascii(with_corners("property int label\nproperty float q\n"),
                                          "4 0 1 3 2 -1 0.5\n3 0 1 2 7 0\n"));
-  CHECK(read.mesh.labels == Labels{UINT32_MAX, UINT32_MAX, 7});
+  CHECK(read.mesh.columns.labels == Labels{UINT32_MAX, UINT32_MAX, 7});
   CHECK(read.info.labels == LabelMeaning{"label", {}});
   CHECK(read.info.skipped == std::vector<std::string>{"face.q"});
   const ReadFile early = read_bytes(
       ascii("property uchar label\n" + std::string(k_corners), "5 3 0 1 2\n4 3 0 1 3\n"));
-  CHECK(early.mesh.labels == Labels{5, 4});
-  CHECK(read_bytes(ascii(k_corners, "3 0 1 2\n3 0 1 3\n")).mesh.labels.empty());
+  CHECK(early.mesh.columns.labels == Labels{5, 4});
+  CHECK(read_bytes(ascii(k_corners, "3 0 1 2\n3 0 1 3\n")).mesh.columns.labels.empty());
 }
 
 TEST_CASE("a label that is no whole number of 32 bits is refused") {
@@ -108,20 +108,20 @@ TEST_CASE("binary labels come in either byte order, before and after the corners
     add({0, 1}, 9);
     add({2, 3, 4}, 4);
     const ReadFile read = read_bytes(after.text());
-    CHECK(read.mesh.labels == Labels{300, UINT32_MAX - 1, UINT32_MAX - 1, 4});
+    CHECK(read.mesh.columns.labels == Labels{300, UINT32_MAX - 1, UINT32_MAX - 1, 4});
     CHECK(read.mesh.triangles.size() == 4);
     BinaryFile before = binary(order, "property uint region\n" + std::string(k_corners));
     for (const std::uint32_t label : {7U, 0U, UINT32_MAX, 7U}) {
       before.put<std::uint32_t>({label}).bytes({3}).ints({0, 1, 2});
     }
-    CHECK(read_bytes(before.text()).mesh.labels == Labels{7, 0, UINT32_MAX, 7});
+    CHECK(read_bytes(before.text()).mesh.columns.labels == Labels{7, 0, UINT32_MAX, 7});
     // With a list beside them records have no one size.
     BinaryFile listed =
         binary(order, with_corners("property list uchar uchar more\nproperty uchar label\n"));
     for (const std::uint8_t label : std::initializer_list<std::uint8_t>{1, 2, 3, 4}) {
       listed.bytes({3}).ints({0, 1, 2}).bytes({2, 77, 77, label});
     }
-    CHECK(read_bytes(listed.text()).mesh.labels == Labels{1, 2, 3, 4});
+    CHECK(read_bytes(listed.text()).mesh.columns.labels == Labels{1, 2, 3, 4});
   }
 }
 
@@ -145,7 +145,7 @@ TEST_CASE("a face that is too long to be cut has its label in all of its triangl
     Labels expected(k_corner_count - 1, 2);
     expected[0] = 1;
     const Quiet quiet;
-    CHECK(read_bytes(file.text()).mesh.labels == expected);
+    CHECK(read_bytes(file.text()).mesh.columns.labels == expected);
   }
 }
 
@@ -161,7 +161,7 @@ TEST_CASE("labels that are not wanted count as skipped") {
 TEST_CASE("PLY labels have the smallest type that holds all materials") {
   const TempFolder folder;
   Mesh mesh = tetrahedron();
-  mesh.labels = {0, 1, 1, 0};
+  mesh.columns.labels = {0, 1, 1, 0};
   const auto check = [&](std::size_t materials, const std::string& line, std::size_t bytes) {
     LabelMeaning meaning{"material", std::vector<Material>(materials)};
     write_mesh(folder / "m.ply", mesh, PositionType::float32, {}, {}, meaning);
@@ -170,14 +170,14 @@ TEST_CASE("PLY labels have the smallest type that holds all materials") {
     REQUIRE(at != std::string::npos);
     CHECK(file.size() == file.find("end_header\n") + 11 + std::size_t{48} + 4 * (13 + bytes));
     const ReadFile read = read_path(folder / "m.ply");
-    CHECK(read.mesh.labels == mesh.labels);
+    CHECK(read.mesh.columns.labels == mesh.columns.labels);
     CHECK(read.mesh.triangles == mesh.triangles);
   };
   check(2, "property uchar material_index", 1);
   check(256, "property uchar material_index", 1);
   check(257, "property ushort material_index", 2);
   check(65'537, "property uint material_index", 4);
-  mesh.labels = {UINT32_MAX, 1, 1, 0};
+  mesh.columns.labels = {UINT32_MAX, 1, 1, 0};
   check(0, "property uint material_index", 4);
   write_mesh(folder / "m.ply", mesh, PositionType::float32, {}, {}, LabelMeaning{"my part", {}});
   CHECK(read_path(folder / "m.ply").info.labels == LabelMeaning{"my_part", {}});

@@ -57,20 +57,20 @@ TEST_CASE("each rung of a result comes back") {
 
 TEST_CASE("labels come back with each rung") {
   Mesh mesh = test::grid(300, 250);
-  for (Label i = 0; i < mesh.triangles.size(); ++i) mesh.labels.push_back(i / 3);
+  for (Label i = 0; i < mesh.triangles.size(); ++i) mesh.columns.labels.push_back(i / 3);
   Mesh less = mesh;
   less.triangles.resize(1000);
-  less.labels.resize(1000);
+  less.columns.labels.resize(1000);
   std::string file;
   ResultWriter writer({PositionType::float32, false, 2, true},
                       [&file](std::string_view bytes) { file += bytes; });
   writer.add_rung(3, mesh, 100);
   writer.add_rung(4, less, 100);
   writer.finish(first_two(mesh), {});
-  CHECK(decode_result(file, 0, "r").mesh.labels == mesh.labels);
-  CHECK(decode_result(file, 1, "r").mesh.labels == less.labels);
+  CHECK(decode_result(file, 0, "r").mesh.columns.labels == mesh.columns.labels);
+  CHECK(decode_result(file, 1, "r").mesh.columns.labels == less.columns.labels);
   CHECK(decode_result(file, 1, "r").mesh.triangles == less.triangles);
-  less.labels.clear();
+  less.columns.labels.clear();
   CHECK_THROWS_AS(writer.add_rung(5, less, 100), Error);
 }
 

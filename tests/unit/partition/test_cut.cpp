@@ -80,14 +80,14 @@ std::vector<Corners> triangles_of(const CutMesh& made) {
 /// Those with this label.
 std::vector<Corners> triangles_of(const Mesh& mesh, Label label) {
   Mesh some = mesh;
-  keep_triangles(some, [&](std::size_t i) { return mesh.labels[i] == label; });
+  keep_triangles(some, [&](std::size_t i) { return mesh.columns.labels[i] == label; });
   return triangles_of(some);
 }
 
 std::vector<Corners> triangles_of(const CutMesh& made, Label label) {
   CutMesh some = made;
   for (Part& part : some.parts) {
-    const std::vector<Label> labels = part.mesh.labels;
+    const std::vector<Label> labels = part.mesh.columns.labels;
     keep_triangles(part.mesh, [&](std::size_t i) { return labels[i] == label; });
   }
   some.boundary.clear();
@@ -128,10 +128,10 @@ TEST_CASE("parts and boundary together are the input, boundary vertices first") 
 
 TEST_CASE("labels go with their triangles") {
   Mesh mesh = test::torus(60, 40);
-  for (std::uint32_t i = 0; i < mesh.triangles.size(); ++i) mesh.labels.push_back(i % 7);
+  for (std::uint32_t i = 0; i < mesh.triangles.size(); ++i) mesh.columns.labels.push_back(i % 7);
   Mesh dirty = mesh;
   dirty.triangles.insert(dirty.triangles.begin(), {{0, 0, 1}, {5, 6, 5}});
-  dirty.labels.insert(dirty.labels.begin(), {100, 101});
+  dirty.columns.labels.insert(dirty.columns.labels.begin(), {100, 101});
   const test::TempFolder folder;
   const CutMesh made = cut(dirty, {.parts = 7}, folder.path());
   REQUIRE(made.manifest.labels.has_value());

@@ -53,15 +53,16 @@ TEST_CASE("parts and boundary triangles become one mesh") {
 TEST_CASE("labels are stitched in the order of their triangles") {
   ResultMesh left = half(0, -1);
   ResultMesh right = half(1, 1);
-  left.mesh.labels = {1, 2};
-  right.mesh.labels = {3, 4};
+  left.mesh.columns.labels = {1, 2};
+  right.mesh.columns.labels = {3, 4};
   Stitcher stitcher(2);
   stitcher.add(left);
   stitcher.add(right);
   const std::vector<BoundaryTriangle> boundary = {{{{0, 0}, {0, 1}, {1, 0}}},
                                                   {{{0, 1}, {1, 1}, {1, 0}}}};
   const std::vector<Label> labels = {5, 6};
-  CHECK(stitcher.finish(boundary, labels).mesh.labels == std::vector<Label>{1, 2, 3, 4, 5, 6});
+  CHECK(stitcher.finish(boundary, labels).mesh.columns.labels ==
+        std::vector<Label>{1, 2, 3, 4, 5, 6});
 }
 
 TEST_CASE("a corner that names no boundary vertex is refused with its place") {

@@ -87,11 +87,12 @@ TEST_CASE("labels go with their triangles, whatever their order, sorted here or 
     return static_cast<Label>(std::lround(20 + 5 * (a.x + b.x + c.x)));
   };
   for (const auto& [a, b, c] : mesh.triangles) {
-    mesh.labels.push_back(label_of(mesh.positions[a], mesh.positions[b], mesh.positions[c]));
+    mesh.columns.labels.push_back(
+        label_of(mesh.positions[a], mesh.positions[b], mesh.positions[c]));
   }
   Mesh turned = mesh;
   std::reverse(turned.triangles.begin(), turned.triangles.end());
-  std::reverse(turned.labels.begin(), turned.labels.end());
+  std::reverse(turned.columns.labels.begin(), turned.columns.labels.end());
   const test::TempFolder folder;
   const Generated made = generate(mesh, {.streams = 5}, folder / "made");
   const Generated other = generate(turned, {.streams = 5}, folder / "other");
@@ -108,11 +109,11 @@ TEST_CASE("labels go with their triangles, whatever their order, sorted here or 
     CHECK(labels[i] == label_of(at(a), at(b), at(c)));
   }
   for (const Part& part : made.streams) {
-    REQUIRE(part.mesh.labels.size() == part.mesh.triangles.size());
+    REQUIRE(part.mesh.columns.labels.size() == part.mesh.triangles.size());
     for (std::size_t i = 0; i < part.mesh.triangles.size(); ++i) {
       const auto& [a, b, c] = part.mesh.triangles[i];
       const std::vector<Vec3>& p = part.mesh.positions;
-      CHECK(part.mesh.labels[i] == label_of(p[a], p[b], p[c]));
+      CHECK(part.mesh.columns.labels[i] == label_of(p[a], p[b], p[c]));
     }
   }
   test::MemorySource source(mesh);

@@ -22,7 +22,7 @@ StreamMesh stream_of(const Mesh& mesh, std::uint32_t boundary = 0) {
   MeshShare share{mesh.positions, mesh.triangles, {}};
   for (std::uint32_t v = 0; v < boundary; ++v) share.boundary.push_back(v);
   share.type = PositionType::float64;
-  share.labels = mesh.labels;
+  share.columns.labels = mesh.columns.labels;
   return sort_slab(std::move(share), {}).stream;
 }
 
@@ -47,7 +47,7 @@ Swept swept(const StreamMesh& stream, const SweepOptions& options) {
       sweep(reader, options, [&](auto vertices, auto triangles, auto labels) {
         for (std::size_t v = 0; v < vertices.size(); ++v) append_vertex(vertices, v, mesh);
         mesh.triangles.insert(mesh.triangles.end(), triangles.begin(), triangles.end());
-        mesh.labels.insert(mesh.labels.end(), labels.begin(), labels.end());
+        mesh.columns.labels.insert(mesh.columns.labels.end(), labels.begin(), labels.end());
         ++result.pieces;
         result.largest_piece = std::max(result.largest_piece, triangles.size());
         for (const Triangle& t : triangles)
@@ -73,16 +73,16 @@ TEST_CASE("a sweep keeps the labels of its triangles and the lines between them"
   const auto label_at = [](const Mesh& of, const Triangle& t) {
     return of.positions[t[0]].y + of.positions[t[1]].y + of.positions[t[2]].y > 0 ? 5U : 3U;
   };
-  for (const Triangle& t : mesh.triangles) mesh.labels.push_back(label_at(mesh, t));
+  for (const Triangle& t : mesh.triangles) mesh.columns.labels.push_back(label_at(mesh, t));
   SweepOptions options{.max_cost = 1e-8, .window_triangles = 8'000};
   const Mesh result = swept(stream_of(mesh), options).mesh;
   REQUIRE(result.triangles.size() < mesh.triangles.size() / 4);
-  REQUIRE(result.labels.size() == result.triangles.size());
+  REQUIRE(result.columns.labels.size() == result.triangles.size());
   for (std::size_t i = 0; i < result.triangles.size(); ++i) {
-    CHECK(result.labels[i] == label_at(result, result.triangles[i]));
+    CHECK(result.columns.labels[i] == label_at(result, result.triangles[i]));
   }
   options.lines.keep_labels = false;
-  CHECK(swept(stream_of(mesh), options).mesh.labels.empty());
+  CHECK(swept(stream_of(mesh), options).mesh.columns.labels.empty());
 }
 
 TEST_CASE("a sweep through any window keeps the topology and reaches about the same count") {
@@ -239,7 +239,7 @@ TEST_CASE("of vertices that become one the appearance does not depend on the ord
     MeshShare share{mesh.positions, mesh.triangles, {}};
     share.appearances = mesh.appearances;
     share.type = PositionType::float64;
-    share.labels = mesh.labels;
+    share.columns.labels = mesh.columns.labels;
     return encode_stream(sort_slab(std::move(share), {}).stream);
   };
   Mesh turned = soup;
