@@ -12,6 +12,7 @@
 #include "cli/cut_step.hpp"
 #include "cli/options.hpp"
 #include "cli/output_words.hpp"
+#include "cli/texture_words.hpp"
 
 namespace meshfarm {
 namespace {

@@ -11,6 +11,7 @@
 #include "cli/local_farm.hpp"
 #include "cli/options.hpp"
 #include "cli/signals.hpp"
+#include "cli/texture_words.hpp"
 
 namespace meshfarm {
 namespace {
@@ -34,6 +35,7 @@ class SimplifyCommand : public Command {
     options.add_options()("workers", po::value(&workers_)->default_value(workers_)->value_name("N"),
                           "worker processes (default: cores)");
     cut_.add(options);
+    target_.add_texture_size(options);
     options.add_options()("stage", po::value(&stage_)->value_name("FOLDER"),
                           "where parts are staged (default: OUTPUT.stage)")(
         "keep-stage", po::bool_switch(&keep_stage_), "keep the stage, for replay")(
@@ -46,6 +48,9 @@ class SimplifyCommand : public Command {
   }
   void check() override {
     target_.attributes = cut_.attributes;
+    const TextureWords textures = texture_words_for(output_, cut_.uv);
+    cut_.uv = textures.cut;
+    target_.uv = textures.run;
     target_.check();
     cut_.check();
     if (in_batch_) workers_ = 0;

@@ -19,6 +19,7 @@
 #include "cli/cut_step.hpp"
 #include "cli/farm_command.hpp"
 #include "cli/output_words.hpp"
+#include "cli/texture_words.hpp"
 
 namespace meshfarm {
 namespace {
@@ -59,6 +60,7 @@ class SinkCommand : public FarmCommand {
     check_writable(output_);
     check_output_fits(output_, manifest, target_.run);
     check_need(manifest);
+    tell_textures(manifest, target_.run);
     SinkOptions options;
     options.bind = network_.bind;
     options.first_port = network_.first_port;

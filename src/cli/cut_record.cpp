@@ -19,12 +19,20 @@
 #include <meshfarm/util/errors.hpp>
 #include <meshfarm/util/file.hpp>
 
+#include "cli/texture_words.hpp"
+
 namespace meshfarm {
 namespace {
 
 constexpr FileKind k_kind = {'C', 'U', 'T', 'R'};
 constexpr std::uint32_t k_version = 1;
 constexpr std::uint64_t k_end_bytes = std::uint64_t{1} << 20;
+
+/// What of the textures the stage has, whatever a run makes of it.
+const char* word_of(Textures textures) {
+  if (textures == Textures::bake) return "colours";
+  return textures == Textures::keep ? "keep" : "drop";
+}
 
 /// Threads are left out: they change no byte.
 std::string options_of(const CutWords& words) {
@@ -35,7 +43,7 @@ std::string options_of(const CutWords& words) {
             " --memory " + std::to_string(words.stream.memory_bytes);
   }
   if (words.attributes != "auto") text += " --attributes " + words.attributes;
-  if (words.uv != "bake") text += " --uv " + words.uv;
+  text += std::string(" --uv ") + word_of(parse_uv(words.uv));
   return text + ", algorithm " + std::to_string(k_algorithm_version);
 }
 

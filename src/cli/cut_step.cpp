@@ -22,6 +22,7 @@
 #include <meshfarm/util/text.hpp>
 
 #include "cli/cut_record.hpp"
+#include "cli/texture_words.hpp"
 
 namespace meshfarm {
 
@@ -83,6 +84,9 @@ Manifest cut_to_stage(const CutStep& step) {
 }
 
 void tell_textures(const std::string& input, const MeshFileInfo& info) {
+  if (!info.pictures.names.empty()) {
+    log_info(input + ": with the textures " + joined(info.pictures.names));
+  }
   if (info.textures.empty()) return;
   log_info(input + ": the vertices' colours are of the textures " + joined(info.textures));
 }

@@ -13,6 +13,8 @@
 #include <meshfarm/staging/file_system.hpp>
 #include <meshfarm/util/errors.hpp>
 
+#include "cli/texture_words.hpp"
+
 namespace meshfarm {
 namespace {
 
@@ -96,7 +98,17 @@ void TargetOptions::add(po::options_description& options) {
       "recompute: those of the result's triangles; drop: none");
 }
 
+void TargetOptions::add_texture_size(po::options_description& options) {
+  options.add_options()("texture-size", po::value(&run.texture_size)->value_name("PIXELS"),
+                        "sides of a picture that is made by --uv bake (default: by the input's)");
+}
+
 void TargetOptions::add_attributes(po::options_description& options) {
+  add_texture_size(options);
+  options.add_options()("uv", po::value(&uv)->default_value(uv)->value_name("auto|keep|bake|drop"),
+                        "the stage's textures: keep: their charts and pictures stay; bake: a new "
+                        "picture is made; drop: they are left out; auto: keep if the number of "
+                        "triangles can be met so, else bake");
   options.add_options()(
       "attributes", po::value(&attributes)->default_value(attributes)->value_name("auto|none|LIST"),
       "which channels and labels of the stage the result has: auto: all that the output's format "
@@ -149,6 +161,10 @@ void TargetOptions::check() {
                 : normals == "recompute" ? Normals::recompute
                                          : Normals::drop;
   run.channels = parse_choice(attributes, "--attributes");
+  run.textures = parse_texture_mode(uv);
+  if (run.texture_size != 0 && (run.texture_size < 64 || run.texture_size > 16'384)) {
+    throw UsageError("--texture-size: from 64 to 16384 pixels");
+  }
   constexpr double k_least_weight = 1e-6;
   const bool counts = run.colour_weight >= k_least_weight && run.colour_weight <= 1;
   if (!counts && run.colour_weight != 0) {
@@ -174,6 +190,10 @@ std::vector<std::string> TargetOptions::words() const {
   }
   if (normals != "blend") words.insert(words.end(), {"--normals", normals});
   if (attributes != "auto") words.insert(words.end(), {"--attributes", attributes});
+  if (uv != "auto") words.insert(words.end(), {"--uv", uv});
+  if (run.texture_size != 0) {
+    words.insert(words.end(), {"--texture-size", std::to_string(run.texture_size)});
+  }
   if (!drop_components.empty()) {
     words.insert(words.end(), {"--drop-components", drop_components});
   }
@@ -185,12 +205,6 @@ std::vector<std::string> TargetOptions::words() const {
     words.insert(words.end(), {"--ratio", shortest(run.ratio)});
   }
   return words;
-}
-
-Textures parse_uv(const std::string& text) {
-  if (text == "bake") return Textures::bake;
-  if (text == "drop") return Textures::drop;
-  throw UsageError("--uv is 'bake' or 'drop', not '" + text + "'");
 }
 
 void CutWords::add(po::options_description& options) {
@@ -211,7 +225,7 @@ void CutWords::add(po::options_description& options) {
       "auto: colours, normals and other numbers that the vertices have, and materials or "
       "other labels of triangles, if the formats have a place for them; none: positions "
       "only; LIST: these, as in red,green,blue ('colours' and 'normals' stand for "
-      "theirs)")("uv", po::value(&uv)->default_value(uv)->value_name("bake|drop"), k_uv_help)(
+      "theirs)")("uv", po::value(&uv)->default_value(uv)->value_name(k_uv_words), k_uv_help)(
       "threads", po::value(&cut.threads)->value_name("N"), "threads of the cut (default: cores)")(
       "memory", po::value(&memory)->default_value(memory)->value_name("BYTES"),
       "with --scheme stream: memory for sorting, for example 2G")(
@@ -258,7 +272,7 @@ std::vector<std::string> CutWords::words() const {
                                     weld,       "--memory",  memory,   "--window"};
   words.push_back(std::to_string(stream.window_triangles));
   if (attributes != "auto") words.insert(words.end(), {"--attributes", attributes});
-  if (uv != "bake") words.insert(words.end(), {"--uv", uv});
+  if (uv != "auto") words.insert(words.end(), {"--uv", uv});
   if (cut.parts != 0) words.insert(words.end(), {"--parts", std::to_string(cut.parts)});
   if (!scratch.empty()) words.insert(words.end(), {"--scratch", scratch});
   if (cut.threads != 0) words.insert(words.end(), {"--threads", std::to_string(cut.threads)});

@@ -13,7 +13,6 @@
 #include <meshfarm/farm/schedule.hpp>
 #include <meshfarm/farm/security.hpp>
 #include <meshfarm/farm/when_full.hpp>
-#include <meshfarm/io/mesh_source.hpp>
 #include <meshfarm/partition/cut.hpp>
 #include <meshfarm/pipeline/run_options.hpp>
 #include <meshfarm/report/progress.hpp>
@@ -43,6 +42,7 @@ struct TalkOptions {
 struct TargetOptions {
   RunOptions run;
   std::string attributes = "auto";
+  std::string uv = "auto";
   std::string normals = "blend";
   std::string error;
   std::string drop_components;
@@ -52,18 +52,15 @@ struct TargetOptions {
   std::string topology = "auto";
 
   void add(po::options_description& options);
-  /// --attributes, for commands that take a stage: those that cut leave out what is not wanted.
+  /// --texture-size.
+  void add_texture_size(po::options_description& options);
+  /// --attributes, --uv and the above, for commands that take a stage: those that cut leave out
+  /// what is not wanted.
   void add_attributes(po::options_description& options);
   void check();
   /// The same as words for a command line.
   std::vector<std::string> words() const;
 };
-
-/// --uv. Throws UsageError.
-Textures parse_uv(const std::string& text);
-inline constexpr const char* k_uv_help =
-    "bake: textures' colours become those of the vertices, each averaged over the vertex's share "
-    "of the surface; drop: textures are left out";
 
 /// --scheme, --sort, --parts, --weld, --attributes, --uv, --threads, --memory, --window, --scratch.
 struct CutWords {
@@ -74,7 +71,7 @@ struct CutWords {
   std::string sort = "here";
   std::string weld = "exact";
   std::string attributes = "auto";
-  std::string uv = "bake";
+  std::string uv = "auto";
   ChannelChoice channels;
   std::string memory = "512M";
   std::string scratch;

@@ -10,6 +10,9 @@
 namespace meshfarm {
 namespace {
 
+/// What stands for texture coordinates.
+constexpr std::string_view k_uvs = "uvs";
+
 /// Whether the user's name means this channel.
 bool means(std::string_view name, const Channel& channel) {
   if (name == channel.name) return true;
@@ -30,7 +33,13 @@ class ChosenChannels : public MeshSource {
       : source_(std::move(source)),
         columns_(chosen_columns(choice, source_->info().channels, source_->info().labels)),
         info_(source_->info()) {
-    if (info_.labels && !chooses_labels(choice, *info_.labels)) {
+    if (info_.uvs && !chooses_uvs(choice)) {
+      info_.uvs = false;
+      info_.pictures = {};
+      info_.skipped.emplace_back("texture coordinates");
+    }
+    // Pictures need the materials that name them.
+    if (info_.labels && !chooses_labels(choice, *info_.labels) && info_.pictures.names.empty()) {
       info_.skipped.push_back(std::exchange(info_.labels, {})->name);
     }
     const std::vector<Channel> all = std::exchange(info_.channels, {});
@@ -50,8 +59,14 @@ class ChosenChannels : public MeshSource {
     source_->scan_vertices(take);
   }
   void scan_triangles(const std::function<void(const TriangleView&)>& take) override {
-    if (info_.labels || !source_->info().labels) return source_->scan_triangles(take);
-    source_->scan_triangles([&take](const TriangleView& batch) { take(batch.corners); });
+    const ColumnSet columns = info_.columns();
+    if (columns == source_->info().columns()) return source_->scan_triangles(take);
+    source_->scan_triangles([&](const TriangleView& batch) {
+      TriangleColumnsView kept;
+      if (columns.labels) kept.labels = batch.columns.labels;
+      if (columns.uvs) kept.uvs = batch.columns.uvs;
+      take({batch.corners, kept});
+    });
   }
   void scan_channels(const std::function<void(const ChannelPoints&)>& take) override {
     if (columns_.empty()) return;
@@ -87,6 +102,11 @@ ChannelChoice parse_choice(std::string_view text, std::string_view option) {
   }
 }
 
+bool chooses_uvs(const ChannelChoice& choice) {
+  return choice.all ||
+         std::find(choice.names.begin(), choice.names.end(), k_uvs) != choice.names.end();
+}
+
 bool chooses_labels(const ChannelChoice& choice, const LabelMeaning& labels) {
   return choice.all ||
          std::find(choice.names.begin(), choice.names.end(), labels.name) != choice.names.end();
@@ -96,7 +116,7 @@ std::vector<std::size_t> chosen_columns(const ChannelChoice& choice,
                                         std::span<const Channel> channels,
                                         const std::optional<LabelMeaning>& labels) {
   for (const std::string& name : choice.names) {
-    if (labels && name == labels->name) continue;
+    if (name == k_uvs || (labels && name == labels->name)) continue;
     if (std::none_of(channels.begin(), channels.end(),
                      [&](const Channel& channel) { return means(name, channel); })) {
       throw UsageError("--attributes: there is no channel '" + name +

@@ -117,6 +117,25 @@ StagedChannels stage_channels(MeshSource& source, const Stage& stage,
   return staged;
 }
 
+std::vector<StagedPicture> stage_pictures(const MeshSource& source, const Stage& stage) {
+  std::vector<StagedPicture> staged;
+  const PictureFiles& pictures = source.info().pictures;
+  for (std::size_t i = 0; i < pictures.names.size(); ++i) {
+    const PictureName name{static_cast<std::uint32_t>(i)};
+    staged.push_back({pictures.names[i], stage.publish(name, pictures.load(i))});
+  }
+  return staged;
+}
+
+PictureFiles pictures_of(const Stage& stage, std::vector<StagedPicture> pictures) {
+  PictureFiles files;
+  for (const StagedPicture& picture : pictures) files.names.push_back(picture.name);
+  files.load = [&stage, staged = std::move(pictures)](std::size_t picture) {
+    return stage.read(staged[picture].file);
+  };
+  return files;
+}
+
 ChannelReader::ChannelReader(Fill fill, const StagedChannels& staged, PositionType positions,
                              std::string what)
     : fill_(std::move(fill)), staged_(staged), positions_(positions), what_(std::move(what)) {}

@@ -53,15 +53,19 @@ struct MeshFormat {
                                       const MeshSinkOptions& options);
   bool (*keeps)(std::span<const Channel> all, const Channel& channel);  // when it is written
   KeptLabels labels = KeptLabels::none;                                 // the same
+  bool keeps_uvs = false;                                               // the same
 };
 
 constexpr std::array k_formats = {
-    MeshFormat{"PLY", ".ply", is_ply_file, open_ply, create_ply, keeps_any, KeptLabels::numbers},
-    MeshFormat{"GLB", ".glb", is_glb_file, open_glb, create_glb, is_gltf_channel, KeptLabels::all},
+    MeshFormat{"PLY", ".ply", is_ply_file, open_ply, create_ply, keeps_any, KeptLabels::numbers,
+               true},
+    MeshFormat{"GLB", ".glb", is_glb_file, open_glb, create_glb, is_gltf_channel, KeptLabels::all,
+               true},
     MeshFormat{"glTF", ".gltf", is_gltf_file, open_gltf, create_gltf, is_gltf_channel,
-               KeptLabels::all},
+               KeptLabels::all, true},
     MeshFormat{"OFF", ".off", is_off_file, open_off, create_off, keeps_colour},
-    MeshFormat{"OBJ", ".obj", is_obj_file, open_obj, create_obj, keeps_colour, KeptLabels::all},
+    MeshFormat{"OBJ", ".obj", is_obj_file, open_obj, create_obj, keeps_colour, KeptLabels::all,
+               true},
     MeshFormat{"STL", ".stl", is_ascii_stl_file, open_ascii_stl, create_stl, keeps_none},
     MeshFormat{"", "", is_binary_stl_file, open_binary_stl, nullptr, nullptr},
 };
@@ -137,6 +141,11 @@ bool keeps_materials(const std::filesystem::path& path) {
   return find_output_format(path)->labels == KeptLabels::all;
 }
 
+bool keeps_uvs(const std::filesystem::path& path) {
+  check_output_format(path);
+  return find_output_format(path)->keeps_uvs;
+}
+
 std::unique_ptr<MeshSink> create_mesh(const std::filesystem::path& path,
                                       const MeshSinkOptions& options) {
   check_output_format(path);
@@ -150,13 +159,13 @@ void check_fits(const std::filesystem::path& path, const MeshSinkOptions& option
 
 void write_mesh(const std::filesystem::path& path, const Mesh& mesh, PositionType positions,
                 const std::vector<Channel>& channels, std::span<const float> values,
-                const std::optional<LabelMeaning>& labels) {
-  write_mesh(MeshOutput{path}, mesh, positions, channels, values, labels);
+                const std::optional<LabelMeaning>& labels, const PictureFiles& pictures) {
+  write_mesh(MeshOutput{path}, mesh, positions, channels, values, labels, pictures);
 }
 
 void write_mesh(const MeshOutput& output, const Mesh& mesh, PositionType positions,
                 const std::vector<Channel>& channels, std::span<const float> values,
-                const std::optional<LabelMeaning>& labels) {
+                const std::optional<LabelMeaning>& labels, const PictureFiles& pictures) {
   MeshSinkOptions options{.vertices = mesh.positions.size(),
                           .triangles = mesh.triangles.size(),
                           .positions = positions,
@@ -165,6 +174,7 @@ void write_mesh(const MeshOutput& output, const Mesh& mesh, PositionType positio
                           .packing = output.packing};
   if (!mesh.columns.labels.empty()) options.labels = labels ? labels : LabelMeaning{"label", {}};
   options.uvs = !mesh.columns.uvs.empty();
+  options.pictures = pictures;
   const auto sink = create_mesh(output, options);
   sink->vertices(mesh.positions, values);
   sink->triangles(mesh.triangles, mesh.columns);

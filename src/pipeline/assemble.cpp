@@ -75,8 +75,8 @@ class Assembly {
     summary_.dropped_components = drop_small(stitched.mesh);
     summary_.stitched = stitched.mesh.triangles.size();
     summary_.stitch_seconds = watch.lap();
-    const Mesh result = summary_.max_error > 0 ? finish_within_bound(std::move(stitched))
-                                               : finish(std::move(stitched));
+    Mesh result = summary_.max_error > 0 ? finish_within_bound(std::move(stitched))
+                                         : finish(std::move(stitched));
     summary_.triangles = result.triangles.size();
     summary_.vertices = result.positions.size();
     compare_topology(chosen.kept, result);
@@ -86,7 +86,7 @@ class Assembly {
     look_for_better(chosen);
     check_stop();
     summary_.measure_seconds = watch.lap();
-    write(result);
+    write(std::move(result));
     summary_.write_seconds = watch.lap();
     return std::move(summary_);
   }
@@ -220,7 +220,7 @@ class Assembly {
     return simplifier.mesh();
   }
 
-  void write(const Mesh& result) {
+  void write(Mesh result) {
     const ChannelFitting fitting{chosen_columns(manifest_, run_), run_.normals, options_.threads};
     const std::vector<Channel> chosen = channels_at(manifest_.channels.channels, fitting.columns);
     const std::vector<Channel> kept = kept_channels(options_.output, chosen);
@@ -237,8 +237,9 @@ class Assembly {
     if (manifest_.labels && !labels && !summary_.labels_too_fine) {
       summary_.channels_not_wanted.push_back(manifest_.labels->name);
     }
+    const PictureFiles pictures = chosen_pictures(result);
     if (kept.empty()) {
-      return write_mesh(options_.output, result, manifest_.positions, {}, {}, labels);
+      return write_mesh(options_.output, result, manifest_.positions, {}, {}, labels, pictures);
     }
     const ChannelValues fitted = fit_channels(stage_, manifest_, result, fitting, [&](double done) {
       tell("colours and other channels", done, 0);
@@ -247,7 +248,24 @@ class Assembly {
       if (std::find(kept.begin(), kept.end(), chosen[i]) == kept.end()) continue;
       summary_.channels.push_back({chosen[i].name, fitted.rms[i]});
     }
-    write_mesh(options_.output, result, manifest_.positions, chosen, fitted.values, labels);
+    write_mesh(options_.output, result, manifest_.positions, chosen, fitted.values, labels,
+               pictures);
+  }
+
+  /// What the result has of textures, and what has no place in the output.
+  PictureFiles chosen_pictures(Mesh& result) {
+    TexturesMade& made = summary_.textures;
+    if (!manifest_.uvs) return {};
+    made.floor = texture_floor(manifest_);
+    made.way = TexturesMade::Way::dropped;
+    if (!keeps_uvs(options_.output)) return {};
+    if (chosen_textures(manifest_, run_) == TextureMode::keep) {
+      made.way = TexturesMade::Way::kept;
+      made.pictures = manifest_.pictures.size();
+      return pictures_of(stage_, manifest_.pictures);
+    }
+    result.columns.uvs = {};
+    return {};
   }
 
   /// What is kept need not be compared. `kept` has the input's topology, if there is any.
@@ -326,6 +344,7 @@ class Assembly {
     if (run_.lines.topology == TopologyMode::keep) kept += "changing the topology, ";
     if (run_.lines.preserve_border) kept += "moving the borders, ";
     if (run_.lines.crease_angle > 0) kept += "moving the creases, ";
+    if (lines_.columns.uvs) kept += "moving the borders of charts, ";
     if (lines_.columns.labels) kept += "moving the lines between labels, ";
     return "nothing more can be collapsed without " + kept +
            "turning a triangle over or making one of no area";

@@ -19,6 +19,11 @@ double steepest_of(double colour_weight) {
   return AppearanceScale{}.steepest * relative * std::sqrt(relative);
 }
 
+bool has_pictures(const LabelMeaning& labels) {
+  return std::any_of(labels.materials.begin(), labels.materials.end(),
+                     [](const Material& material) { return !material.maps.empty(); });
+}
+
 // Of the columns that lines keep.
 constexpr std::uint8_t k_labels = 1;
 constexpr std::uint8_t k_uvs = 2;
@@ -57,14 +62,33 @@ bool are_labels_too_fine(const Manifest& manifest, const RunOptions& options) {
 }
 
 std::optional<LabelMeaning> chosen_labels(const Manifest& manifest, const RunOptions& options) {
-  if (!manifest.labels || !chooses_labels(options.channels, *manifest.labels)) return std::nullopt;
+  if (!manifest.labels) return std::nullopt;
+  const TextureMode textures = chosen_textures(manifest, options);
+  if (has_pictures(*manifest.labels)) {
+    if (textures == TextureMode::keep) return manifest.labels;
+    if (textures == TextureMode::bake) return std::nullopt;  // one picture has all their colours
+  }
+  if (!chooses_labels(options.channels, *manifest.labels)) return std::nullopt;
   if (are_labels_too_fine(manifest, options)) return std::nullopt;
   return manifest.labels;
+}
+
+std::uint64_t texture_floor(const Manifest& manifest) {
+  return 2 * manifest.uv_corners;
+}
+
+TextureMode chosen_textures(const Manifest& manifest, const RunOptions& options) {
+  if (!manifest.uvs || !chooses_uvs(options.channels)) return TextureMode::drop;
+  if (options.textures != TextureMode::automatic) return options.textures;
+  const bool is_met =
+      options.error.value > 0 || texture_floor(manifest) <= target_triangles(manifest, options);
+  return is_met ? TextureMode::keep : TextureMode::bake;
 }
 
 LineOptions lines_of(const Manifest& manifest, const RunOptions& options) {
   LineOptions lines = options.lines;
   lines.columns.labels = chosen_labels(manifest, options).has_value();
+  lines.columns.uvs = chosen_textures(manifest, options) == TextureMode::keep;
   const double length = options.colour_weight * manifest.box.diagonal();
   const std::vector<Channel> chosen =
       channels_at(manifest.channels.channels, chosen_columns(manifest, options));
@@ -135,6 +159,10 @@ std::uint64_t run_key(const Manifest& manifest, const RunOptions& options) {
     for (const std::size_t column : chosen_columns(manifest, options)) {
       out.put(static_cast<std::uint64_t>(column));
     }
+  }
+  if (manifest.uvs) {
+    out.put(chosen_textures(manifest, options));
+    out.put(options.texture_size);
   }
   const std::uint64_t key = checksum(out.bytes());
   return key == 0 ? 1 : key;  // 0 means "any run" to the farm

@@ -38,6 +38,7 @@ Json input_json(const Manifest& m) {
           {"coincident_vertices", m.coincident_vertices},
           {"channels", names_of(m.channels.channels)},
           {"labels", to_json(m.labels)},
+          {"texture_coordinates", m.uvs},
           {"skipped", m.skipped}};
 }
 
@@ -150,6 +151,7 @@ void add_channels(Lines& lines, const RunSummary& s) {
   }
   if (!kept.empty()) lines.add("channels", kept + "  RMS from the input's vertices");
   if (s.labels) lines.add("labels", text_of(*s.labels));
+  if (s.textures.way != TexturesMade::Way::none) lines.add("textures", text_of(s.textures));
   std::vector<std::string> lost = names_of(s.manifest.channels.channels);
   if (s.labels_too_fine) {
     const std::string& name = s.manifest.labels->name;
@@ -221,6 +223,7 @@ std::string render(const RunSummary& s, Format format) {
          s.error.input_samples == 0 ? Json(nullptr) : error_json(s.error, m.box.diagonal())},
         {"channels", channels_json(s)},
         {"labels", to_json(s.labels)},
+        {"textures", to_json(s.textures)},
         {"warning", warning.empty() ? Json(nullptr) : Json(warning)},
         {"better", better_json(s)},
         {"dropped",

@@ -82,6 +82,42 @@ std::string text_of(const LabelMeaning& labels) {
   return labels.name + ": " + grouped(labels.materials.size()) + " (" + joined(names) + ")";
 }
 
+std::string text_of(const TexturesMade& textures) {
+  const std::string floor =
+      "to keep their charts about " + grouped(textures.floor) + " triangles are needed";
+  switch (textures.way) {
+    case TexturesMade::Way::kept:
+      return "kept: " + grouped(textures.pictures) +
+             (textures.pictures == 1 ? " picture" : " pictures") + "; " + floor;
+    case TexturesMade::Way::baked:
+      return "a new picture of " + grouped(textures.size) + " x " + grouped(textures.size) +
+             " pixels, " + grouped(textures.charts) + " charts on " +
+             number(100 * textures.charts_share, "%.0f %%") + " of it; " + floor;
+    case TexturesMade::Way::dropped:
+      return "not kept; " + floor;
+    case TexturesMade::Way::none:
+      break;
+  }
+  return "none";
+}
+
+Json to_json(const TexturesMade& textures) {
+  if (textures.way == TexturesMade::Way::none) return nullptr;
+  Json json = {{"floor", textures.floor}};
+  if (textures.way == TexturesMade::Way::dropped) json["made"] = "dropped";
+  if (textures.way == TexturesMade::Way::kept) {
+    json["made"] = "kept";
+    json["pictures"] = textures.pictures;
+  }
+  if (textures.way == TexturesMade::Way::baked) {
+    json["made"] = "baked";
+    json["size"] = textures.size;
+    json["charts"] = textures.charts;
+    json["charts_share"] = textures.charts_share;
+  }
+  return json;
+}
+
 Json to_json(const std::optional<LabelMeaning>& labels) {
   if (!labels) return nullptr;
   return {{"name", labels->name}, {"materials", material_names(*labels)}};

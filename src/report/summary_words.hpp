@@ -13,6 +13,7 @@
 #include <meshfarm/geometry/topology.hpp>
 #include <meshfarm/io/channel.hpp>
 #include <meshfarm/io/labels.hpp>
+#include <meshfarm/report/summary.hpp>
 #include <meshfarm/util/text.hpp>
 
 #include "report/lines.hpp"
@@ -43,6 +44,10 @@ std::vector<std::string> names_of(const std::vector<Channel>& channels);
 std::string text_of(const LabelMeaning& labels);
 /// Null where there are none.
 Json to_json(const std::optional<LabelMeaning>& labels);
+/// The input must have some.
+std::string text_of(const TexturesMade& textures);
+/// Null where the input has none.
+Json to_json(const TexturesMade& textures);
 Json to_json(const Box& box);
 Json to_json(const Topology& topology);
 /// As fractions of the diagonal.

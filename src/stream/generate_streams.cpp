@@ -254,6 +254,8 @@ class Generator {
     manifest_.boundary_triangles = triangles.size();
     manifest_.boundary = stage_.publish(BoundaryName{}, encode_boundary(triangles, shared.columns));
     manifest_.labels = source_.info().labels;
+    manifest_.uvs = source_.info().uvs;
+    manifest_.pictures = stage_pictures(source_, stage_);
   }
 
   void write_channels() {

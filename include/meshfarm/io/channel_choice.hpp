@@ -33,6 +33,9 @@ std::vector<std::size_t> chosen_columns(const ChannelChoice& choice,
                                         std::span<const Channel> channels,
                                         const std::optional<LabelMeaning>& labels = {});
 
+/// Whether texture coordinates are wanted: by "uvs".
+bool chooses_uvs(const ChannelChoice& choice);
+
 /// Whether labels are wanted, by their name.
 bool chooses_labels(const ChannelChoice& choice, const LabelMeaning& labels);
 

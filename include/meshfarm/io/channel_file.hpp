@@ -28,6 +28,18 @@ struct StagedChannels {
 StagedChannels stage_channels(MeshSource& source, const Stage& stage,
                               const std::function<void(std::uint64_t points)>& progress);
 
+/// A picture of the input's materials.
+struct StagedPicture {
+  std::string name;  // of the file that it was
+  FileRef file;
+};
+
+/// Stages the pictures of the source's materials, byte for byte.
+std::vector<StagedPicture> stage_pictures(const MeshSource& source, const Stage& stage);
+
+/// Those of a stage.
+PictureFiles pictures_of(const Stage& stage, std::vector<StagedPicture> pictures);
+
 /// Reads the file block by block. Throws DataError naming `what` for anything that stage_channels
 /// did not make.
 class ChannelReader {

@@ -30,12 +30,6 @@ struct PartEntry {
   std::uint32_t boundary_vertices = 0;
 };
 
-/// A picture of the input's materials.
-struct StagedPicture {
-  std::string name;  // of the file that it was
-  FileRef file;
-};
-
 /// What a cut made of one input: everything a run needs to know. Published last, never changed.
 struct Manifest {
   std::string input;         // the path as it was given, for people

@@ -27,6 +27,8 @@ std::vector<Channel> kept_channels(const std::filesystem::path& path,
 bool keeps_labels(const std::filesystem::path& path);
 /// Whether also for the names and the colours of their materials.
 bool keeps_materials(const std::filesystem::path& path);
+/// Whether it has a place for texture coordinates and pictures. Throws as above.
+bool keeps_uvs(const std::filesystem::path& path);
 
 /// Where a mesh goes, and how.
 struct MeshOutput {
@@ -45,13 +47,13 @@ void check_fits(const std::filesystem::path& path, const MeshSinkOptions& option
 std::unique_ptr<MeshSink> create_mesh(const std::filesystem::path& path,
                                       const MeshSinkOptions& options);
 
-/// Writes a whole mesh by create_mesh(), with its labels if it has any; without a meaning they are
-/// only numbers.
+/// Writes a whole mesh by create_mesh(), with its columns; labels without a meaning are only
+/// numbers.
 void write_mesh(const std::filesystem::path& path, const Mesh& mesh, PositionType positions,
                 const std::vector<Channel>& channels = {}, std::span<const float> values = {},
-                const std::optional<LabelMeaning>& labels = {});
+                const std::optional<LabelMeaning>& labels = {}, const PictureFiles& pictures = {});
 void write_mesh(const MeshOutput& output, const Mesh& mesh, PositionType positions,
                 const std::vector<Channel>& channels = {}, std::span<const float> values = {},
-                const std::optional<LabelMeaning>& labels = {});
+                const std::optional<LabelMeaning>& labels = {}, const PictureFiles& pictures = {});
 
 }  // namespace meshfarm

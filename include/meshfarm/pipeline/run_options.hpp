@@ -40,6 +40,14 @@ enum class Normals : std::uint8_t {
   drop,
 };
 
+/// What becomes of the stage's texture coordinates and pictures.
+enum class TextureMode : std::uint8_t {
+  automatic,  // kept if the number of triangles can be met so, else baked
+  keep,       // charts stay: vertices on their borders merge along them only
+  bake,       // a new picture, with new texture coordinates
+  drop,
+};
+
 /// A length in the mesh's unit, or as a fraction of the diagonal of its bounding box.
 struct Length {
   double value = 0;
@@ -65,6 +73,8 @@ struct RunOptions {
   double colour_weight = k_colour_weight;
   ChannelChoice channels;  // of those that the stage has
   Normals normals = Normals::blend;
+  TextureMode textures = TextureMode::automatic;
+  std::uint32_t texture_size = 0;  // of a new picture, in pixels; 0: by the input's pictures
 };
 
 /// The number of triangles that the result shall have. Throws UsageError if the options name
@@ -82,6 +92,12 @@ bool are_labels_too_fine(const Manifest& manifest, const RunOptions& options);
 /// The stage's labels, if the result is to have them.
 std::optional<LabelMeaning> chosen_labels(const Manifest& manifest, const RunOptions& options);
 
+/// What the stage's texture coordinates are to become: any but automatic; drop where it has none.
+TextureMode chosen_textures(const Manifest& manifest, const RunOptions& options);
+
+/// About as few triangles as a result has that keeps the stage's texture coordinates.
+std::uint64_t texture_floor(const Manifest& manifest);
+
 /// The run's lines, and how much the colours and labels of the stage count: none do if none is
 /// chosen.
 LineOptions lines_of(const Manifest& manifest, const RunOptions& options);
@@ -91,7 +107,8 @@ LineOptions lines_of(const Manifest& manifest, const RunOptions& options);
 std::uint64_t memory_of_channels(const LineOptions& lines, std::uint64_t triangles);
 
 /// As they stand in a job's parameters: preserve border u8 | crease angle f64 |
-/// topology u8 | length of appearances f64 | steepest f64 | keep labels u8.
+/// topology u8 | length of appearances f64 | steepest f64 | columns u8: 1 labels, 2 texture
+/// coordinates.
 void put(ByteWriter& out, const LineOptions& lines);
 LineOptions get_lines(ByteReader& in);
 

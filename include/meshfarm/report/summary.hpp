@@ -57,6 +57,17 @@ struct ChannelError {
   double rms = 0;
 };
 
+/// What became of the input's texture coordinates and pictures.
+struct TexturesMade {
+  enum class Way : std::uint8_t { none, kept, baked, dropped };
+  Way way = Way::none;
+  std::size_t pictures = 0;  // that were kept
+  std::uint64_t floor = 0;   // about how few triangles a result has that keeps the charts
+  std::uint32_t size = 0;    // pixels of a side of the picture that was baked
+  std::uint64_t charts = 0;  // of this
+  double charts_share = 0;   // of it
+};
+
 /// What a run made, for people and for programs.
 struct RunSummary {
   Manifest manifest;
@@ -74,9 +85,10 @@ struct RunSummary {
   std::uint64_t turned = 0;  // triangles that faced another way than most of their piece
   DroppedComponents dropped_components;  // and their triangles before the finish
   MeasuredError error;
-  std::vector<ChannelError> channels;            // that were written
-  std::optional<LabelMeaning> labels;            // that were written
-  bool labels_too_fine = false;                  // so they were dropped
+  std::vector<ChannelError> channels;  // that were written
+  std::optional<LabelMeaning> labels;  // that were written
+  bool labels_too_fine = false;        // so they were dropped
+  TexturesMade textures;
   std::vector<std::string> channels_not_wanted;  // of the stage's and its labels, their names
   /// Where the result went to ruin and a few triangles more would not have.
   std::optional<BetterCount> better;
