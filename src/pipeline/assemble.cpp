@@ -26,6 +26,7 @@
 #include "pipeline/error_meter.hpp"
 #include "pipeline/knee.hpp"
 #include "pipeline/sort_plan.hpp"
+#include "pipeline/texture_bake.hpp"
 
 namespace meshfarm {
 namespace {
@@ -228,7 +229,7 @@ class Assembly {
       if (std::find(chosen.begin(), chosen.end(), channel) != chosen.end()) continue;
       summary_.channels_not_wanted.push_back(channel.name);
     }
-    const std::optional<LabelMeaning> labels = chosen_labels(manifest_, run_);
+    std::optional<LabelMeaning> labels = chosen_labels(manifest_, run_);
     if (labels && keeps_labels(options_.output)) {
       summary_.labels = {labels->name, {}};
       if (keeps_materials(options_.output)) summary_.labels = labels;
@@ -237,7 +238,7 @@ class Assembly {
     if (manifest_.labels && !labels && !summary_.labels_too_fine) {
       summary_.channels_not_wanted.push_back(manifest_.labels->name);
     }
-    const PictureFiles pictures = chosen_pictures(result);
+    const PictureFiles pictures = chosen_pictures(result, labels);
     if (kept.empty()) {
       return write_mesh(options_.output, result, manifest_.positions, {}, {}, labels, pictures);
     }
@@ -253,7 +254,7 @@ class Assembly {
   }
 
   /// What the result has of textures, and what has no place in the output.
-  PictureFiles chosen_pictures(Mesh& result) {
+  PictureFiles chosen_pictures(Mesh& result, std::optional<LabelMeaning>& labels) {
     TexturesMade& made = summary_.textures;
     if (!manifest_.uvs) return {};
     made.floor = texture_floor(manifest_);
@@ -264,8 +265,19 @@ class Assembly {
       made.pictures = manifest_.pictures.size();
       return pictures_of(stage_, manifest_.pictures);
     }
-    result.columns.uvs = {};
-    return {};
+    if (chosen_textures(manifest_, run_) == TextureMode::drop || !manifest_.labels) return {};
+    BakedTexture baked =
+        bake_texture(stage_, manifest_, result,
+                     {.reach = summary_.error.greater().max,
+                      .texture_size = run_.texture_size,
+                      .threads = options_.threads,
+                      .progress = [&](std::string_view phase) { tell(phase, 0, 0); }});
+    made.way = TexturesMade::Way::baked;
+    made.size = baked.size;
+    made.charts = baked.charts;
+    made.charts_share = baked.coverage;
+    labels = std::move(baked.labels);
+    return std::move(baked.pictures);
   }
 
   /// What is kept need not be compared. `kept` has the input's topology, if there is any.

@@ -10,7 +10,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
                       [](std::string_view file) { decode_boundary(file, "boundary"); });
   fuzz::decode_staged(data, size, {'B', 'N', 'D', 'Y'}, [](std::string_view file) {
     scan_boundary(fill_from(file, "boundary"), "boundary",
-                  [](const BoundaryTriangle&, std::optional<Label>) {});
+                  [](std::span<const BoundaryTriangle>, const TriangleColumnsView&) {});
   });
   return 0;
 }

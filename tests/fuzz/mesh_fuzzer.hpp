@@ -41,12 +41,13 @@ inline void scan(MeshSource& source) {
   });
   require(channels == 0 || valued == vertices);
   const std::optional<LabelMeaning>& labels = source.info().labels;
-  source.scan_triangles([vertices, &labels](const TriangleView& batch) {
+  const ColumnSet columns = source.info().columns();
+  source.scan_triangles([vertices, &labels, columns](const TriangleView& batch) {
     require(batch.size() <= 65'536);
     for (const WideTriangle& triangle : batch.corners) {
       for (const std::uint64_t index : triangle) require(index < vertices);
     }
-    require(batch.columns.labels.size() == (labels ? batch.size() : 0));
+    require(batch.columns.fits(columns, batch.size()));
     for (const Label label : batch.columns.labels) {
       require(labels->materials.empty() || label < labels->materials.size());
     }

@@ -20,6 +20,7 @@ class MemorySource : public MeshSource {
     info_.faces = mesh_.triangles.size();
     info_.positions = positions;
     if (!mesh_.columns.labels.empty()) info_.labels = LabelMeaning{"region", {}};
+    info_.uvs = !mesh_.columns.uvs.empty();
   }
   const MeshFileInfo& info() const override { return info_; }
   void scan_vertices(const std::function<void(std::span<const Vec3>)>& take) override {
@@ -31,7 +32,7 @@ class MemorySource : public MeshSource {
   void scan_triangles(const std::function<void(const TriangleView&)>& take) override {
     std::vector<WideTriangle> all;
     for (const Triangle& t : mesh_.triangles) all.push_back({t[0], t[1], t[2]});
-    const TriangleView triangles(all, mesh_.columns.labels);
+    const TriangleView triangles(all, mesh_.columns);
     for (std::size_t i = 0; i < all.size(); i += k_batch) {
       take(triangles.part(i, std::min(k_batch, all.size() - i)));
     }

@@ -33,7 +33,7 @@ Manifest sample_manifest() {
   m.dropped_not_finite = 12;
   m.dropped_duplicate = 9;
   m.channels = {{{"red", ChannelType::uint8, ChannelRole::colour}}, {"channels", 5, 6}, 7};
-  m.columns.labels = LabelMeaning{"material", {{"stone", {0.5, 0.25, 1, 1}}, {"glass", {}}}};
+  m.labels = LabelMeaning{"material", {{"stone", {0.5, 0.25, 1, 1}}, {"glass", {}}}};
   m.label_corners = std::uint64_t{3} << 32;
   m.skipped = {"vertex.red", "face.flags"};
   m.cut_seconds = 1.5;
@@ -69,6 +69,18 @@ TEST_CASE("labels come back with a part") {
   CHECK(back.mesh.columns.labels == part.mesh.columns.labels);
   CHECK(back.mesh.triangles == part.mesh.triangles);
   test::check_refuses_damage(file, [](std::string_view bytes) { return decode_part(bytes, "p"); });
+}
+
+TEST_CASE("texture coordinates come back with a part, and those that are no numbers are refused") {
+  Part part{test::icosphere(1), 5, PositionType::float32};
+  for (Vec3& p : part.mesh.positions) p = rounded(p, part.positions);
+  for (std::size_t i = 0; i < part.mesh.triangles.size(); ++i) {
+    const auto u = static_cast<float>(i);
+    part.mesh.columns.uvs.push_back({{{u, 0}, {0, -u}, {0.5F * u, 1}}});
+  }
+  CHECK(decode_part(encode_part(part), "part").mesh.columns.uvs == part.mesh.columns.uvs);
+  part.mesh.columns.uvs[3][1][0] = std::numeric_limits<float>::infinity();
+  CHECK_THROWS_AS(decode_part(encode_part(part), "part"), DataError);
 }
 
 TEST_CASE("a damaged part is refused") {
@@ -107,13 +119,19 @@ TEST_CASE("boundary triangles come back, damaged ones are refused") {
                                                    {{{1, 0}, {1, 1}, {0, 0xffffffff}}}};
   CHECK(decode_boundary(encode_boundary(triangles), "b") == triangles);
   CHECK(decode_boundary(encode_boundary({}), "b").empty());
-  std::vector<Label> labels = {9};
-  CHECK(decode_boundary(encode_boundary(triangles), "b", labels) == triangles);
-  CHECK(labels.empty());
-  const std::vector<Label> two = {7, 0xffffffff};
-  CHECK(decode_boundary(encode_boundary(triangles, two), "b", labels) == triangles);
-  CHECK(labels == two);
-  CHECK_THROWS_AS(decode_boundary(encode_boundary(triangles, {{7}}), "b", labels), DataError);
+  TriangleColumns columns;
+  columns.labels = {9};
+  CHECK(decode_boundary(encode_boundary(triangles), "b", columns) == triangles);
+  CHECK(columns.empty());
+  const std::vector<Label> labels = {7, 0xffffffff};
+  const std::vector<CornerUvs> uvs = {{{{0, 1}, {2, 3}, {4, 5}}}, {{{0, 0}, {-1, 0}, {0.5, 7}}}};
+  for (const TriangleColumnsView& given :
+       {TriangleColumnsView{labels, {}}, TriangleColumnsView{{}, uvs},
+        TriangleColumnsView{labels, uvs}}) {
+    CHECK(decode_boundary(encode_boundary(triangles, given), "b", columns) == triangles);
+    CHECK(columns.labels == std::vector<Label>(given.labels.begin(), given.labels.end()));
+    CHECK(columns.uvs == std::vector<CornerUvs>(given.uvs.begin(), given.uvs.end()));
+  }
   test::check_refuses_damage(encode_boundary(triangles), [](std::string_view file) {
     return decode_boundary(file, "boundary");
   });
@@ -124,14 +142,22 @@ TEST_CASE("boundary triangles are shown one by one, and what is no side file is 
   for (std::uint32_t i = 0; i < 10'000; ++i) triangles.push_back({{{0, i}, {1, i}, {2, 7}}});
   const auto scanned = [](const std::string& file) {
     std::vector<BoundaryTriangle> shown;
+    TriangleColumns columns;
     scan_boundary(fill_from(file, "b"), "b",
-                  [&](const auto& t, std::optional<Label>) { shown.push_back(t); });
+                  [&](const auto& some, const TriangleColumnsView& of_some) {
+                    shown.insert(shown.end(), some.begin(), some.end());
+                    columns.append(of_some);
+                  });
+    CHECK(TriangleColumnsView(columns).fits(columns.set(), shown.size()));
     return shown;
   };
   const std::string file = encode_boundary(triangles);
   CHECK(scanned(file) == triangles);
   CHECK(scanned(encode_boundary({})).empty());
-  CHECK(scanned(encode_boundary(triangles, std::vector<Label>(10'000, 3))) == triangles);
+  const std::vector<Label> labels(10'000, 3);
+  const std::vector<CornerUvs> uvs(10'000);
+  CHECK(scanned(encode_boundary(triangles, {labels, {}})) == triangles);
+  CHECK(scanned(encode_boundary(triangles, {labels, uvs})) == triangles);
   CHECK_THROWS_AS(scanned(file.substr(0, file.size() - 1)), DataError);
   CHECK_THROWS_AS(scanned(encode_part({})), DataError);
   for (const std::size_t place : {16, 23, 24, 31}) {  // sizes and counts
@@ -153,12 +179,30 @@ TEST_CASE("a manifest comes back whole") {
   CHECK(back.channels.channels == m.channels.channels);
   CHECK(back.channels.file == m.channels.file);
   CHECK(back.channels.points == 7);
-  CHECK(back.columns.labels == m.columns.labels);
+  CHECK(back.labels == m.labels);
   CHECK(back.label_corners == m.label_corners);
   CHECK(back.skipped == m.skipped);
   CHECK(back.parts[1].file == m.parts[1].file);
   CHECK(back.box.hi == Vec3{1, 2, 3});
   CHECK(back.triangles() == 20 + 6 + 11);
+}
+
+TEST_CASE("a manifest tells of texture coordinates and pictures") {
+  Manifest m = sample_manifest();
+  m.uvs = true;
+  m.uv_corners = 77;
+  m.pictures = {{"atlas.jpg", {"parts/000000.picture", 5, 6}}};
+  m.labels->materials[1].maps = {{MapUse::colour, 0}, {MapUse::normal, 0}};
+  m.labels->materials[1].wrap_v = TextureWrap::mirror;
+  const Manifest back = decode_manifest(encode_manifest(m), "manifest");
+  CHECK(back.uvs);
+  CHECK(back.uv_corners == 77);
+  CHECK(back.labels == m.labels);
+  REQUIRE(back.pictures.size() == 1);
+  CHECK(back.pictures[0].name == "atlas.jpg");
+  CHECK(back.pictures[0].file == m.pictures[0].file);
+  m.labels->materials[1].maps[1].picture = 1;
+  CHECK_THROWS_AS(decode_manifest(encode_manifest(m), "manifest"), DataError);
 }
 
 TEST_CASE("a manifest of slabs tells how they are to be sorted, and of nothing else") {

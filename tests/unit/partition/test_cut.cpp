@@ -46,7 +46,7 @@ struct CutMesh {
   Manifest manifest;
   std::vector<Part> parts;
   std::vector<BoundaryTriangle> boundary;
-  std::vector<Label> boundary_labels;
+  TriangleColumns boundary_columns;
 };
 
 CutMesh cut(Mesh mesh, const CutOptions& options, const std::filesystem::path& folder,
@@ -58,7 +58,7 @@ CutMesh cut(Mesh mesh, const CutOptions& options, const std::filesystem::path& f
     made.parts.push_back(decode_part(stage.read(entry.file), "part"));
   }
   made.boundary =
-      decode_boundary(stage.read(made.manifest.boundary), "boundary", made.boundary_labels);
+      decode_boundary(stage.read(made.manifest.boundary), "boundary", made.boundary_columns);
   return made;
 }
 
@@ -92,7 +92,7 @@ std::vector<Corners> triangles_of(const CutMesh& made, Label label) {
   }
   some.boundary.clear();
   for (std::size_t i = 0; i < made.boundary.size(); ++i) {
-    if (made.boundary_labels[i] == label) some.boundary.push_back(made.boundary[i]);
+    if (made.boundary_columns.labels[i] == label) some.boundary.push_back(made.boundary[i]);
   }
   return triangles_of(some);
 }
@@ -126,21 +126,37 @@ TEST_CASE("parts and boundary together are the input, boundary vertices first") 
   }
 }
 
-TEST_CASE("labels go with their triangles") {
+TEST_CASE("columns go with their triangles") {
   Mesh mesh = test::torus(60, 40);
   for (std::uint32_t i = 0; i < mesh.triangles.size(); ++i) mesh.columns.labels.push_back(i % 7);
+  const auto uv_of = [](const Vec3& p) {
+    return Uv{static_cast<float>(p.x), static_cast<float>(p.y)};
+  };
+  const auto uvs_of = [&](const Mesh& of, const Triangle& t) {
+    return CornerUvs{uv_of(of.positions[t[0]]), uv_of(of.positions[t[1]]),
+                     uv_of(of.positions[t[2]])};
+  };
+  for (const Triangle& t : mesh.triangles) mesh.columns.uvs.push_back(uvs_of(mesh, t));
   Mesh dirty = mesh;
   dirty.triangles.insert(dirty.triangles.begin(), {{0, 0, 1}, {5, 6, 5}});
   dirty.columns.labels.insert(dirty.columns.labels.begin(), {100, 101});
+  dirty.columns.uvs.insert(dirty.columns.uvs.begin(), 2, CornerUvs{});
   const test::TempFolder folder;
   const CutMesh made = cut(dirty, {.parts = 7}, folder.path());
   REQUIRE(made.manifest.labels.has_value());
   CHECK(made.manifest.labels->name == "region");
-  CHECK(made.boundary_labels.size() == made.boundary.size());
+  CHECK(made.boundary_columns.labels.size() == made.boundary.size());
   for (Label label = 0; label < 7; ++label) {
     CHECK(triangles_of(made, label) == triangles_of(mesh, label));
   }
   CHECK(triangles_of(made, 100).empty());
+  CHECK(made.manifest.uvs);
+  for (const Part& part : made.parts) {
+    REQUIRE(part.mesh.columns.uvs.size() == part.mesh.triangles.size());
+    for (std::size_t i = 0; i < part.mesh.triangles.size(); ++i) {
+      CHECK(part.mesh.columns.uvs[i] == uvs_of(part.mesh, part.mesh.triangles[i]));
+    }
+  }
 }
 
 TEST_CASE("the same cut from any number of threads") {

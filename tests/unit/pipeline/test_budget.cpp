@@ -384,7 +384,7 @@ TEST_CASE("parameters come back; damaged ones are refused") {
   CHECK(back.lines.topology == TopologyMode::simplify);
   CHECK(back.lines.appearance_scale.length == 0.75);
   CHECK(back.lines.appearance_scale.steepest == 1.5);
-  CHECK_FALSE(back.lines.keep_labels);
+  CHECK_FALSE(back.lines.columns.labels);
   for (std::size_t i = 0; i < bytes.size(); ++i) {
     CHECK_THROWS_AS(decode_parameters(std::string_view(bytes).substr(0, i)), DataError);
   }
@@ -395,7 +395,7 @@ TEST_CASE("parameters come back; damaged ones are refused") {
   other[bytes.size() - 2 * sizeof(double) - 2] = 4;
   CHECK_THROWS_AS(decode_parameters(other), DataError);
   other = bytes;
-  other.back() = 2;
+  other.back() = 4;
   CHECK_THROWS_AS(decode_parameters(other), DataError);
   other = bytes;
   other[bytes.size() - 2] = static_cast<char>(0xff);

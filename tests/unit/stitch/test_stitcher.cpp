@@ -61,7 +61,7 @@ TEST_CASE("labels are stitched in the order of their triangles") {
   const std::vector<BoundaryTriangle> boundary = {{{{0, 0}, {0, 1}, {1, 0}}},
                                                   {{{0, 1}, {1, 1}, {1, 0}}}};
   const std::vector<Label> labels = {5, 6};
-  CHECK(stitcher.finish(boundary, labels).mesh.columns.labels ==
+  CHECK(stitcher.finish(boundary, {labels, {}}).mesh.columns.labels ==
         std::vector<Label>{1, 2, 3, 4, 5, 6});
 }
 

@@ -81,32 +81,39 @@ std::vector<Corners> triangles_of(const Generated& made) {
 
 }  // namespace
 
-TEST_CASE("labels go with their triangles, whatever their order, sorted here or by the farm") {
+TEST_CASE("columns go with their triangles, whatever their order, sorted here or by the farm") {
   Mesh mesh = test::torus(90, 40);
   const auto label_of = [](const Vec3& a, const Vec3& b, const Vec3& c) {
     return static_cast<Label>(std::lround(20 + 5 * (a.x + b.x + c.x)));
   };
+  const auto uv_of = [](const Vec3& p) {
+    return Uv{static_cast<float>(p.x), static_cast<float>(p.y)};
+  };
   for (const auto& [a, b, c] : mesh.triangles) {
     mesh.columns.labels.push_back(
         label_of(mesh.positions[a], mesh.positions[b], mesh.positions[c]));
+    mesh.columns.uvs.push_back(
+        {uv_of(mesh.positions[a]), uv_of(mesh.positions[b]), uv_of(mesh.positions[c])});
   }
   Mesh turned = mesh;
   std::reverse(turned.triangles.begin(), turned.triangles.end());
   std::reverse(turned.columns.labels.begin(), turned.columns.labels.end());
+  std::reverse(turned.columns.uvs.begin(), turned.columns.uvs.end());
   const test::TempFolder folder;
   const Generated made = generate(mesh, {.streams = 5}, folder / "made");
   const Generated other = generate(turned, {.streams = 5}, folder / "other");
   CHECK(made.files == other.files);
   const Stage stage = Stage::open(folder / "made");
-  std::vector<Label> labels;
-  const auto boundary = decode_boundary(stage.read(made.manifest.boundary), "boundary", labels);
-  REQUIRE(labels.size() == boundary.size());
+  TriangleColumns columns;
+  const auto boundary = decode_boundary(stage.read(made.manifest.boundary), "boundary", columns);
+  REQUIRE(columns.labels.size() == boundary.size());
   const auto at = [&](const BoundaryCorner& corner) {
     return made.streams[corner.part].mesh.positions[corner.local];
   };
   for (std::size_t i = 0; i < boundary.size(); ++i) {
     const auto& [a, b, c] = boundary[i];
-    CHECK(labels[i] == label_of(at(a), at(b), at(c)));
+    CHECK(columns.labels[i] == label_of(at(a), at(b), at(c)));
+    CHECK(columns.uvs[i] == CornerUvs{uv_of(at(a)), uv_of(at(b)), uv_of(at(c))});
   }
   for (const Part& part : made.streams) {
     REQUIRE(part.mesh.columns.labels.size() == part.mesh.triangles.size());
@@ -114,6 +121,7 @@ TEST_CASE("labels go with their triangles, whatever their order, sorted here or 
       const auto& [a, b, c] = part.mesh.triangles[i];
       const std::vector<Vec3>& p = part.mesh.positions;
       CHECK(part.mesh.columns.labels[i] == label_of(p[a], p[b], p[c]));
+      CHECK(part.mesh.columns.uvs[i] == CornerUvs{uv_of(p[a]), uv_of(p[b]), uv_of(p[c])});
     }
   }
   test::MemorySource source(mesh);

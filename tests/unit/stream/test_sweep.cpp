@@ -22,7 +22,7 @@ StreamMesh stream_of(const Mesh& mesh, std::uint32_t boundary = 0) {
   MeshShare share{mesh.positions, mesh.triangles, {}};
   for (std::uint32_t v = 0; v < boundary; ++v) share.boundary.push_back(v);
   share.type = PositionType::float64;
-  share.columns.labels = mesh.columns.labels;
+  share.columns = mesh.columns;
   return sort_slab(std::move(share), {}).stream;
 }
 
@@ -44,10 +44,10 @@ Swept swept(const StreamMesh& stream, const SweepOptions& options) {
   if (counts) result.mesh.appearances.resize(result.boundary_vertices);
   Mesh& mesh = result.mesh;
   static_cast<SweptStream&>(result) =
-      sweep(reader, options, [&](auto vertices, auto triangles, auto labels) {
+      sweep(reader, options, [&](auto vertices, auto triangles, auto columns) {
         for (std::size_t v = 0; v < vertices.size(); ++v) append_vertex(vertices, v, mesh);
         mesh.triangles.insert(mesh.triangles.end(), triangles.begin(), triangles.end());
-        mesh.columns.labels.insert(mesh.columns.labels.end(), labels.begin(), labels.end());
+        mesh.columns.append(columns);
         ++result.pieces;
         result.largest_piece = std::max(result.largest_piece, triangles.size());
         for (const Triangle& t : triangles)
@@ -81,7 +81,7 @@ TEST_CASE("a sweep keeps the labels of its triangles and the lines between them"
   for (std::size_t i = 0; i < result.triangles.size(); ++i) {
     CHECK(result.columns.labels[i] == label_at(result, result.triangles[i]));
   }
-  options.lines.keep_labels = false;
+  options.lines.columns.labels = false;
   CHECK(swept(stream_of(mesh), options).mesh.columns.labels.empty());
 }
 
@@ -239,7 +239,7 @@ TEST_CASE("of vertices that become one the appearance does not depend on the ord
     MeshShare share{mesh.positions, mesh.triangles, {}};
     share.appearances = mesh.appearances;
     share.type = PositionType::float64;
-    share.columns.labels = mesh.columns.labels;
+    share.columns = mesh.columns;
     return encode_stream(sort_slab(std::move(share), {}).stream);
   };
   Mesh turned = soup;
