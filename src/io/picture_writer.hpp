@@ -1,0 +1,23 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <string>
+
+#include "picture.hpp"
+
+namespace meshfarm {
+
+/// How much a JPEG keeps.
+struct JpegOptions {
+  int quality = 92;         // 1 to 100
+  bool full_colour = true;  // colours as fine as the lightness; else half as fine each way
+};
+
+// The picture's bytes as a file of that format. The same picture gives the same bytes with the same
+// version of the encoder. Both throw DataError for a picture that the format cannot hold.
+std::string encode_png(const Picture& picture);
+/// Without alpha.
+std::string encode_jpeg(const Picture& picture, const JpegOptions& options = {});
+
+}  // namespace meshfarm
