@@ -96,6 +96,7 @@ Atlas make_atlas(const Mesh& mesh, const AtlasOptions& options) {
     const Charts charts = make_charts(surface, tiny_area(area, options));
     const std::vector<FlatChart> flat = flatten_charts(surface, charts, options.threads);
     std::vector<PackShape> shapes;
+    shapes.reserve(flat.size());
     for (const FlatChart& chart : flat) shapes.push_back({chart.size, chart.outline});
     const Packing packing =
         pack_shapes(shapes, {.side = options.texture_size,

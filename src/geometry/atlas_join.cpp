@@ -108,7 +108,7 @@ class Joiner {
 
   void join_one(std::uint32_t chart) {
     std::vector<std::pair<double, std::uint32_t>> order;
-    for (const auto& [other, border] : list_[chart].neighbours) order.push_back({-border, other});
+    for (const auto& [other, border] : list_[chart].neighbours) order.emplace_back(-border, other);
     std::sort(order.begin(), order.end());
     for (const auto& [minus_border, other] : order) {
       if (try_join(chart, other, -minus_border)) return;

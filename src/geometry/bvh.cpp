@@ -68,30 +68,27 @@ struct Bvh::Query {
       hi[axis] = x + rounding;
     }
   }
-  void offer(double squared, std::uint32_t triangle) {
-    if (!(squared < best.squared)) return;
+  void take(double squared, std::uint32_t triangle) {
     best = {squared, triangle};
-    // Above what the rounding of a bound can make of it.
+    set_limit(squared);
+  }
+  /// Above what the rounding of a bound can make of it.
+  void set_limit(double squared) {
     const double above = squared * to_frame * (1 + 0x1p-20) + std::numeric_limits<float>::min();
     limit = static_cast<float>(std::min<double>(above, std::numeric_limits<float>::max()));
   }
 };
 
-void Bvh::visit_leaf(Query& query, std::uint32_t first, std::uint32_t count) const {
-  for (std::uint32_t i = first; i < first + count; ++i) {
-    const Triangle& t = mesh_.triangles[order_[i]];
-    query.offer(squared_distance(query.p, mesh_.positions[t[0]], mesh_.positions[t[1]],
-                                 mesh_.positions[t[2]]),
-                order_[i]);
-  }
+template <typename Accept>
+void Bvh::offer(Query& query, std::uint32_t triangle, const Accept& accept) const {
+  const Triangle& t = mesh_.triangles[triangle];
+  const Vec3 a = mesh_.positions[t[0]], b = mesh_.positions[t[1]], c = mesh_.positions[t[2]];
+  const double squared = squared_distance(query.p, a, b, c);
+  if (squared < query.best.squared && accept(a, b, c)) query.take(squared, triangle);
 }
 
-Bvh::Nearest Bvh::nearest(Vec3 p, std::uint32_t guess, double enough) const {
-  Query query(p, to_frame(p), scale_);
-  const Triangle& t = mesh_.triangles[guess];
-  query.offer(
-      squared_distance(p, mesh_.positions[t[0]], mesh_.positions[t[1]], mesh_.positions[t[2]]),
-      guess);
+template <typename Accept>
+void Bvh::search(Query& query, double enough, const Accept& accept) const {
   std::array<Entry, k_stack> stack;
   std::size_t size = 0;
   stack[size++] = {0, 0, 0};
@@ -99,7 +96,7 @@ Bvh::Nearest Bvh::nearest(Vec3 p, std::uint32_t guess, double enough) const {
     const Entry top = stack[--size];
     if (top.bound >= query.limit) continue;
     if (top.count > 0) {
-      visit_leaf(query, top.child, top.count);
+      for (std::uint32_t i = 0; i < top.count; ++i) offer(query, order_[top.child + i], accept);
       continue;
     }
     const Node& node = nodes_[top.child];
@@ -122,7 +119,28 @@ Bvh::Nearest Bvh::nearest(Vec3 p, std::uint32_t guess, double enough) const {
       stack[at] = {bounds[k], node.child[k], node.count[k]};
     }
   }
+}
+
+Bvh::Nearest Bvh::nearest(Vec3 p, std::uint32_t guess, double enough) const {
+  const auto any = [](Vec3, Vec3, Vec3) { return true; };
+  Query query(p, to_frame(p), scale_);
+  offer(query, guess, any);
+  search(query, enough, any);
   return query.best;
+}
+
+Bvh::Nearest Bvh::nearest_facing(Vec3 p, Vec3 normal, std::uint32_t guess,
+                                 double most_squared) const {
+  const auto faces = [normal](Vec3 a, Vec3 b, Vec3 c) {
+    return dot(cross(b - a, c - a), normal) > 0;
+  };
+  constexpr std::uint32_t k_none = 0xffffffff;
+  Query query(p, to_frame(p), scale_);
+  query.best = {most_squared, k_none};
+  query.set_limit(most_squared);
+  offer(query, guess, faces);
+  search(query, 0, faces);
+  return query.best.triangle == k_none ? Nearest{} : query.best;
 }
 
 }  // namespace meshfarm

@@ -31,6 +31,9 @@ class Bvh {
   /// The triangle nearest to `p`, or some triangle whose squared distance is at most `enough`. A
   /// good `guess` saves time.
   Nearest nearest(Vec3 p, std::uint32_t guess, double enough = 0) const;
+  /// The nearest of the triangles whose normals are within 90 degrees of `normal`, if one is nearer
+  /// than the root of `most_squared`; else its squared distance is infinite.
+  Nearest nearest_facing(Vec3 p, Vec3 normal, std::uint32_t guess, double most_squared) const;
 
  private:
   // Boxes are floats, rounded outwards, in a frame where the mesh's box is centred and its longest
@@ -50,7 +53,10 @@ class Bvh {
   void split_into_nodes(std::span<const MortonItem> items);
   void set_leaf_boxes(Node& node) const;
   void set_inner_boxes(Node& node) const;
-  void visit_leaf(Query& query, std::uint32_t first, std::uint32_t count) const;
+  template <typename Accept>
+  void offer(Query& query, std::uint32_t triangle, const Accept& accept) const;
+  template <typename Accept>
+  void search(Query& query, double enough, const Accept& accept) const;
 
   const Mesh& mesh_;
   Vec3 center_;
