@@ -42,13 +42,16 @@ class Conversion {
     made_.dropped_not_finite = dropped_;
     made_.channels = kept_channels(output, source_.info().channels);
     made_.has_labels = source_.info().labels && keeps_labels(output);
+    made_.has_uvs = source_.info().uvs && keeps_uvs(output);
     const auto sink = create_mesh(output, {.vertices = made_.vertices,
                                            .triangles = made_.triangles,
                                            .positions = made_.positions,
                                            .comment = {},
                                            .channels = source_.info().channels,
                                            .labels = source_.info().labels,
-                                           .packing = packing});
+                                           .packing = packing,
+                                           .uvs = source_.info().uvs,
+                                           .pictures = source_.info().pictures});
     write_vertices(*sink);
     scan_triangles([&](const TriangleView& batch) { sink->triangles(batch); });
     sink->commit();

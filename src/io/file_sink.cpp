@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cerrno>
 #include <string>
+#include <system_error>
 
 #include <meshfarm/util/errors.hpp>
 
@@ -77,6 +78,13 @@ void FileSink::triangles(std::span<const Triangle> batch, const TriangleColumnsV
     triangles({wide_, columns.part(first, count)});
     first += count;
   } while (first < batch.size());
+}
+
+void FileSink::make_way() {
+  sync();
+  std::error_code error;
+  std::filesystem::remove(path(), error);
+  if (error) throw IoError("cannot replace", path(), error.value());
 }
 
 void FileSink::commit() {

@@ -42,6 +42,9 @@ class FileSink : public MeshSink {
   void write(std::string_view bytes) { file_.write(bytes); }
   /// What is written is on the disk then.
   void sync() { file_.sync(); }
+  /// Of a file that comes after others which it names: one that is there already must not be found
+  /// with the new ones. It goes when what is written is on the disk, and only renaming is left.
+  void make_way();
   /// In the place of bytes that were written before.
   void overwrite(std::uint64_t offset, std::string_view bytes) { file_.overwrite(offset, bytes); }
 

@@ -53,7 +53,7 @@ struct MeshFormat {
                                       const MeshSinkOptions& options);
   bool (*keeps)(std::span<const Channel> all, const Channel& channel);  // when it is written
   KeptLabels labels = KeptLabels::none;                                 // the same
-  bool keeps_uvs = false;                                               // the same
+  bool uvs = false;                                                     // the same
 };
 
 constexpr std::array k_formats = {
@@ -143,7 +143,7 @@ bool keeps_materials(const std::filesystem::path& path) {
 
 bool keeps_uvs(const std::filesystem::path& path) {
   check_output_format(path);
-  return find_output_format(path)->keeps_uvs;
+  return find_output_format(path)->uvs;
 }
 
 std::unique_ptr<MeshSink> create_mesh(const std::filesystem::path& path,

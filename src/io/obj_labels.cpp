@@ -4,7 +4,8 @@
 // What is written, names without blanks:
 //   in the OBJ:     "mtllib" NAME.mtl, and "usemtl" name before the triangles that have it;
 //                   of groups "g" name alone
-//   in the library: { "newmtl" name, "Kd" r g b as sRGB, "d" alpha }
+//   in the library: { "newmtl" name, "Kd" r g b as sRGB, "d" alpha, { map } }
+//   map = "map_Kd" of, "map_Bump" of, or "Ke 1 1 1" "map_Ke" of;  of = ["-clamp on"] picture
 #include "obj_labels.hpp"
 
 #include <algorithm>
@@ -34,6 +35,20 @@ std::string word_of(const std::string& name) {
   return word;
 }
 
+/// What stands before a picture's name; empty if there is no such word.
+std::string_view map_word(MapUse use) {
+  switch (use) {
+    case MapUse::colour:
+      return "map_Kd";
+    case MapUse::normal:
+      return "map_Bump";
+    case MapUse::emission:
+      return "Ke 1 1 1\nmap_Ke";
+    default:
+      return {};
+  }
+}
+
 std::string number_text(double number) {
   std::array<char, 32> text{};
   const auto end =
@@ -43,8 +58,12 @@ std::string number_text(double number) {
 
 }  // namespace
 
-ObjLabels::ObjLabels(const std::filesystem::path& obj, const LabelMeaning& meaning)
-    : obj_(obj), are_groups_(meaning.name == "group"), materials_(meaning) {
+ObjLabels::ObjLabels(const std::filesystem::path& obj, const LabelMeaning& meaning,
+                     const PictureFiles& pictures)
+    : obj_(obj),
+      are_groups_(meaning.name == "group"),
+      materials_(meaning),
+      pictures_(obj, pictures) {
   if (are_groups_) return;
   if (obj.filename().native().find_first_of(k_line_breaks) != std::string::npos) {
     throw UsageError("an OBJ cannot name a library with a line break in its name");
@@ -78,22 +97,40 @@ void ObjLabels::finish() {
   if (!library_) return;
   library_->write(library_text());
   library_->sync();
+  pictures_.finish();
 }
 
 void ObjLabels::commit() {
-  if (library_) library_->commit();
+  if (!library_) return;
+  pictures_.commit();
+  library_->commit();
 }
 
 std::string ObjLabels::library_text() {
   std::string text;
   for (std::size_t place = 0; place < materials_.all().size(); ++place) {
     if (!materials_.is_used(place)) continue;
-    const auto& [red, green, blue, alpha] = materials_.all()[place].colour;
+    const Material& material = materials_.all()[place];
+    const auto& [red, green, blue, alpha] = material.colour;
     text += "newmtl " + line_of(place).substr(std::string_view("usemtl ").size()) + "Kd";
     for (const float level : {red, green, blue}) {
       text += " " + number_text(srgb_of_linear(static_cast<double>(level)));
     }
-    text += "\nd " + number_text(static_cast<double>(alpha)) + "\n";
+    text += "\nd " + number_text(static_cast<double>(alpha)) + "\n" + maps_text(material);
+  }
+  return text;
+}
+
+/// Not of what a library has no word for: roughness, occlusion, mirrored textures.
+std::string ObjLabels::maps_text(const Material& material) {
+  const bool is_clamped =
+      material.wrap_u == TextureWrap::clamp && material.wrap_v == TextureWrap::clamp;
+  std::string text;
+  for (const MaterialMap& map : material.maps) {
+    const std::string_view word = map_word(map.use);
+    if (word.empty()) continue;
+    text.append(word) += is_clamped ? " -clamp on " : " ";
+    text += pictures_.name_of(map.picture) + "\n";
   }
   return text;
 }

@@ -13,28 +13,31 @@
 
 #include "label_materials.hpp"
 #include "label_names.hpp"
+#include "pictures_beside.hpp"
 
 namespace meshfarm {
 
 /// The labels of an OBJ that is written: "usemtl" statements, and beside it a library of the same
-/// name, "mesh.mtl"; or "g" statements if they are groups.
+/// name, "mesh.mtl", with its pictures; or "g" statements if they are groups.
 class ObjLabels {
  public:
   /// Begins the library. Throws IoError.
-  ObjLabels(const std::filesystem::path& obj, const LabelMeaning& meaning);
+  ObjLabels(const std::filesystem::path& obj, const LabelMeaning& meaning,
+            const PictureFiles& pictures = {});
 
   /// What stands at the start of the OBJ.
   std::string header() const;
   /// What stands before a triangle of this label: a line, or nothing if the one before has the
   /// same.
   std::string_view statement(Label label);
-  /// Writes the library, under a temporary name yet.
+  /// Writes the library, and the pictures that it names, under temporary names yet.
   void finish();
   void commit();
 
  private:
   const std::string& line_of(std::size_t place);
   std::string library_text();
+  std::string maps_text(const Material& material);
 
   std::filesystem::path obj_;
   bool are_groups_;
@@ -43,6 +46,7 @@ class ObjLabels {
   std::vector<std::string> lines_;  // of each material; empty until it is used
   std::optional<std::size_t> last_;
   std::optional<AtomicFile> library_;
+  PicturesBeside pictures_;
 };
 
 }  // namespace meshfarm

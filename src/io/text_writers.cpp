@@ -2,8 +2,9 @@
 // SPDX-License-Identifier: MIT
 //
 // What is written:
-//   OBJ: ["#" comment], { "v" x y z [r g b] }, { "f" a b c }, from 1; colours from 0 to 1; labels
-//        as obj_labels.cpp has them
+//   OBJ: ["#" comment], { "v" x y z [r g b] }, { { "vt" u v }, { "f" a[/t] b[/t] c[/t] } }, from 1;
+//        colours from 0 to 1; labels as obj_labels.cpp has them. A vertex's texture coordinates
+//        come once, before a batch of triangles where one has them first.
 //   OFF: ["C"] "OFF", vertices triangles 0, { x y z [r g b a] }, { 3 a b c }, from 0; colours are
 //        whole numbers up to 255, or floats up to 1 if the channels are
 #include <array>
@@ -12,10 +13,10 @@
 #include <limits>
 #include <optional>
 #include <string>
-#include <system_error>
 
 #include <meshfarm/util/errors.hpp>
 
+#include "corner_wedges.hpp"
 #include "file_sink.hpp"
 #include "mesh_writers.hpp"
 #include "obj_labels.hpp"
@@ -29,8 +30,8 @@ struct TextForm {
   std::string_view before_vertex;
   std::string_view before_triangle;
   std::uint64_t first_index = 0;
-  bool has_levels = false;  // colours as whole numbers, and an alpha after them
-  bool has_labels = false;  // of triangles
+  bool has_levels = false;   // colours as whole numbers, and an alpha after them
+  bool has_columns = false;  // of triangles
 };
 
 class TextSink final : public FileSink {
@@ -39,8 +40,10 @@ class TextSink final : public FileSink {
            std::string_view header)
       : FileSink(path, options), form_(form), colour_(colour_columns(options.channels)) {
     write(header);
-    if (!form.has_labels || !options.labels) return;
-    labels_.emplace(path, *options.labels);
+    if (!form.has_columns) return;
+    if (options.uvs) wedges_.emplace(options.vertices);
+    if (!options.labels) return;
+    labels_.emplace(path, *options.labels, options.pictures);
     write(labels_->header());
   }
 
@@ -76,14 +79,41 @@ class TextSink final : public FileSink {
   }
 
   void put(const TriangleView& batch) override {
+    if (wedges_) add_uvs(batch);
     for (std::size_t i = 0; i < batch.size(); ++i) {
       if (labels_) add_statement(batch.columns.labels[i]);
       begin_line(form_.before_triangle);
-      for (const std::uint64_t index : batch.corners[i]) {
-        out_ = std::to_chars(out_, out_ + k_longest_coordinate, index + form_.first_index).ptr;
+      for (std::size_t corner = 0; corner < 3; ++corner) {
+        add_index(batch.corners[i][corner] + form_.first_index);
+        if (wedges_) {
+          *out_++ = '/';
+          add_index(uv_numbers_[3 * i + corner]);
+        }
         *out_++ = ' ';
       }
       end_line();
+    }
+    flush();
+  }
+
+  void add_index(std::uint64_t index) {
+    out_ = std::to_chars(out_, out_ + k_longest_coordinate, index).ptr;
+  }
+
+  /// What the batch's triangles are the first to have.
+  void add_uvs(const TriangleView& batch) {
+    uv_numbers_.clear();
+    for (std::size_t i = 0; i < batch.size(); ++i) {
+      for (std::size_t corner = 0; corner < 3; ++corner) {
+        const Uv uv = finite_uv(batch.columns.uvs[i][corner]);
+        uv_numbers_.push_back(
+            wedges_->number_of(batch.corners[i][corner], uv, [&](bool /*is_first*/) {
+              begin_line("vt ");
+              for (const float x : uv) add_value(x);
+              end_line();
+              return ++uvs_;
+            }));
+      }
     }
     flush();
   }
@@ -95,15 +125,11 @@ class TextSink final : public FileSink {
     write(statement);
   }
 
-  /// The OBJ is the last to come. One that is there already must not be found with the new library;
-  /// it goes when nothing is left to do but to rename.
+  /// The OBJ is the last to come.
   void finish() override {
     if (!labels_) return;
     labels_->finish();
-    sync();
-    std::error_code error;
-    std::filesystem::remove(path(), error);
-    if (error) throw IoError("cannot replace", path(), error.value());
+    make_way();
     labels_->commit();
   }
 
@@ -119,6 +145,9 @@ class TextSink final : public FileSink {
   TextForm form_;
   std::optional<std::array<std::size_t, 3>> colour_;  // where it stands among the channels
   std::optional<ObjLabels> labels_;
+  std::optional<CornerWedges> wedges_;     // if there are texture coordinates
+  std::uint64_t uvs_ = 0;                  // that are written
+  std::vector<std::uint64_t> uv_numbers_;  // of a batch's corners
   std::vector<char> buffer_ = std::vector<char>(k_most_at_once * k_longest_line);
   char* out_ = buffer_.data();
 };

@@ -19,6 +19,7 @@ struct Converted {
   PositionType positions = PositionType::float32;  // as they were read
   std::vector<Channel> channels;                   // that the output has a place for
   bool has_labels = false;                         // the same
+  bool has_uvs = false;                            // the same
   std::uint64_t small_faces = 0;                   // of fewer than three corners
   std::uint64_t dropped_not_finite = 0;            // triangles with a vertex without a position
 };

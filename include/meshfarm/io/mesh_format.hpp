@@ -27,7 +27,7 @@ std::vector<Channel> kept_channels(const std::filesystem::path& path,
 bool keeps_labels(const std::filesystem::path& path);
 /// Whether also for the names and the colours of their materials.
 bool keeps_materials(const std::filesystem::path& path);
-/// Whether it has a place for texture coordinates and pictures. Throws as above.
+/// Whether a file of this name has a place for triangles' texture coordinates, and for pictures.
 bool keeps_uvs(const std::filesystem::path& path);
 
 /// Where a mesh goes, and how.

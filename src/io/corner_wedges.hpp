@@ -1,0 +1,61 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+
+#include <meshfarm/geometry/mesh.hpp>
+
+#include "scratch_array.hpp"
+#include "scratch_list.hpp"
+
+namespace meshfarm {
+
+/// The texture coordinates that each vertex has in its triangles, each once, and a number that its
+/// user gives to it. Kept in up to 96 MB of memory, or in scratch files: 8 bytes a vertex and 24 a
+/// wedge. (At a vertex with very many wedges one may come more than once.)
+class CornerWedges {
+ public:
+  /// For so many vertices. Throws IoError.
+  explicit CornerWedges(std::uint64_t vertices) : newest_(vertices) {}
+
+  /// The wedge's number. A new one is what `make(is_first)` says: whether the vertex has no other.
+  template <class Make>
+  std::uint64_t number_of(std::uint64_t vertex, Uv uv, const Make& make) {
+    std::uint64_t& newest = newest_.items()[vertex];
+    newest_.used(1);
+    wedges_.used(1);
+    std::uint64_t at = newest;
+    for (int step = 0; at != 0 && step < k_most_steps; ++step) {
+      const Wedge& wedge = wedges_[at - 1];
+      if (std::memcmp(&wedge.uv, &uv, sizeof uv) == 0) return wedge.number;
+      at = wedge.next;
+    }
+    const std::uint64_t number = make(newest == 0);
+    wedges_.push_back({uv, number, newest});
+    newest = wedges_.size();
+    return number;
+  }
+
+ private:
+  static constexpr int k_most_steps = 100;
+  struct Wedge {
+    Uv uv{};
+    std::uint64_t number = 0;
+    std::uint64_t next = 0;  // of the same vertex; from 1, 0 is none
+  };
+  ScratchArray<std::uint64_t> newest_;  // of each vertex, as above
+  ScratchList<Wedge> wedges_;
+};
+
+/// What every format can hold: no number is 0.
+inline Uv finite_uv(Uv uv) {
+  for (float& x : uv) {
+    if (!std::isfinite(x)) x = 0;
+  }
+  return uv;
+}
+
+}  // namespace meshfarm
