@@ -4,8 +4,9 @@
 // What is made, all of it little endian:
 //   "glTF", uint32 2, uint32 length of all
 //   uint32 length, "JSON", the document and blanks
-//   uint32 length, "BIN\0", { stream }, zeros up to a multiple of 4
-// A stream is what a buffer view is compressed to: of positions, normals, colours and indices.
+//   uint32 length, "BIN\0", { stream }, zeros up to a multiple of 4, { image }
+// A stream is what a buffer view is compressed to: of positions, normals, colours, texture
+// coordinates and indices. Images are as they are, and who writes them adds them.
 // The views lie in a second buffer, which is in no file.
 #include "glb_compressed.hpp"
 
@@ -29,6 +30,8 @@ using Json = nlohmann::ordered_json;
 
 constexpr std::uint64_t k_most_bytes = std::uint64_t{256} << 20;
 constexpr unsigned k_short_bits = 16;
+constexpr std::size_t k_short_uv_bytes = 2 * sizeof(std::uint16_t);
+constexpr std::uint32_t k_longest_side = 16'384;  // of which 16 bits are an eighth of a texel
 constexpr int k_int8 = 5120;
 constexpr int k_uint16 = 5123;
 constexpr const char* k_compression = "EXT_meshopt_compression";
@@ -48,6 +51,12 @@ class PlainMesh {
   Vec3 position(std::uint64_t vertex) const {
     const auto [x, y, z] = floats(vertex, 0);
     return {x, y, z};
+  }
+  Uv uv(std::uint64_t vertex) const {
+    Uv made{};
+    std::memcpy(made.data(), bytes_.data() + vertex * layout_.vertex_bytes + layout_.uv_at(),
+                sizeof made);
+    return made;
   }
   /// One attribute of all vertices, without what is between.
   std::string column(std::size_t offset, std::size_t bytes) const {
@@ -145,10 +154,11 @@ bool is_fine(const Lattice& lattice, const PlainMesh& mesh, Vec3 shift,
 /// The bytes of a .glb and what its document says of them.
 class Packer {
  public:
-  Packer(const GltfLayout& layout, const GltfBounds& bounds, std::string_view comment)
+  Packer(const GltfLayout& layout, const GltfBounds& bounds, const GltfWords& words)
       : layout_(layout),
         bounds_(bounds),
-        document_(Json::parse(gltf_document(layout, bounds, {.comment = std::string(comment)}))) {
+        words_(words),
+        document_(Json::parse(gltf_document(layout, bounds, words))) {
     document_["bufferViews"] = Json::array();
   }
 
@@ -159,6 +169,7 @@ class Packer {
       add_positions(mesh, indices);
       if (layout_.normals) add_normals(mesh);
       if (layout_.colours) add_colours(mesh);
+      if (layout_.uvs) add_uvs(mesh);
       add_indices(indices);
     }
     describe();
@@ -237,8 +248,31 @@ class Packer {
   }
 
   void add_colours(const PlainMesh& mesh) {
-    const std::size_t offset = layout_.vertex_bytes - layout_.colour_bytes;
-    add_vertices(mesh.column(offset, layout_.colour_bytes), layout_.colour_bytes);
+    add_vertices(mesh.column(layout_.colour_at(), layout_.colour_bytes), layout_.colour_bytes);
+  }
+
+  /// With 16 bits where these are fine enough.
+  void add_uvs(const PlainMesh& mesh) {
+    bool is_fine = std::all_of(words_.images.begin(), words_.images.end(),
+                               [](const auto& image) { return image.side <= k_longest_side; });
+    for (std::uint64_t v = 0; v < layout_.vertices && is_fine; ++v) {
+      const Uv uv = mesh.uv(v);
+      is_fine = uv[0] >= 0 && uv[0] <= 1 && uv[1] >= 0 && uv[1] <= 1;
+    }
+    if (!is_fine) return add_vertices(mesh.column(layout_.uv_at(), sizeof(Uv)), sizeof(Uv));
+    std::string bytes(k_short_uv_bytes * layout_.vertices, '\0');
+    for (std::uint64_t v = 0; v < layout_.vertices; ++v) {
+      std::array<std::uint16_t, 2> row{};
+      for (std::size_t axis = 0; axis < 2; ++axis) {
+        const double whole = static_cast<double>(mesh.uv(v)[axis]) * UINT16_MAX;
+        row[axis] = static_cast<std::uint16_t>(std::floor(whole + 0.5));
+      }
+      std::memcpy(bytes.data() + k_short_uv_bytes * v, row.data(), sizeof row);
+    }
+    Json& accessor = accessor_of_next();
+    accessor["componentType"] = k_uint16;
+    accessor["normalized"] = true;
+    add_vertices(bytes, k_short_uv_bytes);
   }
 
   void add_vertices(const std::string& bytes, std::size_t stride, const char* filter = nullptr) {
@@ -289,9 +323,25 @@ class Packer {
     return document_["bufferViews"].back();
   }
 
+  /// Behind all streams. Returns where the last ends.
+  std::uint64_t add_images() {
+    std::uint64_t end = binary_.size();
+    std::uint64_t next = end;
+    for (std::size_t i = 0; i < words_.images.size(); ++i) {
+      const std::uint64_t bytes = words_.images[i].bytes;
+      Json& views = document_["bufferViews"];
+      document_["images"][i]["bufferView"] = views.size();
+      views.push_back({{"buffer", 0}, {"byteOffset", next}, {"byteLength", bytes}});
+      end = next + bytes;
+      next = padded_to_4(end);
+    }
+    return end;
+  }
+
   void describe() {
+    const std::uint64_t end = add_images();
     document_["buffers"] = {
-        {{"byteLength", binary_.size()}},
+        {{"byteLength", end}},
         {{"byteLength", unpacked_}, {"extensions", {{k_compression, {{"fallback", true}}}}}}};
     Json extensions = {k_compression};
     if (is_scaled_ || layout_.normals) extensions.push_back(k_quantisation);
@@ -309,17 +359,18 @@ class Packer {
     json.resize((json.size() + 3) / 4 * 4, ' ');
     std::string made;
     made.reserve(28 + json.size() + binary_.size());
+    const std::size_t length = binary_.size() + words_.image_bytes();
     const auto put = [&](std::size_t word) {
       const auto bytes = static_cast<std::uint32_t>(word);
       made.append(reinterpret_cast<const char*>(&bytes), sizeof bytes);
     };
-    for (const std::size_t word : {std::size_t{0x46546c67}, std::size_t{2},
-                                   28 + json.size() + binary_.size(), json.size()}) {
+    for (const std::size_t word :
+         {std::size_t{0x46546c67}, std::size_t{2}, 28 + json.size() + length, json.size()}) {
       put(word);
     }
     put(0x4e4f534a);
     made += json;
-    put(binary_.size());
+    put(length);
     put(0x004e4942);
     made += binary_;
     return made;
@@ -327,6 +378,7 @@ class Packer {
 
   const GltfLayout& layout_;
   const GltfBounds& bounds_;
+  const GltfWords& words_;
   Json document_;
   std::optional<Lattice> lattice_;
   bool is_scaled_ = false;  // the lattice is the node's, not of the floats
@@ -336,14 +388,13 @@ class Packer {
 
 }  // namespace
 
-bool can_compress_glb(const MeshSinkOptions& options) {
-  const std::uint64_t bytes = GltfLayout(options).binary_bytes();
-  return options.vertices > 0 && options.triangles > 0 && !options.labels && bytes <= k_most_bytes;
+bool can_compress_glb(const GltfLayout& layout) {
+  return layout.vertices > 0 && layout.triangles > 0 && layout.binary_bytes() <= k_most_bytes;
 }
 
 std::string compressed_glb(const GltfLayout& layout, const GltfBounds& bounds,
-                           std::string_view comment, std::string binary) {
-  return Packer(layout, bounds, comment).pack(std::move(binary));
+                           const GltfWords& words, std::string binary) {
+  return Packer(layout, bounds, words).pack(std::move(binary));
 }
 
 }  // namespace meshfarm

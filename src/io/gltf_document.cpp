@@ -39,11 +39,15 @@ Json add_vertices(const GltfLayout& layout, const GltfBounds& bounds, Json& acce
   if (layout.colours) {
     const bool are_bytes = layout.colour_type == ChannelType::uint8;
     attributes["COLOR_0"] = accessors.size();
-    accessors.push_back(accessor(layout, layout.vertex_bytes - layout.colour_bytes,
-                                 are_bytes ? k_uint16 : k_float, layout.alpha ? "VEC4" : "VEC3"));
+    accessors.push_back(accessor(layout, layout.colour_at(), are_bytes ? k_uint16 : k_float,
+                                 layout.alpha ? "VEC4" : "VEC3"));
     if (are_bytes) accessors.back()["normalized"] = true;
     const int bits = layout.colour_type == ChannelType::uint16 ? 16 : 32;
     accessors.back()["extras"] = {{k_srgb_bits_extra, are_bytes ? 8 : bits}};
+  }
+  if (layout.uvs) {
+    attributes["TEXCOORD_0"] = accessors.size();
+    accessors.push_back(accessor(layout, layout.uv_at(), k_float, "VEC2"));
   }
   return attributes;
 }
@@ -58,29 +62,22 @@ Json index_accessor(const GltfLayout& layout, std::uint64_t first, std::uint64_t
   return made;
 }
 
-Json material_of(const Material& material) {
-  Json made = {{"name", material.name}, {"pbrMetallicRoughness", Json::object()}};
-  if (material.colour != Material().colour) {
-    made["pbrMetallicRoughness"]["baseColorFactor"] = material.colour;
-  }
-  made["pbrMetallicRoughness"]["metallicFactor"] = 0;
-  if (material.colour[3] < 1) made["alphaMode"] = "BLEND";
-  return made;
-}
-
 /// The primitives, one a part, with their accessors and their materials.
-Json add_primitives(const GltfLayout& layout, std::span<const GltfPart> parts,
-                    const Json& attributes, Json& document) {
+Json add_primitives(const GltfLayout& layout, const GltfWords& words, const Json& attributes,
+                    Json& document) {
+  constexpr std::size_t k_first_image_view = 2;
+  GltfSurfaces surfaces(words.images);
   Json primitives = Json::array();
   std::uint64_t first = 0;
-  for (const GltfPart& part : parts) {
+  for (const GltfPart& part : words.parts) {
     primitives.push_back({{"attributes", attributes},
                           {"indices", document["accessors"].size()},
                           {"material", primitives.size()}});
     document["accessors"].push_back(index_accessor(layout, first, part.triangles));
-    document["materials"].push_back(material_of(part.material));
+    document["materials"].push_back(surfaces.material(part.material));
     first += part.triangles;
   }
+  surfaces.finish(k_first_image_view, document);
   return primitives;
 }
 
@@ -110,26 +107,32 @@ void add_mesh(const GltfLayout& layout, const GltfBounds& bounds, const GltfWord
   document["accessors"] = accessors;
   if (!words.parts.empty()) {
     document["materials"] = Json::array();
-    document["meshes"][0]["primitives"] = add_primitives(layout, words.parts, attributes, document);
+    document["meshes"][0]["primitives"] = add_primitives(layout, words, attributes, document);
+  }
+  std::uint64_t end = layout.binary_bytes();
+  for (const GltfImage& image : words.images) {
+    if (!image.uri.empty()) continue;
+    const std::uint64_t first = padded_to_4(end);
+    views.push_back({{"buffer", 0}, {"byteOffset", first}, {"byteLength", image.bytes}});
+    end = first + image.bytes;
   }
   document["bufferViews"] = views;
   Json buffer = Json::object();
   if (!words.uri.empty()) buffer["uri"] = words.uri;
-  buffer["byteLength"] = layout.binary_bytes();
+  buffer["byteLength"] = end;
   document["buffers"] = Json::array({buffer});
 }
 
 }  // namespace
 
 GltfLayout::GltfLayout(const MeshSinkOptions& options)
-    : vertices(options.vertices),
-      triangles(options.triangles),
+    : triangles(options.triangles),
+      uvs(options.uvs),
       normals(normal_columns(options.channels)),
       colours(colour_columns(options.channels)),
       alpha(alpha_column(options.channels)),
-      vertex_bytes(12 + (normals ? 12 : 0)),
-      // The largest number of a type would begin a strip.
-      index_bytes(vertices <= UINT16_MAX ? 2 : 4) {
+      vertex_bytes(12 + (normals ? 12 : 0) + (uvs ? sizeof(Uv) : 0)) {
+  set_vertices(options.vertices);
   if (!colours) return;
   const auto widen = [&](std::size_t column) {
     colour_type = std::max(colour_type, options.channels[column].type);
@@ -142,6 +145,17 @@ GltfLayout::GltfLayout(const MeshSinkOptions& options)
     colour_bytes = (alpha ? 4 : 3) * sizeof(float);
   }
   vertex_bytes += colour_bytes;
+}
+
+void GltfLayout::set_vertices(std::uint64_t count) {
+  vertices = count;
+  index_bytes = vertices <= UINT16_MAX ? 2 : 4;  // the largest number would begin a strip
+}
+
+std::uint64_t GltfWords::image_bytes() const {
+  std::uint64_t sum = 0;
+  for (const GltfImage& image : images) sum += image.uri.empty() ? padded_to_4(image.bytes) : 0;
+  return sum;
 }
 
 std::string gltf_document(const GltfLayout& layout, const GltfBounds& bounds,

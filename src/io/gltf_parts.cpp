@@ -13,7 +13,8 @@ GltfParts::GltfParts(const LabelMeaning& meaning, std::uint64_t triangles)
 void GltfParts::add(const TriangleView& batch) {
   const std::span<Labelled> all = triangles_.items();
   for (std::size_t i = 0; i < batch.size(); ++i) {
-    const std::size_t place = materials_.place_of(batch.columns.labels[i]);
+    const std::size_t place =
+        batch.columns.labels.empty() ? 0 : materials_.place_of(batch.columns.labels[i]);
     if (place >= counts_.size()) counts_.resize(place + 1);
     ++counts_[place];
     Labelled& made = all[count_++];

@@ -223,7 +223,7 @@ TEST_CASE("what has no triangles, or is too large to be held in memory, is plain
   CHECK(written({}, PositionType::float32).bytes ==
         written({}, PositionType::float32, Packing::plain).bytes);
   const auto can = [](std::uint64_t vertices, std::uint64_t triangles) {
-    return can_compress_glb({.vertices = vertices, .triangles = triangles});
+    return can_compress_glb(GltfLayout({.vertices = vertices, .triangles = triangles}));
   };
   CHECK(can(7'000'000, 14'000'000));
   CHECK_FALSE(can(8'000'000, 16'000'000));
