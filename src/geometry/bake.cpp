@@ -86,6 +86,8 @@ class Baker {
   }
 
  private:
+  std::size_t points_a_texel() const { return std::size_t{samples_} * samples_; }
+
   void paint_tile(std::uint32_t tile_x, std::uint32_t tile_y) {
     const std::uint32_t side = options_.texture_size;
     Asked asked;
@@ -93,7 +95,7 @@ class Baker {
       for (std::uint32_t x = tile_x * k_tile; x < std::min(side, (tile_x + 1) * k_tile); ++x) {
         const std::uint32_t owner = owners_.at(x, y);
         if (owner == k_no_owner) continue;
-        if (asked.points.size() + samples_ * samples_ > k_most_baked_points) paint(asked);
+        if (asked.points.size() + points_a_texel() > k_most_baked_points) paint(asked);
         asked.texels.push_back(std::size_t{y} * side + x);
         add_points(owner, x, y, asked);
       }
@@ -133,7 +135,7 @@ class Baker {
     if (asked.points.empty()) return;
     std::vector<BakedColour> colours(asked.points.size());
     colours_at_(asked.points, asked.normals, colours);
-    const std::size_t each = std::size_t{samples_} * samples_;
+    const std::size_t each = points_a_texel();
     for (std::size_t i = 0; i < asked.texels.size(); ++i) {
       Corners sum{};
       for (std::size_t k = i * each; k < (i + 1) * each; ++k) {
@@ -149,7 +151,7 @@ class Baker {
   std::uint8_t level(double value) const {
     if (options_.level_of != nullptr) value = options_.level_of(value);
     if (!(value > 0)) return 0;
-    return static_cast<std::uint8_t>(std::min(value, 1.0) * 255 + 0.5);
+    return static_cast<std::uint8_t>(std::lround(std::min(value, 1.0) * 255));
   }
 
   std::vector<std::uint8_t> rows_from_top() const {
