@@ -10,7 +10,7 @@
 namespace meshfarm {
 
 void Adjacency::build(std::span<const Triangle> triangles, std::size_t vertices,
-                      std::span<const Label> labels) {
+                      const TriangleColumnsView& columns) {
   rows_.assign(vertices, {0, 0});
   corners_.resize(triangles.size() * 3);
   for (const Triangle& t : triangles) {
@@ -27,17 +27,19 @@ void Adjacency::build(std::span<const Triangle> triangles, std::size_t vertices,
     corners_[rows_[t[1]].end++] = {t[2], t[0]};
     corners_[rows_[t[2]].end++] = {t[0], t[1]};
   }
-  put_labels(triangles, labels);
+  columns_ = columns;
+  put_ids(triangles);
 }
 
 /// Beside the corners, in their order.
-void Adjacency::put_labels(std::span<const Triangle> triangles, std::span<const Label> labels) {
-  labels_.resize(labels.empty() ? 0 : corners_.size());
-  if (labels.empty()) return;
+void Adjacency::put_ids(std::span<const Triangle> triangles) {
+  ids_.resize(columns_.empty() ? 0 : corners_.size());
+  if (columns_.empty()) return;
   std::vector<std::uint32_t> next(rows_.size());
   for (std::size_t v = 0; v < rows_.size(); ++v) next[v] = rows_[v].begin;
-  for (std::size_t i = 0; i < triangles.size(); ++i) {
-    for (const std::uint32_t v : triangles[i]) labels_[next[v]++] = labels[i];
+  CornerId id = 0;
+  for (const Triangle& t : triangles) {
+    for (const std::uint32_t v : t) ids_[next[v]++] = id++;
   }
 }
 
@@ -51,10 +53,10 @@ void Adjacency::assign(std::uint32_t vertex, const CornerFan& fan) {
     }
     row.begin = static_cast<std::uint32_t>(corners_.size());
     corners_.insert(corners_.end(), corners.begin(), corners.end());
-    labels_.insert(labels_.end(), fan.labels.begin(), fan.labels.end());
+    ids_.insert(ids_.end(), fan.ids.begin(), fan.ids.end());
   } else {
     std::copy(corners.begin(), corners.end(), corners_.begin() + row.begin);
-    std::copy(fan.labels.begin(), fan.labels.end(), labels_.begin() + row.begin);
+    std::copy(fan.ids.begin(), fan.ids.end(), ids_.begin() + row.begin);
   }
   row.end = row.begin + count;
 }
@@ -72,7 +74,7 @@ void Adjacency::replace(std::uint32_t vertex, std::uint32_t was, std::uint32_t n
     if (c.next == was) c.next = now;
     if (c.prev == was) c.prev = now;
     if (c.next == c.prev) continue;
-    if (!labels_.empty()) labels_[kept] = labels_[i];
+    if (!ids_.empty()) ids_[kept] = ids_[i];
     corners_[kept++] = c;
   }
   row.end = kept;
@@ -90,9 +92,9 @@ void Adjacency::remove(std::uint32_t vertex, Corner corner) {
   const auto end = corners_.begin() + row.end;
   const auto at = std::find(corners_.begin() + row.begin, end, corner);
   if (at == end) return;
-  if (!labels_.empty()) {
-    const auto label = labels_.begin() + (at - corners_.begin());
-    std::copy(label + 1, labels_.begin() + row.end, label);
+  if (!ids_.empty()) {
+    const auto id = ids_.begin() + (at - corners_.begin());
+    std::copy(id + 1, ids_.begin() + row.end, id);
   }
   std::copy(at + 1, end, at);
   --row.end;

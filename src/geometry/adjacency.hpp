@@ -9,6 +9,8 @@
 
 #include <meshfarm/geometry/mesh.hpp>
 
+#include "geometry/corner_ids.hpp"
+
 namespace meshfarm {
 
 /// One triangle seen from one of its vertices: the other two, counter-clockwise.
@@ -18,29 +20,33 @@ struct Corner {
   friend bool operator==(const Corner&, const Corner&) = default;
 };
 
-/// The corners at a vertex, and the labels of their triangles if these have any.
+/// The corners at a vertex, and their ids if triangles have columns.
 struct CornerFan {
   std::span<const Corner> corners;
-  std::span<const Label> labels;
+  std::span<const CornerId> ids;
+  const TriangleColumnsView* columns = nullptr;
 
-  /// Whether two of the triangles have other labels.
+  /// Whether columns make a line of the edge that triangle i ends at and k begins at.
   bool differ(std::size_t i, std::size_t k) const {
-    return !labels.empty() && labels[i] != labels[k];
+    return !ids.empty() && are_apart(*columns, ids[i], ids[k]);
   }
 };
 
 /// The corners at each vertex in one flat array (compressed sparse rows), in triangle order.
 class Adjacency {
  public:
-  /// Keeps its memory from one build to the next. Labels: one a triangle, or none.
+  /// Keeps its memory from one build to the next. The columns must stay where they are as long as
+  /// fans are looked at; what they hold may change.
   void build(std::span<const Triangle> triangles, std::size_t vertices,
-             std::span<const Label> labels = {});
-  bool has_labels() const { return !labels_.empty(); }
-  /// The corners with their labels.
+             const TriangleColumnsView& columns = {});
+  bool has_labels() const { return !columns_.labels.empty(); }
+  bool has_uvs() const { return !columns_.uvs.empty(); }
+  const TriangleColumnsView& columns() const { return columns_; }
+  /// The corners with their ids.
   CornerFan fan_at(std::uint32_t vertex) const {
     const Row& row = rows_[vertex];
-    if (labels_.empty()) return {at(vertex), {}};
-    return {at(vertex), {labels_.data() + row.begin, labels_.data() + row.end}};
+    if (ids_.empty()) return {at(vertex), {}};
+    return {at(vertex), {ids_.data() + row.begin, ids_.data() + row.end}, &columns_};
   }
   std::uint32_t vertices() const { return static_cast<std::uint32_t>(rows_.size()); }
   std::span<const Corner> at(std::uint32_t vertex) const {
@@ -53,7 +59,7 @@ class Adjacency {
 
   // Changes to single vertices; the caller keeps the rows of a triangle's three vertices in step.
 
-  /// Gives a vertex other corners, which must not be a part of this, with labels if there are any.
+  /// Gives a vertex other corners, which must not be a part of this, with ids if there are any.
   /// A longer row than before moves to the end of the array. Throws UsageError if that is too long
   /// for 32-bit indices.
   void assign(std::uint32_t vertex, const CornerFan& fan);
@@ -71,11 +77,12 @@ class Adjacency {
     std::uint32_t begin;
     std::uint32_t end;
   };
-  void put_labels(std::span<const Triangle> triangles, std::span<const Label> labels);
+  void put_ids(std::span<const Triangle> triangles);
 
   std::vector<Row> rows_;
   std::vector<Corner> corners_;
-  std::vector<Label> labels_;  // one a corner, or none
+  std::vector<CornerId> ids_;  // one a corner, or none
+  TriangleColumnsView columns_;
 };
 
 /// Calls take(corner, end) for the edges of one fan that have one triangle: none if it is closed,

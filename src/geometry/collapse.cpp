@@ -139,13 +139,13 @@ void CollapseJudge::add_appearances(std::uint32_t a, std::uint32_t b, std::uint3
 }
 
 /// Those of the triangles of the vertex's ring, in its order; none where there are none.
-std::span<const Label> CollapseJudge::labels_of(std::uint32_t vertex,
-                                                std::span<Label> buffer) const {
+std::span<const CornerId> CollapseJudge::ids_of(std::uint32_t vertex,
+                                                std::span<CornerId> buffer) const {
   const CornerFan fan = state_.adjacency->fan_at(vertex);
   std::size_t size = 0;
-  for (std::size_t i = 0; i < fan.labels.size(); ++i) {
+  for (std::size_t i = 0; i < fan.ids.size(); ++i) {
     const Corner& c = fan.corners[i];
-    if (state_.target[c.next] != state_.target[c.prev]) buffer[size++] = fan.labels[i];
+    if (state_.target[c.next] != state_.target[c.prev]) buffer[size++] = fan.ids[i];
   }
   return buffer.first(size);
 }
@@ -172,9 +172,10 @@ void CollapseJudge::add_lines(const Ring& ring, std::uint32_t vertex, Vec3 end,
       return neighbour != without && (state_.flags[neighbour] & k_crease) != 0;
     };
     const double weight = crease_weight(state_.adjacency->has_labels());
-    std::array<Label, k_max_star> labels;
-    for_crease_edges({fan, labels_of(vertex, labels)}, at, state_.positions, *state_.creases,
-                     is_other_on_crease, [&](const Corner& one, const Corner& other) {
+    std::array<CornerId, k_max_star> ids;
+    for_crease_edges({fan, ids_of(vertex, ids), &state_.adjacency->columns()}, at, state_.positions,
+                     *state_.creases, is_other_on_crease,
+                     [&](const Corner& one, const Corner& other) {
                        add(one, one.prev, weight);
                        add(other, one.prev, weight);
                      });
@@ -213,33 +214,65 @@ Collapse CollapseJudge::best_of(std::uint32_t a, std::uint32_t b, const Collapse
   add_appearances(a, b, shared);
   if ((ring_a_.flags & k_line) != 0) add_lines(ring_a_, a, half * -1.0, k_none);
   if ((ring_b_.flags & k_line) != 0) add_lines(ring_b_, b, half, a);
+  if (state_.has_uvs()) return best_with_uvs(a, b, shared, limits.max_cost);
+  return best_of_positions(a, b, shared, limits.max_cost);
+}
 
+Collapse CollapseJudge::best_of_positions(std::uint32_t a, std::uint32_t b, std::uint32_t shared,
+                                          double max_cost) {
   if (line_rank(ring_a_.flags) != line_rank(ring_b_.flags)) {
     const Vec3 point = line_position(a, b);
-    return at_position(point, shared, limits.max_cost, Turn::wide);
+    return at_position(point, shared, max_cost, Turn::wide);
   }
   const auto at_near = [&](Vec3 x) {
     if (!quadric_.is_near(x)) return Collapse{};
-    return at_position(rounded(middle_ + x, state_.type), shared, limits.max_cost, Turn::wide);
+    return at_position(rounded(middle_ + x, state_.type), shared, max_cost, Turn::wide);
   };
   const Collapse best = at_near(quadric_.best());
   if (best.triangles > 0) return best;
   // Where the best point is far off or would spoil a triangle, one of the ends may do: without them
   // flat faces with sharp edges are dead ends. To let them turn triangles as far costs 6 % of the
   // error on thin bridges.
+  const Vec3 half = (state_.positions[b] - state_.positions[a]) * 0.5;
   const bool a_first = quadric_.cost(half * -1.0) <= quadric_.cost(half);
   for (const std::uint32_t end : {a_first ? a : b, a_first ? b : a}) {
-    const Collapse there =
-        at_position(state_.positions[end], shared, limits.max_cost, Turn::narrow);
+    const Collapse there = at_position(state_.positions[end], shared, max_cost, Turn::narrow);
     if (there.triangles > 0) return there;
   }
   // Of pieces that are nearly as small as can be, few collapses keep any of the volume.
   return star_.pairs() <= k_few_pairs ? at_near(quadric_.cheapest()) : Collapse{};
 }
 
+/// On lines one of the ends: no other place is on a line of the pictures.
+Collapse CollapseJudge::best_with_uvs(std::uint32_t a, std::uint32_t b, std::uint32_t shared,
+                                      double max_cost) {
+  wedges_.list(state_, a, b, middle_);
+  const int rank_a = line_rank(ring_a_.flags);
+  const int rank_b = line_rank(ring_b_.flags);
+  blends_uvs_ = rank_a == 0 && rank_b == 0 && wedges_.is_even();
+  if (blends_uvs_) {
+    wedges_.add_to(quadric_);
+    return best_of_positions(a, b, shared, max_cost);
+  }
+  const auto at_end = [&](WedgeStar::End end, double most) {
+    const Vec3 position = state_.positions[end == WedgeStar::End::a ? a : b];
+    if (!wedges_.place_at(end, position - middle_)) return Collapse{};
+    Collapse made = at_position(position, shared, most, Turn::wide);
+    made.cost += wedges_.cost();
+    return made.cost <= most ? made : Collapse{};
+  };
+  if (rank_a != rank_b) {
+    return at_end(rank_a > rank_b ? WedgeStar::End::a : WedgeStar::End::b, max_cost);
+  }
+  const Collapse at_a = at_end(WedgeStar::End::a, max_cost);
+  const Collapse at_b = at_end(WedgeStar::End::b, at_a.triangles > 0 ? at_a.cost : max_cost);
+  if (at_a.triangles == 0 || (at_b.triangles > 0 && at_b.cost < at_a.cost)) return at_b;
+  return at_end(WedgeStar::End::a, max_cost);
+}
+
 /// Nothing if it costs more or a triangle would be spoiled.
 Collapse CollapseJudge::at_position(Vec3 position, std::uint32_t shared, double max_cost,
-                                    Turn turn) const {
+                                    Turn turn) {
   const Vec3 x = position - middle_;
   double cost = quadric_.cost(x);
   if (!(cost <= max_cost)) return {};
@@ -247,6 +280,7 @@ Collapse CollapseJudge::at_position(Vec3 position, std::uint32_t shared, double 
   if (!lost) return {};
   cost = std::max(cost, quadric_.cost_of_lost_area(*lost));
   if (!(cost <= max_cost)) return {};
+  if (blends_uvs_ && !wedges_.place(x)) return {};
   return {shared, position, cost, false};
 }
 

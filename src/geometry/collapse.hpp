@@ -11,31 +11,15 @@
 #include "geometry/adjacency.hpp"
 #include "geometry/appearance_star.hpp"
 #include "geometry/collapse_star.hpp"
+#include "geometry/collapse_state.hpp"
 #include "geometry/quadric.hpp"
-#include "geometry/simplify_lines.hpp"
+#include "geometry/wedge_star.hpp"
 
 namespace meshfarm {
 
 /// An edge whose ends have more triangles than this together does not collapse: a hub of many
 /// thousand would be walked once for each of its edges. Its rim collapses, so that it shrinks.
 constexpr std::uint32_t k_max_star = CollapseStar::k_capacity;
-
-/// The state that the collapses of one pass work on.
-struct CollapseState {
-  std::span<Vec3> positions;
-  std::span<const std::uint8_t> flags;    // VertexFlag
-  std::span<const std::uint32_t> target;  // the vertex that a vertex has become in this pass
-  const Adjacency* adjacency = nullptr;   // as it was when the pass began
-  PositionType type = PositionType::float64;
-  const CreaseTest* creases = nullptr;  // where vertices are flagged as on creases
-  std::span<Appearance> appearances;    // empty where they do not count
-  AppearanceScale appearance_scale;
-
-  /// Those of a triangle's corners, from the one at the vertex on.
-  AppearanceStar::Values values_at(std::uint32_t vertex, const Corner& c) const {
-    return {appearances[vertex], appearances[c.next], appearances[c.prev]};
-  }
-};
 
 struct CollapseLimits {
   std::uint64_t triangles = 0;  // remove no more than these
@@ -63,6 +47,8 @@ class CollapseJudge {
   /// triangle by more than 60 degrees and makes none of no area. The quadric is of the triangles
   /// as they are now, each counted once.
   Collapse judge(std::uint32_t a, std::uint32_t b, const CollapseLimits& limits);
+  /// What becomes of the texture coordinates in the last that may be.
+  std::span<const WedgeMerge> wedges() const { return wedges_.merges(); }
 
  private:
   struct Ring {
@@ -87,10 +73,13 @@ class CollapseJudge {
   bool link_allows(std::uint32_t shared) const;
   void add_star(std::uint32_t shared);
   void add_appearances(std::uint32_t a, std::uint32_t b, std::uint32_t shared);
-  std::span<const Label> labels_of(std::uint32_t vertex, std::span<Label> buffer) const;
+  std::span<const CornerId> ids_of(std::uint32_t vertex, std::span<CornerId> buffer) const;
   void add_lines(const Ring& ring, std::uint32_t vertex, Vec3 end, std::uint32_t without);
   Vec3 line_position(std::uint32_t a, std::uint32_t b) const;
-  Collapse at_position(Vec3 position, std::uint32_t shared, double max_cost, Turn turn) const;
+  Collapse at_position(Vec3 position, std::uint32_t shared, double max_cost, Turn turn);
+  Collapse best_of_positions(std::uint32_t a, std::uint32_t b, std::uint32_t shared,
+                             double max_cost);
+  Collapse best_with_uvs(std::uint32_t a, std::uint32_t b, std::uint32_t shared, double max_cost);
 
   CollapseState state_;
   Vec3 middle_;
@@ -103,6 +92,8 @@ class CollapseJudge {
   CollapseStar star_;
   EdgeQuadric quadric_;
   AppearanceStar appearance_;
+  WedgeStar wedges_;
+  bool blends_uvs_ = false;  // the merged vertex is inside a chart
 };
 
 }  // namespace meshfarm

@@ -265,29 +265,50 @@ GeneralCollapse GeneralJudge::judge(std::uint32_t a, std::uint32_t b,
   result.changes_topology = changes_topology();
   changes_ = result.changes_topology;
   if (result.changes_topology && crowds_an_edge()) return {};
-  const Vec3 half = (state_.positions[b] - state_.positions[a]) * 0.5;
+  half_ = (state_.positions[b] - state_.positions[a]) * 0.5;
+  wedges_.clear();
   if (staying_ == 0) {
-    middle_ = state_.positions[a] + half;
+    middle_ = state_.positions[a] + half_;
     result.collapse = removal();
     return result;
   }
-  add_star(half);
-  add_lines(a_, b_, half * -1.0);
-  add_lines(b_, a_, half);
-  Collapse& collapse = result.collapse;
-  if (a_.rank != b_.rank) {
-    collapse = at_position(state_.positions[a_.rank > b_.rank ? a : b], Turn::wide);
-    return result;
-  }
-  if (a_.rank < 2) {
-    collapse = at_position(rounded(middle_ + quadric_.best(), state_.type), Turn::wide);
-    if (collapse.triangles > 0) return result;
-  }
-  const bool a_first = quadric_.cost(half * -1.0) <= quadric_.cost(half);
-  collapse = at_position(state_.positions[a_first ? a : b], Turn::narrow);
-  if (collapse.triangles == 0)
-    collapse = at_position(state_.positions[a_first ? b : a], Turn::narrow);
+  add_star(half_);
+  add_lines(a_, b_, half_ * -1.0);
+  add_lines(b_, a_, half_);
+  result.collapse = state_.has_uvs() ? best_with_uvs() : best_of_positions();
   return result;
+}
+
+Collapse GeneralJudge::best_of_positions() {
+  const Vec3 at_a = state_.positions[a_.vertex];
+  const Vec3 at_b = state_.positions[b_.vertex];
+  if (a_.rank != b_.rank) return at_position(a_.rank > b_.rank ? at_a : at_b, Turn::wide);
+  if (a_.rank < 2) {
+    const Collapse best = at_position(rounded(middle_ + quadric_.best(), state_.type), Turn::wide);
+    if (best.triangles > 0) return best;
+  }
+  const bool a_first = quadric_.cost(half_ * -1.0) <= quadric_.cost(half_);
+  const Collapse first = at_position(a_first ? at_a : at_b, Turn::narrow);
+  return first.triangles > 0 ? first : at_position(a_first ? at_b : at_a, Turn::narrow);
+}
+
+/// Only at the ends, wherever they are: what is rare may be less good.
+Collapse GeneralJudge::best_with_uvs() {
+  wedges_.list(state_, a_.vertex, b_.vertex, middle_);
+  const auto at_end = [&](WedgeStar::End end) {
+    const bool is_a = end == WedgeStar::End::a;
+    if ((is_a ? a_.rank < b_.rank : b_.rank < a_.rank)) return Collapse{};
+    const Vec3 position = state_.positions[(is_a ? a_ : b_).vertex];
+    if (!wedges_.place_at(end, position - middle_)) return Collapse{};
+    Collapse made = at_position(position, a_.rank == b_.rank ? Turn::narrow : Turn::wide);
+    made.cost += wedges_.cost();
+    made.certain += wedges_.cost();
+    return made;
+  };
+  const Collapse at_a = at_end(WedgeStar::End::a);
+  const Collapse at_b = at_end(WedgeStar::End::b);
+  if (at_a.triangles == 0 || (at_b.triangles > 0 && at_b.cost < at_a.cost)) return at_b;
+  return at_end(WedgeStar::End::a);
 }
 
 }  // namespace meshfarm

@@ -38,6 +38,8 @@ class GeneralJudge {
   std::span<const std::pair<std::uint32_t, std::uint32_t>> vanishing() const { return vanishing_; }
   /// Vertices whose fans are other ones than before, apart from the merged one.
   std::span<const std::uint32_t> changed() const { return changed_; }
+  /// What becomes of the texture coordinates, if it may be.
+  std::span<const WedgeMerge> wedges() const { return wedges_.merges(); }
 
  private:
   struct End {
@@ -61,6 +63,8 @@ class GeneralJudge {
   void add_star(Vec3 half);
   void add_appearances();
   void add_lines(const End& end, const End& other, Vec3 at);
+  Collapse best_of_positions();
+  Collapse best_with_uvs();
   Collapse at_position(Vec3 position, Turn turn) const;
   Collapse removal();
   void list_removed();
@@ -79,11 +83,13 @@ class GeneralJudge {
   std::uint32_t removed_ = 0;
   std::uint32_t staying_ = 0;
   Vec3 middle_;
+  Vec3 half_;                                    // from there to b
   std::vector<std::uint32_t> removed_vertices_;  // ascending
   Surroundings surroundings_;
   CollapseStar star_;
   EdgeQuadric quadric_;
   AppearanceStar appearance_;
+  WedgeStar wedges_;
 };
 
 }  // namespace meshfarm

@@ -26,7 +26,7 @@ std::uint64_t count_label_corners(std::span<const Triangle> triangles,
                                   std::span<const Label> labels, std::size_t vertices) {
   if (labels.empty()) return 0;
   Adjacency adjacency;
-  adjacency.build(triangles, vertices, labels);
+  adjacency.build(triangles, vertices, {labels, {}});
   std::uint64_t corners = 0;
   for (std::uint32_t v = 0; v < vertices; ++v) {
     if (adjacency.count(v) > k_most_triangles) continue;

@@ -70,13 +70,14 @@ struct OrderedEnd::Trial {
   Trial(const WorkingMesh& mesh, TopologyMode topology, const SurfaceBound* bound)
       : positions(mesh.mesh().positions),
         appearances(mesh.mesh().appearances),
+        columns(mesh.mesh().columns),
         flags(mesh.flags().begin(), mesh.flags().end()),
         queue({positions, flags, adjacency, mesh.creases(), mesh.type(), mesh.seam_only(),
                topology == TopologyMode::simplify,
                topology == TopologyMode::automatic || topology == TopologyMode::keep_while_fair,
-               appearances, mesh.appearance_scale()},
+               appearances, mesh.appearance_scale(), columns, mesh.uv_scale()},
               ranking) {
-    adjacency.build(mesh.mesh().triangles, positions.size(), mesh.mesh().columns.labels);
+    adjacency.build(mesh.mesh().triangles, positions.size(), columns);
     queue.start(mesh.mesh().triangles);
     if (bound == nullptr) return;
     guard.emplace(*bound);
@@ -85,6 +86,7 @@ struct OrderedEnd::Trial {
 
   std::vector<Vec3> positions;
   std::vector<Appearance> appearances;
+  TriangleColumns columns;
   std::vector<std::uint8_t> flags;
   Adjacency adjacency;
   EdgeRanking ranking;

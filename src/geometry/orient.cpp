@@ -69,20 +69,23 @@ std::vector<std::uint32_t> find_neighbours(const std::vector<Triangle>& triangle
 }
 
 /// Turns the smaller half of a piece, or the half without its first triangle.
-std::uint64_t turn_piece(std::vector<Triangle>& triangles, const std::vector<std::uint32_t>& piece,
+std::uint64_t turn_piece(std::vector<Triangle>& triangles, std::span<CornerUvs> uvs,
+                         const std::vector<std::uint32_t>& piece,
                          const std::vector<std::uint8_t>& half) {
   const auto other = static_cast<std::uint64_t>(
       std::count_if(piece.begin(), piece.end(), [&](std::uint32_t t) { return half[t] == 1; }));
   const std::uint8_t turned = 2 * other > piece.size() ? 0 : 1;
   for (const std::uint32_t t : piece) {
-    if (half[t] == turned) std::swap(triangles[t][1], triangles[t][2]);
+    if (half[t] != turned) continue;
+    std::swap(triangles[t][1], triangles[t][2]);
+    if (!uvs.empty()) std::swap(uvs[t][1], uvs[t][2]);
   }
   return std::min<std::uint64_t>(other, piece.size() - other);
 }
 
 }  // namespace
 
-std::uint64_t orient(std::vector<Triangle>& triangles) {
+std::uint64_t orient(std::vector<Triangle>& triangles, std::span<CornerUvs> uvs) {
   const std::vector<std::uint32_t> across = find_neighbours(triangles);
   constexpr std::uint8_t k_unseen = 2;
   std::vector<std::uint8_t> half(triangles.size(), k_unseen);
@@ -100,7 +103,7 @@ std::uint64_t orient(std::vector<Triangle>& triangles) {
         piece.push_back(next / 2);
       }
     }
-    turned += turn_piece(triangles, piece, half);
+    turned += turn_piece(triangles, uvs, piece, half);
   }
   return turned;
 }

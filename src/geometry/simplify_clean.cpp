@@ -261,10 +261,10 @@ Surface clean_surface(Mesh& mesh, const SimplifyOptions& options, Adjacency& adj
   Surface surface;
   surface.dropped.degenerate =
       keep_triangles(mesh, [&](std::size_t i) { return !is_degenerate(mesh.triangles[i]); });
-  adjacency.build(mesh.triangles, mesh.positions.size(), mesh.columns.labels);
+  adjacency.build(mesh.triangles, mesh.positions.size(), mesh.columns);
   surface.flags = classify_vertices(mesh, options, adjacency);
   const auto again = [&] {
-    adjacency.build(mesh.triangles, mesh.positions.size(), mesh.columns.labels);
+    adjacency.build(mesh.triangles, mesh.positions.size(), mesh.columns);
     surface.flags = classify_vertices(mesh, options, adjacency);
   };
   const std::vector<std::uint32_t> doubtful = vertices_with_duplicates(surface.flags, adjacency);
@@ -273,7 +273,7 @@ Surface clean_surface(Mesh& mesh, const SimplifyOptions& options, Adjacency& adj
     again();
   }
   if (any_turned(surface.flags, adjacency)) {
-    surface.dropped.turned = orient(mesh.triangles);
+    surface.dropped.turned = orient(mesh.triangles, mesh.columns.uvs);
     if (surface.dropped.turned > 0) again();
   }
   // With a seam pass vertices are what the caller's flags are for.

@@ -26,6 +26,14 @@ constexpr CostKey k_least_step = 4U << 20;  // a factor of 16
 // many handles whose result was still good had 1.6.
 constexpr std::uint64_t k_hopeless = 4;
 
+/// What a triangle has, from this corner on.
+void append_turned(const TriangleColumnsView& from, CornerId id, TriangleColumns& to) {
+  to.append(from, id / 3);
+  if (to.uvs.empty()) return;
+  const CornerId next = next_corner(id);
+  to.uvs.back() = {uv_of(from.uvs, id), uv_of(from.uvs, next), uv_of(from.uvs, next_corner(next))};
+}
+
 bool is_later(const QueuedEdge& x, const QueuedEdge& y) {
   return x.is_later(y);
 }
@@ -105,7 +113,8 @@ void CollapseQueue::drop_next() {
 
 CollapseState CollapseQueue::state() {
   return {mesh_.positions, mesh_.flags,           target_,           &mesh_.adjacency,
-          mesh_.type,      &mesh_.creases.test(), mesh_.appearances, mesh_.appearance_scale};
+          mesh_.type,      &mesh_.creases.test(), mesh_.appearances, mesh_.appearance_scale,
+          mesh_.uv_scale};
 }
 
 Collapse CollapseQueue::judge(std::uint32_t a, std::uint32_t b, std::uint64_t most_triangles) {
@@ -234,7 +243,7 @@ void CollapseQueue::join_stars(std::uint32_t a, std::uint32_t b) {
     if (v != a) mesh_.adjacency.replace(v, b, a);
   }
   joined_.clear();
-  joined_labels_.clear();
+  joined_ids_.clear();
   for (const std::uint32_t end : {a, b}) {
     const std::uint32_t other = end == a ? b : a;
     const CornerFan fan = mesh_.adjacency.fan_at(end);
@@ -244,16 +253,20 @@ void CollapseQueue::join_stars(std::uint32_t a, std::uint32_t b) {
     }
   }
   mesh_.adjacency.assign(b, {});
-  mesh_.adjacency.assign(a, {joined_, joined_labels_});
+  mesh_.adjacency.assign(a, {joined_, joined_ids_});
 }
 
 void CollapseQueue::join(const CornerFan& fan, std::size_t place) {
   joined_.push_back(fan.corners[place]);
-  if (!fan.labels.empty()) joined_labels_.push_back(fan.labels[place]);
+  if (!fan.ids.empty()) joined_ids_.push_back(fan.ids[place]);
 }
 
 void CollapseQueue::merge(std::uint32_t a, std::uint32_t b, const Collapse& collapse) {
   if (guard_ != nullptr) guard_->merge();
+  if (mesh_.adjacency.has_uvs()) {
+    merge_wedges(by_general_ ? general_.wedges() : judge_.wedges(), mesh_.adjacency.fan_at(a).ids,
+                 mesh_.adjacency.fan_at(b).ids, mesh_.columns.uvs);
+  }
   join_stars(a, b);
   target_[b] = a;
   mesh_.flags[a] |= mesh_.flags[b];
@@ -309,21 +322,21 @@ void CollapseQueue::tidy_star(std::uint32_t vertex) {
   const auto first_copy = static_cast<std::uint32_t>(target_.size());
   const CornerFan star = mesh_.adjacency.fan_at(vertex);
   const std::vector<Corner> all(star.corners.begin(), star.corners.end());
-  const std::vector<Label> labels(star.labels.begin(), star.labels.end());
+  const std::vector<CornerId> ids(star.ids.begin(), star.ids.end());
   const std::vector<std::uint32_t> fan(splitter_.fans().begin(), splitter_.fans().end());
   for (std::uint32_t f = 0; f < fans; ++f) {
     joined_.clear();
-    joined_labels_.clear();
+    joined_ids_.clear();
     const std::uint32_t v = f == 0 ? vertex : add_copy(vertex);
     for (std::size_t i = 0; i < all.size(); ++i) {
       if (fan[i] != f) continue;
       const auto [next, prev] = all[i];
-      join({all, labels}, i);
+      join({all, ids}, i);
       if (f == 0) continue;
       mesh_.adjacency.replace(next, Corner{prev, vertex}, Corner{prev, v});
       mesh_.adjacency.replace(prev, Corner{vertex, next}, Corner{v, next});
     }
-    mesh_.adjacency.assign(v, {joined_, joined_labels_});
+    mesh_.adjacency.assign(v, {joined_, joined_ids_});
     classify(v);
   }
   if (guard_ != nullptr) guard_->split(vertex, first_copy);
@@ -371,7 +384,7 @@ void CollapseQueue::copy_to(Mesh& mesh, std::vector<std::uint8_t>& flags,
   mesh.positions.clear();
   mesh.triangles.clear();
   mesh.appearances.clear();
-  mesh.columns.labels.clear();
+  mesh.columns.clear();
   flags.clear();
   std::vector<std::uint32_t> number(target_.size());
   for (std::uint32_t v = 0; v < target_.size(); ++v) {
@@ -388,7 +401,7 @@ void CollapseQueue::copy_to(Mesh& mesh, std::vector<std::uint8_t>& flags,
       const Corner& c = fan.corners[i];
       if (c.next < v || c.prev < v) continue;
       mesh.triangles.push_back({number[v], number[c.next], number[c.prev]});
-      if (!fan.labels.empty()) mesh.columns.labels.push_back(fan.labels[i]);
+      if (!fan.ids.empty()) append_turned(*fan.columns, fan.ids[i], mesh.columns);
     }
   }
 }

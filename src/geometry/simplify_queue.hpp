@@ -50,6 +50,8 @@ struct QueuedMesh {
   bool stops_when_held = false;          // rather than go on where most of what is cheap is refused
   std::vector<Appearance>& appearances;  // empty where they do not count
   AppearanceScale appearance_scale;
+  TriangleColumns& columns;  // what the adjacency was built with
+  double uv_scale = 0;
 };
 
 /// Collapses edges strictly in order of their cost: what was refused, or has become cheaper, is
@@ -137,7 +139,7 @@ class CollapseQueue {
   std::vector<std::uint32_t> tidied_;
   std::vector<std::uint32_t> ring_;
   std::vector<Corner> joined_;
-  std::vector<Label> joined_labels_;
+  std::vector<CornerId> joined_ids_;
   std::uint64_t triangles_ = 0;
   std::vector<Mesh> kept_;
   std::size_t next_kept_ = 0;  // of the goal's counts

@@ -16,11 +16,12 @@ WorkingMesh::WorkingMesh(Mesh mesh, const SimplifyOptions& options)
       type_(options.positions),
       seam_only_(!options.seam.empty()),
       appearance_scale_(options.lines.appearance_scale),
+      uv_scale_(options.lines.uv_scale),
       creases_(options.lines.crease_angle,
-               options.lines.columns.labels && !mesh_.columns.labels.empty()) {
+               options.lines.columns.and_in(mesh_.columns.set()).any()) {
   check_input(mesh_, options);
   if (!(appearance_scale_.length > 0)) mesh_.appearances = {};
-  mesh_.columns.keep({options.lines.columns.labels, false});
+  mesh_.columns.keep(options.lines.columns);
   Surface surface = clean_surface(mesh_, options, adjacency_);
   dropped_ = surface.dropped;
   flags_ = std::move(surface.flags);
@@ -58,7 +59,7 @@ std::vector<std::uint8_t> WorkingMesh::seam() const {
 
 void WorkingMesh::begin_pass() {
   if (!adjacency_is_current_) {
-    adjacency_.build(mesh_.triangles, mesh_.positions.size(), mesh_.columns.labels);
+    adjacency_.build(mesh_.triangles, mesh_.positions.size(), mesh_.columns);
   }
   creases_.update(mesh_, adjacency_, flags_);
   const std::size_t vertices = mesh_.positions.size();
@@ -69,10 +70,15 @@ void WorkingMesh::begin_pass() {
 
 CollapseState WorkingMesh::state() {
   return {mesh_.positions, flags_,           target_,           &adjacency_,
-          type_,           &creases_.test(), mesh_.appearances, appearance_scale_};
+          type_,           &creases_.test(), mesh_.appearances, appearance_scale_,
+          uv_scale_};
 }
 
-void WorkingMesh::merge(std::uint32_t a, std::uint32_t b, const Collapse& collapse) {
+void WorkingMesh::merge(std::uint32_t a, std::uint32_t b, const Collapse& collapse,
+                        std::span<const WedgeMerge> wedges) {
+  if (!wedges.empty()) {
+    merge_wedges(wedges, adjacency_.fan_at(a).ids, adjacency_.fan_at(b).ids, mesh_.columns.uvs);
+  }
   touched_[a] = touched_[b] = 1;
   target_[b] = a;
   flags_[a] |= flags_[b];

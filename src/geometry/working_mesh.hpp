@@ -33,6 +33,7 @@ class WorkingMesh {
   const CreaseLines& creases() const { return creases_; }
   PositionType type() const { return type_; }
   const AppearanceScale& appearance_scale() const { return appearance_scale_; }
+  double uv_scale() const { return uv_scale_; }
   bool seam_only() const { return seam_only_; }
   const Dropped& dropped() const { return dropped_; }
   /// Those that no locked vertex has.
@@ -48,7 +49,8 @@ class WorkingMesh {
   CollapseState state();
   /// Whether a vertex took part in a collapse of this pass.
   std::span<const std::uint8_t> touched() const { return touched_; }
-  void merge(std::uint32_t a, std::uint32_t b, const Collapse& collapse);
+  void merge(std::uint32_t a, std::uint32_t b, const Collapse& collapse,
+             std::span<const WedgeMerge> wedges);
   /// `removed`: how many triangles have gone; `cost`: what the pass might pay.
   void end_pass(std::uint64_t removed, double cost);
   /// After a pass that has removed triangles: the new number of each vertex, or that of the one it
@@ -74,6 +76,7 @@ class WorkingMesh {
   PositionType type_;
   bool seam_only_;
   AppearanceScale appearance_scale_;
+  double uv_scale_;
   CreaseLines creases_;
   Dropped dropped_;
   std::vector<std::uint8_t> flags_;

@@ -51,6 +51,9 @@ struct LineOptions {
   /// texture coordinates, merge along these lines only, so that regions keep their shape; those
   /// between charts stay on their places of both pictures. Other columns are dropped.
   ColumnSet columns{true, true};
+  /// The length of a move of the surface that is as bad as to show a place on the picture that is 1
+  /// away from the right one. 0: inside a chart only the shape counts.
+  double uv_scale = 0;
 };
 
 class SurfaceBound;

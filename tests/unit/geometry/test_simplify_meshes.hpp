@@ -74,20 +74,15 @@ inline Mesh tetrahedron() {
           {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {0, 3, 2}}};
 }
 
-/// A sphere of radius 1: an octahedron whose triangles are quartered `times` times.
-inline Mesh sphere(int times) {
-  Mesh mesh{
-      {{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}},
-      {{0, 2, 4}, {2, 1, 4}, {1, 3, 4}, {3, 0, 4}, {2, 0, 5}, {1, 2, 5}, {3, 1, 5}, {0, 3, 5}}};
+/// Quarters the triangles `times` times; `place` moves the new vertices.
+template <typename PlaceAt>
+Mesh quartered(Mesh mesh, int times, const PlaceAt& place) {
   for (int i = 0; i < times; ++i) {
     std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> middles;
     const auto middle = [&](std::uint32_t a, std::uint32_t b) {
       const auto [at, added] =
           middles.try_emplace(std::minmax(a, b), static_cast<std::uint32_t>(mesh.positions.size()));
-      if (added) {
-        const Vec3 sum = mesh.positions[a] + mesh.positions[b];
-        mesh.positions.push_back(sum * (1 / length(sum)));
-      }
+      if (added) mesh.positions.push_back(place(mesh.positions[a] + mesh.positions[b]));
       return at->second;
     };
     std::vector<Triangle> quarters;
@@ -100,6 +95,17 @@ inline Mesh sphere(int times) {
     mesh.triangles = std::move(quarters);
   }
   return mesh;
+}
+inline Mesh quartered(Mesh mesh, int times) {
+  return quartered(std::move(mesh), times, [](Vec3 sum) { return sum * 0.5; });
+}
+
+/// A sphere of radius 1: an octahedron whose triangles are quartered `times` times.
+inline Mesh sphere(int times) {
+  Mesh mesh{
+      {{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}},
+      {{0, 2, 4}, {2, 1, 4}, {1, 3, 4}, {3, 0, 4}, {2, 0, 5}, {1, 2, 5}, {3, 1, 5}, {0, 3, 5}}};
+  return quartered(std::move(mesh), times, [](Vec3 sum) { return sum * (1 / length(sum)); });
 }
 
 inline void append(Mesh& mesh, const Mesh& other, Vec3 shift) {
