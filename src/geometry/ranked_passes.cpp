@@ -54,7 +54,7 @@ RankedPasses::End RankedPasses::reduce(const SimplifyGoal& goal,
     ranking_.begin_pass({mesh_.mesh().positions, mesh_.mesh().triangles, mesh_.flags(),
                          &mesh_.adjacency(), &mesh_.creases().test(), mesh_.seam_only(), false,
                          false, ranks_by_bounds_, mesh_.mesh().appearances,
-                         mesh_.appearance_scale()});
+                         mesh_.appearance_scale(), mesh_.uv_scale()});
     const Pass pass = plan(goal);
     const std::uint64_t before = mesh_.triangles();
     const std::uint64_t removed = run(goal, pass);

@@ -54,7 +54,7 @@ void CollapseQueue::start(std::span<const Triangle> triangles) {
   heap_.clear();
   ranking_.begin_pass({mesh_.positions, triangles, mesh_.flags, &mesh_.adjacency,
                        &mesh_.creases.test(), mesh_.seam_only, true, mesh_.any_topology, true,
-                       mesh_.appearances, mesh_.appearance_scale});
+                       mesh_.appearances, mesh_.appearance_scale, mesh_.uv_scale});
   judge_.move_to(state());
   general_.move_to(state());
 }

@@ -54,6 +54,11 @@ void EdgeRanking::begin_pass(const RankingInput& input) {
       quadrics_[v].add(FloatQuadric(appearance_at(v)));
     }
   }
+  if (weighs_uvs()) {
+    for (std::uint32_t v = 0; v < quadrics_.size(); ++v) {
+      quadrics_[v].add(FloatQuadric(uvs_at(v)));
+    }
+  }
   sum_line_planes();
 }
 
@@ -68,6 +73,33 @@ Quadric EdgeRanking::appearance_at(std::uint32_t vertex) {
               {input_.appearances[vertex], input_.appearances[c.next], input_.appearances[c.prev]});
   }
   return star_.quadric() * k_both_ends;
+}
+
+/// The same of texture coordinates: the triangles of each wedge by themselves.
+Quadric EdgeRanking::uvs_at(std::uint32_t vertex) {
+  const CornerFan fan = input_.adjacency->fan_at(vertex);
+  if (fan.corners.size() > k_max_star) return {};
+  const std::span<const CornerUvs> uvs = fan.columns->uvs;
+  const Vec3 at = input_.positions[vertex];
+  wedges_.clear();
+  for (std::size_t i = 0; i < fan.corners.size(); ++i) {
+    const auto [next, prev] = fan.corners[i];
+    const CornerId id = fan.ids[i];
+    const Uv& own = uv_of(uvs, id);
+    auto wedge = std::find_if(wedges_.begin(), wedges_.end(),
+                              [&](const auto& known) { return is_same(known.first, own); });
+    if (wedge == wedges_.end()) wedge = wedges_.insert(wedge, {own, {}});
+    wedge->second.add(LinearUv::of({{},
+                                    input_.positions[next] - at,
+                                    input_.positions[prev] - at,
+                                    own,
+                                    uv_of(uvs, next_corner(id)),
+                                    uv_of(uvs, prev_corner(id))},
+                                   own, input_.uv_scale));
+  }
+  Quadric sum;
+  for (const auto& [uv, sums] : wedges_) sum = sum + sums.quadric();
+  return sum * (k_both_ends * input_.uv_scale * input_.uv_scale);
 }
 
 void EdgeRanking::sum_planes() {
@@ -127,6 +159,7 @@ void EdgeRanking::refresh(std::uint32_t vertex) {
     if (twice_area > 0 && std::isfinite(twice_area)) planes.add(n, 0.5 / twice_area);
   }
   if (!input_.appearances.empty()) planes = planes + appearance_at(vertex);
+  if (weighs_uvs()) planes = planes + uvs_at(vertex);
   quadrics_[vertex] = FloatQuadric(planes);
   if ((input_.flags[vertex] & k_line) != 0) add_line_planes(vertex);
 }
@@ -182,11 +215,18 @@ void EdgeRanking::list_edges_at(std::uint32_t vertex, std::uint32_t least) {
   listed_count_ = static_cast<std::size_t>(end_of_list - listed_.data());
 }
 
-/// The merged vertex takes the position of the one of higher rank.
+/// The merged vertex takes the position of the one of higher rank, or of the cheaper one.
 EdgeCost EdgeRanking::cost_of_line_end(const Edge& e) const {
-  const bool stays_at_a = line_rank(input_.flags[e.a]) > line_rank(input_.flags[e.b]);
-  return cost_of_end(quadrics_[stays_at_a ? e.b : e.a],
-                     (input_.positions[e.b] - input_.positions[e.a]) * 0.5, input_.bounds);
+  const Vec3 half = (input_.positions[e.b] - input_.positions[e.a]) * 0.5;
+  const auto moved = [&](std::uint32_t end) {
+    return cost_of_end(quadrics_[end], half, input_.bounds);
+  };
+  const int rank_a = line_rank(input_.flags[e.a]);
+  const int rank_b = line_rank(input_.flags[e.b]);
+  if (rank_a != rank_b || !input_.adjacency->has_uvs()) return moved(rank_a > rank_b ? e.b : e.a);
+  const EdgeCost to_b = moved(e.a);
+  const EdgeCost to_a = moved(e.b);
+  return to_a.ranking < to_b.ranking ? to_a : to_b;
 }
 
 /// Counts the keys of the edges of one in so many vertices into starts_.

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include <meshfarm/geometry/mesh.hpp>
@@ -13,6 +14,7 @@
 #include "geometry/appearance_star.hpp"
 #include "geometry/simplify_cost.hpp"
 #include "geometry/simplify_lines.hpp"
+#include "geometry/wedge_star.hpp"
 
 namespace meshfarm {
 
@@ -50,6 +52,7 @@ struct RankingInput {
   bool bounds = false;                      // rank by lower bounds of the costs
   std::span<const Appearance> appearances;  // empty where they do not count
   AppearanceScale appearance_scale;
+  double uv_scale = 0;
 };
 
 /// Which edges a pass may take: those that rank and cost no more than this.
@@ -101,6 +104,8 @@ class EdgeRanking {
   void sum_planes();
   void sum_line_planes();
   Quadric appearance_at(std::uint32_t vertex);
+  bool weighs_uvs() const { return input_.uv_scale > 0 && input_.adjacency->has_uvs(); }
+  Quadric uvs_at(std::uint32_t vertex);
   void add_line_planes(std::uint32_t vertex);
   /// Those whose other end is `least` or greater.
   void list_edges_at(std::uint32_t vertex, std::uint32_t least);
@@ -118,7 +123,8 @@ class EdgeRanking {
   std::size_t listed_count_ = 0;
   EdgeCosts costs_;
   AppearanceStar star_;
-  std::vector<RankedEdge> found_;  // the first found_count_
+  std::vector<std::pair<Uv, LinearUvSums>> wedges_;  // of one vertex
+  std::vector<RankedEdge> found_;                    // the first found_count_
   std::size_t found_count_ = 0;
   std::vector<RankedEdge> sorted_;
   std::vector<std::uint32_t> starts_;
@@ -129,6 +135,8 @@ template <typename Take>
 void EdgeRanking::cost_listed(const Take& take) {
   const Vec3* const positions = input_.positions.data();
   const std::uint8_t* const flags = input_.flags.data();
+  // Where there are texture coordinates vertices on lines merge to one of the two.
+  const int by_ends = input_.adjacency->has_uvs() ? k_line | k_corner : 0;
   for (std::size_t first = 0; first < listed_count_; first += EdgeCosts::k_size) {
     const std::size_t count = std::min(EdgeCosts::k_size, listed_count_ - first);
     const Edge* const edges = listed_.data() + first;
@@ -140,7 +148,7 @@ void EdgeRanking::cost_listed(const Take& take) {
     for (std::size_t i = 0; i < count; ++i) {
       const Edge& e = edges[i];
       const int unlike = (flags[e.a] ^ flags[e.b]) & (k_line | k_corner | k_fixed);
-      take(e, unlike == 0 ? costs_.get(i) : cost_of_line_end(e));
+      take(e, (unlike | (flags[e.a] & by_ends)) == 0 ? costs_.get(i) : cost_of_line_end(e));
     }
   }
   listed_count_ = 0;

@@ -174,6 +174,29 @@ TEST_CASE("no triangle turns over on the picture") {
   }
 }
 
+TEST_CASE("what bends on the picture is kept where it counts") {
+  const auto bent = [](Vec3 p, Vec3) { return uv(p.x + 0.05 * std::sin(12 * p.x), p.y); };
+  const Mesh flat = mapped(shaken_grid(100, 0), bent);
+  const auto error_with = [&](double scale) {
+    SimplifyOptions options;
+    options.lines.uv_scale = scale;
+    const Mesh result = reduced(flat, 300, options);
+    CHECK(count_turned(result) == 0);
+    double sum = 0;
+    for (std::size_t i = 0; i < result.triangles.size(); ++i) {
+      const auto [a, b, c] = result.triangles[i];
+      const Vec3 at = result.positions[a];
+      const Vec3 centre = (at + result.positions[b] + result.positions[c]) * (1.0 / 3);
+      const CornerUvs& t = result.columns.uvs[i];
+      const double miss = (double{t[0][0]} + t[1][0] + t[2][0]) / 3 - bent(centre, centre)[0];
+      const Vec3 normal = cross(result.positions[b] - at, result.positions[c] - at);
+      sum += 0.5 * length(normal) * miss * miss;
+    }
+    return std::sqrt(sum);
+  };
+  CHECK(error_with(0.1) < 0.5 * error_with(0));
+}
+
 TEST_CASE("what has no place on a picture locks nothing") {
   const float none = std::numeric_limits<float>::quiet_NaN();
   for (const Uv point : {uv(0.3, 0.7), Uv{none, none}, uv(HUGE_VAL, 0)}) {
