@@ -20,14 +20,18 @@ class FaceList {
     triangles_.clear();
     others_.clear();
     corners_.clear();
+    uvs_.clear();
+    corner_uvs_.clear();
   }
-  /// Corners are checked.
-  void add(std::span<const std::uint64_t> corners) {
+  /// Corners are checked. Either all faces have texture coordinates, one a corner, or none has.
+  void add(std::span<const std::uint64_t> corners, std::span<const Uv> uvs = {}) {
     if (corners.size() == 3) {
+      if (!uvs.empty()) uvs_.push_back({uvs[0], uvs[1], uvs[2]});
       triangles_.push_back({corners[0], corners[1], corners[2]});
     } else {
       others_.push_back({.triangles_before = triangles_.size(), .corners = corners.size()});
       corners_.insert(corners_.end(), corners.begin(), corners.end());
+      corner_uvs_.insert(corner_uvs_.end(), uvs.begin(), uvs.end());
     }
   }
   /// Of the faces that follow.
@@ -36,20 +40,22 @@ class FaceList {
   }
   void play(TriangleMaker& maker) const {
     std::size_t done = 0;
-    const std::uint64_t* next = corners_.data();
+    std::size_t next = 0;
     for (const Other& face : others_) {
-      for (; done < face.triangles_before; ++done) maker.batch().add(triangles_[done]);
+      play_triangles(done, face.triangles_before, maker.batch());
+      done = face.triangles_before;
       if (face.label) {
         maker.label(*face.label);
         continue;
       }
       maker.begin(CornerOrder::face);
+      if (!corner_uvs_.empty()) maker.uvs(std::span(corner_uvs_).subspan(next, face.corners));
       for (std::size_t i = 0; i < face.corners; ++i) {
-        maker.corner(static_cast<std::int64_t>(*next++));
+        maker.corner(static_cast<std::int64_t>(corners_[next++]));
       }
       maker.end();
     }
-    for (; done < triangles_.size(); ++done) maker.batch().add(triangles_[done]);
+    play_triangles(done, triangles_.size(), maker.batch());
   }
 
  private:
@@ -58,9 +64,19 @@ class FaceList {
     std::size_t corners = 0;
     std::optional<Label> label = {};  // which is no face then
   };
+  void play_triangles(std::size_t first, std::size_t end, TriangleBatch& batch) const {
+    if (uvs_.empty()) {
+      for (std::size_t i = first; i < end; ++i) batch.add(triangles_[i]);
+    } else {
+      for (std::size_t i = first; i < end; ++i) batch.add(triangles_[i], uvs_[i]);
+    }
+  }
+
   std::vector<WideTriangle> triangles_;
   std::vector<Other> others_;
   std::vector<std::uint64_t> corners_;  // of those
+  std::vector<CornerUvs> uvs_;          // of the triangles
+  std::vector<Uv> corner_uvs_;          // of the others' corners
 };
 
 }  // namespace meshfarm

@@ -5,7 +5,8 @@
 //   "newmtl" name
 //   "Kd" r g b
 //   "d" alpha, or "Tr" 1 - alpha if there is no "d"
-//   "map_Kd" { option } file
+//   map { option } file
+//   map    = "map_Kd" | "norm" | "map_Bump" | "bump" | "map_Ke" | others, which are only named
 //   option = "-o" u [v [w]] | "-s" u [v [w]] | "-clamp" on|off | others, which are passed over
 #include "mtl.hpp"
 
@@ -66,7 +67,8 @@ std::size_t arguments_of(std::string_view option) {
   return is_word(option, "-mm") ? 2 : 1;
 }
 
-void read_map(std::string_view text, MtlMaterial& material) {
+void read_map(std::string_view text, MtlMap& map) {
+  map = {};
   while (text.starts_with('-')) {
     std::string_view rest = text;
     const std::string_view option = take_word(rest);
@@ -74,13 +76,13 @@ void read_map(std::string_view text, MtlMaterial& material) {
     text = rest;
     std::array<double, 2> ignored{};
     if (is_word(option, "-s")) {
-      take_numbers(text, material.scale);
+      take_numbers(text, map.scale);
     } else if (is_word(option, "-o")) {
-      take_numbers(text, material.offset);
+      take_numbers(text, map.offset);
     } else if (is_word(option, "-t")) {
       take_numbers(text, ignored);
     } else if (is_word(option, "-clamp")) {
-      material.is_clamped = is_word(take_word(text), "on");
+      map.is_clamped = is_word(take_word(text), "on");
     } else {
       for (std::size_t i = 0; i < arguments_of(option); ++i) take_word(text);
     }
@@ -88,7 +90,7 @@ void read_map(std::string_view text, MtlMaterial& material) {
   if (text.size() > 1 && text.front() == '"' && text.back() == '"') {
     text = text.substr(1, text.size() - 2);
   }
-  material.map = text;
+  map.file = text;
 }
 
 void read_colour(std::string_view text, MtlMaterial& material) {
@@ -100,6 +102,26 @@ void read_colour(std::string_view text, MtlMaterial& material) {
     colour[i] = value ? *value : colour[0];
   }
   material.colour = colour;
+}
+
+bool is_map(std::string_view word) {
+  return (word.size() > 4 && is_word(word.substr(0, 4), "map_")) || is_word(word, "disp") ||
+         is_word(word, "decal") || is_word(word, "refl");
+}
+
+/// Of the words for a normal map "norm" says what it is; the others may be of heights, too.
+void read_maps(std::string_view word, std::string_view line, MtlMaterial& material) {
+  if (is_word(word, "map_kd")) {
+    read_map(line, material.map);
+  } else if (is_word(word, "map_ke")) {
+    read_map(line, material.emission);
+  } else if (is_word(word, "norm")) {
+    read_map(line, material.normals);
+  } else if (is_word(word, "map_bump") || is_word(word, "bump")) {
+    if (material.normals.file.empty()) read_map(line, material.normals);
+  } else if (is_map(word)) {
+    material.other_maps.emplace_back(word);
+  }
 }
 
 /// 0 to 1.
@@ -134,8 +156,8 @@ std::vector<MtlMaterial> parse_mtl(std::string_view text) {
       has_alpha = true;
     } else if (is_word(word, "tr") && !has_alpha) {
       if (const auto opposite = alpha_of(line)) made.back().alpha = 1 - *opposite;
-    } else if (is_word(word, "map_kd")) {
-      read_map(line, made.back());
+    } else {
+      read_maps(word, line, made.back());
     }
   }
   return made;

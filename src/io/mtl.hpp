@@ -9,15 +9,27 @@
 
 namespace meshfarm {
 
+/// A picture that a material has, and how it lies on the surface.
+struct MtlMap {
+  std::string file;                   // may be empty
+  std::array<double, 2> scale{1, 1};  // u becomes u scale + offset
+  std::array<double, 2> offset{0, 0};
+  bool is_clamped = false;
+
+  bool lies_as(const MtlMap& other) const {
+    return scale == other.scale && offset == other.offset && is_clamped == other.is_clamped;
+  }
+};
+
 /// A material of an OBJ's library, as far as it colours.
 struct MtlMaterial {
   std::string name;
   std::array<double, 3> colour{1, 1, 1};  // Kd, as sRGB from 0 to 1
   double alpha = 1;                       // d, or 1 - Tr
-  std::string map;                        // map_Kd: the picture's file; may be empty
-  std::array<double, 2> scale{1, 1};      // of map_Kd: u becomes u scale + offset
-  std::array<double, 2> offset{0, 0};
-  bool is_clamped = false;
+  MtlMap map;                             // map_Kd
+  MtlMap normals;                         // norm, map_Bump, or bump
+  MtlMap emission;                        // map_Ke
+  std::vector<std::string> other_maps;    // the words of those that are not read: "map_Ks"
 };
 
 /// The materials of a library, in its order. What is malformed counts as not there.

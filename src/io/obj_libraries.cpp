@@ -96,7 +96,7 @@ LabelMeaning meaning_of_materials(const ObjNames& names,
     const std::optional<Label> label = names.label_of(material.name);
     if (!label) continue;
     std::array<float, 4>& colour = made.materials[*label].colour;
-    for (std::size_t i = 0; i < 3 && material.map.empty(); ++i) {
+    for (std::size_t i = 0; i < 3 && material.map.file.empty(); ++i) {
       colour[i] = static_cast<float>(linear_of_srgb(material.colour[i]));
     }
     colour[3] = static_cast<float>(material.alpha);

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cstring>
 
 #include <meshfarm/util/errors.hpp>
 
@@ -77,7 +76,7 @@ bool is_obj_statement(std::string_view word) {
          std::find(k_more.begin(), k_more.end(), word) != k_more.end();
 }
 
-void ObjStatements::count(std::string_view text, char line_end) {
+void ObjStatements::count(std::string_view text, char line_end, FacePlaces places) {
   TextScanner scanner(text, line_end);
   for (; scanner.next_value(); scanner.next_line()) {
     const char* start = scanner.at();
@@ -94,10 +93,9 @@ void ObjStatements::count(std::string_view text, char line_end) {
       materials.face();
       groups.face();
       objects.face();
-      if (has_relative) continue;
+      if (has_relative && (has_places || places == FacePlaces::passed_over)) continue;
       scanner.next_line();
-      const auto length = static_cast<std::size_t>(scanner.at() - start);
-      has_relative = std::memchr(start, '-', length) != nullptr;
+      look_at_face({start, static_cast<std::size_t>(scanner.at() - start)}, places);
       scanner.go_to(start + 1);
     } else {
       if (!may_be_statement(word)) {
@@ -110,6 +108,14 @@ void ObjStatements::count(std::string_view text, char line_end) {
       }
     }
   }
+}
+
+void ObjStatements::look_at_face(std::string_view line, FacePlaces places) {
+  has_relative = has_relative || line.find('-') != std::string_view::npos;
+  if (has_places || places == FacePlaces::passed_over) return;
+  const std::size_t next = line.find('/') + 1;  // 0 if there is none
+  has_places = next > 0 && next < line.size() &&
+               (line[next] == '-' || (line[next] >= '0' && line[next] <= '9'));
 }
 
 void ObjStatements::begin_text() {
@@ -142,6 +148,7 @@ void ObjStatements::add(const ObjStatements& next) {
   objects.add(next.objects);
   has_colours = has_colours || next.has_colours;
   has_weights = has_weights || next.has_weights;
+  has_places = has_places || next.has_places;
   vertices += next.vertices;
   faces += next.faces;
   has_relative = has_relative || next.has_relative;

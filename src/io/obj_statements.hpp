@@ -14,11 +14,15 @@
 
 namespace meshfarm {
 
+/// Whether it is looked for corners of faces that have texture coordinates.
+enum class FacePlaces : std::uint8_t { passed_over, looked_for };
+
 /// How many statements of which kind an OBJ text has.
 struct ObjStatements {
   std::uint64_t vertices = 0;
   std::uint64_t faces = 0;
   bool has_relative = false;  // a face may have a relative index
+  bool has_places = false;    // a face has texture coordinates, if it was looked for them
   bool has_colours = false;   // a vertex has one
   bool has_weights = false;
   std::vector<std::pair<std::string, std::uint64_t>> others;  // by their first words
@@ -30,7 +34,7 @@ struct ObjStatements {
   /// At the start of a whole text.
   void begin_text();
   /// Counts those of a text of whole statements. Throws TextError for what is none.
-  void count(std::string_view text, char line_end);
+  void count(std::string_view text, char line_end, FacePlaces places = FacePlaces::passed_over);
   /// Adds what follows.
   void add(const ObjStatements& next);
   /// How many statements that begin with the word, of `others`.
@@ -40,6 +44,7 @@ struct ObjStatements {
                                          std::span<const std::string_view> kept = {}) const;
 
  private:
+  void look_at_face(std::string_view line, FacePlaces places);
   void add_library(std::string_view name);
   void add_name(std::string_view word, std::string_view name);
 };

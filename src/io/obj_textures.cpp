@@ -17,7 +17,7 @@
 
 #include <meshfarm/util/errors.hpp>
 
-#include "files_beside.hpp"
+#include "kept_pictures.hpp"
 #include "mtl.hpp"
 #include "polygon.hpp"
 #include "srgb.hpp"
@@ -27,7 +27,6 @@ namespace meshfarm {
 namespace {
 
 constexpr std::uint64_t k_no_place = UINT64_MAX;
-using Place = std::array<float, 2>;
 
 float linear_of(double level) {
   return static_cast<float>(linear_of_srgb(level));
@@ -37,25 +36,11 @@ float linear_of(double level) {
 TextureMaterial made_of(const MtlMaterial& material) {
   TextureMaterial made;
   for (std::size_t i = 0; i < 3; ++i) made.plain[i] = linear_of(material.colour[i]);
-  made.wrap_u = made.wrap_v = material.is_clamped ? TextureWrap::clamp : TextureWrap::repeat;
-  made.a = {material.scale[0], 0, material.offset[0]};
-  made.b = {0, -material.scale[1], 1 - material.offset[1]};
+  made.wrap_u = made.wrap_v = material.map.is_clamped ? TextureWrap::clamp : TextureWrap::repeat;
+  made.a = {material.map.scale[0], 0, material.map.offset[0]};
+  made.b = {0, -material.map.scale[1], 1 - material.map.offset[1]};
   return made;
 }
-
-TextureImage image_beside(const std::filesystem::path& folder, const std::string& name) {
-  return {name, [folder, name] {
-            const std::optional<std::filesystem::path> found = find_beside(folder, name);
-            if (!found) throw DataError("no such file beside the mesh, or in a folder below");
-            return read_beside(*found);
-          }};
-}
-
-/// How many vertices and places come before something.
-struct Counts {
-  std::uint64_t vertices = 0;
-  std::uint64_t places = 0;
-};
 
 /// "7", "-1": a number from 1 on, or backwards from the last of `before`. Null if it is none.
 const char* read_index(const char* at, const char* end, std::uint64_t before,
@@ -63,7 +48,7 @@ const char* read_index(const char* at, const char* end, std::uint64_t before,
   std::int64_t number = 0;
   const auto [stop, error] = std::from_chars(at, end, number);
   if (error != std::errc{}) return nullptr;
-  index = (number < 0 ? before : ~std::uint64_t{0}) + static_cast<std::uint64_t>(number);
+  index = obj_index(number, before);
   return stop;
 }
 
@@ -73,7 +58,7 @@ struct Corner {
 };
 using CornerTriangle = std::array<Corner, 3>;
 
-bool read_corner(std::string_view word, const Counts& before, Corner& corner) {
+bool read_corner(std::string_view word, const ObjCounts& before, Corner& corner) {
   const char* const end = word.data() + word.size();
   const char* at = read_index(word.data(), end, before.vertices, corner.vertex);
   if (at == nullptr) return false;
@@ -90,10 +75,9 @@ class Sampling {
       : text_(text),
         statements_(statements),
         materials_(materials),
-        places_(statements.count_of("vt")) {}
+        places_(text, statements.count_of("vt")) {}
 
   std::unique_ptr<TextureColours> run(std::uint64_t picture_bytes) {
-    read_places();
     auto colours =
         std::make_unique<TextureColours>(statements_.vertices, text_.file.path().string());
     const auto plain =
@@ -108,7 +92,7 @@ class Sampling {
 
  private:
   struct Piece {
-    Counts before;
+    ObjCounts before;
     std::vector<CornerTriangle> triangles;
     /// The materials, by name, and before which of the triangles they begin.
     std::vector<std::pair<std::size_t, std::string_view>> uses;
@@ -117,77 +101,25 @@ class Sampling {
     PolygonCutter cutter;
   };
 
-  void read_places() {
-    TextBlocks blocks = text_.blocks();
-    std::uint64_t done = 0;
-    for_pieces<std::vector<Place>>(
-        blocks, text_.threads,
-        [this](std::string_view piece, std::vector<Place>& made) {
-          made.clear();
-          TextScanner scanner(piece, text_.units.line_end);
-          for (; scanner.next_value(); scanner.next_line()) {
-            if (scanner.word() != "vt") continue;
-            const float u = read_place(scanner);
-            made.push_back({u, read_place(scanner)});
-          }
-        },
-        [&](const std::vector<Place>& made) {
-          if (made.size() > places_.size() - done) fail_changed();
-          std::copy(made.begin(), made.end(),
-                    places_.items().begin() + static_cast<std::ptrdiff_t>(done));
-          done += made.size();
-          places_.used(made.size());
-        });
-    if (done != places_.size()) fail_changed();
-  }
-
-  static float read_place(TextScanner& scanner) {
-    double value = 0;
-    if (!scanner.has_value()) return 0;
-    const std::string_view word = scanner.word();
-    if (read_number(word.data(), word.data() + word.size(), value) == nullptr) {
-      return std::numeric_limits<float>::quiet_NaN();
-    }
-    return static_cast<float>(value);
-  }
-
   void scan(const TextureColours::IsWanted& is_wanted, const TextureColours::Add& add) {
     TextBlocks blocks = text_.blocks();
-    Counts before;
+    ObjCounts before;
     std::size_t material = ObjMaterials::k_none;
     for_pieces<Piece>(
         blocks, text_.threads,
         [&](std::span<const std::string_view> pieces, std::span<Piece> made) {
-          if (statements_.has_relative) before = count(pieces, made, before);
+          if (!statements_.has_relative) return;
+          const std::vector<ObjCounts> counts = counts_before(pieces, text_, before);
+          for (std::size_t i = 0; i < counts.size(); ++i) made[i].before = counts[i];
         },
         [this](std::string_view piece, Piece& made) { parse(piece, made); },
         [&](const Piece& made) { material = play(made, material, is_wanted, add); });
   }
 
-  /// Tells the pieces what comes before them. Returns what comes before the next.
-  Counts count(std::span<const std::string_view> pieces, std::span<Piece> made,
-               Counts before) const {
-    std::vector<Counts> counts(pieces.size());
-    parallel_for(pieces.size(), text_.threads, [&](std::uint64_t i) {
-      TextScanner scanner(pieces[i], text_.units.line_end);
-      for (; scanner.next_value(); scanner.next_line()) {
-        const std::string_view word = scanner.word();
-        counts[i].vertices += word == "v" ? 1 : 0;
-        counts[i].places += word == "vt" ? 1 : 0;
-      }
-    });
-    for (std::size_t i = 0; i < pieces.size(); ++i) {
-      made[i].before = before;
-      before.vertices += counts[i].vertices;
-      before.places += counts[i].places;
-    }
-    return before;
-  }
-
   void parse(std::string_view text, Piece& made) {
     made.triangles.clear();
     made.uses.clear();
-    Counts before = made.before;
+    ObjCounts before = made.before;
     TextScanner scanner(text, text_.units.line_end);
     for (; scanner.next_value(); scanner.next_line()) {
       const std::string_view word = scanner.word();
@@ -204,7 +136,7 @@ class Sampling {
     }
   }
 
-  void parse_face(TextScanner& scanner, const Counts& before, Piece& made) {
+  void parse_face(TextScanner& scanner, const ObjCounts& before, Piece& made) {
     made.corners.clear();
     while (scanner.has_value()) {
       Corner corner;
@@ -234,7 +166,7 @@ class Sampling {
       constexpr double k_nowhere = std::numeric_limits<double>::quiet_NaN();
       return {k_nowhere, k_nowhere};
     }
-    const Place& place = places_.items()[corner.place];
+    const Uv& place = places_.at(corner.place);
     return {static_cast<double>(place[0]), static_cast<double>(place[1])};
   }
 
@@ -261,14 +193,10 @@ class Sampling {
     return found == materials_.numbers.end() ? ObjMaterials::k_none : found->second;
   }
 
-  [[noreturn]] void fail_changed() const {
-    throw DataError(text_.file.path().string() + ": changed while it was read");
-  }
-
   const ObjText& text_;
   const ObjStatements& statements_;
   const ObjMaterials& materials_;
-  ScratchArray<Place> places_;
+  ObjPlaces places_;
 };
 
 }  // namespace
@@ -278,10 +206,10 @@ ObjMaterials texture_materials(std::span<const ObjLibraryMaterial> materials) {
   std::map<std::pair<std::string, std::string>, std::size_t> images;
   for (const auto& [material, folder] : materials) {
     TextureMaterial each = made_of(material);
-    if (!material.map.empty()) {
+    if (!material.map.file.empty()) {
       const auto [at, is_new] =
-          images.try_emplace({folder.string(), material.map}, made.images.size());
-      if (is_new) made.images.push_back(image_beside(folder, material.map));
+          images.try_emplace({folder.string(), material.map.file}, made.images.size());
+      if (is_new) made.images.push_back(picture_beside(folder, material.map.file));
       each.image = at->second;
     }
     made.numbers.emplace(material.name, made.materials.size());

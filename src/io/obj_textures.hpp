@@ -9,10 +9,9 @@
 #include <string>
 #include <vector>
 
-#include "byte_stream.hpp"
 #include "obj_libraries.hpp"
+#include "obj_places.hpp"
 #include "obj_statements.hpp"
-#include "text_blocks.hpp"
 #include "texture_colours.hpp"
 
 namespace meshfarm {
@@ -27,14 +26,6 @@ struct ObjMaterials {
 };
 
 ObjMaterials texture_materials(std::span<const ObjLibraryMaterial> materials);
-
-/// An OBJ's text, to be read again and again.
-struct ObjText {
-  const InputFile& file;
-  TextUnits units;
-  unsigned threads = 1;
-  TextBlocks blocks() const { return {file, units, threads}; }
-};
 
 /// Samples the textures of an OBJ that has some. Null if none can be read. A malformed face gives
 /// no colour: who reads the faces tells of it.

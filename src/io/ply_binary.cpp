@@ -152,10 +152,9 @@ class BinaryBody final : public PlyBody {
         decode_triangles<Order>(layout, window.data(), maker.vertices(), room.first(most));
     if (element_->label) {
       decode_labels<Order>(layout, window.data(), maker.batch().label_room().first(count));
-      maker.batch().added_with_labels(count);
-    } else {
-      maker.batch().added(count);
+      maker.batch().wrote_labels(count);
     }
+    maker.batch().added(count);
     stream_->consume(count * layout.record_bytes);
     index_ += count;
     return count;

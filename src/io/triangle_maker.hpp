@@ -54,7 +54,7 @@ class Batch {
 /// Makes triangles of the corners of faces and strips. Of a face with more than three corners the
 /// positions are asked for; it is kept up to k_most_corners, and a longer one is taken for a fan.
 /// The label of a face is that of the batch when its triangles are made: at its end, or earlier if
-/// it is longer than that.
+/// it is longer than that. Its texture coordinates, if it is to have any, count at its end.
 class TriangleMaker {
  public:
   using PositionOf = std::function<Vec3(std::uint64_t vertex)>;
@@ -68,10 +68,19 @@ class TriangleMaker {
 
   /// Makes triangles of a face at its end, whatever its length: its label is not known before.
   void hold_long_faces() { most_kept_ = k_most_held_corners; }
+  /// Triangles have texture coordinates from now on.
+  void keep_uvs() {
+    hold_long_faces();
+    batch_.keep_uvs();
+  }
   void begin(CornerOrder order) {
     order_ = order;
     corners_ = 0;
+    uvs_ = {};
   }
+  /// Of the corners of the face at hand: as many as it has, or none count. They are to be there
+  /// until its end.
+  void uvs(std::span<const Uv> of_corners) { uvs_ = of_corners; }
   /// False if there is no such vertex.
   bool corner(std::int64_t index) {
     const auto vertex = static_cast<std::uint64_t>(index);
@@ -85,14 +94,12 @@ class TriangleMaker {
     if (corners_ < 3) {
       ++small_faces_;
     } else if (corners_ == 3) {
-      batch_.add({face_[0], face_[1], face_[2]});
+      put(0, 1, 2);
     } else if (corners_ <= k_most_corners) {
       cut_face();
     } else {
       ++long_faces_;
-      for (std::size_t i = 1; corners_ <= most_kept_ && i + 1 < corners_; ++i) {
-        batch_.add({face_[0], face_[i], face_[i + 1]});
-      }
+      for (std::size_t i = 1; corners_ <= most_kept_ && i + 1 < corners_; ++i) put(0, i, i + 1);
     }
   }
 
@@ -136,8 +143,15 @@ class TriangleMaker {
   void cut_face() {
     positions_.clear();
     for (std::size_t i = 0; i < corners_; ++i) positions_.push_back(position_of_(face_[i]));
-    for (const auto& [a, b, c] : cutter_.cut(positions_)) {
-      batch_.add({face_[a], face_[b], face_[c]});
+    for (const auto& [a, b, c] : cutter_.cut(positions_)) put(a, b, c);
+  }
+  /// A triangle of corners of the face.
+  void put(std::size_t a, std::size_t b, std::size_t c) {
+    const WideTriangle triangle{face_[a], face_[b], face_[c]};
+    if (uvs_.empty() || uvs_.size() != corners_) {
+      batch_.add(triangle);
+    } else {
+      batch_.add(triangle, {uvs_[a], uvs_[b], uvs_[c]});
     }
   }
   void add_to_strip(std::uint64_t vertex) {
@@ -164,6 +178,7 @@ class TriangleMaker {
   std::array<std::uint64_t, 2> last_{};
   std::vector<std::uint64_t> face_ = std::vector<std::uint64_t>(16);  // its corners
   std::vector<Vec3> positions_;                                       // of these
+  std::span<const Uv> uvs_;                                           // the same
   std::uint64_t small_faces_ = 0;
   std::uint64_t long_faces_ = 0;
 };

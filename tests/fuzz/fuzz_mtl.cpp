@@ -10,8 +10,10 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   using namespace meshfarm;
   for (const MtlMaterial& each : parse_mtl({reinterpret_cast<const char*>(data), size})) {
     for (const double number : each.colour) fuzz::require(std::isfinite(number));
-    for (const double number : each.scale) fuzz::require(std::isfinite(number));
-    for (const double number : each.offset) fuzz::require(std::isfinite(number));
+    for (const MtlMap* map : {&each.map, &each.normals, &each.emission}) {
+      for (const double number : map->scale) fuzz::require(std::isfinite(number));
+      for (const double number : map->offset) fuzz::require(std::isfinite(number));
+    }
   }
   return 0;
 }

@@ -95,7 +95,7 @@ TEST_CASE("labels that are not wanted are materials that are skipped") {
   const auto source = open_mesh(folder / "m", {.labels = false});
   CHECK_FALSE(source->info().labels);
   CHECK(source->info().skipped == std::vector<std::string>{"materials (3)"});
-  CHECK(read_mesh(*source).labels.empty());
+  CHECK(read_mesh(*source).columns.labels.empty());
 }
 
 TEST_CASE("a GLB has a primitive of each material that triangles have") {

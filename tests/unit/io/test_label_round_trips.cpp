@@ -112,15 +112,15 @@ TEST_CASE("labels are chosen among the channels by their name") {
   const auto chosen = [&](std::string_view words) {
     return with_channels(open_mesh(folder / "m.ply"), parse_choice(words, "--attributes"));
   };
-  CHECK(read_mesh(*chosen("auto")).labels == mesh.columns.labels);
+  CHECK(read_mesh(*chosen("auto")).columns.labels == mesh.columns.labels);
   const auto only = chosen("region");
   CHECK(only->info().channels.empty());
-  CHECK(read_mesh(*only).labels == mesh.columns.labels);
+  CHECK(read_mesh(*only).columns.labels == mesh.columns.labels);
   for (const char* words : {"none", "heat"}) {
     const auto without = chosen(words);
     CHECK_FALSE(without->info().labels);
     CHECK(without->info().skipped.front() == "region");
-    CHECK(read_mesh(*without).labels.empty());
+    CHECK(read_mesh(*without).columns.labels.empty());
   }
   CHECK_THROWS_WITH_AS(chosen("cold"),
                        "--attributes: there is no channel 'cold'; there are: region, heat",

@@ -23,24 +23,24 @@ TEST_CASE("materials have names, colours and maps") {
   REQUIRE(made.size() == 2);
   CHECK(made[0].name == "red one");
   CHECK(made[0].colour == std::array<double, 3>{1, 0.5, 0});
-  CHECK(made[0].map.empty());
+  CHECK(made[0].map.file.empty());
   CHECK(made[1].name == "two");
   CHECK(made[1].colour == std::array<double, 3>{0.25, 0.25, 0.25});
-  CHECK(made[1].map == "my atlas.jpg");
+  CHECK(made[1].map.file == "my atlas.jpg");
 }
 
 TEST_CASE("options stand before a map's file") {
-  CHECK(with_map("a.png").scale == std::array<double, 2>{1, 1});
+  CHECK(with_map("a.png").map.scale == std::array<double, 2>{1, 1});
   const MtlMaterial all =
       with_map("-s 2 3 1 -o 0.5 -mm 0 1 -clamp on -imfchan r -bm 0.2 C:\\tex\\a b.png");
-  CHECK(all.map == "C:\\tex\\a b.png");
-  CHECK(all.scale == std::array<double, 2>{2, 3});
-  CHECK(all.offset == std::array<double, 2>{0.5, 0});
-  CHECK(all.is_clamped);
-  CHECK(with_map("-s 1 1 7 4.png").map == "4.png");
-  CHECK(with_map("-s 1 2 7").map == "7");
-  CHECK(with_map("-odd").map == "-odd");
-  CHECK(with_map("\"a b.png\"").map == "a b.png");
+  CHECK(all.map.file == "C:\\tex\\a b.png");
+  CHECK(all.map.scale == std::array<double, 2>{2, 3});
+  CHECK(all.map.offset == std::array<double, 2>{0.5, 0});
+  CHECK(all.map.is_clamped);
+  CHECK(with_map("-s 1 1 7 4.png").map.file == "4.png");
+  CHECK(with_map("-s 1 2 7").map.file == "7");
+  CHECK(with_map("-odd").map.file == "-odd");
+  CHECK(with_map("\"a b.png\"").map.file == "a b.png");
 }
 
 TEST_CASE("a malformed library has what can be read of it") {
@@ -49,7 +49,7 @@ TEST_CASE("a malformed library has what can be read of it") {
   const auto made = parse_mtl("newmtl a\nKd spectral x.rfl\nKd\nmap_Kd\nKd nan 1 1");
   REQUIRE(made.size() == 1);
   CHECK(made[0].colour == std::array<double, 3>{1, 1, 1});
-  CHECK(made[0].map.empty());
+  CHECK(made[0].map.file.empty());
 }
 
 TEST_CASE("d is the alpha of a material, or else what Tr leaves of 1") {

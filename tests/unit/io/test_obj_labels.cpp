@@ -131,7 +131,7 @@ TEST_CASE("names go on across the blocks of a text, however many threads read it
     for (const unsigned threads : {1U, 2U, 5U}) {
       const auto source = open_mesh(folder / "m.obj", {.threads = threads});
       CHECK(names_of(source->info().labels) == Names{"default", "part0", "part1", "part2"});
-      CHECK(read_mesh(*source).labels == labels);
+      CHECK(read_mesh(*source).columns.labels == labels);
     }
   }
 }
@@ -184,7 +184,9 @@ TEST_CASE("nothing of an OBJ is left behind if it is not whole") {
                                                      .labels = LabelMeaning{"material", {{"a"}}}});
     sink->vertices(std::vector<Vec3>(3));
     CHECK_THROWS_AS(sink->commit(), DataError);
-    CHECK_THROWS_AS(sink->triangles(std::vector<Triangle>{{0, 1, 2}}, Labels{1}), DataError);
+    CHECK_THROWS_AS(
+        sink->triangles(std::vector<Triangle>{{0, 1, 2}}, TriangleColumns{.labels = {1}}),
+        DataError);
     CHECK_THROWS_AS(sink->triangles(std::vector<Triangle>{{0, 1, 2}}), UsageError);
   }
   CHECK(read_file(folder / "m.mtl") == "old");

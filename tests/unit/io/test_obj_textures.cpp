@@ -226,7 +226,7 @@ TEST_CASE("an OBJ's materials are labels only where its textures are not colours
   Model model(grid_obj());
   model.with("m.mtl", k_skin).with("skin.png", png_of(gradient(64)));
   CHECK_FALSE(model.open()->info().labels);
-  CHECK(read_mesh(*model.open()).labels.empty());
+  CHECK(read_mesh(*model.open()).columns.labels.empty());
   for (const Textures textures : {Textures::drop, Textures::name}) {
     CHECK(model.open(textures)->info().labels == LabelMeaning{"material", {{.name = "skin"}}});
   }

@@ -92,7 +92,7 @@ TEST_CASE("ascii labels are the same however many threads read them") {
   const TempFolder folder;
   write_file(folder / "m", file);
   for (const unsigned threads : {1U, 4U}) {
-    CHECK(read_mesh(*open_mesh(folder / "m", {.threads = threads})).labels == labels);
+    CHECK(read_mesh(*open_mesh(folder / "m", {.threads = threads})).columns.labels == labels);
   }
 }
 
@@ -155,7 +155,7 @@ TEST_CASE("labels that are not wanted count as skipped") {
   const auto source = open_mesh(folder / "m", {.labels = false});
   CHECK_FALSE(source->info().labels);
   CHECK(source->info().skipped == std::vector<std::string>{"face.label"});
-  CHECK(read_mesh(*source).labels.empty());
+  CHECK(read_mesh(*source).columns.labels.empty());
 }
 
 TEST_CASE("PLY labels have the smallest type that holds all materials") {
