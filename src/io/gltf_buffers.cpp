@@ -43,7 +43,23 @@ std::optional<std::string> decode_base64(std::string_view text) {
   return bytes;
 }
 
-/// Nothing if a '%' is not followed by two hexadecimal digits.
+/// The part of a buffer that a view, or what compresses it, names.
+std::shared_ptr<const GltfBuffer> part_of(const std::shared_ptr<const GltfBuffer>& buffer,
+                                          const GltfValue& view) {
+  const std::uint64_t start = view.whole_or("byteOffset", 0);
+  const std::uint64_t bytes = view.at("byteLength").whole();
+  if (start + bytes > buffer->size) {
+    view.fail("ends at byte " + std::to_string(start + bytes) + " of a buffer of " +
+              std::to_string(buffer->size));
+  }
+  return std::make_shared<const GltfBuffer>(
+      GltfBuffer{bytes, [buffer, start](std::uint64_t offset, std::span<char> out) {
+                   buffer->read(start + offset, out);
+                 }});
+}
+
+}  // namespace
+
 std::optional<std::string> decode_percents(std::string_view text) {
   std::string made;
   for (std::size_t i = 0; i < text.size(); ++i) {
@@ -61,23 +77,6 @@ std::optional<std::string> decode_percents(std::string_view text) {
   }
   return made;
 }
-
-/// The part of a buffer that a view, or what compresses it, names.
-std::shared_ptr<const GltfBuffer> part_of(const std::shared_ptr<const GltfBuffer>& buffer,
-                                          const GltfValue& view) {
-  const std::uint64_t start = view.whole_or("byteOffset", 0);
-  const std::uint64_t bytes = view.at("byteLength").whole();
-  if (start + bytes > buffer->size) {
-    view.fail("ends at byte " + std::to_string(start + bytes) + " of a buffer of " +
-              std::to_string(buffer->size));
-  }
-  return std::make_shared<const GltfBuffer>(
-      GltfBuffer{bytes, [buffer, start](std::uint64_t offset, std::span<char> out) {
-                   buffer->read(start + offset, out);
-                 }});
-}
-
-}  // namespace
 
 std::shared_ptr<const GltfBuffer> GltfBuffers::open_view(const GltfValue& document,
                                                          std::uint64_t index) {

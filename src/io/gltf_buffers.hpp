@@ -6,7 +6,9 @@
 #include <filesystem>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 
 #include "byte_stream.hpp"
@@ -36,6 +38,9 @@ bool is_gltf_file(const InputFile& file);
 /// DataError with the byte for what is malformed.
 GltfContainer open_glb_container(const std::shared_ptr<const InputFile>& file);
 GltfContainer open_gltf_container(const InputFile& file);
+
+/// The text of a URI; nothing if a '%' is not followed by two hexadecimal digits.
+std::optional<std::string> decode_percents(std::string_view text);
 
 /// The buffers of a document, opened when they are asked for: those of images need not be there.
 /// Of files beside the document no more than a few are open at a time.

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <map>
@@ -27,6 +28,15 @@ struct GltfVertices {
   std::uint64_t texture_colours = 0;             // where theirs begin: see sample_gltf_textures()
 };
 
+/// A column of texture coordinates, and what becomes of them: (u, v) becomes
+/// (u a[0] + v a[1] + a[2], u b[0] + v b[1] + b[2]).
+struct GltfUvs {
+  GltfColumn column;
+  std::array<double, 3> a{1, 0, 0};
+  std::array<double, 3> b{0, 1, 0};
+  bool are_finite = false;  // what is not becomes 0
+};
+
 enum class GltfMode : std::uint8_t { triangles = 4, strip = 5, fan = 6 };
 
 /// The triangles of a primitive.
@@ -41,6 +51,7 @@ struct GltfTriangles {
   std::uint64_t corners = 0;
   std::uint64_t material = k_no_material;  // of the document
   Label label = 0;                         // see label_gltf_meshes()
+  std::optional<GltfUvs> uvs;              // see keep_gltf_maps()
 
   std::uint64_t count() const {
     if (mode == GltfMode::triangles) return corners / 3;

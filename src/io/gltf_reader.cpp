@@ -13,12 +13,13 @@
 
 #include <meshfarm/util/errors.hpp>
 
+#include "gltf_corners.hpp"
+#include "gltf_maps.hpp"
 #include "gltf_materials.hpp"
 #include "gltf_meshes.hpp"
 #include "gltf_scene.hpp"
 #include "gltf_textures.hpp"
 #include "srgb.hpp"
-#include "triangle_maker.hpp"
 
 namespace meshfarm {
 namespace {
@@ -53,56 +54,6 @@ struct GltfChannels {
   }
 };
 
-/// Makes triangles of the corners of a primitive.
-class Corners {
- public:
-  Corners(const GltfTriangles& triangles, std::uint64_t first, bool is_mirror, TriangleBatch& batch)
-      : mode_(triangles.mode), first_(first), is_mirror_(is_mirror), batch_(batch) {}
-
-  void add(std::span<const std::uint32_t> vertices) {
-    const bool are_plain = mode_ == GltfMode::triangles && count_ % 3 == 0 && !is_mirror_;
-    std::size_t i = 0;
-    for (; are_plain && i + 3 <= vertices.size(); i += 3) {
-      batch_.add({first_ + vertices[i], first_ + vertices[i + 1], first_ + vertices[i + 2]});
-    }
-    for (; i < vertices.size(); ++i) add(vertices[i]);
-  }
-
-  void add(std::uint64_t vertex) {
-    switch (mode_) {
-      case GltfMode::triangles:
-        if (count_ % 3 == 2) put(last_[0], last_[1], vertex);
-        break;
-      case GltfMode::strip:
-        // Every second one runs the other way round; two equal corners join strips.
-        if (count_ >= 2 && last_[0] != last_[1] && last_[1] != vertex && last_[0] != vertex) {
-          count_ % 2 == 0 ? put(last_[0], last_[1], vertex) : put(last_[1], last_[0], vertex);
-        }
-        break;
-      case GltfMode::fan:
-        if (count_ == 0) hub_ = vertex;
-        if (count_ >= 2) put(hub_, last_[1], vertex);
-        break;
-    }
-    last_ = {last_[1], vertex};
-    ++count_;
-  }
-
- private:
-  void put(std::uint64_t a, std::uint64_t b, std::uint64_t c) {
-    if (is_mirror_) std::swap(b, c);
-    batch_.add({first_ + a, first_ + b, first_ + c});
-  }
-
-  GltfMode mode_;
-  std::uint64_t first_;
-  bool is_mirror_;
-  TriangleBatch& batch_;
-  std::array<std::uint64_t, 2> last_{};
-  std::uint64_t hub_ = 0;
-  std::uint64_t count_ = 0;
-};
-
 class GltfSource final : public MeshSource {
  public:
   GltfSource(const InputFile& file, const GltfContainer& container, const OpenOptions& options)
@@ -118,6 +69,7 @@ class GltfSource final : public MeshSource {
     read_meshes(document, buffers, skipped);
     read_textures(document, buffers, options);
     if (options.labels && !texture_colours_) labels_ = label_gltf_meshes(document, meshes_);
+    if (options.textures == Textures::keep) keep_maps(document, buffers);
     info_.labels = labels_.meaning;
     find_channels(options, skipped);
     skip_others(document, skipped);
@@ -157,13 +109,20 @@ class GltfSource final : public MeshSource {
 
   void scan_triangles(const std::function<void(const TriangleView&)>& take) override {
     TriangleBatch batch(take);
+    std::optional<GltfPlaces> places;
+    if (info_.uvs) batch.keep_uvs();
     std::uint64_t first = 0;
     for (const GltfInstance& instance : instances_) {
       const GltfMesh& mesh = meshes_.at(instance.mesh);
       for (const GltfTriangles& triangles : mesh.triangles) {
         const GltfVertices& vertices = mesh.vertices[triangles.vertices];
-        Corners corners(triangles, first + vertices.first, instance.transform.is_mirror(), batch);
+        GltfCorners corners(triangles, first + vertices.first, instance.transform.is_mirror(),
+                            batch);
         if (info_.labels) batch.label(triangles.label);
+        if (triangles.uvs) {
+          if (!places || !places->are_of(*triangles.uvs)) places.emplace(*triangles.uvs);
+          corners.place(*places);
+        }
         read_corners(triangles, vertices.positions.rows, corners);
       }
       first += mesh.vertex_count;
@@ -198,13 +157,21 @@ class GltfSource final : public MeshSource {
     }
   }
 
+  void keep_maps(const GltfValue& document, GltfBuffers& buffers) {
+    maps_ =
+        keep_gltf_maps(document, buffers, meshes_, labels_, place_.substr(0, place_.size() - 2));
+    info_.uvs = maps_.uvs;
+    info_.pictures = std::move(maps_.pictures);
+  }
+
   void read_textures(const GltfValue& document, GltfBuffers& buffers, const OpenOptions& options) {
-    if (options.textures == Textures::drop || !options.channels) return;
+    const bool are_read = options.textures == Textures::bake || options.textures == Textures::name;
+    if (!are_read || !options.channels) return;
     if (options.textures == Textures::bake) {
       const auto scan = [this](const GltfTriangles& triangles, const GltfVertices& vertices,
                                const auto& take) {
         TriangleBatch batch(take);
-        Corners corners(triangles, 0, false, batch);
+        GltfCorners corners(triangles, 0, false, batch);
         read_corners(triangles, vertices.positions.rows, corners);
         batch.flush();
       };
@@ -247,9 +214,15 @@ class GltfSource final : public MeshSource {
     }
     if (materials > labels_.materials) skipped["materials"] = materials - labels_.materials;
     const std::size_t sampled = texture_colours_ ? info_.textures.size() : 0;
-    for (const char* name : {"textures", "images"}) {
+    const auto skip_rest = [&](const char* name, std::size_t used) {
       const std::size_t count = document.size_of(name);
-      if (count > sampled) skipped[name] += count - sampled;
+      if (count > used) skipped[name] += count - used;
+    };
+    skip_rest("textures", info_.uvs ? maps_.textures : sampled);
+    skip_rest("images", info_.uvs ? info_.pictures.names.size() : sampled);
+    for (const auto& [name, count] : maps_.skipped) skipped[name] += count;
+    for (const auto& [name, count] : maps_.read) {
+      if ((skipped[name] -= count) == 0) skipped.erase(name);
     }
     for (const char* name : {"skins", "animations"}) {
       if (const std::size_t count = document.size_of(name)) skipped[name] += count;
@@ -335,7 +308,7 @@ class GltfSource final : public MeshSource {
     }
   }
 
-  void read_corners(const GltfTriangles& triangles, std::uint64_t vertices, Corners& corners) {
+  void read_corners(const GltfTriangles& triangles, std::uint64_t vertices, GltfCorners& corners) {
     if (!triangles.indices) {
       for (std::uint64_t i = 0; i < triangles.corners; ++i) corners.add(i);
       return;
@@ -369,6 +342,7 @@ class GltfSource final : public MeshSource {
   std::vector<GltfInstance> instances_;
   GltfMeshes meshes_;
   GltfLabels labels_;
+  GltfMaps maps_;
   std::unique_ptr<TextureColours> texture_colours_;
   GltfColumnReader reader_;
   std::vector<std::array<double, 4>> rows_;

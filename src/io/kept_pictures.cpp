@@ -100,7 +100,8 @@ std::string KeptPictures::free_name(std::string_view wanted, std::string_view by
   std::string made = stem + extension;
   unsigned& number = number_.try_emplace(small_letters(made), 1).first->second;
   while (!taken_.insert(small_letters(made)).second) {
-    made = stem + "_" + std::to_string(++number) + extension;
+    made = stem;
+    made.append("_").append(std::to_string(++number)).append(extension);
   }
   return made;
 }
