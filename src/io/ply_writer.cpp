@@ -3,11 +3,15 @@
 //
 // What is written:
 //   header  = "ply" "format binary_little_endian 1.0" ["comment" text]
+//             { "comment TextureFile" name }
 //             "element vertex" N, property (float | double) x, y, z,
 //             property (uchar | ushort | float) of each channel
 //             "element face" M, property list uchar (int | uint) vertex_indices,
+//             [property list uchar float texcoord, [property int texnumber]]
 //             property (uchar | ushort | uint) of the labels "end_header"
-//   vertex  = x y z values;  face = 3 a b c [label]
+//   vertex  = x y z values;  face = 3 a b c [6 u v u v u v [texnumber]] [label]
+// A texnumber counts the TextureFiles; -1 is none of them. It is there where triangles differ in
+// it.
 #include <algorithm>
 #include <bit>
 #include <cstring>
@@ -15,13 +19,16 @@
 #include <meshfarm/io/ply_writer.hpp>
 #include <meshfarm/util/errors.hpp>
 
+#include "corner_wedges.hpp"
 #include "file_sink.hpp"
+#include "pictures_beside.hpp"
 
 namespace meshfarm {
 namespace {
 
 static_assert(std::endian::native == std::endian::little);
 constexpr std::size_t k_triangle_bytes = 1 + 3 * sizeof(std::uint32_t);
+constexpr std::size_t k_uv_bytes = 1 + sizeof(CornerUvs);
 
 const MeshSinkOptions& checked_vertices(const MeshSinkOptions& options) {
   if (options.vertices > std::uint64_t{1} << 32) {
@@ -63,11 +70,45 @@ std::string label_line(const MeshSinkOptions& options) {
   return "property " + type + " " + name + "\n";
 }
 
-std::string header_text(const MeshSinkOptions& options) {
+/// Which pictures a mesh with texture coordinates has as colours, and which each material.
+struct ColourPictures {
+  std::vector<std::size_t> pictures;   // each once, in the order of the materials
+  std::vector<std::int32_t> of_label;  // where it stands among these, or -1
+
+  explicit ColourPictures(const MeshSinkOptions& options) {
+    if (!options.uvs || !options.labels) return;
+    for (const Material& material : options.labels->materials) {
+      of_label.push_back(number_of(material));
+    }
+  }
+  /// Whether triangles have different ones.
+  bool differ() const {
+    return std::any_of(of_label.begin(), of_label.end(),
+                       [this](std::int32_t number) { return number != of_label.front(); });
+  }
+
+ private:
+  std::int32_t number_of(const Material& material) {
+    const auto map =
+        std::find_if(material.maps.begin(), material.maps.end(),
+                     [](const MaterialMap& each) { return each.use == MapUse::colour; });
+    if (map == material.maps.end()) return -1;
+    const auto found = std::find(pictures.begin(), pictures.end(), map->picture);
+    const auto number = static_cast<std::int32_t>(found - pictures.begin());
+    if (found == pictures.end()) pictures.push_back(map->picture);
+    return number;
+  }
+};
+
+std::string header_text(const MeshSinkOptions& options, const ColourPictures& colours,
+                        PicturesBeside& beside) {
   const std::string type = options.positions == PositionType::float32 ? "float" : "double";
   const std::string index = options.vertices <= std::uint64_t{1} << 31 ? "int" : "uint";
   std::string text = "ply\nformat binary_little_endian 1.0\n";
   if (!options.comment.empty()) text += "comment " + options.comment + "\n";
+  for (const std::size_t picture : colours.pictures) {
+    text += "comment TextureFile " + beside.name_of(picture) + "\n";
+  }
   text += "element vertex " + std::to_string(options.vertices) + "\n";
   for (const char* axis : {"x", "y", "z"}) text += "property " + type + " " + axis + "\n";
   for (const Channel& channel : options.channels) {
@@ -75,6 +116,8 @@ std::string header_text(const MeshSinkOptions& options) {
   }
   text += "element face " + std::to_string(options.triangles) + "\n";
   text += "property list uchar " + index + " vertex_indices\n";
+  if (options.uvs) text += "property list uchar float texcoord\n";
+  if (colours.differ()) text += "property int texnumber\n";
   if (options.labels) text += label_line(options);
   return text + "end_header\n";
 }
@@ -101,11 +144,23 @@ char* encode(ChannelType type, float value, char* out) {
                                     : encode<std::uint16_t>(whole, out);
 }
 
+char* encode(const CornerUvs& uvs, char* out) {
+  *out++ = 6;
+  for (const Uv& each : uvs) {
+    const Uv uv = finite_uv(each);
+    std::memcpy(out, uv.data(), sizeof uv);
+    out += sizeof uv;
+  }
+  return out;
+}
+
 class PlySink final : public FileSink {
  public:
   PlySink(const std::filesystem::path& path, const MeshSinkOptions& options)
-      : FileSink(path, checked_vertices(options)) {
-    write(header_text(options));
+      : FileSink(path, checked_vertices(options)),
+        colours_(options),
+        beside_(path, options.pictures) {
+    write(header_text(options, colours_, beside_));
   }
 
  private:
@@ -129,6 +184,12 @@ class PlySink final : public FileSink {
         std::memcpy(out, &narrow, sizeof narrow);
         out += sizeof narrow;
       }
+      if (options().uvs) out = encode(batch.columns.uvs[i], out);
+      if (has_texture_numbers_) {
+        const std::int32_t number = colours_.of_label[batch.columns.labels[i]];
+        std::memcpy(out, &number, sizeof number);
+        out += sizeof number;
+      }
       if (label_bytes_ == 0) continue;
       std::memcpy(out, &batch.columns.labels[i], label_bytes_);  // its low bytes
       out += label_bytes_;
@@ -136,13 +197,25 @@ class PlySink final : public FileSink {
     write_up_to(out);
   }
 
+  void finish() override {
+    if (colours_.pictures.empty()) return;
+    beside_.finish();
+    make_way();
+    beside_.commit();
+  }
+
   void write_up_to(const char* end) {
     write({buffer_.data(), static_cast<std::size_t>(end - buffer_.data())});
   }
 
+  ColourPictures colours_;
+  PicturesBeside beside_;
+  bool has_texture_numbers_ = colours_.differ();
   std::size_t label_bytes_ = label_bytes(options());
-  std::vector<char> buffer_ = std::vector<char>(
-      k_most_at_once * std::max(k_triangle_bytes + label_bytes_, vertex_bytes(options())));
+  std::size_t face_bytes_ = k_triangle_bytes + (options().uvs ? k_uv_bytes : 0) +
+                            (has_texture_numbers_ ? sizeof(std::int32_t) : 0) + label_bytes_;
+  std::vector<char> buffer_ =
+      std::vector<char>(k_most_at_once * std::max(face_bytes_, vertex_bytes(options())));
 };
 
 }  // namespace
