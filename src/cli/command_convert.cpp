@@ -1,10 +1,14 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
+#include <algorithm>
+#include <array>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <meshfarm/io/convert_mesh.hpp>
 #include <meshfarm/io/mesh_format.hpp>
+#include <meshfarm/util/errors.hpp>
 #include <meshfarm/util/log.hpp>
 #include <meshfarm/util/text.hpp>
 
@@ -21,6 +25,13 @@ const std::vector<Channel> k_colour{{"red", ChannelType::uint8, ChannelRole::col
                                     {"green", ChannelType::uint8, ChannelRole::colour},
                                     {"blue", ChannelType::uint8, ChannelRole::colour}};
 
+constexpr std::array<std::pair<MapUse, const char*>, 5> k_map_names = {
+    {{MapUse::colour, "pictures of colours"},
+     {MapUse::normal, "pictures of normals"},
+     {MapUse::metal_and_roughness, "pictures of metal and roughness"},
+     {MapUse::occlusion, "pictures of occlusion"},
+     {MapUse::emission, "pictures of emission"}}};
+
 class ConvertCommand : public Command {
  public:
   std::string_view name() const override { return "convert"; }
@@ -34,21 +45,28 @@ class ConvertCommand : public Command {
         "output", po::value(&output_)->required(), "")(
         "threads", po::value(&threads_)->default_value(threads_)->value_name("N"),
         "that parse text (0: one a core)")(
-        "uv", po::value(&uv_)->default_value(uv_)->value_name("bake|drop"), k_uv_help);
+        "uv", po::value(&uv_)->value_name("keep|bake|drop"),
+        "keep: texture coordinates, and pictures beside the output or in it; bake: textures' "
+        "colours become those of the vertices; drop: textures are left out (default: keep, or bake "
+        "where the output has a place for colours only)");
     output_words_.add(options);
     talk_.add_quiet(options);
     positional.add("input", 1).add("output", 1);
   }
-  void check() override { parse_uv(uv_); }
+  void check() override {
+    if (!uv_.empty() && uv_ != "keep" && uv_ != "bake" && uv_ != "drop") {
+      throw UsageError("--uv is 'keep', 'bake' or 'drop', not '" + uv_ + "'");
+    }
+    if (uv_ == "keep" && is_output_format(output_) && !keeps_uvs(output_)) {
+      throw UsageError("--uv keep: " + output_ + " would have no place for texture coordinates");
+    }
+  }
   int run() override {
     check_writable(output_);
     if (talk_.quiet) set_log(name(), LogLevel::warning);
-    // What the output has no place for need not be made.
-    const bool has_place = !kept_channels(output_, k_colour).empty();
-    const auto source = open_mesh(input_, {.threads = threads_,
-                                           .labels = keeps_labels(output_),
-                                           .textures = has_place ? parse_uv(uv_) : Textures::drop});
-    tell_textures(input_, source->info());
+    const auto source = open_mesh(
+        input_, {.threads = threads_, .labels = keeps_labels(output_), .textures = textures()});
+    if (textures() == Textures::bake) tell_textures(input_, source->info());
     ProgressPrinter printer(talk_.progress());
     const Converted made = convert_mesh(
         *source, output_, [&](double done) { printer.show({.phase = "convert", .done = done}); },
@@ -59,6 +77,13 @@ class ConvertCommand : public Command {
   }
 
  private:
+  /// What the output has no place for need not be made.
+  Textures textures() const {
+    if (uv_ == "keep" || (uv_.empty() && keeps_uvs(output_))) return Textures::keep;
+    const bool has_place = !kept_channels(output_, k_colour).empty();
+    return has_place && uv_ != "drop" ? Textures::bake : Textures::drop;
+  }
+
   void tell_what_is_left_out(const Converted& made, const MeshFileInfo& input) const {
     std::vector<std::string> names;
     for (const Channel& channel : input.channels) {
@@ -69,6 +94,7 @@ class ConvertCommand : public Command {
     if (made.has_labels && !input.labels->materials.empty() && !keeps_materials(output_)) {
       names.push_back("names and colours of " + input.labels->name + "s");
     }
+    add_maps_left_out(input, names);
     names.insert(names.end(), input.skipped.begin(), input.skipped.end());
     if (!names.empty()) log_info(input_ + ": not kept: " + joined(names));
     if (made.small_faces > 0) {
@@ -81,9 +107,23 @@ class ConvertCommand : public Command {
     }
   }
 
+  /// Kinds of pictures that materials have and the output has no place for.
+  void add_maps_left_out(const MeshFileInfo& input, std::vector<std::string>& names) const {
+    if (!input.uvs || !input.labels) return;
+    for (const auto& [use, name] : k_map_names) {
+      if (keeps_map(output_, use)) continue;
+      const std::vector<Material>& all = input.labels->materials;
+      const bool has_any = std::any_of(all.begin(), all.end(), [use = use](const Material& each) {
+        return std::any_of(each.maps.begin(), each.maps.end(),
+                           [use](const MaterialMap& map) { return map.use == use; });
+      });
+      if (has_any) names.emplace_back(name);
+    }
+  }
+
   std::string input_;
   std::string output_;
-  std::string uv_ = "bake";
+  std::string uv_;  // empty: by the output's format
   unsigned threads_ = 0;
   OutputWords output_words_;
   TalkOptions talk_;

@@ -2,9 +2,9 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <bit>
 #include <cmath>
 #include <cstdint>
-#include <cstring>
 
 #include <meshfarm/geometry/mesh.hpp>
 
@@ -27,14 +27,15 @@ class CornerWedges {
     std::uint64_t& newest = newest_.items()[vertex];
     newest_.used(1);
     wedges_.used(1);
+    const auto uv_bits = std::bit_cast<std::uint64_t>(uv);
     std::uint64_t at = newest;
     for (int step = 0; at != 0 && step < k_most_steps; ++step) {
       const Wedge& wedge = wedges_[at - 1];
-      if (std::memcmp(&wedge.uv, &uv, sizeof uv) == 0) return wedge.number;
+      if (wedge.uv_bits == uv_bits) return wedge.number;
       at = wedge.next;
     }
     const std::uint64_t number = make(newest == 0);
-    wedges_.push_back({uv, number, newest});
+    wedges_.push_back({uv_bits, number, newest});
     newest = wedges_.size();
     return number;
   }
@@ -42,7 +43,7 @@ class CornerWedges {
  private:
   static constexpr int k_most_steps = 100;
   struct Wedge {
-    Uv uv{};
+    std::uint64_t uv_bits = 0;
     std::uint64_t number = 0;
     std::uint64_t next = 0;  // of the same vertex; from 1, 0 is none
   };

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <iterator>
 #include <memory>
+#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -42,6 +43,11 @@ bool keeps_none(std::span<const Channel> /*all*/, const Channel& /*channel*/) {
 /// What of labels a format has a place for.
 enum class KeptLabels : std::uint8_t { none, numbers, all };
 
+constexpr std::array k_colour_maps = {MapUse::colour};
+constexpr std::array k_obj_maps = {MapUse::colour, MapUse::normal, MapUse::emission};
+constexpr std::array k_gltf_maps = {MapUse::colour, MapUse::normal, MapUse::metal_and_roughness,
+                                    MapUse::occlusion, MapUse::emission};
+
 /// What has a second way to be written in has a second row, without a name. What is only read has
 /// no extension. What is sure of its content comes before what asks for the name, too.
 struct MeshFormat {
@@ -53,19 +59,19 @@ struct MeshFormat {
                                       const MeshSinkOptions& options);
   bool (*keeps)(std::span<const Channel> all, const Channel& channel);  // when it is written
   KeptLabels labels = KeptLabels::none;                                 // the same
-  bool uvs = false;                                                     // the same
+  std::span<const MapUse> maps = {};  // of its pictures; none if it has no texture coordinates
 };
 
 constexpr std::array k_formats = {
     MeshFormat{"PLY", ".ply", is_ply_file, open_ply, create_ply, keeps_any, KeptLabels::numbers,
-               true},
+               k_colour_maps},
     MeshFormat{"GLB", ".glb", is_glb_file, open_glb, create_glb, is_gltf_channel, KeptLabels::all,
-               true},
+               k_gltf_maps},
     MeshFormat{"glTF", ".gltf", is_gltf_file, open_gltf, create_gltf, is_gltf_channel,
-               KeptLabels::all, true},
+               KeptLabels::all, k_gltf_maps},
     MeshFormat{"OFF", ".off", is_off_file, open_off, create_off, keeps_colour},
     MeshFormat{"OBJ", ".obj", is_obj_file, open_obj, create_obj, keeps_colour, KeptLabels::all,
-               true},
+               k_obj_maps},
     MeshFormat{"STL", ".stl", is_ascii_stl_file, open_ascii_stl, create_stl, keeps_none},
     MeshFormat{"", "", is_binary_stl_file, open_binary_stl, nullptr, nullptr},
 };
@@ -143,7 +149,13 @@ bool keeps_materials(const std::filesystem::path& path) {
 
 bool keeps_uvs(const std::filesystem::path& path) {
   check_output_format(path);
-  return find_output_format(path)->uvs;
+  return !find_output_format(path)->maps.empty();
+}
+
+bool keeps_map(const std::filesystem::path& path, MapUse use) {
+  check_output_format(path);
+  const std::span<const MapUse> maps = find_output_format(path)->maps;
+  return std::find(maps.begin(), maps.end(), use) != maps.end();
 }
 
 std::unique_ptr<MeshSink> create_mesh(const std::filesystem::path& path,

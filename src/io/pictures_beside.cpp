@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <iterator>
 #include <system_error>
+#include <utility>
 
 #include <meshfarm/util/errors.hpp>
 #include <meshfarm/util/file.hpp>
@@ -44,10 +45,10 @@ bool holds(const std::filesystem::path& path, const std::string& bytes) {
 
 }  // namespace
 
-PicturesBeside::PicturesBeside(const std::filesystem::path& mesh, const PictureFiles& pictures)
+PicturesBeside::PicturesBeside(const std::filesystem::path& mesh, PictureFiles pictures)
     : folder_(mesh.parent_path()),
       before_(word_of(mesh.stem().string()) + "_"),
-      pictures_(pictures) {}
+      pictures_(std::move(pictures)) {}
 
 const std::string& PicturesBeside::name_of(std::size_t picture) {
   const auto found = names_.find(picture);
@@ -63,7 +64,8 @@ std::string PicturesBeside::free_name(std::size_t picture) {
   const std::string extension = wanted.extension().string();
   std::string name = stem + extension;
   for (std::size_t number = 2; is_of_another(name, picture) || !taken_.insert(name).second;) {
-    name = stem + "_" + std::to_string(number++) + extension;
+    name = stem;
+    name.append("_").append(std::to_string(number++)).append(extension);
   }
   return name;
 }

@@ -20,7 +20,7 @@ namespace meshfarm {
 /// in the same folder stay.
 class PicturesBeside {
  public:
-  PicturesBeside(const std::filesystem::path& mesh, const PictureFiles& pictures);
+  PicturesBeside(const std::filesystem::path& mesh, PictureFiles pictures);
 
   /// The name of a picture's copy, one word, which is the same each time. It will be written.
   const std::string& name_of(std::size_t picture);

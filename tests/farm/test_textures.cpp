@@ -98,7 +98,7 @@ TEST_CASE("a textured OBJ comes back coloured, by either scheme and as any forma
     CHECK(has(ran.out, "channels         red 0, green 0, blue 0"));
     CHECK(is_orange(output));
   }
-  const Ran ran = model.run({"convert", model.path("m.obj"), model.path("m.ply")});
+  const Ran ran = model.run({"convert", model.path("m.obj"), model.path("m.ply"), "--uv", "bake"});
   CHECK(ran.code == 0);
   CHECK(has(ran.err, "skin.png (1 x 1)"));
   CHECK(is_orange(model.path("m.ply")));

@@ -29,6 +29,8 @@ bool keeps_labels(const std::filesystem::path& path);
 bool keeps_materials(const std::filesystem::path& path);
 /// Whether a file of this name has a place for triangles' texture coordinates, and for pictures.
 bool keeps_uvs(const std::filesystem::path& path);
+/// And for pictures of this use.
+bool keeps_map(const std::filesystem::path& path, MapUse use);
 
 /// Where a mesh goes, and how.
 struct MeshOutput {

@@ -8,6 +8,7 @@
 #include <meshfarm/io/mesh_format.hpp>
 
 #include "ply_test_files.hpp"
+#include "textured_meshes.hpp"
 
 using namespace meshfarm;
 using namespace meshfarm::test;
@@ -18,6 +19,15 @@ Converted convert(const std::filesystem::path& from, const std::filesystem::path
   const auto source = open_mesh(from);
   return convert_mesh(*source, to, [](double) {});
 }
+
+/// Like a file with texture coordinates.
+class TexturedSource : public MemorySource {
+ public:
+  explicit TexturedSource(Mesh mesh) : MemorySource(std::move(mesh), PositionType::float32) {
+    info_.labels = square_options().labels;
+    info_.pictures = square_options().pictures;
+  }
+};
 
 }  // namespace
 
@@ -74,4 +84,23 @@ TEST_CASE("a mesh may be converted over itself, and a failed one leaves it as it
   write_file(folder / "b.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 7\n");
   CHECK_THROWS_AS(convert(folder / "b.off", folder / "a.obj"), DataError);
   CHECK(read_file(folder / "a.obj") == tidy);
+}
+
+TEST_CASE("texture coordinates and pictures come with the triangles that stay") {
+  const Quiet quiet;  // these pictures are none for glTF
+  const TempFolder folder;
+  Mesh mesh = textured_square();
+  mesh.positions.push_back(k_no_position);
+  mesh.triangles.insert(mesh.triangles.begin() + 1, {0, 1, 4});
+  mesh.columns.uvs.insert(mesh.columns.uvs.begin() + 1, CornerUvs{{{9, 9}, {9, 9}, {9, 9}}});
+  mesh.columns.labels.insert(mesh.columns.labels.begin() + 1, 0);
+  TexturedSource source(mesh);
+  for (const char* name : {"m.obj", "m.ply", "m.glb", "m.gltf", "m.stl", "m.off"}) {
+    const Converted made = convert_mesh(source, folder / name, [](double) {});
+    CHECK(made.triangles == 2);
+    CHECK(made.dropped_not_finite == 1);
+    CHECK(made.has_uvs == keeps_uvs(folder / name));
+  }
+  CHECK(uvs_of_obj(read_file(folder / "m.obj")) == textured_square().columns.uvs);
+  CHECK(read_file(folder / "m_atlas.png") == "bytes of maps/atlas.png");
 }

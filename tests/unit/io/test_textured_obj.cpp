@@ -113,6 +113,11 @@ TEST_CASE("formats without a place for texture coordinates leave them out") {
   const TempFolder folder;
   for (const char* name : {"m", "m.ply", "m.obj", "m.glb", "m.gltf"}) CHECK(keeps_uvs(name));
   CHECK_THROWS_AS(keeps_uvs("m.3mf"), DataError);
+  CHECK(keeps_map("m.ply", MapUse::colour));
+  CHECK_FALSE(keeps_map("m.ply", MapUse::normal));
+  CHECK(keeps_map("m.obj", MapUse::normal));
+  CHECK_FALSE(keeps_map("m.obj", MapUse::occlusion));
+  CHECK(keeps_map("m.glb", MapUse::occlusion));
   Mesh without = textured_square();
   without.columns.clear();
   for (const char* name : {"m.stl", "m.off"}) {
