@@ -15,19 +15,20 @@ namespace meshfarm {
 std::unique_ptr<MeshSink> create_stl(const std::filesystem::path& path,
                                      const MeshSinkOptions& options);
 
-/// An OBJ with positions and triangles, and the fewest digits that give the same floats or doubles.
+/// An OBJ with positions and triangles, and the fewest digits that give the same floats or doubles;
+/// of labels, and of texture coordinates with their pictures, what obj_labels.hpp says, beside it.
 std::unique_ptr<MeshSink> create_obj(const std::filesystem::path& path,
                                      const MeshSinkOptions& options);
 
 /// A .glb with one mesh. Positions are floats; of doubles those relative to the first, which
 /// becomes the node's translation. Normals are made 1 long. Colours of 8 bits become 16 linear
-/// bits, others floats. More than 4 GiB are a UsageError.
+/// bits, others floats. Pictures are in it. More than 4 GiB are a UsageError.
 std::unique_ptr<MeshSink> create_glb(const std::filesystem::path& path,
                                      const MeshSinkOptions& options);
 /// Throws the UsageError of create_glb().
 void check_fits_glb(const std::filesystem::path& path, const MeshSinkOptions& options);
-/// The same as a .gltf and a .bin of the same name beside it, which is replaced, too. 2^32 vertices
-/// are a UsageError.
+/// The same as a .gltf and a .bin of the same name beside it, which is replaced, too, and pictures.
+/// 2^32 vertices are a UsageError.
 std::unique_ptr<MeshSink> create_gltf(const std::filesystem::path& path,
                                       const MeshSinkOptions& options);
 /// Whether both have a place for the channel: colours with their alpha, and normals.

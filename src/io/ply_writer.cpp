@@ -63,7 +63,8 @@ std::string label_line(const MeshSinkOptions& options) {
   for (char& c : name) {
     if (static_cast<unsigned char>(c) <= ' ') c = '_';
   }
-  if (name == "material") name = "material_index";
+  const bool is_taken = options.uvs && (name == "texnumber" || name == "texcoord");
+  if (name == "material" || is_taken) name = "material_index";
   if (name.empty() || name == "vertex_indices") name = "label";
   const std::size_t bytes = label_bytes(options);
   const std::string type = bytes == 4 ? "uint" : bytes == 2 ? "ushort" : "uchar";

@@ -43,7 +43,11 @@ class TextSink final : public FileSink {
     if (!form.has_columns) return;
     if (options.uvs) wedges_.emplace(options.vertices);
     if (!options.labels) return;
-    labels_.emplace(path, *options.labels, options.pictures);
+    LabelMeaning meaning = *options.labels;
+    if (!options.uvs) {
+      for (Material& material : meaning.materials) material.maps.clear();
+    }
+    labels_.emplace(path, meaning, options.pictures);
     write(labels_->header());
   }
 

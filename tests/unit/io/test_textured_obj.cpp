@@ -129,3 +129,33 @@ TEST_CASE("formats without a place for texture coordinates leave them out") {
   }
   CHECK(files_in(folder) == 2);
 }
+
+TEST_CASE("materials of a mesh without texture coordinates have no pictures") {
+  const TempFolder folder;
+  Mesh mesh = textured_square();
+  mesh.columns.uvs.clear();
+  MeshSinkOptions options = square_options();
+  options.uvs = false;
+  for (const char* name : {"m.obj", "m.ply", "m.glb", "m.gltf"}) {
+    write_textured(folder / name, mesh, options);
+    CHECK(read_file(folder / name).find("atlas") == std::string::npos);
+    CHECK(read_file(folder / name).find("exture") == std::string::npos);
+  }
+  CHECK(read_file(folder / "m.mtl") ==
+        "newmtl front\nKd 1 1 1\nd 1\nnewmtl back\nKd 1 1 1\nd 0.5\n");
+  CHECK(files_in(folder) == 6);  // with m.bin
+}
+
+TEST_CASE("a mesh that has texture coordinates may have no triangles, and no vertices") {
+  const TempFolder folder;
+  for (const char* name : {"m.obj", "m.ply", "m.glb", "m.gltf", "m.stl", "m.off"}) {
+    for (const std::size_t vertices : {4U, 0U}) {
+      MeshSinkOptions options = square_options();
+      options.packing = Packing::compressed;
+      write_textured(folder / name,
+                     {{k_square_vertices.begin(), k_square_vertices.begin() + vertices}, {}},
+                     options);
+      if (vertices > 0 || keeps_uvs(name)) CHECK(read_path(folder / name).mesh.triangles.empty());
+    }
+  }
+}

@@ -96,3 +96,13 @@ TEST_CASE("a PLY whose pictures cannot be read leaves what was there") {
   CHECK(read_file(folder / "m.ply") == "old");
   CHECK(files_in(folder) == 1);
 }
+
+TEST_CASE("labels of a PLY do not have the name of its texture numbers") {
+  const TempFolder folder;
+  MeshSinkOptions options = square_options();
+  options.labels->name = "texnumber";
+  write_textured(folder / "m.ply", textured_square(), options);
+  CHECK(read_file(folder / "m.ply")
+            .find("property int texnumber\nproperty uchar material_index\nend") !=
+        std::string::npos);
+}
