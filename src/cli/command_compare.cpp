@@ -12,6 +12,7 @@
 #include <meshfarm/util/errors.hpp>
 
 #include "cli/command.hpp"
+#include "cli/compared_mesh.hpp"
 #include "cli/measure_words.hpp"
 #include "cli/options.hpp"
 
@@ -41,13 +42,13 @@ class CompareCommand : public Command {
     measure_.check();
   }
   int run() override {
-    const auto source_a = open_mesh(a_, {.labels = false, .textures = Textures::bake});
-    const auto source_b = open_mesh(b_, {.labels = false, .textures = Textures::bake});
+    const auto source_a = open_mesh(a_, {.textures = Textures::keep});
+    const auto source_b = open_mesh(b_, {.textures = Textures::keep});
     Comparison comparison;
     comparison.path_a = a_;
     comparison.path_b = b_;
     const ChannelPairs channels =
-        pair_channels(source_a->info().channels, source_b->info().channels);
+        pair_channels(compared_channels(source_a->info()), compared_channels(source_b->info()));
     comparison.channels_only_a = channels.only_a;
     comparison.channels_only_b = channels.only_b;
     DivideOptions divide = measure_.divide;
@@ -60,7 +61,9 @@ class CompareCommand : public Command {
     const std::uint64_t values =
         sizeof(float) * channels.columns_a.size() * (a.vertices() + b.vertices());
     if (values > 0 && meshes + values <= memory) {
-      measure_all({*source_a, a.vertices()}, {*source_b, b.vertices()}, channels, comparison);
+      const ComparedMesh mesh_a(*source_a, a_, channels.columns_a, a.vertices());
+      const ComparedMesh mesh_b(*source_b, b_, channels.columns_b, b.vertices());
+      measure_all(mesh_a.valued(), mesh_b.valued(), channels, comparison);
     } else if (meshes <= memory) {
       measure(read_mesh(*source_a), read_mesh(*source_b), comparison);
     } else {
@@ -81,11 +84,6 @@ class CompareCommand : public Command {
   }
 
  private:
-  struct Input {
-    MeshSource& source;
-    std::uint64_t vertices = 0;
-  };
-
   /// What it takes to hold both, and the hierarchy of one at a time.
   static std::uint64_t memory_for(const DividedSurface& a, const DividedSurface& b) {
     // While it is built, with what the allocator keeps: measured.
@@ -116,21 +114,13 @@ class CompareCommand : public Command {
   }
 
   /// Distances and channels.
-  void measure_all(const Input& input_a, const Input& input_b, const ChannelPairs& channels,
+  void measure_all(const ValuedMesh& a, const ValuedMesh& b, const ChannelPairs& channels,
                    Comparison& comparison) const {
-    const Mesh mesh_a = read_mesh(input_a.source);
-    const Mesh mesh_b = read_mesh(input_b.source);
-    const std::vector<float> values_a =
-        read_columns(input_a.source, channels.columns_a, input_a.vertices);
-    const std::vector<float> values_b =
-        read_columns(input_b.source, channels.columns_b, input_b.vertices);
     std::vector<ValueGroup> groups;
     for (const ChannelPair& pair : channels.pairs) {
       const bool is_direction = pair.role == ChannelRole::normal;
       groups.push_back({is_direction ? ValueKind::direction : ValueKind::numbers, pair.columns});
     }
-    const ValuedMesh a{mesh_a, values_a};
-    const ValuedMesh b{mesh_b, values_b};
     const SurfaceError a_to_b = measure_error(a, b, groups, distance_options());
     const SurfaceError b_to_a = measure_error(b, a, groups, distance_options());
     comparison.a_to_b = a_to_b.distance;

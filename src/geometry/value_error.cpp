@@ -92,23 +92,25 @@ class Comparer {
       const Bvh::Nearest nearest = bvh_.nearest(point, guess);
       guess = nearest.triangle;
       sums.distance.add({nearest.squared, std::sqrt(nearest.squared), nearest.squared});
-      blend(from_, from_.mesh.triangles[sampler.triangle()], random_shares(n), here);
+      blend(from_, sampler.triangle(), random_shares(n), here);
       const Triangle& t = to_.mesh.triangles[guess];
       const std::vector<Vec3>& at = to_.mesh.positions;
-      blend(to_, t, nearest_shares(point, at[t[0]], at[t[1]], at[t[2]]), there);
+      blend(to_, guess, nearest_shares(point, at[t[0]], at[t[1]], at[t[2]]), there);
       compare_all(here, there, sums.values);
     }
     return sums;
   }
 
  private:
-  void blend(const ValuedMesh& mesh, const Triangle& triangle, const std::array<double, 3>& shares,
+  void blend(const ValuedMesh& mesh, std::uint32_t triangle, const std::array<double, 3>& shares,
              std::span<double> values) const {
+    if (mesh.values_at) return mesh.values_at(triangle, shares, values);
     std::fill(values.begin(), values.end(), 0.0);
     for (std::size_t k = 0; k < 3; ++k) {
       // A corner without a share may have a value that is not finite.
       if (shares[k] == 0) continue;
-      const auto of_vertex = mesh.values.subspan(triangle[k] * columns_, columns_);
+      const auto of_vertex =
+          mesh.values.subspan(mesh.mesh.triangles[triangle][k] * columns_, columns_);
       for (std::size_t i = 0; i < columns_; ++i) {
         values[i] += shares[k] * static_cast<double>(of_vertex[i]);
       }

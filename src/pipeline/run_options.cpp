@@ -24,6 +24,9 @@ bool has_pictures(const LabelMeaning& labels) {
                      [](const Material& material) { return !material.maps.empty(); });
 }
 
+/// A whole picture's side is as bad as a move of the surface by this share of the diagonal.
+constexpr double k_uv_weight = 0.01;
+
 // Of the columns that lines keep.
 constexpr std::uint8_t k_labels = 1;
 constexpr std::uint8_t k_uvs = 2;
@@ -89,6 +92,7 @@ LineOptions lines_of(const Manifest& manifest, const RunOptions& options) {
   LineOptions lines = options.lines;
   lines.columns.labels = chosen_labels(manifest, options).has_value();
   lines.columns.uvs = chosen_textures(manifest, options) == TextureMode::keep;
+  if (lines.columns.uvs) lines.uv_scale = k_uv_weight * manifest.box.diagonal();
   const double length = options.colour_weight * manifest.box.diagonal();
   const std::vector<Channel> chosen =
       channels_at(manifest.channels.channels, chosen_columns(manifest, options));
@@ -116,6 +120,7 @@ void put(ByteWriter& out, const LineOptions& lines) {
   out.put(lines.appearance_scale.steepest);
   out.put(static_cast<std::uint8_t>((lines.columns.labels ? k_labels : 0) |
                                     (lines.columns.uvs ? k_uvs : 0)));
+  if (lines.columns.uvs) out.put(lines.uv_scale);
 }
 
 LineOptions get_lines(ByteReader& in) {
@@ -137,6 +142,8 @@ LineOptions get_lines(ByteReader& in) {
   const auto columns = in.get<std::uint8_t>();
   if (columns > (k_labels | k_uvs)) in.fail("impossible columns of triangles");
   lines.columns = {(columns & k_labels) != 0, (columns & k_uvs) != 0};
+  if (lines.columns.uvs) lines.uv_scale = in.get<double>();
+  if (!is_weight(lines.uv_scale)) in.fail("impossible weight of texture coordinates");
   return lines;
 }
 

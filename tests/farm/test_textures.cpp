@@ -92,13 +92,14 @@ TEST_CASE("a textured OBJ comes back coloured, by either scheme and as any forma
   for (const std::string scheme : {"cut", "stream"}) {
     const std::string output = model.path(scheme + ".glb");
     const Ran ran = model.run({"simplify", model.path("m.obj"), "-o", output, "--ratio", "0.1",
-                               "--workers", "1", "--scheme", scheme});
+                               "--workers", "1", "--scheme", scheme, "--uv", "colours"});
     CHECK(ran.code == 0);
     CHECK(has(ran.err, "the vertices' colours are of the textures skin.png (1 x 1)"));
     CHECK(has(ran.out, "channels         red 0, green 0, blue 0"));
     CHECK(is_orange(output));
   }
-  const Ran ran = model.run({"convert", model.path("m.obj"), model.path("m.ply"), "--uv", "bake"});
+  const Ran ran =
+      model.run({"convert", model.path("m.obj"), model.path("m.ply"), "--uv", "colours"});
   CHECK(ran.code == 0);
   CHECK(has(ran.err, "skin.png (1 x 1)"));
   CHECK(is_orange(model.path("m.ply")));
@@ -135,7 +136,7 @@ TEST_CASE("a picture that is not there is told, and the mesh is made without it"
   Model model;
   fs::remove(model.path("skin.png"));
   const Ran ran = model.run({"simplify", model.path("m.obj"), "-o", model.path("o.ply"), "--ratio",
-                             "0.1", "--workers", "1"});
+                             "0.1", "--workers", "1", "--uv", "colours"});
   CHECK(ran.code == 0);
   CHECK(has(ran.err, "the texture skin.png: no such file"));
   CHECK(open_mesh(model.path("o.ply"))->info().channels.empty());

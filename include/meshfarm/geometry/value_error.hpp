@@ -2,8 +2,10 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -24,11 +26,17 @@ struct ValueGroup {
   std::size_t columns = 1;
 };
 
+/// Tells the values at the place of a triangle where its corners have these shares. Called by
+/// several threads at once.
+using ValuesAt = std::function<void(std::uint32_t triangle, const std::array<double, 3>& shares,
+                                    std::span<double> values)>;
+
 /// A mesh and the values of its vertices: the columns of all groups of each vertex, one after the
 /// other.
 struct ValuedMesh {
   const Mesh& mesh;
   std::span<const float> values;
+  ValuesAt values_at = {};  // where not empty: instead of those of the vertices
 };
 
 /// What lies between the values of two surfaces, over sampled points and the group's columns.
@@ -46,8 +54,8 @@ struct SurfaceError {
 };
 
 /// Measures distances as measure_distance does, to the bit, and at the same points by how much the
-/// values differ: blended linearly over the triangle at the point, and at the nearest point of
-/// `to`. Memory and errors are those of measure_distance.
+/// values differ: blended linearly over the triangle, or as ValuesAt tells, at the point and at
+/// the nearest point of `to`. Memory and errors are those of measure_distance.
 SurfaceError measure_error(const ValuedMesh& from, const ValuedMesh& to,
                            std::span<const ValueGroup> groups, const DistanceOptions& options);
 

@@ -108,7 +108,7 @@ std::uint64_t memory_of_channels(const LineOptions& lines, std::uint64_t triangl
 
 /// As they stand in a job's parameters: preserve border u8 | crease angle f64 |
 /// topology u8 | length of appearances f64 | steepest f64 | columns u8: 1 labels, 2 texture
-/// coordinates.
+/// coordinates; with these their weight f64.
 void put(ByteWriter& out, const LineOptions& lines);
 LineOptions get_lines(ByteReader& in);
 

@@ -1,0 +1,254 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+//
+// Texture coordinates and pictures, kept and made anew, from the input to the output of real runs.
+#include <array>
+#include <cmath>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include <doctest/doctest.h>
+
+#include <meshfarm/io/material_colours.hpp>
+#include <meshfarm/io/mesh_format.hpp>
+#include <meshfarm/io/mesh_source.hpp>
+
+#include "support/meshes.hpp"
+#include "support/process.hpp"
+#include "support/temp_folder.hpp"
+
+using namespace meshfarm;
+using test::Ran;
+using test::read_text;
+
+namespace {
+
+constexpr std::uint32_t k_rows = 120;
+constexpr std::uint32_t k_columns = 60;
+constexpr std::uint32_t k_side = 256;
+const double k_turn = 2 * std::acos(-1.0);
+
+/// The angles of a point of the torus, as parts of a turn.
+std::array<double, 2> angles_of(Vec3 p) {
+  const double u = std::atan2(p.y, p.x) / k_turn;
+  const double v = std::atan2(p.z, std::sqrt(p.x * p.x + p.y * p.y) - 1) / k_turn;
+  return {u < 0 ? u + 1 : u, v < 0 ? v + 1 : v};
+}
+
+double apart(double a, double b) {
+  const double d = std::abs(a - b);
+  return std::min(d, 1 - d);
+}
+
+/// The levels that the picture has at these angles.
+std::array<double, 3> levels_at(double u, double v) {
+  return {0.5 + 0.4 * std::sin(k_turn * u), 0.5 + 0.4 * std::cos(k_turn * v),
+          0.5 + 0.4 * std::sin(k_turn * (u + v))};
+}
+
+std::string picture() {
+  std::vector<std::uint8_t> texels;
+  for (std::uint32_t y = 0; y < k_side; ++y) {
+    for (std::uint32_t x = 0; x < k_side; ++x) {
+      for (const double level : levels_at((x + 0.5) / k_side, 1 - (y + 0.5) / k_side)) {
+        texels.push_back(static_cast<std::uint8_t>(std::lround(255 * level)));
+      }
+    }
+  }
+  return encoded_picture(k_side, std::move(texels), PictureCoding::png);
+}
+
+/// A torus with the whole picture round it: one chart, whose sides meet in two rings.
+Mesh textured_torus() {
+  Mesh mesh = test::torus(k_rows, k_columns);
+  for (Vec3& p : mesh.positions) p = rounded(p, PositionType::float32);
+  for (std::uint32_t i = 0; i < k_rows; ++i) {
+    for (std::uint32_t j = 0; j < k_columns; ++j) {
+      const auto at = [](std::uint32_t row, std::uint32_t column) {
+        return Uv{static_cast<float>(row) / k_rows, static_cast<float>(column) / k_columns};
+      };
+      mesh.columns.uvs.push_back({at(i, j), at(i + 1, j), at(i + 1, j + 1)});
+      mesh.columns.uvs.push_back({at(i, j), at(i + 1, j + 1), at(i, j + 1)});
+    }
+  }
+  mesh.columns.labels.assign(mesh.triangles.size(), 0);
+  return mesh;
+}
+
+class Bench {
+ public:
+  Bench() {
+    for (const char* each : {"1", "3"}) std::filesystem::create_directories(path(each));
+    Material material{.name = "skin"};
+    material.maps = {{MapUse::colour, 0}};
+    const PictureFiles pictures{{"skin.png"}, [](std::size_t) { return picture(); }};
+    write_mesh(path("in.obj"), textured_torus(), PositionType::float32, {}, {},
+               LabelMeaning{"material", {material}}, pictures);
+  }
+  std::string path(const std::string& name) const { return (folder_.path() / name).string(); }
+  Ran operator()(const std::vector<std::string>& words) {
+    return test::run_meshfarm(words, folder_.path() / ("log" + std::to_string(++logs_)));
+  }
+  Ran simplify(const std::string& output, const std::vector<std::string>& more) {
+    std::vector<std::string> words = {"simplify",   path("in.obj"), "-o",
+                                      path(output), "--parts",      "5"};
+    words.insert(words.end(), more.begin(), more.end());
+    return (*this)(words);
+  }
+  /// All files that a result consists of.
+  std::string bytes_of(const std::string& output) const {
+    std::string all;
+    std::vector<std::filesystem::path> files;
+    const auto folder = std::filesystem::path(path(output)).parent_path();
+    for (const auto& each : std::filesystem::directory_iterator(folder)) {
+      if (each.is_regular_file()) files.push_back(each.path());
+    }
+    std::sort(files.begin(), files.end());
+    for (const auto& file : files) all += file.filename().string() + "\n" + read_text(file);
+    return all;
+  }
+
+ private:
+  test::TempFolder folder_;
+  int logs_ = 0;
+};
+
+bool has(const std::string& text, const std::string& part) {
+  return text.find(part) != std::string::npos;
+}
+
+struct Read {
+  MeshFileInfo info;
+  Mesh mesh;
+};
+
+Read read_textured(const std::string& path) {
+  const auto source = open_mesh(path, {.textures = Textures::keep});
+  Read read{source->info(), read_mesh(*source)};
+  REQUIRE(read.info.uvs);
+  REQUIRE(read.mesh.columns.uvs.size() == read.mesh.triangles.size());
+  REQUIRE(read.info.pictures.names.size() == 1);
+  return read;
+}
+
+/// Texture coordinates are those of the places; the seams are where they were.
+void check_kept(const std::string& path) {
+  const auto [info, mesh] = read_textured(path);
+  CHECK(info.pictures.load(0) == picture());
+  double worst = 0;
+  for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
+    const CornerUvs& uvs = mesh.columns.uvs[i];
+    for (std::size_t k = 0; k < 3; ++k) {
+      const auto [u, v] = angles_of(mesh.positions[mesh.triangles[i][k]]);
+      worst = std::max({worst, apart(u, static_cast<double>(uvs[k][0])),
+                        apart(v, static_cast<double>(uvs[k][1]))});
+      // No triangle goes from one side of the picture to the other.
+      CHECK(std::abs(uvs[k][0] - uvs[(k + 1) % 3][0]) < 0.5F);
+      CHECK(std::abs(uvs[k][1] - uvs[(k + 1) % 3][1]) < 0.5F);
+    }
+  }
+  CHECK(worst < 0.02);
+}
+
+/// At the corners and centres of all triangles, from the root of the mean squared error.
+double psnr_of(const Read& read) {
+  const MaterialColours colours(*read.info.labels, read.info.pictures, {.name = "result"});
+  double sum = 0;
+  std::size_t values = 0;
+  const auto add = [&](Label label, Uv uv, Vec3 p) {
+    const auto [u, v] = angles_of(p);
+    const std::array<double, 3> wanted = levels_at(u, v);
+    const std::array<float, 3> seen = colours.at(label, uv, 1);
+    for (std::size_t c = 0; c < 3; ++c) {
+      const double miss = srgb_level(static_cast<double>(seen[c])) - wanted[c];
+      sum += miss * miss;
+      ++values;
+    }
+  };
+  for (std::size_t i = 0; i < read.mesh.triangles.size(); ++i) {
+    Vec3 centre{};
+    Uv middle{};
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Uv uv = read.mesh.columns.uvs[i][k];
+      const Vec3 p = read.mesh.positions[read.mesh.triangles[i][k]];
+      add(read.mesh.columns.labels[i], uv, p);
+      centre = centre + p * (1.0 / 3);
+      for (std::size_t axis = 0; axis < 2; ++axis) middle[axis] += uv[axis] / 3;
+    }
+    add(read.mesh.columns.labels[i], middle, centre);
+  }
+  return -10 * std::log10(sum / static_cast<double>(values));
+}
+
+}  // namespace
+
+TEST_CASE("textures are kept, the same from any number of workers") {
+  Bench bench;
+  for (const std::string scheme : {"cut", "stream"}) {
+    for (const std::string workers : {"1", "3"}) {
+      const Ran ran = bench.simplify(workers + "/kept.obj",
+                                     {"--ratio", "0.1", "--scheme", scheme, "--workers", workers});
+      REQUIRE(ran.code == 0);
+      CHECK(has(ran.out, "textures         kept: 1 picture"));
+      CHECK(has(ran.out, "1,440"));
+    }
+    CHECK(bench.bytes_of("1/kept.obj") == bench.bytes_of("3/kept.obj"));
+    check_kept(bench.path("1/kept.obj"));
+    CHECK(psnr_of(read_textured(bench.path("1/kept.obj"))) > 28);
+  }
+}
+
+TEST_CASE("textures are kept by all formats that have a place for them") {
+  Bench bench;
+  REQUIRE(bench({"cut", bench.path("in.obj"), "--stage", bench.path("s")}).code == 0);
+  for (const std::string name : {"kept.glb", "kept.gltf", "kept.ply"}) {
+    const Ran ran = bench({"run", bench.path("s"), "-o", bench.path(name), "--ratio", "0.1"});
+    REQUIRE(ran.code == 0);
+    check_kept(bench.path(name));
+  }
+  const Ran off = bench({"run", bench.path("s"), "-o", bench.path("o.off"), "--ratio", "0.1"});
+  CHECK(off.code == 0);
+  CHECK(has(off.out, "textures         not kept"));
+}
+
+TEST_CASE("a new texture is baked where charts would not let the number of triangles be met") {
+  Bench bench;
+  for (const std::string scheme : {"cut", "stream"}) {
+    for (const std::string workers : {"1", "3"}) {
+      const Ran ran = bench.simplify(
+          workers + "/baked.obj",
+          {"--ratio", "0.03", "--scheme", scheme, "--uv", "bake", "--workers", workers});
+      REQUIRE(ran.code == 0);
+      CHECK(has(ran.out, "textures         a new picture of 256 x 256"));
+    }
+    CHECK(bench.bytes_of("1/baked.obj") == bench.bytes_of("3/baked.obj"));
+    const Read read = read_textured(bench.path("1/baked.obj"));
+    CHECK(read.mesh.triangles.size() == 432);
+    CHECK(psnr_of(read) > 28);
+  }
+  const Ran sized =
+      bench.simplify("o.glb", {"--triangles", "400", "--uv", "bake", "--texture-size", "512"});
+  CHECK(sized.code == 0);
+  CHECK(has(sized.out, "a new picture of 512 x 512"));
+  CHECK(psnr_of(read_textured(bench.path("o.glb"))) > 28);
+}
+
+TEST_CASE("what becomes of textures is told before the work") {
+  Bench bench;
+  const Ran automatic = bench.simplify("a.obj", {"--triangles", "4"});
+  CHECK(automatic.code == 0);
+  CHECK(has(automatic.err, "a new texture is made: to keep the charts of its textures about"));
+  const Ran kept = bench.simplify("k.obj", {"--triangles", "4", "--uv", "keep"});
+  CHECK(kept.code == 0);
+  CHECK(has(kept.err, "4 are asked for; with --uv bake that number is met"));
+  const Ran none = bench.simplify("n.obj", {"--triangles", "400", "--uv", "drop"});
+  CHECK(none.code == 0);
+  CHECK_FALSE(open_mesh(bench.path("n.obj"), {.textures = Textures::keep})->info().uvs);
+  const Ran no_place = bench.simplify("o.stl", {"--triangles", "400", "--uv", "keep"});
+  CHECK(no_place.code == 1);
+  CHECK(has(no_place.err, "has no place for textures"));
+  const Ran size = bench.simplify("o.obj", {"--triangles", "400", "--texture-size", "20000"});
+  CHECK(size.code == 1);
+  CHECK(has(size.err, "--texture-size: from 64 to 16384 pixels"));
+}
