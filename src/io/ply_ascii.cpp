@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
 #include <algorithm>
+#include <cmath>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -163,17 +164,21 @@ class AsciiBody final : public PlyBody {
   template <class Maker>
   void read_face(const PlyElement& element, Maker& maker) {
     maker.begin(corner_order(element));
+    uvs_.clear();
     for (std::size_t i = 0; i < element.properties.size(); ++i) {
       const PlyProperty& property = element.properties[i];
       if (i == element.index_list) {
         read_corner_list(property, maker);
       } else if (i == element.label) {
         maker.label(read_label(property));
+      } else if (i == element.uvs) {
+        read_uv_list(property);
       } else {
         skip(property);
       }
     }
     end_record();
+    if (element.uvs) maker.uvs(uvs_);
     maker.end();
     ++index_;
   }
@@ -295,6 +300,21 @@ class AsciiBody final : public PlyBody {
     }
   }
 
+  /// Those of a face that has too many corners to be kept are not.
+  void read_uv_list(const PlyProperty& property) {
+    const std::uint64_t count = read_list_length(property);
+    const bool are_kept = count % 2 == 0 && count / 2 <= TriangleMaker::k_most_held_corners;
+    for (std::uint64_t i = 0; i < count; ++i) {
+      need_value();
+      const std::optional<double> read = cursor_.real(PlyType::float64);
+      if (!read) fail("the texture coordinate " + cursor_.token() + " is no number");
+      const auto value = static_cast<float>(*read);
+      if (!are_kept) continue;
+      if (i % 2 == 0) uvs_.emplace_back();
+      uvs_.back()[i % 2] = std::isfinite(value) ? value : 0;
+    }
+  }
+
   /// What is below zero wraps around.
   Label read_label(const PlyProperty& property) {
     need_value();
@@ -340,6 +360,7 @@ class AsciiBody final : public PlyBody {
   unsigned odd_texts_ = 0;
   bool has_lost_digits_ = false;  // in pieces
   bool has_more_ = false;         // values than are read, and that is to be told
+  std::vector<Uv> uvs_;           // of the face at hand
 };
 
 }  // namespace

@@ -1,6 +1,8 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
 #include <bit>
+#include <cmath>
+#include <vector>
 
 #include <meshfarm/util/errors.hpp>
 
@@ -162,13 +164,21 @@ class BinaryBody final : public PlyBody {
 
   void read_polygon(TriangleMaker& maker) {
     maker.begin(corner_order(*element_));
+    uvs_.clear();
     for (std::size_t i = 0; i < element_->properties.size(); ++i) {
       const PlyProperty& property = element_->properties[i];
       if (i == element_->label) {
         maker.label(load_label<Order>(property.type, need(size_of(property.type))));
       }
-      i == element_->index_list ? read_corner_list(property, maker) : skip(property);
+      if (i == element_->index_list) {
+        read_corner_list(property, maker);
+      } else if (i == element_->uvs) {
+        read_uv_list(property);
+      } else {
+        skip(property);
+      }
     }
+    maker.uvs(uvs_);
     maker.end();
   }
 
@@ -191,6 +201,20 @@ class BinaryBody final : public PlyBody {
       }
       stream_->consume(count * size);
       left -= count;
+    }
+  }
+
+  /// Those of a face that has too many corners to be kept are not.
+  void read_uv_list(const PlyProperty& property) {
+    const std::size_t size = size_of(property.type);
+    std::uint64_t left = read_list_length(property);
+    const bool are_kept = left % 2 == 0 && left / 2 <= TriangleMaker::k_most_held_corners;
+    for (std::uint64_t i = 0; left > 0; ++i, --left) {
+      const auto value = static_cast<float>(load_real<Order>(property.type, need(size)));
+      stream_->consume(size);
+      if (!are_kept) continue;
+      if (i % 2 == 0) uvs_.emplace_back();
+      uvs_.back()[i % 2] = std::isfinite(value) ? value : 0;
     }
   }
 
@@ -230,6 +254,7 @@ class BinaryBody final : public PlyBody {
   const std::filesystem::path& path_;
   const PlyElement* element_ = nullptr;
   std::uint64_t index_ = 0;
+  std::vector<Uv> uvs_;  // of the face at hand
 };
 
 }  // namespace

@@ -21,8 +21,8 @@ std::optional<ChannelRole> role_of(const PlyProperty& property) {
       "red",  "green", "blue",        "alpha",         "r",           "g", "b", "a",
       "grey", "gray",  "diffuse_red", "diffuse_green", "diffuse_blue"};
   static constexpr std::array<std::string_view, 3> k_normals{"nx", "ny", "nz"};
-  static constexpr std::array<std::string_view, 8> k_texture{
-      "s", "t", "u", "v", "texture_u", "texture_v", "tex_u", "tex_v"};
+  static constexpr std::array<std::string_view, 10> k_texture{
+      "s", "t", "u", "v", "texture_u", "texture_v", "texture_s", "texture_t", "tex_u", "tex_v"};
   const bool is_float = !is_integer(property.type);
   if (is_one_of(k_colours, property.name)) {
     const bool is_level = property.type == PlyType::uint8 || property.type == PlyType::uint16;

@@ -4,7 +4,7 @@
 // The header of a PLY file (Turk 1994), as writers make it:
 //   header   = "ply" format line* "end_header"       lines end in LF, CR LF, or CR throughout
 //   format   = "format" ("ascii" | "binary_little_endian" | "binary_big_endian") "1.0"
-//   line     = "comment" ... | "obj_info" ... | element property*
+//   line     = "comment" ... | "comment TextureFile" file | "obj_info" ... | element property*
 //   element  = "element" name count
 //   property = "property" type name | "property" "list" type type name
 #include "ply_header.hpp"
@@ -81,6 +81,10 @@ class HeaderParser {
   /// True for the last line of the header.
   bool parse_line(std::string_view line) {
     const std::vector<std::string_view> words = words_of(line);
+    if (words.size() > 2 && words[0] == "comment" && words[1] == "TextureFile") {
+      const auto start = static_cast<std::size_t>(words[2].data() - line.data());
+      header_.texture_files.emplace_back(trimmed(line.substr(start), k_blanks));
+    }
     if (words.empty() || words[0] == "comment" || words[0] == "obj_info") return false;
     if (words[0] == "end_header") return true;
     if (words[0] == "format") {

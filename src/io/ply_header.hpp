@@ -40,6 +40,7 @@ struct PlyElement {
   std::array<std::size_t, 3> axes{};  // of vertices: the properties x, y, z
   std::size_t index_list = 0;         // of faces and strips: the property with the corners
   std::optional<std::size_t> label;   // of faces: the property that is read as their label
+  std::optional<std::size_t> uvs;     // of faces: the list of texture coordinates, if it is read
   MoreValues more = MoreValues::odd;
 
   bool has_late_label() const { return label && *label > index_list; }
@@ -54,9 +55,10 @@ struct PlyHeader {
   std::uint64_t size_bytes = 0;
   std::uint64_t lines = 0;
   char line_end = '\n';
-  bool has_comments = false;          // text from '#' to the end of the line, in the body too
-  std::string title;                  // of what is read like a PLY file, but is none
-  std::vector<std::string> oddities;  // what was let pass; each a line for the user
+  bool has_comments = false;               // text from '#' to the end of the line, in the body too
+  std::vector<std::string> texture_files;  // of comments that name some
+  std::string title;                       // of what is read like a PLY file, but is none
+  std::vector<std::string> oddities;       // what was let pass; each a line for the user
 
   const PlyElement& vertices() const;
 };

@@ -9,10 +9,12 @@
 #include <meshfarm/util/errors.hpp>
 #include <meshfarm/util/log.hpp>
 
+#include "coloured_points.hpp"
 #include "off_header.hpp"
 #include "ply_body.hpp"
 #include "ply_header.hpp"
 #include "ply_positions.hpp"
+#include "ply_textures.hpp"
 #include "vertex_store.hpp"
 
 namespace meshfarm {
@@ -42,7 +44,7 @@ PositionType position_type(const PlyElement& vertices) {
 bool is_used(const PlyElement& element, std::size_t property,
              std::span<const PlyChannel> channels) {
   if (element.role != PlyRole::vertices) {
-    return property == element.index_list || property == element.label;
+    return property == element.index_list || property == element.label || property == element.uvs;
   }
   return std::find(element.axes.begin(), element.axes.end(), property) != element.axes.end() ||
          std::any_of(channels.begin(), channels.end(),
@@ -102,6 +104,7 @@ class PlySource final : public MeshSource {
     }
     fill_info();
     if (has_more_digits_than_floats()) read_as_doubles();
+    if (options.channels) read_textures();
   }
 
   const MeshFileInfo& info() const override { return info_; }
@@ -113,14 +116,47 @@ class PlySource final : public MeshSource {
   }
 
   void scan_channels(const std::function<void(const ChannelPoints&)>& take) override {
+    if (!texture_colours_) return scan_properties(channels_, take);
+    std::uint64_t first = 0;
+    scan_properties(channels_, [&](const ChannelPoints& batch) {
+      take(colours_->of(batch, first));
+      first += batch.points.size();
+    });
+  }
+
+  void scan_triangles(const std::function<void(const TriangleView&)>& take) override {
+    info_.uvs ? scan_textured(take) : scan_plain(take);
+  }
+
+ private:
+  using Keep = VertexStore::Keep;
+
+  void scan_properties(std::span<const PlyChannel> properties,
+                       const std::function<void(const ChannelPoints&)>& take) {
     const std::unique_ptr<PlyBody> body = open_body();
     std::size_t next = 0;
     while (header_.elements[next].role != PlyRole::vertices) body->skip(header_.elements[next++]);
     ChannelBatch batch(take);
-    body->read_channels(header_.elements[next], channels_, batch);
+    body->read_channels(header_.elements[next], properties, batch);
   }
 
-  void scan_triangles(const std::function<void(const TriangleView&)>& take) override {
+  void scan_textured(const std::function<void(const TriangleView&)>& take) {
+    if (!textured_) {
+      textured_.emplace(textures_);
+      if (!textures_.of_vertices.empty()) {
+        textured_->begin_vertices(info_.vertices);
+        scan_properties(textures_.of_vertices,
+                        [this](const ChannelPoints& batch) { textured_->add_vertices(batch); });
+      }
+    }
+    scan_plain([&](const TriangleView& batch) {
+      TriangleView made = textured_->of(batch);
+      if (!info_.labels && !is_sampling_) made.columns.labels = {};
+      take(made);
+    });
+  }
+
+  void scan_plain(const std::function<void(const TriangleView&)>& take) {
     // Goes on where the last scan of the vertices stopped, if that is before all triangles.
     auto [body, next] = std::exchange(parked_, {});
     const auto first = std::find_if(header_.elements.begin(), header_.elements.end(), has_corners);
@@ -133,6 +169,10 @@ class PlySource final : public MeshSource {
                     [](const PlyElement& element) { return element.has_late_label(); })) {
       maker.hold_long_faces();
     }
+    if (std::any_of(header_.elements.begin(), header_.elements.end(),
+                    [](const PlyElement& element) { return element.uvs.has_value(); })) {
+      maker.keep_uvs();
+    }
     for (; next < header_.elements.size(); ++next) {
       const PlyElement& element = header_.elements[next];
       has_corners(element) ? body->read_corners(element, maker) : body->skip(element);
@@ -144,9 +184,6 @@ class PlySource final : public MeshSource {
       warn(file_.path().string() + ": there is more in the file than its header says");
     }
   }
-
- private:
-  using Keep = VertexStore::Keep;
 
   /// A body that stands before an element.
   struct Parked {
@@ -223,7 +260,9 @@ class PlySource final : public MeshSource {
     if (options_.channels) channels_ = channels_of(header_.vertices());
     for (const PlyChannel& each : channels_) info_.channels.push_back(each.channel);
     if (options_.labels) find_labels();
-    info_.skipped = skipped_names(header_, channels_);
+    textures_ = find_ply_textures(header_);
+    if (options_.textures == Textures::keep && textures_.has_uvs()) keep_textures();
+    info_.skipped = skipped_names(header_, used_properties());
     for (const PlyElement& element : header_.elements) {
       if (has_corners(element)) info_.faces += element.count;
     }
@@ -239,6 +278,72 @@ class PlySource final : public MeshSource {
     }
     if (faces == nullptr || !(faces->label = label_of(*faces))) return;
     info_.labels = LabelMeaning{faces->properties[*faces->label].name, {}};
+  }
+
+  /// The faces that have texture coordinates, or numbers of pictures.
+  PlyElement& textured_faces() {
+    return *std::find_if(header_.elements.begin(), header_.elements.end(), [](const auto& element) {
+      return element.role == PlyRole::faces && element.count > 0;
+    });
+  }
+
+  std::vector<PlyChannel> used_properties() const {
+    std::vector<PlyChannel> made = channels_;
+    if (info_.uvs) {
+      made.insert(made.end(), textures_.of_vertices.begin(), textures_.of_vertices.end());
+    }
+    return made;
+  }
+
+  /// Pictures are what materials are of, before all else that labels may mean.
+  void read_uvs() {
+    textured_faces().uvs = textures_.face_list;
+    if (!textures_.files.empty()) textured_faces().label = textures_.numbers;
+    info_.uvs = true;
+  }
+
+  void keep_textures() {
+    const bool has_pictures = !textures_.files.empty();
+    if (has_pictures && !options_.labels) textures_.numbers.reset();
+    read_uvs();
+    if (!has_pictures || !options_.labels) return;
+    info_.labels = keep_ply_pictures(
+        textures_, file_.path(), [this](const std::string& line) { warn(line); }, info_.pictures);
+  }
+
+  void read_textures() {
+    if (textures_.files.empty() || !textures_.has_uvs()) return;
+    if (options_.textures == Textures::name) {
+      info_.textures = describe(ply_images(textures_, file_.path()), LostPictures::told);
+    } else if (options_.textures == Textures::bake) {
+      bake_textures();
+    }
+  }
+
+  void bake_textures() {
+    PlyElement& faces = textured_faces();
+    const std::optional<std::size_t> label = faces.label;
+    read_uvs();
+    is_sampling_ = true;
+    const bool has_colours = colour_columns(info_.channels).has_value();
+    texture_colours_ = sample_ply_textures(
+        {.textures = textures_,
+         .path = file_.path(),
+         .vertices = info_.vertices,
+         .plain = has_colours ? TextureColours::Plain::left : TextureColours::Plain::coloured,
+         .picture_bytes = options_.picture_bytes},
+        [this](const auto& take) { scan_textured(take); });
+    is_sampling_ = false;
+    textured_.reset();
+    info_.uvs = false;
+    faces.uvs.reset();
+    const bool is_number = label && label == textures_.numbers;
+    faces.label = texture_colours_ && is_number ? std::nullopt : label;
+    if (!texture_colours_) return;
+    if (is_number) info_.labels.reset();
+    info_.textures = describe(ply_images(textures_, file_.path()), LostPictures::left);
+    colours_.emplace(info_.channels, *texture_colours_);
+    info_.channels = colours_->channels();
   }
 
   /// A file is scanned more than once, but each warning about it is given once.
@@ -267,6 +372,11 @@ class PlySource final : public MeshSource {
   MeshFileInfo info_;
   std::uint64_t small_faces_ = 0;
   std::set<std::string> warnings_;
+  PlyTextures textures_;
+  std::optional<PlyTexturedBatch> textured_;
+  std::unique_ptr<TextureColours> texture_colours_;
+  std::optional<ColouredPoints> colours_;
+  bool is_sampling_ = false;
 };
 
 }  // namespace

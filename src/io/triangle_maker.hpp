@@ -183,7 +183,8 @@ class TriangleMaker {
   std::uint64_t long_faces_ = 0;
 };
 
-/// Takes corners as a TriangleMaker does, and labels of faces, to hand them on to one later.
+/// Takes corners as a TriangleMaker does, and labels and texture coordinates of faces, to hand them
+/// on to one later.
 class CornerRecord {
  public:
   explicit CornerRecord(std::uint64_t vertices) : vertices_(vertices) {}
@@ -204,13 +205,23 @@ class CornerRecord {
   void end() {}
   /// Of the face at hand. All have one, or none has.
   void label(Label label) { labels_.push_back(label); }
+  void uvs(std::span<const Uv> of_corners) {
+    uv_lengths_.resize(lengths_.size());
+    uv_lengths_.back() = static_cast<std::uint32_t>(of_corners.size());
+    uvs_.insert(uvs_.end(), of_corners.begin(), of_corners.end());
+  }
   std::uint64_t vertices() const { return vertices_; }
 
   void play(TriangleMaker& maker) const {
     const std::int64_t* next = corners_.data();
+    std::span<const Uv> uvs(uvs_);
     for (std::size_t face = 0; face < lengths_.size(); ++face) {
       maker.begin(order_);
       if (!labels_.empty()) maker.label(labels_[face]);
+      if (face < uv_lengths_.size()) {
+        maker.uvs(uvs.first(uv_lengths_[face]));
+        uvs = uvs.subspan(uv_lengths_[face]);
+      }
       for (std::uint32_t i = 0; i < lengths_[face]; ++i) maker.corner(*next++);
       maker.end();
     }
@@ -222,6 +233,8 @@ class CornerRecord {
   std::vector<std::uint32_t> lengths_;
   std::vector<std::int64_t> corners_;
   std::vector<Label> labels_;
+  std::vector<std::uint32_t> uv_lengths_;  // of the faces up to the last that has any
+  std::vector<Uv> uvs_;
 };
 
 }  // namespace meshfarm
