@@ -58,17 +58,23 @@ void CreaseLines::update(const Mesh& mesh, const Adjacency& adjacency,
                          std::vector<std::uint8_t>& flags) const {
   if (!exists_) return;
   const std::vector<std::uint8_t> before = flags;
-  const auto is_on_crease = [&](std::uint32_t end) { return (before[end] & k_crease) != 0; };
   for (std::uint32_t v = 0; v < flags.size(); ++v) {
-    if (!is_on_crease(v)) continue;
-    int creases = 0;
-    for_crease_edges(adjacency.fan_at(v), mesh.positions[v], mesh.positions, still_sharp_,
-                     is_on_crease, [&](const Corner&, const Corner&) { ++creases; });
-    flags[v] &= static_cast<std::uint8_t>(~(k_crease | k_corner));
-    if (creases == 0) continue;
-    flags[v] |= k_crease;
-    if (creases != 2 || (flags[v] & k_border) != 0) flags[v] |= k_corner;
+    if ((before[v] & k_crease) != 0) flags[v] = updated(v, mesh.positions, adjacency, before);
   }
+}
+
+std::uint8_t CreaseLines::updated(std::uint32_t vertex, std::span<const Vec3> positions,
+                                  const Adjacency& adjacency,
+                                  std::span<const std::uint8_t> flags) const {
+  const auto is_on_crease = [&](std::uint32_t end) { return (flags[end] & k_crease) != 0; };
+  int creases = 0;
+  for_crease_edges(adjacency.fan_at(vertex), positions[vertex], positions, still_sharp_,
+                   is_on_crease, [&](const Corner&, const Corner&) { ++creases; });
+  auto now = static_cast<std::uint8_t>(flags[vertex] & ~(k_crease | k_corner));
+  if (creases == 0) return now;
+  now |= k_crease;
+  if (creases != 2 || (now & k_border) != 0) now |= k_corner;
+  return now;
 }
 
 }  // namespace meshfarm

@@ -96,6 +96,9 @@ class CreaseLines {
   void find(const Mesh& mesh, const Adjacency& adjacency, std::vector<std::uint8_t>& flags) const;
   /// Unflags what is on no crease any more, and tells corners anew.
   void update(const Mesh& mesh, const Adjacency& adjacency, std::vector<std::uint8_t>& flags) const;
+  /// The flags of one vertex as they should be.
+  std::uint8_t updated(std::uint32_t vertex, std::span<const Vec3> positions,
+                       const Adjacency& adjacency, std::span<const std::uint8_t> flags) const;
 
  private:
   bool exists_;

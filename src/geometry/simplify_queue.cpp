@@ -281,12 +281,29 @@ void CollapseQueue::merge(std::uint32_t a, std::uint32_t b, const Collapse& coll
   ++collapses_;
   if (by_general_) tidy(a);
   list_ring(a);
+  if (mesh_.adjacency.has_uvs()) update_lines(a);
   ranking_.refresh(a);
   for (const std::uint32_t v : ring_) stale_[v] = 1;
   look_again(a);
   for (const std::uint32_t v : ring_) {
     if (refused_[v] != 0) look_again(v);
   }
+}
+
+/// A small chart goes with the last of its triangles, and with it the corners that only it made.
+/// Without texture coordinates they stay until the next pass.
+void CollapseQueue::update_lines(std::uint32_t merged) {
+  const auto update = [&](std::uint32_t v) {
+    std::uint8_t& flags = mesh_.flags[v];
+    if ((flags & k_crease) == 0) return;
+    const std::uint8_t now =
+        mesh_.creases.updated(v, mesh_.positions, mesh_.adjacency, mesh_.flags);
+    if (now == flags) return;
+    flags = now;
+    refused_[v] = 1;  // is looked at again
+  };
+  update(merged);
+  for (const std::uint32_t v : ring_) update(v);
 }
 
 /// After a collapse that may have left fans other than before: drops triangles that have become

@@ -110,6 +110,7 @@ class CollapseQueue {
   bool is_guarded(std::uint32_t a, std::uint32_t b, const Collapse& collapse);
   void merge(std::uint32_t a, std::uint32_t b, const Collapse& collapse);
   void keep(const SimplifyGoal& goal);
+  void update_lines(std::uint32_t merged);
   void tidy(std::uint32_t merged);
   void tidy_star(std::uint32_t vertex);
   void classify(std::uint32_t vertex);
