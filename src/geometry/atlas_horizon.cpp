@@ -11,11 +11,11 @@ void Gaps::add(const Gap& gap) {
   if (std::min(gap.width, gap.height) >= least_) gaps_.push_back(gap);
 }
 
-std::size_t Gaps::best_for(int width, int height) const {
+std::size_t Gaps::best_for(Size size) const {
   std::size_t best = gaps_.size();
   int least = 0;
   for (std::size_t i = 0; i < gaps_.size(); ++i) {
-    const int wide = gaps_[i].width - width, high = gaps_[i].height - height;
+    const int wide = gaps_[i].width - size.width, high = gaps_[i].height - size.height;
     if (wide < 0 || high < 0) continue;
     const int left = std::min(wide, high);
     if (best < gaps_.size() && left >= least) continue;
@@ -25,18 +25,19 @@ std::size_t Gaps::best_for(int width, int height) const {
   return best;
 }
 
-double Gaps::waste(int width, int height) const {
-  const std::size_t i = best_for(width, height);
+double Gaps::waste(Size size) const {
+  const std::size_t i = best_for(size);
   if (i == gaps_.size()) return HUGE_VAL;
-  return std::min(gaps_[i].width - width, gaps_[i].height - height);
+  return std::min(gaps_[i].width - size.width, gaps_[i].height - size.height);
 }
 
-std::optional<Gap> Gaps::take(int width, int height) {
-  const std::size_t i = best_for(width, height);
+std::optional<Gap> Gaps::take(Size size) {
+  const std::size_t i = best_for(size);
   if (i == gaps_.size()) return {};
   const Gap gap = gaps_[i];
   gaps_[i] = gaps_.back();
   gaps_.pop_back();
+  const auto [width, height] = size;
   const int wide = gap.width - width, high = gap.height - height;
   // The larger of the two rests is left whole.
   const bool is_beside = wide > high;
@@ -89,7 +90,7 @@ Horizon::Spot Horizon::best_between(const Profile& shape, std::size_t begin, std
     if (y + shape.top <= side_) {
       // Low is good, and so is little room below, in the mean over the columns.
       const double lost = static_cast<double>(shape.low_sum - below) / columns + y;
-      const double score = y + shape.top + lost;
+      const double score = y + shape.top + 0.5 * lost;
       if (score < best.score) best = {score, begin + x, y};
     }
     if (x + 1 < places) below += first[x + width] - first[x];

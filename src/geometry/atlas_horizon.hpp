@@ -20,17 +20,20 @@ struct Gap {
 /// Boxes that are free below what lies on the horizon.
 class Gaps {
  public:
+  struct Size {
+    int width, height;
+  };
   /// Boxes with a side below `least` are not kept.
   explicit Gaps(int least) : least_(least) {}
   void add(const Gap& gap);
   std::size_t size() const { return gaps_.size(); }
   /// A corner of the gap that a box of this size fits best; what is left of it stays free.
-  std::optional<Gap> take(int width, int height);
+  std::optional<Gap> take(Size size);
   /// How well the box would fit: the lower the better; HUGE_VAL if it does not.
-  double waste(int width, int height) const;
+  double waste(Size size) const;
 
  private:
-  std::size_t best_for(int width, int height) const;
+  std::size_t best_for(Size size) const;
 
   int least_;
   std::vector<Gap> gaps_;

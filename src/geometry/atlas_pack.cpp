@@ -23,7 +23,7 @@ class Packer {
       : shapes_(shapes), options_(options), order_(shapes.size()) {
     std::iota(order_.begin(), order_.end(), 0U);
     std::stable_sort(order_.begin(), order_.end(), [&](std::uint32_t a, std::uint32_t b) {
-      return longest(shapes[a]) > longest(shapes[b]);
+      return box_area(shapes[a]) > box_area(shapes[b]);
     });
   }
 
@@ -49,6 +49,7 @@ class Packer {
   static constexpr std::uint32_t k_widest_column = 4;
   static constexpr std::size_t k_many = 8000;
 
+  static double box_area(const PackShape& shape) { return shape.size.x * shape.size.y; }
   static double longest(const PackShape& shape) { return std::max(shape.size.x, shape.size.y); }
   double side() const { return options_.side; }
   double share_of(double scale) const { return scale * scale * options_.area / (side() * side()); }
@@ -140,10 +141,9 @@ class Packer {
 
   /// By its box.
   static std::optional<PackPlace> in_gap(const ShapeProfiles& shape, Gaps& gaps) {
-    int width = shape.width(), height = shape.height();
-    const bool is_turned = gaps.waste(height, width) < gaps.waste(width, height);
-    if (is_turned) std::swap(width, height);
-    const auto gap = gaps.take(width, height);
+    const Gaps::Size upright{shape.width(), shape.height()}, turned{shape.height(), shape.width()};
+    const bool is_turned = gaps.waste(turned) < gaps.waste(upright);
+    const auto gap = gaps.take(is_turned ? turned : upright);
     if (!gap) return {};
     return placed_at(shape, is_turned ? 1 : 0, gap->x, gap->y);
   }
@@ -182,7 +182,7 @@ class Packer {
 
   std::span<const PackShape> shapes_;
   PackOptions options_;
-  std::vector<std::uint32_t> order_;  // the longest first
+  std::vector<std::uint32_t> order_;  // the largest first
 };
 
 }  // namespace

@@ -136,19 +136,19 @@ TEST_CASE("a gap is divided by what is put into it") {
   gaps.add({10, 20, 8, 2});  // too low to be kept
   CHECK(gaps.size() == 0);
   gaps.add({10, 20, 8, 6});
-  CHECK(gaps.waste(9, 3) == HUGE_VAL);
-  CHECK(gaps.waste(5, 6) == 0);
-  const auto first = gaps.take(4, 3);
+  CHECK(gaps.waste({9, 3}) == HUGE_VAL);
+  CHECK(gaps.waste({5, 6}) == 0);
+  const auto first = gaps.take({4, 3});
   REQUIRE(first);
   CHECK(first->x == 10);
   CHECK(first->y == 20);
-  const auto second = gaps.take(4, 6);
+  const auto second = gaps.take({4, 6});
   REQUIRE(second);
   CHECK(second->x == 14);
-  const auto third = gaps.take(3, 3);
+  const auto third = gaps.take({3, 3});
   REQUIRE(third);
   CHECK(third->y == 23);
-  CHECK_FALSE(gaps.take(3, 3));
+  CHECK_FALSE(gaps.take({3, 3}));
 }
 
 TEST_CASE("what lies over a hollow leaves a gap") {
@@ -158,6 +158,6 @@ TEST_CASE("what lies over a hollow leaves a gap") {
   const Horizon::Spot spot = horizon.best_spot(bridge);
   CHECK(spot.y == 0);
   horizon.put(bridge, spot, gaps);
-  CHECK(gaps.waste(2, 4) == 0);
-  CHECK(gaps.waste(3, 4) == HUGE_VAL);
+  CHECK(gaps.waste({2, 4}) == 0);
+  CHECK(gaps.waste({3, 4}) == HUGE_VAL);
 }
