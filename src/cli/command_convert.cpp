@@ -21,10 +21,6 @@
 namespace meshfarm {
 namespace {
 
-const std::vector<Channel> k_colour{{"red", ChannelType::uint8, ChannelRole::colour},
-                                    {"green", ChannelType::uint8, ChannelRole::colour},
-                                    {"blue", ChannelType::uint8, ChannelRole::colour}};
-
 constexpr std::array<std::pair<MapUse, const char*>, 5> k_map_names = {
     {{MapUse::colour, "pictures of colours"},
      {MapUse::normal, "pictures of normals"},
@@ -45,28 +41,28 @@ class ConvertCommand : public Command {
         "output", po::value(&output_)->required(), "")(
         "threads", po::value(&threads_)->default_value(threads_)->value_name("N"),
         "that parse text (0: one a core)")(
-        "uv", po::value(&uv_)->value_name("keep|bake|drop"),
-        "keep: texture coordinates, and pictures beside the output or in it; bake: textures' "
-        "colours become those of the vertices; drop: textures are left out (default: keep, or bake "
-        "where the output has a place for colours only)");
+        "uv", po::value(&uv_)->default_value(uv_)->value_name("auto|keep|colours|drop"),
+        "textures: keep: their coordinates, and pictures beside the output or in it; colours: "
+        "theirs become those of the vertices; drop: they are left out; auto: keep, or colours "
+        "where "
+        "the output has a place for these only");
     output_words_.add(options);
     talk_.add_quiet(options);
     positional.add("input", 1).add("output", 1);
   }
   void check() override {
-    if (!uv_.empty() && uv_ != "keep" && uv_ != "bake" && uv_ != "drop") {
-      throw UsageError("--uv is 'keep', 'bake' or 'drop', not '" + uv_ + "'");
+    if (uv_ == "bake") {
+      throw UsageError("--uv bake is of 'simplify' and 'run': a new picture needs a stage");
     }
-    if (uv_ == "keep" && is_output_format(output_) && !keeps_uvs(output_)) {
-      throw UsageError("--uv keep: " + output_ + " would have no place for texture coordinates");
-    }
+    if (is_output_format(output_)) texture_words_for(output_, uv_);
   }
   int run() override {
     check_writable(output_);
     if (talk_.quiet) set_log(name(), LogLevel::warning);
+    const Textures textures = parse_uv(texture_words_for(output_, uv_).cut);
     const auto source = open_mesh(
-        input_, {.threads = threads_, .labels = keeps_labels(output_), .textures = textures()});
-    if (textures() == Textures::bake) tell_textures(input_, source->info());
+        input_, {.threads = threads_, .labels = keeps_labels(output_), .textures = textures});
+    if (textures == Textures::bake) tell_textures(input_, source->info());
     ProgressPrinter printer(talk_.progress());
     const Converted made = convert_mesh(
         *source, output_, [&](double done) { printer.show({.phase = "convert", .done = done}); },
@@ -77,13 +73,6 @@ class ConvertCommand : public Command {
   }
 
  private:
-  /// What the output has no place for need not be made.
-  Textures textures() const {
-    if (uv_ == "keep" || (uv_.empty() && keeps_uvs(output_))) return Textures::keep;
-    const bool has_place = !kept_channels(output_, k_colour).empty();
-    return has_place && uv_ != "drop" ? Textures::bake : Textures::drop;
-  }
-
   void tell_what_is_left_out(const Converted& made, const MeshFileInfo& input) const {
     std::vector<std::string> names;
     for (const Channel& channel : input.channels) {
@@ -123,7 +112,7 @@ class ConvertCommand : public Command {
 
   std::string input_;
   std::string output_;
-  std::string uv_;  // empty: by the output's format
+  std::string uv_ = "auto";
   unsigned threads_ = 0;
   OutputWords output_words_;
   TalkOptions talk_;

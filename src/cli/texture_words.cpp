@@ -52,7 +52,7 @@ TextureWords texture_words_for(const std::string& output, const std::string& uv)
 void tell_textures(const Manifest& manifest, const RunOptions& run) {
   if (!manifest.uvs) return;
   const std::uint64_t floor = texture_floor(manifest);
-  const std::uint64_t target = target_triangles(manifest, run);
+  const std::uint64_t target = asked_triangles(manifest, run);
   const std::string needed =
       "to keep the charts of its textures about " + std::to_string(floor) + " triangles are needed";
   const TextureMode made = chosen_textures(manifest, run);

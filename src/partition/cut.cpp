@@ -14,6 +14,7 @@
 #include <memory>
 #include <mutex>
 
+#include <meshfarm/geometry/column_floor.hpp>
 #include <meshfarm/geometry/label_corners.hpp>
 #include <meshfarm/io/boundary_file.hpp>
 #include <meshfarm/io/mesh_shares.hpp>
@@ -172,6 +173,7 @@ class Cutter {
       const Mesh& mesh = built.part.mesh;
       const std::uint64_t corners =
           count_label_corners(mesh.triangles, mesh.columns.labels, mesh.positions.size());
+      const std::uint64_t floor = uv_floor(built.part);
       PartEntry entry;
       entry.vertices = built.part.mesh.positions.size();
       entry.triangles = built.part.mesh.triangles.size();
@@ -186,8 +188,15 @@ class Cutter {
       manifest_.dropped_degenerate += built.dropped_degenerate;
       manifest_.coincident_corners += built.coincident_corners;
       manifest_.label_corners += corners;
+      manifest_.uv_floor += floor;
       tell("cut: parts", ++done, parts_);
     });
+  }
+
+  static std::uint64_t uv_floor(const Part& part) {
+    const ColumnSet columns = part.mesh.columns.set();
+    if (!columns.uvs) return 0;
+    return find_column_floor(part.mesh, columns, part.boundary_vertices).triangles;
   }
 
   void write_boundary() {

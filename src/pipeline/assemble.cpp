@@ -55,7 +55,8 @@ class Assembly {
         options_(options) {
     summary_.manifest = manifest;
     summary_.output = options.output.string();
-    summary_.target = target_triangles(manifest, run);
+    summary_.target = asked_triangles(manifest, run);
+    goal_ = target_triangles(manifest, run);
     summary_.max_error = run.error.in(manifest.box);
     summary_.dropped_degenerate = manifest.coincident_corners;
     summary_.dropped_duplicate = manifest.dropped_duplicate;
@@ -210,7 +211,7 @@ class Assembly {
 
   Mesh finish(StitchedMesh stitched) {
     const std::uint64_t before = stitched.mesh.triangles.size();
-    Simplifier simplifier = reduced(std::move(stitched), summary_.target);
+    Simplifier simplifier = reduced(std::move(stitched), goal_);
     larger_ = simplifier.take_kept();
     summary_.dropped_degenerate += simplifier.dropped_degenerate();
     summary_.dropped_duplicate += simplifier.dropped_duplicate();
@@ -337,6 +338,9 @@ class Assembly {
   std::string why_not_exact(std::uint64_t before, const Mesh& result) const {
     const std::uint64_t after = result.triangles.size();
     if (after == summary_.target) return {};
+    if (after <= goal_ && goal_ > summary_.target) {
+      return "the charts of its textures are kept, and need about so many";
+    }
     if (summary_.target > before) return why_no_more();
     const Topology topology = measure_topology(result);
     if (after < summary_.target) {
@@ -373,7 +377,8 @@ class Assembly {
   const Stage& stage_;
   const Manifest& manifest_;
   const RunOptions& run_;
-  LineOptions lines_;  // as the parts were made
+  LineOptions lines_;       // as the parts were made
+  std::uint64_t goal_ = 0;  // triangles of the result
   const AssembleOptions& options_;
   RunSummary summary_;
   std::vector<Mesh> larger_;  // what the result was before it was so small

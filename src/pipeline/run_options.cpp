@@ -33,7 +33,7 @@ constexpr std::uint8_t k_uvs = 2;
 
 }  // namespace
 
-std::uint64_t target_triangles(const Manifest& manifest, const RunOptions& options) {
+std::uint64_t asked_triangles(const Manifest& manifest, const RunOptions& options) {
   if (options.triangles != 0) return options.triangles;
   if (options.error.value > 0) return 0;  // as few as the error allows
   if (!(options.ratio > 0 && options.ratio <= 1)) {
@@ -45,6 +45,12 @@ std::uint64_t target_triangles(const Manifest& manifest, const RunOptions& optio
       std::min(manifest.input_triangles, manifest.dropped_not_finite + manifest.coincident_corners);
   const double wanted = options.ratio * static_cast<double>(manifest.input_triangles - left_out);
   return static_cast<std::uint64_t>(std::llround(wanted));
+}
+
+std::uint64_t target_triangles(const Manifest& manifest, const RunOptions& options) {
+  const std::uint64_t asked = asked_triangles(manifest, options);
+  const bool keeps = options.textures == TextureMode::keep && chooses_uvs(options.channels);
+  return keeps && manifest.uvs && asked > 0 ? std::max(asked, texture_floor(manifest)) : asked;
 }
 
 std::vector<std::size_t> chosen_columns(const Manifest& manifest, const RunOptions& options) {
@@ -77,14 +83,14 @@ std::optional<LabelMeaning> chosen_labels(const Manifest& manifest, const RunOpt
 }
 
 std::uint64_t texture_floor(const Manifest& manifest) {
-  return 2 * manifest.uv_corners;
+  return manifest.uv_floor;
 }
 
 TextureMode chosen_textures(const Manifest& manifest, const RunOptions& options) {
   if (!manifest.uvs || !chooses_uvs(options.channels)) return TextureMode::drop;
   if (options.textures != TextureMode::automatic) return options.textures;
   const bool is_met =
-      options.error.value > 0 || texture_floor(manifest) <= target_triangles(manifest, options);
+      options.error.value > 0 || texture_floor(manifest) <= asked_triangles(manifest, options);
   return is_met ? TextureMode::keep : TextureMode::bake;
 }
 

@@ -16,6 +16,7 @@
 #include <memory>
 #include <mutex>
 
+#include <meshfarm/geometry/column_floor.hpp>
 #include <meshfarm/geometry/label_corners.hpp>
 #include <meshfarm/io/boundary_file.hpp>
 #include <meshfarm/io/mesh_shares.hpp>
@@ -188,7 +189,7 @@ class Generator {
       const std::uint64_t corners =
           count_label_corners(slab.triangles, slab.columns.labels, slab.positions.size());
       sorts ? sort_one(std::move(slab), static_cast<std::uint32_t>(i), mutex)
-            : stage_unsorted(std::move(slab), static_cast<std::uint32_t>(i));
+            : stage_unsorted(std::move(slab), static_cast<std::uint32_t>(i), mutex);
       const std::lock_guard lock(mutex);
       manifest_.label_corners += corners;
       tell(sorts ? "streams: sort" : "streams: stage", ++done, streams_);
@@ -201,31 +202,50 @@ class Generator {
       throw Error("a stream's boundary vertices are not those that were numbered");
     }
     manifest_.samples[number] = write_sample(slab.stream, number);
-    manifest_.parts[number] = write_stream(slab, number);
+    manifest_.parts[number] = write_stream(slab, number, mutex);
     const std::lock_guard lock(mutex);
     manifest_.coincident_vertices += slab.coincident_vertices;
     manifest_.dropped_degenerate += slab.dropped_degenerate;
     manifest_.coincident_corners += slab.coincident_corners;
   }
 
-  void stage_unsorted(MeshShare slab, std::uint32_t number) {
+  void stage_unsorted(MeshShare slab, std::uint32_t number, std::mutex& mutex) {
     PartEntry& entry = manifest_.parts[number];
     entry.vertices = slab.positions.size();
     entry.triangles = slab.triangles.size();
     entry.boundary_vertices = numbers_[number].count();
     slab.boundary = numbers_[number].places;
     entry.file = stage_.publish(SlabName{number}, encode_slab(slab));
+    if (!slab.columns.uvs.empty()) unsorted_floor(std::move(slab), mutex);
   }
 
-  PartEntry write_stream(SortedSlab& slab, std::uint32_t number) const {
+  /// It must be known before the work, so the slab is sorted for it after all.
+  void unsorted_floor(MeshShare slab, std::mutex& mutex) {
+    const std::string stream = encode_stream(sort_slab(std::move(slab), sorting_).stream);
+    const std::uint64_t floor = uv_floor(stream);
+    const std::lock_guard lock(mutex);
+    manifest_.uv_floor += floor;
+  }
+
+  PartEntry write_stream(SortedSlab& slab, std::uint32_t number, std::mutex& mutex) {
     PartEntry entry;
     entry.vertices = slab.stream.mesh.positions.size();
     entry.triangles = slab.stream.mesh.triangles.size();
     entry.boundary_vertices = slab.boundary_vertices;
     const std::string bytes = encode_stream(slab.stream);
     slab.stream = {};
+    const std::uint64_t floor = uv_floor(bytes);
+    const std::lock_guard lock(mutex);
+    manifest_.uv_floor += floor;
     entry.file = stage_.publish(StreamName{number}, bytes);
     return entry;
+  }
+
+  std::uint64_t uv_floor(const std::string& stream) const {
+    if (!source_.info().uvs) return 0;
+    StreamReader reader(fill_from(stream, "stream"), "stream");
+    const Part part = read_stream(reader);
+    return find_column_floor(part.mesh, part.mesh.columns.set(), part.boundary_vertices).triangles;
   }
 
   /// Nothing for a short stream: it can be tried as a whole.

@@ -142,7 +142,7 @@ TEST_CASE("a picture that is not there is told, and the mesh is made without it"
   CHECK(open_mesh(model.path("o.ply"))->info().channels.empty());
   fs::remove(model.path("m.mtl"));
   const Ran without =
-      model.run({"convert", model.path("m.obj"), model.path("o.obj"), "--uv", "bake"});
+      model.run({"convert", model.path("m.obj"), model.path("o.obj"), "--uv", "colours"});
   CHECK(without.code == 0);
   CHECK(has(without.err, "the material library 'm.mtl' is not beside it"));
 }

@@ -54,7 +54,7 @@ struct Manifest {
   std::optional<LabelMeaning> labels;    // of the triangles of parts and boundary
   std::uint64_t label_corners = 0;       // vertices that these hold where they are
   bool uvs = false;                      // whether these triangles have texture coordinates
-  std::uint64_t uv_corners = 0;          // vertices that labels and charts hold where they are
+  std::uint64_t uv_floor = 0;            // about as few triangles as a result has with these
   std::vector<StagedPicture> pictures;   // of the labels' materials
   std::vector<std::string> skipped;      // properties and elements that were not kept
   double cut_seconds = 0;

@@ -77,8 +77,12 @@ struct RunOptions {
   std::uint32_t texture_size = 0;  // of a new picture, in pixels; 0: by the input's pictures
 };
 
-/// The number of triangles that the result shall have. Throws UsageError if the options name
-/// neither a ratio in (0, 1] nor a count.
+/// The number of triangles that is asked for. Throws UsageError if the options name neither a ratio
+/// in (0, 1] nor a count.
+std::uint64_t asked_triangles(const Manifest& manifest, const RunOptions& options);
+
+/// The number that the result shall have: more than is asked for where it shall keep textures and
+/// these need more. To go below would take what is left beside them at any cost. Throws as above.
 std::uint64_t target_triangles(const Manifest& manifest, const RunOptions& options);
 
 /// Which of the stage's channels the result is to have. Throws UsageError as io's chosen_columns().
