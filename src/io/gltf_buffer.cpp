@@ -27,6 +27,18 @@ GltfBuffer buffer_in_scratch(std::shared_ptr<const ScratchFile> scratch, std::ui
           }};
 }
 
+GltfBuffer GltfStore::keep(std::string bytes) {
+  constexpr std::uint64_t k_most_in_memory = std::uint64_t{16} << 20;
+  if (bytes.size() <= k_most_in_memory - in_memory_) {
+    in_memory_ += bytes.size();
+    return buffer_in_memory(std::move(bytes));
+  }
+  if (!scratch_) scratch_ = std::make_shared<const ScratchFile>(make_scratch_file());
+  write_all(scratch_->fd.get(), bytes, scratch_->folder);
+  const std::uint64_t start = std::exchange(in_scratch_, in_scratch_ + bytes.size());
+  return buffer_in_scratch(scratch_, start, bytes.size());
+}
+
 std::shared_ptr<const InputFile> GltfFiles::open(const std::filesystem::path& path) {
   const auto found = std::find_if(open_.begin(), open_.end(),
                                   [&](const auto& file) { return file->path() == path; });

@@ -28,6 +28,19 @@ GltfBuffer buffer_in_memory(std::string bytes);
 GltfBuffer buffer_in_scratch(std::shared_ptr<const ScratchFile> scratch, std::uint64_t start,
                              std::uint64_t size);
 
+/// Keeps bytes: the first 16 MiB in memory, all that is more in one scratch file without a name in
+/// $TMPDIR (or /tmp).
+class GltfStore {
+ public:
+  /// Throws IoError.
+  GltfBuffer keep(std::string bytes);
+
+ private:
+  std::uint64_t in_memory_ = 0;
+  std::uint64_t in_scratch_ = 0;
+  std::shared_ptr<const ScratchFile> scratch_;
+};
+
 /// Files of which those that were read last are open.
 class GltfFiles {
  public:

@@ -89,9 +89,19 @@ std::shared_ptr<const GltfBuffer> GltfBuffers::open_view(const GltfValue& docume
   const GltfValue& stored = compression ? *compression : view;
   opened = part_of(open(document, stored.at("buffer").whole()), stored);
   if (compression) {
-    opened = std::make_shared<const GltfBuffer>(meshopt_.decode(view, *compression, *opened));
+    opened =
+        std::make_shared<const GltfBuffer>(decode_meshopt(view, *compression, *opened, store_));
   }
   return opened;
+}
+
+std::shared_ptr<const GltfBuffer> GltfBuffers::unpacked(std::uint64_t accessor) const {
+  const auto found = unpacked_.find(accessor);
+  return found == unpacked_.end() ? nullptr : found->second;
+}
+
+void GltfBuffers::keep_unpacked(std::uint64_t accessor, std::string bytes) {
+  unpacked_[accessor] = std::make_shared<const GltfBuffer>(store_.keep(std::move(bytes)));
 }
 
 std::shared_ptr<const GltfBuffer> GltfBuffers::open(const GltfValue& document,

@@ -55,6 +55,10 @@ class GltfBuffers {
   /// above and other hosts are refused. One that is compressed by EXT_meshopt_compression is
   /// decompressed once. Throws IoError or DataError.
   std::shared_ptr<const GltfBuffer> open_view(const GltfValue& document, std::uint64_t index);
+  /// The rows of an accessor, without gaps, that come from elsewhere than its buffer view; null if
+  /// it has no such rows.
+  std::shared_ptr<const GltfBuffer> unpacked(std::uint64_t accessor) const;
+  void keep_unpacked(std::uint64_t accessor, std::string bytes);
   /// The file beside the document, or the "data:" URI, that a value names.
   std::shared_ptr<const GltfBuffer> open_uri(const GltfValue& uri) const;
 
@@ -65,9 +69,10 @@ class GltfBuffers {
   std::filesystem::path folder_;
   std::shared_ptr<const GltfBuffer> binary_;
   std::shared_ptr<GltfFiles> files_;
-  GltfMeshopt meshopt_;
+  GltfStore store_;
   std::map<std::uint64_t, std::shared_ptr<const GltfBuffer>> opened_;
   std::map<std::uint64_t, std::shared_ptr<const GltfBuffer>> views_;
+  std::map<std::uint64_t, std::shared_ptr<const GltfBuffer>> unpacked_;
 };
 
 }  // namespace meshfarm

@@ -7,6 +7,7 @@
 #include <limits>
 #include <optional>
 #include <type_traits>
+#include <utility>
 
 namespace meshfarm {
 namespace {
@@ -123,6 +124,11 @@ GltfColumn open_column(const GltfValue& document, std::uint64_t accessor, GltfBu
   made.components = component_count(value);
   made.normalized = value.flag("normalized");
   const std::size_t row_bytes = made.components * size_of(made.type);
+  if (auto unpacked = buffers.unpacked(accessor)) {
+    made.stride = row_bytes;
+    made.buffer = std::move(unpacked);
+    return made;
+  }
   const std::uint64_t index = value.at("bufferView").whole();
   made.stride = stride_of(document.at("bufferViews").item(index), row_bytes);
   made.buffer = buffers.open_view(document, index);

@@ -10,6 +10,8 @@
 #include <system_error>
 #include <utility>
 
+#include "gltf_draco.hpp"
+
 namespace meshfarm {
 namespace {
 
@@ -58,6 +60,8 @@ class MeshReader {
     if (!attributes.find("POSITION")) return skip("primitives without positions");
     GltfTriangles triangles{
         .place = primitive.place(), .primitive = number, .mode = static_cast<GltfMode>(mode)};
+    // What is compressed so are triangles, whatever they were made from.
+    if (unpack_draco(document_, primitive, buffers_)) triangles.mode = GltfMode::triangles;
     triangles.vertices = vertices_of(attributes);
     triangles.material = primitive.whole_or("material", GltfTriangles::k_no_material);
     const std::uint64_t vertices = mesh_.vertices[triangles.vertices].positions.rows;
@@ -146,11 +150,15 @@ class MeshReader {
 
 /// Whether the extension is known, or changes nothing of what is read here.
 bool is_known(std::string_view extension) {
-  static constexpr std::array<std::string_view, 8> k_starts{
-      "KHR_mesh_quantization", "EXT_meshopt_compression",
-      "KHR_materials_",        "KHR_texture_",
-      "KHR_lights_",           "EXT_texture_",
-      "MSFT_texture_",         "KHR_xmp"};
+  static constexpr std::array<std::string_view, 9> k_starts{"KHR_draco_mesh_compression",
+                                                            "KHR_mesh_quantization",
+                                                            "EXT_meshopt_compression",
+                                                            "KHR_materials_",
+                                                            "KHR_texture_",
+                                                            "KHR_lights_",
+                                                            "EXT_texture_",
+                                                            "MSFT_texture_",
+                                                            "KHR_xmp"};
   return std::any_of(k_starts.begin(), k_starts.end(),
                      [&](std::string_view start) { return extension.starts_with(start); });
 }

@@ -8,15 +8,10 @@
 
 #include <meshoptimizer.h>
 
-#include <meshfarm/util/file.hpp>
-
-#include "scratch_file.hpp"
-
 namespace meshfarm {
 namespace {
 
 constexpr std::uint64_t k_most_bytes = std::uint64_t{1} << 31;
-constexpr std::uint64_t k_most_in_memory = std::uint64_t{16} << 20;
 /// No codec makes more of a byte: of 16 rows of a column of bytes there are two bits at least.
 constexpr std::uint64_t k_most_growth = 256;
 
@@ -108,22 +103,15 @@ void unfilter(const Packed& packed, std::string& bytes) {
 
 }  // namespace
 
-GltfBuffer GltfMeshopt::decode(const GltfValue& view, const GltfValue& compression,
-                               const GltfBuffer& compressed) {
+GltfBuffer decode_meshopt(const GltfValue& view, const GltfValue& compression,
+                          const GltfBuffer& compressed, GltfStore& store) {
   const Packed packed = checked(view, compression, compressed.size);
   std::string from(compressed.size, '\0');
   compressed.read(0, from);
   std::string to(packed.rows * packed.stride, '\0');
   if (unpack(packed, from, to) != 0) compression.fail("is malformed");
   unfilter(packed, to);
-  if (to.size() <= k_most_in_memory - in_memory_) {
-    in_memory_ += to.size();
-    return buffer_in_memory(std::move(to));
-  }
-  if (!scratch_) scratch_ = std::make_shared<const ScratchFile>(make_scratch_file());
-  write_all(scratch_->fd.get(), to, scratch_->folder);
-  const std::uint64_t start = std::exchange(in_scratch_, in_scratch_ + to.size());
-  return buffer_in_scratch(scratch_, start, to.size());
+  return store.keep(std::move(to));
 }
 
 }  // namespace meshfarm

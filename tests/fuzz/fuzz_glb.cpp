@@ -18,12 +18,22 @@ std::unique_ptr<meshfarm::MeshSource> open_any(const std::string& path,
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  return meshfarm::fuzz::fuzz_mesh(data, size, [](const std::string& path) {
-    auto source = open_any(path, {.textures = meshfarm::Textures::name});
-    const std::uint64_t most = std::max(source->info().vertices, source->info().faces);
-    // Some nodes and primitives may show one mesh any number of times.
+  // Some nodes and primitives may show one mesh any number of times.
+  const auto count = [](const meshfarm::MeshSource& source) {
     constexpr std::uint64_t k_most = 1 << 20;
+    const std::uint64_t most = std::max(source.info().vertices, source.info().faces);
     if (most > k_most) throw meshfarm::DataError("too large to be scanned in time");
+    return most;
+  };
+  const int used = meshfarm::fuzz::fuzz_mesh(data, size, [count](const std::string& path) {
+    auto source = open_any(path, {.textures = meshfarm::Textures::keep});
+    count(*source);
+    return source;
+  });
+  if (used != 0) return used;
+  return meshfarm::fuzz::fuzz_mesh(data, size, [count](const std::string& path) {
+    auto source = open_any(path, {.textures = meshfarm::Textures::name});
+    const std::uint64_t most = count(*source);
     // A small picture may have any number of texels, and so may a triangle.
     constexpr std::uint64_t k_most_sampled = 1 << 9;
     if (source->info().textures.empty() || most > k_most_sampled) return source;

@@ -32,6 +32,11 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   rest.remove_prefix(std::min(rest.size(), library.size() + 1));
   const meshfarm::Fd library_file = open_as(k_library, library);
   const meshfarm::Fd picture_file = open_as(k_picture, rest);
+  const int used = meshfarm::fuzz::fuzz_mesh(data, mesh.size(), [](const std::string& path) {
+    return meshfarm::open_obj(meshfarm::InputFile(path),
+                              {.threads = 2, .textures = meshfarm::Textures::keep});
+  });
+  if (used != 0) return used;
   return meshfarm::fuzz::fuzz_mesh(data, mesh.size(), [](const std::string& path) {
     auto source = meshfarm::open_obj(meshfarm::InputFile(path),
                                      {.threads = 2, .textures = meshfarm::Textures::name});

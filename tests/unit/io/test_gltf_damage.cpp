@@ -38,8 +38,8 @@ TEST_CASE("what is no glTF 2.0, or needs an unknown extension, is refused by nam
   CHECK(refused("\"2.0\"", "\"1.0\"") == "m.ply: asset.version '1.0' is not 2.0");
   CHECK(refused("\"2.0\"", "2") == "m.ply: asset.version is not a string");
   CHECK(refused("\"scene\":0",
-                R"("extensionsRequired":["KHR_materials_unlit","KHR_draco_mesh_compression"])") ==
-        "m.ply: extensionsRequired[1] 'KHR_draco_mesh_compression' is needed to read the file, and "
+                R"("extensionsRequired":["KHR_materials_unlit","EXT_structural_metadata"])") ==
+        "m.ply: extensionsRequired[1] 'EXT_structural_metadata' is needed to read the file, and "
         "not known");
 }
 

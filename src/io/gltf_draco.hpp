@@ -1,0 +1,16 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "gltf_buffers.hpp"
+#include "gltf_json.hpp"
+
+namespace meshfarm {
+
+/// Decompresses the positions, normals, colours, texture coordinates and indices of a primitive
+/// that KHR_draco_mesh_compression compressed, for its accessors; false if it is not compressed so.
+/// While it is made it is in memory. Throws DataError for what is malformed, or does not fit the
+/// accessors; and if the build is without Draco and there is nothing else to read.
+bool unpack_draco(const GltfValue& document, const GltfValue& primitive, GltfBuffers& buffers);
+
+}  // namespace meshfarm
