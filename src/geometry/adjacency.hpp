@@ -24,11 +24,11 @@ struct Corner {
 struct CornerFan {
   std::span<const Corner> corners;
   std::span<const CornerId> ids;
-  const TriangleColumnsView* columns = nullptr;
+  const TriangleColumnsView* columns = nullptr;  // where there are ids
 
   /// Whether columns make a line of the edge that triangle i ends at and k begins at.
   bool differ(std::size_t i, std::size_t k) const {
-    return !ids.empty() && are_apart(*columns, ids[i], ids[k]);
+    return columns != nullptr && are_apart(*columns, ids[i], ids[k]);
   }
 };
 

@@ -173,8 +173,8 @@ void CollapseJudge::add_lines(const Ring& ring, std::uint32_t vertex, Vec3 end,
     };
     const double weight = crease_weight(state_.adjacency->has_labels());
     std::array<CornerId, k_max_star> ids;
-    for_crease_edges({fan, ids_of(vertex, ids), &state_.adjacency->columns()}, at, state_.positions,
-                     *state_.creases, is_other_on_crease,
+    for_crease_edges({fan, ids_of(vertex, ids), state_.adjacency->fan_at(vertex).columns}, at,
+                     state_.positions, *state_.creases, is_other_on_crease,
                      [&](const Corner& one, const Corner& other) {
                        add(one, one.prev, weight);
                        add(other, one.prev, weight);

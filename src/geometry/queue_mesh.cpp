@@ -125,7 +125,7 @@ void CollapseQueue::copy_to(Mesh& mesh, std::vector<std::uint8_t>& flags,
       const Corner& c = fan.corners[i];
       if (c.next < v || c.prev < v) continue;
       mesh.triangles.push_back({number[v], number[c.next], number[c.prev]});
-      if (!fan.ids.empty()) append_turned(*fan.columns, fan.ids[i], mesh.columns);
+      if (!fan.ids.empty()) append_turned(mesh_.adjacency.columns(), fan.ids[i], mesh.columns);
     }
   }
 }

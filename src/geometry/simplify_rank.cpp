@@ -79,7 +79,7 @@ Quadric EdgeRanking::appearance_at(std::uint32_t vertex) {
 Quadric EdgeRanking::uvs_at(std::uint32_t vertex) {
   const CornerFan fan = input_.adjacency->fan_at(vertex);
   if (fan.corners.size() > k_max_star) return {};
-  const std::span<const CornerUvs> uvs = fan.columns->uvs;
+  const std::span<const CornerUvs> uvs = input_.adjacency->columns().uvs;
   const Vec3 at = input_.positions[vertex];
   wedges_.clear();
   for (std::size_t i = 0; i < fan.corners.size(); ++i) {

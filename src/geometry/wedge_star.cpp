@@ -147,7 +147,7 @@ void WedgeStar::list(const CollapseState& state, std::uint32_t a, std::uint32_t 
 void WedgeStar::list_end(const CollapseState& state, std::uint32_t end, std::uint32_t other,
                          bool at_b) {
   const CornerFan fan = state.adjacency->fan_at(end);
-  const std::span<const CornerUvs> uvs = fan.columns->uvs;
+  const std::span<const CornerUvs> uvs = state.adjacency->columns().uvs;
   const Vec3 at = state.positions[end] - middle_;
   for (std::size_t i = 0; i < fan.corners.size(); ++i) {
     const std::uint32_t next = state.target[fan.corners[i].next];
@@ -188,11 +188,10 @@ bool WedgeStar::place(Vec3 x) {
 
 /// Whether those that leave from one place on the picture come to one.
 bool WedgeStar::sides_agree(bool at_b) const {
-  for (const Side& s : sides_) {
+  return std::all_of(sides_.begin(), sides_.end(), [&](const Side& s) {
     const Side& first = *side_of(at_b ? s.at_b : s.at_a, at_b);
-    if (!is_same(at_b ? s.at_a : s.at_b, at_b ? first.at_a : first.at_b)) return false;
-  }
-  return true;
+    return is_same(at_b ? s.at_a : s.at_b, at_b ? first.at_a : first.at_b);
+  });
 }
 
 const WedgeStar::Side* WedgeStar::side_of(const Uv& wedge, bool at_b) const {
