@@ -53,10 +53,7 @@ class Bvh {
   void split_into_nodes(std::span<const MortonItem> items);
   void set_leaf_boxes(Node& node) const;
   void set_inner_boxes(Node& node) const;
-  template <typename Accept>
-  void offer(Query& query, std::uint32_t triangle, const Accept& accept) const;
-  template <typename Accept>
-  void search(Query& query, double enough, const Accept& accept) const;
+  void visit_leaf(Query& query, std::uint32_t first, std::uint32_t count) const;
 
   const Mesh& mesh_;
   Vec3 center_;

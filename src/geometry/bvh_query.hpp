@@ -1,0 +1,52 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "geometry/bvh.hpp"
+
+namespace meshfarm {
+
+/// What a search has still to look at.
+struct BvhEntry {
+  float bound;  // below the squared distance, in the frame
+  std::uint32_t child;
+  std::uint32_t count;
+};
+
+// At most three entries stay behind on each level, and a level takes at least one of 63 bits of
+// code or halves the 2^32 triangles of one code.
+inline constexpr std::size_t k_bvh_stack = 3 * (63 + 32) + 4;
+
+/// A query keeps its point as a tiny float box that surely holds it, so that the distance between
+/// boxes is a lower bound in spite of rounding.
+struct Bvh::Query {
+  Vec3 p;
+  float lo[3];
+  float hi[3];
+  double to_frame;  // from squared distances in the mesh's unit
+  Nearest best;
+  float limit = std::numeric_limits<float>::max();
+
+  Query(Vec3 point, Vec3 in_frame, double scale) : p(point), to_frame(scale * scale) {
+    constexpr double k_far = 1e15;  // nearer is a lower bound too, and its square is a float
+    for (int axis = 0; axis < 3; ++axis) {
+      const float x = static_cast<float>(std::clamp(in_frame[axis], -k_far, k_far));
+      const float rounding = std::fabs(x) * 0x1p-23f + std::numeric_limits<float>::min();
+      lo[axis] = x - rounding;
+      hi[axis] = x + rounding;
+    }
+  }
+  void offer(double squared, std::uint32_t triangle) {
+    if (!(squared < best.squared)) return;
+    best = {squared, triangle};
+    // Above what the rounding of a bound can make of it.
+    const double above = squared * to_frame * (1 + 0x1p-20) + std::numeric_limits<float>::min();
+    limit = static_cast<float>(std::min<double>(above, std::numeric_limits<float>::max()));
+  }
+};
+
+}  // namespace meshfarm
