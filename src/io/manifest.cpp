@@ -9,7 +9,7 @@
 //   channels u32 x (name | type u8, its bytes | role u8), if any: file | points u64 |
 //   columns u8: 1 labels, 2 texture coordinates | of labels: name | materials u32 x (name | colour
 //   4 x f32 | with texture coordinates wrap u8 u8 | maps u32 x (use u8 | picture u32)) | label
-//   corners u64 | of texture coordinates: floor u64 | pictures u32 x (name | file) |
+//   corners u64 | of texture coordinates: floor u64 | side f64 | pictures u32 x (name | file) |
 //   skipped u32 x string | cut seconds f64 | boundary triangles u64 | boundary file | sorting |
 //   parts u32 x (file | vertices u64 | triangles u64 | boundary vertices u32) | samples u32 x the
 //   same: none, or one a part, its file's name empty where it has none sorting = u8 0: parts and
@@ -17,6 +17,9 @@
 // Version 1 had no scheme, window and samples, version 2 no sorting, version 3 no partitioner, no
 // coincident corners and no dropped not finite, version 4 no channels, version 5 no
 // labels.
+#include <algorithm>
+#include <cmath>
+
 #include <meshfarm/io/manifest.hpp>
 #include <meshfarm/io/sorting.hpp>
 #include <meshfarm/staging/sealed.hpp>
@@ -128,6 +131,7 @@ void put_columns(ByteWriter& out, const Manifest& m) {
   out.put(m.label_corners);
   if (!m.uvs) return;
   out.put(m.uv_floor);
+  out.put(m.uv_side);
   out.put(static_cast<std::uint32_t>(m.pictures.size()));
   for (const StagedPicture& picture : m.pictures) {
     out.put_string(picture.name);
@@ -168,6 +172,8 @@ void get_columns(ByteReader& in, Manifest& m) {
   m.label_corners = in.get<std::uint64_t>();
   if (!m.uvs) return;
   m.uv_floor = in.get<std::uint64_t>();
+  m.uv_side = in.get<double>();
+  if (!(m.uv_side >= 0 && std::isfinite(m.uv_side))) in.fail("impossible size of pictures");
   get_pictures(in, m);
 }
 

@@ -14,8 +14,8 @@
 #include <memory>
 #include <mutex>
 
-#include <meshfarm/geometry/column_floor.hpp>
 #include <meshfarm/geometry/label_corners.hpp>
+#include <meshfarm/geometry/uv_facts.hpp>
 #include <meshfarm/io/boundary_file.hpp>
 #include <meshfarm/io/mesh_shares.hpp>
 #include <meshfarm/partition/cell_graph.hpp>
@@ -164,6 +164,7 @@ class Cutter {
   void build_parts() {
     manifest_.parts.resize(parts_);
     numbers_.resize(parts_);
+    uv_facts_.resize(parts_);
     std::mutex mutex;
     std::uint64_t done = 0;
     parallel_for(parts_, options_.threads, [&](std::uint64_t i) {
@@ -173,7 +174,7 @@ class Cutter {
       const Mesh& mesh = built.part.mesh;
       const std::uint64_t corners =
           count_label_corners(mesh.triangles, mesh.columns.labels, mesh.positions.size());
-      const std::uint64_t floor = uv_floor(built.part);
+      uv_facts_[i] = find_uv_facts(mesh, built.part.boundary_vertices);
       PartEntry entry;
       entry.vertices = built.part.mesh.positions.size();
       entry.triangles = built.part.mesh.triangles.size();
@@ -188,15 +189,8 @@ class Cutter {
       manifest_.dropped_degenerate += built.dropped_degenerate;
       manifest_.coincident_corners += built.coincident_corners;
       manifest_.label_corners += corners;
-      manifest_.uv_floor += floor;
       tell("cut: parts", ++done, parts_);
     });
-  }
-
-  static std::uint64_t uv_floor(const Part& part) {
-    const ColumnSet columns = part.mesh.columns.set();
-    if (!columns.uvs) return 0;
-    return find_column_floor(part.mesh, columns, part.boundary_vertices).triangles;
   }
 
   void write_boundary() {
@@ -210,6 +204,10 @@ class Cutter {
     manifest_.labels = source_.info().labels;
     manifest_.uvs = source_.info().uvs;
     manifest_.pictures = stage_pictures(source_, stage_);
+    UvFacts facts;
+    for (const UvFacts& of_part : uv_facts_) facts += of_part;
+    manifest_.uv_floor = facts.floor;
+    manifest_.uv_side = facts.side();
   }
 
   void write_channels() {
@@ -227,6 +225,7 @@ class Cutter {
   std::uint32_t parts_ = 0;
   std::unique_ptr<MeshShares> shares_;
   std::vector<BoundaryNumbers> numbers_;
+  std::vector<UvFacts> uv_facts_;  // of the parts
 };
 
 }  // namespace

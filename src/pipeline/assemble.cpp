@@ -25,8 +25,8 @@
 #include "pipeline/channel_values.hpp"
 #include "pipeline/error_meter.hpp"
 #include "pipeline/knee.hpp"
+#include "pipeline/result_textures.hpp"
 #include "pipeline/sort_plan.hpp"
-#include "pipeline/texture_bake.hpp"
 
 namespace meshfarm {
 namespace {
@@ -79,13 +79,13 @@ class Assembly {
     summary_.stitch_seconds = watch.lap();
     Mesh result = summary_.max_error > 0 ? finish_within_bound(std::move(stitched))
                                          : finish(std::move(stitched));
-    summary_.triangles = result.triangles.size();
-    summary_.vertices = result.positions.size();
+    count(result);
     compare_topology(chosen.kept, result);
     summary_.finish_seconds = watch.lap();
     tell("measure", 0, 0);
     summary_.error = meter_->measure(result);
     look_for_better(chosen);
+    if (better_mesh_) take_better(chosen, result);
     check_stop();
     summary_.measure_seconds = watch.lap();
     write(std::move(result));
@@ -239,7 +239,7 @@ class Assembly {
     if (manifest_.labels && !labels && !summary_.labels_too_fine) {
       summary_.channels_not_wanted.push_back(manifest_.labels->name);
     }
-    const PictureFiles pictures = chosen_pictures(result, labels);
+    const PictureFiles pictures = make_textures(result, labels);
     if (kept.empty()) {
       return write_mesh(options_.output, result, manifest_.positions, {}, {}, labels, pictures);
     }
@@ -254,31 +254,16 @@ class Assembly {
                pictures);
   }
 
-  /// What the result has of textures, and what has no place in the output.
-  PictureFiles chosen_pictures(Mesh& result, std::optional<LabelMeaning>& labels) {
-    TexturesMade& made = summary_.textures;
-    if (!manifest_.uvs) return {};
-    made.floor = texture_floor(manifest_);
-    made.way = TexturesMade::Way::dropped;
-    if (!keeps_uvs(options_.output)) return {};
-    if (chosen_textures(manifest_, run_) == TextureMode::keep) {
-      made.way = TexturesMade::Way::kept;
-      made.pictures = manifest_.pictures.size();
-      return pictures_of(stage_, manifest_.pictures);
-    }
-    if (chosen_textures(manifest_, run_) == TextureMode::drop || !manifest_.labels) return {};
-    BakedTexture baked =
-        bake_texture(stage_, manifest_, result,
-                     {.reach = summary_.error.greater().max,
-                      .texture_size = run_.texture_size,
-                      .threads = options_.threads,
-                      .progress = [&](std::string_view phase) { tell(phase, 0, 0); }});
-    made.way = TexturesMade::Way::baked;
-    made.size = baked.size;
-    made.charts = baked.charts;
-    made.charts_share = baked.coverage;
-    labels = std::move(baked.labels);
-    return std::move(baked.pictures);
+  PictureFiles make_textures(Mesh& result, std::optional<LabelMeaning>& labels) {
+    ResultTextures textures =
+        textures_of_result(stage_, manifest_, run_, result,
+                           {.output = options_.output,
+                            .reach = summary_.error.greater().max,
+                            .threads = options_.threads,
+                            .progress = [&](std::string_view phase) { tell(phase, 0, 0); }});
+    summary_.textures = textures.made;
+    if (textures.labels) labels = std::move(textures.labels);
+    return std::move(textures.pictures);
   }
 
   /// What is kept need not be compared. `kept` has the input's topology, if there is any.
@@ -324,7 +309,23 @@ class Assembly {
   void tell_if_better(const Mesh& mesh, std::uint64_t triangles) {
     if (!may_be_better(mesh, triangles)) return;
     const BetterCount better{triangles, meter_->measure(mesh)};
-    if (is_past_knee(made(), {triangles, better.error.greater().rms})) summary_.better = better;
+    if (!is_past_knee(made(), {triangles, better.error.greater().rms})) return;
+    summary_.better = better;
+    if (goal_ > summary_.target) better_mesh_ = mesh;
+  }
+
+  /// What was asked for cannot be met: then it is not to be ruined on the way.
+  void take_better(const ChosenRungs& chosen, Mesh& result) {
+    result = std::move(*better_mesh_);
+    summary_.error = summary_.better->error;
+    summary_.better.reset();
+    count(result);
+    compare_topology(chosen.kept, result);
+  }
+
+  void count(const Mesh& result) {
+    summary_.triangles = result.triangles.size();
+    summary_.vertices = result.positions.size();
   }
 
   /// An estimate, of one direction only, which may be the lesser: it tells what to measure.
@@ -338,7 +339,7 @@ class Assembly {
   std::string why_not_exact(std::uint64_t before, const Mesh& result) const {
     const std::uint64_t after = result.triangles.size();
     if (after == summary_.target) return {};
-    if (after <= goal_ && goal_ > summary_.target) {
+    if (goal_ > summary_.target) {
       return "the charts of its textures are kept, and need about so many";
     }
     if (summary_.target > before) return why_no_more();
@@ -377,8 +378,9 @@ class Assembly {
   const Stage& stage_;
   const Manifest& manifest_;
   const RunOptions& run_;
-  LineOptions lines_;       // as the parts were made
-  std::uint64_t goal_ = 0;  // triangles of the result
+  LineOptions lines_;                // as the parts were made
+  std::optional<Mesh> better_mesh_;  // of summary_.better, where it is to be the result
+  std::uint64_t goal_ = 0;           // triangles of the result
   const AssembleOptions& options_;
   RunSummary summary_;
   std::vector<Mesh> larger_;  // what the result was before it was so small

@@ -16,8 +16,8 @@
 #include <memory>
 #include <mutex>
 
-#include <meshfarm/geometry/column_floor.hpp>
 #include <meshfarm/geometry/label_corners.hpp>
+#include <meshfarm/geometry/uv_facts.hpp>
 #include <meshfarm/io/boundary_file.hpp>
 #include <meshfarm/io/mesh_shares.hpp>
 #include <meshfarm/io/slab_file.hpp>
@@ -181,6 +181,7 @@ class Generator {
     manifest_.parts.resize(streams_);
     if (sorts) manifest_.samples.resize(streams_);
     numbers_.resize(streams_);
+    uv_facts_.resize(streams_);
     std::mutex mutex;
     std::uint64_t done = 0;
     parallel_for(streams_, threads(), [&](std::uint64_t i) {
@@ -189,7 +190,7 @@ class Generator {
       const std::uint64_t corners =
           count_label_corners(slab.triangles, slab.columns.labels, slab.positions.size());
       sorts ? sort_one(std::move(slab), static_cast<std::uint32_t>(i), mutex)
-            : stage_unsorted(std::move(slab), static_cast<std::uint32_t>(i), mutex);
+            : stage_unsorted(std::move(slab), static_cast<std::uint32_t>(i));
       const std::lock_guard lock(mutex);
       manifest_.label_corners += corners;
       tell(sorts ? "streams: sort" : "streams: stage", ++done, streams_);
@@ -202,50 +203,45 @@ class Generator {
       throw Error("a stream's boundary vertices are not those that were numbered");
     }
     manifest_.samples[number] = write_sample(slab.stream, number);
-    manifest_.parts[number] = write_stream(slab, number, mutex);
+    manifest_.parts[number] = write_stream(slab, number);
     const std::lock_guard lock(mutex);
     manifest_.coincident_vertices += slab.coincident_vertices;
     manifest_.dropped_degenerate += slab.dropped_degenerate;
     manifest_.coincident_corners += slab.coincident_corners;
   }
 
-  void stage_unsorted(MeshShare slab, std::uint32_t number, std::mutex& mutex) {
+  void stage_unsorted(MeshShare slab, std::uint32_t number) {
     PartEntry& entry = manifest_.parts[number];
     entry.vertices = slab.positions.size();
     entry.triangles = slab.triangles.size();
     entry.boundary_vertices = numbers_[number].count();
     slab.boundary = numbers_[number].places;
     entry.file = stage_.publish(SlabName{number}, encode_slab(slab));
-    if (!slab.columns.uvs.empty()) unsorted_floor(std::move(slab), mutex);
+    if (!slab.columns.uvs.empty()) find_unsorted_facts(std::move(slab), number);
   }
 
   /// It must be known before the work, so the slab is sorted for it after all.
-  void unsorted_floor(MeshShare slab, std::mutex& mutex) {
-    const std::string stream = encode_stream(sort_slab(std::move(slab), sorting_).stream);
-    const std::uint64_t floor = uv_floor(stream);
-    const std::lock_guard lock(mutex);
-    manifest_.uv_floor += floor;
+  void find_unsorted_facts(MeshShare slab, std::uint32_t number) {
+    find_facts(encode_stream(sort_slab(std::move(slab), sorting_).stream), number);
   }
 
-  PartEntry write_stream(SortedSlab& slab, std::uint32_t number, std::mutex& mutex) {
+  PartEntry write_stream(SortedSlab& slab, std::uint32_t number) {
     PartEntry entry;
     entry.vertices = slab.stream.mesh.positions.size();
     entry.triangles = slab.stream.mesh.triangles.size();
     entry.boundary_vertices = slab.boundary_vertices;
     const std::string bytes = encode_stream(slab.stream);
     slab.stream = {};
-    const std::uint64_t floor = uv_floor(bytes);
-    const std::lock_guard lock(mutex);
-    manifest_.uv_floor += floor;
+    find_facts(bytes, number);
     entry.file = stage_.publish(StreamName{number}, bytes);
     return entry;
   }
 
-  std::uint64_t uv_floor(const std::string& stream) const {
-    if (!source_.info().uvs) return 0;
+  void find_facts(const std::string& stream, std::uint32_t number) {
+    if (!source_.info().uvs) return;
     StreamReader reader(fill_from(stream, "stream"), "stream");
     const Part part = read_stream(reader);
-    return find_column_floor(part.mesh, part.mesh.columns.set(), part.boundary_vertices).triangles;
+    uv_facts_[number] = find_uv_facts(part.mesh, part.boundary_vertices);
   }
 
   /// Nothing for a short stream: it can be tried as a whole.
@@ -276,6 +272,10 @@ class Generator {
     manifest_.labels = source_.info().labels;
     manifest_.uvs = source_.info().uvs;
     manifest_.pictures = stage_pictures(source_, stage_);
+    UvFacts facts;
+    for (const UvFacts& of_stream : uv_facts_) facts += of_stream;
+    manifest_.uv_floor = facts.floor;
+    manifest_.uv_side = facts.side();
   }
 
   void write_channels() {
@@ -293,6 +293,7 @@ class Generator {
   std::uint32_t streams_ = 0;
   std::unique_ptr<MeshShares> shares_;
   std::vector<BoundaryNumbers> numbers_;
+  std::vector<UvFacts> uv_facts_;  // of the parts
 };
 
 }  // namespace

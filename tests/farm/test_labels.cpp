@@ -181,12 +181,12 @@ TEST_CASE("labels that would leave no choice are dropped, unless they are asked 
     CHECK(ran.code == 0);
     CHECK(has(ran.out, "region: its lines hold about "));
     const Mesh free = read_mesh(*open_mesh(out));
-    CHECK(free.labels.empty());
+    CHECK(free.columns.labels.empty());
     CHECK(free.triangles.size() == 512);
     words.insert(words.end(), {"--stage", bench.path("stage-" + scheme), "--attributes", "region"});
     CHECK(bench(words).code == 0);
     const Mesh held = read_mesh(*open_mesh(out));
-    CHECK(held.labels.size() == held.triangles.size());
+    CHECK(held.columns.labels.size() == held.triangles.size());
     CHECK(held.triangles.size() > 2000);
   }
 }
@@ -195,7 +195,7 @@ TEST_CASE("materials that are not wanted hold nothing back, and it is said") {
   Bench bench;
   const Ran none = bench.simplify("none.ply", {"--attributes", "none"});
   CHECK(none.code == 0);
-  CHECK(read_mesh(*open_mesh(bench.path("none.ply"))).labels.empty());
+  CHECK(read_mesh(*open_mesh(bench.path("none.ply"))).columns.labels.empty());
   CHECK(has(none.out, "not kept"));
   const Ran stl = bench.simplify("out.stl", {});
   CHECK(stl.code == 0);
@@ -207,5 +207,5 @@ TEST_CASE("materials that are not wanted hold nothing back, and it is said") {
                             "--ratio", "0.02", "--attributes", "none"});
   CHECK(replay.code == 0);
   CHECK(has(replay.out, "not kept         material: not asked for"));
-  CHECK(read_mesh(*open_mesh(bench.path("replay.ply"))).labels.empty());
+  CHECK(read_mesh(*open_mesh(bench.path("replay.ply"))).columns.labels.empty());
 }

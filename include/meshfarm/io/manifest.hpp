@@ -55,6 +55,7 @@ struct Manifest {
   std::uint64_t label_corners = 0;       // vertices that these hold where they are
   bool uvs = false;                      // whether these triangles have texture coordinates
   std::uint64_t uv_floor = 0;            // about as few triangles as a result has with these
+  double uv_side = 0;                    // how long the side of a picture is on the surface
   std::vector<StagedPicture> pictures;   // of the labels' materials
   std::vector<std::string> skipped;      // properties and elements that were not kept
   double cut_seconds = 0;

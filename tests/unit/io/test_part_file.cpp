@@ -191,12 +191,14 @@ TEST_CASE("a manifest tells of texture coordinates and pictures") {
   Manifest m = sample_manifest();
   m.uvs = true;
   m.uv_floor = 77;
+  m.uv_side = 0.25;
   m.pictures = {{"atlas.jpg", {"parts/000000.picture", 5, 6}}};
   m.labels->materials[1].maps = {{MapUse::colour, 0}, {MapUse::normal, 0}};
   m.labels->materials[1].wrap_v = TextureWrap::mirror;
   const Manifest back = decode_manifest(encode_manifest(m), "manifest");
   CHECK(back.uvs);
   CHECK(back.uv_floor == 77);
+  CHECK(back.uv_side == 0.25);
   CHECK(back.labels == m.labels);
   REQUIRE(back.pictures.size() == 1);
   CHECK(back.pictures[0].name == "atlas.jpg");

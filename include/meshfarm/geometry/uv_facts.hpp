@@ -1,0 +1,32 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+#include <meshfarm/geometry/mesh.hpp>
+
+namespace meshfarm {
+
+/// What is known of a mesh's texture coordinates before it is simplified. Those of the parts of a
+/// mesh add up to that of the mesh, but for what lies between them.
+struct UvFacts {
+  std::uint64_t floor = 0;  // ColumnFloor::triangles
+  double surface = 0;       // its area
+  double picture = 0;       // the area that its triangles have on their pictures, in whole pictures
+
+  UvFacts& operator+=(const UvFacts& other) {
+    floor += other.floor;
+    surface += other.surface;
+    picture += other.picture;
+    return *this;
+  }
+  /// How long the side of a picture is on the surface; 0 where that is not known.
+  double side() const;
+};
+
+/// Nothing of a mesh without texture coordinates. `locked`: as find_column_floor() has it.
+UvFacts find_uv_facts(const Mesh& mesh, std::size_t locked);
+
+}  // namespace meshfarm
