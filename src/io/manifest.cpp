@@ -210,6 +210,20 @@ std::uint64_t Manifest::triangles() const {
   return sum;
 }
 
+void set_uv_facts(Manifest& manifest, std::span<const UvFacts> of_parts) {
+  UvFacts facts;
+  for (const UvFacts& each : of_parts) facts += each;
+  std::uint64_t inner = 0;
+  std::uint64_t all = 0;
+  for (const PartEntry& part : manifest.parts) {
+    inner += part.vertices - part.boundary_vertices;
+    all += part.vertices;
+  }
+  const double share = inner > 0 ? static_cast<double>(all) / static_cast<double>(inner) : 1;
+  manifest.uv_floor = static_cast<std::uint64_t>(share * static_cast<double>(facts.floor));
+  manifest.uv_side = facts.side();
+}
+
 std::string encode_manifest(const Manifest& m) {
   ByteWriter out;
   out.put_string(m.input);

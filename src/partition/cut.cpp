@@ -204,10 +204,7 @@ class Cutter {
     manifest_.labels = source_.info().labels;
     manifest_.uvs = source_.info().uvs;
     manifest_.pictures = stage_pictures(source_, stage_);
-    UvFacts facts;
-    for (const UvFacts& of_part : uv_facts_) facts += of_part;
-    manifest_.uv_floor = facts.floor;
-    manifest_.uv_side = facts.side();
+    set_uv_facts(manifest_, uv_facts_);
   }
 
   void write_channels() {

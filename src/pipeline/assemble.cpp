@@ -236,7 +236,8 @@ class Assembly {
       if (keeps_materials(options_.output)) summary_.labels = labels;
     }
     summary_.labels_too_fine = are_labels_too_fine(manifest_, run_);
-    if (manifest_.labels && !labels && !summary_.labels_too_fine) {
+    const bool becomes_picture = chosen_textures(manifest_, run_) == TextureMode::bake;
+    if (manifest_.labels && !labels && !summary_.labels_too_fine && !becomes_picture) {
       summary_.channels_not_wanted.push_back(manifest_.labels->name);
     }
     const PictureFiles pictures = make_textures(result, labels);

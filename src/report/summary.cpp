@@ -157,7 +157,7 @@ void add_channels(Lines& lines, const RunSummary& s) {
     const std::string& name = s.manifest.labels->name;
     lines.add("not kept", name + ": its lines hold about " + grouped(s.manifest.label_corners) +
                               " vertices in place; --attributes " + name + " keeps it");
-  } else if (s.manifest.labels && !s.labels) {
+  } else if (s.manifest.labels && !s.labels && s.textures.way != TexturesMade::Way::baked) {
     lost.push_back(s.manifest.labels->name);
   }
   if (s.labels && s.labels->materials != s.manifest.labels->materials) {

@@ -262,8 +262,13 @@ class Generator {
     manifest_.dropped_degenerate += shared.degenerate;
     manifest_.coincident_corners += shared.coincident;
     // As the streams, these are not to tell of the order of the input.
-    for (BoundaryTriangle& t : triangles) {
-      std::rotate(t.begin(), std::min_element(t.begin(), t.end()), t.end());
+    for (std::size_t i = 0; i < triangles.size(); ++i) {
+      const auto least = std::min_element(triangles[i].begin(), triangles[i].end());
+      const auto turn = least - triangles[i].begin();
+      std::rotate(triangles[i].begin(), least, triangles[i].end());
+      if (shared.columns.uvs.empty()) continue;
+      CornerUvs& uvs = shared.columns.uvs[i];
+      std::rotate(uvs.begin(), uvs.begin() + turn, uvs.end());
     }
     sort_with_columns(triangles, shared.columns);
     manifest_.dropped_duplicate = drop_duplicates(triangles, shared.columns);
@@ -272,10 +277,7 @@ class Generator {
     manifest_.labels = source_.info().labels;
     manifest_.uvs = source_.info().uvs;
     manifest_.pictures = stage_pictures(source_, stage_);
-    UvFacts facts;
-    for (const UvFacts& of_stream : uv_facts_) facts += of_stream;
-    manifest_.uv_floor = facts.floor;
-    manifest_.uv_side = facts.side();
+    set_uv_facts(manifest_, uv_facts_);
   }
 
   void write_channels() {

@@ -198,10 +198,10 @@ TEST_CASE("wrong usage is one line and exit 2") {
       {"simplify", cube, "-o", shell.path("o.ply"), "--error", "1km"},
       {"simplify", cube, "-o", shell.path("o.ply"), "--ratio", "0.5", "--topology", "maybe"},
       {"simplify", cube, "-o", shell.path("o.ply"), "--ratio", "0.5", "--colour"},
-      {"simplify", cube, "-o", shell.path("o.ply"), "--ratio", "0.5", "--uv", "keep"},
+      {"simplify", cube, "-o", shell.path("o.ply"), "--ratio", "0.5", "--uv", "tight"},
       {"convert", cube, shell.path("o.ply"), "--uv", "paint"},
-      {"convert", cube, shell.path("o.stl"), "--uv", "keep"},
-      {"convert", cube, shell.path("o.off"), "--uv", "keep"},
+      {"convert", cube, shell.path("o.stl"), "--uv", "tight"},
+      {"convert", cube, shell.path("o.off"), "--uv", "tight"},
       {"run", shell.path("s"), "--ratio", "0.5", "--ports", "9-8"},
       {"compare", cube},
   };

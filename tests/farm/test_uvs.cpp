@@ -246,9 +246,9 @@ TEST_CASE("what becomes of textures is told before the work") {
   CHECK(none.code == 0);
   CHECK_FALSE(open_mesh(bench.path("n.obj"), {.textures = Textures::keep})->info().uvs);
   const Ran no_place = bench.simplify("o.stl", {"--triangles", "400", "--uv", "keep"});
-  CHECK(no_place.code == 1);
+  CHECK(no_place.code == 2);
   CHECK(has(no_place.err, "has no place for textures"));
   const Ran size = bench.simplify("o.obj", {"--triangles", "400", "--texture-size", "20000"});
-  CHECK(size.code == 1);
+  CHECK(size.code == 2);
   CHECK(has(size.err, "--texture-size: from 64 to 16384 pixels"));
 }

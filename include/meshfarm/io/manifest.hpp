@@ -4,12 +4,14 @@
 
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include <meshfarm/geometry/mesh.hpp>
 #include <meshfarm/geometry/sweep_order.hpp>
+#include <meshfarm/geometry/uv_facts.hpp>
 #include <meshfarm/io/channel_file.hpp>
 #include <meshfarm/io/labels.hpp>
 #include <meshfarm/staging/stage.hpp>
@@ -73,6 +75,10 @@ struct Manifest {
   /// Triangles that the parts and the boundary hold.
   std::uint64_t triangles() const;
 };
+
+/// Sets the floor and the side by those of the parts, in order: about as much lies between parts as
+/// their boundary vertices are of all.
+void set_uv_facts(Manifest& manifest, std::span<const UvFacts> of_parts);
 
 std::string encode_manifest(const Manifest& manifest);
 Manifest decode_manifest(std::string_view file, std::string_view what);
