@@ -7,6 +7,8 @@
 #include <iostream>
 #include <memory>
 
+#include <meshfarm/geometry/uv_facts.hpp>
+#include <meshfarm/geometry/weld.hpp>
 #include <meshfarm/io/mesh_source.hpp>
 #include <meshfarm/io/stream_file.hpp>
 #include <meshfarm/report/summary.hpp>
@@ -119,7 +121,26 @@ class InfoCommand : public Command {
     const SurfaceTopology topology = surface.measure_topology();
     summary.welded = topology.welded;
     summary.as_it_is = topology.as_it_is;
+    if (!summary.file.textures.empty()) summary.texture_floor = texture_floor(surface);
     return summary;
+  }
+
+  /// 0 if --memory does not hold the mesh.
+  std::uint64_t texture_floor(const DividedSurface& surface) const {
+    constexpr std::uint64_t k_bytes = 160;  // of a triangle, all in all
+    if (k_bytes * surface.triangles() > measure_.divide.memory_bytes) return 0;
+    const auto source = open_mesh(file_, {.textures = Textures::keep});
+    Mesh mesh = read_mesh(*source);
+    WeldResult welded = weld(mesh.positions);
+    separate_touching(mesh.triangles, {}, welded);
+    for (Triangle& t : mesh.triangles) {
+      t = {welded.first[t[0]], welded.first[t[1]], welded.first[t[2]]};
+    }
+    keep_triangles(mesh, [&](std::size_t i) {
+      const auto& [a, b, c] = mesh.triangles[i];
+      return a != b && b != c && c != a;
+    });
+    return told_uv_floor(find_uv_facts(mesh, 0).floor);
   }
 
   std::string file_;

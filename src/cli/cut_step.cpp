@@ -49,10 +49,12 @@ bool holds_cut(const std::filesystem::path& stage) {
 std::unique_ptr<MeshSource> open_input(const CutStep& step) {
   // Readers of compressed and ascii files keep scratch of their own, which goes by this.
   if (!step.words.scratch.empty()) ::setenv("TMPDIR", step.words.scratch.c_str(), 1);
-  auto opened = open_mesh(step.input, {.threads = step.words.cut.threads,
-                                       .channels = step.words.attributes != "none",
-                                       .labels = step.words.attributes != "none",
-                                       .textures = parse_uv(step.words.uv)});
+  auto opened = open_mesh(
+      step.input,
+      {.threads = step.words.cut.threads,
+       .channels = step.words.attributes != "none",
+       .labels = step.words.attributes != "none",
+       .textures = step.words.attributes == "none" ? Textures::drop : parse_uv(step.words.uv)});
   tell_textures(step.input, opened->info());
   return with_channels(std::move(opened), step.words.channels);
 }

@@ -14,6 +14,7 @@
 #include <meshfarm/util/errors.hpp>
 
 #include "cli/texture_words.hpp"
+#include "cli/weight_words.hpp"
 
 namespace meshfarm {
 namespace {
@@ -39,12 +40,6 @@ Length parse_length(const std::string& text, std::string_view option) {
   }
   if (length.of_diagonal) length.value /= 100;
   return length;
-}
-
-/// The shortest text that reads back as the same number.
-std::string shortest(double value) {
-  char text[32];
-  return {text, std::to_chars(text, text + sizeof text, value).ptr};
 }
 
 }  // namespace
@@ -88,11 +83,7 @@ void TargetOptions::add(po::options_description& options) {
       "keep edges that are sharper than this in place: their vertices merge only along them")(
       "drop-components", po::value(&drop_components)->value_name("LENGTH"),
       "leave out pieces smaller than this: in the mesh's unit, or as a share of the diagonal, for "
-      "example 0.5%")(
-      "colour-weight",
-      po::value(&run.colour_weight)->default_value(run.colour_weight, "0.002")->value_name("W"),
-      "how much colours count beside the shape: black for white is as bad as a move of the surface "
-      "by this share of the diagonal; 0: not at all")(
+      "example 0.5%")("weight", po::value(&weight)->value_name("NAME=W,..."), k_weight_help)(
       "normals", po::value(&normals)->default_value(normals)->value_name("blend|recompute|drop"),
       "the normals of the result, if the input has any: blend: as near to the input's as can be; "
       "recompute: those of the result's triangles; drop: none");
@@ -165,11 +156,7 @@ void TargetOptions::check() {
   if (run.texture_size != 0 && (run.texture_size < 64 || run.texture_size > 16'384)) {
     throw UsageError("--texture-size: from 64 to 16384 pixels");
   }
-  constexpr double k_least_weight = 1e-6;
-  const bool counts = run.colour_weight >= k_least_weight && run.colour_weight <= 1;
-  if (!counts && run.colour_weight != 0) {
-    throw UsageError("--colour-weight must be 0 (the shape alone counts) or 0.000001 to 1");
-  }
+  parse_weights(weight, run);
   run.allocation = allocation == "uniform" ? Allocation::uniform : Allocation::threshold;
   run.composition = composition == "auto"   ? Composition::automatic
                     : composition == "tree" ? Composition::tree
@@ -185,8 +172,8 @@ std::vector<std::string> TargetOptions::words() const {
   if (run.lines.crease_angle > 0) {
     words.insert(words.end(), {"--crease-angle", shortest(run.lines.crease_angle)});
   }
-  if (run.colour_weight != k_colour_weight) {
-    words.insert(words.end(), {"--colour-weight", shortest(run.colour_weight)});
+  if (const std::string weights = weight_words(run); !weights.empty()) {
+    words.insert(words.end(), {"--weight", weights});
   }
   if (normals != "blend") words.insert(words.end(), {"--normals", normals});
   if (attributes != "auto") words.insert(words.end(), {"--attributes", attributes});

@@ -38,12 +38,13 @@ struct TalkOptions {
 };
 
 /// --ratio, --triangles, --error, --allocation, --finish, --composition, --topology,
-/// --preserve-border, --crease-angle, --drop-components, --colour-weight, --normals.
+/// --preserve-border, --crease-angle, --drop-components, --weight, --normals.
 struct TargetOptions {
   RunOptions run;
   std::string attributes = "auto";
   std::string uv = "auto";
   std::string normals = "blend";
+  std::string weight;
   std::string error;
   std::string drop_components;
   std::string allocation = "threshold";

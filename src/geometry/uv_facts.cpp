@@ -22,6 +22,11 @@ double UvFacts::side() const {
   return std::isfinite(side) ? side : 0;
 }
 
+std::uint64_t told_uv_floor(std::uint64_t floor) {
+  constexpr double k_room = 1.2;
+  return static_cast<std::uint64_t>(k_room * static_cast<double>(floor));
+}
+
 UvFacts find_uv_facts(const Mesh& mesh, std::size_t locked) {
   UvFacts facts;
   if (mesh.columns.uvs.empty()) return facts;

@@ -24,11 +24,6 @@ bool has_pictures(const LabelMeaning& labels) {
                      [](const Material& material) { return !material.maps.empty(); });
 }
 
-/// To show what is a length away is as bad as a move of the surface by this share of it. On a torus
-/// of 4,000 triangles the 99th percentile of the texture coordinates' error fell to a fifth for 1 %
-/// more RMS; with three times as much, to an eighth for 6 %.
-constexpr double k_uv_weight = 0.1;
-
 // Of the columns that lines keep.
 constexpr std::uint8_t k_labels = 1;
 constexpr std::uint8_t k_uvs = 2;
@@ -85,11 +80,7 @@ std::optional<LabelMeaning> chosen_labels(const Manifest& manifest, const RunOpt
 }
 
 std::uint64_t texture_floor(const Manifest& manifest) {
-  // The last tenths go at the cost of all that lies between charts: pieces, and then the shape. A
-  // scan of 57,000 charts had 45 times the error at 1.08 times what its charts need, and at 1.2
-  // times that of a smooth curve.
-  constexpr double k_room = 1.2;
-  return static_cast<std::uint64_t>(k_room * static_cast<double>(manifest.uv_floor));
+  return told_uv_floor(manifest.uv_floor);
 }
 
 TextureMode chosen_textures(const Manifest& manifest, const RunOptions& options) {
@@ -104,7 +95,7 @@ LineOptions lines_of(const Manifest& manifest, const RunOptions& options) {
   LineOptions lines = options.lines;
   lines.columns.labels = chosen_labels(manifest, options).has_value();
   lines.columns.uvs = chosen_textures(manifest, options) == TextureMode::keep;
-  if (lines.columns.uvs) lines.uv_scale = k_uv_weight * manifest.uv_side;
+  if (lines.columns.uvs) lines.uv_scale = options.uv_weight * manifest.uv_side;
   const double length = options.colour_weight * manifest.box.diagonal();
   const std::vector<Channel> chosen =
       channels_at(manifest.channels.channels, chosen_columns(manifest, options));

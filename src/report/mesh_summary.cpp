@@ -32,6 +32,7 @@ std::string render(const FileSummary& s, Format format) {
                  {"channels", names_of(s.file.channels)},
                  {"labels", to_json(s.file.labels)},
                  {"textures", s.file.textures},
+                 {"texture_floor", s.texture_floor > 0 ? Json(s.texture_floor) : Json(nullptr)},
                  {"skipped", s.file.skipped},
                  {"box", to_json(s.box)},
                  {"diagonal", s.box.diagonal()}};
@@ -54,6 +55,10 @@ std::string render(const FileSummary& s, Format format) {
   if (!s.file.channels.empty()) lines.add("channels", joined(names_of(s.file.channels)));
   if (s.file.labels) lines.add("labels", text_of(*s.file.labels));
   if (!s.file.textures.empty()) lines.add("textures", joined(s.file.textures));
+  if (s.texture_floor > 0) {
+    lines.add("",
+              "to keep their charts about " + grouped(s.texture_floor) + " triangles are needed");
+  }
   if (!s.file.skipped.empty()) lines.add("not kept", joined(s.file.skipped));
   add_box(lines, s.box);
   if (s.welded && s.as_it_is) add_topology(lines, "topology", *s.welded, *s.as_it_is);

@@ -200,8 +200,11 @@ TEST_CASE("wrong usage is one line and exit 2") {
       {"simplify", cube, "-o", shell.path("o.ply"), "--ratio", "0.5", "--colour"},
       {"simplify", cube, "-o", shell.path("o.ply"), "--ratio", "0.5", "--uv", "tight"},
       {"convert", cube, shell.path("o.ply"), "--uv", "paint"},
-      {"convert", cube, shell.path("o.stl"), "--uv", "tight"},
-      {"convert", cube, shell.path("o.off"), "--uv", "tight"},
+      {"convert", cube, shell.path("o.stl"), "--uv", "keep"},
+      {"convert", cube, shell.path("o.obj"), "--uv", "bake"},
+      {"simplify", cube, "-o", shell.path("o.ply"), "--ratio", "0.5", "--weight", "colour"},
+      {"simplify", cube, "-o", shell.path("o.ply"), "--ratio", "0.5", "--weight", "uv=2"},
+      {"convert", cube, shell.path("o.off"), "--uv", "keep"},
       {"run", shell.path("s"), "--ratio", "0.5", "--ports", "9-8"},
       {"compare", cube},
   };

@@ -140,12 +140,12 @@ TEST_CASE("a coloured scan comes back coloured, the same from any number of work
     CHECK(has(without.out, "not kept         vertex.red, vertex.green"));
     CHECK(read_text(bench.path("none.ply")) == read_text(bench.path("plain-out.ply")));
     const Ran blind =
-        bench.simplify("in.ply", "shape.ply", {"--scheme", scheme, "--colour-weight", "0"});
+        bench.simplify("in.ply", "shape.ply", {"--scheme", scheme, "--weight", "colour=0"});
     CHECK(blind.code == 0);
     CHECK(read_channels(bench.path("shape.ply")).all.points ==
           read_channels(bench.path("none.ply")).all.points);
   }
-  CHECK(bench.simplify("in.ply", "1.ply", {"--colour-weight", "-1"}).code == 2);
+  CHECK(bench.simplify("in.ply", "1.ply", {"--weight", "colour=-1"}).code == 2);
 }
 
 TEST_CASE("a picture on a flat wall stays") {
@@ -160,8 +160,8 @@ TEST_CASE("a picture on a flat wall stays") {
   write_mesh(bench.path("wall.ply"), wall, PositionType::float32, {k_channels[0]}, values);
   for (const std::string scheme : {"cut", "stream"}) {
     const auto error = [&](const std::string& weight) {
-      const Ran ran =
-          bench.simplify("wall.ply", "out.ply", {"--scheme", scheme, "--colour-weight", weight});
+      const Ran ran = bench.simplify("wall.ply", "out.ply",
+                                     {"--scheme", scheme, "--weight", "colour=" + weight});
       REQUIRE(ran.code == 0);
       return red_error(ran);
     };

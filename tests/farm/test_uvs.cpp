@@ -59,14 +59,17 @@ std::string picture() {
   return encoded_picture(k_side, std::move(texels), PictureCoding::png);
 }
 
-/// A torus with the whole picture round it: one chart, whose sides meet in two rings.
-Mesh textured_torus() {
+/// A torus with the whole picture round it: one chart, whose sides meet in two rings. Or so many
+/// patches a ring, each a chart: the picture comes again beyond its sides.
+Mesh textured_torus(std::uint32_t patches = 0) {
   Mesh mesh = test::torus(k_rows, k_columns);
   for (Vec3& p : mesh.positions) p = rounded(p, PositionType::float32);
   for (std::uint32_t i = 0; i < k_rows; ++i) {
     for (std::uint32_t j = 0; j < k_columns; ++j) {
-      const auto at = [](std::uint32_t row, std::uint32_t column) {
-        return Uv{static_cast<float>(row) / k_rows, static_cast<float>(column) / k_columns};
+      const std::uint32_t turns = i * patches / k_rows + 2 * (j * patches / k_columns);
+      const auto at = [turns](std::uint32_t row, std::uint32_t column) {
+        return Uv{static_cast<float>(row) / k_rows + static_cast<float>(turns),
+                  static_cast<float>(column) / k_columns};
       };
       mesh.columns.uvs.push_back({at(i, j), at(i + 1, j), at(i + 1, j + 1)});
       mesh.columns.uvs.push_back({at(i, j), at(i + 1, j + 1), at(i, j + 1)});
@@ -78,12 +81,12 @@ Mesh textured_torus() {
 
 class Bench {
  public:
-  Bench() {
+  explicit Bench(std::uint32_t patches = 0) {
     for (const char* each : {"1", "3"}) std::filesystem::create_directories(path(each));
     Material material{.name = "skin"};
     material.maps = {{MapUse::colour, 0}};
     const PictureFiles pictures{{"skin.png"}, [](std::size_t) { return picture(); }};
-    write_mesh(path("in.obj"), textured_torus(), PositionType::float32, {}, {},
+    write_mesh(path("in.obj"), textured_torus(patches), PositionType::float32, {}, {},
                LabelMeaning{"material", {material}}, pictures);
   }
   std::string path(const std::string& name) const { return (folder_.path() / name).string(); }
@@ -203,11 +206,11 @@ TEST_CASE("textures are kept by all formats that have a place for them") {
   Bench bench;
   REQUIRE(bench({"cut", bench.path("in.obj"), "--stage", bench.path("s")}).code == 0);
   for (const std::string name : {"kept.glb", "kept.gltf", "kept.ply"}) {
-    const Ran ran = bench({"run", bench.path("s"), "-o", bench.path(name), "--ratio", "0.1"});
+    const Ran ran = bench({"replay", bench.path("s"), "-o", bench.path(name), "--ratio", "0.1"});
     REQUIRE(ran.code == 0);
     check_kept(bench.path(name));
   }
-  const Ran off = bench({"run", bench.path("s"), "-o", bench.path("o.off"), "--ratio", "0.1"});
+  const Ran off = bench({"replay", bench.path("s"), "-o", bench.path("o.off"), "--ratio", "0.1"});
   CHECK(off.code == 0);
   CHECK(has(off.out, "textures         not kept"));
 }
@@ -235,13 +238,17 @@ TEST_CASE("a new texture is baked where charts would not let the number of trian
 }
 
 TEST_CASE("what becomes of textures is told before the work") {
-  Bench bench;
-  const Ran automatic = bench.simplify("a.obj", {"--triangles", "4"});
+  Bench bench(10);
+  const Ran automatic = bench.simplify("a.obj", {"--triangles", "100"});
   CHECK(automatic.code == 0);
   CHECK(has(automatic.err, "a new texture is made: to keep the charts of its textures about"));
-  const Ran kept = bench.simplify("k.obj", {"--triangles", "4", "--uv", "keep"});
+  CHECK(read_textured(bench.path("a.obj")).mesh.triangles.size() == 100);
+  const Ran kept = bench.simplify("k.obj", {"--triangles", "100", "--uv", "keep"});
   CHECK(kept.code == 0);
-  CHECK(has(kept.err, "4 are asked for; with --uv bake that number is met"));
+  CHECK(has(kept.err, "100 are asked for; with --uv bake that number is met"));
+  const std::size_t left = read_textured(bench.path("k.obj")).mesh.triangles.size();
+  CHECK(has(kept.err, "about " + std::to_string(left) + " triangles are needed"));
+  CHECK(left < 400);
   const Ran none = bench.simplify("n.obj", {"--triangles", "400", "--uv", "drop"});
   CHECK(none.code == 0);
   CHECK_FALSE(open_mesh(bench.path("n.obj"), {.textures = Textures::keep})->info().uvs);

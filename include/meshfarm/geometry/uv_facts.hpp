@@ -26,6 +26,12 @@ struct UvFacts {
   double side() const;
 };
 
+/// About as few triangles as a result has where so many are all that charts need. The last tenths
+/// would go at the cost of all that lies between charts: pieces, and then the shape. A scan of
+/// 57,000 charts had 45 times the error at 1.08 times what its charts need, and at 1.2 times that
+/// of a smooth curve.
+std::uint64_t told_uv_floor(std::uint64_t floor);
+
 /// Nothing of a mesh without texture coordinates. `locked`: as find_column_floor() has it.
 UvFacts find_uv_facts(const Mesh& mesh, std::size_t locked);
 

@@ -57,6 +57,10 @@ struct Length {
 
 /// RunOptions::colour_weight, where none is asked for.
 inline constexpr double k_colour_weight = 0.002;
+/// RunOptions::uv_weight, where none is asked for. On a torus of 4,000 triangles the 99th
+/// percentile of the texture coordinates' error fell to a fifth for 1 % more RMS; with three times
+/// as much, to an eighth for 6 %.
+inline constexpr double k_uv_weight = 0.1;
 
 /// What a run is asked to make of a stage.
 struct RunOptions {
@@ -71,6 +75,9 @@ struct RunOptions {
   /// Black for white is as bad as a move of the surface by this share of the bounding box's
   /// diagonal. 0: colours do not count.
   double colour_weight = k_colour_weight;
+  /// Where textures are kept: to show what is a length away on them is as bad as a move of the
+  /// surface by this share of it. 0: it does not count.
+  double uv_weight = k_uv_weight;
   ChannelChoice channels;  // of those that the stage has
   Normals normals = Normals::blend;
   TextureMode textures = TextureMode::automatic;

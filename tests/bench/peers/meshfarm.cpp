@@ -14,7 +14,7 @@ Mesh simplify(Task task, Stopwatch& watch) {
   options.positions = task.positions;
   Box box;
   for (const Vec3& p : task.mesh.positions) box.add(p);
-  // The default of --colour-weight.
+  // The default of --weight colour.
   if (!task.mesh.appearances.empty())
     options.lines.appearance_scale.length = 0.002 * box.diagonal();
   watch.start();

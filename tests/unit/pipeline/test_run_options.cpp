@@ -68,3 +68,41 @@ TEST_CASE("one input is told and aimed at alike, however it is divided and in wh
   CHECK(std::get<1>(*told) == 39 + 40 * 5);  // tips, and necks of six vertices
   CHECK(std::get<2>(*told) == 40 * 12);
 }
+
+TEST_CASE("textures are kept where the number of triangles allows it, else baked") {
+  Manifest manifest;
+  manifest.input_triangles = 10'000;
+  manifest.uvs = true;
+  manifest.uv_floor = 1'000;
+  manifest.uv_side = 8;
+  Material material{.name = "skin"};
+  material.maps = {{MapUse::colour, 0}};
+  manifest.labels = LabelMeaning{"material", {material}};
+  const std::uint64_t floor = texture_floor(manifest);
+  CHECK(floor == 1'200);
+  const auto made = [&](RunOptions run) { return chosen_textures(manifest, run); };
+  CHECK(made({.ratio = 0.12}) == TextureMode::keep);
+  CHECK(made({.ratio = 0.1199}) == TextureMode::bake);
+  CHECK(made({.error = {0.5, false}}) == TextureMode::keep);
+  CHECK(made({.ratio = 0.5, .textures = TextureMode::drop}) == TextureMode::drop);
+  CHECK(made({.ratio = 0.5, .channels = parse_choice("none", "")}) == TextureMode::drop);
+  CHECK(made({.ratio = 0.5, .channels = parse_choice("uvs", "")}) == TextureMode::keep);
+
+  // Who keeps them gets as many triangles as they need.
+  const RunOptions keep{.triangles = 50, .textures = TextureMode::keep};
+  CHECK(asked_triangles(manifest, keep) == 50);
+  CHECK(target_triangles(manifest, keep) == floor);
+  CHECK(lines_of(manifest, keep).columns == ColumnSet{true, true});
+  CHECK(lines_of(manifest, keep).uv_scale == doctest::Approx(0.8));
+  // A picture has the colours of all materials.
+  const RunOptions bake{.triangles = 50, .textures = TextureMode::bake};
+  CHECK(target_triangles(manifest, bake) == 50);
+  CHECK(lines_of(manifest, bake).columns == ColumnSet{false, false});
+  CHECK(run_key(manifest, bake) != run_key(manifest, keep));
+  RunOptions large = bake;
+  large.texture_size = 512;
+  CHECK(run_key(manifest, large) != run_key(manifest, bake));
+
+  manifest.uvs = false;
+  CHECK(made({.ratio = 0.5}) == TextureMode::drop);
+}

@@ -12,7 +12,7 @@ TEST_CASE("every name that is made is parsed back") {
         StagedName(PartName{4'294'967'295U}), StagedName(JournalName{12}),
         StagedName(EndpointName{1'000'000}), StagedName(TraceName{3}), StagedName(SummaryName{4}),
         StagedName(KeysName{0xfedcba9876543210ULL}), StagedName(HostName{0xfedcba9876543210ULL}),
-        StagedName(StreamName{7}), StagedName(SlabName{8}),
+        StagedName(StreamName{7}), StagedName(SlabName{8}), StagedName(PictureName{9}),
         StagedName(ResultName{0xfedcba9876543210ULL, 3, 0x0123456789abcdefULL})}) {
     const auto parsed = parse_staged_name(to_string(name));
     REQUIRE(parsed.has_value());
@@ -22,6 +22,7 @@ TEST_CASE("every name that is made is parsed back") {
   CHECK(to_string(KeysName{10}) == "control/000000000000000a.keys");
   CHECK(to_string(SlabName{123}) == "streams/000123.slab");
   CHECK(to_string(PartName{123}) == "parts/000123.part");
+  CHECK(to_string(PictureName{123}) == "parts/000123.picture");
   CHECK(to_string(ResultName{1, 2, 3}) == "results/0000000000000001.a2.0000000000000003");
 }
 
@@ -33,6 +34,8 @@ TEST_CASE("any other text is no staged name") {
                            "parts/",
                            "parts/1.part",
                            "parts/000001.part/",
+                           "parts/1.picture",
+                           "parts/000001.pictures",
                            "streams/1.slab",
                            "streams/000001.slabs",
                            "parts/000001.parts",
