@@ -60,7 +60,7 @@ class SinkCommand : public FarmCommand {
     check_writable(output_);
     check_output_fits(output_, manifest, target_.run);
     check_need(manifest);
-    tell_textures(manifest, target_.run);
+    if (!supervised()) tell_textures(manifest, target_.run);
     SinkOptions options;
     options.bind = network_.bind;
     options.first_port = network_.first_port;

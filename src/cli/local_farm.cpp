@@ -19,6 +19,7 @@
 #include <meshfarm/util/memory.hpp>
 
 #include "cli/supervisor.hpp"
+#include "cli/texture_words.hpp"
 
 namespace meshfarm {
 namespace {
@@ -95,6 +96,7 @@ int run_local_farm(const LocalFarm& farm, const std::atomic<bool>& stop) {
       decode_manifest(stage.read(ManifestName{}), stage.path(ManifestName{}).string());
   check_output_fits(farm.output, manifest, farm.target.run);
   check_sink_need(manifest, farm.target.run, std::nullopt);  // what it advises the sink says
+  tell_textures(manifest, farm.target.run);
   const Crew crew = crew_for(farm, manifest);
   std::vector<std::string> shared = {"--supervised"};
   if (farm.talk.quiet) shared.emplace_back("--quiet");

@@ -105,6 +105,7 @@ TEST_CASE("a textured OBJ comes back coloured, by either scheme and as any forma
   CHECK(is_orange(model.path("m.ply")));
   const Ran compared = model.run({"compare", model.path("m.obj"), model.path("cut.glb")});
   CHECK(compared.code == 0);
+  CAPTURE(compared.out);
   CHECK(has(compared.out, "colours A to B   exact\n"));
   const Ran info = model.run({"info", model.path("m.obj"), "--no-topology"});
   CHECK(has(info.out, "textures         skin.png (1 x 1)"));
