@@ -92,7 +92,7 @@ class Comparer {
       const Bvh::Nearest nearest = bvh_.nearest(point, guess);
       guess = nearest.triangle;
       sums.distance.add({nearest.squared, std::sqrt(nearest.squared), nearest.squared});
-      blend(from_, sampler.triangle(), random_shares(n), here);
+      blend(from_, static_cast<std::uint32_t>(sampler.triangle()), random_shares(n), here);
       const Triangle& t = to_.mesh.triangles[guess];
       const std::vector<Vec3>& at = to_.mesh.positions;
       blend(to_, guess, nearest_shares(point, at[t[0]], at[t[1]], at[t[2]]), there);

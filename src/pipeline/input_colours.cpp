@@ -169,25 +169,35 @@ BakedColour InputColours::colour_at(const Piece& piece, const SurfacePlace& plac
 
 void InputColours::find(std::span<const Vec3> points, std::span<const Vec3> normals,
                         std::span<BakedColour> colours) {
-  const Box box = box_of(points);
   const double squared_reach = options_.reach * options_.reach;
   std::vector<Best> best(points.size(), Best{HUGE_VAL, false, {}});
-  std::vector<SurfacePlace> places(points.size());
-  double farthest = HUGE_VAL;  // that could still be better for some point
-  for (const std::size_t number : pieces_by_distance(box)) {
-    if (squared_gap(boxes_[number], box) > farthest) break;
-    const PiecePointer found = piece(number);
-    found->places->find(points, normals, places);
-    farthest = 0;
+  std::vector<std::size_t> asked;  // the points that a piece may be nearest to
+  std::vector<Vec3> asked_points;
+  std::vector<Vec3> asked_normals;
+  std::vector<SurfacePlace> places;
+  for (const std::size_t number : pieces_by_distance(box_of(points))) {
+    asked.clear();
+    asked_points.clear();
+    asked_normals.clear();
     for (std::size_t i = 0; i < points.size(); ++i) {
-      const SurfacePlace& place = places[i];
-      const bool faces = place.squared <= squared_reach &&
-                         dot(normal_of(found->mesh, place.triangle), normals[i]) > 0;
-      const bool is_better = faces != best[i].faces ? faces : place.squared < best[i].squared;
-      if (is_better) best[i] = {place.squared, faces, colour_at(*found, place)};
       const double could_be =
           best[i].faces ? best[i].squared : std::max(best[i].squared, squared_reach);
-      farthest = std::max(farthest, could_be);
+      if (squared_gap(boxes_[number], box_of(points.subspan(i, 1))) > could_be) continue;
+      asked.push_back(i);
+      asked_points.push_back(points[i]);
+      asked_normals.push_back(normals[i]);
+    }
+    if (asked.empty()) continue;
+    const PiecePointer found = piece(number);
+    places.resize(asked.size());
+    found->places->find(asked_points, asked_normals, places);
+    for (std::size_t k = 0; k < asked.size(); ++k) {
+      Best& of_point = best[asked[k]];
+      const SurfacePlace& place = places[k];
+      const bool faces = place.squared <= squared_reach &&
+                         dot(normal_of(found->mesh, place.triangle), asked_normals[k]) > 0;
+      const bool is_better = faces != of_point.faces ? faces : place.squared < of_point.squared;
+      if (is_better) of_point = {place.squared, faces, colour_at(*found, place)};
     }
   }
   for (std::size_t i = 0; i < points.size(); ++i) colours[i] = best[i].colour;

@@ -20,12 +20,11 @@ namespace meshfarm {
 namespace {
 
 constexpr std::uint32_t k_margin_texels = 4;
-constexpr std::uint32_t k_samples = 2;  // a side of a texel
 
 /// The power of two that has about as many texels.
 std::uint32_t side_for(std::uint64_t texels) {
   constexpr std::uint32_t k_least = 256;
-  constexpr std::uint32_t k_most = 8192;
+  constexpr std::uint32_t k_most = 4096;
   const double side = std::sqrt(static_cast<double>(texels));
   std::uint32_t power = k_least;
   while (power < k_most && power < side) power *= 2;
@@ -50,14 +49,13 @@ BakedTexture bake_texture(const Stage& stage, const Manifest& manifest, Mesh& re
   const std::optional<MemoryRoom> room = available_memory();
   InputColours::Options of_input;
   of_input.threads = options.threads;
-  if (atlas.texels_per_unit > 0) of_input.spacing = 1 / (k_samples * atlas.texels_per_unit);
+  if (atlas.texels_per_unit > 0) of_input.spacing = 1 / atlas.texels_per_unit;
   of_input.reach = options.reach;
   of_input.memory_bytes = room ? room->bytes / 2 : UINT64_MAX;
   InputColours input(stage, manifest, materials, of_input);
   BakeOptions bake_options;
   bake_options.texture_size = made.size;
   bake_options.margin_texels = k_margin_texels;
-  bake_options.samples = k_samples;
   bake_options.level_of = srgb_level;
   bake_options.threads = options.threads;
   BakedPicture picture =
