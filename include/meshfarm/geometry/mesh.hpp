@@ -43,7 +43,9 @@ struct ColumnSet {
     return {labels && other.labels, uvs && other.uvs};
   }
   /// Of one triangle.
-  constexpr std::size_t bytes() const { return (labels ? sizeof(Label) : 0) + (uvs ? sizeof(CornerUvs) : 0); }
+  constexpr std::size_t bytes() const {
+    return (labels ? sizeof(Label) : 0) + (uvs ? sizeof(CornerUvs) : 0);
+  }
   friend bool operator==(const ColumnSet&, const ColumnSet&) = default;
 };
 

@@ -27,7 +27,7 @@ struct MeshSinkOptions {
   std::optional<LabelMeaning> labels = {};  // of the triangles
   Packing packing = Packing::plain;         // of no other format than GLB
   bool uvs = false;                         // whether triangles have texture coordinates
-  PictureFiles pictures = {};                   // of the labels' materials
+  PictureFiles pictures = {};               // of the labels' materials
 };
 
 /// A mesh file that is written in batches, in memory that does not depend on its size: all

@@ -29,7 +29,7 @@ struct MeshFileInfo {
   std::vector<Channel> channels;       // of the vertices
   std::optional<LabelMeaning> labels;  // of the triangles
   bool uvs = false;                    // whether triangles have texture coordinates
-  PictureFiles pictures;                   // of the materials, with Textures::keep
+  PictureFiles pictures;               // of the materials, with Textures::keep
   /// Which columns triangles have.
   ColumnSet columns() const { return {labels.has_value(), uvs}; }
   std::vector<std::string> skipped;   // "face.flags", "material (5 elements)", "normals (120)"

@@ -82,8 +82,7 @@ TEST_CASE("faces of a binary PLY have texture coordinates, in either order, comp
     file.bytes({3}).ints({0, 1, 2});
     file.put<std::uint16_t>({6}).put<double>({0, 1, 1, 0, -2, 3}).put<std::int8_t>({1});
     file.bytes({3}).ints({2, 1, 3});
-    for (const std::string& bytes :
-         {file.text(), gzipped(file.text()), zstandard(file.text())}) {
+    for (const std::string& bytes : {file.text(), gzipped(file.text()), zstandard(file.text())}) {
       const Square model(bytes);
       const UvTriangles read = triangles_of(*model.open());
       check_two(read);
