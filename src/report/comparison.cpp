@@ -11,7 +11,7 @@ namespace {
 
 /// Values that are equal may differ once they are blended at a point, by rounding.
 bool are_equal(const ValueError& colours) {
-  constexpr double k_rounding = 1e-7;  // of a float near 1
+  constexpr double k_rounding = 1e-9;  // less than floats tell apart
   return colours.max < k_rounding;
 }
 
