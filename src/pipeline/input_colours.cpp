@@ -107,7 +107,7 @@ Mesh InputColours::read_between() const {
 
 std::shared_ptr<InputColours::Piece> InputColours::made(Mesh mesh) const {
   constexpr std::uint64_t k_bytes_of_places = 20;
-  const auto piece = std::make_shared<Piece>();
+  auto piece = std::make_shared<Piece>();
   piece->mesh = std::move(mesh);
   const Mesh& made = piece->mesh;
   piece->places.emplace(made, SurfacePlacesOptions{.reach = options_.reach, .threads = 1});
@@ -154,6 +154,7 @@ std::vector<std::size_t> InputColours::pieces_by_distance(const Box& box) const 
   }
   std::sort(order.begin(), order.end());
   std::vector<std::size_t> pieces;
+  pieces.reserve(order.size());
   for (const auto& [gap, number] : order) pieces.push_back(number);
   return pieces;
 }
