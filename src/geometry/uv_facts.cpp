@@ -6,7 +6,6 @@
 #include <meshfarm/geometry/uv_facts.hpp>
 
 namespace meshfarm {
-namespace {
 
 double uv_area(const CornerUvs& uvs) {
   const auto side = [&](std::size_t to, std::size_t axis) {
@@ -14,8 +13,6 @@ double uv_area(const CornerUvs& uvs) {
   };
   return 0.5 * std::abs(side(1, 0) * side(2, 1) - side(2, 0) * side(1, 1));
 }
-
-}  // namespace
 
 double UvFacts::side() const {
   const double side = picture > 0 ? std::sqrt(surface / picture) : 0;

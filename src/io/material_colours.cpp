@@ -5,6 +5,7 @@
 #include <optional>
 #include <utility>
 
+#include <meshfarm/geometry/uv_facts.hpp>
 #include <meshfarm/io/material_colours.hpp>
 #include <meshfarm/util/errors.hpp>
 #include <meshfarm/util/log.hpp>
@@ -19,17 +20,6 @@ namespace {
 
 using Linear = std::array<float, 3>;
 
-const std::array<float, 256>& linear_levels() {
-  static const std::array<float, 256> levels = [] {
-    std::array<float, 256> made{};
-    for (std::size_t i = 0; i < made.size(); ++i) {
-      made[i] = static_cast<float>(linear_of_srgb(static_cast<double>(i) / 255));
-    }
-    return made;
-  }();
-  return levels;
-}
-
 /// sRGB levels, three a texel, row by row from the top.
 struct Level {
   std::uint32_t width = 0;
@@ -38,7 +28,7 @@ struct Level {
 
   Linear texel(std::uint32_t x, std::uint32_t y) const {
     const std::uint8_t* const at = texels.data() + 3 * (std::size_t{y} * width + x);
-    const auto& linear = linear_levels();
+    const auto& linear = linear_floats();
     return {linear[at[0]], linear[at[1]], linear[at[2]]};
   }
 };
@@ -156,12 +146,18 @@ class MaterialColours::Impl {
     std::uint64_t bytes = 0;
     for (std::size_t i = 0; i < pictures_.size(); ++i) {
       if (!is_used[i]) continue;
+      bool fits = true;
       try {
-        decode(i, pictures.load(i), bytes, most, options.name);
+        fits = decode(i, pictures.load(i), bytes, most);
       } catch (const DataError& error) {
         log_warning(options.name + ": the texture " + pictures.names[i] + ": " + error.what() +
                     "; what it covers has no colour of it");
       }
+      if (fits) continue;
+      throw DataError(options.name + ": its textures take more than the " +
+                      std::to_string(most >> 20) +
+                      " MiB of memory that they may take, half of what is free: leave them out "
+                      "with --uv drop");
     }
   }
 
@@ -177,11 +173,7 @@ class MaterialColours::Impl {
   double texels_of(Label label, const CornerUvs& uvs) const {
     const Pyramid* const picture = picture_at(label);
     if (picture == nullptr) return 0;
-    const auto side = [&](std::size_t to, std::size_t axis) {
-      return static_cast<double>(uvs[to][axis]) - static_cast<double>(uvs[0][axis]);
-    };
-    const double twice = side(1, 0) * side(2, 1) - side(2, 0) * side(1, 1);
-    return 0.5 * std::abs(twice) * picture->width() * picture->height();
+    return uv_area(uvs) * picture->width() * picture->height();
   }
 
   std::uint64_t texels() const {
@@ -207,18 +199,16 @@ class MaterialColours::Impl {
     return room ? room->bytes / 2 : UINT64_MAX;
   }
 
-  void decode(std::size_t picture, std::string file, std::uint64_t& bytes, std::uint64_t most,
-              const std::string& name) {
+  /// False if it would take too much memory.
+  bool decode(std::size_t picture, std::string file, std::uint64_t& bytes, std::uint64_t most) {
     const PictureHead head = read_picture_head(file);
     // Three bytes a texel, the smaller copies a third of it again; and while it is decoded.
     const std::uint64_t kept = std::uint64_t{4} * head.width * head.height;
-    if (bytes + kept + head.memory_bytes() > most) {
-      throw UsageError(name + ": its textures take more than the " + std::to_string(most >> 20) +
-                       " MiB of memory that they may take: leave them out with --uv drop");
-    }
+    if (bytes + kept + head.memory_bytes() > most) return false;
     pictures_[picture].emplace(decode_picture(std::move(file)));
     bytes += kept;
     are_lossy_ = are_lossy_ && head.kind == PictureHead::Kind::jpeg;
+    return true;
   }
 
   const Pyramid* picture_at(Label label) const {

@@ -59,4 +59,15 @@ double srgb_of_linear(double level) {
   return (static_cast<double>(below) + share) / k_most;
 }
 
+const std::array<float, 256>& linear_floats() {
+  static const std::array<float, 256> levels = [] {
+    std::array<float, 256> made{};
+    for (std::size_t i = 0; i < made.size(); ++i) {
+      made[i] = static_cast<float>(linear_of_srgb(static_cast<double>(i) / 255));
+    }
+    return made;
+  }();
+  return levels;
+}
+
 }  // namespace meshfarm

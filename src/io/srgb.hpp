@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <array>
+
 namespace meshfarm {
 
 // A colour's level as glTF has it, linear in the light, and as all other formats do: sRGB (IEC
@@ -10,5 +12,8 @@ namespace meshfarm {
 // other's inverse, and the same on all machines.
 double linear_of_srgb(double level);
 double srgb_of_linear(double level);
+
+/// The first function of the 256 levels of 8 bits.
+const std::array<float, 256>& linear_floats();
 
 }  // namespace meshfarm

@@ -23,17 +23,6 @@ struct Point {
 };
 using Corners = std::array<Point, 3>;
 
-const std::array<float, 256>& linear_levels() {
-  static const std::array<float, 256> levels = [] {
-    std::array<float, 256> made{};
-    for (std::size_t i = 0; i < made.size(); ++i) {
-      made[i] = static_cast<float>(linear_of_srgb(static_cast<double>(i) / 255));
-    }
-    return made;
-  }();
-  return levels;
-}
-
 /// Which texel of `size` is shown at `at`.
 std::uint32_t wrapped(std::int64_t at, std::uint32_t size, TextureWrap wrap) {
   const std::int64_t count = size;
@@ -59,7 +48,7 @@ std::uint32_t wrapped(std::int64_t at, std::uint32_t size, TextureWrap wrap) {
 class Third {
  public:
   void add(const std::uint8_t* texel) {
-    const std::array<float, 256>& levels = linear_levels();
+    const std::array<float, 256>& levels = linear_floats();
     for (std::size_t i = 0; i < 3; ++i) sum_[i] += static_cast<double>(levels[texel[i]]);
     ++count_;
   }
@@ -97,7 +86,7 @@ class Sampler {
     const double right = at.x - 0.5 - x;
     const double below = at.y - 0.5 - y;
     std::array<double, 3> sum{};
-    const std::array<float, 256>& levels = linear_levels();
+    const std::array<float, 256>& levels = linear_floats();
     for (const int dy : {0, 1}) {
       for (const int dx : {0, 1}) {
         const std::uint8_t* texel =

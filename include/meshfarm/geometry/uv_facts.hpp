@@ -32,6 +32,9 @@ struct UvFacts {
 /// of a smooth curve.
 std::uint64_t told_uv_floor(std::uint64_t floor);
 
+/// The area of a triangle on its picture, in whole pictures.
+double uv_area(const CornerUvs& uvs);
+
 /// Nothing of a mesh without texture coordinates. `locked`: as find_column_floor() has it.
 UvFacts find_uv_facts(const Mesh& mesh, std::size_t locked);
 

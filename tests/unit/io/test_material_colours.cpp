@@ -90,5 +90,5 @@ TEST_CASE("a damaged picture leaves the material's colour, and too large ones ar
   CHECK(colours.texels() == 0);
   CHECK_THROWS_AS(MaterialColours(one_material(TextureWrap::clamp), files(),
                                   {.name = "mesh", .memory_bytes = 50}),
-                  UsageError);
+                  DataError);
 }
