@@ -8,6 +8,7 @@
 #include <cerrno>
 
 #include <meshfarm/farm/ledger.hpp>
+#include <meshfarm/staging/file_ref.hpp>
 #include <meshfarm/util/bytes.hpp>
 #include <meshfarm/util/errors.hpp>
 #include <meshfarm/util/log.hpp>
@@ -49,9 +50,7 @@ std::string encode_record(const JournalRecord& record) {
   out.put(k_version);
   out.put(record.run);
   out.put(accepted.key.value);
-  out.put_string(accepted.output.file.name);
-  out.put(accepted.output.file.size);
-  out.put(accepted.output.file.hash);
+  put_file(out, accepted.output.file);
   out.put_string(accepted.output.summary);
   return out.take();
 }
@@ -64,9 +63,7 @@ JournalRecord decode_record(std::string_view bytes, std::string_view what) {
   if (version > 1) record.run = in.get<std::uint64_t>();
   AcceptedJob& accepted = record.accepted;
   accepted.key.value = in.get<std::uint64_t>();
-  accepted.output.file.name = in.get_string();
-  accepted.output.file.size = in.get<std::uint64_t>();
-  accepted.output.file.hash = in.get<std::uint64_t>();
+  accepted.output.file = get_file(in);
   accepted.output.summary = in.get_string();
   in.expect_end();
   if (!names_result_of(accepted.key, accepted.output.file.name)) in.fail("a forged result name");

@@ -22,6 +22,7 @@
 
 #include <meshfarm/io/manifest.hpp>
 #include <meshfarm/io/sorting.hpp>
+#include <meshfarm/staging/file_ref.hpp>
 #include <meshfarm/staging/sealed.hpp>
 #include <meshfarm/util/bytes.hpp>
 
@@ -32,20 +33,6 @@ namespace {
 
 constexpr FileKind k_kind = {'M', 'N', 'F', 'T'};
 constexpr std::uint32_t k_version = 6;
-
-void put_file(ByteWriter& out, const FileRef& file) {
-  out.put_string(file.name);
-  out.put(file.size);
-  out.put(file.hash);
-}
-
-FileRef get_file(ByteReader& in) {
-  FileRef file;
-  file.name = in.get_string();
-  file.size = in.get<std::uint64_t>();
-  file.hash = in.get<std::uint64_t>();
-  return file;
-}
 
 /// A manifest may name only files of the kind that stands in that place.
 template <class Name>

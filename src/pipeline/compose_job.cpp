@@ -8,6 +8,7 @@
 #include <meshfarm/io/boundary_file.hpp>
 #include <meshfarm/io/result_file.hpp>
 #include <meshfarm/pipeline/compose_job.hpp>
+#include <meshfarm/staging/file_ref.hpp>
 #include <meshfarm/staging/staged_reader.hpp>
 #include <meshfarm/stitch/stitcher.hpp>
 #include <meshfarm/util/bytes.hpp>
@@ -162,9 +163,7 @@ std::string encode_parameters(const ComposeParameters& parameters) {
     out.put(input.streams);
     out.put(input.rung);
   }
-  out.put_string(parameters.boundary.name);
-  out.put(parameters.boundary.size);
-  out.put(parameters.boundary.hash);
+  put_file(out, parameters.boundary);
   out.put(parameters.level);
   out.put(parameters.max_cost);
   out.put(parameters.floor);
@@ -189,9 +188,7 @@ ComposeParameters decode_compose_parameters(std::string_view bytes) {
     if (input.streams == 0 || end > parameters.all_streams) in.fail("impossible streams");
     parameters.inputs.push_back(input);
   }
-  parameters.boundary.name = in.get_string();
-  parameters.boundary.size = in.get<std::uint64_t>();
-  parameters.boundary.hash = in.get<std::uint64_t>();
+  parameters.boundary = get_file(in);
   parameters.level = in.get<std::int32_t>();
   parameters.max_cost = in.get<double>();
   parameters.floor = in.get<std::uint64_t>();
