@@ -12,6 +12,11 @@ namespace {
 constexpr int k_tries = 256;
 constexpr std::uint64_t k_last = std::numeric_limits<std::uint64_t>::max();
 
+/// Of a job that is to be done.
+JobState first_state(const Job& job) {
+  return job.by_sink ? JobState::running : JobState::ready;
+}
+
 }  // namespace
 
 bool Plan::ReadyJob::operator<(const ReadyJob& other) const {
@@ -41,11 +46,12 @@ void Plan::advance(const std::map<JobKey, JobOutput>& accepted) {
         entry.order = next_order_++;
         entry.round = rounds_begun_;
         entry.job = std::move(job);
+        entry.state = first_state(entry.job);
       }
       entry.wanted = true;
       wanted_.push_back(key);
       counts_.cost_known += entry.job.cost;
-      if (entry.state == JobState::done) entry.state = JobState::ready;
+      if (entry.state == JobState::done) entry.state = first_state(entry.job);
       const auto told = accepted.find(key);
       if (told != accepted.end()) {
         rounds_.accept(key, told->second);
@@ -53,7 +59,7 @@ void Plan::advance(const std::map<JobKey, JobOutput>& accepted) {
         counts_.cost_done += entry.job.cost;
       }
       if (entry.state == JobState::ready) add_ready(key, entry);
-      ++count_of(entry.state);
+      count(entry, entry.state);
     }
     ++rounds_begun_;
   }
@@ -199,9 +205,8 @@ void Plan::move_to(JobKey key, Entry& entry, JobState state) {
   // A job that no round reached since the restart wants is remembered, but neither counted nor
   // issued.
   if (entry.wanted) {
-    assert(count_of(entry.state) > 0);
-    --count_of(entry.state);
-    ++count_of(state);
+    count_no_more(entry);
+    count(entry, state);
     if (entry.state == JobState::ready) remove_ready(key, entry);
     if (state == JobState::ready) add_ready(key, entry);
   }
@@ -220,6 +225,17 @@ void Plan::remove_ready(JobKey key, const Entry& entry) {
   ready_.erase(job);
   if (job.memory != 0) by_memory_.erase({job.memory, job});
   counts_.cost_ready -= job.cost;
+}
+
+void Plan::count(const Entry& entry, JobState state) {
+  ++count_of(state);
+  if (entry.job.by_sink && state == JobState::running) ++counts_.at_sink;
+}
+
+void Plan::count_no_more(const Entry& entry) {
+  assert(count_of(entry.state) > 0);
+  --count_of(entry.state);
+  if (entry.job.by_sink && entry.state == JobState::running) --counts_.at_sink;
 }
 
 std::uint64_t& Plan::count_of(JobState state) {

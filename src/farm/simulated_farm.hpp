@@ -212,6 +212,7 @@ class SimulatedFarm {
   void sink_act(Run& run, HangUp& each);
   void sink_act(Run& run, Say& each);
   void sink_act(Run& run, const Check& each);
+  void sink_act(Run& run, const DoHere& each);
   void check_by_sick_mount(Run& run, const Check& each, SimulatedTime readable);
   void sink_act(Run& run, MakeOutput& each);
   void sink_act(Run& run, SinkLeaves& each);

@@ -131,6 +131,24 @@ void SimulatedFarm::journal(Run& run, const Check& check) {
   result_.jobs.back().accepted = queue_.now();
 }
 
+void SimulatedFarm::sink_act(Run& run, const DoHere& each) {
+  const SimulatedTime takes = up_to(std::chrono::milliseconds(faulty() ? 5000 : 1));
+  queue_.in(takes, [this, &run, each, life = run.sink.life] {
+    when_awake(run.sink, life, [this, &run, each, life] {
+      if (folder_.full()) {
+        const SinkProblem no_room{"no space left on device", true};
+        return sink_does(run, run.sink.core->did(each, {}, no_room, farm_now()));
+      }
+      JobOutput output;
+      output.file.name = to_string(ResultName{each.key.value, 1, run.key << 32U | life});
+      output.summary = simulated_summary(each.job);
+      checks_.that(folder_.publish(output.file.name, SimulatedFolder::Content::whole),
+                   "two results of the sink shared a name");
+      sink_does(run, run.sink.core->did(each, output, {}, farm_now()));
+    });
+  });
+}
+
 void SimulatedFarm::sink_act(Run& run, MakeOutput&) {
   queue_.in(up_to(std::chrono::milliseconds(faulty() ? 5000 : 1)), [this, &run,
                                                                     life = run.sink.life] {

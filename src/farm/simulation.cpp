@@ -66,7 +66,9 @@ JobSource simulated_jobs(std::uint64_t count, const std::string& target) {
     if (accepted.size() == most->size() + 1) return *rest;
     if (accepted.size() > most->size()) return std::vector<Job>{};
     const std::string needs = accepted.empty() ? "nothing" : accepted.back().output.summary;
-    return std::vector<Job>{made_up("all, to " + needs)};
+    std::vector<Job> all{made_up("all, to " + needs)};
+    all.front().by_sink = true;
+    return all;
   };
 }
 

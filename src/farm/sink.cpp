@@ -61,9 +61,10 @@ class SinkLoop {
         patience_(patience_until(options.stop)),
         journal_patience_(journal_patience(patience_)),
         ledger_(read_journals(stage, options.run, journal_patience_)),
+        incarnation_(random_id()),
         core_({Role::sink,
                options.run,
-               random_id(),
+               incarnation_,
                static_cast<std::uint32_t>(::getpid()),
                clipped(host_name()),
                listen(),
@@ -142,6 +143,7 @@ class SinkLoop {
   void act(const HangUp&) { link_.hang_up(); }
   void act(const Say& each) { link_.say(each.message); }
   void act(const Check& each) { to_check_.push_back(each); }
+  void act(const DoHere& each) { to_do_.push_back(each); }
   void act(const MakeOutput&) { make_output_ = true; }
   void act(const SinkLeaves& each) { left_ = each; }
 
@@ -154,6 +156,13 @@ class SinkLoop {
         to_check_.pop_front();
       }
       disk_.start([this] { check_batch(); });
+    } else if (!to_do_.empty()) {
+      doing_ = std::move(to_do_.front());
+      to_do_.pop_front();
+      const auto outputs = core_.rounds().outputs();
+      accepted_.assign(outputs.begin(), outputs.end());
+      problem_ = nullptr;
+      disk_.start([this] { do_here(); });
     } else if (std::exchange(make_output_, false)) {
       making_output_ = true;
       problem_ = nullptr;
@@ -166,6 +175,12 @@ class SinkLoop {
     if (std::exchange(making_output_, false)) {
       const SinkProblem problem = problem_ ? what(problem_) : SinkProblem{};
       perform(core_.completed(problem, now));
+      return tell_of_room(problem.text);
+    }
+    if (doing_) {
+      const SinkProblem problem = problem_ ? what(problem_) : SinkProblem{};
+      const DoHere done = *std::exchange(doing_, std::nullopt);
+      perform(core_.did(done, std::exchange(made_, {}), problem, now));
       return tell_of_room(problem.text);
     }
     if (problem_) return perform(core_.fail(what(problem_)));
@@ -264,6 +279,19 @@ class SinkLoop {
     }
   }
 
+  void do_here() {
+    try {
+      const auto goes_on = [this](std::uint64_t) {
+        return options_.stop == nullptr || !options_.stop->load();
+      };
+      if (!options_.do_here)
+        throw Error("a " + doing_->job.kind + " job for a sink that does none");
+      made_ = options_.do_here(doing_->job, {stage_, 1, incarnation_, goes_on}, accepted_);
+    } catch (...) {
+      problem_ = std::current_exception();
+    }
+  }
+
   void make_output() {
     try {
       complete_(core_.rounds().outputs());
@@ -283,8 +311,10 @@ class SinkLoop {
   const ReadPatience patience_;
   ReadPatience journal_patience_;  // the disk thread's once there is one
   Ledger ledger_;
+  const std::uint64_t incarnation_;
   SinkCore core_;
   std::deque<Check> to_check_;
+  std::deque<DoHere> to_do_;
   std::uint64_t garbage_ = 0;
   bool told_of_waiting_ = false;
   bool make_output_ = false;
@@ -293,6 +323,9 @@ class SinkLoop {
   std::exception_ptr told_problem_;  // as the disk thread left it when it was last idle
   // The disk thread's while it works:
   std::vector<Checked> batch_;
+  std::optional<DoHere> doing_;
+  std::vector<AcceptedJob> accepted_;  // before it
+  JobOutput made_;
   std::optional<JournalWriter> journal_;
   std::exception_ptr problem_;
   TaskThread disk_;  // the last member, so that its thread ends first

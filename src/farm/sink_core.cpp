@@ -34,7 +34,7 @@ SinkActions SinkCore::tick(FarmTime now) {
     beat.progress = rounds_.jobs_accepted();
     beat.no_room = waits_for_room();
     say(beat);
-    if (told_all_) say_where_it_stands();
+    if (told_all_) say_again();
   }
   if (phase_ == Phase::saying_complete && say_until_ < now) {
     leave(SinkLeaves::Why::complete, "no ventilator acknowledged the end");
@@ -136,6 +136,14 @@ SinkActions SinkCore::checked(const Check& check, const JobFailure& problem, Far
   }
   const bool fine = problem.reason.empty();
   checking_.erase(check.key);
+  const auto own = own_.find(check.key);
+  if (!fine && own != own_.end()) {
+    if (check.from_journal) --checking_journal_;
+    if (!check.from_journal) return fail({problem.reason, false});
+    act(DoHere{own->first, own->second});
+    tell_all();
+    return take();
+  }
   // What was tried again may be damaged by now: then nothing is left to wait for.
   if ((fine || checking_.empty()) && !again_at_) again_pause_ = FarmTime(0);
   if (check.from_journal) --checking_journal_;
@@ -160,8 +168,12 @@ SinkActions SinkCore::checked(const Check& check, const JobFailure& problem, Far
 void SinkCore::want() {
   for (const auto& [key, job] : rounds_.advance()) {
     kinds_[key] = job.kind;
+    if (job.by_sink) own_[key] = job;
     const auto known = journal_.find(key);
-    if (known == journal_.end()) continue;
+    if (known == journal_.end()) {
+      if (job.by_sink) act(DoHere{key, job});
+      continue;
+    }
     const Check check{key, known->second, WorkerId{}, 0, true, {}, job.kind};
     if (!checking_.try_emplace(key, check).second) continue;
     ++checking_journal_;
@@ -180,6 +192,14 @@ void SinkCore::tell_all() {
   say_where_it_stands();
 }
 
+/// What nobody would ask for if it got lost: a worker tells of its result until it is answered.
+void SinkCore::say_again() {
+  for (const auto& [key, job] : own_) {
+    if (rounds_.accepted(key) != nullptr) tell(key, WorkerId{});
+  }
+  say_where_it_stands();
+}
+
 void SinkCore::say_where_it_stands() {
   say(Ready{member_.epoch(), accepted_.size()});
   if (phase_ == Phase::saying_complete) say(Complete{member_.epoch()});
@@ -191,6 +211,21 @@ void SinkCore::say_where_it_stands() {
 void SinkCore::tell(JobKey key, WorkerId worker, const JobTimes& times) {
   if (!told_all_) return;
   say(Accept{member_.epoch(), worker, key, *rounds_.accepted(key), times});
+}
+
+SinkActions SinkCore::did(const DoHere& what, const JobOutput& output, const SinkProblem& problem,
+                          FarmTime now) {
+  if (phase_ == Phase::left) return take();
+  if (problem.no_room && when_full_ == WhenFull::wait) {
+    not_done_.push_back(what);
+    wait_for_room(k_longest_output_pause, now);
+    return take();
+  }
+  if (!problem.text.empty()) return fail(problem);
+  again_pause_ = FarmTime(0);
+  const Check check{what.key, output, WorkerId{}, 0, false, {}, what.job.kind};
+  if (checking_.try_emplace(what.key, check).second) act(check);
+  return take();
 }
 
 SinkActions SinkCore::completed(const SinkProblem& problem, FarmTime now) {
@@ -216,6 +251,7 @@ void SinkCore::wait_for_room(FarmTime longest, FarmTime now) {
 void SinkCore::try_again() {
   again_at_.reset();
   for (Check& each : std::exchange(unwritten_, {})) act(std::move(each));
+  for (DoHere& each : std::exchange(not_done_, {})) act(std::move(each));
   if (phase_ == Phase::making_output) act(MakeOutput{});
 }
 

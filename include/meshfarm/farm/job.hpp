@@ -32,6 +32,8 @@ struct Job {
   std::uint64_t memory = 0;     // estimated need in bytes, inputs included; 0: fits everywhere
   /// Of what does the job: another version may make other bytes of the same inputs.
   std::uint32_t algorithm = 0;
+  /// The sink does it, not a worker: what needs all that was accepted before in one place.
+  bool by_sink = false;
 };
 
 JobKey key_of(const Job& job);

@@ -53,6 +53,7 @@ std::string failed_for_good(std::span<const std::string> reasons);
 struct PlanCounts {
   std::uint64_t ready = 0;
   std::uint64_t running = 0;
+  std::uint64_t at_sink = 0;  // of those that run: the sink does them
   std::uint64_t done = 0;
   std::uint64_t failed = 0;
   std::uint64_t cost_done = 0;
@@ -62,7 +63,8 @@ struct PlanCounts {
 };
 
 /// Which jobs there are and how far each is. Knows neither workers nor time.
-/// A job is in exactly one state; only accept() makes it done.
+/// A job is in exactly one state; only accept() makes it done. A job of the sink runs as soon as it
+/// is asked for, and is never issued.
 class Plan {
  public:
   /// A job that failed `max_attempts` times is given up.
@@ -142,6 +144,8 @@ class Plan {
   const ReadyJob* choose(const JobChoice& choice) const;
   void move_to(JobKey key, Entry& entry, JobState state);
   std::uint64_t& count_of(JobState state);
+  void count(const Entry& entry, JobState state);
+  void count_no_more(const Entry& entry);
 
   JobSource source_;
   Rounds rounds_;

@@ -30,6 +30,10 @@ struct SinkOptions {
   /// Throws DataError if the source could not take this output of a job of that kind: then it is
   /// not accepted, and the job is done again. May be empty.
   std::function<void(std::string_view kind, const JobOutput&)> inspect;
+  /// Does the source's jobs that are the sink's (Job::by_sink), of what was accepted in the rounds
+  /// before; called by another thread. Throws Error: the run fails then. May be empty if there are
+  /// none.
+  std::function<JobOutput(const Job&, const JobContext&, std::span<const AcceptedJob>)> do_here;
 };
 
 /// Collects results: verifies each file, journals it, tells the ventilator, until every job that

@@ -28,6 +28,11 @@ struct Check {
   JobTimes times = {};
   std::string kind = {};  // of the job
 };
+/// Do a job that the sink does itself; answered by did().
+struct DoHere {
+  JobKey key;
+  Job job;
+};
 /// Make the run's output of Rounds::outputs(); answered by completed().
 struct MakeOutput {};
 /// The end of the sink.
@@ -36,12 +41,12 @@ struct SinkLeaves {
   Why why = Why::complete;
   std::string message;
 };
-/// Why the output, or the journal, could not be written; nothing: it was.
+/// Why the output, the journal or a job of the sink could not be written; nothing: it was.
 struct SinkProblem {
   std::string text;
   bool no_room = false;  // the disk was full: the same run may be completed later
 };
-using SinkAction = std::variant<Look, Dial, HangUp, Say, Check, MakeOutput, SinkLeaves>;
+using SinkAction = std::variant<Look, Dial, HangUp, Say, Check, DoHere, MakeOutput, SinkLeaves>;
 using SinkActions = std::vector<SinkAction>;
 
 /// The sink's mind: what is wanted, what is accepted, what the ventilator has been told. Pure.
@@ -64,6 +69,9 @@ class SinkCore {
   /// The answer to a Check: `problem` has no reason if the file is whole and the record is on the
   /// disk. no_space: there is no room for the record.
   SinkActions checked(const Check& check, const JobFailure& problem, FarmTime now);
+  /// The answer to DoHere: what was made, if there is no problem.
+  SinkActions did(const DoHere& what, const JobOutput& output, const SinkProblem& problem,
+                  FarmTime now);
   /// The answer to MakeOutput.
   SinkActions completed(const SinkProblem& problem, FarmTime now);
   /// Whether it waits for room on the disk, to try again then what it could not write.
@@ -86,7 +94,9 @@ class SinkCore {
   void run_over();
   void take_result(const Result& result);
   void want();
+  void do_here(const DoHere& what);
   void tell_all();
+  void say_again();
   void say_where_it_stands();
   void tell(JobKey key, WorkerId worker, const JobTimes& times = {});
   void wait_for_room(FarmTime longest, FarmTime now);
@@ -105,6 +115,8 @@ class SinkCore {
   Rounds rounds_;
   std::map<JobKey, JobOutput> journal_;
   std::map<JobKey, std::string> kinds_;  // of the jobs wanted
+  std::map<JobKey, Job> own_;            // of these, those that the sink does
+  std::vector<DoHere> not_done_;         // of these, those that there was no room for
   SinkActions out_;
   Phase phase_ = Phase::collecting;
   bool begun_ = false;

@@ -42,6 +42,40 @@ TEST_CASE("the largest job is given out first, equals as asked for") {
   CHECK(plan.counts().cost_known == 14);
 }
 
+/// A round of one job that the sink does, and one more job.
+JobSource with_job_of_sink() {
+  return [](std::span<const AcceptedJob> accepted) {
+    std::vector<Job> jobs;
+    if (accepted.size() < 2) jobs = {make_job("theirs"), make_job("sink's")};
+    if (!jobs.empty()) jobs[1].by_sink = true;
+    return jobs;
+  };
+}
+
+TEST_CASE("a job of the sink is never issued, and runs until it is accepted") {
+  Plan plan = started_plan(with_job_of_sink());
+  const JobKey theirs = key_of(make_job("theirs")), own = key_of(make_job("sink's"));
+  CHECK(plan.state(own) == JobState::running);
+  CHECK(plan.counts().running == 1);
+  CHECK(plan.counts().at_sink == 1);
+  const auto issued = plan.issue();
+  REQUIRE(issued);
+  CHECK(issued->key == theirs);
+  CHECK_FALSE(plan.issue());
+  CHECK(plan.accept(theirs, output_of(theirs)));
+  CHECK_FALSE(plan.complete());
+  CHECK_FALSE(plan.stuck());
+  plan.give_back(own);  // nobody has it
+  CHECK(plan.state(own) == JobState::running);
+  CHECK(plan.accept(own, output_of(own)));
+  CHECK(plan.complete());
+  CHECK(plan.counts().at_sink == 0);
+  plan.restart({{theirs, output_of(theirs)}});  // a sink that lost it does it again
+  CHECK(plan.state(own) == JobState::running);
+  CHECK(plan.counts().at_sink == 1);
+  CHECK(plan.ready_jobs().empty());
+}
+
 TEST_CASE("a source that wants nothing is complete at once") {
   CHECK(started_plan(one_round(0)).complete());
 }

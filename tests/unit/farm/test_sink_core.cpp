@@ -44,7 +44,10 @@ JobOutput output_of(JobKey of, std::uint32_t attempt = 1, std::uint64_t incarnat
 struct Bench {
   explicit Bench(std::size_t jobs, std::map<JobKey, JobOutput> journal = {},
                  WhenFull when_full = WhenFull::wait)
-      : core({Role::sink, 7, 99, 1, "h", "results", FarmTime(10'000)}, one_round(jobs),
+      : Bench(one_round(jobs), std::move(journal), when_full) {}
+  explicit Bench(JobSource source, std::map<JobKey, JobOutput> journal = {},
+                 WhenFull when_full = WhenFull::wait)
+      : core({Role::sink, 7, 99, 1, "h", "results", FarmTime(10'000)}, std::move(source),
              std::move(journal), when_full) {}
 
   SinkActions join(std::uint32_t epoch) {
@@ -267,6 +270,70 @@ TEST_CASE("a sink that shall not wait for room ends the run") {
     bench.accept(key("job 0"));
     CHECK(said<Failed>(bench.core.completed({"ENOSPC", true}, bench.now)).size() == 1);
   }
+}
+
+/// A job of a worker, and then one of the sink.
+JobSource then_own() {
+  return [](std::span<const AcceptedJob> accepted) {
+    if (accepted.empty()) return std::vector<Job>{make_job("job 0")};
+    if (accepted.size() > 1) return std::vector<Job>{};
+    std::vector<Job> own{make_job("own")};
+    own[0].by_sink = true;
+    return own;
+  };
+}
+
+TEST_CASE("a job of the sink is done there, verified, journalled and told as others are") {
+  Bench bench(then_own());
+  bench.join(1);
+  const auto to_do = only<DoHere>(bench.accept(key("job 0")));
+  REQUIRE(to_do.size() == 1);
+  CHECK(to_do[0].key == key("own"));
+  CHECK(to_do[0].job.by_sink);
+  const SinkActions done = bench.core.did(to_do[0], output_of(key("own")), {}, bench.now);
+  CHECK(said<Accept>(done).empty());
+  const auto checks = only<Check>(done);
+  REQUIRE(checks.size() == 1);
+  CHECK_FALSE(checks[0].from_journal);
+  const SinkActions accepted = bench.core.checked(checks[0], {}, bench.now);
+  const auto accepts = said<Accept>(accepted);
+  REQUIRE(accepts.size() == 1);
+  CHECK(accepts[0].key == key("own"));
+  CHECK(accepts[0].worker == WorkerId{});
+  CHECK(only<MakeOutput>(accepted).size() == 1);
+  // No worker would say it again if the ventilator did not hear it.
+  CHECK(said<Accept>(bench.silence(FarmTime(1000))).size() == 1);
+}
+
+TEST_CASE("what a journal knows of a job of the sink is used, or done again if it is damaged") {
+  for (const bool is_whole : {true, false}) {
+    Bench bench(then_own(), {{key("own"), output_of(key("own"))}});
+    bench.join(1);
+    const SinkActions next = bench.accept(key("job 0"));
+    CHECK(only<DoHere>(next).empty());
+    const auto checks = only<Check>(next);
+    REQUIRE(checks.size() == 1);
+    CHECK(checks[0].from_journal);
+    const JobFailure problem{is_whole ? "" : "damaged", FailureKind::attempt};
+    const SinkActions then = bench.core.checked(checks[0], problem, bench.now);
+    CHECK(only<MakeOutput>(then).size() == (is_whole ? 1 : 0));
+    CHECK(only<DoHere>(then).size() == (is_whole ? 0 : 1));
+  }
+}
+
+TEST_CASE("a job of the sink that fails ends the run, one without room is done again") {
+  Bench bench(then_own());
+  bench.join(1);
+  const auto to_do = only<DoHere>(bench.accept(key("job 0")));
+  REQUIRE(to_do.size() == 1);
+  bench.core.did(to_do[0], {}, {"disk full", true}, bench.now);
+  CHECK(bench.core.waits_for_room());
+  CHECK(only<DoHere>(bench.silence(FarmTime(1500))).size() == 1);
+  const SinkActions failed = bench.core.did(to_do[0], {}, {"no memory", false}, bench.now);
+  const auto said_so = said<Failed>(failed);
+  REQUIRE(said_so.size() == 1);
+  CHECK(said_so[0].reason == "no memory");
+  CHECK_FALSE(said_so[0].resumable);
 }
 
 TEST_CASE("jobs that were given up end the run, and say whether it may be taken up again") {
