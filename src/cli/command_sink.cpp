@@ -1,6 +1,5 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
-#include <chrono>
 #include <iostream>
 #include <optional>
 
@@ -15,6 +14,7 @@
 #include <meshfarm/util/errors.hpp>
 #include <meshfarm/util/log.hpp>
 #include <meshfarm/util/memory.hpp>
+#include <meshfarm/util/stopwatch.hpp>
 
 #include "cli/cut_step.hpp"
 #include "cli/farm_command.hpp"
@@ -73,23 +73,32 @@ class SinkCommand : public FarmCommand {
     options.when_full = when_full_.value();
     options.stop = &stop;
     std::optional<SinkPresence> presence(stage);
-    const auto start = std::chrono::steady_clock::now();
+    ProgressPrinter printer(talk_.progress());
+    AssembleOptions assembly;
+    assembly.output = {output_, output_words_.packing()};
+    assembly.stop = &stop;
+    assembly.progress = [&](std::string_view phase, double done, std::uint64_t made) {
+      printer.show({.phase = phase, .done = done, .triangles = made});
+    };
+    Assembler assembler(stage, manifest, target_.run, assembly);
+    Stopwatch watch;
+    double farm_seconds = 0;
+    options.do_here = [&](const Job& job, const JobContext& context,
+                          std::span<const AcceptedJob> accepted) {
+      farm_seconds += watch.lap();
+      JobOutput output = assembler.do_job(job, context, accepted);
+      printer.end();
+      watch.lap();
+      return output;
+    };
     RunSummary summary;
-    const std::uint32_t epoch = run_sink(
-        stage, make_job_source(manifest, target_.run), options,
-        [&](std::span<const AcceptedJob> accepted) {
-          const double farm =
-              std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-          ProgressPrinter printer(talk_.progress());
-          AssembleOptions assembly;
-          assembly.output = {output_, output_words_.packing()};
-          assembly.stop = &stop;
-          assembly.progress = [&](std::string_view phase, double done, std::uint64_t made) {
-            printer.show({.phase = phase, .done = done, .triangles = made});
-          };
-          summary = assemble(stage, manifest, target_.run, accepted, assembly);
-          summary.farm_seconds = farm;
-        });
+    const std::uint32_t epoch = run_sink(stage, make_job_source(manifest, target_.run), options,
+                                         [&](std::span<const AcceptedJob> accepted) {
+                                           farm_seconds += watch.lap();
+                                           summary = assembler.complete(accepted);
+                                           printer.end();
+                                         });
+    summary.farm_seconds = farm_seconds;
     summary.run = options.run;
     summary.epoch = epoch;
     publish_summary(stage, summary);

@@ -11,61 +11,16 @@
 #include <meshfarm/util/log.hpp>
 #include <meshfarm/util/memory.hpp>
 
-#include "picture.hpp"
-#include "picture_writer.hpp"
-#include "srgb.hpp"
+#include "io/picture.hpp"
+#include "io/picture_levels.hpp"
+#include "io/picture_writer.hpp"
+#include "io/srgb.hpp"
+#include "io/tiled_levels.hpp"
 
 namespace meshfarm {
 namespace {
 
 using Linear = std::array<float, 3>;
-
-/// sRGB levels, three a texel, row by row from the top.
-struct Level {
-  std::uint32_t width = 0;
-  std::uint32_t height = 0;
-  std::vector<std::uint8_t> texels;
-
-  Linear texel(std::uint32_t x, std::uint32_t y) const {
-    const std::uint8_t* const at = texels.data() + 3 * (std::size_t{y} * width + x);
-    const auto& linear = linear_floats();
-    return {linear[at[0]], linear[at[1]], linear[at[2]]};
-  }
-};
-
-Level first_level(const Picture& picture) {
-  Level level{picture.width, picture.height, {}};
-  level.texels.resize(3 * std::size_t{picture.width} * picture.height);
-  std::uint8_t* out = level.texels.data();
-  for (std::uint32_t y = 0; y < picture.height; ++y) {
-    const std::uint8_t* in = picture.row(y);
-    for (std::uint32_t x = 0; x < picture.width; ++x, in += picture.step, out += 3) {
-      std::copy_n(in, 3, out);
-    }
-  }
-  return level;
-}
-
-/// Half as large each way, each texel the mean of up to four.
-Level half_of(const Level& from) {
-  Level to{(from.width + 1) / 2, (from.height + 1) / 2, {}};
-  to.texels.resize(3 * std::size_t{to.width} * to.height);
-  std::size_t next = 0;
-  for (std::uint32_t y = 0; y < to.height; ++y) {
-    for (std::uint32_t x = 0; x < to.width; ++x) {
-      const std::uint32_t right = std::min(2 * x + 1, from.width - 1);
-      const std::uint32_t below = std::min(2 * y + 1, from.height - 1);
-      const std::array<Linear, 4> four = {from.texel(2 * x, 2 * y), from.texel(right, 2 * y),
-                                          from.texel(2 * x, below), from.texel(right, below)};
-      for (std::size_t c = 0; c < 3; ++c) {
-        const float sum = (four[0][c] + four[1][c]) + (four[2][c] + four[3][c]);
-        const double level = srgb_of_linear(0.25 * static_cast<double>(sum));
-        to.texels[next++] = static_cast<std::uint8_t>(std::lround(level * 255));
-      }
-    }
-  }
-  return to;
-}
 
 /// A place from 0 to 1 that shows the same.
 double wrapped(double x, TextureWrap wrap) {
@@ -95,53 +50,41 @@ Between between(double place, std::uint32_t size, TextureWrap wrap) {
   return {texel(below), texel(below + 1), static_cast<float>(x - below)};
 }
 
-/// A picture and its smaller copies.
-class Pyramid {
- public:
-  explicit Pyramid(const Picture& picture) {
-    levels_.push_back(first_level(picture));
-    while (std::max(levels_.back().width, levels_.back().height) > 1) {
-      levels_.push_back(half_of(levels_.back()));
-    }
+/// What a picture shows; `texels` as in MaterialColours::at.
+Linear shown(const PictureLevels& picture, const Material& material, Uv uv, double texels) {
+  const std::vector<LevelSize>& sizes = picture.sizes();
+  std::size_t level = 0;
+  for (double side = 2; side <= texels && level + 1 < sizes.size(); side *= 2) ++level;
+  const double u = wrapped(static_cast<double>(uv[0]), material.wrap_u);
+  const double v = wrapped(1 - static_cast<double>(uv[1]), material.wrap_v);
+  const Between x = between(u, sizes[level].width, material.wrap_u);
+  const Between y = between(v, sizes[level].height, material.wrap_v);
+  const auto four = picture.texels(level, x.first, y.first, x.second, y.second);
+  const auto& linear = linear_floats();
+  Linear made{};
+  for (std::size_t c = 0; c < 3; ++c) {
+    const auto level_of = [&](std::size_t i) { return linear[four[i][c]]; };
+    const float above = level_of(0) + x.share * (level_of(1) - level_of(0));
+    const float below = level_of(2) + x.share * (level_of(3) - level_of(2));
+    made[c] = above + y.share * (below - above);
   }
-  double width() const { return levels_[0].width; }
-  double height() const { return levels_[0].height; }
+  return made;
+}
 
-  Linear at(Uv uv, const Material& material, double texels) const {
-    std::size_t place = 0;
-    for (double size = 2; size <= texels && place + 1 < levels_.size(); size *= 2) ++place;
-    const Level& level = levels_[place];
-    const double u = wrapped(static_cast<double>(uv[0]), material.wrap_u);
-    const double v = wrapped(1 - static_cast<double>(uv[1]), material.wrap_v);
-    const Between x = between(u, level.width, material.wrap_u);
-    const Between y = between(v, level.height, material.wrap_v);
-    const std::array<Linear, 4> four = {
-        level.texel(x.first, y.first), level.texel(x.second, y.first),
-        level.texel(x.first, y.second), level.texel(x.second, y.second)};
-    Linear made{};
-    for (std::size_t c = 0; c < 3; ++c) {
-      const float above = four[0][c] + x.share * (four[1][c] - four[0][c]);
-      const float below = four[2][c] + x.share * (four[3][c] - four[2][c]);
-      made[c] = above + y.share * (below - above);
-    }
-    return made;
+std::size_t colour_map(const Material& material) {
+  for (const MaterialMap& map : material.maps) {
+    if (map.use == MapUse::colour) return map.picture;
   }
-
- private:
-  std::vector<Level> levels_;
-};
+  return SIZE_MAX;
+}
 
 }  // namespace
 
 class MaterialColours::Impl {
  public:
   Impl(const LabelMeaning& labels, const PictureFiles& pictures, const Options& options)
-      : materials_(labels.materials), pictures_(pictures.names.size()) {
-    std::vector<bool> is_used(pictures_.size());
-    for (const Material& material : materials_) {
-      picture_of_.push_back(colour_map(material));
-      if (picture_of_.back() < is_used.size()) is_used[picture_of_.back()] = true;
-    }
+      : Impl(labels, pictures.names.size()) {
+    const std::vector<bool> is_used = colour_pictures(labels, pictures_.size());
     const std::uint64_t most = most_bytes(options);
     std::uint64_t bytes = 0;
     for (std::size_t i = 0; i < pictures_.size(); ++i) {
@@ -161,36 +104,42 @@ class MaterialColours::Impl {
     }
   }
 
+  Impl(const LabelMeaning& labels, const Stage& stage, std::span<const TiledPicturesRef> files,
+       std::uint64_t memory_bytes)
+      : Impl(labels, std::size_t{0}) {
+    const auto cache = std::make_shared<TileCache>(memory_bytes);
+    for (const TiledPicturesRef& file : files) {
+      for (auto& picture : open_tiled_pictures(stage, file, cache)) {
+        const std::uint32_t number = picture->number();
+        if (number >= k_most_pictures) {
+          throw DataError(file.file.name + ": a picture of an impossible number");
+        }
+        if (number >= pictures_.size()) pictures_.resize(number + std::size_t{1});
+        pictures_[number] = std::move(picture);
+      }
+    }
+  }
+
   Linear at(Label label, Uv uv, double texels) const {
     const Material& material = materials_[label];
-    const Pyramid* const picture = picture_at(label);
+    const PictureLevels* const picture = picture_at(label);
     Linear colour{1, 1, 1};
-    if (picture != nullptr) colour = picture->at(uv, material, texels);
+    if (picture != nullptr) colour = shown(*picture, material, uv, texels);
     for (std::size_t c = 0; c < 3; ++c) colour[c] *= material.colour[c];
     return colour;
   }
 
   double texels_of(Label label, const CornerUvs& uvs) const {
-    const Pyramid* const picture = picture_at(label);
+    const PictureLevels* const picture = picture_at(label);
     if (picture == nullptr) return 0;
-    return uv_area(uvs) * picture->width() * picture->height();
+    const LevelSize size = picture->sizes()[0];
+    return uv_area(uvs) * size.width * size.height;
   }
-
-  std::uint64_t texels() const {
-    std::uint64_t sum = 0;
-    for (const auto& picture : pictures_) {
-      if (picture) sum += static_cast<std::uint64_t>(picture->width() * picture->height());
-    }
-    return sum;
-  }
-  bool are_lossy() const { return are_lossy_; }
 
  private:
-  static std::size_t colour_map(const Material& material) {
-    for (const MaterialMap& map : material.maps) {
-      if (map.use == MapUse::colour) return map.picture;
-    }
-    return SIZE_MAX;
+  Impl(const LabelMeaning& labels, std::size_t pictures)
+      : materials_(labels.materials), pictures_(pictures) {
+    for (const Material& material : materials_) picture_of_.push_back(colour_map(material));
   }
 
   static std::uint64_t most_bytes(const Options& options) {
@@ -205,27 +154,37 @@ class MaterialColours::Impl {
     // Three bytes a texel, the smaller copies a third of it again; and while it is decoded.
     const std::uint64_t kept = std::uint64_t{4} * head.width * head.height;
     if (bytes + kept + head.memory_bytes() > most) return false;
-    pictures_[picture].emplace(decode_picture(std::move(file)));
+    pictures_[picture] = std::make_unique<DecodedLevels>(decode_picture(std::move(file)));
     bytes += kept;
-    are_lossy_ = are_lossy_ && head.kind == PictureHead::Kind::jpeg;
     return true;
   }
 
-  const Pyramid* picture_at(Label label) const {
+  const PictureLevels* picture_at(Label label) const {
     const std::size_t picture = picture_of_[label];
-    const bool has_one = picture < pictures_.size() && pictures_[picture].has_value();
-    return has_one ? &*pictures_[picture] : nullptr;
+    return picture < pictures_.size() ? pictures_[picture].get() : nullptr;
   }
 
   std::vector<Material> materials_;
-  std::vector<std::size_t> picture_of_;  // of each material
-  std::vector<std::optional<Pyramid>> pictures_;
-  bool are_lossy_ = true;
+  std::vector<std::size_t> picture_of_;                   // of each material
+  std::vector<std::unique_ptr<PictureLevels>> pictures_;  // null where there is none to look at
 };
+
+std::vector<bool> colour_pictures(const LabelMeaning& labels, std::size_t pictures) {
+  std::vector<bool> is_used(pictures);
+  for (const Material& material : labels.materials) {
+    const std::size_t picture = colour_map(material);
+    if (picture < pictures) is_used[picture] = true;
+  }
+  return is_used;
+}
 
 MaterialColours::MaterialColours(const LabelMeaning& labels, const PictureFiles& pictures,
                                  const Options& options)
     : impl_(std::make_unique<Impl>(labels, pictures, options)) {}
+MaterialColours::MaterialColours(const LabelMeaning& labels, const Stage& stage,
+                                 std::span<const TiledPicturesRef> files,
+                                 std::uint64_t memory_bytes)
+    : impl_(std::make_unique<Impl>(labels, stage, files, memory_bytes)) {}
 MaterialColours::~MaterialColours() = default;
 MaterialColours::MaterialColours(MaterialColours&&) noexcept = default;
 
@@ -235,14 +194,6 @@ std::array<float, 3> MaterialColours::at(Label label, Uv uv, double texels) cons
 
 double MaterialColours::texels_of(Label label, const CornerUvs& uvs) const {
   return impl_->texels_of(label, uvs);
-}
-
-std::uint64_t MaterialColours::texels() const {
-  return impl_->texels();
-}
-
-bool MaterialColours::are_lossy() const {
-  return impl_->are_lossy();
 }
 
 double srgb_level(double linear) {

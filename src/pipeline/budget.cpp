@@ -10,6 +10,7 @@
 #include <meshfarm/pipeline/simplify_job.hpp>
 #include <meshfarm/util/errors.hpp>
 
+#include "pipeline/bake_plan.hpp"
 #include "pipeline/compose_plan.hpp"
 #include "pipeline/part_jobs.hpp"
 #include "pipeline/sort_plan.hpp"
@@ -78,6 +79,7 @@ class Rounds {
     chosen.kept = topology_ == TopologyMode::simplify ? kept_ : chosen.rungs;
     chosen.topology =
         topology_ == TopologyMode::keep_while_fair ? TopologyMode::automatic : topology_;
+    chosen.rest = rest_;
     return chosen;
   }
 
@@ -194,6 +196,7 @@ class Rounds {
       compose_jobs_ = plan.jobs();
     }
     composed_ = plan.streams();
+    rest_ = accepted;
   }
 
   /// Whether a stream was taken farther from what it was than it may be.
@@ -271,7 +274,17 @@ class Rounds {
   std::vector<ChosenRung> kept_;
   std::vector<Job> compose_jobs_;  // of the round that is not accepted yet
   std::vector<ComposedStreams> composed_;
+  std::span<const AcceptedJob> rest_;  // after what was composed
 };
+
+std::vector<Job> jobs_once_sorted(const Manifest& manifest, const RunOptions& options,
+                                  std::span<const AcceptedJob> accepted) {
+  const Rounds rounds(manifest, options, accepted);
+  std::vector<Job> jobs = rounds.jobs();
+  if (!jobs.empty() || !bakes_texture(manifest, options)) return jobs;
+  const ChosenRungs chosen = rounds.chosen();
+  return BakePlan(manifest, options, chosen, chosen.rest).jobs();
+}
 
 }  // namespace
 
@@ -314,7 +327,7 @@ JobSource make_job_source(const Manifest& manifest, const RunOptions& options) {
   return [manifest, options](std::span<const AcceptedJob> accepted) {
     const SortPlan sorted(manifest, accepted);
     std::vector<Job> jobs = sorted.jobs();
-    if (jobs.empty()) jobs = Rounds(sorted.manifest(), options, sorted.rest()).jobs();
+    if (jobs.empty()) jobs = jobs_once_sorted(sorted.manifest(), options, sorted.rest());
     for (Job& job : jobs) job.algorithm = k_algorithm_version;
     return jobs;
   };
@@ -325,6 +338,7 @@ std::uint64_t memory_wanted(const Manifest& manifest, const RunOptions& options)
   for (const Job& job : make_job_source(manifest, options)({})) {
     wanted = std::max(wanted, job.memory);
   }
+  if (bakes_texture(manifest, options)) wanted = std::max(wanted, memory_of_bake(manifest));
   return manifest.sorting ? std::max(wanted, memory_wanted(as_if_sorted(manifest), options))
                           : wanted;
 }

@@ -7,11 +7,9 @@
 #include <string>
 #include <utility>
 
-#include <meshfarm/io/boundary_file.hpp>
 #include <meshfarm/io/part_file.hpp>
 #include <meshfarm/io/stream_file.hpp>
 #include <meshfarm/util/errors.hpp>
-#include <meshfarm/util/parallel.hpp>
 
 namespace meshfarm {
 namespace {
@@ -42,109 +40,62 @@ Box box_of(std::span<const Vec3> points) {
   return box;
 }
 
+Part read_part(const std::string& bytes, const std::string& name) {
+  if (!is_stream(bytes)) return decode_part(bytes, name);
+  StreamReader reader(fill_from(bytes, name), name);
+  return read_stream(reader);
+}
+
 }  // namespace
 
-InputColours::InputColours(const Stage& stage, const Manifest& manifest,
-                           const MaterialColours& materials, const Options& options)
-    : stage_(stage),
-      manifest_(manifest),
-      materials_(materials),
-      options_(options),
-      boxes_(manifest.parts.size() + 1),
-      boundary_(manifest.parts.size()),
-      kept_(boxes_.size()),
-      used_(boxes_.size(), 0) {
-  parallel_for(manifest_.parts.size(), options_.threads, [&](std::uint64_t part) {
-    Mesh mesh = read_part(part);
-    const auto boundary = static_cast<std::ptrdiff_t>(manifest_.parts[part].boundary_vertices);
-    boundary_[part].assign(mesh.positions.begin(), mesh.positions.begin() + boundary);
-    boxes_[part] = box_of(mesh.positions);
-    if (mesh.triangles.empty()) boxes_[part] = {};
-    if (boxes_[part].empty()) return;
-    const std::shared_ptr<Piece> piece = made(std::move(mesh));
-    const std::lock_guard lock(mutex_);
-    if (bytes_ + piece->bytes <= options_.memory_bytes) keep(part, piece);
-  });
-  // The triangles between parts are few: they stay.
-  Mesh between = read_between();
-  boxes_.back() = box_of(between.positions);
-  if (!boxes_.back().empty()) kept_.back() = made(std::move(between));
+InputColours::InputColours(const Input& input, const ColumnSet& columns, std::uint64_t memory_bytes)
+    : input_(input), columns_(columns), room_(memory_bytes) {
+  for (const BakePart& part : input_.scene.parts) boxes_.push_back(part.box);
+  for (const BakeSeam& seam : input_.scene.seams) boxes_.push_back(seam.box);
+  kept_.resize(boxes_.size());
 }
 
-Mesh InputColours::read_part(std::size_t part) const {
-  const FileRef& file = manifest_.parts[part].file;
-  const std::string bytes = stage_.read(file);
-  Part read;
-  if (is_stream(bytes)) {
-    StreamReader reader(fill_from(bytes, file.name), file.name);
-    read = read_stream(reader);
-  } else {
-    read = decode_part(bytes, file.name);
+Mesh InputColours::read(std::size_t number) const {
+  const std::vector<BakePart>& parts = input_.scene.parts;
+  const bool is_part = number < parts.size();
+  const std::string name = is_part ? parts[number].file.name : "what is between the parts";
+  const std::string bytes =
+      is_part ? input_.stage.read(parts[number].file)
+              : input_.file.read(input_.scene.seams[number - parts.size()].section);
+  Part part = read_part(bytes, name);
+  const std::uint32_t boundary = is_part ? parts[number].boundary_vertices : 0;
+  if (part.boundary_vertices != boundary ||
+      !TriangleColumnsView(part.mesh.columns).fits(columns_, part.mesh.triangles.size())) {
+    throw DataError(name + ": is not the part that it is said to be");
   }
-  if (read.boundary_vertices != manifest_.parts[part].boundary_vertices ||
-      !TriangleColumnsView(read.mesh.columns).fits({true, true}, read.mesh.triangles.size())) {
-    throw DataError(file.name + ": is not the part that the manifest tells of");
-  }
-  return std::move(read.mesh);
+  return std::move(part.mesh);
 }
 
-Mesh InputColours::read_between() const {
-  Mesh mesh;
-  const auto triangles =
-      decode_boundary(stage_.read(manifest_.boundary), manifest_.boundary.name, mesh.columns);
-  for (const BoundaryTriangle& t : triangles) {
-    const auto first = static_cast<std::uint32_t>(mesh.positions.size());
-    for (const BoundaryCorner& corner : t) {
-      if (corner.part >= boundary_.size() || corner.local >= boundary_[corner.part].size()) {
-        throw DataError("a boundary triangle names a vertex that is not there; cut the mesh again");
-      }
-      mesh.positions.push_back(boundary_[corner.part][corner.local]);
-    }
-    mesh.triangles.push_back({first, first + 1, first + 2});
-  }
-  return mesh;
-}
-
-std::shared_ptr<InputColours::Piece> InputColours::made(Mesh mesh) const {
+const InputColours::Piece& InputColours::piece(std::size_t number) {
   constexpr std::uint64_t k_bytes_of_places = 20;
-  auto piece = std::make_shared<Piece>();
-  piece->mesh = std::move(mesh);
-  const Mesh& made = piece->mesh;
-  piece->places.emplace(made, SurfacePlacesOptions{.reach = options_.reach, .threads = 1});
-  piece->bytes =
-      made.positions.size() * sizeof(Vec3) +
-      made.triangles.size() * (sizeof(Triangle) + made.columns.set().bytes() + k_bytes_of_places);
-  return piece;
+  if (!kept_[number]) {
+    auto piece = std::make_unique<Piece>();
+    piece->mesh = read(number);
+    const Mesh& mesh = piece->mesh;
+    piece->bytes =
+        mesh.positions.size() * sizeof(Vec3) +
+        mesh.triangles.size() * (sizeof(Triangle) + columns_.bytes() + k_bytes_of_places);
+    while (bytes_ > 0 && bytes_ + piece->bytes > room_) forget_oldest();
+    piece->places.emplace(mesh, SurfacePlacesOptions{.reach = input_.scene.reach, .threads = 1});
+    bytes_ += piece->bytes;
+    kept_[number] = std::move(piece);
+  }
+  kept_[number]->used = ++uses_;
+  return *kept_[number];
 }
 
-/// The mutex must be held.
-void InputColours::keep(std::size_t number, const PiecePointer& piece) {
-  kept_[number] = piece;
-  used_[number] = ++uses_;
-  bytes_ += piece->bytes;
-}
-
-InputColours::PiecePointer InputColours::piece(std::size_t number) {
-  {
-    const std::lock_guard lock(mutex_);
-    used_[number] = ++uses_;
-    if (kept_[number]) return kept_[number];
+void InputColours::forget_oldest() {
+  std::unique_ptr<Piece>* oldest = nullptr;
+  for (std::unique_ptr<Piece>& each : kept_) {
+    if (each && (oldest == nullptr || each->used < (*oldest)->used)) oldest = &each;
   }
-  const std::shared_ptr<Piece> read = made(read_part(number));
-  const std::lock_guard lock(mutex_);
-  if (kept_[number]) return kept_[number];  // another thread was faster
-  while (bytes_ + read->bytes > options_.memory_bytes) {
-    // The one that has not been used for longest. The last is what is between parts.
-    std::size_t oldest = SIZE_MAX;
-    for (std::size_t i = 0; i + 1 < kept_.size(); ++i) {
-      if (kept_[i] && (oldest == SIZE_MAX || used_[i] < used_[oldest])) oldest = i;
-    }
-    if (oldest == SIZE_MAX) break;
-    bytes_ -= kept_[oldest]->bytes;
-    kept_[oldest].reset();
-  }
-  keep(number, read);
-  return read;
+  bytes_ -= (*oldest)->bytes;
+  oldest->reset();
 }
 
 std::vector<std::size_t> InputColours::pieces_by_distance(const Box& box) const {
@@ -163,14 +114,15 @@ BakedColour InputColours::colour_at(const Piece& piece, const SurfacePlace& plac
   const Label label = piece.mesh.columns.labels[place.triangle];
   const CornerUvs& uvs = piece.mesh.columns.uvs[place.triangle];
   const double area = area_of(piece.mesh, place.triangle);
-  const double per_area = area > 0 ? materials_.texels_of(label, uvs) / area : 0;
-  const double texels = options_.spacing * std::sqrt(per_area);
-  return materials_.at(label, blended(place, uvs[0], uvs[1], uvs[2]), texels);
+  const MaterialColours& materials = input_.materials;
+  const double per_area = area > 0 ? materials.texels_of(label, uvs) / area : 0;
+  const double texels = input_.scene.spacing * std::sqrt(per_area);
+  return materials.at(label, blended(place, uvs[0], uvs[1], uvs[2]), texels);
 }
 
 void InputColours::find(std::span<const Vec3> points, std::span<const Vec3> normals,
                         std::span<BakedColour> colours) {
-  const double squared_reach = options_.reach * options_.reach;
+  const double squared_reach = input_.scene.reach * input_.scene.reach;
   std::vector<Best> best(points.size(), Best{HUGE_VAL, false, {}});
   std::vector<std::size_t> asked;  // the points that a piece may be nearest to
   std::vector<Vec3> asked_points;
@@ -189,16 +141,16 @@ void InputColours::find(std::span<const Vec3> points, std::span<const Vec3> norm
       asked_normals.push_back(normals[i]);
     }
     if (asked.empty()) continue;
-    const PiecePointer found = piece(number);
+    const Piece& found = piece(number);
     places.resize(asked.size());
-    found->places->find(asked_points, asked_normals, places);
+    found.places->find(asked_points, asked_normals, places);
     for (std::size_t k = 0; k < asked.size(); ++k) {
       Best& of_point = best[asked[k]];
       const SurfacePlace& place = places[k];
       const bool faces = place.squared <= squared_reach &&
-                         dot(normal_of(found->mesh, place.triangle), asked_normals[k]) > 0;
+                         dot(normal_of(found.mesh, place.triangle), asked_normals[k]) > 0;
       const bool is_better = faces != of_point.faces ? faces : place.squared < of_point.squared;
-      if (is_better) of_point = {place.squared, faces, colour_at(*found, place)};
+      if (is_better) of_point = {place.squared, faces, colour_at(found, place)};
     }
   }
   for (std::size_t i = 0; i < points.size(); ++i) colours[i] = best[i].colour;

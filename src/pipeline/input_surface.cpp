@@ -81,7 +81,7 @@ void InputSurface::show_part(std::uint32_t p, const Show& show) {
     for (const Vec3& v : positions) boxes_[p].add(v);
     boundary_[p].assign(positions.begin(), positions.begin() + part.boundary_vertices);
   }
-  show({positions, part.mesh.triangles, positions, p});
+  show({positions, part.mesh.triangles, part.mesh.columns, positions, p});
 }
 
 void InputSurface::show_stream(std::uint32_t p, const Show& show) {
@@ -99,7 +99,7 @@ void InputSurface::show_stream(std::uint32_t p, const Show& show) {
       }
     }
     const std::vector<Triangle>& triangles = window.add(block);
-    show({window.positions(), triangles, block.positions, p});
+    show({window.positions(), triangles, block.columns, block.positions, p});
   }
   bytes.expect_end();
 }
@@ -120,21 +120,29 @@ void InputSurface::show_between(const Wants& wants, const Show& show) const {
     Box box;
     for (const Vec3& v : some.positions) box.add(v);
     if (wants(box)) {
-      show({some.positions, some.triangles, {}, static_cast<std::uint32_t>(boundary_.size())});
+      show({some.positions,
+            some.triangles,
+            some.columns,
+            {},
+            static_cast<std::uint32_t>(boundary_.size())});
     }
     some = {};
   };
   StagedReader bytes(stage_, manifest_.boundary);
   const auto fill = [&](std::span<char> buffer) { bytes.fill(buffer); };
-  scan_boundary(fill, manifest_.boundary.name,
-                [&](std::span<const BoundaryTriangle> triangles, const TriangleColumnsView&) {
-                  for (const BoundaryTriangle& t : triangles) {
-                    const auto first = static_cast<std::uint32_t>(some.positions.size());
-                    for (const BoundaryCorner& each : t) some.positions.push_back(corner(each));
-                    some.triangles.push_back({first, first + 1, first + 2});
-                    if (some.triangles.size() == k_between_at_once) flush();
-                  }
-                });
+  scan_boundary(
+      fill, manifest_.boundary.name,
+      [&](std::span<const BoundaryTriangle> triangles, const TriangleColumnsView& columns) {
+        for (std::size_t i = 0; i < triangles.size(); ++i) {
+          const auto first = static_cast<std::uint32_t>(some.positions.size());
+          for (const BoundaryCorner& each : triangles[i]) {
+            some.positions.push_back(corner(each));
+          }
+          some.columns.append(columns, i);
+          some.triangles.push_back({first, first + 1, first + 2});
+          if (some.triangles.size() == k_between_at_once) flush();
+        }
+      });
   bytes.expect_end();
   flush();
 }

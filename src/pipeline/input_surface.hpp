@@ -16,6 +16,7 @@ namespace meshfarm {
 struct SurfacePiece {
   std::span<const Vec3> positions;
   std::span<const Triangle> triangles;
+  TriangleColumnsView columns;  // of these
   /// Vertices that no piece of the same part showed before.
   std::span<const Vec3> fresh;
   std::uint32_t part = 0;

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include <meshfarm/io/result_file.hpp>
+#include <meshfarm/pipeline/bake_job.hpp>
 #include <meshfarm/pipeline/compose_job.hpp>
 #include <meshfarm/pipeline/job_table.hpp>
 #include <meshfarm/pipeline/simplify_job.hpp>
@@ -19,7 +20,8 @@ using JobPointer = JobOutput (*)(const Job&, const JobContext&);
 constexpr std::pair<std::string_view, JobPointer> k_table[] = {
     {k_sort_kind, sort_to_stream},     {k_sample_kind, sample_stream},
     {k_simplify_kind, simplify_part},  {k_sweep_kind, sweep_stream},
-    {k_compose_kind, compose_streams},
+    {k_compose_kind, compose_streams}, {k_tile_kind, tile_pictures},
+    {k_bake_kind, bake_chunk},
 };
 
 }  // namespace
@@ -35,6 +37,12 @@ void check_output(std::string_view kind, const JobOutput& output) {
   const std::string what = "summary of " + output.file.name;
   if (kind == k_sort_kind || kind == k_sample_kind) {
     decode_sort_summary(output.summary, what);
+  } else if (kind == k_finish_kind) {
+    decode_finish_summary(output.summary, what);
+  } else if (kind == k_tile_kind) {
+    decode_tile_summary(output.summary, what);
+  } else if (kind == k_bake_kind) {
+    if (!output.summary.empty()) throw DataError(what + ": there should be none");
   } else {
     decode_summary(output.summary, what);
   }

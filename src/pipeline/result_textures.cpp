@@ -2,42 +2,33 @@
 // SPDX-License-Identifier: MIT
 #include "pipeline/result_textures.hpp"
 
-#include <utility>
-
 #include <meshfarm/io/channel_file.hpp>
 #include <meshfarm/io/mesh_format.hpp>
-
-#include "pipeline/texture_bake.hpp"
 
 namespace meshfarm {
 
 ResultTextures textures_of_result(const Stage& stage, const Manifest& manifest,
-                                  const RunOptions& run, Mesh& result,
-                                  const ResultTexturesOptions& options) {
+                                  const RunOptions& run, const std::filesystem::path& output,
+                                  const std::optional<MadeTexture>& made, Mesh& result) {
   ResultTextures textures;
   if (!manifest.uvs) return textures;
-  TexturesMade& made = textures.made;
-  made.floor = texture_floor(manifest);
-  made.way = TexturesMade::Way::dropped;
-  const TextureMode mode = chosen_textures(manifest, run);
-  if (!keeps_uvs(options.output)) {
+  TexturesMade& told = textures.made;
+  told.floor = texture_floor(manifest);
+  told.way = TexturesMade::Way::dropped;
+  if (!keeps_uvs(output)) {
     result.columns.uvs = {};
-  } else if (mode == TextureMode::keep) {
-    made.way = TexturesMade::Way::kept;
-    made.pictures = manifest.pictures.size();
+    if (made) result.columns.labels = {};
+  } else if (made) {
+    told.way = TexturesMade::Way::baked;
+    told.size = made->layout.size;
+    told.charts = made->layout.charts;
+    told.charts_share = made->layout.coverage;
+    textures.labels = baked_labels();
+    textures.pictures = made->picture();
+  } else if (chosen_textures(manifest, run) == TextureMode::keep) {
+    told.way = TexturesMade::Way::kept;
+    told.pictures = manifest.pictures.size();
     textures.pictures = pictures_of(stage, manifest.pictures);
-  } else if (mode == TextureMode::bake && manifest.labels) {
-    BakedTexture baked = bake_texture(stage, manifest, result,
-                                      {.reach = options.reach,
-                                       .texture_size = run.texture_size,
-                                       .threads = options.threads,
-                                       .progress = options.progress});
-    made.way = TexturesMade::Way::baked;
-    made.size = baked.size;
-    made.charts = baked.charts;
-    made.charts_share = baked.coverage;
-    textures.labels = std::move(baked.labels);
-    textures.pictures = std::move(baked.pictures);
   }
   return textures;
 }

@@ -5,7 +5,6 @@
 #include <filesystem>
 #include <functional>
 #include <optional>
-#include <string_view>
 
 #include <meshfarm/geometry/mesh.hpp>
 #include <meshfarm/io/labels.hpp>
@@ -14,13 +13,14 @@
 #include <meshfarm/report/summary.hpp>
 #include <meshfarm/staging/stage.hpp>
 
+#include "pipeline/texture_bake.hpp"
+
 namespace meshfarm {
 
-struct ResultTexturesOptions {
-  std::filesystem::path output;
-  double reach = 0;      // TextureBakeOptions::reach
-  unsigned threads = 0;  // 0: one a core
-  std::function<void(std::string_view phase)> progress;
+/// A texture that was made anew.
+struct MadeTexture {
+  TextureLayout layout;
+  std::function<PictureFiles()> picture;
 };
 
 struct ResultTextures {
@@ -29,10 +29,10 @@ struct ResultTextures {
   std::optional<LabelMeaning> labels;  // of a picture that was made; else those of the stage stay
 };
 
-/// The textures of a result: those of the stage as they are, or a new one, or none, as the run and
-/// the output's format say. The result's columns are set for it.
+/// The textures of a result: those of the stage as they are, or a new one that it was laid out on,
+/// or none, as the run and the output's format say. The result's columns are set for it.
 ResultTextures textures_of_result(const Stage& stage, const Manifest& manifest,
-                                  const RunOptions& run, Mesh& result,
-                                  const ResultTexturesOptions& options);
+                                  const RunOptions& run, const std::filesystem::path& output,
+                                  const std::optional<MadeTexture>& made, Mesh& result);
 
 }  // namespace meshfarm

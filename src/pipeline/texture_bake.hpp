@@ -3,39 +3,51 @@
 #pragma once
 
 #include <cstdint>
-#include <functional>
-#include <string>
 
+#include <meshfarm/farm/job.hpp>
 #include <meshfarm/geometry/mesh.hpp>
 #include <meshfarm/io/labels.hpp>
 #include <meshfarm/io/manifest.hpp>
 #include <meshfarm/staging/stage.hpp>
 
+#include "pipeline/bake_plan.hpp"
+
 namespace meshfarm {
 
-struct TextureBakeOptions {
+/// A new texture of a result: where its triangles lie on the picture, before that has colours.
+struct TextureLayout {
+  std::uint32_t size = 0;  // texels of a side
+  std::uint32_t charts = 0;
+  double coverage = 0;  // the share of the picture that charts cover
+  double spacing = 0;   // of the texels on the surface, a length; 0 if it has no area
+};
+
+/// Gives a result texture coordinates on one new picture: its columns are replaced. `texture_size`:
+/// 0 for as many texels as the input's pictures have.
+TextureLayout lay_out_texture(const Stage& stage, const Manifest& manifest,
+                              std::uint32_t texture_size, unsigned threads, Mesh& result);
+
+/// What a bake has beside its layout.
+struct BakeInput {
   /// How far the result is from the input: what faces another way and is nearer than this gives
   /// way to what faces the same way.
   double reach = 0;
-  std::uint32_t texture_size = 0;  // of a side; 0: as many texels as the input's pictures have
-  unsigned threads = 0;            // 0: one a core
-  std::function<void(std::string_view phase)> progress;
+  unsigned threads = 0;  // 0: one a core
 };
 
-/// A texture that was made for a mesh.
-struct BakedTexture {
-  LabelMeaning labels;    // one material, of all triangles
-  PictureFiles pictures;  // its picture
-  std::uint32_t size = 0;
-  std::uint32_t charts = 0;
-  double coverage = 0;  // the share of the picture that charts cover
-};
+/// The output of a finish job: publishes a result that was laid out, in chunks, and what is between
+/// the input's parts. The manifest must be one of sorted streams. The outcome does not depend on
+/// the threads. Memory: what is between the parts, and one chunk.
+JobOutput publish_bake_scene(const Stage& stage, const Manifest& manifest, const Mesh& result,
+                             const TextureLayout& layout, const BakeInput& input, const Job& job,
+                             const JobContext& context);
 
-/// Gives a result new texture coordinates, and a picture of what the textures of the stage's input
-/// show at the places of its surface that are nearest. The columns of the result are replaced. Of
-/// the input as many parts are in memory as half of what is free holds, at least one a thread. The
-/// outcome depends on neither threads nor memory.
-BakedTexture bake_texture(const Stage& stage, const Manifest& manifest, Mesh& result,
-                          const TextureBakeOptions& options);
+/// The picture as a file, a JPEG if all of the input's are: put together from what bake jobs
+/// published. Pictures of the input that are damaged are named in warnings. Memory: 19 bytes a
+/// texel.
+PictureFiles baked_picture(const Stage& stage, const Manifest& manifest,
+                           const TextureLayout& layout, const BakePlan& baked, unsigned threads);
+/// One material that has it.
+LabelMeaning baked_labels();
 
 }  // namespace meshfarm

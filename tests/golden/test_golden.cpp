@@ -17,12 +17,15 @@
 #include <meshfarm/farm/endpoint.hpp>
 #include <meshfarm/geometry/generate.hpp>
 #include <meshfarm/geometry/simplify.hpp>
+#include <meshfarm/io/bake_file.hpp>
 #include <meshfarm/io/boundary_file.hpp>
 #include <meshfarm/io/manifest.hpp>
+#include <meshfarm/io/material_colours.hpp>
 #include <meshfarm/io/part_file.hpp>
 #include <meshfarm/io/result_file.hpp>
 #include <meshfarm/io/slab_file.hpp>
 #include <meshfarm/io/stream_file.hpp>
+#include <meshfarm/io/tiled_picture.hpp>
 #include <meshfarm/pipeline/algorithm.hpp>
 #include <meshfarm/staging/host_card.hpp>
 #include <meshfarm/staging/journal.hpp>
@@ -135,6 +138,37 @@ Manifest manifest() {
   return made;
 }
 
+BakeScene bake_scene() {
+  BakeScene scene{512, 4, 0.25, 1.5, {}, {}, {}};
+  scene.parts = {{{{0, 1, 2}, {3, 4, 5}}, {"parts/000001.part", 7, 8}, 3}};
+  scene.seams = {{{{-1, -1, -1}, {1, 1, 1}}, {10, 20, 30}}};
+  scene.chunks = {{1, 2, 3}, {4, 5, 6}};
+  return scene;
+}
+
+std::vector<CornerUvs> flat_uvs(const Mesh& mesh) {
+  std::vector<CornerUvs> uvs;
+  for (const Triangle& t : mesh.triangles) {
+    CornerUvs& corners = uvs.emplace_back();
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Vec3 p = mesh.positions[t[k]];
+      corners[k] = {static_cast<float>(p.x) / 16, static_cast<float>(p.y) / 16};
+    }
+  }
+  return uvs;
+}
+
+/// Its tiles' checksums are in it.
+std::string tiled_directory() {
+  std::vector<std::uint8_t> texels;
+  for (int i = 0; i < 3 * 200 * 200; ++i) texels.push_back(static_cast<std::uint8_t>(i * 7));
+  std::string last;
+  TiledPicturesWriter writer([&](std::string_view bytes) { last = bytes; });
+  writer.add(3, encoded_picture(200, std::move(texels), PictureCoding::png));
+  writer.finish();
+  return last;
+}
+
 std::string journal_bytes() {
   const test::TempFolder folder;
   JournalWriter(folder.path() / "j").append("a record");
@@ -165,6 +199,12 @@ std::vector<Watched> all_watched() {
       staged("stream", encode_stream(stream()), "src/io/stream_file.cpp"),
       staged("result", result_bytes(), "src/io/result_file.cpp"),
       staged("manifest", encode_manifest(manifest()), "src/io/manifest.cpp"),
+      staged("bake-scene", encode_bake_scene(bake_scene()), "src/io/bake_file.cpp"),
+      staged("bake-surface", encode_bake_surface(surface_to_bake(sheet, flat_uvs(sheet))),
+             "src/io/bake_file.cpp"),
+      staged("baked-texels", encode_baked_texels({{{1, 2, 2}}, {{1, 2, 3}, {4, 5, 6}}}),
+             "src/io/bake_file.cpp"),
+      staged("tiled-pictures", tiled_directory(), "src/io/tiled_picture.cpp"),
       format("journal", journal_bytes(), 4, "src/staging/journal.cpp"),
       staged("host-card", encode_host_card({"host", 1, 2, 3}), "src/staging/host_card.cpp"),
       staged("endpoint", encode_endpoint({1, 2, "tcp://host:3", "host", 4, "key"}),

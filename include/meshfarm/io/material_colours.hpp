@@ -6,13 +6,22 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include <meshfarm/io/labels.hpp>
+#include <meshfarm/io/tiled_picture.hpp>
+#include <meshfarm/staging/stage.hpp>
 
 namespace meshfarm {
+
+/// More than any mesh's textures.
+inline constexpr std::uint32_t k_most_pictures = 65'536;
+
+/// Which of a mesh's pictures are for the colours of its materials.
+std::vector<bool> colour_pictures(const LabelMeaning& labels, std::size_t pictures);
 
 /// What the materials of a mesh look like at texture coordinates: their pictures, decoded, each
 /// with smaller copies of itself. Safe to ask from several threads.
@@ -25,6 +34,11 @@ class MaterialColours {
   /// A picture that is damaged is named in a warning, and what it covers has its material's colour
   /// alone. Throws DataError if the pictures take more memory than they may.
   MaterialColours(const LabelMeaning& labels, const PictureFiles& pictures, const Options& options);
+  /// The same of pictures that a stage has as tiles, which are read when they are looked at. What
+  /// is in no file is as a damaged one. The tiles in memory take `memory_bytes`. Throws DataError,
+  /// UnreadIoError, also when it is asked.
+  MaterialColours(const LabelMeaning& labels, const Stage& stage,
+                  std::span<const TiledPicturesRef> files, std::uint64_t memory_bytes);
   ~MaterialColours();
   MaterialColours(MaterialColours&&) noexcept;
 
@@ -34,10 +48,6 @@ class MaterialColours {
   std::array<float, 3> at(Label label, Uv uv, double texels) const;
   /// The texels that a triangle with these corners covers.
   double texels_of(Label label, const CornerUvs& uvs) const;
-  /// Of all pictures together.
-  std::uint64_t texels() const;
-  /// Whether all are JPEGs.
-  bool are_lossy() const;
 
  private:
   class Impl;

@@ -5,6 +5,7 @@
 #include <atomic>
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <span>
 #include <string_view>
 
@@ -23,10 +24,28 @@ struct AssembleOptions {
   const std::atomic<bool>* stop = nullptr;
 };
 
-/// The end of a run, once every job of make_job_source is accepted: reads the chosen rungs,
-/// stitches them in the order of the parts, finishes to the target, and writes the result. Throws
-/// IncompleteError when stopped: nothing is written then.
-RunSummary assemble(const Stage& stage, const Manifest& manifest, const RunOptions& run,
-                    std::span<const AcceptedJob> accepted, const AssembleOptions& options);
+/// The sink's part of a run: makes one mesh of what the workers made, and writes it.
+class Assembler {
+ public:
+  /// Stage, manifest and run must outlive it.
+  Assembler(const Stage& stage, const Manifest& manifest, const RunOptions& run,
+            AssembleOptions options);
+  ~Assembler();
+  Assembler(const Assembler&) = delete;
+  Assembler& operator=(const Assembler&) = delete;
+
+  /// Does a job of make_job_source that is the sink's: finishes the mesh before others go on with
+  /// it. `accepted`: what was in the rounds before.
+  JobOutput do_job(const Job& job, const JobContext& context,
+                   std::span<const AcceptedJob> accepted);
+  /// The end of a run, once every job is accepted: reads the chosen rungs, stitches them in the
+  /// order of the parts, finishes to the target, and writes the result. What do_job() did is not
+  /// done again. Throws IncompleteError when stopped: nothing is written then.
+  RunSummary complete(std::span<const AcceptedJob> accepted);
+
+ private:
+  class Impl;
+  std::unique_ptr<Impl> impl_;
+};
 
 }  // namespace meshfarm

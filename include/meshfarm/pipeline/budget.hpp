@@ -35,6 +35,9 @@ inline constexpr double k_bound_share_of_parts = 0.9;
 /// Where the stage holds slabs (Manifest::sorting), they are sorted before all that: a round of
 /// sort jobs, and one that takes samples of long streams. From there on the run is the one that
 /// sorted streams would have had.
+///
+/// Where a new texture is made, the sink then finishes the mesh, and rounds follow that find the
+/// texture's colours (pipeline/bake_job.hpp).
 JobSource make_job_source(const Manifest& manifest, const RunOptions& options);
 
 /// What the largest job needs that is known of, in bytes. Where slabs are still to be sorted, what
@@ -62,9 +65,11 @@ struct ChosenRungs {
   /// before that did; none if there was none.
   std::vector<ChosenRung> kept;
   TopologyMode topology = TopologyMode::automatic;
+  /// What was accepted after the rounds that these are of.
+  std::span<const AcceptedJob> rest;
 };
 
-/// Once every job of make_job_source is accepted.
+/// Once every job of make_job_source that makes the mesh is accepted. `accepted` must outlive it.
 ChosenRungs choose_rungs(const Manifest& manifest, const RunOptions& options,
                          std::span<const AcceptedJob> accepted);
 

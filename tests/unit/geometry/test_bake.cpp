@@ -6,7 +6,9 @@
 
 #include <meshfarm/geometry/atlas.hpp>
 #include <meshfarm/geometry/bake.hpp>
+#include <meshfarm/geometry/bake_chunks.hpp>
 #include <meshfarm/geometry/surface_places.hpp>
+#include <meshfarm/util/errors.hpp>
 
 #include "atlas_checks.hpp"
 #include "geometry/random_unit.hpp"
@@ -25,6 +27,13 @@ BakedColour field(Vec3 p) {
 
 void ask_field(std::span<const Vec3> points, std::span<const Vec3>, std::span<BakedColour> to) {
   std::transform(points.begin(), points.end(), to.begin(), field);
+}
+
+BakedPicture bake(const Mesh& mesh, std::span<const CornerUvs> uvs, const BakeOptions& options,
+                  const ColoursAt& colours_at) {
+  BakedCanvas canvas(options.texture_size);
+  canvas.add(bake_texels(surface_to_bake(mesh, uvs), options, colours_at));
+  return canvas.finish(options.threads);
 }
 
 /// A picture of some mip level, row by row from the top.
@@ -146,11 +155,6 @@ TEST_CASE("round each chart the surface goes on for the margin") {
   const int step = level(80, 64, along) - level(48, 64, along);
   CHECK(std::abs((level(127, 64, along) - level(95, 64, along)) - step) <= 2);
   CHECK(std::abs((level(32, 64, along) - level(0, 64, along)) - step) <= 2);
-  const std::vector<std::uint32_t> owners = owners_of(atlas, 128);
-  const auto inside = static_cast<std::uint64_t>(
-      std::count_if(owners.begin(), owners.end(), [](auto owner) { return owner != k_no_chart; }));
-  CHECK(picture.covered >= inside);
-  CHECK(picture.covered <= inside + std::uint64_t{4} * 128);
 }
 
 TEST_CASE("threads change nothing of a baked picture") {
@@ -161,7 +165,6 @@ TEST_CASE("threads change nothing of a baked picture") {
   const BakedPicture four =
       bake(mesh, atlas.uvs, {.texture_size = 300, .samples = 2, .threads = 4}, ask_field);
   CHECK(one.texels == four.texels);
-  CHECK(one.covered == four.covered);
 }
 
 TEST_CASE("more samples a texel smooth what is finer than texels") {
@@ -247,5 +250,54 @@ TEST_CASE("triangles that are turned over or of no area on the picture are paint
 TEST_CASE("a picture of nothing is grey") {
   const BakedPicture picture = bake({}, {}, {.texture_size = 7}, ask_field);
   CHECK(picture.texels == std::vector<std::uint8_t>(3 * 7 * 7, 128));
-  CHECK(picture.covered == 0);
+}
+
+TEST_CASE("chunks make the picture that the whole makes") {
+  for (const Mesh& mesh : {torus(40, 20), icosphere(3)}) {
+    const Atlas atlas = make_atlas(mesh, {.texture_size = 300});
+    const BakeOptions options{.texture_size = 300};
+    const BakedPicture whole = bake(mesh, atlas.uvs, options, ask_field);
+    for (const std::uint64_t triangles : {1000U, 150U, 7U}) {
+      const BakeChunks chunks(mesh, atlas.uvs, {.texture_size = 300, .triangles = triangles});
+      CHECK(chunks.size() >= mesh.triangles.size() / triangles);
+      BakedCanvas canvas(300);
+      std::size_t own = 0;
+      for (std::size_t i = chunks.size(); i-- > 0;) {
+        const BakeSurface surface = chunks.surface(i);
+        own += static_cast<std::size_t>(
+            std::count(surface.is_own.begin(), surface.is_own.end(), std::uint8_t{1}));
+        canvas.add(bake_texels(surface, options, ask_field));
+      }
+      CHECK(own == mesh.triangles.size());
+      CHECK(canvas.finish().texels == whole.texels);
+    }
+  }
+}
+
+TEST_CASE("chunks are no more than asked for, and hold about as much each") {
+  const Mesh mesh = torus(80, 40);
+  const Atlas atlas = make_atlas(mesh, {.texture_size = 512});
+  const BakeChunks chunks(mesh, atlas.uvs,
+                          {.texture_size = 512, .texels = 1000, .most_chunks = 10});
+  REQUIRE(chunks.size() == 10);
+  std::uint64_t all = 0, most = 0;
+  for (std::size_t i = 0; i < chunks.size(); ++i) {
+    all += chunks.texels(i);
+    most = std::max(most, chunks.texels(i));
+  }
+  CHECK(static_cast<double>(all) == doctest::Approx(atlas.coverage * 512 * 512).epsilon(0.01));
+  CHECK(static_cast<double>(most) < 1.3 * static_cast<double>(all) / 10);
+  CHECK(BakeChunks({}, {}, {}).size() == 0);
+}
+
+TEST_CASE("texels that are not of the picture are refused") {
+  const std::vector<TexelLevels> two(2);
+  for (const TexelRun run : {TexelRun{7, 0, 2}, TexelRun{0, 8, 1}, TexelRun{0, 0, 3},
+                             TexelRun{8, 0, 0}, TexelRun{1, 1, 0xffffffff}}) {
+    BakedCanvas canvas(8);
+    CHECK_THROWS_AS(canvas.add({{run}, two}), DataError);
+  }
+  BakedCanvas canvas(8);
+  canvas.add({{{6, 7, 2}}, two});
+  CHECK(canvas.finish().texels[0] == 0);
 }

@@ -59,7 +59,7 @@ Made simplify(const Mesh& mesh, const StreamOptions& options, const RunOptions& 
     }
   }
   const auto output = folder / "out.ply";
-  made.summary = assemble(stage, manifest, run, accepted, {.output = output});
+  made.summary = Assembler(stage, manifest, run, {.output = output}).complete(accepted);
   made.mesh = read_mesh(*open_mesh(output));
   return made;
 }

@@ -1,0 +1,131 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#include "pipeline/bake_plan.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include <meshfarm/util/bytes.hpp>
+#include <meshfarm/util/checksum.hpp>
+
+namespace meshfarm {
+namespace {
+
+constexpr std::uint64_t k_process_bytes = std::uint64_t{16} << 20;
+/// A part with its columns, what finds the places on it, and the file that it is read from.
+constexpr std::uint64_t k_bytes_of_triangle = 150;
+constexpr std::uint64_t k_least_pieces = std::uint64_t{128} << 20;
+/// A chunk as it is read, as it is painted, and its texels.
+constexpr std::uint64_t k_chunk_bytes = std::uint64_t{64} << 20;
+/// To decode a byte of a picture's file takes so much of the work on a triangle.
+constexpr std::uint64_t k_bytes_of_cost = 16;
+
+std::uint64_t largest_part(const Manifest& manifest) {
+  std::uint64_t most = 0;
+  for (const PartEntry& part : manifest.parts) most = std::max(most, part.triangles);
+  return most;
+}
+
+}  // namespace
+
+std::uint64_t bake_piece_bytes(const Manifest& manifest) {
+  return std::max(k_least_pieces, k_bytes_of_triangle * largest_part(manifest));
+}
+
+std::uint64_t memory_of_bake(const Manifest& manifest) {
+  return k_process_bytes + bake_piece_bytes(manifest) + k_tile_cache_bytes + k_chunk_bytes;
+}
+
+bool bakes_texture(const Manifest& manifest, const RunOptions& options) {
+  return manifest.uvs && manifest.labels && chosen_textures(manifest, options) == TextureMode::bake;
+}
+
+BakePlan::BakePlan(const Manifest& manifest, const RunOptions& options, const ChosenRungs& chosen,
+                   std::span<const AcceptedJob> accepted)
+    : manifest_(manifest), options_(options), rest_(accepted) {
+  if (!accepts({finish_job(chosen)})) return;
+  const JobOutput& finished = next();
+  finished_ = finished.file;
+  finish_ = decode_finish_summary(finished.summary, "summary of " + finished.file.name);
+  std::vector<Job> tiles = tile_jobs();
+  const std::size_t files = tiles.size();
+  if (!accepts(std::move(tiles))) return;
+  for (std::size_t i = 0; i < files; ++i) {
+    const JobOutput& output = next();
+    TileSummary summary = decode_tile_summary(output.summary, "summary of " + output.file.name);
+    pictures_.push_back({output.file, summary.directory});
+    damaged_.insert(damaged_.end(), summary.damaged.begin(), summary.damaged.end());
+  }
+  if (!accepts(bake_jobs())) return;
+  for (std::size_t i = 0; i < finish_.chunk_texels.size(); ++i) texels_.push_back(next().file);
+}
+
+Job BakePlan::finish_job(const ChosenRungs& chosen) const {
+  ByteWriter joined;
+  const auto put = [&](const std::vector<ChosenRung>& rungs) {
+    joined.put(static_cast<std::uint32_t>(rungs.size()));
+    for (const ChosenRung& each : rungs) {
+      joined.put(each.file.hash);
+      joined.put(each.rung);
+    }
+  };
+  put(chosen.rungs);
+  put(chosen.finer);
+  Job job;
+  job.kind = k_finish_kind;
+  job.parameters =
+      encode_parameters(FinishParameters{run_key(manifest_, options_), checksum(joined.bytes())});
+  job.by_sink = true;
+  return job;
+}
+
+/// Neighbouring pictures share a job where there are very many.
+std::vector<Job> BakePlan::tile_jobs() const {
+  std::vector<std::uint32_t> used;
+  for (std::uint32_t i = 0; i < std::min(finish_.is_used.size(), manifest_.pictures.size()); ++i) {
+    if (finish_.is_used[i] != 0) used.push_back(i);
+  }
+  const std::size_t count = std::min(k_most_tile_jobs, used.size());
+  std::vector<Job> jobs;
+  for (std::size_t j = 0; j < count; ++j) {
+    TileParameters parameters;
+    Job job;
+    for (std::size_t i = j * used.size() / count; i < (j + 1) * used.size() / count; ++i) {
+      const FileRef& file = manifest_.pictures[used[i]].file;
+      parameters.pictures.push_back(used[i]);
+      job.inputs.push_back(file);
+      job.cost += 1 + file.size / k_bytes_of_cost;
+    }
+    job.kind = k_tile_kind;
+    job.parameters = encode_parameters(parameters);
+    job.memory = k_process_bytes + finish_.tile_memory;
+    jobs.push_back(std::move(job));
+  }
+  return jobs;
+}
+
+std::vector<Job> BakePlan::bake_jobs() const {
+  std::vector<Job> jobs;
+  for (std::uint32_t chunk = 0; chunk < finish_.chunk_texels.size(); ++chunk) {
+    Job job;
+    job.kind = k_bake_kind;
+    job.parameters = encode_parameters(BakeParameters{finished_, finish_.scene, chunk, pictures_});
+    job.cost = 1 + k_cost_of_texel * finish_.chunk_texels[chunk];
+    job.memory = memory_of_bake(manifest_);
+    jobs.push_back(std::move(job));
+  }
+  return jobs;
+}
+
+bool BakePlan::accepts(std::vector<Job> jobs) {
+  if (rest_.size() < jobs.size()) jobs_ = std::move(jobs);
+  return jobs_.empty();
+}
+
+const JobOutput& BakePlan::next() {
+  const JobOutput& output = rest_.front().output;
+  rest_ = rest_.subspan(1);
+  return output;
+}
+
+}  // namespace meshfarm
