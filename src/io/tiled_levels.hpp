@@ -7,6 +7,7 @@
 #include <memory>
 #include <mutex>
 #include <string>
+#include <string_view>
 #include <unordered_map>
 #include <vector>
 
@@ -81,6 +82,11 @@ class TiledLevels : public PictureLevels {
   std::vector<std::uint32_t> first_tiles_;  // of each level
   std::vector<FileSection> tiles_;
 };
+
+/// All that a directory tells of. Throws DataError naming `what`.
+std::vector<std::unique_ptr<TiledLevels>> decode_tiled_pictures(
+    std::string_view directory, std::string_view what,
+    const std::shared_ptr<const SectionedFile>& file, const std::shared_ptr<TileCache>& cache);
 
 /// All of a file. Throws DataError, UnreadIoError.
 std::vector<std::unique_ptr<TiledLevels>> open_tiled_pictures(

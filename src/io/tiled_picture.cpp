@@ -73,12 +73,10 @@ FileSection TiledPicturesWriter::finish() {
   return sections_.add(seal(k_kind, k_version, out.bytes()));
 }
 
-std::vector<std::unique_ptr<TiledLevels>> open_tiled_pictures(
-    const Stage& stage, const TiledPicturesRef& pictures, const std::shared_ptr<TileCache>& cache) {
-  const auto file = std::make_shared<const SectionedFile>(stage, pictures.file);
-  const std::string& name = pictures.file.name;
-  const std::string directory = file->read(pictures.directory);
-  ByteReader in(unseal(directory, k_kind, k_version, name), name);
+std::vector<std::unique_ptr<TiledLevels>> decode_tiled_pictures(
+    std::string_view directory, std::string_view what,
+    const std::shared_ptr<const SectionedFile>& file, const std::shared_ptr<TileCache>& cache) {
+  ByteReader in(unseal(directory, k_kind, k_version, what), what);
   std::vector<std::unique_ptr<TiledLevels>> opened;
   const auto count = in.get<std::uint32_t>();
   for (std::uint32_t i = 0; i < count; ++i) {
@@ -86,6 +84,12 @@ std::vector<std::unique_ptr<TiledLevels>> open_tiled_pictures(
   }
   in.expect_end();
   return opened;
+}
+
+std::vector<std::unique_ptr<TiledLevels>> open_tiled_pictures(
+    const Stage& stage, const TiledPicturesRef& pictures, const std::shared_ptr<TileCache>& cache) {
+  const auto file = std::make_shared<const SectionedFile>(stage, pictures.file);
+  return decode_tiled_pictures(file->read(pictures.directory), pictures.file.name, file, cache);
 }
 
 TiledLevels::TiledLevels(std::shared_ptr<const SectionedFile> file, ByteReader& in,

@@ -7,6 +7,9 @@
 #include <meshfarm/pipeline/sink_need.hpp>
 #include <meshfarm/util/errors.hpp>
 
+#include "pipeline/bake_plan.hpp"
+#include "pipeline/texture_bake.hpp"
+
 namespace meshfarm {
 namespace {
 
@@ -23,6 +26,15 @@ std::string counted(std::uint64_t triangles) {
                                 : std::to_string(triangles / 1'000'000) + " million";
 }
 
+/// The result with its charts, then the picture as it is put together.
+std::uint64_t bytes_of_bake(const RunOptions& options, double triangles) {
+  constexpr double k_bytes_per_charted_triangle = 350;
+  constexpr double k_bytes_per_texel = 22;
+  const double side = options.texture_size != 0 ? options.texture_size : k_most_chosen_side;
+  return static_cast<std::uint64_t>(k_bytes_per_charted_triangle * triangles +
+                                    k_bytes_per_texel * side * side);
+}
+
 }  // namespace
 
 std::optional<SinkNeed> sink_need(const Manifest& manifest, const RunOptions& options) {
@@ -35,7 +47,9 @@ std::optional<SinkNeed> sink_need(const Manifest& manifest, const RunOptions& op
   const double stitched =
       std::min(all, times * target + static_cast<double>(manifest.boundary_triangles));
   const auto triangles = static_cast<std::uint64_t>(stitched);
-  return SinkNeed{triangles, k_process_bytes + k_bytes_per_triangle * triangles};
+  std::uint64_t bytes = k_bytes_per_triangle * triangles;
+  if (bakes_texture(manifest, options)) bytes = std::max(bytes, bytes_of_bake(options, target));
+  return SinkNeed{triangles, k_process_bytes + bytes};
 }
 
 std::string check_sink_need(const Manifest& manifest, const RunOptions& options,

@@ -33,10 +33,9 @@ constexpr std::size_t k_triangles_of_seam = 16'384;
 /// The power of two that has about as many texels.
 std::uint32_t side_for(std::uint64_t texels) {
   constexpr std::uint32_t k_least = 256;
-  constexpr std::uint32_t k_most = 4096;
   const double side = std::sqrt(static_cast<double>(texels));
   std::uint32_t power = k_least;
-  while (power < k_most && power < side) power *= 2;
+  while (power < k_most_chosen_side && power < side) power *= 2;
   return power;
 }
 

@@ -14,6 +14,9 @@
 
 namespace meshfarm {
 
+/// A picture whose side nobody chose has this at most.
+inline constexpr std::uint32_t k_most_chosen_side = 4096;
+
 /// A new texture of a result: where its triangles lie on the picture, before that has colours.
 struct TextureLayout {
   std::uint32_t size = 0;  // texels of a side

@@ -1,5 +1,6 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
+#include <meshfarm/pipeline/bake_job.hpp>
 #include <meshfarm/pipeline/compose_job.hpp>
 #include <meshfarm/pipeline/simplify_job.hpp>
 #include <meshfarm/pipeline/sort_job.hpp>
@@ -25,6 +26,10 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   try_to(decode_sweep_parameters, bytes);
   try_to(decode_compose_parameters, bytes);
   try_to(decode_sort_parameters, bytes);
+  try_to(decode_tile_parameters, bytes);
+  try_to(decode_bake_parameters, bytes);
+  try_to([](std::string_view summary) { decode_finish_summary(summary, "summary"); }, bytes);
+  try_to([](std::string_view summary) { decode_tile_summary(summary, "summary"); }, bytes);
   try_to([](std::string_view summary) { decode_sort_summary(summary, "summary"); }, bytes);
   return 0;
 }

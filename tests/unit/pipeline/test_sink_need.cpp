@@ -32,6 +32,18 @@ TEST_CASE("the sink needs about what was measured") {
   CHECK_FALSE(sink_need(manifest, {.error = {0.1, true}}));
 }
 
+TEST_CASE("the sink needs more for a large picture that it puts together") {
+  Manifest manifest = manifest_of(1'000'000);
+  manifest.uvs = true;
+  manifest.labels = {"material", {{.name = "skin"}}};
+  const auto bytes = [&](TextureMode textures, std::uint32_t side) {
+    return sink_need(manifest, {.ratio = 0.01, .textures = textures, .texture_size = side})->bytes;
+  };
+  CHECK(bytes(TextureMode::bake, 8192) > std::uint64_t{16} * 8192 * 8192);
+  CHECK(bytes(TextureMode::bake, 0) > std::uint64_t{16} * 4096 * 4096);
+  CHECK(bytes(TextureMode::bake, 0) > bytes(TextureMode::keep, 0));
+}
+
 TEST_CASE("what a sink can never hold is refused, what does not fit here is told") {
   const Manifest manifest = manifest_of(4'000'000'000);
   CHECK_THROWS_WITH_AS(check_sink_need(manifest, {.ratio = 0.5}, std::nullopt),
