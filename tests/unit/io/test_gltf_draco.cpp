@@ -142,6 +142,17 @@ TEST_CASE("what Draco compressed is refused if it is malformed, or does not fit"
         std::string::npos);
 }
 
+TEST_CASE("Draco takes no memory for triangles that a few bytes tell of") {
+  // An edgebreaker's head, then vertices, triangles, one attribute, symbols and splits.
+  const std::string head("DRACO\2\2\1\1\0\0\0", 12);
+  const std::string many = "\x80\x80\x80\x80\4";  // 2^30
+  const std::string bytes = head + many + many + "\1" + many + std::string(9, '\0');
+  CHECK(told(draco_glb(bytes, 4)) ==
+        "m.glb: accessors[1] has 6 elements, but 3221225472 are compressed for it");
+  CHECK(told(draco_glb(bytes, 4, std::size_t{3} << 30)).find("tells of 1073741824 triangles in") !=
+        std::string::npos);
+}
+
 #else
 
 TEST_CASE("a build without Draco says so") {
