@@ -65,12 +65,11 @@ std::optional<fs::path> find_beside(const fs::path& folder, std::string_view nam
   return std::nullopt;
 }
 
-std::string read_beside(const fs::path& path) {
-  constexpr std::uint64_t k_most_bytes = std::uint64_t{1} << 30;
+std::string read_beside(const fs::path& path, std::uint64_t most_bytes) {
   const InputFile file(path);
-  if (file.size() > k_most_bytes) {
+  if (file.size() > most_bytes) {
     throw DataError(path.string() + ": has " + std::to_string(file.size()) +
-                    " bytes, more than the most, " + std::to_string(k_most_bytes));
+                    " bytes, more than the most, " + std::to_string(most_bytes));
   }
   std::string bytes(file.size(), '\0');
   file.read(0, bytes);

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -18,7 +19,11 @@ bool is_beneath(const std::filesystem::path& path);
 std::optional<std::filesystem::path> find_beside(const std::filesystem::path& folder,
                                                  std::string_view name);
 
-/// All bytes of a regular file of at most 1 GiB. Throws IoError, or DataError.
-std::string read_beside(const std::filesystem::path& path);
+/// The most bytes of a picture beside a mesh.
+inline constexpr std::uint64_t k_most_picture_file = std::uint64_t{1} << 30;
+
+/// All bytes of a regular file of no more than `most_bytes`. Throws IoError, or DataError.
+std::string read_beside(const std::filesystem::path& path,
+                        std::uint64_t most_bytes = k_most_picture_file);
 
 }  // namespace meshfarm

@@ -50,9 +50,10 @@ class Libraries {
   }
 
   void add(const std::filesystem::path& library) {
+    constexpr std::uint64_t k_most_bytes = std::uint64_t{64} << 20;  // with 100,000 names 600 each
     // The mesh is of use without.
     try {
-      for (const MtlMaterial& material : parse_mtl(read_beside(library))) {
+      for (const MtlMaterial& material : parse_mtl(read_beside(library, k_most_bytes))) {
         const bool is_used = statements_.materials.label_of(material.name).has_value();
         if (!is_used || !known_.insert(material.name).second) continue;
         made_.push_back({material, library.parent_path()});

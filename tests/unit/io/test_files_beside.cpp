@@ -29,4 +29,6 @@ TEST_CASE("files that other systems named are found beside a mesh, and nowhere e
   CHECK(found("maps") == "");
   CHECK(found("") == "");
   CHECK(read_beside(folder / "model/maps/C.JPG") == "22");
+  CHECK(read_beside(folder / "model/maps/C.JPG", 2) == "22");
+  CHECK_THROWS_AS(read_beside(folder / "model/maps/C.JPG", 1), DataError);
 }
