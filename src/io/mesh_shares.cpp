@@ -139,6 +139,8 @@ void MeshShares::add_triangles(const TriangleView& triangles) {
     const SharePlace c = map[t[2]];
     if (a.share == k_no_share || b.share == k_no_share || c.share == k_no_share) {
       ++dropped_;
+    } else if (a == b && b == c) {
+      ++points_left_out_;
     } else if (a.share == b.share && b.share == c.share) {
       triangles_.append(a.share, packers_[a.share].pack({a.place, b.place, c.place}));
       if (columns_.labels) labels_.put(a.share, triangles.columns.labels[i]);

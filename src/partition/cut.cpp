@@ -159,6 +159,8 @@ class Cutter {
     });
     shares_->finish();
     manifest_.dropped_not_finite = shares_->dropped();
+    manifest_.dropped_degenerate = shares_->points_left_out();
+    manifest_.coincident_corners = shares_->points_left_out();
   }
 
   void build_parts() {

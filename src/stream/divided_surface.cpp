@@ -2,9 +2,12 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
 #include <array>
+#include <memory>
 #include <mutex>
 #include <numeric>
+#include <optional>
 #include <utility>
+#include <vector>
 
 #include <meshfarm/stream/divided_surface.hpp>
 #include <meshfarm/stream/slab.hpp>
@@ -41,35 +44,44 @@ BoundaryNumbers number_as_they_are(const MeshShare& raw) {
   return made;
 }
 
+struct Divided {
+  std::uint32_t slabs = 0;
+  /// Whether many vertices at one point were made one, so that they do not make a slab too large.
+  bool merges = false;
+  std::unique_ptr<MeshShares> shares;
+};
+
 }  // namespace
 
 class DividedSurface::Impl {
  public:
   Impl(MeshSource& source, DivideOptions options) : source_(source), options_(std::move(options)) {
     choose_order();
-    choose_slabs();
-    distribute();
+    welded_ = divide(AtOnePoint::merge);
+    if (welded_.merges) as_it_is_ = divide(AtOnePoint::deal);
   }
 
   const Box& box() const { return box_; }
   std::uint64_t vertices() const { return vertices_; }
   std::uint64_t not_finite() const { return not_finite_; }
-  std::uint64_t triangles() const { return triangles_ - shares_->dropped(); }
+  std::uint64_t triangles() const { return triangles_ - welded_.shares->dropped(); }
 
   SurfaceTopology measure() const {
     std::uint64_t merged = 0;
     SurfaceTopology measured;
-    measured.welded = sum_of(Weld::exact, merged);
-    measured.as_it_is = merged == 0 && measured.welded.degenerate == 0 ? measured.welded
-                                                                       : sum_of(Weld::off, merged);
+    measured.welded = sum_of(welded_, Weld::exact, merged);
+    measured.as_it_is = merged == 0 && measured.welded.degenerate == 0
+                            ? measured.welded
+                            : sum_of(as_it_is(), Weld::off, merged);
     return measured;
   }
 
   void show(
       const std::function<void(std::span<const Vec3>, std::span<const Triangle>)>& take) const {
-    SharedVertices shared(options_.folder, slabs_);
-    for (std::uint32_t i = 0; i < slabs_; ++i) {
-      const MeshShare raw = shares_->read(i, Weld::off);
+    const Divided& divided = as_it_is();
+    SharedVertices shared(options_.folder, divided.slabs);
+    for (std::uint32_t i = 0; i < divided.slabs; ++i) {
+      const MeshShare raw = divided.shares->read(i, Weld::off);
       std::vector<SharedVertex> vertices;
       for (const std::uint32_t v : number_as_they_are(raw).places) {
         vertices.push_back({v, 0, 0, raw.positions[v]});
@@ -84,9 +96,9 @@ class DividedSurface::Impl {
       between.positions.clear();
       between.triangles.clear();
     };
-    for (std::uint32_t i = 0; i < slabs_; ++i) {
+    for (std::uint32_t i = 0; i < divided.slabs; ++i) {
       shared.forget_below(i);
-      for (const SeamTriangle& t : shares_->seam(i)) {
+      for (const SeamTriangle& t : divided.shares->seam(i)) {
         if (std::min({t[0].share, t[1].share, t[2].share}) != i) continue;
         if (between.triangles.size() == k_between_at_once) flush();
         const auto first = static_cast<std::uint32_t>(between.positions.size());
@@ -115,57 +127,73 @@ class DividedSurface::Impl {
     sorting_ = {probe.choose(), Weld::exact};
   }
 
-  void choose_slabs() {
-    const MeshFileInfo& info = source_.info();
-    const std::uint64_t triangles = std::max(info.faces, info.vertices);
-    map_ = std::make_unique<SlabMap>(
-        box_, sorting_.order,
-        static_cast<std::uint32_t>(slabs_wanted(triangles, options_.memory_bytes)),
-        AtOnePoint::stay);
-    do {
-      source_.scan_vertices([&](std::span<const Vec3> batch) { map_->count(batch); });
-    } while (map_->refine());
-    slabs_ = map_->divide();
-  }
-
-  void distribute() {
+  Divided divide(AtOnePoint at_one_point) {
+    Divided divided;
+    SlabMap map = choose_slabs(at_one_point);
+    divided.slabs = map.divide();
+    divided.merges = map.merges();
     const MeshFileInfo& info = source_.info();
     const std::uint64_t all = MeshShares::memory_for(vertices_, info.faces, info.positions);
-    shares_ = std::make_unique<MeshShares>(MeshShares::Options{
-        options_.folder, slabs_, vertices_, info.positions,
+    divided.shares = std::make_unique<MeshShares>(MeshShares::Options{
+        options_.folder, divided.slabs, vertices_, info.positions,
         all <= options_.memory_bytes / 4 ? all : 0, MeshShares::SeamsFor::each_share});
-    std::vector<std::uint32_t> slabs;
-    source_.scan_vertices([&](std::span<const Vec3> batch) {
-      slabs.clear();
-      for (const Vec3& p : batch) {
-        slabs.push_back(has_position(p) ? map_->target_of(p).slab : MeshShares::k_no_share);
-      }
-      shares_->add_vertices(batch, slabs);
-    });
-    map_.reset();
-    source_.scan_triangles([&](std::span<const WideTriangle> batch) {
-      shares_->add_triangles(batch);
-      triangles_ += batch.size();
-    });
-    shares_->finish();
+    share_out(map, *divided.shares);
+    return divided;
   }
 
+  SlabMap choose_slabs(AtOnePoint at_one_point) {
+    const MeshFileInfo& info = source_.info();
+    const std::uint64_t triangles = std::max(info.faces, info.vertices);
+    SlabMap map(box_, sorting_.order,
+                static_cast<std::uint32_t>(slabs_wanted(triangles, options_.memory_bytes)),
+                at_one_point);
+    do {
+      source_.scan_vertices([&](std::span<const Vec3> batch) { map.count(batch); });
+    } while (map.refine());
+    return map;
+  }
+
+  void share_out(SlabMap& map, MeshShares& shares) {
+    std::vector<std::uint32_t> slabs;
+    std::vector<std::uint32_t> points;
+    source_.scan_vertices([&](std::span<const Vec3> batch) {
+      slabs.clear();
+      points.clear();
+      for (const Vec3& p : batch) {
+        const SlabMap::Target target =
+            has_position(p) ? map.target_of(p) : SlabMap::Target{MeshShares::k_no_share};
+        slabs.push_back(target.slab);
+        if (map.merges()) points.push_back(target.point);
+      }
+      shares.add_vertices(batch, slabs, points);
+    });
+    triangles_ = 0;
+    source_.scan_triangles([&](std::span<const WideTriangle> batch) {
+      shares.add_triangles(batch);
+      triangles_ += batch.size();
+    });
+    shares.finish();
+  }
+
+  const Divided& as_it_is() const { return as_it_is_ ? *as_it_is_ : welded_; }
+
   /// As many at once as fit into the memory, going by the average.
-  unsigned threads() const {
+  unsigned threads(std::uint32_t slabs) const {
     const std::uint64_t slab =
-        k_slab_bytes_per_triangle * triangles_ / std::max<std::uint64_t>(1, slabs_);
+        k_slab_bytes_per_triangle * triangles_ / std::max<std::uint64_t>(1, slabs);
     const std::uint64_t fit = options_.memory_bytes / 2 / std::max<std::uint64_t>(1, slab);
     const unsigned most = options_.threads != 0 ? options_.threads : processors();
     return static_cast<unsigned>(std::clamp<std::uint64_t>(fit, 1, most));
   }
 
-  Topology sum_of(Weld weld, std::uint64_t& merged) const {
-    TopologySum sum(*shares_, options_.folder, slabs_);
-    std::uint64_t degenerate = 0;
+  Topology sum_of(const Divided& divided, Weld weld, std::uint64_t& merged) const {
+    TopologySum sum(*divided.shares, options_.folder, divided.slabs);
+    std::uint64_t degenerate = divided.shares->points_left_out();
     std::mutex mutex;
-    parallel_for(slabs_, threads(), [&](std::uint64_t i) {
+    if (weld == Weld::exact) merged += divided.shares->merged();
+    parallel_for(divided.slabs, threads(divided.slabs), [&](std::uint64_t i) {
       const auto number = static_cast<std::uint32_t>(i);
-      MeshShare raw = shares_->read(number, weld);
+      MeshShare raw = divided.shares->read(number, weld);
       const BoundaryNumbers numbers =
           weld == Weld::off ? number_as_they_are(raw) : number_boundary(raw, sorting_);
       if (weld == Weld::off) {
@@ -195,9 +223,8 @@ class DividedSurface::Impl {
   DivideOptions options_;
   Box box_;
   Sorting sorting_;
-  std::unique_ptr<SlabMap> map_;
-  std::uint32_t slabs_ = 0;
-  std::unique_ptr<MeshShares> shares_;
+  Divided welded_;
+  std::optional<Divided> as_it_is_;  // where it is not welded_
   std::uint64_t vertices_ = 0;
   std::uint64_t not_finite_ = 0;
   std::uint64_t triangles_ = 0;

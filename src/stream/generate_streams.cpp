@@ -164,6 +164,8 @@ class Generator {
     });
     shares_->finish();
     manifest_.dropped_not_finite = shares_->dropped();
+    manifest_.dropped_degenerate = shares_->points_left_out();
+    manifest_.coincident_corners = shares_->points_left_out();
   }
 
   /// As many at once as fit into the memory, going by the average.

@@ -101,7 +101,8 @@ class MeshShares {
   /// many there are. Throws DataError if a share gets 2^32 vertices.
   void add_vertices(const VertexView& batch, std::span<const std::uint32_t> shares,
                     std::span<const std::uint32_t> points = {});
-  /// After all vertices.
+  /// After all vertices. Triangles whose corners are all one vertex are left out: there may be any
+  /// number of them at one point, as in a file with a hole of zeros.
   void add_triangles(const TriangleView& triangles);
   /// After all triangles; read() is then safe from several threads.
   void finish();
@@ -116,6 +117,8 @@ class MeshShares {
   std::uint64_t merged() const { return merged_; }
   /// Triangles that used a vertex that was left out.
   std::uint64_t dropped() const { return dropped_; }
+  /// Triangles whose corners were all one vertex.
+  std::uint64_t points_left_out() const { return points_left_out_; }
   /// The boundary triangles, in file order and by final numbers, one entry of `numbers` a share.
   SharedTriangles boundary(std::span<const BoundaryNumbers> numbers) const;
 
@@ -165,6 +168,7 @@ class MeshShares {
   std::uint64_t added_ = 0;
   std::uint64_t merged_ = 0;
   std::uint64_t dropped_ = 0;
+  std::uint64_t points_left_out_ = 0;
   std::vector<SeamTriangle> boundary_;  // as the square root of the input
   TriangleColumns boundary_columns_;
 };

@@ -102,6 +102,25 @@ TEST_CASE("vertices of one point become one") {
   CHECK(read.triangles == std::vector<Triangle>{{0, 1, 3}, {1, 2, 3}, {2, 0, 3}, {0, 3, 3}});
 }
 
+TEST_CASE("triangles that are points are left out and counted") {
+  const test::TempFolder folder;
+  MeshShares shares({folder.path(), 2, 6});
+  constexpr std::uint32_t k_none = MeshShares::k_no_point;
+  const std::vector<Vec3> positions = {{0, 0, 0}, {0, 0, 0}, {0, 0, 0},
+                                       {1, 0, 0}, {2, 0, 0}, {3, 0, 0}};
+  const std::vector<std::uint32_t> where = {0, 0, 0, 0, 0, 1};
+  const std::vector<std::uint32_t> points = {4, 4, 4, k_none, k_none, k_none};
+  shares.add_vertices(positions, where, points);
+  const std::vector<WideTriangle> triangles{{0, 1, 2}, {0, 3, 4}, {3, 3, 3},
+                                            {3, 3, 4}, {5, 5, 5}, {0, 1, 5}};
+  shares.add_triangles(triangles);
+  shares.finish();
+  CHECK(shares.points_left_out() == 3);
+  CHECK(shares.read(0, Weld::off).triangles.size() == 2);
+  CHECK(shares.read(1, Weld::off).triangles.empty());
+  CHECK(shares.seam(1).size() == 1);
+}
+
 TEST_CASE("each vertex of a share has its appearance, in memory and in scratch files") {
   for (const std::uint64_t memory : {std::uint64_t{0}, std::uint64_t{1} << 20}) {
     const test::TempFolder folder;

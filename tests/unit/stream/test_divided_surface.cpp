@@ -99,6 +99,44 @@ TEST_CASE("surfaces that touch stay apart as in a run") {
   CHECK(both.welded.euler == 4);
 }
 
+TEST_CASE("many vertices at one point make no slab too large") {
+  constexpr std::uint32_t k_many = 20'000;
+  const Mesh mesh = test::with_crowd(test::grid(60, 30), k_many);
+  const SurfaceTopology little = measured(mesh, k_little);
+  const SurfaceTopology much = measured(mesh, std::uint64_t{1} << 30);
+  check_same(little.as_it_is, measure_topology(mesh));
+  check_same(little.welded, much.welded);
+  CHECK(little.as_it_is.vertices == mesh.positions.size());
+  CHECK(little.welded.vertices == mesh.positions.size() - k_many);
+  const test::TempFolder folder;
+  test::MemorySource source(mesh);
+  const DividedSurface surface(source, {folder.path(), k_little, 2});
+  std::size_t triangles = 0;
+  surface.show([&](std::span<const Vec3> positions, std::span<const Triangle> piece) {
+    const bool is_between_slabs = positions.size() == 3 * piece.size();
+    CHECK((is_between_slabs || positions.size() < k_many / 10));
+    triangles += piece.size();
+  });
+  CHECK(triangles == mesh.triangles.size());
+}
+
+TEST_CASE("triangles that are points are counted, however many") {
+  constexpr std::uint32_t k_many = 30'000;
+  Mesh mesh = test::grid(60, 30);
+  mesh.triangles.insert(mesh.triangles.end(), k_many, Triangle{7, 7, 7});
+  Mesh soup = mesh;  // the same, of vertices of their own
+  for (std::size_t i = soup.triangles.size() - k_many; i < soup.triangles.size(); ++i) {
+    const auto first = static_cast<std::uint32_t>(soup.positions.size());
+    soup.positions.insert(soup.positions.end(), 3, soup.positions[7]);
+    soup.triangles[i] = {first, first + 1, first + 2};
+  }
+  for (const Mesh& each : {mesh, soup}) {
+    const SurfaceTopology little = measured(each, k_little);
+    check_same(little.as_it_is, measure_topology(each));
+    check_same(little.welded, measure_topology(mesh));
+  }
+}
+
 TEST_CASE("all triangles are shown, those between slabs too") {
   const Mesh mesh = test::torus(50, 30);
   const test::TempFolder folder;
