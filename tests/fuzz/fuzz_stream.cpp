@@ -7,6 +7,8 @@
 #include <meshfarm/util/checksum.hpp>
 #include <meshfarm/util/errors.hpp>
 
+#include "io/staged_positions.hpp"
+
 namespace {
 
 using namespace meshfarm;
@@ -28,12 +30,13 @@ std::string resealed(std::string file) {
   if (file.size() < k_head + 8) return file;
   std::uint64_t sum = checksum(std::string_view(file).substr(0, k_head));
   std::memcpy(file.data() + k_head, &sum, sizeof sum);
-  const std::size_t point = 3 * static_cast<unsigned char>(file[16]);
+  const auto format = vertex_format_of(static_cast<std::uint8_t>(file[16]));
+  if (!format) return file;
   for (std::size_t at = k_head + 8; at + 12 <= file.size();) {
     std::uint32_t counts[3];
     std::memcpy(counts, file.data() + at, sizeof counts);
-    const std::size_t size =
-        12 + counts[0] * point + counts[1] * std::size_t{4} + counts[2] * std::size_t{12};
+    const std::size_t size = 12 + counts[0] * format->bytes() + counts[1] * std::size_t{4} +
+                             counts[2] * (std::size_t{12} + format->columns.bytes());
     if (size > file.size() - at || file.size() - at - size < 8) break;
     std::string chained(reinterpret_cast<const char*>(&sum), sizeof sum);
     chained += file.substr(at, size);
