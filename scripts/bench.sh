@@ -3,15 +3,16 @@
 #   bench.sh [--peers all|NAME,...] [--runs N] [--ratio R] [--workers N] [--install] [--kernel] INPUT.ply
 #   bench.sh --attributes [--runs N] [--ratio R] [--workers N] [--install] INPUT.ply
 #   bench.sh --corpus FOLDER [--ratios R,...] [--peers all|NAME,...] [--workers N] [--install]
-#   --peers    meshoptimizer (Debian's and npm's), cgal (both of its methods), openmesh, vtk, or
-#              none: those that are installed are run, the others are named (default: all)
+#   --peers    meshoptimizer (Debian's and npm's), cgal (both of its methods), openmesh, vtk,
+#              meshlab, or none: those that are installed are run, the others are named (default:
+#              all but meshlab, which is slow)
 #   --runs     rounds; the programs take turns in each, and medians are shown (default: 5)
 #   --ratio    how much of the input is kept (default: 0.01)
 #   --workers  of the whole runs of meshfarm (default: 2)
 #   --install  first installs the peers: Debian packages, and meshoptimizer's newest from npm
 #   --kernel   also runs the microbenchmarks; without INPUT.ply only these
 #   --attributes  colours the mesh, once with noise and once with stripes, and measures beside the
-#              peers that keep colours: meshoptimizer of npm and VTK
+#              peers that keep colours: meshoptimizer of npm, VTK and MeshLab (file to file)
 #   --corpus   every mesh of FOLDER (.ply, .ply.gz, .ply.zst), to every ratio, by both schemes
 #   --ratios   of the corpus (default: 0.5,0.1,0.03,0.01,0.003)
 # The rows "file to file" are whole runs: everything from the start of the program to its end. The
@@ -19,7 +20,8 @@
 set -euo pipefail
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 build=$root/build-bench
-known=(meshoptimizer meshoptimizer_npm cgal_lindstrom_turk cgal_garland_heckbert openmesh vtk)
+known=(meshoptimizer meshoptimizer_npm cgal_lindstrom_turk cgal_garland_heckbert openmesh vtk
+  meshlab_file)
 npm_version=1.3.0
 
 fail_usage() {
@@ -58,6 +60,7 @@ install_peers() {
   "$root/scripts/packages.sh" --npm
   DEBIAN_FRONTEND=noninteractive "${sudo[@]}" apt-get install -y --no-install-recommends \
     libmeshoptimizer-dev libcgal-dev libopenmesh-dev libvtk9-dev libbenchmark-dev libeigen3-dev \
+    meshlab xvfb xauth \
     > "$build/install.log" 2>&1 ||
     { tail -n 5 "$build/install.log" >&2; echo "bench.sh: could not install the peers" >&2; exit 1; }
   npm install --prefix "$build/npm" "meshoptimizer@$npm_version" > "$build/npm.log" 2>&1 ||
@@ -69,7 +72,7 @@ choose_peers() {
   local name word
   for name in "${known[@]}"; do
     for word in ${peers//,/ }; do
-      [ "$word" = all ] || [[ $name == "$word"* ]] || continue
+      [ "$word" = all ] && [ "$name" != meshlab_file ] || [[ $name == "$word"* ]] || continue
       if [ -x "$build/tests/bench/peer_$name" ]; then
         echo "$name"
       else
@@ -105,9 +108,10 @@ run_one() {
   touch "$results/$name.failed"
 }
 
+# Colours of large meshes take more than what `compare` may use by itself.
 compare_one() {
-  "$build/meshfarm" compare "$input" "$results/$1.ply" --json > "$results/$1.compare" ||
-    touch "$results/$1.failed"
+  "$build/meshfarm" compare "$input" "$results/$1.ply" --memory 4G --json \
+    > "$results/$1.compare" || touch "$results/$1.failed"
 }
 
 check_peer_words
@@ -125,7 +129,8 @@ if [ "$attributes" = yes ]; then
   for kind in noise stripes; do
     coloured=$build/$(basename "${input%.ply}")-$kind.ply
     "$build/tests/bench/colour_mesh" "$input" "$coloured" "$kind"
-    "$0" --peers meshoptimizer_npm,vtk --runs "$runs" --ratio "$ratio" --workers "$workers" "$coloured"
+    "$0" --peers meshoptimizer_npm,vtk,meshlab --runs "$runs" --ratio "$ratio" \
+      --workers "$workers" "$coloured"
   done
   exit 0
 fi
@@ -140,7 +145,9 @@ fi
 results=$build/results
 rm -rf "$results"
 mkdir -p "$results"
-names=(meshfarm "${names[@]}" meshfarm_file)
+shape=()
+! head -c 4096 "$input" | grep -aq 'property [a-z0-9]* red' || shape=(meshfarm_shape)
+names=(meshfarm "${shape[@]}" "${names[@]}" meshfarm_file)
 [[ " ${names[*]} " != *" meshoptimizer "* ]] || names+=(meshoptimizer_file)
 
 cat "$input" > /dev/null # the first to read it shall not pay for the disk
