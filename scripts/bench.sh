@@ -145,9 +145,9 @@ fi
 results=$build/results
 rm -rf "$results"
 mkdir -p "$results"
-shape=()
-! head -c 4096 "$input" | grep -aq 'property [a-z0-9]* red' || shape=(meshfarm_shape)
-names=(meshfarm "${shape[@]}" "${names[@]}" meshfarm_file)
+own=()
+! head -c 4096 "$input" | grep -aq 'property [a-z0-9]* red' || own=(meshfarm_shape meshfarm_fitted)
+names=(meshfarm "${own[@]}" "${names[@]}" meshfarm_file)
 [[ " ${names[*]} " != *" meshoptimizer "* ]] || names+=(meshoptimizer_file)
 
 cat "$input" > /dev/null # the first to read it shall not pay for the disk

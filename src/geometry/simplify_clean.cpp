@@ -259,8 +259,11 @@ void check_input(const Mesh& mesh, const SimplifyOptions& options) {
 
 Surface clean_surface(Mesh& mesh, const SimplifyOptions& options, Adjacency& adjacency) {
   Surface surface;
-  surface.dropped.degenerate =
-      keep_triangles(mesh, [&](std::size_t i) { return !is_degenerate(mesh.triangles[i]); });
+  // Mostly there are none, and to look for one is cheaper than to move all.
+  if (std::any_of(mesh.triangles.begin(), mesh.triangles.end(), is_degenerate)) {
+    surface.dropped.degenerate =
+        keep_triangles(mesh, [&](std::size_t i) { return !is_degenerate(mesh.triangles[i]); });
+  }
   adjacency.build(mesh.triangles, mesh.positions.size(), mesh.columns);
   surface.flags = classify_vertices(mesh, options, adjacency);
   const auto again = [&] {

@@ -9,6 +9,14 @@
 #include "geometry/simplify_queue.hpp"
 
 namespace meshfarm {
+namespace {
+
+bool has_three_corners(const Triangle& t) {
+  const auto [a, b, c] = t;
+  return (a != b) & (b != c) & (c != a);
+}
+
+}  // namespace
 
 WorkingMesh::WorkingMesh(Mesh mesh, const SimplifyOptions& options)
     : mesh_(std::move(mesh)),
@@ -96,27 +104,49 @@ void WorkingMesh::end_pass(std::uint64_t removed, double cost) {
 /// Renumbers the vertices that are left, in their order, and drops the triangles that are gone. All
 /// are moved: a branch on which ones stay would be mispredicted half of the time.
 void WorkingMesh::compact() {
+  compact_appearances();
   std::uint32_t kept = 0;
   for (std::uint32_t v = 0; v < target_.size(); ++v) {
     // A vertex merges into a smaller one, whose new number is known by now.
     const std::uint32_t target = target_[v];
     const bool stays = target == v;
-    move_vertex(v, kept);
+    mesh_.positions[kept] = mesh_.positions[v];
+    flags_[kept] = flags_[v];
     target_[v] = stays ? kept : target_[target];
     kept += stays ? 1 : 0;
   }
-  keep_vertices(kept);
+  mesh_.positions.resize(kept);
+  flags_.resize(kept);
+  compact_columns();
   std::size_t left = 0;
-  for (std::size_t i = 0; i < mesh_.triangles.size(); ++i) {
-    const Triangle t = mesh_.triangles[i];
+  for (const Triangle& t : mesh_.triangles) {
     const Triangle now = {target_[t[0]], target_[t[1]], target_[t[2]]};
     mesh_.triangles[left] = now;
-    mesh_.columns.move(i, left);
-    const auto [a, b, c] = now;
-    const bool is_left = (a != b) & (b != c) & (c != a);
-    left += is_left ? 1 : 0;
+    left += has_three_corners(now) ? 1 : 0;
   }
   mesh_.triangles.resize(left);
+}
+
+/// By themselves, so that meshes without them do not even ask. While the targets are old numbers.
+void WorkingMesh::compact_appearances() {
+  if (mesh_.appearances.empty()) return;
+  std::uint32_t kept = 0;
+  for (std::uint32_t v = 0; v < target_.size(); ++v) {
+    mesh_.appearances[kept] = mesh_.appearances[v];
+    kept += target_[v] == v ? 1 : 0;
+  }
+  mesh_.appearances.resize(kept);
+}
+
+/// The same of columns, while the targets are new numbers, and the triangles' corners old ones.
+void WorkingMesh::compact_columns() {
+  if (mesh_.columns.empty()) return;
+  std::size_t left = 0;
+  for (std::size_t i = 0; i < mesh_.triangles.size(); ++i) {
+    const Triangle& t = mesh_.triangles[i];
+    mesh_.columns.move(i, left);
+    left += has_three_corners({target_[t[0]], target_[t[1]], target_[t[2]]}) ? 1 : 0;
+  }
   mesh_.columns.resize(left);
 }
 

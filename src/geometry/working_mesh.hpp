@@ -67,6 +67,8 @@ class WorkingMesh {
  private:
   bool has_free_border() const;
   void compact();
+  void compact_appearances();
+  void compact_columns();
   void drop_unused_vertices();
   void move_vertex(std::uint32_t from, std::uint32_t to);
   void keep_vertices(std::uint32_t count);

@@ -15,11 +15,17 @@ namespace {
 
 constexpr std::uint32_t k_none = UINT32_MAX;
 
+/// A cheap hash for what is only to leave most vertices out; its high bits are the better ones.
+std::uint64_t quick_hash_of(Vec3 position) {
+  const PlaceKey key(position);
+  return key.x * 0x9e3779b97f4a7c15U + key.y * 0xd6e8feb86659fd93U + key.z * 0xa0761d6478bd642fU;
+}
+
 /// The boundary vertices and all others at their points, ascending, and a few more.
 std::vector<std::uint32_t> near_boundary(const MeshShare& share) {
   const int shift = 64 - static_cast<int>(std::bit_width(share.boundary.size() * 16));
   std::vector<bool> hashes(std::size_t{1} << (64 - shift), false);
-  const auto slot = [&](std::uint32_t v) { return hash_of(PlaceKey(share.positions[v])) >> shift; };
+  const auto slot = [&](std::uint32_t v) { return quick_hash_of(share.positions[v]) >> shift; };
   for (const std::uint32_t v : share.boundary) hashes[slot(v)] = true;
   std::vector<std::uint32_t> near;
   for (std::uint32_t v = 0; v < share.positions.size(); ++v) {

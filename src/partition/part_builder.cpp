@@ -15,9 +15,12 @@ constexpr std::uint32_t k_unused = std::numeric_limits<std::uint32_t>::max();
 
 /// Replaces each corner by its representative; drops triangles that lose a corner by it.
 std::uint64_t merge_corners(Mesh& mesh, const std::vector<std::uint32_t>& representative) {
+  bool any_lost = false;
   for (Triangle& t : mesh.triangles) {
-    for (std::uint32_t& corner : t) corner = representative[corner];
+    const auto [a, b, c] = t = {representative[t[0]], representative[t[1]], representative[t[2]]};
+    any_lost |= (a == b) | (b == c) | (c == a);
   }
+  if (!any_lost) return 0;
   return keep_triangles(mesh, [&](std::size_t i) {
     const auto [a, b, c] = mesh.triangles[i];
     return a != b && b != c && c != a;

@@ -120,8 +120,8 @@ void print(const Outcome& outcome) {
 }  // namespace
 
 void Stopwatch::start() {
-  wall_s_ = -seconds(CLOCK_MONOTONIC);
-  cpu_s_ = -seconds(CLOCK_PROCESS_CPUTIME_ID);
+  wall_s_ -= seconds(CLOCK_MONOTONIC);
+  cpu_s_ -= seconds(CLOCK_PROCESS_CPUTIME_ID);
 }
 
 void Stopwatch::stop() {

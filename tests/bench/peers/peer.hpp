@@ -12,7 +12,8 @@
 
 namespace meshfarm::bench {
 
-/// CPU time of all threads of this process, and wall time, between start() and stop().
+/// CPU time of all threads of this process, and wall time, between start() and stop(), added up
+/// if it is started again.
 class Stopwatch {
  public:
   void start();
