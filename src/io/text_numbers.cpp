@@ -27,6 +27,10 @@ double power_of_ten(long exponent) {
 
 /// The power of ten that the last digit of a decimal counts.
 long last_digit(std::string_view text) {
+  // Mostly there are digits behind a point, and no exponent.
+  std::size_t point = text.size();
+  while (point > 0 && text[point - 1] >= '0' && text[point - 1] <= '9') --point;
+  if (point > 0 && text[point - 1] == '.') return -static_cast<long>(text.size() - point);
   long decimals = 0;
   bool after_point = false;
   for (std::size_t i = 0; i < text.size(); ++i) {
