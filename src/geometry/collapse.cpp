@@ -150,12 +150,22 @@ std::span<const CornerId> CollapseJudge::ids_of(std::uint32_t vertex,
   return buffer.first(size);
 }
 
+/// for_crease_edges of one end, as it is now.
+template <typename Candidate, typename Take>
+void CollapseJudge::for_creases_of(const Ring& ring, std::uint32_t vertex, Vec3 at,
+                                   const Candidate& is_candidate, const Take& take) const {
+  if ((ring.flags & k_crease) == 0) return;
+  std::array<Corner, k_max_star> corners;
+  for (std::uint32_t i = 0; i < ring.size; ++i) corners[i] = {ring.next[i], ring.prev[i]};
+  std::array<CornerId, k_max_star> ids;
+  for_crease_edges({std::span<const Corner>(corners.data(), ring.size), ids_of(vertex, ids),
+                    state_.adjacency->fan_at(vertex).columns},
+                   at, state_.positions, *state_.creases, is_candidate, take);
+}
+
 /// Adds the planes of the lines at one end, but for the edge to `without`.
 void CollapseJudge::add_lines(const Ring& ring, std::uint32_t vertex, Vec3 end,
                               std::uint32_t without) {
-  std::array<Corner, k_max_star> corners;
-  for (std::uint32_t i = 0; i < ring.size; ++i) corners[i] = {ring.next[i], ring.prev[i]};
-  const std::span<const Corner> fan(corners.data(), ring.size);
   const Vec3 at = middle_ + end;
   Quadric planes;
   const auto add = [&](const Corner& c, std::uint32_t neighbour, double weight) {
@@ -163,24 +173,56 @@ void CollapseJudge::add_lines(const Ring& ring, std::uint32_t vertex, Vec3 end,
                    state_.positions[neighbour] - at, weight);
   };
   if (ring.border()) {
-    for_border_edges(fan, [&](const Corner& c, std::uint32_t neighbour) {
-      if (neighbour != without) add(c, neighbour, 1);
-    });
-  }
-  if ((ring.flags & k_crease) != 0) {
-    const auto is_other_on_crease = [&](std::uint32_t neighbour) {
-      return neighbour != without && (state_.flags[neighbour] & k_crease) != 0;
-    };
-    const double weight = crease_weight(state_.adjacency->has_labels());
-    std::array<CornerId, k_max_star> ids;
-    for_crease_edges({fan, ids_of(vertex, ids), state_.adjacency->fan_at(vertex).columns}, at,
-                     state_.positions, *state_.creases, is_other_on_crease,
-                     [&](const Corner& one, const Corner& other) {
-                       add(one, one.prev, weight);
-                       add(other, one.prev, weight);
+    std::array<Corner, k_max_star> corners;
+    for (std::uint32_t i = 0; i < ring.size; ++i) corners[i] = {ring.next[i], ring.prev[i]};
+    for_border_edges(std::span<const Corner>(corners.data(), ring.size),
+                     [&](const Corner& c, std::uint32_t neighbour) {
+                       if (neighbour != without) add(c, neighbour, 1);
                      });
   }
+  const auto is_other_on_crease = [&](std::uint32_t neighbour) {
+    return neighbour != without && (state_.flags[neighbour] & k_crease) != 0;
+  };
+  const double weight = crease_weight(state_.adjacency->has_labels());
+  for_creases_of(ring, vertex, at, is_other_on_crease, [&](const Corner& one, const Corner& other) {
+    add(one, one.prev, weight);
+    add(other, one.prev, weight);
+  });
   quadric_.add(planes, end);
+}
+
+/// The only neighbour along a crease but `without`.
+std::uint32_t CollapseJudge::next_on_line(const Ring& ring, std::uint32_t vertex,
+                                          std::uint32_t without) const {
+  std::uint32_t found = k_none;
+  std::uint32_t count = 0;
+  const auto is_other_on_crease = [&](std::uint32_t neighbour) {
+    return neighbour != without && (state_.flags[neighbour] & k_crease) != 0;
+  };
+  for_creases_of(ring, vertex, state_.positions[vertex], is_other_on_crease,
+                 [&](const Corner& one, const Corner&) {
+                   found = one.prev;
+                   ++count;
+                 });
+  return count == 1 ? found : k_none;
+}
+
+/// Moves x to where the areas on both sides of a line between labels stay as they are, seen along
+/// the mean normal: planes alone let all curves bulge. That saves 4 % of the lines' error on a
+/// dragon at 2 %, and 8 % of that of the input's lines to the result's.
+Vec3 CollapseJudge::keep_label_areas(std::uint32_t a, std::uint32_t b, Vec3 x) const {
+  if (!state_.adjacency->has_labels()) return x;
+  if ((ring_a_.flags & ring_b_.flags & k_crease) == 0) return x;
+  const std::uint32_t before = next_on_line(ring_a_, a, b);
+  const std::uint32_t after = next_on_line(ring_b_, b, a);
+  if (before == k_none || after == k_none) return x;
+  const Vec3 p = state_.positions[before] - middle_;
+  const Vec3 q = state_.positions[after] - middle_;
+  // Of a line that turns back on itself the area says little of its place.
+  if (!(squared_length(p - q) > quadric_.squared_length)) return x;
+  const Vec3 half = (state_.positions[b] - state_.positions[a]) * 0.5;
+  const Vec3& normal = quadric_.normals;
+  return quadric_.moved(x, cross(normal, p - q), dot(normal, cross(half, p + q)), 1);
 }
 
 /// A vertex that merges into a line from beside leaves the line as it is, and one that merges into
@@ -228,7 +270,7 @@ Collapse CollapseJudge::best_of_positions(std::uint32_t a, std::uint32_t b, std:
     if (!quadric_.is_near(x)) return Collapse{};
     return at_position(rounded(middle_ + x, state_.type), shared, max_cost, Turn::wide);
   };
-  const Collapse best = at_near(quadric_.best());
+  const Collapse best = at_near(keep_label_areas(a, b, quadric_.best()));
   if (best.triangles > 0) return best;
   // Where the best point is far off or would spoil a triangle, one of the ends may do: without them
   // flat faces with sharp edges are dead ends. To let them turn triangles as far costs 6 % of the

@@ -77,6 +77,11 @@ class CollapseJudge {
   void add_lines(const Ring& ring, std::uint32_t vertex, Vec3 end, std::uint32_t without);
   Vec3 line_position(std::uint32_t a, std::uint32_t b) const;
   Collapse at_position(Vec3 position, std::uint32_t shared, double max_cost, Turn turn);
+  template <typename Candidate, typename Take>
+  void for_creases_of(const Ring& ring, std::uint32_t vertex, Vec3 at,
+                      const Candidate& is_candidate, const Take& take) const;
+  std::uint32_t next_on_line(const Ring& ring, std::uint32_t vertex, std::uint32_t without) const;
+  Vec3 keep_label_areas(std::uint32_t a, std::uint32_t b, Vec3 x) const;
   Collapse best_of_positions(std::uint32_t a, std::uint32_t b, std::uint32_t shared,
                              double max_cost);
   Collapse best_with_uvs(std::uint32_t a, std::uint32_t b, std::uint32_t shared, double max_cost);

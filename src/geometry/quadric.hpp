@@ -110,10 +110,15 @@ struct EdgeQuadric {
     const Vec3 start = cheapest();
     const double least = k_least_normal * twice_area;
     if (!(meshfarm::squared_length(normals) > least * least)) return start;
-    const Vec3 way = solve(a, ridge(), normals);
-    const double rise = dot(normals, way);
+    return moved(start, normals, height, k_way);
+  }
+
+  /// From `start` a share of the way to where dot(normal, x) is `level`, where that costs least.
+  Vec3 moved(Vec3 start, Vec3 normal, double level, double share) const {
+    const Vec3 way = solve(a, ridge(), normal);
+    const double rise = dot(normal, way);
     if (!(rise > 0)) return start;
-    return start + way * (k_way * (height - dot(normals, start)) / rise);
+    return start + way * (share * (level - dot(normal, start)) / rise);
   }
 
   /// Planes that are nearly parallel meet far away: a point farther from the middle than the edge

@@ -121,7 +121,8 @@ void check_slices(const std::string& path, const std::vector<Material>& material
     length_of_lines += length(b - a);
   }
   const double circles = 2 * 3.14159265 * (std::sqrt(1 - 0.16) + std::sqrt(1 - 0.04));
-  CHECK(length_of_lines == doctest::Approx(circles).epsilon(0.1));
+  // Jags of single triangles that are left make the lines longer.
+  CHECK(length_of_lines == doctest::Approx(circles).epsilon(0.15));
 }
 
 }  // namespace

@@ -124,6 +124,19 @@ TEST_CASE("a jagged region keeps its area and its place") {
   }
 }
 
+TEST_CASE("a round region neither grows nor shrinks as its line becomes coarse") {
+  Mesh flat = wavy_grid(100, 100);
+  for (Vec3& p : flat.positions) p.z = 0;
+  const auto is_inside = [](Vec3 p) -> Label { return std::hypot(p.x - 0.5, p.y - 0.5) < 0.3; };
+  flat = labelled(std::move(flat), is_inside);
+  const double before = areas_of(flat).at(1);
+  for (const std::uint64_t target : {100, 40, 24}) {
+    CAPTURE(target);
+    const Mesh result = simplified(flat, target);
+    CHECK(areas_of(result).at(1) == doctest::Approx(before).epsilon(0.0035));
+  }
+}
+
 TEST_CASE("labels that are all the same change nothing") {
   const Mesh mesh = wavy_grid(60, 60);
   const Mesh plain = simplified(mesh, 500);
