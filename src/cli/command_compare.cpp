@@ -24,9 +24,8 @@ class CompareCommand : public Command {
   std::string_view name() const override { return "compare"; }
   std::string_view synopsis() const override { return "A B"; }
   std::string_view summary() const override {
-    return "sampled distances between two meshes and differences of their colours, normals and "
-           "other "
-           "values, both ways, and the topology of both";
+    return "sampled distances between two meshes and differences of their colours, normals, other "
+           "values, and labels of triangles, both ways, and the topology of both";
   }
   void setup(po::options_description& options,
              po::positional_options_description& positional) override {
@@ -58,20 +57,30 @@ class CompareCommand : public Command {
     comparison.diagonal = a.box().diagonal();
     const std::uint64_t memory = measure_.divide.memory_bytes;
     const std::uint64_t meshes = memory_for(a, b);
+    const bool have_labels = source_a->info().labels && source_b->info().labels;
     const std::uint64_t values =
-        sizeof(float) * channels.columns_a.size() * (a.vertices() + b.vertices());
+        sizeof(float) * channels.columns_a.size() * (a.vertices() + b.vertices()) +
+        (have_labels ? k_bytes_of_labels * (a.triangles() + b.triangles()) : 0);
     if (values > 0 && meshes + values <= memory) {
-      const ComparedMesh mesh_a(*source_a, a_, channels.columns_a, a.vertices());
-      const ComparedMesh mesh_b(*source_b, b_, channels.columns_b, b.vertices());
+      ComparedMesh mesh_a(*source_a, a_, channels.columns_a, a.vertices());
+      ComparedMesh mesh_b(*source_b, b_, channels.columns_b, b.vertices());
+      if (have_labels) {
+        const LabelMeaning& meaning_a = *source_a->info().labels;
+        const LabelMeaning& meaning_b = *source_b->info().labels;
+        ComparedMesh::pair_labels(mesh_a, meaning_a, mesh_b, meaning_b);
+        comparison.labels = {meaning_a.name, meaning_b.name, 0, 0};
+      }
       measure_all(mesh_a.valued(), mesh_b.valued(), channels, comparison);
     } else if (meshes <= memory) {
       measure(read_mesh(*source_a), read_mesh(*source_b), comparison);
     } else {
       measure(a, b, comparison);
     }
-    if (values > 0 && comparison.channels.empty()) {
-      comparison.channels_skipped = "that takes --memory " + size_text(meshes + values) +
-                                    ", and there is " + size_text(memory);
+    if (values > 0 && meshes + values > memory) {
+      const std::string why = "that takes --memory " + size_text(meshes + values) +
+                              ", and there is " + size_text(memory);
+      if (!channels.pairs.empty()) comparison.channels_skipped = why;
+      if (have_labels) comparison.labels_skipped = why;
     }
     const SurfaceTopology topology_a = a.measure_topology();
     const SurfaceTopology topology_b = b.measure_topology();
@@ -84,6 +93,9 @@ class CompareCommand : public Command {
   }
 
  private:
+  /// Of a triangle, with the numbers that both meshes share.
+  static constexpr std::uint64_t k_bytes_of_labels = 2 * sizeof(Label);
+
   /// What it takes to hold both, and the hierarchy of one at a time.
   static std::uint64_t memory_for(const DividedSurface& a, const DividedSurface& b) {
     // While it is built, with what the allocator keeps: measured.
@@ -113,7 +125,7 @@ class CompareCommand : public Command {
     comparison.b_to_a = measure_distance(b, a, distance_options());
   }
 
-  /// Distances and channels.
+  /// Distances, channels and labels.
   void measure_all(const ValuedMesh& a, const ValuedMesh& b, const ChannelPairs& channels,
                    Comparison& comparison) const {
     std::vector<ValueGroup> groups;
@@ -125,6 +137,10 @@ class CompareCommand : public Command {
     const SurfaceError b_to_a = measure_error(b, a, groups, distance_options());
     comparison.a_to_b = a_to_b.distance;
     comparison.b_to_a = b_to_a.distance;
+    if (comparison.labels) {
+      comparison.labels->a_to_b = a_to_b.other_labels;
+      comparison.labels->b_to_a = b_to_a.other_labels;
+    }
     for (std::size_t i = 0; i < channels.pairs.size(); ++i) {
       comparison.channels.push_back(
           {channels.pairs[i].name, channels.pairs[i].role, a_to_b.values[i], b_to_a.values[i]});

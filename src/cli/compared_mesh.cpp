@@ -3,6 +3,7 @@
 #include "cli/compared_mesh.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include <meshfarm/io/channel_pairs.hpp>
 
@@ -55,11 +56,21 @@ ComparedMesh::ComparedMesh(MeshSource& source, const std::string& path,
   colours_.emplace(*info.labels, info.pictures, MaterialColours::Options{.name = path});
 }
 
+void ComparedMesh::pair_labels(ComparedMesh& a, const LabelMeaning& meaning_a, ComparedMesh& b,
+                               const LabelMeaning& meaning_b) {
+  MeantLabels of_a{meaning_a, a.mesh_.columns.labels};
+  MeantLabels of_b{meaning_b, b.mesh_.columns.labels};
+  meshfarm::pair_labels(of_a, of_b);
+  a.labels_ = std::move(of_a.labels);
+  b.labels_ = std::move(of_b.labels);
+}
+
 ValuedMesh ComparedMesh::valued() const {
-  if (!colours_) return {mesh_, values_};
+  if (!colours_) return {mesh_, values_, {}, labels_};
   return {mesh_, values_,
           [this](std::uint32_t triangle, const std::array<double, 3>& shares,
-                 std::span<double> values) { values_at(triangle, shares, values); }};
+                 std::span<double> values) { values_at(triangle, shares, values); },
+          labels_};
 }
 
 void ComparedMesh::values_at(std::uint32_t triangle, const std::array<double, 3>& shares,

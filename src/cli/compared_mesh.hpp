@@ -13,6 +13,7 @@
 #include <meshfarm/geometry/mesh.hpp>
 #include <meshfarm/geometry/value_error.hpp>
 #include <meshfarm/io/channel.hpp>
+#include <meshfarm/io/label_pairs.hpp>
 #include <meshfarm/io/material_colours.hpp>
 #include <meshfarm/io/mesh_source.hpp>
 
@@ -27,6 +28,9 @@ class ComparedMesh {
   /// `columns`: which channels; `vertices`: how many there are.
   ComparedMesh(MeshSource& source, const std::string& path, std::span<const std::size_t> columns,
                std::uint64_t vertices);
+  /// Makes both tell where their labels differ. `a` and `b` say what these mean.
+  static void pair_labels(ComparedMesh& a, const LabelMeaning& meaning_a, ComparedMesh& b,
+                          const LabelMeaning& meaning_b);
   /// Stands as long as this does.
   ValuedMesh valued() const;
 
@@ -37,6 +41,7 @@ class ComparedMesh {
                                   const std::array<double, 3>& shares) const;
 
   Mesh mesh_;
+  std::vector<Label> labels_;  // where these are compared: as pair_labels() numbers them
   std::vector<float> values_;  // of the vertices' own channels
   std::size_t own_ = 0;        // how many these are
   /// Of each column: which of these it is, or with k_textures added which level of the texture.

@@ -45,6 +45,7 @@ struct ValueSums {
 struct ChunkSums {
   DistanceSums distance;
   std::vector<ValueSums> values;
+  std::uint64_t other_labels = 0;
 };
 
 bool all_finite(std::span<const double> values) {
@@ -79,10 +80,11 @@ class Comparer {
            unsigned threads)
       : from_(from), to_(to), groups_(groups), bvh_(to.mesh, threads) {
     for (const ValueGroup& group : groups) columns_ += group.columns;
+    has_labels_ = !from.labels.empty() && !to.labels.empty();
   }
 
   ChunkSums compare_chunk(AreaSampler sampler, std::uint64_t samples, std::uint64_t chunk) const {
-    ChunkSums sums{{}, std::vector<ValueSums>(groups_.size())};
+    ChunkSums sums{{}, std::vector<ValueSums>(groups_.size()), 0};
     std::vector<double> here(columns_);
     std::vector<double> there(columns_);
     const std::uint64_t end = std::min(samples, (chunk + 1) * k_samples_a_chunk);
@@ -92,7 +94,9 @@ class Comparer {
       const Bvh::Nearest nearest = bvh_.nearest(point, guess);
       guess = nearest.triangle;
       sums.distance.add({nearest.squared, std::sqrt(nearest.squared), nearest.squared});
-      blend(from_, static_cast<std::uint32_t>(sampler.triangle()), random_shares(n), here);
+      const auto source = static_cast<std::uint32_t>(sampler.triangle());
+      if (has_labels_ && from_.labels[source] != to_.labels[guess]) ++sums.other_labels;
+      blend(from_, source, random_shares(n), here);
       const Triangle& t = to_.mesh.triangles[guess];
       const std::vector<Vec3>& at = to_.mesh.positions;
       blend(to_, guess, nearest_shares(point, at[t[0]], at[t[1]], at[t[2]]), there);
@@ -131,6 +135,7 @@ class Comparer {
   const ValuedMesh& to_;
   std::span<const ValueGroup> groups_;
   std::size_t columns_ = 0;
+  bool has_labels_ = false;
   Bvh bvh_;
 };
 
@@ -150,11 +155,14 @@ SurfaceError measure_error(const ValuedMesh& from, const ValuedMesh& to,
   });
   DistanceSums distance;
   std::vector<ValueSums> sums(groups.size());
+  std::uint64_t other_labels = 0;
   for (const ChunkSums& chunk : chunks) {
     distance.add(chunk.distance);
+    other_labels += chunk.other_labels;
     for (std::size_t g = 0; g < groups.size(); ++g) sums[g].add(chunk.values[g]);
   }
   SurfaceError error{distance.over(options.samples), {}};
+  error.other_labels = static_cast<double>(other_labels) / static_cast<double>(options.samples);
   for (std::size_t g = 0; g < groups.size(); ++g) error.values.push_back(sums[g].over(groups[g]));
   return error;
 }

@@ -66,6 +66,26 @@ Json channels_json(const Comparison& c) {
   return json;
 }
 
+std::string share_text(double share) {
+  if (share == 0) return "the same everywhere";
+  return "another one on " + number(100 * share, "%.3g") + " % of the area";
+}
+
+Json labels_json(const Comparison& c) {
+  if (!c.labels) return nullptr;
+  return {{"name_a", c.labels->name_a},
+          {"name_b", c.labels->name_b},
+          {"other_a_to_b", c.labels->a_to_b},
+          {"other_b_to_a", c.labels->b_to_a}};
+}
+
+void add_labels(Lines& lines, const Comparison& c) {
+  if (!c.labels_skipped.empty()) lines.add("labels", "not compared: " + c.labels_skipped);
+  if (!c.labels) return;
+  lines.add("labels A to B", share_text(c.labels->a_to_b));
+  lines.add("labels B to A", share_text(c.labels->b_to_a));
+}
+
 void add_channels(Lines& lines, const Comparison& c) {
   for (const ChannelDifference& channel : c.channels) {
     lines.add(channel.name + " A to B", text_of(channel.a_to_b, channel.role));
@@ -81,6 +101,7 @@ void add_channels(Lines& lines, const Comparison& c) {
 std::string render(const Comparison& c, Format format) {
   if (format == Format::json) {
     const Json skipped = c.channels_skipped.empty() ? Json(nullptr) : Json(c.channels_skipped);
+    const Json labels_skipped = c.labels_skipped.empty() ? Json(nullptr) : Json(c.labels_skipped);
     const Json json = {{"a", c.path_a},
                        {"b", c.path_b},
                        {"diagonal", c.diagonal},
@@ -90,6 +111,8 @@ std::string render(const Comparison& c, Format format) {
                        {"channels_not_compared", skipped},
                        {"channels_only_a", c.channels_only_a},
                        {"channels_only_b", c.channels_only_b},
+                       {"labels", labels_json(c)},
+                       {"labels_not_compared", labels_skipped},
                        {"topology_a", to_json(c.welded_a)},
                        {"topology_b", to_json(c.welded_b)},
                        {"topology_not_welded_a", to_json(c.as_it_is_a)},
@@ -105,6 +128,7 @@ std::string render(const Comparison& c, Format format) {
   lines.add("B to A", text_of(c.b_to_a, c.diagonal));
   lines.add("unit", "A's diagonal, " + number(c.diagonal, "%.9g"));
   add_channels(lines, c);
+  add_labels(lines, c);
   return lines.text();
 }
 

@@ -191,3 +191,56 @@ TEST_CASE("compare says in a line that channels do not fit into its memory, and 
   CHECK(has(bench.compare("a.ply", "b.ply", {"--memory", "30K", "--json"}).out,
             "\"channels_not_compared\": \"that takes"));
 }
+
+namespace {
+
+/// A sheet of 24 x 24 units whose label is 5 left of x, and 9 on the right.
+Mesh two_regions(double x) {
+  Mesh mesh = test::grid(24, 24);
+  for (const Triangle& t : mesh.triangles) {
+    const double sum = mesh.positions[t[0]].x + mesh.positions[t[1]].x + mesh.positions[t[2]].x;
+    mesh.columns.labels.push_back(sum < 3 * x ? 5 : 9);
+  }
+  return mesh;
+}
+
+}  // namespace
+
+TEST_CASE("compare tells on which share of the area the labels differ") {
+  Bench bench;
+  const LabelMeaning region{"region", {}};
+  write_mesh(bench.path("a.ply"), two_regions(12), PositionType::float32, {}, {}, region);
+  write_mesh(bench.path("b.ply"), two_regions(15), PositionType::float32, {}, {}, region);
+  const Ran same = bench.compare("a.ply", "a.ply");
+  CHECK(has(same.out, "labels A to B    the same everywhere\n"));
+  const Ran ran = bench.compare("a.ply", "b.ply");
+  CHECK(number_after(ran.out, "labels A to B    another one on ") ==
+        doctest::Approx(12.5).epsilon(0.02));
+  CHECK(has(ran.out, " % of the area\n"));
+  const Ran json = bench.compare("a.ply", "b.ply", {"--json"});
+  CHECK(number_after(json.out, "\"other_b_to_a\": ") == doctest::Approx(0.125).epsilon(0.02));
+  CHECK(has(json.out, "\"name_a\": \"region\""));
+  CHECK(has(json.out, "\"labels_not_compared\": null"));
+  // The same by names, in another order and beside numbers.
+  for (const std::string name : {"b.obj", "b.glb"}) {
+    CAPTURE(name);
+    REQUIRE(bench.run({"convert", bench.path("b.ply"), bench.path(name), "-q"}).code == 0);
+    CHECK(has(bench.compare("b.ply", name).out, "labels B to A    the same everywhere\n"));
+    CHECK(has(bench.compare("a.ply", name).out, "labels B to A    another one on 12"));
+  }
+}
+
+TEST_CASE("compare leaves labels out where one has none, or they do not fit into its memory") {
+  Bench bench;
+  write_mesh(bench.path("a.ply"), two_regions(12), PositionType::float32, {}, {},
+             LabelMeaning{"region", {}});
+  write_mesh(bench.path("b.ply"), test::grid(24, 24), PositionType::float32);
+  const Ran one = bench.compare("a.ply", "b.ply");
+  CHECK(one.code == 0);
+  CHECK_FALSE(has(one.out, "labels"));
+  CHECK(has(bench.compare("a.ply", "b.ply", {"--json"}).out, "\"labels\": null"));
+  const Ran little = bench.compare("a.ply", "a.ply", {"--memory", "30K"});
+  CHECK(little.code == 0);
+  CHECK(has(little.out, "labels           not compared: that takes --memory "));
+  CHECK_FALSE(has(little.out, "channels"));
+}

@@ -36,7 +36,8 @@ using ValuesAt = std::function<void(std::uint32_t triangle, const std::array<dou
 struct ValuedMesh {
   const Mesh& mesh;
   std::span<const float> values;
-  ValuesAt values_at = {};  // where not empty: instead of those of the vertices
+  ValuesAt values_at = {};             // where not empty: instead of those of the vertices
+  std::span<const Label> labels = {};  // of the triangles; the same numbers in both meshes
 };
 
 /// What lies between the values of two surfaces, over sampled points and the group's columns.
@@ -51,11 +52,13 @@ struct ValueError {
 struct SurfaceError {
   Distance distance;
   std::vector<ValueError> values;  // by group
+  /// The share of the points whose label is another one there; 0 unless both have labels.
+  double other_labels = 0;
 };
 
 /// Measures distances as measure_distance does, to the bit, and at the same points by how much the
-/// values differ: blended linearly over the triangle, or as ValuesAt tells, at the point and at
-/// the nearest point of `to`. Memory and errors are those of measure_distance.
+/// values and labels differ: values blended linearly over the triangle, or as ValuesAt tells, at
+/// the point and at the nearest point of `to`. Memory and errors are those of measure_distance.
 SurfaceError measure_error(const ValuedMesh& from, const ValuedMesh& to,
                            std::span<const ValueGroup> groups, const DistanceOptions& options);
 

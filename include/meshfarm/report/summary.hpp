@@ -135,6 +135,14 @@ struct ChannelDifference {
   ValueError b_to_a;
 };
 
+/// Where the labels of two meshes differ.
+struct LabelDifference {
+  std::string name_a;  // LabelMeaning::name
+  std::string name_b;
+  double a_to_b = 0;  // the share of A's area with another label at the nearest place of B
+  double b_to_a = 0;
+};
+
 /// What `compare` tells of two meshes.
 struct Comparison {
   std::string path_a;
@@ -150,6 +158,8 @@ struct Comparison {
   std::string channels_skipped;             // why both have channels that were not compared
   std::vector<std::string> channels_only_a;
   std::vector<std::string> channels_only_b;
+  std::optional<LabelDifference> labels;  // if both have some
+  std::string labels_skipped;             // why labels that both have were not compared
 };
 
 /// What `benchmark` tells of this host.
