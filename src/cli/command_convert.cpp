@@ -1,12 +1,11 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
 #include <algorithm>
-#include <array>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include <meshfarm/io/convert_mesh.hpp>
+#include <meshfarm/io/map_names.hpp>
 #include <meshfarm/io/mesh_format.hpp>
 #include <meshfarm/util/errors.hpp>
 #include <meshfarm/util/log.hpp>
@@ -20,13 +19,6 @@
 
 namespace meshfarm {
 namespace {
-
-constexpr std::array<std::pair<MapUse, const char*>, 5> k_map_names = {
-    {{MapUse::colour, "pictures of colours"},
-     {MapUse::normal, "pictures of normals"},
-     {MapUse::metal_and_roughness, "pictures of metal and roughness"},
-     {MapUse::occlusion, "pictures of occlusion"},
-     {MapUse::emission, "pictures of emission"}}};
 
 class ConvertCommand : public Command {
  public:
@@ -99,15 +91,9 @@ class ConvertCommand : public Command {
   /// Kinds of pictures that materials have and the output has no place for.
   void add_maps_left_out(const MeshFileInfo& input, std::vector<std::string>& names) const {
     if (!input.uvs || !input.labels) return;
-    for (const auto& [use, name] : k_map_names) {
-      if (keeps_map(output_, use)) continue;
-      const std::vector<Material>& all = input.labels->materials;
-      const bool has_any = std::any_of(all.begin(), all.end(), [use = use](const Material& each) {
-        return std::any_of(each.maps.begin(), each.maps.end(),
-                           [use](const MaterialMap& map) { return map.use == use; });
-      });
-      if (has_any) names.emplace_back(name);
-    }
+    const std::vector<std::string> maps =
+        maps_left_out(*input.labels, [this](MapUse use) { return keeps_map(output_, use); });
+    names.insert(names.end(), maps.begin(), maps.end());
   }
 
   std::string input_;

@@ -5,6 +5,8 @@
 #include <utility>
 #include <vector>
 
+#include <meshfarm/io/map_names.hpp>
+#include <meshfarm/io/mesh_format.hpp>
 #include <meshfarm/report/summary.hpp>
 #include <meshfarm/util/checksum.hpp>
 #include <meshfarm/util/errors.hpp>
@@ -144,6 +146,22 @@ void add_error(Lines& lines, const MeasuredError& error, double most, double dia
   }
 }
 
+/// Kinds of pictures that the textures of the result have no more.
+std::vector<std::string> maps_lost(const RunSummary& s) {
+  using Way = TexturesMade::Way;
+  if (!s.manifest.labels) return {};
+  if (s.textures.way != Way::kept && s.textures.way != Way::baked) return {};
+  return maps_left_out(*s.manifest.labels, [&](MapUse use) {
+    return s.textures.way == Way::kept ? keeps_map(s.output, use) : use == MapUse::colour;
+  });
+}
+
+Json textures_json(const RunSummary& s) {
+  Json json = to_json(s.textures);
+  if (json.is_object()) json["pictures_not_kept"] = maps_lost(s);
+  return json;
+}
+
 void add_channels(Lines& lines, const RunSummary& s) {
   std::string kept;
   for (const ChannelError& channel : s.channels) {
@@ -152,16 +170,23 @@ void add_channels(Lines& lines, const RunSummary& s) {
   if (!kept.empty()) lines.add("channels", kept + "  RMS from the input's vertices");
   if (s.labels) lines.add("labels", text_of(*s.labels));
   if (s.textures.way != TexturesMade::Way::none) lines.add("textures", text_of(s.textures));
+  const bool is_baked = s.textures.way == TexturesMade::Way::baked;
   std::vector<std::string> lost = names_of(s.manifest.channels.channels);
   if (s.labels_too_fine) {
     const std::string& name = s.manifest.labels->name;
     lines.add("not kept", name + ": its lines hold about " + grouped(s.manifest.label_corners) +
                               " vertices in place; --attributes " + name + " keeps it");
-  } else if (s.manifest.labels && !s.labels && s.textures.way != TexturesMade::Way::baked) {
+  } else if (s.manifest.labels && !s.labels && !is_baked) {
     lost.push_back(s.manifest.labels->name);
   }
   if (s.labels && s.labels->materials != s.manifest.labels->materials) {
     lost.push_back("names and colours of " + s.labels->name + "s");
+  }
+  const std::vector<std::string> maps = maps_lost(s);
+  if (is_baked && !maps.empty()) {
+    lines.add("not kept", joined(maps) + ": only colours are made anew");
+  } else {
+    lost.insert(lost.end(), maps.begin(), maps.end());
   }
   std::erase_if(lost, [&](const std::string& name) {
     return std::any_of(s.channels.begin(), s.channels.end(),
@@ -223,7 +248,7 @@ std::string render(const RunSummary& s, Format format) {
          s.error.input_samples == 0 ? Json(nullptr) : error_json(s.error, m.box.diagonal())},
         {"channels", channels_json(s)},
         {"labels", to_json(s.labels)},
-        {"textures", to_json(s.textures)},
+        {"textures", textures_json(s)},
         {"warning", warning.empty() ? Json(nullptr) : Json(warning)},
         {"better", better_json(s)},
         {"dropped",
