@@ -32,7 +32,7 @@ class PictureLevels {
 };
 
 /// All in memory: three bytes a texel of the picture, and a third of that again.
-class DecodedLevels : public PictureLevels {
+class DecodedLevels final : public PictureLevels {
  public:
   explicit DecodedLevels(const Picture& picture);
   const std::vector<LevelSize>& sizes() const override { return sizes_; }

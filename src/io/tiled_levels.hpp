@@ -59,7 +59,7 @@ class TileCache {
 };
 
 /// A tiled picture of a stage, read tile by tile.
-class TiledLevels : public PictureLevels {
+class TiledLevels final : public PictureLevels {
  public:
   /// What a directory tells of it comes next in `in`.
   TiledLevels(std::shared_ptr<const SectionedFile> file, ByteReader& in,
