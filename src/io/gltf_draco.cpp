@@ -82,13 +82,16 @@ void check_count(const GltfValue& accessor, std::uint64_t compressed) {
 }
 
 /// How many triangles the bytes tell of, as far as is known before any memory is taken for them.
-std::optional<std::uint64_t> told_triangles(const std::string& bytes) {
+std::optional<std::uint64_t> told_triangles(const GltfValue& extension, const std::string& bytes) {
   draco::DecoderBuffer in;
   in.Init(bytes.data(), bytes.size());
   draco::DracoHeader head{};
   if (!draco::PointCloudDecoder::DecodeHeader(&in, &head).ok()) return std::nullopt;
-  const bool is_of_gltf = head.version_major == 2 && head.version_minor == 2;
-  if (!is_of_gltf || head.encoder_type != draco::TRIANGULAR_MESH) return std::nullopt;
+  if (head.version_major != 2 || head.version_minor != 2) {
+    extension.fail("is of version " + std::to_string(head.version_major) + "." +
+                   std::to_string(head.version_minor) + " of Draco's format; glTF has 2.2");
+  }
+  if (head.encoder_type != draco::TRIANGULAR_MESH) return std::nullopt;
   in.set_bitstream_version(DRACO_BITSTREAM_VERSION(2, 2));
   draco::GeometryMetadata passed_over;
   if ((head.flags & METADATA_FLAG_MASK) != 0 &&
@@ -108,7 +111,7 @@ std::optional<std::uint64_t> told_triangles(const std::string& bytes) {
 void check_told(const GltfValue& extension, const GltfValue& indices, const std::string& bytes) {
   constexpr std::uint64_t k_triangles_a_byte = 4096;  // flat grids have some hundreds
   constexpr std::uint64_t k_few = 1 << 20;
-  const std::optional<std::uint64_t> told = told_triangles(bytes);
+  const std::optional<std::uint64_t> told = told_triangles(extension, bytes);
   if (!told) return;
   check_count(indices, 3 * *told);
   if (*told > k_few + k_triangles_a_byte * bytes.size()) {

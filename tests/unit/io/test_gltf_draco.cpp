@@ -151,6 +151,10 @@ TEST_CASE("Draco takes no memory for triangles that a few bytes tell of") {
         "m.glb: accessors[1] has 6 elements, but 3221225472 are compressed for it");
   CHECK(told(draco_glb(bytes, 4, std::size_t{3} << 30)).find("tells of 1073741824 triangles in") !=
         std::string::npos);
+  std::string old = bytes;
+  old[6] = 1;
+  CHECK(told(draco_glb(old, 4)).find("is of version 2.1 of Draco's format; glTF has 2.2") !=
+        std::string::npos);
 }
 
 #else
