@@ -19,6 +19,7 @@
 #include <meshfarm/io/bake_file.hpp>
 #include <meshfarm/staging/file_ref.hpp>
 #include <meshfarm/staging/sealed.hpp>
+#include <meshfarm/util/byte_lists.hpp>
 #include <meshfarm/util/bytes.hpp>
 
 #include "io/staged_positions.hpp"
@@ -48,17 +49,6 @@ Box get_box(ByteReader& in) {
 void put_box(ByteWriter& out, const Box& box) {
   out.put(box.lo);
   out.put(box.hi);
-}
-
-template <class T>
-std::vector<T> get_list(ByteReader& in) {
-  return in.get_array<T>(in.get<std::uint32_t>());
-}
-
-template <class T>
-void put_list(ByteWriter& out, const std::vector<T>& values) {
-  out.put(static_cast<std::uint32_t>(values.size()));
-  out.put_array(std::span<const T>(values));
 }
 
 }  // namespace

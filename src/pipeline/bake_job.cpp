@@ -8,6 +8,7 @@
 #include <meshfarm/io/material_colours.hpp>
 #include <meshfarm/pipeline/bake_job.hpp>
 #include <meshfarm/staging/file_ref.hpp>
+#include <meshfarm/util/byte_lists.hpp>
 #include <meshfarm/util/bytes.hpp>
 #include <meshfarm/util/errors.hpp>
 
@@ -24,17 +25,6 @@ namespace {
 // tile summary: directory section | damaged u32 x number u32
 // bake parameters: version u8 | file | scene section | chunk u32 | pictures u32 x (file | section)
 constexpr std::uint8_t k_version = 1;
-
-template <class T>
-void put_list(ByteWriter& out, const std::vector<T>& values) {
-  out.put(static_cast<std::uint32_t>(values.size()));
-  out.put_array(std::span<const T>(values));
-}
-
-template <class T>
-std::vector<T> get_list(ByteReader& in) {
-  return in.get_array<T>(in.get<std::uint32_t>());
-}
 
 void expect_version(ByteReader& in) {
   if (in.get<std::uint8_t>() != k_version) in.fail("made by another version of meshfarm");
