@@ -156,6 +156,10 @@ class BinaryBody final : public PlyBody {
       decode_labels<Order>(layout, window.data(), maker.batch().label_room().first(count));
       maker.batch().wrote_labels(count);
     }
+    if (element_->uvs) {
+      decode_uvs<Order>(layout, window.data(), maker.batch().uv_room().first(count));
+      maker.batch().wrote_uvs(count);
+    }
     maker.batch().added(count);
     stream_->consume(count * layout.record_bytes);
     index_ += count;

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: MIT
 #include "ply_binary_records.hpp"
 
+#include <cmath>
+
 namespace meshfarm {
 namespace {
 
@@ -15,6 +17,12 @@ void decode_xyz(const char* record, std::size_t record_bytes, std::span<Vec3> ou
   }
 }
 
+template <std::endian Order>
+bool has_six(const TriangleLayout& layout, const char* record) {
+  if (!layout.six) return true;
+  return load_whole<Order>(layout.six->count_type, record + layout.six->offset) == 6;
+}
+
 template <class Count, class Index, std::endian Order>
 std::size_t decode(const TriangleLayout& layout, const char* records, std::uint64_t vertices,
                    std::span<WideTriangle> out) {
@@ -26,6 +34,7 @@ std::size_t decode(const TriangleLayout& layout, const char* records, std::uint6
   };
   for (std::size_t i = 0; i < out.size(); ++i, list += layout.record_bytes) {
     if (load_ply<Count, Order>(list) != 3) return i;
+    if (!has_six<Order>(layout, list - layout.list_offset)) return i;
     const WideTriangle triangle{index(0), index(1), index(2)};
     if (std::max({triangle[0], triangle[1], triangle[2]}) >= vertices) return i;
     out[i] = triangle;
@@ -91,17 +100,20 @@ std::optional<TriangleLayout> triangle_layout(const PlyElement& element) {
   layout.count_bytes = size_of(*corners.count_type);
   layout.index_type = corners.type;
   for (std::size_t i = 0; i < element.properties.size(); ++i) {
+    const PlyProperty& property = element.properties[i];
     if (i == element.label) {
       layout.label_offset = layout.record_bytes;
-      layout.label_type = element.properties[i].type;
+      layout.label_type = property.type;
     }
     if (i == element.index_list) {
       layout.list_offset = layout.record_bytes;
       layout.record_bytes += layout.count_bytes + 3 * size_of(corners.type);
-    } else if (element.properties[i].is_list()) {
-      return std::nullopt;
+    } else if (property.is_list()) {
+      if (layout.six || !is_integer(*property.count_type)) return std::nullopt;
+      layout.six = {layout.record_bytes, *property.count_type, property.type};
+      layout.record_bytes += size_of(*property.count_type) + 6 * size_of(property.type);
     } else {
-      layout.record_bytes += size_of(element.properties[i].type);
+      layout.record_bytes += size_of(property.type);
     }
   }
   return layout;
@@ -137,5 +149,26 @@ void decode_labels(const TriangleLayout& layout, const char* records, std::span<
 template void decode_labels<std::endian::little>(const TriangleLayout&, const char*,
                                                  std::span<Label>);
 template void decode_labels<std::endian::big>(const TriangleLayout&, const char*, std::span<Label>);
+
+template <std::endian Order>
+void decode_uvs(const TriangleLayout& layout, const char* records, std::span<CornerUvs> out) {
+  const PlyType type = layout.six->type;
+  const std::size_t size = size_of(type);
+  const char* values = records + layout.six->offset + size_of(layout.six->count_type);
+  for (CornerUvs& uvs : out) {
+    for (std::size_t i = 0; i < 6; ++i) {
+      const float value = type == PlyType::float32
+                              ? load_ply<float, Order>(values + i * size)
+                              : static_cast<float>(load_real<Order>(type, values + i * size));
+      uvs[i / 2][i % 2] = std::isfinite(value) ? value : 0;
+    }
+    values += layout.record_bytes;
+  }
+}
+
+template void decode_uvs<std::endian::little>(const TriangleLayout&, const char*,
+                                              std::span<CornerUvs>);
+template void decode_uvs<std::endian::big>(const TriangleLayout&, const char*,
+                                           std::span<CornerUvs>);
 
 }  // namespace meshfarm

@@ -27,21 +27,28 @@ VertexLayout vertex_layout(const PlyElement& element);
 template <std::endian Order>
 void decode_vertices(const VertexLayout& layout, const char* records, std::span<Vec3> out);
 
-/// Face records whose only list holds the corners: the record of a triangle.
+/// Face records of triangles, whose lists are the corners and maybe one more of six values, as
+/// texture coordinates are.
 struct TriangleLayout {
+  struct Six {
+    std::size_t offset = 0;  // of its count
+    PlyType count_type = PlyType::uint8;
+    PlyType type = PlyType::float32;
+  };
   std::size_t record_bytes = 0;
   std::size_t list_offset = 0;
   std::size_t count_bytes = 0;          // 1, 2 or 4
   PlyType index_type = PlyType::int32;  // int32 or uint32
   std::size_t label_offset = 0;         // if they have labels
   PlyType label_type = PlyType::int32;
+  std::optional<Six> six;
 };
 
 /// Nothing if the records are not of that kind.
 std::optional<TriangleLayout> triangle_layout(const PlyElement& element);
 
-/// Decodes records up to the first that is no triangle or has an index out of range. Returns how
-/// many.
+/// Decodes records up to the first that is no triangle, has an index out of range, or other than
+/// six values where there should be so many. Returns how many.
 template <std::endian Order>
 std::size_t decode_triangles(const TriangleLayout& layout, const char* records,
                              std::uint64_t vertices, std::span<WideTriangle> out);
@@ -49,6 +56,10 @@ std::size_t decode_triangles(const TriangleLayout& layout, const char* records,
 /// The labels of as many records.
 template <std::endian Order>
 void decode_labels(const TriangleLayout& layout, const char* records, std::span<Label> out);
+
+/// The six values of as many records, as texture coordinates; those that are not finite are 0.
+template <std::endian Order>
+void decode_uvs(const TriangleLayout& layout, const char* records, std::span<CornerUvs> out);
 
 /// A whole number as it lies in a file; one below zero wraps around.
 template <std::endian Order>

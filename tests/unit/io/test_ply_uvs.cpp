@@ -117,6 +117,38 @@ TEST_CASE("a face of a PLY without texture coordinates, or with odd ones, has (0
   CHECK(read.uvs[2] == CornerUvs{{{0, 1}, {0, 0}, {0, 3}}});
 }
 
+TEST_CASE("triangles of a binary PLY are read in runs, whatever stands between them") {
+  for (const auto order : {BinaryFile::Order::little, BinaryFile::Order::big}) {
+    for (const bool are_dropped : {false, true}) {
+      BinaryFile file(order, "element vertex 4\n" + std::string(k_xyz) + "element face 6\n" +
+                                 std::string(k_corners) + std::string(k_list));
+      file.floats({0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 1, 0.5F});
+      const auto triangle = [&](float first) {
+        file.bytes({3}).ints({0, 1, 2}).bytes({6}).floats({first, 0, 1, NAN, 0, 1});
+      };
+      triangle(2);
+      triangle(3);
+      file.bytes({3}).ints({2, 1, 3}).bytes({0});
+      triangle(4);
+      file.bytes({4}).ints({0, 1, 3, 2}).bytes({8}).floats({5, 5, 5, 5, 5, 5, 5, 5});
+      triangle(6);
+      const Square model(file.text());
+      if (are_dropped) {
+        CHECK(triangles_of(*open_mesh(model.path())).corners.size() == 7);
+        continue;
+      }
+      const UvTriangles read = triangles_of(*model.open());
+      REQUIRE(read.uvs.size() == 7);
+      const std::vector<float> firsts{2, 3, 0, 4, 5, 5, 6};
+      for (std::size_t i = 0; i < 7; ++i) CHECK(read.uvs[i][0][0] == firsts[i]);
+      for (const std::size_t i : {0, 1, 3, 6}) {
+        CHECK(read.uvs[i] == CornerUvs{{{firsts[i], 0}, {1, 0}, {0, 1}}});
+      }
+      CHECK(read.corners[3] == WideTriangle{0, 1, 2});
+    }
+  }
+}
+
 TEST_CASE("vertices of a PLY have texture coordinates if it names a picture") {
   for (const auto& [u, v] :
        {std::pair("s", "t"), std::pair("u", "v"), std::pair("texture_u", "texture_v"),
