@@ -14,7 +14,7 @@ namespace {
 constexpr std::uint64_t k_process_bytes = std::uint64_t{16} << 20;
 /// A part with its columns, what finds the places on it, and the file that it is read from.
 constexpr std::uint64_t k_bytes_of_triangle = 150;
-constexpr std::uint64_t k_least_pieces = std::uint64_t{128} << 20;
+constexpr std::uint64_t k_usual_pieces = std::uint64_t{128} << 20;
 /// A chunk as it is read, as it is painted, and its texels.
 constexpr std::uint64_t k_chunk_bytes = std::uint64_t{64} << 20;
 /// To decode a byte of a picture's file takes so much of the work on a triangle.
@@ -29,7 +29,8 @@ std::uint64_t largest_part(const Manifest& manifest) {
 }  // namespace
 
 std::uint64_t bake_piece_bytes(const Manifest& manifest) {
-  return std::max(k_least_pieces, k_bytes_of_triangle * largest_part(manifest));
+  const std::uint64_t all = k_bytes_of_triangle * manifest.triangles();
+  return std::max(std::min(k_usual_pieces, all), k_bytes_of_triangle * largest_part(manifest));
 }
 
 std::uint64_t memory_of_bake(const Manifest& manifest) {

@@ -78,6 +78,7 @@ class Bench {
       const std::vector<AcceptedJob> before = accepted_;
       for (const Job& job : jobs) {
         ++kinds_[job.kind];
+        if (job.kind == k_bake_kind) bake_memory_ = job.memory;
         JobOutput output =
             job.by_sink ? sink.do_job(job, context(), before) : do_job(job, context());
         check_output(job.kind, output);
@@ -95,6 +96,8 @@ class Bench {
   const std::vector<AcceptedJob>& accepted() const { return accepted_; }
   std::filesystem::path path(const std::string& name) const { return folder_.path() / name; }
   std::map<std::string, int>& kinds() { return kinds_; }
+  std::uint64_t bake_memory() const { return bake_memory_; }
+  std::uint64_t memory_told() const { return memory_wanted(manifest_, k_run); }
 
  private:
   test::TempFolder folder_;
@@ -102,6 +105,7 @@ class Bench {
   Manifest manifest_;
   std::vector<AcceptedJob> accepted_;
   std::map<std::string, int> kinds_;
+  std::uint64_t bake_memory_ = 0;
 };
 
 /// The greatest amount by which a level at the middle of a triangle is not what it should be:
@@ -141,6 +145,8 @@ TEST_CASE("a new texture has the colours of all pictures, found by jobs") {
   CHECK(bench.kinds()["finish"] == 1);
   CHECK(bench.kinds()["tile"] == 2);  // not the map of normals
   CHECK(bench.kinds()["bake"] == 1);
+  CHECK(bench.bake_memory() < std::uint64_t{160} << 20);  // the input is small
+  CHECK(bench.memory_told() >= bench.bake_memory());      // before any of it is done
   const RunSummary summary = sink.complete(bench.accepted());
   CHECK(summary.triangles == 400);
   CHECK(summary.textures.way == TexturesMade::Way::baked);
