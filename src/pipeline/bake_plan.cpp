@@ -91,15 +91,16 @@ std::vector<Job> BakePlan::tile_jobs() const {
   for (std::size_t j = 0; j < count; ++j) {
     TileParameters parameters;
     Job job;
+    job.memory = k_process_bytes + finish_.tile_memory;
     for (std::size_t i = j * used.size() / count; i < (j + 1) * used.size() / count; ++i) {
       const FileRef& file = manifest_.pictures[used[i]].file;
       parameters.pictures.push_back(used[i]);
       job.inputs.push_back(file);
       job.cost += 1 + file.size / k_bytes_of_cost;
+      job.memory += file.size;  // all may be read ahead
     }
     job.kind = k_tile_kind;
     job.parameters = encode_parameters(parameters);
-    job.memory = k_process_bytes + finish_.tile_memory;
     jobs.push_back(std::move(job));
   }
   return jobs;

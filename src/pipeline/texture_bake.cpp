@@ -144,14 +144,12 @@ std::vector<BakeSeam> write_seams(const Mesh& between, SectionWriter& sections) 
 TextureLayout lay_out_texture(const Stage& stage, const Manifest& manifest,
                               std::uint32_t texture_size, unsigned threads, Mesh& result) {
   TextureLayout layout;
-  layout.size = texture_size;
-  if (layout.size == 0) {
-    std::uint64_t texels = 0;
-    for (const auto& facts : facts_of_pictures(stage, manifest)) {
-      if (facts) texels += std::uint64_t{facts->width} * facts->height;
-    }
-    layout.size = side_for(texels);
+  layout.pictures = facts_of_pictures(stage, manifest);
+  std::uint64_t texels = 0;
+  for (const auto& facts : layout.pictures) {
+    if (facts) texels += std::uint64_t{facts->width} * facts->height;
   }
+  layout.size = texture_size != 0 ? texture_size : side_for(texels);
   Atlas atlas = make_atlas(
       result, {.texture_size = layout.size, .margin_texels = k_margin_texels, .threads = threads});
   layout.charts = atlas.charts;
@@ -166,12 +164,9 @@ JobOutput publish_bake_scene(const Stage& stage, const Manifest& manifest, const
                              const TextureLayout& layout, const BakeInput& input, const Job& job,
                              const JobContext& context) {
   FinishSummary summary;
-  const auto facts = facts_of_pictures(stage, manifest);
-  for (std::size_t i = 0; i < facts.size(); ++i) {
-    summary.is_used.push_back(facts[i] ? 1 : 0);
-    if (!facts[i]) continue;
-    summary.tile_memory =
-        std::max(summary.tile_memory, facts[i]->decoding_bytes + manifest.pictures[i].file.size);
+  for (const auto& facts : layout.pictures) {
+    summary.is_used.push_back(facts ? 1 : 0);
+    if (facts) summary.tile_memory = std::max(summary.tile_memory, facts->decoding_bytes);
   }
   const ResultName name{key_of(job).value, context.attempt, context.incarnation};
   const auto file = context.create(name);
@@ -203,9 +198,8 @@ PictureFiles baked_picture(const Stage& stage, const Manifest& manifest,
     canvas.add(decode_baked_texels(stage.read(file), file.name));
   }
   BakedPicture picture = canvas.finish(threads);
-  const auto facts = facts_of_pictures(stage, manifest);
-  tell_of_damaged(manifest, facts, baked.damaged());
-  const bool lossy = std::all_of(facts.begin(), facts.end(),
+  tell_of_damaged(manifest, layout.pictures, baked.damaged());
+  const bool lossy = std::all_of(layout.pictures.begin(), layout.pictures.end(),
                                  [](const auto& each) { return !each || each->is_lossy; });
   const auto file = std::make_shared<const std::string>(encoded_picture(
       picture.side, std::move(picture.texels), lossy ? PictureCoding::jpeg : PictureCoding::png));

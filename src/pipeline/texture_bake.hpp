@@ -3,11 +3,14 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
+#include <vector>
 
 #include <meshfarm/farm/job.hpp>
 #include <meshfarm/geometry/mesh.hpp>
 #include <meshfarm/io/labels.hpp>
 #include <meshfarm/io/manifest.hpp>
+#include <meshfarm/io/tiled_picture.hpp>
 #include <meshfarm/staging/stage.hpp>
 
 #include "pipeline/bake_plan.hpp"
@@ -23,6 +26,8 @@ struct TextureLayout {
   std::uint32_t charts = 0;
   double coverage = 0;  // the share of the picture that charts cover
   double spacing = 0;   // of the texels on the surface, a length; 0 if it has no area
+  /// Of the input's pictures that have colours; nothing of others, and of those that are damaged.
+  std::vector<std::optional<PictureFacts>> pictures;
 };
 
 /// Gives a result texture coordinates on one new picture: its columns are replaced. `texture_size`:

@@ -33,7 +33,7 @@ struct FinishSummary {
   FileSection scene;
   std::vector<std::uint32_t> chunk_texels;
   std::vector<std::uint8_t> is_used;  // of the stage's pictures: whether it is to be tiled
-  std::uint64_t tile_memory = 0;      // most that a picture takes to be tiled, its file included
+  std::uint64_t tile_memory = 0;      // most that a picture takes to be tiled beside its file
 };
 std::string encode_summary(const FinishSummary& summary);
 FinishSummary decode_finish_summary(std::string_view bytes, std::string_view what);
