@@ -212,7 +212,6 @@ std::uint32_t CollapseJudge::next_on_line(const Ring& ring, std::uint32_t vertex
 /// dragon at 2 %, and 8 % of that of the input's lines to the result's.
 Vec3 CollapseJudge::keep_label_areas(std::uint32_t a, std::uint32_t b, Vec3 x) const {
   if (!state_.adjacency->has_labels()) return x;
-  if ((ring_a_.flags & ring_b_.flags & k_crease) == 0) return x;
   const std::uint32_t before = next_on_line(ring_a_, a, b);
   const std::uint32_t after = next_on_line(ring_b_, b, a);
   if (before == k_none || after == k_none) return x;
@@ -233,14 +232,6 @@ Vec3 CollapseJudge::line_position(std::uint32_t a, std::uint32_t b) const {
 }
 
 Collapse CollapseJudge::judge(std::uint32_t a, std::uint32_t b, const CollapseLimits& limits) {
-  Collapse collapse = best_of(a, b, limits);
-  if (collapse.triangles > 0 && !state_.appearances.empty()) {
-    collapse.appearance = appearance_.at(collapse.position - middle_);
-  }
-  return collapse;
-}
-
-Collapse CollapseJudge::best_of(std::uint32_t a, std::uint32_t b, const CollapseLimits& limits) {
   if (state_.adjacency->count(a) + state_.adjacency->count(b) > k_max_star) return {};
   const std::uint32_t shared = list_star(a, b);
   if (shared > limits.triangles) return {};
@@ -270,7 +261,9 @@ Collapse CollapseJudge::best_of_positions(std::uint32_t a, std::uint32_t b, std:
     if (!quadric_.is_near(x)) return Collapse{};
     return at_position(rounded(middle_ + x, state_.type), shared, max_cost, Turn::wide);
   };
-  const Collapse best = at_near(keep_label_areas(a, b, quadric_.best()));
+  const bool keeps_areas = (ring_a_.flags & ring_b_.flags & k_crease) != 0;
+  const Vec3 least = quadric_.best();
+  const Collapse best = at_near(keeps_areas ? keep_label_areas(a, b, least) : least);
   if (best.triangles > 0) return best;
   // Where the best point is far off or would spoil a triangle, one of the ends may do: without them
   // flat faces with sharp edges are dead ends. To let them turn triangles as far costs 6 % of the

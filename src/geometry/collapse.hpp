@@ -32,7 +32,12 @@ struct Collapse {
   double cost = 0;
   bool by_topology = false;  // that is why it may not be
   double certain = -1;       // the part of the cost that is no guess; below 0: all of it
-  Appearance appearance{};   // of the merged vertex, where appearances count
+};
+
+/// What a vertex has besides its position, and its corners, after a collapse.
+struct MergedColumns {
+  Appearance appearance{};  // where appearances count
+  std::span<const WedgeMerge> wedges;
 };
 
 /// Judges single collapses. Both ends must not have taken part in a collapse of this pass; their
@@ -47,8 +52,11 @@ class CollapseJudge {
   /// triangle by more than 60 degrees and makes none of no area. The quadric is of the triangles
   /// as they are now, each counted once.
   Collapse judge(std::uint32_t a, std::uint32_t b, const CollapseLimits& limits);
-  /// What becomes of the texture coordinates in the last that may be.
-  std::span<const WedgeMerge> wedges() const { return wedges_.merges(); }
+  /// Of the last, if it may be: what the merged vertex gets.
+  MergedColumns columns_of(const Collapse& collapse) const {
+    return {state_.appearances.empty() ? Appearance{} : appearance_.at(collapse.position - middle_),
+            wedges_.merges()};
+  }
 
  private:
   struct Ring {
@@ -65,8 +73,6 @@ class CollapseJudge {
     Corner* kept;         // and those that have not
   };
 
-  /// Without its appearance.
-  Collapse best_of(std::uint32_t a, std::uint32_t b, const CollapseLimits& limits);
   Walk walk(const Walk& walk, Ring& ring) const;
   std::uint32_t list_star(std::uint32_t a, std::uint32_t b);
   std::uint32_t common_neighbours() const;

@@ -211,7 +211,6 @@ Collapse GeneralJudge::at_position(Vec3 position, Turn turn) const {
   Collapse collapse{removed_, position, 0, false};
   collapse.cost = std::max(planes, changes_ ? lost_cost * k_loss_of_change : lost_cost);
   collapse.certain = std::max(planes, lost_cost);
-  if (!state_.appearances.empty()) collapse.appearance = appearance_.at(x);
   return collapse;
 }
 
@@ -268,6 +267,7 @@ GeneralCollapse GeneralJudge::judge(std::uint32_t a, std::uint32_t b,
   half_ = (state_.positions[b] - state_.positions[a]) * 0.5;
   wedges_.clear();
   if (staying_ == 0) {
+    appearance_.clear(state_.appearance_scale);
     middle_ = state_.positions[a] + half_;
     result.collapse = removal();
     return result;

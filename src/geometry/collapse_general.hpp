@@ -38,8 +38,11 @@ class GeneralJudge {
   std::span<const std::pair<std::uint32_t, std::uint32_t>> vanishing() const { return vanishing_; }
   /// Vertices whose fans are other ones than before, apart from the merged one.
   std::span<const std::uint32_t> changed() const { return changed_; }
-  /// What becomes of the texture coordinates, if it may be.
-  std::span<const WedgeMerge> wedges() const { return wedges_.merges(); }
+  /// If it may be: what the merged vertex gets.
+  MergedColumns columns_of(const Collapse& collapse) const {
+    return {state_.appearances.empty() ? Appearance{} : appearance_.at(collapse.position - middle_),
+            wedges_.merges()};
+  }
 
  private:
   struct End {

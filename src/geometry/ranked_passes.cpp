@@ -119,7 +119,7 @@ std::uint64_t RankedPasses::run(const SimplifyGoal& goal, const Pass& pass) {
       refused_for_topology_ += collapse.by_topology ? 1 : 0;
       if (collapse.triangles == 0 || !may_drift(drifts, e, collapse)) continue;
       ++collapses_;
-      mesh_.merge(e.a, e.b, collapse, judge.wedges());
+      mesh_.merge(e.a, e.b, collapse, judge.columns_of(collapse));
       limits.triangles -= collapse.triangles;
       const bool in_order = pass.block == vertices;
       if (limits.triangles <= 1 && in_order) reached = std::min(reached, cost_of(e.key));

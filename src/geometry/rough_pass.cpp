@@ -53,7 +53,7 @@ std::uint64_t RoughPass::run(const SimplifyGoal& goal) {
     const auto [a, b] = std::minmax(v, other);
     const Collapse collapse = judge.judge(a, b, limits);
     if (collapse.triangles == 0) continue;
-    mesh_.merge(a, b, collapse, judge.wedges());
+    mesh_.merge(a, b, collapse, judge.columns_of(collapse));
     limits.triangles -= collapse.triangles;
   }
   const std::uint64_t removed = excess - limits.triangles;

@@ -255,15 +255,17 @@ void CollapseQueue::join(const CornerFan& fan, std::size_t place) {
 
 void CollapseQueue::merge(std::uint32_t a, std::uint32_t b, const Collapse& collapse) {
   if (guard_ != nullptr) guard_->merge();
+  const MergedColumns columns =
+      by_general_ ? general_.columns_of(collapse) : judge_.columns_of(collapse);
   if (mesh_.adjacency.has_uvs()) {
-    merge_wedges(by_general_ ? general_.wedges() : judge_.wedges(), mesh_.adjacency.fan_at(a).ids,
-                 mesh_.adjacency.fan_at(b).ids, mesh_.columns.uvs);
+    merge_wedges(columns.wedges, mesh_.adjacency.fan_at(a).ids, mesh_.adjacency.fan_at(b).ids,
+                 mesh_.columns.uvs);
   }
   join_stars(a, b);
   target_[b] = a;
   mesh_.flags[a] |= mesh_.flags[b];
   mesh_.positions[a] = collapse.position;
-  if (!mesh_.appearances.empty()) mesh_.appearances[a] = collapse.appearance;
+  if (!mesh_.appearances.empty()) mesh_.appearances[a] = columns.appearance;
   triangles_ -= collapse.triangles;
   max_cost_ = std::max(max_cost_, collapse.cost);
   last_cost_ = collapse.cost;

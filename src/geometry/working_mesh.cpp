@@ -83,15 +83,16 @@ CollapseState WorkingMesh::state() {
 }
 
 void WorkingMesh::merge(std::uint32_t a, std::uint32_t b, const Collapse& collapse,
-                        std::span<const WedgeMerge> wedges) {
-  if (!wedges.empty()) {
-    merge_wedges(wedges, adjacency_.fan_at(a).ids, adjacency_.fan_at(b).ids, mesh_.columns.uvs);
+                        const MergedColumns& columns) {
+  if (!columns.wedges.empty()) {
+    merge_wedges(columns.wedges, adjacency_.fan_at(a).ids, adjacency_.fan_at(b).ids,
+                 mesh_.columns.uvs);
   }
   touched_[a] = touched_[b] = 1;
   target_[b] = a;
   flags_[a] |= flags_[b];
   mesh_.positions[a] = collapse.position;
-  if (!mesh_.appearances.empty()) mesh_.appearances[a] = collapse.appearance;
+  if (!mesh_.appearances.empty()) mesh_.appearances[a] = columns.appearance;
   max_cost_ = std::max(max_cost_, collapse.cost);
 }
 

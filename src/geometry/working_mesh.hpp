@@ -50,7 +50,7 @@ class WorkingMesh {
   /// Whether a vertex took part in a collapse of this pass.
   std::span<const std::uint8_t> touched() const { return touched_; }
   void merge(std::uint32_t a, std::uint32_t b, const Collapse& collapse,
-             std::span<const WedgeMerge> wedges);
+             const MergedColumns& columns);
   /// `removed`: how many triangles have gone; `cost`: what the pass might pay.
   void end_pass(std::uint64_t removed, double cost);
   /// After a pass that has removed triangles: the new number of each vertex, or that of the one it
