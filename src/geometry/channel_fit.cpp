@@ -26,6 +26,9 @@ constexpr double k_points_per_triangle = 12;
 /// How much of its weight holds a vertex to the mean of what is round it.
 constexpr double k_held = 0.02;
 constexpr int k_steps = 20;
+/// A triangle that a point is so near to, as a part of its size, will do: which of some triangles
+/// is the nearest then changes the point's shares little, and half of the time is saved.
+constexpr double k_near = 0.01;
 
 /// Of a triangle: the sums of s0 s0, s1 s1, s2 s2, s0 s1, s1 s2, s2 s0.
 using Products = std::array<double, 6>;
@@ -258,7 +261,7 @@ class ChannelFit::Impl {
       std::uint32_t guess = 0;
       const std::size_t end = std::min(points.size(), (chunk + 1) * k_points_at_once);
       for (std::size_t i = chunk * k_points_at_once; i < end; ++i) {
-        guess = bvh_.nearest(points[i], guess).triangle;
+        guess = bvh_.nearest(points[i], guess, near_to(guess)).triangle;
         const auto& [a, b, c] = mesh_.triangles[guess];
         found_[i] = {guess, nearest_shares(points[i], mesh_.positions[a], mesh_.positions[b],
                                            mesh_.positions[c])};
@@ -268,6 +271,14 @@ class ChannelFit::Impl {
       add(found_[i], values.subspan(i * channels_, channels_));
     }
     points_ += points.size();
+  }
+
+  /// The squared distance that will do.
+  double near_to(std::uint32_t triangle) const {
+    const auto& [a, b, c] = mesh_.triangles[triangle];
+    const Vec3 normal =
+        cross(mesh_.positions[b] - mesh_.positions[a], mesh_.positions[c] - mesh_.positions[a]);
+    return k_near * k_near * length(normal);
   }
 
   void add(const Found& found, std::span<const float> values) {

@@ -57,9 +57,9 @@ class GraphBuilder {
   SeamGraph build() {
     const auto vertices = static_cast<std::uint32_t>(corner_.size());
     for (std::uint32_t v = 0; v < vertices; ++v) look_at(v);
-    graph_.charts.resize(inner_edges_.size());
+    number_charts();
     for (std::uint32_t i = 0; i < inner_edges_.size(); ++i) {
-      SeamGraph::Chart& chart = graph_.charts[chart_of_.find(i)];
+      SeamGraph::Chart& chart = graph_.charts[chart_at(i)];
       // Of vertices - edges + triangles, an edge a side but for those within.
       chart.euler += inner_edges_[i] - 2;
       ++chart.triangles;
@@ -100,6 +100,19 @@ class GraphBuilder {
     corner.is_on_border = borders > 0;
   }
 
+  void number_charts() {
+    chart_numbers_.assign(inner_edges_.size(), k_none);
+    std::uint32_t charts = 0;
+    for (std::uint32_t i = 0; i < chart_numbers_.size(); ++i) {
+      if (chart_of_.find(i) == i) chart_numbers_[i] = charts++;
+    }
+    graph_.charts.resize(charts);
+  }
+
+  std::uint32_t chart_at(std::uint32_t triangle) {
+    return chart_numbers_[chart_of_.find(triangle)];
+  }
+
   /// A chart has a vertex as often as it comes there from another side.
   void count_sides(std::uint32_t vertex) {
     const CornerFan fan = fan_at(vertex);
@@ -111,7 +124,7 @@ class GraphBuilder {
     });
     for (std::uint32_t i = 0; i < size; ++i) {
       if (sides.find(i) != i) continue;
-      const std::uint32_t number = chart_of_.find(fan.ids[i] / 3);
+      const std::uint32_t number = chart_at(fan.ids[i] / 3);
       SeamGraph::Chart& chart = graph_.charts[number];
       ++chart.euler;
       chart.is_part = chart.is_part || vertex < locked_;
@@ -159,7 +172,7 @@ class GraphBuilder {
     SeamGraph::Line& line = graph_.lines.emplace_back();
     for (std::size_t side = 0; side < 2; ++side) {
       if (edge.triangles[side] == k_none) continue;
-      line.charts[side] = chart_of_.find(edge.triangles[side]);
+      line.charts[side] = chart_at(edge.triangles[side]);
       graph_.charts[line.charts[side]].lines.push_back(number);
     }
   }
@@ -167,9 +180,10 @@ class GraphBuilder {
   std::size_t locked_;
   std::span<const Vec3> positions_;
   Adjacency adjacency_;
-  UnionFind chart_of_;                     // sets of triangles
-  std::vector<std::uint8_t> inner_edges_;  // some of each triangle's
-  std::vector<std::uint32_t> corner_;      // its number, of each vertex
+  UnionFind chart_of_;                        // sets of triangles
+  std::vector<std::uint32_t> chart_numbers_;  // of the sets, at the triangle that names each
+  std::vector<std::uint8_t> inner_edges_;     // some of each triangle's
+  std::vector<std::uint32_t> corner_;         // its number, of each vertex
   std::vector<std::uint8_t> is_on_line_;
   std::vector<LineEdge> edges_;
   SeamGraph graph_;

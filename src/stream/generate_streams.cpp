@@ -36,6 +36,8 @@ namespace meshfarm {
 namespace {
 
 constexpr std::uint32_t k_most_streams = 65'536;
+/// What finding the facts of its texture takes beside a stream, for each triangle.
+constexpr std::uint64_t k_fact_bytes = 24;
 
 class Generator {
  public:
@@ -171,9 +173,12 @@ class Generator {
   /// As many at once as fit into the memory, going by the average.
   unsigned threads() const {
     const unsigned cores = processors();
+    const std::uint64_t of_triangle =
+        bytes_per_triangle() + (source_.info().uvs ? k_fact_bytes : 0);
     const std::uint64_t bytes =
-        bytes_per_triangle() * manifest_.input_triangles / std::max<std::uint64_t>(1, streams_);
-    const std::uint64_t fit = options_.memory_bytes / std::max<std::uint64_t>(1, bytes);
+        of_triangle * manifest_.input_triangles / std::max<std::uint64_t>(1, streams_);
+    const std::uint64_t buffers = std::min(options_.memory_bytes, shares_->buffer_bytes());
+    const std::uint64_t fit = (options_.memory_bytes - buffers) / std::max<std::uint64_t>(1, bytes);
     return static_cast<unsigned>(
         std::clamp<std::uint64_t>(fit, 1, options_.threads != 0 ? options_.threads : cores));
   }

@@ -16,7 +16,6 @@
 namespace meshfarm {
 namespace {
 
-constexpr std::size_t k_all_buffers_bytes = std::size_t{32} << 20;
 constexpr std::size_t k_min_buffer_bytes = std::size_t{4} << 10;
 constexpr std::size_t k_max_buffer_bytes = std::size_t{1} << 20;
 
@@ -25,8 +24,9 @@ constexpr std::size_t k_max_buffer_bytes = std::size_t{1} << 20;
 BucketFile::BucketFile(const std::filesystem::path& folder, std::size_t buckets,
                        std::uint64_t memory_bytes)
     : folder_(folder),
-      buffer_bytes_(std::clamp(k_all_buffers_bytes / std::max<std::size_t>(1, buckets),
-                               k_min_buffer_bytes, k_max_buffer_bytes)),
+      buffer_bytes_(std::clamp(
+          static_cast<std::size_t>(k_all_buffers_bytes) / std::max<std::size_t>(1, buckets),
+          k_min_buffer_bytes, k_max_buffer_bytes)),
       memory_(MappedFile::memory(memory_bytes)),
       buckets_(buckets) {
   std::string name = (folder / "buckets.XXXXXX").string();

@@ -113,6 +113,11 @@ class MeshShares {
   /// The boundary triangles that have a corner in this share, in file order; as safe as read().
   std::vector<SeamTriangle> seam(std::uint32_t share) const;
 
+  /// What buffers took until finish(): the process may keep it in pieces that are of little use.
+  std::uint64_t buffer_bytes() const {
+    const std::uint64_t files = 2U + (columns_.labels ? 1U : 0U) + (columns_.uvs ? 1U : 0U);
+    return files * BucketFile::k_all_buffers_bytes;
+  }
   /// Vertices that became one with an earlier one.
   std::uint64_t merged() const { return merged_; }
   /// Triangles that used a vertex that was left out.

@@ -18,6 +18,9 @@ namespace meshfarm {
 /// writing and reading them back would cost more than the work itself.
 class BucketFile {
  public:
+  /// All buffers of a file together, about.
+  static constexpr std::uint64_t k_all_buffers_bytes = std::uint64_t{32} << 20;
+
   BucketFile(const std::filesystem::path& folder, std::size_t buckets,
              std::uint64_t memory_bytes = 0);
   void append(std::size_t bucket, std::string_view bytes);
