@@ -16,6 +16,7 @@
 #include "cli/local_farm.hpp"
 #include "cli/options.hpp"
 #include "cli/signals.hpp"
+#include "cli/texture_words.hpp"
 
 namespace meshfarm {
 namespace {
@@ -57,6 +58,8 @@ class RunCommand : public Command {
     positional.add("stage", 1);
   }
   void check() override {
+    if (output_.empty()) output_ = (std::filesystem::path(stage_) / "result.ply").string();
+    target_.uv = stage_uv_for(output_, target_.uv);
     target_.check();
     if (whose_ == Workers::own) {
       network_.bind = "127.0.0.1";
@@ -66,7 +69,6 @@ class RunCommand : public Command {
     if (workers_ > 1000) throw UsageError("--workers: at most 1000");
     network_.check();
     schedule_.check();
-    if (output_.empty()) output_ = (std::filesystem::path(stage_) / "result.ply").string();
   }
   int run() override {
     if (worker_words_) return print_worker_words();

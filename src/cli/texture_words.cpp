@@ -49,6 +49,11 @@ TextureWords texture_words_for(const std::string& output, const std::string& uv)
   return {keeps_colours(output) ? "colours" : "drop", "drop"};
 }
 
+std::string stage_uv_for(const std::string& output, const std::string& uv) {
+  parse_texture_mode(uv);
+  return is_output_format(output) ? texture_words_for(output, uv).run : uv;
+}
+
 void tell_textures(const Manifest& manifest, const RunOptions& run) {
   if (!manifest.uvs) return;
   const std::uint64_t floor = texture_floor(manifest);

@@ -28,6 +28,8 @@ struct TextureWords {
 };
 /// What has a place in the output decides. Throws UsageError for textures that have none.
 TextureWords texture_words_for(const std::string& output, const std::string& uv);
+/// The same for a run of a stage that was cut before.
+std::string stage_uv_for(const std::string& output, const std::string& uv);
 
 /// Tells, before the work, what becomes of the stage's textures, where that is not as asked, or was
 /// not asked for.

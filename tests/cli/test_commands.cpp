@@ -206,6 +206,8 @@ TEST_CASE("wrong usage is one line and exit 2") {
       {"simplify", cube, "-o", shell.path("o.ply"), "--ratio", "0.5", "--weight", "uv=2"},
       {"convert", cube, shell.path("o.off"), "--uv", "keep"},
       {"run", shell.path("s"), "--ratio", "0.5", "--ports", "9-8"},
+      {"run", shell.path("s"), "--ratio", "0.5", "--uv", "colours"},
+      {"run", shell.path("s"), "-o", shell.path("o.stl"), "--ratio", "0.5", "--uv", "keep"},
       {"compare", cube},
   };
   for (const auto& words : wrong) {

@@ -337,6 +337,17 @@ TEST_CASE("textures are kept within a bound of the error") {
   }
 }
 
+TEST_CASE("a run of a textured stage makes no texture that the output has no place for") {
+  Bench bench;
+  const std::string stage = bench.path("stage");
+  REQUIRE(bench({"cut", bench.path("in.obj"), "--stage", stage}).code == 0);
+  const Ran ran = bench({"replay", stage, "-o", bench.path("o.stl"), "--ratio", "0.03", "--uv",
+                         "bake", "--workers", "1"});
+  REQUIRE(ran.code == 0);
+  CHECK_FALSE(has(ran.out, "a new picture"));
+  CHECK(open_mesh(bench.path("o.stl"))->info().faces == 432);
+}
+
 TEST_CASE("textures are kept by a finish of the seams alone") {
   Bench bench;
   for (const std::string workers : {"1", "3"}) {
