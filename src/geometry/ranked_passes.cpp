@@ -49,8 +49,7 @@ RankedPasses::RankedPasses(WorkingMesh& mesh, const SurfaceBound* bound)
 
 RankedPasses::End RankedPasses::reduce(const SimplifyGoal& goal,
                                        const std::function<bool(std::uint64_t)>& progress) {
-  for (bool again = false; mesh_.is_above(goal.triangles) && !is_near(goal); again = true) {
-    if (again) ranking_.keep_appearances(mesh_.numbers(), mesh_.touched());
+  while (mesh_.is_above(goal.triangles) && !is_near(goal)) {
     mesh_.begin_pass();
     ranking_.begin_pass({mesh_.mesh().positions, mesh_.mesh().triangles, mesh_.flags(),
                          &mesh_.adjacency(), &mesh_.creases().test(), mesh_.seam_only(), false,

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
-#include <utility>
 
 #include "geometry/collapse.hpp"
 #include "geometry/vertex_flags.hpp"
@@ -50,50 +49,17 @@ void EdgeRanking::begin_pass(const RankingInput& input) {
   input_ = input;
   quadrics_.assign(input_.positions.size(), {});
   sum_planes();
-  if (!input_.appearances.empty()) sum_appearances();
+  if (!input_.appearances.empty()) {
+    for (std::uint32_t v = 0; v < quadrics_.size(); ++v) {
+      quadrics_[v].add(FloatQuadric(appearance_at(v)));
+    }
+  }
   if (weighs_uvs()) {
     for (std::uint32_t v = 0; v < quadrics_.size(); ++v) {
       quadrics_[v].add(FloatQuadric(uvs_at(v)));
     }
   }
   sum_line_planes();
-}
-
-void EdgeRanking::keep_appearances(std::span<const std::uint32_t> numbers,
-                                   std::span<const std::uint8_t> touched) {
-  if (of_appearances_.size() != numbers.size()) return;
-  has_changed_.resize(numbers.size());
-  std::uint32_t kept = 0;
-  for (std::size_t v = 0; v < numbers.size(); ++v) {
-    if (numbers[v] != kept) continue;
-    of_appearances_[kept] = of_appearances_[v];
-    has_changed_[kept++] = touched[v];
-  }
-  of_appearances_.resize(kept);
-  has_changed_.resize(kept);
-  keeps_appearances_ = true;
-}
-
-/// A star has changed where a vertex in it has.
-void EdgeRanking::list_changed_stars() {
-  is_to_sum_ = has_changed_;
-  for (const Triangle& t : input_.triangles) {
-    if ((has_changed_[t[0]] | has_changed_[t[1]] | has_changed_[t[2]]) == 0) continue;
-    for (const std::uint32_t v : t) is_to_sum_[v] = 1;
-  }
-}
-
-void EdgeRanking::sum_appearances() {
-  if (std::exchange(keeps_appearances_, false)) {
-    list_changed_stars();
-  } else {
-    is_to_sum_.assign(quadrics_.size(), 1);
-    of_appearances_.resize(quadrics_.size());
-  }
-  for (std::uint32_t v = 0; v < quadrics_.size(); ++v) {
-    if (is_to_sum_[v] != 0) of_appearances_[v] = FloatQuadric(appearance_at(v));
-    quadrics_[v].add(of_appearances_[v]);
-  }
 }
 
 /// What the vertex's star adds about the vertex, in which all its triangles agree.

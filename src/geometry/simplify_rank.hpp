@@ -69,11 +69,6 @@ class EdgeRanking {
   /// Sums the quadrics. Keeps its memory from one pass to the next.
   void begin_pass(const RankingInput& input);
 
-  /// Before begin_pass() for what a pass has left of the mesh: what appearances add at vertices
-  /// whose stars have not changed is not summed again. `numbers` and `touched` as WorkingMesh's.
-  void keep_appearances(std::span<const std::uint32_t> numbers,
-                        std::span<const std::uint8_t> touched);
-
   /// Estimates from a sample the key that the cheapest `share` (0 to 1) of all edges, but no more
   /// than `most`, do not exceed.
   CostKey estimate_limit(double share, double most);
@@ -108,8 +103,6 @@ class EdgeRanking {
   };
   void sum_planes();
   void sum_line_planes();
-  void sum_appearances();
-  void list_changed_stars();
   Quadric appearance_at(std::uint32_t vertex);
   bool weighs_uvs() const { return input_.uv_scale > 0 && input_.adjacency->has_uvs(); }
   Quadric uvs_at(std::uint32_t vertex);
@@ -130,10 +123,6 @@ class EdgeRanking {
   std::size_t listed_count_ = 0;
   EdgeCosts costs_;
   AppearanceStar star_;
-  std::vector<FloatQuadric> of_appearances_;  // what they add, by vertex
-  std::vector<std::uint8_t> has_changed_;     // of vertices, since that was summed
-  std::vector<std::uint8_t> is_to_sum_;
-  bool keeps_appearances_ = false;
   std::vector<std::pair<Uv, LinearUvSums>> wedges_;  // of one vertex
   std::vector<RankedEdge> found_;                    // the first found_count_
   std::size_t found_count_ = 0;

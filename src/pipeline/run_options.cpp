@@ -108,10 +108,8 @@ LineOptions lines_of(const Manifest& manifest, const RunOptions& options) {
 
 std::uint64_t memory_of_channels(const LineOptions& lines, std::uint64_t triangles) {
   constexpr std::uint64_t k_copies = 4;
-  constexpr std::uint64_t k_ranking = 34;  // what the ranking of edges keeps of a vertex
-  // A vertex for two triangles.
   const std::uint64_t of_vertices =
-      lines.appearance_scale.length > 0 ? (k_copies * sizeof(Appearance) + k_ranking) / 2 : 0;
+      lines.appearance_scale.length > 0 ? k_copies * sizeof(Appearance) / 2 : 0;
   // Those at the corners of the triangles, too.
   const std::uint64_t of_triangles = (k_copies + 3) * lines.columns.bytes();
   return (of_vertices + of_triangles) * triangles;
