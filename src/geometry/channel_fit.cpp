@@ -26,6 +26,8 @@ constexpr double k_points_per_triangle = 12;
 /// How much of its weight holds a vertex to the mean of what is round it.
 constexpr double k_held = 0.02;
 constexpr int k_steps = 20;
+/// Of the square of what is missing at first: then it is far below what eight bits tell apart.
+constexpr double k_done = 1e-12;
 /// A triangle that a point is so near to, as a part of its size, will do: which of some triangles
 /// is the nearest then changes the point's shares little, and half of the time is saved.
 constexpr double k_near = 0.01;
@@ -102,12 +104,14 @@ class Solver {
     std::vector<double> scaled(x.size(), 0);
     std::vector<double> way(x.size(), 0);
     double before = 0;
+    double enough = 0;
     for (int step = 0; step < k_steps; ++step) {
       for (std::size_t v = 0; v < x.size(); ++v) {
         scaled[v] = is_told(v) ? rest[v] / diagonal_[v] : 0;
       }
       const double now = dot_of(rest, scaled);
-      if (!(now > 0)) return;
+      if (step == 0) enough = k_done * now;
+      if (!(now > enough)) return;
       const double turn = before > 0 ? now / before : 0;
       for (std::size_t v = 0; v < x.size(); ++v) way[v] = scaled[v] + turn * way[v];
       const std::vector<double> product = times(way);
