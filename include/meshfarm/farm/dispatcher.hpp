@@ -13,10 +13,10 @@
 
 #include <meshfarm/farm/dispatcher_actions.hpp>
 #include <meshfarm/farm/farm_event.hpp>
+#include <meshfarm/farm/farm_progress.hpp>
 #include <meshfarm/farm/plan.hpp>
 #include <meshfarm/farm/protocol.hpp>
 #include <meshfarm/farm/scheduler.hpp>
-#include <meshfarm/farm/ventilator.hpp>
 #include <meshfarm/farm/when_full.hpp>
 
 namespace meshfarm {

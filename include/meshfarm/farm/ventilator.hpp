@@ -10,6 +10,7 @@
 #include <vector>
 
 #include <meshfarm/farm/farm_event.hpp>
+#include <meshfarm/farm/farm_progress.hpp>
 #include <meshfarm/farm/job.hpp>
 #include <meshfarm/farm/protocol.hpp>
 #include <meshfarm/farm/schedule.hpp>
@@ -22,39 +23,6 @@ namespace meshfarm {
 /// Descriptors that each worker takes in the ventilator: its lane, how that is watched,
 /// connections.
 inline constexpr std::uint32_t k_files_per_worker = 6;
-
-/// What the farm is doing, for progress lines.
-struct FarmProgress {
-  std::uint64_t jobs_done = 0;
-  std::uint64_t jobs_known = 0;
-  std::uint64_t cost_done = 0;  // triangles of the jobs accepted
-  std::uint64_t cost_known = 0;
-  std::uint64_t jobs_running = 0;
-  std::uint64_t jobs_failed = 0;
-  std::uint64_t jobs_too_big = 0;  // ready, but they need more memory than any worker has
-  std::uint32_t workers = 0;
-  std::uint32_t workers_lost = 0;
-  std::uint32_t retries = 0;
-  bool sink_present = false;
-  std::uint64_t refused = 0;           // connections that did not prove to belong to the run
-  std::string other_build;             // who was refused for that last, and why
-  bool storage_stalls = false;         // most workers wait for the stage
-  bool no_room = false;                // the stage is full, and all wait until it is not
-  std::vector<std::string> bad_hosts;  // get no more jobs: too many failed there in a row
-};
-
-/// One worker as the ventilator sees it.
-struct WorkerStatus {
-  WorkerId id;
-  std::string host;
-  std::uint32_t pid = 0;
-  Capacity capacity;
-  double speed = 0;  // triangles a second and thread, by the jobs it did
-  std::uint32_t held = 0;
-  std::uint64_t rss_bytes = 0;
-  FarmTime silent{0};      // since it was last heard
-  std::uint64_t room = 0;  // jobs that it may be sent besides
-};
 
 struct VentilatorOptions {
   std::string bind = "127.0.0.1";  // address or interface, never all by default

@@ -11,6 +11,7 @@
 #include <meshfarm/farm/job.hpp>
 #include <meshfarm/farm/protocol.hpp>
 #include <meshfarm/farm/security.hpp>
+#include <meshfarm/farm/worker_report.hpp>
 #include <meshfarm/staging/stage.hpp>
 
 namespace meshfarm {
@@ -29,13 +30,6 @@ struct WorkerOptions {
   /// Called instead of returning when jobs in work do not give up: must end the process, as their
   /// threads cannot be ended. `incomplete` as IncompleteError would tell; empty: the run is over.
   std::function<void(const std::string& incomplete)> abort;
-};
-
-struct WorkerReport {
-  std::uint64_t jobs_done = 0;
-  std::uint64_t jobs_failed = 0;
-  double span_seconds = 0;     // from the first job's begin to the last one's end
-  double compute_seconds = 0;  // of all threads together within that
 };
 
 /// Finds the ventilator's address in the stage, takes jobs from its lane, does them with `work`, as

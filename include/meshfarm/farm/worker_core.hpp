@@ -14,8 +14,8 @@
 
 #include <meshfarm/farm/membership.hpp>
 #include <meshfarm/farm/protocol.hpp>
-#include <meshfarm/farm/worker.hpp>
 #include <meshfarm/farm/worker_actions.hpp>
+#include <meshfarm/farm/worker_report.hpp>
 
 namespace meshfarm {
 
