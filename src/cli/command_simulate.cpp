@@ -4,8 +4,8 @@
 #include <chrono>
 #include <iostream>
 
-#include <meshfarm/farm/simulated_seeds.hpp>
 #include <meshfarm/report/simulation_report.hpp>
+#include <meshfarm/simulation/simulated_seeds.hpp>
 #include <meshfarm/util/errors.hpp>
 #include <meshfarm/util/memory.hpp>
 

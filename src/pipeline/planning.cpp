@@ -6,8 +6,8 @@
 #include <set>
 #include <string>
 
-#include <meshfarm/farm/simulation.hpp>
 #include <meshfarm/pipeline/planning.hpp>
+#include <meshfarm/simulation/simulation.hpp>
 #include <meshfarm/util/errors.hpp>
 
 namespace meshfarm {

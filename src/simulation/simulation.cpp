@@ -5,7 +5,7 @@
 #include <utility>
 
 #include <meshfarm/farm/rounds.hpp>
-#include <meshfarm/farm/simulation.hpp>
+#include <meshfarm/simulation/simulation.hpp>
 #include <meshfarm/util/checksum.hpp>
 
 namespace meshfarm {

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
-#include "farm/simulation_checks.hpp"
+#include "simulation/simulation_checks.hpp"
 
 #include <algorithm>
 #include <array>

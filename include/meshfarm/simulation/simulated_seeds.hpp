@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include <meshfarm/farm/simulation.hpp>
+#include <meshfarm/simulation/simulation.hpp>
 
 namespace meshfarm {
 

@@ -4,10 +4,10 @@
 #include <array>
 #include <utility>
 
-#include <meshfarm/farm/simulated_seeds.hpp>
+#include <meshfarm/simulation/simulated_seeds.hpp>
 #include <meshfarm/util/parallel.hpp>
 
-#include "farm/dice.hpp"
+#include "simulation/dice.hpp"
 
 namespace meshfarm {
 namespace {

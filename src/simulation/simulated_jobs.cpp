@@ -5,7 +5,7 @@
 // compute thread, is computed, and its output is written and published.
 #include <utility>
 
-#include "farm/simulated_farm.hpp"
+#include "simulation/simulated_farm.hpp"
 
 namespace meshfarm {
 

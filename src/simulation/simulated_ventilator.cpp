@@ -4,7 +4,7 @@
 #include <charconv>
 #include <utility>
 
-#include "farm/simulated_farm.hpp"
+#include "simulation/simulated_farm.hpp"
 
 namespace meshfarm {
 namespace {

@@ -7,8 +7,8 @@
 
 #include <doctest/doctest.h>
 
-#include <meshfarm/farm/simulated_faults.hpp>
-#include <meshfarm/farm/simulation.hpp>
+#include <meshfarm/simulation/simulated_faults.hpp>
+#include <meshfarm/simulation/simulation.hpp>
 
 namespace meshfarm::test {
 namespace {

@@ -6,9 +6,9 @@
 
 #include <doctest/doctest.h>
 
-#include <meshfarm/farm/simulation.hpp>
+#include <meshfarm/simulation/simulation.hpp>
 
-#include "farm/simulation_checks.hpp"
+#include "simulation/simulation_checks.hpp"
 
 namespace meshfarm::test {
 namespace {

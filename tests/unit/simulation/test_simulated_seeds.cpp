@@ -5,7 +5,7 @@
 
 #include <doctest/doctest.h>
 
-#include <meshfarm/farm/simulated_seeds.hpp>
+#include <meshfarm/simulation/simulated_seeds.hpp>
 
 namespace meshfarm::test {
 namespace {

@@ -14,15 +14,15 @@
 #include <vector>
 
 #include <meshfarm/farm/dispatcher.hpp>
-#include <meshfarm/farm/simulation.hpp>
 #include <meshfarm/farm/sink_core.hpp>
 #include <meshfarm/farm/worker_core.hpp>
+#include <meshfarm/simulation/simulation.hpp>
 
-#include "farm/dice.hpp"
-#include "farm/event_queue.hpp"
-#include "farm/simulated_network.hpp"
-#include "farm/simulated_storage.hpp"
-#include "farm/simulation_checks.hpp"
+#include "simulation/dice.hpp"
+#include "simulation/event_queue.hpp"
+#include "simulation/simulated_network.hpp"
+#include "simulation/simulated_storage.hpp"
+#include "simulation/simulation_checks.hpp"
 
 namespace meshfarm {
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "farm/simulated_farm.hpp"
+#include "simulation/simulated_farm.hpp"
 
 namespace meshfarm {
 namespace {

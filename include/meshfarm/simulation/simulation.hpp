@@ -16,8 +16,8 @@
 #include <meshfarm/farm/job.hpp>
 #include <meshfarm/farm/protocol.hpp>
 #include <meshfarm/farm/schedule.hpp>
-#include <meshfarm/farm/simulated_faults.hpp>
 #include <meshfarm/farm/when_full.hpp>
+#include <meshfarm/simulation/simulated_faults.hpp>
 
 namespace meshfarm {
 

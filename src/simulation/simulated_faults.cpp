@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "farm/simulated_farm.hpp"
+#include "simulation/simulated_farm.hpp"
 
 namespace meshfarm {
 namespace {

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
-#include "farm/simulated_farm.hpp"
+#include "simulation/simulated_farm.hpp"
 
 #include <algorithm>
 #include <utility>

@@ -8,10 +8,10 @@
 #include <unordered_map>
 #include <vector>
 
-#include <meshfarm/farm/simulation.hpp>
+#include <meshfarm/simulation/simulation.hpp>
 
-#include "farm/dice.hpp"
-#include "farm/event_queue.hpp"
+#include "simulation/dice.hpp"
+#include "simulation/event_queue.hpp"
 
 namespace meshfarm {
 

@@ -7,10 +7,10 @@
 #include <utility>
 #include <vector>
 
-#include <meshfarm/farm/simulation.hpp>
+#include <meshfarm/simulation/simulation.hpp>
 
-#include "farm/dice.hpp"
-#include "farm/event_queue.hpp"
+#include "simulation/dice.hpp"
+#include "simulation/event_queue.hpp"
 
 namespace meshfarm {
 

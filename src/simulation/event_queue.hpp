@@ -12,7 +12,7 @@
 #include <utility>
 #include <vector>
 
-#include <meshfarm/farm/simulation.hpp>
+#include <meshfarm/simulation/simulation.hpp>
 
 namespace meshfarm {
 

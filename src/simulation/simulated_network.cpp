@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
-#include "farm/simulated_network.hpp"
+#include "simulation/simulated_network.hpp"
 
 #include <algorithm>
 
