@@ -72,7 +72,8 @@ if [ "$all" = yes ]; then
   sanitized build-asan address,undefined .
   # TSan does not see into libzmq, which is not built with it.
   TSAN_OPTIONS=ignore_noninstrumented_modules=1 \
-    sanitized build-tsan thread '^unit\.(util|staging|farm)$' test_util test_staging test_farm
+    sanitized build-tsan thread '^unit\.(util|staging|farm|transport|simulation)$' \
+    test_util test_staging test_farm test_transport test_simulation
   begin "lint"
   "$root/scripts/lint.sh"
 fi

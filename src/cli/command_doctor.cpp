@@ -6,11 +6,11 @@
 
 #include <sys/resource.h>
 
-#include <meshfarm/farm/ventilator.hpp>
 #include <meshfarm/io/manifest.hpp>
 #include <meshfarm/report/doctor.hpp>
 #include <meshfarm/staging/host_card.hpp>
 #include <meshfarm/staging/stage.hpp>
+#include <meshfarm/transport/ventilator.hpp>
 #include <meshfarm/util/errors.hpp>
 #include <meshfarm/util/log.hpp>
 

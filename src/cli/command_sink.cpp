@@ -3,7 +3,6 @@
 #include <iostream>
 #include <optional>
 
-#include <meshfarm/farm/sink.hpp>
 #include <meshfarm/pipeline/algorithm.hpp>
 #include <meshfarm/pipeline/assemble.hpp>
 #include <meshfarm/pipeline/budget.hpp>
@@ -11,6 +10,7 @@
 #include <meshfarm/pipeline/job_table.hpp>
 #include <meshfarm/pipeline/run_trace.hpp>
 #include <meshfarm/pipeline/sink_need.hpp>
+#include <meshfarm/transport/sink.hpp>
 #include <meshfarm/util/errors.hpp>
 #include <meshfarm/util/log.hpp>
 #include <meshfarm/util/memory.hpp>

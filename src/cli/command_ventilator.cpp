@@ -2,10 +2,10 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
 
-#include <meshfarm/farm/ventilator.hpp>
 #include <meshfarm/pipeline/algorithm.hpp>
 #include <meshfarm/pipeline/budget.hpp>
 #include <meshfarm/pipeline/run_trace.hpp>
+#include <meshfarm/transport/ventilator.hpp>
 #include <meshfarm/util/errors.hpp>
 #include <meshfarm/util/log.hpp>
 

@@ -6,11 +6,11 @@
 #include <cstdio>
 #include <cstdlib>
 
-#include <meshfarm/farm/worker.hpp>
 #include <meshfarm/pipeline/algorithm.hpp>
 #include <meshfarm/pipeline/benchmark.hpp>
 #include <meshfarm/pipeline/job_table.hpp>
 #include <meshfarm/staging/host_card.hpp>
+#include <meshfarm/transport/worker.hpp>
 #include <meshfarm/util/errors.hpp>
 #include <meshfarm/util/log.hpp>
 #include <meshfarm/util/memory.hpp>

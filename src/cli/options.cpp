@@ -4,13 +4,9 @@
 
 #include <charconv>
 #include <cmath>
-#include <memory>
-
-#include <arpa/inet.h>
-#include <ifaddrs.h>
-#include <net/if.h>
 
 #include <meshfarm/staging/file_system.hpp>
+#include <meshfarm/transport/addresses.hpp>
 #include <meshfarm/util/errors.hpp>
 
 #include "cli/texture_words.hpp"
@@ -312,7 +308,7 @@ void NetworkOptions::add(po::options_description& options) {
 }
 
 void NetworkOptions::check() {
-  if (bind.empty()) bind = host_address();
+  if (bind.empty()) bind = network_address().value_or("127.0.0.1");
   security.check();
   check_exposure(security.security, bind);
   if (ports.empty()) return;
@@ -382,20 +378,6 @@ std::uint64_t parse_size(const std::string& text, std::string_view option) {
     throw UsageError(std::string(option) + " takes a size as in 512M or 8G, not '" + text + "'");
   }
   return static_cast<std::uint64_t>(value);
-}
-
-std::string host_address() {
-  ifaddrs* list = nullptr;
-  if (::getifaddrs(&list) != 0) return "127.0.0.1";
-  const std::unique_ptr<ifaddrs, decltype(&::freeifaddrs)> owner(list, &::freeifaddrs);
-  for (const ifaddrs* at = list; at != nullptr; at = at->ifa_next) {
-    if (at->ifa_addr == nullptr || at->ifa_addr->sa_family != AF_INET) continue;
-    if ((at->ifa_flags & IFF_LOOPBACK) != 0 || (at->ifa_flags & IFF_UP) == 0) continue;
-    char text[INET_ADDRSTRLEN];
-    const auto* address = reinterpret_cast<const sockaddr_in*>(at->ifa_addr);
-    if (::inet_ntop(AF_INET, &address->sin_addr, text, sizeof text) != nullptr) return text;
-  }
-  return "127.0.0.1";
 }
 
 }  // namespace meshfarm

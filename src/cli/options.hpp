@@ -11,13 +11,13 @@
 #include <boost/program_options.hpp>
 
 #include <meshfarm/farm/schedule.hpp>
-#include <meshfarm/farm/security.hpp>
 #include <meshfarm/farm/when_full.hpp>
 #include <meshfarm/partition/cut.hpp>
 #include <meshfarm/pipeline/run_options.hpp>
 #include <meshfarm/report/progress.hpp>
 #include <meshfarm/report/summary.hpp>
 #include <meshfarm/stream/generate_streams.hpp>
+#include <meshfarm/transport/security.hpp>
 
 namespace meshfarm {
 
@@ -134,8 +134,5 @@ struct FullWords {
 
 /// "512M" or "8G" (powers of 1024) as bytes; `option` is for the message. Throws UsageError.
 std::uint64_t parse_size(const std::string& text, std::string_view option);
-
-/// The host's address on its first network but loopback; loopback where there is none.
-std::string host_address();
 
 }  // namespace meshfarm

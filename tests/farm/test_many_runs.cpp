@@ -15,9 +15,9 @@
 
 #include <doctest/doctest.h>
 
-#include <meshfarm/farm/worker.hpp>
 #include <meshfarm/pipeline/algorithm.hpp>
 #include <meshfarm/pipeline/job_table.hpp>
+#include <meshfarm/transport/worker.hpp>
 #include <meshfarm/util/errors.hpp>
 
 #include "support/farm_bench.hpp"

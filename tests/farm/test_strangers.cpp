@@ -19,9 +19,9 @@
 #include <meshfarm/farm/endpoint.hpp>
 #include <meshfarm/util/file.hpp>
 
-#include "farm/sockets.hpp"
 #include "support/process.hpp"
 #include "support/temp_folder.hpp"
+#include "transport/sockets.hpp"
 
 using namespace meshfarm;
 using meshfarm::test::listening_ports;

@@ -6,8 +6,8 @@
 #include <cstdlib>
 #include <string>
 
-#include "farm/run_keys.hpp"
 #include "fuzz/staged_fuzzer.hpp"
+#include "transport/run_keys.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace meshfarm;

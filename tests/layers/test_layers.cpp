@@ -37,6 +37,16 @@ constexpr std::array k_packages{
     Package{"cppzmq", "zmq.hpp"},
     Package{"cppzmq", "zmq_addon.hpp"},
     Package{"cppzmq", "zmq.h"},
+    // The system's sockets are for the layer of ZeroMQ alone, too.
+    Package{"cppzmq", "sys/socket.h"},
+    Package{"cppzmq", "sys/un.h"},
+    Package{"cppzmq", "sys/epoll.h"},
+    Package{"cppzmq", "poll.h"},
+    Package{"cppzmq", "netinet/"},
+    Package{"cppzmq", "arpa/"},
+    Package{"cppzmq", "net/"},
+    Package{"cppzmq", "netdb.h"},
+    Package{"cppzmq", "ifaddrs.h"},
     Package{"nlohmann_json::nlohmann_json", "nlohmann/"},
     Package{"meshoptimizer::meshoptimizer", "meshoptimizer.h"},
     Package{"PNG::PNG", "png.h"},
@@ -319,6 +329,30 @@ TEST_CASE("the project keeps its own layer table") {
           return file.path.starts_with("include/meshfarm/");
         }) >= 10);
   for (const std::string& problem : check_layers(cmake, files)) FAIL_CHECK(problem);
+}
+
+TEST_CASE("what thinks in the farm, and its simulation, come to no socket") {
+  const Layers layers = parse_layers(read(fs::path(MESHFARM_SOURCE_DIR) / "CMakeLists.txt"));
+  for (const std::string name : {"farm", "simulation"}) {
+    CAPTURE(name);
+    REQUIRE(layers.contains(name));
+    CHECK(!layers.at(name).packages.contains("cppzmq"));
+    for (const auto& [other, layer] : layers) {
+      std::set<std::string> seen;
+      if (layer.packages.contains("cppzmq")) CHECK(!reaches(layers, name, other, seen));
+    }
+    for (const char* header :
+         {"<zmq.hpp>", "<zmq.h>", "<sys/socket.h>", "<netinet/in.h>", "<poll.h>",
+          "<meshfarm/transport/worker.hpp>", "\"transport/sockets.hpp\""}) {
+      CAPTURE(header);
+      for (const std::string folder : {"src/", "include/meshfarm/", "tests/unit/"}) {
+        Problems problems;
+        check_file({folder + name + "/a.hpp", std::string("#include ") + header + "\n"}, layers,
+                   problems);
+        CHECK(problems.size() == 1);
+      }
+    }
+  }
 }
 
 TEST_CASE("the table is read with its comments, line breaks and line numbers") {

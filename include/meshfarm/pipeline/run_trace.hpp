@@ -8,11 +8,11 @@
 #include <string>
 #include <vector>
 
-#include <meshfarm/farm/ventilator.hpp>
 #include <meshfarm/report/summary.hpp>
 #include <meshfarm/report/trace.hpp>
 #include <meshfarm/staging/line_log.hpp>
 #include <meshfarm/staging/stage.hpp>
+#include <meshfarm/transport/ventilator.hpp>
 
 namespace meshfarm {
 

@@ -10,7 +10,7 @@
 
 #include <meshfarm/farm/dispatcher.hpp>
 
-#include "farm_fixture.hpp"
+#include "support/jobs.hpp"
 
 namespace meshfarm::test {
 

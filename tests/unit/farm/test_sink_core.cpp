@@ -8,7 +8,7 @@
 
 #include <meshfarm/farm/sink_core.hpp>
 
-#include "farm_fixture.hpp"
+#include "support/jobs.hpp"
 
 namespace meshfarm::test {
 namespace {

@@ -10,9 +10,9 @@
 
 #include <meshfarm/farm/job.hpp>
 #include <meshfarm/farm/protocol.hpp>
-#include <meshfarm/farm/security.hpp>
 #include <meshfarm/farm/worker_report.hpp>
 #include <meshfarm/staging/stage.hpp>
+#include <meshfarm/transport/security.hpp>
 
 namespace meshfarm {
 

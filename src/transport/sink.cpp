@@ -9,16 +9,16 @@
 #include <unistd.h>
 
 #include <meshfarm/farm/ledger.hpp>
-#include <meshfarm/farm/sink.hpp>
 #include <meshfarm/farm/sink_core.hpp>
+#include <meshfarm/transport/sink.hpp>
 #include <meshfarm/util/errors.hpp>
 #include <meshfarm/util/log.hpp>
 
-#include "farm/control_link.hpp"
-#include "farm/gatekeeper.hpp"
-#include "farm/run_keys.hpp"
-#include "farm/sockets.hpp"
-#include "farm/task_thread.hpp"
+#include "transport/control_link.hpp"
+#include "transport/gatekeeper.hpp"
+#include "transport/run_keys.hpp"
+#include "transport/sockets.hpp"
+#include "transport/task_thread.hpp"
 
 namespace meshfarm {
 namespace {

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
-#include "farm/compute_gate.hpp"
+#include "transport/compute_gate.hpp"
 
 namespace meshfarm {
 

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
-#include "farm/gatekeeper.hpp"
+#include "transport/gatekeeper.hpp"
 
 #include <array>
 #include <cerrno>
@@ -13,7 +13,7 @@
 #include <meshfarm/util/errors.hpp>
 #include <meshfarm/util/log.hpp>
 
-#include "farm/sockets.hpp"
+#include "transport/sockets.hpp"
 
 namespace meshfarm {
 namespace {

@@ -14,9 +14,9 @@
 #include <meshfarm/farm/job.hpp>
 #include <meshfarm/farm/protocol.hpp>
 #include <meshfarm/farm/schedule.hpp>
-#include <meshfarm/farm/security.hpp>
 #include <meshfarm/farm/when_full.hpp>
 #include <meshfarm/staging/stage.hpp>
+#include <meshfarm/transport/security.hpp>
 
 namespace meshfarm {
 

@@ -12,16 +12,16 @@
 #include <meshfarm/farm/dispatcher.hpp>
 #include <meshfarm/farm/endpoint.hpp>
 #include <meshfarm/farm/membership.hpp>
-#include <meshfarm/farm/ventilator.hpp>
 #include <meshfarm/staging/file_system.hpp>
+#include <meshfarm/transport/ventilator.hpp>
 #include <meshfarm/util/checksum.hpp>
 #include <meshfarm/util/errors.hpp>
 #include <meshfarm/util/log.hpp>
 
-#include "farm/gatekeeper.hpp"
-#include "farm/run_keys.hpp"
-#include "farm/sockets.hpp"
-#include "farm/task_thread.hpp"
+#include "transport/gatekeeper.hpp"
+#include "transport/run_keys.hpp"
+#include "transport/sockets.hpp"
+#include "transport/task_thread.hpp"
 
 namespace meshfarm {
 namespace {

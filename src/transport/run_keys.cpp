@@ -4,7 +4,7 @@
 // A key file is sealed (staging/sealed.hpp), kind "KEYS", version 1:
 //   server public text | server secret text | client public text | client secret text
 //   text = length u32 = 40 | Z85
-#include "farm/run_keys.hpp"
+#include "transport/run_keys.hpp"
 
 #include <array>
 #include <cerrno>
@@ -23,7 +23,7 @@
 #include <meshfarm/util/errors.hpp>
 #include <meshfarm/util/file.hpp>
 
-#include "farm/sockets.hpp"
+#include "transport/sockets.hpp"
 
 namespace meshfarm {
 namespace {

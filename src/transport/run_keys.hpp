@@ -7,8 +7,8 @@
 #include <string_view>
 
 #include <meshfarm/farm/endpoint.hpp>
-#include <meshfarm/farm/security.hpp>
 #include <meshfarm/staging/stage.hpp>
+#include <meshfarm/transport/security.hpp>
 
 namespace meshfarm {
 

@@ -9,7 +9,7 @@
 #include <doctest/doctest.h>
 #include <sys/time.h>
 
-#include "farm/sockets.hpp"
+#include "transport/sockets.hpp"
 
 namespace meshfarm::test {
 namespace {

@@ -15,8 +15,8 @@
 #include <meshfarm/util/errors.hpp>
 #include <meshfarm/util/log.hpp>
 
-#include "farm/run_keys.hpp"
-#include "farm/sockets.hpp"
+#include "transport/run_keys.hpp"
+#include "transport/sockets.hpp"
 
 namespace meshfarm {
 

@@ -13,7 +13,7 @@
 
 #include <meshfarm/util/file.hpp>
 
-#include "farm/run_keys.hpp"
+#include "transport/run_keys.hpp"
 
 namespace meshfarm {
 

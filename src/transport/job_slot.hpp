@@ -16,8 +16,8 @@
 #include <meshfarm/staging/stage.hpp>
 #include <meshfarm/staging/staged_writer.hpp>
 
-#include "farm/compute_gate.hpp"
-#include "farm/task_thread.hpp"
+#include "transport/compute_gate.hpp"
+#include "transport/task_thread.hpp"
 
 namespace meshfarm {
 

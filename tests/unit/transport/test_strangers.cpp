@@ -16,9 +16,9 @@
 #include <meshfarm/farm/endpoint.hpp>
 #include <meshfarm/util/file.hpp>
 
-#include "farm/run_keys.hpp"
-#include "farm/sockets.hpp"
 #include "farm_fixture.hpp"
+#include "transport/run_keys.hpp"
+#include "transport/sockets.hpp"
 
 namespace meshfarm::test {
 namespace {

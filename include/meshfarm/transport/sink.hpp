@@ -11,9 +11,9 @@
 #include <string_view>
 
 #include <meshfarm/farm/job.hpp>
-#include <meshfarm/farm/security.hpp>
 #include <meshfarm/farm/when_full.hpp>
 #include <meshfarm/staging/stage.hpp>
+#include <meshfarm/transport/security.hpp>
 
 namespace meshfarm {
 

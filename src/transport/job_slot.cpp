@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
-#include "farm/job_slot.hpp"
+#include "transport/job_slot.hpp"
 
 #include <algorithm>
 #include <ctime>
@@ -10,7 +10,7 @@
 #include <meshfarm/staging/staged_writer.hpp>
 #include <meshfarm/util/errors.hpp>
 
-#include "farm/sockets.hpp"
+#include "transport/sockets.hpp"
 
 namespace meshfarm {
 namespace {

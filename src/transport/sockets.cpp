@@ -1,22 +1,16 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
-#include "farm/sockets.hpp"
+#include "transport/sockets.hpp"
 
 #include <algorithm>
 #include <array>
 #include <cerrno>
-#include <memory>
 #include <random>
 
-#include <arpa/inet.h>
-#include <ifaddrs.h>
-#include <net/if.h>
-#include <netdb.h>
-#include <netinet/in.h>
 #include <sys/resource.h>
-#include <sys/socket.h>
 #include <unistd.h>
 
+#include <meshfarm/transport/addresses.hpp>
 #include <meshfarm/util/errors.hpp>
 #include <meshfarm/util/log.hpp>
 
@@ -74,29 +68,11 @@ zmq::socket_t make_client(zmq::context_t& context, const Keys& keys, zmq::socket
   return socket;
 }
 
-/// An IPv4 address of this host that others can reach, or its name.
-std::string reachable_host() {
-  ifaddrs* list = nullptr;
-  if (::getifaddrs(&list) != 0) return host_name();
-  const std::unique_ptr<ifaddrs, decltype(&::freeifaddrs)> owner(list, &::freeifaddrs);
-  for (const ifaddrs* each = list; each != nullptr; each = each->ifa_next) {
-    const bool usable = each->ifa_addr != nullptr && each->ifa_addr->sa_family == AF_INET &&
-                        (each->ifa_flags & IFF_UP) != 0 && (each->ifa_flags & IFF_LOOPBACK) == 0;
-    if (!usable) continue;
-    std::array<char, NI_MAXHOST> text{};
-    if (::getnameinfo(each->ifa_addr, sizeof(sockaddr_in), text.data(), text.size(), nullptr, 0,
-                      NI_NUMERICHOST) == 0) {
-      return text.data();
-    }
-  }
-  return host_name();
-}
-
 /// What a socket is bound to, as others can connect to it.
 std::string advertised(const std::string& bound) {
   for (const std::string_view any : {"tcp://0.0.0.0:", "tcp://[::]:"}) {
     if (bound.compare(0, any.size(), any) == 0) {
-      return "tcp://" + reachable_host() + ":" + bound.substr(any.size());
+      return "tcp://" + network_address().value_or(host_name()) + ":" + bound.substr(any.size());
     }
   }
   return bound;

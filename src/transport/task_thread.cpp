@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
-#include "farm/task_thread.hpp"
+#include "transport/task_thread.hpp"
 
 #include <cassert>
 #include <cstdint>

@@ -10,17 +10,17 @@
 
 #include <unistd.h>
 
-#include <meshfarm/farm/worker.hpp>
 #include <meshfarm/farm/worker_core.hpp>
+#include <meshfarm/transport/worker.hpp>
 #include <meshfarm/util/errors.hpp>
 #include <meshfarm/util/log.hpp>
 #include <meshfarm/util/memory.hpp>
 
-#include "farm/compute_gate.hpp"
-#include "farm/control_link.hpp"
-#include "farm/job_slot.hpp"
-#include "farm/sockets.hpp"
-#include "farm/task_thread.hpp"
+#include "transport/compute_gate.hpp"
+#include "transport/control_link.hpp"
+#include "transport/job_slot.hpp"
+#include "transport/sockets.hpp"
+#include "transport/task_thread.hpp"
 
 namespace meshfarm {
 namespace {

@@ -8,8 +8,8 @@
 
 #include <doctest/doctest.h>
 
-#include "farm/gatekeeper.hpp"
-#include "farm/sockets.hpp"
+#include "transport/gatekeeper.hpp"
+#include "transport/sockets.hpp"
 
 namespace meshfarm::test {
 namespace {

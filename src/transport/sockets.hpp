@@ -16,7 +16,7 @@
 
 #include <meshfarm/farm/protocol.hpp>
 
-#include "farm/run_keys.hpp"
+#include "transport/run_keys.hpp"
 
 namespace meshfarm {
 

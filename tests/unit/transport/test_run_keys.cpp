@@ -7,11 +7,12 @@
 
 #include <doctest/doctest.h>
 
+#include <meshfarm/transport/addresses.hpp>
 #include <meshfarm/util/errors.hpp>
 #include <meshfarm/util/file.hpp>
 
-#include "farm/run_keys.hpp"
 #include "support/temp_folder.hpp"
+#include "transport/run_keys.hpp"
 
 namespace meshfarm::test {
 namespace {

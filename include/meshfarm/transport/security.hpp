@@ -4,7 +4,6 @@
 
 #include <filesystem>
 #include <string>
-#include <string_view>
 
 namespace meshfarm {
 
@@ -22,9 +21,6 @@ struct SecurityOptions {
   std::filesystem::path key_file;  // empty: in the stage, one file a run
   Exposure insecure_exposure = Exposure::loopback_only;
 };
-
-/// Whether an address or interface to listen on is reached from this host only.
-bool is_loopback(std::string_view bind);
 
 /// Throws UsageError if sockets bound there would be open to other hosts without authentication
 /// and that was not asked for in so many words.

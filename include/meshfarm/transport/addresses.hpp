@@ -1,0 +1,17 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+
+namespace meshfarm {
+
+/// Whether an address or interface to listen on is reached from this host only.
+bool is_loopback(std::string_view bind);
+
+/// The IPv4 address of this host on its first network; nothing if it has none.
+std::optional<std::string> network_address();
+
+}  // namespace meshfarm
