@@ -12,7 +12,7 @@
 #include <utility>
 #include <vector>
 
-#include <meshfarm/simulation/simulation.hpp>
+#include <meshfarm/simulation/simulated_faults.hpp>
 
 namespace meshfarm {
 

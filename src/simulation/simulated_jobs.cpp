@@ -5,6 +5,7 @@
 // compute thread, is computed, and its output is written and published.
 #include <utility>
 
+#include "simulation/made_up_run.hpp"
 #include "simulation/simulated_farm.hpp"
 
 namespace meshfarm {

@@ -8,6 +8,8 @@
 #include <meshfarm/util/parallel.hpp>
 
 #include "simulation/dice.hpp"
+#include "simulation/faults_of_seed.hpp"
+#include "simulation/made_up_run.hpp"
 
 namespace meshfarm {
 namespace {

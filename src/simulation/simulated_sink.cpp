@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "simulation/made_up_run.hpp"
 #include "simulation/simulated_farm.hpp"
 
 namespace meshfarm {

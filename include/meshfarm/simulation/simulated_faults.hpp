@@ -3,7 +3,6 @@
 #pragma once
 
 #include <chrono>
-#include <cstdint>
 #include <string>
 
 namespace meshfarm {
@@ -50,8 +49,5 @@ struct SimulatedFaults {
   std::string bad;     // the job of these parameters can never be done
   SimulatedTime end{std::chrono::seconds(30)};
 };
-
-/// A mix of faults drawn from the seed: each kind is absent, rare or frequent.
-SimulatedFaults faults_of_seed(std::uint64_t seed);
 
 }  // namespace meshfarm

@@ -6,8 +6,6 @@
 #include <string>
 #include <vector>
 
-#include <meshfarm/simulation/simulation.hpp>
-
 namespace meshfarm {
 
 /// Histories to simulate for the sake of correctness: every seed with its own mix of faults.

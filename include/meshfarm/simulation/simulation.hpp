@@ -9,7 +9,6 @@
 #include <cstdint>
 #include <functional>
 #include <set>
-#include <span>
 #include <string>
 #include <vector>
 
@@ -116,20 +115,5 @@ struct SimulationResult {
 
 /// Simulates the farm from its start until all processes have left.
 SimulationResult simulate_farm(const JobSource& source, const SimulationOptions& options);
-
-/// What a simulated job makes: told by its parameters alone.
-std::string simulated_summary(const Job& job);
-/// Made-up jobs of 0.1 to 1 s in three rounds: most, then one that depends on all of them, then the
-/// rest. The first are named "job 0", "job 1"... With a target's name, as of another run of the
-/// same stage, only a quarter of the first are these; all others have that name in theirs.
-JobSource simulated_jobs(std::uint64_t count, const std::string& target = "");
-/// The outputs' summaries of a run in which nothing goes wrong, by hand.
-std::vector<std::string> expected_summaries(const JobSource& source);
-/// What is wrong with a simulated history: an invariant was broken, it did not come to its end, or
-/// the end is not the one that it must have. Empty: nothing. `other`: expected of the other run;
-/// empty: there was none.
-std::string problem_of(const SimulationResult& result, const SimulatedFaults& faults,
-                       std::span<const std::string> expected,
-                       std::span<const std::string> other = {});
 
 }  // namespace meshfarm

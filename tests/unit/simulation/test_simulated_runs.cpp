@@ -7,8 +7,7 @@
 
 #include <doctest/doctest.h>
 
-#include <meshfarm/simulation/simulated_faults.hpp>
-#include <meshfarm/simulation/simulation.hpp>
+#include "simulation/made_up_run.hpp"
 
 namespace meshfarm::test {
 namespace {

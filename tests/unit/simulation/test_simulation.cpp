@@ -6,8 +6,8 @@
 
 #include <doctest/doctest.h>
 
-#include <meshfarm/simulation/simulation.hpp>
-
+#include "simulation/faults_of_seed.hpp"
+#include "simulation/made_up_run.hpp"
 #include "simulation/simulation_checks.hpp"
 
 namespace meshfarm::test {

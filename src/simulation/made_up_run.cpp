@@ -1,11 +1,12 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
+#include "simulation/made_up_run.hpp"
+
 #include <algorithm>
 #include <memory>
 #include <utility>
 
 #include <meshfarm/farm/rounds.hpp>
-#include <meshfarm/simulation/simulation.hpp>
 #include <meshfarm/util/checksum.hpp>
 
 namespace meshfarm {
