@@ -14,6 +14,20 @@ constexpr int k_resend_heartbeats = 5;
 
 }  // namespace
 
+WorkerLimits limits_of(const Capacity& capacity, std::uint32_t buffer) {
+  WorkerLimits limits;
+  limits.buffer = buffer;
+  limits.slots = std::max(1U, capacity.threads) + 1;
+  limits.memory = capacity.memory;
+  return limits;
+}
+
+std::uint64_t WorkerPulse::progress() const {
+  std::uint64_t all = 0;
+  for (const SlotPulse& slot : slots) all += slot.progress;
+  return all;
+}
+
 WorkerActions WorkerCore::tick(const WorkerPulse& pulse, FarmTime now) {
   if (leaving_ && !left_) {
     if (!leaving_since_) leaving_since_ = now;
@@ -40,7 +54,7 @@ void WorkerCore::beat(const WorkerPulse& pulse, FarmTime now) {
   beat.worker = joined.worker;
   beat.held = static_cast<std::uint32_t>(waiting_.size()) + in_work();
   beat.received = received_;
-  beat.progress = pulse.progress;
+  beat.progress = pulse.progress();
   beat.rss_bytes = pulse.rss_bytes;
   for (const auto& slot : slots_) {
     // A job that was taken back may wait for storage as long as it likes.

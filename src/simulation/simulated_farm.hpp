@@ -14,6 +14,7 @@
 #include <vector>
 
 #include <meshfarm/farm/dispatcher.hpp>
+#include <meshfarm/farm/job_clock.hpp>
 #include <meshfarm/farm/sink_core.hpp>
 #include <meshfarm/farm/worker_core.hpp>
 #include <meshfarm/simulation/simulation.hpp>
@@ -45,6 +46,12 @@ class SimulatedFarm {
     std::optional<Dispatcher> core;
     std::uint32_t epoch = 0;
   };
+  /// What a worker and a sink have in common: their end of the control channel.
+  struct Member : Process {
+    std::string peer;           // the name of its connection; empty: hung up
+    std::uint32_t dialled = 0;  // the epoch that it leads to
+    SimulatedChannel to_ventilator, from_ventilator;
+  };
   /// A job in one of a worker's slots.
   struct InWork {
     std::uint64_t token = 0;  // tells it from the slot's jobs before and after
@@ -55,31 +62,25 @@ class SimulatedFarm {
     JobPhase phase = JobPhase::storage;
     bool hangs = false;
     bool looks_for_file = false;  // its reader waits for a file that is not to be seen yet
-    SimulatedTime lap{0};         // the phase's begin
     SimulatedTime begin{0};       // of computing
-    JobTimes times;
+    JobClock clock;
   };
-  struct Worker : Process {
+  struct Worker : Member {
     std::unique_ptr<WorkerCore> core;
     std::uint64_t incarnation = 0;
-    std::uint64_t serves = 0;   // the run that it was told; 0: any
-    bool leaves = false;        // it was asked to
-    std::string peer;           // the name of its connection; empty: hung up
-    std::uint32_t dialled = 0;  // the epoch that it leads to
+    std::uint64_t serves = 0;  // the run that it was told; 0: any
+    bool leaves = false;       // it was asked to
     std::string lane;
     std::string sink;
     std::vector<std::optional<InWork>> slots;
     std::deque<std::uint32_t> gate;  // slots that wait to compute
     std::uint32_t computing = 0;     // threads that do
     WorkerPulse pulse;
-    SimulatedChannel to_ventilator, from_ventilator, lane_channel, to_sink;
+    SimulatedChannel lane_channel, to_sink;
   };
-  struct Sink : Process {
+  struct Sink : Member {
     std::unique_ptr<SinkCore> core;
     std::string here;
-    std::string peer;
-    std::uint32_t dialled = 0;
-    SimulatedChannel to_ventilator, from_ventilator;
   };
 
   /// A ventilator and a sink of the stage, and what is between them.
@@ -144,14 +145,28 @@ class SimulatedFarm {
   void tick_ventilator(Run& run, std::uint64_t life);
   void look_for_output(Run& run);
   void kill_ventilator(Run& run);
-  void to_ventilator(const Process& sender, SimulatedChannel& channel, const std::string& peer,
-                     std::uint32_t epoch, Message message);
+  void start_member(Member& member);
+  void end_member(Member& member);
+  void dial(Member& member, const std::string& name, const Dial& each);
+  void say(Member& member, Message message);
   /// The run of that epoch's ventilator; null if that is gone, or never was.
   Run* run_at(std::uint32_t epoch);
   void ventilator_gets(Run& run, const std::string& peer, const Letter& letter);
   void ventilator_hears(Run& run, const std::string& peer, const Message& message);
-  void to_worker(Run& run, Worker& worker, const std::string& peer, Message message);
-  void to_sink(Run& run, const std::string& peer, Message message);
+  /// Lets `hear` have it when it arrives, if the member still has that connection by then.
+  template <class Hear>
+  void to_member(Run& run, Member& member, Message message, const Hear& hear) {
+    member.from_ventilator.from = run.ventilator.host;
+    const bool buffered = chance(0.5);
+    wires_.send(member.from_ventilator, SimulatedWires::Order::kept,
+                [this, &run, &member, buffered, life = run.ventilator.life, peer = member.peer,
+                 letter = in_envelope(std::move(message)), hear] {
+                  if (buffered && run.ventilator.life != life) return;
+                  when_awake(member, member.life, [&member, peer, letter, hear] {
+                    if (member.peer == peer) hear(*letter);
+                  });
+                });
+  }
   void ventilator_does(Run& run, Actions actions);
   void act(Run& run, SendTo& each);
   void act(Run& run, OpenLane& each);
@@ -183,7 +198,6 @@ class SimulatedFarm {
   void act(std::uint32_t index, ReadForSink& each);
   void act(std::uint32_t index, Leave& each);
   void feel_pulse(Worker& worker);
-  std::uint32_t lap_ms(InWork& in_work) const;
   /// Lets it happen at that time, if the slot's job of now is still there.
   template <class Event>
   void while_in_work(Worker& worker, std::uint32_t slot, SimulatedTime time, const Event& event) {

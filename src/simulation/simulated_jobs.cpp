@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
 //
-// A job in a simulated worker, as in src/farm/job_slot.cpp: its inputs are read, it waits for a
-// compute thread, is computed, and its output is written and published.
+// A job in a simulated worker, as in src/transport/job_slot.cpp: its inputs are read, it waits for
+// a compute thread, is computed, and its output is written and published.
 #include <utility>
 
 #include "simulation/made_up_run.hpp"
@@ -20,7 +20,7 @@ void SimulatedFarm::act(std::uint32_t index, Begin& each) {
   in_work.job = std::move(each.job);
   in_work.work = options_.work ? options_.work(in_work.job)
                                : SimulatedWork{static_cast<double>(in_work.job.cost) * 1e-3, 0, 0};
-  in_work.lap = queue_.now();
+  in_work.clock = JobClock(farm_now());
   const SimulatedTime delay = folder_.visibility_delay();
   const SimulatedTime readable = std::max(folder_.readable(worker.host), lost_part(in_work.key));
   in_work.looks_for_file = delay.count() > 0 || readable > queue_.now();
@@ -34,7 +34,7 @@ void SimulatedFarm::act(std::uint32_t index, Begin& each) {
       std::max(folder_.transfer(worker.host, in_work.work.read_bytes) + delay, readable);
   while_in_work(worker, each.slot, there, [this, &worker, slot = each.slot] {
     InWork& read = *worker.slots[slot];
-    read.times.read_ms = lap_ms(read);
+    read.clock.read(farm_now());
     read.phase = JobPhase::waiting;
     read.looks_for_file = false;
     worker.gate.push_back(slot);
@@ -59,18 +59,8 @@ void SimulatedFarm::feel_pulse(Worker& worker) {
     pulse.phase = in_work->phase;
     const bool computes = pulse.phase == JobPhase::computing && !in_work->hangs;
     const bool moves = computes || in_work->looks_for_file;
-    if (moves) {
-      ++pulse.progress;
-      ++worker.pulse.progress;
-    }
+    if (moves) ++pulse.progress;
   }
-}
-
-std::uint32_t SimulatedFarm::lap_ms(InWork& in_work) const {
-  // Between two looks at a clock that counts milliseconds, as the real worker takes it.
-  const auto since = std::chrono::duration_cast<FarmTime>(in_work.lap);
-  in_work.lap = queue_.now();
-  return static_cast<std::uint32_t>((farm_now() - since).count());
 }
 
 void SimulatedFarm::open_gate(Worker& worker) {
@@ -102,7 +92,7 @@ void SimulatedFarm::begin_computing(Worker& worker, std::uint32_t slot) {
 void SimulatedFarm::compute(Worker& worker, std::uint32_t slot) {
   InWork& in_work = *worker.slots[slot];
   ++worker.computing;
-  in_work.times.wait_ms = lap_ms(in_work);
+  in_work.clock.computes(farm_now());
   in_work.phase = JobPhase::computing;
   in_work.begin = queue_.now();
   if (chance(options_.faults.hang)) {
@@ -121,15 +111,15 @@ void SimulatedFarm::compute(Worker& worker, std::uint32_t slot) {
 }
 
 void SimulatedFarm::end_computing(Worker& worker, InWork& in_work) {
-  if (in_work.phase != JobPhase::computing) return;
+  if (!in_work.clock.computing()) return;
   --worker.computing;
-  in_work.times.compute_ms = lap_ms(in_work);
+  in_work.clock.computed(farm_now());
   in_work.phase = JobPhase::storage;
 }
 
 void SimulatedFarm::write(Worker& worker, std::uint32_t slot) {
   InWork& in_work = *worker.slots[slot];
-  in_work.times.write_ms = lap_ms(in_work);
+  in_work.clock.written(farm_now());
   if (folder_.full()) {
     return fail_job(worker, slot, "no space left on device", FailureKind::no_space);
   }
@@ -144,8 +134,8 @@ void SimulatedFarm::write(Worker& worker, std::uint32_t slot) {
   if (chance(options_.faults.lost_answer)) {
     return fail_job(worker, slot, "rename: no such file or directory");
   }
-  published_[output.file.name] = {in_work.key, index_of(worker), in_work.begin, queue_.now(),
-                                  {},          in_work.times};
+  published_[output.file.name] = {in_work.key, index_of(worker),     in_work.begin, queue_.now(),
+                                  {},          in_work.clock.times()};
   finish_job(worker, slot, std::move(output));
 }
 
@@ -157,7 +147,7 @@ void SimulatedFarm::fail_job(Worker& worker, std::uint32_t slot, const char* rea
 void SimulatedFarm::finish_job(Worker& worker, std::uint32_t slot,
                                std::variant<JobOutput, JobFailure> outcome) {
   end_computing(worker, *worker.slots[slot]);
-  const JobTimes times = worker.slots[slot]->times;
+  const JobTimes times = worker.slots[slot]->clock.times();
   std::erase(worker.gate, slot);
   worker.slots[slot].reset();
   note(index_of(worker));

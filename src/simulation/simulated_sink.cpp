@@ -17,12 +17,10 @@ constexpr FarmTime k_patience = std::chrono::minutes(10);
 
 void SimulatedFarm::start_sink(Run& run) {
   if (run.finished || run.sink.alive) return;
-  run.sink.alive = true;
+  start_member(run.sink);
   run.sink_started = queue_.now();
-  const std::uint64_t life = ++run.sink.life;
+  const std::uint64_t life = run.sink.life;
   run.sink.here = "s" + std::to_string(run.key) + "." + std::to_string(life);
-  run.sink.to_ventilator = run.sink.from_ventilator = {};
-  run.sink.to_ventilator.from = run.sink.from_ventilator.to = run.sink.host;
   MemberOptions member;
   member.role = Role::sink;
   member.run = run.key;
@@ -42,9 +40,8 @@ void SimulatedFarm::tick_sink(Run& run, std::uint64_t life) {
 
 void SimulatedFarm::kill_sink(Run& run) {
   if (!run.sink.alive) return;
-  kill(run.sink);
+  end_member(run.sink);
   run.sink.core.reset();
-  run.sink.peer.clear();
   queue_.in(up_to(k_down), [this, &run] { start_sink(run); });
 }
 
@@ -61,8 +58,7 @@ void SimulatedFarm::sink_act(Run& run, Look&) {
 }
 
 void SimulatedFarm::sink_act(Run& run, Dial& each) {
-  run.sink.peer = "s" + std::to_string(++dials_);
-  run.sink.dialled = static_cast<std::uint32_t>(std::stoul(each.address.substr(1)));
+  dial(run.sink, "s", each);
 }
 
 void SimulatedFarm::sink_act(Run& run, HangUp&) {
@@ -70,9 +66,7 @@ void SimulatedFarm::sink_act(Run& run, HangUp&) {
 }
 
 void SimulatedFarm::sink_act(Run& run, Say& each) {
-  if (run.sink.peer.empty()) return;
-  to_ventilator(run.sink, run.sink.to_ventilator, run.sink.peer, run.sink.dialled,
-                std::move(each.message));
+  say(run.sink, std::move(each.message));
 }
 
 void SimulatedFarm::sink_act(Run& run, const Check& each) {
@@ -169,9 +163,8 @@ void SimulatedFarm::sink_act(Run& run, MakeOutput&) {
 }
 
 void SimulatedFarm::sink_act(Run& run, SinkLeaves& each) {
-  kill(run.sink);
+  end_member(run.sink);
   run.sink.core.reset();
-  run.sink.peer.clear();
   run.made_output = each.why == SinkLeaves::Why::complete;
   // Turned away by the late word of a run that was over: whoever started it starts it again.
   if (!run.made_output) queue_.in(k_down, [this, &run] { start_sink(run); });

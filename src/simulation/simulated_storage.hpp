@@ -9,6 +9,7 @@
 #include <vector>
 
 #include <meshfarm/simulation/simulation.hpp>
+#include <meshfarm/staging/patience.hpp>
 
 #include "simulation/dice.hpp"
 #include "simulation/event_queue.hpp"
@@ -39,8 +40,8 @@ class SimulatedFolder {
   /// stays invisible, an old state stays visible.
   SimulatedTime visibility_delay();
 
-  /// How long a reader tries again what it cannot read (ReadPatience::missing).
-  static constexpr SimulatedTime k_patience{90'000'000};
+  /// How long a reader tries again what it cannot read.
+  static inline const SimulatedTime k_patience = ReadPatience{}.missing;
   /// From when on that host can read the files that it is told of. Or a file that is named.
   SimulatedTime readable(std::uint32_t host) const {
     return std::max(sick_until_[host], queue_.now());

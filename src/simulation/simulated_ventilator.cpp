@@ -108,20 +108,6 @@ void SimulatedFarm::kill_ventilator(Run& run) {
   });
 }
 
-void SimulatedFarm::to_ventilator(const Process& sender, SimulatedChannel& channel,
-                                  const std::string& peer, std::uint32_t epoch, Message message) {
-  // What a killed process had not yet given to the network is lost with it.
-  const bool buffered = chance(0.5);
-  const Run* known = run_at(epoch);
-  channel.to = (known != nullptr ? *known : runs_.front()).ventilator.host;
-  wires_.send(channel, SimulatedWires::Order::kept,
-              [this, &sender, buffered, life = sender.life, peer, epoch,
-               letter = in_envelope(std::move(message))] {
-                if (buffered && sender.life != life) return;
-                if (Run* run = run_at(epoch)) ventilator_gets(*run, peer, letter);
-              });
-}
-
 SimulatedFarm::Run* SimulatedFarm::run_at(std::uint32_t epoch) {
   const auto at = std::find_if(runs_.begin(), runs_.end(),
                                [&](const Run& run) { return run.ventilator.epoch == epoch; });
@@ -174,36 +160,14 @@ void SimulatedFarm::act(Run& run, SendTo& each) {
       run.checks.welcomed(each.peer, welcome->worker);
       run.members[welcome->worker] = index_of(*worker);
     }
-    to_worker(run, *worker, each.peer, std::move(each.message));
+    to_member(run, *worker, std::move(each.message), [this, worker](const Message& message) {
+      worker_does(index_of(*worker), worker->core->on_control(message, farm_now()));
+    });
   } else if (run.sink.alive && run.sink.peer == each.peer) {
-    to_sink(run, each.peer, std::move(each.message));
+    to_member(run, run.sink, std::move(each.message), [this, &run](const Message& message) {
+      sink_does(run, run.sink.core->on_control(message, farm_now()));
+    });
   }
-}
-
-void SimulatedFarm::to_worker(Run& run, Worker& worker, const std::string& peer, Message message) {
-  worker.from_ventilator.from = run.ventilator.host;
-  wires_.send(worker.from_ventilator, SimulatedWires::Order::kept,
-              [this, &run, &worker, buffered = chance(0.5), life = run.ventilator.life, peer,
-               letter = in_envelope(std::move(message))] {
-                if (worker.peer != peer || (buffered && run.ventilator.life != life)) return;
-                when_awake(worker, worker.life, [this, &worker, peer, letter] {
-                  if (worker.peer != peer) return;
-                  worker_does(index_of(worker), worker.core->on_control(*letter, farm_now()));
-                });
-              });
-}
-
-void SimulatedFarm::to_sink(Run& run, const std::string& peer, Message message) {
-  run.sink.from_ventilator.from = run.ventilator.host;
-  wires_.send(run.sink.from_ventilator, SimulatedWires::Order::kept,
-              [this, &run, buffered = chance(0.5), life = run.ventilator.life, peer,
-               letter = in_envelope(std::move(message))] {
-                if (buffered && run.ventilator.life != life) return;
-                when_awake(run.sink, run.sink.life, [this, &run, peer, letter] {
-                  if (run.sink.peer != peer) return;
-                  sink_does(run, run.sink.core->on_control(*letter, farm_now()));
-                });
-              });
 }
 
 void SimulatedFarm::act(Run& run, OpenLane& each) {

@@ -19,13 +19,11 @@ void SimulatedFarm::start_worker(std::uint32_t index) {
   const SimulatedWorker& is = options_.workers[index];
   const std::optional<std::uint64_t> serves = worker.alive ? std::nullopt : run_for(is.serves);
   if (!serves) return;
-  worker.alive = true;
+  start_member(worker);
   worker.leaves = false;
-  const std::uint64_t life = ++worker.life;
   worker.incarnation = dice_.next() | 1;
-  worker.to_ventilator = worker.to_sink = worker.from_ventilator = worker.lane_channel = {};
-  worker.to_ventilator.from = worker.to_sink.from = worker.host;
-  worker.from_ventilator.to = worker.lane_channel.to = worker.host;
+  worker.to_sink = worker.lane_channel = {};
+  worker.to_sink.from = worker.lane_channel.to = worker.host;
   MemberOptions member;
   worker.serves = member.run = *serves;
   member.incarnation = worker.incarnation;
@@ -37,16 +35,14 @@ void SimulatedFarm::start_worker(std::uint32_t index) {
   member.capacity.memory = is.memory;
   member.capacity.memory_pool = is.memory_pool;
   member.capacity.threads = is.threads;
-  // As in the real worker: one job more is in work than is computed.
-  worker.slots.assign(is.threads + 1, std::nullopt);
+  const WorkerLimits limits = limits_of(member.capacity, options_.buffer);
+  worker.slots.assign(limits.slots, std::nullopt);
   worker.gate.clear();
   worker.computing = 0;
   worker.pulse = {};
   worker.pulse.slots.resize(worker.slots.size());
-  worker.core = std::make_unique<WorkerCore>(
-      member,
-      WorkerLimits{.buffer = options_.buffer, .slots = is.threads + 1, .memory = is.memory});
-  tick_worker(index, life);
+  worker.core = std::make_unique<WorkerCore>(member, limits);
+  tick_worker(index, worker.life);
 }
 
 /// What a worker is told that starts now: a run, or 0 for any; nothing if there is none for it.
@@ -84,9 +80,8 @@ void SimulatedFarm::tick_worker(std::uint32_t index, std::uint64_t life) {
 void SimulatedFarm::kill_worker(std::uint32_t index) {
   Worker& worker = workers_[index];
   if (!worker.alive) return;
-  kill(worker);
+  end_member(worker);
   worker.core.reset();
-  worker.peer.clear();
   worker.lane.clear();
   worker.sink.clear();
   queue_.in(up_to(k_down), [this, index] { start_worker(index); });
@@ -120,9 +115,7 @@ void SimulatedFarm::act(std::uint32_t index, Look&) {
 }
 
 void SimulatedFarm::act(std::uint32_t index, Dial& each) {
-  Worker& worker = workers_[index];
-  worker.peer = "w" + std::to_string(index) + "." + std::to_string(++dials_);
-  worker.dialled = static_cast<std::uint32_t>(std::stoul(each.address.substr(1)));
+  dial(workers_[index], "w" + std::to_string(index) + ".", each);
 }
 
 void SimulatedFarm::act(std::uint32_t index, HangUp&) {
@@ -131,9 +124,7 @@ void SimulatedFarm::act(std::uint32_t index, HangUp&) {
 }
 
 void SimulatedFarm::act(std::uint32_t index, Say& each) {
-  Worker& worker = workers_[index];
-  if (worker.peer.empty()) return;
-  to_ventilator(worker, worker.to_ventilator, worker.peer, worker.dialled, std::move(each.message));
+  say(workers_[index], std::move(each.message));
 }
 
 void SimulatedFarm::act(std::uint32_t index, ConnectLane& each) {
@@ -169,7 +160,7 @@ SimulatedFarm::Run* SimulatedFarm::run_of_sink(const std::string& address) {
 
 void SimulatedFarm::act(std::uint32_t index, ReadForSink& each) {
   Worker& worker = workers_[index];
-  const SimulatedTime gives_up = queue_.now() + std::chrono::seconds(30);
+  const SimulatedTime gives_up = queue_.now() + k_second_reader_waits;
   const SimulatedTime there =
       std::max(folder_.transfer(worker.host, each.what.file.size), folder_.readable(worker.host));
   const bool readable = there <= gives_up && folder_.has_whole(each.what.file.name);
@@ -185,9 +176,8 @@ void SimulatedFarm::act(std::uint32_t index, Leave& each) {
   Worker& worker = workers_[index];
   if (each.abort) return kill_worker(index);
   checks_.that(each.incomplete.empty() || worker.leaves, "a worker gave up looking");
-  kill(worker);
+  end_member(worker);
   worker.core.reset();
-  worker.peer.clear();
   worker.lane.clear();
   // By the late word of a run that was over, maybe, after another one has begun.
   const bool begun_again =

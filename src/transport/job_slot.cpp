@@ -38,7 +38,7 @@ class JobSlot::OutputFile : public JobFile {
   FileRef commit() override {
     slot_.end_computing();
     FileRef file = file_.commit();
-    slot_.times_.write_ms += slot_.lap_ms();
+    slot_.clock_.written(farm_clock());
     return file;
   }
 
@@ -51,7 +51,6 @@ void JobSlot::begin(const Begin& begin) {
   give_up_ = false;
   phase_ = JobPhase::storage;
   thread_.start([this, begin] {
-    times_ = {};
     outcome_ = attempt(begin);
     ahead_.clear();
   });
@@ -70,14 +69,13 @@ SlotPulse JobSlot::pulse() const {
 /// On the slot's thread, as is all below. Whatever the job's function throws is the job's failure,
 /// not ours.
 JobOutcome JobSlot::attempt(const Begin& begin) {
-  lap_ = farm_clock();
+  clock_ = JobClock(farm_clock());
   read_ahead(begin.job);
-  times_.read_ms = lap_ms();
+  clock_.read(farm_clock());
   phase_ = JobPhase::waiting;
   if (!gate_.enter(give_up_)) return JobFailure{"given up", FailureKind::attempt};
-  times_.wait_ms = lap_ms();
+  clock_.computes(farm_clock());
   phase_ = JobPhase::computing;
-  computing_ = true;
   cpu_before_us_ = thread_cpu_us();
   JobOutcome outcome;
   try {
@@ -153,7 +151,7 @@ FileRef JobSlot::publish(const StagedName& name, std::string_view bytes, std::st
   StagedWriter file(stage_, name, unique);
   write_in_pieces(file, bytes);
   FileRef written = file.commit();
-  times_.write_ms += lap_ms();
+  clock_.written(farm_clock());
   return written;
 }
 
@@ -172,16 +170,10 @@ std::unique_ptr<JobFile> JobSlot::create(const StagedName& name, std::string_vie
 }
 
 void JobSlot::end_computing() {
-  if (!std::exchange(computing_, false)) return;
-  times_.compute_ms = lap_ms();
-  times_.cpu_us = thread_cpu_us() - cpu_before_us_;
+  if (!clock_.computing()) return;
+  clock_.computed(farm_clock(), thread_cpu_us() - cpu_before_us_);
   phase_ = JobPhase::storage;
   gate_.leave();
-}
-
-std::uint32_t JobSlot::lap_ms() {
-  const FarmTime now = farm_clock();
-  return static_cast<std::uint32_t>((now - std::exchange(lap_, now)).count());
 }
 
 }  // namespace meshfarm

@@ -11,6 +11,7 @@
 #include <variant>
 
 #include <meshfarm/farm/job.hpp>
+#include <meshfarm/farm/job_clock.hpp>
 #include <meshfarm/farm/protocol.hpp>
 #include <meshfarm/farm/worker_core.hpp>
 #include <meshfarm/staging/stage.hpp>
@@ -38,7 +39,7 @@ class JobSlot : private JobStorage {
   /// True once for each job that ended; then outcome() and times() are its own.
   bool take_finished() { return thread_.take_finished(); }
   JobOutcome& outcome() { return outcome_; }
-  const JobTimes& times() const { return times_; }
+  const JobTimes& times() const { return clock_.times(); }
   SlotPulse pulse() const;
 
  private:
@@ -55,7 +56,6 @@ class JobSlot : private JobStorage {
   std::function<void(std::uint64_t)> on_moved() {
     return [this](std::uint64_t bytes) { moved(bytes + 1); };
   }
-  std::uint32_t lap_ms();
   std::string read(const FileRef& file) override;
   FileRef publish(const StagedName& name, std::string_view bytes, std::string_view unique) override;
   std::unique_ptr<JobFile> create(const StagedName& name, std::string_view unique) override;
@@ -70,11 +70,9 @@ class JobSlot : private JobStorage {
   std::atomic<bool> give_up_{false};
   // The thread's own while it works:
   std::map<std::string, std::string> ahead_;  // bytes by name
-  bool computing_ = false;
-  FarmTime lap_{0};
+  JobClock clock_;
   std::uint64_t cpu_before_us_ = 0;
   JobOutcome outcome_;
-  JobTimes times_;
   TaskThread thread_;  // the last member, so that it ends first
 };
 

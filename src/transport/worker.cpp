@@ -28,14 +28,13 @@ namespace {
 /// So that a flood cannot keep the clock from being looked at.
 constexpr int k_messages_per_turn = 1000;
 constexpr FarmTime k_memory_every{500};
-/// Whoever has never looked for a file before sees it when it is there.
-const ReadPatience k_second_readers_patience = {.missing = std::chrono::seconds(30),
-                                                .failing = std::chrono::seconds(30)};
+const ReadPatience k_second_readers_patience = {.missing = k_second_reader_waits,
+                                                .failing = k_second_reader_waits};
 
-/// One job more than is computed: its inputs are read ahead meanwhile, or its output is written.
 WorkerLimits limits_of(const WorkerOptions& options) {
-  return {options.buffer, std::max(1U, options.capacity.threads) + 1, options.capacity.memory,
-          options.grace};
+  WorkerLimits limits = limits_of(options.capacity, options.buffer);
+  limits.grace = options.grace;
+  return limits;
 }
 
 /// The sockets and the job slots round a WorkerCore, which decides everything.
@@ -112,10 +111,7 @@ class WorkerLoop {
 
   WorkerPulse pulse() const {
     WorkerPulse pulse;
-    for (const auto& slot : slots_) {
-      pulse.slots.push_back(slot->pulse());
-      pulse.progress += pulse.slots.back().progress;
-    }
+    for (const auto& slot : slots_) pulse.slots.push_back(slot->pulse());
     pulse.rss_bytes = rss_bytes_;
     return pulse;
   }

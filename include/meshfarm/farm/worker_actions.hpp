@@ -35,6 +35,8 @@ struct Begin {
 struct GiveUp {
   std::uint32_t slot = 0;
 };
+/// How long that is tried: whoever has never looked for a file before sees it when it is there.
+inline constexpr FarmTime k_second_reader_waits{30'000};
 /// Try to read a file that the sink cannot; answered by tried().
 struct ReadForSink {
   TryRead what;

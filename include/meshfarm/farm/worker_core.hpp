@@ -27,6 +27,9 @@ struct WorkerLimits {
   std::uint64_t memory = 0;
   FarmTime grace{5000};  // how long jobs in work may take to give up when the worker leaves
 };
+/// Those of a worker that can do so much. One job more is in work than is computed: its inputs are
+/// read ahead meanwhile, or its output is written.
+WorkerLimits limits_of(const Capacity& capacity, std::uint32_t buffer);
 
 /// What the job in a slot is at.
 enum class JobPhase : std::uint8_t { storage, waiting, computing };
@@ -37,8 +40,8 @@ struct SlotPulse {
 /// Signs of life of the slots, those that have no job included.
 struct WorkerPulse {
   std::vector<SlotPulse> slots;  // empty: not known, and nothing is held to stand still
-  std::uint64_t progress = 0;    // of all slots together
   std::uint64_t rss_bytes = 0;
+  std::uint64_t progress() const;  // of all slots together
 };
 
 /// The worker's mind: its input buffer, its credit, the results that nobody acknowledged yet. Pure.

@@ -3,6 +3,20 @@
 //
 // The farm on virtual time: the very Dispatcher, WorkerCores and SinkCore that the processes run,
 // in one thread, over a simulated network, storage and hosts. One seed gives one history.
+//
+// Not simulated, so only tests of the processes tell of it:
+// - sockets: connecting, keys, strangers, garbage, other versions of the protocol; a message is one
+//   event, and the ventilator's inbox is never left unread;
+// - files: a result is a name, whole or damaged; the journal is never torn, a new one never begun;
+//   what a job reads or writes bit by bit, and what the sink inspects in a result;
+// - the sink's one disk thread: here checks, its own jobs and the output do not wait for each
+//   other, and no two checks share a sync or the patience with storage;
+// - a worker's threads, memory and processor time; a worker whose job hangs is killed at once, and
+//   reads for the sink do not wait for each other;
+// - a run's end: the ventilator's last word does not say that the output was made, earlier
+//   addresses stay, and a ventilator without a sink finds the output a minute after its own start,
+//   not after the sink's last word;
+// - whoever starts the processes: they come again by themselves.
 #pragma once
 
 #include <chrono>
