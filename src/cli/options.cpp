@@ -210,8 +210,9 @@ void CutWords::add(po::options_description& options) {
       "only; LIST: these, as in red,green,blue ('colours' and 'normals' stand for "
       "theirs)")("uv", po::value(&uv)->default_value(uv)->value_name(k_uv_words), k_uv_help)(
       "threads", po::value(&cut.threads)->value_name("N"), "threads of the cut (default: cores)")(
-      "memory", po::value(&memory)->default_value(memory)->value_name("BYTES"),
-      "with --scheme stream: memory for sorting, for example 2G")(
+      "memory", po::value(&memory)->value_name("BYTES"),
+      "memory of the cut, for example 2G: with --scheme stream for sorting (default: 512M), with "
+      "--scheme cut for the parts that are made at once (default: no limit)")(
       "window",
       po::value(&stream.window_triangles)->default_value(stream.window_triangles)->value_name("N"),
       "with --scheme stream: triangles that a worker holds at once")(
@@ -245,15 +246,16 @@ void CutWords::check() {
   stream.streams = cut.parts;
   stream.weld = cut.weld;
   stream.threads = cut.threads;
-  stream.memory_bytes = parse_size(memory, "--memory");
+  if (!memory.empty()) cut.memory_bytes = stream.memory_bytes = parse_size(memory, "--memory");
   cut.scratch = stream.scratch = scratch;
   if (stream.memory_bytes == 0) throw UsageError("--memory must be above 0");
 }
 
 std::vector<std::string> CutWords::words() const {
-  std::vector<std::string> words = {"--scheme", scheme_word, "--sort", sort,      "--weld",
-                                    weld,       "--memory",  memory,   "--window"};
+  std::vector<std::string> words = {"--scheme", scheme_word, "--sort",  sort,
+                                    "--weld",   weld,        "--window"};
   words.push_back(std::to_string(stream.window_triangles));
+  if (!memory.empty()) words.insert(words.end(), {"--memory", memory});
   if (attributes != "auto") words.insert(words.end(), {"--attributes", attributes});
   if (uv != "auto") words.insert(words.end(), {"--uv", uv});
   if (cut.parts != 0) words.insert(words.end(), {"--parts", std::to_string(cut.parts)});

@@ -74,7 +74,7 @@ struct CutWords {
   std::string attributes = "auto";
   std::string uv = "auto";
   ChannelChoice channels;
-  std::string memory = "512M";
+  std::string memory;
   std::string scratch;
 
   void add(po::options_description& options);

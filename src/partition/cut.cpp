@@ -22,6 +22,7 @@
 #include <meshfarm/partition/cell_tree.hpp>
 #include <meshfarm/partition/cut.hpp>
 #include <meshfarm/staging/file_system.hpp>
+#include <meshfarm/util/control_groups.hpp>
 #include <meshfarm/util/errors.hpp>
 #include <meshfarm/util/parallel.hpp>
 
@@ -32,6 +33,12 @@ namespace {
 
 /// A mesh that fits into this much memory is cut without scratch files.
 constexpr std::uint64_t k_memory_bytes = std::uint64_t{256} << 20;
+
+/// What making a part takes for each triangle, and how often its columns are there at once.
+constexpr std::uint64_t k_part_bytes = 80;
+constexpr std::uint64_t k_column_copies = 3;
+/// The same of finding the facts of its texture.
+constexpr std::uint64_t k_fact_bytes = 40;
 constexpr std::uint32_t k_no_cell = UINT32_MAX;
 
 /// Parts of 200 to 1000 cells each: fine enough for even sizes and smooth seams.
@@ -124,7 +131,10 @@ class Cutter {
     const std::uint64_t faces = std::max<std::uint64_t>(source_.info().faces, 1);
     const std::uint64_t all = MeshShares::memory_for(
         manifest_.input_vertices, faces, manifest_.positions, has_appearances(source_), columns);
-    const std::uint64_t memory = all <= k_memory_bytes ? all : 0;
+    const std::uint64_t most = options_.memory_bytes == 0
+                                   ? k_memory_bytes
+                                   : std::min(k_memory_bytes, options_.memory_bytes / 4);
+    const std::uint64_t memory = all <= most ? all : 0;
     shares_ = std::make_unique<MeshShares>(
         MeshShares::Options{scratch_folder(options_.scratch, stage_.root(), all - memory), parts_,
                             manifest_.input_vertices, manifest_.positions, memory,
@@ -163,13 +173,28 @@ class Cutter {
     manifest_.coincident_corners = shares_->points_left_out();
   }
 
+  /// As many parts at once as fit into the memory, going by the average.
+  unsigned threads() const {
+    if (options_.memory_bytes == 0) return options_.threads;
+    const ColumnSet columns = source_.info().columns();
+    const std::uint64_t of_triangle =
+        k_part_bytes + (has_appearances(source_) ? 2 * sizeof(Appearance) : 0) +
+        k_column_copies * columns.bytes() + (columns.uvs ? k_fact_bytes : 0);
+    const std::uint64_t part =
+        1 + of_triangle * manifest_.input_triangles / std::max<std::uint32_t>(1, parts_);
+    const std::uint64_t buffers = std::min(options_.memory_bytes, shares_->buffer_bytes());
+    const std::uint64_t fit = (options_.memory_bytes - buffers) / part;
+    return static_cast<unsigned>(
+        std::clamp<std::uint64_t>(fit, 1, options_.threads != 0 ? options_.threads : processors()));
+  }
+
   void build_parts() {
     manifest_.parts.resize(parts_);
     numbers_.resize(parts_);
     uv_facts_.resize(parts_);
     std::mutex mutex;
     std::uint64_t done = 0;
-    parallel_for(parts_, options_.threads, [&](std::uint64_t i) {
+    parallel_for(parts_, threads(), [&](std::uint64_t i) {
       const auto number = static_cast<std::uint32_t>(i);
       BuiltPart built =
           build_part(shares_->read(number, options_.weld), manifest_.positions, options_.weld);

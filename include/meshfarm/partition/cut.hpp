@@ -17,11 +17,12 @@
 namespace meshfarm {
 
 struct CutOptions {
-  std::uint32_t parts = 0;        // 0: default_parts() of the input's triangles
-  Weld weld = Weld::exact;        // vertices at the same position become one
-  std::string input_name;         // kept in the manifest, for people
-  unsigned threads = 0;           // 0: one a core; the parts do not depend on it
-  std::filesystem::path scratch;  // where per-vertex state goes; empty: see scratch_folder()
+  std::uint32_t parts = 0;         // 0: default_parts() of the input's triangles
+  Weld weld = Weld::exact;         // vertices at the same position become one
+  std::string input_name;          // kept in the manifest, for people
+  unsigned threads = 0;            // 0: one a core; the parts do not depend on it
+  std::uint64_t memory_bytes = 0;  // of the parts that are made at once; 0: no limit
+  std::filesystem::path scratch;   // where per-vertex state goes; empty: see scratch_folder()
   /// Told what is being done and how far it is (0..1); may be empty.
   std::function<void(std::string_view phase, double done)> progress;
   const std::atomic<bool>* stop = nullptr;

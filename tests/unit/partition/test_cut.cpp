@@ -159,13 +159,16 @@ TEST_CASE("columns go with their triangles") {
   }
 }
 
-TEST_CASE("the same cut from any number of threads") {
+TEST_CASE("the same cut from any number of threads and in any memory") {
   const test::TempFolder folder;
   const Mesh mesh = test::torus(50, 50);
   cut(mesh, {.parts = 5, .threads = 1}, folder.path() / "1");
   cut(mesh, {.parts = 5, .threads = 4}, folder.path() / "4");
+  cut(mesh, {.parts = 5, .threads = 4, .memory_bytes = 1}, folder.path() / "1 at once");
   for (const char* name : {"parts/000000.part", "parts/000004.part", "boundary"}) {
-    CHECK(read_file(folder.path() / "1" / name) == read_file(folder.path() / "4" / name));
+    const std::string bytes = read_file(folder.path() / "1" / name);
+    CHECK(read_file(folder.path() / "4" / name) == bytes);
+    CHECK(read_file(folder.path() / "1 at once" / name) == bytes);
   }
 }
 
