@@ -3,12 +3,12 @@
 #include <algorithm>
 #include <iostream>
 
+#include <meshfarm/divide/divided_distance.hpp>
 #include <meshfarm/geometry/distance.hpp>
 #include <meshfarm/geometry/value_error.hpp>
 #include <meshfarm/io/channel_pairs.hpp>
 #include <meshfarm/io/mesh_source.hpp>
 #include <meshfarm/report/summary.hpp>
-#include <meshfarm/stream/divided_distance.hpp>
 #include <meshfarm/util/errors.hpp>
 
 #include "cli/command.hpp"

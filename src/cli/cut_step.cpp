@@ -10,13 +10,13 @@
 
 #include <unistd.h>
 
+#include <meshfarm/divide/cut.hpp>
+#include <meshfarm/divide/generate_streams.hpp>
 #include <meshfarm/io/channel_choice.hpp>
 #include <meshfarm/io/mesh_format.hpp>
 #include <meshfarm/io/mesh_source.hpp>
-#include <meshfarm/partition/cut.hpp>
 #include <meshfarm/staging/claim.hpp>
 #include <meshfarm/staging/stage.hpp>
-#include <meshfarm/stream/generate_streams.hpp>
 #include <meshfarm/util/errors.hpp>
 #include <meshfarm/util/log.hpp>
 #include <meshfarm/util/text.hpp>

@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include <meshfarm/stream/divided_surface.hpp>
+#include <meshfarm/divide/divided_surface.hpp>
 
 #include "cli/command.hpp"
 

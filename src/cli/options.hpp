@@ -10,13 +10,13 @@
 
 #include <boost/program_options.hpp>
 
+#include <meshfarm/divide/cut.hpp>
+#include <meshfarm/divide/generate_streams.hpp>
 #include <meshfarm/farm/schedule.hpp>
 #include <meshfarm/farm/when_full.hpp>
-#include <meshfarm/partition/cut.hpp>
 #include <meshfarm/pipeline/run_options.hpp>
 #include <meshfarm/report/progress.hpp>
 #include <meshfarm/report/summary.hpp>
-#include <meshfarm/stream/generate_streams.hpp>
 #include <meshfarm/transport/security.hpp>
 
 namespace meshfarm {

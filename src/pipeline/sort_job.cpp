@@ -2,12 +2,12 @@
 // SPDX-License-Identifier: MIT
 #include <utility>
 
+#include <meshfarm/divide/slab.hpp>
 #include <meshfarm/io/part_file.hpp>
 #include <meshfarm/io/slab_file.hpp>
 #include <meshfarm/io/sorting.hpp>
 #include <meshfarm/io/stream_file.hpp>
 #include <meshfarm/pipeline/sort_job.hpp>
-#include <meshfarm/stream/slab.hpp>
 #include <meshfarm/util/bytes.hpp>
 #include <meshfarm/util/errors.hpp>
 

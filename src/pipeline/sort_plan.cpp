@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <utility>
 
+#include <meshfarm/divide/slab.hpp>
 #include <meshfarm/pipeline/sort_job.hpp>
-#include <meshfarm/stream/slab.hpp>
 #include <meshfarm/util/errors.hpp>
 
 namespace meshfarm {

@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
+#include <fcntl.h>
 #include <filesystem>
 #include <span>
 #include <string>
@@ -16,15 +17,14 @@
 #include <vector>
 
 #include <benchmark/benchmark.h>
-#include <fcntl.h>
 
+#include <meshfarm/divide/cut.hpp>
 #include <meshfarm/geometry/generate.hpp>
 #include <meshfarm/geometry/simplify.hpp>
 #include <meshfarm/geometry/topology.hpp>
 #include <meshfarm/geometry/weld.hpp>
 #include <meshfarm/io/mesh_source.hpp>
 #include <meshfarm/io/ply_writer.hpp>
-#include <meshfarm/partition/cut.hpp>
 #include <meshfarm/staging/stage.hpp>
 #include <meshfarm/util/errors.hpp>
 #include <meshfarm/util/file.hpp>

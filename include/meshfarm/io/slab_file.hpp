@@ -2,12 +2,36 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <string_view>
+#include <vector>
 
-#include <meshfarm/io/mesh_shares.hpp>
+#include <meshfarm/geometry/mesh.hpp>
 
 namespace meshfarm {
+
+/// A vertex that does not become one with all that lie at its point, as surfaces touch there or a
+/// neck has no width (geometry/weld.hpp, separate_touching).
+struct ApartVertex {
+  std::uint32_t place = 0;
+  std::uint32_t sheet = 0;  // those of one sheet become one
+  friend bool operator==(const ApartVertex&, const ApartVertex&) = default;
+};
+
+/// One share of a mesh. Vertices are in file order; boundary vertices are in any order, and some
+/// are named more than once.
+struct MeshShare {
+  std::vector<Vec3> positions;
+  std::vector<Triangle> triangles;
+  std::vector<std::uint32_t> boundary;
+  PositionType type = PositionType::float32;  // what all positions fit
+  /// At the points of boundary vertices, ascending: all vertices of a point or none. The sheets of
+  /// a point are numbered in an order that tells nothing of the input's.
+  std::vector<ApartVertex> apart;
+  std::vector<Appearance> appearances = {};  // one a vertex, or none
+  TriangleColumns columns = {};              // of the triangles
+};
 
 /// A share of a mesh as a staged file. Vertices and triangles keep the order they came in, which
 /// decides between coincident vertices that are not welded. Positions must be exact in

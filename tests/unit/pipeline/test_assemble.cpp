@@ -7,9 +7,9 @@
 
 #include <doctest/doctest.h>
 
+#include <meshfarm/divide/cut.hpp>
 #include <meshfarm/geometry/topology.hpp>
 #include <meshfarm/io/result_file.hpp>
-#include <meshfarm/partition/cut.hpp>
 #include <meshfarm/pipeline/assemble.hpp>
 #include <meshfarm/pipeline/budget.hpp>
 #include <meshfarm/pipeline/job_table.hpp>

@@ -10,9 +10,9 @@
 
 #include <doctest/doctest.h>
 
+#include <meshfarm/divide/cut.hpp>
 #include <meshfarm/io/material_colours.hpp>
 #include <meshfarm/io/mesh_format.hpp>
-#include <meshfarm/partition/cut.hpp>
 #include <meshfarm/pipeline/assemble.hpp>
 #include <meshfarm/pipeline/bake_job.hpp>
 #include <meshfarm/pipeline/budget.hpp>

@@ -5,8 +5,8 @@
 
 #include <doctest/doctest.h>
 
-#include <meshfarm/partition/cut.hpp>
-#include <meshfarm/stream/generate_streams.hpp>
+#include <meshfarm/divide/cut.hpp>
+#include <meshfarm/divide/generate_streams.hpp>
 
 #include "pipeline/error_meter.hpp"
 #include "support/memory_source.hpp"

@@ -6,10 +6,10 @@
 
 #include <doctest/doctest.h>
 
+#include <meshfarm/divide/cut.hpp>
+#include <meshfarm/divide/generate_streams.hpp>
 #include <meshfarm/geometry/generate.hpp>
-#include <meshfarm/partition/cut.hpp>
 #include <meshfarm/pipeline/run_options.hpp>
-#include <meshfarm/stream/generate_streams.hpp>
 
 #include "support/memory_source.hpp"
 #include "support/meshes.hpp"

@@ -9,12 +9,12 @@
 
 #include <doctest/doctest.h>
 
+#include <meshfarm/divide/generate_streams.hpp>
 #include <meshfarm/io/slab_file.hpp>
 #include <meshfarm/pipeline/assemble.hpp>
 #include <meshfarm/pipeline/budget.hpp>
 #include <meshfarm/pipeline/job_table.hpp>
 #include <meshfarm/pipeline/sort_job.hpp>
-#include <meshfarm/stream/generate_streams.hpp>
 #include <meshfarm/util/errors.hpp>
 #include <meshfarm/util/file.hpp>
 

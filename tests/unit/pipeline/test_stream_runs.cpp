@@ -8,6 +8,7 @@
 
 #include <doctest/doctest.h>
 
+#include <meshfarm/divide/generate_streams.hpp>
 #include <meshfarm/geometry/distance.hpp>
 #include <meshfarm/geometry/topology.hpp>
 #include <meshfarm/io/mesh_source.hpp>
@@ -17,7 +18,6 @@
 #include <meshfarm/pipeline/job_table.hpp>
 #include <meshfarm/pipeline/simplify_job.hpp>
 #include <meshfarm/pipeline/sweep_job.hpp>
-#include <meshfarm/stream/generate_streams.hpp>
 #include <meshfarm/util/errors.hpp>
 
 #include "support/memory_source.hpp"

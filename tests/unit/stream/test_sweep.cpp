@@ -5,9 +5,9 @@
 
 #include <doctest/doctest.h>
 
+#include <meshfarm/divide/slab.hpp>
 #include <meshfarm/geometry/simplify.hpp>
 #include <meshfarm/geometry/topology.hpp>
-#include <meshfarm/stream/slab.hpp>
 #include <meshfarm/stream/sweep.hpp>
 #include <meshfarm/util/errors.hpp>
 

@@ -1,0 +1,45 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+
+#include <meshfarm/geometry/sweep_order.hpp>
+#include <meshfarm/io/part_file.hpp>
+#include <meshfarm/io/slab_file.hpp>
+#include <meshfarm/io/stream_file.hpp>
+
+namespace meshfarm {
+
+/// What sorting a slab and encoding its stream need at most, for each triangle.
+inline constexpr std::uint64_t k_slab_bytes_per_triangle = 72;
+/// The same where vertices may have appearances, two copies and the encoded ones, and where
+/// triangles have columns, which are sorted with them.
+constexpr std::uint64_t slab_bytes_per_triangle(bool has_appearances, const ColumnSet& columns) {
+  return k_slab_bytes_per_triangle + (has_appearances ? 2 * sizeof(Appearance) : 0) +
+         (columns.any() ? sizeof(Triangle) + 3 * columns.bytes() : 0);
+}
+
+/// A slab in sweep order.
+struct SortedSlab {
+  StreamMesh stream;
+  std::uint32_t boundary_vertices = 0;
+  std::uint64_t coincident_vertices = 0;  // at the place of an earlier one, merged or not
+  std::uint64_t merged_vertices = 0;      // those of them that were
+  std::uint64_t dropped_degenerate = 0;
+  std::uint64_t coincident_corners = 0;  // triangles with two corners at one place
+};
+
+/// Sorts vertices, welds those that coincide (they are neighbours then), drops degenerate triangles
+/// and unused vertices, and sorts triangles by their smallest vertex, then by the others. With
+/// exact welding the result does not depend on the order of the slab.
+SortedSlab sort_slab(MeshShare raw, const Sorting& sorting);
+
+/// About how many triangles a sample of a stream has.
+std::uint64_t sample_size(std::uint64_t stream_triangles);
+
+/// A piece of a stream, across its whole slab, as a part whose outer vertices are locked. It has
+/// about sample_size() triangles; `number` decides where along the second axis it is taken.
+Part sample_slab(const StreamMesh& stream, const SweepOrder& order, std::uint32_t number);
+
+}  // namespace meshfarm

@@ -1,0 +1,102 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <span>
+#include <unordered_map>
+#include <vector>
+
+#include <meshfarm/geometry/weld.hpp>
+
+#include "divide/grid.hpp"
+
+namespace meshfarm {
+
+/// A cell that holds vertices.
+struct Cell {
+  std::uint64_t key = 0;       // its grid, then its index in that; cells are numbered in this order
+  std::uint64_t vertices = 0;  // its weight
+  Vec3 mean;
+  Box box;                 // of its vertices
+  std::uint32_t grid = 0;  // by which it is divided; 0 is none
+  bool is_one = false;     // a point with so many vertices that they are to become one at once
+};
+
+struct CellTreeOptions {
+  unsigned bits = 0;        // of the first grid
+  std::uint32_t parts = 1;  // that the cells are for; one part's cells are never divided
+  Weld weld = Weld::exact;
+  std::size_t most_cells = std::size_t{1} << 20;
+};
+
+/// Cells that follow the density of the vertices. The first are those of a uniform grid. A cell
+/// with more than a 32nd of a part's vertices is replaced by a finer grid over the box of its own
+/// vertices, and so on, so that an outlier makes no other cell coarser. If there are too many
+/// cells, grids are coarsened: there are at most `most_cells`, and 256 a part where vertices lie in
+/// dense spots. Memory: about 110 bytes a cell. The cells depend on the set of vertices, not on its
+/// order. Where too many vertices lie at one point, they are taken for one if they will be welded;
+/// else they are dealt out, in their order, to cells at that point.
+///
+/// Add all vertices, and again as long as refine() returns true. For vertices spread evenly over a
+/// surface, once is enough.
+class CellTree {
+ public:
+  CellTree(const Box& box, const CellTreeOptions& options);
+  void add(Vec3 p);
+  /// Ends a scan. True if cells were divided: all vertices are to be added once more.
+  bool refine();
+
+  /// After the last scan.
+  std::span<const Cell> cells() const { return std::span(cells_).first(leaves_); }
+  /// The number of the cell that holds a vertex that was added. To be asked once for each, in
+  /// order.
+  std::uint32_t number_of(Vec3 p);
+
+ private:
+  static constexpr unsigned k_index_bits = 36;
+  static constexpr std::uint64_t k_no_key = std::numeric_limits<std::uint64_t>::max();
+
+  std::uint64_t key_of(std::uint32_t grid, Vec3 p) const {
+    return std::uint64_t{grid} << k_index_bits | grids_[grid].cell_of(p);
+  }
+  /// A cell that is not divided: its key, and its place in cells_ + 1, or 0 if there is none yet.
+  struct Leaf {
+    std::uint64_t key = 0;
+    std::uint32_t entry = 0;
+  };
+  Leaf descend(std::uint64_t key, Vec3 p) const;
+  std::size_t slot_of(std::uint64_t key) const;
+  std::size_t place_of(std::uint64_t key);
+  void hash_all(std::size_t slots);
+  void coarsen();
+  void divide(Cell& cell);
+  void divide_points();
+  void finish();
+
+  /// The vertices at a point, dealt out to `cells` cells.
+  struct Dealt {
+    std::uint64_t vertices = 0;
+    std::uint64_t cells = 0;
+    std::uint64_t first = 0;  // number of the first of them
+    std::uint64_t seen = 0;
+  };
+
+  CellTreeOptions options_;
+  std::vector<UniformGrid> grids_;
+  std::uint32_t first_new_ = 0;       // grids from here on are counted into
+  std::vector<std::uint32_t> slots_;  // place in cells_ + 1; 0 is free
+  std::vector<Cell> cells_;           // mean holds the sum until finish()
+  std::size_t limit_;                 // grids are coarsened when there are more cells
+  std::size_t leaves_ = 0;            // cells that are not divided come first in the end
+  std::unordered_map<std::uint64_t, Dealt> dealt_;  // by the key of the cell
+  std::uint64_t heavy_ = 0;
+  unsigned scans_ = 0;
+  std::size_t last_ = 0;  // where add() was last
+  std::uint64_t last_key_ = k_no_key;
+  std::uint32_t last_number_ = 0;
+};
+
+}  // namespace meshfarm

@@ -1,0 +1,42 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#include "divide/grid.hpp"
+
+#include <algorithm>
+#include <cassert>
+
+namespace meshfarm {
+
+UniformGrid::UniformGrid(const Box& box, unsigned bits) : lo_(box.lo), bits_(bits) {
+  assert(bits <= k_max_bits);
+  const Vec3 extent = box.empty() ? Vec3{} : box.hi - box.lo;
+  const double longest = std::max({extent.x, extent.y, extent.z});
+  const double cells = static_cast<double>(std::uint64_t{1} << bits);
+  if (longest > 0) cells_per_unit_ = cells / longest;
+}
+
+std::uint64_t UniformGrid::cell_of(Vec3 p) const {
+  // Converted through a signed number: the CPU has an instruction for that.
+  const auto last = static_cast<double>((std::int64_t{1} << bits_) - 1);
+  const auto along = [&](double x, double lo) {
+    double cell = (x - lo) * cells_per_unit_;
+    cell = cell > 0 ? cell : 0;
+    return static_cast<std::uint64_t>(static_cast<std::int64_t>(cell < last ? cell : last));
+  };
+  return (along(p.z, lo_.z) << (2 * bits_)) | (along(p.y, lo_.y) << bits_) | along(p.x, lo_.x);
+}
+
+void UniformGrid::coarsen() {
+  assert(bits_ > 0);
+  --bits_;
+  cells_per_unit_ *= 0.5;
+}
+
+std::uint64_t UniformGrid::coarser_cell(std::uint64_t finer) const {
+  const unsigned bits = bits_ + 1;
+  const std::uint64_t mask = (std::uint64_t{1} << bits) - 1;
+  const auto along = [&](unsigned axis) { return (finer >> (axis * bits) & mask) >> 1; };
+  return (along(2) << (2 * bits_)) | (along(1) << bits_) | along(0);
+}
+
+}  // namespace meshfarm

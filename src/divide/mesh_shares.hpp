@@ -1,0 +1,148 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <span>
+#include <unordered_map>
+#include <vector>
+
+#include <meshfarm/geometry/mesh.hpp>
+#include <meshfarm/geometry/weld.hpp>
+#include <meshfarm/io/boundary_file.hpp>
+#include <meshfarm/io/mesh_source.hpp>
+#include <meshfarm/io/packed_triangles.hpp>
+#include <meshfarm/io/slab_file.hpp>
+#include <meshfarm/util/bucket_file.hpp>
+#include <meshfarm/util/file.hpp>
+
+#include "divide/boundary_numbers.hpp"
+
+namespace meshfarm {
+
+/// A vertex by its share and its place there.
+struct SharePlace {
+  std::uint32_t share = 0;
+  std::uint32_t place = 0;
+  friend auto operator<=>(const SharePlace&, const SharePlace&) = default;
+};
+using SeamTriangle = std::array<SharePlace, 3>;
+
+/// Triangles between shares; those that have lost a corner are left out.
+struct SharedTriangles {
+  std::vector<BoundaryTriangle> triangles;
+  TriangleColumns columns;       // of these
+  std::uint64_t degenerate = 0;  // that were left out
+  std::uint64_t coincident = 0;  // with two corners at one point, left out or not
+};
+
+/// Divides a mesh while it is scanned, in bounded memory. The caller assigns each vertex to a
+/// share. A triangle goes to the share of its vertices, or to the boundary if they are in several.
+/// The map from a vertex to its share and place is a mapped scratch file, of which few pages stay
+/// mapped where the input has locality, or memory too.
+class MeshShares {
+ public:
+  /// What will be asked for of the boundary triangles: boundary(), for which they are kept in
+  /// memory, or seam() alone.
+  enum class SeamsFor : std::uint8_t { all, each_share };
+  struct Options {
+    std::filesystem::path folder;  // for scratch files
+    std::uint32_t shares = 0;
+    std::uint64_t vertices = 0;  // exactly as many are added
+    PositionType positions = PositionType::float32;
+    std::uint64_t memory_bytes = 0;  // of what is shared out; the rest goes to scratch files
+    SeamsFor seams = SeamsFor::all;
+    bool appearances = false;     // whether vertices have any
+    ColumnSet columns = {};       // of the triangles
+    std::uint64_t triangles = 0;  // about how many there are, if they have columns
+  };
+  explicit MeshShares(const Options& options);
+
+  /// The share of vertices that are left out, and with them the triangles that use one.
+  static constexpr std::uint32_t k_no_share = UINT32_MAX;
+  static constexpr std::uint32_t k_no_point = UINT32_MAX;
+  /// The next vertices, and the share of each. Where `points` are given, those of one number lie at
+  /// one point, in one share, and become one vertex here already: so a share stays small whatever
+  /// many there are. Throws DataError if a share gets 2^32 vertices.
+  void add_vertices(const VertexView& batch, std::span<const std::uint32_t> shares,
+                    std::span<const std::uint32_t> points = {});
+  /// After all vertices. Triangles whose corners are all one vertex are left out: there may be any
+  /// number of them at one point, as in a file with a hole of zeros.
+  void add_triangles(const TriangleView& triangles);
+  /// After all triangles; read() is then safe from several threads.
+  void finish();
+  /// For exact welding with what stays apart at the seams, where a share alone does not have all
+  /// triangles of a vertex: decided by all of them, so the same in whatever shares.
+  MeshShare read(std::uint32_t share, Weld weld) const;
+
+  /// The boundary triangles that have a corner in this share, in file order; as safe as read().
+  std::vector<SeamTriangle> seam(std::uint32_t share) const;
+
+  /// What buffers took until finish(): the process may keep it in pieces that are of little use.
+  std::uint64_t buffer_bytes() const {
+    const std::uint64_t files = 2U + (columns_.labels ? 1U : 0U) + (columns_.uvs ? 1U : 0U);
+    return files * BucketFile::k_all_buffers_bytes;
+  }
+  /// Vertices that became one with an earlier one.
+  std::uint64_t merged() const { return merged_; }
+  /// Triangles that used a vertex that was left out.
+  std::uint64_t dropped() const { return dropped_; }
+  /// Triangles whose corners were all one vertex.
+  std::uint64_t points_left_out() const { return points_left_out_; }
+  /// The boundary triangles, in file order and by final numbers, one entry of `numbers` a share.
+  SharedTriangles boundary(std::span<const BoundaryNumbers> numbers) const;
+
+  /// The memory that holds all of a usual mesh.
+  static std::uint64_t memory_for(std::uint64_t vertices, std::uint64_t triangles,
+                                  PositionType positions, bool appearances = false,
+                                  const ColumnSet& columns = {});
+
+ private:
+  /// How the memory is divided; nothing for the map where it does not fit as a whole.
+  struct Memory {
+    explicit Memory(const Options& options);
+    std::uint64_t map = 0;
+    std::uint64_t vertices = 0;
+    std::uint64_t appearances = 0;
+    std::uint64_t labels = 0;
+    std::uint64_t uvs = 0;
+    std::uint64_t triangles = 0;
+  };
+  /// What the vertices of a point became, and the least of their appearances.
+  struct PointVertex {
+    SharePlace place;
+    Appearance least{};
+  };
+  MeshShares(const Options& options, const Memory& memory);
+  void put_position(std::uint32_t share, Vec3 p);
+  void put_seam_triangle(const SeamTriangle& t);
+  Vec3 position_of(SharePlace vertex) const;
+  void forget_pages(std::size_t added);
+
+  PositionType positions_;
+  SeamsFor seams_for_;
+  MappedFile map_;
+  bool is_in_memory_;
+  bool has_appearances_;
+  ColumnSet columns_;
+  std::size_t since_forgotten_ = 0;
+  BucketFile vertices_;
+  BucketFile appearances_;
+  BucketFile labels_;
+  BucketFile uvs_;
+  BucketFile triangles_;  // packed
+  std::vector<TrianglePacker> packers_;
+  BucketFile seams_;                 // the boundary triangles at each share
+  std::vector<std::uint64_t> next_;  // place in each share
+  std::unordered_map<std::uint32_t, PointVertex> points_;
+  std::uint64_t added_ = 0;
+  std::uint64_t merged_ = 0;
+  std::uint64_t dropped_ = 0;
+  std::uint64_t points_left_out_ = 0;
+  std::vector<SeamTriangle> boundary_;  // as the square root of the input
+  TriangleColumns boundary_columns_;
+};
+
+}  // namespace meshfarm

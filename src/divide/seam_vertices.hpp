@@ -1,0 +1,28 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <vector>
+
+#include "divide/mesh_shares.hpp"
+
+namespace meshfarm {
+
+/// What stays apart of the vertices at the points of a share's boundary vertices, by all of their
+/// triangles: those of the share and `outer`, the triangles between this share and others, whose
+/// vertices `position_of` tells. Where no vertex has a twin it takes one look at each position.
+std::vector<ApartVertex> find_apart(const MeshShare& share, std::uint32_t number,
+                                    std::span<const SeamTriangle> outer,
+                                    const std::function<Vec3(SharePlace)>& position_of);
+
+/// Undoes the merges of vertices that stay apart: `first` is that of a WeldResult.
+void keep_apart(std::span<const ApartVertex> apart, std::span<std::uint32_t> first);
+
+inline constexpr std::uint32_t k_no_sheet = UINT32_MAX;
+/// The sheet of a vertex; none for one that is merged with all that lie at its point.
+std::uint32_t sheet_of(std::uint32_t place, std::span<const ApartVertex> apart);
+
+}  // namespace meshfarm

@@ -1,0 +1,120 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#include <algorithm>
+#include <set>
+#include <string>
+
+#include <doctest/doctest.h>
+
+#include <meshfarm/util/checksum.hpp>
+
+#include "divide/cell_graph.hpp"
+#include "divide/cell_tree.hpp"
+
+using namespace meshfarm;
+
+namespace {
+
+/// n x n cells of one vertex each, in a plane.
+CellTree square_of_cells(int n) {
+  Box box;
+  box.add({0, 0, 0});
+  box.add({1.0 * n, 1.0 * n, 0});
+  CellTree tree(box, {.bits = 10});
+  do {
+    for (int y = 0; y < n; ++y) {
+      for (int x = 0; x < n; ++x) tree.add({x + 0.5, y + 0.5, 0});
+    }
+  } while (tree.refine());
+  return tree;
+}
+
+}  // namespace
+
+TEST_CASE("METIS cuts a square of cells into even, whole parts, the same each time") {
+  const CellTree tree = square_of_cells(32);
+  const std::span<const Cell> cells = tree.cells();
+  for (const std::uint32_t parts : {2U, 5U, 16U}) {
+    CAPTURE(parts);
+    const auto part = partition_cells(cells, {.parts = parts});
+    CHECK(part == partition_cells(cells, {.parts = parts}));
+    CHECK(part == partition_cells(cells, {.parts = parts, .threads = 1}));
+    CHECK(part == partition_cells(cells, {.parts = parts, .threads = 3}));
+    std::vector<std::size_t> sizes(parts, 0);
+    for (const std::uint32_t p : part) {
+      REQUIRE(p < parts);
+      ++sizes[p];
+    }
+    const double even = 1024.0 / parts;
+    for (const std::size_t size : sizes) {
+      CHECK(static_cast<double>(size) > 0.8 * even);
+      CHECK(static_cast<double>(size) < 1.2 * even);
+    }
+  }
+}
+
+TEST_CASE("the version of METIS that parts depend on makes the parts that it always made") {
+  CHECK(partitioner_name() == "METIS 5.1.0");
+  const CellTree tree = square_of_cells(16);
+  const auto text_of = [&](std::uint32_t parts) {
+    std::string text;
+    for (const std::uint32_t p : partition_cells(tree.cells(), {.parts = parts})) {
+      text += static_cast<char>('a' + p);
+    }
+    return text;
+  };
+  const auto sum = [](const std::string& text) {
+    Checksum all;
+    all.add(text);
+    return all.value();
+  };
+  CHECK(text_of(2) ==
+        "aaaaaaaaaaaaaaaa"
+        "aaaaaaaaaaaaaaaa"
+        "aaaaaaaaaaaaaaaa"
+        "aaaaaaaaaaaaaaaa"
+        "aaaaaaaaaaaaaaaa"
+        "aaaaaaaaaaaaaaaa"
+        "bbbbbaaaaaaaaaaa"
+        "bbbbbbaaaaaaaaaa"
+        "bbbbbbbbbbaaaaaa"
+        "bbbbbbbbbbbaaaaa"
+        "bbbbbbbbbbbbbbbb"
+        "bbbbbbbbbbbbbbbb"
+        "bbbbbbbbbbbbbbbb"
+        "bbbbbbbbbbbbbbbb"
+        "bbbbbbbbbbbbbbbb"
+        "bbbbbbbbbbbbbbbb");
+  CHECK(sum(text_of(12)) == 6776605540786173613U);
+}
+
+TEST_CASE("more parts than cells, one part, no cells") {
+  const CellTree tree = square_of_cells(2);
+  const std::span<const Cell> cells = tree.cells();
+  const auto part = partition_cells(cells, {.parts = 100});
+  CHECK(std::set<std::uint32_t>(part.begin(), part.end()).size() <= 4);
+  CHECK(*std::max_element(part.begin(), part.end()) < 4);
+  CHECK(partition_cells(cells, {.parts = 1}) == std::vector<std::uint32_t>(4, 0));
+  CHECK(partition_cells({}, {.parts = 3}).empty());
+}
+
+TEST_CASE("parts come out even where METIS leaves them uneven: cells of very different weights") {
+  // Seven heavy cells and many light ones round them.
+  std::vector<Cell> cells;
+  for (int i = 0; i < 600; ++i) {
+    const double turn = 0.1 * i;
+    cells.push_back({.key = static_cast<std::uint64_t>(i),
+                     .vertices = i % 86 == 0 ? 3000U : 1U + static_cast<unsigned>(i % 7) * 20U,
+                     .mean = {turn * turn, 1.0 * (i % 3), 0},
+                     .box = {}});
+  }
+  std::uint64_t all = 0;
+  for (const Cell& cell : cells) all += cell.vertices;
+  for (const std::uint32_t parts : {3U, 4U, 9U}) {
+    const auto part = partition_cells(cells, {.parts = parts});
+    std::vector<std::uint64_t> weights(parts, 0);
+    for (std::size_t i = 0; i < cells.size(); ++i) weights[part[i]] += cells[i].vertices;
+    const std::uint64_t most = *std::max_element(weights.begin(), weights.end());
+    CHECK(most * parts <= all + 3000 * std::uint64_t{parts});
+  }
+}
