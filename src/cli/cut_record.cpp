@@ -38,9 +38,9 @@ const char* word_of(Textures textures) {
 std::string options_of(const CutWords& words) {
   std::string text = "--scheme " + words.scheme_word + " --weld " + words.weld + " --parts " +
                      std::to_string(words.cut.parts);
-  if (words.scheme == Scheme::stream) {
-    text += " --sort " + words.sort + " --window " + std::to_string(words.stream.window_triangles) +
-            " --memory " + std::to_string(words.stream.memory_bytes);
+  if (words.cut.scheme == Scheme::stream) {
+    text += " --sort " + words.sort + " --window " + std::to_string(words.cut.window_triangles) +
+            " --memory " + std::to_string(words.cut.memory_bytes);
   }
   if (words.attributes != "auto") text += " --attributes " + words.attributes;
   text += std::string(" --uv ") + word_of(parse_uv(words.uv));

@@ -11,7 +11,6 @@
 #include <unistd.h>
 
 #include <meshfarm/divide/cut.hpp>
-#include <meshfarm/divide/generate_streams.hpp>
 #include <meshfarm/io/channel_choice.hpp>
 #include <meshfarm/io/mesh_format.hpp>
 #include <meshfarm/io/mesh_source.hpp>
@@ -71,18 +70,13 @@ Manifest cut_to_stage(const CutStep& step) {
   if (!source) source = open_input(step);
   publish_record(stage, wanted);
   ProgressPrinter printer(step.talk.progress());
-  const auto with_common = [&](auto options) {
-    options.input_name = step.input;
-    options.stop = &step.stop;
-    options.progress = [&](std::string_view phase, double done) {
-      printer.show({.phase = phase, .done = done, .triangles = 0});
-    };
-    return options;
+  CutOptions options = step.words.cut;
+  options.input_name = step.input;
+  options.stop = &step.stop;
+  options.progress = [&](std::string_view phase, double done) {
+    printer.show({.phase = phase, .done = done, .triangles = 0});
   };
-  if (step.words.scheme == Scheme::stream) {
-    return generate_streams(*source, stage, with_common(step.words.stream));
-  }
-  return cut_mesh(*source, stage, with_common(step.words.cut));
+  return cut_mesh(*source, stage, options);
 }
 
 void tell_textures(const std::string& input, const MeshFileInfo& info) {

@@ -4,9 +4,13 @@
 
 #include <charconv>
 #include <cmath>
+#include <memory>
+
+#include <arpa/inet.h>
+#include <ifaddrs.h>
+#include <net/if.h>
 
 #include <meshfarm/staging/file_system.hpp>
-#include <meshfarm/transport/addresses.hpp>
 #include <meshfarm/util/errors.hpp>
 
 #include "cli/texture_words.hpp"
@@ -210,11 +214,10 @@ void CutWords::add(po::options_description& options) {
       "only; LIST: these, as in red,green,blue ('colours' and 'normals' stand for "
       "theirs)")("uv", po::value(&uv)->default_value(uv)->value_name(k_uv_words), k_uv_help)(
       "threads", po::value(&cut.threads)->value_name("N"), "threads of the cut (default: cores)")(
-      "memory", po::value(&memory)->value_name("BYTES"),
-      "memory of the cut, for example 2G: with --scheme stream for sorting (default: 512M), with "
-      "--scheme cut for the parts that are made at once (default: no limit)")(
+      "memory", po::value(&memory)->default_value(memory)->value_name("BYTES"),
+      "with --scheme stream: memory for sorting, for example 2G")(
       "window",
-      po::value(&stream.window_triangles)->default_value(stream.window_triangles)->value_name("N"),
+      po::value(&cut.window_triangles)->default_value(cut.window_triangles)->value_name("N"),
       "with --scheme stream: triangles that a worker holds at once")(
       "scratch", po::value(&scratch)->value_name("FOLDER"),
       "where the cut keeps what does not fit into memory, best on a local disk (default: $TMPDIR "
@@ -236,26 +239,22 @@ void CutWords::check() {
   if (sort == "farm" && scheme_word != "stream") {
     throw UsageError("--sort farm goes with --scheme stream: parts of a cut are not sorted");
   }
-  scheme = scheme_word == "stream" ? Scheme::stream : Scheme::cut;
+  cut.scheme = scheme_word == "stream" ? Scheme::stream : Scheme::cut;
   cut.weld = weld == "off" ? Weld::off : Weld::exact;
   if (cut.parts > 1'000'000) throw UsageError("--parts: at most 1,000,000");
-  if (stream.window_triangles < 1000 || stream.window_triangles > 1'000'000'000) {
+  if (cut.window_triangles < 1000 || cut.window_triangles > 1'000'000'000) {
     throw UsageError("--window: from 1,000 to 1,000,000,000 triangles");
   }
-  stream.sort = sort == "farm" ? SortAt::farm : SortAt::here;
-  stream.streams = cut.parts;
-  stream.weld = cut.weld;
-  stream.threads = cut.threads;
-  if (!memory.empty()) cut.memory_bytes = stream.memory_bytes = parse_size(memory, "--memory");
-  cut.scratch = stream.scratch = scratch;
-  if (stream.memory_bytes == 0) throw UsageError("--memory must be above 0");
+  cut.sort = sort == "farm" ? SortAt::farm : SortAt::here;
+  cut.memory_bytes = parse_size(memory, "--memory");
+  cut.scratch = scratch;
+  if (cut.memory_bytes == 0) throw UsageError("--memory must be above 0");
 }
 
 std::vector<std::string> CutWords::words() const {
-  std::vector<std::string> words = {"--scheme", scheme_word, "--sort",  sort,
-                                    "--weld",   weld,        "--window"};
-  words.push_back(std::to_string(stream.window_triangles));
-  if (!memory.empty()) words.insert(words.end(), {"--memory", memory});
+  std::vector<std::string> words = {"--scheme", scheme_word, "--sort", sort,      "--weld",
+                                    weld,       "--memory",  memory,   "--window"};
+  words.push_back(std::to_string(cut.window_triangles));
   if (attributes != "auto") words.insert(words.end(), {"--attributes", attributes});
   if (uv != "auto") words.insert(words.end(), {"--uv", uv});
   if (cut.parts != 0) words.insert(words.end(), {"--parts", std::to_string(cut.parts)});
@@ -310,7 +309,7 @@ void NetworkOptions::add(po::options_description& options) {
 }
 
 void NetworkOptions::check() {
-  if (bind.empty()) bind = network_address().value_or("127.0.0.1");
+  if (bind.empty()) bind = host_address();
   security.check();
   check_exposure(security.security, bind);
   if (ports.empty()) return;
@@ -380,6 +379,20 @@ std::uint64_t parse_size(const std::string& text, std::string_view option) {
     throw UsageError(std::string(option) + " takes a size as in 512M or 8G, not '" + text + "'");
   }
   return static_cast<std::uint64_t>(value);
+}
+
+std::string host_address() {
+  ifaddrs* list = nullptr;
+  if (::getifaddrs(&list) != 0) return "127.0.0.1";
+  const std::unique_ptr<ifaddrs, decltype(&::freeifaddrs)> owner(list, &::freeifaddrs);
+  for (const ifaddrs* at = list; at != nullptr; at = at->ifa_next) {
+    if (at->ifa_addr == nullptr || at->ifa_addr->sa_family != AF_INET) continue;
+    if ((at->ifa_flags & IFF_LOOPBACK) != 0 || (at->ifa_flags & IFF_UP) == 0) continue;
+    char text[INET_ADDRSTRLEN];
+    const auto* address = reinterpret_cast<const sockaddr_in*>(at->ifa_addr);
+    if (::inet_ntop(AF_INET, &address->sin_addr, text, sizeof text) != nullptr) return text;
+  }
+  return "127.0.0.1";
 }
 
 }  // namespace meshfarm

@@ -11,7 +11,6 @@
 #include <boost/program_options.hpp>
 
 #include <meshfarm/divide/cut.hpp>
-#include <meshfarm/divide/generate_streams.hpp>
 #include <meshfarm/farm/schedule.hpp>
 #include <meshfarm/farm/when_full.hpp>
 #include <meshfarm/pipeline/run_options.hpp>
@@ -65,9 +64,7 @@ struct TargetOptions {
 
 /// --scheme, --sort, --parts, --weld, --attributes, --uv, --threads, --memory, --window, --scratch.
 struct CutWords {
-  Scheme scheme = Scheme::cut;
   CutOptions cut;
-  StreamOptions stream;
   std::string scheme_word = "cut";
   std::string sort = "here";
   std::string weld = "exact";

@@ -11,10 +11,11 @@
 
 #include <meshfarm/divide/divided_surface.hpp>
 #include <meshfarm/divide/slab.hpp>
-#include <meshfarm/util/control_groups.hpp>
 #include <meshfarm/util/parallel.hpp>
 
+#include "divide/share_out.hpp"
 #include "divide/shared_vertices.hpp"
+#include "divide/slab_budget.hpp"
 #include "divide/slab_map.hpp"
 #include "divide/topology_sum.hpp"
 
@@ -24,14 +25,8 @@ namespace {
 /// Of the triangles between slabs so many are shown at a time.
 constexpr std::size_t k_between_at_once = 100'000;
 
-std::uint64_t slabs_wanted(std::uint64_t triangles, std::uint64_t memory_bytes) {
-  // With smaller slabs more would lie between them, which is read twice and more.
-  constexpr std::uint64_t k_usual = 2'000'000;
-  constexpr std::uint64_t k_most = 65'536;
-  const std::uint64_t half = std::max<std::uint64_t>(1, memory_bytes / 2);
-  const std::uint64_t least = triangles * k_slab_bytes_per_triangle / half + 1;
-  return std::min(k_most, std::max(least, triangles / k_usual + 1));
-}
+/// Smaller slabs would have more between them, which is read twice and more.
+constexpr std::uint64_t k_usual_slab = 2'000'000;
 
 struct Divided {
   std::uint32_t slabs = 0;
@@ -45,14 +40,12 @@ struct Divided {
 class DividedSurface::Impl {
  public:
   Impl(MeshSource& source, DivideOptions options) : source_(source), options_(std::move(options)) {
-    choose_order();
+    survey();
     welded_ = divide(AtOnePoint::merge);
     if (welded_.merges) as_it_is_ = divide(AtOnePoint::deal);
   }
 
-  const Box& box() const { return box_; }
-  std::uint64_t vertices() const { return vertices_; }
-  std::uint64_t not_finite() const { return not_finite_; }
+  const VertexSurvey& found() const { return survey_; }
   std::uint64_t triangles() const { return triangles_ - welded_.shares->dropped(); }
 
   SurfaceTopology measure() const {
@@ -72,7 +65,7 @@ class DividedSurface::Impl {
     for (std::uint32_t i = 0; i < divided.slabs; ++i) {
       const MeshShare raw = divided.shares->read(i, Weld::off);
       std::vector<SharedVertex> vertices;
-      for (const std::uint32_t v : number_as_they_are(raw).places) {
+      for (const std::uint32_t v : boundary_places(raw.boundary)) {
         vertices.push_back({v, 0, 0, raw.positions[v]});
       }
       shared.add(i, vertices);
@@ -99,80 +92,42 @@ class DividedSurface::Impl {
   }
 
  private:
-  void choose_order() {
+  void survey() {
     OrderProbe probe;
-    PositionType positions{};
-    do {
-      positions = source_.info().positions;
-      probe = {};
-      vertices_ = not_finite_ = 0;
-      source_.scan_vertices([&](std::span<const Vec3> batch) {
-        probe.look_at(batch);
-        vertices_ += batch.size();
-        for (const Vec3& p : batch) not_finite_ += has_position(p) ? 0 : 1;
-      });
-    } while (source_.info().positions != positions);
-    box_ = probe.box();
-    sorting_ = {probe.choose(), Weld::exact};
+    survey_ = survey_vertices(source_, &probe, {});
+    sorting_ = {probe.choose(survey_.box), Weld::exact};
   }
 
   Divided divide(AtOnePoint at_one_point) {
+    const MeshFileInfo& info = source_.info();
+    const std::uint64_t triangles = likely_triangles(info);
+    const SlabBudget budget{options_.memory_bytes, k_slab_bytes_per_triangle};
+    auto map = std::make_unique<SlabMap>(survey_.box, sorting_.order,
+                                         budget.slabs(triangles, triangles / k_usual_slab + 1),
+                                         at_one_point);
     Divided divided;
-    SlabMap map = choose_slabs(at_one_point);
-    divided.slabs = map.divide();
-    divided.merges = map.merges();
-    const MeshFileInfo& info = source_.info();
-    const std::uint64_t all = MeshShares::memory_for(vertices_, info.faces, info.positions);
-    divided.shares = std::make_unique<MeshShares>(MeshShares::Options{
-        options_.folder, divided.slabs, vertices_, info.positions,
-        all <= options_.memory_bytes / 4 ? all : 0, MeshShares::SeamsFor::each_share});
-    share_out(map, *divided.shares);
+    divided.slabs = settle(*map, source_, survey_.vertices, {});
+    divided.merges = map->merges();
+    MeshShares::Options options{.folder = options_.folder,
+                                .shares = divided.slabs,
+                                .vertices = survey_.vertices,
+                                .positions = survey_.positions,
+                                .seams = MeshShares::SeamsFor::each_share,
+                                .triangles = info.faces};
+    const std::uint64_t all = MeshShares::memory_for(options);
+    if (all <= options_.memory_bytes / 4) options.memory_bytes = all;
+    SharedMesh shared = share_out(source_, std::move(map), options, {});
+    divided.shares = std::move(shared.shares);
+    triangles_ = shared.triangles;
     return divided;
-  }
-
-  SlabMap choose_slabs(AtOnePoint at_one_point) {
-    const MeshFileInfo& info = source_.info();
-    const std::uint64_t triangles = std::max(info.faces, info.vertices);
-    SlabMap map(box_, sorting_.order,
-                static_cast<std::uint32_t>(slabs_wanted(triangles, options_.memory_bytes)),
-                at_one_point);
-    do {
-      source_.scan_vertices([&](std::span<const Vec3> batch) { map.count(batch); });
-    } while (map.refine());
-    return map;
-  }
-
-  void share_out(SlabMap& map, MeshShares& shares) {
-    std::vector<std::uint32_t> slabs;
-    std::vector<std::uint32_t> points;
-    source_.scan_vertices([&](std::span<const Vec3> batch) {
-      slabs.clear();
-      points.clear();
-      for (const Vec3& p : batch) {
-        const SlabMap::Target target =
-            has_position(p) ? map.target_of(p) : SlabMap::Target{MeshShares::k_no_share};
-        slabs.push_back(target.slab);
-        if (map.merges()) points.push_back(target.point);
-      }
-      shares.add_vertices(batch, slabs, points);
-    });
-    triangles_ = 0;
-    source_.scan_triangles([&](std::span<const WideTriangle> batch) {
-      shares.add_triangles(batch);
-      triangles_ += batch.size();
-    });
-    shares.finish();
   }
 
   const Divided& as_it_is() const { return as_it_is_ ? *as_it_is_ : welded_; }
 
-  /// As many at once as fit into the memory, going by the average.
+  /// The other half of the memory is for what lies between slabs.
   unsigned threads(std::uint32_t slabs) const {
-    const std::uint64_t slab =
-        k_slab_bytes_per_triangle * triangles_ / std::max<std::uint64_t>(1, slabs);
-    const std::uint64_t fit = options_.memory_bytes / 2 / std::max<std::uint64_t>(1, slab);
-    const unsigned most = options_.threads != 0 ? options_.threads : processors();
-    return static_cast<unsigned>(std::clamp<std::uint64_t>(fit, 1, most));
+    const SlabBudget budget{options_.memory_bytes / 2, k_slab_bytes_per_triangle};
+    return budget.threads(triangles_, slabs, options_.threads);
   }
 
   Topology sum_of(const Divided& divided, Weld weld, std::uint64_t& merged) const {
@@ -204,18 +159,16 @@ class DividedSurface::Impl {
     Topology topology = sum.finish();
     topology.degenerate += degenerate;
     topology.triangles += degenerate;
-    topology.vertices = vertices_ - (weld == Weld::exact ? merged : 0);
+    topology.vertices = survey_.vertices - (weld == Weld::exact ? merged : 0);
     return topology;
   }
 
   MeshSource& source_;
   DivideOptions options_;
-  Box box_;
+  VertexSurvey survey_;
   Sorting sorting_;
   Divided welded_;
   std::optional<Divided> as_it_is_;  // where it is not welded_
-  std::uint64_t vertices_ = 0;
-  std::uint64_t not_finite_ = 0;
   std::uint64_t triangles_ = 0;
 };
 
@@ -224,13 +177,13 @@ DividedSurface::DividedSurface(MeshSource& source, const DivideOptions& options)
 DividedSurface::~DividedSurface() = default;
 DividedSurface::DividedSurface(DividedSurface&&) noexcept = default;
 const Box& DividedSurface::box() const {
-  return impl_->box();
+  return impl_->found().box;
 }
 std::uint64_t DividedSurface::vertices() const {
-  return impl_->vertices();
+  return impl_->found().vertices;
 }
 std::uint64_t DividedSurface::not_finite() const {
-  return impl_->not_finite();
+  return impl_->found().not_finite;
 }
 std::uint64_t DividedSurface::triangles() const {
   return impl_->triangles();

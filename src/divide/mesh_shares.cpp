@@ -19,12 +19,11 @@ constexpr const char* k_changed = "the input has other vertices than before: it 
 
 }  // namespace
 
-std::uint64_t MeshShares::memory_for(std::uint64_t vertices, std::uint64_t triangles,
-                                     PositionType positions, bool appearances,
-                                     const ColumnSet& columns) {
-  return vertices * (sizeof(SharePlace) + 3 * static_cast<std::uint64_t>(positions) +
-                     (appearances ? sizeof(Appearance) : 0)) +
-         triangles * (k_packed_bytes + columns.bytes());
+std::uint64_t MeshShares::memory_for(const Options& options) {
+  return options.vertices *
+             (sizeof(SharePlace) + 3 * static_cast<std::uint64_t>(options.positions) +
+              (options.appearances ? sizeof(Appearance) : 0)) +
+         options.triangles * (k_packed_bytes + options.columns.bytes());
 }
 
 MeshShares::Memory::Memory(const Options& options) {
@@ -144,7 +143,7 @@ void MeshShares::add_triangles(const TriangleView& triangles) {
       if (columns_.uvs) uvs_.put(a.share, triangles.columns.uvs[i]);
     } else {
       put_seam_triangle({a, b, c});
-      boundary_columns_.append(triangles.columns, i);
+      if (seams_for_ == SeamsFor::all) boundary_columns_.append(triangles.columns, i);
     }
   }
   forget_pages(batch.size());

@@ -56,7 +56,7 @@ class MeshShares {
     SeamsFor seams = SeamsFor::all;
     bool appearances = false;     // whether vertices have any
     ColumnSet columns = {};       // of the triangles
-    std::uint64_t triangles = 0;  // about how many there are, if they have columns
+    std::uint64_t triangles = 0;  // about how many there are
   };
   explicit MeshShares(const Options& options);
 
@@ -94,10 +94,8 @@ class MeshShares {
   /// The boundary triangles, in file order and by final numbers, one entry of `numbers` a share.
   SharedTriangles boundary(std::span<const BoundaryNumbers> numbers) const;
 
-  /// The memory that holds all of a usual mesh.
-  static std::uint64_t memory_for(std::uint64_t vertices, std::uint64_t triangles,
-                                  PositionType positions, bool appearances = false,
-                                  const ColumnSet& columns = {});
+  /// The memory that holds all of a usual mesh, whatever options.memory_bytes says.
+  static std::uint64_t memory_for(const Options& options);
 
  private:
   /// How the memory is divided; nothing for the map where it does not fit as a whole.

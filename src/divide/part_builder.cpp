@@ -8,7 +8,7 @@
 
 #include <meshfarm/geometry/weld.hpp>
 
-#include "divide/seam_vertices.hpp"
+#include "divide/weld_share.hpp"
 
 namespace meshfarm {
 namespace {
@@ -53,23 +53,14 @@ std::uint32_t number_vertices(const std::vector<Triangle>& triangles,
 
 }  // namespace
 
-BuiltPart build_part(MeshShare raw, PositionType positions, Weld weld_mode) {
+BuiltPart build_part(MeshShare raw, Weld weld_mode) {
   BuiltPart built;
   std::vector<std::uint32_t> representative;
   std::vector<std::uint32_t> point;  // as it, before any were taken apart
   if (weld_mode == Weld::exact) {
     WeldResult welded = weld(raw.positions);
-    built.coincident_corners = static_cast<std::uint64_t>(
-        std::count_if(raw.triangles.begin(), raw.triangles.end(), [&](const Triangle& t) {
-          const std::uint32_t a = welded.first[t[0]];
-          const std::uint32_t b = welded.first[t[1]];
-          const std::uint32_t c = welded.first[t[2]];
-          return a == b || b == c || c == a;
-        }));
-    built.coincident_vertices = welded.merged;
     if (!raw.apart.empty()) point = welded.first;
-    separate_touching(raw.triangles, raw.boundary, welded);
-    keep_apart(raw.apart, welded.first);
+    static_cast<WeldCounts&>(built) = keep_apart(raw, welded);
     representative = std::move(welded.first);
   } else {
     representative.resize(raw.positions.size());
@@ -79,13 +70,14 @@ BuiltPart build_part(MeshShare raw, PositionType positions, Weld weld_mode) {
   mesh.triangles = std::move(raw.triangles);
   mesh.columns = std::move(raw.columns);
   built.dropped_degenerate = merge_corners(mesh, representative);
-  if (weld_mode == Weld::off) built.coincident_corners = built.dropped_degenerate;
+  // Where nothing was welded only these are known.
+  built.coincident_corners = std::max(built.coincident_corners, built.dropped_degenerate);
 
   built.boundary.places = boundary_places(std::move(raw.boundary));
 
   std::vector<std::uint32_t> number(raw.positions.size(), k_unused);
   Part& part = built.part;
-  part.positions = positions;
+  part.positions = raw.type;
   part.boundary_vertices =
       number_vertices(mesh.triangles, built.boundary.places, representative, number);
   const auto used =

@@ -219,14 +219,6 @@ class TwinStars {
 
 }  // namespace
 
-void keep_apart(std::span<const ApartVertex> apart, std::span<std::uint32_t> first) {
-  std::vector<std::uint32_t> first_of_sheet(apart.size(), k_none);
-  for (const auto& [place, sheet] : apart) {
-    if (first_of_sheet[sheet] == k_none) first_of_sheet[sheet] = place;
-    first[place] = first_of_sheet[sheet];
-  }
-}
-
 std::uint32_t sheet_of(std::uint32_t place, std::span<const ApartVertex> apart) {
   const auto at =
       std::lower_bound(apart.begin(), apart.end(), place,

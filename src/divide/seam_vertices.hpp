@@ -18,9 +18,6 @@ std::vector<ApartVertex> find_apart(const MeshShare& share, std::uint32_t number
                                     std::span<const SeamTriangle> outer,
                                     const std::function<Vec3(SharePlace)>& position_of);
 
-/// Undoes the merges of vertices that stay apart: `first` is that of a WeldResult.
-void keep_apart(std::span<const ApartVertex> apart, std::span<std::uint32_t> first);
-
 inline constexpr std::uint32_t k_no_sheet = UINT32_MAX;
 /// The sheet of a vertex; none for one that is merged with all that lie at its point.
 std::uint32_t sheet_of(std::uint32_t place, std::span<const ApartVertex> apart);

@@ -7,11 +7,11 @@
 #include <utility>
 
 #include <meshfarm/divide/slab.hpp>
-#include <meshfarm/geometry/weld.hpp>
 
 #include "divide/seam_vertices.hpp"
 #include "divide/sort_with_columns.hpp"
 #include "divide/vertex_sort.hpp"
+#include "divide/weld_share.hpp"
 
 namespace meshfarm {
 namespace {
@@ -81,20 +81,8 @@ class SlabSorter {
       }
       welded.first[at(i)] = welded.first[at(i - 1)];
     }
-    if (welded.merged > 0) count_coincident(welded.first);
-    slab_.coincident_vertices = welded.merged;
-    separate_touching(raw_.triangles, raw_.boundary, welded);
-    keep_apart(raw_.apart, welded.first);
+    static_cast<WeldCounts&>(slab_) = keep_apart(raw_, welded);
     return std::move(welded.first);
-  }
-
-  void count_coincident(std::span<const std::uint32_t> first) {
-    for (const Triangle& t : raw_.triangles) {
-      const std::uint32_t a = first[t[0]];
-      const std::uint32_t b = first[t[1]];
-      const std::uint32_t c = first[t[2]];
-      slab_.coincident_corners += a == b || b == c || c == a;
-    }
   }
 
   /// The least of a vertex's triangles, as the positions of its other two corners.

@@ -15,7 +15,6 @@ constexpr double k_as_long = 0.99;
 void OrderProbe::look_at(std::span<const Vec3> batch) {
   for (const Vec3& p : batch) {
     if (!has_position(p)) continue;
-    box_.add(p);
     if (any_) {
       for (int axis = 0; axis < 3; ++axis) {
         const auto a = static_cast<std::size_t>(axis);
@@ -28,8 +27,8 @@ void OrderProbe::look_at(std::span<const Vec3> batch) {
   }
 }
 
-SweepOrder OrderProbe::choose() const {
-  const Vec3 extent = box_.empty() ? Vec3{} : box_.hi - box_.lo;
+SweepOrder OrderProbe::choose(const Box& box) const {
+  const Vec3 extent = box.empty() ? Vec3{} : box.hi - box.lo;
   const double longest = std::max({extent.x, extent.y, extent.z});
   const auto is_good = [&](int axis) { return extent[axis] >= k_as_long * longest; };
   int best = 0;
@@ -124,7 +123,14 @@ void SlabMap::add_point(std::uint32_t bin) {
   bins_[bin].count = 1;
 }
 
-SlabMap::Target SlabMap::target_of(std::uint32_t point) {
+void SlabMap::find_targets(std::span<const Vec3> batch, ShareTargets& targets) {
+  targets.fill(batch, merges(), [&](Vec3 p) {
+    const std::uint32_t target = targets_[find(p).bin];
+    return (target & k_point) == 0 ? ShareTargets::One{target} : target_of(target & ~k_point);
+  });
+}
+
+ShareTargets::One SlabMap::target_of(std::uint32_t point) {
   Point& at = points_[point];
   if (at_one_point_ == AtOnePoint::merge) return {at.slab, point};
   const auto number = static_cast<double>(at.before + at.seen++);

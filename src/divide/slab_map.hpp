@@ -7,10 +7,13 @@
 #include <cmath>
 #include <cstdint>
 #include <span>
+#include <string_view>
 #include <vector>
 
 #include <meshfarm/geometry/mesh.hpp>
 #include <meshfarm/geometry/sweep_order.hpp>
+
+#include "divide/share_map.hpp"
 
 namespace meshfarm {
 
@@ -18,13 +21,11 @@ namespace meshfarm {
 class OrderProbe {
  public:
   void look_at(std::span<const Vec3> batch);
-  const Box& box() const { return box_; }
-  /// Along the longest axis. Of axes as good as equal in length, the one along which the file is in
-  /// order already, if there is one; else the first.
-  SweepOrder choose() const;
+  /// Along the longest axis of the vertices' box. Of axes as good as equal in length, the one along
+  /// which the file is in order already, if there is one; else the first.
+  SweepOrder choose(const Box& box) const;
 
  private:
-  Box box_;
   Vec3 last_;
   bool any_ = false;
   std::array<bool, 3> rises_ = {true, true, true};
@@ -42,27 +43,16 @@ enum class AtOnePoint : std::uint8_t {
 /// counted into bins along the axis. A bin with too many for even slabs is divided into finer ones
 /// between its ends, or, where all are at one coordinate, along the next axis: vertices far out, or
 /// many in one plane, make no slab larger. Memory: 7 MB, and 3 KB for each slab wanted.
-class SlabMap {
+class SlabMap : public ShareMap {
  public:
   SlabMap(const Box& box, const SweepOrder& order, std::uint32_t wanted, AtOnePoint at_one_point);
-  void count(std::span<const Vec3> batch);
-  /// Ends a scan of all vertices. True if bins were divided: all are to be counted once more.
-  bool refine();
-  /// After the last scan: the number of slabs. None is empty, so that there may be fewer than
-  /// wanted.
-  std::uint32_t divide();
-  /// Whether there are vertices that are to be one.
-  bool merges() const { return at_one_point_ == AtOnePoint::merge && !points_.empty(); }
-  static constexpr std::uint32_t k_no_point = UINT32_MAX;
-  struct Target {
-    std::uint32_t slab = 0;
-    std::uint32_t point = k_no_point;  // all vertices of one such number are to be one
-  };
-  /// To be asked once for each vertex, in order.
-  Target target_of(Vec3 p) {
-    const std::uint32_t target = targets_[find(p).bin];
-    return (target & k_point) == 0 ? Target{target} : target_of(target & ~k_point);
-  }
+  std::string_view name() const override { return "slabs"; }
+  void count(std::span<const Vec3> batch) override;
+  bool refine() override;
+  /// No slab is empty, so that there may be fewer than wanted.
+  std::uint32_t divide() override;
+  bool merges() const override { return at_one_point_ == AtOnePoint::merge && !points_.empty(); }
+  void find_targets(std::span<const Vec3> batch, ShareTargets& targets) override;
 
  private:
   /// Bins of equal width between two coordinates.
@@ -119,7 +109,7 @@ class SlabMap {
     return std::min(wanted_ - 1, static_cast<std::uint64_t>(vertices / static_cast<double>(all_) *
                                                             static_cast<double>(wanted_)));
   }
-  Target target_of(std::uint32_t point);
+  ShareTargets::One target_of(std::uint32_t point);
 
   Box box_;
   SweepOrder order_;

@@ -16,27 +16,55 @@
 
 namespace meshfarm {
 
+inline constexpr std::uint64_t k_default_window = 400'000;
+
+/// Where slabs are sorted.
+enum class SortAt : std::uint8_t {
+  here,  // by this process: the stage holds streams
+  farm,  // by the first jobs of a run, on all hosts: the stage holds slabs
+};
+
 struct CutOptions {
-  std::uint32_t parts = 0;         // 0: default_parts() of the input's triangles
-  Weld weld = Weld::exact;         // vertices at the same position become one
-  std::string input_name;          // kept in the manifest, for people
-  unsigned threads = 0;            // 0: one a core; the parts do not depend on it
-  std::uint64_t memory_bytes = 0;  // of the parts that are made at once; 0: no limit
-  std::filesystem::path scratch;   // where per-vertex state goes; empty: see scratch_folder()
+  Scheme scheme = Scheme::cut;
+  std::uint32_t parts = 0;  // or streams; 0: default_parts() of the input's triangles
+  Weld weld = Weld::exact;  // vertices at the same position become one
+  // Of streams alone:
+  SortAt sort = SortAt::here;  // the streams are the same
+  std::uint64_t memory_bytes = std::uint64_t{512} << 20;
+  /// How many triangles a worker's sweep holds at once. A sample of each longer stream is kept as a
+  /// part; from it the cost threshold of the sweep is found.
+  std::uint64_t window_triangles = k_default_window;
+
+  std::string input_name;         // kept in the manifest, for people
+  unsigned threads = 0;           // 0: one a core; no byte of the stage depends on it
+  std::filesystem::path scratch;  // where what does not fit goes; empty: see scratch_folder()
   /// Told what is being done and how far it is (0..1); may be empty.
   std::function<void(std::string_view phase, double done)> progress;
   const std::atomic<bool>* stop = nullptr;
 };
 
-/// Parts of about a million triangles, but at least sixteen of a mesh that is worth cutting.
-std::uint32_t default_parts(std::uint64_t triangles);
+/// Parts of about a million triangles, or streams of 1.2 million, but at least sixteen of a mesh
+/// that is worth dividing.
+std::uint32_t default_parts(Scheme scheme, std::uint64_t triangles);
 
-/// Cuts a mesh into parts and publishes them in the stage: parts, boundary side file, manifest last
-/// (Xiong et al. 2008, 3.1). The parts depend on the input and on options.parts and options.weld
-/// only. No part has more than 1.15 times as many vertices as the mean, however they lie. Memory: a
-/// million cells at most (1 GB while METIS works on them), and one part a thread; per-vertex state
-/// lives in mapped scratch files. Degenerate triangles are dropped and counted. Throws DataError,
-/// IoError; IncompleteError when stopped.
+/// Divides a mesh and publishes in the stage what it becomes: parts, streams or slabs, the boundary
+/// side file, and the manifest last. Degenerate triangles are dropped and counted. The input is
+/// scanned in order and never held: vertices and triangles go to shares of it in scratch files,
+/// through bounded buffers, and every share is finished in memory. Throws DataError, IoError;
+/// IncompleteError when stopped.
+///
+/// Scheme::cut makes compact parts (Xiong et al. 2008, 3.1). They depend on the input and on
+/// options.parts and options.weld only. None has more than 1.15 times as many vertices as the mean,
+/// however they lie. Memory: a million cells at most (1 GB while METIS works on them), and one part
+/// a thread.
+///
+/// Scheme::stream makes slabs along the longest axis of the bounding box, of about equal size, and
+/// sorts them to streams (Xiong et al. 2008, 4.1). If the input is already in order along one of
+/// several equally long axes, that axis is taken, and the input is not sorted again. The streams
+/// depend on the input and on parts, weld, memory_bytes and window_triangles only; there are more
+/// than asked for where a slab would not fit. With SortAt::farm the slabs are published as they
+/// come, and boundary and manifest already fit the streams that jobs will make. Anonymous memory
+/// stays below memory_bytes, of which 256 MB is the least that is useful.
 Manifest cut_mesh(MeshSource& source, const Stage& stage, const CutOptions& options);
 
 }  // namespace meshfarm

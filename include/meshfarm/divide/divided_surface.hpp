@@ -27,7 +27,7 @@ struct SurfaceTopology {
 };
 
 /// A mesh of any size, to be looked at in bounded memory: divided into slabs as the streams of a
-/// run are (generate_streams.hpp), in scratch files where it does not fit. Anonymous memory stays
+/// run are (cut.hpp), in scratch files where it does not fit. Anonymous memory stays
 /// below memory_bytes, of which 256 MB is the least that is useful, whatever lies between slabs: a
 /// surface has few triangles there, a foam has many.
 class DividedSurface {

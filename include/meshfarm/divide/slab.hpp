@@ -4,6 +4,7 @@
 
 #include <cstdint>
 
+#include <meshfarm/divide/weld_counts.hpp>
 #include <meshfarm/geometry/sweep_order.hpp>
 #include <meshfarm/io/part_file.hpp>
 #include <meshfarm/io/slab_file.hpp>
@@ -21,13 +22,10 @@ constexpr std::uint64_t slab_bytes_per_triangle(bool has_appearances, const Colu
 }
 
 /// A slab in sweep order.
-struct SortedSlab {
+struct SortedSlab : WeldCounts {
   StreamMesh stream;
   std::uint32_t boundary_vertices = 0;
-  std::uint64_t coincident_vertices = 0;  // at the place of an earlier one, merged or not
-  std::uint64_t merged_vertices = 0;      // those of them that were
-  std::uint64_t dropped_degenerate = 0;
-  std::uint64_t coincident_corners = 0;  // triangles with two corners at one place
+  std::uint64_t merged_vertices = 0;  // of the coincident ones, those that became one
 };
 
 /// Sorts vertices, welds those that coincide (they are neighbours then), drops degenerate triangles

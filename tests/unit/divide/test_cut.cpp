@@ -377,11 +377,11 @@ TEST_CASE("a stop ends the cut and publishes no manifest") {
 }
 
 TEST_CASE("the number of parts depends on the size alone") {
-  CHECK(default_parts(0) == 1);
-  CHECK(default_parts(99'999) == 1);
-  CHECK(default_parts(200'000) == 4);
-  CHECK(default_parts(871'414) == 16);
-  CHECK(default_parts(10'000'000) == 16);
-  CHECK(default_parts(28'000'000) == 28);
-  CHECK(default_parts(std::uint64_t{1} << 60) == 1'000'000);
+  CHECK(default_parts(Scheme::cut, 0) == 1);
+  CHECK(default_parts(Scheme::cut, 99'999) == 1);
+  CHECK(default_parts(Scheme::cut, 200'000) == 4);
+  CHECK(default_parts(Scheme::cut, 871'414) == 16);
+  CHECK(default_parts(Scheme::cut, 10'000'000) == 16);
+  CHECK(default_parts(Scheme::cut, 28'000'000) == 28);
+  CHECK(default_parts(Scheme::cut, std::uint64_t{1} << 60) == 1'000'000);
 }

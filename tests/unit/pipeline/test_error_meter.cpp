@@ -6,7 +6,6 @@
 #include <doctest/doctest.h>
 
 #include <meshfarm/divide/cut.hpp>
-#include <meshfarm/divide/generate_streams.hpp>
 
 #include "pipeline/error_meter.hpp"
 #include "support/memory_source.hpp"
@@ -20,7 +19,7 @@ namespace {
 Manifest divide(const Mesh& mesh, Scheme scheme, const Stage& stage) {
   test::MemorySource source(mesh);
   if (scheme == Scheme::cut) return cut_mesh(source, stage, {.parts = 5});
-  return generate_streams(source, stage, {.streams = 5, .window_triangles = 4'000});
+  return cut_mesh(source, stage, {.scheme = Scheme::stream, .parts = 5, .window_triangles = 4'000});
 }
 
 /// Measures a result against an input that is divided by the scheme.

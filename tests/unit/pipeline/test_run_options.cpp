@@ -7,7 +7,6 @@
 #include <doctest/doctest.h>
 
 #include <meshfarm/divide/cut.hpp>
-#include <meshfarm/divide/generate_streams.hpp>
 #include <meshfarm/geometry/generate.hpp>
 #include <meshfarm/pipeline/run_options.hpp>
 
@@ -58,8 +57,8 @@ TEST_CASE("one input is told and aimed at alike, however it is divided and in wh
       test::MemorySource source(mesh);
       const Manifest cut =
           cut_mesh(source, Stage::create(folder / ("cut-" + name)), {.parts = parts});
-      const Manifest streams =
-          generate_streams(source, Stage::create(folder / ("streams-" + name)), {.streams = parts});
+      const Manifest streams = cut_mesh(source, Stage::create(folder / ("streams-" + name)),
+                                        {.scheme = Scheme::stream, .parts = parts});
       if (!told) told = told_of(cut);
       CHECK(told_of(cut) == *told);
       CHECK(told_of(streams) == *told);

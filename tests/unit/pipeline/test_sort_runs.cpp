@@ -9,7 +9,7 @@
 
 #include <doctest/doctest.h>
 
-#include <meshfarm/divide/generate_streams.hpp>
+#include <meshfarm/divide/cut.hpp>
 #include <meshfarm/io/slab_file.hpp>
 #include <meshfarm/pipeline/assemble.hpp>
 #include <meshfarm/pipeline/budget.hpp>
@@ -55,12 +55,12 @@ struct Staged {
   Manifest manifest;
 };
 
-Staged generate(const Mesh& mesh, StreamOptions options, SortAt sort,
+Staged generate(const Mesh& mesh, CutOptions options, SortAt sort,
                 const std::filesystem::path& folder) {
   test::MemorySource source(mesh);
   Stage stage = Stage::create(folder);
   options.sort = sort;
-  Manifest manifest = generate_streams(source, stage, options);
+  Manifest manifest = cut_mesh(source, stage, options);
   // As a run finds it.
   return {stage, decode_manifest(stage.read(ManifestName{}), "manifest")};
 }
@@ -96,7 +96,7 @@ void check_same(const std::vector<PartEntry>& a, const std::vector<PartEntry>& b
   }
 }
 
-const StreamOptions k_swept{.streams = 5, .window_triangles = 1'000};
+const CutOptions k_swept{.scheme = Scheme::stream, .parts = 5, .window_triangles = 1'000};
 
 }  // namespace
 
@@ -104,24 +104,25 @@ TEST_CASE("the farm sorts slabs to the bytes that the cut makes by itself") {
   struct Case {
     const char* name;
     Mesh mesh;
-    StreamOptions options;
+    CutOptions options;
   };
-  StreamOptions apart = k_swept;
+  CutOptions apart = k_swept;
   apart.weld = Weld::off;
-  StreamOptions some_long = k_swept;
+  CutOptions some_long = k_swept;
   some_long.window_triangles = 2'830;
   const Mesh soup = shuffled_soup();
-  const std::vector<Case> cases = {{"in order", test::torus(300, 60), k_swept},
-                                   {"soup", soup, k_swept},
-                                   {"soup, not welded", soup, apart},
-                                   {"some long", soup, some_long},
-                                   {"touching", touching(), k_swept},
-                                   {"touching, not welded", touching(), apart},
-                                   {"samples smaller than their streams",
-                                    test::grid(700, 300),
-                                    {.streams = 2, .window_triangles = 100'000}},
-                                   {"tetrahedron", test::tetrahedron(), k_swept},
-                                   {"nothing", {}, k_swept}};
+  const std::vector<Case> cases = {
+      {"in order", test::torus(300, 60), k_swept},
+      {"soup", soup, k_swept},
+      {"soup, not welded", soup, apart},
+      {"some long", soup, some_long},
+      {"touching", touching(), k_swept},
+      {"touching, not welded", touching(), apart},
+      {"samples smaller than their streams",
+       test::grid(700, 300),
+       {.scheme = Scheme::stream, .parts = 2, .window_triangles = 100'000}},
+      {"tetrahedron", test::tetrahedron(), k_swept},
+      {"nothing", {}, k_swept}};
   for (const Case& each : cases) {
     CAPTURE(each.name);
     const test::TempFolder folder;
@@ -177,7 +178,8 @@ TEST_CASE("a run that sorts first ends as one that finds streams, and estimates 
         static_cast<std::ptrdiff_t>(kinds[1].size() - kinds[0].size()));
 
   // Climbing a whole stream takes more than sorting it: who goes by the first round would be wrong.
-  const Staged whole = generate(mesh, {.streams = 1}, SortAt::farm, folder / "whole");
+  const Staged whole =
+      generate(mesh, {.scheme = Scheme::stream, .parts = 1}, SortAt::farm, folder / "whole");
   CHECK(memory_wanted(whole.manifest, run) > make_job_source(whole.manifest, run)({})[0].memory);
 }
 

@@ -8,7 +8,7 @@
 
 #include <doctest/doctest.h>
 
-#include <meshfarm/divide/generate_streams.hpp>
+#include <meshfarm/divide/cut.hpp>
 #include <meshfarm/geometry/distance.hpp>
 #include <meshfarm/geometry/topology.hpp>
 #include <meshfarm/io/mesh_source.hpp>
@@ -43,11 +43,11 @@ Mesh half_rough_torus() {
   return mesh;
 }
 
-Made simplify(const Mesh& mesh, const StreamOptions& options, const RunOptions& run,
+Made simplify(const Mesh& mesh, const CutOptions& options, const RunOptions& run,
               const std::filesystem::path& folder) {
   test::MemorySource source(mesh);
   const Stage stage = Stage::create(folder);
-  const Manifest manifest = generate_streams(source, stage, options);
+  const Manifest manifest = cut_mesh(source, stage, options);
   const JobSource jobs_of = make_job_source(manifest, run);
   const JobContext context{stage, 1, 7, [](std::uint64_t) { return true; }};
   Made made;
@@ -69,7 +69,7 @@ double rms(const Mesh& a, const Mesh& b) {
                   measure_distance(b, a, {.samples = 50'000}).rms);
 }
 
-const StreamOptions k_swept{.streams = 3, .window_triangles = 16'000};
+const CutOptions k_swept{.scheme = Scheme::stream, .parts = 3, .window_triangles = 16'000};
 
 }  // namespace
 
@@ -77,8 +77,9 @@ TEST_CASE("swept streams, climbed streams and the uncut mesh end as good, closed
   const Mesh mesh = half_rough_torus();
   const RunOptions run{.triangles = 3000};
   const test::TempFolder folder;
-  const Made uncut = simplify(mesh, {.streams = 1}, run, folder / "uncut");
-  const Made climbed = simplify(mesh, {.streams = 3}, run, folder / "climbed");
+  const Made uncut = simplify(mesh, {.scheme = Scheme::stream, .parts = 1}, run, folder / "uncut");
+  const Made climbed =
+      simplify(mesh, {.scheme = Scheme::stream, .parts = 3}, run, folder / "climbed");
   const Made swept = simplify(mesh, k_swept, run, folder / "swept");
   CHECK(climbed.kinds == std::vector<std::string>(3, "simplify"));
   CHECK(std::count(swept.kinds.begin(), swept.kinds.end(), k_sweep_kind) == 3);
@@ -99,7 +100,7 @@ TEST_CASE("swept streams, climbed streams and the uncut mesh end as good, closed
 TEST_CASE("composed as a tree, the result is as good, closed, and exact") {
   const Mesh mesh = half_rough_torus();
   const test::TempFolder folder;
-  const StreamOptions nine{.streams = 9, .window_triangles = 16'000};
+  const CutOptions nine{.scheme = Scheme::stream, .parts = 9, .window_triangles = 16'000};
   RunOptions run{.triangles = 3000, .composition = Composition::sink};
   const Made by_sink = simplify(mesh, nine, run, folder / "sink");
   run.composition = Composition::automatic;  // too small to be worth it
@@ -125,8 +126,9 @@ TEST_CASE("composed as a tree, the result is as good, closed, and exact") {
 TEST_CASE("no more streams are composed than a window holds") {
   const Mesh mesh = half_rough_torus();
   const test::TempFolder folder;
-  const Made made = simplify(mesh, {.streams = 4, .window_triangles = 16'000},
-                             {.ratio = 0.8, .composition = Composition::tree}, folder.path());
+  const Made made =
+      simplify(mesh, {.scheme = Scheme::stream, .parts = 4, .window_triangles = 16'000},
+               {.ratio = 0.8, .composition = Composition::tree}, folder.path());
   CHECK(std::count(made.kinds.begin(), made.kinds.end(), k_compose_kind) == 0);
   CHECK(made.mesh.triangles.size() == 81'920);
 }
@@ -149,8 +151,8 @@ TEST_CASE("a flat stream is not swept away when detail elsewhere sets the level"
     if (p.x > 300) p.z = std::sin(p.x * 1.7) * std::cos(p.y * 2.3);
   }
   const test::TempFolder folder;
-  const Made made =
-      simplify(mesh, {.streams = 4, .window_triangles = 5000}, {.triangles = 4000}, folder.path());
+  const Made made = simplify(mesh, {.scheme = Scheme::stream, .parts = 4, .window_triangles = 5000},
+                             {.triangles = 4000}, folder.path());
   CHECK(made.mesh.triangles.size() == 4000);
   CHECK(measure_topology(made.mesh).euler == 1);
   CHECK(rms(mesh, made.mesh) < 0.4);
@@ -183,7 +185,7 @@ TEST_CASE(
   const test::TempFolder folder;
   test::MemorySource source(half_rough_torus());
   const Stage stage = Stage::create(folder.path());
-  const Manifest manifest = generate_streams(source, stage, k_swept);
+  const Manifest manifest = cut_mesh(source, stage, k_swept);
   const JobContext context{stage, 1, 7, [](std::uint64_t) { return true; }};
   SweepParameters parameters;
   parameters.max_cost = 1e-9;
@@ -206,7 +208,7 @@ TEST_CASE("a compose job that makes no sense is refused, one whose side file is 
   const test::TempFolder folder;
   test::MemorySource source(half_rough_torus());
   const Stage stage = Stage::create(folder.path());
-  const Manifest manifest = generate_streams(source, stage, {.streams = 3});
+  const Manifest manifest = cut_mesh(source, stage, {.scheme = Scheme::stream, .parts = 3});
   const JobContext context{stage, 1, 7, [](std::uint64_t) { return true; }};
   ComposeParameters parameters{.all_streams = 3, .inputs = {{}, {}}, .boundary = manifest.boundary};
   const std::string bytes = encode_parameters(parameters);

@@ -6,7 +6,7 @@
 
 #include <doctest/doctest.h>
 
-#include <meshfarm/divide/generate_streams.hpp>
+#include <meshfarm/divide/cut.hpp>
 #include <meshfarm/divide/slab.hpp>
 #include <meshfarm/geometry/topology.hpp>
 #include <meshfarm/io/boundary_file.hpp>
@@ -50,10 +50,11 @@ struct Generated {
   std::vector<BoundaryTriangle> boundary;
 };
 
-Generated generate(Mesh mesh, const StreamOptions& options, const std::filesystem::path& folder) {
+Generated generate(Mesh mesh, CutOptions options, const std::filesystem::path& folder) {
+  options.scheme = Scheme::stream;
   test::MemorySource source(std::move(mesh));
   const Stage stage = Stage::create(folder);
-  Generated made{generate_streams(source, stage, options), {}, {}, {}};
+  Generated made{cut_mesh(source, stage, options), {}, {}, {}};
   for (const PartEntry& entry : made.manifest.parts) {
     made.files.push_back(stage.read(entry.file));
     StreamReader reader(fill_from(made.files.back(), "stream"), "stream");
@@ -100,8 +101,8 @@ TEST_CASE("columns go with their triangles, whatever their order, sorted here or
   std::reverse(turned.columns.labels.begin(), turned.columns.labels.end());
   std::reverse(turned.columns.uvs.begin(), turned.columns.uvs.end());
   const test::TempFolder folder;
-  const Generated made = generate(mesh, {.streams = 5}, folder / "made");
-  const Generated other = generate(turned, {.streams = 5}, folder / "other");
+  const Generated made = generate(mesh, {.parts = 5}, folder / "made");
+  const Generated other = generate(turned, {.parts = 5}, folder / "other");
   CHECK(made.files == other.files);
   const Stage stage = Stage::open(folder / "made");
   TriangleColumns columns;
@@ -126,7 +127,8 @@ TEST_CASE("columns go with their triangles, whatever their order, sorted here or
   }
   test::MemorySource source(mesh);
   const Stage unsorted = Stage::create(folder / "slabs");
-  const Manifest slabs = generate_streams(source, unsorted, {.streams = 5, .sort = SortAt::farm});
+  const Manifest slabs =
+      cut_mesh(source, unsorted, {.scheme = Scheme::stream, .parts = 5, .sort = SortAt::farm});
   for (std::size_t i = 0; i < slabs.parts.size(); ++i) {
     MeshShare slab = decode_slab(unsorted.read(slabs.parts[i].file), "slab");
     CHECK(encode_stream(sort_slab(std::move(slab), *slabs.sorting).stream) == made.files[i]);
@@ -136,7 +138,7 @@ TEST_CASE("columns go with their triangles, whatever their order, sorted here or
 TEST_CASE("streams and boundary together are the input") {
   const Mesh mesh = test::torus(90, 40);
   const test::TempFolder folder;
-  const Generated made = generate(mesh, {.streams = 5}, folder.path());
+  const Generated made = generate(mesh, {.parts = 5}, folder.path());
   CHECK(made.manifest.scheme == Scheme::stream);
   CHECK(made.streams.size() == 5);
   CHECK(made.manifest.triangles() == mesh.triangles.size());
@@ -148,9 +150,9 @@ TEST_CASE(
     "triangles with a position that is not finite go and are counted, all else is as without") {
   const Mesh mesh = test::torus(90, 40);
   const test::TempFolder folder;
-  const Generated clean = generate(mesh, {.streams = 5}, folder / "clean");
+  const Generated clean = generate(mesh, {.parts = 5}, folder / "clean");
   const Generated made =
-      generate(test::with_lost_vertices(mesh, 7), {.streams = 5}, folder / "spoilt");
+      generate(test::with_lost_vertices(mesh, 7), {.parts = 5}, folder / "spoilt");
   CHECK(made.manifest.dropped_not_finite == 7);
   CHECK(made.manifest.input_triangles == mesh.triangles.size() + 7);
   CHECK(made.files == clean.files);
@@ -158,14 +160,14 @@ TEST_CASE(
 
   Mesh lost = mesh;
   for (Vec3& p : lost.positions) p = k_no_position;
-  CHECK(generate(lost, {.streams = 4}, folder / "lost").manifest.triangles() == 0);
+  CHECK(generate(lost, {.parts = 4}, folder / "lost").manifest.triangles() == 0);
 }
 
 TEST_CASE("streams are slabs along the longest axis, of about equal size") {
   Mesh mesh = test::torus(200, 60);
   for (Vec3& p : mesh.positions) p.y *= 3;
   const test::TempFolder folder;
-  const Generated made = generate(mesh, {.streams = 6}, folder.path());
+  const Generated made = generate(mesh, {.parts = 6}, folder.path());
   REQUIRE(made.streams.size() == 6);
   double highest = -HUGE_VAL;
   const auto vertices = static_cast<double>(mesh.positions.size());
@@ -184,7 +186,7 @@ TEST_CASE("streams are slabs along the longest axis, of about equal size") {
 
 TEST_CASE("slabs come out even with vertices far out, in many sizes, or in one plane") {
   const auto check_even = [](const Mesh& mesh, const std::filesystem::path& folder) {
-    const Generated made = generate(mesh, {.streams = 28, .threads = 1}, folder / "1");
+    const Generated made = generate(mesh, {.parts = 28, .threads = 1}, folder / "1");
     REQUIRE(made.streams.size() == 28);
     std::uint64_t most = 0;
     for (const PartEntry& entry : made.manifest.parts) most = std::max(most, entry.vertices);
@@ -192,7 +194,7 @@ TEST_CASE("slabs come out even with vertices far out, in many sizes, or in one p
     CHECK(triangles_of(made) == triangles_of(mesh));
     for (const unsigned threads : {2U, 5U}) {
       const Generated other =
-          generate(test::shuffled(mesh, threads), {.streams = 28, .threads = threads},
+          generate(test::shuffled(mesh, threads), {.parts = 28, .threads = threads},
                    folder / std::to_string(threads));
       CHECK(made.files == other.files);
       CHECK(made.boundary == other.boundary);
@@ -223,7 +225,7 @@ TEST_CASE("slabs come out even with many vertices at one point, welded or not") 
   const test::TempFolder folder;
   for (const Weld weld : {Weld::exact, Weld::off}) {
     const std::filesystem::path here = folder / (weld == Weld::exact ? "welded" : "apart");
-    const Generated made = generate(mesh, {.streams = 28, .weld = weld, .threads = 1}, here / "1");
+    const Generated made = generate(mesh, {.parts = 28, .weld = weld, .threads = 1}, here / "1");
     REQUIRE(made.streams.size() == 28);
     std::uint64_t most = 0;
     std::uint64_t all = 0;
@@ -236,7 +238,7 @@ TEST_CASE("slabs come out even with many vertices at one point, welded or not") 
     CHECK(made.manifest.coincident_vertices == (weld == Weld::off ? 0 : k_crowd));
     for (const unsigned threads : {2U, 5U}) {
       const Mesh other = weld == Weld::exact ? test::shuffled(mesh, threads) : mesh;
-      const Generated again = generate(other, {.streams = 28, .weld = weld, .threads = threads},
+      const Generated again = generate(other, {.parts = 28, .weld = weld, .threads = threads},
                                        here / std::to_string(threads));
       CHECK(made.files == again.files);
       CHECK(made.boundary == again.boundary);
@@ -247,7 +249,7 @@ TEST_CASE("slabs come out even with many vertices at one point, welded or not") 
 TEST_CASE("a stream's vertices come in order, and triangles by their smallest vertex") {
   const test::TempFolder folder;
   const Generated made =
-      generate(test::shuffled(test::torus(80, 30), 3), {.streams = 1}, folder.path());
+      generate(test::shuffled(test::torus(80, 30), 3), {.parts = 1}, folder.path());
   StreamReader reader(fill_from(made.files[0], "stream"), "stream");
   StreamBlock block;
   double last = -HUGE_VAL;
@@ -268,11 +270,11 @@ TEST_CASE("a stream's vertices come in order, and triangles by their smallest ve
 TEST_CASE("the order of the input and the number of threads do not matter") {
   const Mesh mesh = test::torus(70, 30);
   const test::TempFolder folder;
-  const Generated first = generate(mesh, {.streams = 4, .threads = 1}, folder / "a");
+  const Generated first = generate(mesh, {.parts = 4, .threads = 1}, folder / "a");
   const Generated second =
-      generate(test::shuffled(mesh, 1), {.streams = 4, .threads = 3}, folder / "b");
+      generate(test::shuffled(mesh, 1), {.parts = 4, .threads = 3}, folder / "b");
   const Generated third =
-      generate(test::shuffled(mesh, 2), {.streams = 4, .threads = 2}, folder / "c");
+      generate(test::shuffled(mesh, 2), {.parts = 4, .threads = 2}, folder / "c");
   CHECK(first.files == second.files);
   CHECK(first.files == third.files);
   CHECK(first.boundary == second.boundary);
@@ -289,7 +291,7 @@ TEST_CASE("coincident vertices are welded, degenerate and duplicate triangles dr
   }
   soup.triangles.push_back({0, 0, 1});
   const test::TempFolder folder;
-  const Generated made = generate(soup, {.streams = 3}, folder / "welded");
+  const Generated made = generate(soup, {.parts = 3}, folder / "welded");
   CHECK(made.manifest.coincident_vertices == soup.positions.size() - mesh.positions.size());
   CHECK(made.manifest.dropped_degenerate == 1);
   CHECK(triangles_of(made) == triangles_of(mesh));
@@ -297,7 +299,7 @@ TEST_CASE("coincident vertices are welded, degenerate and duplicate triangles dr
   for (const PartEntry& entry : made.manifest.parts) vertices += entry.vertices;
   CHECK(vertices == mesh.positions.size());
 
-  const Generated apart = generate(soup, {.streams = 3, .weld = Weld::off}, folder / "apart");
+  const Generated apart = generate(soup, {.parts = 3, .weld = Weld::off}, folder / "apart");
   CHECK(apart.manifest.coincident_vertices == 0);
   CHECK(apart.manifest.boundary_triangles < made.manifest.boundary_triangles * 2);
 }
@@ -306,10 +308,11 @@ TEST_CASE(
     "slabs that are not sorted keep the order of the input, and the boundary knows its vertices") {
   const Mesh mesh = test::torus(60, 24);
   const test::TempFolder folder;
-  const Generated sorted = generate(mesh, {.streams = 3}, folder / "sorted");
+  const Generated sorted = generate(mesh, {.parts = 3}, folder / "sorted");
   test::MemorySource source(mesh);
   const Stage stage = Stage::create(folder / "slabs");
-  const Manifest slabs = generate_streams(source, stage, {.streams = 3, .sort = SortAt::farm});
+  const Manifest slabs =
+      cut_mesh(source, stage, {.scheme = Scheme::stream, .parts = 3, .sort = SortAt::farm});
   REQUIRE(slabs.sorting.has_value());
   CHECK(slabs.samples.empty());
   CHECK(slabs.triangles() == mesh.triangles.size());
@@ -336,7 +339,7 @@ TEST_CASE("surfaces that touch are not welded together") {
   const Mesh octahedron = test::octahedron();
   const Mesh mesh = test::touching_twice(octahedron, octahedron.positions[0]);
   const test::TempFolder folder;
-  const Generated made = generate(mesh, {.streams = 1}, folder / "touching");
+  const Generated made = generate(mesh, {.parts = 1}, folder / "touching");
   CHECK(made.manifest.coincident_vertices == 1);
   CHECK(made.manifest.parts[0].vertices == 12);
 }
@@ -344,7 +347,7 @@ TEST_CASE("surfaces that touch are not welded together") {
 TEST_CASE("how many triangles have two corners at one place does not depend on the seams") {
   const test::TempFolder folder;
   for (const std::uint32_t streams : {1U, 2U, 5U}) {
-    const Generated made = generate(test::torus_with_neck(40, 20), {.streams = streams},
+    const Generated made = generate(test::torus_with_neck(40, 20), {.parts = streams},
                                     folder / std::to_string(streams));
     CHECK(made.manifest.coincident_corners == 40);
   }
@@ -358,11 +361,11 @@ TEST_CASE("where surfaces touch the order of the input does not matter either") 
     Mesh mesh = test::touching_twice(octahedron, point);
     test::append(mesh, test::torus(12, 8));
     const test::TempFolder folder;
-    const Generated first = generate(mesh, {.streams = 1}, folder / "first");
+    const Generated first = generate(mesh, {.parts = 1}, folder / "first");
     for (unsigned seed = 1; seed < 20; ++seed) {
       CAPTURE(seed);
       const Generated other =
-          generate(test::shuffled(mesh, seed), {.streams = 1}, folder / std::to_string(seed));
+          generate(test::shuffled(mesh, seed), {.parts = 1}, folder / std::to_string(seed));
       CHECK(first.files == other.files);
     }
   }
@@ -382,7 +385,7 @@ TEST_CASE("where surfaces touch at seams it is decided as if there were none") {
         CAPTURE(streams);
         CAPTURE(seed);
         const Generated made =
-            generate(seed == 0 ? mesh : test::shuffled(mesh, seed), {.streams = streams},
+            generate(seed == 0 ? mesh : test::shuffled(mesh, seed), {.parts = streams},
                      folder / std::to_string(8 * streams + seed));
         const Topology got = measure_topology(test::joined(made.streams, made.boundary));
         CHECK(got.used_vertices == whole.used_vertices);
@@ -404,10 +407,11 @@ TEST_CASE("where surfaces touch at seams it is decided as if there were none") {
 TEST_CASE("slabs tell what stays apart at their seams to whoever sorts them") {
   for (const Mesh& mesh : {test::touching_row(40, true), test::torus_with_necks(60, 5)}) {
     const test::TempFolder folder;
-    const Generated here = generate(mesh, {.streams = 16}, folder / "here");
+    const Generated here = generate(mesh, {.parts = 16}, folder / "here");
     test::MemorySource source(test::shuffled(mesh, 1));
     const Stage stage = Stage::create(folder / "slabs");
-    const Manifest slabs = generate_streams(source, stage, {.streams = 16, .sort = SortAt::farm});
+    const Manifest slabs =
+        cut_mesh(source, stage, {.scheme = Scheme::stream, .parts = 16, .sort = SortAt::farm});
     bool some_stay_apart = false;
     for (std::size_t s = 0; s < slabs.parts.size(); ++s) {
       MeshShare slab = decode_slab(stage.read(slabs.parts[s].file), "slab");
@@ -424,7 +428,7 @@ TEST_CASE("slabs tell what stays apart at their seams to whoever sorts them") {
 TEST_CASE("long streams get a sample: a piece of them with its edge locked") {
   const Mesh mesh = test::grid(700, 300);
   const test::TempFolder folder;
-  const Generated made = generate(mesh, {.streams = 2, .window_triangles = 100'000}, folder.path());
+  const Generated made = generate(mesh, {.parts = 2, .window_triangles = 100'000}, folder.path());
   const Stage stage = Stage::open(folder.path());
   REQUIRE(made.manifest.samples.size() == 2);
   for (std::size_t s = 0; s < 2; ++s) {
@@ -445,13 +449,13 @@ TEST_CASE("long streams get a sample: a piece of them with its edge locked") {
       if (p.y == box.lo.y && p.y > 0) REQUIRE(v < part.boundary_vertices);
     }
   }
-  CHECK(generate(mesh, {.streams = 2}, folder / "short").manifest.samples[0].file.name.empty());
+  CHECK(generate(mesh, {.parts = 2}, folder / "short").manifest.samples[0].file.name.empty());
 }
 
 TEST_CASE("there are more streams than asked for if one would not fit into the memory") {
   const test::TempFolder folder;
   const Generated made = generate(
-      test::torus(300, 100), {.streams = 2, .memory_bytes = std::uint64_t{1} << 20}, folder.path());
+      test::torus(300, 100), {.parts = 2, .memory_bytes = std::uint64_t{1} << 20}, folder.path());
   CHECK(made.streams.size() >= 8);
   CHECK(made.manifest.triangles() == 60'000);
 }
@@ -459,13 +463,13 @@ TEST_CASE("there are more streams than asked for if one would not fit into the m
 TEST_CASE("meshes of almost nothing, and of one layer") {
   const test::TempFolder folder;
   CHECK(generate({}, {}, folder / "none").streams.empty());
-  CHECK(generate(test::tetrahedron(), {.streams = 9}, folder / "four").manifest.triangles() == 4);
+  CHECK(generate(test::tetrahedron(), {.parts = 9}, folder / "four").manifest.triangles() == 4);
   Mesh wall = test::grid(30, 30);
   for (Vec3& p : wall.positions) p.x = p.y = 0;
-  CHECK(generate(wall, {.streams = 4}, folder / "point").streams.size() == 1);
-  CHECK(default_streams(0) == 1);
-  CHECK(default_streams(28'065'032) == 24);
-  CHECK(default_streams(134'184'962) == 112);
+  CHECK(generate(wall, {.parts = 4}, folder / "point").streams.size() == 1);
+  CHECK(default_parts(Scheme::stream, 0) == 1);
+  CHECK(default_parts(Scheme::stream, 28'065'032) == 24);
+  CHECK(default_parts(Scheme::stream, 134'184'962) == 112);
 }
 
 TEST_CASE("a stop publishes no manifest") {
@@ -473,7 +477,8 @@ TEST_CASE("a stop publishes no manifest") {
   const std::atomic<bool> stop = true;
   test::MemorySource source(test::torus(30, 20));
   const Stage stage = Stage::create(folder.path());
-  CHECK_THROWS_AS(generate_streams(source, stage, {.stop = &stop}), IncompleteError);
+  CHECK_THROWS_AS(cut_mesh(source, stage, {.scheme = Scheme::stream, .stop = &stop}),
+                  IncompleteError);
   CHECK_FALSE(stage.has_manifest());
 }
 
@@ -481,7 +486,9 @@ TEST_CASE("of axes that are equally long the one is swept along which the file i
   const auto order_of = [](const std::vector<Vec3>& positions) {
     OrderProbe probe;
     probe.look_at(positions);
-    return probe.choose();
+    Box box;
+    for (const Vec3& p : positions) box.add(p);
+    return probe.choose(box);
   };
   std::vector<Vec3> rows;  // y falls from row to row
   for (int y = 0; y < 10; ++y) {

@@ -1,0 +1,50 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#include "divide/cell_map.hpp"
+
+#include <algorithm>
+
+#include "divide/cell_graph.hpp"
+
+namespace meshfarm {
+namespace {
+
+/// Parts of 200 to 1000 cells each: fine enough for even sizes and smooth seams.
+unsigned grid_bits(std::uint32_t parts) {
+  if (parts == 1) return 0;
+  unsigned bits = 4;
+  while (bits < 12 && (std::uint64_t{1} << (2 * bits)) < std::uint64_t{512} * parts) ++bits;
+  return bits;
+}
+
+}  // namespace
+
+CellMap::CellMap(const Box& box, const CellMapOptions& options)
+    : options_(options),
+      cells_(box,
+             {.bits = grid_bits(options.parts), .parts = options.parts, .weld = options.weld}) {}
+
+void CellMap::count(std::span<const Vec3> batch) {
+  for (const Vec3& p : batch) {
+    if (has_position(p)) cells_.add(p);
+  }
+}
+
+std::uint32_t CellMap::divide() {
+  const std::span<const Cell> cells = cells_.cells();
+  merges_ = std::any_of(cells.begin(), cells.end(), [](const Cell& cell) { return cell.is_one; });
+  part_of_cell_ = partition_cells(cells, {.parts = options_.parts, .threads = options_.threads});
+  const auto last = std::max_element(part_of_cell_.begin(), part_of_cell_.end());
+  return last == part_of_cell_.end() ? 0 : *last + 1;
+}
+
+void CellMap::find_targets(std::span<const Vec3> batch, ShareTargets& targets) {
+  const std::span<const Cell> cells = cells_.cells();
+  targets.fill(batch, merges_, [&](Vec3 p) {
+    const std::uint32_t cell = cells_.number_of(p);
+    return ShareTargets::One{part_of_cell_[cell],
+                             cells[cell].is_one ? cell : MeshShares::k_no_point};
+  });
+}
+
+}  // namespace meshfarm

@@ -1,0 +1,15 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <meshfarm/divide/weld_counts.hpp>
+#include <meshfarm/geometry/weld.hpp>
+#include <meshfarm/io/slab_file.hpp>
+
+namespace meshfarm {
+
+/// Undoes merges of a share's vertices where surfaces touch: inside the share, and at its seams as
+/// the share tells. Counts what coincides; dropped triangles are not known yet.
+WeldCounts keep_apart(const MeshShare& share, WeldResult& welded);
+
+}  // namespace meshfarm
