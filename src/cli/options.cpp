@@ -4,13 +4,9 @@
 
 #include <charconv>
 #include <cmath>
-#include <memory>
-
-#include <arpa/inet.h>
-#include <ifaddrs.h>
-#include <net/if.h>
 
 #include <meshfarm/staging/file_system.hpp>
+#include <meshfarm/transport/addresses.hpp>
 #include <meshfarm/util/errors.hpp>
 
 #include "cli/texture_words.hpp"
@@ -214,8 +210,9 @@ void CutWords::add(po::options_description& options) {
       "only; LIST: these, as in red,green,blue ('colours' and 'normals' stand for "
       "theirs)")("uv", po::value(&uv)->default_value(uv)->value_name(k_uv_words), k_uv_help)(
       "threads", po::value(&cut.threads)->value_name("N"), "threads of the cut (default: cores)")(
-      "memory", po::value(&memory)->default_value(memory)->value_name("BYTES"),
-      "with --scheme stream: memory for sorting, for example 2G")(
+      "memory", po::value(&memory)->value_name("BYTES"),
+      "memory of the cut, for example 2G: with --scheme stream for sorting (default: 512M), with "
+      "--scheme cut for the parts that are made at once (default: no limit)")(
       "window",
       po::value(&cut.window_triangles)->default_value(cut.window_triangles)->value_name("N"),
       "with --scheme stream: triangles that a worker holds at once")(
@@ -246,15 +243,17 @@ void CutWords::check() {
     throw UsageError("--window: from 1,000 to 1,000,000,000 triangles");
   }
   cut.sort = sort == "farm" ? SortAt::farm : SortAt::here;
-  cut.memory_bytes = parse_size(memory, "--memory");
   cut.scratch = scratch;
+  if (memory.empty()) return;
+  cut.memory_bytes = parse_size(memory, "--memory");
   if (cut.memory_bytes == 0) throw UsageError("--memory must be above 0");
 }
 
 std::vector<std::string> CutWords::words() const {
-  std::vector<std::string> words = {"--scheme", scheme_word, "--sort", sort,      "--weld",
-                                    weld,       "--memory",  memory,   "--window"};
+  std::vector<std::string> words = {"--scheme", scheme_word, "--sort",  sort,
+                                    "--weld",   weld,        "--window"};
   words.push_back(std::to_string(cut.window_triangles));
+  if (!memory.empty()) words.insert(words.end(), {"--memory", memory});
   if (attributes != "auto") words.insert(words.end(), {"--attributes", attributes});
   if (uv != "auto") words.insert(words.end(), {"--uv", uv});
   if (cut.parts != 0) words.insert(words.end(), {"--parts", std::to_string(cut.parts)});
@@ -309,7 +308,7 @@ void NetworkOptions::add(po::options_description& options) {
 }
 
 void NetworkOptions::check() {
-  if (bind.empty()) bind = host_address();
+  if (bind.empty()) bind = network_address().value_or("127.0.0.1");
   security.check();
   check_exposure(security.security, bind);
   if (ports.empty()) return;
@@ -379,20 +378,6 @@ std::uint64_t parse_size(const std::string& text, std::string_view option) {
     throw UsageError(std::string(option) + " takes a size as in 512M or 8G, not '" + text + "'");
   }
   return static_cast<std::uint64_t>(value);
-}
-
-std::string host_address() {
-  ifaddrs* list = nullptr;
-  if (::getifaddrs(&list) != 0) return "127.0.0.1";
-  const std::unique_ptr<ifaddrs, decltype(&::freeifaddrs)> owner(list, &::freeifaddrs);
-  for (const ifaddrs* at = list; at != nullptr; at = at->ifa_next) {
-    if (at->ifa_addr == nullptr || at->ifa_addr->sa_family != AF_INET) continue;
-    if ((at->ifa_flags & IFF_LOOPBACK) != 0 || (at->ifa_flags & IFF_UP) == 0) continue;
-    char text[INET_ADDRSTRLEN];
-    const auto* address = reinterpret_cast<const sockaddr_in*>(at->ifa_addr);
-    if (::inet_ntop(AF_INET, &address->sin_addr, text, sizeof text) != nullptr) return text;
-  }
-  return "127.0.0.1";
 }
 
 }  // namespace meshfarm

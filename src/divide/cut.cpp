@@ -22,8 +22,8 @@
 #include <meshfarm/util/parallel.hpp>
 
 #include "divide/cut_scheme.hpp"
+#include "divide/share_budget.hpp"
 #include "divide/share_out.hpp"
-#include "divide/slab_budget.hpp"
 
 namespace meshfarm {
 namespace {
@@ -111,7 +111,8 @@ class Cutter {
     uv_facts_.resize(shares);
     std::mutex mutex;
     std::uint64_t done = 0;
-    const unsigned threads = scheme_->threads(manifest_.input_triangles, shares);
+    const unsigned threads =
+        scheme_->threads(manifest_.input_triangles, shares, shares_->buffer_bytes());
     parallel_for(shares, threads, [&](std::uint64_t i) {
       const auto number = static_cast<std::uint32_t>(i);
       StagedShare staged = scheme_->stage_share(shares_->read(number, options_.weld), number);

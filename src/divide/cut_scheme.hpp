@@ -46,8 +46,9 @@ class CutScheme {
   virtual std::unique_ptr<ShareMap> choose_map(Manifest& manifest) = 0;
   /// What of so much memory that would hold the whole input may be used.
   virtual std::uint64_t memory_for_shares(std::uint64_t all_bytes) const = 0;
-  /// That make shares; 0: one a core.
-  virtual unsigned threads(std::uint64_t triangles, std::uint32_t shares) const = 0;
+  /// That make shares; 0: one a core. `taken_bytes` are in use beside them.
+  virtual unsigned threads(std::uint64_t triangles, std::uint32_t shares,
+                           std::uint64_t taken_bytes) const = 0;
   /// From several threads: makes of a share what the stage holds, and publishes it.
   virtual StagedShare stage_share(MeshShare share, std::uint32_t number) const = 0;
   /// Puts the boundary triangles in the order in which they are staged.

@@ -13,9 +13,9 @@
 #include <meshfarm/divide/slab.hpp>
 #include <meshfarm/util/parallel.hpp>
 
+#include "divide/share_budget.hpp"
 #include "divide/share_out.hpp"
 #include "divide/shared_vertices.hpp"
-#include "divide/slab_budget.hpp"
 #include "divide/slab_map.hpp"
 #include "divide/topology_sum.hpp"
 
@@ -101,7 +101,7 @@ class DividedSurface::Impl {
   Divided divide(AtOnePoint at_one_point) {
     const MeshFileInfo& info = source_.info();
     const std::uint64_t triangles = likely_triangles(info);
-    const SlabBudget budget{options_.memory_bytes, k_slab_bytes_per_triangle};
+    const ShareBudget budget{options_.memory_bytes, k_slab_bytes_per_triangle};
     auto map = std::make_unique<SlabMap>(survey_.box, sorting_.order,
                                          budget.slabs(triangles, triangles / k_usual_slab + 1),
                                          at_one_point);
@@ -126,7 +126,7 @@ class DividedSurface::Impl {
 
   /// The other half of the memory is for what lies between slabs.
   unsigned threads(std::uint32_t slabs) const {
-    const SlabBudget budget{options_.memory_bytes / 2, k_slab_bytes_per_triangle};
+    const ShareBudget budget{options_.memory_bytes / 2, k_slab_bytes_per_triangle};
     return budget.threads(triangles_, slabs, options_.threads);
   }
 

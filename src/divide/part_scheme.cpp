@@ -3,6 +3,7 @@
 //
 // Compact parts: Xiong, Jiang, Zhang, Shi, "Parallel Simplification of Large Meshes on PC
 // Clusters", EGPGV 2008, 3.1.
+#include <algorithm>
 #include <utility>
 
 #include <meshfarm/geometry/label_corners.hpp>
@@ -11,6 +12,7 @@
 #include "divide/cell_map.hpp"
 #include "divide/cut_scheme.hpp"
 #include "divide/part_builder.hpp"
+#include "divide/share_budget.hpp"
 #include "divide/share_out.hpp"
 
 namespace meshfarm {
@@ -36,10 +38,17 @@ class PartScheme : public CutScheme {
   }
 
   std::uint64_t memory_for_shares(std::uint64_t all_bytes) const override {
-    return all_bytes <= k_memory_bytes ? all_bytes : 0;
+    const std::uint64_t most =
+        has_limit() ? std::min(k_memory_bytes, options_.memory_bytes / 4) : k_memory_bytes;
+    return all_bytes <= most ? all_bytes : 0;
   }
 
-  unsigned threads(std::uint64_t, std::uint32_t) const override { return options_.threads; }
+  unsigned threads(std::uint64_t triangles, std::uint32_t shares,
+                   std::uint64_t taken_bytes) const override {
+    if (!has_limit()) return options_.threads;
+    const ShareBudget budget{options_.memory_bytes, bytes_while_made(source_), taken_bytes};
+    return budget.threads(triangles, shares, options_.threads);
+  }
 
   StagedShare stage_share(MeshShare share, std::uint32_t number) const override {
     BuiltPart built = build_part(std::move(share), options_.weld);
@@ -61,6 +70,8 @@ class PartScheme : public CutScheme {
   void order_boundary(SharedTriangles&) const override {}
 
  private:
+  bool has_limit() const { return options_.memory_bytes > 0; }
+
   const MeshSource& source_;
   const Stage& stage_;
   const CutOptions& options_;

@@ -15,8 +15,8 @@
 #include <meshfarm/util/errors.hpp>
 
 #include "divide/cut_scheme.hpp"
+#include "divide/share_budget.hpp"
 #include "divide/share_out.hpp"
-#include "divide/slab_budget.hpp"
 #include "divide/sort_with_columns.hpp"
 
 namespace meshfarm {
@@ -40,16 +40,20 @@ class StreamScheme : public CutScheme {
     const std::uint64_t triangles = likely_triangles(source_.info());
     const std::uint64_t wanted =
         options_.parts != 0 ? options_.parts : default_parts(Scheme::stream, triangles);
+    const ShareBudget budget{
+        memory(), slab_bytes_per_triangle(has_appearances(source_), source_.info().columns())};
     return std::make_unique<SlabMap>(
-        manifest.box, sorting_.order, budget().slabs(triangles, wanted),
+        manifest.box, sorting_.order, budget.slabs(triangles, wanted),
         options_.weld == Weld::exact ? AtOnePoint::merge : AtOnePoint::deal);
   }
 
   /// The memory is for sorting.
   std::uint64_t memory_for_shares(std::uint64_t) const override { return 0; }
 
-  unsigned threads(std::uint64_t triangles, std::uint32_t shares) const override {
-    return budget().threads(triangles, shares, options_.threads);
+  unsigned threads(std::uint64_t triangles, std::uint32_t shares,
+                   std::uint64_t taken_bytes) const override {
+    const ShareBudget budget{memory(), bytes_while_made(source_), taken_bytes};
+    return budget.threads(triangles, shares, options_.threads);
   }
 
   StagedShare stage_share(MeshShare slab, std::uint32_t number) const override {
@@ -79,9 +83,8 @@ class StreamScheme : public CutScheme {
  private:
   bool sorts_here() const { return options_.sort == SortAt::here; }
 
-  SlabBudget budget() const {
-    return {options_.memory_bytes,
-            slab_bytes_per_triangle(has_appearances(source_), source_.info().columns())};
+  std::uint64_t memory() const {
+    return options_.memory_bytes > 0 ? options_.memory_bytes : k_sort_memory;
   }
 
   void stage_stream(SortedSlab slab, std::uint32_t number, StagedShare& staged) const {

@@ -17,6 +17,7 @@
 namespace meshfarm {
 
 inline constexpr std::uint64_t k_default_window = 400'000;
+inline constexpr std::uint64_t k_sort_memory = std::uint64_t{512} << 20;
 
 /// Where slabs are sorted.
 enum class SortAt : std::uint8_t {
@@ -30,13 +31,14 @@ struct CutOptions {
   Weld weld = Weld::exact;  // vertices at the same position become one
   // Of streams alone:
   SortAt sort = SortAt::here;  // the streams are the same
-  std::uint64_t memory_bytes = std::uint64_t{512} << 20;
   /// How many triangles a worker's sweep holds at once. A sample of each longer stream is kept as a
   /// part; from it the cost threshold of the sweep is found.
   std::uint64_t window_triangles = k_default_window;
 
-  std::string input_name;         // kept in the manifest, for people
-  unsigned threads = 0;           // 0: one a core; no byte of the stage depends on it
+  std::string input_name;  // kept in the manifest, for people
+  unsigned threads = 0;    // 0: one a core; no byte of the stage depends on it
+  /// Of the parts that are made at once, 0: no limit; or for sorting streams, 0: k_sort_memory.
+  std::uint64_t memory_bytes = 0;
   std::filesystem::path scratch;  // where what does not fit goes; empty: see scratch_folder()
   /// Told what is being done and how far it is (0..1); may be empty.
   std::function<void(std::string_view phase, double done)> progress;
