@@ -3,7 +3,7 @@
 //
 // The channels' file, version 1: blocks, one after the other, each sealed (staging/sealed.hpp) as
 // kind "CHAN". The manifest tells the channels, the positions' type and how many points there are.
-//   block = points u32, up to 65536 | positions, 3 numbers a point
+//   block = points u32, 65536 but in the last block | positions, 3 numbers a point
 //           | the values of each channel by itself, in its type
 #include <algorithm>
 #include <cmath>
@@ -65,22 +65,6 @@ void get_values(ByteReader& in, ChannelType type, std::span<float> values, std::
   }
 }
 
-/// What of it can be staged.
-void clean(ChannelPoints& batch, std::span<const Channel> channels) {
-  std::size_t kept = 0;
-  const std::size_t width = channels.size();
-  for (std::size_t i = 0; i < batch.points.size(); ++i) {
-    if (!has_position(batch.points[i])) continue;
-    batch.points[kept] = batch.points[i];
-    for (std::size_t c = 0; c < width; ++c) {
-      batch.values[kept * width + c] = rounded_to(channels[c].type, batch.values[i * width + c]);
-    }
-    ++kept;
-  }
-  batch.points.resize(kept);
-  batch.values.resize(kept * width);
-}
-
 std::string encode_block(std::span<const Vec3> points, std::span<const float> values,
                          std::span<const Channel> channels, PositionType positions) {
   ByteWriter out;
@@ -92,6 +76,45 @@ std::string encode_block(std::span<const Vec3> points, std::span<const float> va
   return seal(k_kind, k_version, out.bytes());
 }
 
+/// Fills blocks, all but the last, whatever the batches in which the points come: the file is to be
+/// the same from any number of threads.
+class BlockWriter {
+ public:
+  BlockWriter(StagedWriter& file, const StagedChannels& staged, PositionType positions)
+      : file_(file), channels_(staged.channels), positions_(positions) {}
+
+  void add(const ChannelPoints& batch) {
+    const std::size_t width = channels_.size();
+    for (std::size_t i = 0; i < batch.points.size(); ++i) {
+      if (!has_position(batch.points[i])) continue;
+      points_.push_back(batch.points[i]);
+      for (std::size_t c = 0; c < width; ++c) {
+        values_.push_back(rounded_to(channels_[c].type, batch.values[i * width + c]));
+      }
+      if (points_.size() == k_most_points) finish();
+    }
+  }
+
+  /// The block that is not full.
+  void finish() {
+    if (points_.empty()) return;
+    file_.write(encode_block(points_, values_, channels_, positions_));
+    written_ += points_.size();
+    points_.clear();
+    values_.clear();
+  }
+
+  std::uint64_t points() const { return written_ + points_.size(); }
+
+ private:
+  StagedWriter& file_;
+  std::span<const Channel> channels_;
+  PositionType positions_;
+  std::vector<Vec3> points_;
+  std::vector<float> values_;
+  std::uint64_t written_ = 0;
+};
+
 }  // namespace
 
 StagedChannels stage_channels(MeshSource& source, const Stage& stage,
@@ -100,19 +123,13 @@ StagedChannels stage_channels(MeshSource& source, const Stage& stage,
   staged.channels = source.info().channels;
   if (staged.channels.empty()) return staged;
   StagedWriter file(stage, ChannelsName{});
+  BlockWriter blocks(file, staged, source.info().positions);
   source.scan_channels([&](const ChannelPoints& batch) {
-    ChannelPoints cleaned = batch;
-    clean(cleaned, staged.channels);
-    const std::size_t width = staged.channels.size();
-    const std::span<const Vec3> points(cleaned.points);
-    const std::span<const float> values(cleaned.values);
-    for (std::size_t i = 0; i < points.size(); i += k_most_points) {
-      const std::size_t count = std::min(points.size() - i, k_most_points);
-      file.write(encode_block(points.subspan(i, count), values.subspan(i * width, count * width),
-                              staged.channels, source.info().positions));
-    }
-    progress(staged.points += points.size());
+    blocks.add(batch);
+    progress(blocks.points());
   });
+  blocks.finish();
+  staged.points = blocks.points();
   staged.file = file.commit();
   return staged;
 }

@@ -1,5 +1,6 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -30,11 +31,20 @@ class ChannelSource final : public test::MemorySource {
                       {"height", ChannelType::float32, ChannelRole::quality}};
   }
   void scan_channels(const std::function<void(const ChannelPoints&)>& take) override {
-    take(points_);
+    for (std::size_t i = 0; i < points_.points.size(); i += batch_) {
+      const std::size_t end = std::min(points_.points.size(), i + batch_);
+      const auto first = [](auto& all, std::size_t at) {
+        return all.begin() + static_cast<std::ptrdiff_t>(at);
+      };
+      take({{first(points_.points, i), first(points_.points, end)},
+            {first(points_.values, 2 * i), first(points_.values, 2 * end)}});
+    }
   }
   ChannelPoints& points() { return points_; }
+  void set_batch(std::size_t points) { batch_ = points; }
 
  private:
+  std::size_t batch_ = SIZE_MAX / 2;
   ChannelPoints points_;
 };
 
@@ -78,6 +88,18 @@ TEST_CASE("channels come back as they were staged, in blocks") {
   CHECK(back.values[2 * 200] == 200);
   CHECK(back.values[2 * 300] == 255);  // as much as the type can hold
   CHECK(back.values[2 * 300 + 1] == static_cast<float>(mesh.positions[300].z));
+}
+
+TEST_CASE("the file is the same whatever the batches that the points come in") {
+  const Mesh mesh = test::icosphere(7);
+  ChannelSource source(mesh, PositionType::float64);
+  source.points().points[100'000].x = HUGE_VAL;
+  const std::string whole = staged_of(source).bytes;
+  for (const std::size_t batch : {1'000U, 65'536U, 100'001U}) {
+    CAPTURE(batch);
+    source.set_batch(batch);
+    CHECK(staged_of(source).bytes == whole);
+  }
 }
 
 TEST_CASE("without channels nothing is staged") {
