@@ -20,28 +20,15 @@
 #include "support/memory_source.hpp"
 #include "support/meshes.hpp"
 #include "support/temp_folder.hpp"
+#include "triangle_corners.hpp"
 
 using namespace meshfarm;
 
 namespace {
 
-/// A triangle as its corners' positions, turned so that the least comes first.
-using Corners = std::array<std::array<double, 3>, 3>;
-
-Corners corners_of(Vec3 a, Vec3 b, Vec3 c) {
-  Corners corners = {{{a.x, a.y, a.z}, {b.x, b.y, b.z}, {c.x, c.y, c.z}}};
-  std::rotate(corners.begin(), std::min_element(corners.begin(), corners.end()), corners.end());
-  return corners;
-}
-
-std::vector<Corners> triangles_of(const Mesh& mesh) {
-  std::vector<Corners> all;
-  for (const auto& [a, b, c] : mesh.triangles) {
-    all.push_back(corners_of(mesh.positions[a], mesh.positions[b], mesh.positions[c]));
-  }
-  std::sort(all.begin(), all.end());
-  return all;
-}
+using test::Corners;
+using test::corners_of;
+using test::triangles_of;
 
 struct Generated {
   Manifest manifest;
