@@ -40,7 +40,7 @@ std::string options_of(const CutWords& words) {
                      std::to_string(words.cut.parts);
   if (words.cut.scheme == Scheme::stream) {
     text += " --sort " + words.sort + " --window " + std::to_string(words.cut.window_triangles) +
-            " --memory " + std::to_string(words.cut.memory_bytes);
+            " --memory " + std::to_string(words.cut.sort_memory());
   }
   if (words.attributes != "auto") text += " --attributes " + words.attributes;
   text += std::string(" --uv ") + word_of(parse_uv(words.uv));

@@ -41,7 +41,8 @@ class StreamScheme : public CutScheme {
     const std::uint64_t wanted =
         options_.parts != 0 ? options_.parts : default_parts(Scheme::stream, triangles);
     const ShareBudget budget{
-        memory(), slab_bytes_per_triangle(has_appearances(source_), source_.info().columns())};
+        options_.sort_memory(),
+        slab_bytes_per_triangle(has_appearances(source_), source_.info().columns())};
     return std::make_unique<SlabMap>(
         manifest.box, sorting_.order, budget.slabs(triangles, wanted),
         options_.weld == Weld::exact ? AtOnePoint::merge : AtOnePoint::deal);
@@ -52,7 +53,7 @@ class StreamScheme : public CutScheme {
 
   unsigned threads(std::uint64_t triangles, std::uint32_t shares,
                    std::uint64_t taken_bytes) const override {
-    const ShareBudget budget{memory(), bytes_while_made(source_), taken_bytes};
+    const ShareBudget budget{options_.sort_memory(), bytes_while_made(source_), taken_bytes};
     return budget.threads(triangles, shares, options_.threads);
   }
 
@@ -82,10 +83,6 @@ class StreamScheme : public CutScheme {
 
  private:
   bool sorts_here() const { return options_.sort == SortAt::here; }
-
-  std::uint64_t memory() const {
-    return options_.memory_bytes > 0 ? options_.memory_bytes : k_sort_memory;
-  }
 
   void stage_stream(SortedSlab slab, std::uint32_t number, StagedShare& staged) const {
     if (slab.boundary_vertices != staged.numbers.count()) {

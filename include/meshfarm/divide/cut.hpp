@@ -39,6 +39,7 @@ struct CutOptions {
   unsigned threads = 0;    // 0: one a core; no byte of the stage depends on it
   /// Of the parts that are made at once, 0: no limit; or for sorting streams, 0: k_sort_memory.
   std::uint64_t memory_bytes = 0;
+  std::uint64_t sort_memory() const { return memory_bytes > 0 ? memory_bytes : k_sort_memory; }
   std::filesystem::path scratch;  // where what does not fit goes; empty: see scratch_folder()
   /// Told what is being done and how far it is (0..1); may be empty.
   std::function<void(std::string_view phase, double done)> progress;
@@ -58,15 +59,15 @@ std::uint32_t default_parts(Scheme scheme, std::uint64_t triangles);
 /// Scheme::cut makes compact parts (Xiong et al. 2008, 3.1). They depend on the input and on
 /// options.parts and options.weld only. None has more than 1.15 times as many vertices as the mean,
 /// however they lie. Memory: a million cells at most (1 GB while METIS works on them), and one part
-/// a thread.
+/// a thread; with memory_bytes no more parts at once than fit into it.
 ///
 /// Scheme::stream makes slabs along the longest axis of the bounding box, of about equal size, and
 /// sorts them to streams (Xiong et al. 2008, 4.1). If the input is already in order along one of
 /// several equally long axes, that axis is taken, and the input is not sorted again. The streams
-/// depend on the input and on parts, weld, memory_bytes and window_triangles only; there are more
+/// depend on the input and on parts, weld, sort_memory() and window_triangles only; there are more
 /// than asked for where a slab would not fit. With SortAt::farm the slabs are published as they
 /// come, and boundary and manifest already fit the streams that jobs will make. Anonymous memory
-/// stays below memory_bytes, of which 256 MB is the least that is useful.
+/// stays below sort_memory(), of which 256 MB is the least that is useful.
 Manifest cut_mesh(MeshSource& source, const Stage& stage, const CutOptions& options);
 
 }  // namespace meshfarm

@@ -34,7 +34,8 @@ class ChannelFit {
   ChannelFit(ChannelFit&&) noexcept;
 
   /// Takes points and their values, `channels` of each point one after the other. A point counts
-  /// for the triangle that it is nearest to. Points near each other are best given together.
+  /// for the triangle that it is nearest to, or for one that is hardly farther: the same calls give
+  /// the same values. Points near each other are best given together.
   void add(std::span<const Vec3> points, std::span<const float> values);
   /// The values of the vertices, `channels` of each vertex one after the other. A vertex that no
   /// point tells of has those of its neighbours.
