@@ -5,9 +5,9 @@
 
 #include <meshfarm/pipeline/algorithm.hpp>
 #include <meshfarm/pipeline/assemble.hpp>
-#include <meshfarm/pipeline/budget.hpp>
 #include <meshfarm/pipeline/clean_stage.hpp>
 #include <meshfarm/pipeline/job_table.hpp>
+#include <meshfarm/pipeline/run_graph.hpp>
 #include <meshfarm/pipeline/run_trace.hpp>
 #include <meshfarm/pipeline/sink_need.hpp>
 #include <meshfarm/transport/sink.hpp>

@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include <meshfarm/pipeline/algorithm.hpp>
-#include <meshfarm/pipeline/budget.hpp>
+#include <meshfarm/pipeline/run_graph.hpp>
 #include <meshfarm/pipeline/run_trace.hpp>
 #include <meshfarm/transport/ventilator.hpp>
 #include <meshfarm/util/errors.hpp>

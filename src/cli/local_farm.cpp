@@ -7,7 +7,7 @@
 #include <filesystem>
 
 #include <meshfarm/io/manifest.hpp>
-#include <meshfarm/pipeline/budget.hpp>
+#include <meshfarm/pipeline/run_graph.hpp>
 #include <meshfarm/pipeline/run_options.hpp>
 #include <meshfarm/pipeline/sink_need.hpp>
 #include <meshfarm/staging/file_system.hpp>

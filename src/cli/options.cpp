@@ -68,7 +68,7 @@ void TargetOptions::add(po::options_description& options) {
       "global: the last pass may change everything; boundary: only edges at seams")(
       "composition",
       po::value(&composition)->default_value(composition)->value_name("auto|tree|sink"),
-      "how simplified streams are joined: tree: neighbours by jobs, round by round; sink: all at "
+      "how simplified streams are joined: tree: neighbours by jobs, a few at once; sink: all at "
       "once by the sink; auto: tree if many triangles are at seams")(
       "topology", po::value(&topology)->default_value(topology)->value_name("auto|keep|simplify"),
       "handles, holes and pieces: keep: never close or remove any; simplify: do so where it costs "

@@ -49,7 +49,7 @@ void Dispatcher::on(const PeerId& peer, const Accept& accept) {
     const bool fresh = plan_.accept(accept.key, accept.output);
     if (fresh && !full_) relapses_ = 0;
     if (fresh && options_.tell && accept.worker.value != 0) {
-      tell(JobAccepted{accept.worker, accept.key, plan_.job(accept.key), plan_.round(accept.key),
+      tell(JobAccepted{accept.worker, accept.key, plan_.job(accept.key), plan_.place(accept.key),
                        accept.output.file.size, accept.times});
     }
   }

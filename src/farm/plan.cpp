@@ -20,7 +20,7 @@ JobState first_state(const Job& job) {
 }  // namespace
 
 bool Plan::ReadyJob::operator<(const ReadyJob& other) const {
-  // The largest first, so that the last jobs of a round are short; then as asked for.
+  // The largest first, so that the last jobs are short; then as asked for.
   if (cost != other.cost) return cost > other.cost;
   return order < other.order;
 }
@@ -31,37 +31,34 @@ void Plan::restart(const std::map<JobKey, JobOutput>& accepted) {
   ready_.clear();
   by_memory_.clear();
   counts_ = {.retries = counts_.retries};
-  rounds_ = Rounds(source_);
-  rounds_begun_ = 0;
+  graph_ = source_();
   started_ = true;
-  advance(accepted);
+  want(graph_.begin(), accepted);
 }
 
-void Plan::advance(const std::map<JobKey, JobOutput>& accepted) {
-  for (auto jobs = rounds_.advance(); !jobs.empty(); jobs = rounds_.advance()) {
-    for (auto& [key, job] : jobs) {
-      const auto [found, is_new] = entries_.try_emplace(key);
-      Entry& entry = found->second;
-      if (is_new) {
-        entry.order = next_order_++;
-        entry.round = rounds_begun_;
-        entry.job = std::move(job);
-        entry.state = first_state(entry.job);
-      }
-      entry.wanted = true;
-      wanted_.push_back(key);
-      counts_.cost_known += entry.job.cost;
-      if (entry.state == JobState::done) entry.state = first_state(entry.job);
-      const auto told = accepted.find(key);
-      if (told != accepted.end()) {
-        rounds_.accept(key, told->second);
-        entry.state = JobState::done;
-        counts_.cost_done += entry.job.cost;
-      }
-      if (entry.state == JobState::ready) add_ready(key, entry);
-      count(entry, entry.state);
+void Plan::want(std::vector<WantedJob> jobs, const std::map<JobKey, JobOutput>& accepted) {
+  for (std::size_t i = 0; i < jobs.size(); ++i) {
+    const JobKey key = jobs[i].key;
+    const auto [found, is_new] = entries_.try_emplace(key);
+    Entry& entry = found->second;
+    entry.name = jobs[i].name;
+    if (is_new) {
+      entry.order = next_order_++;
+      entry.job = std::move(jobs[i].job);
+      entry.state = first_state(entry.job);
     }
-    ++rounds_begun_;
+    entry.wanted = true;
+    wanted_.push_back(key);
+    counts_.cost_known += entry.job.cost;
+    if (entry.state == JobState::done) entry.state = first_state(entry.job);
+    const auto told = accepted.find(key);
+    if (told != accepted.end()) {
+      for (WantedJob& each : graph_.accept(key, told->second)) jobs.push_back(std::move(each));
+      entry.state = JobState::done;
+      counts_.cost_done += entry.job.cost;
+    }
+    if (entry.state == JobState::ready) add_ready(key, entry);
+    count(entry, entry.state);
   }
 }
 
@@ -146,11 +143,11 @@ void Plan::forgive(JobKey key, const std::string& reason) {
 }
 
 bool Plan::accept(JobKey key, const JobOutput& output) {
-  if (!rounds_.accept(key, output)) return false;
+  if (!graph_.waits_for(key)) return false;
   Entry& entry = entries_.at(key);
   move_to(key, entry, JobState::done);
   counts_.cost_done += entry.job.cost;
-  advance({});
+  want(graph_.accept(key, output), {});
   return true;
 }
 
@@ -202,8 +199,8 @@ std::string failed_for_good(std::span<const std::string> reasons) {
 }
 
 void Plan::move_to(JobKey key, Entry& entry, JobState state) {
-  // A job that no round reached since the restart wants is remembered, but neither counted nor
-  // issued.
+  // A job that is not wanted as far as the run has come since the restart is remembered, but
+  // neither counted nor issued.
   if (entry.wanted) {
     count_no_more(entry);
     count(entry, state);

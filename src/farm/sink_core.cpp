@@ -21,7 +21,7 @@ constexpr FarmTime k_longest_output_pause{60'000};
 
 SinkActions SinkCore::tick(FarmTime now) {
   if (phase_ == Phase::left) return take();
-  if (!std::exchange(begun_, true)) want();
+  if (!std::exchange(begun_, true)) want(graph_.begin());
   const Membership::Event event = member_.tick(now);
   // While the output is being made nobody needs the ventilator; it may come back meanwhile.
   const bool busy = phase_ == Phase::making_output;
@@ -31,7 +31,7 @@ SinkActions SinkCore::tick(FarmTime now) {
   if (member_.beat_due(now)) {
     Heartbeat beat;
     beat.epoch = member_.welcome().epoch;
-    beat.progress = rounds_.jobs_accepted();
+    beat.progress = graph_.jobs_accepted();
     beat.no_room = waits_for_room();
     say(beat);
     if (told_all_) say_again();
@@ -100,7 +100,7 @@ void SinkCore::run_over() {
 SinkActions SinkCore::on_result(const Message& message) {
   const auto* result = std::get_if<Result>(&message);
   const bool ours = result != nullptr && result->run == member_.options().run &&
-                    result->epoch >= member_.epoch() && rounds_.wanted(result->key);
+                    result->epoch >= member_.epoch() && graph_.wanted(result->key);
   if (!ours || phase_ == Phase::left) {
     ++dropped_;
   } else {
@@ -110,7 +110,7 @@ SinkActions SinkCore::on_result(const Message& message) {
 }
 
 void SinkCore::take_result(const Result& result) {
-  if (rounds_.accepted(result.key) != nullptr) return tell(result.key, result.worker);
+  if (graph_.accepted(result.key) != nullptr) return tell(result.key, result.worker);
   if (const auto* failure = std::get_if<JobFailure>(&result.outcome)) {
     if (!told_all_) return;  // the worker says it again
     return say(Reject{member_.epoch(), result.worker, result.attempt, result.key, *failure, {}});
@@ -148,10 +148,11 @@ SinkActions SinkCore::checked(const Check& check, const JobFailure& problem, Far
   if ((fine || checking_.empty()) && !again_at_) again_pause_ = FarmTime(0);
   if (check.from_journal) --checking_journal_;
   if (fine) {
-    if (rounds_.accept(check.key, check.output)) accepted_.push_back(check.key);
+    if (graph_.waits_for(check.key)) accepted_.push_back(check.key);
+    std::vector<WantedJob> possible = graph_.accept(check.key, check.output);
     failed_.erase(check.key);
     tell(check.key, check.worker, check.times);
-    want();
+    want(std::move(possible));
   } else if (!check.from_journal && told_all_) {
     say(Reject{member_.epoch(),
                check.worker,
@@ -164,9 +165,9 @@ SinkActions SinkCore::checked(const Check& check, const JobFailure& problem, Far
   return take();
 }
 
-/// Asks for the rounds that can be asked for; what a journal knows of them is checked at once.
-void SinkCore::want() {
-  for (const auto& [key, job] : rounds_.advance()) {
+/// Jobs that are possible now; what a journal knows of them is checked at once.
+void SinkCore::want(std::vector<WantedJob> jobs) {
+  for (const auto& [key, job, name] : jobs) {
     kinds_[key] = job.kind;
     if (job.by_sink) own_[key] = job;
     const auto known = journal_.find(key);
@@ -179,7 +180,7 @@ void SinkCore::want() {
     ++checking_journal_;
     act(check);
   }
-  if (rounds_.complete() && phase_ == Phase::collecting) {
+  if (graph_.complete() && phase_ == Phase::collecting) {
     phase_ = Phase::making_output;
     act(MakeOutput{});
   }
@@ -195,7 +196,7 @@ void SinkCore::tell_all() {
 /// What nobody would ask for if it got lost: a worker tells of its result until it is answered.
 void SinkCore::say_again() {
   for (const auto& [key, job] : own_) {
-    if (rounds_.accepted(key) != nullptr) tell(key, WorkerId{});
+    if (graph_.accepted(key) != nullptr) tell(key, WorkerId{});
   }
   say_where_it_stands();
 }
@@ -210,7 +211,7 @@ void SinkCore::say_where_it_stands() {
 
 void SinkCore::tell(JobKey key, WorkerId worker, const JobTimes& times) {
   if (!told_all_) return;
-  say(Accept{member_.epoch(), worker, key, *rounds_.accepted(key), times});
+  say(Accept{member_.epoch(), worker, key, *graph_.accepted(key), times});
 }
 
 SinkActions SinkCore::did(const DoHere& what, const JobOutput& output, const SinkProblem& problem,

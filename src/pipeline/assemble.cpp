@@ -9,15 +9,14 @@
 #include <meshfarm/io/mesh_format.hpp>
 #include <meshfarm/pipeline/assemble.hpp>
 #include <meshfarm/pipeline/bake_job.hpp>
-#include <meshfarm/pipeline/budget.hpp>
+#include <meshfarm/pipeline/run_graph.hpp>
 #include <meshfarm/util/errors.hpp>
 #include <meshfarm/util/stopwatch.hpp>
 
-#include "pipeline/bake_plan.hpp"
+#include "pipeline/bake_stage.hpp"
 #include "pipeline/channel_values.hpp"
 #include "pipeline/finish_result.hpp"
 #include "pipeline/result_textures.hpp"
-#include "pipeline/sort_plan.hpp"
 #include "pipeline/texture_bake.hpp"
 
 namespace meshfarm {
@@ -30,22 +29,18 @@ class Assembler::Impl {
   JobOutput do_job(const Job& job, const JobContext& context,
                    std::span<const AcceptedJob> accepted) {
     if (job.kind != k_finish_kind) throw DataError("a sink does no " + job.kind + " jobs");
-    sort_out(accepted);
-    finish(choose_rungs(manifest_, run_, rest_));
+    finish(take(accepted));
     tell("new texture", 0, 0);
     const BakeInput input{finished_->summary.error.greater().max, options_.threads};
     return publish_bake_scene(stage_, manifest_, finished_->mesh, *layout_, input, job, context);
   }
 
   RunSummary complete(std::span<const AcceptedJob> accepted) {
-    sort_out(accepted);
-    const ChosenRungs chosen = choose_rungs(manifest_, run_, rest_);
+    const ChosenRungs& chosen = take(accepted);
     // If another sink did the jobs, this one knows nothing of what it finished.
     if (!finished_) finish(chosen);
     Stopwatch watch;
-    std::optional<BakePlan> baked;
-    if (layout_) baked.emplace(manifest_, run_, chosen, chosen.rest);
-    write(finished_->mesh, baked ? &*baked : nullptr);
+    write(finished_->mesh, layout_ ? &state_.baked : nullptr);
     RunSummary summary = std::move(finished_->summary);
     finished_.reset();
     summary.write_seconds = watch.lap();
@@ -66,11 +61,10 @@ class Assembler::Impl {
     }
   }
 
-  /// Slabs that were sorted are streams from here on.
-  void sort_out(std::span<const AcceptedJob> accepted) {
-    const SortPlan sorted(staged_, accepted);
-    manifest_ = sorted.manifest();
-    rest_ = sorted.rest();
+  const ChosenRungs& take(std::span<const AcceptedJob> accepted) {
+    state_ = state_of_run(staged_, run_, accepted);
+    if (!state_.chosen) throw Error("a mesh is asked for before all of its parts are accepted");
+    return *state_.chosen;
   }
 
   void finish(const ChosenRungs& chosen) {
@@ -90,7 +84,7 @@ class Assembler::Impl {
     finished_->summary.finish_seconds += watch.lap();
   }
 
-  void write(Mesh& result, const BakePlan* baked) {
+  void write(Mesh& result, const BakedTexture* baked) {
     RunSummary& summary = finished_->summary;
     const ChannelFitting fitting{chosen_columns(manifest_, run_), run_.normals, options_.threads};
     const std::vector<Channel> chosen = channels_at(manifest_.channels.channels, fitting.columns);
@@ -125,7 +119,7 @@ class Assembler::Impl {
   }
 
   PictureFiles make_textures(Mesh& result, std::optional<LabelMeaning>& labels,
-                             const BakePlan* baked) {
+                             const BakedTexture* baked) {
     std::optional<MadeTexture> made;
     if (baked != nullptr) {
       tell("texture", 0, 0);
@@ -143,10 +137,10 @@ class Assembler::Impl {
 
   const Stage& stage_;
   const Manifest& staged_;
-  Manifest manifest_;  // once its slabs are sorted
+  RunState state_;
+  const Manifest& manifest_ = state_.manifest;  // its slabs are sorted
   const RunOptions& run_;
   AssembleOptions options_;
-  std::span<const AcceptedJob> rest_;  // what was accepted after the sorting
   std::optional<FinishedResult> finished_;
   std::optional<TextureLayout> layout_;  // of a new texture
 };

@@ -12,7 +12,7 @@
 #include <meshfarm/util/bytes.hpp>
 #include <meshfarm/util/errors.hpp>
 
-#include "pipeline/bake_plan.hpp"
+#include "pipeline/bake_stage.hpp"
 #include "pipeline/input_colours.hpp"
 
 namespace meshfarm {

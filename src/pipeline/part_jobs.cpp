@@ -38,6 +38,10 @@ double PartJobs::ratio() const {
                            static_cast<double>(std::max<std::uint64_t>(1, manifest_.triangles())));
 }
 
+double PartJobs::wanted() const {
+  return provision(ratio()) * static_cast<double>(target_);
+}
+
 bool PartJobs::is_sampled(std::uint32_t part) const {
   return !manifest_.samples.empty() && !manifest_.samples[part].file.name.empty();
 }

@@ -24,6 +24,8 @@ class PartJobs {
   std::uint64_t target() const { return target_; }
   /// Of the triangles that are there, those that are wanted.
   double ratio() const;
+  /// What the parts are to keep together for the finish to choose from.
+  double wanted() const;
   bool by_error() const { return options_.error.value > 0; }
   /// Whether levels are to be found: the same ratio everywhere needs none.
   bool climbs_samples() const { return by_error() || options_.allocation == Allocation::threshold; }

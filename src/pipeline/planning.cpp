@@ -3,9 +3,14 @@
 #include <algorithm>
 #include <iterator>
 #include <map>
+#include <memory>
+#include <numeric>
 #include <set>
 #include <string>
+#include <tuple>
+#include <utility>
 
+#include <meshfarm/farm/job_graph.hpp>
 #include <meshfarm/pipeline/planning.hpp>
 #include <meshfarm/simulation/simulation.hpp>
 #include <meshfarm/util/errors.hpp>
@@ -50,23 +55,43 @@ class Draw {
   std::uint64_t state_;
 };
 
-/// Rounds of jobs that are named by their place.
+using Needs = std::vector<PlannedJob::Range>;
+
+/// Of jobs sorted by depth.
+Needs needs_of(std::span<const PlannedJob> jobs, const PlannedJob& job) {
+  if (!job.needs.empty() || job.depth == 0) return job.needs;
+  const auto end = std::partition_point(
+      jobs.begin(), jobs.end(), [&](const PlannedJob& each) { return each.depth < job.depth; });
+  return {{0, static_cast<std::size_t>(end - jobs.begin())}};
+}
+
+/// Jobs that are named by their place.
 JobSource source_of(std::span<const PlannedJob> jobs) {
-  std::map<std::uint32_t, std::vector<Job>> rounds;
-  for (std::size_t i = 0; i < jobs.size(); ++i) {
-    Job job;
-    job.kind = "planned";
-    job.parameters = std::to_string(i);
-    job.cost = jobs[i].triangles;
-    rounds[jobs[i].round].push_back(std::move(job));
+  const auto by_needs = std::make_shared<std::map<Needs, std::vector<std::uint32_t>>>();
+  for (std::uint32_t i = 0; i < jobs.size(); ++i) {
+    (*by_needs)[needs_of(jobs, jobs[i])].push_back(i);
   }
-  return [rounds = std::move(rounds)](std::span<const AcceptedJob> accepted) {
-    std::size_t done = accepted.size();
-    for (const auto& [number, round] : rounds) {
-      if (done == 0) return round;
-      done -= std::min(done, round.size());
+  const auto add = [jobs](JobGraph& graph, const std::vector<std::uint32_t>& places) {
+    for (const std::uint32_t place : places) {
+      Job job;
+      job.kind = "planned";
+      job.parameters = std::to_string(place);
+      job.cost = jobs[place].triangles;
+      graph.add({0, place}, std::move(job));
     }
-    return std::vector<Job>{};
+  };
+  return [by_needs, add] {
+    JobGraph graph({"planned"});
+    graph.keep(by_needs);
+    for (const auto& [ranges, places] : *by_needs) {
+      JobNeeds needs;
+      for (const PlannedJob::Range& each : ranges) {
+        needs.push_back({0, static_cast<std::uint32_t>(each.first),
+                         static_cast<std::uint32_t>(each.end - each.first)});
+      }
+      graph.then(needs, [&places = places, add](JobGraph& so_far) { add(so_far, places); });
+    }
+    return graph;
   };
 }
 
@@ -105,6 +130,92 @@ SimulationOptions options_of(std::span<const PlannedJob> jobs, const PlannedFarm
   return options;
 }
 
+/// Jobs of a trace, of which each comes after those that it needs.
+class TracedJobs {
+ public:
+  void add(const TraceDone& done, double seconds) {
+    const std::uint32_t depth = done.stage.empty() ? done.round : depth_of(done.needs);
+    places_[done.stage][done.index] = jobs_.size();
+    jobs_.push_back({{depth, done.triangles, done.read_bytes, done.written_bytes, seconds}, &done});
+  }
+
+  std::vector<PlannedJob> sorted() {
+    if (jobs_.empty()) throw DataError("the trace has no job that was done");
+    std::vector<std::size_t> order(jobs_.size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+      return jobs_[a].planned.depth < jobs_[b].planned.depth;
+    });
+    std::vector<std::size_t> place_of(jobs_.size());
+    for (std::size_t i = 0; i < order.size(); ++i) place_of[order[i]] = i;
+    std::vector<PlannedJob> sorted;
+    for (const std::size_t each : order) {
+      sorted.push_back(jobs_[each].planned);
+      sorted.back().needs = ranges_of(jobs_[each].done->needs, place_of);
+    }
+    return sorted;
+  }
+
+ private:
+  struct Traced {
+    PlannedJob planned;
+    const TraceDone* done = nullptr;
+  };
+  using Ranges = std::vector<TraceDone::Needs>;
+  using Words = std::vector<std::tuple<std::string, std::uint32_t, std::uint32_t>>;
+
+  /// What is not in the trace was there before, or is the sink's.
+  template <class Visit>
+  void visit(const Ranges& needs, const Visit& visit) const {
+    for (const TraceDone::Needs& each : needs) {
+      const auto stage = places_.find(each.stage);
+      if (stage == places_.end()) continue;
+      for (auto at = stage->second.lower_bound(each.first);
+           at != stage->second.end() && at->first - each.first < each.count; ++at) {
+        visit(at->second);
+      }
+    }
+  }
+
+  static Words words_of(const Ranges& needs) {
+    Words words;
+    for (const TraceDone::Needs& each : needs) {
+      words.emplace_back(each.stage, each.first, each.count);
+    }
+    return words;
+  }
+
+  /// Many jobs need the same: that is looked through once.
+  std::uint32_t depth_of(const Ranges& needs) {
+    const auto [depth, is_new] = depths_.try_emplace(words_of(needs));
+    if (is_new) {
+      visit(needs, [&, &most = depth->second](std::size_t job) {
+        most = std::max(most, jobs_[job].planned.depth + 1);
+      });
+    }
+    return depth->second;
+  }
+
+  Needs ranges_of(const Ranges& needs, const std::vector<std::size_t>& place_of) {
+    const auto [ranges, is_new] = ranges_.try_emplace(words_of(needs));
+    if (!is_new) return ranges->second;
+    std::vector<std::size_t> places;
+    visit(needs, [&](std::size_t job) { places.push_back(place_of[job]); });
+    std::sort(places.begin(), places.end());
+    for (const std::size_t place : places) {
+      const bool joins = !ranges->second.empty() && place <= ranges->second.back().end;
+      if (!joins) ranges->second.push_back({place, place});
+      ranges->second.back().end = place + 1;
+    }
+    return ranges->second;
+  }
+
+  std::vector<Traced> jobs_;
+  std::map<std::string, std::map<std::uint32_t, std::size_t>> places_;  // by stage and index
+  std::map<Words, std::uint32_t> depths_;
+  std::map<Words, Needs> ranges_;
+};
+
 }  // namespace
 
 std::vector<PlannedJob> planned_jobs(const Trace& trace) {
@@ -116,18 +227,14 @@ std::vector<PlannedJob> planned_jobs(const Trace& trace) {
   }
   double fastest = 0;
   for (const auto& [worker, speed] : speeds) fastest = std::max(fastest, speed.value());
-  std::vector<PlannedJob> jobs;
+  TracedJobs traced;
   std::set<std::uint64_t> known;
   for (const TraceDone& each : trace.done) {
     if (!known.insert(each.job).second) continue;
     const double relative = fastest > 0 ? speeds.at(each.worker).value() / fastest : 1;
-    jobs.push_back({each.round, each.triangles, each.read_bytes, each.written_bytes,
-                    compute_s(each) * relative});
+    traced.add(each, compute_s(each) * relative);
   }
-  if (jobs.empty()) throw DataError("the trace has no job that was done");
-  std::stable_sort(jobs.begin(), jobs.end(),
-                   [](const PlannedJob& a, const PlannedJob& b) { return a.round < b.round; });
-  return jobs;
+  return traced.sorted();
 }
 
 std::vector<PlannedJob> as_parts(std::span<const PlannedJob> jobs, std::uint64_t count) {
@@ -138,7 +245,7 @@ std::vector<PlannedJob> as_parts(std::span<const PlannedJob> jobs, std::uint64_t
   std::vector<PlannedJob> parts;
   for (std::uint64_t i = 0; i < count; ++i) {
     const PlannedJob& like = jobs[static_cast<std::size_t>(static_cast<double>(i) * share)];
-    parts.push_back({like.round, of(like.triangles), of(like.read_bytes), of(like.written_bytes),
+    parts.push_back({like.depth, of(like.triangles), of(like.read_bytes), of(like.written_bytes),
                      like.compute_s * share});
   }
   return parts;
@@ -147,15 +254,18 @@ std::vector<PlannedJob> as_parts(std::span<const PlannedJob> jobs, std::uint64_t
 std::vector<PlannedJob> drawn(std::span<const PlannedJob> jobs, std::uint64_t count,
                               std::uint64_t seed) {
   std::map<std::uint32_t, double> work;
-  for (const PlannedJob& job : jobs) work[job.round] += job.compute_s;
+  for (const PlannedJob& job : jobs) work[job.depth] += job.compute_s;
   const auto heaviest = std::max_element(
       work.begin(), work.end(), [](const auto& a, const auto& b) { return a.second < b.second; });
   std::vector<PlannedJob> from;
   std::copy_if(jobs.begin(), jobs.end(), std::back_inserter(from),
-               [&](const PlannedJob& job) { return job.round == heaviest->first; });
+               [&](const PlannedJob& job) { return job.depth == heaviest->first; });
   Draw draw(seed);
   std::vector<PlannedJob> sample;
-  for (std::uint64_t i = 0; i < count; ++i) sample.push_back(from[draw.next() % from.size()]);
+  for (std::uint64_t i = 0; i < count; ++i) {
+    sample.push_back(from[draw.next() % from.size()]);
+    sample.back().needs.clear();
+  }
   return sample;
 }
 

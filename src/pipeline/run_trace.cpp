@@ -45,7 +45,11 @@ TraceLine line_of(const JobAccepted& e, double t) {
   line.worker = e.worker.value;
   line.job = e.key.value;
   line.kind = e.job.kind;
-  line.round = e.round;
+  line.stage = e.place.stage;
+  line.index = e.place.index;
+  for (const JobPlace::Need& each : e.place.needs) {
+    line.needs.push_back({each.stage, each.first, each.count});
+  }
   line.triangles = e.job.cost;
   line.memory = e.job.memory;
   for (const FileRef& input : e.job.inputs) line.read_bytes += input.size;

@@ -7,7 +7,7 @@
 #include <meshfarm/pipeline/sink_need.hpp>
 #include <meshfarm/util/errors.hpp>
 
-#include "pipeline/bake_plan.hpp"
+#include "pipeline/bake_stage.hpp"
 #include "pipeline/texture_bake.hpp"
 
 namespace meshfarm {

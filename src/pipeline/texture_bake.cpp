@@ -192,13 +192,14 @@ JobOutput publish_bake_scene(const Stage& stage, const Manifest& manifest, const
 }
 
 PictureFiles baked_picture(const Stage& stage, const Manifest& manifest,
-                           const TextureLayout& layout, const BakePlan& baked, unsigned threads) {
+                           const TextureLayout& layout, const BakedTexture& baked,
+                           unsigned threads) {
   BakedCanvas canvas(layout.size);
-  for (const FileRef& file : baked.texels()) {
+  for (const FileRef& file : baked.texels) {
     canvas.add(decode_baked_texels(stage.read(file), file.name));
   }
   BakedPicture picture = canvas.finish(threads);
-  tell_of_damaged(manifest, layout.pictures, baked.damaged());
+  tell_of_damaged(manifest, layout.pictures, baked.damaged);
   const bool lossy = std::all_of(layout.pictures.begin(), layout.pictures.end(),
                                  [](const auto& each) { return !each || each->is_lossy; });
   const auto file = std::make_shared<const std::string>(encoded_picture(

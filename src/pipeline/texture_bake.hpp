@@ -13,7 +13,7 @@
 #include <meshfarm/io/tiled_picture.hpp>
 #include <meshfarm/staging/stage.hpp>
 
-#include "pipeline/bake_plan.hpp"
+#include "pipeline/bake_stage.hpp"
 
 namespace meshfarm {
 
@@ -54,7 +54,8 @@ JobOutput publish_bake_scene(const Stage& stage, const Manifest& manifest, const
 /// published. Pictures of the input that are damaged are named in warnings. Memory: 19 bytes a
 /// texel.
 PictureFiles baked_picture(const Stage& stage, const Manifest& manifest,
-                           const TextureLayout& layout, const BakePlan& baked, unsigned threads);
+                           const TextureLayout& layout, const BakedTexture& baked,
+                           unsigned threads);
 /// One material that has it.
 LabelMeaning baked_labels();
 

@@ -20,13 +20,14 @@ constexpr double k_right = 20;
 constexpr double k_axis = 24;
 /// Jobs that would be drawn narrower than this are drawn as one with their neighbours.
 constexpr double k_least_width = 1.5;
-constexpr const char* k_round_colours[] = {"#4878a8", "#d08030", "#58a058", "#a05898"};
+constexpr const char* k_stage_colours[] = {"#4878a8", "#d08030", "#58a058", "#a05898",
+                                           "#a87848", "#48a0a0", "#808080", "#c05060"};
 
 /// When a worker computed, and at what.
 struct Span {
   double begin = 0;
   double end = 0;
-  std::uint32_t round = 0;
+  std::uint32_t stage = 0;  // of Frame::stages
   std::uint64_t jobs = 1;
   std::uint64_t triangles = 0;
 };
@@ -43,7 +44,8 @@ struct Row {
 
 struct Frame {
   std::map<std::uint32_t, Row> rows;
-  double begin = 0;  // of the farmed phase
+  std::vector<std::string> stages;  // as they first came
+  double begin = 0;                 // of the farmed phase
   double end = 1;
   double length() const { return std::max(1e-3, end - begin); }
   double x(double t) const {
@@ -51,11 +53,23 @@ struct Frame {
   }
 };
 
-Span span_of(const TraceDone& job) {
+/// Of old traces, too.
+std::string stage_of(const TraceDone& job) {
+  return job.stage.empty() ? "round " + std::to_string(job.round + 1) : job.stage;
+}
+
+std::uint32_t number_of(std::vector<std::string>& stages, const std::string& stage) {
+  const auto found = std::find(stages.begin(), stages.end(), stage);
+  const auto number = static_cast<std::uint32_t>(found - stages.begin());
+  if (found == stages.end()) stages.push_back(stage);
+  return number;
+}
+
+Span span_of(const TraceDone& job, std::uint32_t stage) {
   // The trace has when the result was accepted: the job was written before, and computed before
   // that.
   const double computed = job.t - job.write_ms / 1000.0;
-  return {computed - job.compute_ms / 1000.0, computed, job.round, 1, job.triangles};
+  return {computed - job.compute_ms / 1000.0, computed, stage, 1, job.triangles};
 }
 
 Frame frame_of(const Trace& trace) {
@@ -66,7 +80,7 @@ Frame frame_of(const Trace& trace) {
   for (const TraceFailed& each : trace.failed) frame.rows[each.worker].failures.push_back(each.t);
   for (const TraceDone& each : trace.done) {
     Row& row = frame.rows[each.worker];
-    row.spans.push_back(span_of(each));
+    row.spans.push_back(span_of(each, number_of(frame.stages, stage_of(each))));
     row.computed_s += each.compute_ms / 1000.0;
     ++row.jobs;
     row.triangles += each.triangles;
@@ -82,7 +96,7 @@ std::vector<Span> drawable(std::vector<Span> spans, const Frame& frame) {
             [](const Span& a, const Span& b) { return a.begin < b.begin; });
   std::vector<Span> merged;
   for (const Span& each : spans) {
-    const bool close = !merged.empty() && merged.back().round == each.round &&
+    const bool close = !merged.empty() && merged.back().stage == each.stage &&
                        frame.x(each.end) - frame.x(merged.back().begin) < 2 * k_least_width &&
                        frame.x(each.begin) - frame.x(merged.back().end) < k_least_width / 2;
     if (!close) {
@@ -109,6 +123,10 @@ void draw_axis(Svg& svg, const Frame& frame, double bottom) {
   }
 }
 
+const char* colour_of(std::uint32_t stage) {
+  return k_stage_colours[stage % std::size(k_stage_colours)];
+}
+
 void draw_row(Svg& svg, const Frame& frame, const Row& row, double y, double height) {
   const double first = std::max(frame.begin, row.joined.t);
   const double last = std::min(frame.end, row.left.value_or(frame.end));
@@ -117,13 +135,13 @@ void draw_row(Svg& svg, const Frame& frame, const Row& row, double y, double hei
   }
   for (const Span& each : drawable(row.spans, frame)) {
     const double x = frame.x(each.begin);
-    const std::string title = (each.jobs == 1 ? "a job of " : grouped(each.jobs) + " jobs of ") +
-                              grouped(each.triangles) + " triangles, " +
-                              s_text(each.begin - frame.begin) + " to " +
-                              s_text(each.end - frame.begin);
+    const std::string title =
+        (each.jobs == 1 ? "a job of " : grouped(each.jobs) + " jobs of ") +
+        grouped(each.triangles) + " triangles, " + s_text(each.begin - frame.begin) + " to " +
+        s_text(each.end - frame.begin) + " (" + frame.stages[each.stage] + ")";
     const double gap = frame.x(each.end) - x > 4 ? 0.6 : 0;
-    svg.rect({x, y}, std::max(0.4, frame.x(each.end) - x - gap), height,
-             k_round_colours[each.round % std::size(k_round_colours)], title);
+    svg.rect({x, y}, std::max(0.4, frame.x(each.end) - x - gap), height, colour_of(each.stage),
+             title);
   }
   for (const double t : row.failures) {
     svg.circle({frame.x(t), y + height / 2}, 3, "#c02020", "an attempt failed");
@@ -247,7 +265,7 @@ std::string render_run_page(const Manifest& manifest, const Trace& trace,
          "font-weight: normal; }\nth { color: #888; } h2 { font-size: 16px; margin: 24px 0 8px; }\n"
          "</style></head><body>\n<h1>meshfarm run</h1>\n" +
          facts(manifest, trace, frame, times) +
-         "<h2>Who computed when</h2>\n<p>A bar is a job (its colour the round), light grey a "
+         "<h2>Who computed when</h2>\n<p>A bar is a job (its colour the stage), light grey a "
          "worker "
          "that waits, red an attempt that failed or a worker that left.</p>\n" +
          timeline(frame) + "<h2>Done</h2>\n" + progress_chart(frame, trace) + "<h2>Workers</h2>\n" +

@@ -52,12 +52,16 @@ Json to_json(const TraceLeft& l) {
 }
 
 Json to_json(const TraceDone& l) {
+  Json needs = Json::array();
+  for (const TraceDone::Needs& n : l.needs) needs.push_back({n.stage, n.first, n.count});
   return {{"kind", "done"},
           {"t", l.t},
           {"worker", l.worker},
           {"job", to_hex(l.job)},
           {"job_kind", l.kind},
-          {"round", l.round},
+          {"stage", l.stage},
+          {"index", l.index},
+          {"needs", needs},
           {"triangles", l.triangles},
           {"memory", l.memory},
           {"read_bytes", l.read_bytes},
@@ -166,10 +170,32 @@ void read(const Json& json, TraceLeft& l) {
   get(json, "why", l.why);
 }
 
+void read_needs(const Json& json, std::vector<TraceDone::Needs>& needs) {
+  const auto found = json.find("needs");
+  if (found == json.end()) return;
+  const auto number = [](const Json& value) {
+    const std::uint64_t most = std::numeric_limits<std::uint32_t>::max();
+    return value.is_number_unsigned() && value.get<std::uint64_t>() <= most;
+  };
+  const bool fine =
+      found->is_array() && std::all_of(found->begin(), found->end(), [&](const Json& each) {
+        return each.is_array() && each.size() == 3 && each[0].is_string() && number(each[1]) &&
+               number(each[2]);
+      });
+  if (!fine) throw DataError("\"needs\" is of the wrong kind");
+  for (const Json& each : *found) {
+    needs.push_back(
+        {each[0].get<std::string>(), each[1].get<std::uint32_t>(), each[2].get<std::uint32_t>()});
+  }
+}
+
 void read(const Json& json, TraceDone& l) {
   get(json, "worker", l.worker);
   get_key(json, "job", l.job);
   get(json, "job_kind", l.kind);
+  get(json, "stage", l.stage);
+  get(json, "index", l.index);
+  read_needs(json, l.needs);
   get(json, "round", l.round);
   get(json, "triangles", l.triangles);
   get(json, "memory", l.memory);

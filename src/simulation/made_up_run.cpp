@@ -6,7 +6,7 @@
 #include <memory>
 #include <utility>
 
-#include <meshfarm/farm/rounds.hpp>
+#include <meshfarm/farm/job_graph.hpp>
 #include <meshfarm/util/checksum.hpp>
 
 namespace meshfarm {
@@ -61,29 +61,34 @@ JobSource simulated_jobs(std::uint64_t count, const std::string& target) {
   const auto shared = [](std::vector<Job> jobs) {
     return std::make_shared<const std::vector<Job>>(std::move(jobs));
   };
-  return [most = shared(named("job ", first, first / 4)),
-          rest = shared(named("end ", last, 0))](std::span<const AcceptedJob> accepted) {
-    if (accepted.size() < most->size()) return *most;
-    if (accepted.size() == most->size() + 1) return *rest;
-    if (accepted.size() > most->size()) return std::vector<Job>{};
-    const std::string needs = accepted.empty() ? "nothing" : accepted.back().output.summary;
-    std::vector<Job> all{made_up("all, to " + needs)};
-    all.front().by_sink = true;
-    return all;
+  return [most = shared(named("job ", first, first / 4)), rest = shared(named("end ", last, 0))] {
+    constexpr std::uint32_t k_most = 0, k_all = 1, k_rest = 2;
+    JobGraph graph({"most", "all", "rest"});
+    std::uint32_t count = 0;
+    for (const Job& job : *most) graph.add({k_most, count++}, job);
+    graph.add({k_all, 0}, {all_of(k_most, count)}, [count](JobGraph& so_far) {
+      const std::string needs = count == 0 ? "nothing" : so_far.output({k_most, count - 1}).summary;
+      Job all = made_up("all, to " + needs);
+      all.by_sink = true;
+      return all;
+    });
+    graph.then({{k_all, 0}}, [rest](JobGraph& so_far) {
+      for (std::uint32_t i = 0; i < rest->size(); ++i) so_far.add({k_rest, i}, (*rest)[i]);
+    });
+    return graph;
   };
 }
 
 std::vector<std::string> expected_summaries(const JobSource& source) {
-  Rounds rounds(source);
-  for (auto jobs = rounds.advance(); !jobs.empty(); jobs = rounds.advance()) {
-    for (const auto& [key, job] : jobs) {
-      JobOutput output;
-      output.summary = simulated_summary(job);
-      rounds.accept(key, output);
-    }
+  JobGraph graph = source();
+  std::vector<WantedJob> jobs = graph.begin();
+  for (std::size_t i = 0; i < jobs.size(); ++i) {
+    JobOutput output;
+    output.summary = simulated_summary(jobs[i].job);
+    for (WantedJob& each : graph.accept(jobs[i].key, output)) jobs.push_back(std::move(each));
   }
   std::vector<std::string> summaries;
-  for (const AcceptedJob& each : rounds.outputs()) summaries.push_back(each.output.summary);
+  for (const AcceptedJob& each : graph.outputs()) summaries.push_back(each.output.summary);
   return summaries;
 }
 

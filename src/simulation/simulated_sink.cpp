@@ -152,7 +152,7 @@ void SimulatedFarm::sink_act(Run& run, MakeOutput&) {
         return sink_does(run,
                          run.sink.core->completed({"no space left on device", true}, farm_now()));
       }
-      const auto made = run.sink.core->rounds().outputs();
+      const auto made = run.sink.core->graph().outputs();
       for (const AcceptedJob& each : made) {
         run.checks.that(folder_.has_whole(each.output.file.name), "an accepted file is not there");
       }

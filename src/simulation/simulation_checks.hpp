@@ -9,7 +9,7 @@
 #include <vector>
 
 #include <meshfarm/farm/dispatcher.hpp>
-#include <meshfarm/farm/rounds.hpp>
+#include <meshfarm/farm/job_graph.hpp>
 
 namespace meshfarm {
 

@@ -159,8 +159,7 @@ class SinkLoop {
     } else if (!to_do_.empty()) {
       doing_ = std::move(to_do_.front());
       to_do_.pop_front();
-      const auto outputs = core_.rounds().outputs();
-      accepted_.assign(outputs.begin(), outputs.end());
+      accepted_ = core_.graph().outputs();
       problem_ = nullptr;
       disk_.start([this] { do_here(); });
     } else if (std::exchange(make_output_, false)) {
@@ -294,7 +293,7 @@ class SinkLoop {
 
   void make_output() {
     try {
-      complete_(core_.rounds().outputs());
+      complete_(core_.graph().outputs());
     } catch (...) {
       problem_ = std::current_exception();
     }

@@ -34,10 +34,10 @@ constexpr FarmTime k_state_every_per_worker{5};
 
 /// A job that no message can carry is our caller's mistake: it is found before anything is sent.
 JobSource checked_source(const JobSource& source) {
-  return [source](std::span<const AcceptedJob> accepted) {
-    std::vector<Job> jobs = source(accepted);
-    for (const Job& job : jobs) encode(Assignment{0, 0, 0, 0, job});
-    return jobs;
+  return [source] {
+    JobGraph graph = source();
+    graph.inspect([](const Job& job) { encode(Assignment{0, 0, 0, 0, job}); });
+    return graph;
   };
 }
 

@@ -11,10 +11,11 @@
 #include <meshfarm/farm/ledger.hpp>
 #include <meshfarm/io/manifest.hpp>
 #include <meshfarm/pipeline/algorithm.hpp>
-#include <meshfarm/pipeline/budget.hpp>
 #include <meshfarm/pipeline/job_table.hpp>
+#include <meshfarm/pipeline/run_graph.hpp>
 
 #include "support/farm_bench.hpp"
+#include "support/next_jobs.hpp"
 
 namespace meshfarm::test {
 namespace {
@@ -49,7 +50,7 @@ void work_with_version(const std::string& folder, std::uint32_t version) {
   const Manifest manifest = decode_manifest(stage.read(ManifestName{}), folder);
   RunOptions run;
   run.ratio = std::stod(k_ratio);
-  const std::vector<Job> jobs = make_job_source(manifest, run)({});
+  const std::vector<Job> jobs = test::next_jobs(make_job_source(manifest, run), {});
   REQUIRE(jobs.size() == 4);
   const JobContext context{stage, 1, 7, [](std::uint64_t) { return true; }};
   std::vector<std::string> records;

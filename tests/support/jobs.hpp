@@ -4,11 +4,10 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <span>
 #include <string>
 #include <vector>
 
-#include <meshfarm/farm/job.hpp>
+#include <meshfarm/farm/job_graph.hpp>
 
 namespace meshfarm::test {
 
@@ -22,11 +21,26 @@ inline std::vector<Job> make_jobs(std::size_t count, const std::string& prefix =
   return jobs;
 }
 
-/// One round of `count` jobs.
-inline JobSource one_round(std::size_t count) {
-  return [count](std::span<const AcceptedJob> accepted) {
-    return accepted.empty() ? make_jobs(count) : std::vector<Job>{};
+/// Stages of jobs that each need all of the stage before.
+inline JobSource in_stages(const std::vector<std::vector<Job>>& stages) {
+  return [stages] {
+    std::vector<std::string> names;
+    for (std::size_t s = 0; s < stages.size(); ++s) names.push_back("stage " + std::to_string(s));
+    JobGraph graph(names);
+    JobNeeds needs;
+    for (std::uint32_t s = 0; s < stages.size(); ++s) {
+      for (std::uint32_t i = 0; i < stages[s].size(); ++i) {
+        graph.add({s, i}, needs, [job = stages[s][i]](JobGraph&) { return job; });
+      }
+      needs = {all_of(s, stages[s].size())};
+    }
+    return graph;
   };
+}
+
+/// One stage of `count` jobs.
+inline JobSource one_stage(std::size_t count) {
+  return in_stages({make_jobs(count)});
 }
 
 }  // namespace meshfarm::test

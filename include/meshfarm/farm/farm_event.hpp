@@ -6,7 +6,7 @@
 #include <string>
 #include <variant>
 
-#include <meshfarm/farm/job.hpp>
+#include <meshfarm/farm/job_graph.hpp>
 #include <meshfarm/farm/protocol.hpp>
 
 namespace meshfarm {
@@ -31,7 +31,7 @@ struct JobAccepted {
   WorkerId worker;  // who did it
   JobKey key;
   Job job;
-  std::uint32_t round = 0;  // from 0: jobs of a round wait for all of those before
+  JobPlace place;
   std::uint64_t output_bytes = 0;
   JobTimes times;
 };

@@ -5,7 +5,6 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
-#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -32,7 +31,7 @@ struct Job {
   std::uint64_t memory = 0;     // estimated need in bytes, inputs included; 0: fits everywhere
   /// Of what does the job: another version may make other bytes of the same inputs.
   std::uint32_t algorithm = 0;
-  /// The sink does it, not a worker: what needs all that was accepted before in one place.
+  /// The sink does it, not a worker: what needs much that was accepted before in one place.
   bool by_sink = false;
 };
 
@@ -97,10 +96,5 @@ struct AcceptedJob {
   JobKey key;
   JobOutput output;
 };
-
-/// The next round of jobs once all jobs of the rounds before are accepted (their outputs, in the
-/// order in which they were asked for); none when the run's farmed work is complete.
-/// Pure: ventilator and sink each ask their own copy and must get the same answer.
-using JobSource = std::function<std::vector<Job>(std::span<const AcceptedJob> accepted)>;
 
 }  // namespace meshfarm

@@ -14,8 +14,7 @@
 #include <utility>
 #include <vector>
 
-#include <meshfarm/farm/job.hpp>
-#include <meshfarm/farm/rounds.hpp>
+#include <meshfarm/farm/job_graph.hpp>
 
 namespace meshfarm {
 
@@ -69,7 +68,7 @@ class Plan {
  public:
   /// A job that failed `max_attempts` times is given up.
   Plan(JobSource source, std::uint32_t max_attempts)
-      : source_(std::move(source)), rounds_(source_), max_attempts_(max_attempts) {}
+      : source_(std::move(source)), graph_(source_()), max_attempts_(max_attempts) {}
 
   /// Begins (again) from what the sink has: the jobs accepted are exactly these, whatever was
   /// accepted before. Jobs that run go on running; attempts and failures are remembered.
@@ -96,8 +95,8 @@ class Plan {
   std::optional<JobState> state(JobKey key) const;
   /// A job that is known.
   const Job& job(JobKey key) const { return entries_.at(key).job; }
-  /// The round, from 0, that first asked for a job that is known.
-  std::uint32_t round(JobKey key) const { return entries_.at(key).round; }
+  /// Where a job that is known stands in the run.
+  JobPlace place(JobKey key) const { return graph_.place(entries_.at(key).name); }
   /// The largest cost first.
   std::vector<JobKey> ready_jobs() const;
   /// How many ready jobs need more memory than this.
@@ -108,8 +107,8 @@ class Plan {
   }
   /// How often the job was issued.
   std::uint32_t attempts(JobKey key) const;
-  /// All jobs of all rounds are done.
-  bool complete() const { return started_ && rounds_.complete(); }
+  /// All jobs of the run are done.
+  bool complete() const { return started_ && graph_.complete(); }
   /// Nothing is left to do although some jobs were given up: the run cannot be completed.
   bool stuck() const;
   /// The jobs given up, in the order in which they were asked for.
@@ -122,9 +121,9 @@ class Plan {
   struct Entry {
     Job job;
     std::uint64_t order = 0;
-    std::uint32_t round = 0;
+    JobName name;
     JobState state = JobState::ready;
-    bool wanted = false;  // by the rounds reached since the last restart
+    bool wanted = false;  // as far as the run has come since the last restart
     std::uint32_t attempts = 0;
     std::uint32_t live = 0;  // attempts that somebody makes
     std::vector<std::string> failures;
@@ -138,7 +137,7 @@ class Plan {
     bool operator<(const ReadyJob& other) const;
   };
 
-  void advance(const std::map<JobKey, JobOutput>& accepted);
+  void want(std::vector<WantedJob> jobs, const std::map<JobKey, JobOutput>& accepted);
   void add_ready(JobKey key, const Entry& entry);
   void remove_ready(JobKey key, const Entry& entry);
   const ReadyJob* choose(const JobChoice& choice) const;
@@ -148,11 +147,10 @@ class Plan {
   void count_no_more(const Entry& entry);
 
   JobSource source_;
-  Rounds rounds_;
+  JobGraph graph_;
   std::uint32_t max_attempts_;
   bool started_ = false;
   std::uint64_t next_order_ = 0;
-  std::uint32_t rounds_begun_ = 0;                         // since the last restart
   std::unordered_map<JobKey, Entry, JobKeyHash> entries_;  // for look-up, never iterated
   std::vector<JobKey> wanted_;                             // in the order asked for
   std::set<ReadyJob> ready_;

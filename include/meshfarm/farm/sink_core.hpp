@@ -11,9 +11,9 @@
 #include <variant>
 #include <vector>
 
+#include <meshfarm/farm/job_graph.hpp>
 #include <meshfarm/farm/membership.hpp>
 #include <meshfarm/farm/protocol.hpp>
-#include <meshfarm/farm/rounds.hpp>
 #include <meshfarm/farm/when_full.hpp>
 
 namespace meshfarm {
@@ -33,7 +33,7 @@ struct DoHere {
   JobKey key;
   Job job;
 };
-/// Make the run's output of Rounds::outputs(); answered by completed().
+/// Make the run's output of JobGraph::outputs(); answered by completed().
 struct MakeOutput {};
 /// The end of the sink.
 struct SinkLeaves {
@@ -55,10 +55,10 @@ using SinkActions = std::vector<SinkAction>;
 class SinkCore {
  public:
   /// `journal`: what earlier sinks accepted; believed after its files are checked again.
-  SinkCore(MemberOptions member, JobSource source, std::map<JobKey, JobOutput> journal,
+  SinkCore(MemberOptions member, const JobSource& source, std::map<JobKey, JobOutput> journal,
            WhenFull when_full = WhenFull::wait)
       : member_(std::move(member)),
-        rounds_(std::move(source)),
+        graph_(source()),
         journal_(std::move(journal)),
         when_full_(when_full) {}
 
@@ -80,7 +80,7 @@ class SinkCore {
   SinkActions fail(const SinkProblem& problem);
   SinkActions stop();
 
-  const Rounds& rounds() const { return rounds_; }
+  const JobGraph& graph() const { return graph_; }
   /// How long to wait for messages before tick() is called again, at most.
   FarmTime pause(FarmTime now) const { return member_.pause(now); }
   /// Of the ventilator that was joined last.
@@ -93,7 +93,7 @@ class SinkCore {
   void on(Membership::Event event, FarmTime now);
   void run_over();
   void take_result(const Result& result);
-  void want();
+  void want(std::vector<WantedJob> jobs);
   void do_here(const DoHere& what);
   void tell_all();
   void say_again();
@@ -112,7 +112,7 @@ class SinkCore {
   SinkActions take();
 
   Membership member_;
-  Rounds rounds_;
+  JobGraph graph_;
   std::map<JobKey, JobOutput> journal_;
   std::map<JobKey, std::string> kinds_;  // of the jobs wanted
   std::map<JobKey, Job> own_;            // of these, those that the sink does

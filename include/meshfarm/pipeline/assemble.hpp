@@ -35,7 +35,7 @@ class Assembler {
   Assembler& operator=(const Assembler&) = delete;
 
   /// Does a job of make_job_source that is the sink's: finishes the mesh before others go on with
-  /// it. `accepted`: what was in the rounds before.
+  /// it. `accepted`: at least what made the mesh.
   JobOutput do_job(const Job& job, const JobContext& context,
                    std::span<const AcceptedJob> accepted);
   /// The end of a run, once every job is accepted: reads the chosen rungs, stitches them in the

@@ -13,19 +13,26 @@ namespace meshfarm {
 
 /// A farmed job of the past, on a worker of speed 1.
 struct PlannedJob {
-  std::uint32_t round = 0;
+  /// Neighbours among the jobs.
+  struct Range {
+    std::size_t first = 0;
+    std::size_t end = 0;
+    friend auto operator<=>(const Range&, const Range&) = default;
+  };
+  std::uint32_t depth = 0;  // of the longest chain of jobs before it
   std::uint64_t triangles = 0;
   std::uint64_t read_bytes = 0;
   std::uint64_t written_bytes = 0;
   double compute_s = 0;
+  std::vector<Range> needs = {};  // if none are given: all jobs of less depth
 };
 
-/// The jobs of a trace. Speed 1 is that of the trace's worker that did most work in the time it
-/// computed. A job that was traced twice (an epoch before did it, too) counts once.
+/// The jobs of a trace, sorted by depth. Speed 1 is that of the trace's worker that did most work
+/// in the time it computed. A job that was traced twice (an epoch before did it, too) counts once.
 std::vector<PlannedJob> planned_jobs(const Trace& trace);
 /// The same work, cut into so many jobs instead.
 std::vector<PlannedJob> as_parts(std::span<const PlannedJob> jobs, std::uint64_t count);
-/// So many of at least one job, drawn at random from the round with the most work: of streams the
+/// So many of at least one job, drawn at random from the depth with the most work: of streams the
 /// sweep, not the samples before it (the paper, 3.4.2).
 std::vector<PlannedJob> drawn(std::span<const PlannedJob> jobs, std::uint64_t count,
                               std::uint64_t seed);

@@ -28,7 +28,7 @@ enum class Finish : std::uint8_t {
 
 /// How swept streams become one mesh.
 enum class Composition : std::uint8_t {
-  automatic,  // as a tree where that is worth its rounds
+  automatic,  // as a tree where that is worth its jobs
   tree,       // neighbours are joined by jobs of the farm first
   sink,       // the sink joins all
 };

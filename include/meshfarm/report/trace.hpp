@@ -41,11 +41,20 @@ struct TraceLeft {
 };
 /// A job whose result was accepted.
 struct TraceDone {
+  /// Neighbours of one stage.
+  struct Needs {
+    std::string stage;
+    std::uint32_t first = 0;
+    std::uint32_t count = 0;
+  };
   double t = 0;
   std::uint32_t worker = 0;
   std::uint64_t job = 0;  // its key
   std::string kind;
-  std::uint32_t round = 0;      // jobs of a round wait for all of the rounds before
+  std::string stage;            // of the run's jobs; empty in old traces
+  std::uint32_t index = 0;      // in the stage
+  std::vector<Needs> needs;     // was accepted before this was possible
+  std::uint32_t round = 0;      // of old traces: all of the rounds before were accepted before
   std::uint64_t triangles = 0;  // estimated work
   std::uint64_t memory = 0;
   std::uint64_t read_bytes = 0;

@@ -26,7 +26,7 @@
 #include <string>
 #include <vector>
 
-#include <meshfarm/farm/job.hpp>
+#include <meshfarm/farm/job_graph.hpp>
 #include <meshfarm/farm/protocol.hpp>
 #include <meshfarm/farm/schedule.hpp>
 #include <meshfarm/farm/when_full.hpp>

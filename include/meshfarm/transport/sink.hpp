@@ -10,7 +10,7 @@
 #include <string>
 #include <string_view>
 
-#include <meshfarm/farm/job.hpp>
+#include <meshfarm/farm/job_graph.hpp>
 #include <meshfarm/farm/when_full.hpp>
 #include <meshfarm/staging/stage.hpp>
 #include <meshfarm/transport/security.hpp>
@@ -30,17 +30,16 @@ struct SinkOptions {
   /// Throws DataError if the source could not take this output of a job of that kind: then it is
   /// not accepted, and the job is done again. May be empty.
   std::function<void(std::string_view kind, const JobOutput&)> inspect;
-  /// Does the source's jobs that are the sink's (Job::by_sink), of what was accepted in the rounds
-  /// before; called by another thread. Throws Error: the run fails then. May be empty if there are
-  /// none.
+  /// Does the source's jobs that are the sink's (Job::by_sink), of what is accepted by then; called
+  /// by another thread. Throws Error: the run fails then. May be empty if there are none.
   std::function<JobOutput(const Job&, const JobContext&, std::span<const AcceptedJob>)> do_here;
 };
 
 /// Collects results: verifies each file, journals it, tells the ventilator, until every job that
 /// `source` wants is accepted; results accepted by an earlier incarnation or run are taken from the
 /// journals after their files are verified again. Then calls `complete` with the outputs in the
-/// order in which `source` asked for the jobs, while it stays in touch with the ventilator, and
-/// tells the ventilator that the run is over.
+/// order of the jobs' names, while it stays in touch with the ventilator, and tells the ventilator
+/// that the run is over.
 /// Returns the epoch of the ventilator that it served last.
 /// Throws IncompleteError when stopped or when the ventilator is lost, DataError when jobs failed
 /// for good.

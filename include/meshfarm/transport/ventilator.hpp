@@ -11,7 +11,7 @@
 
 #include <meshfarm/farm/farm_event.hpp>
 #include <meshfarm/farm/farm_progress.hpp>
-#include <meshfarm/farm/job.hpp>
+#include <meshfarm/farm/job_graph.hpp>
 #include <meshfarm/farm/protocol.hpp>
 #include <meshfarm/farm/schedule.hpp>
 #include <meshfarm/farm/when_full.hpp>

@@ -16,16 +16,10 @@ inline JobOutput output_of(JobKey key) {
   return {{to_string(ResultName{key.value, 1, 1}), 1, 1}, "made"};
 }
 
-inline JobSource source_of(std::vector<Job> jobs) {
-  return [jobs = std::move(jobs)](std::span<const AcceptedJob> accepted) {
-    return accepted.empty() ? jobs : std::vector<Job>{};
-  };
-}
-
 /// A plan with a scheduler and short words.
-struct Desk {
-  explicit Desk(std::vector<Job> jobs, const SchedulerOptions& options = {})
-      : plan(source_of(std::move(jobs)), 3), scheduler(options) {
+struct ScheduleDesk {
+  explicit ScheduleDesk(std::vector<Job> jobs, const SchedulerOptions& options = {})
+      : plan(in_stages({std::move(jobs)}), 3), scheduler(options) {
     plan.restart({});
   }
   void join(std::uint32_t id, const std::string& host, const Capacity& capacity = {},

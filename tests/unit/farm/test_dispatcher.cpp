@@ -14,7 +14,7 @@ namespace meshfarm::test {
 namespace {
 
 TEST_CASE("no job goes out before a sink is ready, nor beyond the credit") {
-  Desk desk(one_round(10));
+  Desk desk(one_stage(10));
   desk.worker("w", 1);
   CHECK(names(desk.credit("w", 1, 2)).empty());
   CHECK(names(desk.sink("s", 9)) == "job 9@1 job 8@1 ");
@@ -26,7 +26,7 @@ TEST_CASE("no job goes out before a sink is ready, nor beyond the credit") {
 }
 
 TEST_CASE("the worker that will be free first is served first") {
-  Desk desk(one_round(4));
+  Desk desk(one_stage(4));
   desk.worker("a", 1);
   desk.worker("b", 2);
   desk.credit("a", 1, 4);
@@ -34,10 +34,8 @@ TEST_CASE("the worker that will be free first is served first") {
   CHECK(names(desk.sink("s", 9)) == "job 3@1 job 2@2 job 1@2 job 0@1 ");
 }
 
-TEST_CASE("those who watch are told who came, what was done in which round, and who left") {
-  const JobSource source = [](std::span<const AcceptedJob> accepted) {
-    return accepted.size() < 2 ? make_jobs(accepted.empty() ? 1 : 2) : std::vector<Job>{};
-  };
+TEST_CASE("those who watch are told who came, what was done in which stage, and who left") {
+  const JobSource source = in_stages({make_jobs(1), make_jobs(2)});
   DispatcherOptions options;
   options.run = k_run;
   options.epoch = k_epoch;
@@ -54,16 +52,19 @@ TEST_CASE("those who watch are told who came, what was done in which round, and 
   CHECK(std::get<WorkerJoined>(told(hello)).capacity.threads == 2);
   desk.dispatcher.lane_opened({1}, "lane");
   desk.credit("w", 1, 5);
-  CHECK(std::get<JobAccepted>(told(desk.accept("s", key(0), 1))).round == 0);
+  CHECK(std::get<JobAccepted>(told(desk.accept("s", key(0), 1))).place.stage == "stage 0");
   CHECK(only<Tell>(desk.accept("s", key(0), 1)).empty());  // it is not news
   const auto second = std::get<JobAccepted>(told(desk.accept("s", key(1), 1)));
-  CHECK(second.round == 1);
+  CHECK(second.place.stage == "stage 1");
+  CHECK(second.place.index == 1);
+  REQUIRE(second.place.needs.size() == 1);
+  CHECK(second.place.needs[0].stage == "stage 0");
   CHECK(second.job.parameters == "job 1");
   CHECK(second.worker == WorkerId{1});
 }
 
 TEST_CASE("a silent worker loses its jobs; those it may have had in work are suspects") {
-  Desk desk(one_round(4));
+  Desk desk(one_stage(4));
   desk.sink("s", 9);
   desk.worker("a", 1);
   CHECK(names(desk.credit("a", 1, 3)) == "job 3@1 job 2@1 job 1@1 ");
@@ -116,7 +117,7 @@ Actions worker_dies(Desk& desk, std::uint32_t worker) {
 }
 
 TEST_CASE("of the jobs in work when a worker is lost the one that was a suspect before is blamed") {
-  Desk desk(one_round(3));
+  Desk desk(one_stage(3));
   desk.sink("s", 9);
   desk.worker("a", 1);
   CHECK(names(desk.credit("a", 1, 2)) == "job 2@1 job 1@1 ");
@@ -143,7 +144,7 @@ TEST_CASE("of the jobs in work when a worker is lost the one that was a suspect 
 }
 
 TEST_CASE("a job that three workers died of is given up") {
-  Desk desk(one_round(1));
+  Desk desk(one_stage(1));
   desk.sink("s", 9);
   CHECK(only<Finish>(worker_dies(desk, 1)).empty());
   CHECK(only<Finish>(worker_dies(desk, 2)).empty());
@@ -156,7 +157,7 @@ TEST_CASE("a job that three workers died of is given up") {
 }
 
 TEST_CASE("a job is not blamed for a worker that comes back") {
-  Desk desk(one_round(1));
+  Desk desk(one_stage(1));
   desk.sink("s", 9);
   worker_dies(desk, 1);
   worker_dies(desk, 2);
@@ -178,7 +179,7 @@ Heartbeat standing(std::uint32_t worker, JobKey job, std::uint32_t still_ms, boo
 }
 
 TEST_CASE("a job that stands still costs its worker its jobs") {
-  Desk desk(one_round(2));
+  Desk desk(one_stage(2));
   desk.sink("s", 9);
   desk.worker("a", 1);
   desk.worker("b", 2);
@@ -217,10 +218,7 @@ TEST_CASE("a job that stands still costs its worker its jobs") {
 
 TEST_CASE("a job that takes long by its estimate may stand still longer") {
   const std::uint64_t hundred_seconds = 100'000'000;
-  Desk desk([&](std::span<const AcceptedJob> accepted) {
-    return accepted.empty() ? std::vector<Job>{make_job("big", hundred_seconds)}
-                            : std::vector<Job>{};
-  });
+  Desk desk(in_stages({{make_job("big", hundred_seconds)}}));
   desk.sink("s", 9);
   desk.worker("a", 1);
   desk.credit("a", 1, 1);
@@ -230,12 +228,9 @@ TEST_CASE("a job that takes long by its estimate may stand still longer") {
 }
 
 TEST_CASE("jobs that are larger than every worker's memory end the run, resumable") {
-  const auto source = [](std::span<const AcceptedJob> accepted) {
-    std::vector<Job> jobs = make_jobs(2);
-    jobs[1].memory = std::uint64_t{800} << 20;
-    return accepted.empty() ? jobs : std::vector<Job>{};
-  };
-  Desk desk(source);
+  std::vector<Job> jobs = make_jobs(2);
+  jobs[1].memory = std::uint64_t{800} << 20;
+  Desk desk(in_stages({jobs}));
   desk.sink("s", 9);
   Hello small{Role::worker, 0, 1, 1, "host", {}};
   small.capacity.memory = std::uint64_t{300} << 20;
@@ -266,7 +261,7 @@ TEST_CASE("jobs that are larger than every worker's memory end the run, resumabl
 }
 
 TEST_CASE("a sink that cannot read blames nobody, and the run may be taken up again") {
-  Desk desk(one_round(1));
+  Desk desk(one_stage(1));
   desk.sink("s", 9);
   desk.worker("a", 1);
   desk.worker("b", 2);
@@ -284,7 +279,7 @@ TEST_CASE("a sink that cannot read blames nobody, and the run may be taken up ag
 
 TEST_CASE("very many failures are told in a time that grows with their number only") {
   constexpr int k_jobs = 20'000;
-  Desk desk(one_round(k_jobs));
+  Desk desk(one_stage(k_jobs));
   desk.sink("s", 9);
   desk.worker("w", 1);
   const auto start = std::chrono::steady_clock::now();
@@ -296,7 +291,7 @@ TEST_CASE("very many failures are told in a time that grows with their number on
 }
 
 TEST_CASE("under full load jobs go out, and nobody is silent whose words are unread") {
-  Desk desk(one_round(2));
+  Desk desk(one_stage(2));
   desk.sink("s", 9);
   desk.worker("w", 1);
   desk.now += FarmTime(60'000);
@@ -309,7 +304,7 @@ TEST_CASE("under full load jobs go out, and nobody is silent whose words are unr
 }
 
 TEST_CASE("a duplicate of a result changes nothing") {
-  Desk desk(one_round(2));
+  Desk desk(one_stage(2));
   desk.sink("s", 9);
   desk.worker("w", 1);
   desk.credit("w", 1, 1);
@@ -320,7 +315,7 @@ TEST_CASE("a duplicate of a result changes nothing") {
 }
 
 TEST_CASE("a rejected result is made again; another worker's rejection is not ours") {
-  Desk desk(one_round(1));
+  Desk desk(one_stage(1));
   desk.sink("s", 9);
   desk.worker("w", 1);
   desk.credit("w", 1, 5);
@@ -337,7 +332,7 @@ TEST_CASE("a rejected result is made again; another worker's rejection is not ou
 }
 
 TEST_CASE("a worker that leaves gives its jobs back without blame") {
-  Desk desk(one_round(2));
+  Desk desk(one_stage(2));
   desk.sink("s", 9);
   desk.worker("a", 1);
   desk.worker("b", 2);
@@ -351,7 +346,7 @@ TEST_CASE("a worker that leaves gives its jobs back without blame") {
 }
 
 TEST_CASE("a worker that joins again under another routing id has lost what it held") {
-  Desk desk(one_round(1));
+  Desk desk(one_stage(1));
   desk.sink("s", 9);
   desk.worker("a", 1);
   desk.credit("a", 1, 1);
@@ -363,7 +358,7 @@ TEST_CASE("a worker that joins again under another routing id has lost what it h
 }
 
 TEST_CASE("a lane that lost a job is noticed") {
-  Desk desk(one_round(1));
+  Desk desk(one_stage(1));
   desk.sink("s", 9);
   desk.worker("a", 1);
   desk.credit("a", 1, 1);
@@ -377,7 +372,7 @@ TEST_CASE("a lane that lost a job is noticed") {
 }
 
 TEST_CASE("a sink that is lost stops the farm until one is back and has told what it has") {
-  Desk desk(one_round(3));
+  Desk desk(one_stage(3));
   desk.sink("s", 9);
   desk.worker("w", 1);
   desk.credit("w", 1, 2);
@@ -410,7 +405,7 @@ TEST_CASE("a sink that is lost stops the farm until one is back and has told wha
 }
 
 TEST_CASE("a process of another build is refused, and both versions are named") {
-  Desk desk(one_round(1));
+  Desk desk(one_stage(1));
   desk.sink("s", 9);
   for (const Role role : {Role::worker, Role::sink}) {
     Hello hello{role, k_run, 5, 1, "pc7", {}};
@@ -426,7 +421,7 @@ TEST_CASE("a process of another build is refused, and both versions are named") 
 }
 
 TEST_CASE("the words of another epoch or of a stranger are dropped") {
-  Desk desk(one_round(2));
+  Desk desk(one_stage(2));
   desk.sink("s", 9);
   desk.worker("w", 1);
   const auto before = desk.dispatcher.dropped();
@@ -440,7 +435,7 @@ TEST_CASE("the words of another epoch or of a stranger are dropped") {
 }
 
 TEST_CASE("the end: workers hear it once all is accepted, the sink once it is complete") {
-  Desk desk(one_round(1));
+  Desk desk(one_stage(1));
   desk.sink("s", 9);
   desk.worker("w", 1);
   desk.credit("w", 1, 1);

@@ -16,7 +16,7 @@ const FileRef k_file{"results/x", 5, 6};
 
 /// The sink is on "host"; workers 1 and 2 have hosts of their own, and the first has some jobs.
 struct ReadingDesk : Desk {
-  explicit ReadingDesk(const std::string& second_host = "host2") : Desk(one_round(60)) {
+  explicit ReadingDesk(const std::string& second_host = "host2") : Desk(one_stage(60)) {
     sink("s", 90);
     join("w1", 1, "host1");
     join("w2", 2, second_host);

@@ -14,7 +14,7 @@ Reject no_room(JobKey key, std::uint32_t attempt) {
 }
 
 TEST_CASE("a stage without room: nobody is blamed, and all wait for a probe that can be written") {
-  Desk desk(one_round(6));
+  Desk desk(one_stage(6));
   desk.sink("s", 9);
   desk.worker("w", 1);
   const auto sent = only<PushJob>(desk.credit("w", 1, 4));
@@ -45,7 +45,7 @@ TEST_CASE("a stage without room: nobody is blamed, and all wait for a probe that
 }
 
 TEST_CASE("a stage that is full again at once is asked for more room, later") {
-  Desk desk(one_round(2));
+  Desk desk(one_stage(2));
   desk.sink("s", 9);
   desk.worker("w", 1);
   const JobKey job = only<PushJob>(desk.credit("w", 1, 1)).at(0).key;
@@ -62,7 +62,7 @@ TEST_CASE("a stage that is full again at once is asked for more room, later") {
 }
 
 TEST_CASE("nothing is given out while the sink has no room") {
-  Desk desk(one_round(6));
+  Desk desk(one_stage(6));
   desk.sink("s", 9);
   desk.worker("w", 1);
   Heartbeat beat;
@@ -77,7 +77,7 @@ TEST_CASE("nothing is given out while the sink has no room") {
 }
 
 TEST_CASE("a stage without room ends a run that shall not wait, resumable") {
-  Desk desk(one_round(2), WhenFull::end);
+  Desk desk(one_stage(2), WhenFull::end);
   desk.sink("s", 9);
   desk.worker("w", 1);
   desk.credit("w", 1, 1);

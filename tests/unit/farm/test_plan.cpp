@@ -23,7 +23,7 @@ Plan started_plan(JobSource source) {
 }
 
 TEST_CASE("nothing is known before the sink has told what it has") {
-  Plan plan(one_round(3), 3);
+  Plan plan(one_stage(3), 3);
   CHECK_FALSE(plan.started());
   CHECK_FALSE(plan.issue());
   CHECK_FALSE(plan.complete());
@@ -32,9 +32,7 @@ TEST_CASE("nothing is known before the sink has told what it has") {
 TEST_CASE("the largest job is given out first, equals as asked for") {
   const std::vector<Job> jobs = {make_job("a", 1), make_job("b", 5), make_job("c", 3),
                                  make_job("d", 5)};
-  Plan plan = started_plan([&](std::span<const AcceptedJob> accepted) {
-    return accepted.empty() ? jobs : std::vector<Job>{};
-  });
+  Plan plan = started_plan(in_stages({jobs}));
   std::string order;
   while (const auto issued = plan.issue()) order += issued->job.parameters;
   CHECK(order == "bdca");
@@ -42,14 +40,11 @@ TEST_CASE("the largest job is given out first, equals as asked for") {
   CHECK(plan.counts().cost_known == 14);
 }
 
-/// A round of one job that the sink does, and one more job.
+/// A job that the sink does, and one more job.
 JobSource with_job_of_sink() {
-  return [](std::span<const AcceptedJob> accepted) {
-    std::vector<Job> jobs;
-    if (accepted.size() < 2) jobs = {make_job("theirs"), make_job("sink's")};
-    if (!jobs.empty()) jobs[1].by_sink = true;
-    return jobs;
-  };
+  std::vector<Job> jobs = {make_job("theirs"), make_job("sink's")};
+  jobs[1].by_sink = true;
+  return in_stages({jobs});
 }
 
 TEST_CASE("a job of the sink is never issued, and runs until it is accepted") {
@@ -77,11 +72,11 @@ TEST_CASE("a job of the sink is never issued, and runs until it is accepted") {
 }
 
 TEST_CASE("a source that wants nothing is complete at once") {
-  CHECK(started_plan(one_round(0)).complete());
+  CHECK(started_plan(one_stage(0)).complete());
 }
 
 TEST_CASE("a job given back is ready again under another attempt, without blame") {
-  Plan plan = started_plan(one_round(1));
+  Plan plan = started_plan(one_stage(1));
   for (std::uint32_t attempt = 1; attempt <= 10; ++attempt) {
     const auto issued = plan.issue();
     REQUIRE(issued);
@@ -94,7 +89,7 @@ TEST_CASE("a job given back is ready again under another attempt, without blame"
 }
 
 TEST_CASE("three failed attempts give a job up, with their reasons") {
-  Plan plan = started_plan(one_round(1));
+  Plan plan = started_plan(one_stage(1));
   for (const std::string reason : {"first", "second", "third"}) {
     CHECK_FALSE(plan.stuck());
     const auto issued = plan.issue();
@@ -109,7 +104,7 @@ TEST_CASE("three failed attempts give a job up, with their reasons") {
 }
 
 TEST_CASE("an input that is bad for good fails its job at once, the others go on") {
-  Plan plan = started_plan(one_round(2));
+  Plan plan = started_plan(one_stage(2));
   plan.fail_attempt(plan.issue()->key, "no mesh", Failing::for_good);
   CHECK(plan.counts().failed == 1);
   CHECK_FALSE(plan.stuck());
@@ -119,7 +114,7 @@ TEST_CASE("an input that is bad for good fails its job at once, the others go on
 }
 
 TEST_CASE("an accepted job stays accepted") {
-  Plan plan = started_plan(one_round(2));
+  Plan plan = started_plan(one_stage(2));
   const auto issued = plan.issue();
   CHECK(plan.accept(issued->key, output_of(issued->key)));
   CHECK_FALSE(plan.accept(issued->key, output_of(issued->key)));
@@ -132,7 +127,7 @@ TEST_CASE("an accepted job stays accepted") {
 }
 
 TEST_CASE("a late result counts even for a job that waits or was given up") {
-  Plan plan = started_plan(one_round(2));
+  Plan plan = started_plan(one_stage(2));
   const JobKey waits = plan.issue()->key;
   plan.give_back(waits);
   CHECK(plan.accept(waits, output_of(waits)));
@@ -143,12 +138,8 @@ TEST_CASE("a late result counts even for a job that waits or was given up") {
   CHECK(plan.complete());
 }
 
-TEST_CASE("rounds follow each other, and a restart goes straight to the round that is open") {
-  const JobSource source = [](std::span<const AcceptedJob> accepted) -> std::vector<Job> {
-    if (accepted.size() == 0) return {make_job("a"), make_job("b")};
-    if (accepted.size() == 2) return {make_job("c")};
-    return {};
-  };
+TEST_CASE("stages follow each other, and a restart goes straight to the jobs that are open") {
+  const JobSource source = in_stages({{make_job("a"), make_job("b")}, {make_job("c")}});
   const JobKey a = key_of(make_job("a"));
   const JobKey b = key_of(make_job("b"));
   const JobKey c = key_of(make_job("c"));
@@ -166,7 +157,7 @@ TEST_CASE("rounds follow each other, and a restart goes straight to the round th
     CHECK(plan.accept(c, output_of(c)));
     CHECK(plan.complete());
   }
-  SUBCASE("the sink lost a job of the first round") {
+  SUBCASE("the sink lost a job of the first stage") {
     plan.restart({{a, output_of(a)}});
     CHECK(plan.state(b) == JobState::ready);
     CHECK(plan.counts().running == 0);  // c is not wanted yet

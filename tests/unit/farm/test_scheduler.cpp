@@ -16,7 +16,7 @@ namespace {
 class Shop {
  public:
   Shop(std::vector<Job> jobs, const SchedulerOptions& options)
-      : plan_(source_of(std::move(jobs)), 3), scheduler_(options) {
+      : plan_(in_stages({std::move(jobs)}), 3), scheduler_(options) {
     plan_.restart({});
   }
 
@@ -130,7 +130,7 @@ TEST_CASE("a fixed schedule without surprises is close to the ideal, too") {
 }
 
 TEST_CASE("a job is never given to a worker that it does not fit") {
-  Desk desk({with_memory("big", 9, 1000), with_memory("small", 1, 10)});
+  ScheduleDesk desk({with_memory("big", 9, 1000), with_memory("small", 1, 10)});
   desk.join(1, "a", {0, 500, 1});
   CHECK(desk.hand_out() == "small@1 ");
   CHECK(desk.plan.ready_above(*desk.scheduler.greatest_memory()) == 1);
@@ -142,7 +142,7 @@ TEST_CASE("a job is never given to a worker that it does not fit") {
 
 TEST_CASE("workers of one host share its memory") {
   // Three processes that each found the same 900 bytes free.
-  Desk desk({with_memory("a", 9, 300), with_memory("b", 8, 300), with_memory("c", 7, 300)});
+  ScheduleDesk desk({with_memory("a", 9, 300), with_memory("b", 8, 300), with_memory("c", 7, 300)});
   desk.join(1, "host", {0, 900, 1, 5}, 1);
   CHECK(desk.scheduler.memory_share({1}) == 900);
   desk.join(2, "host", {0, 900, 1, 5}, 1);
@@ -163,7 +163,7 @@ TEST_CASE("workers of one host share its memory") {
 }
 
 TEST_CASE("a job larger than a share of its host's memory is done while the others rest") {
-  Desk desk({with_memory("large", 9, 800), with_memory("small", 8, 10)});
+  ScheduleDesk desk({with_memory("large", 9, 800), with_memory("small", 8, 10)});
   desk.join(1, "host", {0, 900, 1, 5}, 1);
   desk.join(2, "host", {0, 900, 1, 5}, 1);
   CHECK(desk.hand_out() == "large@1 ");
@@ -183,7 +183,8 @@ TEST_CASE("a job larger than a share of its host's memory is done while the othe
 }
 
 TEST_CASE("a host that did a job is sent jobs again at once") {
-  Desk desk({make_job("one", 1), make_job("two", 1), make_job("three", 1), make_job("four", 1)});
+  ScheduleDesk desk(
+      {make_job("one", 1), make_job("two", 1), make_job("three", 1), make_job("four", 1)});
   desk.join(1, "good", {}, 0);
   desk.join(2, "bad", {}, 1);
   REQUIRE(desk.hand_out() == "one@2 ");
@@ -200,7 +201,7 @@ TEST_CASE("a host that did a job is sent jobs again at once") {
 }
 
 TEST_CASE("a job larger than a share waits for the others of the host") {
-  Desk desk({with_memory("small", 9, 10), with_memory("large", 8, 800)});
+  ScheduleDesk desk({with_memory("small", 9, 10), with_memory("large", 8, 800)});
   desk.join(1, "host", {0, 900, 1, 5}, 1);
   desk.join(2, "host", {0, 900, 1, 5}, 1);
   CHECK(desk.hand_out() == "small@1 ");
@@ -214,14 +215,14 @@ TEST_CASE("a small worker finds what fits it behind very many that do not") {
   for (int i = 0; i < 1000; ++i) {
     jobs.push_back(with_memory("big " + std::to_string(i), 1000, 1000));
   }
-  Desk desk(jobs);
+  ScheduleDesk desk(jobs);
   desk.join(1, "a", {0, 500, 1});
   CHECK(desk.hand_out() == "small@1 ");
 }
 
 TEST_CASE("the last job is left to a fast worker that comes free in time") {
   // "long" takes the fast one 1 s, "last" 0.9 s; the slow one would need 9 s.
-  Desk desk({make_job("long", 1'000'000), make_job("last", 900'000)});
+  ScheduleDesk desk({make_job("long", 1'000'000), make_job("last", 900'000)});
   desk.join(1, "fast", {1'000'000, 0, 1}, 1);
   desk.join(2, "slow", {100'000, 0, 1}, 1);
   CHECK(desk.hand_out() == "long@1 ");
@@ -239,7 +240,7 @@ TEST_CASE("the last job is left to a fast worker that comes free in time") {
 }
 
 TEST_CASE("an idle worker makes a second attempt at what would take another longer, once") {
-  Desk desk({make_job("long", 1'000'000)});
+  ScheduleDesk desk({make_job("long", 1'000'000)});
   desk.join(1, "slow", {100'000, 0, 1});
   CHECK(desk.hand_out() == "long@1 ");
   desk.join(2, "as slow", {100'000, 0, 1});
@@ -254,7 +255,7 @@ TEST_CASE("an idle worker makes a second attempt at what would take another long
 }
 
 TEST_CASE("a straggler is overtaken once it is half as late again as it should be") {
-  Desk desk({make_job("long", 1'000'000)});
+  ScheduleDesk desk({make_job("long", 1'000'000)});
   desk.join(1, "a", {1'000'000, 0, 1});
   desk.join(2, "b", {1'000'000, 0, 1});
   CHECK(desk.hand_out() == "long@1 ");
@@ -265,7 +266,7 @@ TEST_CASE("a straggler is overtaken once it is half as late again as it should b
 }
 
 TEST_CASE("a job that failed on a host is tried on another") {
-  Desk desk({make_job("job")});
+  ScheduleDesk desk({make_job("job")});
   desk.join(1, "a", {}, 1);
   CHECK(desk.hand_out() == "job@1 ");
   desk.fail(1, "job");
@@ -279,7 +280,7 @@ TEST_CASE("a job that failed on a host is tried on another") {
 }
 
 TEST_CASE("a job that failed where alone it fits is tried there again") {
-  Desk desk({with_memory("large", 9, 800)});
+  ScheduleDesk desk({with_memory("large", 9, 800)});
   desk.join(1, "large host", {0, 900, 1}, 1);
   desk.join(2, "small host", {0, 500, 1}, 1);
   CHECK(desk.hand_out() == "large@1 ");
@@ -290,7 +291,7 @@ TEST_CASE("a job that failed where alone it fits is tried there again") {
 TEST_CASE("jobs that fail on a host at the same time are one incident") {
   std::vector<Job> jobs;
   for (int i = 0; i < 16; ++i) jobs.push_back(make_job(std::to_string(i)));
-  Desk desk(jobs);
+  ScheduleDesk desk(jobs);
   desk.join(1, "a", {0, 0, 16}, 16);
   desk.join(2, "other", {}, 0);
   desk.hand_out();
@@ -299,7 +300,7 @@ TEST_CASE("jobs that fail on a host at the same time are one incident") {
 }
 
 TEST_CASE("a host where three jobs in a row failed gets no more, as long as there are others") {
-  Desk desk({make_job("x", 9), make_job("y", 8), make_job("z", 7), make_job("w", 6)});
+  ScheduleDesk desk({make_job("x", 9), make_job("y", 8), make_job("z", 7), make_job("w", 6)});
   desk.join(1, "bad", {}, 1);
   desk.join(2, "good", {}, 0);
   for (const std::string name : {"x", "y", "z"}) {
@@ -330,7 +331,7 @@ TEST_CASE("a host where three jobs in a row failed gets no more, as long as ther
 }
 
 TEST_CASE("one suspect at a time is given to a worker, beside other jobs") {
-  Desk desk({make_job("suspect", 9), make_job("other suspect", 8), make_job("job", 7)});
+  ScheduleDesk desk({make_job("suspect", 9), make_job("other suspect", 8), make_job("job", 7)});
   desk.scheduler.suspect(key_of(make_job("suspect")));
   desk.scheduler.suspect(key_of(make_job("other suspect")));
   desk.join(1, "a");

@@ -15,7 +15,7 @@ SchedulerOptions fixed_for(std::uint32_t workers) {
 }
 
 TEST_CASE("by a fixed schedule, too, the others go on once such a job's worker is lost") {
-  Desk desk({with_memory("large", 9, 800), with_memory("small", 8, 10)}, fixed_for(2));
+  ScheduleDesk desk({with_memory("large", 9, 800), with_memory("small", 8, 10)}, fixed_for(2));
   desk.join(1, "host", {0, 900, 1, 5});
   desk.join(2, "host", {0, 900, 1, 5});
   CHECK(desk.hand_out() == "large@1 ");
@@ -25,15 +25,9 @@ TEST_CASE("by a fixed schedule, too, the others go on once such a job's worker i
 }
 
 TEST_CASE("a fixed schedule goes on when another run has done what fits nobody here") {
-  Desk desk({}, fixed_for(1));
+  ScheduleDesk desk({}, fixed_for(1));
   const Job large = with_memory("large", 9, 1000);
-  desk.plan = Plan(
-      [large](std::span<const AcceptedJob> accepted) {
-        return accepted.empty()      ? std::vector<Job>{large}
-               : accepted.size() < 2 ? std::vector<Job>{make_job("next")}
-                                     : std::vector<Job>{};
-      },
-      3);
+  desk.plan = Plan(in_stages({{large}, {make_job("next")}}), 3);
   desk.plan.restart({});
   desk.join(1, "host", {0, 500, 1});
   CHECK(desk.hand_out().empty());
@@ -42,8 +36,8 @@ TEST_CASE("a fixed schedule goes on when another run has done what fits nobody h
 }
 
 TEST_CASE("by a fixed schedule, too, one suspect at a time is given to a worker") {
-  Desk desk({make_job("suspect", 9), make_job("other suspect", 8), make_job("job", 7)},
-            fixed_for(1));
+  ScheduleDesk desk({make_job("suspect", 9), make_job("other suspect", 8), make_job("job", 7)},
+                    fixed_for(1));
   desk.scheduler.suspect(key_of(make_job("suspect")));
   desk.scheduler.suspect(key_of(make_job("other suspect")));
   desk.join(1, "a");
@@ -53,7 +47,7 @@ TEST_CASE("by a fixed schedule, too, one suspect at a time is given to a worker"
 }
 
 TEST_CASE("by a fixed schedule, too, a job that failed on a host is tried on another") {
-  Desk desk({make_job("long", 9), make_job("job", 1)}, fixed_for(2));
+  ScheduleDesk desk({make_job("long", 9), make_job("job", 1)}, fixed_for(2));
   desk.join(1, "fast", {1'000'000, 0, 1});
   desk.join(2, "slow", {1, 0, 1});
   CHECK(desk.hand_out() == "long@1 job@1 ");
@@ -75,7 +69,8 @@ TEST_CASE("by a fixed schedule, too, a job that failed on a host is tried on ano
 }
 
 TEST_CASE("by a fixed schedule a host that gets no more jobs keeps none from the others") {
-  Desk desk({make_job("a", 1), make_job("b", 1), make_job("c", 1), make_job("d", 1)}, fixed_for(2));
+  ScheduleDesk desk({make_job("a", 1), make_job("b", 1), make_job("c", 1), make_job("d", 1)},
+                    fixed_for(2));
   desk.join(1, "good");
   desk.join(2, "bad", {}, 0);
   CHECK(desk.hand_out() == "a@1 c@1 ");
@@ -92,7 +87,7 @@ TEST_CASE("by a fixed schedule a host that gets no more jobs keeps none from the
     desk.scheduler.leave({1});
     for (const std::string name : {"a", "c"}) desk.plan.give_back(key_of(make_job(name, 1)));
     desk.join(3, "good", {0, 1, 1});
-    desk.plan = Plan(source_of({with_memory("large", 9, 1000)}), 3);
+    desk.plan = Plan(in_stages({{with_memory("large", 9, 1000)}}), 3);
     desk.plan.restart({});
     CHECK(desk.hand_out().empty());
     desk.now += FarmTime(301'000);

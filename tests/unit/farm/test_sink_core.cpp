@@ -44,7 +44,7 @@ JobOutput output_of(JobKey of, std::uint32_t attempt = 1, std::uint64_t incarnat
 struct Bench {
   explicit Bench(std::size_t jobs, std::map<JobKey, JobOutput> journal = {},
                  WhenFull when_full = WhenFull::wait)
-      : Bench(one_round(jobs), std::move(journal), when_full) {}
+      : Bench(one_stage(jobs), std::move(journal), when_full) {}
   explicit Bench(JobSource source, std::map<JobKey, JobOutput> journal = {},
                  WhenFull when_full = WhenFull::wait)
       : core({Role::sink, 7, 99, 1, "h", "results", FarmTime(10'000)}, std::move(source),
@@ -92,7 +92,7 @@ TEST_CASE("a result is told only after its file is found whole and journalled") 
   const SinkActions again = bench.result(key("job 1"));  // the worker missed the answer
   CHECK(only<Check>(again).empty());
   CHECK(said<Accept>(again).size() == 1);
-  CHECK(bench.core.rounds().jobs_accepted() == 1);
+  CHECK(bench.core.graph().jobs_accepted() == 1);
 }
 
 TEST_CASE("a damaged result and a failed job are rejected with their reasons") {
@@ -111,7 +111,7 @@ TEST_CASE("a damaged result and a failed job are rejected with their reasons") {
   REQUIRE(failed.size() == 1);
   CHECK(failed[0].failure.kind == FailureKind::no_space);
   CHECK(failed[0].file.name.empty());
-  CHECK(bench.core.rounds().jobs_accepted() == 0);
+  CHECK(bench.core.graph().jobs_accepted() == 0);
 }
 
 TEST_CASE("what is not ours is dropped and counted") {
@@ -134,7 +134,7 @@ TEST_CASE("what a journal knows is checked again, and told to each ventilator be
   const JobKey gone = key("job 1");
   Bench bench(3, {{known, output_of(known)}, {gone, output_of(gone)}, {{1}, output_of({1})}});
   const auto checks = only<Check>(bench.join(1));
-  REQUIRE(checks.size() == 2);  // what no round wants is left alone
+  REQUIRE(checks.size() == 2);  // what no job is for is left alone
   CHECK(checks[0].from_journal);
   CHECK(said<Ready>(bench.core.checked(checks[0], {}, bench.now))
             .empty());  // one is still being checked
@@ -274,13 +274,9 @@ TEST_CASE("a sink that shall not wait for room ends the run") {
 
 /// A job of a worker, and then one of the sink.
 JobSource then_own() {
-  return [](std::span<const AcceptedJob> accepted) {
-    if (accepted.empty()) return std::vector<Job>{make_job("job 0")};
-    if (accepted.size() > 1) return std::vector<Job>{};
-    std::vector<Job> own{make_job("own")};
-    own[0].by_sink = true;
-    return own;
-  };
+  Job own = make_job("own");
+  own.by_sink = true;
+  return in_stages({{make_job("job 0")}, {own}});
 }
 
 TEST_CASE("a job of the sink is done there, verified, journalled and told as others are") {

@@ -11,13 +11,14 @@
 #include <meshfarm/geometry/topology.hpp>
 #include <meshfarm/io/result_file.hpp>
 #include <meshfarm/pipeline/assemble.hpp>
-#include <meshfarm/pipeline/budget.hpp>
 #include <meshfarm/pipeline/job_table.hpp>
+#include <meshfarm/pipeline/run_graph.hpp>
 #include <meshfarm/util/errors.hpp>
 #include <meshfarm/util/file.hpp>
 
 #include "support/memory_source.hpp"
 #include "support/meshes.hpp"
+#include "support/next_jobs.hpp"
 #include "support/temp_folder.hpp"
 
 using namespace meshfarm;
@@ -39,7 +40,8 @@ Made simplify(Mesh mesh, std::uint32_t parts, const RunOptions& run,
   const JobSource jobs_of = make_job_source(manifest, run);
   const JobContext context{stage, 1, 7, [](std::uint64_t) { return true; }};
   std::vector<AcceptedJob> accepted;
-  for (std::vector<Job> jobs = jobs_of(accepted); !jobs.empty(); jobs = jobs_of(accepted)) {
+  for (std::vector<Job> jobs = test::next_jobs(jobs_of, accepted); !jobs.empty();
+       jobs = test::next_jobs(jobs_of, accepted)) {
     for (const Job& job : jobs) accepted.push_back({key_of(job), do_job(job, context)});
   }
   Made made;
@@ -320,7 +322,7 @@ TEST_CASE("a result of another part is refused, and a stop writes nothing") {
   const RunOptions run{.ratio = 0.5};
   const JobContext context{stage, 1, 7, [](std::uint64_t) { return true; }};
   std::vector<AcceptedJob> accepted;
-  for (const Job& job : make_job_source(manifest, run)({})) {
+  for (const Job& job : test::next_jobs(make_job_source(manifest, run), {})) {
     accepted.push_back({key_of(job), do_job(job, context)});
   }
   const auto output = folder.path() / "out.ply";

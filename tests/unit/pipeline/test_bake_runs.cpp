@@ -15,12 +15,13 @@
 #include <meshfarm/io/mesh_format.hpp>
 #include <meshfarm/pipeline/assemble.hpp>
 #include <meshfarm/pipeline/bake_job.hpp>
-#include <meshfarm/pipeline/budget.hpp>
 #include <meshfarm/pipeline/job_table.hpp>
+#include <meshfarm/pipeline/run_graph.hpp>
 #include <meshfarm/util/errors.hpp>
 #include <meshfarm/util/file.hpp>
 
 #include "support/meshes.hpp"
+#include "support/next_jobs.hpp"
 #include "support/temp_folder.hpp"
 
 using namespace meshfarm;
@@ -74,7 +75,8 @@ class Bench {
   /// Does all jobs; those of the sink are `sink`'s.
   void run(Assembler& sink) {
     const JobSource jobs_of = make_job_source(manifest_, k_run);
-    for (std::vector<Job> jobs = jobs_of(accepted_); !jobs.empty(); jobs = jobs_of(accepted_)) {
+    for (std::vector<Job> jobs = test::next_jobs(jobs_of, accepted_); !jobs.empty();
+         jobs = test::next_jobs(jobs_of, accepted_)) {
       const std::vector<AcceptedJob> before = accepted_;
       for (const Job& job : jobs) {
         ++kinds_[job.kind];

@@ -3,9 +3,12 @@
 #include <doctest/doctest.h>
 
 #include <meshfarm/pipeline/budget.hpp>
+#include <meshfarm/pipeline/run_graph.hpp>
 #include <meshfarm/pipeline/simplify_job.hpp>
 #include <meshfarm/pipeline/sweep_job.hpp>
 #include <meshfarm/util/errors.hpp>
+
+#include "support/next_jobs.hpp"
 
 using namespace meshfarm;
 
@@ -37,6 +40,18 @@ AcceptedJob accepted_held(const Job& job, std::vector<Rung> rungs) {
   AcceptedJob done = accepted(job, {});
   done.output.summary = encode_summary({std::move(rungs), 0, 0, true});
   return done;
+}
+
+/// What is possible once some jobs are accepted.
+auto next_of(const Manifest& manifest, const RunOptions& options) {
+  return [source = make_job_source(manifest, options)](std::span<const AcceptedJob> accepted) {
+    return test::next_jobs(source, accepted);
+  };
+}
+
+ChosenRungs chosen_of(const Manifest& manifest, const RunOptions& options,
+                      std::span<const AcceptedJob> accepted) {
+  return state_of_run(manifest, options, accepted).chosen.value();
 }
 
 TopologyMode topology_of(const Job& job) {
@@ -77,14 +92,14 @@ TEST_CASE("levels and costs fit each other") {
   CHECK(cost_unit(2) == 16 * cost_unit(1));
 }
 
-TEST_CASE("the first round asks for every part once, with the same parameters each time") {
+TEST_CASE("every part is asked for once at first, with the same parameters each time") {
   const Manifest manifest = manifest_of(3, 100'000);
   const RunOptions options{.ratio = 0.01};
-  const std::vector<Job> jobs = make_job_source(manifest, options)({});
+  const std::vector<Job> jobs = next_of(manifest, options)({});
   REQUIRE(jobs.size() == 3);
   CHECK(jobs[2].inputs == std::vector<FileRef>{manifest.parts[2].file});
   CHECK(jobs[0].cost == 100'000);
-  CHECK(key_of(jobs[0]) == key_of(make_job_source(manifest, options)({})[0]));
+  CHECK(key_of(jobs[0]) == key_of(next_of(manifest, options)({})[0]));
   CHECK(key_of(jobs[0]) != key_of(jobs[1]));
   const SimplifyParameters p = decode_parameters(jobs[0].parameters);
   CHECK(p.start_triangles > 2 * 1000);
@@ -95,14 +110,14 @@ TEST_CASE("the first round asks for every part once, with the same parameters ea
 TEST_CASE("when the ladders reach the common level the run is complete") {
   const Manifest manifest = manifest_of(2, 100'000);
   const RunOptions options{.ratio = 0.01};
-  const JobSource source = make_job_source(manifest, options);
+  const auto source = next_of(manifest, options);
   const std::vector<Job> jobs = source({});
   // 2,000 triangles are wanted in the end, so 4,000 before the finish.
   const std::vector<AcceptedJob> done = {
       accepted(jobs[0], {rung(10, 8000), rung(11, 4000), rung(12, 2000)}),
       accepted(jobs[1], {rung(9, 7000), rung(10, 900), rung(12, 100)})};
   CHECK(source(done).empty());
-  const std::vector<ChosenRung> chosen = choose_rungs(manifest, options, done).rungs;
+  const std::vector<ChosenRung> chosen = chosen_of(manifest, options, done).rungs;
   CHECK(chosen[0].rung == 1);
   CHECK(chosen[1].rung == 1);
 }
@@ -110,7 +125,7 @@ TEST_CASE("when the ladders reach the common level the run is complete") {
 TEST_CASE("a part that was taken too far is asked for again with a finer start") {
   const Manifest manifest = manifest_of(2, 100'000);
   const RunOptions options{.ratio = 0.01};
-  const JobSource source = make_job_source(manifest, options);
+  const auto source = next_of(manifest, options);
   const std::vector<Job> jobs = source({});
   std::vector<AcceptedJob> done = {
       accepted(jobs[0], {rung(20, 3000), rung(21, 2000)}),  // all the detail is here
@@ -120,11 +135,11 @@ TEST_CASE("a part that was taken too far is asked for again with a finer start")
   CHECK(more[0].inputs == jobs[0].inputs);
   CHECK(decode_parameters(more[0].parameters).start_triangles >
         4 * decode_parameters(jobs[0].parameters).start_triangles);
-  CHECK_THROWS_AS(choose_rungs(manifest, options, done), Error);
+  CHECK_FALSE(state_of_run(manifest, options, done).chosen);
 
   done.push_back(accepted(more[0], {rung(6, 40'000), rung(18, 6000), rung(20, 3000)}));
   CHECK(source(done).empty());
-  const std::vector<ChosenRung> chosen = choose_rungs(manifest, options, done).rungs;
+  const std::vector<ChosenRung> chosen = chosen_of(manifest, options, done).rungs;
   CHECK(chosen[0].file.name == done[2].output.file.name);
   CHECK(chosen[0].rung == 1);
   CHECK(chosen[1].rung == 1);
@@ -133,7 +148,7 @@ TEST_CASE("a part that was taken too far is asked for again with a finer start")
 TEST_CASE("parts keep their topology first, and are stitched so if that is fair") {
   const Manifest manifest = manifest_of(2, 100'000);
   const RunOptions options{.ratio = 0.01};
-  const JobSource source = make_job_source(manifest, options);
+  const auto source = next_of(manifest, options);
   const std::vector<Job> jobs = source({});
   for (const Job& job : jobs) CHECK(topology_of(job) == TopologyMode::keep_while_fair);
   // 4,000 are wanted before the finish: level 11.
@@ -142,7 +157,7 @@ TEST_CASE("parts keep their topology first, and are stitched so if that is fair"
   // Held above the level that is chosen: the others pay nothing.
   const auto above = with(accepted_held(jobs[0], {rung(10, 1000), rung(11, 700)}));
   CHECK(source(above).empty());
-  CHECK(choose_rungs(manifest, options, above).topology == TopologyMode::automatic);
+  CHECK(chosen_of(manifest, options, above).topology == TopologyMode::automatic);
   // Held below it with less than a tenth of all triangles.
   CHECK(source(with(accepted_held(jobs[0], {rung(10, 420)}))).empty());
   // Below it with more, but by nothing that has to do with the topology.
@@ -152,7 +167,7 @@ TEST_CASE("parts keep their topology first, and are stitched so if that is fair"
 TEST_CASE("where others would pay for the topology, all are asked for again without it") {
   const Manifest manifest = manifest_of(2, 100'000);
   const RunOptions options{.ratio = 0.01};
-  const JobSource source = make_job_source(manifest, options);
+  const auto source = next_of(manifest, options);
   const std::vector<Job> jobs = source({});
   std::vector<AcceptedJob> done = {accepted_held(jobs[0], {rung(10, 430)}),
                                    accepted(jobs[1], {rung(10, 7000), rung(11, 3800)})};
@@ -174,7 +189,7 @@ TEST_CASE("where others would pay for the topology, all are asked for again with
   CHECK(topology_of(finer[0]) == TopologyMode::simplify);
   done.push_back(accepted(finer[0], {rung(6, 40'000), rung(20, 3000)}));
   CHECK(source(done).empty());
-  const ChosenRungs chosen = choose_rungs(manifest, options, done);
+  const ChosenRungs chosen = chosen_of(manifest, options, done);
   CHECK(chosen.topology == TopologyMode::simplify);
   CHECK(chosen.rungs[0].file.name == done[2].output.file.name);
   CHECK(chosen.rungs[1].file.name == done[4].output.file.name);
@@ -183,7 +198,7 @@ TEST_CASE("where others would pay for the topology, all are asked for again with
 TEST_CASE("all together may not be held at more than twice what is wanted") {
   const Manifest manifest = manifest_of(2, 100'000);
   const RunOptions options{.ratio = 0.01};
-  const JobSource source = make_job_source(manifest, options);
+  const auto source = next_of(manifest, options);
   const std::vector<Job> jobs = source({});
   const auto both = [&](std::uint64_t triangles) {
     const std::vector<Rung> ladder = {rung(10, triangles / 2), rung(11, 100)};
@@ -196,7 +211,7 @@ TEST_CASE("all together may not be held at more than twice what is wanted") {
 TEST_CASE("parts whose topology leaves more than the target are asked for again without it") {
   const Manifest manifest = manifest_of(2, 100'000);
   const RunOptions options{.ratio = 0.01};  // 2,000
-  const JobSource source = make_job_source(manifest, options);
+  const auto source = next_of(manifest, options);
   const std::vector<Job> jobs = source({});
   const auto both = [&](std::uint64_t triangles) {
     const std::vector<Rung> ladder = {rung(10, 2500), rung(14, triangles / 2)};
@@ -210,19 +225,18 @@ TEST_CASE("who says what becomes of the topology is asked once") {
   const Manifest manifest = manifest_of(2, 100'000);
   for (const TopologyMode mode : {TopologyMode::keep, TopologyMode::simplify}) {
     const RunOptions options{.ratio = 0.01, .lines = {.topology = mode}};
-    const JobSource source = make_job_source(manifest, options);
+    const auto source = next_of(manifest, options);
     const std::vector<Job> jobs = source({});
     CHECK(topology_of(jobs[0]) == mode);
     const std::vector done = {accepted_held(jobs[0], {rung(10, 9000)}),
                               accepted_held(jobs[1], {rung(10, 9000)})};
     CHECK(source(done).empty());
-    CHECK(choose_rungs(manifest, options, done).topology == mode);
+    CHECK(chosen_of(manifest, options, done).topology == mode);
   }
   // A bound on the error keeps it, since nothing has to be paid for a count.
-  CHECK(topology_of(make_job_source(manifest, {.error = {0.2, false}})({})[0]) ==
-        TopologyMode::keep);
+  CHECK(topology_of(next_of(manifest, {.error = {0.2, false}})({})[0]) == TopologyMode::keep);
   const RunOptions uniform{.ratio = 0.01, .allocation = Allocation::uniform};
-  CHECK(topology_of(make_job_source(manifest, uniform)({})[0]) == TopologyMode::automatic);
+  CHECK(topology_of(next_of(manifest, uniform)({})[0]) == TopologyMode::automatic);
 }
 
 TEST_CASE("long streams are swept as their samples were climbed") {
@@ -234,7 +248,7 @@ TEST_CASE("long streams are swept as their samples were climbed") {
     manifest.samples.back().triangles = 10'000;
   }
   const RunOptions options{.ratio = 0.01, .composition = Composition::sink};
-  const JobSource source = make_job_source(manifest, options);
+  const auto source = next_of(manifest, options);
   const std::vector<Job> jobs = source({});
   // A tenth of each stream.
   const std::vector<Job> kept =
@@ -263,14 +277,14 @@ TEST_CASE("long streams are swept as their samples were climbed") {
 
 TEST_CASE("a large ratio leaves the parts as they are") {
   const Manifest manifest = manifest_of(2, 1000);
-  const std::vector<Job> jobs = make_job_source(manifest, {.ratio = 0.9})({});
+  const std::vector<Job> jobs = next_of(manifest, {.ratio = 0.9})({});
   CHECK(decode_parameters(jobs[0].parameters).start_triangles == 1000);
 }
 
-TEST_CASE("with a bound on the error each part is taken as far as it allows, in one round") {
+TEST_CASE("with a bound on the error each part is taken as far as it allows, and once") {
   const Manifest manifest = manifest_of(2, 100'000);  // its diagonal is sqrt(3)
   const RunOptions options{.error = {0.2, false}};
-  const JobSource source = make_job_source(manifest, options);
+  const auto source = next_of(manifest, options);
   const std::vector<Job> jobs = source({});
   CHECK(decode_parameters(jobs[0].parameters).max_error ==
         doctest::Approx(0.2 * k_bound_share_of_parts));
@@ -278,13 +292,13 @@ TEST_CASE("with a bound on the error each part is taken as far as it allows, in 
       accepted(jobs[0], {Rung{5, 10'000, 20'000, 20'000, 0.18}}),
       accepted(jobs[1], {Rung{9, 25'000, 50'000, 50'000, 0.17}})};
   CHECK(source(done).empty());
-  CHECK(choose_rungs(manifest, options, done).rungs.size() == 2);
+  CHECK(chosen_of(manifest, options, done).rungs.size() == 2);
 }
 
-TEST_CASE("the paper's allocation is the same ratio in each part, one round") {
+TEST_CASE("the paper's allocation is the same ratio in each part, and once") {
   const Manifest manifest = manifest_of(2, 100'000);
   const RunOptions options{.ratio = 0.02, .allocation = Allocation::uniform};
-  const JobSource source = make_job_source(manifest, options);
+  const auto source = next_of(manifest, options);
   const std::vector<Job> jobs = source({});
   CHECK(decode_parameters(jobs[0].parameters).start_triangles == 2000);
   const std::vector<AcceptedJob> done = {accepted(jobs[0], {rung(0, 2500)}),
@@ -293,7 +307,7 @@ TEST_CASE("the paper's allocation is the same ratio in each part, one round") {
 }
 
 TEST_CASE("a stage without parts has no jobs; a target needs a ratio or a count") {
-  CHECK(make_job_source(manifest_of(0, 0), {.ratio = 0.5})({}).empty());
+  CHECK(next_of(manifest_of(0, 0), {.ratio = 0.5})({}).empty());
   CHECK(target_triangles(manifest_of(1, 1001), {.ratio = 0.5}) == 501);
   CHECK(target_triangles(manifest_of(1, 1000), {.triangles = 7}) == 7);
   // Of what in the input is a triangle, however it is divided.

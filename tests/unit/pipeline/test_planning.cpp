@@ -69,15 +69,20 @@ TEST_CASE("a slow server of the shared folder is the limit of a large farm") {
   CHECK(run.storage_busy > 0.95);
 }
 
-TEST_CASE("a round waits for the one before") {
+TEST_CASE("jobs wait for all of less depth, or for those that they need") {
   auto jobs = jobs_of(48);
   jobs[0].compute_s = 10;
   jobs[0].triangles *= 30;
   const PlannedRun one = simulate_run(jobs, farm_of({{24, 1}}));
-  for (std::size_t i = 24; i < 48; ++i) jobs[i].round = 1;
+  for (std::size_t i = 24; i < 48; ++i) jobs[i].depth = 1;
   const PlannedRun two = simulate_run(jobs, farm_of({{24, 1}}));
   CHECK(one.farm_s == doctest::Approx(10).epsilon(0.02));
   CHECK(two.farm_s > 10.3);
+  for (std::size_t i = 24; i < 48; ++i) {
+    const std::size_t other = 1 + (i - 24) % 23;  // none waits for the long one
+    jobs[i].needs = {{other, other + 1}};
+  }
+  CHECK(simulate_run(jobs, farm_of({{24, 1}})).farm_s == doctest::Approx(10).epsilon(0.02));
 }
 
 TEST_CASE("the same work in more parts, and a draw from it") {
@@ -95,13 +100,13 @@ TEST_CASE("the same work in more parts, and a draw from it") {
   CHECK(work(sample) == doctest::Approx(10 * work(jobs)).epsilon(0.02));
 
   // Samples that are tried before the sweeps are not drawn.
-  std::vector<PlannedJob> rounds = jobs_of(3);
-  for (PlannedJob& job : rounds) job.compute_s /= 1000;
+  std::vector<PlannedJob> jobs_by_depth = jobs_of(3);
+  for (PlannedJob& job : jobs_by_depth) job.compute_s /= 1000;
   for (PlannedJob job : jobs) {
-    job.round = 1;
-    rounds.push_back(job);
+    job.depth = 1;
+    jobs_by_depth.push_back(job);
   }
-  for (const PlannedJob& job : drawn(rounds, 50, 1)) CHECK(job.round == 1);
+  for (const PlannedJob& job : drawn(jobs_by_depth, 50, 1)) CHECK(job.depth == 1);
 }
 
 TEST_CASE("jobs are taken from a trace: once each, by processor time, as the fastest worker's") {
@@ -123,7 +128,7 @@ TEST_CASE("jobs are taken from a trace: once each, by processor time, as the fas
   REQUIRE(jobs.size() == 2);
   CHECK(jobs[0].compute_s == doctest::Approx(0.01));
   CHECK(jobs[1].compute_s == doctest::Approx(0.01));
-  CHECK(jobs[1].round == 1);
+  CHECK(jobs[1].depth == 1);
   CHECK_THROWS_AS(planned_jobs(Trace{}), DataError);
 }
 

@@ -24,7 +24,8 @@ TEST_CASE("what a ventilator tells is in the stage's trace") {
   options.event(WorkerJoined{{1}, "host", 5, {1000, 2000, 4}}, FarmTime(500));
   Job job{"simplify", {{"parts/000001.part", 100, 0}, {"parts/000002.part", 11, 0}}, "", 7};
   job.memory = 9;
-  options.event(JobAccepted{{1}, {42}, job, 2, 33, {1, 2, 3, 4, 5}}, FarmTime(1500));
+  const JobPlace place{"climb", 6, {{"sort", 0, 12}}};
+  options.event(JobAccepted{{1}, {42}, job, place, 33, {1, 2, 3, 4, 5}}, FarmTime(1500));
   options.event(AttemptFailed{{1}, {43}, "no luck"}, FarmTime(1600));
   FarmProgress progress;
   progress.jobs_done = 1;
@@ -45,7 +46,10 @@ TEST_CASE("what a ventilator tells is in the stage's trace") {
   const TraceDone& done = read.done.at(0);
   CHECK(done.t == 1.5);
   CHECK(done.job == 42);
-  CHECK(done.round == 2);
+  CHECK(done.stage == "climb");
+  CHECK(done.index == 6);
+  CHECK(done.needs.at(0).stage == "sort");
+  CHECK(done.needs.at(0).count == 12);
   CHECK(done.read_bytes == 111);
   CHECK(done.written_bytes == 33);
   CHECK(done.memory == 9);
@@ -69,7 +73,7 @@ TEST_CASE("jobs that were done before a ventilator was killed belong to its run"
     trace.follow(options);
     options.event(RunBegan{number, "here"}, FarmTime(0));
     options.event(WorkerJoined{{1}, "host", 5, {}}, FarmTime(500));
-    options.event(JobAccepted{{1}, {job}, {}, 0, 33, {}}, FarmTime(1500));
+    options.event(JobAccepted{{1}, {job}, {}, {}, 33, {}}, FarmTime(1500));
   };
   epoch(1, 7, 41);
   epoch(3, 8, 42);  // another run

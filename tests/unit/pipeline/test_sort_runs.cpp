@@ -12,15 +12,15 @@
 #include <meshfarm/divide/cut.hpp>
 #include <meshfarm/io/slab_file.hpp>
 #include <meshfarm/pipeline/assemble.hpp>
-#include <meshfarm/pipeline/budget.hpp>
 #include <meshfarm/pipeline/job_table.hpp>
+#include <meshfarm/pipeline/run_graph.hpp>
 #include <meshfarm/pipeline/sort_job.hpp>
 #include <meshfarm/util/errors.hpp>
 #include <meshfarm/util/file.hpp>
 
-#include "pipeline/sort_plan.hpp"
 #include "support/memory_source.hpp"
 #include "support/meshes.hpp"
+#include "support/next_jobs.hpp"
 #include "support/temp_folder.hpp"
 
 using namespace meshfarm;
@@ -69,10 +69,20 @@ JobContext context_of(const Stage& stage) {
   return {stage, 1, 7, [](std::uint64_t) { return true; }};
 }
 
-std::vector<AcceptedJob> do_jobs(const JobSource& source, const Stage& stage,
+/// Those of slabs alone, or all.
+enum class Which { of_slabs, all };
+
+std::vector<AcceptedJob> do_jobs(const JobSource& source, const Stage& stage, Which which,
                                  std::vector<std::string>* kinds = nullptr) {
   std::vector<AcceptedJob> accepted;
-  for (std::vector<Job> jobs = source(accepted); !jobs.empty(); jobs = source(accepted)) {
+  const auto next = [&] {
+    std::vector<Job> jobs = test::next_jobs(source, accepted);
+    std::erase_if(jobs, [&](const Job& job) {
+      return which == Which::of_slabs && job.kind != k_sort_kind && job.kind != k_sample_kind;
+    });
+    return jobs;
+  };
+  for (std::vector<Job> jobs = next(); !jobs.empty(); jobs = next()) {
     for (const Job& job : jobs) {
       accepted.push_back({key_of(job), do_job(job, context_of(stage))});
       if (kinds != nullptr) kinds->push_back(job.kind);
@@ -129,21 +139,19 @@ TEST_CASE("the farm sorts slabs to the bytes that the cut makes by itself") {
     const Staged here = generate(each.mesh, each.options, SortAt::here, folder / "here");
     const Staged farm = generate(each.mesh, each.options, SortAt::farm, folder / "farm");
     REQUIRE(farm.manifest.sorting.has_value());
-    const auto source = [&](std::span<const AcceptedJob> accepted) {
-      return SortPlan(farm.manifest, accepted).jobs();
-    };
-    const std::vector<AcceptedJob> accepted = do_jobs(source, farm.stage);
-    const SortPlan plan(farm.manifest, accepted);
-    CHECK(plan.rest().empty());
-    CHECK_FALSE(plan.manifest().sorting.has_value());
-    check_same(plan.manifest().parts, here.manifest.parts);
-    check_same(plan.manifest().samples, here.manifest.samples);
-    CHECK(same_content(plan.manifest().boundary, here.manifest.boundary));
-    CHECK(plan.manifest().boundary_triangles == here.manifest.boundary_triangles);
-    CHECK(plan.manifest().coincident_vertices == here.manifest.coincident_vertices);
-    CHECK(plan.manifest().dropped_degenerate == here.manifest.dropped_degenerate);
-    CHECK(plan.manifest().coincident_corners == here.manifest.coincident_corners);
-    CHECK(plan.manifest().dropped_duplicate == here.manifest.dropped_duplicate);
+    const RunOptions run{.ratio = 0.5};
+    const JobSource source = make_job_source(farm.manifest, run);
+    const RunState state =
+        state_of_run(farm.manifest, run, do_jobs(source, farm.stage, Which::of_slabs));
+    CHECK_FALSE(state.manifest.sorting.has_value());
+    check_same(state.manifest.parts, here.manifest.parts);
+    check_same(state.manifest.samples, here.manifest.samples);
+    CHECK(same_content(state.manifest.boundary, here.manifest.boundary));
+    CHECK(state.manifest.boundary_triangles == here.manifest.boundary_triangles);
+    CHECK(state.manifest.coincident_vertices == here.manifest.coincident_vertices);
+    CHECK(state.manifest.dropped_degenerate == here.manifest.dropped_degenerate);
+    CHECK(state.manifest.coincident_corners == here.manifest.coincident_corners);
+    CHECK(state.manifest.dropped_duplicate == here.manifest.dropped_duplicate);
   }
 }
 
@@ -160,12 +168,12 @@ TEST_CASE("a run that sorts first ends as one that finds streams, and estimates 
   for (const Staged* staged : {&here, &farm}) {
     const auto output = folder / "out.ply";
     const JobSource source = make_job_source(staged->manifest, run);
-    const auto accepted = do_jobs(source, staged->stage, &kinds[results.size()]);
+    const auto accepted = do_jobs(source, staged->stage, Which::all, &kinds[results.size()]);
     const RunSummary summary =
         Assembler(staged->stage, staged->manifest, run, {.output = output}).complete(accepted);
     CHECK(summary.target == std::llround(0.1 * 14'400));
     CHECK(summary.dropped_degenerate == 2000);
-    CHECK(choose_rungs(staged->manifest, run, accepted).rungs.size() == 5);
+    CHECK(state_of_run(staged->manifest, run, accepted).chosen->rungs.size() == 5);
     results.push_back(read_file(output));
   }
   CHECK(results[0] == results[1]);
@@ -177,10 +185,11 @@ TEST_CASE("a run that sorts first ends as one that finds streams, and estimates 
   CHECK(count(k_sort_kind) + count(k_sample_kind) ==
         static_cast<std::ptrdiff_t>(kinds[1].size() - kinds[0].size()));
 
-  // Climbing a whole stream takes more than sorting it: who goes by the first round would be wrong.
+  // Climbing a whole stream takes more than sorting it: who goes by the first jobs would be wrong.
   const Staged whole =
       generate(mesh, {.scheme = Scheme::stream, .parts = 1}, SortAt::farm, folder / "whole");
-  CHECK(memory_wanted(whole.manifest, run) > make_job_source(whole.manifest, run)({})[0].memory);
+  CHECK(memory_wanted(whole.manifest, run) >
+        test::next_jobs(make_job_source(whole.manifest, run), {})[0].memory);
 }
 
 TEST_CASE("a sort job that makes no sense is refused, and so is what it cannot have made") {
@@ -206,20 +215,20 @@ TEST_CASE("a sort job that makes no sense is refused, and so is what it cannot h
                   DataError);
 
   std::vector<AcceptedJob> accepted;
-  for (const Job& job : make_job_source(farm.manifest, {.ratio = 0.5})({})) {
+  for (const Job& job : test::next_jobs(make_job_source(farm.manifest, {.ratio = 0.5}), {})) {
     accepted.push_back({key_of(job), do_job(job, context)});
   }
-  CHECK_NOTHROW(SortPlan(farm.manifest, accepted));
+  CHECK_NOTHROW(state_of_run(farm.manifest, {.ratio = 0.5}, accepted));
   SortSummary other = decode_sort_summary(accepted[1].output.summary, "s");
   ++other.boundary_vertices;
   accepted[1].output.summary = encode_summary(other);
-  CHECK_THROWS_AS(SortPlan(farm.manifest, accepted), DataError);
+  CHECK_THROWS_AS(state_of_run(farm.manifest, {.ratio = 0.5}, accepted), DataError);
 }
 
 TEST_CASE("a sort job that is given up publishes nothing") {
   const test::TempFolder folder;
   const Staged farm = generate(test::torus(60, 30), k_swept, SortAt::farm, folder.path());
-  const Job job = make_job_source(farm.manifest, {.ratio = 0.5})({})[0];
+  const Job job = test::next_jobs(make_job_source(farm.manifest, {.ratio = 0.5}), {})[0];
   const JobContext given_up{farm.stage, 1, 7, [](std::uint64_t) { return false; }};
   CHECK_THROWS_AS(do_job(job, given_up), IncompleteError);
   CHECK(std::filesystem::is_empty(folder / "results"));

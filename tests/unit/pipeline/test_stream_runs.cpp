@@ -13,15 +13,16 @@
 #include <meshfarm/geometry/topology.hpp>
 #include <meshfarm/io/mesh_source.hpp>
 #include <meshfarm/pipeline/assemble.hpp>
-#include <meshfarm/pipeline/budget.hpp>
 #include <meshfarm/pipeline/compose_job.hpp>
 #include <meshfarm/pipeline/job_table.hpp>
+#include <meshfarm/pipeline/run_graph.hpp>
 #include <meshfarm/pipeline/simplify_job.hpp>
 #include <meshfarm/pipeline/sweep_job.hpp>
 #include <meshfarm/util/errors.hpp>
 
 #include "support/memory_source.hpp"
 #include "support/meshes.hpp"
+#include "support/next_jobs.hpp"
 #include "support/temp_folder.hpp"
 
 using namespace meshfarm;
@@ -52,7 +53,8 @@ Made simplify(const Mesh& mesh, const CutOptions& options, const RunOptions& run
   const JobContext context{stage, 1, 7, [](std::uint64_t) { return true; }};
   Made made;
   std::vector<AcceptedJob> accepted;
-  for (std::vector<Job> jobs = jobs_of(accepted); !jobs.empty(); jobs = jobs_of(accepted)) {
+  for (std::vector<Job> jobs = test::next_jobs(jobs_of, accepted); !jobs.empty();
+       jobs = test::next_jobs(jobs_of, accepted)) {
     for (const Job& job : jobs) {
       accepted.push_back({key_of(job), do_job(job, context)});
       made.kinds.push_back(job.kind);

@@ -27,9 +27,18 @@ TEST_CASE("a trace comes back as it was written") {
   state.storage_stalls = true;
   state.bad_hosts = {"bad"};
   state.workers = {{1, 2, 3, 4, 5, 6.5}};
+  const TraceDone done{.t = 1,
+                       .worker = 1,
+                       .job = 0x0123456789abcdef,
+                       .kind = "simplify",
+                       .stage = "climb",
+                       .index = 7,
+                       .needs = {{"sort", 0, 12}, {"sample", 7, 1}},
+                       .triangles = 2,
+                       .write_ms = 9,
+                       .cpu_us = 10};
   const std::string text = text_of(
-      {head(), TraceJoined{0.5, 1, "host \"1\"\n", 77, 2'000'000, 1ULL << 40, 2},
-       TraceDone{1, 1, 0x0123456789abcdef, "simplify", 1, 2, 3, 4, 5, 6, 7, 8, 9, 10},
+      {head(), TraceJoined{0.5, 1, "host \"1\"\n", 77, 2'000'000, 1ULL << 40, 2}, done,
        TraceFailed{2, 1, 5, "no luck"}, TraceLeft{3, 1, "was silent"}, state, TraceEnd{5, "why"}});
   const Trace trace = parse_trace(text, "trace");
   CHECK(trace.head.run == 0xfedcba9876543210);
@@ -40,6 +49,12 @@ TEST_CASE("a trace comes back as it was written") {
   REQUIRE(trace.done.size() == 1);
   CHECK(trace.done[0].job == 0x0123456789abcdef);
   CHECK(trace.done[0].write_ms == 9);
+  CHECK(trace.done[0].stage == "climb");
+  CHECK(trace.done[0].index == 7);
+  REQUIRE(trace.done[0].needs.size() == 2);
+  CHECK(trace.done[0].needs[0].stage == "sort");
+  CHECK(trace.done[0].needs[0].count == 12);
+  CHECK(trace.done[0].needs[1].first == 7);
   CHECK(trace.done[0].cpu_us == 10);
   CHECK(trace.failed.at(0).why == "no luck");
   CHECK(trace.left.at(0).why == "was silent");
@@ -49,6 +64,14 @@ TEST_CASE("a trace comes back as it was written") {
   CHECK(trace.end->failure == "why");
   CHECK(text_of({head(), trace.joined[0], trace.done[0], trace.failed[0], trace.left[0],
                  *trace.state, *trace.end}) == text);
+}
+
+TEST_CASE("a trace of a version that had rounds is read") {
+  const std::string line = R"({"kind": "done", "t": 1, "worker": 1, "job": "1", "round": 2})";
+  const Trace trace = parse_trace(to_line(head()) + "\n" + line + "\n", "trace");
+  REQUIRE(trace.done.size() == 1);
+  CHECK(trace.done[0].stage.empty());
+  CHECK(trace.done[0].round == 2);
 }
 
 TEST_CASE("a trace that still grows may end in the midst of a line") {
@@ -74,6 +97,10 @@ TEST_CASE("what is no trace is refused with the line") {
       {good + "{\"kind\": \"end\", \"t\": \"x\"}\n", "line 2: \"t\" is of the wrong kind"},
       {good + "{\"kind\": \"done\", \"worker\": -1}\n", "line 2: \"worker\" is of the wrong kind"},
       {good + "{\"kind\": \"done\", \"job\": \"xyz\"}\n", "line 2: \"job\" is no key"},
+      {good + "{\"kind\": \"done\", \"job\": \"1\", \"needs\": [[\"sort\", 0]]}\n",
+       "line 2: \"needs\" is of the wrong kind"},
+      {good + "{\"kind\": \"done\", \"job\": \"1\", \"needs\": [[\"sort\", 0, 4294967296]]}\n",
+       "line 2: \"needs\" is of the wrong kind"},
       {good + "{\"kind\": \"state\", \"workers\": [3]}\n", "line 2: "}};
   for (const auto& each : bad) {
     const auto& text = each.first;

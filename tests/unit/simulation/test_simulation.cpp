@@ -202,7 +202,7 @@ TEST_CASE("a job that kills its workers is given up, the others are done") {
   CHECK(result.ended);
   CHECK(result.broken == "");
   CHECK(doctest::String(result.failure.c_str()) == doctest::Contains("1 job failed for good"));
-  CHECK(result.jobs.size() == 17);  // 18 are in the first round
+  CHECK(result.jobs.size() == 17);  // 18 are in the first stage
 }
 
 TEST_CASE("a job that no attempt can do is tried once") {

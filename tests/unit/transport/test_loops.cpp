@@ -18,19 +18,23 @@ TEST_CASE("a run gives every job's output, in the order asked for") {
       CAPTURE(jobs);
       CAPTURE(workers);
       Farm farm;
-      CHECK(run_farm(farm, one_round(jobs), workers) == expected_of(jobs));
+      CHECK(run_farm(farm, one_stage(jobs), workers) == expected_of(jobs));
     }
   }
 }
 
-TEST_CASE("a later round sees the outputs of those before") {
+TEST_CASE("a later job is made of the outputs of those before") {
   Farm farm;
-  const JobSource source = [](std::span<const AcceptedJob> accepted) -> std::vector<Job> {
-    if (accepted.empty()) return make_jobs(5);
-    if (accepted.size() > 5) return {};
-    std::string all;
-    for (const AcceptedJob& each : accepted) all += each.output.summary + ",";
-    return {make_job(all)};
+  const JobSource source = [] {
+    JobGraph graph({"first", "last"});
+    std::uint32_t count = 0;
+    for (const Job& job : make_jobs(5)) graph.add({0, count++}, job);
+    graph.add({1, 0}, {all_of(0, count)}, [](JobGraph& so_far) {
+      std::string all;
+      for (const AcceptedJob& each : so_far.outputs()) all += each.output.summary + ",";
+      return make_job(all);
+    });
+    return graph;
   };
   const auto summaries = run_farm(farm, source, 2);
   REQUIRE(summaries.size() == 6);
@@ -39,19 +43,16 @@ TEST_CASE("a later round sees the outputs of those before") {
 
 TEST_CASE("a job asked for twice is done once and given twice") {
   Farm farm;
-  const JobSource source = [](std::span<const AcceptedJob> accepted) -> std::vector<Job> {
-    if (!accepted.empty()) return {};
-    return {make_job("a"), make_job("b"), make_job("a")};
-  };
+  const JobSource source = in_stages({{make_job("a"), make_job("b"), make_job("a")}});
   std::atomic<int> count{0};
   CHECK(run_farm(farm, source, 1, counted(count)) == std::vector<std::string>{"a", "b", "a"});
-  CHECK(count == 2);
+  CHECK(count.load() == 2);
 }
 
 TEST_CASE("thousands of tiny jobs go through") {
   Farm farm;
   const auto start = std::chrono::steady_clock::now();
-  CHECK(run_farm(farm, one_round(3'000), 3) == expected_of(3'000));
+  CHECK(run_farm(farm, one_stage(3'000), 3) == expected_of(3'000));
   const std::chrono::duration<double> took = std::chrono::steady_clock::now() - start;
   MESSAGE("3,000 jobs, each a synced file, in ", took.count(), " s");
 }
@@ -59,14 +60,14 @@ TEST_CASE("thousands of tiny jobs go through") {
 TEST_CASE("a run that is repeated takes all from the journals") {
   Farm farm;
   std::atomic<int> count{0};
-  CHECK(run_farm(farm, one_round(50), 2, counted(count)) == expected_of(50));
-  CHECK(count == 50);
+  CHECK(run_farm(farm, one_stage(50), 2, counted(count)) == expected_of(50));
+  CHECK(count.load() == 50);
   SUBCASE("nothing is done again") {
-    CHECK(run_farm(farm, one_round(50), 2, counted(count)) == expected_of(50));
-    CHECK(count == 50);
+    CHECK(run_farm(farm, one_stage(50), 2, counted(count)) == expected_of(50));
+    CHECK(count.load() == 50);
   }
   SUBCASE("without any worker") {
-    CHECK(run_farm(farm, one_round(50), 0) == expected_of(50));
+    CHECK(run_farm(farm, one_stage(50), 0) == expected_of(50));
   }
   SUBCASE("but what is damaged or gone, which is done again") {
     std::vector<std::filesystem::path> files;
@@ -75,8 +76,8 @@ TEST_CASE("a run that is repeated takes all from the journals") {
     }
     std::filesystem::remove(files.at(0));
     std::filesystem::resize_file(files.at(1), 1);
-    CHECK(run_farm(farm, one_round(50), 2, counted(count)) == expected_of(50));
-    CHECK(count == 52);
+    CHECK(run_farm(farm, one_stage(50), 2, counted(count)) == expected_of(50));
+    CHECK(count.load() == 52);
   }
 }
 
@@ -90,7 +91,7 @@ TEST_CASE("an attempt that fails is made again") {
     }
     return do_trivial_job(job, context);
   };
-  CHECK(run_farm(farm, one_round(3), 2, work) == expected_of(3));
+  CHECK(run_farm(farm, one_stage(3), 2, work) == expected_of(3));
   CHECK(failures == 2);
 }
 
@@ -111,8 +112,8 @@ TEST_CASE("a job that fails for good ends the run, the others are kept") {
     bad = true;
   }
   std::vector<std::string> summaries;
-  Part ventilator(farm.ventilator(one_round(10)));
-  Part sink(farm.sink(one_round(10), summaries));
+  Part ventilator(farm.ventilator(one_stage(10)));
+  Part sink(farm.sink(one_stage(10), summaries));
   Part worker(farm.worker(work));
   const std::string why = bad ? "no mesh in it" : "no luck today";
   CHECK_THROWS_WITH_AS(ventilator.join(), doctest::Contains(why.c_str()), DataError);
@@ -120,8 +121,8 @@ TEST_CASE("a job that fails for good ends the run, the others are kept") {
   worker.join();
   CHECK(attempts == (bad ? 1 : 3));
   std::atomic<int> count{0};
-  CHECK(run_farm(farm, one_round(10), 1, counted(count)) == expected_of(10));
-  CHECK(count == 1);
+  CHECK(run_farm(farm, one_stage(10), 1, counted(count)) == expected_of(10));
+  CHECK(count.load() == 1);
 }
 
 TEST_CASE("a full stage is waited for, and nobody is to blame") {
@@ -132,8 +133,8 @@ TEST_CASE("a full stage is waited for, and nobody is to blame") {
     if (count >= 5 && count <= 8) throw IoError("cannot sync", "results/x", ENOSPC);
     return do_trivial_job(job, context);
   };
-  CHECK(run_farm(farm, one_round(10), 1, work) == expected_of(10));
-  CHECK(count == 14);
+  CHECK(run_farm(farm, one_stage(10), 1, work) == expected_of(10));
+  CHECK(count.load() == 14);
 }
 
 TEST_CASE("a full stage ends a run that shall not wait, which may be taken up again") {
@@ -145,13 +146,13 @@ TEST_CASE("a full stage ends a run that shall not wait, which may be taken up ag
     return do_trivial_job(job, context);
   };
   std::vector<std::string> summaries;
-  Part ventilator(farm.ventilator(one_round(10)));
-  Part sink(farm.sink(one_round(10), summaries));
+  Part ventilator(farm.ventilator(one_stage(10)));
+  Part sink(farm.sink(one_stage(10), summaries));
   Part worker(farm.worker(work));
   CHECK_THROWS_WITH_AS(ventilator.join(), doctest::Contains("make room"), IncompleteError);
   CHECK_THROWS_WITH_AS(sink.join(), doctest::Contains("results/x"), IncompleteError);
   worker.join();
-  CHECK(run_farm(farm, one_round(10), 1) == expected_of(10));
+  CHECK(run_farm(farm, one_stage(10), 1) == expected_of(10));
 }
 
 TEST_CASE("a ventilator that is stopped and started again goes on") {
@@ -159,14 +160,14 @@ TEST_CASE("a ventilator that is stopped and started again goes on") {
   std::atomic<std::uint64_t> done{0};
   std::vector<std::string> summaries;
   auto first = std::make_unique<Part>(
-      farm.ventilator(one_round(300), [&](const FarmProgress& p) { done = p.jobs_done; }));
-  Part sink(farm.sink(one_round(300), summaries));
+      farm.ventilator(one_stage(300), [&](const FarmProgress& p) { done = p.jobs_done; }));
+  Part sink(farm.sink(one_stage(300), summaries));
   Part worker(farm.worker(do_slow_job));
   Part other(farm.worker(do_slow_job));
   wait_until([&] { return done > 20; });
   first->stop();
   CHECK_THROWS_AS(first->join(), IncompleteError);
-  Part second(farm.ventilator(one_round(300)));
+  Part second(farm.ventilator(one_stage(300)));
   second.join();
   sink.join();
   worker.join();
@@ -184,8 +185,8 @@ TEST_CASE("a worker that is stopped gives back what it holds, at once") {
     while (context.progress(1)) std::this_thread::sleep_for(std::chrono::milliseconds(1));
     throw IncompleteError("given up");
   };
-  Part ventilator(farm.ventilator(one_round(4)));
-  Part sink(farm.sink(one_round(4), summaries));
+  Part ventilator(farm.ventilator(one_stage(4)));
+  Part sink(farm.sink(one_stage(4), summaries));
   Part stopped(farm.worker(endless));
   wait_until([&] { return begun.load(); });
   stopped.stop();
@@ -212,8 +213,8 @@ TEST_CASE("a job that hangs is taken from its worker, which is told to end its p
   std::vector<std::string> summaries;
   std::atomic<std::uint32_t> lost{0};
   Part ventilator(
-      farm.ventilator(one_round(3), [&](const FarmProgress& p) { lost = p.workers_lost; }));
-  Part sink(farm.sink(one_round(3), summaries));
+      farm.ventilator(one_stage(3), [&](const FarmProgress& p) { lost = p.workers_lost; }));
+  Part sink(farm.sink(one_stage(3), summaries));
   Part hung([&](const std::atomic<bool>& stop) {
     WorkerOptions options;
     options.stop = &stop;
@@ -248,8 +249,8 @@ TEST_CASE("a worker of many threads works on as many jobs at once") {
     return do_trivial_job(job, context);
   };
   std::vector<std::string> summaries;
-  Part ventilator(farm.ventilator(one_round(40)));
-  Part sink(farm.sink(one_round(40), summaries));
+  Part ventilator(farm.ventilator(one_stage(40)));
+  Part sink(farm.sink(one_stage(40), summaries));
   Part worker([&](const std::atomic<bool>& stop) {
     WorkerOptions options;
     options.capacity.threads = 4;
@@ -268,7 +269,7 @@ TEST_CASE("whoever finds no ventilator says what to start") {
   farm.patience = std::chrono::milliseconds(300);
   std::vector<std::string> summaries;
   Part worker(farm.worker());
-  Part sink(farm.sink(one_round(1), summaries));
+  Part sink(farm.sink(one_stage(1), summaries));
   CHECK_THROWS_WITH_AS(worker.join(), doctest::Contains("start 'meshfarm"), IncompleteError);
   CHECK_THROWS_WITH_AS(sink.join(), doctest::Contains("start 'meshfarm"), IncompleteError);
 }

@@ -22,14 +22,14 @@ TEST_CASE("an accepted output that the source cannot read any more is set aside 
     if (job.parameters == "job 3") output.summary = "garbled";
     return output;
   };
-  run_farm(farm, one_round(5), 1, garbled);
+  run_farm(farm, one_stage(5), 1, garbled);
   const auto inspect = [](std::string_view, const JobOutput& output) {
     if (output.summary == "garbled") throw DataError("a summary of another version");
   };
   std::atomic<int> count{0};
   std::vector<std::string> summaries;
-  Part ventilator(farm.ventilator(one_round(5)));
-  Part sink(farm.sink(one_round(5), summaries, inspect));
+  Part ventilator(farm.ventilator(one_stage(5)));
+  Part sink(farm.sink(one_stage(5), summaries, inspect));
   Part worker(farm.worker(counted(count)));
   sink.join();
   ventilator.join();
@@ -41,14 +41,14 @@ TEST_CASE("an accepted output that the source cannot read any more is set aside 
 TEST_CASE("an output that there is no room for is made when there is") {
   Farm farm;
   set_log("test", LogLevel::off);
-  Part ventilator(farm.ventilator(one_round(3)));
+  Part ventilator(farm.ventilator(one_stage(3)));
   Part worker(farm.worker());
   int tries = 0;
   Part sink([&](const std::atomic<bool>& stop) {
     SinkOptions options;
     options.run = farm.run;
     options.stop = &stop;
-    run_sink(farm.stage, one_round(3), options, [&](std::span<const AcceptedJob>) {
+    run_sink(farm.stage, one_stage(3), options, [&](std::span<const AcceptedJob>) {
       if (++tries < 3) throw IoError("cannot write", "out.ply", EDQUOT);
     });
   });
@@ -66,14 +66,14 @@ TEST_CASE("an error in making the output reaches sink and ventilator") {
   SUBCASE("a full disk, which may have room later") {
     error_number = ENOSPC;
   }
-  Part ventilator(farm.ventilator(one_round(3)));
+  Part ventilator(farm.ventilator(one_stage(3)));
   Part worker(farm.worker());
   Part sink([&](const std::atomic<bool>& stop) {
     SinkOptions options;
     options.run = farm.run;
     options.when_full = WhenFull::end;
     options.stop = &stop;
-    run_sink(farm.stage, one_round(3), options, [&](std::span<const AcceptedJob>) {
+    run_sink(farm.stage, one_stage(3), options, [&](std::span<const AcceptedJob>) {
       throw IoError("cannot write", "out.ply", error_number);
     });
   });
@@ -90,13 +90,13 @@ TEST_CASE("an error in making the output reaches sink and ventilator") {
 TEST_CASE("a sink that is stopped while it makes its output tells of the stop alone") {
   Farm farm;
   std::atomic<bool> making{false};
-  Part ventilator(farm.ventilator(one_round(3)));
+  Part ventilator(farm.ventilator(one_stage(3)));
   Part worker(farm.worker());
   Part sink([&](const std::atomic<bool>& stop) {
     SinkOptions options;
     options.run = farm.run;
     options.stop = &stop;
-    run_sink(farm.stage, one_round(3), options, [&](std::span<const AcceptedJob>) {
+    run_sink(farm.stage, one_stage(3), options, [&](std::span<const AcceptedJob>) {
       making = true;
       while (!stop) std::this_thread::sleep_for(std::chrono::milliseconds(1));
       std::this_thread::sleep_for(std::chrono::milliseconds(200));
@@ -107,7 +107,7 @@ TEST_CASE("a sink that is stopped while it makes its output tells of the stop al
   sink.stop();
   CHECK_THROWS_WITH_AS(sink.join(), doctest::Contains("stopped"), IncompleteError);
   std::vector<std::string> summaries;
-  Part second(farm.sink(one_round(3), summaries));
+  Part second(farm.sink(one_stage(3), summaries));
   second.join();
   ventilator.join();
   worker.join();
@@ -123,16 +123,16 @@ TEST_CASE("a sink that is stopped and started again goes on") {
     return do_slow_job(job, context);
   };
   Part ventilator(
-      farm.ventilator(one_round(300), [&](const FarmProgress& p) { done = p.jobs_done; }));
+      farm.ventilator(one_stage(300), [&](const FarmProgress& p) { done = p.jobs_done; }));
   std::vector<std::string> none;
   std::vector<std::string> summaries;
-  auto first = std::make_unique<Part>(farm.sink(one_round(300), none));
+  auto first = std::make_unique<Part>(farm.sink(one_stage(300), none));
   Part worker(farm.worker(work));
   Part other(farm.worker(work));
   wait_until([&] { return done > 20; });
   first->stop();
   CHECK_THROWS_AS(first->join(), IncompleteError);
-  Part second(farm.sink(one_round(300), summaries));
+  Part second(farm.sink(one_stage(300), summaries));
   second.join();
   ventilator.join();
   worker.join();
@@ -145,10 +145,10 @@ TEST_CASE("a sink that is stopped and started again goes on") {
 TEST_CASE("a sink of another run is not served") {
   Farm farm;
   farm.patience = std::chrono::milliseconds(500);
-  Part ventilator(farm.ventilator(one_round(1)));
+  Part ventilator(farm.ventilator(one_stage(1)));
   farm.run = 8;
   std::vector<std::string> summaries;
-  Part sink(farm.sink(one_round(1), summaries));
+  Part sink(farm.sink(one_stage(1), summaries));
   CHECK_THROWS_AS(sink.join(), IncompleteError);
   ventilator.stop();
   CHECK_THROWS_AS(ventilator.join(), IncompleteError);

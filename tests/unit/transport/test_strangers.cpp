@@ -156,7 +156,7 @@ JobOutput do_slow_job(const Job& job, const JobContext& context) {
 
 TEST_CASE("what nobody should send is dropped, whoever sends it, and the run goes on") {
   Farm farm;
-  const JobSource source = one_round(100);
+  const JobSource source = one_stage(100);
   std::vector<std::string> summaries;
   Part ventilator(farm.ventilator(source));
   Part sink(farm.sink(source, summaries));
@@ -186,7 +186,7 @@ TEST_CASE("what nobody should send is dropped, whoever sends it, and the run goe
 
 TEST_CASE("a process of an older protocol is refused in words that it understands") {
   Farm farm;
-  Part ventilator(farm.ventilator(one_round(1)));
+  Part ventilator(farm.ventilator(one_stage(1)));
   const Endpoint endpoint = wait_for_endpoint(farm.stage);
   zmq::context_t context;
   zmq::socket_t control =
@@ -210,7 +210,7 @@ TEST_CASE("a process of an older protocol is refused in words that it understand
 
 TEST_CASE("a worker gets no more than its credit, and if it falls silent others do its jobs") {
   Farm farm;
-  const JobSource source = one_round(20);
+  const JobSource source = one_stage(20);
   std::vector<std::string> summaries;
   FarmProgress last;
   Part ventilator(farm.ventilator(source, [&](const FarmProgress& p) { last = p; }));
@@ -237,7 +237,7 @@ TEST_CASE("a worker gets no more than its credit, and if it falls silent others 
 TEST_CASE("fifty thousand jobs go through one lane, each once and in order") {
   Farm farm;
   farm.heartbeat = std::chrono::milliseconds(1000);
-  const JobSource source = one_round(50'000);
+  const JobSource source = one_stage(50'000);
   Part ventilator(farm.ventilator(source));
   const Endpoint endpoint = wait_for_endpoint(farm.stage);
   // A sink without a disk: accepts whatever it hears of.

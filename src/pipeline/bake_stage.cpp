@@ -1,12 +1,14 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
-#include "pipeline/bake_plan.hpp"
+#include "pipeline/bake_stage.hpp"
 
 #include <algorithm>
 #include <utility>
 
 #include <meshfarm/util/bytes.hpp>
 #include <meshfarm/util/checksum.hpp>
+
+#include "pipeline/run_stages.hpp"
 
 namespace meshfarm {
 namespace {
@@ -41,27 +43,44 @@ bool bakes_texture(const Manifest& manifest, const RunOptions& options) {
   return manifest.uvs && manifest.labels && chosen_textures(manifest, options) == TextureMode::bake;
 }
 
-BakePlan::BakePlan(const Manifest& manifest, const RunOptions& options, const ChosenRungs& chosen,
-                   std::span<const AcceptedJob> accepted)
-    : manifest_(manifest), options_(options), rest_(accepted) {
-  if (!accepts({finish_job(chosen)})) return;
-  const JobOutput& finished = next();
-  finished_ = finished.file;
-  finish_ = decode_finish_summary(finished.summary, "summary of " + finished.file.name);
-  std::vector<Job> tiles = tile_jobs();
-  const std::size_t files = tiles.size();
-  if (!accepts(std::move(tiles))) return;
-  for (std::size_t i = 0; i < files; ++i) {
-    const JobOutput& output = next();
-    TileSummary summary = decode_tile_summary(output.summary, "summary of " + output.file.name);
-    pictures_.push_back({output.file, summary.directory});
-    damaged_.insert(damaged_.end(), summary.damaged.begin(), summary.damaged.end());
-  }
-  if (!accepts(bake_jobs())) return;
-  for (std::size_t i = 0; i < finish_.chunk_texels.size(); ++i) texels_.push_back(next().file);
+void BakeStage::begin(JobGraph& graph, const ChosenRungs& chosen) {
+  const JobName finish = job_name(RunStage::finish, 0);
+  graph.add(finish, finish_job(chosen));
+  graph.then({just(finish)}, [this, finish](JobGraph& so_far) {
+    const JobOutput& finished = so_far.output(finish);
+    finished_ = finished.file;
+    finish_ = decode_finish_summary(finished.summary, "summary of " + finished.file.name);
+    tile(so_far);
+  });
 }
 
-Job BakePlan::finish_job(const ChosenRungs& chosen) const {
+void BakeStage::tile(JobGraph& graph) {
+  std::size_t tiles = 0;
+  for (Job& job : tile_jobs()) graph.add(job_name(RunStage::tile, tiles++), std::move(job));
+  graph.then({jobs_of(RunStage::tile, 0, tiles)}, [this, tiles](JobGraph& so_far) {
+    for (std::size_t i = 0; i < tiles; ++i) {
+      const JobOutput& output = so_far.output(job_name(RunStage::tile, i));
+      TileSummary summary = decode_tile_summary(output.summary, "summary of " + output.file.name);
+      pictures_.push_back({output.file, summary.directory});
+      baked_.damaged.insert(baked_.damaged.end(), summary.damaged.begin(), summary.damaged.end());
+    }
+    bake(so_far);
+  });
+}
+
+void BakeStage::bake(JobGraph& graph) {
+  const auto chunks = static_cast<std::uint32_t>(finish_.chunk_texels.size());
+  for (std::uint32_t c = 0; c < chunks; ++c) {
+    graph.add(job_name(RunStage::bake, c), bake_job(c));
+  }
+  graph.then({jobs_of(RunStage::bake, 0, chunks)}, [this, chunks](JobGraph& so_far) {
+    for (std::uint32_t c = 0; c < chunks; ++c) {
+      baked_.texels.push_back(so_far.output(job_name(RunStage::bake, c)).file);
+    }
+  });
+}
+
+Job BakeStage::finish_job(const ChosenRungs& chosen) const {
   ByteWriter joined;
   const auto put = [&](const std::vector<ChosenRung>& rungs) {
     joined.put(static_cast<std::uint32_t>(rungs.size()));
@@ -81,7 +100,7 @@ Job BakePlan::finish_job(const ChosenRungs& chosen) const {
 }
 
 /// Neighbouring pictures share a job where there are very many.
-std::vector<Job> BakePlan::tile_jobs() const {
+std::vector<Job> BakeStage::tile_jobs() const {
   std::vector<std::uint32_t> used;
   for (std::uint32_t i = 0; i < std::min(finish_.is_used.size(), manifest_.pictures.size()); ++i) {
     if (finish_.is_used[i] != 0) used.push_back(i);
@@ -106,28 +125,13 @@ std::vector<Job> BakePlan::tile_jobs() const {
   return jobs;
 }
 
-std::vector<Job> BakePlan::bake_jobs() const {
-  std::vector<Job> jobs;
-  for (std::uint32_t chunk = 0; chunk < finish_.chunk_texels.size(); ++chunk) {
-    Job job;
-    job.kind = k_bake_kind;
-    job.parameters = encode_parameters(BakeParameters{finished_, finish_.scene, chunk, pictures_});
-    job.cost = 1 + k_cost_of_texel * finish_.chunk_texels[chunk];
-    job.memory = memory_of_bake(manifest_);
-    jobs.push_back(std::move(job));
-  }
-  return jobs;
-}
-
-bool BakePlan::accepts(std::vector<Job> jobs) {
-  if (rest_.size() < jobs.size()) jobs_ = std::move(jobs);
-  return jobs_.empty();
-}
-
-const JobOutput& BakePlan::next() {
-  const JobOutput& output = rest_.front().output;
-  rest_ = rest_.subspan(1);
-  return output;
+Job BakeStage::bake_job(std::uint32_t chunk) const {
+  Job job;
+  job.kind = k_bake_kind;
+  job.parameters = encode_parameters(BakeParameters{finished_, finish_.scene, chunk, pictures_});
+  job.cost = 1 + k_cost_of_texel * finish_.chunk_texels[chunk];
+  job.memory = memory_of_bake(manifest_);
+  return job;
 }
 
 }  // namespace meshfarm

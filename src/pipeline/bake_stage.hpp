@@ -3,14 +3,13 @@
 #pragma once
 
 #include <cstdint>
-#include <optional>
-#include <span>
+#include <functional>
 #include <vector>
 
-#include <meshfarm/farm/job.hpp>
+#include <meshfarm/farm/job_graph.hpp>
 #include <meshfarm/io/manifest.hpp>
 #include <meshfarm/pipeline/bake_job.hpp>
-#include <meshfarm/pipeline/budget.hpp>
+#include <meshfarm/pipeline/run_graph.hpp>
 #include <meshfarm/pipeline/run_options.hpp>
 
 namespace meshfarm {
@@ -30,36 +29,30 @@ std::uint64_t memory_of_bake(const Manifest& manifest);
 /// Whether a run makes a new texture.
 bool bakes_texture(const Manifest& manifest, const RunOptions& options);
 
-/// The rounds of a run that makes a new texture, after those that make the mesh: finish, tile,
-/// bake. Derived from the accepted outputs alone.
-class BakePlan {
+/// The last stages of a run that makes a new texture: the sink finishes the mesh, workers tile the
+/// pictures that it shows, and bake its chunks. A bake job needs all tiles: any may be near it.
+class BakeStage {
  public:
-  /// `accepted`: of these rounds. Throws DataError for outputs that cannot be theirs.
-  BakePlan(const Manifest& manifest, const RunOptions& options, const ChosenRungs& chosen,
-           std::span<const AcceptedJob> accepted);
-  /// The round that is not accepted yet; none once all is baked.
-  const std::vector<Job>& jobs() const { return jobs_; }
-  /// Once all is baked: the files of the chunks' texels.
-  const std::vector<FileRef>& texels() const { return texels_; }
-  /// Numbers of pictures that could not be decoded.
-  const std::vector<std::uint32_t>& damaged() const { return damaged_; }
+  /// All must outlive this.
+  BakeStage(const Manifest& manifest, const RunOptions& options, BakedTexture& baked)
+      : manifest_(manifest), options_(options), baked_(baked) {}
+
+  /// Asks for all of it, from the finish on.
+  void begin(JobGraph& graph, const ChosenRungs& chosen);
 
  private:
   Job finish_job(const ChosenRungs& chosen) const;
   std::vector<Job> tile_jobs() const;
-  std::vector<Job> bake_jobs() const;
-  bool accepts(std::vector<Job> jobs);
-  const JobOutput& next();
+  Job bake_job(std::uint32_t chunk) const;
+  void tile(JobGraph& graph);
+  void bake(JobGraph& graph);
 
   const Manifest& manifest_;
   const RunOptions& options_;
-  std::span<const AcceptedJob> rest_;
-  std::vector<Job> jobs_;
+  BakedTexture& baked_;
   FileRef finished_;
   FinishSummary finish_;
   std::vector<TiledPicturesRef> pictures_;
-  std::vector<std::uint32_t> damaged_;
-  std::vector<FileRef> texels_;
 };
 
 }  // namespace meshfarm

@@ -1,0 +1,126 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#include "pipeline/climb_stage.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "pipeline/run_stages.hpp"
+
+namespace meshfarm {
+namespace {
+
+/// A ladder begins at this many times the part's even share, so that a part of much detail can keep
+/// more than its share; a part that deserves still more is asked for again.
+constexpr double k_first_headroom = 4;
+constexpr double k_more_headroom = 8;
+
+/// Parts that their topology holds back are to have no more of all triangles than this at the level
+/// that is chosen, and all together no more than so many times what is wanted: one level is 1.6.
+constexpr double k_fair_share = 0.1;
+constexpr double k_fair_excess = 2;
+
+/// Which may turn out not to be fair.
+TopologyMode first_topology(const RunOptions& options, bool by_error) {
+  if (options.lines.topology != TopologyMode::automatic) return options.lines.topology;
+  if (by_error) return TopologyMode::keep;
+  return options.allocation == Allocation::threshold ? TopologyMode::keep_while_fair
+                                                     : TopologyMode::automatic;
+}
+
+}  // namespace
+
+ClimbStage::ClimbStage(const Manifest& manifest, const RunOptions& options, const PartJobs& jobs,
+                       PartResults& results, std::function<JobNeeds(std::uint32_t part)> needs)
+    : manifest_(manifest),
+      options_(options),
+      jobs_(jobs),
+      results_(results),
+      needs_(std::move(needs)),
+      headroom_(manifest.parts.size(), k_first_headroom),
+      asked_(manifest.parts.size()) {
+  results_.topology = first_topology(options, jobs.by_error());
+}
+
+JobNeeds ClimbStage::ask(JobGraph& graph, const std::vector<std::uint32_t>& parts) {
+  JobNeeds asked;
+  for (const std::uint32_t part : parts) {
+    asked_[part] = job_name(RunStage::climb, jobs_asked_++);
+    const auto make = [this, part](JobGraph&) {
+      return jobs_.climb(part, headroom_[part], results_.topology);
+    };
+    graph.add(asked_[part], needs_(part), make);
+    asked.push_back(just(asked_[part]));
+  }
+  return asked;
+}
+
+void ClimbStage::take(const JobGraph& graph, const std::vector<std::uint32_t>& parts) {
+  for (const std::uint32_t part : parts) {
+    if (results_.files[part].name.empty()) climbed_.push_back(part);
+    results_.take(part, graph, asked_[part]);
+    if (jobs_.is_sampled(part)) stand_for_stream(part);
+  }
+}
+
+/// As many triangles as there would be of the whole stream.
+void ClimbStage::stand_for_stream(std::uint32_t part) {
+  const double times =
+      static_cast<double>(manifest_.parts[part].triangles) /
+      static_cast<double>(std::max<std::uint64_t>(1, manifest_.samples[part].triangles));
+  for (Rung& rung : results_.summaries[part].rungs) {
+    rung.free_triangles =
+        static_cast<std::uint64_t>(times * static_cast<double>(rung.free_triangles));
+  }
+}
+
+std::vector<std::uint32_t> ClimbStage::choose_level() {
+  if (climbed_.empty()) return {};
+  std::vector<std::vector<Rung>> ladders;
+  for (const std::uint32_t part : climbed_) ladders.push_back(results_.summaries[part].rungs);
+  results_.level = common_level(ladders, static_cast<std::uint64_t>(jobs_.wanted()));
+  if (results_.topology == TopologyMode::keep_while_fair && is_unfair()) {
+    keep_coarsest();
+    results_.topology = TopologyMode::simplify;
+    headroom_.assign(headroom_.size(), k_first_headroom);
+    return climbed_;
+  }
+  std::vector<std::uint32_t> again;
+  if (options_.allocation == Allocation::uniform) return again;
+  for (const std::uint32_t part : climbed_) {
+    if (results_.summaries[part].rungs.front().level <= results_.level) continue;
+    headroom_[part] *= k_more_headroom;
+    again.push_back(part);
+  }
+  return again;
+}
+
+/// Whether parts that keep their topology could not follow the others to the common level, or all
+/// together not to the count, or whether not even all that they could do would meet the target.
+/// What is kept at too high a cost before that the finish finds out.
+bool ClimbStage::is_unfair() const {
+  double held = 0;
+  double least = 0;
+  bool any = false;
+  for (const ResultSummary& result : results_.summaries) {
+    const Rung& last = result.rungs.back();
+    least += static_cast<double>(last.free_triangles);
+    if (!result.held_by_topology) continue;
+    any = true;
+    if (last.level < results_.level) held += static_cast<double>(last.free_triangles);
+  }
+  const auto all = static_cast<double>(results_.free_triangles(results_.level));
+  if (any && least > static_cast<double>(jobs_.target())) return true;
+  return held > k_fair_share * all || (any && all > k_fair_excess * jobs_.wanted());
+}
+
+/// A sample of a stream tells nothing.
+void ClimbStage::keep_coarsest() {
+  for (std::uint32_t p = 0; p < results_.summaries.size(); ++p) {
+    if (jobs_.is_sampled(p)) return kept_.clear();
+    const auto last = static_cast<std::uint32_t>(results_.summaries[p].rungs.size() - 1);
+    kept_.push_back({results_.files[p], last});
+  }
+}
+
+}  // namespace meshfarm

@@ -1,0 +1,175 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#include "pipeline/compose_stage.hpp"
+
+#include <algorithm>
+#include <string>
+#include <utility>
+
+#include <meshfarm/io/result_file.hpp>
+#include <meshfarm/pipeline/compose_job.hpp>
+
+#include "pipeline/run_stages.hpp"
+
+namespace meshfarm {
+namespace {
+
+/// Joined at once: with two there are more levels, with all of them nothing is left to share out.
+constexpr std::size_t k_most_joined = 4;
+
+/// The sink joins and finishes so many in about a second and 200 MB.
+constexpr std::uint64_t k_worth_a_tree = 2'000'000;
+/// Of what the streams are to keep together: with less there is little at the seams.
+constexpr double k_worth_seams = 1.5;
+
+/// The files as they are read, the joined mesh, the simplifier and the file that is written.
+std::uint64_t memory_of_composition(std::uint64_t file_bytes, std::uint64_t triangles) {
+  constexpr std::uint64_t k_process = std::uint64_t{16} << 20;
+  return k_process + file_bytes + 150 * triangles;
+}
+
+/// Neighbours as one, before they are joined.
+ComposedStreams sum_of(const std::vector<ComposedStreams>& streams, std::size_t first,
+                       std::size_t end) {
+  ComposedStreams sum = streams[first];
+  for (std::size_t i = first + 1; i < end; ++i) {
+    const ComposedStreams& each = streams[i];
+    sum.chosen.parts += each.chosen.parts;
+    sum.chosen.dropped_degenerate += each.chosen.dropped_degenerate;
+    sum.chosen.dropped_duplicate += each.chosen.dropped_duplicate;
+    sum.chosen.turned += each.chosen.turned;
+    sum.weight += each.weight;
+  }
+  return sum;
+}
+
+void take_output(ComposedStreams& streams, const JobOutput& output) {
+  const ResultSummary summary = decode_summary(output.summary, "summary of " + output.file.name);
+  streams.chosen.file = output.file;
+  streams.chosen.rung = 0;
+  streams.chosen.dropped_degenerate += summary.dropped_degenerate;
+  streams.chosen.dropped_duplicate += summary.dropped_duplicate;
+  streams.chosen.turned += summary.turned;
+  streams.triangles = summary.rungs.front().triangles;
+}
+
+}  // namespace
+
+void ComposeStage::begin(JobGraph& graph, const ComposeGoal& goal,
+                         std::vector<ComposedStreams> streams, Done done) {
+  goal_ = goal;
+  done_ = std::move(done);
+  for (const ComposedStreams& each : streams) weight_ += each.weight;
+  Level& level = levels_.emplace_back();
+  level.streams = std::move(streams);
+  level.whole = true;
+  while (level.taken < level.streams.size()) take(graph, 0);
+  end_level(graph, 0);
+}
+
+bool ComposeStage::can_join() const {
+  return manifest_.scheme == Scheme::stream && goal_.level >= 0 && weight_ > 0 &&
+         options_.allocation == Allocation::threshold && options_.finish == Finish::global &&
+         !(options_.error.value > 0) && options_.composition != Composition::sink;
+}
+
+/// By those that are taken: it may be clear before all are.
+bool ComposeStage::is_worth_it(const Level& level) const {
+  if (!can_join()) return false;
+  if (options_.composition == Composition::tree) return true;
+  return level.triangles >= k_worth_a_tree &&
+         static_cast<double>(level.triangles) > k_worth_seams * goal_.triangles;
+}
+
+/// The next of a level is there.
+void ComposeStage::take(JobGraph& graph, std::size_t number) {
+  Level& level = levels_[number];
+  level.triangles += level.streams[level.taken++].triangles;
+  // What was not joined before does not fit now either.
+  const bool any_new = number == 0 || levels_[number - 1].joins;
+  if (any_new && is_worth_it(level)) join(graph, number);
+}
+
+/// Neighbours are joined as long as they fit.
+void ComposeStage::join(JobGraph& graph, std::size_t number) {
+  Level& level = levels_[number];
+  const std::uint64_t seam = manifest_.boundary_triangles / manifest_.parts.size();
+  while (level.first < level.taken) {
+    std::uint64_t triangles = level.streams[level.first].triangles;
+    std::size_t end = level.first + 1;
+    bool fits = true;
+    for (; end < level.taken && end - level.first < k_most_joined; ++end) {
+      triangles += seam + level.streams[end].triangles;
+      fits = triangles <= manifest_.window_triangles;
+      if (!fits) break;
+    }
+    const bool last = level.whole && end == level.streams.size();
+    if (fits && !last && end - level.first < k_most_joined) return;  // the next may fit, too
+    close_group(graph, number, end);
+  }
+}
+
+/// Becomes one of the next level.
+void ComposeStage::close_group(JobGraph& graph, std::size_t number, std::size_t end) {
+  if (number + 1 == levels_.size()) levels_.emplace_back();
+  Level& level = levels_[number];
+  Level& next = levels_[number + 1];
+  const std::size_t first = std::exchange(level.first, end);
+  const std::size_t place = next.streams.size();
+  next.streams.push_back(sum_of(level.streams, first, end));
+  const std::size_t base = number * manifest_.parts.size();
+  const JobName name = job_name(RunStage::compose, base + place);
+  const bool joins = end - first > 1;
+  level.joins = level.joins || joins;
+  graph.add(name, {}, [this, number, first, end, joins](JobGraph&) {
+    return joins ? std::optional(job_of(levels_[number], first, end)) : std::nullopt;
+  });
+  graph.then({jobs_of(RunStage::compose, base, place + 1)}, [=, this](JobGraph& so_far) {
+    if (joins) take_output(levels_[number + 1].streams[place], so_far.output(name));
+    take(so_far, number + 1);
+  });
+}
+
+Job ComposeStage::job_of(const Level& level, std::size_t first, std::size_t end) const {
+  ComposeParameters parameters;
+  for (std::size_t i = 0; i < first; ++i) parameters.first_stream += level.streams[i].chosen.parts;
+  parameters.all_streams = static_cast<std::uint32_t>(manifest_.parts.size());
+  parameters.boundary = manifest_.boundary;
+  parameters.level = goal_.level;
+  parameters.max_cost = goal_.max_cost;
+  parameters.samples_per_triangle =
+      std::min(1.0, static_cast<double>(samples_for(manifest_, options_, manifest_.triangles())) /
+                        static_cast<double>(std::max<std::uint64_t>(1, manifest_.triangles())));
+  parameters.lines = lines_of(manifest_, options_);
+  parameters.lines.topology = goal_.topology;
+  Job job;
+  job.kind = k_compose_kind;
+  std::uint64_t weight = 0;
+  std::uint64_t bytes = 0;
+  for (std::size_t i = first; i < end; ++i) {
+    const ComposedStreams& each = level.streams[i];
+    parameters.inputs.push_back({each.chosen.parts, each.chosen.rung});
+    job.inputs.push_back(each.chosen.file);
+    job.cost += each.triangles;
+    weight += each.weight;
+    bytes += each.chosen.file.size;
+  }
+  parameters.floor = static_cast<std::uint64_t>(goal_.triangles * static_cast<double>(weight) /
+                                                static_cast<double>(weight_));
+  job.parameters = encode_parameters(parameters);
+  job.memory =
+      memory_of_composition(bytes, job.cost) + memory_of_channels(parameters.lines, job.cost);
+  return job;
+}
+
+/// All of a level are there.
+void ComposeStage::end_level(JobGraph& graph, std::size_t number) {
+  levels_[number].whole = true;
+  if (is_worth_it(levels_[number])) join(graph, number);
+  if (!levels_[number].joins) return done_(graph, levels_[number].streams);
+  const std::size_t base = number * manifest_.parts.size();
+  const JobNeeds next = {jobs_of(RunStage::compose, base, levels_[number + 1].streams.size())};
+  graph.then(next, [this, number](JobGraph& so_far) { end_level(so_far, number + 1); });
+}
+
+}  // namespace meshfarm

@@ -1,0 +1,80 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <vector>
+
+#include <meshfarm/farm/job_graph.hpp>
+#include <meshfarm/io/manifest.hpp>
+#include <meshfarm/pipeline/budget.hpp>
+#include <meshfarm/pipeline/run_options.hpp>
+
+namespace meshfarm {
+
+/// The result of a stream, or of neighbours that were composed.
+struct ComposedStreams {
+  ChosenRung chosen;
+  std::uint64_t triangles = 0;  // of the rung
+  std::uint64_t weight = 0;     // free triangles of its streams before anything was composed
+};
+
+/// The cost threshold of all streams, and what they are to keep together for the finish.
+struct ComposeGoal {
+  std::int32_t level = 0;
+  double max_cost = 0;
+  double triangles = 0;
+  TopologyMode topology = TopologyMode::keep;
+};
+
+/// Joins neighbours, and what came of that again (Xiong et al. 2008, 4.3): a few at once, and no
+/// more than a sweep's window holds, so that a worker needs no more memory than for a sweep. What
+/// is then left for the sink to join is one result, or such as are too large.
+///
+/// A tree costs time, and each of its jobs reads the boundary triangles through. On its own it is
+/// taken where the sink would be long at it: from two million triangles on, and only if the seams
+/// are much of them (small parts of a sweep stay uncollapsed along them, whatever the goal).
+///
+/// Neighbours are joined from the first on, as many as fit. So a job needs those that it joins and
+/// those before them on its level, not the whole level.
+class ComposeStage {
+ public:
+  using Done = std::function<void(JobGraph&, const std::vector<ComposedStreams>&)>;
+
+  /// Both must outlive this.
+  ComposeStage(const Manifest& manifest, const RunOptions& options)
+      : manifest_(manifest), options_(options) {}
+
+  /// `done` is called once nothing more is to be joined.
+  void begin(JobGraph& graph, const ComposeGoal& goal, std::vector<ComposedStreams> streams,
+             Done done);
+
+ private:
+  /// The streams as they were swept, then what came of joining these, and so on.
+  struct Level {
+    std::vector<ComposedStreams> streams;
+    std::size_t taken = 0;        // the first of these are there
+    std::size_t first = 0;        // not in a group yet
+    std::uint64_t triangles = 0;  // of those taken
+    bool whole = false;           // all are known
+    bool joins = false;           // any of them
+  };
+
+  bool can_join() const;
+  bool is_worth_it(const Level& level) const;
+  void take(JobGraph& graph, std::size_t number);
+  void join(JobGraph& graph, std::size_t number);
+  void close_group(JobGraph& graph, std::size_t number, std::size_t end);
+  Job job_of(const Level& level, std::size_t first, std::size_t end) const;
+  void end_level(JobGraph& graph, std::size_t number);
+
+  const Manifest& manifest_;
+  const RunOptions& options_;
+  ComposeGoal goal_;
+  Done done_;
+  std::uint64_t weight_ = 0;  // of all
+  std::deque<Level> levels_;
+};
+
+}  // namespace meshfarm

@@ -1,0 +1,39 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include <meshfarm/farm/job_graph.hpp>
+#include <meshfarm/io/result_file.hpp>
+#include <meshfarm/pipeline/budget.hpp>
+
+namespace meshfarm {
+
+/// What the stages that climb and sweep have come to, by part.
+struct PartResults {
+  explicit PartResults(std::size_t parts) : made_by(parts), summaries(parts), files(parts) {}
+
+  void take(std::uint32_t part, const JobGraph& graph, JobName job) {
+    const JobOutput& output = graph.output(job);
+    made_by[part] = job;
+    summaries[part] = decode_summary(output.summary, "summary of " + output.file.name);
+    files[part] = output.file;
+  }
+  std::uint64_t free_triangles(std::int32_t at_level) const {
+    std::uint64_t sum = 0;
+    for (const ResultSummary& each : summaries) {
+      sum += each.rungs[rung_at(each.rungs, at_level)].free_triangles;
+    }
+    return sum;
+  }
+
+  std::vector<JobName> made_by;  // the last job that is accepted
+  std::vector<ResultSummary> summaries;
+  std::vector<FileRef> files;
+  std::int32_t level = 0;  // that is chosen for all
+  TopologyMode topology = TopologyMode::automatic;
+};
+
+}  // namespace meshfarm

@@ -1,0 +1,257 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+//
+// A run from top to bottom: which jobs follow which. How the jobs of a stage are made, and what is
+// made of their outputs, is told by the stages' own files.
+#include <algorithm>
+#include <map>
+#include <memory>
+#include <numeric>
+#include <utility>
+
+#include <meshfarm/pipeline/algorithm.hpp>
+#include <meshfarm/pipeline/run_graph.hpp>
+
+#include "pipeline/bake_stage.hpp"
+#include "pipeline/climb_stage.hpp"
+#include "pipeline/compose_stage.hpp"
+#include "pipeline/part_jobs.hpp"
+#include "pipeline/part_results.hpp"
+#include "pipeline/run_stages.hpp"
+#include "pipeline/sort_stage.hpp"
+#include "pipeline/sweep_stage.hpp"
+
+namespace meshfarm {
+namespace {
+
+/// What is thought of as a finer level has so many times the triangles, and is so near.
+constexpr double k_finer = 1.2;
+constexpr std::int32_t k_most_finer = 6;
+
+class Run {
+ public:
+  using Parts = std::vector<std::uint32_t>;
+
+  Run(Manifest manifest, RunOptions options)
+      : options_(std::move(options)), state_{std::move(manifest), {}, {}} {}
+
+  /// Slabs are sorted, if there are any; from then on the run is the one that streams would have
+  /// had.
+  void begin(JobGraph& graph) {
+    if (!manifest().sorting) return simplify(graph);
+    graph.then(sorting_.ask(graph), [this](JobGraph& so_far) {
+      state_.manifest.sorting.reset();
+      simplify(so_far);
+    });
+  }
+  const RunState& state() const { return state_; }
+
+ private:
+  /// Every part is climbed, and every long stream is swept.
+  void simplify(JobGraph& graph) {
+    simplifying_.emplace(manifest(), options_,
+                         [this](std::uint32_t part) { return sorting_.sample_of(part); });
+    const Parts all = parts_that([](std::uint32_t) { return true; });
+    if (jobs().by_error()) return simplify_to_error(graph, all);
+    if (!jobs().climbs_samples()) return simplify_to_ratio(graph);
+    climb(graph, all);
+  }
+
+  /// To a common level: of a long stream a sample is climbed, which stands for the stream by its
+  /// share of the triangles.
+  void climb(JobGraph& graph, const Parts& parts) {
+    graph.then(climbs().ask(graph, parts), [this, parts](JobGraph& so_far) {
+      climbs().take(so_far, parts);
+      const Parts again = climbs().choose_level();
+      again.empty() ? sweep(so_far) : climb(so_far, again);
+    });
+  }
+
+  void sweep(JobGraph& graph) {
+    const Parts streams = parts_that([this](std::uint32_t p) { return jobs().is_sampled(p); });
+    if (streams.empty()) return compose(graph);
+    const JobNeeds asked = sweeps().ask(graph, streams, results().level);
+    graph.then(asked, [this, streams](JobGraph& so_far) {
+      sweeps().take(so_far, streams);
+      if (!sweeps().is_too_coarse()) return compose(so_far);
+      --results().level;
+      sweep(so_far);
+    });
+  }
+
+  /// The same ratio in all parts needs no level.
+  void simplify_to_ratio(JobGraph& graph) {
+    const Parts streams = parts_that([this](std::uint32_t p) { return jobs().is_sampled(p); });
+    const Parts parts = parts_that([this](std::uint32_t p) { return !jobs().is_sampled(p); });
+    JobNeeds all = sweeps().ask(graph, streams, results().level);
+    for (const JobRange& each : climbs().ask(graph, parts)) all.push_back(each);
+    for (const std::uint32_t stream : streams) {
+      for (const JobRange& each : sorting_.sample_of(stream)) all.push_back(each);
+    }
+    graph.then(all, [this, streams, parts](JobGraph& so_far) {
+      sweeps().take(so_far, streams);
+      climbs().take(so_far, parts);
+      climbs().choose_level();
+      compose(so_far);
+    });
+  }
+
+  /// To a bound on the error each part is taken on its own.
+  void simplify_to_error(JobGraph& graph, const Parts& parts) {
+    if (parts.empty()) return compose(graph);
+    for (const std::uint32_t part : parts) {
+      graph.then(climbs().ask(graph, {part}), [this, part](JobGraph& so_far) {
+        climbs().take(so_far, {part});
+        if (!jobs().is_sampled(part)) return part_is_done(so_far);
+        sweep_to_error(so_far, part, results().summaries[part].rungs.back().level);
+      });
+    }
+  }
+
+  void sweep_to_error(JobGraph& graph, std::uint32_t stream, std::int32_t level) {
+    graph.then(sweeps().ask(graph, {stream}, level), [this, stream, level](JobGraph& so_far) {
+      sweeps().take(so_far, {stream});
+      if (!sweeps().is_too_far(stream) || level < 0) return part_is_done(so_far);
+      sweep_to_error(so_far, stream, level - 1);
+    });
+  }
+
+  void part_is_done(JobGraph& graph) {
+    if (++parts_done_ < manifest().parts.size()) return;
+    JobNeeds all;
+    for (const JobName& job : results().made_by) all.push_back(just(job));
+    graph.then(all, [this](JobGraph& so_far) { compose(so_far); });
+  }
+
+  /// Neighbouring streams are joined by workers, where that is worth it.
+  void compose(JobGraph& graph) {
+    const ComposeGoal goal{
+        results().level, jobs().sweep_cost(results().level), jobs().wanted(),
+        results().topology == TopologyMode::simplify ? TopologyMode::simplify : TopologyMode::keep};
+    composing_.begin(graph, goal, reached(),
+                     [this](JobGraph& so_far, const std::vector<ComposedStreams>& streams) {
+                       choose(streams);
+                       if (bakes_texture(manifest(), options_)) baking_.begin(so_far, *chosen());
+                     });
+  }
+
+  /// What is to be stitched of each part, before anything is composed.
+  std::vector<ComposedStreams> reached() const {
+    std::vector<ComposedStreams> reached;
+    for (std::size_t p = 0; p < results().files.size(); ++p) {
+      const ResultSummary& result = results().summaries[p];
+      const auto last = static_cast<std::uint32_t>(result.rungs.size() - 1);
+      const std::uint32_t rung = jobs().by_error() ? last : rung_at(result.rungs, results().level);
+      reached.push_back({{results().files[p], rung, 1, result.dropped_degenerate,
+                          result.dropped_duplicate, result.turned},
+                         result.rungs[rung].triangles,
+                         result.rungs[rung].free_triangles});
+    }
+    return reached;
+  }
+
+  /// The mesh is made: the sink may stitch it.
+  void choose(const std::vector<ComposedStreams>& streams) {
+    ChosenRungs& chosen = state_.chosen.emplace();
+    for (const ComposedStreams& each : streams) chosen.rungs.push_back(each.chosen);
+    add_finer(chosen);
+    const TopologyMode topology = results().topology;
+    chosen.kept = topology == TopologyMode::simplify ? climbs().kept() : chosen.rungs;
+    chosen.topology =
+        topology == TopologyMode::keep_while_fair ? TopologyMode::automatic : topology;
+  }
+
+  /// Of ladders: swept streams have one rung, and what was composed is none.
+  void add_finer(ChosenRungs& chosen) const {
+    if (jobs().by_error() || chosen.rungs.size() != results().files.size()) return;
+    const std::int32_t chosen_level = results().level;
+    const std::uint64_t before = results().free_triangles(chosen_level);
+    for (std::int32_t level = chosen_level - 1; level >= chosen_level - k_most_finer; --level) {
+      const auto triangles = static_cast<double>(results().free_triangles(level));
+      if (triangles < k_finer * static_cast<double>(before)) continue;
+      for (std::size_t p = 0; p < results().files.size(); ++p) {
+        chosen.finer.push_back({results().files[p], rung_at(results().summaries[p].rungs, level)});
+      }
+      chosen.times_finer = triangles / static_cast<double>(std::max<std::uint64_t>(1, before));
+      return;
+    }
+  }
+
+  /// Those are made once the slabs are sorted.
+  struct Simplifying {
+    Simplifying(const Manifest& manifest, const RunOptions& options,
+                std::function<JobNeeds(std::uint32_t)> sample_of)
+        : jobs(manifest, options),
+          results(manifest.parts.size()),
+          climbs(manifest, options, jobs, results, std::move(sample_of)),
+          sweeps(manifest, options, jobs, results) {}
+    PartJobs jobs;
+    PartResults results;
+    ClimbStage climbs;
+    SweepStage sweeps;
+  };
+  template <class Which>
+  Parts parts_that(const Which& which) const {
+    Parts parts(manifest().parts.size());
+    std::iota(parts.begin(), parts.end(), 0U);
+    std::erase_if(parts, [&](std::uint32_t part) { return !which(part); });
+    return parts;
+  }
+  const Manifest& manifest() const { return state_.manifest; }
+  const std::optional<ChosenRungs>& chosen() const { return state_.chosen; }
+  const PartJobs& jobs() const { return simplifying_->jobs; }
+  PartResults& results() { return simplifying_->results; }
+  const PartResults& results() const { return simplifying_->results; }
+  ClimbStage& climbs() { return simplifying_->climbs; }
+  SweepStage& sweeps() { return simplifying_->sweeps; }
+
+  RunOptions options_;
+  RunState state_;
+  SortStage sorting_{state_.manifest};
+  std::optional<Simplifying> simplifying_;
+  std::size_t parts_done_ = 0;
+  ComposeStage composing_{state_.manifest, options_};
+  BakeStage baking_{state_.manifest, options_, state_.baked};
+};
+
+std::pair<JobGraph, std::shared_ptr<const Run>> begin_run(const Manifest& manifest,
+                                                          const RunOptions& options) {
+  const auto run = std::make_shared<Run>(manifest, options);
+  JobGraph graph = empty_graph(k_algorithm_version);
+  run->begin(graph);
+  graph.keep(run);
+  return {std::move(graph), run};
+}
+
+}  // namespace
+
+JobSource make_job_source(const Manifest& manifest, const RunOptions& options) {
+  return [manifest, options] { return begin_run(manifest, options).first; };
+}
+
+RunState state_of_run(const Manifest& manifest, const RunOptions& options,
+                      std::span<const AcceptedJob> accepted) {
+  std::map<JobKey, const JobOutput*> outputs;
+  for (const AcceptedJob& each : accepted) outputs[each.key] = &each.output;
+  auto [graph, run] = begin_run(manifest, options);
+  std::vector<WantedJob> jobs = graph.begin();
+  for (std::size_t i = 0; i < jobs.size(); ++i) {
+    const auto found = outputs.find(jobs[i].key);
+    if (found == outputs.end()) continue;
+    for (WantedJob& each : graph.accept(jobs[i].key, *found->second)) {
+      jobs.push_back(std::move(each));
+    }
+  }
+  return run->state();
+}
+
+std::uint64_t memory_wanted(const Manifest& manifest, const RunOptions& options) {
+  std::uint64_t wanted = 0;
+  JobGraph graph = make_job_source(manifest, options)();
+  for (const WantedJob& each : graph.begin()) wanted = std::max(wanted, each.job.memory);
+  if (bakes_texture(manifest, options)) wanted = std::max(wanted, memory_of_bake(manifest));
+  return manifest.sorting ? std::max(wanted, memory_wanted(as_if_sorted(manifest), options))
+                          : wanted;
+}
+
+}  // namespace meshfarm
