@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
 #include <algorithm>
-#include <chrono>
+#include <ctime>
 #include <map>
 #include <random>
 #include <string>
@@ -191,7 +191,7 @@ JobSource tree_of(std::uint32_t jobs, std::uint32_t levels, std::uint32_t childr
 }
 
 TEST_CASE("a tree of a hundred thousand jobs is planned in a moment") {
-  const auto start = std::chrono::steady_clock::now();
+  const std::clock_t start = std::clock();  // others may use the machine, too
   Plan plan(tree_of(75'000, 8, 4), 3);
   plan.restart({});
   std::uint64_t done = 0;
@@ -201,9 +201,9 @@ TEST_CASE("a tree of a hundred thousand jobs is planned in a moment") {
   }
   CHECK(plan.complete());
   CHECK(done > 99'000);
-  const std::chrono::duration<double> took = std::chrono::steady_clock::now() - start;
-  MESSAGE(done, " jobs planned in ", took.count(), " s");
-  CHECK(took.count() < 20);  // a second where nobody else works
+  const double took = static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
+  MESSAGE(done, " jobs planned in ", took, " s of processor time");
+  CHECK(took < 10);  // half a second, but for sanitizers
 }
 
 }  // namespace
