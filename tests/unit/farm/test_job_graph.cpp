@@ -11,7 +11,7 @@
 
 #include <meshfarm/farm/plan.hpp>
 
-#include "farm_fixture.hpp"
+#include "support/jobs.hpp"
 
 namespace meshfarm::test {
 namespace {
