@@ -3,7 +3,6 @@
 #include "divide/cell_graph.hpp"
 
 #include <algorithm>
-#include <limits>
 #include <numeric>
 #include <string>
 #include <utility>
@@ -85,6 +84,7 @@ std::vector<idx_t> scaled_weights(std::span<const Cell> cells) {
   return weights;
 }
 
+/// METIS numbers the parts along a recursive bisection, k-way too: that is what it begins with.
 std::vector<idx_t> run_metis(std::span<const Cell> cells, Graph graph, idx_t parts) {
   std::vector<idx_t> weights = scaled_weights(cells);
 
@@ -182,17 +182,14 @@ std::vector<idx_t> balanced(std::vector<idx_t> part, std::span<const Cell> cells
   return heaviest(cells, other, parts) < found ? other : part;
 }
 
-/// Numbers the parts in the order in which the cells meet them, without gaps.
-std::vector<std::uint32_t> renumbered(const std::vector<idx_t>& part, idx_t parts) {
-  constexpr std::uint32_t k_none = std::numeric_limits<std::uint32_t>::max();
-  std::vector<std::uint32_t> number(static_cast<std::size_t>(parts), k_none);
+/// Without gaps, the order kept.
+std::vector<std::uint32_t> without_gaps(const std::vector<idx_t>& part, idx_t parts) {
+  std::vector<std::uint32_t> number(static_cast<std::size_t>(parts), 0);
+  for (const idx_t p : part) number[p] = 1;
+  std::exclusive_scan(number.begin(), number.end(), number.begin(), 0U);
   std::vector<std::uint32_t> result;
   result.reserve(part.size());
-  std::uint32_t next = 0;
-  for (const idx_t p : part) {
-    if (number[p] == k_none) number[p] = next++;
-    result.push_back(number[p]);
-  }
+  for (const idx_t p : part) result.push_back(number[p]);
   return result;
 }
 
@@ -207,8 +204,8 @@ std::vector<std::uint32_t> partition_cells(std::span<const Cell> cells,
                                            const CellGraphOptions& options) {
   if (options.parts <= 1 || cells.size() <= 1) return std::vector<std::uint32_t>(cells.size(), 0);
   const auto parts = static_cast<idx_t>(std::min<std::size_t>(options.parts, cells.size()));
-  return renumbered(balanced(run_metis(cells, graph_of(cells, options), parts), cells, parts),
-                    parts);
+  return without_gaps(balanced(run_metis(cells, graph_of(cells, options), parts), cells, parts),
+                      parts);
 }
 
 }  // namespace meshfarm

@@ -24,7 +24,8 @@ struct CellGraphOptions {
 /// a fixed seed, divides a graph of the cells: nodes are weighted by their vertices, edges lead to
 /// the nearest cells. If a part gets too heavy, the cells are divided by recursive bisection along
 /// their longest side instead; then no part exceeds the mean by more than one cell. Parts are
-/// numbered from 0 without gaps; there may be fewer than asked for, never more.
+/// numbered from 0 without gaps, along a recursive bisection: a range of them lies together. There
+/// may be fewer than asked for, never more.
 std::vector<std::uint32_t> partition_cells(std::span<const Cell> cells,
                                            const CellGraphOptions& options);
 

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
 #include <algorithm>
+#include <cmath>
 #include <set>
 #include <string>
 
@@ -85,7 +86,36 @@ TEST_CASE("the version of METIS that parts depend on makes the parts that it alw
         "bbbbbbbbbbbbbbbb"
         "bbbbbbbbbbbbbbbb"
         "bbbbbbbbbbbbbbbb");
-  CHECK(sum(text_of(12)) == 6776605540786173613U);
+  CHECK(sum(text_of(12)) == 14592328046339380485U);
+}
+
+TEST_CASE("parts are numbered along a recursive bisection: a half of them is one region") {
+  constexpr std::uint32_t k_side = 96;
+  const CellTree tree = square_of_cells(k_side);
+  for (const std::uint32_t parts : {8U, 16U, 29U, 40U}) {
+    const auto part = partition_cells(tree.cells(), {.parts = parts});
+    REQUIRE(*std::max_element(part.begin(), part.end()) == parts - 1);
+    CAPTURE(parts);
+    // The first half of all parts, of these, and so on.
+    for (std::uint32_t range = parts; range >= 4; range /= 2) {
+      CAPTURE(range);
+      const auto is_first_half = [&](std::size_t cell) { return part[cell] < range / 2; };
+      const auto is_inside = [&](std::size_t cell) { return part[cell] < range; };
+      std::size_t inside = 0;
+      std::size_t between = 0;
+      for (std::size_t i = 0; i < part.size(); ++i) {
+        if (!is_inside(i)) continue;
+        ++inside;
+        for (const std::size_t next : {i + 1, i + k_side}) {
+          const bool is_neighbour = next < part.size() && (next != i + 1 || next % k_side != 0);
+          if (!is_neighbour || !is_inside(next)) continue;
+          between += is_first_half(i) != is_first_half(next) ? 1 : 0;
+        }
+      }
+      // Two squares side by side share a line of the square root of half of their cells.
+      CHECK(static_cast<double>(between) < 2 * std::sqrt(static_cast<double>(inside)));
+    }
+  }
 }
 
 TEST_CASE("more parts than cells, one part, no cells") {
