@@ -143,8 +143,11 @@ class Cutter {
     scheme_->order_boundary(shared);
     manifest_.dropped_duplicate = drop_duplicates(shared.triangles, shared.columns);
     manifest_.boundary_triangles = shared.triangles.size();
-    manifest_.boundary =
-        stage_.publish(BoundaryName{}, encode_boundary(shared.triangles, shared.columns));
+    const auto parts = static_cast<std::uint32_t>(manifest_.parts.size());
+    sort_by_region(parts, shared.triangles, shared.columns);
+    const EncodedBoundary encoded = encode_boundary(parts, shared.triangles, shared.columns);
+    manifest_.boundary = stage_.publish(BoundaryName{}, encoded.file);
+    manifest_.boundary_index = encoded.index;
   }
 
   /// What the input has beside its surface.

@@ -1,17 +1,21 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
 //
-// The boundary side file, kind "BNDY", version 1; the payload of a sealed file:
-//   triangles u64 | triangles x (3 x (part u32 | local index u32) | label u32, if all have one |
+// The boundary side file, kind "BNDY", version 2; the payload of a sealed file:
+//   triangles u64 | parts u32 | columns u32: 1 labels, 2 texture coordinates |
+//   for each region of the parts (regions.hpp): its triangles u64 | their checksum u64 |
+//   triangles x (3 x (part u32 | local index u32) | label u32, if all have one |
 //   texture coordinates 6 x f32, if all have them)
-// The size of a triangle tells what they have.
+// What stands before the triangles is the index. Version 1 had the count of triangles alone.
 #include <algorithm>
-#include <optional>
+#include <cstring>
 #include <utility>
 
 #include <meshfarm/io/boundary_file.hpp>
+#include <meshfarm/io/regions.hpp>
 #include <meshfarm/staging/sealed.hpp>
 #include <meshfarm/util/bytes.hpp>
+#include <meshfarm/util/checksum.hpp>
 #include <meshfarm/util/errors.hpp>
 
 #include "io/staged_positions.hpp"
@@ -20,23 +24,63 @@ namespace meshfarm {
 namespace {
 
 constexpr FileKind k_kind = {'B', 'N', 'D', 'Y'};
-constexpr std::uint32_t k_version = 1;
+constexpr std::uint32_t k_version = 2;
+constexpr std::uint32_t k_labels = 1;
+constexpr std::uint32_t k_uvs = 2;
 
-/// Of a file of so many bytes beside its count; nothing if its triangles are of no known size.
-std::optional<ColumnSet> columns_of(std::uint64_t count, std::uint64_t bytes) {
-  if (count == 0) return bytes == 0 ? std::optional<ColumnSet>(ColumnSet{}) : std::nullopt;
-  if (bytes % count != 0) return std::nullopt;
-  for (const ColumnSet set : {ColumnSet{}, {true, false}, {false, true}, {true, true}}) {
-    if (bytes / count == sizeof(BoundaryTriangle) + set.bytes()) return set;
-  }
-  return std::nullopt;
+/// What the index begins with.
+struct Head {
+  std::uint64_t triangles = 0;
+  std::uint32_t parts = 0;
+  std::uint32_t columns = 0;
+
+  std::uint32_t regions() const { return Regions(parts).count(); }
+  ColumnSet column_set() const { return {(columns & k_labels) != 0, (columns & k_uvs) != 0}; }
+  std::uint64_t triangle_bytes() const { return sizeof(BoundaryTriangle) + column_set().bytes(); }
+};
+static_assert(sizeof(Head) == 16);
+
+/// What it has of a region.
+struct RegionEntry {
+  std::uint64_t triangles = 0;
+  std::uint64_t hash = 0;
+};
+static_assert(sizeof(RegionEntry) == 16);
+
+std::uint64_t index_bytes(const Head& head) {
+  return sizeof(Head) + std::uint64_t{head.regions()} * sizeof(RegionEntry);
 }
 
-/// Reads triangles with their columns.
+Head get_head(ByteReader& in) {
+  const auto head = in.get<Head>();
+  if (head.columns > (k_labels | k_uvs)) in.fail("unknown columns of triangles");
+  return head;
+}
+
+/// The entries tell of all triangles.
+void check_entries(const Head& head, std::span<const RegionEntry> entries, std::string_view what) {
+  std::uint64_t left = head.triangles;
+  const bool fits = std::all_of(entries.begin(), entries.end(), [&](const RegionEntry& entry) {
+    if (entry.triangles > left) return false;
+    left -= entry.triangles;
+    return true;
+  });
+  if (!fits || left > 0) {
+    throw DataError(std::string(what) + ": other triangles than its regions have");
+  }
+}
+
+std::uint32_t region_of(const BoundaryTriangle& t, const Regions& regions) {
+  const auto [least, greatest] = std::minmax({t[0].part, t[1].part, t[2].part});
+  return regions.of(least, greatest);
+}
+
+/// Appends triangles with their columns.
 void get_triangles(ByteReader& in, std::uint64_t count, const ColumnSet& set,
                    std::vector<BoundaryTriangle>& triangles, TriangleColumns& columns) {
   if (!set.any()) {
-    triangles = in.get_array<BoundaryTriangle>(count);
+    const auto more = in.get_array<BoundaryTriangle>(count);
+    triangles.insert(triangles.end(), more.begin(), more.end());
     return;
   }
   for (std::uint64_t i = 0; i < count; ++i) {
@@ -68,19 +112,53 @@ std::uint64_t drop_duplicates(std::vector<BoundaryTriangle>& triangles, Triangle
   return keep_triangles(triangles, columns, [&](std::size_t i) { return !duplicate[i]; });
 }
 
-std::string encode_boundary(const std::vector<BoundaryTriangle>& triangles,
-                            const TriangleColumnsView& columns) {
-  ByteWriter out;
-  out.put(static_cast<std::uint64_t>(triangles.size()));
-  if (columns.empty()) {
-    out.put_array(std::span<const BoundaryTriangle>(triangles));
-    return seal(k_kind, k_version, out.bytes());
-  }
+void sort_by_region(std::uint32_t parts, std::vector<BoundaryTriangle>& triangles,
+                    TriangleColumns& columns) {
+  const Regions regions(parts);
+  std::vector<std::pair<std::uint32_t, std::size_t>> order;
+  order.reserve(triangles.size());
   for (std::size_t i = 0; i < triangles.size(); ++i) {
-    out.put(triangles[i]);
-    put_columns(out, columns.part(i, 1));
+    order.emplace_back(region_of(triangles[i], regions), i);
   }
-  return seal(k_kind, k_version, out.bytes());
+  if (std::is_sorted(order.begin(), order.end())) return;
+  std::sort(order.begin(), order.end());
+  std::vector<BoundaryTriangle> sorted;
+  TriangleColumns columns_sorted;
+  sorted.reserve(triangles.size());
+  for (const auto& [region, place] : order) {
+    sorted.push_back(triangles[place]);
+    columns_sorted.append(columns, place);
+  }
+  triangles = std::move(sorted);
+  columns = std::move(columns_sorted);
+}
+
+EncodedBoundary encode_boundary(std::uint32_t parts, const std::vector<BoundaryTriangle>& triangles,
+                                const TriangleColumnsView& columns) {
+  const Regions regions(parts);
+  const ColumnSet set = columns.set();
+  const Head head{triangles.size(), parts, (set.labels ? k_labels : 0) | (set.uvs ? k_uvs : 0)};
+  std::vector<RegionEntry> entries(regions.count());
+  ByteWriter out;
+  out.put(head);
+  out.put_array(std::span<const RegionEntry>(entries));  // filled in below
+  std::size_t place = 0;
+  for (std::uint32_t region = 0; region < entries.size(); ++region) {
+    const std::size_t begin = out.bytes().size();
+    const std::size_t first = place;
+    for (; place < triangles.size() && region_of(triangles[place], regions) == region; ++place) {
+      out.put(triangles[place]);
+      put_columns(out, columns.part(place, 1));
+    }
+    entries[region] = {place - first, checksum(std::string_view(out.bytes()).substr(begin))};
+  }
+  if (place < triangles.size()) throw Error("boundary triangles are not in the order of regions");
+  std::string payload = out.take();
+  std::memcpy(&payload[sizeof head], entries.data(), entries.size() * sizeof(RegionEntry));
+  const std::uint64_t size = index_bytes(head);
+  const FileSection index{k_seal_head_bytes, size,
+                          checksum(std::string_view(payload).substr(0, size))};
+  return {seal(k_kind, k_version, payload), index};
 }
 
 std::vector<BoundaryTriangle> decode_boundary(std::string_view file, std::string_view what) {
@@ -92,11 +170,11 @@ std::vector<BoundaryTriangle> decode_boundary(std::string_view file, std::string
                                               TriangleColumns& columns) {
   ByteReader in(unseal(file, k_kind, k_version, what), what);
   columns.clear();
-  const auto count = in.get<std::uint64_t>();
-  const std::optional<ColumnSet> set = columns_of(count, in.remaining());
-  if (!set) in.fail("another size than its count tells");
+  const Head head = get_head(in);
+  check_entries(head, in.get_array<RegionEntry>(head.regions()), what);
   std::vector<BoundaryTriangle> triangles;
-  get_triangles(in, count, *set, triangles, columns);
+  get_triangles(in, head.triangles, head.column_set(), triangles, columns);
+  in.expect_end();
   return triangles;
 }
 
@@ -104,29 +182,62 @@ void scan_boundary(const Fill& fill, std::string_view what,
                    const std::function<void(std::span<const BoundaryTriangle>,
                                             const TriangleColumnsView&)>& show) {
   constexpr std::uint64_t k_at_once = 4096;
-  std::string head(k_seal_head_bytes, '\0');
-  fill(head);
-  const std::uint64_t size = unseal_head(head, k_kind, k_version, what);
-  std::uint64_t count = 0;
-  fill({reinterpret_cast<char*>(&count), sizeof count});
-  const std::optional<ColumnSet> set =
-      size < sizeof count ? std::nullopt : columns_of(count, size - sizeof count);
-  if (!set) throw DataError(std::string(what) + ": another size than its count tells");
-  std::string bytes;
+  std::string bytes(k_seal_head_bytes, '\0');
+  fill(bytes);
+  const std::uint64_t size = unseal_head(bytes, k_kind, k_version, what);
+  bytes.resize(sizeof(Head));
+  fill(bytes);
+  ByteReader reader(bytes, what);
+  const Head head = get_head(reader);
+  const std::uint64_t before = index_bytes(head);
+  const std::uint64_t each = head.triangle_bytes();
+  if (size < before || (size - before) % each != 0 || (size - before) / each != head.triangles) {
+    throw DataError(std::string(what) + ": another size than its count tells");
+  }
+  bytes.resize(before - sizeof(Head));
+  fill(bytes);
   std::vector<BoundaryTriangle> triangles;
   TriangleColumns columns;
-  for (std::uint64_t left = count; left > 0; left -= triangles.size()) {
+  for (std::uint64_t left = head.triangles; left > 0; left -= triangles.size()) {
     const std::uint64_t some = std::min(k_at_once, left);
-    bytes.resize(some * (sizeof(BoundaryTriangle) + set->bytes()));
+    bytes.resize(some * each);
     fill(bytes);
     ByteReader in(bytes, what);
     triangles.clear();
     columns.clear();
-    get_triangles(in, some, *set, triangles, columns);
+    get_triangles(in, some, head.column_set(), triangles, columns);
     show(triangles, columns);
   }
   std::uint64_t sum = 0;
   fill({reinterpret_cast<char*>(&sum), sizeof sum});
+}
+
+BoundaryRegions::BoundaryRegions(const Stage& stage, const FileRef& file, const FileSection& index)
+    : file_(stage, file), what_(file.name) {
+  const std::string bytes = file_.read(index);
+  ByteReader in(bytes, what_);
+  const Head head = get_head(in);
+  const auto entries = in.get_array<RegionEntry>(head.regions());
+  in.expect_end();
+  check_entries(head, entries, what_);
+  parts_ = head.parts;
+  columns_ = head.column_set();
+  std::uint64_t offset = index.offset + index.size;
+  for (const RegionEntry& entry : entries) {
+    if (entry.triangles > file.size / head.triangle_bytes()) in.fail("too many triangles");
+    sections_.push_back({offset, entry.triangles * head.triangle_bytes(), entry.hash});
+    offset += sections_.back().size;
+  }
+}
+
+void BoundaryRegions::read(std::uint32_t region, std::vector<BoundaryTriangle>& triangles,
+                           TriangleColumns& columns) const {
+  const FileSection& section = sections_.at(region);
+  if (section.size == 0) return;
+  const std::string bytes = file_.read(section);
+  ByteReader in(bytes, what_);
+  const std::uint64_t each = sizeof(BoundaryTriangle) + columns_.bytes();
+  get_triangles(in, section.size / each, columns_, triangles, columns);
 }
 
 }  // namespace meshfarm

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
 //
-// The manifest, kind "MNFT", version 6; the payload of a sealed file. Strings are u32 + characters,
+// The manifest, kind "MNFT", version 7; the payload of a sealed file. Strings are u32 + characters,
 // a file is name | size u64 | xxh3-64 u64:
 //   input | input format | scheme u8 (0 cut, 1 stream) | partitioner | window u64 | position type
 //   u8 | box 6 x f64 | input vertices u64 | input triangles u64 | coincident vertices u64 | dropped
@@ -10,13 +10,14 @@
 //   columns u8: 1 labels, 2 texture coordinates | of labels: name | materials u32 x (name | colour
 //   4 x f32 | with texture coordinates wrap u8 u8 | maps u32 x (use u8 | picture u32)) | label
 //   corners u64 | of texture coordinates: floor u64 | side f64 | pictures u32 x (name | file) |
-//   skipped u32 x string | cut seconds f64 | boundary triangles u64 | boundary file | sorting |
+//   skipped u32 x string | cut seconds f64 | boundary triangles u64 | boundary file | its index
+//   (offset u64 | size u64 | checksum u64) | sorting |
 //   parts u32 x (file | vertices u64 | triangles u64 | boundary vertices u32) | samples u32 x the
 //   same: none, or one a part, its file's name empty where it has none sorting = u8 0: parts and
 //   streams are there | u8 1: slabs are, and how they are to be sorted (io/sorting.hpp)
 // Version 1 had no scheme, window and samples, version 2 no sorting, version 3 no partitioner, no
 // coincident corners and no dropped not finite, version 4 no channels, version 5 no
-// labels.
+// labels, version 6 no index of the boundary.
 #include <algorithm>
 #include <cmath>
 
@@ -32,7 +33,7 @@ namespace meshfarm {
 namespace {
 
 constexpr FileKind k_kind = {'M', 'N', 'F', 'T'};
-constexpr std::uint32_t k_version = 6;
+constexpr std::uint32_t k_version = 7;
 
 /// A manifest may name only files of the kind that stands in that place.
 template <class Name>
@@ -235,6 +236,7 @@ std::string encode_manifest(const Manifest& m) {
   out.put(m.cut_seconds);
   out.put(m.boundary_triangles);
   put_file(out, m.boundary);
+  out.put(m.boundary_index);
   out.put(static_cast<std::uint8_t>(m.sorting ? 1 : 0));
   if (m.sorting) put(out, *m.sorting);
   put_parts(out, m.parts);
@@ -269,6 +271,7 @@ Manifest decode_manifest(std::string_view file, std::string_view what) {
   m.boundary_triangles = in.get<std::uint64_t>();
   m.boundary = get_file(in);
   check_name<BoundaryName>(in, m.boundary);
+  m.boundary_index = in.get<FileSection>();
   const auto unsorted = in.get<std::uint8_t>();
   if (unsorted > (m.scheme == Scheme::stream ? 1 : 0)) in.fail("parts are not to be sorted");
   if (unsorted == 1) m.sorting = get_sorting(in);

@@ -6,10 +6,10 @@
 
 #include <meshfarm/geometry/simplify.hpp>
 #include <meshfarm/io/boundary_file.hpp>
+#include <meshfarm/io/regions.hpp>
 #include <meshfarm/io/result_file.hpp>
 #include <meshfarm/pipeline/compose_job.hpp>
 #include <meshfarm/staging/file_ref.hpp>
-#include <meshfarm/staging/staged_reader.hpp>
 #include <meshfarm/stitch/stitcher.hpp>
 #include <meshfarm/util/bytes.hpp>
 #include <meshfarm/util/errors.hpp>
@@ -17,10 +17,10 @@
 namespace meshfarm {
 namespace {
 
-// Version 3: first stream u32 | all streams u32 | inputs u32 x (streams u32 | rung u32) |
-// boundary (name | size u64 | hash u64) | level i32 | greatest cost f64 | floor u64 |
-// samples a triangle f64 | lines (run_options.hpp).
-constexpr std::uint8_t k_version = 3;
+// Version 4: first part u32 | all parts u32 | inputs u32 x (parts u32 | rung u32) |
+// boundary (name | size u64 | hash u64) | its index (offset u64 | size u64 | hash u64) | level i32
+// | greatest cost f64 | floor u64 | samples a triangle f64 | lines (run_options.hpp).
+constexpr std::uint8_t k_version = 4;
 constexpr double k_max_samples_per_triangle = 1000;
 
 class Composer {
@@ -29,12 +29,10 @@ class Composer {
       : job_(job),
         context_(context),
         parameters_(decode_compose_parameters(job.parameters)),
-        stitcher_(parameters_.all_streams, parameters_.first_stream),
-        end_stream_(parameters_.first_stream) {
+        stitcher_(parameters_.all_parts, parameters_.first_part) {
     if (job.inputs.size() != parameters_.inputs.size()) {
       throw DataError("a compose job has other inputs than its parameters name");
     }
-    for (const ComposeInput& input : parameters_.inputs) end_stream_ += input.streams;
   }
 
   JobOutput run() {
@@ -55,7 +53,7 @@ class Composer {
     const std::string file = context_.read(job_.inputs[i]);
     ResultMesh result = decode_result(file, parameters_.inputs[i].rung, job_.inputs[i].name);
     positions_ = result.positions;
-    stitcher_.add(result, parameters_.inputs[i].streams);
+    stitcher_.add(result, parameters_.inputs[i].parts);
     std::move(result.samples.begin(), result.samples.end(), std::back_inserter(samples_));
   }
 
@@ -65,27 +63,32 @@ class Composer {
     TriangleColumns columns;
   };
   Seams read_seams() const {
+    std::vector<PartRange> pieces;
+    std::uint32_t end = parameters_.first_part;
+    for (const ComposeInput& input : parameters_.inputs) {
+      const std::uint32_t first = std::exchange(end, end + input.parts);
+      pieces.push_back({first, end});
+    }
+    const BoundaryRegions regions(context_.stage, parameters_.boundary, parameters_.boundary_index);
+    if (regions.parts() != parameters_.all_parts) {
+      throw DataError(parameters_.boundary.name + ": is not of " +
+                      std::to_string(parameters_.all_parts) + " parts");
+    }
     Seams seams;
+    for (const std::uint32_t region : Regions(regions.parts()).touched_by(pieces)) {
+      regions.read(region, seams.triangles, seams.columns);
+    }
     const auto is_ours = [&](const BoundaryCorner& corner) {
-      return corner.part >= parameters_.first_stream && corner.part < end_stream_;
+      return corner.part >= parameters_.first_part && corner.part < end;
     };
-    StagedReader file(context_.stage, parameters_.boundary);
-    const auto fill = [&](std::span<char> buffer) { file.fill(buffer); };
-    const auto take = [&](std::span<const BoundaryTriangle> some,
-                          const TriangleColumnsView& columns) {
-      for (std::size_t i = 0; i < some.size(); ++i) {
-        if (std::none_of(some[i].begin(), some[i].end(), is_ours)) continue;
-        seams.triangles.push_back(some[i]);
-        seams.columns.append(columns, i);
-      }
-    };
-    scan_boundary(fill, parameters_.boundary.name, take);
-    file.expect_end();
+    keep_triangles(seams.triangles, seams.columns, [&](std::size_t i) {
+      return std::any_of(seams.triangles[i].begin(), seams.triangles[i].end(), is_ours);
+    });
     seams.columns.keep(parameters_.lines.columns);
     return seams;
   }
 
-  /// The triangles between streams are still those of the input.
+  /// The triangles between parts are still those of the input.
   void sample_seams(StitchedMesh& stitched) {
     const auto count = static_cast<std::ptrdiff_t>(stitched.boundary_triangles);
     Mesh seams;
@@ -146,7 +149,6 @@ class Composer {
   const JobContext& context_;
   ComposeParameters parameters_;
   Stitcher stitcher_;
-  std::uint32_t end_stream_;
   PositionType positions_ = PositionType::float32;
   std::vector<SurfaceSamples> samples_;
 };
@@ -156,14 +158,15 @@ class Composer {
 std::string encode_parameters(const ComposeParameters& parameters) {
   ByteWriter out;
   out.put(k_version);
-  out.put(parameters.first_stream);
-  out.put(parameters.all_streams);
+  out.put(parameters.first_part);
+  out.put(parameters.all_parts);
   out.put(static_cast<std::uint32_t>(parameters.inputs.size()));
   for (const ComposeInput& input : parameters.inputs) {
-    out.put(input.streams);
+    out.put(input.parts);
     out.put(input.rung);
   }
   put_file(out, parameters.boundary);
+  out.put(parameters.boundary_index);
   out.put(parameters.level);
   out.put(parameters.max_cost);
   out.put(parameters.floor);
@@ -176,19 +179,20 @@ ComposeParameters decode_compose_parameters(std::string_view bytes) {
   ByteReader in(bytes, "parameters of a compose job");
   if (in.get<std::uint8_t>() != k_version) in.fail("made by another version of meshfarm");
   ComposeParameters parameters;
-  parameters.first_stream = in.get<std::uint32_t>();
-  parameters.all_streams = in.get<std::uint32_t>();
+  parameters.first_part = in.get<std::uint32_t>();
+  parameters.all_parts = in.get<std::uint32_t>();
   const auto inputs = in.get<std::uint32_t>();
-  std::uint64_t end = parameters.first_stream;
+  std::uint64_t end = parameters.first_part;
   for (std::uint32_t i = 0; i < inputs; ++i) {
     ComposeInput input;
-    input.streams = in.get<std::uint32_t>();
+    input.parts = in.get<std::uint32_t>();
     input.rung = in.get<std::uint32_t>();
-    end += input.streams;
-    if (input.streams == 0 || end > parameters.all_streams) in.fail("impossible streams");
+    end += input.parts;
+    if (input.parts == 0 || end > parameters.all_parts) in.fail("impossible parts");
     parameters.inputs.push_back(input);
   }
   parameters.boundary = get_file(in);
+  parameters.boundary_index = in.get<FileSection>();
   parameters.level = in.get<std::int32_t>();
   parameters.max_cost = in.get<double>();
   parameters.floor = in.get<std::uint64_t>();
@@ -200,7 +204,7 @@ ComposeParameters decode_compose_parameters(std::string_view bytes) {
   return parameters;
 }
 
-JobOutput compose_streams(const Job& job, const JobContext& context) {
+JobOutput compose_parts(const Job& job, const JobContext& context) {
   return Composer(job, context).run();
 }
 

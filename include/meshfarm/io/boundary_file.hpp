@@ -12,6 +12,8 @@
 
 #include <meshfarm/geometry/mesh.hpp>
 #include <meshfarm/io/fill.hpp>
+#include <meshfarm/staging/sections.hpp>
+#include <meshfarm/staging/stage.hpp>
 
 namespace meshfarm {
 
@@ -28,10 +30,20 @@ using BoundaryTriangle = std::array<BoundaryCorner, 3>;
 std::uint64_t drop_duplicates(std::vector<BoundaryTriangle>& triangles, TriangleColumns& columns);
 std::uint64_t drop_duplicates(std::vector<BoundaryTriangle>& triangles);
 
-/// The side file: every triangle whose corners lie in two or three parts
-/// (Xiong et al. 2008, 3.1 step 4), and their columns.
-std::string encode_boundary(const std::vector<BoundaryTriangle>& triangles,
-                            const TriangleColumnsView& columns = {});
+/// Puts the triangles between so many parts in the order of their regions (regions.hpp), the order
+/// kept otherwise.
+void sort_by_region(std::uint32_t parts, std::vector<BoundaryTriangle>& triangles,
+                    TriangleColumns& columns);
+
+/// The side file, and where its index is.
+struct EncodedBoundary {
+  std::string file;
+  FileSection index;
+};
+/// Every triangle whose corners lie in two or three of so many parts (Xiong et al. 2008, 3.1
+/// step 4), in the order of sort_by_region(), and their columns.
+EncodedBoundary encode_boundary(std::uint32_t parts, const std::vector<BoundaryTriangle>& triangles,
+                                const TriangleColumnsView& columns = {});
 std::vector<BoundaryTriangle> decode_boundary(std::string_view file, std::string_view what);
 /// With the columns that the file has.
 std::vector<BoundaryTriangle> decode_boundary(std::string_view file, std::string_view what,
@@ -41,5 +53,24 @@ std::vector<BoundaryTriangle> decode_boundary(std::string_view file, std::string
 void scan_boundary(
     const Fill& fill, std::string_view what,
     const std::function<void(std::span<const BoundaryTriangle>, const TriangleColumnsView&)>& show);
+
+/// Reads the triangles of some regions without reading the others.
+class BoundaryRegions {
+ public:
+  /// Throws as SectionedFile does, and DataError for an index that is none.
+  BoundaryRegions(const Stage& stage, const FileRef& file, const FileSection& index);
+  /// Of how many parts.
+  std::uint32_t parts() const { return parts_; }
+  /// Appends the triangles of a region, with their columns.
+  void read(std::uint32_t region, std::vector<BoundaryTriangle>& triangles,
+            TriangleColumns& columns) const;
+
+ private:
+  SectionedFile file_;
+  std::string what_;
+  std::uint32_t parts_ = 0;
+  ColumnSet columns_;
+  std::vector<FileSection> sections_;  // by region
+};
 
 }  // namespace meshfarm

@@ -14,6 +14,7 @@
 #include <meshfarm/geometry/uv_facts.hpp>
 #include <meshfarm/io/channel_file.hpp>
 #include <meshfarm/io/labels.hpp>
+#include <meshfarm/staging/sections.hpp>
 #include <meshfarm/staging/stage.hpp>
 
 namespace meshfarm {
@@ -63,6 +64,7 @@ struct Manifest {
   double cut_seconds = 0;
   std::uint64_t boundary_triangles = 0;
   FileRef boundary;
+  FileSection boundary_index;  // of that file
   /// Set if the parts are slabs that a run has to sort into streams first. What is known only of a
   /// sorted stream is then missing: coincident vertices, dropped triangles and samples. Counts of
   /// triangles and vertices are those of the input.

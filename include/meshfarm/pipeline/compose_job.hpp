@@ -16,30 +16,31 @@ inline constexpr std::string_view k_compose_kind = "compose";
 
 /// One of the results that a compose job joins.
 struct ComposeInput {
-  std::uint32_t streams = 1;  // that are joined in it already
+  std::uint32_t parts = 1;  // that are joined in it already
   std::uint32_t rung = 0;
 };
 
 /// Parameters of a compose job.
 struct ComposeParameters {
-  std::uint32_t first_stream = 0;
-  std::uint32_t all_streams = 0;     // of the stage
-  std::vector<ComposeInput> inputs;  // as many as the job has, in the order of the streams
-  FileRef boundary;                  // the side file: no input, as it is not to be read ahead
-  std::int32_t level = 0;            // of the one rung that is made
-  double max_cost = 0;               // what the level costs
-  std::uint64_t floor = 0;           // triangles that are to be left
-  double samples_per_triangle = 0;   // of the seams, to measure the final error by
+  std::uint32_t first_part = 0;
+  std::uint32_t all_parts = 0;       // of the stage
+  std::vector<ComposeInput> inputs;  // as many as the job has, in the order of the parts
+  FileRef boundary;                  // the side file: no input, as it is not to be read whole
+  FileSection boundary_index;
+  std::int32_t level = 0;           // of the one rung that is made
+  double max_cost = 0;              // what the level costs
+  std::uint64_t floor = 0;          // triangles that are to be left
+  double samples_per_triangle = 0;  // of the seams, to measure the final error by
   LineOptions lines;
 };
 
 std::string encode_parameters(const ComposeParameters& parameters);
 ComposeParameters decode_compose_parameters(std::string_view bytes);
 
-/// Joins the results of neighbouring streams by the boundary triangles between them (Xiong et al.
-/// 2008, 4.3) and simplifies what was locked there under the same cost threshold as the streams.
-/// What the group shares with streams outside of it stays as it is. The boundary side file is read
-/// through, not held.
-JobOutput compose_streams(const Job& job, const JobContext& context);
+/// Joins the results of neighbours by the boundary triangles between them (Xiong et al. 2008, 4.3)
+/// and simplifies what was locked there under the same cost threshold as the parts were.
+/// What the group shares with parts outside of it stays as it is. Of the boundary side file only
+/// the regions are read that the group touches.
+JobOutput compose_parts(const Job& job, const JobContext& context);
 
 }  // namespace meshfarm

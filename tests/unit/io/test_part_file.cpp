@@ -115,24 +115,24 @@ TEST_CASE("a summary comes back, and one that contradicts itself is refused") {
 }
 
 TEST_CASE("boundary triangles come back, damaged ones are refused") {
-  const std::vector<BoundaryTriangle> triangles = {{{{0, 1}, {2, 3}, {4, 5}}},
-                                                   {{{1, 0}, {1, 1}, {0, 0xffffffff}}}};
-  CHECK(decode_boundary(encode_boundary(triangles), "b") == triangles);
-  CHECK(decode_boundary(encode_boundary({}), "b").empty());
+  const std::vector<BoundaryTriangle> triangles = {{{{1, 0}, {1, 1}, {0, 0xffffffff}}},
+                                                   {{{0, 1}, {2, 3}, {4, 5}}}};
+  CHECK(decode_boundary(encode_boundary(6, triangles).file, "b") == triangles);
+  CHECK(decode_boundary(encode_boundary(1, {}).file, "b").empty());
   TriangleColumns columns;
   columns.labels = {9};
-  CHECK(decode_boundary(encode_boundary(triangles), "b", columns) == triangles);
+  CHECK(decode_boundary(encode_boundary(6, triangles).file, "b", columns) == triangles);
   CHECK(columns.empty());
   const std::vector<Label> labels = {7, 0xffffffff};
   const std::vector<CornerUvs> uvs = {{{{0, 1}, {2, 3}, {4, 5}}}, {{{0, 0}, {-1, 0}, {0.5, 7}}}};
   for (const TriangleColumnsView& given :
        {TriangleColumnsView{labels, {}}, TriangleColumnsView{{}, uvs},
         TriangleColumnsView{labels, uvs}}) {
-    CHECK(decode_boundary(encode_boundary(triangles, given), "b", columns) == triangles);
+    CHECK(decode_boundary(encode_boundary(6, triangles, given).file, "b", columns) == triangles);
     CHECK(columns.labels == std::vector<Label>(given.labels.begin(), given.labels.end()));
     CHECK(columns.uvs == std::vector<CornerUvs>(given.uvs.begin(), given.uvs.end()));
   }
-  test::check_refuses_damage(encode_boundary(triangles), [](std::string_view file) {
+  test::check_refuses_damage(encode_boundary(6, triangles).file, [](std::string_view file) {
     return decode_boundary(file, "boundary");
   });
 }
@@ -151,13 +151,13 @@ TEST_CASE("boundary triangles are shown one by one, and what is no side file is 
     CHECK(TriangleColumnsView(columns).fits(columns.set(), shown.size()));
     return shown;
   };
-  const std::string file = encode_boundary(triangles);
+  const std::string file = encode_boundary(3, triangles).file;
   CHECK(scanned(file) == triangles);
-  CHECK(scanned(encode_boundary({})).empty());
+  CHECK(scanned(encode_boundary(1, {}).file).empty());
   const std::vector<Label> labels(10'000, 3);
   const std::vector<CornerUvs> uvs(10'000);
-  CHECK(scanned(encode_boundary(triangles, {labels, {}})) == triangles);
-  CHECK(scanned(encode_boundary(triangles, {labels, uvs})) == triangles);
+  CHECK(scanned(encode_boundary(3, triangles, {labels, {}}).file) == triangles);
+  CHECK(scanned(encode_boundary(3, triangles, {labels, uvs}).file) == triangles);
   CHECK_THROWS_AS(scanned(file.substr(0, file.size() - 1)), DataError);
   CHECK_THROWS_AS(scanned(encode_part({})), DataError);
   for (const std::size_t place : {16, 23, 24, 31}) {  // sizes and counts

@@ -1,0 +1,49 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#include <algorithm>
+
+#include <meshfarm/io/regions.hpp>
+
+namespace meshfarm {
+namespace {
+
+std::uint32_t middle_of(const PartRange& region) {
+  return region.first + (region.end - region.first) / 2;
+}
+
+void add_touched(const PartRange& region, const std::vector<PartRange>& pieces,
+                 std::vector<std::uint32_t>& found) {
+  if (region.end - region.first < 2) return;
+  const bool is_apart = region.end <= pieces.front().first || region.first >= pieces.back().end;
+  const bool is_within = std::any_of(pieces.begin(), pieces.end(), [&](const PartRange& piece) {
+    return piece.first <= region.first && region.end <= piece.end;
+  });
+  if (is_apart || is_within) return;
+  const std::uint32_t middle = middle_of(region);
+  add_touched({region.first, middle}, pieces, found);
+  found.push_back(middle - 1);
+  add_touched({middle, region.end}, pieces, found);
+}
+
+}  // namespace
+
+std::uint32_t Regions::of(std::uint32_t a, std::uint32_t b) const {
+  const auto [least, greatest] = std::minmax(a, b);
+  PartRange region{0, std::max(2U, parts_)};
+  for (;;) {
+    const std::uint32_t middle = middle_of(region);
+    PartRange half =
+        greatest < middle ? PartRange{region.first, middle} : PartRange{middle, region.end};
+    const bool holds_both = half.first <= least && greatest < half.end;
+    if (!holds_both || half.end - half.first < 2) return middle - 1;
+    region = half;
+  }
+}
+
+std::vector<std::uint32_t> Regions::touched_by(const std::vector<PartRange>& pieces) const {
+  std::vector<std::uint32_t> found;
+  if (!pieces.empty()) add_touched({0, parts_}, pieces, found);
+  return found;
+}
+
+}  // namespace meshfarm
