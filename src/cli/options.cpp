@@ -68,8 +68,8 @@ void TargetOptions::add(po::options_description& options) {
       "global: the last pass may change everything; boundary: only edges at seams")(
       "composition",
       po::value(&composition)->default_value(composition)->value_name("auto|tree|sink"),
-      "how simplified streams are joined: tree: neighbours by jobs, a few at once; sink: all at "
-      "once by the sink; auto: tree if many triangles are at seams")(
+      "how simplified parts are joined: tree: neighbours by jobs, a few at once; sink: all at once "
+      "by the sink; auto: tree if there are many more triangles than wanted")(
       "topology", po::value(&topology)->default_value(topology)->value_name("auto|keep|simplify"),
       "handles, holes and pieces: keep: never close or remove any; simplify: do so where it costs "
       "least; auto: keep them as long as the target can be met at a fair error")(

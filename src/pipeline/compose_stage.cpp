@@ -19,7 +19,7 @@ constexpr std::size_t k_most_joined = 4;
 
 /// The sink joins and finishes so many in about a second and 200 MB.
 constexpr std::uint64_t k_worth_a_tree = 2'000'000;
-/// Of what the streams are to keep together: with less there is little at the seams.
+/// Of what the parts are to keep together: with less there is little left to simplify.
 constexpr double k_worth_seams = 1.5;
 
 /// The files as they are read, the joined mesh, the simplifier and the file that is written.
@@ -29,11 +29,10 @@ std::uint64_t memory_of_composition(std::uint64_t file_bytes, std::uint64_t tria
 }
 
 /// Neighbours as one, before they are joined.
-ComposedStreams sum_of(const std::vector<ComposedStreams>& streams, std::size_t first,
-                       std::size_t end) {
-  ComposedStreams sum = streams[first];
+ComposedParts sum_of(const std::vector<ComposedParts>& parts, std::size_t first, std::size_t end) {
+  ComposedParts sum = parts[first];
   for (std::size_t i = first + 1; i < end; ++i) {
-    const ComposedStreams& each = streams[i];
+    const ComposedParts& each = parts[i];
     sum.chosen.parts += each.chosen.parts;
     sum.chosen.dropped_degenerate += each.chosen.dropped_degenerate;
     sum.chosen.dropped_duplicate += each.chosen.dropped_duplicate;
@@ -43,34 +42,42 @@ ComposedStreams sum_of(const std::vector<ComposedStreams>& streams, std::size_t 
   return sum;
 }
 
-void take_output(ComposedStreams& streams, const JobOutput& output) {
+void take_output(ComposedParts& parts, const JobOutput& output) {
   const ResultSummary summary = decode_summary(output.summary, "summary of " + output.file.name);
-  streams.chosen.file = output.file;
-  streams.chosen.rung = 0;
-  streams.chosen.dropped_degenerate += summary.dropped_degenerate;
-  streams.chosen.dropped_duplicate += summary.dropped_duplicate;
-  streams.chosen.turned += summary.turned;
-  streams.triangles = summary.rungs.front().triangles;
+  parts.chosen.file = output.file;
+  parts.chosen.rung = 0;
+  parts.chosen.dropped_degenerate += summary.dropped_degenerate;
+  parts.chosen.dropped_duplicate += summary.dropped_duplicate;
+  parts.chosen.turned += summary.turned;
+  parts.triangles = summary.rungs.front().triangles;
 }
 
 }  // namespace
 
-void ComposeStage::begin(JobGraph& graph, const ComposeGoal& goal,
-                         std::vector<ComposedStreams> streams, Done done) {
+void ComposeStage::begin(JobGraph& graph, const ComposeGoal& goal, std::vector<ComposedParts> parts,
+                         Done done) {
   goal_ = goal;
   done_ = std::move(done);
-  for (const ComposedStreams& each : streams) weight_ += each.weight;
+  for (const ComposedParts& each : parts) weight_ += each.weight;
   Level& level = levels_.emplace_back();
-  level.streams = std::move(streams);
+  level.parts = std::move(parts);
   level.whole = true;
-  while (level.taken < level.streams.size()) take(graph, 0);
+  while (level.taken < level.parts.size()) take(graph, 0);
   end_level(graph, 0);
 }
 
 bool ComposeStage::can_join() const {
-  return manifest_.scheme == Scheme::stream && goal_.level >= 0 && weight_ > 0 &&
-         options_.allocation == Allocation::threshold && options_.finish == Finish::global &&
-         !(options_.error.value > 0) && options_.composition != Composition::sink;
+  return goal_.level >= 0 && weight_ > 0 && options_.allocation == Allocation::threshold &&
+         options_.finish == Finish::global && !(options_.error.value > 0) &&
+         options_.composition != Composition::sink;
+}
+
+/// What whoever simplified the parts can hold: a sweep's window, or the largest of them.
+std::uint64_t ComposeStage::most_triangles() const {
+  std::uint64_t most = manifest_.window_triangles;
+  if (manifest_.scheme == Scheme::stream) return most;
+  for (const PartEntry& part : manifest_.parts) most = std::max(most, part.triangles);
+  return most;
 }
 
 /// By those that are taken: it may be clear before all are.
@@ -84,7 +91,7 @@ bool ComposeStage::is_worth_it(const Level& level) const {
 /// The next of a level is there.
 void ComposeStage::take(JobGraph& graph, std::size_t number) {
   Level& level = levels_[number];
-  level.triangles += level.streams[level.taken++].triangles;
+  level.triangles += level.parts[level.taken++].triangles;
   // What was not joined before does not fit now either.
   const bool any_new = number == 0 || levels_[number - 1].joins;
   if (any_new && is_worth_it(level)) join(graph, number);
@@ -95,15 +102,15 @@ void ComposeStage::join(JobGraph& graph, std::size_t number) {
   Level& level = levels_[number];
   const std::uint64_t seam = manifest_.boundary_triangles / manifest_.parts.size();
   while (level.first < level.taken) {
-    std::uint64_t triangles = level.streams[level.first].triangles;
+    std::uint64_t triangles = level.parts[level.first].triangles;
     std::size_t end = level.first + 1;
     bool fits = true;
     for (; end < level.taken && end - level.first < k_most_joined; ++end) {
-      triangles += seam + level.streams[end].triangles;
-      fits = triangles <= manifest_.window_triangles;
+      triangles += seam + level.parts[end].triangles;
+      fits = triangles <= most_triangles();
       if (!fits) break;
     }
-    const bool last = level.whole && end == level.streams.size();
+    const bool last = level.whole && end == level.parts.size();
     if (fits && !last && end - level.first < k_most_joined) return;  // the next may fit, too
     close_group(graph, number, end);
   }
@@ -115,8 +122,8 @@ void ComposeStage::close_group(JobGraph& graph, std::size_t number, std::size_t 
   Level& level = levels_[number];
   Level& next = levels_[number + 1];
   const std::size_t first = std::exchange(level.first, end);
-  const std::size_t place = next.streams.size();
-  next.streams.push_back(sum_of(level.streams, first, end));
+  const std::size_t place = next.parts.size();
+  next.parts.push_back(sum_of(level.parts, first, end));
   const std::size_t base = number * manifest_.parts.size();
   const JobName name = job_name(RunStage::compose, base + place);
   const bool joins = end - first > 1;
@@ -125,16 +132,17 @@ void ComposeStage::close_group(JobGraph& graph, std::size_t number, std::size_t 
     return joins ? std::optional(job_of(levels_[number], first, end)) : std::nullopt;
   });
   graph.then({jobs_of(RunStage::compose, base, place + 1)}, [=, this](JobGraph& so_far) {
-    if (joins) take_output(levels_[number + 1].streams[place], so_far.output(name));
+    if (joins) take_output(levels_[number + 1].parts[place], so_far.output(name));
     take(so_far, number + 1);
   });
 }
 
 Job ComposeStage::job_of(const Level& level, std::size_t first, std::size_t end) const {
   ComposeParameters parameters;
-  for (std::size_t i = 0; i < first; ++i) parameters.first_stream += level.streams[i].chosen.parts;
-  parameters.all_streams = static_cast<std::uint32_t>(manifest_.parts.size());
+  for (std::size_t i = 0; i < first; ++i) parameters.first_part += level.parts[i].chosen.parts;
+  parameters.all_parts = static_cast<std::uint32_t>(manifest_.parts.size());
   parameters.boundary = manifest_.boundary;
+  parameters.boundary_index = manifest_.boundary_index;
   parameters.level = goal_.level;
   parameters.max_cost = goal_.max_cost;
   parameters.samples_per_triangle =
@@ -147,7 +155,7 @@ Job ComposeStage::job_of(const Level& level, std::size_t first, std::size_t end)
   std::uint64_t weight = 0;
   std::uint64_t bytes = 0;
   for (std::size_t i = first; i < end; ++i) {
-    const ComposedStreams& each = level.streams[i];
+    const ComposedParts& each = level.parts[i];
     parameters.inputs.push_back({each.chosen.parts, each.chosen.rung});
     job.inputs.push_back(each.chosen.file);
     job.cost += each.triangles;
@@ -166,9 +174,9 @@ Job ComposeStage::job_of(const Level& level, std::size_t first, std::size_t end)
 void ComposeStage::end_level(JobGraph& graph, std::size_t number) {
   levels_[number].whole = true;
   if (is_worth_it(levels_[number])) join(graph, number);
-  if (!levels_[number].joins) return done_(graph, levels_[number].streams);
+  if (!levels_[number].joins) return done_(graph, levels_[number].parts);
   const std::size_t base = number * manifest_.parts.size();
-  const JobNeeds next = {jobs_of(RunStage::compose, base, levels_[number + 1].streams.size())};
+  const JobNeeds next = {jobs_of(RunStage::compose, base, levels_[number + 1].parts.size())};
   graph.then(next, [this, number](JobGraph& so_far) { end_level(so_far, number + 1); });
 }
 

@@ -13,14 +13,14 @@
 
 namespace meshfarm {
 
-/// The result of a stream, or of neighbours that were composed.
-struct ComposedStreams {
+/// The result of a part or stream, or of neighbours that were composed.
+struct ComposedParts {
   ChosenRung chosen;
   std::uint64_t triangles = 0;  // of the rung
-  std::uint64_t weight = 0;     // free triangles of its streams before anything was composed
+  std::uint64_t weight = 0;     // free triangles of its parts before anything was composed
 };
 
-/// The cost threshold of all streams, and what they are to keep together for the finish.
+/// The cost threshold of all parts, and what they are to keep together for the finish.
 struct ComposeGoal {
   std::int32_t level = 0;
   double max_cost = 0;
@@ -29,31 +29,31 @@ struct ComposeGoal {
 };
 
 /// Joins neighbours, and what came of that again (Xiong et al. 2008, 4.3): a few at once, and no
-/// more than a sweep's window holds, so that a worker needs no more memory than for a sweep. What
-/// is then left for the sink to join is one result, or such as are too large.
+/// more than a worker could hold when it simplified them, so that it needs no more memory than for
+/// that. Parts are numbered so that neighbours by number lie together, slabs anyway. What is then
+/// left for the sink to join is one result, or such as are too large.
 ///
-/// A tree costs time, and each of its jobs reads the boundary triangles through. On its own it is
-/// taken where the sink would be long at it: from two million triangles on, and only if the seams
-/// are much of them (small parts of a sweep stay uncollapsed along them, whatever the goal).
+/// On its own this is done where the sink would be long at joining: from two million triangles on,
+/// and only if they are much more than are wanted.
 ///
 /// Neighbours are joined from the first on, as many as fit. So a job needs those that it joins and
 /// those before them on its level, not the whole level.
 class ComposeStage {
  public:
-  using Done = std::function<void(JobGraph&, const std::vector<ComposedStreams>&)>;
+  using Done = std::function<void(JobGraph&, const std::vector<ComposedParts>&)>;
 
   /// Both must outlive this.
   ComposeStage(const Manifest& manifest, const RunOptions& options)
       : manifest_(manifest), options_(options) {}
 
   /// `done` is called once nothing more is to be joined.
-  void begin(JobGraph& graph, const ComposeGoal& goal, std::vector<ComposedStreams> streams,
+  void begin(JobGraph& graph, const ComposeGoal& goal, std::vector<ComposedParts> parts,
              Done done);
 
  private:
-  /// The streams as they were swept, then what came of joining these, and so on.
+  /// The parts as they were simplified, then what came of joining these, and so on.
   struct Level {
-    std::vector<ComposedStreams> streams;
+    std::vector<ComposedParts> parts;
     std::size_t taken = 0;        // the first of these are there
     std::size_t first = 0;        // not in a group yet
     std::uint64_t triangles = 0;  // of those taken
@@ -62,6 +62,7 @@ class ComposeStage {
   };
 
   bool can_join() const;
+  std::uint64_t most_triangles() const;
   bool is_worth_it(const Level& level) const;
   void take(JobGraph& graph, std::size_t number);
   void join(JobGraph& graph, std::size_t number);

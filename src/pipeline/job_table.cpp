@@ -18,9 +18,9 @@ namespace {
 using JobPointer = JobOutput (*)(const Job&, const JobContext&);
 
 constexpr std::pair<std::string_view, JobPointer> k_table[] = {
-    {k_sort_kind, sort_to_stream},     {k_sample_kind, sample_stream},
-    {k_simplify_kind, simplify_part},  {k_sweep_kind, sweep_stream},
-    {k_compose_kind, compose_streams}, {k_tile_kind, tile_pictures},
+    {k_sort_kind, sort_to_stream},    {k_sample_kind, sample_stream},
+    {k_simplify_kind, simplify_part}, {k_sweep_kind, sweep_stream},
+    {k_compose_kind, compose_parts},  {k_tile_kind, tile_pictures},
     {k_bake_kind, bake_chunk},
 };
 

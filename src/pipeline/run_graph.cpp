@@ -123,21 +123,21 @@ class Run {
     graph.then(all, [this](JobGraph& so_far) { compose(so_far); });
   }
 
-  /// Neighbouring streams are joined by workers, where that is worth it.
+  /// Neighbours are joined by workers, where that is worth it.
   void compose(JobGraph& graph) {
     const ComposeGoal goal{
         results().level, jobs().sweep_cost(results().level), jobs().wanted(),
         results().topology == TopologyMode::simplify ? TopologyMode::simplify : TopologyMode::keep};
     composing_.begin(graph, goal, reached(),
-                     [this](JobGraph& so_far, const std::vector<ComposedStreams>& streams) {
-                       choose(streams);
+                     [this](JobGraph& so_far, const std::vector<ComposedParts>& parts) {
+                       choose(parts);
                        if (bakes_texture(manifest(), options_)) baking_.begin(so_far, *chosen());
                      });
   }
 
   /// What is to be stitched of each part, before anything is composed.
-  std::vector<ComposedStreams> reached() const {
-    std::vector<ComposedStreams> reached;
+  std::vector<ComposedParts> reached() const {
+    std::vector<ComposedParts> reached;
     for (std::size_t p = 0; p < results().files.size(); ++p) {
       const ResultSummary& result = results().summaries[p];
       const auto last = static_cast<std::uint32_t>(result.rungs.size() - 1);
@@ -151,9 +151,9 @@ class Run {
   }
 
   /// The mesh is made: the sink may stitch it.
-  void choose(const std::vector<ComposedStreams>& streams) {
+  void choose(const std::vector<ComposedParts>& parts) {
     ChosenRungs& chosen = state_.chosen.emplace();
-    for (const ComposedStreams& each : streams) chosen.rungs.push_back(each.chosen);
+    for (const ComposedParts& each : parts) chosen.rungs.push_back(each.chosen);
     add_finer(chosen);
     const TopologyMode topology = results().topology;
     chosen.kept = topology == TopologyMode::simplify ? climbs().kept() : chosen.rungs;

@@ -101,28 +101,32 @@ TEST_CASE("swept streams, climbed streams and the uncut mesh end as good, closed
 
 TEST_CASE("composed as a tree, the result is as good, closed, and exact") {
   const Mesh mesh = half_rough_torus();
-  const test::TempFolder folder;
-  const CutOptions nine{.scheme = Scheme::stream, .parts = 9, .window_triangles = 16'000};
-  RunOptions run{.triangles = 3000, .composition = Composition::sink};
-  const Made by_sink = simplify(mesh, nine, run, folder / "sink");
-  run.composition = Composition::automatic;  // too small to be worth it
-  CHECK(simplify(mesh, nine, run, folder / "auto").kinds == by_sink.kinds);
-  run.composition = Composition::tree;
-  const Made by_tree = simplify(mesh, nine, run, folder / "tree");
-  // 9 -> 3 -> 1
-  CHECK(std::count(by_sink.kinds.begin(), by_sink.kinds.end(), k_compose_kind) == 0);
-  CHECK(std::count(by_tree.kinds.begin(), by_tree.kinds.end(), k_compose_kind) >= 3);
-  CHECK(by_tree.mesh.triangles.size() == 3000);
-  const Topology t = measure_topology(by_tree.mesh);
-  CHECK(t.euler == 0);
-  CHECK(t.components == 1);
-  CHECK(t.border_edges + t.nonmanifold_edges + t.degenerate + t.duplicate == 0);
-  CHECK(by_tree.summary.stitched < by_sink.summary.stitched);
-  CHECK(by_tree.summary.stitched >= 3000);
-  CHECK(rms(mesh, by_tree.mesh) < 1.1 * rms(mesh, by_sink.mesh));
-  CHECK(by_tree.summary.error.input_samples > 66'000);
-  CHECK(by_tree.summary.error.greater().rms ==
-        doctest::Approx(by_sink.summary.error.greater().rms).epsilon(0.1));
+  for (const CutOptions& nine :
+       {CutOptions{.scheme = Scheme::stream, .parts = 9, .window_triangles = 16'000},
+        CutOptions{.scheme = Scheme::cut, .parts = 9}}) {
+    CAPTURE(nine.scheme);
+    const test::TempFolder folder;
+    RunOptions run{.triangles = 3000, .composition = Composition::sink};
+    const Made by_sink = simplify(mesh, nine, run, folder / "sink");
+    run.composition = Composition::automatic;  // too small to be worth it
+    CHECK(simplify(mesh, nine, run, folder / "auto").kinds == by_sink.kinds);
+    run.composition = Composition::tree;
+    const Made by_tree = simplify(mesh, nine, run, folder / "tree");
+    // 9 -> 3 -> 1
+    CHECK(std::count(by_sink.kinds.begin(), by_sink.kinds.end(), k_compose_kind) == 0);
+    CHECK(std::count(by_tree.kinds.begin(), by_tree.kinds.end(), k_compose_kind) >= 3);
+    CHECK(by_tree.mesh.triangles.size() == 3000);
+    const Topology t = measure_topology(by_tree.mesh);
+    CHECK(t.euler == 0);
+    CHECK(t.components == 1);
+    CHECK(t.border_edges + t.nonmanifold_edges + t.degenerate + t.duplicate == 0);
+    CHECK(by_tree.summary.stitched < by_sink.summary.stitched);
+    CHECK(by_tree.summary.stitched >= 3000);
+    CHECK(rms(mesh, by_tree.mesh) < 1.1 * rms(mesh, by_sink.mesh));
+    CHECK(by_tree.summary.error.input_samples > 66'000);
+    CHECK(by_tree.summary.error.greater().rms ==
+          doctest::Approx(by_sink.summary.error.greater().rms).epsilon(0.1));
+  }
 }
 
 TEST_CASE("no more streams are composed than a window holds") {
@@ -212,7 +216,10 @@ TEST_CASE("a compose job that makes no sense is refused, one whose side file is 
   const Stage stage = Stage::create(folder.path());
   const Manifest manifest = cut_mesh(source, stage, {.scheme = Scheme::stream, .parts = 3});
   const JobContext context{stage, 1, 7, [](std::uint64_t) { return true; }};
-  ComposeParameters parameters{.all_streams = 3, .inputs = {{}, {}}, .boundary = manifest.boundary};
+  ComposeParameters parameters{.all_parts = 3,
+                               .inputs = {{}, {}},
+                               .boundary = manifest.boundary,
+                               .boundary_index = manifest.boundary_index};
   const std::string bytes = encode_parameters(parameters);
   CHECK(decode_compose_parameters(bytes).inputs.size() == 2);
   CHECK_THROWS_AS(decode_compose_parameters(bytes + "x"), DataError);
