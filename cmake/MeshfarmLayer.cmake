@@ -10,7 +10,7 @@ function(meshfarm_compile_options target)
     $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict>)
   if(MESHFARM_SANITIZE)
     target_compile_options(${target} PRIVATE -fsanitize=${MESHFARM_SANITIZE} -fno-omit-frame-pointer
-                                             -fno-sanitize-recover=all)
+                                             -fno-sanitize-recover=all -O1 -g1)
     target_link_options(${target} PRIVATE -fsanitize=${MESHFARM_SANITIZE})
   endif()
   if(MESHFARM_FUZZ)
