@@ -95,10 +95,19 @@ class VentilatorCommand : public FarmCommand {
     return true;
   }
 
+  /// The first that is not done.
+  static StageProgress stage_of(const FarmProgress& p) {
+    for (const StageProgress& each : p.stages) {
+      if (each.accepted < each.jobs) return each;
+    }
+    return {"farm", p.jobs_known, p.jobs_done};
+  }
+
   static void show(ProgressPrinter& printer, const FarmProgress& p) {
     if (p.jobs_done == p.jobs_known) return printer.end();
-    std::string phase =
-        "farm, " + std::to_string(p.jobs_done) + " of " + std::to_string(p.jobs_known) + " jobs, ";
+    const StageProgress stage = stage_of(p);
+    std::string phase = stage.stage + ", " + std::to_string(stage.accepted) + " of " +
+                        std::to_string(stage.jobs) + " jobs, ";
     if (p.workers == 0) {
       phase += "waiting for workers ('meshfarm worker STAGE' on any host)";
     } else {

@@ -315,6 +315,7 @@ FarmProgress Dispatcher::progress() const {
   progress.jobs_known = counts.ready + counts.running + counts.done + counts.failed;
   progress.cost_done = counts.cost_done;
   progress.cost_known = counts.cost_known;
+  progress.stages = plan_.stages();
   progress.jobs_running = counts.running;
   progress.jobs_failed = counts.failed;
   progress.workers = static_cast<std::uint32_t>(workers_.size());

@@ -118,6 +118,7 @@ void JobGraph::make(JobName name, std::vector<WantedJob>& fresh) {
   Node& made = node(name);
   made.state = State::wanted;
   made.key = key;
+  ++stages_[name.stage].jobs;
   const auto [entry, is_new] = jobs_.try_emplace(key);
   entry->second.names.push_back(name);
   if (entry->second.accepted) return pass(name);
@@ -144,6 +145,7 @@ void JobGraph::pass(JobName name) {
     if (--node(each).missing == 0) possible_.push_back(each);
   }
   Stage& stage = stages_[name.stage];
+  if (passed.key) ++stage.jobs_accepted;
   while (stage.accepted_to < stage.nodes.size() &&
          stage.nodes[stage.accepted_to].state == State::accepted) {
     ++stage.accepted_to;
@@ -159,6 +161,14 @@ const JobOutput& JobGraph::output(JobName name) const {
 const JobOutput* JobGraph::accepted(JobKey key) const {
   const auto found = jobs_.find(key);
   return found != jobs_.end() && found->second.accepted ? &found->second.output : nullptr;
+}
+
+std::vector<StageProgress> JobGraph::progress() const {
+  std::vector<StageProgress> progress;
+  for (const Stage& stage : stages_) {
+    if (stage.jobs > 0) progress.push_back({stage.name, stage.jobs, stage.jobs_accepted});
+  }
+  return progress;
 }
 
 std::vector<AcceptedJob> JobGraph::outputs() const {

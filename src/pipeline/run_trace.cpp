@@ -105,6 +105,9 @@ void RunTrace::state(const FarmProgress& progress, const std::vector<WorkerStatu
   line.jobs_running = progress.jobs_running;
   line.jobs_failed = progress.jobs_failed;
   line.jobs_known = progress.jobs_known;
+  for (const StageProgress& each : progress.stages) {
+    line.stages.push_back({each.stage, each.jobs, each.accepted});
+  }
   line.retries = progress.retries;
   line.triangles_done = progress.cost_done;
   line.triangles_known = progress.cost_known;

@@ -159,6 +159,10 @@ Json as_json(const StageStatus& status) {
                   {"running", s.jobs_running},
                   {"failed", s.jobs_failed},
                   {"retried", s.retries}};
+  json["stages"] = Json::array();
+  for (const TraceState::Stage& each : s.stages) {
+    json["stages"].push_back({{"stage", each.stage}, {"known", each.jobs}, {"done", each.done}});
+  }
   json["sink"] = s.sink;
   json["no_room"] = s.no_room || status.no_room;
   json["bad_hosts"] = s.bad_hosts;
@@ -196,6 +200,15 @@ std::string line(const std::string& label, const std::string& value) {
   return padded(label, -15) + value + "\n";
 }
 
+/// "climb 16 of 16, compose 1 of 4"
+std::string words_of(const std::vector<TraceState::Stage>& stages) {
+  std::vector<std::string> words;
+  for (const TraceState::Stage& each : stages) {
+    words.push_back(each.stage + " " + grouped(each.done) + " of " + grouped(each.jobs));
+  }
+  return joined(words);
+}
+
 }  // namespace
 
 bool is_silent(const StageStatus& status) {
@@ -223,6 +236,7 @@ std::string render(const StageStatus& status, Format format) {
   text += line("jobs", grouped(s.jobs_done) + " of " + grouped(s.jobs_known) + " done, " +
                            grouped(s.jobs_running) + " running, " + grouped(s.jobs_failed) +
                            " failed, " + grouped(s.retries) + " retried");
+  if (!s.stages.empty()) text += line("stages", words_of(s.stages));
   if (facts.rate > 0) {
     text +=
         line("rate", with_unit(facts.rate) + " triangles/s" +

@@ -88,12 +88,17 @@ Json to_json(const TraceState& l) {
                        {"rss_bytes", w.rss_bytes},
                        {"silent_s", w.silent_s}});
   }
+  Json stages = Json::array();
+  for (const TraceState::Stage& each : l.stages) {
+    stages.push_back({{"stage", each.stage}, {"jobs", each.jobs}, {"done", each.done}});
+  }
   return {{"kind", "state"},
           {"t", l.t},
           {"jobs_done", l.jobs_done},
           {"jobs_running", l.jobs_running},
           {"jobs_failed", l.jobs_failed},
           {"jobs_known", l.jobs_known},
+          {"stages", stages},
           {"retries", l.retries},
           {"triangles_done", l.triangles_done},
           {"triangles_known", l.triangles_known},
@@ -214,6 +219,19 @@ void read(const Json& json, TraceFailed& l) {
   get(json, "why", l.why);
 }
 
+void read_stages(const Json& json, std::vector<TraceState::Stage>& stages) {
+  const auto found = json.find("stages");
+  if (found == json.end()) return;
+  for (const Json& each : *found) {
+    if (!each.is_object()) throw DataError("a stage is no JSON object");
+    TraceState::Stage stage;
+    get(each, "stage", stage.stage);
+    get(each, "jobs", stage.jobs);
+    get(each, "done", stage.done);
+    stages.push_back(std::move(stage));
+  }
+}
+
 void read(const Json& json, TraceState& l) {
   get(json, "jobs_done", l.jobs_done);
   get(json, "jobs_running", l.jobs_running);
@@ -226,6 +244,7 @@ void read(const Json& json, TraceState& l) {
   get(json, "storage_stalls", l.storage_stalls);
   get(json, "no_room", l.no_room);
   get(json, "bad_hosts", l.bad_hosts);
+  read_stages(json, l.stages);
   const auto workers = json.find("workers");
   if (workers == json.end()) return;
   for (const Json& each : *workers) {

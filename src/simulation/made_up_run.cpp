@@ -64,10 +64,10 @@ JobSource simulated_jobs(std::uint64_t count, const std::string& target) {
   return [most = shared(named("job ", first, first / 4)), rest = shared(named("end ", last, 0))] {
     constexpr std::uint32_t k_most = 0, k_all = 1, k_rest = 2;
     JobGraph graph({"most", "all", "rest"});
-    std::uint32_t count = 0;
-    for (const Job& job : *most) graph.add({k_most, count++}, job);
-    graph.add({k_all, 0}, {all_of(k_most, count)}, [count](JobGraph& so_far) {
-      const std::string needs = count == 0 ? "nothing" : so_far.output({k_most, count - 1}).summary;
+    std::uint32_t jobs = 0;
+    for (const Job& job : *most) graph.add({k_most, jobs++}, job);
+    graph.add({k_all, 0}, {all_of(k_most, jobs)}, [jobs](JobGraph& so_far) {
+      const std::string needs = jobs == 0 ? "nothing" : so_far.output({k_most, jobs - 1}).summary;
       Job all = made_up("all, to " + needs);
       all.by_sink = true;
       return all;

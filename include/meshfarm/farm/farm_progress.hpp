@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include <meshfarm/farm/job_graph.hpp>
 #include <meshfarm/farm/protocol.hpp>
 
 namespace meshfarm {
@@ -16,6 +17,7 @@ struct FarmProgress {
   std::uint64_t jobs_known = 0;
   std::uint64_t cost_done = 0;  // triangles of the jobs accepted
   std::uint64_t cost_known = 0;
+  std::vector<StageProgress> stages;
   std::uint64_t jobs_running = 0;
   std::uint64_t jobs_failed = 0;
   std::uint64_t jobs_too_big = 0;  // ready, but they need more memory than any worker has

@@ -49,6 +49,14 @@ struct JobPlace {
   std::vector<Need> needs = {};
 };
 
+/// How far a stage is, of the jobs that are known of.
+struct StageProgress {
+  std::string stage;
+  std::uint64_t jobs = 0;
+  std::uint64_t accepted = 0;
+  friend bool operator==(const StageProgress&, const StageProgress&) = default;
+};
+
 struct WantedJob {
   JobKey key;
   Job job;
@@ -108,6 +116,9 @@ class JobGraph {
   std::uint64_t jobs_wanted() const { return jobs_.size(); }
   std::uint64_t jobs_accepted() const { return jobs_accepted_; }
 
+  /// Of the stages that have jobs, in order.
+  std::vector<StageProgress> progress() const;
+
   /// What was accepted before this was possible.
   const JobNeeds& needs(JobName name) const;
   JobPlace place(JobName name) const;
@@ -126,6 +137,8 @@ class JobGraph {
     std::string name;
     std::vector<Node> nodes;        // by index
     std::uint32_t accepted_to = 0;  // all before are accepted
+    std::uint64_t jobs = 0;
+    std::uint64_t jobs_accepted = 0;
   };
   struct Entry {
     std::vector<JobName> names;

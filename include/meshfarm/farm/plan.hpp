@@ -116,6 +116,8 @@ class Plan {
   /// One that was given up.
   LostJob lost(JobKey key) const;
   const PlanCounts& counts() const { return counts_; }
+  /// How far each stage of the run is.
+  std::vector<StageProgress> stages() const { return graph_.progress(); }
 
  private:
   struct Entry {

@@ -81,11 +81,18 @@ struct TraceState {
     std::uint64_t rss_bytes = 0;
     double silent_s = 0;
   };
+  /// Of the jobs that are known of.
+  struct Stage {
+    std::string stage;
+    std::uint64_t jobs = 0;
+    std::uint64_t done = 0;
+  };
   double t = 0;
   std::uint64_t jobs_done = 0;
   std::uint64_t jobs_running = 0;
   std::uint64_t jobs_failed = 0;
   std::uint64_t jobs_known = 0;
+  std::vector<Stage> stages = {};  // in order
   std::uint64_t retries = 0;
   std::uint64_t triangles_done = 0;
   std::uint64_t triangles_known = 0;

@@ -47,6 +47,7 @@ TEST_CASE("a job is possible once all that it needs is accepted") {
   CHECK(names_of(accept(graph, "a0")) == "b ");
   CHECK(names_of(accept(graph, "b")).empty());
   CHECK_FALSE(graph.complete());
+  CHECK(graph.progress() == std::vector<StageProgress>{{"first", 3, 2}, {"second", 1, 1}});
   CHECK(names_of(accept(graph, "a2")) == "c ");
   accept(graph, "c");
   CHECK(graph.complete());

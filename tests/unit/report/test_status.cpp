@@ -36,6 +36,7 @@ StageStatus status() {
   state.retries = 1;
   state.triangles_known = 24'000'000;
   state.triangles_done = 6'000'000;
+  state.stages = {{"sort", 3, 3}, {"climb", 1, 0}};
   state.sink = true;
   state.workers = {{1, 2, 3, 2e6, 50 << 20, 0.5}, {2, 1, 0, 1e6, 40 << 20, 0.25}};
   trace.state = state;
@@ -48,6 +49,7 @@ TEST_CASE("the status of a run in progress") {
   const std::string text = render(status(), Format::text);
   CHECK(has(text, "simplifying"));
   CHECK(has(text, "1 of 4 done, 2 running, 0 failed, 1 retried"));
+  CHECK(has(text, "sort 3 of 3, climb 0 of 1"));
   CHECK(has(text, "epoch 2 on here, for 13 s"));
   // 6 M in 5 s (from the job's begin to the state), 18 M are left.
   CHECK(has(text, "1.2 M triangles/s, farm done in 15 s"));

@@ -23,6 +23,7 @@ TEST_CASE("a trace comes back as it was written") {
   state.retries = 5;
   state.triangles_done = 6;
   state.triangles_known = 7;
+  state.stages = {{"sort", 8, 7}, {"climb", 9, 0}};
   state.sink = true;
   state.storage_stalls = true;
   state.bad_hosts = {"bad"};
@@ -56,6 +57,10 @@ TEST_CASE("a trace comes back as it was written") {
   CHECK(trace.done[0].needs[0].count == 12);
   CHECK(trace.done[0].needs[1].first == 7);
   CHECK(trace.done[0].cpu_us == 10);
+  REQUIRE(trace.state->stages.size() == 2);
+  CHECK(trace.state->stages[0].stage == "sort");
+  CHECK(trace.state->stages[0].done == 7);
+  CHECK(trace.state->stages[1].jobs == 9);
   CHECK(trace.failed.at(0).why == "no luck");
   CHECK(trace.left.at(0).why == "was silent");
   REQUIRE(trace.state);
