@@ -115,7 +115,7 @@ std::vector<Scheduler::Late> Scheduler::late_jobs(const Plan& plan, FarmTime now
 
 std::vector<Scheduler::Pick> Scheduler::second_attempts(Plan& plan, FarmTime now) {
   std::vector<Pick> picks;
-  if (options_.schedule == Schedule::fixed || plan.counts().ready > 0) return picks;
+  if (options_.schedule == Schedule::fixed) return picks;
   if (now < next_second_attempts_) return picks;
   next_second_attempts_ = now + k_second_attempts_every;
   std::vector<std::pair<double, WorkerId>> idle;  // the fastest first

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include <deque>
 #include <exception>
+#include <mutex>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -13,6 +14,7 @@
 #include <meshfarm/transport/sink.hpp>
 #include <meshfarm/util/errors.hpp>
 #include <meshfarm/util/log.hpp>
+#include <meshfarm/util/parallel.hpp>
 
 #include "transport/control_link.hpp"
 #include "transport/gatekeeper.hpp"
@@ -26,6 +28,9 @@ namespace {
 constexpr int k_messages_per_turn = 1000;
 /// As many results share one sync of the journal at most.
 constexpr std::size_t k_checks_per_batch = 256;
+/// Results are verified on so many threads: storage on a network answers one slowly, and many at
+/// once.
+constexpr unsigned k_checkers = 4;
 
 /// Who asks the sink to stop does not wait for storage.
 ReadPatience patience_until(const std::atomic<bool>* stop) {
@@ -219,30 +224,43 @@ class SinkLoop {
 
   /// On the disk thread, as is all below.
   void check_batch() {
-    std::vector<std::string> records;
     // Nobody hears of one result before all have been looked at: they are waited for together.
     ReadPatience patience = patience_;
-    for (Checked& each : batch_) {
-      try {
-        const Check& check = each.check;
-        if (options_.inspect) options_.inspect(check.kind, check.output);
-        stage_.verify(check.output.file, check.from_journal ? journal_patience_ : patience);
-        // What another run accepted is recorded as this one's, too, as long as that goes on.
-        each.to_record = !check.from_journal || !ledger_.by_run.contains(check.key);
-        if (each.to_record) {
-          records.push_back(encode_record({options_.run, {check.key, check.output}}));
-        }
-      } catch (const IoError& error) {
-        each.problem = {error.what(), FailureKind::unread};
-        spend(each.check.from_journal ? journal_patience_ : patience, error);
-      } catch (const Error& error) {
-        each.problem = {error.what()};
-      } catch (const std::bad_alloc&) {
-        each.problem = {"out of memory while reading " + each.check.output.file.name,
-                        FailureKind::unread};
+    std::mutex mutex;
+    parallel_for(batch_.size(), k_checkers, [&](std::uint64_t i) {
+      Checked& each = batch_[i];
+      check(each, each.check.from_journal ? journal_patience_ : patience, mutex);
+    });
+    std::vector<std::string> records;
+    for (const Checked& each : batch_) {
+      if (each.to_record) {
+        records.push_back(encode_record({options_.run, {each.check.key, each.check.output}}));
       }
     }
     if (!records.empty()) write_records(records);
+  }
+
+  /// On one of several threads, which share their patience.
+  void check(Checked& each, ReadPatience& shared, std::mutex& mutex) const {
+    const Check& check = each.check;
+    try {
+      if (options_.inspect) options_.inspect(check.kind, check.output);
+      const ReadPatience patience = [&] {
+        const std::lock_guard lock(mutex);
+        return shared;
+      }();
+      stage_.verify(check.output.file, patience);
+      // What another run accepted is recorded as this one's, too, as long as that goes on.
+      each.to_record = !check.from_journal || !ledger_.by_run.contains(check.key);
+    } catch (const IoError& error) {
+      each.problem = {error.what(), FailureKind::unread};
+      const std::lock_guard lock(mutex);
+      spend(shared, error);
+    } catch (const Error& error) {
+      each.problem = {error.what()};
+    } catch (const std::bad_alloc&) {
+      each.problem = {"out of memory while reading " + check.output.file.name, FailureKind::unread};
+    }
   }
 
   void write_records(const std::vector<std::string>& records) {
