@@ -25,6 +25,9 @@ class Command {
                      po::positional_options_description& positional) = 0;
   /// Checks what was parsed; throws UsageError; no work.
   virtual void check() {}
+  /// Whether freed memory is kept for all threads (keep_freed_memory()). Not where each thread
+  /// allocates often and shares nothing: they would wait for each other.
+  virtual bool keeps_freed_memory() const { return true; }
   /// Does it and returns the exit code.
   virtual int run() = 0;
 };

@@ -97,6 +97,7 @@ int run_command(std::unique_ptr<Command> named, const std::vector<std::string>& 
   }
   po::notify(values);
   command.check();
+  if (command.keeps_freed_memory()) keep_freed_memory();
   return command.run();
 }
 
@@ -124,7 +125,6 @@ int dispatch(const std::vector<std::string>& words) {
 int run_command_line(int argc, const char* const* argv) {
   // Workers are started through /proc/self/exe, and would be listed as "exe".
   ::prctl(PR_SET_NAME, "meshfarm");
-  keep_freed_memory();
   try {
     const int code = dispatch({argv + std::min(1, argc), argv + argc});
     std::cout.flush();

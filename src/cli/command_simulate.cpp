@@ -7,7 +7,6 @@
 #include <meshfarm/report/simulation_report.hpp>
 #include <meshfarm/simulation/simulated_seeds.hpp>
 #include <meshfarm/util/errors.hpp>
-#include <meshfarm/util/memory.hpp>
 
 #include "cli/command.hpp"
 #include "cli/options.hpp"
@@ -53,6 +52,7 @@ class SimulateCommand : public Command {
       check_seeds();
     }
   }
+  bool keeps_freed_memory() const override { return false; }
   int run() override {
     if (!plans_) return run_seeds();
     plan_.run(talk_.format());
@@ -78,7 +78,6 @@ class SimulateCommand : public Command {
   }
 
   int run_seeds() const {
-    split_memory_by_threads();
     const auto start = std::chrono::steady_clock::now();
     const SeedsResult result = simulate_seeds(seeds_);
     SeedsSummary summary;

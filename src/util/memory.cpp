@@ -37,12 +37,6 @@ void keep_freed_memory() {
 #endif
 }
 
-void split_memory_by_threads() {
-#ifdef __GLIBC__
-  ::mallopt(M_ARENA_MAX, 0);  // as many as it likes
-#endif
-}
-
 std::optional<MemoryRoom> available_memory() {
   const auto host = host_room();
   const auto group = group_memory();

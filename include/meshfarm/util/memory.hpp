@@ -10,9 +10,6 @@ namespace meshfarm {
 /// Keeps freed memory in the process for later allocations: fresh pages are expensive (measured:
 /// half of the CPU time of a cut). Call once, before there are threads. Does nothing without glibc.
 void keep_freed_memory();
-/// Gives each thread an arena of its own again. For threads that allocate often and share nothing:
-/// with one arena they would wait for each other.
-void split_memory_by_threads();
 
 /// The pool of all processes of a host that no control group limits.
 inline constexpr std::uint64_t k_whole_host = 1;
