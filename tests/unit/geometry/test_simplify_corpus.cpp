@@ -51,17 +51,17 @@ constexpr std::array<Row, 21> k_corpus{{
 }  // namespace
 
 TEST_CASE("simplify corpus: the count is met, and the error of both directions is bounded") {
-  for (const auto& [shape, ratio, most] : k_corpus) {
-    CAPTURE(shape);
-    CAPTURE(ratio);
-    const Mesh original = in_memory(*generate_mesh(shape_named(shape), k_triangles));
-    const double asked = std::round(ratio * static_cast<double>(original.triangles.size()));
+  for (const Row& row : k_corpus) {
+    CAPTURE(row.shape);
+    CAPTURE(row.ratio);
+    const Mesh original = in_memory(*generate_mesh(shape_named(row.shape), k_triangles));
+    const double asked = std::round(row.ratio * static_cast<double>(original.triangles.size()));
     SimplifyOptions options;
     options.positions = PositionType::float32;
     Simplifier simplifier(original, options);
     simplifier.reduce({.triangles = static_cast<std::uint64_t>(asked)});
     // A closed surface has an even number of triangles.
     CHECK(std::fabs(static_cast<double>(simplifier.triangles()) - asked) <= 1);
-    CHECK(1e6 * error_of(original, simplifier.mesh()) <= most);
+    CHECK(1e6 * error_of(original, simplifier.mesh()) <= row.most);
   }
 }
