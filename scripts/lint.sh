@@ -12,4 +12,7 @@ mapfile -t files < <(git ls-files '*.cpp' '*.hpp')
 clang-format --dry-run -Werror "${files[@]}"
 [ "${1:-}" = --format ] && exit 0
 mapfile -t sources < <(git ls-files 'src/*.cpp' 'bin/*.cpp')
-printf '%s\n' "${sources[@]}" | xargs -P "$(nproc)" -n 4 clang-tidy -p build --quiet --extra-arg=-Wno-unknown-warning-option
+# The analyzer goes into called functions as far as its shallow mode does: deeper takes twice as long.
+options=(--extra-arg=-Wno-unknown-warning-option)
+for word in -Xclang -analyzer-config -Xclang mode=shallow; do options+=("--extra-arg=$word"); done
+printf '%s\n' "${sources[@]}" | xargs -P "$(nproc)" -n 4 clang-tidy -p build --quiet "${options[@]}"
