@@ -1,0 +1,23 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#include <utility>
+
+#include <meshfarm/io/png_file.hpp>
+#include <meshfarm/staging/atomic_file.hpp>
+
+#include "picture_writer.hpp"
+
+namespace meshfarm {
+
+void write_png(const std::filesystem::path& path, Texels texels) {
+  const Picture picture{.width = texels.width,
+                        .height = texels.height,
+                        .step = texels.step,
+                        .texels = std::move(texels.bytes)};
+  const std::string bytes = encode_png(picture);
+  AtomicFile file(path);
+  file.write(bytes);
+  file.commit();
+}
+
+}  // namespace meshfarm
