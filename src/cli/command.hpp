@@ -48,6 +48,7 @@ std::unique_ptr<Command> make_benchmark_command();
 std::unique_ptr<Command> make_info_command();
 std::unique_ptr<Command> make_compare_command();
 std::unique_ptr<Command> make_convert_command();
+std::unique_ptr<Command> make_render_command();
 std::unique_ptr<Command> make_doctor_command();
 std::unique_ptr<Command> make_simulate_command();
 std::unique_ptr<Command> make_status_command();

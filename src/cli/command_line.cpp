@@ -62,7 +62,8 @@ std::unique_ptr<Command> find_command(std::string_view name) {
 void refuse_negative_numbers(const po::basic_parsed_options<char>& parsed) {
   for (const auto& option : parsed.options) {
     for (const std::string& value : option.value) {
-      if (value.size() > 1 && value[0] == '-' && value[1] >= '0' && value[1] <= '9') {
+      const bool is_number = value.find_first_not_of("0123456789.eE+-") == std::string::npos;
+      if (is_number && value.size() > 1 && value[0] == '-' && value[1] >= '0' && value[1] <= '9') {
         throw UsageError("--" + option.string_key + " takes no negative number: " + value);
       }
     }

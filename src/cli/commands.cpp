@@ -17,6 +17,7 @@ std::vector<std::unique_ptr<Command>> all_commands() {
   commands.push_back(make_info_command());
   commands.push_back(make_compare_command());
   commands.push_back(make_convert_command());
+  commands.push_back(make_render_command());
   commands.push_back(make_benchmark_command());
   commands.push_back(make_generate_command());
   commands.push_back(make_status_command());

@@ -89,6 +89,10 @@ void tell_textures(const std::string& input, const MeshFileInfo& info) {
 
 void check_writable(const std::string& output) {
   check_output_format(output);
+  check_place(output);
+}
+
+void check_place(const std::string& output) {
   const std::filesystem::path path(output);
   const std::filesystem::path folder = path.has_parent_path() ? path.parent_path() : ".";
   if (std::filesystem::is_directory(path))

@@ -28,5 +28,7 @@ void tell_textures(const std::string& input, const MeshFileInfo& info);
 
 /// Throws IoError now rather than after an hour's work if `output` cannot be made.
 void check_writable(const std::string& output);
+/// The same of what is no mesh.
+void check_place(const std::string& output);
 
 }  // namespace meshfarm

@@ -12,7 +12,7 @@ namespace meshfarm {
 
 void MeasureWords::add(po::options_description& options) {
   options.add_options()("memory", po::value(&memory_)->default_value(memory_)->value_name("BYTES"),
-                        "memory to measure with, as 512M or 2G; what does not fit goes to scratch "
+                        "memory to work with, as 512M or 2G; what does not fit goes to scratch "
                         "files")("scratch", po::value(&scratch_)->value_name("FOLDER"),
                                  "where these lie (default: $TMPDIR, or /tmp)")(
       "threads", po::value(&divide.threads)->value_name("N"), "threads (default: cores)");

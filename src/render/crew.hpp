@@ -1,0 +1,44 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <condition_variable>
+#include <cstddef>
+#include <deque>
+#include <exception>
+#include <functional>
+#include <mutex>
+#include <thread>
+#include <vector>
+
+namespace meshfarm {
+
+/// Threads that do what one thread hands out. That one lends a hand where too much is waiting, so
+/// that no more than a few pieces of work are in memory.
+class Crew {
+ public:
+  /// So many threads, with the one that hands out (0: one a core).
+  explicit Crew(unsigned threads);
+  ~Crew();
+  Crew(const Crew&) = delete;
+  Crew& operator=(const Crew&) = delete;
+
+  unsigned size() const { return static_cast<unsigned>(helpers_.size()) + 1; }
+  void give(std::function<void()> work);
+  /// Until all is done. Throws what the first piece of work that failed has thrown.
+  void wait();
+
+ private:
+  void serve();
+  void run(const std::function<void()>& work);
+
+  std::mutex mutex_;
+  std::condition_variable changed_;
+  std::deque<std::function<void()>> waiting_;
+  std::size_t running_ = 0;
+  bool is_over_ = false;
+  std::exception_ptr failure_;
+  std::vector<std::jthread> helpers_;
+};
+
+}  // namespace meshfarm

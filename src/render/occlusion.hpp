@@ -1,0 +1,17 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <vector>
+
+#include <meshfarm/render/camera.hpp>
+
+#include "render/canvas.hpp"
+
+namespace meshfarm {
+
+/// How much of the sky each pixel's surface sees, from 0 to 1, of which what stands near it hides a
+/// part: hollows are darker. By the depths on the canvas alone. Takes 16 bytes a pixel.
+std::vector<float> find_open_sky(const Canvas& canvas, const Camera& camera, unsigned threads);
+
+}  // namespace meshfarm
