@@ -13,16 +13,17 @@ namespace meshfarm {
 namespace {
 
 constexpr std::size_t k_looks = 16;  // from each pixel
-constexpr int k_turns = 4;           // squared: so many pixels look in different directions
-constexpr double k_radius = 0.06;    // how far, of the picture's shorter side
+constexpr int k_turns = 4;           // of a square of pixels, this wide, each looks differently
+constexpr std::size_t k_square = std::size_t{k_turns} * k_turns;
+constexpr double k_radius = 0.06;  // how far, of the picture's shorter side
 constexpr double k_strength = 1.5;
 
 /// Steps to look at, in shares of the radius: a spiral, turned differently for each pixel of a
 /// square.
 using Looks = std::array<std::array<double, 2>, k_looks>;
-std::array<Looks, k_turns * k_turns> spirals() {
+std::array<Looks, k_square> spirals() {
   const double golden = std::numbers::pi * (3 - std::sqrt(5.0));
-  std::array<Looks, k_turns * k_turns> made{};
+  std::array<Looks, k_square> made{};
   for (std::size_t turn = 0; turn < made.size(); ++turn) {
     const double start = 2 * std::numbers::pi * static_cast<double>(turn * 7 % made.size()) /
                          static_cast<double>(made.size());
@@ -162,7 +163,7 @@ class Sky {
   const Camera& camera_;
   int width_;
   int height_;
-  std::array<Looks, k_turns * k_turns> looks_;
+  std::array<Looks, k_square> looks_;
   std::vector<float> depths_;
 };
 

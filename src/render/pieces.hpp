@@ -23,7 +23,7 @@ class Pieces {
   void join(std::span<const WideTriangle> triangles);
   /// Gives each vertex the colour of its piece, and returns how many pieces there are. Their order
   /// is that of their vertices, so that nothing but the file decides on a colour.
-  std::uint64_t colour(PagedArray<std::uint32_t>& colours);
+  std::uint64_t colour(PagedArray<std::uint32_t>& array);
 
  private:
   void join_at_one_place(PagedArray<ScreenPoint>& array, std::uint64_t memory_bytes);
