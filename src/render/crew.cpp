@@ -41,6 +41,12 @@ void Crew::wait() {
   if (failure_) std::rethrow_exception(std::exchange(failure_, nullptr));
 }
 
+void Crew::stop() {
+  std::unique_lock lock(mutex_);
+  waiting_.clear();
+  changed_.wait(lock, [this] { return running_ == 0; });
+}
+
 void Crew::serve() {
   std::unique_lock lock(mutex_);
   while (true) {

@@ -28,7 +28,21 @@ class Crew {
   /// Until all is done. Throws what the first piece of work that failed has thrown.
   void wait();
 
+  /// Sees to it that nobody works any more when this goes, be it by an exception. To be made after
+  /// all that the work refers to.
+  class Shift {
+   public:
+    explicit Shift(Crew& crew) : crew_(crew) {}
+    ~Shift() { crew_.stop(); }
+    Shift(const Shift&) = delete;
+    Shift& operator=(const Shift&) = delete;
+
+   private:
+    Crew& crew_;
+  };
+
  private:
+  void stop();
   void serve();
   void run(const std::function<void()>& work);
 

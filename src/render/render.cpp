@@ -161,6 +161,7 @@ class Renderer {
 
   std::unique_ptr<Kept> keep_vertices(const Camera& camera) {
     auto kept = std::make_unique<Kept>(made_.vertices, paints_.are_of_vertices(), room());
+    const Crew::Shift shift(crew_);
     auto block = std::make_shared<VertexBlock>();
     std::uint64_t next = 0;
     const auto hand_out = [&] {
@@ -222,6 +223,7 @@ class Renderer {
   void draw(const Camera& camera, Kept& kept) {
     Rasterizer rasterizer(camera, canvas_, options_.wire ? Wire::yes : Wire::no);
     Views views(kept, crew_.size());
+    const Crew::Shift shift(crew_);
     auto block = std::make_shared<TriangleBlock>();
     const auto hand_out = [&] {
       crew_.give([this, &rasterizer, &views, block] { draw_block(*block, rasterizer, views); });

@@ -282,6 +282,23 @@ TEST_CASE("what lies under no sample, at infinity or nowhere is left out and cou
   CHECK(made.picture.bytes == whole.picture.bytes);
 }
 
+TEST_CASE("a source that fails on the way ends the drawing, whatever the threads are at") {
+  class Failing : public test::MemorySource {
+   public:
+    using MemorySource::MemorySource;
+    void scan_triangles(const std::function<void(const TriangleView&)>& take) override {
+      for (int i = 0; i < 4; ++i) MemorySource::scan_triangles(take);
+      throw DataError("truncated");
+    }
+  };
+  Failing source(test::icosphere(6));
+  RenderOptions options = small_front();
+  for (const unsigned threads : {1U, 5U}) {
+    options.threads = threads;
+    CHECK_THROWS_WITH_AS(render_mesh(source, options), "truncated", DataError);
+  }
+}
+
 TEST_CASE("what cannot be drawn is an error that names the mesh") {
   RenderOptions options = small_front();
   options.name = "a.ply";
