@@ -56,7 +56,7 @@ void Adjacency::assign(std::uint32_t vertex, const CornerFan& fan) {
     ids_.insert(ids_.end(), fan.ids.begin(), fan.ids.end());
   } else {
     std::copy(corners.begin(), corners.end(), corners_.begin() + row.begin);
-    std::copy(fan.ids.begin(), fan.ids.end(), ids_.begin() + row.begin);
+    if (!ids_.empty()) std::copy(fan.ids.begin(), fan.ids.end(), ids_.begin() + row.begin);
   }
   row.end = row.begin + count;
 }
