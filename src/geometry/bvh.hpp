@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <limits>
 #include <span>
@@ -34,6 +35,25 @@ class Bvh {
   /// The nearest of the triangles whose normals are within 90 degrees of `normal`, if one is nearer
   /// than the root of `most_squared`; else its squared distance is infinite.
   Nearest nearest_facing(Vec3 p, Vec3 normal, std::uint32_t guess, double most_squared) const;
+  /// Of the normals of all triangles whose squared distance is `squared`, but for rounding, the one
+  /// that is most like `normal`; zero if none of them has one. Not of length 1.
+  Vec3 most_similar_normal(Vec3 p, Vec3 normal, double squared) const;
+
+  /// Up to six triangles that lie together, and a box round them in the frame.
+  struct Leaf {
+    std::uint32_t first = 0;
+    std::uint32_t count = 0;
+    std::array<float, 3> lo{};
+    std::array<float, 3> hi{};
+  };
+  /// All triangles, each in one leaf; leaves side by side are near each other.
+  std::vector<Leaf> leaves() const;
+  std::span<const std::uint32_t> triangles_of(const Leaf& leaf) const {
+    return std::span(order_).subspan(leaf.first, leaf.count);
+  }
+  /// Adds the leaves whose boxes touch that of `leaf`: itself, and of two that touch each other
+  /// only one finds the other.
+  void find_touching(const Leaf& leaf, std::vector<Leaf>& found) const;
 
  private:
   // Boxes are floats, rounded outwards, in a frame where the mesh's box is centred and its longest
@@ -54,6 +74,7 @@ class Bvh {
   void set_leaf_boxes(Node& node) const;
   void set_inner_boxes(Node& node) const;
   void visit_leaf(Query& query, std::uint32_t first, std::uint32_t count) const;
+  static Leaf leaf_of(const Node& node, std::size_t k);
 
   const Mesh& mesh_;
   Vec3 center_;

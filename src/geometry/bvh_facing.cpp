@@ -55,4 +55,52 @@ Bvh::Nearest Bvh::nearest_facing(Vec3 p, Vec3 normal, std::uint32_t guess,
   return query.best;
 }
 
+Vec3 Bvh::most_similar_normal(Vec3 p, Vec3 normal, double squared) const {
+  // What rounding can make of the distances to a corner or a side that triangles have in common.
+  const double reach = std::sqrt(squared) + 0x1p-40 / scale_;
+  const double most_squared = reach * reach;
+  Query query(p, to_frame(p), scale_);
+  const auto limit = static_cast<float>(std::min<double>(
+      most_squared * query.to_frame * (1 + 0x1p-20) + 0x1p-126, std::numeric_limits<float>::max()));
+  Vec3 best{};
+  double best_cosine = -2;
+  const auto look_at = [&](std::uint32_t triangle) {
+    const auto [first, second, third] = mesh_.triangles[triangle];
+    const Vec3 a = mesh_.positions[first], b = mesh_.positions[second], c = mesh_.positions[third];
+    if (squared_distance(p, a, b, c) > most_squared) return;
+    const Vec3 found = cross(b - a, c - a);
+    const double all = length(found);
+    if (!(all > 0)) return;
+    const double cosine = dot(found, normal) / all;
+    if (cosine <= best_cosine) return;
+    best = found;
+    best_cosine = cosine;
+  };
+  std::array<BvhEntry, k_bvh_stack> stack;
+  std::size_t size = 0;
+  stack[size++] = {0, 0, 0};
+  while (size > 0) {
+    const BvhEntry top = stack[--size];
+    if (top.count > 0) {
+      for (std::uint32_t i = 0; i < top.count; ++i) look_at(order_[top.child + i]);
+      continue;
+    }
+    const Node& node = nodes_[top.child];
+    float bounds[4] = {0, 0, 0, 0};
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      for (std::size_t k = 0; k < 4; ++k) {
+        const float before = node.lo[axis][k] - query.hi[axis];
+        const float after = query.lo[axis] - node.hi[axis][k];
+        float gap = before > after ? before : after;
+        gap = gap > 0 ? gap : 0;
+        bounds[k] += gap * gap;
+      }
+    }
+    for (std::size_t k = 0; k < 4; ++k) {
+      if (bounds[k] < limit) stack[size++] = {bounds[k], node.child[k], node.count[k]};
+    }
+  }
+  return best;
+}
+
 }  // namespace meshfarm

@@ -1,0 +1,31 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <array>
+
+#include <meshfarm/geometry/mesh.hpp>
+#include <meshfarm/geometry/vec.hpp>
+
+namespace meshfarm {
+
+using TriangleCorners = std::array<Vec3, 3>;
+
+/// A triangle, and what tells soon that it does not cross another one.
+struct CrossingTriangle {
+  TriangleCorners corners{};
+  Box box{};
+  Vec3 normal{};        // rounded, not of length 1
+  double rounding = 0;  // what is farther along the normal is surely beside the plane
+  bool has_area = false;
+
+  CrossingTriangle() = default;
+  explicit CrossingTriangle(const TriangleCorners& from);
+};
+
+/// Whether two triangles meet at more than corners or sides that both have: one cuts the other,
+/// touches it where that has no corner, or lies on it. Corners at one place are one. Triangles
+/// without area cross nothing. Exact.
+bool do_cross(const CrossingTriangle& a, const CrossingTriangle& b);
+
+}  // namespace meshfarm
