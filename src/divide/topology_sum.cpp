@@ -73,6 +73,7 @@ void TopologySum::add(const Topology& piece) {
   sum_.border_edges += piece.border_edges;
   sum_.nonmanifold_edges += piece.nonmanifold_edges;
   sum_.orientation_conflicts += piece.orientation_conflicts;
+  sum_.unmatched_edges += piece.unmatched_edges;
   sum_.components += piece.components;
 }
 
@@ -154,6 +155,7 @@ void TopologySum::count_sides() {
     ++sum_.edges;
     sum_.border_edges += up + down == 1;
     sum_.nonmanifold_edges += up + down > 2;
+    sum_.unmatched_edges += up != down;
     sum_.orientation_conflicts += (up > 1 ? up - 1 : 0) + (down > 1 ? down - 1 : 0);
   }
 }

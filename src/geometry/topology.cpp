@@ -78,6 +78,7 @@ void count_edges_at(std::span<const std::uint32_t> up, std::span<const std::uint
     ++topology.edges;
     topology.border_edges += ups + downs == 1;
     topology.nonmanifold_edges += ups + downs > 2;
+    topology.unmatched_edges += ups != downs;
     topology.orientation_conflicts += (ups > 1 ? ups - 1 : 0) + (downs > 1 ? downs - 1 : 0);
   }
 }

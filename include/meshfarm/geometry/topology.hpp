@@ -25,8 +25,11 @@ struct Topology {
   std::uint64_t border_edges = 0;           // one triangle
   std::uint64_t nonmanifold_edges = 0;      // three triangles or more
   std::uint64_t orientation_conflicts = 0;  // a directed edge used twice
-  std::uint64_t components = 0;             // of used vertices joined by triangles
-  std::int64_t euler = 0;                   // used vertices - edges + non-degenerate triangles
+  /// Those that triangles do not pass as often one way as the other: a surface without any of them
+  /// encloses a volume.
+  std::uint64_t unmatched_edges = 0;
+  std::uint64_t components = 0;  // of used vertices joined by triangles
+  std::int64_t euler = 0;        // used vertices - edges + non-degenerate triangles
 };
 
 /// Measures `mesh`. Memory: about 12 bytes a triangle and 16 a vertex.

@@ -30,6 +30,7 @@ void check_same(const Topology& a, const Topology& b) {
   CHECK(a.border_edges == b.border_edges);
   CHECK(a.nonmanifold_edges == b.nonmanifold_edges);
   CHECK(a.orientation_conflicts == b.orientation_conflicts);
+  CHECK(a.unmatched_edges == b.unmatched_edges);
   CHECK(a.components == b.components);
   CHECK(a.euler == b.euler);
 }
@@ -65,6 +66,7 @@ Topology measure_slowly(const Mesh& mesh) {
   for (const auto& [edge, uses] : undirected) {
     topology.border_edges += uses == 1;
     topology.nonmanifold_edges += uses > 2;
+    topology.unmatched_edges += directed[edge] != directed[{edge.second, edge.first}];
   }
   std::set<std::uint32_t> labels;
   for (const auto& [vertex, label] : component) labels.insert(label);
