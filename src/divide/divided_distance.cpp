@@ -28,8 +28,8 @@ SurfaceSamples sampled(const DividedSurface& surface, std::uint64_t samples) {
 
 }  // namespace
 
-Distance measure_distance(const DividedSurface& from, const DividedSurface& to,
-                          const DistanceOptions& options) {
+SurfaceError measure_error(const DividedSurface& from, const DividedSurface& to,
+                           const DistanceOptions& options) {
   const SurfaceSamples points = sampled(from, options.samples);
   const SurfaceSamples hints = sampled(to, k_hints);
   const double spacing =
@@ -43,14 +43,17 @@ Distance measure_distance(const DividedSurface& from, const DividedSurface& to,
     });
   }
   Distance distance;
-  const std::vector<double> distances = meter.distances();
+  std::vector<double> distances = meter.distances();
   for (const double d : distances) {
     distance.rms += d * d;
     distance.mean += d;
     distance.max = std::max(distance.max, d);
   }
   const auto count = static_cast<double>(distances.size());
-  return {std::sqrt(distance.rms / count), distance.mean / count, distance.max};
+  SurfaceError error;
+  error.distance = {std::sqrt(distance.rms / count), distance.mean / count, distance.max};
+  error.quantiles = quantiles_of(distances);
+  return error;
 }
 
 }  // namespace meshfarm

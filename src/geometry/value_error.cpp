@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include <meshfarm/geometry/channel_fit.hpp>
+#include <meshfarm/geometry/quantile.hpp>
 #include <meshfarm/geometry/value_error.hpp>
 #include <meshfarm/util/errors.hpp>
 #include <meshfarm/util/parallel.hpp>
@@ -42,6 +43,12 @@ struct ValueSums {
   }
 };
 
+/// Of each sample.
+struct Sampled {
+  std::vector<double> distances;
+  std::vector<float> degrees;  // below 0 where a triangle has no normal
+};
+
 struct ChunkSums {
   DistanceSums distance;
   std::vector<ValueSums> values;
@@ -54,9 +61,7 @@ bool all_finite(std::span<const double> values) {
 }
 
 /// The angle between two vectors; not finite where one of them is 0.
-double degrees_between(std::span<const double> a, std::span<const double> b) {
-  const Vec3 u{a[0], a[1], a[2]};
-  const Vec3 v{b[0], b[1], b[2]};
+double degrees_between(Vec3 u, Vec3 v) {
   if (!(squared_length(u) > 0) || !(squared_length(v) > 0)) return NAN;
   return std::atan2(length(cross(u, v)), dot(u, v)) * (180 / std::acos(-1.0));
 }
@@ -64,7 +69,7 @@ double degrees_between(std::span<const double> a, std::span<const double> b) {
 void compare(const ValueGroup& group, std::span<const double> a, std::span<const double> b,
              ValueSums& sums) {
   if (group.kind == ValueKind::direction) {
-    const double degrees = degrees_between(a, b);
+    const double degrees = degrees_between({a[0], a[1], a[2]}, {b[0], b[1], b[2]});
     if (!std::isfinite(degrees)) return;
     sums.add_difference(degrees);
   } else {
@@ -77,35 +82,62 @@ void compare(const ValueGroup& group, std::span<const double> a, std::span<const
 class Comparer {
  public:
   Comparer(const ValuedMesh& from, const ValuedMesh& to, std::span<const ValueGroup> groups,
-           unsigned threads)
-      : from_(from), to_(to), groups_(groups), bvh_(to.mesh, threads) {
+           const Bvh& bvh)
+      : from_(from), to_(to), groups_(groups), bvh_(bvh) {
     for (const ValueGroup& group : groups) columns_ += group.columns;
     has_labels_ = !from.labels.empty() && !to.labels.empty();
   }
 
-  ChunkSums compare_chunk(AreaSampler sampler, std::uint64_t samples, std::uint64_t chunk) const {
+  /// Fills in those samples that are in the chunk.
+  ChunkSums compare_chunk(AreaSampler sampler, std::uint64_t chunk, Sampled& sampled) const {
     ChunkSums sums{{}, std::vector<ValueSums>(groups_.size()), 0};
     std::vector<double> here(columns_);
     std::vector<double> there(columns_);
+    const std::uint64_t samples = sampled.distances.size();
     const std::uint64_t end = std::min(samples, (chunk + 1) * k_samples_a_chunk);
     std::uint32_t guess = 0;
     for (std::uint64_t n = chunk * k_samples_a_chunk; n < end; ++n) {
       const Vec3 point = sampler.sample(n);
       const Bvh::Nearest nearest = bvh_.nearest(point, guess);
       guess = nearest.triangle;
-      sums.distance.add({nearest.squared, std::sqrt(nearest.squared), nearest.squared});
+      sampled.distances[n] = std::sqrt(nearest.squared);
+      sums.distance.add({nearest.squared, sampled.distances[n], nearest.squared});
       const auto source = static_cast<std::uint32_t>(sampler.triangle());
       if (has_labels_ && from_.labels[source] != to_.labels[guess]) ++sums.other_labels;
       blend(from_, source, random_shares(n), here);
       const Triangle& t = to_.mesh.triangles[guess];
       const std::vector<Vec3>& at = to_.mesh.positions;
-      blend(to_, guess, nearest_shares(point, at[t[0]], at[t[1]], at[t[2]]), there);
+      const auto shares = nearest_shares(point, at[t[0]], at[t[1]], at[t[2]]);
+      sampled.degrees[n] = static_cast<float>(degrees_off(point, source, nearest, shares));
+      blend(to_, guess, shares, there);
       compare_all(here, there, sums.values);
     }
     return sums;
   }
 
  private:
+  static Vec3 normal_of(const Mesh& mesh, std::uint32_t triangle) {
+    const auto& [a, b, c] = mesh.triangles[triangle];
+    const Vec3 at = mesh.positions[a];
+    return cross(mesh.positions[b] - at, mesh.positions[c] - at);
+  }
+
+  /// How much the triangle that the point lies on is turned against the nearest, which has these
+  /// shares at the nearest point; below 0 if one of them has no normal.
+  double degrees_off(Vec3 point, std::uint32_t source, const Bvh::Nearest& nearest,
+                     const std::array<double, 3>& shares) const {
+    constexpr double k_inside = 1e-9;
+    const Vec3 here = normal_of(from_.mesh, source);
+    Vec3 there = normal_of(to_.mesh, nearest.triangle);
+    // Within a triangle only its other side can be as near.
+    const bool is_alone = std::min({shares[0], shares[1], shares[2]}) > k_inside;
+    if (!is_alone || !(dot(here, there) > 0)) {
+      there = bvh_.most_similar_normal(point, here, nearest.squared);
+    }
+    const double degrees = degrees_between(here, there);
+    return std::isfinite(degrees) ? degrees : -1;
+  }
+
   void blend(const ValuedMesh& mesh, std::uint32_t triangle, const std::array<double, 3>& shares,
              std::span<double> values) const {
     if (mesh.values_at) return mesh.values_at(triangle, shares, values);
@@ -136,22 +168,43 @@ class Comparer {
   std::span<const ValueGroup> groups_;
   std::size_t columns_ = 0;
   bool has_labels_ = false;
-  Bvh bvh_;
+  const Bvh& bvh_;
 };
+
+NormalDeviation deviation_of(std::vector<float>& degrees) {
+  std::erase_if(degrees, [](float value) { return value < 0; });
+  if (degrees.empty()) return {};
+  double squares = 0;
+  for (const float value : degrees) {
+    squares += static_cast<double>(value) * static_cast<double>(value);
+  }
+  const auto over =
+      std::count_if(degrees.begin(), degrees.end(), [](float value) { return value > 90; });
+  const auto samples = static_cast<double>(degrees.size());
+  return {std::sqrt(squares / samples), static_cast<double>(quantile(std::span(degrees), 0.95)),
+          static_cast<double>(over) / samples};
+}
 
 }  // namespace
 
+DistanceQuantiles quantiles_of(std::span<double> distances) {
+  return {quantile(distances, 0.95), quantile(distances, 0.99)};
+}
+
 SurfaceError measure_error(const ValuedMesh& from, const ValuedMesh& to,
-                           std::span<const ValueGroup> groups, const DistanceOptions& options) {
+                           std::span<const ValueGroup> groups, const DistanceOptions& options,
+                           const std::function<void(const TriangleIndex&)>& with_index) {
   if (options.samples == 0) throw UsageError("distances need at least one sample");
   const std::vector<double> before = areas_before(from.mesh, options.threads, "from");
   check_area(before, "from");
   check_area(areas_before(to.mesh, options.threads, "to"), "to");
-  const Comparer comparer(from, to, groups, options.threads);
+  const TriangleIndex index(to.mesh, options.threads);
+  const Comparer comparer(from, to, groups, index.bvh());
   const AreaSampler sampler(from.mesh, before, options.samples);
   std::vector<ChunkSums> chunks(chunks_of(options.samples));
+  Sampled sampled{std::vector<double>(options.samples), std::vector<float>(options.samples)};
   parallel_for(chunks.size(), options.threads, [&](std::uint64_t chunk) {
-    chunks[chunk] = comparer.compare_chunk(sampler, options.samples, chunk);
+    chunks[chunk] = comparer.compare_chunk(sampler, chunk, sampled);
   });
   DistanceSums distance;
   std::vector<ValueSums> sums(groups.size());
@@ -161,7 +214,11 @@ SurfaceError measure_error(const ValuedMesh& from, const ValuedMesh& to,
     other_labels += chunk.other_labels;
     for (std::size_t g = 0; g < groups.size(); ++g) sums[g].add(chunk.values[g]);
   }
-  SurfaceError error{distance.over(options.samples), {}};
+  SurfaceError error;
+  error.distance = distance.over(options.samples);
+  if (with_index) with_index(index);
+  error.quantiles = quantiles_of(sampled.distances);
+  error.normals = deviation_of(sampled.degrees);
   error.other_labels = static_cast<double>(other_labels) / static_cast<double>(options.samples);
   for (std::size_t g = 0; g < groups.size(); ++g) error.values.push_back(sums[g].over(groups[g]));
   return error;

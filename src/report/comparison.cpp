@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
 #include <cmath>
+#include <optional>
 
 #include <meshfarm/report/summary.hpp>
 
@@ -56,6 +57,90 @@ Json to_json(const ValueError& error, ChannelRole role) {
   return json;
 }
 
+Json to_json(const SurfaceError& error, double diagonal) {
+  Json json = to_json(error.distance, diagonal);
+  json["p95"] = error.quantiles.p95 / diagonal;
+  json["p99"] = error.quantiles.p99 / diagonal;
+  json["normals"] = nullptr;
+  if (error.normals) {
+    json["normals"] = {{"rms_degrees", error.normals->rms},
+                       {"p95_degrees", error.normals->p95},
+                       {"over_90", error.normals->over_90}};
+  }
+  return json;
+}
+
+Json to_json(const SurfaceFigures& figures) {
+  const auto& [shape, is_closed, edges, crossing, skipped] = figures;
+  return {{"area", shape.area},
+          {"volume", is_closed ? Json(shape.volume) : Json(nullptr)},
+          {"border_length", edges ? Json(edges->border) : Json(nullptr)},
+          {"feature_length", edges ? Json(edges->feature) : Json(nullptr)},
+          {"smallest_angle_p1_degrees", shape.smallest_angle_p1},
+          {"below_5_degrees", shape.share_below_5},
+          {"crossing_triangles", crossing ? Json(*crossing) : Json(nullptr)},
+          {"crossings_not_counted", skipped.empty() ? Json(nullptr) : Json(skipped)}};
+}
+
+/// From A to B, in percent of A; nothing where that has none.
+std::optional<double> change(double a, double b) {
+  if (a == 0) return std::nullopt;
+  return 100 * (b - a) / std::abs(a);
+}
+
+std::optional<double> area_change(const Comparison& c) {
+  return change(c.figures_a.shape.area, c.figures_b.shape.area);
+}
+
+std::optional<double> volume_change(const Comparison& c) {
+  if (!c.figures_a.is_closed || !c.figures_b.is_closed) return std::nullopt;
+  return change(c.figures_a.shape.volume, c.figures_b.shape.volume);
+}
+
+Json to_json(const std::optional<double>& number) {
+  return number ? Json(*number) : Json(nullptr);
+}
+
+std::string text_of(const SurfaceError& error, double diagonal) {
+  const auto share = [&](double distance) { return number(distance / diagonal, "%.3g"); };
+  return "rms " + share(error.distance.rms) + "  mean " + share(error.distance.mean) + "  95 % " +
+         share(error.quantiles.p95) + "  99 % " + share(error.quantiles.p99) + "  max " +
+         share(error.distance.max);
+}
+
+std::string text_of(const NormalDeviation& normals) {
+  return "rms " + number(normals.rms, "%.3g") + "  95 % " + number(normals.p95, "%.3g") +
+         " degrees, more than 90 on " + number(100 * normals.over_90, "%.3g") + " % of the area";
+}
+
+void add_figures(Lines& lines, const SurfaceFigures& figures) {
+  const ShapeMeasures& shape = figures.shape;
+  std::string sizes =
+      "area " + number(shape.area, "%.6g") +
+      (figures.is_closed ? ", volume " + number(shape.volume, "%.6g") : ", no volume: not closed");
+  if (figures.edges) {
+    sizes += ", border " + number(figures.edges->border, "%.4g") + " long, edges over " +
+             number(k_feature_degrees, "%g") + " degrees " +
+             number(figures.edges->feature, "%.4g") + " long";
+  }
+  lines.add("", sizes);
+  lines.add("", "smallest angles: 1 % of the triangles up to " +
+                    number(shape.smallest_angle_p1, "%.3g") + " degrees, " +
+                    number(100 * shape.share_below_5, "%.3g") + " % below 5 degrees");
+  if (figures.crossing_triangles) {
+    lines.add("", grouped(*figures.crossing_triangles) + " triangles cut or touch others");
+  } else if (!figures.crossings_skipped.empty()) {
+    lines.add("", "triangles that cut others not counted: " + figures.crossings_skipped);
+  }
+}
+
+void add_changes(Lines& lines, const Comparison& c) {
+  std::string text;
+  if (const auto area = area_change(c)) text = "area " + number(*area, "%+.3g") + " %";
+  if (const auto volume = volume_change(c)) text += ", volume " + number(*volume, "%+.3g") + " %";
+  if (!text.empty()) lines.add("B against A", text);
+}
+
 Json channels_json(const Comparison& c) {
   Json json = Json::array();
   for (const ChannelDifference& channel : c.channels) {
@@ -101,12 +186,18 @@ void add_channels(Lines& lines, const Comparison& c) {
 std::string render(const Comparison& c, Format format) {
   if (format == Format::json) {
     const Json skipped = c.channels_skipped.empty() ? Json(nullptr) : Json(c.channels_skipped);
+    const Json not_measured = c.not_measured.empty() ? Json(nullptr) : Json(c.not_measured);
     const Json labels_skipped = c.labels_skipped.empty() ? Json(nullptr) : Json(c.labels_skipped);
     const Json json = {{"a", c.path_a},
                        {"b", c.path_b},
                        {"diagonal", c.diagonal},
                        {"a_to_b", to_json(c.a_to_b, c.diagonal)},
                        {"b_to_a", to_json(c.b_to_a, c.diagonal)},
+                       {"surface_a", to_json(c.figures_a)},
+                       {"surface_b", to_json(c.figures_b)},
+                       {"area_change_percent", to_json(area_change(c))},
+                       {"volume_change_percent", to_json(volume_change(c))},
+                       {"not_measured", not_measured},
                        {"channels", channels_json(c)},
                        {"channels_not_compared", skipped},
                        {"channels_only_a", c.channels_only_a},
@@ -122,11 +213,19 @@ std::string render(const Comparison& c, Format format) {
   Lines lines;
   lines.add("A", c.path_a + ", " + grouped(c.welded_a.triangles) + " triangles");
   add_topology(lines, "", c.welded_a, c.as_it_is_a);
+  add_figures(lines, c.figures_a);
   lines.add("B", c.path_b + ", " + grouped(c.welded_b.triangles) + " triangles");
   add_topology(lines, "", c.welded_b, c.as_it_is_b);
+  add_figures(lines, c.figures_b);
+  add_changes(lines, c);
   lines.add("A to B", text_of(c.a_to_b, c.diagonal));
   lines.add("B to A", text_of(c.b_to_a, c.diagonal));
   lines.add("unit", "A's diagonal, " + number(c.diagonal, "%.9g"));
+  if (c.a_to_b.normals) lines.add("facing A to B", text_of(*c.a_to_b.normals));
+  if (c.b_to_a.normals) lines.add("facing B to A", text_of(*c.b_to_a.normals));
+  if (!c.not_measured.empty()) {
+    lines.add("not measured", "normals, lengths of edges, crossings: " + c.not_measured);
+  }
   add_channels(lines, c);
   add_labels(lines, c);
   return lines.text();

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
 //
-// What `meshfarm compare` tells of the channels of two files.
+// What `meshfarm compare` tells of two files.
 #include <cmath>
 #include <functional>
 
@@ -243,4 +243,81 @@ TEST_CASE("compare leaves labels out where one has none, or they do not fit into
   CHECK(little.code == 0);
   CHECK(has(little.out, "labels           not compared: that takes --memory "));
   CHECK_FALSE(has(little.out, "channels"));
+}
+
+namespace {
+
+/// Two closed spheres of 1,280 triangles each, so far from each other.
+Mesh two_spheres(double apart) {
+  Mesh mesh = test::icosphere(3);
+  Mesh other = test::icosphere(3);
+  for (Vec3& p : other.positions) p.x += apart;
+  test::append(mesh, other);
+  return mesh;
+}
+
+}  // namespace
+
+TEST_CASE("compare tells sizes, angles and crossings of both meshes, and how they are turned") {
+  Bench bench;
+  Mesh doubled = two_spheres(3);
+  for (Vec3& p : doubled.positions) p = p * 2;
+  write_mesh(bench.path("a.ply"), two_spheres(3), PositionType::float64);
+  write_mesh(bench.path("b.ply"), doubled, PositionType::float64);
+  write_mesh(bench.path("c.ply"), two_spheres(1.1), PositionType::float64);
+  const Ran text = bench.compare("a.ply", "b.ply");
+  CHECK(text.code == 0);
+  CHECK(has(text.out, "border 0 long, edges over 40 degrees 0 long\n"));
+  CHECK(has(text.out, "                 0 triangles cut or touch others\n"));
+  CHECK(has(text.out, "B against A      area +300 %, volume +700 %\n"));
+  CHECK(has(text.out, "facing B to A    rms "));
+  CHECK_FALSE(has(text.out, "not measured"));
+  const Ran json = bench.compare("a.ply", "b.ply", {"--json"});
+  const double area = 8 * std::acos(-1.0);
+  CHECK(number_after(json.out, "\"area\": ") == doctest::Approx(area).epsilon(0.01));
+  CHECK(number_after(json.out, "\"volume\": ") == doctest::Approx(area / 3).epsilon(0.02));
+  CHECK(number_after(json.out, "\"smallest_angle_p1_degrees\": ") > 50);
+  CHECK(number_after(json.out, "\"area_change_percent\": ") == doctest::Approx(300));
+  CHECK(number_after(json.out, "\"volume_change_percent\": ") == doctest::Approx(700));
+  CHECK(number_after(json.out, "\"p95\": ") > number_after(json.out, "\"mean\": "));
+  CHECK(number_after(json.out, "\"p99\": ") >= number_after(json.out, "\"p95\": "));
+  CHECK(number_after(json.out, "\"p95_degrees\": ") > 0);
+  CHECK(has(json.out, "\"crossing_triangles\": 0,"));
+  CHECK(has(json.out, "\"not_measured\": null"));
+  CHECK(bench.compare("a.ply", "b.ply", {"--json", "--threads", "1"}).out == json.out);
+  const Ran crossing = bench.compare("c.ply", "c.ply");
+  const std::size_t end = crossing.out.find(" triangles cut or touch others");
+  REQUIRE(end != std::string::npos);
+  CHECK(std::stoi(crossing.out.substr(crossing.out.rfind(' ', end - 1))) > 50);
+}
+
+TEST_CASE("compare gives no volume where a mesh is not closed") {
+  Bench bench;
+  write_mesh(bench.path("a.ply"), test::icosphere(2), PositionType::float32);
+  write_mesh(bench.path("b.ply"), test::grid(24, 24), PositionType::float32);
+  const Ran text = bench.compare("a.ply", "b.ply");
+  CHECK(has(text.out, "area 576, no volume: not closed, border 96 long"));
+  CHECK_FALSE(has(text.out, " %, volume"));
+  const Ran json = bench.compare("a.ply", "b.ply", {"--json"});
+  CHECK(has(json.out, "\"volume\": null"));
+  CHECK(has(json.out, "\"volume_change_percent\": null"));
+}
+
+TEST_CASE("compare says what it leaves out of meshes that do not fit into its memory") {
+  Bench bench;
+  write_mesh(bench.path("a.ply"), two_spheres(3), PositionType::float32);
+  const Ran held = bench.compare("a.ply", "a.ply", {"--json"});
+  const Ran little = bench.compare("a.ply", "a.ply", {"--json", "--memory", "30K"});
+  CHECK(little.code == 0);
+  for (const std::string name : {"area", "volume", "smallest_angle_p1_degrees"}) {
+    const std::string words = "\"" + name + "\": ";
+    CHECK(number_after(little.out, words) == doctest::Approx(number_after(held.out, words)));
+  }
+  CHECK(has(little.out, "\"normals\": null"));
+  CHECK(has(little.out, "\"border_length\": null"));
+  CHECK(has(little.out, "\"feature_length\": null"));
+  CHECK(has(little.out, "\"crossing_triangles\": null"));
+  CHECK(has(little.out, "\"not_measured\": \"that takes --memory "));
+  CHECK(has(bench.compare("a.ply", "a.ply", {"--memory", "30K"}).out,
+            "not measured     normals, lengths of edges, crossings: that takes --memory "));
 }

@@ -6,11 +6,13 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <span>
 #include <vector>
 
 #include <meshfarm/geometry/distance.hpp>
 #include <meshfarm/geometry/mesh.hpp>
+#include <meshfarm/geometry/triangle_index.hpp>
 
 namespace meshfarm {
 
@@ -49,17 +51,39 @@ struct ValueError {
   std::uint64_t samples = 0;
 };
 
+/// Distances that 5 and 1 % of the sampled points are beyond. Exact for these points.
+struct DistanceQuantiles {
+  double p95 = 0;
+  double p99 = 0;
+};
+
+DistanceQuantiles quantiles_of(std::span<double> distances);
+
+/// How the triangles of sampled points are turned against those at the nearest points of the other
+/// surface: by the angles between their normals, in degrees. Where several triangles are nearest,
+/// as at an edge, the one that is turned least counts.
+struct NormalDeviation {
+  double rms = 0;
+  double p95 = 0;      // 5 % of the area are turned by more
+  double over_90 = 0;  // the share of the area that faces the other way
+};
+
 struct SurfaceError {
   Distance distance;
-  std::vector<ValueError> values;  // by group
+  DistanceQuantiles quantiles;
+  std::optional<NormalDeviation> normals;  // if they were measured
+  std::vector<ValueError> values;          // by group
   /// The share of the points whose label is another one there; 0 unless both have labels.
   double other_labels = 0;
 };
 
 /// Measures distances as measure_distance does, to the bit, and at the same points by how much the
 /// values and labels differ: values blended linearly over the triangle, or as ValuesAt tells, at
-/// the point and at the nearest point of `to`. Memory and errors are those of measure_distance.
+/// the point and at the nearest point of `to`. Memory and errors are those of measure_distance; 12
+/// bytes more a sample. What else is to be measured with the index of the mesh of `to` may be done
+/// in `with_index`.
 SurfaceError measure_error(const ValuedMesh& from, const ValuedMesh& to,
-                           std::span<const ValueGroup> groups, const DistanceOptions& options);
+                           std::span<const ValueGroup> groups, const DistanceOptions& options,
+                           const std::function<void(const TriangleIndex&)>& with_index = {});
 
 }  // namespace meshfarm

@@ -11,6 +11,7 @@
 
 #include <meshfarm/geometry/components.hpp>
 #include <meshfarm/geometry/distance.hpp>
+#include <meshfarm/geometry/surface_measures.hpp>
 #include <meshfarm/geometry/topology.hpp>
 #include <meshfarm/geometry/value_error.hpp>
 #include <meshfarm/io/channel.hpp>
@@ -143,13 +144,25 @@ struct LabelDifference {
   double b_to_a = 0;
 };
 
+/// What `compare` tells of the shape of a mesh by itself.
+struct SurfaceFigures {
+  ShapeMeasures shape;
+  bool is_closed = false;  // so that the volume means something
+  std::optional<EdgeLengths> edges;
+  std::optional<std::uint64_t> crossing_triangles;
+  std::string crossings_skipped;  // why these were not counted though the mesh is in memory
+};
+
 /// What `compare` tells of two meshes.
 struct Comparison {
   std::string path_a;
   std::string path_b;
   double diagonal = 0;  // of A's bounding box; distances are fractions of it
-  Distance a_to_b;
-  Distance b_to_a;
+  SurfaceError a_to_b;
+  SurfaceError b_to_a;
+  SurfaceFigures figures_a;
+  SurfaceFigures figures_b;
+  std::string not_measured;  // why normals, edges and crossings were not
   Topology welded_a;
   Topology welded_b;
   Topology as_it_is_a;

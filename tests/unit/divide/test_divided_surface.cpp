@@ -24,6 +24,7 @@ void check_same(const Topology& a, const Topology& b) {
   CHECK(a.border_edges == b.border_edges);
   CHECK(a.nonmanifold_edges == b.nonmanifold_edges);
   CHECK(a.orientation_conflicts == b.orientation_conflicts);
+  CHECK(a.unmatched_edges == b.unmatched_edges);
   CHECK(a.components == b.components);
   CHECK(a.euler == b.euler);
 }
@@ -168,14 +169,19 @@ TEST_CASE("distances of divided surfaces are those of the meshes") {
   const DividedSurface divided_b(source_b, {folder.path(), k_little, 2});
   const DistanceOptions options{.samples = 20'000};
   const Distance expected = measure_distance(a, b, options);
-  const Distance d = measure_distance(divided_a, divided_b, options);
+  const SurfaceError error = measure_error(divided_a, divided_b, options);
+  const Distance& d = error.distance;
   CHECK(d.rms == doctest::Approx(expected.rms).epsilon(0.02));
   CHECK(d.mean == doctest::Approx(expected.mean).epsilon(0.02));
   CHECK(d.max == doctest::Approx(expected.max).epsilon(0.05));
+  const DistanceQuantiles quantiles = measure_error({a, {}}, {b, {}}, {}, options).quantiles;
+  CHECK(error.quantiles.p95 == doctest::Approx(quantiles.p95).epsilon(0.02));
+  CHECK(error.quantiles.p99 == doctest::Approx(quantiles.p99).epsilon(0.02));
+  CHECK_FALSE(error.normals);
   Mesh far = b;
   for (Vec3& p : far.positions) p.z += 100;
   test::MemorySource source_far(far);
   const DividedSurface divided_far(source_far, {folder.path(), k_little, 2});
-  CHECK(measure_distance(divided_far, divided_a, options).mean ==
+  CHECK(measure_error(divided_far, divided_a, options).distance.mean ==
         doctest::Approx(100).epsilon(0.01));
 }

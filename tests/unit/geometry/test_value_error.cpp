@@ -145,3 +145,108 @@ TEST_CASE("without samples or area there is nothing to compare") {
   CHECK_THROWS_AS(measure_error({flat, of_flat}, {sheet, values}, k_number, k_options), DataError);
   CHECK_THROWS_AS(measure_error({sheet, values}, {flat, of_flat}, k_number, k_options), DataError);
 }
+
+namespace {
+
+NormalDeviation normals(const Mesh& from, const Mesh& to) {
+  const SurfaceError error = measure_error({from, {}}, {to, {}}, {}, k_options);
+  REQUIRE(error.normals);
+  return *error.normals;
+}
+
+Mesh turned_over(Mesh mesh) {
+  for (Triangle& t : mesh.triangles) std::swap(t[0], t[1]);
+  return mesh;
+}
+
+/// A roof over the sheet of 10 x 10 squares: its ridge at x = 5, both sides so steep.
+Mesh roof(double degrees) {
+  Mesh mesh = test::grid(10, 10);
+  const double slope = std::tan(degrees * std::acos(-1.0) / 180);
+  for (Vec3& p : mesh.positions) p.z = 20 + slope * (5 - std::abs(p.x - 5));
+  return mesh;
+}
+
+Mesh scaled(Mesh mesh, double by) {
+  for (Vec3& p : mesh.positions) p = p * by;
+  return mesh;
+}
+
+}  // namespace
+
+TEST_CASE("quantiles of distances are those of a slope") {
+  Mesh slope = test::grid(10, 10);
+  for (Vec3& p : slope.positions) p.z = p.x / 10;
+  const Mesh sheet = test::grid(10, 10);
+  const SurfaceError error = measure_error({slope, {}}, {sheet, {}}, {}, k_options);
+  CHECK(error.quantiles.p95 == doctest::Approx(0.95).epsilon(0.001));
+  CHECK(error.quantiles.p99 == doctest::Approx(0.99).epsilon(0.001));
+  CHECK(error.distance.max <= 1);
+}
+
+TEST_CASE("normals differ by the slope of a roof, whichever way it is looked at") {
+  for (const double degrees : {1.0, 20.0, 60.0}) {
+    CAPTURE(degrees);
+    const NormalDeviation down = normals(roof(degrees), test::grid(10, 10));
+    CHECK(down.rms == doctest::Approx(degrees).epsilon(1e-4));
+    CHECK(down.p95 == doctest::Approx(degrees).epsilon(1e-4));
+    CHECK(down.over_90 == 0);
+    const NormalDeviation over = normals(turned_over(roof(degrees)), test::grid(10, 10));
+    CHECK(over.rms == doctest::Approx(180 - degrees).epsilon(1e-4));
+    CHECK(over.over_90 == 1);
+  }
+  // A tenth of the area is turned over.
+  Mesh mixed = test::grid(10, 10);
+  for (std::size_t i = 0; i < 20; ++i) std::swap(mixed.triangles[i][0], mixed.triangles[i][1]);
+  const NormalDeviation some = normals(mixed, test::grid(5, 5));
+  CHECK(normals(mixed, test::grid(10, 10)).over_90 == doctest::Approx(0.1).epsilon(0.01));
+  CHECK(some.p95 == doctest::Approx(180));
+  CHECK(normals(mixed, mixed).over_90 == 0);
+}
+
+TEST_CASE("of triangles that are equally near the one counts that is turned least") {
+  // What lies beyond an edge or a corner of the small one is as near to two or three of its faces.
+  const Mesh small = test::octahedron();
+  const Mesh large = scaled(small, 5);
+  CHECK(normals(small, large).rms < 1e-5);
+  CHECK(normals(large, small).rms < 1e-5);
+  CHECK(normals(scaled(test::icosphere(0), 2), test::icosphere(0)).rms < 1e-5);
+  // A sheet with two sides.
+  Mesh both = test::grid(8, 8);
+  test::append(both, turned_over(test::grid(8, 8)));
+  CHECK(normals(both, both).rms < 1e-5);
+  CHECK(normals(test::grid(4, 4), both).rms < 1e-5);
+  CHECK(normals(turned_over(test::grid(4, 4)), both).rms < 1e-5);
+  Mesh far = large;
+  for (Vec3& p : far.positions) p = p + Vec3{1e5, -1e5, 1e5};
+  CHECK(normals(far, far).rms < 1e-3);
+}
+
+TEST_CASE("normals of triangles without area do not count") {
+  Mesh sheet = test::grid(6, 6);
+  sheet.positions.insert(sheet.positions.end(), {{0, 3, 0.5}, {3, 3, 0.5}, {6, 3, 0.5}});
+  sheet.triangles.push_back({49, 50, 51});
+  const NormalDeviation found = normals(roof(0), sheet);
+  CHECK(found.rms < 1e-5);
+  const Mesh line{{{0, 0, 30}, {10, 0, 30}, {5, 0, 30}, {0, 99, 0}, {1, 99, 0}, {0, 99, 1}},
+                  {{0, 1, 2}, {3, 4, 5}}};
+  CHECK(normals(test::grid(10, 10), line).rms == 0);  // none
+}
+
+TEST_CASE("quantiles and normals depend on no threads, and distances are as without them") {
+  const Mesh fine = test::torus(60, 30), coarse = test::torus(17, 9);
+  const auto measured = [&](unsigned threads) {
+    return measure_error({fine, {}}, {coarse, {}}, {}, {.samples = 20'000, .threads = threads});
+  };
+  const SurfaceError one = measured(1), four = measured(4);
+  CHECK(one.quantiles.p95 == four.quantiles.p95);
+  CHECK(one.quantiles.p99 == four.quantiles.p99);
+  CHECK(one.normals->rms == four.normals->rms);
+  CHECK(one.normals->p95 == four.normals->p95);
+  CHECK(one.quantiles.p95 < one.quantiles.p99);
+  CHECK(one.distance.rms == measure_distance(fine, coarse, k_options).rms);
+  std::size_t triangles = 0;
+  measure_error({fine, {}}, {coarse, {}}, {}, k_options,
+                [&](const TriangleIndex& index) { triangles = index.mesh().triangles.size(); });
+  CHECK(triangles == coarse.triangles.size());
+}

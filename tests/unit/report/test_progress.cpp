@@ -35,9 +35,10 @@ TEST_CASE("a comparison is in fractions of the diagonal") {
   c.path_a = "a.ply";
   c.path_b = "b.ply";
   c.diagonal = 10;
-  c.a_to_b = {.rms = 0.02, .mean = 0.01, .max = 0.5};
+  c.a_to_b.distance = {.rms = 0.02, .mean = 0.01, .max = 0.5};
+  c.a_to_b.quantiles = {.p95 = 0.3, .p99 = 0.4};
   const std::string text = render(c, Format::text);
-  CHECK(text.find("rms 0.002  mean 0.001  max 0.05") != std::string::npos);
+  CHECK(text.find("rms 0.002  mean 0.001  95 % 0.03  99 % 0.04  max 0.05") != std::string::npos);
   const std::string json = render(c, Format::json);
   CHECK(json.find("\"rms\": 0.002") != std::string::npos);
 }

@@ -1,0 +1,189 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#include "cli/comparer.hpp"
+
+#include <algorithm>
+#include <functional>
+#include <span>
+#include <vector>
+
+#include <meshfarm/divide/divided_distance.hpp>
+#include <meshfarm/geometry/crossings.hpp>
+#include <meshfarm/geometry/surface_measures.hpp>
+#include <meshfarm/geometry/value_error.hpp>
+#include <meshfarm/io/channel_pairs.hpp>
+#include <meshfarm/io/mesh_source.hpp>
+#include <meshfarm/util/parallel.hpp>
+
+#include "cli/compared_mesh.hpp"
+
+namespace meshfarm {
+namespace {
+
+/// Of a triangle, with the numbers that both meshes share.
+constexpr std::uint64_t k_bytes_of_labels = 2 * sizeof(Label);
+
+/// What it takes to hold both, and the hierarchy of one at a time.
+std::uint64_t memory_for(const DividedSurface& a, const DividedSurface& b) {
+  // While it is built, with what the allocator keeps: measured.
+  constexpr std::uint64_t k_hierarchy_bytes = 72;
+  return sizeof(Vec3) * (a.vertices() + b.vertices()) +
+         sizeof(Triangle) * (a.triangles() + b.triangles()) +
+         k_hierarchy_bytes * std::max(a.triangles(), b.triangles());
+}
+
+/// As --memory takes it; rounded up, so that it is enough.
+std::string size_text(std::uint64_t bytes) {
+  const bool is_large = bytes >= std::uint64_t{10} << 20;
+  const unsigned shift = is_large ? 20 : 10;
+  const std::uint64_t units = (bytes + (std::uint64_t{1} << shift) - 1) >> shift;
+  return std::to_string(units) + (is_large ? "M" : "K");
+}
+
+std::string why_not(std::uint64_t needed, std::uint64_t memory) {
+  return "that takes --memory " + size_text(needed) + ", and there is " + size_text(memory);
+}
+
+class MeshComparer {
+ public:
+  MeshComparer(const std::string& path_a, const std::string& path_b, const CompareOptions& options)
+      : options_(options),
+        source_a_(open_mesh(path_a, {.textures = Textures::keep})),
+        source_b_(open_mesh(path_b, {.textures = Textures::keep})),
+        channels_(pair_channels(compared_channels(source_a_->info()),
+                                compared_channels(source_b_->info()))),
+        a_(*source_a_, each(options.divide)),
+        b_(*source_b_, each(options.divide)) {
+    options_.distance.threads = options.divide.threads;
+    comparison_.path_a = path_a;
+    comparison_.path_b = path_b;
+    comparison_.channels_only_a = channels_.only_a;
+    comparison_.channels_only_b = channels_.only_b;
+    comparison_.diagonal = a_.box().diagonal();
+  }
+
+  Comparison compare() {
+    const std::uint64_t memory = options_.divide.memory_bytes;
+    const std::uint64_t meshes = memory_for(a_, b_);
+    const bool have_labels = source_a_->info().labels && source_b_->info().labels;
+    const std::uint64_t values =
+        sizeof(float) * channels_.columns_a.size() * (a_.vertices() + b_.vertices()) +
+        (have_labels ? k_bytes_of_labels * (a_.triangles() + b_.triangles()) : 0);
+    if (values > 0 && meshes + values <= memory) {
+      compare_with_values(have_labels);
+    } else if (meshes <= memory) {
+      const Mesh a = read_mesh(*source_a_), b = read_mesh(*source_b_);
+      measure_held({a, {}}, {b, {}}, {});
+    } else {
+      measure_divided();
+      comparison_.not_measured = why_not(meshes, memory);
+    }
+    if (values > 0 && meshes + values > memory) {
+      const std::string why = why_not(meshes + values, memory);
+      if (!channels_.pairs.empty()) comparison_.channels_skipped = why;
+      if (have_labels) comparison_.labels_skipped = why;
+    }
+    measure_topology();
+    return std::move(comparison_);
+  }
+
+ private:
+  static DivideOptions each(DivideOptions divide) {
+    divide.memory_bytes /= 2;
+    return divide;
+  }
+
+  void compare_with_values(bool have_labels) {
+    ComparedMesh a(*source_a_, comparison_.path_a, channels_.columns_a, a_.vertices());
+    ComparedMesh b(*source_b_, comparison_.path_b, channels_.columns_b, b_.vertices());
+    if (have_labels) {
+      const LabelMeaning& meaning_a = *source_a_->info().labels;
+      const LabelMeaning& meaning_b = *source_b_->info().labels;
+      ComparedMesh::pair_labels(a, meaning_a, b, meaning_b);
+      comparison_.labels = {meaning_a.name, meaning_b.name, 0, 0};
+    }
+    std::vector<ValueGroup> groups;
+    for (const ChannelPair& pair : channels_.pairs) {
+      const bool is_direction = pair.role == ChannelRole::normal;
+      groups.push_back({is_direction ? ValueKind::direction : ValueKind::numbers, pair.columns});
+    }
+    measure_held(a.valued(), b.valued(), groups);
+    const SurfaceError& a_to_b = comparison_.a_to_b;
+    const SurfaceError& b_to_a = comparison_.b_to_a;
+    if (comparison_.labels) {
+      comparison_.labels->a_to_b = a_to_b.other_labels;
+      comparison_.labels->b_to_a = b_to_a.other_labels;
+    }
+    for (std::size_t i = 0; i < channels_.pairs.size(); ++i) {
+      comparison_.channels.push_back(
+          {channels_.pairs[i].name, channels_.pairs[i].role, a_to_b.values[i], b_to_a.values[i]});
+    }
+  }
+
+  void measure_held(const ValuedMesh& a, const ValuedMesh& b, std::span<const ValueGroup> groups) {
+    comparison_.a_to_b = measure_error(
+        a, b, groups, options_.distance,
+        [&](const TriangleIndex& index) { count_crossings(index, comparison_.figures_b); });
+    comparison_.b_to_a = measure_error(
+        b, a, groups, options_.distance,
+        [&](const TriangleIndex& index) { count_crossings(index, comparison_.figures_a); });
+    measure_shape(a.mesh, comparison_.figures_a);
+    measure_shape(b.mesh, comparison_.figures_b);
+  }
+
+  void count_crossings(const TriangleIndex& index, SurfaceFigures& figures) const {
+    figures.crossing_triangles =
+        count_crossing_triangles(index, {.threads = options_.divide.threads});
+    if (!figures.crossing_triangles) figures.crossings_skipped = "too many lie at one place";
+  }
+
+  void measure_shape(const Mesh& mesh, SurfaceFigures& figures) const {
+    ShapeMeter meter(options_.divide.threads);
+    meter.add(mesh.positions, mesh.triangles);
+    figures.shape = meter.measures();
+    figures.edges = measure_edge_lengths(mesh, options_.divide.threads);
+  }
+
+  void measure_divided() {
+    comparison_.a_to_b = measure_error(a_, b_, options_.distance);
+    comparison_.b_to_a = measure_error(b_, a_, options_.distance);
+    comparison_.figures_a.shape = shape_of(a_);
+    comparison_.figures_b.shape = shape_of(b_);
+  }
+
+  ShapeMeasures shape_of(const DividedSurface& surface) const {
+    ShapeMeter meter(options_.divide.threads);
+    surface.show([&](std::span<const Vec3> positions, std::span<const Triangle> triangles) {
+      meter.add(positions, triangles);
+    });
+    return meter.measures();
+  }
+
+  void measure_topology() {
+    const SurfaceTopology of_a = a_.measure_topology();
+    const SurfaceTopology of_b = b_.measure_topology();
+    comparison_.welded_a = of_a.welded;
+    comparison_.welded_b = of_b.welded;
+    comparison_.as_it_is_a = of_a.as_it_is;
+    comparison_.as_it_is_b = of_b.as_it_is;
+    comparison_.figures_a.is_closed = of_a.welded.unmatched_edges == 0;
+    comparison_.figures_b.is_closed = of_b.welded.unmatched_edges == 0;
+  }
+
+  CompareOptions options_;
+  std::unique_ptr<MeshSource> source_a_;
+  std::unique_ptr<MeshSource> source_b_;
+  ChannelPairs channels_;
+  DividedSurface a_;
+  DividedSurface b_;
+  Comparison comparison_;
+};
+
+}  // namespace
+
+Comparison compare_meshes(const std::string& path_a, const std::string& path_b,
+                          const CompareOptions& options) {
+  return MeshComparer(path_a, path_b, options).compare();
+}
+
+}  // namespace meshfarm

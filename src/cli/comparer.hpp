@@ -1,0 +1,23 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <string>
+
+#include <meshfarm/divide/divided_surface.hpp>
+#include <meshfarm/geometry/distance.hpp>
+#include <meshfarm/report/summary.hpp>
+
+namespace meshfarm {
+
+struct CompareOptions {
+  DivideOptions divide;      // its memory is for both meshes, its threads for all
+  DistanceOptions distance;  // but for its threads
+};
+
+/// Measures two mesh files of any size. What takes both in memory is left out where they do not
+/// fit, and the comparison says so.
+Comparison compare_meshes(const std::string& path_a, const std::string& path_b,
+                          const CompareOptions& options);
+
+}  // namespace meshfarm
