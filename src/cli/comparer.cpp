@@ -3,7 +3,7 @@
 #include "cli/comparer.hpp"
 
 #include <algorithm>
-#include <functional>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -13,7 +13,6 @@
 #include <meshfarm/geometry/value_error.hpp>
 #include <meshfarm/io/channel_pairs.hpp>
 #include <meshfarm/io/mesh_source.hpp>
-#include <meshfarm/util/parallel.hpp>
 
 #include "cli/compared_mesh.hpp"
 

@@ -17,8 +17,8 @@ struct ShapeMeasures {
   /// Signed: above 0 if the triangles face outwards. Means something only if the surface is closed
   /// (Topology::unmatched_edges is 0).
   double volume = 0;
-  /// Of the triangles' smallest angles one in a hundred is not greater than this; to a thousandth of
-  /// a degree. Triangles with corners at one place are left out, others without area have 0.
+  /// Of the triangles' smallest angles one in a hundred is not greater than this; to a thousandth
+  /// of a degree. Triangles with corners at one place are left out, others without area have 0.
   double smallest_angle_p1 = 0;
   double share_below_5 = 0;  // of the triangles: with an angle below 5 degrees
 };
