@@ -271,9 +271,9 @@ TEST_CASE("parts come out even with vertices far out and where triangles are far
 }
 
 TEST_CASE("parts come out even with many vertices at one point, welded or not") {
-  constexpr std::uint32_t k_crowd = 20'000;
+  constexpr std::uint32_t k_many = 20'000;
   const Mesh sheet = test::grid(150, 150);
-  const Mesh mesh = test::with_crowd(sheet, k_crowd);
+  const Mesh mesh = test::with_crowd(sheet, k_many);
   const test::TempFolder folder;
   for (const Weld weld : {Weld::exact, Weld::off}) {
     const std::filesystem::path here = folder / (weld == Weld::exact ? "welded" : "apart");
@@ -285,9 +285,9 @@ TEST_CASE("parts come out even with many vertices at one point, welded or not") 
       most = std::max(most, part.vertices);
       all += part.vertices;
     }
-    CHECK(all == sheet.positions.size() + (weld == Weld::off ? k_crowd : 0));
+    CHECK(all == sheet.positions.size() + (weld == Weld::off ? k_many : 0));
     CHECK(static_cast<double>(most) * 28 <= 1.15 * static_cast<double>(all));
-    CHECK(made.manifest.coincident_vertices == (weld == Weld::off ? 0 : k_crowd));
+    CHECK(made.manifest.coincident_vertices == (weld == Weld::off ? 0 : k_many));
     for (const unsigned threads : {2U, 5U}) {
       const std::filesystem::path other = here / std::to_string(threads);
       cut(mesh, {.parts = 28, .weld = weld, .threads = threads}, other);

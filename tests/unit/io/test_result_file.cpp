@@ -62,7 +62,7 @@ TEST_CASE("labels come back with each rung") {
   less.triangles.resize(1000);
   less.columns.labels.resize(1000);
   std::string file;
-  ResultWriter writer({PositionType::float32, false, 2, true},
+  ResultWriter writer({PositionType::float32, false, 2, {true}},
                       [&file](std::string_view bytes) { file += bytes; });
   writer.add_rung(3, mesh, 100);
   writer.add_rung(4, less, 100);

@@ -47,7 +47,7 @@ Made simplify(Mesh mesh, std::uint32_t parts, const RunOptions& run,
   Made made;
   made.jobs = accepted.size();
   const auto output = folder / "out.ply";
-  made.summary = Assembler(stage, manifest, run, {.output = output}).complete(accepted);
+  made.summary = Assembler(stage, manifest, run, {.output = {output}}).complete(accepted);
   made.mesh = read_mesh(*open_mesh(output));
   made.bytes = read_file(output);
   return made;
@@ -328,11 +328,11 @@ TEST_CASE("a result of another part is refused, and a stop writes nothing") {
   const auto output = folder.path() / "out.ply";
   const std::atomic<bool> stop = true;
   CHECK_THROWS_AS(
-      Assembler(stage, manifest, run, {.output = output, .stop = &stop}).complete(accepted),
+      Assembler(stage, manifest, run, {.output = {output}, .stop = &stop}).complete(accepted),
       IncompleteError);
   accepted[1].output = accepted[2].output;
   if (manifest.parts[1].boundary_vertices != manifest.parts[2].boundary_vertices) {
-    CHECK_THROWS_AS(Assembler(stage, manifest, run, {.output = output}).complete(accepted),
+    CHECK_THROWS_AS(Assembler(stage, manifest, run, {.output = {output}}).complete(accepted),
                     DataError);
   }
   CHECK_FALSE(std::filesystem::exists(output));

@@ -89,7 +89,7 @@ class Bench {
     }
   }
   Assembler sink(const std::string& output) {
-    return Assembler(stage_, manifest_, k_run, {.output = folder_.path() / output});
+    return Assembler(stage_, manifest_, k_run, {.output = {folder_.path() / output}});
   }
   JobContext context() const {
     return {stage_, 1, 7, [](std::uint64_t) { return true; }};

@@ -385,7 +385,7 @@ TEST_CASE("parameters come back; damaged ones are refused") {
                              77,
                              0.25,
                              0.5,
-                             {true, 40, TopologyMode::simplify, {0.75, 1.5}, false}};
+                             {true, 40, TopologyMode::simplify, {0.75, 1.5}, {false}}};
   const std::string bytes = encode_parameters(p);
   const SimplifyParameters back = decode_parameters(bytes);
   CHECK(back.allocation == Allocation::uniform);

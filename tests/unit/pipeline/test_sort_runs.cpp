@@ -170,7 +170,7 @@ TEST_CASE("a run that sorts first ends as one that finds streams, and estimates 
     const JobSource source = make_job_source(staged->manifest, run);
     const auto accepted = do_jobs(source, staged->stage, Which::all, &kinds[results.size()]);
     const RunSummary summary =
-        Assembler(staged->stage, staged->manifest, run, {.output = output}).complete(accepted);
+        Assembler(staged->stage, staged->manifest, run, {.output = {output}}).complete(accepted);
     CHECK(summary.target == std::llround(0.1 * 14'400));
     CHECK(summary.dropped_degenerate == 2000);
     CHECK(state_of_run(staged->manifest, run, accepted).chosen->rungs.size() == 5);

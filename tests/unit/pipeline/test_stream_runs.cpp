@@ -61,7 +61,7 @@ Made simplify(const Mesh& mesh, const CutOptions& options, const RunOptions& run
     }
   }
   const auto output = folder / "out.ply";
-  made.summary = Assembler(stage, manifest, run, {.output = output}).complete(accepted);
+  made.summary = Assembler(stage, manifest, run, {.output = {output}}).complete(accepted);
   made.mesh = read_mesh(*open_mesh(output));
   return made;
 }
