@@ -3,6 +3,7 @@
 #include <iostream>
 
 #include <meshfarm/geometry/distance.hpp>
+#include <meshfarm/io/mesh_format.hpp>
 #include <meshfarm/report/summary.hpp>
 #include <meshfarm/util/errors.hpp>
 
@@ -28,7 +29,9 @@ class CompareCommand : public Command {
              po::positional_options_description& positional) override {
     options.add_options()("a", po::value(&a_)->required(), "")("b", po::value(&b_)->required(), "")(
         "samples", po::value(&distance_.samples)->default_value(distance_.samples)->value_name("N"),
-        "points on each surface");
+        "points on each surface")("map", po::value(&map_)->value_name("FILE"),
+                                  "write B with the distance of each vertex from A, as 'quality' "
+                                  "and as colours");
     measure_.add(options);
     talk_.add(options);
     positional.add("a", 1).add("b", 1);
@@ -36,9 +39,10 @@ class CompareCommand : public Command {
   void check() override {
     if (distance_.samples == 0) throw UsageError("--samples: at least 1");
     measure_.check();
+    if (!map_.empty()) check_output_format(map_);
   }
   int run() override {
-    const Comparison comparison = compare_meshes(a_, b_, {measure_.divide, distance_});
+    const Comparison comparison = compare_meshes(a_, b_, {measure_.divide, distance_, map_});
     std::cout << render(comparison, talk_.format());
     return 0;
   }
@@ -47,6 +51,7 @@ class CompareCommand : public Command {
   std::string a_;
   std::string b_;
   DistanceOptions distance_;
+  std::string map_;
   MeasureWords measure_;
   TalkOptions talk_;
 };

@@ -12,7 +12,10 @@
 #include <meshfarm/geometry/surface_measures.hpp>
 #include <meshfarm/geometry/value_error.hpp>
 #include <meshfarm/io/channel_pairs.hpp>
+#include <meshfarm/io/mesh_format.hpp>
 #include <meshfarm/io/mesh_source.hpp>
+#include <meshfarm/render/colour_scale.hpp>
+#include <meshfarm/util/errors.hpp>
 
 #include "cli/compared_mesh.hpp"
 
@@ -73,6 +76,8 @@ class MeshComparer {
     } else if (meshes <= memory) {
       const Mesh a = read_mesh(*source_a_), b = read_mesh(*source_b_);
       measure_held({a, {}}, {b, {}}, {});
+    } else if (!options_.map.empty()) {
+      throw UsageError("--map: " + why_not(meshes, memory));
     } else {
       measure_divided();
       comparison_.not_measured = why_not(meshes, memory);
@@ -123,9 +128,11 @@ class MeshComparer {
     comparison_.a_to_b = measure_error(
         a, b, groups, options_.distance,
         [&](const TriangleIndex& index) { count_crossings(index, comparison_.figures_b); });
-    comparison_.b_to_a = measure_error(
-        b, a, groups, options_.distance,
-        [&](const TriangleIndex& index) { count_crossings(index, comparison_.figures_a); });
+    comparison_.b_to_a =
+        measure_error(b, a, groups, options_.distance, [&](const TriangleIndex& index) {
+          count_crossings(index, comparison_.figures_a);
+          if (!options_.map.empty()) write_map(index, b.mesh);
+        });
     measure_shape(a.mesh, comparison_.figures_a);
     measure_shape(b.mesh, comparison_.figures_b);
   }
@@ -134,6 +141,27 @@ class MeshComparer {
     figures.crossing_triangles =
         count_crossing_triangles(index, {.threads = options_.divide.threads});
     if (!figures.crossing_triangles) figures.crossings_skipped = "too many lie at one place";
+  }
+
+  void write_map(const TriangleIndex& a, const Mesh& b) {
+    const std::vector<float> distances = distances_to(a, b.positions, options_.divide.threads);
+    const float most =
+        distances.empty() ? 0 : *std::max_element(distances.begin(), distances.end());
+    const std::vector<Channel> channels = {{"quality"},
+                                           {"red", ChannelType::uint8, ChannelRole::colour},
+                                           {"green", ChannelType::uint8, ChannelRole::colour},
+                                           {"blue", ChannelType::uint8, ChannelRole::colour}};
+    std::vector<float> values;
+    values.reserve(distances.size() * channels.size());
+    for (const float distance : distances) {
+      values.push_back(distance);
+      for (const std::uint8_t part : colour_on_scale(most > 0 ? distance / most : 0)) {
+        values.push_back(part);
+      }
+    }
+    write_mesh(options_.map, {b.positions, b.triangles}, source_b_->info().positions, channels,
+               values);
+    comparison_.map = {options_.map, most};
   }
 
   void measure_shape(const Mesh& mesh, SurfaceFigures& figures) const {

@@ -2,15 +2,12 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <array>
 #include <cstdint>
 
 #include <meshfarm/geometry/vec.hpp>
+#include <meshfarm/render/colour_scale.hpp>
 
 namespace meshfarm {
-
-/// A colour as files have it: sRGB.
-using Srgb = std::array<std::uint8_t, 3>;
 
 /// A colour by its amounts of light, 0 to 1.
 struct Light {
@@ -42,9 +39,6 @@ inline constexpr Srgb k_clay = {214, 209, 202};
 
 /// Colours that can be told apart, over and over again.
 Srgb colour_of_number(std::uint64_t number);
-
-/// From dark blue (0) to yellow (1), evenly lighter; grey for what is not a number.
-Srgb colour_on_scale(double place);
 
 /// Of a direction of length 1: each axis is a component, from -1 (dark) to 1.
 Srgb colour_of_direction(Vec3 direction);

@@ -188,6 +188,8 @@ std::string render(const Comparison& c, Format format) {
     const Json skipped = c.channels_skipped.empty() ? Json(nullptr) : Json(c.channels_skipped);
     const Json not_measured = c.not_measured.empty() ? Json(nullptr) : Json(c.not_measured);
     const Json labels_skipped = c.labels_skipped.empty() ? Json(nullptr) : Json(c.labels_skipped);
+    const Json map =
+        c.map ? Json{{"path", c.map->path}, {"greatest", c.map->most}} : Json(nullptr);
     const Json json = {{"a", c.path_a},
                        {"b", c.path_b},
                        {"diagonal", c.diagonal},
@@ -204,6 +206,7 @@ std::string render(const Comparison& c, Format format) {
                        {"channels_only_b", c.channels_only_b},
                        {"labels", labels_json(c)},
                        {"labels_not_compared", labels_skipped},
+                       {"map", map},
                        {"topology_a", to_json(c.welded_a)},
                        {"topology_b", to_json(c.welded_b)},
                        {"topology_not_welded_a", to_json(c.as_it_is_a)},
@@ -228,6 +231,10 @@ std::string render(const Comparison& c, Format format) {
   }
   add_channels(lines, c);
   add_labels(lines, c);
+  if (c.map) {
+    lines.add("map", c.map->path + ", vertices of B by their distance from A, up to " +
+                         number(c.map->most, "%.6g") + " in the meshes' unit");
+  }
   return lines.text();
 }
 

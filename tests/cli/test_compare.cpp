@@ -303,6 +303,36 @@ TEST_CASE("compare gives no volume where a mesh is not closed") {
   CHECK(has(json.out, "\"volume_change_percent\": null"));
 }
 
+TEST_CASE("compare writes a map of the distances, with a number and a colour at each vertex") {
+  Bench bench;
+  Mesh sheet = test::grid(24, 24);
+  write_mesh(bench.path("a.ply"), sheet, PositionType::float32);
+  for (Vec3& p : sheet.positions) p.z = p.x / 8;
+  write_mesh(bench.path("b.ply"), sheet, PositionType::float32);
+  const Ran ran = bench.compare("a.ply", "b.ply", {"--map", bench.path("map.ply"), "--json"});
+  REQUIRE(ran.code == 0);
+  CHECK(has(ran.out, "\"greatest\": 3.0"));
+  const auto map = open_mesh(bench.path("map.ply"));
+  REQUIRE(map->info().channels.size() == 4);
+  CHECK(map->info().channels[0].name == "quality");
+  std::size_t seen = 0;
+  map->scan_channels([&](const ChannelPoints& batch) {
+    for (std::size_t i = 0; i < batch.points.size(); ++i, ++seen) {
+      const float* values = &batch.values[4 * i];
+      CHECK(values[0] == doctest::Approx(batch.points[i].x / 8));
+      const bool is_farthest = batch.points[i].x == 24;
+      CHECK((values[1] > 240 && values[2] > 220) == is_farthest);  // yellow
+    }
+  });
+  CHECK(seen == sheet.positions.size());
+
+  const Ran small =
+      bench.compare("a.ply", "b.ply", {"--map", bench.path("no.ply"), "--memory", "64K"});
+  CHECK(small.code == 2);
+  CHECK(has(small.err, "--map"));
+  CHECK(bench.compare("a.ply", "b.ply", {"--map", bench.path("map.xyz")}).code == 1);
+}
+
 TEST_CASE("compare says what it leaves out of meshes that do not fit into its memory") {
   Bench bench;
   write_mesh(bench.path("a.ply"), two_spheres(3), PositionType::float32);

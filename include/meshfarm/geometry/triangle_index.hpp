@@ -3,6 +3,8 @@
 #pragma once
 
 #include <memory>
+#include <span>
+#include <vector>
 
 #include <meshfarm/geometry/mesh.hpp>
 
@@ -26,5 +28,10 @@ class TriangleIndex {
   const Mesh& mesh_;
   std::unique_ptr<Bvh> bvh_;
 };
+
+/// How far each point is from the mesh, in its unit; a point that is not finite is at 0. The result
+/// does not depend on the threads.
+std::vector<float> distances_to(const TriangleIndex& index, std::span<const Vec3> points,
+                                unsigned threads);
 
 }  // namespace meshfarm

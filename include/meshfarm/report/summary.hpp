@@ -173,6 +173,11 @@ struct Comparison {
   std::vector<std::string> channels_only_b;
   std::optional<LabelDifference> labels;  // if both have some
   std::string labels_skipped;             // why labels that both have were not compared
+  struct Map {
+    std::string path;
+    double most = 0;  // the greatest distance of a vertex of B
+  };
+  std::optional<Map> map;  // that was written
 };
 
 /// What `benchmark` tells of this host.
