@@ -9,6 +9,7 @@
 
 #include <meshfarm/divide/divided_distance.hpp>
 #include <meshfarm/geometry/crossings.hpp>
+#include <meshfarm/geometry/quantile.hpp>
 #include <meshfarm/geometry/surface_measures.hpp>
 #include <meshfarm/geometry/value_error.hpp>
 #include <meshfarm/io/channel_pairs.hpp>
@@ -144,9 +145,12 @@ class MeshComparer {
   }
 
   void write_map(const TriangleIndex& a, const Mesh& b) {
+    constexpr double k_brightest = 0.99;  // of the vertices are below: few are far off
     const std::vector<float> distances = distances_to(a, b.positions, options_.divide.threads);
     const float most =
         distances.empty() ? 0 : *std::max_element(distances.begin(), distances.end());
+    std::vector<float> sorted = distances;
+    const float brightest = quantile(std::span(sorted), k_brightest);
     const std::vector<Channel> channels = {{"quality"},
                                            {"red", ChannelType::uint8, ChannelRole::colour},
                                            {"green", ChannelType::uint8, ChannelRole::colour},
@@ -155,7 +159,7 @@ class MeshComparer {
     values.reserve(distances.size() * channels.size());
     for (const float distance : distances) {
       values.push_back(distance);
-      for (const std::uint8_t part : colour_on_scale(most > 0 ? distance / most : 0)) {
+      for (const std::uint8_t part : colour_on_scale(brightest > 0 ? distance / brightest : 0)) {
         values.push_back(part);
       }
     }

@@ -55,6 +55,7 @@ std::string number_text(double value, double step) {
   const int last = step > 0 ? static_cast<int>(std::floor(std::log10(step))) : 0;  // digit's place
   const int first = size > 0 ? static_cast<int>(std::floor(std::log10(size))) : 0;
   const bool is_plain = first < 7 && last > -5;
+  if (value == 0 && !is_plain) return "0";
   const int digits = is_plain ? std::max(0, -last) : std::clamp(first - last, 0, 16);
   std::array<char, 64> text{};
   const auto format = is_plain ? std::chars_format::fixed : std::chars_format::scientific;

@@ -32,6 +32,7 @@ TEST_CASE("numbers of a scale are told in the digits that count") {
   CHECK(number_text(2e9, 1e9) == "2e+09");
   CHECK(number_text(3e-7, 1e-7) == "3e-07");
   CHECK(number_text(0, 0) == "0");
+  CHECK(number_text(0, 1e-6) == "0");
 }
 
 TEST_CASE(
