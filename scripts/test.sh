@@ -2,8 +2,8 @@
 # Sets up, builds and runs the tests.
 #   test.sh          every test of the release build
 #   test.sh --all    also what CI runs: warnings as errors, the labs (tests/lab), golden
-#                    checksums by clang, the tests under ASan and UBSan, those of the farm under
-#                    TSan, and lint.sh
+#                    checksums by clang, the tests under ASan and UBSan, those of the farm and of
+#                    what draws under TSan, and lint.sh
 set -euo pipefail
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 all=no
@@ -73,8 +73,8 @@ if [ "$all" = yes ]; then
   sanitized build-asan address,undefined .
   # TSan does not see into libzmq, which is not built with it.
   TSAN_OPTIONS=ignore_noninstrumented_modules=1 \
-    sanitized build-tsan thread '^unit\.(util|staging|farm|transport|simulation)$' \
-    test_util test_staging test_farm test_transport test_simulation
+    sanitized build-tsan thread '^unit\.(util|staging|farm|transport|simulation|render)$' \
+    test_util test_staging test_farm test_transport test_simulation test_render
   begin "lint"
   "$root/scripts/lint.sh"
 fi
