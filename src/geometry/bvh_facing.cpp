@@ -22,7 +22,7 @@ Bvh::Nearest Bvh::nearest_facing(Vec3 p, Vec3 normal, std::uint32_t guess,
     if (squared < most_squared) query.offer(squared, triangle);
   };
   offer(guess);
-  std::array<BvhEntry, k_bvh_stack> stack;
+  BvhStack stack;
   std::size_t size = 0;
   stack[size++] = {0, 0, 0};
   while (size > 0 && query.best.squared > 0) {
@@ -33,24 +33,7 @@ Bvh::Nearest Bvh::nearest_facing(Vec3 p, Vec3 normal, std::uint32_t guess,
       continue;
     }
     const Node& node = nodes_[top.child];
-    alignas(16) float bounds[4] = {0, 0, 0, 0};
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      for (std::size_t k = 0; k < 4; ++k) {
-        const float before = node.lo[axis][k] - query.hi[axis];
-        const float after = query.lo[axis] - node.hi[axis][k];
-        float gap = before > after ? before : after;
-        gap = gap > 0 ? gap : 0;
-        bounds[k] += gap * gap;
-      }
-    }
-    // The nearest comes to lie on top.
-    const std::size_t base = size;
-    for (std::size_t k = 0; k < 4; ++k) {
-      if (!(bounds[k] < query.limit)) continue;
-      std::size_t at = size++;
-      for (; at > base && stack[at - 1].bound < bounds[k]; --at) stack[at] = stack[at - 1];
-      stack[at] = {bounds[k], node.child[k], node.count[k]};
-    }
+    query.push(node, stack, size);
   }
   return query.best;
 }
@@ -76,7 +59,7 @@ Vec3 Bvh::most_similar_normal(Vec3 p, Vec3 normal, double squared) const {
     best = found;
     best_cosine = cosine;
   };
-  std::array<BvhEntry, k_bvh_stack> stack;
+  BvhStack stack;
   std::size_t size = 0;
   stack[size++] = {0, 0, 0};
   while (size > 0) {
@@ -86,16 +69,8 @@ Vec3 Bvh::most_similar_normal(Vec3 p, Vec3 normal, double squared) const {
       continue;
     }
     const Node& node = nodes_[top.child];
-    float bounds[4] = {0, 0, 0, 0};
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      for (std::size_t k = 0; k < 4; ++k) {
-        const float before = node.lo[axis][k] - query.hi[axis];
-        const float after = query.lo[axis] - node.hi[axis][k];
-        float gap = before > after ? before : after;
-        gap = gap > 0 ? gap : 0;
-        bounds[k] += gap * gap;
-      }
-    }
+    alignas(16) float bounds[4];
+    query.squared_gaps(node, bounds);
     for (std::size_t k = 0; k < 4; ++k) {
       if (bounds[k] < limit) stack[size++] = {bounds[k], node.child[k], node.count[k]};
     }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -20,6 +21,7 @@ struct BvhEntry {
 // At most three entries stay behind on each level, and a level takes at least one of 63 bits of
 // code or halves the 2^32 triangles of one code.
 inline constexpr std::size_t k_bvh_stack = 3 * (63 + 32) + 4;
+using BvhStack = std::array<BvhEntry, k_bvh_stack>;
 
 /// A query keeps its point as a tiny float box that surely holds it, so that the distance between
 /// boxes is a lower bound in spite of rounding.
@@ -38,6 +40,31 @@ struct Bvh::Query {
       const float rounding = std::fabs(x) * 0x1p-23f + std::numeric_limits<float>::min();
       lo[axis] = x - rounding;
       hi[axis] = x + rounding;
+    }
+  }
+  /// Of the boxes of a node, in the frame: no more than they are.
+  void squared_gaps(const Node& node, float (&bounds)[4]) const {
+    std::fill(bounds, bounds + 4, 0.0F);
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      for (std::size_t k = 0; k < 4; ++k) {
+        const float before = node.lo[axis][k] - hi[axis];
+        const float after = lo[axis] - node.hi[axis][k];
+        float gap = before > after ? before : after;
+        gap = gap > 0 ? gap : 0;
+        bounds[k] += gap * gap;
+      }
+    }
+  }
+  /// Puts the node's boxes within the limit onto the stack; the nearest comes to lie on top.
+  void push(const Node& node, BvhStack& stack, std::size_t& size) const {
+    alignas(16) float bounds[4];
+    squared_gaps(node, bounds);
+    const std::size_t base = size;
+    for (std::size_t k = 0; k < 4; ++k) {
+      if (!(bounds[k] < limit)) continue;
+      std::size_t at = size++;
+      for (; at > base && stack[at - 1].bound < bounds[k]; --at) stack[at] = stack[at - 1];
+      stack[at] = {bounds[k], node.child[k], node.count[k]};
     }
   }
   void offer(double squared, std::uint32_t triangle) {

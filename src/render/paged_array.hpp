@@ -39,6 +39,7 @@ class PagedArray {
   std::uint64_t size() const { return size_; }
   /// Several threads may write different items.
   void write(std::uint64_t first, std::span<const T> items) {
+    if (items.empty()) return;
     if (file_) {
       file_->write(first * sizeof(T),
                    {reinterpret_cast<const char*>(items.data()), items.size_bytes()});
