@@ -149,10 +149,10 @@ SinkActions SinkCore::checked(const Check& check, const JobFailure& problem, Far
   if (check.from_journal) --checking_journal_;
   if (fine) {
     if (graph_.waits_for(check.key)) accepted_.push_back(check.key);
-    std::vector<WantedJob> possible = graph_.accept(check.key, check.output);
+    const std::vector<WantedJob> possible = graph_.accept(check.key, check.output);
     failed_.erase(check.key);
     tell(check.key, check.worker, check.times);
-    want(std::move(possible));
+    want(possible);
   } else if (!check.from_journal && told_all_) {
     say(Reject{member_.epoch(),
                check.worker,
@@ -166,7 +166,7 @@ SinkActions SinkCore::checked(const Check& check, const JobFailure& problem, Far
 }
 
 /// Jobs that are possible now; what a journal knows of them is checked at once.
-void SinkCore::want(std::vector<WantedJob> jobs) {
+void SinkCore::want(const std::vector<WantedJob>& jobs) {
   for (const auto& [key, job, name] : jobs) {
     kinds_[key] = job.kind;
     if (job.by_sink) own_[key] = job;

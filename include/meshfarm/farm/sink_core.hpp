@@ -93,7 +93,7 @@ class SinkCore {
   void on(Membership::Event event, FarmTime now);
   void run_over();
   void take_result(const Result& result);
-  void want(std::vector<WantedJob> jobs);
+  void want(const std::vector<WantedJob>& jobs);
   void do_here(const DoHere& what);
   void tell_all();
   void say_again();
