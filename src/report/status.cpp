@@ -203,6 +203,7 @@ std::string line(const std::string& label, const std::string& value) {
 /// "climb 16 of 16, compose 1 of 4"
 std::string words_of(const std::vector<TraceState::Stage>& stages) {
   std::vector<std::string> words;
+  words.reserve(stages.size());
   for (const TraceState::Stage& each : stages) {
     words.push_back(each.stage + " " + grouped(each.done) + " of " + grouped(each.jobs));
   }
