@@ -47,8 +47,7 @@ class ComposeStage {
       : manifest_(manifest), options_(options) {}
 
   /// `done` is called once nothing more is to be joined.
-  void begin(JobGraph& graph, const ComposeGoal& goal, std::vector<ComposedParts> parts,
-             Done done);
+  void begin(JobGraph& graph, const ComposeGoal& goal, std::vector<ComposedParts> parts, Done done);
 
  private:
   /// The parts as they were simplified, then what came of joining these, and so on.

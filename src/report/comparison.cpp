@@ -188,8 +188,7 @@ std::string render(const Comparison& c, Format format) {
     const Json skipped = c.channels_skipped.empty() ? Json(nullptr) : Json(c.channels_skipped);
     const Json not_measured = c.not_measured.empty() ? Json(nullptr) : Json(c.not_measured);
     const Json labels_skipped = c.labels_skipped.empty() ? Json(nullptr) : Json(c.labels_skipped);
-    const Json map =
-        c.map ? Json{{"path", c.map->path}, {"greatest", c.map->most}} : Json(nullptr);
+    const Json map = c.map ? Json{{"path", c.map->path}, {"greatest", c.map->most}} : Json(nullptr);
     const Json json = {{"a", c.path_a},
                        {"b", c.path_b},
                        {"diagonal", c.diagonal},
