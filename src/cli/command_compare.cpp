@@ -3,12 +3,12 @@
 #include <iostream>
 
 #include <meshfarm/geometry/distance.hpp>
-#include <meshfarm/io/mesh_format.hpp>
 #include <meshfarm/report/summary.hpp>
 #include <meshfarm/util/errors.hpp>
 
 #include "cli/command.hpp"
 #include "cli/comparer.hpp"
+#include "cli/cut_step.hpp"
 #include "cli/measure_words.hpp"
 #include "cli/options.hpp"
 
@@ -39,9 +39,9 @@ class CompareCommand : public Command {
   void check() override {
     if (distance_.samples == 0) throw UsageError("--samples: at least 1");
     measure_.check();
-    if (!map_.empty()) check_output_format(map_);
   }
   int run() override {
+    if (!map_.empty()) check_writable(map_);
     const Comparison comparison = compare_meshes(a_, b_, {measure_.divide, distance_, map_});
     std::cout << render(comparison, talk_.format());
     return 0;

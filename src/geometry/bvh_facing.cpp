@@ -1,6 +1,5 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
-#include <array>
 
 #include "geometry/bvh_query.hpp"
 
@@ -9,11 +8,8 @@ namespace meshfarm {
 // The loop of nearest() again: that one would be 4 % slower if it could leave triangles out.
 Bvh::Nearest Bvh::nearest_facing(Vec3 p, Vec3 normal, std::uint32_t guess,
                                  double most_squared) const {
-  constexpr float k_most = std::numeric_limits<float>::max();
   Query query(p, to_frame(p), scale_);
-  // Above what rounding can make of it.
-  query.limit = static_cast<float>(
-      std::min<double>(most_squared * query.to_frame * (1 + 0x1p-20) + 0x1p-126, k_most));
+  query.limit = query.limit_of(most_squared);
   const auto offer = [&](std::uint32_t triangle) {
     const auto [first, second, third] = mesh_.triangles[triangle];
     const Vec3 a = mesh_.positions[first], b = mesh_.positions[second], c = mesh_.positions[third];
@@ -42,9 +38,8 @@ Vec3 Bvh::most_similar_normal(Vec3 p, Vec3 normal, double squared) const {
   // What rounding can make of the distances to a corner or a side that triangles have in common.
   const double reach = std::sqrt(squared) + 0x1p-40 / scale_;
   const double most_squared = reach * reach;
-  Query query(p, to_frame(p), scale_);
-  const auto limit = static_cast<float>(std::min<double>(
-      most_squared * query.to_frame * (1 + 0x1p-20) + 0x1p-126, std::numeric_limits<float>::max()));
+  const Query query(p, to_frame(p), scale_);
+  const float limit = query.limit_of(most_squared);
   Vec3 best{};
   double best_cosine = -2;
   const auto look_at = [&](std::uint32_t triangle) {

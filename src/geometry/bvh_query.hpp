@@ -67,12 +67,15 @@ struct Bvh::Query {
       stack[at] = {bounds[k], node.child[k], node.count[k]};
     }
   }
+  /// Of a squared distance in the mesh's unit: above what the rounding of a bound can make of it.
+  float limit_of(double squared) const {
+    const double above = squared * to_frame * (1 + 0x1p-20) + std::numeric_limits<float>::min();
+    return static_cast<float>(std::min<double>(above, std::numeric_limits<float>::max()));
+  }
   void offer(double squared, std::uint32_t triangle) {
     if (!(squared < best.squared)) return;
     best = {squared, triangle};
-    // Above what the rounding of a bound can make of it.
-    const double above = squared * to_frame * (1 + 0x1p-20) + std::numeric_limits<float>::min();
-    limit = static_cast<float>(std::min<double>(above, std::numeric_limits<float>::max()));
+    limit = limit_of(squared);
   }
 };
 

@@ -59,6 +59,7 @@ void ComposeStage::begin(JobGraph& graph, const ComposeGoal& goal, std::vector<C
   goal_ = goal;
   done_ = std::move(done);
   for (const ComposedParts& each : parts) weight_ += each.weight;
+  most_triangles_ = most_triangles();
   Level& level = levels_.emplace_back();
   level.parts = std::move(parts);
   level.whole = true;
@@ -107,7 +108,7 @@ void ComposeStage::join(JobGraph& graph, std::size_t number) {
     bool fits = true;
     for (; end < level.taken && end - level.first < k_most_joined; ++end) {
       triangles += seam + level.parts[end].triangles;
-      fits = triangles <= most_triangles();
+      fits = triangles <= most_triangles_;
       if (!fits) break;
     }
     const bool last = level.whole && end == level.parts.size();

@@ -73,7 +73,8 @@ class ComposeStage {
   const RunOptions& options_;
   ComposeGoal goal_;
   Done done_;
-  std::uint64_t weight_ = 0;  // of all
+  std::uint64_t weight_ = 0;          // of all
+  std::uint64_t most_triangles_ = 0;  // of a group
   std::deque<Level> levels_;
 };
 
