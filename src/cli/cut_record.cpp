@@ -25,7 +25,7 @@ namespace meshfarm {
 namespace {
 
 constexpr FileKind k_kind = {'C', 'U', 'T', 'R'};
-constexpr std::uint32_t k_version = 1;
+constexpr std::uint32_t k_cut_record_version = 1;
 constexpr std::uint64_t k_end_bytes = std::uint64_t{1} << 20;
 
 /// What of the textures the stage has, whatever a run makes of it.
@@ -87,7 +87,7 @@ void publish_record(const Stage& stage, const CutRecord& record) {
   out.put(record.changed_ns);
   out.put(record.sum);
   out.put_string(record.options);
-  stage.publish(CutName{}, seal(k_kind, k_version, out.bytes()));
+  stage.publish(CutName{}, seal(k_kind, k_cut_record_version, out.bytes()));
 }
 
 std::optional<CutRecord> read_record(const Stage& stage) {
@@ -95,7 +95,7 @@ std::optional<CutRecord> read_record(const Stage& stage) {
   if (!std::filesystem::exists(stage.path(CutName{}), ignored)) return std::nullopt;
   const std::string what = stage.path(CutName{}).string();
   const std::string file = stage.read(CutName{});
-  ByteReader in(unseal(file, k_kind, k_version, what), what);
+  ByteReader in(unseal(file, k_kind, k_cut_record_version, what), what);
   CutRecord record;
   record.size = in.get<std::uint64_t>();
   record.changed_ns = in.get<std::int64_t>();

@@ -18,7 +18,7 @@ namespace {
 constexpr int k_max_restarts = 20;
 constexpr int k_grace_ms = 10'000;
 constexpr int k_last_words_ms = 3'000;
-constexpr int k_incomplete = 3;
+constexpr int k_left_incomplete = 3;
 
 }  // namespace
 
@@ -46,7 +46,7 @@ int Supervisor::run() {
   if (failure_ != 0) wait_all(Which::essentials, k_last_words_ms);
   end_all();
   if (failure_ != 0) return failure_;
-  return done ? 0 : k_incomplete;
+  return done ? 0 : k_left_incomplete;
 }
 
 void Supervisor::reap() {
@@ -70,7 +70,7 @@ void Supervisor::ended(Child& child, int status) {
     return;
   }
   // A worker that left before the end had a job that hung, or lost its ventilator.
-  const bool left = child.worker() && WIFEXITED(status) && WEXITSTATUS(status) == k_incomplete;
+  const bool left = child.worker() && WIFEXITED(status) && WEXITSTATUS(status) == k_left_incomplete;
   if ((WIFSIGNALED(status) || left) && child.restarts < k_max_restarts && !stop_) {
     ++child.restarts;
     log_warning("the " + child.words.front() +

@@ -218,9 +218,6 @@ SharedTriangles MeshShares::boundary(std::span<const BoundaryNumbers> numbers) c
     return static_cast<std::size_t>(std::lower_bound(places.begin(), places.end(), corner.place) -
                                     places.begin());
   };
-  const auto has_twins = [](const BoundaryTriangle& t) {
-    return t[0] == t[1] || t[1] == t[2] || t[2] == t[0];
-  };
   SharedTriangles made;
   made.triangles.reserve(boundary_.size());
   for (std::size_t place = 0; place < boundary_.size(); ++place) {
@@ -233,8 +230,8 @@ SharedTriangles MeshShares::boundary(std::span<const BoundaryNumbers> numbers) c
       corners[i] = {t[i].share, of.numbers[at]};
       points[i] = {t[i].share, of.points.empty() ? of.numbers[at] : of.points[at]};
     }
-    made.coincident += has_twins(points);
-    if (has_twins(corners)) {
+    made.coincident += is_degenerate(points);
+    if (is_degenerate(corners)) {
       ++made.degenerate;
     } else {
       made.triangles.push_back(corners);

@@ -13,7 +13,7 @@
 namespace meshfarm {
 namespace {
 
-constexpr std::uint32_t k_none = UINT32_MAX;
+constexpr std::uint32_t k_no_vertex = UINT32_MAX;
 
 /// A cheap hash for what is only to leave most vertices out; its high bits are the better ones.
 std::uint64_t quick_hash_of(Vec3 position) {
@@ -40,7 +40,7 @@ class Twins {
   explicit Twins(const MeshShare& share) : share_(share) { find(); }
 
   bool empty() const { return vertices_.empty(); }
-  bool has(std::uint32_t place) const { return index_[place] != k_none; }
+  bool has(std::uint32_t place) const { return index_[place] != k_no_vertex; }
 
   /// Keeps those of the points where each vertex has the triangles that a closed fan takes.
   void keep_fans(std::uint32_t number, std::span<const SeamTriangle> outer) {
@@ -73,7 +73,7 @@ class Twins {
     for (const std::uint32_t v : vertices_) positions.push_back(share_.positions[v]);
     WeldResult welded = weld(positions);
     first_ = std::move(welded.first);
-    index_.assign(welded.merged == 0 ? 0 : share_.positions.size(), k_none);
+    index_.assign(welded.merged == 0 ? 0 : share_.positions.size(), k_no_vertex);
     if (welded.merged == 0) {
       vertices_.clear();
       return;
@@ -98,10 +98,10 @@ class Twins {
   /// All vertices of a point or none: the first of each becomes the first again.
   template <class Wanted>
   void keep(const Wanted& wanted) {
-    std::vector<std::uint32_t> now(vertices_.size(), k_none);
+    std::vector<std::uint32_t> now(vertices_.size(), k_no_vertex);
     std::uint32_t kept = 0;
     for (std::size_t i = 0; i < vertices_.size(); ++i) {
-      index_[vertices_[i]] = k_none;
+      index_[vertices_[i]] = k_no_vertex;
       if (!wanted(i)) continue;
       now[i] = kept;
       vertices_[kept] = vertices_[i];
@@ -186,7 +186,7 @@ class TwinStars {
   std::vector<std::uint32_t> number_sheets(const std::vector<std::uint32_t>& first,
                                            const std::vector<std::uint32_t>& point,
                                            const std::vector<std::uint8_t>& is_parted) const {
-    std::vector<std::uint32_t> number(first.size(), k_none);
+    std::vector<std::uint32_t> number(first.size(), k_no_vertex);
     std::vector<Sheet> sheets;
     for (std::uint32_t v = 0; v < first.size(); ++v) {
       if (first[v] != v || is_parted[point[v]] == 0) continue;
@@ -196,7 +196,7 @@ class TwinStars {
     for (const Triangle& t : mesh_.triangles) {
       for (std::size_t i = 0; i < 3; ++i) {
         const std::uint32_t n = number[first[t[i]]];
-        if (n == k_none) continue;
+        if (n == k_no_vertex) continue;
         const Vec3 a = mesh_.positions[t[(i + 1) % 3]];
         const Vec3 b = mesh_.positions[t[(i + 2) % 3]];
         sheets[n].star.push_back({a.x, a.y, a.z, b.x, b.y, b.z});

@@ -16,7 +16,7 @@
 namespace meshfarm {
 namespace {
 
-constexpr std::uint32_t k_none = std::numeric_limits<std::uint32_t>::max();
+constexpr std::uint32_t k_no_slab = std::numeric_limits<std::uint32_t>::max();
 
 /// Sorts a slab by the steps of run().
 class SlabSorter {
@@ -128,10 +128,10 @@ class SlabSorter {
                                 std::span<const std::pair<std::size_t, std::size_t>> places,
                                 std::span<const std::uint32_t> first) {
     std::vector<Star> stars;
-    star_.assign(first.size(), k_none);
+    star_.assign(first.size(), k_no_slab);
     for (const auto& [begin, end] : places) {
       for (const std::uint32_t v : sorted.subspan(begin, end - begin)) {
-        if (star_[first[v]] != k_none) continue;
+        if (star_[first[v]] != k_no_slab) continue;
         star_[first[v]] = static_cast<std::uint32_t>(stars.size());
         stars.emplace_back();
       }
@@ -139,7 +139,7 @@ class SlabSorter {
     for (const Triangle& t : raw_.triangles) {
       for (std::size_t i = 0; i < 3; ++i) {
         const std::uint32_t number = star_[first[t[i]]];
-        if (number == k_none) continue;
+        if (number == k_no_slab) continue;
         const Star star{raw_.positions[t[(i + 1) % 3]], raw_.positions[t[(i + 2) % 3]]};
         if (is_less(star, stars[number])) stars[number] = star;
       }
@@ -190,7 +190,7 @@ class SlabSorter {
   /// Closes the gaps that unused vertices leave.
   void number_vertices() {
     StreamMesh& stream = slab_.stream;
-    std::vector<std::uint32_t> number(flags_.size(), k_none);
+    std::vector<std::uint32_t> number(flags_.size(), k_no_slab);
     std::uint32_t kept = 0;
     for (std::uint32_t v = 0; v < flags_.size(); ++v) {
       if (flags_[v] == 0) continue;
@@ -296,7 +296,7 @@ Part sample_slab(const StreamMesh& stream, const SweepOrder& order, std::uint32_
     part.mesh.triangles.push_back(t);
     part.mesh.columns.append(mesh.columns, i);
   }
-  std::vector<std::uint32_t> index(mesh.positions.size(), k_none);
+  std::vector<std::uint32_t> index(mesh.positions.size(), k_no_slab);
   const auto is_edge = [&](std::uint32_t v) {
     return (seen[v] & k_out) != 0 || stream.boundary[v] != 0;
   };

@@ -35,10 +35,6 @@ std::vector<std::array<std::uint32_t, 2>> sides_within(std::uint32_t slab,
   return sides;
 }
 
-bool is_degenerate(const BoundaryTriangle& t) {
-  return t[0] == t[1] || t[1] == t[2] || t[2] == t[0];
-}
-
 }  // namespace
 
 void TopologySum::add(std::uint32_t slab, const MeasuredSlab& measured,

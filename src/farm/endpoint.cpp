@@ -16,8 +16,8 @@ namespace meshfarm {
 namespace {
 
 constexpr FileKind k_kind = {'E', 'N', 'D', 'P'};
-constexpr std::uint32_t k_version = 3;
-constexpr std::size_t k_max_text_bytes = 1024;
+constexpr std::uint32_t k_endpoint_version = 3;
+constexpr std::size_t k_max_endpoint_bytes = 1024;
 
 }  // namespace
 
@@ -30,11 +30,11 @@ std::string encode_endpoint(const Endpoint& endpoint) {
   out.put(endpoint.pid);
   out.put_string(endpoint.server_key);
   out.put(static_cast<std::uint8_t>(endpoint.done ? 1 : 0));
-  return seal(k_kind, k_version, out.bytes());
+  return seal(k_kind, k_endpoint_version, out.bytes());
 }
 
 Endpoint decode_endpoint(std::string_view file, std::string_view what) {
-  ByteReader in(unseal(file, k_kind, k_version, what), what);
+  ByteReader in(unseal(file, k_kind, k_endpoint_version, what), what);
   Endpoint endpoint;
   endpoint.epoch = in.get<std::uint32_t>();
   endpoint.run = in.get<std::uint64_t>();
@@ -46,7 +46,7 @@ Endpoint decode_endpoint(std::string_view file, std::string_view what) {
   if (done > 1) in.fail("neither yes nor no");
   endpoint.done = done == 1;
   for (const std::string* text : {&endpoint.address, &endpoint.host, &endpoint.server_key}) {
-    if (text->size() > k_max_text_bytes) in.fail("a text too long");
+    if (text->size() > k_max_endpoint_bytes) in.fail("a text too long");
   }
   in.expect_end();
   return endpoint;

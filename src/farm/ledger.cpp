@@ -16,7 +16,7 @@
 namespace meshfarm {
 namespace {
 
-constexpr std::uint32_t k_version = 2;
+constexpr std::uint32_t k_ledger_version = 2;
 
 }  // namespace
 
@@ -47,7 +47,7 @@ std::vector<JournalRecord> read_journal(const Stage& stage, JournalName name,
 std::string encode_record(const JournalRecord& record) {
   const AcceptedJob& accepted = record.accepted;
   ByteWriter out;
-  out.put(k_version);
+  out.put(k_ledger_version);
   out.put(record.run);
   out.put(accepted.key.value);
   put_file(out, accepted.output.file);
@@ -58,7 +58,7 @@ std::string encode_record(const JournalRecord& record) {
 JournalRecord decode_record(std::string_view bytes, std::string_view what) {
   ByteReader in(bytes, what);
   const auto version = in.get<std::uint32_t>();
-  if (version != 1 && version != k_version) in.fail("a record of an unknown version");
+  if (version != 1 && version != k_ledger_version) in.fail("a record of an unknown version");
   JournalRecord record;
   if (version > 1) record.run = in.get<std::uint64_t>();
   AcceptedJob& accepted = record.accepted;

@@ -10,7 +10,7 @@
 namespace meshfarm {
 namespace {
 
-constexpr int k_silent_heartbeats = 3;
+constexpr int k_silent_until_lost = 3;
 // The pause between looks begins short, as a run's processes start together, and doubles. An
 // endpoint that is there gets some time to answer.
 constexpr FarmTime k_first_look{5};
@@ -30,7 +30,7 @@ FarmTime poll_interval(FarmTime heartbeat) {
 
 Membership::Event Membership::tick(FarmTime now) {
   if (joined_) {
-    return heard_ + k_silent_heartbeats * heartbeat_ < now ? lose(now) : Event::none;
+    return heard_ + k_silent_until_lost * heartbeat_ < now ? lose(now) : Event::none;
   }
   if (!alone_since_) alone_since_ = now;
   if (now - *alone_since_ <= options_.patience) return Event::none;

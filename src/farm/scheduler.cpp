@@ -23,10 +23,6 @@ constexpr double k_least_buffer = 0.01;
 constexpr double k_second_rank = 1e6;
 constexpr std::uint64_t k_no_limit = std::numeric_limits<std::uint64_t>::max();
 
-double seconds(FarmTime time) {
-  return std::chrono::duration<double>(time).count();
-}
-
 /// Of a worker that tells of so much memory.
 std::uint64_t limit_of(std::uint64_t memory) {
   return memory == 0 ? k_no_limit : memory;

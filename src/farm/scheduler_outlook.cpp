@@ -27,10 +27,6 @@ constexpr double k_lateness = 2;
 /// No job is left to a worker that is faster by less than this.
 constexpr double k_about_the_fastest = 0.75;
 
-double seconds(FarmTime time) {
-  return std::chrono::duration<double>(time).count();
-}
-
 }  // namespace
 
 double Scheduler::seconds_left(const Member& member, const Held& held, FarmTime now) const {

@@ -13,7 +13,7 @@ namespace {
 
 /// What there is no room for is tried again after so long, and then twice as long each time.
 constexpr FarmTime k_first_pause{1000};
-constexpr FarmTime k_longest_pause{5000};
+constexpr FarmTime k_longest_sink_pause{5000};
 /// The output takes longer to try.
 constexpr FarmTime k_longest_output_pause{60'000};
 
@@ -131,7 +131,7 @@ SinkActions SinkCore::checked(const Check& check, const JobFailure& problem, Far
   if (problem.kind == FailureKind::no_space) {
     if (when_full_ == WhenFull::end) return fail({problem.reason, true});
     unwritten_.push_back(check);
-    wait_for_room(k_longest_pause, now);
+    wait_for_room(k_longest_sink_pause, now);
     return take();
   }
   const bool fine = problem.reason.empty();

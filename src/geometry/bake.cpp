@@ -22,20 +22,20 @@ constexpr std::uint32_t k_tile = 64;  // texels a side that are painted together
 /// Beside a triangle lower than this, in texels, its plane tells nothing of the surface.
 constexpr double k_least_height = 0.25;
 
-using Corners = std::array<double, 3>;
+using TexelCorners = std::array<double, 3>;
 
 /// The corners' shares in a point, which may lie outside.
-std::optional<Corners> plane_shares(Flat p, const FlatTriangle& t) {
+std::optional<TexelCorners> plane_shares(Flat p, const FlatTriangle& t) {
   const double all = doubled_area(t);
   const double longest = std::max({length(t[1] - t[0]), length(t[2] - t[1]), length(t[0] - t[2])});
   if (!(all > longest * k_least_height)) return {};
   const double of_b = cross(p - t[0], t[2] - t[0]) / all;
   const double of_c = cross(t[1] - t[0], p - t[0]) / all;
-  return Corners{1 - of_b - of_c, of_b, of_c};
+  return TexelCorners{1 - of_b - of_c, of_b, of_c};
 }
 
 /// The corners' shares in the triangle's nearest point.
-Corners inner_shares(Flat p, const FlatTriangle& t) {
+TexelCorners inner_shares(Flat p, const FlatTriangle& t) {
   return nearest_shares({p.x, p.y, 0}, {t[0].x, t[0].y, 0}, {t[1].x, t[1].y, 0},
                         {t[2].x, t[2].y, 0});
 }
@@ -148,20 +148,21 @@ class Baker {
     for (std::uint32_t j = 0; j < samples_; ++j) {
       for (std::uint32_t i = 0; i < samples_; ++i) {
         const Flat p{x + (i + 0.5) / samples_, y + (j + 0.5) / samples_};
-        const Corners inner = inner_shares(p, t);
+        const TexelCorners inner = inner_shares(p, t);
         asked.points.push_back(
             blend(surface_.positions, plane_shares(p, t).value_or(inner), owner));
         asked.normals.push_back(normal_at(inner, owner));
       }
     }
   }
-  Vec3 blend(const std::vector<Vec3>& values, const Corners& shares, std::uint32_t triangle) const {
+  Vec3 blend(const std::vector<Vec3>& values, const TexelCorners& shares,
+             std::uint32_t triangle) const {
     const auto [a, b, c] = triangles_[triangle];
     return values[a] * shares[0] + values[b] * shares[1] + values[c] * shares[2];
   }
 
   /// The blend of the vertices' normals, if it is on the triangle's side; else the triangle's own.
-  Vec3 normal_at(const Corners& shares, std::uint32_t triangle) const {
+  Vec3 normal_at(const TexelCorners& shares, std::uint32_t triangle) const {
     const auto [a, b, c] = surface_.triangles[triangle];
     const Vec3 p = surface_.positions[a];
     const Vec3 flat = cross(surface_.positions[b] - p, surface_.positions[c] - p);
@@ -178,7 +179,7 @@ class Baker {
     colours_at_(asked.points, asked.normals, colours);
     const std::size_t each = points_a_texel();
     for (std::size_t first = 0; first < colours.size(); first += each) {
-      Corners sum{};
+      TexelCorners sum{};
       for (std::size_t k = first; k < first + each; ++k) {
         for (std::size_t c = 0; c < 3; ++c) sum[c] += static_cast<double>(colours[k][c]);
       }

@@ -11,7 +11,7 @@
 namespace meshfarm {
 namespace {
 
-constexpr std::uint32_t k_cell = 32;  // texels a side
+constexpr std::uint32_t k_chunk_cell = 32;  // texels a side
 
 std::uint64_t rounded_up(double x) {
   return static_cast<std::uint64_t>(std::ceil(x));
@@ -25,7 +25,7 @@ BakeChunks::BakeChunks(const Mesh& mesh, std::span<const CornerUvs> uvs,
       uvs_(uvs),
       options_(options),
       normals_(vertex_normals(mesh)),
-      cells_a_side_(std::max(1U, (options.texture_size + k_cell - 1) / k_cell)) {
+      cells_a_side_(std::max(1U, (options.texture_size + k_chunk_cell - 1) / k_chunk_cell)) {
   if (mesh.triangles.empty()) return;
   divide();
   sort_into_cells();
@@ -68,7 +68,7 @@ void BakeChunks::divide() {
 BakeChunks::Cells BakeChunks::cells_of(std::uint32_t triangle, double margin) const {
   const double side = options_.texture_size;
   const auto cell = [&](double x) {
-    return static_cast<std::uint32_t>(std::clamp(x / k_cell, 0.0, cells_a_side_ - 1.0));
+    return static_cast<std::uint32_t>(std::clamp(x / k_chunk_cell, 0.0, cells_a_side_ - 1.0));
   };
   const CornerUvs& uvs = uvs_[triangle];
   const auto [u0, u1] = std::minmax({uvs[0][0], uvs[1][0], uvs[2][0]});

@@ -20,7 +20,7 @@
 namespace meshfarm {
 namespace {
 
-constexpr std::size_t k_points_at_once = 1024;
+constexpr std::size_t k_samples_at_once = 1024;
 /// A triangle has half a vertex: more points than this tell little more of it.
 constexpr double k_points_per_triangle = 12;
 /// How much of its weight holds a vertex to the mean of what is round it.
@@ -30,7 +30,7 @@ constexpr int k_steps = 20;
 constexpr double k_done = 1e-12;
 /// A triangle that a point is so near to, as a part of its size, will do: which of some triangles
 /// is the nearest then changes the point's shares little, and half of the time is saved.
-constexpr double k_near = 0.01;
+constexpr double k_near_value = 0.01;
 
 /// Of a triangle: the sums of s0 s0, s1 s1, s2 s2, s0 s1, s1 s2, s2 s0.
 using Products = std::array<double, 6>;
@@ -260,11 +260,11 @@ class ChannelFit::Impl {
 
   void add_all(std::span<const Vec3> points, std::span<const float> values) {
     found_.resize(points.size());
-    const std::size_t chunks = (points.size() + k_points_at_once - 1) / k_points_at_once;
+    const std::size_t chunks = (points.size() + k_samples_at_once - 1) / k_samples_at_once;
     parallel_for(chunks, threads_, [&](std::uint64_t chunk) {
       std::uint32_t guess = 0;
-      const std::size_t end = std::min(points.size(), (chunk + 1) * k_points_at_once);
-      for (std::size_t i = chunk * k_points_at_once; i < end; ++i) {
+      const std::size_t end = std::min(points.size(), (chunk + 1) * k_samples_at_once);
+      for (std::size_t i = chunk * k_samples_at_once; i < end; ++i) {
         guess = bvh_.nearest(points[i], guess, near_to(guess)).triangle;
         const auto& [a, b, c] = mesh_.triangles[guess];
         found_[i] = {guess, nearest_shares(points[i], mesh_.positions[a], mesh_.positions[b],
@@ -282,7 +282,7 @@ class ChannelFit::Impl {
     const auto& [a, b, c] = mesh_.triangles[triangle];
     const Vec3 normal =
         cross(mesh_.positions[b] - mesh_.positions[a], mesh_.positions[c] - mesh_.positions[a]);
-    return k_near * k_near * length(normal);
+    return k_near_value * k_near_value * length(normal);
   }
 
   void add(const Found& found, std::span<const float> values) {

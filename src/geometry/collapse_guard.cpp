@@ -14,7 +14,7 @@
 namespace meshfarm {
 namespace {
 
-constexpr std::uint32_t k_none = UINT32_MAX;
+constexpr std::uint32_t k_no_point = UINT32_MAX;
 constexpr std::size_t k_points_at_once = 4096;
 /// A triangle is as good as any other if it is so near, as a share of the bound.
 constexpr double k_near_share = 0.5;
@@ -42,7 +42,7 @@ CollapseGuard::Place CollapseGuard::place_on(std::uint32_t point, const Triangle
       best = i;
     }
   }
-  return {point, triangle[best], triangle[(best + 1) % 3], triangle[(best + 2) % 3], k_none};
+  return {point, triangle[best], triangle[(best + 1) % 3], triangle[(best + 2) % 3], k_no_point};
 }
 
 void CollapseGuard::hold(std::uint32_t point, const Triangle& triangle) {
@@ -56,7 +56,7 @@ void CollapseGuard::hold(std::uint32_t point, const Triangle& triangle) {
 void CollapseGuard::start(const CollapseState& state, const Mesh& mesh) {
   move_to(state);
   merge_ = {};
-  bag_.assign(mesh.positions.size(), k_none);
+  bag_.assign(mesh.positions.size(), k_no_point);
   moves_.assign(mesh.positions.size(), 0);
   memo_.assign(k_memo, 0);
   held_.clear();
@@ -79,7 +79,7 @@ void CollapseGuard::start(const CollapseState& state, const Mesh& mesh) {
     const Triangle& t = mesh.triangles[nearest[i].triangle];
     if (std::all_of(t.begin(), t.end(), is_fixed)) continue;
     const auto limit = static_cast<float>(std::max(most, nearest[i].squared) * (1 + 0x1p-20));
-    held_.push_back({points[i].at, limit, points[i].share, points[i].triangle, k_none, 0, 0});
+    held_.push_back({points[i].at, limit, points[i].share, points[i].triangle, k_no_point, 0, 0});
     hold(static_cast<std::uint32_t>(held_.size() - 1), t);
   }
 }
@@ -112,7 +112,7 @@ bool CollapseGuard::allows(const Merge& merge) {
   const std::uint32_t key = signature();
   if (memo() == key) return false;
   list_star(merge);
-  on_facet_.assign(star_.size(), k_none);
+  on_facet_.assign(star_.size(), k_no_point);
   if (!star_.empty() && place_all() && is_star_near()) return true;
   memo() = key;
   return false;
@@ -144,8 +144,8 @@ bool CollapseGuard::place_all() {
 }
 
 bool CollapseGuard::place_bag(std::uint32_t vertex, bool all) {
-  std::uint32_t before = k_none;
-  for (std::uint32_t i = bag_[vertex]; i != k_none; i = held_[i].following) {
+  std::uint32_t before = k_no_point;
+  for (std::uint32_t i = bag_[vertex]; i != k_no_point; i = held_[i].following) {
     if ((all || is_changed(held_[i])) && !place(vertex, i)) {
       to_front(vertex, before, i);
       return false;
@@ -157,7 +157,7 @@ bool CollapseGuard::place_bag(std::uint32_t vertex, bool all) {
 
 /// Points that were too far will be asked first.
 void CollapseGuard::to_front(std::uint32_t vertex, std::uint32_t before, std::uint32_t point) {
-  if (before == k_none) return;
+  if (before == k_no_point) return;
   held_[before].following = held_[point].following;
   held_[point].following = std::exchange(bag_[vertex], point);
 }
@@ -191,7 +191,7 @@ void CollapseGuard::look_round_star(Vec3 point, Nearest& nearest) const {
     if (is_end(next) || is_end(prev)) continue;
     const double squared = squared_distance(point, state_.positions[around], state_.positions[next],
                                             state_.positions[prev]);
-    if (squared < nearest.squared) nearest = {squared, {around, next, prev}, k_none};
+    if (squared < nearest.squared) nearest = {squared, {around, next, prev}, k_no_point};
   }
 }
 
@@ -206,7 +206,7 @@ bool CollapseGuard::place(std::uint32_t owner, std::uint32_t point) {
   if (!(nearest.squared <= most)) return false;
   if (nearest.squared > enough && held.share != 0 && !is_cell_near(held, first)) return false;
   Place& placed = places_.emplace_back(place_on(point, nearest.triangle));
-  if (nearest.facet != k_none) {
+  if (nearest.facet != k_no_point) {
     placed.following =
         std::exchange(on_facet_[nearest.facet], static_cast<std::uint32_t>(places_.size() - 1));
   }
@@ -245,7 +245,7 @@ double CollapseGuard::squared_to_surface(Vec3 point, std::uint32_t facet) {
   const double enough = bound_.distance() * bound_.distance() * k_near_share * k_near_share;
   double least = std::numeric_limits<double>::infinity();
   int hints = 0;
-  for (std::uint32_t i = on_facet_[facet]; i != k_none && hints < k_most_hints;
+  for (std::uint32_t i = on_facet_[facet]; i != k_no_point && hints < k_most_hints;
        i = places_[i].following, ++hints) {
     const Held& held = held_[places_[i].point];
     const double squared = squared_length(held.point - point);
@@ -293,9 +293,9 @@ bool CollapseGuard::is_star_near() {
 void CollapseGuard::merge() {
   const auto [a, b] = std::pair(merge_.a, merge_.b);
   ++moves_[a];
-  bag_[a] = bag_[b] = k_none;
+  bag_[a] = bag_[b] = k_no_point;
   for (const std::uint32_t v : ring_) {
-    for (std::uint32_t* at = &bag_[v]; *at != k_none;) {
+    for (std::uint32_t* at = &bag_[v]; *at != k_no_point;) {
       Held& held = held_[*at];
       is_changed(held) ? * at = held.following : *(at = &held.following);
     }
@@ -310,11 +310,11 @@ void CollapseGuard::merge() {
 
 void CollapseGuard::split(std::uint32_t vertex, std::uint32_t first_copy) {
   const auto copies = static_cast<std::uint32_t>(state_.positions.size());
-  bag_.resize(copies, k_none);
+  bag_.resize(copies, k_no_point);
   moves_.resize(copies, 0);
   if (first_copy == copies) return;
   merge_ = {};
-  for (std::uint32_t point = std::exchange(bag_[vertex], k_none); point != k_none;) {
+  for (std::uint32_t point = std::exchange(bag_[vertex], k_no_point); point != k_no_point;) {
     const std::uint32_t following = held_[point].following;
     hold(point, nearest_of_copies(held_[point].point, vertex, first_copy));
     point = following;
@@ -348,7 +348,7 @@ Triangle CollapseGuard::nearest_of_copies(Vec3 point, std::uint32_t vertex,
 
 /// Of the points that `owner` holds, those near a triangle of `vertex` do not know theirs any more.
 void CollapseGuard::forget_triangles(std::uint32_t owner, std::uint32_t vertex) {
-  for (std::uint32_t i = bag_[owner]; i != k_none; i = held_[i].following) {
+  for (std::uint32_t i = bag_[owner]; i != k_no_point; i = held_[i].following) {
     Held& held = held_[i];
     if (held.next == vertex || held.prev == vertex) held.next = held.prev = vertex;
   }

@@ -17,12 +17,12 @@ namespace {
 /// A vertex of more triangles is none that matters.
 constexpr std::size_t k_most_triangles = 1024;
 
-constexpr std::uint32_t k_none = SeamGraph::k_none;
+constexpr std::uint32_t k_no_column = SeamGraph::k_none;
 
 /// An edge of a line or a border, and the triangles there.
 struct LineEdge {
   std::array<std::uint32_t, 2> ends;
-  std::array<std::uint32_t, 2> triangles;  // the second may be k_none
+  std::array<std::uint32_t, 2> triangles;  // the second may be k_no_column
 };
 
 /// Calls take(i, k) for the edges from a vertex: the corner that ends there and the one that
@@ -49,7 +49,7 @@ class GraphBuilder {
         positions_(mesh.positions),
         chart_of_(mesh.triangles.size()),
         inner_edges_(mesh.triangles.size(), 0),
-        corner_(mesh.positions.size(), k_none),
+        corner_(mesh.positions.size(), k_no_column),
         is_on_line_(mesh.positions.size(), 0) {
     adjacency_.build(mesh.triangles, mesh.positions.size(), columns);
   }
@@ -85,7 +85,7 @@ class GraphBuilder {
       const std::uint32_t triangle = fan.ids[i < size ? i : k] / 3;
       if (is_border || fan.differ(i, k)) {
         ++(is_border ? borders : lines);
-        const std::uint32_t other = is_border ? k_none : fan.ids[k] / 3;
+        const std::uint32_t other = is_border ? k_no_column : fan.ids[k] / 3;
         if (end > vertex) edges_.push_back({{vertex, end}, {triangle, other}});
       } else if (end > vertex) {
         chart_of_.join(triangle, fan.ids[k] / 3);
@@ -101,7 +101,7 @@ class GraphBuilder {
   }
 
   void number_charts() {
-    chart_numbers_.assign(inner_edges_.size(), k_none);
+    chart_numbers_.assign(inner_edges_.size(), k_no_column);
     std::uint32_t charts = 0;
     for (std::uint32_t i = 0; i < chart_numbers_.size(); ++i) {
       if (chart_of_.find(i) == i) chart_numbers_[i] = charts++;
@@ -128,25 +128,25 @@ class GraphBuilder {
       SeamGraph::Chart& chart = graph_.charts[number];
       ++chart.euler;
       chart.is_part = chart.is_part || vertex < locked_;
-      if (corner_[vertex] == k_none) continue;
+      if (corner_[vertex] == k_no_column) continue;
       ++chart.corners;
       graph_.corners[corner_[vertex]].charts.push_back(number);
     }
   }
 
   void trace_lines() {
-    const auto is_inner = [&](std::uint32_t v) { return corner_[v] == k_none; };
+    const auto is_inner = [&](std::uint32_t v) { return corner_[v] == k_no_column; };
     UnionFind sets(corner_.size());
     for (const LineEdge& e : edges_) {
       if (is_inner(e.ends[0]) && is_inner(e.ends[1])) sets.join(e.ends[0], e.ends[1]);
     }
-    std::vector<std::uint32_t> line_of(corner_.size(), k_none);
+    std::vector<std::uint32_t> line_of(corner_.size(), k_no_column);
     for (const LineEdge& e : edges_) {
       const std::uint32_t inner = is_inner(e.ends[0]) ? e.ends[0] : e.ends[1];
       auto number = static_cast<std::uint32_t>(graph_.lines.size());
       if (is_inner(inner)) {
         std::uint32_t& known = line_of[sets.find(inner)];
-        if (known == k_none) known = number;
+        if (known == k_no_column) known = number;
         number = known;
       }
       if (number == graph_.lines.size()) add_line(e);
@@ -160,7 +160,7 @@ class GraphBuilder {
     for (std::uint32_t v = 0; v < corner_.size(); ++v) {
       if (is_on_line_[v] == 0 || !is_inner(v)) continue;
       const std::uint32_t number = line_of[sets.find(v)];
-      if (number != k_none) ++graph_.lines[number].inner;
+      if (number != k_no_column) ++graph_.lines[number].inner;
     }
     for (SeamGraph::Line& line : graph_.lines) {
       std::sort(line.corners.begin(), line.corners.end());
@@ -171,7 +171,7 @@ class GraphBuilder {
     const auto number = static_cast<std::uint32_t>(graph_.lines.size());
     SeamGraph::Line& line = graph_.lines.emplace_back();
     for (std::size_t side = 0; side < 2; ++side) {
-      if (edge.triangles[side] == k_none) continue;
+      if (edge.triangles[side] == k_no_column) continue;
       line.charts[side] = chart_at(edge.triangles[side]);
       graph_.charts[line.charts[side]].lines.push_back(number);
     }

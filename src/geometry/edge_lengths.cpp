@@ -16,10 +16,10 @@ namespace {
 constexpr std::size_t k_vertices_a_block = 4096;  // fixed, so that sums are
 
 /// A side of a triangle, seen from the lower of its vertices.
-struct Side {
+struct TurnedSide {
   std::uint32_t other = 0;
   std::uint32_t triangle = 0;
-  friend bool operator<(const Side& a, const Side& b) {
+  friend bool operator<(const TurnedSide& a, const TurnedSide& b) {
     return std::tie(a.other, a.triangle) < std::tie(b.other, b.triangle);
   }
 };
@@ -30,11 +30,11 @@ class EdgeMeter {
     WeldResult welded = weld(mesh.positions);
     separate_touching(mesh.triangles, {}, welded);
     vertices_ = std::move(welded.first);
-    for_sides([&](std::uint32_t from, Side) { ++ends_[from + 1]; });
+    for_sides([&](std::uint32_t from, TurnedSide) { ++ends_[from + 1]; });
     std::partial_sum(ends_.begin(), ends_.end(), ends_.begin());
     sides_.resize(ends_.back());
     // Moves the begin of each vertex to its end.
-    for_sides([&](std::uint32_t from, Side side) { sides_[ends_[from]++] = side; });
+    for_sides([&](std::uint32_t from, TurnedSide side) { sides_[ends_[from]++] = side; });
   }
 
   EdgeLengths measure(unsigned threads) {
@@ -62,7 +62,7 @@ class EdgeMeter {
   void for_sides(const Take& take) const {
     for (std::uint32_t i = 0; i < mesh_.triangles.size(); ++i) {
       const Triangle t = welded(i);
-      if (t[0] == t[1] || t[1] == t[2] || t[2] == t[0]) continue;
+      if (is_degenerate(t)) continue;
       for (std::size_t k = 0; k < 3; ++k) {
         const auto [low, high] = std::minmax(t[k], t[(k + 1) % 3]);
         take(low, {high, i});
@@ -72,7 +72,7 @@ class EdgeMeter {
 
   void add_edges(std::size_t vertex, EdgeLengths& lengths) {
     const std::size_t begin = vertex == 0 ? 0 : ends_[vertex - 1];
-    const std::span<Side> sides = std::span(sides_).subspan(begin, ends_[vertex] - begin);
+    const std::span<TurnedSide> sides = std::span(sides_).subspan(begin, ends_[vertex] - begin);
     std::sort(sides.begin(), sides.end());
     for (std::size_t first = 0, last = 0; first < sides.size(); first = last) {
       while (last < sides.size() && sides[last].other == sides[first].other) ++last;
@@ -84,7 +84,7 @@ class EdgeMeter {
     }
   }
 
-  bool is_feature(std::size_t vertex, const Side& a, const Side& b) const {
+  bool is_feature(std::size_t vertex, const TurnedSide& a, const TurnedSide& b) const {
     const Vec3 of_a = normal_seen_from(vertex, a), of_b = normal_seen_from(vertex, b);
     // One of the two is seen from behind where both triangles face the same side.
     static const double k_cosine = std::cos(k_feature_degrees * std::acos(-1.0) / 180);
@@ -93,7 +93,7 @@ class EdgeMeter {
   }
 
   /// As if the triangle went from the vertex to the side's other one.
-  Vec3 normal_seen_from(std::size_t vertex, const Side& side) const {
+  Vec3 normal_seen_from(std::size_t vertex, const TurnedSide& side) const {
     const Triangle t = welded(side.triangle);
     const Vec3 a = mesh_.positions[t[0]];
     const Vec3 normal = cross(mesh_.positions[t[1]] - a, mesh_.positions[t[2]] - a);
@@ -106,7 +106,7 @@ class EdgeMeter {
   const Mesh& mesh_;
   std::vector<std::uint32_t> vertices_;  // that each is after welding
   std::vector<std::uint64_t> ends_;      // in sides_, of the vertices
-  std::vector<Side> sides_;
+  std::vector<TurnedSide> sides_;
 };
 
 }  // namespace

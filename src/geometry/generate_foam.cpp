@@ -17,11 +17,11 @@
 namespace meshfarm {
 namespace {
 
-constexpr std::uint64_t k_noise = 300;  // its own random numbers
+constexpr std::uint64_t k_foam_noise = 300;  // its own random numbers
 constexpr std::uint64_t k_waves = 24;
 constexpr double k_wave_length = 6;  // in cells
 constexpr double k_band = 0.15;      // wave lengths differ by so much
-constexpr double k_cell = 0x1p-3;
+constexpr double k_foam_cell = 0x1p-3;
 constexpr double k_in_a_cell = 3.6;  // triangles, about
 // The box is a cube, but at most so wide, that layers fit into any memory: then it grows longer.
 constexpr std::uint64_t k_min_width = 6, k_max_width = 512;
@@ -67,7 +67,7 @@ struct Wave {
 std::vector<Wave> make_waves() {
   std::vector<Wave> waves;
   for (std::uint64_t call = 0; waves.size() < k_waves; ++call) {
-    const auto random = [&](std::uint64_t what) { return lattice_value(k_noise, call, what); };
+    const auto random = [&](std::uint64_t what) { return lattice_value(k_foam_noise, call, what); };
     const Vec3 p{random(0), random(1), random(2)};
     const double reach = length(p);
     if (reach < 0.1 || reach > 1) continue;  // evenly in all directions
@@ -213,7 +213,7 @@ class Sweep {
   }
   Vec3 place(std::array<std::uint64_t, 2> at, Direction d, double share) const {
     const auto along = [&](std::uint64_t start, Direction bit) {
-      return (static_cast<double>(start) + ((d & bit) != 0 ? share : 0)) * k_cell;
+      return (static_cast<double>(start) + ((d & bit) != 0 ? share : 0)) * k_foam_cell;
     };
     return {along(at[0], 1), along(at[1], 2), along(layer_, 4)};
   }

@@ -10,7 +10,7 @@
 namespace meshfarm {
 namespace {
 
-constexpr std::uint64_t k_noise = 200;  // its own random numbers
+constexpr std::uint64_t k_terrain_noise = 200;  // its own random numbers
 constexpr std::uint64_t k_first_cells = 4;
 constexpr std::uint64_t k_last_cells = 4096;
 constexpr double k_part = 0.9;     // of the noise, which closes on itself
@@ -30,7 +30,7 @@ class Terrain : public GeneratedMesh {
     std::vector<NoiseRow> octaves;
     for (std::uint64_t cells = k_first_cells;
          cells <= k_last_cells && 2 * cells <= std::min(grid_.rows, grid_.columns); cells *= 2) {
-      octaves.emplace_back(k_noise + octaves.size(), cells, cells);
+      octaves.emplace_back(k_terrain_noise + octaves.size(), cells, cells);
     }
     Batches<Vec3> batches(take);
     for (std::uint64_t row = 0; row <= grid_.rows; ++row) {

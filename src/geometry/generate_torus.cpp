@@ -10,7 +10,7 @@
 namespace meshfarm {
 namespace {
 
-constexpr std::uint64_t k_min_triangles = 200;
+constexpr std::uint64_t k_least_torus = 200;
 
 // Round the axis; the tube's own radius is 0.38 on its flat sides.
 constexpr double k_ring_radius = 1;
@@ -70,7 +70,7 @@ double TorusRings::bump(double turn) const {
 }
 
 BumpyTorus::BumpyTorus(std::uint64_t triangles) {
-  check_size(triangles, k_min_triangles);
+  check_size(triangles, k_least_torus);
   const Grid grid = torus_grid(triangles / 2);
   rows_ = grid.rows;
   columns_ = grid.columns;

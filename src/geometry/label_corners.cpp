@@ -8,7 +8,7 @@ namespace meshfarm {
 namespace {
 
 /// A vertex of more triangles is none that matters.
-constexpr std::size_t k_most_triangles = 1024;
+constexpr std::size_t k_most_counted_triangles = 1024;
 
 std::size_t lines_at(const CornerFan& fan) {
   std::size_t lines = 0;
@@ -29,7 +29,7 @@ std::uint64_t count_label_corners(std::span<const Triangle> triangles,
   adjacency.build(triangles, vertices, {labels, {}});
   std::uint64_t corners = 0;
   for (std::uint32_t v = 0; v < vertices; ++v) {
-    if (adjacency.count(v) > k_most_triangles) continue;
+    if (adjacency.count(v) > k_most_counted_triangles) continue;
     const std::size_t lines = lines_at(adjacency.fan_at(v));
     corners += lines != 0 && lines != 2 ? 1 : 0;
   }

@@ -10,10 +10,10 @@
 namespace meshfarm {
 namespace {
 
-constexpr std::uint32_t k_none = std::numeric_limits<std::uint32_t>::max();
+constexpr std::uint32_t k_no_side = std::numeric_limits<std::uint32_t>::max();
 
 /// A side of a triangle at its lower vertex: to a higher one, or from it.
-struct Side {
+struct EdgeSide {
   std::uint32_t high;
   std::uint32_t side;  // 3 x triangle + its first corner
   bool upwards;
@@ -21,8 +21,8 @@ struct Side {
 
 /// The sides of all triangles by their lower vertex, those of one by the higher one and in order of
 /// the triangles. `starts` has one more than the vertices.
-std::vector<Side> sort_sides(const std::vector<Triangle>& triangles,
-                             std::vector<std::uint32_t>& starts) {
+std::vector<EdgeSide> sort_sides(const std::vector<Triangle>& triangles,
+                                 std::vector<std::uint32_t>& starts) {
   std::uint32_t highest = 0;
   for (const Triangle& t : triangles) highest = std::max({highest, t[0], t[1], t[2]});
   starts.assign(std::size_t{highest} + 3, 0);
@@ -35,14 +35,14 @@ std::vector<Side> sort_sides(const std::vector<Triangle>& triangles,
   // Counted two places up, so that each start is where it belongs when the sides are placed.
   for_sides([&](std::uint32_t a, std::uint32_t b, std::uint32_t) { ++starts[std::min(a, b) + 2]; });
   for (std::size_t v = 2; v < starts.size(); ++v) starts[v] += starts[v - 1];
-  std::vector<Side> sides(3 * triangles.size());
+  std::vector<EdgeSide> sides(3 * triangles.size());
   for_sides([&](std::uint32_t a, std::uint32_t b, std::uint32_t side) {
     sides[starts[std::min(a, b) + 1]++] = {std::max(a, b), side, a < b};
   });
   starts.pop_back();
   for (std::size_t v = 0; v + 1 < starts.size(); ++v) {
     std::sort(sides.begin() + starts[v], sides.begin() + starts[v + 1],
-              [](const Side& x, const Side& y) {
+              [](const EdgeSide& x, const EdgeSide& y) {
                 return x.high != y.high ? x.high < y.high : x.side < y.side;
               });
   }
@@ -52,14 +52,14 @@ std::vector<Side> sort_sides(const std::vector<Triangle>& triangles,
 /// The triangle across each side, where it has one: 2 x triangle, plus 1 if it faces the other way.
 std::vector<std::uint32_t> find_neighbours(const std::vector<Triangle>& triangles) {
   std::vector<std::uint32_t> starts;
-  const std::vector<Side> sides = sort_sides(triangles, starts);
-  std::vector<std::uint32_t> across(sides.size(), k_none);
+  const std::vector<EdgeSide> sides = sort_sides(triangles, starts);
+  std::vector<std::uint32_t> across(sides.size(), k_no_side);
   for (std::size_t v = 0; v + 1 < starts.size(); ++v) {
     for (std::size_t first = starts[v], last = first; first < starts[v + 1]; first = last) {
       const auto [high, side, upwards] = sides[first];
       while (last < starts[v + 1] && sides[last].high == high) ++last;
       if (last - first != 2) continue;
-      const Side& other = sides[first + 1];
+      const EdgeSide& other = sides[first + 1];
       const std::uint32_t turned = upwards == other.upwards ? 1 : 0;
       across[side] = 2 * (other.side / 3) + turned;
       across[other.side] = 2 * (side / 3) + turned;
@@ -98,7 +98,7 @@ std::uint64_t orient(std::vector<Triangle>& triangles, std::span<CornerUvs> uvs)
     for (std::size_t i = 0; i < piece.size(); ++i) {
       for (std::uint32_t k = 0; k < 3; ++k) {
         const std::uint32_t next = across[3 * piece[i] + k];
-        if (next == k_none || half[next / 2] != k_unseen) continue;
+        if (next == k_no_side || half[next / 2] != k_unseen) continue;
         half[next / 2] = static_cast<std::uint8_t>(half[piece[i]] ^ (next & 1));
         piece.push_back(next / 2);
       }

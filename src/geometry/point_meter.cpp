@@ -21,7 +21,7 @@ constexpr std::size_t k_run = 32;
 constexpr double k_beyond = 1 + 0x1p-20;
 /// Of the distance between vertices: to look a little farther costs nothing, nor do larger cells.
 constexpr double k_least_reach = 0.25;
-constexpr double k_cell = 2;
+constexpr double k_meter_cell = 2;
 
 }  // namespace
 
@@ -61,7 +61,7 @@ class PointMeter::Impl {
     if (++pass_ == 1) {
       searching.resize(points_.size());
       std::iota(searching.begin(), searching.end(), 0U);
-      grid_.emplace(points_, reach_, k_cell * hints_.spacing);
+      grid_.emplace(points_, reach_, k_meter_cell * hints_.spacing);
     } else if (pass_ == 2) {
       searching = begin_last_pass();
     }

@@ -14,7 +14,7 @@ namespace {
 
 // From so many times the triangles of the last goal on. Down to 8 times they took 10 % longer for
 // 1 % less error. And as long as there is as much more to go in this step.
-constexpr std::uint64_t k_far = 4;
+constexpr std::uint64_t k_far_rank = 4;
 constexpr std::uint64_t k_far_of_step = 2;
 constexpr std::uint32_t k_least_vertices = 8192;
 
@@ -24,15 +24,15 @@ constexpr double k_most_rough = 0.97;
 constexpr double k_rough_margin = 8;
 
 // Gives the rank to one or two per cent.
-constexpr std::uint32_t k_sampled_vertices = 2048;
-constexpr std::size_t k_least_sample = 128;
+constexpr std::uint32_t k_rough_vertices = 2048;
+constexpr std::size_t k_least_rough_sample = 128;
 // With fewer vertices that merge a pass is not worth its time.
-constexpr double k_least_share = 0.3;
+constexpr double k_least_rough_share = 0.3;
 
 }  // namespace
 
 bool RoughPass::is_worth_it(const WorkingMesh& mesh, const SimplifyGoal& goal) {
-  return mesh.triangles() > k_far * last_of(goal) &&
+  return mesh.triangles() > k_far_rank * last_of(goal) &&
          mesh.triangles() > k_far_of_step * goal.triangles && mesh.vertices() > k_least_vertices;
 }
 
@@ -94,7 +94,7 @@ std::uint32_t RoughPartners::of(std::uint32_t vertex) const {
 std::optional<double> RoughPartners::estimate_limit(CollapseJudge& judge, double share,
                                                     double most) const {
   const auto vertices = static_cast<std::uint32_t>(state_.positions.size());
-  const std::uint32_t one_in = std::max(1U, vertices / k_sampled_vertices);
+  const std::uint32_t one_in = std::max(1U, vertices / k_rough_vertices);
   const CollapseLimits no_limits{UINT64_MAX, HUGE_VAL};
   std::vector<double> costs;
   for (std::uint32_t first = 0; vertices - first >= one_in; first += one_in) {
@@ -105,9 +105,9 @@ std::optional<double> RoughPartners::estimate_limit(CollapseJudge& judge, double
         judge.judge(std::min(vertex, other), std::max(vertex, other), no_limits);
     if (collapse.triangles > 0) costs.push_back(collapse.cost);
   }
-  if (costs.size() < k_least_sample) return {};
+  if (costs.size() < k_least_rough_sample) return {};
   const auto can = std::count_if(costs.begin(), costs.end(), [&](double c) { return c <= most; });
-  if (static_cast<double>(can) < k_least_share * static_cast<double>(costs.size())) return {};
+  if (static_cast<double>(can) < k_least_rough_share * static_cast<double>(costs.size())) return {};
   const auto rank = static_cast<std::size_t>(share * static_cast<double>(costs.size() - 1));
   std::nth_element(costs.begin(), costs.begin() + static_cast<std::ptrdiff_t>(rank), costs.end());
   return std::min(costs[rank], most);

@@ -11,8 +11,7 @@ namespace {
 
 using Chart = SeamGraph::Chart;
 using Line = SeamGraph::Line;
-using Corner = SeamGraph::Corner;
-constexpr std::uint32_t k_none = SeamGraph::k_none;
+constexpr std::uint32_t k_no_corner = SeamGraph::k_none;
 
 // Of the length of a line: with a shorter chord it bends. Found on scans and on charts round the
 // vertices of surfaces, where it foretells what is reached to 8 %; lines that are only jagged count
@@ -49,9 +48,9 @@ class Reduction {
       const Line& line = *lines[i];
       std::uint32_t wanted = i > 0 && lines[i - 1]->corners == line.corners ? 1 : 0;
       if (wanted == 0 && is_bent(line)) wanted = 1;
-      if (line.is_loop()) wanted = line.corners[0] == k_none ? 3 : 2;
+      if (line.is_loop()) wanted = line.corners[0] == k_no_corner ? 3 : 2;
       for (const std::uint32_t chart : line.charts) {
-        if (chart != k_none) others[root(chart)] += std::min(wanted, line.inner);
+        if (chart != k_no_corner) others[root(chart)] += std::min(wanted, line.inner);
       }
     }
     return others;
@@ -65,7 +64,7 @@ class Reduction {
 
   /// So that triangles beside it would turn over if it were straight.
   bool is_bent(const Line& line) const {
-    if (line.corners[1] == k_none || line.is_loop()) return false;
+    if (line.corners[1] == k_no_corner || line.is_loop()) return false;
     const Vec3 chord =
         graph_.corners[line.corners[0]].position - graph_.corners[line.corners[1]].position;
     return meshfarm::length(chord) < k_bent * line.length;
@@ -77,11 +76,11 @@ class Reduction {
 
   /// The chart on its other side, if the chart can be drawn together along it.
   std::uint32_t beyond(std::uint32_t chart, const Line& line) const {
-    if (line.is_gone || line.is_border()) return k_none;
-    const std::int64_t ends = line.corners[0] == k_none ? 0 : line.is_loop() ? 1 : 2;
+    if (line.is_gone || line.is_border()) return k_no_corner;
+    const std::int64_t ends = line.corners[0] == k_no_corner ? 0 : line.is_loop() ? 1 : 2;
     const std::uint32_t one = root(line.charts[0]);
     const std::uint32_t other = root(line.charts[1]);
-    if (ends != graph_.charts[chart].corners || one == other) return k_none;
+    if (ends != graph_.charts[chart].corners || one == other) return k_no_corner;
     return one == chart ? other : one;
   }
 
@@ -91,7 +90,7 @@ class Reduction {
     for (const std::uint32_t number : gone.lines) {
       Line& line = graph_.lines[number];
       const std::uint32_t beside = beyond(chart, line);
-      if (beside == k_none) continue;
+      if (beside == k_no_corner) continue;
       Chart& grown = graph_.charts[beside];
       line.is_gone = true;
       gone.is_gone = true;
@@ -99,7 +98,7 @@ class Reduction {
       grown.lines.insert(grown.lines.end(), gone.lines.begin(), gone.lines.end());
       if (line.is_loop()) ++grown.euler;
       for (std::size_t end = 0; end < (line.is_loop() ? 1 : 2); ++end) {
-        if (line.corners[end] != k_none) leave(line.corners[end], number, chart, beside);
+        if (line.corners[end] != k_no_corner) leave(line.corners[end], number, chart, beside);
       }
       waiting_.push_back(beside);
       return;
@@ -107,7 +106,7 @@ class Reduction {
   }
 
   void leave(std::uint32_t number, std::uint32_t line, std::uint32_t gone, std::uint32_t grown) {
-    Corner& corner = graph_.corners[number];
+    SeamGraph::Corner& corner = graph_.corners[number];
     const bool is_loop = graph_.lines[line].is_loop();
     std::erase(corner.lines, line);
     const auto erase = [&](std::uint32_t chart) {
@@ -129,7 +128,7 @@ class Reduction {
 
   /// It is none any more.
   void dissolve(std::uint32_t number) {
-    Corner& corner = graph_.corners[number];
+    SeamGraph::Corner& corner = graph_.corners[number];
     for (const std::uint32_t chart : corner.charts) {
       --graph_.charts[root(chart)].corners;
       waiting_.push_back(root(chart));
@@ -141,7 +140,7 @@ class Reduction {
     Line& line = graph_.lines[first];
     ++line.inner;
     if (first == second) {
-      line.corners = {k_none, k_none};
+      line.corners = {k_no_corner, k_no_corner};
       return;
     }
     Line& other = graph_.lines[second];
@@ -151,7 +150,7 @@ class Reduction {
     line.inner += other.inner;
     line.length += other.length;
     other.is_gone = true;
-    if (end == k_none) return;  // of a line that forks
+    if (end == k_no_corner) return;  // of a line that forks
     auto& lines = graph_.corners[end].lines;
     std::replace(lines.begin(), lines.end(), second, first);
   }

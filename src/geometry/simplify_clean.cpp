@@ -15,10 +15,6 @@
 namespace meshfarm {
 namespace {
 
-bool is_degenerate(const Triangle& t) {
-  return t[0] == t[1] || t[1] == t[2] || t[2] == t[0];
-}
-
 /// The vertices that are the smallest of two triangles with the same vertices, ascending. The two
 /// together are a fan of their own, so that only bad fans and fans of two need a look.
 std::vector<std::uint32_t> vertices_with_duplicates(std::span<const std::uint8_t> flags,
@@ -260,7 +256,7 @@ void check_input(const Mesh& mesh, const SimplifyOptions& options) {
 Surface clean_surface(Mesh& mesh, const SimplifyOptions& options, Adjacency& adjacency) {
   Surface surface;
   // Mostly there are none, and to look for one is cheaper than to move all.
-  if (std::any_of(mesh.triangles.begin(), mesh.triangles.end(), is_degenerate)) {
+  if (std::any_of(mesh.triangles.begin(), mesh.triangles.end(), is_degenerate<std::uint32_t>)) {
     surface.dropped.degenerate =
         keep_triangles(mesh, [&](std::size_t i) { return !is_degenerate(mesh.triangles[i]); });
   }

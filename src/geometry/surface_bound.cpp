@@ -14,7 +14,7 @@ namespace {
 
 /// Points are so far apart, in distances of the bound. Between them a surface is seldom farther off
 /// by more than a tenth.
-constexpr double k_spacing = 1.5;
+constexpr double k_bound_spacing = 1.5;
 /// A small bound on large triangles does not ask for more points than this a triangle, all in all.
 constexpr double k_most_points = 4;
 
@@ -71,7 +71,7 @@ void add_grid(const Mesh& mesh, std::uint32_t triangle, double steps,
 std::vector<SurfacePoint> points_inside(const Mesh& mesh, double distance) {
   constexpr double k_wider = 1.2;
   const double most = k_most_points * static_cast<double>(mesh.triangles.size()) + 10'000;
-  double spacing = k_spacing * distance;
+  double spacing = k_bound_spacing * distance;
   while (count_inside(mesh, spacing) > most) spacing *= k_wider;
   std::vector<SurfacePoint> points;
   for (std::uint32_t i = 0; i < mesh.triangles.size(); ++i) {

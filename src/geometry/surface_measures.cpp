@@ -11,7 +11,7 @@
 namespace meshfarm {
 namespace {
 
-constexpr std::size_t k_triangles_a_block = 8192;  // fixed, so that sums are
+constexpr std::size_t k_measured_a_block = 8192;  // fixed, so that sums are
 constexpr double k_steps_a_degree = 1000;
 constexpr std::size_t k_greatest_step = 60'000;  // the narrowest angle of a triangle has 60 degrees
 const double k_degrees = 180 / std::acos(-1.0);
@@ -56,12 +56,12 @@ ShapeMeter::Sums ShapeMeter::measure_block(std::span<const Vec3> positions,
 void ShapeMeter::add(std::span<const Vec3> positions, std::span<const Triangle> triangles) {
   if (triangles.empty()) return;
   if (!origin_) origin_ = positions[triangles.front()[0]];
-  std::vector<Sums> blocks((triangles.size() + k_triangles_a_block - 1) / k_triangles_a_block);
+  std::vector<Sums> blocks((triangles.size() + k_measured_a_block - 1) / k_measured_a_block);
   std::mutex mutex;
   parallel_for(blocks.size(), threads_, [&](std::uint64_t i) {
-    const std::size_t first = i * k_triangles_a_block;
+    const std::size_t first = i * k_measured_a_block;
     const auto block =
-        triangles.subspan(first, std::min(k_triangles_a_block, triangles.size() - first));
+        triangles.subspan(first, std::min(k_measured_a_block, triangles.size() - first));
     std::vector<std::uint32_t> angles;
     angles.reserve(block.size());
     blocks[i] = measure_block(positions, block, angles);

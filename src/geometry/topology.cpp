@@ -14,10 +14,6 @@
 namespace meshfarm {
 namespace {
 
-bool is_degenerate(const Triangle& t) {
-  return t[0] == t[1] || t[1] == t[2] || t[2] == t[0];
-}
-
 bool has_no_area(const Mesh& mesh, const Triangle& t) {
   const Vec3 a = mesh.positions[t[0]];
   return cross(mesh.positions[t[1]] - a, mesh.positions[t[2]] - a) == Vec3{};

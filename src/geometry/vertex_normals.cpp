@@ -17,7 +17,7 @@ double angle_of(double cosine) {
   return cosine < 0 ? 3.14159265358979 - angle : angle;
 }
 
-Vec3 unit(Vec3 v) {
+Vec3 unit_or_zero(Vec3 v) {
   const double size = length(v);
   return size > 0 && std::isfinite(size) ? v * (1 / size) : Vec3{};
 }
@@ -30,15 +30,15 @@ std::vector<Vec3> vertex_normals(const Mesh& mesh) {
     const Vec3 a = mesh.positions[t[0]];
     const Vec3 b = mesh.positions[t[1]];
     const Vec3 c = mesh.positions[t[2]];
-    const Vec3 normal = unit(cross(b - a, c - a));
-    const Vec3 ab = unit(b - a);
-    const Vec3 bc = unit(c - b);
-    const Vec3 ca = unit(a - c);
+    const Vec3 normal = unit_or_zero(cross(b - a, c - a));
+    const Vec3 ab = unit_or_zero(b - a);
+    const Vec3 bc = unit_or_zero(c - b);
+    const Vec3 ca = unit_or_zero(a - c);
     normals[t[0]] = normals[t[0]] + normal * angle_of(-dot(ca, ab));
     normals[t[1]] = normals[t[1]] + normal * angle_of(-dot(ab, bc));
     normals[t[2]] = normals[t[2]] + normal * angle_of(-dot(bc, ca));
   }
-  for (Vec3& normal : normals) normal = unit(normal);
+  for (Vec3& normal : normals) normal = unit_or_zero(normal);
   return normals;
 }
 

@@ -12,17 +12,17 @@ namespace {
 constexpr double k_steepest = 1;
 
 // Of the angle between two sides on the picture: smaller ones are as good as no area.
-constexpr double k_least_sine_squared = 1e-6;
+constexpr double k_least_wedge_sine_squared = 1e-6;
 // Texture coordinates are rounded: what area they leave uncertain, as a part of their size times
 // that of the sides.
 constexpr double k_rounding = 0x1p-22;
 
 /// A triangle on the picture.
-struct Flat {
+struct FlatPoint {
   double area = 0;  // signed, twice; 0 where rounding may have made it
   double scale = 0;
 
-  Flat(const Uv& a, const Uv& b, const Uv& c) {
+  FlatPoint(const Uv& a, const Uv& b, const Uv& c) {
     const double bu = double{b[0]} - a[0];
     const double bv = double{b[1]} - a[1];
     const double cu = double{c[0]} - a[0];
@@ -38,12 +38,12 @@ struct Flat {
 /// Whether a triangle whose first corner moves is not turned over on the picture and keeps some
 /// area there, if it had any.
 bool keeps_shape(const LinearUv::Corners& c, const Uv& now) {
-  const Flat was(c.at_end, c.at_p, c.at_q);
+  const FlatPoint was(c.at_end, c.at_p, c.at_q);
   if (was.area == 0 || !std::isfinite(was.area)) return true;
-  const Flat is(now, c.at_p, c.at_q);
+  const FlatPoint is(now, c.at_p, c.at_q);
   if (!(is.area * was.area > 0)) return false;
   const double squared = is.area * is.area;
-  return squared > k_least_sine_squared * is.scale ||
+  return squared > k_least_wedge_sine_squared * is.scale ||
          squared * was.scale >= was.area * was.area * is.scale;
 }
 

@@ -30,7 +30,7 @@ namespace {
 constexpr FileKind k_scene = {'B', 'A', 'K', 'E'};
 constexpr FileKind k_surface = {'B', 'A', 'K', 'S'};
 constexpr FileKind k_texels = {'T', 'E', 'X', 'L'};
-constexpr std::uint32_t k_version = 1;
+constexpr std::uint32_t k_bake_version = 1;
 
 bool is_length(double x) {
   return std::isfinite(x) && x >= 0;
@@ -71,11 +71,11 @@ std::string encode_bake_scene(const BakeScene& scene) {
     out.put(seam.section);
   }
   put_list(out, scene.chunks);
-  return seal(k_scene, k_version, out.bytes());
+  return seal(k_scene, k_bake_version, out.bytes());
 }
 
 BakeScene decode_bake_scene(std::string_view bytes, std::string_view what) {
-  ByteReader in(unseal(bytes, k_scene, k_version, what), what);
+  ByteReader in(unseal(bytes, k_scene, k_bake_version, what), what);
   BakeScene scene;
   scene.texture_size = in.get<std::uint32_t>();
   scene.margin_texels = in.get<std::uint32_t>();
@@ -112,11 +112,11 @@ std::string encode_bake_surface(const BakeSurface& surface) {
   out.put_array(std::span<const Triangle>(surface.triangles));
   out.put_array(std::span<const CornerUvs>(surface.uvs));
   out.put_array(std::span<const std::uint8_t>(surface.is_own));
-  return seal(k_surface, k_version, out.bytes());
+  return seal(k_surface, k_bake_version, out.bytes());
 }
 
 BakeSurface decode_bake_surface(std::string_view bytes, std::string_view what) {
-  ByteReader in(unseal(bytes, k_surface, k_version, what), what);
+  ByteReader in(unseal(bytes, k_surface, k_bake_version, what), what);
   BakeSurface surface;
   const auto vertices = in.get<std::uint64_t>();
   const auto triangles = in.get<std::uint64_t>();
@@ -142,11 +142,11 @@ std::string encode_baked_texels(const BakedTexels& texels) {
   out.put(static_cast<std::uint64_t>(texels.runs.size()));
   out.put_array(std::span<const TexelRun>(texels.runs));
   out.put_array(std::span<const TexelLevels>(texels.levels));
-  return seal(k_texels, k_version, out.bytes());
+  return seal(k_texels, k_bake_version, out.bytes());
 }
 
 BakedTexels decode_baked_texels(std::string_view bytes, std::string_view what) {
-  ByteReader in(unseal(bytes, k_texels, k_version, what), what);
+  ByteReader in(unseal(bytes, k_texels, k_bake_version, what), what);
   BakedTexels texels;
   texels.runs = in.get_array<TexelRun>(in.get<std::uint64_t>());
   std::uint64_t count = 0;

@@ -23,10 +23,10 @@
 namespace meshfarm {
 namespace {
 
-constexpr FileKind k_kind = {'B', 'N', 'D', 'Y'};
-constexpr std::uint32_t k_version = 2;
-constexpr std::uint32_t k_labels = 1;
-constexpr std::uint32_t k_uvs = 2;
+constexpr FileKind k_boundary_kind = {'B', 'N', 'D', 'Y'};
+constexpr std::uint32_t k_boundary_version = 2;
+constexpr std::uint32_t k_boundary_labels = 1;
+constexpr std::uint32_t k_boundary_uvs = 2;
 
 /// What the index begins with.
 struct Head {
@@ -35,7 +35,9 @@ struct Head {
   std::uint32_t columns = 0;
 
   std::uint32_t regions() const { return Regions(parts).count(); }
-  ColumnSet column_set() const { return {(columns & k_labels) != 0, (columns & k_uvs) != 0}; }
+  ColumnSet column_set() const {
+    return {(columns & k_boundary_labels) != 0, (columns & k_boundary_uvs) != 0};
+  }
   std::uint64_t triangle_bytes() const { return sizeof(BoundaryTriangle) + column_set().bytes(); }
 };
 static_assert(sizeof(Head) == 16);
@@ -53,7 +55,7 @@ std::uint64_t index_bytes(const Head& head) {
 
 Head get_head(ByteReader& in) {
   const auto head = in.get<Head>();
-  if (head.columns > (k_labels | k_uvs)) in.fail("unknown columns of triangles");
+  if (head.columns > (k_boundary_labels | k_boundary_uvs)) in.fail("unknown columns of triangles");
   return head;
 }
 
@@ -137,7 +139,8 @@ EncodedBoundary encode_boundary(std::uint32_t parts, const std::vector<BoundaryT
                                 const TriangleColumnsView& columns) {
   const Regions regions(parts);
   const ColumnSet set = columns.set();
-  const Head head{triangles.size(), parts, (set.labels ? k_labels : 0) | (set.uvs ? k_uvs : 0)};
+  const Head head{triangles.size(), parts,
+                  (set.labels ? k_boundary_labels : 0) | (set.uvs ? k_boundary_uvs : 0)};
   std::vector<RegionEntry> entries(regions.count());
   ByteWriter out;
   out.put(head);
@@ -158,7 +161,7 @@ EncodedBoundary encode_boundary(std::uint32_t parts, const std::vector<BoundaryT
   const std::uint64_t size = index_bytes(head);
   const FileSection index{k_seal_head_bytes, size,
                           checksum(std::string_view(payload).substr(0, size))};
-  return {seal(k_kind, k_version, payload), index};
+  return {seal(k_boundary_kind, k_boundary_version, payload), index};
 }
 
 std::vector<BoundaryTriangle> decode_boundary(std::string_view file, std::string_view what) {
@@ -168,7 +171,7 @@ std::vector<BoundaryTriangle> decode_boundary(std::string_view file, std::string
 
 std::vector<BoundaryTriangle> decode_boundary(std::string_view file, std::string_view what,
                                               TriangleColumns& columns) {
-  ByteReader in(unseal(file, k_kind, k_version, what), what);
+  ByteReader in(unseal(file, k_boundary_kind, k_boundary_version, what), what);
   columns.clear();
   const Head head = get_head(in);
   check_entries(head, in.get_array<RegionEntry>(head.regions()), what);
@@ -184,7 +187,7 @@ void scan_boundary(const Fill& fill, std::string_view what,
   constexpr std::uint64_t k_at_once = 4096;
   std::string bytes(k_seal_head_bytes, '\0');
   fill(bytes);
-  const std::uint64_t size = unseal_head(bytes, k_kind, k_version, what);
+  const std::uint64_t size = unseal_head(bytes, k_boundary_kind, k_boundary_version, what);
   bytes.resize(sizeof(Head));
   fill(bytes);
   ByteReader reader(bytes, what);

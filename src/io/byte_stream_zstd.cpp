@@ -17,7 +17,7 @@
 namespace meshfarm {
 namespace {
 
-constexpr std::uint32_t k_magic = 0xFD2FB528;
+constexpr std::uint32_t k_zstd_magic = 0xFD2FB528;
 constexpr std::uint32_t k_skippable_magic = 0x184D2A50;
 
 std::uint32_t load(std::string_view bytes, std::size_t count) {
@@ -78,7 +78,7 @@ std::optional<std::uint64_t> end_of_frame(const InputFile& file, std::uint64_t s
 bool is_zstd(std::string_view bytes) {
   if (bytes.size() < 4) return false;
   const std::uint32_t magic = load(bytes, 4);
-  return magic == k_magic || (magic & ~0xFu) == k_skippable_magic;
+  return magic == k_zstd_magic || (magic & ~0xFu) == k_skippable_magic;
 }
 
 void check_zstd_frames(const InputFile& file) {

@@ -11,7 +11,7 @@ namespace meshfarm {
 namespace {
 
 /// What stands for texture coordinates.
-constexpr std::string_view k_uvs = "uvs";
+constexpr std::string_view k_word_uvs = "uvs";
 
 /// Whether the user's name means this channel.
 bool means(std::string_view name, const Channel& channel) {
@@ -104,7 +104,7 @@ ChannelChoice parse_choice(std::string_view text, std::string_view option) {
 
 bool chooses_uvs(const ChannelChoice& choice) {
   return choice.all ||
-         std::find(choice.names.begin(), choice.names.end(), k_uvs) != choice.names.end();
+         std::find(choice.names.begin(), choice.names.end(), k_word_uvs) != choice.names.end();
 }
 
 bool chooses_labels(const ChannelChoice& choice, const LabelMeaning& labels) {
@@ -116,7 +116,7 @@ std::vector<std::size_t> chosen_columns(const ChannelChoice& choice,
                                         std::span<const Channel> channels,
                                         const std::optional<LabelMeaning>& labels) {
   for (const std::string& name : choice.names) {
-    if (name == k_uvs || (labels && name == labels->name)) continue;
+    if (name == k_word_uvs || (labels && name == labels->name)) continue;
     if (std::none_of(channels.begin(), channels.end(),
                      [&](const Channel& channel) { return means(name, channel); })) {
       throw UsageError("--attributes: there is no channel '" + name +

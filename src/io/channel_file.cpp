@@ -20,8 +20,8 @@
 namespace meshfarm {
 namespace {
 
-constexpr FileKind k_kind = {'C', 'H', 'A', 'N'};
-constexpr std::uint32_t k_version = 1;
+constexpr FileKind k_channel_kind = {'C', 'H', 'A', 'N'};
+constexpr std::uint32_t k_channel_version = 1;
 constexpr std::size_t k_most_points = 65'536;
 constexpr std::size_t k_sum_bytes = 8;
 
@@ -73,7 +73,7 @@ std::string encode_block(std::span<const Vec3> points, std::span<const float> va
   for (std::size_t c = 0; c < channels.size(); ++c) {
     put_values(out, channels[c].type, values, c, channels.size());
   }
-  return seal(k_kind, k_version, out.bytes());
+  return seal(k_channel_kind, k_channel_version, out.bytes());
 }
 
 /// Fills blocks, all but the last, whatever the batches in which the points come: the file is to be
@@ -165,13 +165,13 @@ bool ChannelReader::next(ChannelPoints& points) {
   for (const Channel& channel : staged_.channels) {
     value_bytes += static_cast<std::uint64_t>(channel.type);
   }
-  const std::uint64_t payload = unseal_head(bytes_, k_kind, k_version, what_);
+  const std::uint64_t payload = unseal_head(bytes_, k_channel_kind, k_channel_version, what_);
   if (payload > sizeof(std::uint32_t) + k_most_points * value_bytes) {
     throw DataError(what_ + ": a block of " + std::to_string(payload) + " bytes is impossible");
   }
   bytes_.resize(k_seal_head_bytes + payload + k_sum_bytes);
   fill_(std::span(bytes_).subspan(k_seal_head_bytes));
-  ByteReader in(unseal(bytes_, k_kind, k_version, what_), what_);
+  ByteReader in(unseal(bytes_, k_channel_kind, k_channel_version, what_), what_);
   const auto count = in.get<std::uint32_t>();
   if (count == 0 || count > staged_.points - done_) in.fail("an impossible number of points");
   points.points = get_positions(in, count, positions_);

@@ -26,14 +26,14 @@
 namespace meshfarm {
 namespace {
 
-using Json = nlohmann::ordered_json;
+using OrderedJson = nlohmann::ordered_json;
 
-constexpr std::uint64_t k_most_bytes = std::uint64_t{256} << 20;
+constexpr std::uint64_t k_most_compressed_bytes = std::uint64_t{256} << 20;
 constexpr unsigned k_short_bits = 16;
 constexpr std::size_t k_short_uv_bytes = 2 * sizeof(std::uint16_t);
 constexpr std::uint32_t k_longest_side = 16'384;  // of which 16 bits are an eighth of a texel
 constexpr int k_int8 = 5120;
-constexpr int k_uint16 = 5123;
+constexpr int k_gl_uint16 = 5123;
 constexpr const char* k_compression = "EXT_meshopt_compression";
 constexpr const char* k_quantisation = "KHR_mesh_quantization";
 
@@ -158,8 +158,8 @@ class Packer {
       : layout_(layout),
         bounds_(bounds),
         words_(words),
-        document_(Json::parse(gltf_document(layout, bounds, words))) {
-    document_["bufferViews"] = Json::array();
+        document_(OrderedJson::parse(gltf_document(layout, bounds, words))) {
+    document_["bufferViews"] = OrderedJson::array();
   }
 
   std::string pack(std::string binary) {
@@ -216,12 +216,12 @@ class Packer {
       }
       std::memcpy(bytes.data() + k_stride * v, row.data(), sizeof row);
     }
-    Json& accessor = accessor_of_next();
-    if (is_scaled_) accessor["componentType"] = k_uint16;
+    OrderedJson& accessor = accessor_of_next();
+    if (is_scaled_) accessor["componentType"] = k_gl_uint16;
     for (std::size_t axis = 0; axis < 3; ++axis) {
       const double unit = lattice_->step();
-      accessor["min"][axis] = is_scaled_ ? Json(lo[axis]) : Json(unit * lo[axis]);
-      accessor["max"][axis] = is_scaled_ ? Json(hi[axis]) : Json(unit * hi[axis]);
+      accessor["min"][axis] = is_scaled_ ? OrderedJson(lo[axis]) : OrderedJson(unit * lo[axis]);
+      accessor["max"][axis] = is_scaled_ ? OrderedJson(hi[axis]) : OrderedJson(unit * hi[axis]);
     }
     add_vertices(bytes, k_stride, filter);
   }
@@ -241,7 +241,7 @@ class Packer {
       meshopt_encodeFilterOct(bytes.data() + k_stride * first, end - first, k_stride, 8,
                               rows.data());
     }
-    Json& accessor = accessor_of_next();
+    OrderedJson& accessor = accessor_of_next();
     accessor["componentType"] = k_int8;
     accessor["normalized"] = true;
     add_vertices(bytes, k_stride, "OCTAHEDRAL");
@@ -269,8 +269,8 @@ class Packer {
       }
       std::memcpy(bytes.data() + k_short_uv_bytes * v, row.data(), sizeof row);
     }
-    Json& accessor = accessor_of_next();
-    accessor["componentType"] = k_uint16;
+    OrderedJson& accessor = accessor_of_next();
+    accessor["componentType"] = k_gl_uint16;
     accessor["normalized"] = true;
     add_vertices(bytes, k_short_uv_bytes);
   }
@@ -282,7 +282,7 @@ class Packer {
                                            stride));
     accessor_of_next()["bufferView"] = document_["bufferViews"].size();
     accessor_of_next()["byteOffset"] = 0;
-    Json& view = add_view(made, layout_.vertices, stride, "ATTRIBUTES", filter);
+    OrderedJson& view = add_view(made, layout_.vertices, stride, "ATTRIBUTES", filter);
     view["byteStride"] = stride;
     view["target"] = 34962;
   }
@@ -302,16 +302,18 @@ class Packer {
   }
 
   /// Each attribute has one view, in the order of the accessors.
-  Json& accessor_of_next() { return document_["accessors"][document_["bufferViews"].size()]; }
+  OrderedJson& accessor_of_next() {
+    return document_["accessors"][document_["bufferViews"].size()];
+  }
 
-  Json& add_view(std::span<const unsigned char> stream, std::uint64_t rows, std::size_t stride,
-                 const char* mode, const char* filter) {
-    Json compression = {{"buffer", 0},
-                        {"byteOffset", binary_.size()},
-                        {"byteLength", stream.size()},
-                        {"byteStride", stride},
-                        {"mode", mode},
-                        {"count", rows}};
+  OrderedJson& add_view(std::span<const unsigned char> stream, std::uint64_t rows,
+                        std::size_t stride, const char* mode, const char* filter) {
+    OrderedJson compression = {{"buffer", 0},
+                               {"byteOffset", binary_.size()},
+                               {"byteLength", stream.size()},
+                               {"byteStride", stride},
+                               {"mode", mode},
+                               {"count", rows}};
     if (filter != nullptr) compression["filter"] = filter;
     document_["bufferViews"].push_back({{"buffer", 1},
                                         {"byteOffset", unpacked_},
@@ -329,7 +331,7 @@ class Packer {
     std::uint64_t next = end;
     for (std::size_t i = 0; i < words_.images.size(); ++i) {
       const std::uint64_t bytes = words_.images[i].bytes;
-      Json& views = document_["bufferViews"];
+      OrderedJson& views = document_["bufferViews"];
       document_["images"][i]["bufferView"] = views.size();
       views.push_back({{"buffer", 0}, {"byteOffset", next}, {"byteLength", bytes}});
       end = next + bytes;
@@ -343,19 +345,19 @@ class Packer {
     document_["buffers"] = {
         {{"byteLength", end}},
         {{"byteLength", unpacked_}, {"extensions", {{k_compression, {{"fallback", true}}}}}}};
-    Json extensions = {k_compression};
+    OrderedJson extensions = {k_compression};
     if (is_scaled_ || layout_.normals) extensions.push_back(k_quantisation);
     document_["extensionsUsed"] = extensions;
     document_["extensionsRequired"] = extensions;
     if (!lattice_) return;
-    Json& node = document_["nodes"][0];
+    OrderedJson& node = document_["nodes"][0];
     node["translation"] = lattice_->origin;
     const double step = lattice_->step();
     if (is_scaled_) node["scale"] = {step, step, step};
   }
 
   std::string glb() const {
-    std::string json = document_.dump(-1, ' ', false, Json::error_handler_t::replace);
+    std::string json = document_.dump(-1, ' ', false, OrderedJson::error_handler_t::replace);
     json.resize((json.size() + 3) / 4 * 4, ' ');
     std::string made;
     made.reserve(28 + json.size() + binary_.size());
@@ -379,7 +381,7 @@ class Packer {
   const GltfLayout& layout_;
   const GltfBounds& bounds_;
   const GltfWords& words_;
-  Json document_;
+  OrderedJson document_;
   std::optional<Lattice> lattice_;
   bool is_scaled_ = false;  // the lattice is the node's, not of the floats
   std::string binary_;
@@ -389,7 +391,8 @@ class Packer {
 }  // namespace
 
 bool can_compress_glb(const GltfLayout& layout) {
-  return layout.vertices > 0 && layout.triangles > 0 && layout.binary_bytes() <= k_most_bytes;
+  return layout.vertices > 0 && layout.triangles > 0 &&
+         layout.binary_bytes() <= k_most_compressed_bytes;
 }
 
 std::string compressed_glb(const GltfLayout& layout, const GltfBounds& bounds,

@@ -37,7 +37,7 @@ namespace {
 using Numbers = std::array<double, 3>;
 
 constexpr std::uint64_t k_json_at = 20;
-constexpr std::uint64_t k_most_bytes = UINT32_MAX;
+constexpr std::uint64_t k_most_glb_bytes = UINT32_MAX;
 constexpr std::uint64_t k_most_for_viewers = std::uint64_t{1} << 31;
 constexpr std::uint64_t k_most_items = std::uint64_t{1} << 32;  // products fit 64 bits
 
@@ -62,7 +62,7 @@ std::uint64_t checked_glb_bytes(const std::filesystem::path& path, const MeshSin
   const bool is_counted = options.vertices < k_most_items && options.triangles < k_most_items;
   const std::uint64_t bytes =
       k_json_at + document_bytes(layout, options) + 8 + padded_to_4(layout.binary_bytes());
-  if (!is_counted || bytes > k_most_bytes) {
+  if (!is_counted || bytes > k_most_glb_bytes) {
     throw UsageError(path.string() + ": a GLB file with " + std::to_string(options.vertices) +
                      " vertices and " + std::to_string(options.triangles) +
                      " triangles cannot be written: it would be longer than 4 GiB; a .gltf may be");
@@ -129,7 +129,7 @@ class GlbSink final : public GltfEncoder {
   }
 
   void check_length(std::uint64_t bytes) const {
-    if (bytes > k_most_bytes) throw UsageError(path().string() + ": is longer than 4 GiB");
+    if (bytes > k_most_glb_bytes) throw UsageError(path().string() + ": is longer than 4 GiB");
   }
 
   void write_body(std::string_view bytes) override { write(bytes); }

@@ -25,7 +25,7 @@
 namespace meshfarm {
 namespace {
 
-constexpr std::uint64_t k_header_bytes = 12;
+constexpr std::uint64_t k_glb_header_bytes = 12;
 constexpr std::uint64_t k_chunk_header_bytes = 8;
 constexpr std::uint32_t k_json_chunk = 0x4e4f534a;
 constexpr std::uint32_t k_binary_chunk = 0x004e4942;
@@ -67,7 +67,7 @@ class GlbFile {
 
   GltfContainer container() const {
     GltfContainer made{.format = "GLB"};
-    std::uint64_t at = k_header_bytes;
+    std::uint64_t at = k_glb_header_bytes;
     const Chunk json = chunk(at);
     if (json.type != k_json_chunk) fail(at, "the first chunk is not the JSON");
     if (json.bytes > k_most_gltf_json) {
@@ -87,10 +87,10 @@ class GlbFile {
 
  private:
   std::uint64_t checked_length() const {
-    if (file_.size < k_header_bytes) {
+    if (file_.size < k_glb_header_bytes) {
       fail(file_.size, "truncated: the header of a GLB has 12 bytes");
     }
-    std::array<char, k_header_bytes> header{};
+    std::array<char, k_glb_header_bytes> header{};
     file_.read(0, header);
     const std::uint32_t version = word(header.data() + 4);
     const std::uint64_t length = word(header.data() + 8);
@@ -99,7 +99,7 @@ class GlbFile {
       fail(8, "truncated: the header promises " + std::to_string(length) +
                   " bytes, but the file ends at byte " + std::to_string(file_.size));
     }
-    if (length < k_header_bytes) fail(8, "the length is less than the header's own");
+    if (length < k_glb_header_bytes) fail(8, "the length is less than the header's own");
     if (length < file_.size) {
       log_warning(path_ + ": there is more in the file than its header says");
     }

@@ -12,13 +12,13 @@
 namespace meshfarm {
 namespace {
 
-using Json = nlohmann::ordered_json;
+using OrderedJson = nlohmann::ordered_json;
 
 constexpr int k_float = 5126;
 constexpr int k_uint16 = 5123;
 constexpr int k_uint32 = 5125;
 
-Json accessor(const GltfLayout& layout, std::size_t offset, int type, const char* shape) {
+OrderedJson accessor(const GltfLayout& layout, std::size_t offset, int type, const char* shape) {
   return {{"bufferView", 0},
           {"byteOffset", offset},
           {"componentType", type},
@@ -27,9 +27,10 @@ Json accessor(const GltfLayout& layout, std::size_t offset, int type, const char
 }
 
 /// The accessors of the vertices and what a primitive says of them.
-Json add_vertices(const GltfLayout& layout, const GltfBounds& bounds, Json& accessors) {
-  Json attributes = {{"POSITION", 0}};
-  accessors = Json::array({accessor(layout, 0, k_float, "VEC3")});
+OrderedJson add_vertices(const GltfLayout& layout, const GltfBounds& bounds,
+                         OrderedJson& accessors) {
+  OrderedJson attributes = {{"POSITION", 0}};
+  accessors = OrderedJson::array({accessor(layout, 0, k_float, "VEC3")});
   accessors[0]["min"] = bounds.lo;
   accessors[0]["max"] = bounds.hi;
   if (layout.normals) {
@@ -53,8 +54,8 @@ Json add_vertices(const GltfLayout& layout, const GltfBounds& bounds, Json& acce
 }
 
 /// Of the indices of triangles.
-Json index_accessor(const GltfLayout& layout, std::uint64_t first, std::uint64_t count) {
-  Json made = {{"bufferView", 1}};
+OrderedJson index_accessor(const GltfLayout& layout, std::uint64_t first, std::uint64_t count) {
+  OrderedJson made = {{"bufferView", 1}};
   if (first > 0) made["byteOffset"] = 3 * first * layout.index_bytes;
   made["componentType"] = layout.index_bytes == 2 ? k_uint16 : k_uint32;
   made["count"] = 3 * count;
@@ -63,11 +64,11 @@ Json index_accessor(const GltfLayout& layout, std::uint64_t first, std::uint64_t
 }
 
 /// The primitives, one a part, with their accessors and their materials.
-Json add_primitives(const GltfLayout& layout, const GltfWords& words, const Json& attributes,
-                    Json& document) {
+OrderedJson add_primitives(const GltfLayout& layout, const GltfWords& words,
+                           const OrderedJson& attributes, OrderedJson& document) {
   constexpr std::size_t k_first_image_view = 2;
   GltfSurfaces surfaces(words.images);
-  Json primitives = Json::array();
+  OrderedJson primitives = OrderedJson::array();
   std::uint64_t first = 0;
   for (const GltfPart& part : words.parts) {
     primitives.push_back({{"attributes", attributes},
@@ -82,14 +83,14 @@ Json add_primitives(const GltfLayout& layout, const GltfWords& words, const Json
 }
 
 void add_mesh(const GltfLayout& layout, const GltfBounds& bounds, const GltfWords& words,
-              Json& document) {
-  Json accessors;
-  const Json attributes = add_vertices(layout, bounds, accessors);
-  Json primitive = {{"attributes", attributes}};
-  Json views = Json::array({{{"buffer", 0},
-                             {"byteLength", layout.vertices_bytes()},
-                             {"byteStride", layout.vertex_bytes},
-                             {"target", 34962}}});
+              OrderedJson& document) {
+  OrderedJson accessors;
+  const OrderedJson attributes = add_vertices(layout, bounds, accessors);
+  OrderedJson primitive = {{"attributes", attributes}};
+  OrderedJson views = OrderedJson::array({{{"buffer", 0},
+                                           {"byteLength", layout.vertices_bytes()},
+                                           {"byteStride", layout.vertex_bytes},
+                                           {"target", 34962}}});
   if (layout.triangles > 0) {
     primitive["indices"] = accessors.size();
     if (words.parts.empty()) accessors.push_back(index_accessor(layout, 0, layout.triangles));
@@ -101,12 +102,12 @@ void add_mesh(const GltfLayout& layout, const GltfBounds& bounds, const GltfWord
     primitive["mode"] = 0;  // points
   }
   primitive["material"] = 0;
-  document["meshes"] = Json::array({{{"primitives", Json::array({primitive})}}});
+  document["meshes"] = OrderedJson::array({{{"primitives", OrderedJson::array({primitive})}}});
   // Else it would be taken for metal, which is black where nothing is around it.
-  document["materials"] = Json::array({{{"pbrMetallicRoughness", {{"metallicFactor", 0}}}}});
+  document["materials"] = OrderedJson::array({{{"pbrMetallicRoughness", {{"metallicFactor", 0}}}}});
   document["accessors"] = accessors;
   if (!words.parts.empty()) {
-    document["materials"] = Json::array();
+    document["materials"] = OrderedJson::array();
     document["meshes"][0]["primitives"] = add_primitives(layout, words, attributes, document);
   }
   std::uint64_t end = layout.binary_bytes();
@@ -117,10 +118,10 @@ void add_mesh(const GltfLayout& layout, const GltfBounds& bounds, const GltfWord
     end = first + image.bytes;
   }
   document["bufferViews"] = views;
-  Json buffer = Json::object();
+  OrderedJson buffer = OrderedJson::object();
   if (!words.uri.empty()) buffer["uri"] = words.uri;
   buffer["byteLength"] = end;
-  document["buffers"] = Json::array({buffer});
+  document["buffers"] = OrderedJson::array({buffer});
 }
 
 }  // namespace
@@ -162,17 +163,17 @@ std::string gltf_document(const GltfLayout& layout, const GltfBounds& bounds,
                           const GltfWords& words) {
   std::string generator = "meshfarm";
   if (!words.comment.empty()) generator += ": " + words.comment;
-  Json document = {{"asset", {{"version", "2.0"}, {"generator", generator}}}, {"scene", 0}};
+  OrderedJson document = {{"asset", {{"version", "2.0"}, {"generator", generator}}}, {"scene", 0}};
   if (layout.vertices == 0) {
-    document["scenes"] = Json::array({Json::object()});
+    document["scenes"] = OrderedJson::array({OrderedJson::object()});
   } else {
-    Json node = {{"mesh", 0}};
+    OrderedJson node = {{"mesh", 0}};
     if (bounds.translation) node["translation"] = *bounds.translation;
-    document["scenes"] = Json::array({{{"nodes", {0}}}});
-    document["nodes"] = Json::array({node});
+    document["scenes"] = OrderedJson::array({{{"nodes", {0}}}});
+    document["nodes"] = OrderedJson::array({node});
     add_mesh(layout, bounds, words, document);
   }
-  return document.dump(-1, ' ', false, Json::error_handler_t::replace);
+  return document.dump(-1, ' ', false, OrderedJson::error_handler_t::replace);
 }
 
 bool is_gltf_channel(std::span<const Channel> all, const Channel& channel) {

@@ -31,7 +31,7 @@ constexpr std::string_view k_name = "KHR_draco_mesh_compression";
 
 #ifdef MESHFARM_DRACO
 
-constexpr std::uint64_t k_most_bytes = std::uint64_t{1} << 31;
+constexpr std::uint64_t k_most_draco_bytes = std::uint64_t{1} << 31;
 constexpr std::string_view k_too_large = "is malformed, or takes more memory than there is";
 
 bool is_read(std::string_view attribute) {
@@ -199,7 +199,7 @@ std::optional<std::uint64_t> decoder_memory() {
 void unpack(const GltfValue& document, const GltfValue& primitive, const GltfValue& extension,
             GltfBuffers& buffers) {
   const auto packed = buffers.open_view(document, extension.at("bufferView").whole());
-  if (packed->size > k_most_bytes) extension.fail("is of more than 2 GiB");
+  if (packed->size > k_most_draco_bytes) extension.fail("is of more than 2 GiB");
   std::string bytes(packed->size, '\0');
   packed->read(0, bytes);
   std::vector<std::uint64_t> accessors{primitive.at("indices").whole()};

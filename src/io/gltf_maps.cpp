@@ -24,9 +24,9 @@
 namespace meshfarm {
 namespace {
 
-class Keeper {
+class ImageKeeper {
  public:
-  Keeper(const GltfValue& document, GltfBuffers& buffers, const std::string& path)
+  ImageKeeper(const GltfValue& document, GltfBuffers& buffers, const std::string& path)
       : document_(document), buffers_(buffers), pictures_(path, log_warning) {}
 
   void add(const GltfMesh& mesh, const GltfValue& primitives, GltfTriangles& triangles,
@@ -134,7 +134,7 @@ class Keeper {
 
 GltfMaps keep_gltf_maps(const GltfValue& document, GltfBuffers& buffers, GltfMeshes& meshes,
                         GltfLabels& labels, const std::string& path) {
-  Keeper keeper(document, buffers, path);
+  ImageKeeper keeper(document, buffers, path);
   std::vector<Material>* const materials = labels.meaning ? &labels.meaning->materials : nullptr;
   for (auto& [number, mesh] : meshes) {
     const GltfValue primitives = document.at("meshes").item(number).at("primitives");

@@ -17,8 +17,8 @@ namespace {
 
 constexpr std::array<std::string_view, 4> k_modes_without_triangles{"points", "lines", "line loops",
                                                                     "line strips"};
-constexpr std::uint64_t k_uint16 = 5123;
-constexpr std::uint64_t k_float = 5126;
+constexpr std::uint64_t k_index_uint16 = 5123;
+constexpr std::uint64_t k_value_float = 5126;
 constexpr std::uint64_t k_no_accessor = UINT64_MAX;
 
 /// Which accessors a primitive's vertices are.
@@ -38,7 +38,7 @@ bool is_whole_number(PlyType type) {
 /// programs mostly make linear colours of 16 bits and floats from, and all that many read of PLY.
 ChannelType colour_type(const GltfValue& accessor) {
   const std::uint64_t type = accessor.at("componentType").whole();
-  if (type != k_uint16 && type != k_float) return ChannelType::uint8;
+  if (type != k_index_uint16 && type != k_value_float) return ChannelType::uint8;
   if (const auto extras = accessor.find("extras"); extras && extras->json().is_object()) {
     const nlohmann::json bits = extras->json().value(k_srgb_bits_extra, nlohmann::json());
     if (bits == 16) return ChannelType::uint16;

@@ -11,7 +11,7 @@
 namespace meshfarm {
 namespace {
 
-constexpr std::uint64_t k_most_bytes = std::uint64_t{1} << 31;
+constexpr std::uint64_t k_most_meshopt_bytes = std::uint64_t{1} << 31;
 /// No codec makes more of a byte: of 16 rows of a column of bytes there are two bits at least.
 constexpr std::uint64_t k_most_growth = 256;
 
@@ -68,11 +68,11 @@ Packed checked(const GltfValue& view, const GltfValue& compression,
   if (!is_filter || (made.mode != Mode::attributes && made.filter != "NONE")) {
     compression.at("filter").fail("is not known, or does not fit the stride");
   }
-  if (made.rows * made.stride > k_most_bytes) {
+  if (made.rows * made.stride > k_most_meshopt_bytes) {
     compression.fail("is of more than 2 GiB when it is decompressed");
   }
   check_view(view, made);
-  if (compressed_bytes > k_most_bytes) compression.fail("is of more than 2 GiB");
+  if (compressed_bytes > k_most_meshopt_bytes) compression.fail("is of more than 2 GiB");
   if (made.rows * made.stride > k_most_growth * compressed_bytes) {
     compression.fail("is malformed: it is too short for its count");
   }

@@ -24,7 +24,7 @@
 namespace meshfarm {
 namespace {
 
-constexpr std::uint64_t k_most_vertices = std::uint64_t{1} << 62;
+constexpr std::uint64_t k_most_gltf_vertices = std::uint64_t{1} << 62;
 
 /// Which of the channels there are, and in which order their values come: the normal, the colour.
 struct GltfChannels {
@@ -147,7 +147,7 @@ class GltfSource final : public MeshSource {
       info_.vertices += mesh.vertex_count;
       info_.faces += mesh.triangle_count;
       if (std::max({info_.vertices, info_.faces, mesh.vertex_count, mesh.triangle_count}) >
-          k_most_vertices) {
+          k_most_gltf_vertices) {
         throw DataError(place_ + "the nodes show more than 2^62 vertices or triangles");
       }
       for (const GltfVertices& vertices : mesh.vertices) {

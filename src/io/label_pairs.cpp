@@ -9,7 +9,7 @@
 namespace meshfarm {
 namespace {
 
-using Numbers = std::map<std::string, Label>;
+using PairNumbers = std::map<std::string, Label>;
 
 /// Names as every format can write them.
 std::string key_of(std::string name) {
@@ -36,13 +36,13 @@ std::map<Label, std::string> keys_of(const MeantLabels& mesh) {
 
 bool have_one_in_common(const std::map<Label, std::string>& a,
                         const std::map<Label, std::string>& b) {
-  Numbers names;
+  PairNumbers names;
   for (const auto& [label, key] : a) names.emplace(key, label);
   return std::any_of(b.begin(), b.end(),
                      [&](const auto& each) { return names.count(each.second) != 0; });
 }
 
-void renumber(MeantLabels& mesh, const std::map<Label, std::string>& keys, Numbers& numbers) {
+void renumber(MeantLabels& mesh, const std::map<Label, std::string>& keys, PairNumbers& numbers) {
   std::map<Label, Label> shared;
   for (const auto& [label, key] : keys) {
     const auto next = static_cast<Label>(numbers.size());
@@ -60,7 +60,7 @@ void pair_labels(MeantLabels& a, MeantLabels& b) {
   const std::map<Label, std::string> of_a = keys_of(a);
   const std::map<Label, std::string> of_b = keys_of(b);
   if (a_has_names != b_has_names && !have_one_in_common(of_a, of_b)) return;
-  Numbers numbers;
+  PairNumbers numbers;
   renumber(a, of_a, numbers);
   renumber(b, of_b, numbers);
 }

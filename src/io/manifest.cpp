@@ -32,8 +32,8 @@
 namespace meshfarm {
 namespace {
 
-constexpr FileKind k_kind = {'M', 'N', 'F', 'T'};
-constexpr std::uint32_t k_version = 7;
+constexpr FileKind k_manifest_kind = {'M', 'N', 'F', 'T'};
+constexpr std::uint32_t k_manifest_version = 7;
 
 /// A manifest may name only files of the kind that stands in that place.
 template <class Name>
@@ -75,8 +75,8 @@ StagedChannels get_channels(ByteReader& in) {
   return staged;
 }
 
-constexpr std::uint8_t k_labels = 1;
-constexpr std::uint8_t k_uvs = 2;
+constexpr std::uint8_t k_has_labels = 1;
+constexpr std::uint8_t k_has_uvs = 2;
 
 void put_material(ByteWriter& out, const Material& material, bool uvs) {
   out.put_string(material.name);
@@ -110,7 +110,7 @@ Material get_material(ByteReader& in, bool uvs) {
 
 /// What triangles have beside their corners.
 void put_columns(ByteWriter& out, const Manifest& m) {
-  out.put(static_cast<std::uint8_t>((m.labels ? k_labels : 0) | (m.uvs ? k_uvs : 0)));
+  out.put(static_cast<std::uint8_t>((m.labels ? k_has_labels : 0) | (m.uvs ? k_has_uvs : 0)));
   if (m.labels) {
     out.put_string(m.labels->name);
     out.put(static_cast<std::uint32_t>(m.labels->materials.size()));
@@ -154,9 +154,9 @@ void get_pictures(ByteReader& in, Manifest& m) {
 
 void get_columns(ByteReader& in, Manifest& m) {
   const auto columns = in.get<std::uint8_t>();
-  if (columns > (k_labels | k_uvs)) in.fail("unknown columns of triangles");
-  m.uvs = (columns & k_uvs) != 0;
-  if ((columns & k_labels) != 0) m.labels = get_labels(in, m.uvs);
+  if (columns > (k_has_labels | k_has_uvs)) in.fail("unknown columns of triangles");
+  m.uvs = (columns & k_has_uvs) != 0;
+  if ((columns & k_has_labels) != 0) m.labels = get_labels(in, m.uvs);
   m.label_corners = in.get<std::uint64_t>();
   if (!m.uvs) return;
   m.uv_floor = in.get<std::uint64_t>();
@@ -241,11 +241,11 @@ std::string encode_manifest(const Manifest& m) {
   if (m.sorting) put(out, *m.sorting);
   put_parts(out, m.parts);
   put_parts(out, m.samples);
-  return seal(k_kind, k_version, out.bytes());
+  return seal(k_manifest_kind, k_manifest_version, out.bytes());
 }
 
 Manifest decode_manifest(std::string_view file, std::string_view what) {
-  ByteReader in(unseal(file, k_kind, k_version, what), what);
+  ByteReader in(unseal(file, k_manifest_kind, k_manifest_version, what), what);
   Manifest m;
   m.input = in.get_string();
   m.input_format = in.get_string();

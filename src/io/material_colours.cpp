@@ -51,7 +51,7 @@ Between between(double place, std::uint32_t size, TextureWrap wrap) {
 }
 
 /// What a picture shows; `texels` as in MaterialColours::at.
-Linear shown(const PictureLevels& picture, const Material& material, Uv uv, double texels) {
+Linear looked_up(const PictureLevels& picture, const Material& material, Uv uv, double texels) {
   const std::vector<LevelSize>& sizes = picture.sizes();
   std::size_t level = 0;
   for (double side = 2; side <= texels && level + 1 < sizes.size(); side *= 2) ++level;
@@ -124,7 +124,7 @@ class MaterialColours::Impl {
     const Material& material = materials_[label];
     const PictureLevels* const picture = picture_at(label);
     Linear colour{1, 1, 1};
-    if (picture != nullptr) colour = shown(*picture, material, uv, texels);
+    if (picture != nullptr) colour = looked_up(*picture, material, uv, texels);
     for (std::size_t c = 0; c < 3; ++c) colour[c] *= material.colour[c];
     return colour;
   }

@@ -38,7 +38,7 @@ std::string_view take_word(std::string_view& text) {
   return word;
 }
 
-bool is_word(std::string_view text, std::string_view lower) {
+bool is_mtl_word(std::string_view text, std::string_view lower) {
   return std::equal(text.begin(), text.end(), lower.begin(), lower.end(), [](char a, char b) {
     return a == b || (a >= 'A' && a <= 'Z' && a + ('a' - 'A') == b);
   });
@@ -64,7 +64,7 @@ void take_numbers(std::string_view& text, std::array<double, 2>& values) {
 }
 
 std::size_t arguments_of(std::string_view option) {
-  return is_word(option, "-mm") ? 2 : 1;
+  return is_mtl_word(option, "-mm") ? 2 : 1;
 }
 
 void read_map(std::string_view text, MtlMap& map) {
@@ -75,14 +75,14 @@ void read_map(std::string_view text, MtlMap& map) {
     if (rest.empty()) break;  // a file with an odd name
     text = rest;
     std::array<double, 2> ignored{};
-    if (is_word(option, "-s")) {
+    if (is_mtl_word(option, "-s")) {
       take_numbers(text, map.scale);
-    } else if (is_word(option, "-o")) {
+    } else if (is_mtl_word(option, "-o")) {
       take_numbers(text, map.offset);
-    } else if (is_word(option, "-t")) {
+    } else if (is_mtl_word(option, "-t")) {
       take_numbers(text, ignored);
-    } else if (is_word(option, "-clamp")) {
-      map.is_clamped = is_word(take_word(text), "on");
+    } else if (is_mtl_word(option, "-clamp")) {
+      map.is_clamped = is_mtl_word(take_word(text), "on");
     } else {
       for (std::size_t i = 0; i < arguments_of(option); ++i) take_word(text);
     }
@@ -105,19 +105,19 @@ void read_colour(std::string_view text, MtlMaterial& material) {
 }
 
 bool is_map(std::string_view word) {
-  return (word.size() > 4 && is_word(word.substr(0, 4), "map_")) || is_word(word, "disp") ||
-         is_word(word, "decal") || is_word(word, "refl");
+  return (word.size() > 4 && is_mtl_word(word.substr(0, 4), "map_")) || is_mtl_word(word, "disp") ||
+         is_mtl_word(word, "decal") || is_mtl_word(word, "refl");
 }
 
 /// Of the words for a normal map "norm" says what it is; the others may be of heights, too.
 void read_maps(std::string_view word, std::string_view line, MtlMaterial& material) {
-  if (is_word(word, "map_kd")) {
+  if (is_mtl_word(word, "map_kd")) {
     read_map(line, material.map);
-  } else if (is_word(word, "map_ke")) {
+  } else if (is_mtl_word(word, "map_ke")) {
     read_map(line, material.emission);
-  } else if (is_word(word, "norm")) {
+  } else if (is_mtl_word(word, "norm")) {
     read_map(line, material.normals);
-  } else if (is_word(word, "map_bump") || is_word(word, "bump")) {
+  } else if (is_mtl_word(word, "map_bump") || is_mtl_word(word, "bump")) {
     if (material.normals.file.empty()) read_map(line, material.normals);
   } else if (is_map(word)) {
     material.other_maps.emplace_back(word);
@@ -127,7 +127,7 @@ void read_maps(std::string_view word, std::string_view line, MtlMaterial& materi
 /// 0 to 1.
 std::optional<double> alpha_of(std::string_view text) {
   std::string_view word = take_word(text);
-  if (is_word(word, "-halo")) word = take_word(text);
+  if (is_mtl_word(word, "-halo")) word = take_word(text);
   const std::optional<double> value = number_of(word);
   return value ? std::optional(std::clamp(*value, 0.0, 1.0)) : std::nullopt;
 }
@@ -144,17 +144,17 @@ std::vector<MtlMaterial> parse_mtl(std::string_view text) {
     std::string_view line = text.substr(0, end);
     text.remove_prefix(std::min(end + 1, text.size()));
     const std::string_view word = take_word(line);
-    if (is_word(word, "newmtl")) {
+    if (is_mtl_word(word, "newmtl")) {
       made.push_back({.name = std::string(line)});
       has_alpha = false;
     } else if (made.empty()) {
       continue;
-    } else if (is_word(word, "kd")) {
+    } else if (is_mtl_word(word, "kd")) {
       read_colour(line, made.back());
-    } else if (is_word(word, "d")) {
+    } else if (is_mtl_word(word, "d")) {
       if (const auto alpha = alpha_of(line)) made.back().alpha = *alpha;
       has_alpha = true;
-    } else if (is_word(word, "tr") && !has_alpha) {
+    } else if (is_mtl_word(word, "tr") && !has_alpha) {
       if (const auto opposite = alpha_of(line)) made.back().alpha = 1 - *opposite;
     } else {
       read_maps(word, line, made.back());

@@ -33,12 +33,12 @@ class Libraries {
   void add_named(const std::string& names) {
     const std::filesystem::path folder = path_.parent_path();
     if (const auto whole = find_beside(folder, names)) return add(*whole);
-    constexpr std::string_view k_blanks = " \t";
+    constexpr std::string_view k_between = " \t";
     std::string_view rest = names;
     while (!rest.empty()) {
-      const std::string_view name = rest.substr(0, rest.find_first_of(k_blanks));
+      const std::string_view name = rest.substr(0, rest.find_first_of(k_between));
       rest.remove_prefix(name.size());
-      rest.remove_prefix(std::min(rest.find_first_not_of(k_blanks), rest.size()));
+      rest.remove_prefix(std::min(rest.find_first_not_of(k_between), rest.size()));
       if (const auto found = find_beside(folder, name)) {
         add(*found);
       } else {

@@ -19,8 +19,8 @@
 namespace meshfarm {
 namespace {
 
-constexpr FileKind k_kind = {'P', 'A', 'R', 'T'};
-constexpr std::uint32_t k_version = 2;
+constexpr FileKind k_part_kind = {'P', 'A', 'R', 'T'};
+constexpr std::uint32_t k_part_version = 2;
 
 }  // namespace
 
@@ -36,11 +36,11 @@ std::string encode_part(const Part& part) {
   put_columns(out, part.mesh.columns);
   TrianglePacker packer;
   for (const Triangle& t : part.mesh.triangles) out.put_array(std::span(packer.pack(t)));
-  return seal(k_kind, k_version, out.bytes());
+  return seal(k_part_kind, k_part_version, out.bytes());
 }
 
 Part decode_part(std::string_view file, std::string_view what) {
-  ByteReader in(unseal(file, k_kind, k_version, what), what);
+  ByteReader in(unseal(file, k_part_kind, k_part_version, what), what);
   Part part;
   const VertexFormat format = get_vertex_format(in);
   part.positions = format.positions;

@@ -19,7 +19,7 @@ namespace {
 constexpr std::size_t k_most_open = 256;
 
 /// One word that every format can hold, in the folder.
-std::string word_of(std::string name) {
+std::string file_word_of(std::string name) {
   for (char& c : name) {
     const bool is_odd = static_cast<unsigned char>(c) <= ' ' || c == '\x7f' || c == '#' ||
                         c == '\\' || c == '/' || c == '"';
@@ -47,7 +47,7 @@ bool holds(const std::filesystem::path& path, const std::string& bytes) {
 
 PicturesBeside::PicturesBeside(const std::filesystem::path& mesh, PictureFiles pictures)
     : folder_(mesh.parent_path()),
-      before_(word_of(mesh.stem().string()) + "_"),
+      before_(file_word_of(mesh.stem().string()) + "_"),
       pictures_(std::move(pictures)) {}
 
 const std::string& PicturesBeside::name_of(std::size_t picture) {
@@ -58,7 +58,7 @@ const std::string& PicturesBeside::name_of(std::size_t picture) {
 
 /// A picture that a mesh of this name had already keeps its name.
 std::string PicturesBeside::free_name(std::size_t picture) {
-  const std::filesystem::path wanted = word_of(last_part(pictures_.names.at(picture)));
+  const std::filesystem::path wanted = file_word_of(last_part(pictures_.names.at(picture)));
   std::string stem = wanted.stem().string();
   if (!stem.starts_with(before_)) stem.insert(0, before_);
   const std::string extension = wanted.extension().string();

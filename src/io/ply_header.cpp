@@ -16,9 +16,9 @@
 namespace meshfarm {
 namespace {
 
-constexpr std::string_view k_blanks = " \t\r\v\f";
+constexpr std::string_view k_header_blanks = " \t\r\v\f";
 constexpr std::string_view k_byte_order_mark = "\xef\xbb\xbf";  // of UTF-8: some editors add it
-constexpr std::size_t k_most_names = 4096;  // each new name is compared with all before it
+constexpr std::size_t k_most_header_names = 4096;  // each new name is compared with all before it
 
 std::string_view trimmed(std::string_view text, std::string_view what) {
   const std::size_t first = text.find_first_not_of(what);
@@ -28,8 +28,8 @@ std::string_view trimmed(std::string_view text, std::string_view what) {
 
 std::vector<std::string_view> words_of(std::string_view line) {
   std::vector<std::string_view> words;
-  while (!(line = trimmed(line, k_blanks)).empty()) {
-    words.push_back(line.substr(0, line.find_first_of(k_blanks)));
+  while (!(line = trimmed(line, k_header_blanks)).empty()) {
+    words.push_back(line.substr(0, line.find_first_of(k_header_blanks)));
     line.remove_prefix(words.back().size());
   }
   return words;
@@ -83,7 +83,7 @@ class HeaderParser {
     const std::vector<std::string_view> words = words_of(line);
     if (words.size() > 2 && words[0] == "comment" && words[1] == "TextureFile") {
       const auto start = static_cast<std::size_t>(words[2].data() - line.data());
-      header_.texture_files.emplace_back(trimmed(line.substr(start), k_blanks));
+      header_.texture_files.emplace_back(trimmed(line.substr(start), k_header_blanks));
     }
     if (words.empty() || words[0] == "comment" || words[0] == "obj_info") return false;
     if (words[0] == "end_header") return true;
@@ -121,7 +121,7 @@ class HeaderParser {
 
   void parse_element(const std::vector<std::string_view>& words) {
     if (words.size() != 3) fail("an element line is: element NAME COUNT");
-    if (header_.elements.size() == k_most_names) fail("too many elements");
+    if (header_.elements.size() == k_most_header_names) fail("too many elements");
     PlyElement element;
     element.name = words[1];
     for (const PlyElement& other : header_.elements) {
@@ -144,7 +144,7 @@ class HeaderParser {
     property.type = type_of(words[list ? 3 : 1]);
     property.name = words.back();
     PlyElement& element = header_.elements.back();
-    if (element.properties.size() == k_most_names) fail("too many properties");
+    if (element.properties.size() == k_most_header_names) fail("too many properties");
     for (const PlyProperty& other : element.properties) {
       if (other.name == property.name) {
         fail("element " + shown(element.name) + " has a second property " + shown(property.name));
@@ -222,7 +222,7 @@ bool is_ply(std::string_view start) {
   start.remove_prefix(std::min(start.find_first_not_of("\r\n"), start.size()));
   if (!start.starts_with("ply")) return false;
   start = start.substr(3, start.find_first_of("\r\n") - 3);
-  return trimmed(start, k_blanks).empty();
+  return trimmed(start, k_header_blanks).empty();
 }
 
 PlyHeader parse_ply_header(std::string_view start, const std::filesystem::path& path) {

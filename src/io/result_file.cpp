@@ -38,12 +38,12 @@
 namespace meshfarm {
 namespace {
 
-constexpr FileKind k_magic = {'M', 'F', 'R', 'M'};
-constexpr FileKind k_kind = {'R', 'S', 'L', 'T'};
-constexpr std::uint32_t k_version = 2;
-constexpr std::uint32_t k_byte_order = 0x01020304;
+constexpr FileKind k_result_magic = {'M', 'F', 'R', 'M'};
+constexpr FileKind k_result_kind = {'R', 'S', 'L', 'T'};
+constexpr std::uint32_t k_result_version = 2;
+constexpr std::uint32_t k_result_byte_order = 0x01020304;
 constexpr std::uint32_t k_max_rungs = 256;
-constexpr std::uint32_t k_most_in_block = 65536;
+constexpr std::uint32_t k_most_in_result_block = 65536;
 constexpr std::uint32_t k_max_sets = 1 << 20;
 constexpr std::uint8_t k_end_of_rungs = 0;
 constexpr std::uint8_t k_block = 1;
@@ -127,10 +127,10 @@ class ResultReader {
   }
 
   void read_head() {
-    if (get<FileKind>() != k_magic) fail("not a meshfarm file");
-    if (get<FileKind>() != k_kind) fail("not a result");
-    if (get<std::uint32_t>() != k_version) fail("a result of an unknown version");
-    if (get<std::uint32_t>() != k_byte_order) fail("written with another byte order");
+    if (get<FileKind>() != k_result_magic) fail("not a meshfarm file");
+    if (get<FileKind>() != k_result_kind) fail("not a result");
+    if (get<std::uint32_t>() != k_result_version) fail("a result of an unknown version");
+    if (get<std::uint32_t>() != k_result_byte_order) fail("written with another byte order");
     const std::optional<VertexFormat> format = vertex_format_of(get<std::uint8_t>());
     if (!format) fail("unknown kind of positions");
     format_ = *format;
@@ -141,7 +141,8 @@ class ResultReader {
   void read_block(bool is_wanted) {
     const auto vertices = get<std::uint32_t>();
     const auto triangles = get<std::uint32_t>();
-    if (vertices > k_most_in_block || triangles > k_most_in_block) fail("impossible counts");
+    if (vertices > k_most_in_result_block || triangles > k_most_in_result_block)
+      fail("impossible counts");
     counts_.vertices += vertices;
     counts_.triangles += triangles;
     bytes_.resize(vertices * format_.bytes() +
@@ -158,7 +159,7 @@ class ResultReader {
   std::vector<Vec3> read_points(std::uint32_t count) {
     std::vector<Vec3> points;
     while (points.size() < count) {
-      const auto some = std::min<std::size_t>(k_most_in_block, count - points.size());
+      const auto some = std::min<std::size_t>(k_most_in_result_block, count - points.size());
       bytes_.resize(some * 3 * static_cast<std::size_t>(format_.positions));
       take();
       ByteReader in(bytes_, what_);
@@ -173,7 +174,7 @@ class ResultReader {
     mesh.positions = read_points(result_.boundary_vertices);
     if (!format_.appearances) return;
     while (mesh.appearances.size() < result_.boundary_vertices) {
-      const auto some = std::min<std::size_t>(k_most_in_block,
+      const auto some = std::min<std::size_t>(k_most_in_result_block,
                                               result_.boundary_vertices - mesh.appearances.size());
       bytes_.resize(some * sizeof(Appearance));
       take();
@@ -259,10 +260,10 @@ ResultSummary decode_summary(std::string_view bytes, std::string_view what) {
 ResultWriter::ResultWriter(const Vertices& vertices, Write write)
     : vertices_(vertices), write_(std::move(write)) {
   ByteWriter out;
-  out.put(k_magic);
-  out.put(k_kind);
-  out.put(k_version);
-  out.put(k_byte_order);
+  out.put(k_result_magic);
+  out.put(k_result_kind);
+  out.put(k_result_version);
+  out.put(k_result_byte_order);
   put_vertex_format(out, {vertices_.positions, vertices_.appearances, vertices_.columns});
   out.put(vertices_.boundary);
   put(out.bytes());
@@ -281,8 +282,8 @@ void ResultWriter::add(VertexView vertices, std::span<const Triangle> triangles,
   rung_.vertices += vertices.size();
   rung_.triangles += triangles.size();
   for (std::size_t done = 0; vertices.size() > 0 || !triangles.empty();) {
-    const std::size_t points = std::min<std::size_t>(vertices.size(), k_most_in_block);
-    const std::size_t corners = std::min<std::size_t>(triangles.size(), k_most_in_block);
+    const std::size_t points = std::min<std::size_t>(vertices.size(), k_most_in_result_block);
+    const std::size_t corners = std::min<std::size_t>(triangles.size(), k_most_in_result_block);
     ByteWriter out;
     out.put(k_block);
     out.put(static_cast<std::uint32_t>(points));

@@ -20,8 +20,8 @@
 namespace meshfarm {
 namespace {
 
-constexpr FileKind k_kind = {'S', 'L', 'A', 'B'};
-constexpr std::uint32_t k_version = 2;
+constexpr FileKind k_slab_kind = {'S', 'L', 'A', 'B'};
+constexpr std::uint32_t k_slab_version = 2;
 
 /// Ascending, and those of one sheet at one point.
 void check_apart(const ByteReader& in, const MeshShare& slab) {
@@ -60,11 +60,11 @@ std::string encode_slab(const MeshShare& slab) {
   put_columns(out, slab.columns);
   TrianglePacker packer;
   for (const Triangle& t : slab.triangles) out.put_array(std::span(packer.pack(t)));
-  return seal(k_kind, k_version, out.bytes());
+  return seal(k_slab_kind, k_slab_version, out.bytes());
 }
 
 MeshShare decode_slab(std::string_view file, std::string_view what) {
-  ByteReader in(unseal(file, k_kind, k_version, what), what);
+  ByteReader in(unseal(file, k_slab_kind, k_slab_version, what), what);
   MeshShare slab;
   const VertexFormat format = get_vertex_format(in);
   slab.type = format.positions;

@@ -20,7 +20,7 @@ namespace meshfarm {
 namespace {
 
 constexpr std::size_t k_comment_bytes = 80;
-constexpr std::size_t k_facet_bytes = 50;
+constexpr std::size_t k_written_facet_bytes = 50;
 
 const MeshSinkOptions& checked_triangles(const MeshSinkOptions& options) {
   if (options.triangles > UINT32_MAX) {
@@ -79,7 +79,7 @@ class StlSink final : public FileSink {
   KeptPositions kept_;
   std::unique_ptr<PositionLookup> lookup_;
   std::vector<Vec3> rounded_;  // of a batch
-  std::vector<char> buffer_ = std::vector<char>(k_most_at_once * k_facet_bytes);
+  std::vector<char> buffer_ = std::vector<char>(k_most_at_once * k_written_facet_bytes);
 };
 
 }  // namespace

@@ -28,12 +28,12 @@
 namespace meshfarm {
 namespace {
 
-constexpr FileKind k_magic = {'M', 'F', 'R', 'M'};
-constexpr FileKind k_kind = {'S', 'T', 'R', 'M'};
-constexpr std::uint32_t k_version = 1;
+constexpr FileKind k_stream_magic = {'M', 'F', 'R', 'M'};
+constexpr FileKind k_stream_kind = {'S', 'T', 'R', 'M'};
+constexpr std::uint32_t k_stream_version = 1;
 constexpr std::uint32_t k_byte_order = 0x01020304;
 constexpr std::size_t k_head_bytes = 4 + 4 + 4 + 4 + 1 + 4 + 8 + 8;
-constexpr std::size_t k_sum_bytes = 8;
+constexpr std::size_t k_stream_sum_bytes = 8;
 constexpr std::size_t k_block_head_bytes = 12;
 constexpr std::uint32_t k_most_in_block = 65536;
 constexpr std::uint32_t k_triangles_in_block = 16384;  // what the writer aims at
@@ -123,9 +123,9 @@ class StreamEncoder {
 
   void put_head() {
     ByteWriter out;
-    out.put(k_magic);
-    out.put(k_kind);
-    out.put(k_version);
+    out.put(k_stream_magic);
+    out.put(k_stream_kind);
+    out.put(k_stream_version);
     out.put(k_byte_order);
     put_vertex_format(out, format_);
     out.put(static_cast<std::uint32_t>(
@@ -187,12 +187,12 @@ void StreamReader::fail(const std::string& why) const {
 }
 
 void StreamReader::read_head() {
-  bytes_.resize(k_head_bytes + k_sum_bytes);
+  bytes_.resize(k_head_bytes + k_stream_sum_bytes);
   fill_(bytes_);
   ByteReader in(bytes_, what_);
-  if (in.get<FileKind>() != k_magic) in.fail("not a meshfarm file");
-  if (in.get<FileKind>() != k_kind) in.fail("not a stream");
-  if (in.get<std::uint32_t>() != k_version) in.fail("a stream of an unknown version");
+  if (in.get<FileKind>() != k_stream_magic) in.fail("not a meshfarm file");
+  if (in.get<FileKind>() != k_stream_kind) in.fail("not a stream");
+  if (in.get<std::uint32_t>() != k_stream_version) in.fail("a stream of an unknown version");
   if (in.get<std::uint32_t>() != k_byte_order) in.fail("written with another byte order");
   sum_ = checksum(std::string_view(bytes_).substr(0, k_head_bytes));
   const VertexFormat format = get_vertex_format(in);
@@ -226,11 +226,11 @@ bool StreamReader::next(StreamBlock& block) {
   const VertexFormat format{info_.positions, info_.appearances, info_.columns};
   const std::size_t size = k_block_head_bytes + vertices * format.bytes() +
                            boundary * sizeof(std::uint32_t) + triangles * triangle_bytes(format);
-  bytes_.resize(size + k_sum_bytes);
+  bytes_.resize(size + k_stream_sum_bytes);
   fill_(std::span<char>(bytes_).subspan(k_block_head_bytes));
   sum_ = next_sum(sum_, std::string_view(bytes_).substr(0, size));
   std::uint64_t stored = 0;
-  std::memcpy(&stored, bytes_.data() + size, k_sum_bytes);
+  std::memcpy(&stored, bytes_.data() + size, k_stream_sum_bytes);
   if (stored != sum_) fail("damaged (checksum)");
   ByteReader in(bytes_, what_);
   in.take(k_block_head_bytes);
@@ -301,7 +301,7 @@ void StreamReader::check_end() const {
 }
 
 bool is_stream(std::string_view start) {
-  const std::array<FileKind, 2> kinds = {k_magic, k_kind};
+  const std::array<FileKind, 2> kinds = {k_stream_magic, k_stream_kind};
   return start.size() >= sizeof kinds && std::memcmp(start.data(), &kinds, sizeof kinds) == 0;
 }
 

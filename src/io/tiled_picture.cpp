@@ -22,8 +22,8 @@
 namespace meshfarm {
 namespace {
 
-constexpr FileKind k_kind = {'T', 'I', 'L', 'E'};
-constexpr std::uint32_t k_version = 1;
+constexpr FileKind k_tiles_kind = {'T', 'I', 'L', 'E'};
+constexpr std::uint32_t k_tiles_version = 1;
 
 std::uint32_t tiles_along(std::uint32_t texels) {
   return (texels + k_picture_tile - 1) / k_picture_tile;
@@ -70,13 +70,13 @@ FileSection TiledPicturesWriter::finish() {
   ByteWriter out;
   out.put(pictures_);
   out.put_array(std::span<const char>(directory_.bytes()));
-  return sections_.add(seal(k_kind, k_version, out.bytes()));
+  return sections_.add(seal(k_tiles_kind, k_tiles_version, out.bytes()));
 }
 
 std::vector<std::unique_ptr<TiledLevels>> decode_tiled_pictures(
     std::string_view directory, std::string_view what,
     const std::shared_ptr<const SectionedFile>& file, const std::shared_ptr<TileCache>& cache) {
-  ByteReader in(unseal(directory, k_kind, k_version, what), what);
+  ByteReader in(unseal(directory, k_tiles_kind, k_tiles_version, what), what);
   std::vector<std::unique_ptr<TiledLevels>> opened;
   const auto count = in.get<std::uint32_t>();
   for (std::uint32_t i = 0; i < count; ++i) {

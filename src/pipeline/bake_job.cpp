@@ -24,10 +24,10 @@ namespace {
 // tile parameters: version u8 | pictures u32 x number u32
 // tile summary: directory section | damaged u32 x number u32
 // bake parameters: version u8 | file | scene section | chunk u32 | pictures u32 x (file | section)
-constexpr std::uint8_t k_version = 1;
+constexpr std::uint8_t k_bake_job_version = 1;
 
 void expect_version(ByteReader& in) {
-  if (in.get<std::uint8_t>() != k_version) in.fail("made by another version of meshfarm");
+  if (in.get<std::uint8_t>() != k_bake_job_version) in.fail("made by another version of meshfarm");
 }
 
 ResultName name_of(const Job& job, const JobContext& context) {
@@ -42,7 +42,7 @@ void expect_to_go_on(const JobContext& context, std::uint64_t done) {
 
 std::string encode_parameters(const FinishParameters& parameters) {
   ByteWriter out;
-  out.put(k_version);
+  out.put(k_bake_job_version);
   out.put(parameters.run);
   out.put(parameters.chosen);
   return out.take();
@@ -70,7 +70,7 @@ FinishSummary decode_finish_summary(std::string_view bytes, std::string_view wha
 
 std::string encode_parameters(const TileParameters& parameters) {
   ByteWriter out;
-  out.put(k_version);
+  out.put(k_bake_job_version);
   put_list(out, parameters.pictures);
   return out.take();
 }
@@ -101,7 +101,7 @@ TileSummary decode_tile_summary(std::string_view bytes, std::string_view what) {
 
 std::string encode_parameters(const BakeParameters& parameters) {
   ByteWriter out;
-  out.put(k_version);
+  out.put(k_bake_job_version);
   put_file(out, parameters.file);
   out.put(parameters.scene);
   out.put(parameters.chunk);

@@ -13,7 +13,7 @@
 namespace meshfarm {
 namespace {
 
-constexpr std::uint64_t k_process_bytes = std::uint64_t{16} << 20;
+constexpr std::uint64_t k_bake_process_bytes = std::uint64_t{16} << 20;
 /// A part with its columns, what finds the places on it, and the file that it is read from.
 constexpr std::uint64_t k_bytes_of_triangle = 150;
 constexpr std::uint64_t k_usual_pieces = std::uint64_t{128} << 20;
@@ -36,7 +36,7 @@ std::uint64_t bake_piece_bytes(const Manifest& manifest) {
 }
 
 std::uint64_t memory_of_bake(const Manifest& manifest) {
-  return k_process_bytes + bake_piece_bytes(manifest) + k_tile_cache_bytes + k_chunk_bytes;
+  return k_bake_process_bytes + bake_piece_bytes(manifest) + k_tile_cache_bytes + k_chunk_bytes;
 }
 
 bool bakes_texture(const Manifest& manifest, const RunOptions& options) {
@@ -110,7 +110,7 @@ std::vector<Job> BakeStage::tile_jobs() const {
   for (std::size_t j = 0; j < count; ++j) {
     TileParameters parameters;
     Job job;
-    job.memory = k_process_bytes + finish_.tile_memory;
+    job.memory = k_bake_process_bytes + finish_.tile_memory;
     for (std::size_t i = j * used.size() / count; i < (j + 1) * used.size() / count; ++i) {
       const FileRef& file = manifest_.pictures[used[i]].file;
       parameters.pictures.push_back(used[i]);

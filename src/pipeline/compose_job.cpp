@@ -20,7 +20,7 @@ namespace {
 // Version 4: first part u32 | all parts u32 | inputs u32 x (parts u32 | rung u32) |
 // boundary (name | size u64 | hash u64) | its index (offset u64 | size u64 | hash u64) | level i32
 // | greatest cost f64 | floor u64 | samples a triangle f64 | lines (run_options.hpp).
-constexpr std::uint8_t k_version = 4;
+constexpr std::uint8_t k_compose_version = 4;
 constexpr double k_max_samples_per_triangle = 1000;
 
 class Composer {
@@ -157,7 +157,7 @@ class Composer {
 
 std::string encode_parameters(const ComposeParameters& parameters) {
   ByteWriter out;
-  out.put(k_version);
+  out.put(k_compose_version);
   out.put(parameters.first_part);
   out.put(parameters.all_parts);
   out.put(static_cast<std::uint32_t>(parameters.inputs.size()));
@@ -177,7 +177,7 @@ std::string encode_parameters(const ComposeParameters& parameters) {
 
 ComposeParameters decode_compose_parameters(std::string_view bytes) {
   ByteReader in(bytes, "parameters of a compose job");
-  if (in.get<std::uint8_t>() != k_version) in.fail("made by another version of meshfarm");
+  if (in.get<std::uint8_t>() != k_compose_version) in.fail("made by another version of meshfarm");
   ComposeParameters parameters;
   parameters.first_part = in.get<std::uint32_t>();
   parameters.all_parts = in.get<std::uint32_t>();

@@ -12,10 +12,6 @@
 namespace meshfarm {
 namespace {
 
-double seconds(FarmTime time) {
-  return std::chrono::duration<double>(time).count();
-}
-
 /// By a clock that whoever reads the trace can ask, too.
 double unix_seconds(const Stage& stage) {
   const std::filesystem::path folder = stage.path(TraceName{1}).parent_path();

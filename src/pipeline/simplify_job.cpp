@@ -20,8 +20,8 @@ namespace {
 // Version 5: allocation u8 | start u64 | even share u64 | samples u64 | cost unit f64 |
 // greatest error f64 | lines (run_options.hpp).
 // Version 4 knew no appearances and labels.
-constexpr std::uint8_t k_version = 5;
-constexpr std::uint64_t k_max_samples = 100'000'000;
+constexpr std::uint8_t k_climb_version = 5;
+constexpr std::uint64_t k_most_climb_samples = 100'000'000;
 constexpr std::int32_t k_top_level = 52;
 // A part keeps no less than this fraction of its even share: what of it is flat goes in the finish.
 constexpr std::uint64_t k_shares_per_floor = 2;
@@ -127,7 +127,7 @@ Part read_part(const JobContext& context, const FileRef& input) {
 
 std::string encode_parameters(const SimplifyParameters& parameters) {
   ByteWriter out;
-  out.put(k_version);
+  out.put(k_climb_version);
   out.put(parameters.allocation);
   out.put(parameters.start_triangles);
   out.put(parameters.share_triangles);
@@ -140,14 +140,14 @@ std::string encode_parameters(const SimplifyParameters& parameters) {
 
 SimplifyParameters decode_parameters(std::string_view bytes) {
   ByteReader in(bytes, "parameters of a simplify job");
-  if (in.get<std::uint8_t>() != k_version) in.fail("made by another version of meshfarm");
+  if (in.get<std::uint8_t>() != k_climb_version) in.fail("made by another version of meshfarm");
   SimplifyParameters parameters;
   parameters.allocation = in.get<Allocation>();
   if (parameters.allocation > Allocation::uniform) in.fail("unknown allocation");
   parameters.start_triangles = in.get<std::uint64_t>();
   parameters.share_triangles = in.get<std::uint64_t>();
   parameters.samples = in.get<std::uint64_t>();
-  if (parameters.samples > k_max_samples) in.fail("too many samples");
+  if (parameters.samples > k_most_climb_samples) in.fail("too many samples");
   parameters.cost_unit = in.get<double>();
   parameters.max_error = in.get<double>();
   parameters.lines = get_lines(in);

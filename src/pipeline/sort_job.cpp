@@ -15,7 +15,7 @@ namespace meshfarm {
 namespace {
 
 // Version 1: sorting (io/sorting.hpp) | number u32.
-constexpr std::uint8_t k_version = 1;
+constexpr std::uint8_t k_sort_version = 1;
 
 /// Reads the job's input. What is whole by its checksum and makes no sense never will, whoever
 /// reads it.
@@ -41,7 +41,7 @@ JobOutput publish(const Job& job, const JobContext& context, std::string_view by
 
 std::string encode_parameters(const SortParameters& parameters) {
   ByteWriter out;
-  out.put(k_version);
+  out.put(k_sort_version);
   put(out, parameters.sorting);
   out.put(parameters.number);
   return out.take();
@@ -49,7 +49,7 @@ std::string encode_parameters(const SortParameters& parameters) {
 
 SortParameters decode_sort_parameters(std::string_view bytes) {
   ByteReader in(bytes, "parameters of a sort job");
-  if (in.get<std::uint8_t>() != k_version) in.fail("made by another version of meshfarm");
+  if (in.get<std::uint8_t>() != k_sort_version) in.fail("made by another version of meshfarm");
   SortParameters parameters;
   parameters.sorting = get_sorting(in);
   parameters.number = in.get<std::uint32_t>();

@@ -17,8 +17,8 @@ namespace {
 
 // Version 3: level i32 | greatest cost f64 | ratio f64 | window u64 | samples u64 |
 // greatest error f64 | lines (run_options.hpp).
-constexpr std::uint8_t k_version = 3;
-constexpr std::uint64_t k_max_samples = 100'000'000;
+constexpr std::uint8_t k_sweep_version = 3;
+constexpr std::uint64_t k_most_sweep_samples = 100'000'000;
 constexpr std::uint64_t k_max_window = std::uint64_t{1} << 30;
 
 /// Sweeps from the stream to the result, holding neither.
@@ -94,7 +94,7 @@ class SweepToFile {
 
 std::string encode_parameters(const SweepParameters& parameters) {
   ByteWriter out;
-  out.put(k_version);
+  out.put(k_sweep_version);
   out.put(parameters.level);
   out.put(parameters.max_cost);
   out.put(parameters.ratio);
@@ -107,7 +107,7 @@ std::string encode_parameters(const SweepParameters& parameters) {
 
 SweepParameters decode_sweep_parameters(std::string_view bytes) {
   ByteReader in(bytes, "parameters of a sweep job");
-  if (in.get<std::uint8_t>() != k_version) in.fail("made by another version of meshfarm");
+  if (in.get<std::uint8_t>() != k_sweep_version) in.fail("made by another version of meshfarm");
   SweepParameters parameters;
   parameters.level = in.get<std::int32_t>();
   parameters.max_cost = in.get<double>();
@@ -116,7 +116,7 @@ SweepParameters decode_sweep_parameters(std::string_view bytes) {
   parameters.window_triangles = in.get<std::uint64_t>();
   if (parameters.window_triangles > k_max_window) in.fail("too large a window");
   parameters.samples = in.get<std::uint64_t>();
-  if (parameters.samples > k_max_samples) in.fail("too many samples");
+  if (parameters.samples > k_most_sweep_samples) in.fail("too many samples");
   parameters.max_error = in.get<double>();
   parameters.lines = get_lines(in);
   in.expect_end();

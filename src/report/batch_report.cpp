@@ -2,16 +2,14 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
 
-#include <nlohmann/json.hpp>
-
 #include <meshfarm/report/batch_report.hpp>
 
+#include "report/json.hpp"
 #include "report/lines.hpp"
 
 namespace meshfarm {
 namespace {
 
-using Json = nlohmann::ordered_json;
 using State = BatchReport::State;
 
 const char* name_of(State state) {

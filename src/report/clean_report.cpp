@@ -1,15 +1,12 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
-#include <nlohmann/json.hpp>
-
 #include <meshfarm/report/clean_report.hpp>
 
+#include "report/json.hpp"
 #include "report/lines.hpp"
 
 namespace meshfarm {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 std::string padded(std::string label) {
   constexpr std::size_t k_width = 17;

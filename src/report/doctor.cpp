@@ -6,17 +6,14 @@
 #include <cmath>
 #include <cstdlib>
 
-#include <nlohmann/json.hpp>
-
 #include <meshfarm/report/doctor.hpp>
 #include <meshfarm/util/text.hpp>
 
+#include "report/json.hpp"
 #include "report/lines.hpp"
 
 namespace meshfarm {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 /// Bytes of results against those of the parts, measured: at 1 % of the triangles, and at 50 %.
 constexpr double k_results_of_small_run = 0.5;

@@ -2,16 +2,13 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
 
-#include <nlohmann/json.hpp>
-
 #include <meshfarm/report/simulation_report.hpp>
 
+#include "report/json.hpp"
 #include "report/lines.hpp"
 
 namespace meshfarm {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 constexpr std::size_t k_problems_told = 20;
 

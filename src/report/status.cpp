@@ -4,19 +4,16 @@
 #include <map>
 #include <vector>
 
-#include <nlohmann/json.hpp>
-
 #include <meshfarm/report/progress.hpp>
 #include <meshfarm/report/status.hpp>
 #include <meshfarm/util/checksum.hpp>
 #include <meshfarm/util/text.hpp>
 
+#include "report/json.hpp"
 #include "report/lines.hpp"
 
 namespace meshfarm {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 /// A ventilator writes at least every second, and no later than its disk: one that wrote nothing
 /// for so long is gone or cut off.

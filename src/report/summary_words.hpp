@@ -6,8 +6,6 @@
 #include <string>
 #include <vector>
 
-#include <nlohmann/json.hpp>
-
 #include <meshfarm/geometry/distance.hpp>
 #include <meshfarm/geometry/mesh.hpp>
 #include <meshfarm/geometry/topology.hpp>
@@ -16,13 +14,12 @@
 #include <meshfarm/report/summary.hpp>
 #include <meshfarm/util/text.hpp>
 
+#include "report/json.hpp"
 #include "report/lines.hpp"
 
 namespace meshfarm {
 
 // What the summaries of runs and of meshes share.
-
-using Json = nlohmann::ordered_json;
 
 /// A table of "label  value" lines.
 class Lines {

@@ -14,9 +14,9 @@
 namespace meshfarm {
 namespace {
 
-constexpr double k_left = 170;
-constexpr double k_width = 1100;
-constexpr double k_right = 20;
+constexpr double k_lanes_left = 170;
+constexpr double k_timeline_width = 1100;
+constexpr double k_lanes_right = 20;
 constexpr double k_axis = 24;
 /// Jobs that would be drawn narrower than this are drawn as one with their neighbours.
 constexpr double k_least_width = 1.5;
@@ -49,7 +49,8 @@ struct Frame {
   double end = 1;
   double length() const { return std::max(1e-3, end - begin); }
   double x(double t) const {
-    return k_left + (t - begin) / length() * (k_width - k_left - k_right);
+    return k_lanes_left +
+           (t - begin) / length() * (k_timeline_width - k_lanes_left - k_lanes_right);
   }
 };
 
@@ -157,7 +158,7 @@ std::string timeline(const Frame& frame) {
   const double rows = std::max<double>(1, static_cast<double>(frame.rows.size()));
   const double pitch = std::clamp(1200 / rows, 1.0, 22.0);
   const double bottom = rows * pitch + 4;
-  Svg svg(k_width, bottom + k_axis);
+  Svg svg(k_timeline_width, bottom + k_axis);
   draw_axis(svg, frame, bottom);
   double y = 2;
   for (const auto& [worker, row] : frame.rows) {
@@ -172,7 +173,7 @@ std::string progress_chart(const Frame& frame, const Trace& trace) {
   constexpr double k_height = 160;
   double all = 1;
   for (const TraceDone& each : trace.done) all += static_cast<double>(each.triangles);
-  Svg svg(k_width, k_height + k_axis);
+  Svg svg(k_timeline_width, k_height + k_axis);
   draw_axis(svg, frame, k_height);
   std::string path = "M" + number(frame.x(frame.begin), "%.1f") + " " + number(k_height, "%.1f");
   double done = 0;

@@ -13,16 +13,14 @@
 #include <limits>
 #include <utility>
 
-#include <nlohmann/json.hpp>
-
 #include <meshfarm/report/trace.hpp>
 #include <meshfarm/util/checksum.hpp>
 #include <meshfarm/util/errors.hpp>
 
+#include "report/json.hpp"
+
 namespace meshfarm {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 constexpr std::uint64_t k_version = 1;
 

@@ -9,7 +9,7 @@
 namespace meshfarm {
 namespace {
 
-constexpr std::chrono::milliseconds k_down{8000};
+constexpr std::chrono::milliseconds k_sink_down{8000};
 /// Longer than any fault: one that comes after its run's end leaves by itself.
 constexpr FarmTime k_patience = std::chrono::minutes(10);
 
@@ -42,7 +42,7 @@ void SimulatedFarm::kill_sink(Run& run) {
   if (!run.sink.alive) return;
   end_member(run.sink);
   run.sink.core.reset();
-  queue_.in(up_to(k_down), [this, &run] { start_sink(run); });
+  queue_.in(up_to(k_sink_down), [this, &run] { start_sink(run); });
 }
 
 void SimulatedFarm::sink_does(Run& run, SinkActions actions) {
@@ -167,7 +167,7 @@ void SimulatedFarm::sink_act(Run& run, SinkLeaves& each) {
   run.sink.core.reset();
   run.made_output = each.why == SinkLeaves::Why::complete;
   // Turned away by the late word of a run that was over: whoever started it starts it again.
-  if (!run.made_output) queue_.in(k_down, [this, &run] { start_sink(run); });
+  if (!run.made_output) queue_.in(k_sink_down, [this, &run] { start_sink(run); });
 }
 
 }  // namespace meshfarm

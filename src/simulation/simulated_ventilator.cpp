@@ -9,7 +9,8 @@
 namespace meshfarm {
 namespace {
 
-constexpr std::chrono::milliseconds k_down{8000};  // a killed process comes again within this
+constexpr std::chrono::milliseconds k_ventilator_down{
+    8000};  // a killed process comes again within this
 constexpr std::chrono::seconds k_without_sink{60};
 constexpr std::chrono::milliseconds k_pause_between_runs{5000};
 
@@ -103,7 +104,7 @@ void SimulatedFarm::kill_ventilator(Run& run) {
   if (!run.ventilator.alive) return;
   kill(run.ventilator);
   run.ventilator.core.reset();
-  queue_.in(up_to(k_down), [this, &run] {
+  queue_.in(up_to(k_ventilator_down), [this, &run] {
     if (!run.ventilator.alive) start_ventilator(run);
   });
 }

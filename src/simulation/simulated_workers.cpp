@@ -8,9 +8,9 @@
 namespace meshfarm {
 namespace {
 
-constexpr std::chrono::milliseconds k_down{6000};
+constexpr std::chrono::milliseconds k_worker_down{6000};
 /// Nobody's patience ends while there are faults.
-constexpr FarmTime k_patience = std::chrono::hours(2);
+constexpr FarmTime k_worker_patience = std::chrono::hours(2);
 
 }  // namespace
 
@@ -29,7 +29,7 @@ void SimulatedFarm::start_worker(std::uint32_t index) {
   member.incarnation = worker.incarnation;
   member.pid = index + 1;
   member.host = "host" + std::to_string(worker.host);
-  member.patience = k_patience;
+  member.patience = k_worker_patience;
   const double told = is.told_speed > 0 ? is.told_speed : is.speed;
   member.capacity.speed = static_cast<std::uint64_t>(told * options_.triangles_per_s);
   member.capacity.memory = is.memory;
@@ -84,7 +84,7 @@ void SimulatedFarm::kill_worker(std::uint32_t index) {
   worker.core.reset();
   worker.lane.clear();
   worker.sink.clear();
-  queue_.in(up_to(k_down), [this, index] { start_worker(index); });
+  queue_.in(up_to(k_worker_down), [this, index] { start_worker(index); });
 }
 
 /// As at SIGTERM: it gives back what it holds, ends what is in work, and another comes.
@@ -183,7 +183,7 @@ void SimulatedFarm::act(std::uint32_t index, Leave& each) {
   const bool begun_again =
       std::any_of(runs_.begin(), runs_.end(), [](const Run& run) { return run.starts > 1; });
   const bool comes_again = faulty() || worker.leaves || begun_again || runs_.size() > 1;
-  if (comes_again) queue_.in(k_down, [this, index] { start_worker(index); });
+  if (comes_again) queue_.in(k_worker_down, [this, index] { start_worker(index); });
 }
 
 }  // namespace meshfarm

@@ -23,7 +23,7 @@ namespace meshfarm {
 namespace {
 
 constexpr FileKind k_kind = {'H', 'O', 'S', 'T'};
-constexpr std::uint32_t k_version = 1;
+constexpr std::uint32_t k_card_version = 1;
 constexpr std::size_t k_max_host_bytes = 256;
 /// Clocks of two hosts differ; a reboot takes longer than this.
 constexpr std::int64_t k_clock_tolerance_s = 5;
@@ -41,11 +41,11 @@ std::string encode_host_card(const HostCard& card) {
   out.put(card.boot);
   out.put(card.booted_s);
   out.put(card.seen_s);
-  return seal(k_kind, k_version, out.bytes());
+  return seal(k_kind, k_card_version, out.bytes());
 }
 
 HostCard decode_host_card(std::string_view file, std::string_view what) {
-  ByteReader in(unseal(file, k_kind, k_version, what), what);
+  ByteReader in(unseal(file, k_kind, k_card_version, what), what);
   HostCard card;
   card.host = in.get_string();
   if (card.host.size() > k_max_host_bytes) in.fail("a name too long");

@@ -16,8 +16,8 @@
 namespace meshfarm {
 namespace {
 
-constexpr std::array<char, 4> k_magic = {'M', 'F', 'J', 'L'};
-constexpr std::uint32_t k_version = 1;
+constexpr std::array<char, 4> k_journal_magic = {'M', 'F', 'J', 'L'};
+constexpr std::uint32_t k_journal_version = 1;
 constexpr std::size_t k_head_bytes = 8;
 constexpr std::size_t k_record_head_bytes = 12;
 
@@ -27,8 +27,8 @@ JournalWriter::JournalWriter(std::filesystem::path path) : path_(std::move(path)
   fd_ = Fd(::open(path_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_APPEND | O_CLOEXEC, 0644));
   if (!fd_) throw_errno("cannot make the journal", path_);
   ByteWriter head;
-  head.put(k_magic);
-  head.put(k_version);
+  head.put(k_journal_magic);
+  head.put(k_journal_version);
   try {
     write_all(fd_.get(), head.bytes(), path_);
     if (::fsync(fd_.get()) != 0) throw_errno("cannot sync the journal", path_);
@@ -61,8 +61,8 @@ JournalContent parse_journal(std::string_view bytes, std::string_view what) {
     return content;
   }
   ByteReader in(bytes, what);
-  if (in.get<std::array<char, 4>>() != k_magic) in.fail("not a journal");
-  if (in.get<std::uint32_t>() != k_version) in.fail("a journal of an unknown version");
+  if (in.get<std::array<char, 4>>() != k_journal_magic) in.fail("not a journal");
+  if (in.get<std::uint32_t>() != k_journal_version) in.fail("a journal of an unknown version");
   while (in.remaining() >= k_record_head_bytes) {
     const std::size_t start = in.offset();
     const auto size = in.get<std::uint32_t>();

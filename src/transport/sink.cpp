@@ -48,13 +48,13 @@ ReadPatience journal_patience(ReadPatience patience) {
   return patience;
 }
 
-using Complete = std::function<void(std::span<const AcceptedJob>)>;
+using WhenComplete = std::function<void(std::span<const AcceptedJob>)>;
 
 /// The sockets and the disk thread round a SinkCore, which decides everything.
 class SinkLoop {
  public:
   SinkLoop(const Stage& stage, const JobSource& source, const SinkOptions& options,
-           const Complete& complete)
+           const WhenComplete& complete)
       : stage_(stage),
         options_(options),
         complete_(complete),
@@ -319,7 +319,7 @@ class SinkLoop {
 
   const Stage& stage_;
   const SinkOptions& options_;
-  const Complete& complete_;
+  const WhenComplete& complete_;
   Keys keys_;
   zmq::context_t context_;
   Gatekeeper gate_;

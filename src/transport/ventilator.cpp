@@ -26,7 +26,7 @@
 namespace meshfarm {
 namespace {
 
-constexpr int k_messages_per_turn = 1000;
+constexpr int k_ventilator_messages_per_turn = 1000;
 constexpr FarmTime k_progress_every{500};
 constexpr FarmTime k_state_every{1000};
 constexpr FarmTime k_look_every{1000};
@@ -127,7 +127,7 @@ class VentilatorLoop {
     for (const WorkerId id : std::exchange(unsent_, {})) flush(id);
     const FarmTime now = farm_clock();
     int count = 0;
-    for (; count < k_messages_per_turn && !end_; ++count) {
+    for (; count < k_ventilator_messages_per_turn && !end_; ++count) {
       const auto received = receive(control_);
       if (!received) break;
       if (received->message) {
@@ -138,7 +138,7 @@ class VentilatorLoop {
       }
     }
     if (prober_ && prober_->take_finished()) perform(dispatcher_.probed(probe_problem_, now));
-    const bool all_read = count < k_messages_per_turn;
+    const bool all_read = count < k_ventilator_messages_per_turn;
     perform(dispatcher_.tick(now, all_read ? Dispatcher::Inbox::empty : Dispatcher::Inbox::unread));
     report(now);
     tell_state(now);

@@ -26,7 +26,7 @@ namespace meshfarm {
 namespace {
 
 /// So that a flood cannot keep the clock from being looked at.
-constexpr int k_messages_per_turn = 1000;
+constexpr int k_worker_messages_per_turn = 1000;
 constexpr FarmTime k_memory_every{500};
 const ReadPatience k_second_readers_patience = {.missing = k_second_reader_waits,
                                                 .failing = k_second_reader_waits};
@@ -92,12 +92,12 @@ class WorkerLoop {
       to_read_.pop_front();
       read_next();
     }
-    for (int count = 0; link_.socket() != nullptr && count < k_messages_per_turn; ++count) {
+    for (int count = 0; link_.socket() != nullptr && count < k_worker_messages_per_turn; ++count) {
       const auto received = receive(*link_.socket());
       if (!received) break;
       if (received->message) perform(core_.on_control(*received->message, now));
     }
-    for (int count = 0; lane_ && count < k_messages_per_turn; ++count) {
+    for (int count = 0; lane_ && count < k_worker_messages_per_turn; ++count) {
       const auto received = receive(*lane_);
       if (!received) break;
       if (received->message) perform(core_.on_lane(*received->message, now));

@@ -42,6 +42,9 @@ inline constexpr std::size_t k_max_list = 4096;                // Job::inputs
 
 /// Time as the farm's state machines see it: since any fixed moment, never going back.
 using FarmTime = std::chrono::milliseconds;
+inline double seconds(FarmTime time) {
+  return std::chrono::duration<double>(time).count();
+}
 
 /// Names a worker's membership in one epoch; one that joins again gets another.
 struct WorkerId {

@@ -15,6 +15,12 @@ namespace meshfarm {
 /// Three vertex indices, counter-clockwise seen from outside.
 using Triangle = std::array<std::uint32_t, 3>;
 
+/// Whether two corners are one vertex, in any numbering.
+template <typename Index>
+bool is_degenerate(const std::array<Index, 3>& t) {
+  return t[0] == t[1] || t[1] == t[2] || t[2] == t[0];
+}
+
 /// How positions are kept in files. Coordinates are double in memory; a float32 mesh keeps every
 /// coordinate exactly representable as float, so that writing it loses nothing.
 enum class PositionType : std::uint8_t { float32 = 4, float64 = 8 };
