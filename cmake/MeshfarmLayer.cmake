@@ -47,6 +47,10 @@ function(meshfarm_layer name)
   list(TRANSFORM ARG_USES PREPEND meshfarm_ OUTPUT_VARIABLE uses)
   target_link_libraries(meshfarm_${name} PUBLIC ${uses} PRIVATE ${ARG_PACKAGES} Threads::Threads)
   meshfarm_compile_options(meshfarm_${name})
+  # Most of the time of a compiler goes into the headers. No two sources of a layer define the same
+  # name, so that they can be compiled together.
+  set_target_properties(meshfarm_${name} PROPERTIES UNITY_BUILD ${MESHFARM_UNITY}
+                                                    UNITY_BUILD_BATCH_SIZE 10)
 
   file(GLOB tests CONFIGURE_DEPENDS tests/unit/${name}/test_*.cpp)
   if(MESHFARM_TESTS AND tests)
@@ -55,6 +59,6 @@ function(meshfarm_layer name)
     target_link_libraries(test_${name} PRIVATE meshfarm_${name} Threads::Threads)
     meshfarm_test_options(test_${name})
     add_test(NAME unit.${name} COMMAND test_${name})
-    set_tests_properties(unit.${name} PROPERTIES TIMEOUT 300 LABELS unit)
+    set_tests_properties(unit.${name} PROPERTIES TIMEOUT 300 COST 300 LABELS unit)
   endif()
 endfunction()

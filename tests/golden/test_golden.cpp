@@ -87,7 +87,7 @@ Watched format(const std::string& name, const std::string& file, std::size_t ver
   std::uint32_t version = 0;
   REQUIRE(file.size() >= version_at + sizeof version);
   std::memcpy(&version, file.data() + version_at, sizeof version);
-  return {"format/" + name, version, checksum(file), "k_version in " + source};
+  return {"format/" + name, version, checksum(file), "the version in " + source};
 }
 
 /// Of a file that begins with magic, kind and version.
