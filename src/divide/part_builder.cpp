@@ -3,17 +3,15 @@
 #include "divide/part_builder.hpp"
 
 #include <algorithm>
-#include <limits>
 #include <numeric>
 
+#include <meshfarm/geometry/vertices.hpp>
 #include <meshfarm/geometry/weld.hpp>
 
 #include "divide/weld_share.hpp"
 
 namespace meshfarm {
 namespace {
-
-constexpr std::uint32_t k_unused = std::numeric_limits<std::uint32_t>::max();
 
 /// Replaces each corner by its representative; drops triangles that lose a corner by it.
 std::uint64_t merge_corners(Mesh& mesh, const std::vector<std::uint32_t>& representative) {
@@ -46,7 +44,7 @@ std::uint32_t number_vertices(const std::vector<Triangle>& triangles,
   std::uint32_t next_boundary = 0;
   std::uint32_t next_inner = boundary;
   for (std::uint32_t& n : number) {
-    if (n != k_unused) n = n == k_boundary ? next_boundary++ : next_inner++;
+    if (n != k_left_out) n = n == k_boundary ? next_boundary++ : next_inner++;
   }
   return boundary;
 }
@@ -75,29 +73,20 @@ BuiltPart build_part(MeshShare raw, Weld weld_mode) {
 
   built.boundary.places = boundary_places(std::move(raw.boundary));
 
-  std::vector<std::uint32_t> number(raw.positions.size(), k_unused);
+  std::vector<std::uint32_t> number(raw.positions.size(), k_left_out);
   Part& part = built.part;
   part.positions = raw.type;
   part.boundary_vertices =
       number_vertices(mesh.triangles, built.boundary.places, representative, number);
-  const auto used =
-      number.size() - static_cast<std::size_t>(std::count(number.begin(), number.end(), k_unused));
-  mesh.positions.resize(used);
-  for (std::size_t i = 0; i < number.size(); ++i) {
-    if (number[i] != k_unused) mesh.positions[number[i]] = raw.positions[i];
+  const auto used = number.size() -
+                    static_cast<std::size_t>(std::count(number.begin(), number.end(), k_left_out));
+  // Of vertices that become one the least appearance counts, whatever their order.
+  for (std::size_t i = 0; i < raw.appearances.size(); ++i) {
+    Appearance& of_one = raw.appearances[representative[i]];
+    of_one = std::min(of_one, raw.appearances[i]);
   }
-  if (!raw.appearances.empty()) {
-    mesh.appearances.resize(used);
-    // Of vertices that become one the least counts, whatever their order.
-    for (std::size_t i = 0; i < number.size(); ++i) {
-      Appearance& of_one = raw.appearances[representative[i]];
-      of_one = std::min(of_one, raw.appearances[i]);
-    }
-    for (std::size_t i = 0; i < number.size(); ++i) {
-      if (number[i] != k_unused) mesh.appearances[number[i]] = raw.appearances[i];
-    }
-  }
-  for (Triangle& t : mesh.triangles) t = {number[t[0]], number[t[1]], number[t[2]]};
+  place_vertices({raw.positions, raw.appearances}, number, used, mesh);
+  renumber_corners(mesh.triangles, number);
   built.boundary.numbers.reserve(built.boundary.places.size());
   for (const std::uint32_t b : built.boundary.places) {
     built.boundary.numbers.push_back(number[representative[b]]);

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include <meshfarm/divide/slab.hpp>
+#include <meshfarm/geometry/vertices.hpp>
 
 #include "divide/seam_vertices.hpp"
 #include "divide/sort_with_columns.hpp"
@@ -55,10 +56,7 @@ class SlabSorter {
         continue;
       }
       rank_[raw] = static_cast<std::uint32_t>(positions.size());
-      positions.push_back(raw_.positions[raw]);
-      if (!raw_.appearances.empty()) {
-        slab_.stream.mesh.appearances.push_back(raw_.appearances[raw]);
-      }
+      append_vertex({raw_.positions, raw_.appearances}, raw, slab_.stream.mesh);
     }
     raw_.appearances = {};
     slab_.merged_vertices = count - positions.size();
@@ -196,16 +194,12 @@ class SlabSorter {
       if (flags_[v] == 0) continue;
       const bool is_boundary = (flags_[v] & k_boundary) != 0;
       if (is_boundary) ++slab_.boundary_vertices;
-      stream.mesh.positions[kept] = stream.mesh.positions[v];
-      if (!stream.mesh.appearances.empty()) {
-        stream.mesh.appearances[kept] = stream.mesh.appearances[v];
-      }
+      put_vertex(VertexView(stream.mesh), v, stream.mesh, kept);
       stream.boundary.push_back(is_boundary ? 1 : 0);
       number[v] = kept++;
     }
-    stream.mesh.positions.resize(kept);
-    if (!stream.mesh.appearances.empty()) stream.mesh.appearances.resize(kept);
-    for (Triangle& t : raw_.triangles) t = {number[t[0]], number[t[1]], number[t[2]]};
+    resize_vertices(stream.mesh, kept);
+    renumber_corners(raw_.triangles, number);
   }
 
   /// Counts them by their smallest vertex; the few of each are sorted by themselves.
@@ -304,12 +298,11 @@ Part sample_slab(const StreamMesh& stream, const SweepOrder& order, std::uint32_
     for (std::uint32_t v = 0; v < seen.size(); ++v) {
       if ((seen[v] & k_in) == 0 || is_edge(v) != edge) continue;
       index[v] = static_cast<std::uint32_t>(part.mesh.positions.size());
-      part.mesh.positions.push_back(mesh.positions[v]);
-      if (!mesh.appearances.empty()) part.mesh.appearances.push_back(mesh.appearances[v]);
+      append_vertex(VertexView(mesh), v, part.mesh);
     }
     if (edge) part.boundary_vertices = static_cast<std::uint32_t>(part.mesh.positions.size());
   }
-  for (Triangle& t : part.mesh.triangles) t = {index[t[0]], index[t[1]], index[t[2]]};
+  renumber_corners(part.mesh.triangles, index);
   return part;
 }
 

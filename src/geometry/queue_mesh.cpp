@@ -4,6 +4,8 @@
 // What the queue does to keep its mesh tidy, and how it hands it out.
 #include <algorithm>
 
+#include <meshfarm/geometry/vertices.hpp>
+
 #include "geometry/simplify_queue.hpp"
 #include "geometry/vertex_flags.hpp"
 
@@ -105,17 +107,15 @@ std::uint32_t CollapseQueue::add_copy(std::uint32_t vertex) {
 
 void CollapseQueue::copy_to(Mesh& mesh, std::vector<std::uint8_t>& flags,
                             std::uint32_t locked) const {
-  mesh.positions.clear();
+  clear_vertices(mesh);
   mesh.triangles.clear();
-  mesh.appearances.clear();
   mesh.columns.clear();
   flags.clear();
   std::vector<std::uint32_t> number(target_.size());
   for (std::uint32_t v = 0; v < target_.size(); ++v) {
     if (v >= locked && mesh_.adjacency.count(v) == 0) continue;
     number[v] = static_cast<std::uint32_t>(mesh.positions.size());
-    mesh.positions.push_back(mesh_.positions[v]);
-    if (!mesh_.appearances.empty()) mesh.appearances.push_back(mesh_.appearances[v]);
+    append_vertex({mesh_.positions, mesh_.appearances}, v, mesh);
     flags.push_back(mesh_.flags[v]);
   }
   mesh.triangles.reserve(triangles_);

@@ -7,6 +7,7 @@
 #include <map>
 #include <utility>
 
+#include <meshfarm/geometry/vertices.hpp>
 #include <meshfarm/util/errors.hpp>
 
 #include "geometry/fans.hpp"
@@ -201,12 +202,7 @@ bool separate_closed_fans(Mesh& mesh, std::span<const std::uint8_t> flags,
       }
       if (single.split(fan) != 1 || single.kind() != FanSplitter::Kind::closed) continue;
       const auto copy = static_cast<std::uint32_t>(mesh.positions.size());
-      const Vec3 position = mesh.positions[v];
-      mesh.positions.push_back(position);
-      if (!mesh.appearances.empty()) {
-        const Appearance appearance = mesh.appearances[v];
-        mesh.appearances.push_back(appearance);
-      }
+      append_vertex(VertexView(mesh), v, mesh);
       for (const Corner& c : fan) copies[{v, c.next, c.prev}] = copy;
     }
   }

@@ -6,6 +6,8 @@
 #include <numeric>
 #include <utility>
 
+#include <meshfarm/geometry/vertices.hpp>
+
 #include "geometry/simplify_queue.hpp"
 
 namespace meshfarm {
@@ -152,16 +154,14 @@ void WorkingMesh::compact_columns() {
 }
 
 void WorkingMesh::move_vertex(std::uint32_t from, std::uint32_t to) {
-  mesh_.positions[to] = mesh_.positions[from];
+  put_vertex(VertexView(mesh_), from, mesh_, to);
   flags_[to] = flags_[from];
-  if (!mesh_.appearances.empty()) mesh_.appearances[to] = mesh_.appearances[from];
 }
 
 /// The first ones.
 void WorkingMesh::keep_vertices(std::uint32_t count) {
-  mesh_.positions.resize(count);
+  resize_vertices(mesh_, count);
   flags_.resize(count);
-  if (!mesh_.appearances.empty()) mesh_.appearances.resize(count);
 }
 
 void WorkingMesh::drop_unused_vertices() {

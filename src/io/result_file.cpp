@@ -28,6 +28,7 @@
 #include <optional>
 #include <utility>
 
+#include <meshfarm/geometry/vertices.hpp>
 #include <meshfarm/io/result_file.hpp>
 #include <meshfarm/staging/sealed.hpp>
 #include <meshfarm/util/bytes.hpp>
@@ -186,9 +187,7 @@ class ResultReader {
   void read_tail(const std::vector<Rung>& counted) {
     read_boundary_vertices();
     Mesh& mesh = result_.mesh;
-    mesh.positions.insert(mesh.positions.end(), inner_.positions.begin(), inner_.positions.end());
-    mesh.appearances.insert(mesh.appearances.end(), inner_.appearances.begin(),
-                            inner_.appearances.end());
+    append_vertices(VertexView(inner_), mesh);
     inner_ = {};
     const auto sets = get<std::uint32_t>();
     if (sets > k_max_sets) fail("impossible number of samples");

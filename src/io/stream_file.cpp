@@ -17,6 +17,7 @@
 #include <cstring>
 #include <utility>
 
+#include <meshfarm/geometry/vertices.hpp>
 #include <meshfarm/io/stream_file.hpp>
 #include <meshfarm/staging/sealed.hpp>
 #include <meshfarm/util/bytes.hpp>
@@ -310,12 +311,9 @@ StreamMesh read_stream_mesh(StreamReader& reader) {
   stream.positions = reader.info().positions;
   StreamBlock block;
   while (reader.next(block)) {
-    std::vector<Vec3>& positions = stream.mesh.positions;
-    const std::size_t first = positions.size();
-    positions.insert(positions.end(), block.positions.begin(), block.positions.end());
-    stream.mesh.appearances.insert(stream.mesh.appearances.end(), block.appearances.begin(),
-                                   block.appearances.end());
-    stream.boundary.resize(positions.size(), 0);
+    const std::size_t first = stream.mesh.positions.size();
+    append_vertices({block.positions, block.appearances}, stream.mesh);
+    stream.boundary.resize(stream.mesh.positions.size(), 0);
     for (const StreamCorner vertex : block.boundary) stream.boundary[first + vertex.vertex()] = 1;
     for (const auto& [a, b, c] : block.triangles) {
       stream.mesh.triangles.push_back({a.vertex(), b.vertex(), c.vertex()});
@@ -330,23 +328,21 @@ Part read_stream(StreamReader& reader) {
   Part part;
   part.positions = info.positions;
   part.boundary_vertices = info.boundary_vertices;
-  part.mesh.positions.resize(info.boundary_vertices);
-  if (info.appearances) part.mesh.appearances.resize(info.boundary_vertices);
+  resize_vertices(part.mesh, info.boundary_vertices, info.appearances);
   std::vector<std::uint32_t> number;  // in the part, of each vertex of the stream
   std::uint32_t boundary = 0;
   StreamBlock block;
   while (reader.next(block)) {
     std::size_t next_boundary = 0;
+    const VertexView vertices = {block.positions, block.appearances};
     for (std::uint32_t i = 0; i < block.positions.size(); ++i) {
       if (next_boundary < block.boundary.size() && block.boundary[next_boundary].vertex() == i) {
         ++next_boundary;
-        part.mesh.positions[boundary] = block.positions[i];
-        if (info.appearances) part.mesh.appearances[boundary] = block.appearances[i];
+        put_vertex(vertices, i, part.mesh, boundary);
         number.push_back(boundary++);
       } else {
         number.push_back(static_cast<std::uint32_t>(part.mesh.positions.size()));
-        part.mesh.positions.push_back(block.positions[i]);
-        if (info.appearances) part.mesh.appearances.push_back(block.appearances[i]);
+        append_vertex(vertices, i, part.mesh);
       }
     }
     for (const auto& [a, b, c] : block.triangles) {

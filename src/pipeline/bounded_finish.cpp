@@ -10,6 +10,7 @@
 
 #include <meshfarm/geometry/near_cells.hpp>
 #include <meshfarm/geometry/surface_bound.hpp>
+#include <meshfarm/geometry/vertices.hpp>
 
 #include "pipeline/input_surface.hpp"
 
@@ -42,20 +43,20 @@ std::vector<std::uint8_t> vertices_round(const Mesh& mesh, std::vector<std::uint
 /// many are not.
 std::uint32_t put_last(Mesh& mesh, const std::vector<std::uint8_t>& flags) {
   std::vector<std::uint32_t> number(flags.size());
-  Mesh ordered;
-  ordered.positions.reserve(flags.size());
+  std::uint32_t next = 0;
   std::uint32_t first = 0;
   for (const std::uint8_t wanted : {std::uint8_t{0}, std::uint8_t{1}}) {
     for (std::uint32_t v = 0; v < flags.size(); ++v) {
-      if (flags[v] != wanted) continue;
-      number[v] = static_cast<std::uint32_t>(ordered.positions.size());
-      append_vertex(VertexView(mesh), v, ordered);
+      if (flags[v] == wanted) number[v] = next++;
     }
-    if (wanted == 0) first = static_cast<std::uint32_t>(ordered.positions.size());
+    if (wanted == 0) first = next;
   }
-  for (Triangle& t : mesh.triangles) t = {number[t[0]], number[t[1]], number[t[2]]};
-  mesh.positions = std::move(ordered.positions);
-  mesh.appearances = std::move(ordered.appearances);
+  Mesh ordered;
+  place_vertices(VertexView(mesh), number, next, ordered);
+  ordered.triangles = std::move(mesh.triangles);
+  ordered.columns = std::move(mesh.columns);
+  renumber_corners(ordered.triangles, number);
+  mesh = std::move(ordered);
   return first;
 }
 
@@ -86,7 +87,7 @@ Mesh input_near(const Stage& stage, const Manifest& manifest, const NearCells& n
   Mesh all;
   for (Mesh& mesh : of_part) {
     const auto first = static_cast<std::uint32_t>(all.positions.size());
-    all.positions.insert(all.positions.end(), mesh.positions.begin(), mesh.positions.end());
+    append_vertices(VertexView(mesh), all);
     for (const auto& [a, b, c] : mesh.triangles) {
       all.triangles.push_back({a + first, b + first, c + first});
     }

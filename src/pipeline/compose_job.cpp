@@ -5,6 +5,7 @@
 #include <utility>
 
 #include <meshfarm/geometry/simplify.hpp>
+#include <meshfarm/geometry/vertices.hpp>
 #include <meshfarm/io/boundary_file.hpp>
 #include <meshfarm/io/regions.hpp>
 #include <meshfarm/io/result_file.hpp>
@@ -117,7 +118,7 @@ class Composer {
     for (std::uint32_t i = 0; i < stitched.open.size(); ++i) number[stitched.open[i]] = i;
     mesh.triangles = std::move(from.triangles);
     mesh.columns = std::move(from.columns);
-    for (Triangle& t : mesh.triangles) t = {number[t[0]], number[t[1]], number[t[2]]};
+    renumber_corners(mesh.triangles, number);
     return mesh;
   }
 

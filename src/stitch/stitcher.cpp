@@ -5,6 +5,7 @@
 #include <limits>
 #include <string>
 
+#include <meshfarm/geometry/vertices.hpp>
 #include <meshfarm/stitch/stitcher.hpp>
 #include <meshfarm/util/errors.hpp>
 
@@ -30,15 +31,7 @@ void Stitcher::add(const ResultMesh& result, std::uint32_t parts) {
   const auto offset = static_cast<std::uint32_t>(first);
   piece_of_part_.insert(piece_of_part_.end(), parts, static_cast<std::uint32_t>(pieces_.size()));
   pieces_.push_back({parts, offset, result.boundary_vertices, {}});
-  mesh.positions.insert(mesh.positions.end(), result.mesh.positions.begin(),
-                        result.mesh.positions.end());
-  if (!result.mesh.appearances.empty()) {
-    mesh.appearances.resize(first);
-    mesh.appearances.insert(mesh.appearances.end(), result.mesh.appearances.begin(),
-                            result.mesh.appearances.end());
-  } else if (!mesh.appearances.empty()) {
-    mesh.appearances.resize(mesh.positions.size());
-  }
+  append_vertices(VertexView(result.mesh), mesh);
   mesh.columns.append(result.mesh.columns);
   for (const Triangle& t : result.mesh.triangles) {
     mesh.triangles.push_back({t[0] + offset, t[1] + offset, t[2] + offset});

@@ -10,6 +10,7 @@
 
 #include <meshfarm/geometry/simplify.hpp>
 #include <meshfarm/geometry/surface_sampler.hpp>
+#include <meshfarm/geometry/vertices.hpp>
 #include <meshfarm/stream/sweep.hpp>
 #include <meshfarm/util/errors.hpp>
 
@@ -174,7 +175,7 @@ class Sweep {
       roles.push_back(roles_[v]);
       ids.push_back(ids_[v]);
     }
-    for (Triangle& t : buffer_.triangles) t = {number[t[0]], number[t[1]], number[t[2]]};
+    renumber_corners(buffer_.triangles, number);
     for (std::uint32_t& v : local_) v = v == k_none ? k_none : number[v];
     buffer_.positions = std::move(ordered.positions);
     buffer_.appearances = std::move(ordered.appearances);

@@ -160,11 +160,6 @@ struct VertexView {
   std::span<const Appearance> appearances;
 };
 
-inline void append_vertex(const VertexView& from, std::size_t vertex, Mesh& to) {
-  to.positions.push_back(from.positions[vertex]);
-  if (!from.appearances.empty()) to.appearances.push_back(from.appearances[vertex]);
-}
-
 /// Stands for a vertex without a position: one of its coordinates was not finite.
 inline constexpr Vec3 k_no_position{NAN, NAN, NAN};
 inline bool has_position(Vec3 p) {

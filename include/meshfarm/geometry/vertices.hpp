@@ -1,0 +1,74 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <span>
+
+#include <meshfarm/geometry/mesh.hpp>
+
+namespace meshfarm {
+
+// What moves vertices from mesh to mesh, and within one, moves all that they have: only these name
+// the columns of vertices one by one.
+
+/// Of a vertex that is left out where vertices get new numbers.
+inline constexpr std::uint32_t k_left_out = std::numeric_limits<std::uint32_t>::max();
+
+/// With columns that are empty, or not.
+inline void resize_vertices(Mesh& mesh, std::size_t count, bool appearances) {
+  mesh.positions.resize(count);
+  mesh.appearances.resize(appearances ? count : 0);
+}
+/// Those that it has.
+inline void resize_vertices(Mesh& mesh, std::size_t count) {
+  resize_vertices(mesh, count, !mesh.appearances.empty());
+}
+
+inline void clear_vertices(Mesh& mesh) {
+  resize_vertices(mesh, 0, false);
+}
+
+/// Vertex `at` of a mesh, which is there, becomes a vertex of `from`; this may be the same mesh.
+inline void put_vertex(const VertexView& from, std::size_t vertex, Mesh& to, std::size_t at) {
+  to.positions[at] = from.positions[vertex];
+  if (!from.appearances.empty()) to.appearances[at] = from.appearances[vertex];
+}
+
+/// May be a vertex of the same mesh.
+inline void append_vertex(const VertexView& from, std::size_t vertex, Mesh& to) {
+  to.positions.push_back(from.positions[vertex]);
+  if (!from.appearances.empty()) to.appearances.push_back(from.appearances[vertex]);
+}
+
+/// All. If only one of the two has appearances, those of the other are 0.
+inline void append_vertices(const VertexView& from, Mesh& to) {
+  const std::size_t first = to.positions.size();
+  const bool appearances = !from.appearances.empty() || !to.appearances.empty();
+  to.positions.insert(to.positions.end(), from.positions.begin(), from.positions.end());
+  if (!appearances) return;
+  to.appearances.resize(first);
+  to.appearances.insert(to.appearances.end(), from.appearances.begin(), from.appearances.end());
+  to.appearances.resize(to.positions.size());
+}
+
+/// The vertices of `to` become those of another mesh: v becomes number[v], which are 0 to count - 1
+/// in any order, or k_left_out.
+inline void place_vertices(const VertexView& from, std::span<const std::uint32_t> number,
+                           std::size_t count, Mesh& to) {
+  resize_vertices(to, count, !from.appearances.empty());
+  for (std::size_t v = 0; v < number.size(); ++v) {
+    if (number[v] != k_left_out) put_vertex(from, v, to, number[v]);
+  }
+}
+
+/// Gives the corners of triangles the new numbers of their vertices.
+template <typename Triangles>
+void renumber_corners(Triangles& triangles, std::span<const std::uint32_t> number) {
+  for (auto& t : triangles) t = {number[t[0]], number[t[1]], number[t[2]]};
+}
+
+}  // namespace meshfarm
