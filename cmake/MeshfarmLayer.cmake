@@ -3,11 +3,13 @@
 function(meshfarm_compile_options target)
   # Options structs are made with designated initialisers: a field that is not named has its
   # documented default, which -Wmissing-field-initializers would not allow.
-  # g++ 12 reports -Wrestrict falsely on std::string operator+ (GCC bug 105651).
+  # g++ 12 reports -Wrestrict falsely on std::string operator+ (GCC bug 105651), and
+  # -Wsubobject-linkage of any source that is compiled together with others.
   target_compile_options(${target} PRIVATE
     -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion
     -Wno-missing-field-initializers -ffp-contract=off -fno-math-errno
-    $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict>)
+    $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict>
+    $<$<CXX_COMPILER_ID:GNU>:-Wno-subobject-linkage>)
   if(MESHFARM_SANITIZE)
     target_compile_options(${target} PRIVATE -fsanitize=${MESHFARM_SANITIZE} -fno-omit-frame-pointer
                                              -fno-sanitize-recover=all -O1 -g1)
@@ -35,6 +37,8 @@ endfunction()
 
 # meshfarm_layer(io USES geometry PACKAGES Boost::iostreams)
 # One folder = one layer = one static library meshfarm_<name> = one unit-test program test_<name>.
+# Most of the time of a compiler goes into the headers: sources are compiled several together
+# (MESHFARM_UNITY), as no two of a layer define the same name, and tests always are.
 function(meshfarm_layer name)
   cmake_parse_arguments(ARG "" "" "USES;PACKAGES" ${ARGN})
   file(GLOB sources CONFIGURE_DEPENDS src/${name}/*.cpp)
@@ -47,8 +51,6 @@ function(meshfarm_layer name)
   list(TRANSFORM ARG_USES PREPEND meshfarm_ OUTPUT_VARIABLE uses)
   target_link_libraries(meshfarm_${name} PUBLIC ${uses} PRIVATE ${ARG_PACKAGES} Threads::Threads)
   meshfarm_compile_options(meshfarm_${name})
-  # Most of the time of a compiler goes into the headers. No two sources of a layer define the same
-  # name, so that they can be compiled together.
   set_target_properties(meshfarm_${name} PROPERTIES UNITY_BUILD ${MESHFARM_UNITY}
                                                     UNITY_BUILD_BATCH_SIZE 10)
 
@@ -58,6 +60,7 @@ function(meshfarm_layer name)
     target_include_directories(test_${name} PRIVATE ${PROJECT_SOURCE_DIR}/src)
     target_link_libraries(test_${name} PRIVATE meshfarm_${name} Threads::Threads)
     meshfarm_test_options(test_${name})
+    set_target_properties(test_${name} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 6)
     add_test(NAME unit.${name} COMMAND test_${name})
     set_tests_properties(unit.${name} PROPERTIES TIMEOUT 300 COST 300 LABELS unit)
   endif()

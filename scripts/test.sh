@@ -40,11 +40,22 @@ labs() {
   return "$code"
 }
 
-# compile FOLDER SANITIZERS [TARGET...]. By clang, and the sources of a layer together: one by one
-# they take three times as long, by g++ fifteen times.
+# compile FOLDER SANITIZERS [TARGET...]. By clang: g++ takes five times as long for sanitizers.
 compile() {
   "$root/scripts/build.sh" "$root/$1" "${build_options[@]}" -DCMAKE_CXX_COMPILER=clang++ \
-    -DCMAKE_BUILD_TYPE=RelWithDebInfo -DMESHFARM_UNITY=ON -DMESHFARM_SANITIZE="$2" -- "${@:3}"
+    -DCMAKE_BUILD_TYPE=RelWithDebInfo -DMESHFARM_SANITIZE="$2" -- "${@:3}"
+}
+
+# Each source by itself, so that one that lacks an include is noticed.
+compile_each() {
+  "$root/scripts/build.sh" "$root/build-each" "${build_options[@]}" -DMESHFARM_TESTS=OFF \
+    -DMESHFARM_UNITY=OFF -DCMAKE_CXX_COMPILER=clang++ -DCMAKE_BUILD_TYPE=Debug
+}
+
+compile_beside_labs() {
+  renice -n 10 "$BASHPID" > /dev/null
+  compile build-asan address,undefined
+  compile_each
 }
 
 # sanitized FOLDER SANITIZERS TESTS [TARGET...]: TESTS is a regular expression.
@@ -67,7 +78,7 @@ if [ "$all" = yes ]; then
   # The labs wait for most of their time: meanwhile what follows is compiled.
   log=$root/build/compiled-beside.log
   trap 'kill $(jobs -p) 2> /dev/null || true' EXIT
-  (renice -n 10 "$BASHPID" > /dev/null && compile build-asan address,undefined) > "$log" 2>&1 &
+  compile_beside_labs > "$log" 2>&1 &
   compiling=$!
   labs
   wait "$compiling" || { cat "$log" >&2; exit 1; }

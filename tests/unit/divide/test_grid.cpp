@@ -8,7 +8,7 @@ using namespace meshfarm;
 
 namespace {
 
-Box box_of(Vec3 lo, Vec3 hi) {
+Box grid_box(Vec3 lo, Vec3 hi) {
   Box box;
   box.add(lo);
   box.add(hi);
@@ -18,7 +18,7 @@ Box box_of(Vec3 lo, Vec3 hi) {
 }  // namespace
 
 TEST_CASE("cells are cubes along the longest side, and the far corner is in the last") {
-  const UniformGrid grid(box_of({0, 0, 0}, {8, 4, 0}), 3);
+  const UniformGrid grid(grid_box({0, 0, 0}, {8, 4, 0}), 3);
   CHECK(grid.cell_of({0, 0, 0}) == 0);
   CHECK(grid.cell_of({0.99, 0.99, 0}) == 0);
   CHECK(grid.cell_of({1, 0, 0}) == 1);
@@ -29,18 +29,18 @@ TEST_CASE("cells are cubes along the longest side, and the far corner is in the 
 }
 
 TEST_CASE("a box of no size has one cell") {
-  const UniformGrid grid(box_of({5, 5, 5}, {5, 5, 5}), 10);
+  const UniformGrid grid(grid_box({5, 5, 5}, {5, 5, 5}), 10);
   CHECK(grid.cell_of({5, 5, 5}) == 0);
   CHECK(UniformGrid(Box{}, 4).cell_of({1, 2, 3}) == 0);
 }
 
 TEST_CASE("zero and minus zero share a cell") {
-  const UniformGrid grid(box_of({-1, -1, -1}, {1, 1, 1}), 7);
+  const UniformGrid grid(grid_box({-1, -1, -1}, {1, 1, 1}), 7);
   CHECK(grid.cell_of({0.0, 0.5, -0.0}) == grid.cell_of({-0.0, 0.5, 0.0}));
 }
 
 TEST_CASE("a coarsened grid has the cells of one made with fewer bits") {
-  const Box box = box_of({-3, 1, 2}, {4, 6, 4});
+  const Box box = grid_box({-3, 1, 2}, {4, 6, 4});
   UniformGrid grid(box, 6);
   const UniformGrid fine = grid;
   grid.coarsen();

@@ -35,8 +35,8 @@ MeshShare soup() {
   return share;
 }
 
-using Corners = std::array<Vec3, 3>;
-Corners corners_of(const Mesh& mesh, std::size_t triangle) {
+using ThreePoints = std::array<Vec3, 3>;
+ThreePoints corners_of(const Mesh& mesh, std::size_t triangle) {
   const Triangle& t = mesh.triangles[triangle];
   return {mesh.positions[t[0]], mesh.positions[t[1]], mesh.positions[t[2]]};
 }
@@ -107,7 +107,7 @@ TEST_CASE("a part has its boundary vertices first, no unused ones, and the same 
     for (std::size_t t = 0; t < 2; ++t) {
       const Triangle& was = input.triangles[t];
       CHECK(corners_of(mesh, t) ==
-            Corners{input.positions[was[0]], input.positions[was[1]], input.positions[was[2]]});
+            ThreePoints{input.positions[was[0]], input.positions[was[1]], input.positions[was[2]]});
     }
     // The least of those that became one.
     for (std::size_t v = 0; v < mesh.positions.size(); ++v) {

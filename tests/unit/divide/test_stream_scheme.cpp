@@ -51,7 +51,7 @@ Generated generate(Mesh mesh, CutOptions options, const std::filesystem::path& f
   return made;
 }
 
-std::vector<Corners> triangles_of(const Generated& made) {
+std::vector<Corners> stream_triangles(const Generated& made) {
   std::vector<Corners> all;
   for (const Part& part : made.streams) {
     const auto some = triangles_of(part.mesh);
@@ -130,7 +130,7 @@ TEST_CASE("streams and boundary together are the input") {
   CHECK(made.streams.size() == 5);
   CHECK(made.manifest.triangles() == mesh.triangles.size());
   CHECK(made.manifest.boundary_triangles > 0);
-  CHECK(triangles_of(made) == triangles_of(mesh));
+  CHECK(stream_triangles(made) == triangles_of(mesh));
 }
 
 TEST_CASE(
@@ -178,7 +178,7 @@ TEST_CASE("slabs come out even with vertices far out, in many sizes, or in one p
     std::uint64_t most = 0;
     for (const PartEntry& entry : made.manifest.parts) most = std::max(most, entry.vertices);
     CHECK(static_cast<double>(most) * 28 <= 1.15 * static_cast<double>(mesh.positions.size()));
-    CHECK(triangles_of(made) == triangles_of(mesh));
+    CHECK(stream_triangles(made) == triangles_of(mesh));
     for (const unsigned threads : {2U, 5U}) {
       const Generated other =
           generate(test::shuffled(mesh, threads), {.parts = 28, .threads = threads},
@@ -281,7 +281,7 @@ TEST_CASE("coincident vertices are welded, degenerate and duplicate triangles dr
   const Generated made = generate(soup, {.parts = 3}, folder / "welded");
   CHECK(made.manifest.coincident_vertices == soup.positions.size() - mesh.positions.size());
   CHECK(made.manifest.dropped_degenerate == 1);
-  CHECK(triangles_of(made) == triangles_of(mesh));
+  CHECK(stream_triangles(made) == triangles_of(mesh));
   std::uint64_t vertices = 0;
   for (const PartEntry& entry : made.manifest.parts) vertices += entry.vertices;
   CHECK(vertices == mesh.positions.size());

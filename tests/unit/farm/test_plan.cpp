@@ -12,7 +12,7 @@
 namespace meshfarm::test {
 namespace {
 
-JobOutput output_of(JobKey key) {
+JobOutput planned_output(JobKey key) {
   return {{to_string(ResultName{key.value, 1, 1}), 1, 1}, "made"};
 }
 
@@ -57,15 +57,15 @@ TEST_CASE("a job of the sink is never issued, and runs until it is accepted") {
   REQUIRE(issued);
   CHECK(issued->key == theirs);
   CHECK_FALSE(plan.issue());
-  CHECK(plan.accept(theirs, output_of(theirs)));
+  CHECK(plan.accept(theirs, planned_output(theirs)));
   CHECK_FALSE(plan.complete());
   CHECK_FALSE(plan.stuck());
   plan.give_back(own);  // nobody has it
   CHECK(plan.state(own) == JobState::running);
-  CHECK(plan.accept(own, output_of(own)));
+  CHECK(plan.accept(own, planned_output(own)));
   CHECK(plan.complete());
   CHECK(plan.counts().at_sink == 0);
-  plan.restart({{theirs, output_of(theirs)}});  // a sink that lost it does it again
+  plan.restart({{theirs, planned_output(theirs)}});  // a sink that lost it does it again
   CHECK(plan.state(own) == JobState::running);
   CHECK(plan.counts().at_sink == 1);
   CHECK(plan.ready_jobs().empty());
@@ -109,20 +109,20 @@ TEST_CASE("an input that is bad for good fails its job at once, the others go on
   CHECK(plan.counts().failed == 1);
   CHECK_FALSE(plan.stuck());
   const JobKey other = plan.issue()->key;
-  CHECK(plan.accept(other, output_of(other)));
+  CHECK(plan.accept(other, planned_output(other)));
   CHECK(plan.stuck());
 }
 
 TEST_CASE("an accepted job stays accepted") {
   Plan plan = started_plan(one_stage(2));
   const auto issued = plan.issue();
-  CHECK(plan.accept(issued->key, output_of(issued->key)));
-  CHECK_FALSE(plan.accept(issued->key, output_of(issued->key)));
+  CHECK(plan.accept(issued->key, planned_output(issued->key)));
+  CHECK_FALSE(plan.accept(issued->key, planned_output(issued->key)));
   plan.give_back(issued->key);
   plan.fail_attempt(issued->key, "late", Failing::for_good);
   CHECK(plan.state(issued->key) == JobState::done);
   CHECK(plan.counts().done == 1);
-  CHECK_FALSE(plan.accept(JobKey{99}, output_of(JobKey{99})));
+  CHECK_FALSE(plan.accept(JobKey{99}, planned_output(JobKey{99})));
   CHECK_FALSE(plan.state(JobKey{99}));
 }
 
@@ -130,11 +130,11 @@ TEST_CASE("a late result counts even for a job that waits or was given up") {
   Plan plan = started_plan(one_stage(2));
   const JobKey waits = plan.issue()->key;
   plan.give_back(waits);
-  CHECK(plan.accept(waits, output_of(waits)));
+  CHECK(plan.accept(waits, planned_output(waits)));
   const JobKey failed = plan.issue()->key;
   plan.fail_attempt(failed, "bad", Failing::for_good);
   CHECK(plan.stuck());
-  CHECK(plan.accept(failed, output_of(failed)));
+  CHECK(plan.accept(failed, planned_output(failed)));
   CHECK(plan.complete());
 }
 
@@ -144,31 +144,31 @@ TEST_CASE("stages follow each other, and a restart goes straight to the jobs tha
   const JobKey b = key_of(make_job("b"));
   const JobKey c = key_of(make_job("c"));
   Plan plan = started_plan(source);
-  plan.accept(a, output_of(a));
+  plan.accept(a, planned_output(a));
   CHECK_FALSE(plan.state(c));
-  plan.accept(b, output_of(b));
+  plan.accept(b, planned_output(b));
   CHECK(plan.state(c) == JobState::ready);
   CHECK(plan.issue()->key == c);
 
   SUBCASE("the sink knows all") {
-    plan.restart({{a, output_of(a)}, {b, output_of(b)}});
+    plan.restart({{a, planned_output(a)}, {b, planned_output(b)}});
     CHECK(plan.state(c) == JobState::running);
     CHECK(plan.counts().running == 1);
-    CHECK(plan.accept(c, output_of(c)));
+    CHECK(plan.accept(c, planned_output(c)));
     CHECK(plan.complete());
   }
   SUBCASE("the sink lost a job of the first stage") {
-    plan.restart({{a, output_of(a)}});
+    plan.restart({{a, planned_output(a)}});
     CHECK(plan.state(b) == JobState::ready);
     CHECK(plan.counts().running == 0);  // c is not wanted yet
     plan.give_back(c);                  // its worker is lost meanwhile
     CHECK(plan.issue()->key == b);
     CHECK_FALSE(plan.issue());
-    plan.accept(b, output_of(b));
+    plan.accept(b, planned_output(b));
     CHECK(plan.issue()->key == c);
   }
   SUBCASE("the sink has all") {
-    plan.restart({{a, output_of(a)}, {b, output_of(b)}, {c, output_of(c)}});
+    plan.restart({{a, planned_output(a)}, {b, planned_output(b)}, {c, planned_output(c)}});
     CHECK(plan.complete());
     CHECK(plan.counts().done == 3);
   }

@@ -41,12 +41,12 @@ JobOutput output_of(JobKey of, std::uint32_t attempt = 1, std::uint64_t incarnat
 }
 
 /// A sink with a clock, of a run of jobs "job 0", "job 1"...
-struct Bench {
-  explicit Bench(std::size_t jobs, std::map<JobKey, JobOutput> journal = {},
-                 WhenFull when_full = WhenFull::wait)
-      : Bench(one_stage(jobs), std::move(journal), when_full) {}
-  explicit Bench(JobSource source, std::map<JobKey, JobOutput> journal = {},
-                 WhenFull when_full = WhenFull::wait)
+struct SinkBench {
+  explicit SinkBench(std::size_t jobs, std::map<JobKey, JobOutput> journal = {},
+                     WhenFull when_full = WhenFull::wait)
+      : SinkBench(one_stage(jobs), std::move(journal), when_full) {}
+  explicit SinkBench(JobSource source, std::map<JobKey, JobOutput> journal = {},
+                     WhenFull when_full = WhenFull::wait)
       : core({Role::sink, 7, 99, 1, "h", "results", FarmTime(10'000)}, std::move(source),
              std::move(journal), when_full) {}
 
@@ -78,7 +78,7 @@ struct Bench {
 };
 
 TEST_CASE("a result is told only after its file is found whole and journalled") {
-  Bench bench(2);
+  SinkBench bench(2);
   bench.join(1);
   const auto checks = only<Check>(bench.result(key("job 1")));
   REQUIRE(checks.size() == 1);
@@ -96,7 +96,7 @@ TEST_CASE("a result is told only after its file is found whole and journalled") 
 }
 
 TEST_CASE("a damaged result and a failed job are rejected with their reasons") {
-  Bench bench(2);
+  SinkBench bench(2);
   bench.join(1);
   const auto checks = only<Check>(bench.result(key("job 0"), 1, 4));
   const auto damaged = said<Reject>(bench.core.checked(checks.at(0), {"it is damaged"}, bench.now));
@@ -115,7 +115,7 @@ TEST_CASE("a damaged result and a failed job are rejected with their reasons") {
 }
 
 TEST_CASE("what is not ours is dropped and counted") {
-  Bench bench(1);
+  SinkBench bench(1);
   bench.join(2);
   const JobKey job = key("job 0");
   const JobOutput good = output_of(job);
@@ -132,7 +132,7 @@ TEST_CASE("what is not ours is dropped and counted") {
 TEST_CASE("what a journal knows is checked again, and told to each ventilator before Ready") {
   const JobKey known = key("job 0");
   const JobKey gone = key("job 1");
-  Bench bench(3, {{known, output_of(known)}, {gone, output_of(gone)}, {{1}, output_of({1})}});
+  SinkBench bench(3, {{known, output_of(known)}, {gone, output_of(gone)}, {{1}, output_of({1})}});
   const auto checks = only<Check>(bench.join(1));
   REQUIRE(checks.size() == 2);  // what no job is for is left alone
   CHECK(checks[0].from_journal);
@@ -153,7 +153,7 @@ TEST_CASE("what a journal knows is checked again, and told to each ventilator be
 }
 
 TEST_CASE("heartbeats say again where the sink stands") {
-  Bench bench(2);
+  SinkBench bench(2);
   bench.join(1);
   bench.accept(key("job 0"));
   const SinkActions beat = bench.silence(FarmTime(1000));
@@ -162,7 +162,7 @@ TEST_CASE("heartbeats say again where the sink stands") {
 }
 
 TEST_CASE("the output is made once all is accepted, and Complete said until it is heard") {
-  Bench bench(1);
+  SinkBench bench(1);
   bench.join(1);
   CHECK(only<MakeOutput>(bench.accept(key("job 0"))).size() == 1);
   bench.core.on_control(Alive{1, ""}, bench.now);
@@ -187,7 +187,7 @@ TEST_CASE("the output is made once all is accepted, and Complete said until it i
 }
 
 TEST_CASE("an output or a journal that cannot be written is told, and is the end") {
-  Bench bench(1);
+  SinkBench bench(1);
   bench.join(1);
   bool resumable = false;
   SUBCASE("for good") {}
@@ -205,7 +205,7 @@ TEST_CASE("an output or a journal that cannot be written is told, and is the end
 }
 
 TEST_CASE("a record that there is no room for is written again, and told only then") {
-  Bench bench(1);
+  SinkBench bench(1);
   bench.join(1);
   const auto checks = only<Check>(bench.result(key("job 0")));
   REQUIRE(checks.size() == 1);
@@ -226,7 +226,7 @@ TEST_CASE("a record that there is no room for is written again, and told only th
 }
 
 TEST_CASE("a sink does not wait for room when what it had none for is damaged by then") {
-  Bench bench(2);
+  SinkBench bench(2);
   bench.join(1);
   const auto checks = only<Check>(bench.result(key("job 0")));
   const auto more = only<Check>(bench.result(key("job 1")));
@@ -243,7 +243,7 @@ TEST_CASE("a sink does not wait for room when what it had none for is damaged by
 }
 
 TEST_CASE("an output that there is no room for is made again") {
-  Bench bench(1);
+  SinkBench bench(1);
   bench.join(1);
   CHECK(only<MakeOutput>(bench.accept(key("job 0"))).size() == 1);
   const SinkProblem full{"ENOSPC", true};
@@ -259,7 +259,7 @@ TEST_CASE("an output that there is no room for is made again") {
 }
 
 TEST_CASE("a sink that shall not wait for room ends the run") {
-  Bench bench(1, {}, WhenFull::end);
+  SinkBench bench(1, {}, WhenFull::end);
   bench.join(1);
   SUBCASE("for its journal") {
     const auto checks = only<Check>(bench.result(key("job 0")));
@@ -280,7 +280,7 @@ JobSource then_own() {
 }
 
 TEST_CASE("a job of the sink is done there, verified, journalled and told as others are") {
-  Bench bench(then_own());
+  SinkBench bench(then_own());
   bench.join(1);
   const auto to_do = only<DoHere>(bench.accept(key("job 0")));
   REQUIRE(to_do.size() == 1);
@@ -303,7 +303,7 @@ TEST_CASE("a job of the sink is done there, verified, journalled and told as oth
 
 TEST_CASE("what a journal knows of a job of the sink is used, or done again if it is damaged") {
   for (const bool is_whole : {true, false}) {
-    Bench bench(then_own(), {{key("own"), output_of(key("own"))}});
+    SinkBench bench(then_own(), {{key("own"), output_of(key("own"))}});
     bench.join(1);
     const SinkActions next = bench.accept(key("job 0"));
     CHECK(only<DoHere>(next).empty());
@@ -318,7 +318,7 @@ TEST_CASE("what a journal knows of a job of the sink is used, or done again if i
 }
 
 TEST_CASE("a job of the sink that fails ends the run, one without room is done again") {
-  Bench bench(then_own());
+  SinkBench bench(then_own());
   bench.join(1);
   const auto to_do = only<DoHere>(bench.accept(key("job 0")));
   REQUIRE(to_do.size() == 1);
@@ -333,7 +333,7 @@ TEST_CASE("a job of the sink that fails ends the run, one without room is done a
 }
 
 TEST_CASE("jobs that were given up end the run, and say whether it may be taken up again") {
-  Bench bench(2);
+  SinkBench bench(2);
   bench.join(1);
   const auto end_of = [&] {
     return only<SinkLeaves>(bench.core.on_control(Stop{StopReason::run_over}, bench.now)).at(0);
@@ -365,7 +365,7 @@ TEST_CASE("jobs that were given up end the run, and say whether it may be taken 
 }
 
 TEST_CASE("a sink that is stopped, replaced or alone for too long leaves, resumable") {
-  Bench bench(1);
+  SinkBench bench(1);
   SUBCASE("stopped") {
     bench.join(1);
     CHECK(only<SinkLeaves>(bench.core.stop()).at(0).why == SinkLeaves::Why::incomplete);

@@ -84,7 +84,7 @@ double area_across(const Mesh& mesh, double margin) {
   return area;
 }
 
-Mesh simplified(Mesh mesh, std::uint64_t triangles, double appearance_length) {
+Mesh simplified_painted(Mesh mesh, std::uint64_t triangles, double appearance_length) {
   SimplifyOptions options;
   options.lines.appearance_scale.length = appearance_length;
   Simplifier simplifier(std::move(mesh), options);
@@ -159,10 +159,10 @@ TEST_CASE("steep gradients count no more than others") {
 
 TEST_CASE("a line between two colours stays where the shape is flat") {
   const Mesh input = coloured(simplify_test::flat_grid(80, 80), half_white);
-  const Mesh blind = simplified(input, 200, 0);
+  const Mesh blind = simplified_painted(input, 200, 0);
   CHECK(blind.appearances.empty());
   CHECK(area_across(blind, 0.02) > 0.05);
-  const Mesh made = simplified(input, 200, 0.1);
+  const Mesh made = simplified_painted(input, 200, 0.1);
   CHECK(made.triangles.size() == 200);
   REQUIRE(made.appearances.size() == made.positions.size());
   CHECK(wrong_colours(made, 0.02) == 0);
@@ -177,7 +177,7 @@ TEST_CASE("appearances follow their vertices through dirt and gaps") {
   input.positions.insert(input.positions.begin(), {9, 9, 9});
   input.appearances.insert(input.appearances.begin(), {1, 2, 3, 4});
   for (Triangle& t : input.triangles) t = {t[0] + 1, t[1] + 1, t[2] + 1};
-  const Mesh made = simplified(input, 400, 0.05);
+  const Mesh made = simplified_painted(input, 400, 0.05);
   CHECK(made.triangles.size() <= 400);
   REQUIRE(made.appearances.size() == made.positions.size());
   CHECK(wrong_colours(made, 0.05) == 0);

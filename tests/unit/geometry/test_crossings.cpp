@@ -54,7 +54,7 @@ std::uint64_t crossing_slowly(const Mesh& mesh) {
   return found.size();
 }
 
-Mesh moved(Mesh mesh, Vec3 by) {
+Mesh shifted(Mesh mesh, Vec3 by) {
   for (Vec3& p : mesh.positions) p = p + by;
   return mesh;
 }
@@ -147,7 +147,7 @@ TEST_CASE("crossings: two quads that cut each other, and a hole that is cut out"
 
 TEST_CASE("crossings: two spheres cross in a ring, as all pairs tell") {
   Mesh spheres = test::icosphere(3);
-  test::append(spheres, moved(test::icosphere(3), {0.9, 0.3, 0.1}));
+  test::append(spheres, shifted(test::icosphere(3), {0.9, 0.3, 0.1}));
   const std::uint64_t all = crossing(spheres);
   CHECK(all == crossing_slowly(spheres));
   // Of each sphere a circle: some 40 triangles across, each cut once or twice.

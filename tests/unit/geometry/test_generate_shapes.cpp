@@ -24,11 +24,11 @@ constexpr std::array k_shapes{Shape::torus,   Shape::foam,  Shape::dust, Shape::
                               Shape::terrain, Shape::block, Shape::shell};
 constexpr std::array k_closed{Shape::torus, Shape::foam, Shape::dust, Shape::block, Shape::shell};
 
-Mesh make(Shape shape, std::uint64_t triangles) {
+Mesh make_shape(Shape shape, std::uint64_t triangles) {
   return in_memory(*generate_mesh(shape, triangles));
 }
 
-Vec3 normal_of(const Mesh& mesh, const Triangle& t) {
+Vec3 shape_normal(const Mesh& mesh, const Triangle& t) {
   const Vec3 a = mesh.positions[t[0]];
   return cross(mesh.positions[t[1]] - a, mesh.positions[t[2]] - a);
 }
@@ -36,7 +36,7 @@ Vec3 normal_of(const Mesh& mesh, const Triangle& t) {
 double volume_of(const Mesh& mesh) {
   double volume = 0;
   for (const Triangle& t : mesh.triangles) {
-    volume += dot(mesh.positions[t[0]], normal_of(mesh, t)) / 6;
+    volume += dot(mesh.positions[t[0]], shape_normal(mesh, t)) / 6;
   }
   return volume;
 }
@@ -51,7 +51,7 @@ template <class Holds>
 double share_of_area(const Mesh& mesh, const Holds& holds) {
   double all = 0, held = 0;
   for (const Triangle& t : mesh.triangles) {
-    const double area = length(normal_of(mesh, t));
+    const double area = length(shape_normal(mesh, t));
     all += area;
     if (holds(t)) held += area;
   }
@@ -125,7 +125,7 @@ TEST_CASE("shapes: no vertex unused, no triangle degenerate, none twice, none tu
     for (const std::uint64_t wanted : {1'000U, 50'000U}) {
       CAPTURE(static_cast<int>(shape));
       CAPTURE(wanted);
-      const Topology t = measure_topology(make(shape, wanted));
+      const Topology t = measure_topology(make_shape(shape, wanted));
       CHECK(t.used_vertices == t.vertices);
       CHECK(t.degenerate + t.zero_area + t.duplicate == 0);
       CHECK(t.nonmanifold_edges + t.orientation_conflicts == 0);
@@ -136,7 +136,7 @@ TEST_CASE("shapes: no vertex unused, no triangle degenerate, none twice, none tu
 TEST_CASE("shapes: closed ones are closed and face outwards") {
   for (const Shape shape : k_closed) {
     CAPTURE(static_cast<int>(shape));
-    const Mesh mesh = make(shape, 50'000);
+    const Mesh mesh = make_shape(shape, 50'000);
     CHECK(measure_topology(mesh).border_edges == 0);
     CHECK(volume_of(mesh) > 0);
   }
@@ -145,7 +145,7 @@ TEST_CASE("shapes: closed ones are closed and face outwards") {
 TEST_CASE("shapes: the same on every machine") {
   const auto is = [](Shape shape, std::string_view sum) {
     CAPTURE(static_cast<int>(shape));
-    CHECK(checksum_of(make(shape, 20'000)) == sum);
+    CHECK(checksum_of(make_shape(shape, 20'000)) == sum);
   };
   is(Shape::torus, "1cc8b6aad316c76e");
   is(Shape::foam, "225b2c9ef25bf8f3");
@@ -157,15 +157,15 @@ TEST_CASE("shapes: the same on every machine") {
 }
 
 TEST_CASE("foam: handles in proportion to the triangles") {
-  const double few = genus_of(measure_topology(make(Shape::foam, 50'000)));
-  const double many = genus_of(measure_topology(make(Shape::foam, 500'000)));
+  const double few = genus_of(measure_topology(make_shape(Shape::foam, 50'000)));
+  const double many = genus_of(measure_topology(make_shape(Shape::foam, 500'000)));
   CHECK(few > 40);
   CHECK(many > 10 * few);  // the box's walls have none, and matter less
   CHECK(many < 20 * few);
 }
 
 TEST_CASE("dust: a quarter of the triangles are specks, clear of the surface") {
-  Mesh mesh = make(Shape::dust, 40'000);
+  Mesh mesh = make_shape(Shape::dust, 40'000);
   const Topology t = measure_topology(mesh);
   CHECK(t.components == 1 + 10'000 / 8);
   const double all = diagonal_of(mesh);
@@ -175,13 +175,13 @@ TEST_CASE("dust: a quarter of the triangles are specks, clear of the surface") {
 }
 
 TEST_CASE("soup: a weld joins nothing") {
-  const Mesh mesh = make(Shape::soup, 20'000);
+  const Mesh mesh = make_shape(Shape::soup, 20'000);
   CHECK(mesh.positions.size() == 3 * mesh.triangles.size());
   CHECK(weld(mesh.positions).merged == 0);
 }
 
 TEST_CASE("terrain: one sheet, one border, rough land and flat lakes") {
-  const Mesh mesh = make(Shape::terrain, 100'000);
+  const Mesh mesh = make_shape(Shape::terrain, 100'000);
   const Topology t = measure_topology(mesh);
   CHECK(t.components == 1);
   CHECK(t.euler == 1);
@@ -193,19 +193,19 @@ TEST_CASE("terrain: one sheet, one border, rough land and flat lakes") {
   CHECK(lakes > 0.1);
   CHECK(lakes < 0.5);
   const double steep = share_of_area(mesh, [&](const Triangle& corners) {
-    const Vec3 n = normal_of(mesh, corners);
+    const Vec3 n = shape_normal(mesh, corners);
     return n.z < 0.7 * length(n);
   });
   CHECK(steep > 0.1);
-  CHECK(share_of_area(mesh, [&](const Triangle& c) { return normal_of(mesh, c).z > 0; }) == 1);
+  CHECK(share_of_area(mesh, [&](const Triangle& c) { return shape_normal(mesh, c).z > 0; }) == 1);
 }
 
 TEST_CASE("block: six holes, exactly flat faces, right angles") {
   for (const std::uint64_t wanted : {1'000U, 30'000U}) {
-    const Mesh mesh = make(Shape::block, wanted);
+    const Mesh mesh = make_shape(Shape::block, wanted);
     CHECK(genus_of(measure_topology(mesh)) == 6);
     const double flat = share_of_area(mesh, [&](const Triangle& corners) {
-      const Vec3 n = normal_of(mesh, corners);
+      const Vec3 n = shape_normal(mesh, corners);
       return (n.x != 0) + (n.y != 0) + (n.z != 0) == 1;
     });
     CHECK(flat > 0.5);
@@ -216,7 +216,7 @@ TEST_CASE("block: six holes, exactly flat faces, right angles") {
 }
 
 TEST_CASE("shell: two sheets a ten-thousandth apart, which do not meet") {
-  const Mesh both = make(Shape::shell, 40'000);
+  const Mesh both = make_shape(Shape::shell, 40'000);
   CHECK(measure_topology(both).components == 2);
   // Rings take turns: the sheet of a triangle is told by its place in the file.
   Mesh outer{both.positions, {}}, inner{both.positions, {}};

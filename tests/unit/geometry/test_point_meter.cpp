@@ -18,7 +18,7 @@ using namespace meshfarm;
 namespace {
 
 /// Random triangles in the unit cube: many small ones, a few that span it, needles and points.
-Mesh soup(std::size_t triangles, unsigned seed) {
+Mesh metered_soup(std::size_t triangles, unsigned seed) {
   std::mt19937 random(seed);
   std::uniform_real_distribution<double> unit(0, 1);
   Mesh mesh;
@@ -48,7 +48,7 @@ std::vector<Vec3> scattered(std::size_t count, unsigned seed) {
   return points;
 }
 
-double nearest_slowly(const Mesh& mesh, Vec3 p) {
+double nearest_of_all(const Mesh& mesh, Vec3 p) {
   double best = std::numeric_limits<double>::infinity();
   for (const auto& [a, b, c] : mesh.triangles) {
     best = std::min(best,
@@ -64,7 +64,7 @@ struct Shown {
 };
 
 /// Shows the mesh in pieces of so many triangles.
-Shown measure(std::span<const Vec3> points, const Mesh& mesh, PointMeterHints hints,
+Shown metered(std::span<const Vec3> points, const Mesh& mesh, PointMeterHints hints,
               std::size_t piece = 100, unsigned threads = 1) {
   hints.surface = std::span(mesh.positions).first(10);
   PointMeter meter(points, hints);
@@ -94,38 +94,38 @@ Shown measure(std::span<const Vec3> points, const Mesh& mesh, PointMeterHints hi
 }  // namespace
 
 TEST_CASE("each point finds the distance that looking at every triangle finds") {
-  const Mesh mesh = soup(3'000, 1);
+  const Mesh mesh = metered_soup(3'000, 1);
   const std::vector<Vec3> points = scattered(400, 2);
   for (const PointMeterHints& hints : std::vector<PointMeterHints>{
            {0.03, 0.05, {}}, {0.03, 0, {}}, {0, 0, {}}, {0.001, 0.02, {}}, {10, 10, {}}}) {
     CAPTURE(hints.usual);
-    const Shown shown = measure(points, mesh, hints);
+    const Shown shown = metered(points, mesh, hints);
     CHECK(shown.passes <= 2);
     for (std::size_t i = 0; i < points.size(); ++i) {
       REQUIRE(shown.distances[i] ==
-              doctest::Approx(nearest_slowly(mesh, points[i])).epsilon(1e-12));
+              doctest::Approx(nearest_of_all(mesh, points[i])).epsilon(1e-12));
     }
   }
 }
 
 TEST_CASE("no distance depends on hints, pieces or threads") {
-  const Mesh mesh = soup(3'000, 3);
+  const Mesh mesh = metered_soup(3'000, 3);
   const std::vector<Vec3> points = scattered(400, 4);
-  const std::vector<double> expected = measure(points, mesh, {0.03, 0.05, {}}).distances;
-  CHECK(measure(points, mesh, {0.3, 0.001, {}}).distances == expected);
-  CHECK(measure(points, mesh, {0.03, 0.05, {}}, 7).distances == expected);
-  CHECK(measure(points, mesh, {0.03, 0.05, {}}, 3'000).distances == expected);
-  CHECK(measure(points, mesh, {0.03, 0.05, {}}, 10, 3).distances == expected);
+  const std::vector<double> expected = metered(points, mesh, {0.03, 0.05, {}}).distances;
+  CHECK(metered(points, mesh, {0.3, 0.001, {}}).distances == expected);
+  CHECK(metered(points, mesh, {0.03, 0.05, {}}, 7).distances == expected);
+  CHECK(metered(points, mesh, {0.03, 0.05, {}}, 3'000).distances == expected);
+  CHECK(metered(points, mesh, {0.03, 0.05, {}}, 10, 3).distances == expected);
 }
 
 TEST_CASE("the last pass asks only for what is near the points that found nothing") {
   const Mesh mesh = test::grid(100, 100);
   std::vector<Vec3> points;
   for (int i = 0; i < 100; ++i) points.push_back({i + 0.3, 50.2, 0.01});
-  CHECK(measure(points, mesh, {1, 0.5, {}}).passes == 1);
-  const Shown near = measure(points, mesh, {1, 0.5, {}});
+  CHECK(metered(points, mesh, {1, 0.5, {}}).passes == 1);
+  const Shown near = metered(points, mesh, {1, 0.5, {}});
   points.push_back({3, 3, 7});
-  const Shown shown = measure(points, mesh, {1, 0.5, {}});
+  const Shown shown = metered(points, mesh, {1, 0.5, {}});
   CHECK(shown.passes == 2);
   CHECK(shown.distances.back() == doctest::Approx(7));
   CHECK(shown.pieces < near.pieces + 120);  // of 200
@@ -138,11 +138,11 @@ TEST_CASE("no points need no pass") {
 }
 
 TEST_CASE("far from the origin, and where all points are one") {
-  Mesh mesh = soup(500, 5);
+  Mesh mesh = metered_soup(500, 5);
   std::vector<Vec3> points(30, Vec3{5e5 + 0.3, 4e6 + 0.4, 0.5});
   for (Vec3& p : mesh.positions) p = p + Vec3{5e5, 4e6, 0};
-  const Shown shown = measure(points, mesh, {0.03, 0.02, {}});
+  const Shown shown = metered(points, mesh, {0.03, 0.02, {}});
   for (const double d : shown.distances) {
-    CHECK(d == doctest::Approx(nearest_slowly(mesh, points[0])).epsilon(1e-9));
+    CHECK(d == doctest::Approx(nearest_of_all(mesh, points[0])).epsilon(1e-9));
   }
 }

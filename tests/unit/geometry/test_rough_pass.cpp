@@ -40,14 +40,14 @@ struct RoughBench {
 };
 
 // A square sheet, smooth waves in one corner of it: an eighth of a side wide.
-constexpr std::uint32_t k_side = 160;
+constexpr std::uint32_t k_rough_side = 160;
 bool in_corner(Vec3 p) {
-  return p.x < k_side / 8.0 && p.y < k_side / 8.0;
+  return p.x < k_rough_side / 8.0 && p.y < k_rough_side / 8.0;
 }
 Mesh sheet_with_detail() {
-  Mesh mesh = flat_grid(k_side, k_side);
+  Mesh mesh = flat_grid(k_rough_side, k_rough_side);
   for (Vec3& p : mesh.positions) {
-    p = p * static_cast<double>(k_side);
+    p = p * static_cast<double>(k_rough_side);
     if (in_corner(p)) p.z = std::sin(p.x) * std::cos(0.7 * p.y);
   }
   return mesh;

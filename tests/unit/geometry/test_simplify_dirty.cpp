@@ -15,7 +15,7 @@ using namespace meshfarm::simplify_test;
 namespace {
 
 /// Two spheres that share one vertex: a bow tie.
-Mesh bow_tie() {
+Mesh joined_spheres() {
   Mesh mesh = sphere(3);
   append(mesh, sphere(3), {2, 0, 0});
   const auto second = static_cast<std::uint32_t>(mesh.positions.size() / 2 + 1);
@@ -76,7 +76,7 @@ TEST_CASE("unused vertices are dropped") {
 }
 
 TEST_CASE("closed surfaces that touch in a vertex are taken apart") {
-  Simplifier simplifier(bow_tie(), {});
+  Simplifier simplifier(joined_spheres(), {});
   CHECK(check(simplifier.mesh()).components == 2);
   simplifier.reduce({60});
   CHECK(simplifier.triangles() == 60);
@@ -202,7 +202,7 @@ Mesh random_soup(Random& random) {
 
 /// A torus or a sheet with noise, holes, and points glued together: bow ties and crowded edges.
 Mesh random_surface(Random& random, bool closed) {
-  Mesh mesh = closed ? torus(8 + random.below(8), 6 + random.below(8))
+  Mesh mesh = closed ? wide_torus(8 + random.below(8), 6 + random.below(8))
                      : wavy_grid(6 + random.below(12), 6 + random.below(12));
   for (Vec3& p : mesh.positions) {
     p = p + Vec3{random.unit(), random.unit(), random.unit()} * (0.02 * random.below(8));

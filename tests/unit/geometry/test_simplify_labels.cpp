@@ -36,8 +36,8 @@ Label octant(Vec3 p) {
   return (p.x > 0 ? 1U : 0U) + (p.y > 0 ? 2U : 0U) + (p.z > 0 ? 4U : 0U);
 }
 
-Mesh simplified(const Mesh& mesh, std::uint64_t triangles,
-                TopologyMode topology = TopologyMode::automatic) {
+Mesh simplified_labelled(const Mesh& mesh, std::uint64_t triangles,
+                         TopologyMode topology = TopologyMode::automatic) {
   SimplifyOptions options;
   options.lines.topology = topology;
   Simplifier simplifier(mesh, options);
@@ -81,18 +81,18 @@ std::map<Label, double> areas_of(const Mesh& mesh) {
   return areas;
 }
 
-const std::vector<TopologyMode> k_modes = {TopologyMode::automatic, TopologyMode::keep,
-                                           TopologyMode::simplify};
+const std::vector<TopologyMode> k_label_modes = {TopologyMode::automatic, TopologyMode::keep,
+                                                 TopologyMode::simplify};
 
 }  // namespace
 
 TEST_CASE("lines between labels stay where they are") {
   const Mesh ball = labelled(sphere(5), octant);
   REQUIRE(ball.triangles.size() == 8192);
-  for (const TopologyMode mode : k_modes) {
+  for (const TopologyMode mode : k_label_modes) {
     for (const std::uint64_t target : {2000, 400, 120}) {
       CAPTURE(target);
-      const Mesh result = simplified(ball, target, mode);
+      const Mesh result = simplified_labelled(ball, target, mode);
       CHECK(result.triangles.size() <= target);
       CHECK(result.triangles.size() + 2 > target);
       REQUIRE(result.columns.labels.size() == result.triangles.size());
@@ -114,8 +114,8 @@ TEST_CASE("a jagged region keeps its area and its place") {
   const auto is_inside = [](Vec3 p) -> Label { return std::hypot(p.x - 0.5, p.y - 0.5) < 0.3; };
   const Mesh flat = labelled(wavy_grid(100, 100), is_inside);
   const double before = areas_of(flat).at(1);
-  for (const TopologyMode mode : k_modes) {
-    const Mesh result = simplified(flat, 400, mode);
+  for (const TopologyMode mode : k_label_modes) {
+    const Mesh result = simplified_labelled(flat, 400, mode);
     CHECK(result.triangles.size() <= 400);
     CHECK(areas_of(result).at(1) == doctest::Approx(before).epsilon(0.02));
     for (const auto& [a, b] : lines_of(result)) {
@@ -132,27 +132,27 @@ TEST_CASE("a round region neither grows nor shrinks as its line becomes coarse")
   const double before = areas_of(flat).at(1);
   for (const std::uint64_t target : {100, 40, 24}) {
     CAPTURE(target);
-    const Mesh result = simplified(flat, target);
+    const Mesh result = simplified_labelled(flat, target);
     CHECK(areas_of(result).at(1) == doctest::Approx(before).epsilon(0.0035));
   }
 }
 
 TEST_CASE("labels that are all the same change nothing") {
   const Mesh mesh = wavy_grid(60, 60);
-  const Mesh plain = simplified(mesh, 500);
-  const Mesh result = simplified(labelled(mesh, [](Vec3) { return 7U; }), 500);
+  const Mesh plain = simplified_labelled(mesh, 500);
+  const Mesh result = simplified_labelled(labelled(mesh, [](Vec3) { return 7U; }), 500);
   CHECK(result.positions == plain.positions);
   CHECK(result.triangles == plain.triangles);
   CHECK(result.columns.labels == std::vector<Label>(plain.triangles.size(), 7));
 }
 
 TEST_CASE("labels go with their triangles where these are dropped") {
-  Mesh mesh = labelled(torus(40, 20), [](Vec3 p) { return p.z > 0 ? 1U : 0U; });
+  Mesh mesh = labelled(wide_torus(40, 20), [](Vec3 p) { return p.z > 0 ? 1U : 0U; });
   const double before = areas_of(mesh).at(1);
   // A degenerate one in front, one twice, and a piece that is dropped below.
   mesh.triangles.insert(mesh.triangles.begin(), {{0, 0, 1}, mesh.triangles[5]});
   mesh.columns.labels.insert(mesh.columns.labels.begin(), {9, mesh.columns.labels[5]});
-  const Mesh result = simplified(mesh, 1500);
+  const Mesh result = simplified_labelled(mesh, 1500);
   REQUIRE(result.columns.labels.size() == result.triangles.size());
   CHECK(areas_of(result).size() == 2);
   CHECK(areas_of(result).at(1) == doctest::Approx(before).epsilon(0.01));

@@ -11,7 +11,7 @@ using namespace meshfarm::simplify_test;
 
 namespace {
 
-Mesh shifted(Mesh mesh, Vec3 by) {
+Mesh put_at(Mesh mesh, Vec3 by) {
   for (Vec3& p : mesh.positions) p = p + by;
   return mesh;
 }
@@ -88,7 +88,7 @@ TEST_CASE("max_cost is nearly exhausted by one call") {
 TEST_CASE("costs do not depend on where a part lies") {
   Simplifier here(wavy_grid(60, 60), {});
   here.reduce({1000});
-  Simplifier there(shifted(wavy_grid(60, 60), {4096, -4096, 4096}), {});
+  Simplifier there(put_at(wavy_grid(60, 60), {4096, -4096, 4096}), {});
   there.reduce({1000});
   CHECK(here.pass_cost() == doctest::Approx(there.pass_cost()).epsilon(0.1));
   CHECK(here.max_cost() == doctest::Approx(there.max_cost()).epsilon(0.1));
@@ -96,7 +96,7 @@ TEST_CASE("costs do not depend on where a part lies") {
 
 TEST_CASE("far from the origin nothing is lost") {
   const Vec3 centre{1e6, -2e6, 3e6};
-  Simplifier simplifier(shifted(sphere(5), centre), {});
+  Simplifier simplifier(put_at(sphere(5), centre), {});
   simplifier.reduce({400});
   CHECK(simplifier.triangles() == 400);
   CHECK(is_clean(simplifier.mesh()));
@@ -121,7 +121,7 @@ TEST_CASE("float32 results survive being written as float32") {
   SimplifyOptions options;
   options.positions = PositionType::float32;
   // About 16 steps of a float across a triangle.
-  Mesh mesh = shifted(sphere(4), {50000, 50000, 50000});
+  Mesh mesh = put_at(sphere(4), {50000, 50000, 50000});
   for (Vec3& p : mesh.positions) p = rounded(p, PositionType::float32);
   const std::uint64_t flat_before = check(mesh).no_area;
   Simplifier simplifier(mesh, options);

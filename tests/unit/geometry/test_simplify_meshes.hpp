@@ -14,7 +14,11 @@
 
 #include <meshfarm/geometry/mesh.hpp>
 
+#include "support/meshes.hpp"
+
 namespace meshfarm::simplify_test {
+
+using test::tetrahedron;
 
 /// An open grid of (columns + 1) x (rows + 1) vertices over the unit square, z = height(x, y).
 template <typename Height>
@@ -47,7 +51,8 @@ inline Mesh wavy_grid(std::uint32_t columns, std::uint32_t rows) {
               [](double x, double y) { return 0.05 * std::sin(9 * x) * std::cos(7 * y + x); });
 }
 
-inline Mesh torus(std::uint32_t around, std::uint32_t across) {
+/// Radii 2 and 1.
+inline Mesh wide_torus(std::uint32_t around, std::uint32_t across) {
   Mesh mesh;
   const double turn = 2 * std::numbers::pi;
   for (std::uint32_t i = 0; i < around; ++i) {
@@ -67,11 +72,6 @@ inline Mesh torus(std::uint32_t around, std::uint32_t across) {
     }
   }
   return mesh;
-}
-
-inline Mesh tetrahedron() {
-  return {{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}},
-          {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {0, 3, 2}}};
 }
 
 /// Quarters the triangles `times` times; `place` moves the new vertices.

@@ -19,8 +19,8 @@ using namespace meshfarm::simplify_test;
 
 namespace {
 
-Simplifier reduced(const Mesh& mesh, std::uint64_t triangles,
-                   TopologyMode topology = TopologyMode::automatic) {
+Simplifier reduced_topology(const Mesh& mesh, std::uint64_t triangles,
+                            TopologyMode topology = TopologyMode::automatic) {
   SimplifyOptions options;
   options.lines.topology = topology;
   Simplifier simplifier(mesh, options);
@@ -35,7 +35,7 @@ double diagonal(const Mesh& mesh) {
 }
 
 /// The greater of both directions.
-Distance error_of(const Mesh& original, const Mesh& result) {
+Distance topology_error(const Mesh& original, const Mesh& result) {
   DistanceOptions options;
   options.samples = 50'000;
   options.threads = 1;
@@ -215,13 +215,13 @@ TEST_CASE("topology: keep keeps handles at any goal") {
   REQUIRE(before.euler == 2 - 2 * 36);
   for (const std::uint64_t goal : {3000U, 300U, 0U}) {
     CAPTURE(goal);
-    const Simplifier result = reduced(mesh, goal, TopologyMode::keep);
+    const Simplifier result = reduced_topology(mesh, goal, TopologyMode::keep);
     CHECK(is_clean(result.mesh()));
     CHECK(check(result.mesh()).euler == before.euler);
     CHECK(check(result.mesh()).components == before.components);
     CHECK(!result.simplifies_topology());
   }
-  CHECK(reduced(mesh, 0, TopologyMode::keep).triangles() > 200);
+  CHECK(reduced_topology(mesh, 0, TopologyMode::keep).triangles() > 200);
 }
 
 TEST_CASE("topology: simplify meets goals that have no room for the handles, and stays manifold") {
@@ -229,7 +229,7 @@ TEST_CASE("topology: simplify meets goals that have no room for the handles, and
   const Validity before = check(mesh);
   for (const std::uint64_t goal : {500U, 100U, 20U}) {
     CAPTURE(goal);
-    const Simplifier result = reduced(mesh, goal, TopologyMode::simplify);
+    const Simplifier result = reduced_topology(mesh, goal, TopologyMode::simplify);
     CHECK(result.simplifies_topology());
     CHECK(result.triangles() <= goal + 1);
     CHECK(result.triangles() + 2 >= goal);
@@ -242,18 +242,18 @@ TEST_CASE("topology: simplify meets goals that have no room for the handles, and
 TEST_CASE("topology: automatic keeps it where the goal is easy, and only there") {
   const Mesh mesh = plate();
   const Validity before = check(mesh);
-  const Simplifier easy = reduced(mesh, mesh.triangles.size() / 2);
+  const Simplifier easy = reduced_topology(mesh, mesh.triangles.size() / 2);
   CHECK(!easy.simplifies_topology());
   CHECK(check(easy.mesh()).euler == before.euler);
   CHECK(check(easy.mesh()).components == before.components);
-  const Simplifier hard = reduced(mesh, 100);
+  const Simplifier hard = reduced_topology(mesh, 100);
   CHECK(hard.simplifies_topology());
   CHECK(hard.triangles() <= 101);
   CHECK(is_clean(hard.mesh()));
 }
 
 TEST_CASE("topology: a second, farther goal may need it given up, too") {
-  Simplifier simplifier(torus(60, 30), {});
+  Simplifier simplifier(wide_torus(60, 30), {});
   simplifier.reduce({200});
   CHECK(simplifier.triangles() == 200);
   CHECK(check(simplifier.mesh()).euler == 0);
@@ -264,8 +264,8 @@ TEST_CASE("topology: a second, farther goal may need it given up, too") {
 }
 
 TEST_CASE("topology: about four triangles of a surface with handles are about four") {
-  for (const Mesh& mesh : {torus(60, 30), plate()}) {
-    const Simplifier result = reduced(mesh, 4);
+  for (const Mesh& mesh : {wide_torus(60, 30), plate()}) {
+    const Simplifier result = reduced_topology(mesh, 4);
     CHECK(result.triangles() >= 1);
     CHECK(result.triangles() <= 5);
     CHECK(is_clean(result.mesh()));
@@ -278,11 +278,11 @@ TEST_CASE("topology: a thin bridge is kept, or pinched off and cut apart") {
   REQUIRE(check(mesh).components == 1);
   REQUIRE(check(mesh).crowded_edges == 0);
   REQUIRE(check(mesh).border_edges == 0);
-  const Simplifier kept = reduced(mesh, 100, TopologyMode::keep);
+  const Simplifier kept = reduced_topology(mesh, 100, TopologyMode::keep);
   CHECK(kept.triangles() == 100);
   CHECK(check(kept.mesh()).euler == 2);
   CHECK(check(kept.mesh()).components == 1);
-  const Simplifier simplified = reduced(mesh, 40, TopologyMode::simplify);
+  const Simplifier simplified = reduced_topology(mesh, 40, TopologyMode::simplify);
   CHECK(simplified.triangles() == 40);
   CHECK(is_clean(simplified.mesh()));
   const Validity after = check(simplified.mesh());
@@ -299,7 +299,7 @@ TEST_CASE("topology: of two specks that of which the rest is near goes first") {
     append(mesh, speck, near_first ? near : far);
     append(mesh, speck, near_first ? far : near);
     // A result that has room for one of them.
-    const Simplifier result = reduced(mesh, 60, TopologyMode::simplify);
+    const Simplifier result = reduced_topology(mesh, 60, TopologyMode::simplify);
     CHECK(result.triangles() == 60);
     const auto left_round = [&](Vec3 place) {
       const std::vector<Vec3>& p = result.mesh().positions;
@@ -318,25 +318,25 @@ TEST_CASE("what is flat goes before what is nearly flat") {
   Simplifier result(mesh, options);
   result.reduce({mesh.triangles.size() * 3 / 5});
   CHECK(result.triangles() == mesh.triangles.size() * 3 / 5);
-  CHECK(error_of(mesh, result.mesh()).rms < 1e-9);
+  CHECK(topology_error(mesh, result.mesh()).rms < 1e-9);
 }
 
 TEST_CASE("flat faces and straight edges are exact as long as anything else can go") {
   const Mesh box = fine_box(20);
   REQUIRE(check(box).euler == 2);
   REQUIRE(check(box).border_edges == 0);
-  const Simplifier result = reduced(box, box.triangles.size() / 20);
+  const Simplifier result = reduced_topology(box, box.triangles.size() / 20);
   CHECK(result.triangles() == box.triangles.size() / 20);
   CHECK(is_clean(result.mesh()));
   const double most = 1e-6 * diagonal(box);
   CHECK(DistanceMeter(result.mesh(), 1).measure(box.positions).max <= most);
   CHECK(DistanceMeter(box, 1).measure(result.mesh().positions).max <= most);
-  CHECK(error_of(box, result.mesh()).max <= most);
+  CHECK(topology_error(box, result.mesh()).max <= most);
 }
 
 TEST_CASE("each face twice, once a side, simplifies as once") {
-  const Mesh single = torus(80, 40);
-  const double once = error_of(single, reduced(single, 400).mesh()).rms;
+  const Mesh single = wide_torus(80, 40);
+  const double once = topology_error(single, reduced_topology(single, 400).mesh()).rms;
   Random random(5);
   Mesh twice{single.positions, {}};
   for (const Triangle& t : single.triangles) {
@@ -345,16 +345,16 @@ TEST_CASE("each face twice, once a side, simplifies as once") {
     if (random.below(2) == 0) std::swap(front, back);
     twice.triangles.insert(twice.triangles.end(), {front, back});
   }
-  const Simplifier result = reduced(twice, 400);
+  const Simplifier result = reduced_topology(twice, 400);
   CHECK(result.dropped_duplicate() == single.triangles.size());
   CHECK(result.triangles() == 400);
   CHECK(is_clean(result.mesh()));
-  CHECK(error_of(single, result.mesh()).rms <= 1.02 * once);
+  CHECK(topology_error(single, result.mesh()).rms <= 1.02 * once);
 }
 
 TEST_CASE("triangles that are turned over cost nothing") {
-  const Mesh in_order = torus(80, 40);
-  const double best = error_of(in_order, reduced(in_order, 400).mesh()).rms;
+  const Mesh in_order = wide_torus(80, 40);
+  const double best = topology_error(in_order, reduced_topology(in_order, 400).mesh()).rms;
   for (const std::uint32_t per_cent : {1U, 5U, 50U}) {
     CAPTURE(per_cent);
     Mesh mesh = in_order;
@@ -362,10 +362,10 @@ TEST_CASE("triangles that are turned over cost nothing") {
     for (Triangle& t : mesh.triangles) {
       if (random.below(100) < per_cent) std::swap(t[1], t[2]);
     }
-    const Simplifier result = reduced(mesh, 400);
+    const Simplifier result = reduced_topology(mesh, 400);
     CHECK(result.triangles() == 400);
     CHECK(is_clean(result.mesh()));
-    CHECK(error_of(in_order, result.mesh()).rms <= 1.02 * best);
+    CHECK(topology_error(in_order, result.mesh()).rms <= 1.02 * best);
   }
 }
 
@@ -373,7 +373,7 @@ TEST_CASE("three sheets that meet in a line reduce along it") {
   constexpr std::uint32_t k_size = 40;
   const Mesh mesh = wall_on_floor(k_size);
   REQUIRE(check(mesh).crowded_edges == k_size);
-  const Simplifier result = reduced(mesh, 400);
+  const Simplifier result = reduced_topology(mesh, 400);
   CHECK(result.triangles() == 400);
   const Validity after = check(result.mesh());
   CHECK(after.degenerate + after.duplicate + after.no_area + after.unused == 0);
@@ -381,5 +381,5 @@ TEST_CASE("three sheets that meet in a line reduce along it") {
   CHECK(after.components == 1);
   CHECK(after.crowded_edges >= 4);
   CHECK(after.crowded_edges <= k_size / 2);
-  CHECK(error_of(mesh, result.mesh()).rms <= 1e-3 * diagonal(mesh));
+  CHECK(topology_error(mesh, result.mesh()).rms <= 1e-3 * diagonal(mesh));
 }

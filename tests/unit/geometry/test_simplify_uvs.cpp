@@ -20,8 +20,8 @@ using namespace meshfarm::simplify_test;
 
 namespace {
 
-const std::vector<TopologyMode> k_modes = {TopologyMode::automatic, TopologyMode::keep,
-                                           TopologyMode::simplify};
+const std::vector<TopologyMode> k_uv_modes = {TopologyMode::automatic, TopologyMode::keep,
+                                              TopologyMode::simplify};
 
 SimplifyOptions with(TopologyMode mode) {
   SimplifyOptions options;
@@ -69,7 +69,7 @@ Mesh shaken_grid(std::uint32_t side, double height) {
 
 TEST_CASE("on a plane an affine map stays what it is") {
   const Mesh flat = mapped(shaken_grid(100, 0), [](Vec3 p, Vec3) { return affine(p); });
-  for (const TopologyMode mode : k_modes) {
+  for (const TopologyMode mode : k_uv_modes) {
     // Rough passes, ranked ones, and the queue.
     for (const std::uint64_t target : {12000, 1000, 60}) {
       CAPTURE(target);
@@ -89,7 +89,7 @@ TEST_CASE("on a plane an affine map stays what it is") {
 
 TEST_CASE("charts keep their corners and the places of their seams on the picture") {
   const Mesh flat = chart_grid(shaken_grid(48, 0.002), 4);
-  for (const TopologyMode mode : k_modes) {
+  for (const TopologyMode mode : k_uv_modes) {
     for (const std::uint64_t target : {2000, 300, 1}) {
       CAPTURE(target);
       const Mesh result = reduced(flat, target, with(mode));
@@ -108,7 +108,7 @@ TEST_CASE("a cube map ends as a cube") {
   const Mesh ball = cube_map(5);
   REQUIRE(ball.triangles.size() == 12288);
   CHECK(count_turned(ball) == 0);
-  for (const TopologyMode mode : k_modes) {
+  for (const TopologyMode mode : k_uv_modes) {
     for (const std::uint64_t target : {1500, 200, 4}) {
       CAPTURE(target);
       const Mesh result = reduced(ball, target, with(mode));
@@ -124,7 +124,7 @@ TEST_CASE("a cube map ends as a cube") {
 
 TEST_CASE("a tube with one seam keeps it, and what is round it") {
   const Mesh tube = unrolled_tube(96, 64);
-  for (const TopologyMode mode : k_modes) {
+  for (const TopologyMode mode : k_uv_modes) {
     const Mesh result = reduced(tube, 600, with(mode));
     CHECK(result.triangles.size() <= 600);
     CHECK(count_turned(result) == 0);
@@ -140,7 +140,7 @@ TEST_CASE("a tube with one seam keeps it, and what is round it") {
 
 TEST_CASE("the tip of a slit stays where it is") {
   const Mesh flat = dart(flat_grid(40, 40));
-  for (const TopologyMode mode : k_modes) {
+  for (const TopologyMode mode : k_uv_modes) {
     for (const std::uint64_t target : {400, 40, 1}) {
       CAPTURE(target);
       const Mesh result = reduced(flat, target, with(mode));

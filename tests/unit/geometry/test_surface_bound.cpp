@@ -18,7 +18,7 @@ namespace {
 
 constexpr double k_tolerance = 1.1;
 
-Mesh simplified(const Mesh& mesh, double distance, SimplifyOptions options = {}) {
+Mesh simplified_to_bound(const Mesh& mesh, double distance, SimplifyOptions options = {}) {
   const SurfaceBound bound(mesh, {.distance = distance});
   options.bound = &bound;
   Simplifier simplifier(mesh, options);
@@ -72,7 +72,7 @@ Mesh terraces() {
 TEST_CASE("a bound is kept in both directions, and the rest is simplified as far as it goes") {
   const Mesh mesh = sheet_with_a_needle();
   for (const double bound : {0.05, 0.5}) {
-    const Mesh result = simplified(mesh, bound);
+    const Mesh result = simplified_to_bound(mesh, bound);
     CHECK(farthest(mesh, result) <= k_tolerance * bound);
     CHECK(result.triangles.size() < mesh.triangles.size() / 20);
     CHECK(measure_topology(result).euler == 1);
@@ -81,7 +81,7 @@ TEST_CASE("a bound is kept in both directions, and the rest is simplified as far
 
 TEST_CASE("what is flat does not span slots or steps that are wider than the bound") {
   for (const Mesh& mesh : {sheet_with_a_slot(6), terraces()}) {
-    const Mesh result = simplified(mesh, 1);
+    const Mesh result = simplified_to_bound(mesh, 1);
     CHECK(farthest(mesh, result) <= k_tolerance);
     CHECK(result.triangles.size() < 150);
   }
@@ -91,7 +91,7 @@ TEST_CASE("a wider bound needs fewer triangles") {
   const Mesh mesh = test::torus(200, 100);
   std::size_t before = mesh.triangles.size();
   for (const double bound : {0.002, 0.01, 0.05}) {
-    const Mesh result = simplified(mesh, bound);
+    const Mesh result = simplified_to_bound(mesh, bound);
     CHECK(farthest(mesh, result) <= k_tolerance * bound);
     CHECK(farthest(mesh, result) > bound / 2);
     CHECK(result.triangles.size() < before / 3);
@@ -101,14 +101,15 @@ TEST_CASE("a wider bound needs fewer triangles") {
 
 TEST_CASE("where handles may go, they go within the bound") {
   const Mesh mesh = test::torus(100, 50);
-  const Mesh result = simplified(mesh, 0.05, {.lines = {.topology = TopologyMode::simplify}});
+  const Mesh result =
+      simplified_to_bound(mesh, 0.05, {.lines = {.topology = TopologyMode::simplify}});
   CHECK(farthest(mesh, result) <= k_tolerance * 0.05);
   CHECK(measure_topology(result).nonmanifold_edges == 0);
 }
 
 TEST_CASE("locked vertices stay, and a bound on another surface is one on that") {
   const Mesh mesh = sheet_with_a_needle();
-  const Mesh result = simplified(mesh, 0.05, {.locked_vertices = 100});
+  const Mesh result = simplified_to_bound(mesh, 0.05, {.locked_vertices = 100});
   for (std::size_t v = 0; v < 100; ++v) REQUIRE(result.positions[v] == mesh.positions[v]);
   Mesh lower = mesh;
   for (Vec3& p : lower.positions) p.z -= 0.2;

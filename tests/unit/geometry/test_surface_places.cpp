@@ -15,12 +15,12 @@ using namespace meshfarm;
 
 namespace {
 
-Vec3 random_vector(std::uint64_t n) {
+Vec3 random_direction(std::uint64_t n) {
   return Vec3{random_unit(3 * n), random_unit(3 * n + 1), random_unit(3 * n + 2)} * 2 -
          Vec3{1, 1, 1};
 }
 
-Vec3 normal_of(const Mesh& mesh, std::uint32_t t) {
+Vec3 place_normal(const Mesh& mesh, std::uint32_t t) {
   const auto [a, b, c] = mesh.triangles[t];
   const Vec3 p = mesh.positions[a];
   return cross(mesh.positions[b] - p, mesh.positions[c] - p);
@@ -36,7 +36,7 @@ Vec3 point_of(const Mesh& mesh, const SurfacePlace& place) {
 double least_squared(const Mesh& mesh, Vec3 p, Vec3 normal) {
   double least = HUGE_VAL;
   for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
-    if (!(dot(normal_of(mesh, t), normal) > 0)) continue;
+    if (!(dot(place_normal(mesh, t), normal) > 0)) continue;
     const auto [a, b, c] = mesh.triangles[t];
     least = std::min(least,
                      squared_distance(p, mesh.positions[a], mesh.positions[b], mesh.positions[c]));
@@ -60,9 +60,9 @@ TEST_CASE("the nearest place that faces the same way is found") {
   const Mesh mesh = test::torus(24, 12);
   const SurfacePlaces places(mesh, {});
   for (std::uint64_t n = 0; n < 300; ++n) {
-    const Vec3 p = random_vector(2 * n) * 1.6, normal = random_vector(2 * n + 1);
+    const Vec3 p = random_direction(2 * n) * 1.6, normal = random_direction(2 * n + 1);
     const SurfacePlace place = places.find(p, normal, static_cast<std::uint32_t>(n));
-    CHECK(dot(normal_of(mesh, place.triangle), normal) > 0);
+    CHECK(dot(place_normal(mesh, place.triangle), normal) > 0);
     CHECK(place.squared == doctest::Approx(least_squared(mesh, p, normal)).epsilon(1e-9));
     CHECK(squared_length(point_of(mesh, place) - p) == doctest::Approx(place.squared));
   }
@@ -96,7 +96,7 @@ TEST_CASE("many points at once have the places that each has alone") {
   const SurfacePlaces places(mesh, {});
   std::vector<Vec3> points, normals;
   for (std::uint64_t n = 0; n < 200; ++n) {
-    points.push_back(random_vector(n));
+    points.push_back(random_direction(n));
     normals.push_back(points.back());
   }
   std::vector<SurfacePlace> found(points.size());

@@ -20,7 +20,7 @@ const std::vector<ValueGroup> k_number = {{ValueKind::numbers, 1}};
 const std::vector<ValueGroup> k_vector = {{ValueKind::direction, 3}};
 
 template <class Value>
-std::vector<float> values_at(const Mesh& mesh, Value value) {
+std::vector<float> values_there(const Mesh& mesh, Value value) {
   std::vector<float> values;
   for (const Vec3& p : mesh.positions) values.push_back(static_cast<float>(value(p)));
   return values;
@@ -43,8 +43,8 @@ TEST_CASE("what is linear is the same on any triangles of a plane") {
   Mesh coarse = test::grid(3, 3);
   for (Vec3& p : coarse.positions) p = p * 4;
   const auto slope = [](Vec3 p) { return 0.05 * p.x - 0.02 * p.y + 0.3; };
-  const std::vector<float> of_fine = values_at(fine, slope);
-  const std::vector<float> of_coarse = values_at(coarse, slope);
+  const std::vector<float> of_fine = values_there(fine, slope);
+  const std::vector<float> of_coarse = values_there(coarse, slope);
   const ValuedMesh a{fine, of_fine};
   const ValuedMesh b{coarse, of_coarse};
   for (const SurfaceError& error :
@@ -57,7 +57,7 @@ TEST_CASE("what is linear is the same on any triangles of a plane") {
 
 TEST_CASE("a slope against none has the error that the formula says") {
   const Mesh sheet = test::grid(10, 10);
-  const std::vector<float> slope = values_at(sheet, [](Vec3 p) { return p.x / 10; });
+  const std::vector<float> slope = values_there(sheet, [](Vec3 p) { return p.x / 10; });
   const std::vector<float> none(sheet.positions.size(), 0);
   const ValueError error =
       measure_error({sheet, slope}, {sheet, none}, k_number, k_options).values[0];
@@ -100,7 +100,7 @@ TEST_CASE("directions differ by an angle, however long they are") {
 
 TEST_CASE("points where a surface has no value are left out") {
   const Mesh sheet = test::grid(10, 10);
-  std::vector<float> half = values_at(sheet, [](Vec3) { return 1; });
+  std::vector<float> half = values_there(sheet, [](Vec3) { return 1; });
   for (std::size_t v = 0; v < half.size(); ++v) {
     if (sheet.positions[v].x > 5) half[v] = std::numeric_limits<float>::quiet_NaN();
   }
@@ -120,8 +120,8 @@ TEST_CASE("points where a surface has no value are left out") {
 TEST_CASE("distances are those without values, and threads change nothing") {
   const Mesh fine = test::icosphere(4);
   const Mesh coarse = test::icosphere(2);
-  const std::vector<float> a = values_at(fine, [](Vec3 p) { return p.x; });
-  const std::vector<float> b = values_at(coarse, [](Vec3 p) { return p.x; });
+  const std::vector<float> a = values_there(fine, [](Vec3 p) { return p.x; });
+  const std::vector<float> b = values_there(coarse, [](Vec3 p) { return p.x; });
   const Distance distance = measure_distance(fine, coarse, k_options);
   const SurfaceError one =
       measure_error({fine, a}, {coarse, b}, k_number, {.samples = 20'000, .threads = 1});
@@ -167,7 +167,7 @@ Mesh roof(double degrees) {
   return mesh;
 }
 
-Mesh scaled(Mesh mesh, double by) {
+Mesh scaled_by(Mesh mesh, double by) {
   for (Vec3& p : mesh.positions) p = p * by;
   return mesh;
 }
@@ -207,10 +207,10 @@ TEST_CASE("normals differ by the slope of a roof, whichever way it is looked at"
 TEST_CASE("of triangles that are equally near the one counts that is turned least") {
   // What lies beyond an edge or a corner of the small one is as near to two or three of its faces.
   const Mesh small = test::octahedron();
-  const Mesh large = scaled(small, 5);
+  const Mesh large = scaled_by(small, 5);
   CHECK(normals(small, large).rms < 1e-5);
   CHECK(normals(large, small).rms < 1e-5);
-  CHECK(normals(scaled(test::icosphere(0), 2), test::icosphere(0)).rms < 1e-5);
+  CHECK(normals(scaled_by(test::icosphere(0), 2), test::icosphere(0)).rms < 1e-5);
   // A sheet with two sides.
   Mesh both = test::grid(8, 8);
   test::append(both, turned_over(test::grid(8, 8)));

@@ -24,7 +24,7 @@ const Channel k_nz{"nz", ChannelType::float32, ChannelRole::normal};
 const Channel k_heat{"heat", ChannelType::float32, ChannelRole::quality};
 const Channel k_cold{"cold", ChannelType::float32, ChannelRole::quality};
 
-using Columns = std::vector<std::size_t>;
+using PairColumns = std::vector<std::size_t>;
 using Names = std::vector<std::string>;
 
 }  // namespace
@@ -40,8 +40,8 @@ TEST_CASE("channels are paired by name, and what belongs together stays together
   CHECK(pairs.pairs[1].role == ChannelRole::normal);
   CHECK(pairs.pairs[2].name == "alpha");
   CHECK(pairs.pairs[2].role == ChannelRole::colour);
-  CHECK(pairs.columns_a == Columns{1, 2, 3, 5, 6, 7, 4});
-  CHECK(pairs.columns_b == Columns{6, 5, 4, 2, 1, 0, 3});
+  CHECK(pairs.columns_a == PairColumns{1, 2, 3, 5, 6, 7, 4});
+  CHECK(pairs.columns_b == PairColumns{6, 5, 4, 2, 1, 0, 3});
   CHECK(pairs.only_a == Names{"heat"});
   CHECK(pairs.only_b == Names{"cold"});
 }
@@ -65,7 +65,7 @@ TEST_CASE("columns come in their order, colours as shares of their range") {
   const std::vector<float> values = {0, 1.5F, 51, 2.5F, 102, 3.5F, 255, 4.5F};
   write_mesh(folder.path() / "m.ply", mesh, PositionType::float32, {k_red, k_heat}, values);
   const auto source = open_mesh(folder.path() / "m.ply");
-  CHECK(read_columns(*source, Columns{1, 0}) ==
+  CHECK(read_columns(*source, PairColumns{1, 0}) ==
         std::vector<float>{1.5F, 0, 2.5F, 51 / 255.0F, 3.5F, 102 / 255.0F, 4.5F, 1});
-  CHECK(read_columns(*source, Columns{1}, 4) == std::vector<float>{1.5F, 2.5F, 3.5F, 4.5F});
+  CHECK(read_columns(*source, PairColumns{1}, 4) == std::vector<float>{1.5F, 2.5F, 3.5F, 4.5F});
 }

@@ -46,14 +46,14 @@ Glb chunks_of(const std::string& bytes) {
   return made;
 }
 
-Glb written(const Mesh& mesh, PositionType positions, const std::vector<Channel>& channels = {},
-            std::span<const float> values = {}) {
+Glb written_glb(const Mesh& mesh, PositionType positions, const std::vector<Channel>& channels = {},
+                std::span<const float> values = {}) {
   const TempFolder folder;
   write_mesh(folder / "m.glb", mesh, positions, channels, values);
   return chunks_of(read_file(folder / "m.glb"));
 }
 
-void convert(const std::filesystem::path& from, const std::filesystem::path& to) {
+void convert_to_glb(const std::filesystem::path& from, const std::filesystem::path& to) {
   convert_mesh(*open_mesh(from), to, [](double) {});
 }
 
@@ -68,7 +68,7 @@ Channel normal(const char* name) {
 }  // namespace
 
 TEST_CASE("a GLB of floats holds their bits, with the bounds and no translation") {
-  const Glb glb = written({k_square_vertices, k_square_triangles}, PositionType::float32);
+  const Glb glb = written_glb({k_square_vertices, k_square_triangles}, PositionType::float32);
   CHECK(glb.binary == k_square_binary);
   CHECK(glb.json ==
         R"({"asset":{"version":"2.0","generator":"meshfarm"},"scene":0,"scenes":[{"nodes":[0]}],)"
@@ -88,20 +88,20 @@ TEST_CASE("a mesh comes back from GLB as it was, to the bit of its floats") {
     Mesh mesh = torus(sides, 250);
     for (Vec3& p : mesh.positions) p = rounded(p, PositionType::float32);
     write_mesh(folder / "a.ply", mesh, PositionType::float32);
-    convert(folder / "a.ply", folder / "b.glb");
-    convert(folder / "b.glb", folder / "c.ply");
+    convert_to_glb(folder / "a.ply", folder / "b.glb");
+    convert_to_glb(folder / "b.glb", folder / "c.ply");
     CHECK(read_file(folder / "c.ply") == read_file(folder / "a.ply"));
     CHECK(read_path(folder / "b.glb").info.skipped.empty());
-    convert(folder / "b.glb", folder / "d.glb");
+    convert_to_glb(folder / "b.glb", folder / "d.glb");
     CHECK(read_file(folder / "d.glb") == read_file(folder / "b.glb"));
   }
 }
 
 TEST_CASE("indices have 16 bits where none is the number that begins a strip") {
   Mesh mesh{std::vector<Vec3>(65'535), {{0, 1, 65'534}}};
-  CHECK(written(mesh, PositionType::float32).binary.size() == 65'535 * 12 + 8);
+  CHECK(written_glb(mesh, PositionType::float32).binary.size() == 65'535 * 12 + 8);
   mesh.positions.push_back({});
-  CHECK(written(mesh, PositionType::float32).binary.size() == 65'536 * 12 + 12);
+  CHECK(written_glb(mesh, PositionType::float32).binary.size() == 65'536 * 12 + 12);
 }
 
 TEST_CASE("doubles far from the origin keep the digits that floats have near it") {
@@ -129,8 +129,8 @@ TEST_CASE("colours are written linear with 16 bits, and come back") {
       values.push_back(static_cast<float>(i * 7 % 256));
     }
     write_mesh(folder / "a.ply", mesh, PositionType::float32, channels, values);
-    convert(folder / "a.ply", folder / "b.glb");
-    convert(folder / "b.glb", folder / "c.ply");
+    convert_to_glb(folder / "a.ply", folder / "b.glb");
+    convert_to_glb(folder / "b.glb", folder / "c.ply");
     CHECK(read_file(folder / "c.ply") == read_file(folder / "a.ply"));
   };
   check();
@@ -138,8 +138,8 @@ TEST_CASE("colours are written linear with 16 bits, and come back") {
   check();
   channels.insert(channels.begin(), {normal("nx"), normal("ny"), normal("nz")});
   CHECK(kept_channels("m.glb", channels) == channels);
-  const Glb glb = written({{{0, 0, 0}}, {}}, PositionType::float32, channels,
-                          std::vector<float>{0, 0, 2, 255, 0, 128, 51});
+  const Glb glb = written_glb({{{0, 0, 0}}, {}}, PositionType::float32, channels,
+                              std::vector<float>{0, 0, 2, 255, 0, 128, 51});
   CHECK(glb.binary ==
         raw<float>({0, 0, 0, 0, 0, 1}) + raw<std::uint16_t>({65535, 0, 14146, 13107}));
 }
@@ -156,8 +156,8 @@ TEST_CASE("colours of 16 bits come back as they were, and those of floats nearly
       values.push_back(type == ChannelType::uint16 ? level : level / 65535);
     }
     write_mesh(folder / "a.ply", mesh, PositionType::float32, channels, values);
-    convert(folder / "a.ply", folder / "b.glb");
-    convert(folder / "b.glb", folder / "c.ply");
+    convert_to_glb(folder / "a.ply", folder / "b.glb");
+    convert_to_glb(folder / "b.glb", folder / "c.ply");
     if (type == ChannelType::uint16) {
       CHECK((read_file(folder / "c.ply") == read_file(folder / "a.ply")));
     }
@@ -180,7 +180,7 @@ TEST_CASE("an alpha that is no number is none") {
       colour("red", ChannelType::float32), colour("green", ChannelType::float32),
       colour("blue", ChannelType::float32), colour("alpha", ChannelType::float32)};
   const std::vector<float> values = {1, 1, 1, NAN, 1, 1, 1, 0.5F, 1, 1, 1, 7};
-  const Glb glb = written(mesh, PositionType::float32, channels, values);
+  const Glb glb = written_glb(mesh, PositionType::float32, channels, values);
   const auto alpha_of = [&](std::size_t vertex) {  // 12 bytes of position, 16 of colour
     return std::bit_cast<float>(word_at(glb.binary, 28 * vertex + 24));
   };
@@ -198,27 +198,28 @@ TEST_CASE("of other channels a GLB keeps the colour and the normal") {
   CHECK(kept_channels("m.glb", channels) ==
         std::vector<Channel>(channels.begin() + 1, channels.end() - 1));
   CHECK(kept_channels("m.glb", std::span(channels).first(5)).empty());
-  const Glb glb = written({{{1, 2, 3}}, {}}, PositionType::float32, channels,
-                          std::vector<float>{9, 255, 0.6F, 1.5F, 0, 65535, 0.8F, -4, 9});
+  const Glb glb = written_glb({{{1, 2, 3}}, {}}, PositionType::float32, channels,
+                              std::vector<float>{9, 255, 0.6F, 1.5F, 0, 65535, 0.8F, -4, 9});
   CHECK(glb.binary == raw<float>({1, 2, 3, 0.6F, 0, 0.8F, 1, 1, 0, 1}));
 }
 
 TEST_CASE("a normal without a length, and a vertex without a position, are something valid") {
   const std::vector<Channel> channels = {normal("nx"), normal("ny"), normal("nz")};
-  const Glb glb = written({{k_no_position, {1, 2, 3}, k_no_position}, {}}, PositionType::float32,
-                          channels, std::vector<float>{0, 0, 0, NAN, 0, 0, 0, -1, 0});
+  const Glb glb =
+      written_glb({{k_no_position, {1, 2, 3}, k_no_position}, {}}, PositionType::float32, channels,
+                  std::vector<float>{0, 0, 0, NAN, 0, 0, 0, -1, 0});
   CHECK(glb.binary == raw<float>({1, 2, 3, 0, 0, 1, 1, 2, 3, 0, 0, 1, 1, 2, 3, 0, -1, 0}));
   CHECK(glb.json.find(R"("min":[1.0,2.0,3.0],"max":[1.0,2.0,3.0])") != std::string::npos);
   for (const PositionType type : {PositionType::float32, PositionType::float64}) {
-    CHECK(written({{k_no_position}, {}}, type).binary == raw<float>({0, 0, 0}));
+    CHECK(written_glb({{k_no_position}, {}}, type).binary == raw<float>({0, 0, 0}));
   }
 }
 
 TEST_CASE("a mesh without triangles is points, and one without vertices nothing") {
-  CHECK(written({k_square_vertices, {}}, PositionType::float32)
+  CHECK(written_glb({k_square_vertices, {}}, PositionType::float32)
             .json.find(R"("attributes":{"POSITION":0},"mode":0)") != std::string::npos);
   for (const PositionType type : {PositionType::float32, PositionType::float64}) {
-    const Glb none = written({}, type);
+    const Glb none = written_glb({}, type);
     CHECK(none.json == R"({"asset":{"version":"2.0","generator":"meshfarm"},"scene":0,)"
                        R"("scenes":[{}]})");
     CHECK(none.binary.empty());
@@ -233,7 +234,7 @@ TEST_CASE("a glTF has the bytes of a GLB in a file beside it") {
   const std::string name = "a b\xc3\xa9%.x";
   for (const PositionType type : {PositionType::float32, PositionType::float64}) {
     write_mesh(folder / (name + ".gltf"), mesh, type, channels, values);
-    const Glb glb = written(mesh, type, channels, values);
+    const Glb glb = written_glb(mesh, type, channels, values);
     CHECK((read_file(folder / (name + ".bin")) == glb.binary));
     CHECK(read_file(folder / (name + ".gltf")) ==
           with(glb.json, "\"buffers\":[{", R"("buffers":[{"uri":"a%20b%C3%A9%25.x.bin",)"));

@@ -13,7 +13,7 @@ using namespace meshfarm::test;
 
 namespace {
 
-using Labels = std::vector<Label>;
+using MaterialLabels = std::vector<Label>;
 
 /// A square whose two triangles have primitives of their own, with so much more in them.
 std::string two_primitives(const std::string& first, const std::string& second,
@@ -45,7 +45,7 @@ nlohmann::json json_of(const std::string& glb) {
 
 TEST_CASE("materials that primitives have are labels, in the document's order") {
   const ReadFile read = read_glb(two_primitives(",\"material\":2", ",\"material\":1", k_materials));
-  CHECK(read.mesh.columns.labels == Labels{1, 0});
+  CHECK(read.mesh.columns.labels == MaterialLabels{1, 0});
   REQUIRE(read.info.labels);
   CHECK(
       *read.info.labels ==
@@ -55,11 +55,11 @@ TEST_CASE("materials that primitives have are labels, in the document's order") 
 
 TEST_CASE("primitives without a material have one of their own") {
   const ReadFile read = read_glb(two_primitives("", ",\"material\":0", k_materials));
-  CHECK(read.mesh.columns.labels == Labels{1, 0});
+  CHECK(read.mesh.columns.labels == MaterialLabels{1, 0});
   CHECK(read.info.labels->materials == std::vector<Material>{{"stone"}, {"default"}});
   const ReadFile plain =
       read_glb(two_primitives(",\"material\":3", ",\"material\":0", k_materials));
-  CHECK(plain.mesh.columns.labels == Labels{1, 0});
+  CHECK(plain.mesh.columns.labels == MaterialLabels{1, 0});
   CHECK_FALSE(read_glb(two_primitives("", "", k_materials)).info.labels);
   CHECK_FALSE(read_glb(two_primitives(",\"material\":3", "", k_materials)).info.labels);
   CHECK(read_glb(two_primitives("", "", "")).mesh.columns.labels.empty());
@@ -70,7 +70,7 @@ TEST_CASE("each node that shows a mesh shows its materials") {
   json = with(json, R"("nodes":[0])", R"("nodes":[0,1])");
   json = with(json, R"([{"mesh":0}])", R"([{"mesh":0},{"mesh":0,"scale":[-1,1,1]}])");
   const ReadFile read = read_glb(json);
-  CHECK(read.mesh.columns.labels == Labels{1, 0, 1, 0});
+  CHECK(read.mesh.columns.labels == MaterialLabels{1, 0, 1, 0});
   CHECK(read.mesh.triangles.size() == 4);
 }
 
@@ -108,7 +108,7 @@ TEST_CASE("a GLB has a primitive of each material that triangles have") {
     const ReadFile read = read_path(folder / name);
     CHECK(read.mesh.positions == mesh.positions);
     CHECK(read.mesh.triangles == std::vector<Triangle>{{0, 1, 3}, {1, 2, 3}, {0, 2, 1}, {0, 3, 2}});
-    CHECK(read.mesh.columns.labels == Labels{0, 0, 1, 1});
+    CHECK(read.mesh.columns.labels == MaterialLabels{0, 0, 1, 1});
     CHECK(read.info.labels ==
           LabelMeaning{"material", {{"stone"}, {"glass", {0.5F, 0.25F, 1, 0.5F}}}});
     CHECK(read.info.skipped.empty());

@@ -16,7 +16,7 @@ using namespace meshfarm::test;
 
 namespace {
 
-Converted convert(const std::filesystem::path& from, const std::filesystem::path& to) {
+Converted convert_labels(const std::filesystem::path& from, const std::filesystem::path& to) {
   const auto source = open_mesh(from);
   return convert_mesh(*source, to, [](double) {});
 }
@@ -54,7 +54,7 @@ TEST_CASE("labels are the same after a way through all formats that have them") 
   write_mesh(folder / "a.obj", mesh, PositionType::float32, {}, {}, k_five);
   for (const auto& [from, to] : {std::pair("a.obj", "b.ply"), std::pair("b.ply", "c.glb"),
                                  std::pair("c.glb", "d.gltf"), std::pair("d.gltf", "e.obj")}) {
-    const Converted made = convert(folder / from, folder / to);
+    const Converted made = convert_labels(folder / from, folder / to);
     CHECK(made.has_labels);
     CHECK(labelled(read_path(folder / to).mesh) == labelled(mesh));
   }
@@ -64,8 +64,8 @@ TEST_CASE("materials are the same after a way through the formats that name them
   const TempFolder folder;
   const Mesh mesh = banded();
   write_mesh(folder / "a.glb", mesh, PositionType::float32, {}, {}, k_five);
-  convert(folder / "a.glb", folder / "b.obj");
-  convert(folder / "b.obj", folder / "c.glb");
+  convert_labels(folder / "a.glb", folder / "b.obj");
+  convert_labels(folder / "b.obj", folder / "c.glb");
   const ReadFile read = read_path(folder / "c.glb");
   REQUIRE(read.info.labels);
   REQUIRE(read.info.labels->materials.size() == 5);
@@ -83,7 +83,7 @@ TEST_CASE("triangles that are left out take their labels with them") {
   write_file(folder / "a.obj",
              "v 0 0 0\nv 1 0 0\nv 0 1 0\nv nan 0 0\nusemtl a\nf 1 2 3\nf 1 2 4\nusemtl b\nf 1 2 4\n"
              "f 1 2\nf 3 2 1\n");
-  const Converted made = convert(folder / "a.obj", folder / "a.ply");
+  const Converted made = convert_labels(folder / "a.obj", folder / "a.ply");
   CHECK(made.dropped_not_finite == 2);
   CHECK(read_path(folder / "a.ply").mesh.columns.labels == std::vector<Label>{0, 1});
 }
@@ -93,7 +93,7 @@ TEST_CASE("formats without a place for labels leave them out") {
   write_mesh(folder / "a.glb", banded(), PositionType::float32, {}, {}, k_five);
   for (const char* name : {"b.stl", "b.off"}) {
     CHECK_FALSE(keeps_labels(folder / name));
-    CHECK_FALSE(convert(folder / "a.glb", folder / name).has_labels);
+    CHECK_FALSE(convert_labels(folder / "a.glb", folder / name).has_labels);
     CHECK_FALSE(read_path(folder / name).info.labels);
   }
   for (const char* name : {"m", "m.ply", "m.obj", "m.glb", "m.gltf"}) CHECK(keeps_labels(name));

@@ -16,19 +16,19 @@ using namespace meshfarm::test;
 namespace {
 
 using Labels = std::vector<Label>;
-using Names = std::vector<std::string>;
+using NamesInFile = std::vector<std::string>;
 
-constexpr std::string_view k_square = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0.5\n";
+constexpr std::string_view k_labelled_square = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0.5\n";
 
-Names names_of(const std::optional<LabelMeaning>& labels) {
-  Names names;
+NamesInFile names_of(const std::optional<LabelMeaning>& labels) {
+  NamesInFile names;
   if (!labels) return names;
   for (const Material& material : labels->materials) names.push_back(material.name);
   return names;
 }
 
 ReadFile read_obj(std::string_view statements) {
-  return read_bytes(std::string(k_square) + std::string(statements));
+  return read_bytes(std::string(k_labelled_square) + std::string(statements));
 }
 
 float linear(double level) {
@@ -37,7 +37,7 @@ float linear(double level) {
 
 /// Many statements, some of them with names.
 std::string long_obj(std::string_view word, Labels& labels) {
-  std::string text(k_square);
+  std::string text(k_labelled_square);
   for (int i = 0; i < 60'000; ++i) {
     if (i % 7000 == 6999) text += std::string(word) + " part" + std::to_string(i / 7000 % 3) + "\n";
     text += i % 5 == 0 ? "f 1 2 4 3\n" : "f 1 2 3 # one of many, so that there are blocks\n";
@@ -64,7 +64,7 @@ TEST_CASE("names are those that faces use, in the order of their use") {
   third.set("b");
   third.face();
   for (const ObjNames* piece : {&first, &second, &third}) all.add(*piece);
-  CHECK(all.names() == Names{"b", "a"});
+  CHECK(all.names() == NamesInFile{"b", "a"});
   CHECK(all.label_of("a") == Label{1});
   CHECK_FALSE(all.label_of("c"));
   ObjNames without;
@@ -72,7 +72,7 @@ TEST_CASE("names are those that faces use, in the order of their use") {
   ObjNames one;
   one.begin_text();
   one.add(without);
-  CHECK(one.names() == Names{""});
+  CHECK(one.names() == NamesInFile{""});
 }
 
 TEST_CASE("materials of an OBJ are labels, those before the first have a name of their own") {
@@ -83,11 +83,11 @@ TEST_CASE("materials of an OBJ are labels, those before the first have a name of
   CHECK(read.mesh.columns.labels == Labels{0, 1, 1, 2, 1, 1});
   REQUIRE(read.info.labels);
   CHECK(read.info.labels->name == "material");
-  CHECK(names_of(read.info.labels) == Names{"default_2", "red one", "default"});
-  CHECK(read.info.skipped == Names{"groups (2)"});
+  CHECK(names_of(read.info.labels) == NamesInFile{"default_2", "red one", "default"});
+  CHECK(read.info.skipped == NamesInFile{"groups (2)"});
   const ReadFile one = read_obj("usemtl stone\nf 1 2 3\n");
   CHECK(one.mesh.columns.labels == Labels{0});
-  CHECK(names_of(one.info.labels) == Names{"stone"});
+  CHECK(names_of(one.info.labels) == NamesInFile{"stone"});
 }
 
 TEST_CASE("groups of an OBJ are labels if there are more than one and no materials") {
@@ -95,11 +95,11 @@ TEST_CASE("groups of an OBJ are labels if there are more than one and no materia
   CHECK(read.mesh.columns.labels == Labels{0, 1, 1, 0});
   REQUIRE(read.info.labels);
   CHECK(read.info.labels->name == "group");
-  CHECK(names_of(read.info.labels) == Names{"a b", "c"});
-  CHECK(read.info.skipped == Names{"objects (1)"});
+  CHECK(names_of(read.info.labels) == NamesInFile{"a b", "c"});
+  CHECK(read.info.skipped == NamesInFile{"objects (1)"});
   CHECK(names_of(read_obj("g a\no one\nf 1 2 3\no two\nf 1 2 3\n").info.labels) ==
-        Names{"one", "two"});
-  CHECK(names_of(read_obj("f 1 2 3\ng a\nf 1 2 3\n").info.labels) == Names{"default", "a"});
+        NamesInFile{"one", "two"});
+  CHECK(names_of(read_obj("f 1 2 3\ng a\nf 1 2 3\n").info.labels) == NamesInFile{"default", "a"});
   CHECK_FALSE(read_obj("g a\nf 1 2 3\ng b\n").info.labels);
   CHECK_FALSE(read_obj("f 1 2 3\nusemtl a\n").info.labels);
   CHECK_FALSE(read_obj("f 1 2 3\n").info.labels);
@@ -110,7 +110,7 @@ TEST_CASE("materials have the colours of their libraries") {
   write_file(folder / "a b.mtl", "newmtl red\nKd 1 0.5 0\nd 0.25\nnewmtl other\nKd 0 0 0\n");
   write_file(folder / "c.mtl",
              "newmtl red\nKd 0 0 1\nnewmtl glass\nTr 0.75\nKd 0 0 0\nmap_Kd none.png\n");
-  write_file(folder / "m.obj", "mtllib a b.mtl\nmtllib c.mtl\n" + std::string(k_square) +
+  write_file(folder / "m.obj", "mtllib a b.mtl\nmtllib c.mtl\n" + std::string(k_labelled_square) +
                                    "usemtl glass\nf 1 2 3\nusemtl red\nf 1 2 3\nusemtl lost\n"
                                    "f 1 2 3\n");
   const ReadFile read = read_path(folder / "m.obj");
@@ -120,7 +120,7 @@ TEST_CASE("materials have the colours of their libraries") {
                                                              {"red", {1, linear(0.5), 0, 0.25F}},
                                                              {"lost", {1, 1, 1, 1}}});
   const auto plain = open_mesh(folder / "m.obj", {.labels = false});
-  CHECK(plain->info().skipped == Names{"material libraries (2)", "uses of materials (3)"});
+  CHECK(plain->info().skipped == NamesInFile{"material libraries (2)", "uses of materials (3)"});
 }
 
 TEST_CASE("names go on across the blocks of a text, however many threads read it") {
@@ -130,7 +130,7 @@ TEST_CASE("names go on across the blocks of a text, however many threads read it
     write_file(folder / "m.obj", long_obj(word, labels));
     for (const unsigned threads : {1U, 2U, 5U}) {
       const auto source = open_mesh(folder / "m.obj", {.threads = threads});
-      CHECK(names_of(source->info().labels) == Names{"default", "part0", "part1", "part2"});
+      CHECK(names_of(source->info().labels) == NamesInFile{"default", "part0", "part1", "part2"});
       CHECK(read_mesh(*source).columns.labels == labels);
     }
   }
@@ -170,7 +170,7 @@ TEST_CASE("groups are written as groups, and labels that are numbers as material
   mesh.columns.labels = {7, 7, UINT32_MAX, 7};
   write_mesh(folder / "n.obj", mesh, PositionType::float32, {}, {}, LabelMeaning{"region", {}});
   const ReadFile read = read_path(folder / "n.obj");
-  CHECK(names_of(read.info.labels) == Names{"region_7", "region_4294967295"});
+  CHECK(names_of(read.info.labels) == NamesInFile{"region_7", "region_4294967295"});
   CHECK(read.mesh.columns.labels == Labels{0, 0, 1, 0});
 }
 

@@ -14,12 +14,12 @@ namespace {
 
 constexpr std::string_view k_square = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0.5\n";
 
-std::string square_with(std::string_view faces) {
+std::string obj_square_with(std::string_view faces) {
   return std::string(k_square) + std::string(faces);
 }
 
 std::vector<Triangle> triangles_of(std::string_view faces) {
-  return read_bytes(square_with(faces)).mesh.triangles;
+  return read_bytes(obj_square_with(faces)).mesh.triangles;
 }
 
 Mesh read_by(unsigned threads, std::string_view bytes) {
@@ -50,7 +50,7 @@ std::string large_obj(bool relative) {
 }  // namespace
 
 TEST_CASE("an OBJ is its vertices and faces") {
-  const ReadFile read = read_bytes(square_with("f 1 2 3\nf 3 2 4\n"));
+  const ReadFile read = read_bytes(obj_square_with("f 1 2 3\nf 3 2 4\n"));
   CHECK(read.info.format == "OBJ");
   CHECK(read.info.faces == 2);
   CHECK(read.info.positions == PositionType::float32);
@@ -63,12 +63,12 @@ TEST_CASE("the corners of an OBJ face may have texture coordinates and normals")
                            "f 1/1/1 2/2/1 3/3/1\nf 3/3/1 2/2/1 4/1/1\n", "f 1/ 2/ 3/\nf 3 2 4\n",
                            "f 1/-1/-1 2//-1 3\nf 3 2 4\n"}) {
     CAPTURE(faces);
-    check_square(read_bytes(square_with(faces)));
+    check_square(read_bytes(obj_square_with(faces)));
   }
 }
 
 TEST_CASE("relative OBJ indices count back from the line they are on") {
-  check_square(read_bytes(square_with("f -4 -3 -2\nf -2/-1 -3/-1 -1/-1\n")));
+  check_square(read_bytes(obj_square_with("f -4 -3 -2\nf -2/-1 -3/-1 -1/-1\n")));
   check_square(read_bytes("v 0 0 0\nv 1 0 0\nv 0 1 0\nf -3 -2 -1\nv 1 1 0.5\nf -2 -3 -1\n"));
   check_square(read_bytes("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 -2 3\nv 1 1 0.5\nf 3 2 -1\n"));
 }
@@ -105,7 +105,7 @@ TEST_CASE("polygons of an OBJ are cut into triangles inside them") {
 }
 
 TEST_CASE("faces of an OBJ with fewer than three corners are left out and counted") {
-  const ReadFile read = read_bytes(square_with("f 1 2 3\nf 1 2\nf\nf 4\nf 3 2 4\n"));
+  const ReadFile read = read_bytes(obj_square_with("f 1 2 3\nf 1 2\nf\nf 4\nf 3 2 4\n"));
   check_square(read);
   CHECK(read.info.faces == 5);
   CHECK(read.small_faces == 3);
@@ -146,7 +146,7 @@ TEST_CASE("OBJ numbers are read by the rule of ascii PLY") {
 }
 
 TEST_CASE("a malformed OBJ is refused with its line") {
-  const auto told = [](std::string_view faces) { return refusal(square_with(faces)); };
+  const auto told = [](std::string_view faces) { return refusal(obj_square_with(faces)); };
   CHECK(told("f 1 2 5\n") == "m.ply: line 5: vertex index 5 is out of range: there are 4 vertices");
   CHECK(told("f 1 2 0\n") == "m.ply: line 5: vertex index 0 is out of range: there are 4 vertices");
   CHECK(told("\nf 1 2 -5\n") ==

@@ -10,9 +10,9 @@ using namespace meshfarm::test;
 
 namespace {
 
-constexpr Texel k_red{255, 0, 0};
-constexpr Texel k_green{0, 255, 0};
-constexpr Texel k_blue{0, 0, 255};
+constexpr Texel k_obj_red{255, 0, 0};
+constexpr Texel k_obj_green{0, 255, 0};
+constexpr Texel k_obj_blue{0, 0, 255};
 constexpr int k_side = 33;  // vertices of a grid
 
 using Colours = std::vector<std::array<float, 3>>;
@@ -24,14 +24,14 @@ bool is(const std::array<float, 3>& colour, const Texel& wanted) {
 
 /// Left red, right green.
 Picture halves() {
-  return picture_of(64, 64,
-                    [](std::uint32_t x, std::uint32_t) { return x < 32 ? k_red : k_green; });
+  return picture_of(
+      64, 64, [](std::uint32_t x, std::uint32_t) { return x < 32 ? k_obj_red : k_obj_green; });
 }
 
 /// The upper half red, the lower green.
 Picture layers() {
-  return picture_of(64, 64,
-                    [](std::uint32_t, std::uint32_t y) { return y < 32 ? k_red : k_green; });
+  return picture_of(
+      64, 64, [](std::uint32_t, std::uint32_t y) { return y < 32 ? k_obj_red : k_obj_green; });
 }
 
 enum class Indices { absolute, relative };
@@ -57,8 +57,8 @@ std::string grid_obj(Indices indices = Indices::absolute) {
 }
 
 /// A square of two triangles with what the test says of it.
-constexpr std::string_view k_square = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
-constexpr std::string_view k_places = "vt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\n";
+constexpr std::string_view k_textured_square = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
+constexpr std::string_view k_textured_places = "vt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\n";
 
 class Model {
  public:
@@ -81,7 +81,7 @@ class Model {
 };
 
 std::string square(std::string_view rest) {
-  return std::string(k_square) + std::string(k_places) + std::string(rest);
+  return std::string(k_textured_square) + std::string(k_textured_places) + std::string(rest);
 }
 
 const std::string k_skin = "newmtl skin\nmap_Kd skin.png\n";
@@ -115,15 +115,15 @@ TEST_CASE("neither threads nor relative indices change an OBJ's colours") {
 TEST_CASE("a vertex on a seam has the mean of its charts, and nothing from between them") {
   // Two triangles apart in the atlas, red and blue; what is between them is green.
   const Picture atlas = picture_of(64, 64, [](std::uint32_t x, std::uint32_t) {
-    return x < 16 ? k_red : x < 48 ? k_green : k_blue;
+    return x < 16 ? k_obj_red : x < 48 ? k_obj_green : k_obj_blue;
   });
-  Model model(std::string(k_square) +
+  Model model(std::string(k_textured_square) +
               "vt 0 0\nvt 0.25 0\nvt 0 1\nvt 1 0\nvt 0.75 0\nvt 1 1\nmtllib m.mtl\nusemtl skin\n"
               "f 1/1 2/2 3/3\nf 1/4 3/5 4/6\n");
   model.with("m.mtl", k_skin).with("skin.png", png_of(atlas));
   const Colours colours = model.colours();
-  CHECK(is(colours[1], k_red));
-  CHECK(is(colours[3], k_blue));
+  CHECK(is(colours[1], k_obj_red));
+  CHECK(is(colours[3], k_obj_blue));
   CHECK(colours[0][0] == doctest::Approx(188).epsilon(0.01));
   CHECK(colours[0][1] == 0);
   CHECK(colours[0][2] == doctest::Approx(188).epsilon(0.01));
@@ -139,9 +139,9 @@ TEST_CASE("faces have the material that was used last, of any library") {
       .with("maps/halves.png", png_of(halves()));
   const Colours colours = model.colours();
   REQUIRE(colours.size() == 10);
-  CHECK(is(colours[1], k_red));
+  CHECK(is(colours[1], k_obj_red));
   CHECK(is(colours[3], {255, 255, 255}));  // of no face
-  CHECK(is(colours[5], k_blue));
+  CHECK(is(colours[5], k_obj_blue));
   CHECK(is(colours[9], {255, 255, 255}));
 }
 
@@ -153,10 +153,10 @@ TEST_CASE("a map may be moved and clamped") {
         .with("skin.png", png_of(halves()));
     return model.colours()[0];
   };
-  CHECK(is(first("-o 0.25 0.25"), k_red));
-  CHECK(is(first("-o 0.75 0.25"), k_green));
-  CHECK(is(first("-o 1.25 0.25"), k_red));
-  CHECK(is(first("-clamp on -o 1.25 0.25"), k_green));
+  CHECK(is(first("-o 0.25 0.25"), k_obj_red));
+  CHECK(is(first("-o 0.75 0.25"), k_obj_green));
+  CHECK(is(first("-o 1.25 0.25"), k_obj_red));
+  CHECK(is(first("-clamp on -o 1.25 0.25"), k_obj_green));
 }
 
 TEST_CASE("a polygon is coloured within itself") {
@@ -168,7 +168,7 @@ TEST_CASE("a polygon is coloured within itself") {
   const Picture notch = picture_of(256, 256, [](std::uint32_t x, std::uint32_t y) {
     const int up = 255 - static_cast<int>(y);
     const int aside = std::abs(static_cast<int>(x) - 128);
-    return up > 128 + aside ? k_green : k_red;
+    return up > 128 + aside ? k_obj_green : k_obj_red;
   });
   model.with("m.mtl", k_skin).with("skin.png", png_of(notch));
   for (const auto& colour : model.colours()) CHECK(colour[1] < 60);
@@ -176,11 +176,11 @@ TEST_CASE("a polygon is coloured within itself") {
 
 TEST_CASE("a texture comes before the vertices' own colours") {
   Model model("v 0 0 0 0 0 1\nv 1 0 0 0 0 1\nv 1 1 0 0 0 1\nv 0 1 0 0 0 1\n" +
-              std::string(k_places) + "mtllib m.mtl\nusemtl skin\nf 1/3 2/3 3/3\n");
+              std::string(k_textured_places) + "mtllib m.mtl\nusemtl skin\nf 1/3 2/3 3/3\n");
   model.with("m.mtl", k_skin).with("skin.png", png_of(layers()));
   const Colours colours = model.colours();
-  CHECK_FALSE(is(colours[0], k_blue));
-  CHECK(is(colours[3], k_blue));
+  CHECK_FALSE(is(colours[0], k_obj_blue));
+  CHECK(is(colours[3], k_obj_blue));
 }
 
 TEST_CASE("an OBJ without its library or picture is read without colours") {

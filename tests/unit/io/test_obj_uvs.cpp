@@ -9,15 +9,15 @@ using namespace meshfarm::test;
 
 namespace {
 
-constexpr std::string_view k_square = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
-constexpr std::string_view k_places = "vt 0.1 0.2\nvt 1 0\nvt 1 1\nvt -3 1\n";
+constexpr std::string_view k_uv_square = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
+constexpr std::string_view k_uv_places = "vt 0.1 0.2\nvt 1 0\nvt 1 1\nvt -3 1\n";
 constexpr Uv k_none{0, 0};
 
-std::string square(std::string_view rest) {
-  return std::string(k_square) + std::string(k_places) + std::string(rest);
+std::string uv_square(std::string_view rest) {
+  return std::string(k_uv_square) + std::string(k_uv_places) + std::string(rest);
 }
 
-const std::string k_skin = "newmtl skin\nmap_Kd skin.png\n";
+const std::string k_uv_skin = "newmtl skin\nmap_Kd skin.png\n";
 
 std::string small_png() {
   return png_of(gradient(4));
@@ -29,8 +29,9 @@ std::string small_jpeg() {
 }  // namespace
 
 TEST_CASE("triangles of an OBJ have the texture coordinates of their corners") {
-  UvModel model("m.obj", square("mtllib m.mtl\nusemtl skin\nf 1/1 2/2 3/3\nf 1/1/1 3/3/1 4/4/1\n"));
-  model.with("m.mtl", k_skin).with("skin.png", small_png());
+  UvModel model("m.obj",
+                uv_square("mtllib m.mtl\nusemtl skin\nf 1/1 2/2 3/3\nf 1/1/1 3/3/1 4/4/1\n"));
+  model.with("m.mtl", k_uv_skin).with("skin.png", small_png());
   const auto source = model.open();
   CHECK(source->info().uvs);
   CHECK(source->info().pictures.names == Names{"skin.png"});
@@ -78,8 +79,9 @@ TEST_CASE("an OBJ's polygons are cut by their shape, each corner with its textur
 }
 
 TEST_CASE("a corner of an OBJ without texture coordinates, or with odd ones, is at (0, 0)") {
-  UvModel model("m.obj", square("vt nan 1\nvt 1e99 x\nf 1/3 2/5 3/6\nf 1 2 3\nf 1//1 2//1 3/3/1\n"
-                                "f 1/3 2/3 3 4/3\n"));
+  UvModel model("m.obj",
+                uv_square("vt nan 1\nvt 1e99 x\nf 1/3 2/5 3/6\nf 1 2 3\nf 1//1 2//1 3/3/1\n"
+                          "f 1/3 2/3 3 4/3\n"));
   const UvTriangles read = triangles_of(*model.open());
   REQUIRE(read.uvs.size() == 5);
   CHECK(read.uvs[0] == CornerUvs{{{1, 1}, {0, 1}, {0, 0}}});
@@ -90,8 +92,8 @@ TEST_CASE("a corner of an OBJ without texture coordinates, or with odd ones, is 
 
 TEST_CASE("without texture coordinates in use an OBJ is as if its textures were dropped") {
   for (const char* rest : {"f 1 2 3\n", "f 1//1 2//1 3//1\n", "f 1/ 2/ 3/\n"}) {
-    UvModel model("m.obj", square("mtllib m.mtl\nusemtl skin\n" + std::string(rest)));
-    model.with("m.mtl", k_skin).with("skin.png", small_png());
+    UvModel model("m.obj", uv_square("mtllib m.mtl\nusemtl skin\n" + std::string(rest)));
+    model.with("m.mtl", k_uv_skin).with("skin.png", small_png());
     const auto kept = model.open();
     const auto dropped = open_mesh(model.path(), {});
     CHECK_FALSE(kept->info().uvs);
@@ -100,13 +102,13 @@ TEST_CASE("without texture coordinates in use an OBJ is as if its textures were 
     CHECK(kept->info().skipped == dropped->info().skipped);
     CHECK(triangles_of(*kept).uvs.empty());
   }
-  UvModel none("m.obj", std::string(k_square) + "f 1/1 2/2 3/3\n");
+  UvModel none("m.obj", std::string(k_uv_square) + "f 1/1 2/2 3/3\n");
   CHECK_FALSE(none.open()->info().uvs);
 }
 
 TEST_CASE("a texture index that is out of range is told with its line") {
   const auto told = [](const std::string& face) {
-    UvModel model("m.obj", square("f 1/1 2/2 3/3\n" + face));
+    UvModel model("m.obj", uv_square("f 1/1 2/2 3/3\n" + face));
     return error_of([&] { triangles_of(*model.open()); });
   };
   const std::string why = "m.obj: line 10: ";
@@ -125,7 +127,7 @@ TEST_CASE("a texture index that is out of range is told with its line") {
 
 TEST_CASE("an OBJ's maps are kept with their uses, those that lie otherwise are named") {
   UvModel model("m.obj",
-                square("mtllib m.mtl\nusemtl a\nf 1/1 2/2 3/3\nusemtl b\nf 1/1 3/3 4/4\n"));
+                uv_square("mtllib m.mtl\nusemtl a\nf 1/1 2/2 3/3\nusemtl b\nf 1/1 3/3 4/4\n"));
   model.with("m.mtl",
              "newmtl a\nKd 0 0 0\nmap_Kd -clamp on tex\\one.jpg\nmap_Bump -clamp on -bm 2 n.png\n"
              "map_Ke -clamp on tex/one.jpg\nmap_Ks s.png\nmap_d d.png\n"
@@ -154,7 +156,7 @@ TEST_CASE("an OBJ's maps are kept with their uses, those that lie otherwise are 
 
 TEST_CASE("a picture that is missing or is none is left out, its material stays") {
   UvModel model("m.obj",
-                square("mtllib m.mtl\nusemtl a\nf 1/1 2/2 3/3\nusemtl b\nf 1/1 3/3 4/4\n"));
+                uv_square("mtllib m.mtl\nusemtl a\nf 1/1 2/2 3/3\nusemtl b\nf 1/1 3/3 4/4\n"));
   model.with("m.mtl", "newmtl a\nmap_Kd gone.png\nnewmtl b\nmap_Kd text.png\nmap_Bump n.png\n");
   model.with("text.png", "no picture").with("n.png", small_png());
   const auto source = model.open();
@@ -166,8 +168,9 @@ TEST_CASE("a picture that is missing or is none is left out, its material stays"
 }
 
 TEST_CASE("names of pictures differ, in any case of letters, and say what the pictures are") {
-  UvModel model("m.obj", square("mtllib m.mtl\nusemtl a\nf 1/1 2/2 3/3\nusemtl b\nf 1/1 2/2 3/3\n"
-                                "usemtl c\nf 1/1 2/2 3/3\nusemtl d\nf 1/1 2/2 3/3\n"));
+  UvModel model("m.obj",
+                uv_square("mtllib m.mtl\nusemtl a\nf 1/1 2/2 3/3\nusemtl b\nf 1/1 2/2 3/3\n"
+                          "usemtl c\nf 1/1 2/2 3/3\nusemtl d\nf 1/1 2/2 3/3\n"));
   model.with("m.mtl",
              "newmtl a\nmap_Kd x/Wood.PNG\nnewmtl b\nmap_Kd y/wood.png\n"
              "newmtl c\nmap_Kd z/wood.v2\nnewmtl d\nmap_Kd z/wood.tga\n");

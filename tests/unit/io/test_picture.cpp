@@ -27,7 +27,7 @@ void check_gradient(const Picture& read, int tolerance) {
 }
 
 /// What is told of it.
-std::string refusal(const std::string& bytes) {
+std::string picture_refusal(const std::string& bytes) {
   try {
     decode_picture(bytes);
   } catch (const DataError& error) {
@@ -102,20 +102,20 @@ TEST_CASE("a JPEG is decoded, at once and progressive") {
 }
 
 TEST_CASE("what is no picture, or damaged, is told in a line") {
-  CHECK(refusal("") == "neither PNG nor JPEG");
-  CHECK(refusal("GIF89a") == "neither PNG nor JPEG");
-  CHECK(refusal("\xff\xd8\xff").starts_with("a JPEG without"));
+  CHECK(picture_refusal("") == "neither PNG nor JPEG");
+  CHECK(picture_refusal("GIF89a") == "neither PNG nor JPEG");
+  CHECK(picture_refusal("\xff\xd8\xff").starts_with("a JPEG without"));
   const std::string png = png_of(gradient(64));
   const std::string jpeg = jpeg_of(gradient(64));
   for (std::size_t size = 8; size < png.size() - 12; size += 97) {  // the last chunk is empty
-    CHECK(refusal(png.substr(0, size)) != "");
+    CHECK(picture_refusal(png.substr(0, size)) != "");
   }
   for (std::size_t size = 3; size < jpeg.size() - 2; size += 97) {
-    CHECK(refusal(jpeg.substr(0, size)) != "");
+    CHECK(picture_refusal(jpeg.substr(0, size)) != "");
   }
   std::string damaged = png;
   damaged[png.find("IDAT") + 20] ^= 0x55;
-  CHECK(refusal(damaged).starts_with("a damaged PNG: "));
+  CHECK(picture_refusal(damaged).starts_with("a damaged PNG: "));
 }
 
 TEST_CASE("bytes behind a JPEG's picture are let pass, and told") {
@@ -127,8 +127,8 @@ TEST_CASE("bytes behind a JPEG's picture are let pass, and told") {
 }
 
 TEST_CASE("a picture that claims to be vast is refused before it takes memory") {
-  CHECK(refusal(resized_png(60'000, 60'000)).find("60000 x 60000") != std::string::npos);
-  CHECK(refusal(resized_png(1'000'000, 1)).find("make it smaller") != std::string::npos);
-  CHECK(refusal(resized_png(0, 5)) == "a picture of 0 x 5 texels");
+  CHECK(picture_refusal(resized_png(60'000, 60'000)).find("60000 x 60000") != std::string::npos);
+  CHECK(picture_refusal(resized_png(1'000'000, 1)).find("make it smaller") != std::string::npos);
+  CHECK(picture_refusal(resized_png(0, 5)) == "a picture of 0 x 5 texels");
   CHECK(read_picture_head(resized_png(32'768, 32'768)).memory_bytes() == std::uint64_t{3} << 30);
 }

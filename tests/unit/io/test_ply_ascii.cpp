@@ -19,7 +19,7 @@ std::string one_vertex(std::string_view type, std::string_view line) {
          property + "z\nend_header\n" + std::string(line) + "\n";
 }
 
-std::vector<Triangle> triangles_of(std::string_view faces) {
+std::vector<Triangle> ply_triangles(std::string_view faces) {
   return read_bytes(ascii_square(faces)).mesh.triangles;
 }
 
@@ -30,7 +30,7 @@ struct ByThreads {
   std::string error;
 };
 
-ByThreads read_by(unsigned threads, std::string_view bytes) {
+ByThreads read_ply_by(unsigned threads, std::string_view bytes) {
   const TempFolder folder;
   write_file(folder / "m.ply", bytes);
   ByThreads made;
@@ -119,7 +119,7 @@ TEST_CASE("numbers do not depend on the locale") {
 }
 
 TEST_CASE("convex polygons become fans; strips their triangles") {
-  CHECK(triangles_of("4 0 1 3 2\n") == std::vector<Triangle>{{0, 1, 3}, {0, 3, 2}});
+  CHECK(ply_triangles("4 0 1 3 2\n") == std::vector<Triangle>{{0, 1, 3}, {0, 3, 2}});
   const auto of_strips = [](std::string_view indices) {
     return read_bytes(strips(indices)).mesh.triangles;
   };
@@ -366,10 +366,10 @@ TEST_CASE("any number of threads reads the same, and tells the same line of what
     const std::string bytes =
         "ply\nformat ascii 1.0\n" + mesh_elements(k_count, k_count - 3) + "end_header\n" + body;
     REQUIRE(bytes.size() > (2 << 20));
-    const ByThreads one = read_by(1, bytes);
+    const ByThreads one = read_ply_by(1, bytes);
     CHECK(one.error == change.error);
     for (const unsigned threads : {2U, 5U}) {
-      const ByThreads many = read_by(threads, bytes);
+      const ByThreads many = read_ply_by(threads, bytes);
       CHECK(many.error == one.error);
       CHECK(many.positions == one.positions);
       CHECK(many.mesh.triangles == one.mesh.triangles);

@@ -16,7 +16,7 @@ std::string with_line_ends(std::string text, std::string_view line_end) {
 }
 
 /// An ascii square whose header has `lines` in place of the first property.
-std::string square_with(std::string_view lines) {
+std::string ply_square_with(std::string_view lines) {
   return replaced(ascii_square(), "property float x\n", lines);
 }
 
@@ -64,13 +64,14 @@ TEST_CASE("a binary body that begins with a line end keeps it") {
 TEST_CASE("line ends before the first line, blank lines and stray blanks are let pass") {
   check_square(read_bytes("\n" + ascii_square()));
   check_square(read_bytes("\r\n\n" + ascii_square()));
-  check_square(read_bytes(square_with("\n \t\nproperty   float\tx \n")));
+  check_square(read_bytes(ply_square_with("\n \t\nproperty   float\tx \n")));
   check_square(read_bytes(replaced(ascii_square(), "element face", "\t element\tface ")));
   check_square(read_bytes(replaced(ascii_square(), "ply\n", "ply  \n")));
 }
 
 TEST_CASE("comments and obj_info may stand anywhere") {
-  check_square(read_bytes(square_with("comment element face 7\nproperty float x\nobj_info n 1\n")));
+  check_square(
+      read_bytes(ply_square_with("comment element face 7\nproperty float x\nobj_info n 1\n")));
   check_square(read_bytes(replaced(ascii_square(), "end_header", "comment\nobj_info\nend_header")));
 }
 
@@ -78,12 +79,12 @@ TEST_CASE("a comment that lacks its keyword is let pass before the first element
   const std::string bytes = replaced(ascii_square(), "1.0\n", "1.0\nCreated by hand\n");
   const std::string told = stderr_of([&] { check_square(read_bytes(bytes)); });
   CHECK(told.find("header line 3: taken for a comment: 'Created by hand'") != std::string::npos);
-  CHECK(refusal(square_with("propertx float x\n")) ==
+  CHECK(refusal(ply_square_with("propertx float x\n")) ==
         "m.ply: header line 4: unknown keyword 'propertx'");
 }
 
 TEST_CASE("what is not used is skipped and listed") {
-  std::string bytes = square_with("property uchar red\nproperty float x\n");
+  std::string bytes = ply_square_with("property uchar red\nproperty float x\n");
   bytes = replaced(bytes, "vertex_indices\n",
                    "vertex_indices\nproperty list uchar float uv\nelement material 0\n"
                    "property int id\n");
@@ -98,7 +99,7 @@ TEST_CASE("what is not used is skipped and listed") {
 
 TEST_CASE("positions are as wide as the header's types ask for") {
   const auto positions = [](std::string_view type) {
-    return read_bytes(square_with("property " + std::string(type) + " x\n")).info.positions;
+    return read_bytes(ply_square_with("property " + std::string(type) + " x\n")).info.positions;
   };
   for (const auto narrow : {"float", "float32", "char", "uint8", "short", "uint16"}) {
     CHECK(positions(narrow) == PositionType::float32);
@@ -123,7 +124,7 @@ TEST_CASE("a mesh may have no faces") {
   CHECK(read_bytes(no_list).mesh.triangles.empty());
   CHECK(refusal(replaced(no_list, "face 0", "face 1")) ==
         "m.ply: element face has no list vertex_indices");
-  CHECK(refusal(square_with("property float x\n").replace(0, 0, "")).empty());
+  CHECK(refusal(ply_square_with("property float x\n").replace(0, 0, "")).empty());
   CHECK(refusal(replaced(ascii_square(), "list uchar int", "int")) ==
         "m.ply: element face has no list vertex_indices");
 }

@@ -12,7 +12,7 @@ using namespace meshfarm::test;
 
 namespace {
 
-using Labels = std::vector<Label>;
+using PlyLabels = std::vector<Label>;
 
 /// A square whose faces have these properties, and these records.
 std::string ascii(std::string_view properties, std::string_view faces) {
@@ -61,12 +61,12 @@ TEST_CASE("a whole number that faces have is their label, by its name or because
 TEST_CASE("ascii labels are those of all triangles of a face") {
   const ReadFile read = read_bytes(ascii(with_corners("property int label\nproperty float q\n"),
                                          "4 0 1 3 2 -1 0.5\n3 0 1 2 7 0\n"));
-  CHECK(read.mesh.columns.labels == Labels{UINT32_MAX, UINT32_MAX, 7});
+  CHECK(read.mesh.columns.labels == PlyLabels{UINT32_MAX, UINT32_MAX, 7});
   CHECK(read.info.labels == LabelMeaning{"label", {}});
   CHECK(read.info.skipped == std::vector<std::string>{"face.q"});
   const ReadFile early = read_bytes(
       ascii("property uchar label\n" + std::string(k_corners), "5 3 0 1 2\n4 3 0 1 3\n"));
-  CHECK(early.mesh.columns.labels == Labels{5, 4});
+  CHECK(early.mesh.columns.labels == PlyLabels{5, 4});
   CHECK(read_bytes(ascii(k_corners, "3 0 1 2\n3 0 1 3\n")).mesh.columns.labels.empty());
 }
 
@@ -80,7 +80,7 @@ TEST_CASE("a label that is no whole number of 32 bits is refused") {
 
 TEST_CASE("ascii labels are the same however many threads read them") {
   std::string faces;
-  Labels labels;
+  PlyLabels labels;
   std::string file = "ply\nformat ascii 1.0\nelement vertex 4\n" + std::string(k_xyz) +
                      "element face 30000\n" + with_corners("property ushort label\n") +
                      "end_header\n0 0 0\n1 0 0\n0 1 0\n1 1 0\n";
@@ -108,20 +108,20 @@ TEST_CASE("binary labels come in either byte order, before and after the corners
     add({0, 1}, 9);
     add({2, 3, 4}, 4);
     const ReadFile read = read_bytes(after.text());
-    CHECK(read.mesh.columns.labels == Labels{300, UINT32_MAX - 1, UINT32_MAX - 1, 4});
+    CHECK(read.mesh.columns.labels == PlyLabels{300, UINT32_MAX - 1, UINT32_MAX - 1, 4});
     CHECK(read.mesh.triangles.size() == 4);
     BinaryFile before = binary(order, "property uint region\n" + std::string(k_corners));
     for (const std::uint32_t label : {7U, 0U, UINT32_MAX, 7U}) {
       before.put<std::uint32_t>({label}).bytes({3}).ints({0, 1, 2});
     }
-    CHECK(read_bytes(before.text()).mesh.columns.labels == Labels{7, 0, UINT32_MAX, 7});
+    CHECK(read_bytes(before.text()).mesh.columns.labels == PlyLabels{7, 0, UINT32_MAX, 7});
     // With a list beside them records have no one size.
     BinaryFile listed =
         binary(order, with_corners("property list uchar uchar more\nproperty uchar label\n"));
     for (const std::uint8_t label : std::initializer_list<std::uint8_t>{1, 2, 3, 4}) {
       listed.bytes({3}).ints({0, 1, 2}).bytes({2, 77, 77, label});
     }
-    CHECK(read_bytes(listed.text()).mesh.columns.labels == Labels{1, 2, 3, 4});
+    CHECK(read_bytes(listed.text()).mesh.columns.labels == PlyLabels{1, 2, 3, 4});
   }
 }
 
@@ -142,7 +142,7 @@ TEST_CASE("a face that is too long to be cut has its label in all of its triangl
     };
     add(3, 1);
     add(k_corner_count, 2);
-    Labels expected(k_corner_count - 1, 2);
+    PlyLabels expected(k_corner_count - 1, 2);
     expected[0] = 1;
     const Quiet quiet;
     CHECK(read_bytes(file.text()).mesh.columns.labels == expected);

@@ -41,7 +41,7 @@ void check_two(const UvTriangles& read) {
 }
 
 /// Left red, right green.
-std::string halves() {
+std::string ply_halves() {
   return png_of(picture_of(64, 64, [](std::uint32_t x, std::uint32_t) {
     return x < 32 ? Texel{255, 0, 0} : Texel{0, 255, 0};
   }));
@@ -225,7 +225,7 @@ TEST_CASE("a PLY's textures become the colours of vertices") {
                      : " 8" + place(i, 0) + place(i + 1, 0) + place(i + 1, 1) + place(i, 1) + "\n";
     }
     Square model(text);
-    model.with("one.png", halves());
+    model.with("one.png", ply_halves());
     const auto colours = colours_of(model.path());
     REQUIRE(colours.size() == 18);
     CHECK(colours[2] == std::array<float, 3>{255, 0, 0});

@@ -19,7 +19,7 @@ MeshSinkOptions options_for(std::uint64_t vertices, std::uint64_t triangles) {
   return options;
 }
 
-std::size_t files_in(const TempFolder& folder) {
+std::size_t count_files_in(const TempFolder& folder) {
   const std::filesystem::directory_iterator files(folder.path());
   return static_cast<std::size_t>(std::distance(begin(files), end(files)));
 }
@@ -119,7 +119,7 @@ TEST_CASE("counts other than promised are an error, and nothing is left behind")
         writer->commit(),
         (path + ": 1 triangles were given to be written, but 2 were promised").c_str(), DataError);
   }
-  CHECK(files_in(folder) == 0);
+  CHECK(count_files_in(folder) == 0);
 }
 
 TEST_CASE("an index out of range is an error") {
@@ -140,11 +140,11 @@ TEST_CASE("without commit there is no file, and an old one stays") {
     const auto writer = create_ply(folder / "m.ply", options_for(4, 0));
     writer->vertices(k_square_vertices);
   }
-  CHECK(files_in(folder) == 1);
+  CHECK(count_files_in(folder) == 1);
   CHECK(read_file(folder / "m.ply") == "old");
   write_ply(folder / "m.ply", {k_square_vertices, k_square_triangles}, PositionType::float32);
   CHECK(read_file(folder / "m.ply") == binary_square().text());
-  CHECK(files_in(folder) == 1);
+  CHECK(count_files_in(folder) == 1);
 }
 
 TEST_CASE("a path that cannot be written is an IoError before any work is done") {

@@ -13,9 +13,9 @@ using namespace meshfarm;
 
 namespace {
 
-using Triangles = std::vector<std::array<std::uint32_t, 3>>;
+using CutTriangles = std::vector<std::array<std::uint32_t, 3>>;
 
-Triangles cut(const std::vector<Vec3>& corners) {
+CutTriangles cut(const std::vector<Vec3>& corners) {
   PolygonCutter cutter;
   const auto found = cutter.cut(corners);
   CHECK(cutter.failed() == 0);
@@ -23,7 +23,7 @@ Triangles cut(const std::vector<Vec3>& corners) {
 }
 
 /// Twice the area of the triangles that face the way of `up`; each must.
-double area_facing(const std::vector<Vec3>& corners, const Triangles& triangles, Vec3 up) {
+double area_facing(const std::vector<Vec3>& corners, const CutTriangles& triangles, Vec3 up) {
   double area = 0;
   for (const auto& [a, b, c] : triangles) {
     const Vec3 normal = cross(corners[b] - corners[a], corners[c] - corners[a]);
@@ -36,11 +36,11 @@ double area_facing(const std::vector<Vec3>& corners, const Triangles& triangles,
 }  // namespace
 
 TEST_CASE("convex polygons become fans") {
-  CHECK(cut({{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}}) == Triangles{{0, 1, 2}, {0, 2, 3}});
-  CHECK(cut({{0, 0, 0}, {1, 0, 0}, {1, 1, 0.5}, {0, 1, 0}}) == Triangles{{0, 1, 2}, {0, 2, 3}});
+  CHECK(cut({{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}}) == CutTriangles{{0, 1, 2}, {0, 2, 3}});
+  CHECK(cut({{0, 0, 0}, {1, 0, 0}, {1, 1, 0.5}, {0, 1, 0}}) == CutTriangles{{0, 1, 2}, {0, 2, 3}});
   std::vector<Vec3> round;
   for (int i = 0; i < 9; ++i) round.push_back({5, std::cos(0.6 * i), std::sin(0.6 * i)});
-  const Triangles fan = cut(round);
+  const CutTriangles fan = cut(round);
   REQUIRE(fan.size() == 7);
   for (std::uint32_t i = 0; i < 7; ++i) CHECK(fan[i] == std::array{0U, i + 1, i + 2});
 }
@@ -54,7 +54,7 @@ TEST_CASE("a concave quad is cut along its inner diagonal, whichever corner it b
   std::vector<Vec3> corners{{0, 0, 0}, {1, 1, 0}, {2, 0, 0}, {1, 3, 0}};  // concave at 1
   for (int turn = 0; turn < 4; ++turn) {
     CAPTURE(turn);
-    const Triangles found = cut(corners);
+    const CutTriangles found = cut(corners);
     CHECK(found.size() == 2);
     CHECK(area_facing(corners, found, {0, 0, 1}) == doctest::Approx(4));
     std::rotate(corners.begin(), corners.begin() + 1, corners.end());
@@ -73,7 +73,7 @@ TEST_CASE("concave polygons in any plane are cut into triangles inside") {
   CHECK(area_facing(comb, cut(comb), {0, 0, -1}) == doctest::Approx(area));
   std::vector<Vec3> tilted = comb;
   for (Vec3& p : tilted) p = {500'000 + p.y, 5'000'000 + 0.6 * p.x, 0.8 * p.x};
-  const Triangles found = cut(tilted);
+  const CutTriangles found = cut(tilted);
   CHECK(found.size() == tilted.size() - 2);
   CHECK(area_facing(tilted, found, {0, -0.8, 0.6}) == doctest::Approx(area));
 
@@ -95,7 +95,8 @@ TEST_CASE("corners on a straight side leave no triangle without area") {
 TEST_CASE("what has no area becomes a fan, what crosses itself is counted, and nothing hangs") {
   CHECK(cut({{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {3, 0, 0}}).size() == 2);
   CHECK(cut({{1, 1, 1}, {1, 1, 1}, {1, 1, 1}, {1, 1, 1}, {1, 1, 1}}).size() == 3);
-  CHECK(cut({{0, 0, 0}, {NAN, NAN, NAN}, {2, 0, 0}, {3, 1, 0}}) == Triangles{{0, 1, 2}, {0, 2, 3}});
+  CHECK(cut({{0, 0, 0}, {NAN, NAN, NAN}, {2, 0, 0}, {3, 1, 0}}) ==
+        CutTriangles{{0, 1, 2}, {0, 2, 3}});
   PolygonCutter cutter;
   std::vector<Vec3> star;  // with a long way through its middle
   for (int i = 0; i < 20'001; ++i) star.push_back({std::cos(2.5 * i), std::sin(2.5 * i), 0});

@@ -73,7 +73,7 @@ ReadBack read_back(const std::string& file) {
 }
 
 /// What the reader says of the file; nothing if it takes it.
-std::string refusal(const std::string& file) {
+std::string stream_refusal(const std::string& file) {
   try {
     read_back(file);
   } catch (const DataError& error) {
@@ -180,47 +180,49 @@ TEST_CASE("any cut and any flipped byte is refused, and the place is told") {
   const std::string file = encode_stream(sheet(9, 9));
   for (std::size_t size = 0; size < file.size(); ++size) {
     CAPTURE(size);
-    REQUIRE(refusal(file.substr(0, size)).find("cut short at byte") != std::string::npos);
+    REQUIRE(stream_refusal(file.substr(0, size)).find("cut short at byte") != std::string::npos);
   }
   for (std::size_t at = 0; at < file.size(); ++at) {
     CAPTURE(at);
     std::string damaged = file;
     damaged[at] = static_cast<char>(damaged[at] ^ 0x10);
-    REQUIRE_FALSE(refusal(damaged).empty());
+    REQUIRE_FALSE(stream_refusal(damaged).empty());
   }
   const std::string large = encode_stream(sheet(300, 120));
   std::string damaged = large;
   damaged[large.size() / 2] = static_cast<char>(damaged[large.size() / 2] ^ 1);
-  CHECK(refusal(damaged) == "stream: block 2: damaged (checksum)");
+  CHECK(stream_refusal(damaged) == "stream: block 2: damaged (checksum)");
 }
 
 TEST_CASE("what the checksums cannot tell is refused with the place") {
   const auto corner = [](std::uint32_t number) { return k_corners_at + 4 * number; };
-  CHECK(refusal(tiny_with(corner(0), 1 << 1 | 1)).empty());  // the helper changes nothing else
-  CHECK(refusal(tiny_with(corner(1), 2 << 1 | 1)) ==
+  CHECK(
+      stream_refusal(tiny_with(corner(0), 1 << 1 | 1)).empty());  // the helper changes nothing else
+  CHECK(stream_refusal(tiny_with(corner(1), 2 << 1 | 1)) ==
         "stream: block 0: triangle 1 uses vertex 2, which was finalised before");
-  CHECK(refusal(tiny_with(corner(0), 0 << 1)) ==
+  CHECK(stream_refusal(tiny_with(corner(0), 0 << 1)) ==
         "stream: block 0: triangle 0 uses vertex 0, which was finalised before");
-  CHECK(refusal(tiny_with(corner(3), 6 << 1)) ==
+  CHECK(stream_refusal(tiny_with(corner(3), 6 << 1)) ==
         "stream: block 0: triangle 1 uses vertex 6, which is not there yet");
-  CHECK(refusal(tiny_with(corner(4), 5 << 1)) == "stream: block 1: 1 vertices are never finalised");
-  CHECK(refusal(tiny_with(k_boundary_at, 0 << 1)) ==
+  CHECK(stream_refusal(tiny_with(corner(4), 5 << 1)) ==
         "stream: block 1: 1 vertices are never finalised");
-  CHECK(refusal(tiny_with(k_boundary_at + 4, 6 << 1)) ==
+  CHECK(stream_refusal(tiny_with(k_boundary_at, 0 << 1)) ==
+        "stream: block 1: 1 vertices are never finalised");
+  CHECK(stream_refusal(tiny_with(k_boundary_at + 4, 6 << 1)) ==
         "stream: block 0: boundary vertices out of order");
-  CHECK(refusal(tiny_with(k_boundary_at + 4, 0 << 1)) ==
+  CHECK(stream_refusal(tiny_with(k_boundary_at + 4, 0 << 1)) ==
         "stream: block 0: boundary vertices out of order");
 }
 
 TEST_CASE("counts that cannot be are refused before anything is made of them") {
-  CHECK(refusal(tiny_with(0, 0xffffffff)).find("impossible counts") != std::string::npos);
-  CHECK(refusal(tiny_with(8, 60'000)).find("more than the head") != std::string::npos);
+  CHECK(stream_refusal(tiny_with(0, 0xffffffff)).find("impossible counts") != std::string::npos);
+  CHECK(stream_refusal(tiny_with(8, 60'000)).find("more than the head") != std::string::npos);
   std::string file = encode_stream(tiny());
   file[16] = 3;
-  CHECK(refusal(resealed(file)).find("unknown kind of positions") != std::string::npos);
+  CHECK(stream_refusal(resealed(file)).find("unknown kind of positions") != std::string::npos);
   file = encode_stream(tiny());
   file[8] = 9;
-  CHECK(refusal(resealed(file)).find("unknown version") != std::string::npos);
+  CHECK(stream_refusal(resealed(file)).find("unknown version") != std::string::npos);
 }
 
 TEST_CASE("a stream's appearances come back") {

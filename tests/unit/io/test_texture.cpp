@@ -12,8 +12,8 @@ using namespace meshfarm::test;
 
 namespace {
 
-constexpr Texel k_red{255, 0, 0};
-constexpr Texel k_green{0, 255, 0};
+constexpr Texel k_texture_red{255, 0, 0};
+constexpr Texel k_texture_green{0, 255, 0};
 
 double level(float linear) {
   return 255 * srgb_of_linear(static_cast<double>(linear));
@@ -59,17 +59,19 @@ TEST_CASE("corners have the colours of their own thirds") {
 
 TEST_CASE("nothing bleeds in from beside a chart") {
   // The chart is the triangle below the diagonal; what is beside it is green.
-  const Picture atlas = picture_of(
-      64, 64, [](std::uint32_t x, std::uint32_t y) { return x + y < 63 ? k_red : k_green; });
+  const Picture atlas = picture_of(64, 64, [](std::uint32_t x, std::uint32_t y) {
+    return x + y < 63 ? k_texture_red : k_texture_green;
+  });
   const double side = 62.9 / 64;
-  check_all(thirds_of({atlas}, {{{0, 0}, {side, 0}, {0, side}}}), k_red);
+  check_all(thirds_of({atlas}, {{{0, 0}, {side, 0}, {0, side}}}), k_texture_red);
 }
 
 TEST_CASE("of a triangle of many texels some are looked at, by a lattice") {
-  const Picture atlas = picture_of(
-      1024, 1024, [](std::uint32_t x, std::uint32_t y) { return x + y < 1023 ? k_red : k_green; });
+  const Picture atlas = picture_of(1024, 1024, [](std::uint32_t x, std::uint32_t y) {
+    return x + y < 1023 ? k_texture_red : k_texture_green;
+  });
   const double side = 1022.9 / 1024;
-  check_all(thirds_of({atlas}, {{{0, 0}, {side, 0}, {0, side}}}), k_red);
+  check_all(thirds_of({atlas}, {{{0, 0}, {side, 0}, {0, side}}}), k_texture_red);
   // Tiles without end take no time without end.
   const ThirdColours tiled = thirds_of({atlas}, {{{0, 0}, {10'000, 0}, {0, 10'000}}});
   for (const LinearColour& corner : tiled.corners) {
@@ -94,18 +96,18 @@ TEST_CASE("between texels the texture is interpolated") {
 }
 
 TEST_CASE("a texture is wrapped as its sampler says") {
-  const Picture halves =
-      picture_of(8, 8, [](std::uint32_t x, std::uint32_t) { return x < 4 ? k_red : k_green; });
+  const Picture halves = picture_of(
+      8, 8, [](std::uint32_t x, std::uint32_t) { return x < 4 ? k_texture_red : k_texture_green; });
   const auto at = [&](TextureWrap wrap, double u) {
     return thirds_of({halves, wrap, wrap}, {{{u, 0.5}, {u, 0.5}, {u, 0.5}}});
   };
-  check_all(at(TextureWrap::repeat, 1.25), k_red);
-  check_all(at(TextureWrap::repeat, -0.25), k_green);
-  check_all(at(TextureWrap::mirror, 1.25), k_green);
-  check_all(at(TextureWrap::mirror, -0.25), k_red);
-  check_all(at(TextureWrap::mirror, 2.25), k_red);
-  check_all(at(TextureWrap::clamp, 1.25), k_green);
-  check_all(at(TextureWrap::clamp, -7), k_red);
+  check_all(at(TextureWrap::repeat, 1.25), k_texture_red);
+  check_all(at(TextureWrap::repeat, -0.25), k_texture_green);
+  check_all(at(TextureWrap::mirror, 1.25), k_texture_green);
+  check_all(at(TextureWrap::mirror, -0.25), k_texture_red);
+  check_all(at(TextureWrap::mirror, 2.25), k_texture_red);
+  check_all(at(TextureWrap::clamp, 1.25), k_texture_green);
+  check_all(at(TextureWrap::clamp, -7), k_texture_red);
 }
 
 TEST_CASE("places that are no numbers, or beyond all pictures, have no colour") {

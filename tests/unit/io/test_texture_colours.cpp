@@ -11,7 +11,7 @@ using namespace meshfarm::test;
 
 namespace {
 
-constexpr std::array<TexturePoint, 3> k_places{{{0.1, 0.1}, {0.9, 0.1}, {0.1, 0.9}}};
+constexpr std::array<TexturePoint, 3> k_coloured_places{{{0.1, 0.1}, {0.9, 0.1}, {0.1, 0.9}}};
 
 TextureImage image_of(const Texel& texel) {
   return {"one", [bytes = png_of(picture_of(16, 16, [texel](auto, auto) { return texel; }))] {
@@ -35,19 +35,19 @@ Sampled sample(const std::vector<TextureImage>& images,
                const TextureColours::Options& options) {
   Sampled made;
   TextureColours colours(3 * materials.size() + 1, "m");
-  made.pictures =
-      colours.sample(images, materials, options,
-                     [&](const TextureColours::IsWanted&, const TextureColours::Add& add) {
-                       ++made.scans;
-                       for (std::size_t i = 0; i < materials.size(); ++i) {
-                         add({.vertices = {3 * i, 3 * i + 1, 3 * i + 2}, .places = k_places}, i);
-                       }
-                     });
+  made.pictures = colours.sample(
+      images, materials, options,
+      [&](const TextureColours::IsWanted&, const TextureColours::Add& add) {
+        ++made.scans;
+        for (std::size_t i = 0; i < materials.size(); ++i) {
+          add({.vertices = {3 * i, 3 * i + 1, 3 * i + 2}, .places = k_coloured_places}, i);
+        }
+      });
   for (std::size_t v = 0; v <= 3 * materials.size(); ++v) made.colours.push_back(colours.of(v));
   return made;
 }
 
-const std::vector<TextureMaterial> k_materials{
+const std::vector<TextureMaterial> k_coloured_materials{
     {.image = 0}, {.image = 1}, {.image = 2, .plain = {0.25F, 0, 0}}, {.plain = {0, 0.5F, 0}}};
 
 }  // namespace
@@ -55,10 +55,10 @@ const std::vector<TextureMaterial> k_materials{
 TEST_CASE("pictures are held as many at a time as the memory allows, to the same colours") {
   const std::vector<TextureImage> images{image_of({255, 0, 0}), image_of({0, 255, 0}),
                                          lost_image()};
-  const Sampled at_once = sample(images, k_materials, {});
+  const Sampled at_once = sample(images, k_coloured_materials, {});
   CHECK(at_once.pictures == 2);
   CHECK(at_once.scans == 2);  // for pictures, and for what has none
-  const Sampled one_by_one = sample(images, k_materials, {.memory_bytes = 1});
+  const Sampled one_by_one = sample(images, k_coloured_materials, {.memory_bytes = 1});
   CHECK(one_by_one.scans == 3);
   CHECK(one_by_one.colours == at_once.colours);
   for (std::size_t i = 0; i < 3; ++i) {
@@ -72,7 +72,7 @@ TEST_CASE("pictures are held as many at a time as the memory allows, to the same
 
 TEST_CASE("what has no picture is left to itself where that is asked for") {
   const std::vector<TextureImage> images{image_of({255, 0, 0}), lost_image(), lost_image()};
-  const Sampled made = sample(images, k_materials, {.plain = TextureColours::Plain::left});
+  const Sampled made = sample(images, k_coloured_materials, {.plain = TextureColours::Plain::left});
   CHECK(made.pictures == 1);
   CHECK(made.scans == 1);
   CHECK(made.colours[0] == LinearColour{1, 0, 0});
@@ -80,7 +80,7 @@ TEST_CASE("what has no picture is left to itself where that is asked for") {
 }
 
 TEST_CASE("without any picture nothing is coloured, and nothing scanned") {
-  const Sampled made = sample({lost_image(), lost_image(), lost_image()}, k_materials, {});
+  const Sampled made = sample({lost_image(), lost_image(), lost_image()}, k_coloured_materials, {});
   CHECK(made.pictures == 0);
   CHECK(made.scans == 0);
   CHECK_FALSE(made.colours[9]);

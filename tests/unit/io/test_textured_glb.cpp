@@ -101,7 +101,7 @@ struct Gltf {
 };
 
 /// The greatest difference, whichever corner of a triangle comes first.
-float greatest_move(const std::vector<CornerUvs>& a, const std::vector<CornerUvs>& b) {
+float greatest_textured_move(const std::vector<CornerUvs>& a, const std::vector<CornerUvs>& b) {
   REQUIRE(a.size() == b.size());
   float greatest = 0;
   for (std::size_t i = 0; i < a.size(); ++i) {
@@ -156,7 +156,7 @@ TEST_CASE("a GLB has texture coordinates, and images in it") {
     write_textured(folder / "m.glb", textured_square(), options);
     const Gltf gltf(folder / "m.glb");
     check_square(gltf);
-    CHECK(greatest_move(gltf.uvs(), textured_square().columns.uvs) < 1.0F / 100'000);
+    CHECK(greatest_textured_move(gltf.uvs(), textured_square().columns.uvs) < 1.0F / 100'000);
     const Json& images = gltf.json["images"];
     REQUIRE(images.size() == 4);
     const std::array<std::size_t, 4> order{0, 1, 3, 2};  // of their first use
@@ -191,7 +191,7 @@ TEST_CASE("a glTF has pictures beside it") {
   write_textured(folder / "my m.gltf", textured_square(), shown_options());
   const Gltf gltf(folder / "my m.gltf");
   check_square(gltf);
-  CHECK(greatest_move(gltf.uvs(), textured_square().columns.uvs) < 1e-7F);
+  CHECK(greatest_textured_move(gltf.uvs(), textured_square().columns.uvs) < 1e-7F);
   CHECK(gltf.json["images"] == Json::parse(R"([{"uri":"my_m_atlas.png"},{"uri":"my_m_bumps.jpg"},)"
                                            R"({"uri":"my_m_rough.png"},{"uri":"my_m_a_b.png"}])"));
   CHECK(files_in(folder) == 6);
@@ -215,7 +215,7 @@ TEST_CASE("texture coordinates come without materials, and with channels") {
   for (const char* name : {"m.glb", "m.gltf"}) {
     write_mesh(folder / name, mesh, PositionType::float64, channels, values);
     const Gltf gltf(folder / name);
-    CHECK(greatest_move(gltf.uvs(), mesh.columns.uvs) < 1e-6F);
+    CHECK(greatest_textured_move(gltf.uvs(), mesh.columns.uvs) < 1e-6F);
     const ReadFile read = read_path(folder / name);
     CHECK(read.mesh.positions == mesh.positions);
     CHECK(read.mesh.triangles == mesh.triangles);
@@ -226,7 +226,7 @@ TEST_CASE("texture coordinates come without materials, and with channels") {
   write_mesh(MeshOutput{folder / "m.glb", Packing::compressed}, mesh, PositionType::float64,
              channels, values);
   const Gltf gltf(folder / "m.glb");
-  CHECK(greatest_move(gltf.uvs(), mesh.columns.uvs) < 1.01F / 131'070);
+  CHECK(greatest_textured_move(gltf.uvs(), mesh.columns.uvs) < 1.01F / 131'070);
   CHECK(read_path(folder / "m.glb").mesh.positions == mesh.positions);
   CHECK(read_path(folder / "m.glb").info.channels == channels);
   CHECK(read_file(folder / "m.glb").size() < plain / 3);
@@ -243,7 +243,7 @@ TEST_CASE("texture coordinates of a compressed GLB are floats where 16 bits do n
     const Gltf gltf(folder / "m.glb");
     CHECK(gltf.json["accessors"][1]["componentType"] == (is_wide ? 5126 : 5123));
     CHECK(gltf.json["accessors"][1].contains("normalized") != is_wide);
-    CHECK(greatest_move(gltf.uvs(), mesh.columns.uvs) < (is_wide ? 1e-6F : 1e-5F));
+    CHECK(greatest_textured_move(gltf.uvs(), mesh.columns.uvs) < (is_wide ? 1e-6F : 1e-5F));
   }
 }
 

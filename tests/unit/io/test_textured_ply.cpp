@@ -15,7 +15,7 @@ namespace {
 
 const std::string k_vertices = "element vertex 4\n" + std::string(k_xyz) + "element face 2\n" +
                                std::string(k_corners) + "property list uchar float texcoord\n";
-const std::string k_positions = raw<float>({0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 1, 0.5F});
+const std::string k_textured_positions = raw<float>({0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 1, 0.5F});
 
 std::string face(const Triangle& triangle, const CornerUvs& uvs, const std::string& more) {
   std::string made = "\3";
@@ -30,7 +30,8 @@ std::string square_file(const std::string& comments, const std::string& properti
                         const std::string& first, const std::string& second) {
   const Mesh square = textured_square();
   return "ply\nformat binary_little_endian 1.0\n" + comments + k_vertices + properties +
-         "end_header\n" + k_positions + face(square.triangles[0], square.columns.uvs[0], first) +
+         "end_header\n" + k_textured_positions +
+         face(square.triangles[0], square.columns.uvs[0], first) +
          face(square.triangles[1], square.columns.uvs[1], second);
 }
 

@@ -62,9 +62,9 @@ void write_sheet(const std::filesystem::path& path, const std::vector<std::strin
   write_mesh(path, mesh, PositionType::float32, {}, {}, labels, pictures);
 }
 
-class Bench {
+class BakeBench {
  public:
-  explicit Bench(const std::string& right = plain_picture(0, 0, 255))
+  explicit BakeBench(const std::string& right = plain_picture(0, 0, 255))
       : stage_(Stage::create(folder_.path() / "stage")) {
     const auto input = folder_.path() / "in.obj";
     write_sheet(input, {plain_picture(255, 0, 0), right, plain_picture(1, 2, 3)});
@@ -141,7 +141,7 @@ float worst_level(const std::filesystem::path& path, const std::array<float, 3>&
 }  // namespace
 
 TEST_CASE("a new texture has the colours of all pictures, found by jobs") {
-  Bench bench;
+  BakeBench bench;
   Assembler sink = bench.sink("o.glb");
   bench.run(sink);
   CHECK(bench.kinds()["finish"] == 1);
@@ -157,7 +157,7 @@ TEST_CASE("a new texture has the colours of all pictures, found by jobs") {
 }
 
 TEST_CASE("a sink that did not finish the mesh itself makes the same of what is accepted") {
-  Bench bench;
+  BakeBench bench;
   Assembler first = bench.sink("first.ply");
   bench.run(first);
   first.complete(bench.accepted());
@@ -174,7 +174,7 @@ TEST_CASE("what a damaged picture covers has its material's colour, the rest has
   std::string cut = plain_picture(0, 0, 255);
   cut.resize(cut.size() - 20);
   for (const std::string& damaged : {cut, std::string("no picture at all")}) {
-    Bench bench(damaged);
+    BakeBench bench(damaged);
     Assembler sink = bench.sink("o.glb");
     bench.run(sink);
     CHECK(sink.complete(bench.accepted()).triangles == 400);
@@ -183,7 +183,7 @@ TEST_CASE("what a damaged picture covers has its material's colour, the rest has
 }
 
 TEST_CASE("jobs of a new texture refuse what is not theirs") {
-  Bench bench;
+  BakeBench bench;
   Assembler sink = bench.sink("o.glb");
   bench.run(sink);
   const JobContext context = bench.context();

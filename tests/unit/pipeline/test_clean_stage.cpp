@@ -21,7 +21,7 @@ namespace fs = std::filesystem;
 namespace {
 
 /// A stage, and what runs leave in it. Everything is old at once.
-struct Bench {
+struct CleanBench {
   test::TempFolder folder;
   Stage stage = Stage::create(folder / "stage");
   CleanOptions options{CleanWhat::finished_runs, false, std::chrono::seconds(0),
@@ -60,7 +60,7 @@ struct Bench {
 }  // namespace
 
 TEST_CASE("of a finished run nothing but the newest numbers stays") {
-  const Bench bench;
+  const CleanBench bench;
   bench.endpoint(7, "tcp://a");
   bench.run(7, {1, 2});
   bench.endpoint(7, "", true);
@@ -79,7 +79,7 @@ TEST_CASE("of a finished run nothing but the newest numbers stays") {
 }
 
 TEST_CASE("what a run has that can be taken up is kept, shared or not") {
-  const Bench bench;
+  const CleanBench bench;
   bench.endpoint(7, "", true);
   bench.run(7, {1, 2});
   const auto live = bench.endpoint(8, "tcp://b");
@@ -104,7 +104,7 @@ TEST_CASE("what a run has that can be taken up is kept, shared or not") {
 }
 
 TEST_CASE("records that name no run are kept, as their run is not known to be over") {
-  const Bench bench;
+  const CleanBench bench;
   bench.endpoint(7, "", true);
   bench.run(0, {1});
   clean_stage(bench.stage, bench.options);
@@ -112,7 +112,7 @@ TEST_CASE("records that name no run are kept, as their run is not known to be ov
 }
 
 TEST_CASE("losers, and files of the dead, go; young ones stay") {
-  Bench bench;
+  CleanBench bench;
   bench.endpoint(7, "tcp://a");
   bench.run(7, {1});
   bench.result(1, 99);  // a second attempt that came too late
@@ -138,7 +138,7 @@ TEST_CASE("losers, and files of the dead, go; young ones stay") {
 }
 
 TEST_CASE("while a sink is at work results and journals are left alone") {
-  const Bench bench;
+  const CleanBench bench;
   bench.endpoint(7, "tcp://a");
   bench.run(7, {1});
   bench.endpoint(7, "", true);
@@ -156,7 +156,7 @@ TEST_CASE("while a sink is at work results and journals are left alone") {
 }
 
 TEST_CASE("after a run only what nobody can need goes by itself") {
-  Bench bench;
+  CleanBench bench;
   bench.options.what = CleanWhat::leftovers;
   bench.run(7, {1});
   bench.endpoint(7, "", true);
@@ -168,7 +168,7 @@ TEST_CASE("after a run only what nobody can need goes by itself") {
 }
 
 TEST_CASE("a dry run removes nothing and tells the same") {
-  Bench bench;
+  CleanBench bench;
   bench.endpoint(7, "tcp://a");
   bench.run(7, {1, 2});
   bench.endpoint(7, "", true);
@@ -188,7 +188,7 @@ TEST_CASE("a dry run removes nothing and tells the same") {
 }
 
 TEST_CASE("two do not clean one stage at once") {
-  const Bench bench;
+  const CleanBench bench;
   const Claim other(bench.stage.root() / "control" / ".clean.claim", "cleaning");
   CHECK_THROWS_WITH_AS(clean_stage(bench.stage, bench.options),
                        doctest::Contains("is being cleaned"), DataError);

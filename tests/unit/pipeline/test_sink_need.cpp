@@ -9,7 +9,7 @@ using namespace meshfarm;
 
 namespace {
 
-Manifest manifest_of(std::uint64_t triangles) {
+Manifest manifest_with(std::uint64_t triangles) {
   Manifest manifest;
   manifest.input_triangles = triangles;
   manifest.parts = {{{}, triangles / 2, triangles - 1000, 100}};
@@ -20,7 +20,7 @@ Manifest manifest_of(std::uint64_t triangles) {
 }  // namespace
 
 TEST_CASE("the sink needs about what was measured") {
-  const Manifest manifest = manifest_of(10'000'000);
+  const Manifest manifest = manifest_with(10'000'000);
   const auto half = sink_need(manifest, {.ratio = 0.5});
   REQUIRE(half);
   CHECK(half->triangles > 6'000'000);
@@ -33,7 +33,7 @@ TEST_CASE("the sink needs about what was measured") {
 }
 
 TEST_CASE("the sink needs more for a large picture that it puts together") {
-  Manifest manifest = manifest_of(1'000'000);
+  Manifest manifest = manifest_with(1'000'000);
   manifest.uvs = true;
   manifest.labels = {"material", {{.name = "skin"}}};
   const auto bytes = [&](TextureMode textures, std::uint32_t side) {
@@ -45,7 +45,7 @@ TEST_CASE("the sink needs more for a large picture that it puts together") {
 }
 
 TEST_CASE("what a sink can never hold is refused, what does not fit here is told") {
-  const Manifest manifest = manifest_of(4'000'000'000);
+  const Manifest manifest = manifest_with(4'000'000'000);
   CHECK_THROWS_WITH_AS(check_sink_need(manifest, {.ratio = 0.5}, std::nullopt),
                        "a result of 2000 million triangles is too large: the sink holds at most "
                        "1431 million; ask for fewer",

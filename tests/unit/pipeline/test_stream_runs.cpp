@@ -29,7 +29,7 @@ using namespace meshfarm;
 
 namespace {
 
-struct Made {
+struct MadeByStreams {
   RunSummary summary;
   Mesh mesh;
   std::vector<std::string> kinds;  // of the jobs, in order
@@ -44,14 +44,14 @@ Mesh half_rough_torus() {
   return mesh;
 }
 
-Made simplify(const Mesh& mesh, const CutOptions& options, const RunOptions& run,
-              const std::filesystem::path& folder) {
+MadeByStreams simplify_streams(const Mesh& mesh, const CutOptions& options, const RunOptions& run,
+                               const std::filesystem::path& folder) {
   test::MemorySource source(mesh);
   const Stage stage = Stage::create(folder);
   const Manifest manifest = cut_mesh(source, stage, options);
   const JobSource jobs_of = make_job_source(manifest, run);
   const JobContext context{stage, 1, 7, [](std::uint64_t) { return true; }};
-  Made made;
+  MadeByStreams made;
   std::vector<AcceptedJob> accepted;
   for (std::vector<Job> jobs = test::next_jobs(jobs_of, accepted); !jobs.empty();
        jobs = test::next_jobs(jobs_of, accepted)) {
@@ -71,7 +71,7 @@ double rms(const Mesh& a, const Mesh& b) {
                   measure_distance(b, a, {.samples = 50'000}).rms);
 }
 
-const CutOptions k_swept{.scheme = Scheme::stream, .parts = 3, .window_triangles = 16'000};
+const CutOptions k_swept_streams{.scheme = Scheme::stream, .parts = 3, .window_triangles = 16'000};
 
 }  // namespace
 
@@ -79,13 +79,14 @@ TEST_CASE("swept streams, climbed streams and the uncut mesh end as good, closed
   const Mesh mesh = half_rough_torus();
   const RunOptions run{.triangles = 3000};
   const test::TempFolder folder;
-  const Made uncut = simplify(mesh, {.scheme = Scheme::stream, .parts = 1}, run, folder / "uncut");
-  const Made climbed =
-      simplify(mesh, {.scheme = Scheme::stream, .parts = 3}, run, folder / "climbed");
-  const Made swept = simplify(mesh, k_swept, run, folder / "swept");
+  const MadeByStreams uncut =
+      simplify_streams(mesh, {.scheme = Scheme::stream, .parts = 1}, run, folder / "uncut");
+  const MadeByStreams climbed =
+      simplify_streams(mesh, {.scheme = Scheme::stream, .parts = 3}, run, folder / "climbed");
+  const MadeByStreams swept = simplify_streams(mesh, k_swept_streams, run, folder / "swept");
   CHECK(climbed.kinds == std::vector<std::string>(3, "simplify"));
   CHECK(std::count(swept.kinds.begin(), swept.kinds.end(), k_sweep_kind) == 3);
-  for (const Made* made : {&uncut, &climbed, &swept}) {
+  for (const MadeByStreams* made : {&uncut, &climbed, &swept}) {
     CHECK(made->mesh.triangles.size() == 3000);
     const Topology t = measure_topology(made->mesh);
     CHECK(t.euler == 0);
@@ -107,11 +108,11 @@ TEST_CASE("composed as a tree, the result is as good, closed, and exact") {
     CAPTURE(nine.scheme);
     const test::TempFolder folder;
     RunOptions run{.triangles = 3000, .composition = Composition::sink};
-    const Made by_sink = simplify(mesh, nine, run, folder / "sink");
+    const MadeByStreams by_sink = simplify_streams(mesh, nine, run, folder / "sink");
     run.composition = Composition::automatic;  // too small to be worth it
-    CHECK(simplify(mesh, nine, run, folder / "auto").kinds == by_sink.kinds);
+    CHECK(simplify_streams(mesh, nine, run, folder / "auto").kinds == by_sink.kinds);
     run.composition = Composition::tree;
-    const Made by_tree = simplify(mesh, nine, run, folder / "tree");
+    const MadeByStreams by_tree = simplify_streams(mesh, nine, run, folder / "tree");
     // 9 -> 3 -> 1
     CHECK(std::count(by_sink.kinds.begin(), by_sink.kinds.end(), k_compose_kind) == 0);
     CHECK(std::count(by_tree.kinds.begin(), by_tree.kinds.end(), k_compose_kind) >= 3);
@@ -132,9 +133,9 @@ TEST_CASE("composed as a tree, the result is as good, closed, and exact") {
 TEST_CASE("no more streams are composed than a window holds") {
   const Mesh mesh = half_rough_torus();
   const test::TempFolder folder;
-  const Made made =
-      simplify(mesh, {.scheme = Scheme::stream, .parts = 4, .window_triangles = 16'000},
-               {.ratio = 0.8, .composition = Composition::tree}, folder.path());
+  const MadeByStreams made =
+      simplify_streams(mesh, {.scheme = Scheme::stream, .parts = 4, .window_triangles = 16'000},
+                       {.ratio = 0.8, .composition = Composition::tree}, folder.path());
   CHECK(std::count(made.kinds.begin(), made.kinds.end(), k_compose_kind) == 0);
   CHECK(made.mesh.triangles.size() == 81'920);
 }
@@ -142,11 +143,13 @@ TEST_CASE("no more streams are composed than a window holds") {
 TEST_CASE("hardly anything and nearly everything can be kept") {
   const test::TempFolder folder;
   const Mesh mesh = half_rough_torus();
-  const Made most = simplify(mesh, k_swept, {.ratio = 0.9}, folder / "most");
+  const MadeByStreams most =
+      simplify_streams(mesh, k_swept_streams, {.ratio = 0.9}, folder / "most");
   CHECK(most.mesh.triangles.size() == 92'160);
-  const Made all = simplify(mesh, k_swept, {.ratio = 1}, folder / "all");
+  const MadeByStreams all = simplify_streams(mesh, k_swept_streams, {.ratio = 1}, folder / "all");
   CHECK(all.mesh.triangles.size() == 102'400);
-  const Made few = simplify(mesh, k_swept, {.triangles = 100}, folder / "few");
+  const MadeByStreams few =
+      simplify_streams(mesh, k_swept_streams, {.triangles = 100}, folder / "few");
   CHECK(few.mesh.triangles.size() == 100);
   CHECK(measure_topology(few.mesh).euler == 0);
 }
@@ -157,8 +160,9 @@ TEST_CASE("a flat stream is not swept away when detail elsewhere sets the level"
     if (p.x > 300) p.z = std::sin(p.x * 1.7) * std::cos(p.y * 2.3);
   }
   const test::TempFolder folder;
-  const Made made = simplify(mesh, {.scheme = Scheme::stream, .parts = 4, .window_triangles = 5000},
-                             {.triangles = 4000}, folder.path());
+  const MadeByStreams made =
+      simplify_streams(mesh, {.scheme = Scheme::stream, .parts = 4, .window_triangles = 5000},
+                       {.triangles = 4000}, folder.path());
   CHECK(made.mesh.triangles.size() == 4000);
   CHECK(measure_topology(made.mesh).euler == 1);
   CHECK(rms(mesh, made.mesh) < 0.4);
@@ -166,10 +170,10 @@ TEST_CASE("a flat stream is not swept away when detail elsewhere sets the level"
 
 TEST_CASE("the paper's way: the same ratio everywhere, and no level is looked for") {
   const test::TempFolder folder;
-  const Made made =
-      simplify(half_rough_torus(), k_swept,
-               {.ratio = 0.05, .allocation = Allocation::uniform, .finish = Finish::boundary},
-               folder.path());
+  const MadeByStreams made = simplify_streams(
+      half_rough_torus(), k_swept_streams,
+      {.ratio = 0.05, .allocation = Allocation::uniform, .finish = Finish::boundary},
+      folder.path());
   CHECK(made.kinds == std::vector<std::string>(3, std::string(k_sweep_kind)));
   CHECK(measure_topology(made.mesh).euler == 0);
   CHECK(made.mesh.triangles.size() < 8'000);
@@ -179,7 +183,7 @@ TEST_CASE("a bound on the error is kept") {
   const Mesh mesh = half_rough_torus();
   const test::TempFolder folder;
   const RunOptions run{.error = {0.004, false}};
-  const Made made = simplify(mesh, k_swept, run, folder.path());
+  const MadeByStreams made = simplify_streams(mesh, k_swept_streams, run, folder.path());
   CHECK(made.summary.error.greater().max <= 0.004);
   CHECK(measure_distance(mesh, made.mesh, {.samples = 50'000}).max < 0.0045);
   CHECK(made.mesh.triangles.size() < mesh.triangles.size() / 4);
@@ -191,7 +195,7 @@ TEST_CASE(
   const test::TempFolder folder;
   test::MemorySource source(half_rough_torus());
   const Stage stage = Stage::create(folder.path());
-  const Manifest manifest = cut_mesh(source, stage, k_swept);
+  const Manifest manifest = cut_mesh(source, stage, k_swept_streams);
   const JobContext context{stage, 1, 7, [](std::uint64_t) { return true; }};
   SweepParameters parameters;
   parameters.max_cost = 1e-9;

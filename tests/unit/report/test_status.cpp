@@ -7,7 +7,7 @@
 namespace meshfarm {
 namespace {
 
-bool has(const std::string& text, const std::string& part) {
+bool status_has(const std::string& text, const std::string& part) {
   return text.find(part) != std::string::npos;
 }
 
@@ -47,20 +47,20 @@ StageStatus status() {
 
 TEST_CASE("the status of a run in progress") {
   const std::string text = render(status(), Format::text);
-  CHECK(has(text, "simplifying"));
-  CHECK(has(text, "1 of 4 done, 2 running, 0 failed, 1 retried"));
-  CHECK(has(text, "sort 3 of 3, climb 0 of 1"));
-  CHECK(has(text, "epoch 2 on here, for 13 s"));
+  CHECK(status_has(text, "simplifying"));
+  CHECK(status_has(text, "1 of 4 done, 2 running, 0 failed, 1 retried"));
+  CHECK(status_has(text, "sort 3 of 3, climb 0 of 1"));
+  CHECK(status_has(text, "epoch 2 on here, for 13 s"));
   // 6 M in 5 s (from the job's begin to the state), 18 M are left.
-  CHECK(has(text, "1.2 M triangles/s, farm done in 15 s"));
-  CHECK(has(text, "fast:11"));
-  CHECK(has(text, "3.5 s ago"));  // the state itself is three seconds old
-  CHECK(has(text, "50 MiB"));
+  CHECK(status_has(text, "1.2 M triangles/s, farm done in 15 s"));
+  CHECK(status_has(text, "fast:11"));
+  CHECK(status_has(text, "3.5 s ago"));  // the state itself is three seconds old
+  CHECK(status_has(text, "50 MiB"));
   CHECK_FALSE(is_over(status()));
   const std::string json = render(status(), Format::json);
-  CHECK(has(json, "\"eta_s\": 15.0"));
-  CHECK(has(json, "\"heartbeat_s\": 3.25"));
-  CHECK(has(json, "\"host\": \"slow\""));
+  CHECK(status_has(json, "\"eta_s\": 15.0"));
+  CHECK(status_has(json, "\"heartbeat_s\": 3.25"));
+  CHECK(status_has(json, "\"host\": \"slow\""));
 }
 
 TEST_CASE("a phase has a name") {
@@ -69,29 +69,35 @@ TEST_CASE("a phase has a name") {
     change(changed);
     return render(changed, Format::text);
   };
-  CHECK(has(phase([](auto& s) { s.trace->state->sink = false; }), "waiting for the sink"));
-  CHECK(has(phase([](auto& s) { s.trace->state->workers.clear(); }), "waiting for workers"));
-  CHECK(has(phase([](auto& s) { s.trace->state->jobs_done = 4; }), "stitching and finishing"));
-  CHECK(has(phase([](auto& s) { s.trace->state->storage_stalls = true; }), "which stalls"));
+  CHECK(status_has(phase([](auto& s) { s.trace->state->sink = false; }), "waiting for the sink"));
+  CHECK(status_has(phase([](auto& s) { s.trace->state->workers.clear(); }), "waiting for workers"));
   CHECK(
-      has(phase([](auto& s) { s.trace->state->no_room = true; }), "no room on the stage, waiting"));
-  CHECK(has(phase([](auto& s) {
-              s.trace->state->no_room = true;
-              s.trace->state->jobs_done = 4;
-            }),
-            "no room for the result, waiting"));
-  CHECK(has(phase([](auto& s) { s.no_room = true; }), "no room on the stage, waiting\n"));
-  CHECK(has(phase([](auto& s) {
-              s.no_room = true;
-              s.now_unix_s = 1100;
-            }),
-            "no room on the stage, waiting; the ventilator, if it lives, could write nothing"));
-  CHECK(has(phase([](auto& s) { s.trace->state->bad_hosts = {"bad"}; }), "bad hosts"));
-  CHECK(has(phase([](auto& s) { s.now_unix_s = 1100; }), "no word from the ventilator for 1 min"));
-  CHECK(has(phase([](auto& s) { s.now_unix_s.reset(); }), "when, cannot be told"));
-  CHECK(has(phase([](auto& s) { s.trace->end = TraceEnd{11, ""}; }), "phase            done"));
-  CHECK(has(phase([](auto& s) { s.trace->end = TraceEnd{11, "full"}; }), "stopped: full"));
-  CHECK(has(phase([](auto& s) { s.trace.reset(); }), "none yet"));
+      status_has(phase([](auto& s) { s.trace->state->jobs_done = 4; }), "stitching and finishing"));
+  CHECK(status_has(phase([](auto& s) { s.trace->state->storage_stalls = true; }), "which stalls"));
+  CHECK(status_has(phase([](auto& s) { s.trace->state->no_room = true; }),
+                   "no room on the stage, waiting"));
+  CHECK(status_has(phase([](auto& s) {
+                     s.trace->state->no_room = true;
+                     s.trace->state->jobs_done = 4;
+                   }),
+                   "no room for the result, waiting"));
+  CHECK(status_has(phase([](auto& s) { s.no_room = true; }), "no room on the stage, waiting\n"));
+  CHECK(status_has(
+      phase([](auto& s) {
+        s.no_room = true;
+        s.now_unix_s = 1100;
+      }),
+      "no room on the stage, waiting; the ventilator, if it lives, could write nothing"));
+  CHECK(status_has(phase([](auto& s) { s.trace->state->bad_hosts = {"bad"}; }), "bad hosts"));
+  CHECK(status_has(phase([](auto& s) { s.now_unix_s = 1100; }),
+                   "no word from the ventilator for 1 min"));
+  CHECK(status_has(phase([](auto& s) { s.now_unix_s.reset(); }), "when, cannot be told"));
+  CHECK(status_has(phase([](auto& s) {
+                     s.trace->end = TraceEnd{11, ""};
+                   }),
+                   "phase            done"));
+  CHECK(status_has(phase([](auto& s) { s.trace->end = TraceEnd{11, "full"}; }), "stopped: full"));
+  CHECK(status_has(phase([](auto& s) { s.trace.reset(); }), "none yet"));
 }
 
 TEST_CASE("a run whose last word is old, or may be, is silent") {

@@ -22,7 +22,7 @@ struct TwoRuns {
   std::vector<std::string> other_expected = expected_summaries(other);
 };
 
-SimulationOptions farm_of(const TwoRuns& runs, const std::vector<Serves>& workers) {
+SimulationOptions simulated_farm(const TwoRuns& runs, const std::vector<Serves>& workers) {
   SimulationOptions options;
   options.other = runs.other;
   for (std::uint32_t i = 0; i < workers.size(); ++i) {
@@ -50,7 +50,7 @@ std::set<JobKey> keys_of(const std::vector<AcceptedJob>& jobs) {
 
 TEST_CASE("two runs of one stage end, each with its bytes, and each has the workers it was given") {
   const TwoRuns runs;
-  SimulationOptions options = farm_of(
+  SimulationOptions options = simulated_farm(
       runs, {Serves::first, Serves::other, Serves::any, Serves::pool, Serves::first, Serves::any});
   for (options.seed = 1; options.seed <= 50; ++options.seed) {
     options.other_start = std::chrono::seconds(options.seed % 20);
@@ -68,7 +68,7 @@ TEST_CASE("two runs of one stage end, each with its bytes, and each has the work
 
 TEST_CASE("a run that is over is passed by: its workers serve the one that is not") {
   const TwoRuns runs;
-  SimulationOptions options = farm_of(runs, {Serves::any, Serves::any, Serves::pool});
+  SimulationOptions options = simulated_farm(runs, {Serves::any, Serves::any, Serves::pool});
   for (options.seed = 1; options.seed <= 20; ++options.seed) {
     options.other_start = std::chrono::seconds(3 * options.seed);
     check(runs, options);
@@ -84,8 +84,8 @@ TEST_CASE("two runs with each kind of fault") {
                                     {.late_endpoint = 0.5, .other_runs = 6},
                                     {.sink_crashes = 4, .ventilator_crashes = 4},
                                     {.sink_pauses = 4, .ventilator_pauses = 4}}) {
-    SimulationOptions options =
-        farm_of(runs, {Serves::first, Serves::other, Serves::any, Serves::pool, Serves::any});
+    SimulationOptions options = simulated_farm(
+        runs, {Serves::first, Serves::other, Serves::any, Serves::pool, Serves::any});
     options.faults = faults;
     for (options.seed = 1; options.seed <= 60; ++options.seed) {
       options.other_start = std::chrono::seconds(options.seed % 15);
@@ -97,7 +97,7 @@ TEST_CASE("two runs with each kind of fault") {
 TEST_CASE("a run that fails leaves the other alone") {
   const TwoRuns runs;
   SimulationOptions options =
-      farm_of(runs, {Serves::first, Serves::other, Serves::any, Serves::pool, Serves::any});
+      simulated_farm(runs, {Serves::first, Serves::other, Serves::any, Serves::pool, Serves::any});
   options.faults.bad = "job 70";  // the other run has another job in its place
   options.faults.end = {};
   const SimulationResult result = check(runs, options);
@@ -108,7 +108,7 @@ TEST_CASE("a run that fails leaves the other alone") {
 TEST_CASE("what is wrong with the other run is told") {
   const TwoRuns runs;
   SimulationResult result =
-      simulate_farm(runs.source, farm_of(runs, {Serves::first, Serves::other}));
+      simulate_farm(runs.source, simulated_farm(runs, {Serves::first, Serves::other}));
   const auto problem = [&] { return problem_of(result, {}, runs.expected, runs.other_expected); };
   CHECK(problem().empty());
   result.other_outputs.pop_back();
@@ -119,7 +119,7 @@ TEST_CASE("what is wrong with the other run is told") {
 
 TEST_CASE("a run without a worker of its own does not end") {
   const TwoRuns runs;
-  SimulationOptions options = farm_of(runs, {Serves::first, Serves::first});
+  SimulationOptions options = simulated_farm(runs, {Serves::first, Serves::first});
   options.limit = std::chrono::minutes(5);
   const SimulationResult result = simulate_farm(runs.source, options);
   CHECK(problem_of(result, {}, runs.expected, runs.other_expected) == "it did not come to its end");

@@ -8,6 +8,7 @@
 #include <meshfarm/divide/slab.hpp>
 #include <meshfarm/geometry/simplify.hpp>
 #include <meshfarm/geometry/topology.hpp>
+#include <meshfarm/geometry/vertices.hpp>
 #include <meshfarm/stream/sweep.hpp>
 #include <meshfarm/util/errors.hpp>
 

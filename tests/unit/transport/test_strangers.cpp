@@ -23,11 +23,11 @@
 namespace meshfarm::test {
 namespace {
 
-constexpr std::chrono::milliseconds k_soon{10'000};
+constexpr std::chrono::milliseconds k_stranger_soon{10'000};
 
 Endpoint wait_for_endpoint(const Stage& stage) {
   EndpointList list;
-  const auto end = std::chrono::steady_clock::now() + k_soon;
+  const auto end = std::chrono::steady_clock::now() + k_stranger_soon;
   while (list.look(stage).empty() && std::chrono::steady_clock::now() < end) {
     std::this_thread::sleep_for(std::chrono::milliseconds(5));
   }
@@ -60,7 +60,7 @@ struct FakeWorker {
         lane(make_lane_client(context, keys)) {
     control.connect(endpoint.address);
     send(control, Hello{Role::worker, 0, incarnation, 1, "fake", {}});
-    welcome = *wait_for_message<Welcome>(control, k_soon);
+    welcome = *wait_for_message<Welcome>(control, k_stranger_soon);
     lane.connect(welcome.lane);
   }
   void credit(std::uint64_t up_to) { send(control, Credit{welcome.epoch, welcome.worker, up_to}); }
@@ -163,7 +163,7 @@ TEST_CASE("what nobody should send is dropped, whoever sends it, and the run goe
   const Endpoint endpoint = wait_for_endpoint(farm.stage);
   FakeWorker spy(farm.stage, endpoint);  // gives no credit; learns where the sink is
   std::string results = spy.welcome.sink;
-  if (results.empty()) results = wait_for_message<SinkAt>(spy.control, k_soon)->results;
+  if (results.empty()) results = wait_for_message<SinkAt>(spy.control, k_stranger_soon)->results;
   Part worker(farm.worker(do_slow_job));
   for (const std::string& address : {endpoint.address, spy.welcome.lane, results}) {
     for (const std::string& bytes : raw_garbage()) send_raw(address, bytes);
@@ -217,8 +217,8 @@ TEST_CASE("a worker gets no more than its credit, and if it falls silent others 
   Part sink(farm.sink(source, summaries));
   auto fake = std::make_unique<FakeWorker>(farm.stage, wait_for_endpoint(farm.stage));
   fake->credit(2);
-  const auto first = wait_for_message<Assignment>(fake->lane, k_soon);
-  const auto second = wait_for_message<Assignment>(fake->lane, k_soon);
+  const auto first = wait_for_message<Assignment>(fake->lane, k_stranger_soon);
+  const auto second = wait_for_message<Assignment>(fake->lane, k_stranger_soon);
   REQUIRE(first);
   REQUIRE(second);
   CHECK(first->lane_seq == 1);
@@ -246,7 +246,7 @@ TEST_CASE("fifty thousand jobs go through one lane, each once and in order") {
       make_control_client(context, keys_to_connect(farm.stage, endpoint, {}), random_id());
   sink.connect(endpoint.address);
   send(sink, Hello{Role::sink, farm.run, random_id(), 1, "fake", "tcp://127.0.0.1:1"});
-  REQUIRE(wait_for_message<Welcome>(sink, k_soon));
+  REQUIRE(wait_for_message<Welcome>(sink, k_stranger_soon));
   send(sink, Ready{endpoint.epoch, 0});
   FakeWorker worker(farm.stage, endpoint);
   constexpr std::uint64_t k_window = 64;
@@ -256,7 +256,7 @@ TEST_CASE("fifty thousand jobs go through one lane, each once and in order") {
   accept.worker = worker.welcome.worker;
   const auto start = std::chrono::steady_clock::now();
   for (std::uint64_t i = 1; i <= 50'000; ++i) {
-    const auto job = wait_for_message<Assignment>(worker.lane, k_soon);
+    const auto job = wait_for_message<Assignment>(worker.lane, k_stranger_soon);
     REQUIRE(job);
     REQUIRE(job->lane_seq == i);
     worker.credit(i + k_window);
