@@ -12,6 +12,6 @@ clang-format --dry-run -Werror "${files[@]}"
 [ "${1:-}" = --format ] && exit 0
 # Sources are checked several together: most of the time of clang-tidy goes into the headers.
 cmake -G Ninja -S . -B build-lint -DCMAKE_CXX_COMPILER=clang++ -DMESHFARM_TESTS=OFF \
-  > /dev/null
+  -DMESHFARM_UNITY=ON > /dev/null
 mapfile -t sources < <(sed -n 's/^ *"file": "\(.*\)",\{0,1\}$/\1/p' build-lint/compile_commands.json)
 printf '%s\n' "${sources[@]}" | xargs -P "$(nproc)" -n 1 clang-tidy -p build-lint --quiet

@@ -43,19 +43,12 @@ labs() {
 # compile FOLDER SANITIZERS [TARGET...]. By clang: g++ takes five times as long for sanitizers.
 compile() {
   "$root/scripts/build.sh" "$root/$1" "${build_options[@]}" -DCMAKE_CXX_COMPILER=clang++ \
-    -DCMAKE_BUILD_TYPE=RelWithDebInfo -DMESHFARM_SANITIZE="$2" -- "${@:3}"
-}
-
-# Each source by itself, so that one that lacks an include is noticed.
-compile_each() {
-  "$root/scripts/build.sh" "$root/build-each" "${build_options[@]}" -DMESHFARM_TESTS=OFF \
-    -DMESHFARM_UNITY=OFF -DCMAKE_CXX_COMPILER=clang++ -DCMAKE_BUILD_TYPE=Debug
+    -DCMAKE_BUILD_TYPE=RelWithDebInfo -DMESHFARM_UNITY=ON -DMESHFARM_SANITIZE="$2" -- "${@:3}"
 }
 
 compile_beside_labs() {
   renice -n 10 "$BASHPID" > /dev/null
   compile build-asan address,undefined
-  compile_each
 }
 
 # sanitized FOLDER SANITIZERS TESTS [TARGET...]: TESTS is a regular expression.
