@@ -142,7 +142,7 @@ void Dispatcher::sink_joins(const PeerId& peer, const Hello& hello) {
       if (sink_) send(sink_->peer, Refused{Refusal::replaced, "another sink took its place"});
     }
     last_sink_ = hello.incarnation;
-    sink_ = Sink{peer, hello.incarnation, hello.results, hello.host, now_, false, {}, false};
+    sink_ = Sink{peer, hello.incarnation, hello.results, hello.host, now_, false, {}, 0, false};
     to_workers(SinkAt{hello.results});
   }
   sink_->heard = now_;

@@ -42,6 +42,7 @@ bool Dispatcher::from_sink(const PeerId& peer, std::uint32_t epoch) {
 
 void Dispatcher::on(const PeerId& peer, const Accept& accept) {
   if (!from_sink(peer, accept.epoch)) return;
+  sink_->unverified = accept.unverified;
   greatest_output_ = std::max(greatest_output_, accept.output.file.size);
   if (!sink_->ready) {
     sink_->told[accept.key] = accept.output;
@@ -211,7 +212,9 @@ void Dispatcher::blame_who_could_not_read(const Accept& accept) {
 }
 
 void Dispatcher::on(const PeerId& peer, const Ready& ready) {
-  if (!from_sink(peer, ready.epoch) || sink_->ready) return;
+  if (!from_sink(peer, ready.epoch)) return;
+  sink_->unverified = ready.unverified;
+  if (sink_->ready) return look_for_end();
   if (ready.accepted != sink_->told.size()) {
     send(peer, Refused{Refusal::stranger, "some of what was accepted got lost; say hello again"});
     return lose_sink();
@@ -336,6 +339,8 @@ void Dispatcher::push(Scheduler::Pick pick) {
 void Dispatcher::look_for_end() {
   if (finished_ || over_) return;
   if (plan_.complete()) {
+    // What the sink takes back is made again, and needs workers.
+    if (!sink_ || !sink_->ready || sink_->unverified > 0) return;
     over_ = true;
     to_workers(Stop{StopReason::run_over});
   } else if (plan_.stuck()) {

@@ -42,9 +42,10 @@ void Plan::want(std::vector<WantedJob> jobs, const std::map<JobKey, JobOutput>& 
     const auto [found, is_new] = entries_.try_emplace(key);
     Entry& entry = found->second;
     entry.name = jobs[i].name;
+    // A result that was made again has another name.
+    entry.job = std::move(jobs[i].job);
     if (is_new) {
       entry.order = next_order_++;
-      entry.job = std::move(jobs[i].job);
       entry.state = first_state(entry.job);
     }
     entry.wanted = true;

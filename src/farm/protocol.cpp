@@ -82,7 +82,7 @@ auto fields(M& m) {
 }
 template <Is<Accept> M>
 auto fields(M& m) {
-  return std::tie(m.epoch, m.worker, m.key, m.output, m.times);
+  return std::tie(m.epoch, m.worker, m.key, m.output, m.times, m.unverified);
 }
 template <Is<Reject> M>
 auto fields(M& m) {
@@ -90,7 +90,7 @@ auto fields(M& m) {
 }
 template <Is<Ready> M>
 auto fields(M& m) {
-  return std::tie(m.epoch, m.accepted);
+  return std::tie(m.epoch, m.accepted, m.unverified);
 }
 template <Is<Done> M>
 auto fields(M& m) {

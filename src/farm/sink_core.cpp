@@ -28,6 +28,7 @@ SinkActions SinkCore::tick(FarmTime now) {
   if (event != Membership::Event::expired || !busy) on(event, now);
   if (member_.look_due(now)) act(Look{});
   if (again_at_ && now >= *again_at_) try_again();
+  if (!damaged_.empty() && phase_ == Phase::collecting) begin_again(now);
   if (member_.beat_due(now)) {
     Heartbeat beat;
     beat.epoch = member_.welcome().epoch;
@@ -111,8 +112,9 @@ SinkActions SinkCore::on_result(const Message& message) {
 
 void SinkCore::take_result(const Result& result) {
   if (graph_.accepted(result.key) != nullptr) return tell(result.key, result.worker);
-  if (const auto* failure = std::get_if<JobFailure>(&result.outcome)) {
-    if (!told_all_) return;  // the worker says it again
+  if (const auto* said = std::get_if<JobFailure>(&result.outcome)) {
+    const auto failure = failure_to_tell(result, *said);
+    if (!failure) return;  // the worker says it again
     return say(Reject{member_.epoch(), result.worker, result.attempt, result.key, *failure, {}});
   }
   const auto& output = std::get<JobOutput>(result.outcome);
@@ -121,39 +123,55 @@ void SinkCore::take_result(const Result& result) {
     ++dropped_;
     return;
   }
-  const Check check{result.key, output,       result.worker,        result.attempt,
-                    false,      result.times, kinds_.at(result.key)};
+  const Check check{result.key,     output,       Check::What::result,        result.worker,
+                    result.attempt, result.times, wanted_.at(result.key).kind};
   if (checking_.try_emplace(result.key, check).second) act(check);
+}
+
+/// Nothing as long as it is not known whose fault it is. A worker may be the first to see that a
+/// result is damaged: then no host is to blame, and to try again before that is made again is in
+/// vain.
+std::optional<JobFailure> SinkCore::failure_to_tell(const Result& result,
+                                                    const JobFailure& failure) {
+  if (!told_all_) return std::nullopt;
+  const bool damaged = failure.kind == FailureKind::damaged_input;
+  if (!damaged || !wanted_.at(result.key).needs_others) return failure;
+  const std::pair attempt(result.key, result.attempt);
+  if (unverified() > 0) {
+    held_.insert(attempt);
+    return std::nullopt;
+  }
+  if (!found_damage_ || !held_.contains(attempt)) return failure;
+  return JobFailure{failure.reason, FailureKind::unread};
 }
 
 SinkActions SinkCore::checked(const Check& check, const JobFailure& problem, FarmTime now) {
   if (phase_ == Phase::left) return take();
+  const bool fine = problem.reason.empty();
+  if (check.what == Check::What::accepted) {
+    verified(check, problem);
+    return take();
+  }
   if (problem.kind == FailureKind::no_space) {
     if (when_full_ == WhenFull::end) return fail({problem.reason, true});
     unwritten_.push_back(check);
     wait_for_room(k_longest_sink_pause, now);
     return take();
   }
-  const bool fine = problem.reason.empty();
   checking_.erase(check.key);
-  const auto own = own_.find(check.key);
-  if (!fine && own != own_.end()) {
-    if (check.from_journal) --checking_journal_;
-    if (!check.from_journal) return fail({problem.reason, false});
-    act(DoHere{own->first, own->second});
-    tell_all();
-    return take();
-  }
   // What was tried again may be damaged by now: then nothing is left to wait for.
   if ((fine || checking_.empty()) && !again_at_) again_pause_ = FarmTime(0);
-  if (check.from_journal) --checking_journal_;
+  const bool known = check.what == Check::What::known;
+  if (known) --looking_;
   if (fine) {
-    if (graph_.waits_for(check.key)) accepted_.push_back(check.key);
-    const std::vector<WantedJob> possible = graph_.accept(check.key, check.output);
-    failed_.erase(check.key);
-    tell(check.key, check.worker, check.times);
-    want(possible);
-  } else if (!check.from_journal && told_all_) {
+    take_in(check);
+  } else if (known) {
+    known_.forget(check.key);
+    const auto own = own_.find(check.key);
+    if (own != own_.end()) do_here({own->first, own->second});
+  } else if (check.worker == WorkerId{}) {
+    return fail({problem.reason, false});
+  } else if (told_all_) {
     say(Reject{member_.epoch(),
                check.worker,
                check.attempt,
@@ -165,29 +183,94 @@ SinkActions SinkCore::checked(const Check& check, const JobFailure& problem, Far
   return take();
 }
 
-/// Jobs that are possible now; what a journal knows of them is checked at once.
-void SinkCore::want(const std::vector<WantedJob>& jobs) {
-  for (const auto& [key, job, name] : jobs) {
-    kinds_[key] = job.kind;
+void SinkCore::take_in(const Check& check) {
+  if (check.what == Check::What::known) {
+    known_.looked_at(check.key);
+    act(Check{check.key, check.output, Check::What::accepted, {}, 0, {}, check.kind});
+  }
+  if (graph_.waits_for(check.key)) return want(accept(check));
+  // The graph was begun again meanwhile, and has not come as far as this job.
+  known_.add(check.key, check.output);
+}
+
+/// What was accepted by a look at its size has been read.
+void SinkCore::verified(const Check& check, const JobFailure& problem) {
+  if (problem.reason.empty()) {
+    known_.verified(check.key);
+  } else {
+    known_.forget(check.key);
+    if (graph_.accepted(check.key) != nullptr) damaged_.insert(check.key);
+    found_damage_ = true;
+  }
+  if (unverified() > 0) return;
+  if (!found_damage_) held_.clear();
+  if (told_all_) say_where_it_stands();
+  look_for_end();
+}
+
+/// As a new sink would that knows all but what is damaged.
+void SinkCore::begin_again(FarmTime now) {
+  for (const JobKey key : accepted_) {
+    if (!damaged_.contains(key)) known_.add(key, *graph_.accepted(key));
+  }
+  damaged_.clear();
+  accepted_.clear();
+  wanted_.clear();
+  own_.clear();
+  waiting_.clear();
+  graph_ = source_();
+  if (told_all_) on(member_.on_message(Stop{StopReason::leaving}, now), now);
+  want(graph_.begin());
+  tell_all();
+}
+
+/// Jobs that are possible now; what a journal knows of them is looked at at once.
+void SinkCore::want(std::vector<WantedJob> jobs) {
+  for (std::size_t i = 0; i < jobs.size(); ++i) {
+    const auto [key, job, name] = std::move(jobs[i]);
+    wanted_[key] = {job.kind, !graph_.needs(name).empty()};
     if (job.by_sink) own_[key] = job;
-    const auto known = journal_.find(key);
-    if (known == journal_.end()) {
-      if (job.by_sink) act(DoHere{key, job});
+    const JobOutput* known = known_.find(key);
+    if (known == nullptr) {
+      if (job.by_sink) do_here({key, job});
       continue;
     }
-    const Check check{key, known->second, WorkerId{}, 0, true, {}, job.kind};
-    if (!checking_.try_emplace(key, check).second) continue;
-    ++checking_journal_;
-    act(check);
+    const Check check{key, *known, Check::What::known, {}, 0, {}, job.kind};
+    if (known_.is_trusted(key)) {
+      for (WantedJob& each : accept(check)) jobs.push_back(std::move(each));
+    } else if (checking_.try_emplace(key, check).second) {
+      ++looking_;
+      act(check);
+    }
   }
-  if (graph_.complete() && phase_ == Phase::collecting) {
-    phase_ = Phase::making_output;
-    act(MakeOutput{});
-  }
+  look_for_end();
+}
+
+/// The jobs that are possible then.
+std::vector<WantedJob> SinkCore::accept(const Check& check) {
+  accepted_.push_back(check.key);
+  std::vector<WantedJob> possible = graph_.accept(check.key, check.output);
+  failed_.erase(check.key);
+  tell(check.key, check.worker, check.times);
+  return possible;
+}
+
+/// A job of the sink reads what was accepted.
+void SinkCore::do_here(const DoHere& what) {
+  if (unverified() > 0) return waiting_.push_back(what);
+  if (doing_.insert(what.key).second) act(what);
+}
+
+void SinkCore::look_for_end() {
+  if (unverified() > 0 || phase_ != Phase::collecting) return;
+  for (const DoHere& each : std::exchange(waiting_, {})) do_here(each);
+  if (!graph_.complete()) return;
+  phase_ = Phase::making_output;
+  act(MakeOutput{});
 }
 
 void SinkCore::tell_all() {
-  if (told_all_ || !member_.joined() || !begun_ || checking_journal_ > 0) return;
+  if (told_all_ || !member_.joined() || !begun_ || looking_ > 0) return;
   told_all_ = true;
   for (const JobKey key : accepted_) tell(key, WorkerId{});
   say_where_it_stands();
@@ -202,7 +285,7 @@ void SinkCore::say_again() {
 }
 
 void SinkCore::say_where_it_stands() {
-  say(Ready{member_.epoch(), accepted_.size()});
+  say(Ready{member_.epoch(), accepted_.size(), unverified()});
   if (phase_ == Phase::saying_complete) say(Complete{member_.epoch()});
   if (phase_ == Phase::saying_failed) {
     say(Failed{member_.epoch(), clipped(problem_.text), problem_.no_room});
@@ -211,7 +294,7 @@ void SinkCore::say_where_it_stands() {
 
 void SinkCore::tell(JobKey key, WorkerId worker, const JobTimes& times) {
   if (!told_all_) return;
-  say(Accept{member_.epoch(), worker, key, *graph_.accepted(key), times});
+  say(Accept{member_.epoch(), worker, key, *graph_.accepted(key), times, unverified()});
 }
 
 SinkActions SinkCore::did(const DoHere& what, const JobOutput& output, const SinkProblem& problem,
@@ -222,9 +305,10 @@ SinkActions SinkCore::did(const DoHere& what, const JobOutput& output, const Sin
     wait_for_room(k_longest_output_pause, now);
     return take();
   }
+  doing_.erase(what.key);
   if (!problem.text.empty()) return fail(problem);
   again_pause_ = FarmTime(0);
-  const Check check{what.key, output, WorkerId{}, 0, false, {}, what.job.kind};
+  const Check check{what.key, output, Check::What::result, {}, 0, {}, what.job.kind};
   if (checking_.try_emplace(what.key, check).second) act(check);
   return take();
 }

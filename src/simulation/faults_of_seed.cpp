@@ -49,6 +49,7 @@ SimulatedFaults faults_of_seed(std::uint64_t seed) {
   const std::uint64_t hopeless = dice.pick(16);
   if (hopeless == 0) faults.poison = "job 3";
   if (hopeless == 1) faults.bad = "job 3";
+  faults.decay = draw(0.002, 0.05);
   return faults;
 }
 

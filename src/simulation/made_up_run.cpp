@@ -73,7 +73,11 @@ JobSource simulated_jobs(std::uint64_t count, const std::string& target) {
       return all;
     });
     graph.then({{k_all, 0}}, [rest](JobGraph& so_far) {
-      for (std::uint32_t i = 0; i < rest->size(); ++i) so_far.add({k_rest, i}, (*rest)[i]);
+      for (std::uint32_t i = 0; i < rest->size(); ++i) {
+        Job job = (*rest)[i];
+        job.inputs = {so_far.output({k_most, i}).file, so_far.output({k_all, 0}).file};
+        so_far.add({k_rest, i}, std::move(job));
+      }
     });
     return graph;
   };

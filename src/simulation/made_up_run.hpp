@@ -15,8 +15,9 @@ namespace meshfarm {
 /// What a simulated job makes: told by its parameters alone.
 std::string simulated_summary(const Job& job);
 /// Made-up jobs of 0.1 to 1 s in three stages: most, then one that depends on all of them, then the
-/// rest. The first are named "job 0", "job 1"... With a target's name, as of another run of the
-/// same stage, only a quarter of the first are these; all others have that name in theirs.
+/// rest, which each read that and one of the first. The first are named "job 0", "job 1"... With a
+/// target's name, as of another run of the same stage, only a quarter of the first are these; all
+/// others have that name in theirs.
 JobSource simulated_jobs(std::uint64_t count, const std::string& target = "");
 /// The outputs' summaries of a run in which nothing goes wrong, by hand.
 std::vector<std::string> expected_summaries(const JobSource& source);

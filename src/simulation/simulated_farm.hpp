@@ -220,6 +220,7 @@ class SimulatedFarm {
   void start_sink(Run& run);
   void tick_sink(Run& run, std::uint64_t life);
   void kill_sink(Run& run);
+  void suffer(Run& run);
   void sink_does(Run& run, SinkActions actions);
   void sink_act(Run& run, Look& each);
   void sink_act(Run& run, Dial& each);
@@ -227,6 +228,7 @@ class SimulatedFarm {
   void sink_act(Run& run, Say& each);
   void sink_act(Run& run, const Check& each);
   void sink_act(Run& run, const DoHere& each);
+  void check_known(Run& run, const Check& each);
   void check_by_sick_mount(Run& run, const Check& each, SimulatedTime readable);
   void sink_act(Run& run, MakeOutput& each);
   void sink_act(Run& run, SinkLeaves& each);

@@ -77,6 +77,10 @@ void SimulatedFarm::begin_computing(Worker& worker, std::uint32_t slot) {
   InWork& in_work = *worker.slots[slot];
   const std::string& name = in_work.job.parameters;
   const SimulatedFaults& faults = options_.faults;
+  for (const FileRef& input : in_work.job.inputs) {
+    if (faults.decay <= 0 || folder_.has_whole(input.name)) continue;
+    return fail_job(worker, slot, "its input is damaged", FailureKind::damaged_input);
+  }
   const bool poison = !faults.poison.empty() && name == faults.poison;
   if (poison || chance(faults.crash_at_job)) return kill_worker(index_of(worker));
   if (!faults.bad.empty() && name == faults.bad) {

@@ -28,8 +28,19 @@ void SimulatedFarm::start_sink(Run& run) {
   member.host = "sink";
   member.results = run.sink.here;
   member.patience = k_patience;
+  suffer(run);
   run.sink.core = std::make_unique<SinkCore>(member, *run.source, run.journal, options_.when_full);
   tick_sink(run, life);
+}
+
+/// Accepted results are damaged while no sink is there: in a way that a look shows, or not.
+void SimulatedFarm::suffer(Run& run) {
+  if (options_.faults.decay <= 0) return;
+  for (const auto& [key, output] : run.journal) {
+    if (!chance(options_.faults.decay)) continue;
+    using Content = SimulatedFolder::Content;
+    folder_.damage(output.file.name, dice_.chance(0.2) ? Content::cut_short : Content::damaged);
+  }
 }
 
 void SimulatedFarm::tick_sink(Run& run, std::uint64_t life) {
@@ -70,9 +81,9 @@ void SimulatedFarm::sink_act(Run& run, Say& each) {
 }
 
 void SimulatedFarm::sink_act(Run& run, const Check& each) {
+  if (each.what != Check::What::result) return check_known(run, each);
   const SimulatedTime readable = folder_.readable(run.sink.host);
-  if (readable > queue_.now() && !each.from_journal)
-    return check_by_sick_mount(run, each, readable);
+  if (readable > queue_.now()) return check_by_sick_mount(run, each, readable);
   SimulatedTime there =
       folder_.transfer(run.sink.host, each.output.file.size) + folder_.visibility_delay();
   if (options_.centre.per_result.count() > 0) {
@@ -81,19 +92,36 @@ void SimulatedFarm::sink_act(Run& run, const Check& each) {
   queue_.at(there, [this, &run, each, life = run.sink.life] {
     when_awake(run.sink, life, [this, &run, each] {
       const bool whole = folder_.has_whole(each.output.file.name);
-      if (whole && !each.from_journal && folder_.full()) {
+      if (whole && folder_.full()) {
         return sink_does(
             run, run.sink.core->checked(each, {"no space left on device", FailureKind::no_space},
                                         farm_now()));
       }
-      if (whole && !each.from_journal && chance(options_.faults.journal_error)) {
+      if (whole && chance(options_.faults.journal_error)) {
         return sink_does(run, run.sink.core->fail({"cannot sync the journal", false}));
       }
-      if (whole && !each.from_journal) journal(run, each);
+      if (whole) journal(run, each);
       // Killed between the journal's sync and the word to the ventilator.
       if (whole && chance(options_.faults.crash_at_job / 4)) return kill_sink(run);
       sink_does(run,
                 run.sink.core->checked(each, {whole ? "" : "the file is damaged"}, farm_now()));
+    });
+  });
+}
+
+/// A look at a file that a journal knows, or, when nothing else waits, its verification.
+void SimulatedFarm::check_known(Run& run, const Check& each) {
+  const bool looks = each.what == Check::What::known;
+  const SimulatedTime there = folder_.transfer(run.sink.host, looks ? 0 : each.output.file.size) +
+                              folder_.visibility_delay();
+  const SimulatedTime later = up_to(std::chrono::milliseconds(!looks && faulty() ? 30'000 : 1));
+  queue_.at(there + later, [this, &run, each, looks, life = run.sink.life] {
+    when_awake(run.sink, life, [this, &run, each, looks] {
+      const std::string& name = each.output.file.name;
+      const bool fine = looks ? folder_.seems_whole(name) : folder_.has_whole(name);
+      if (!fine) run.checks.taken_back(each.key);
+      if (fine && chance(options_.faults.crash_at_job / 4)) return kill_sink(run);
+      sink_does(run, run.sink.core->checked(each, {fine ? "" : "the file is damaged"}, farm_now()));
     });
   });
 }

@@ -37,6 +37,11 @@ bool SimulatedFolder::has_whole(const std::string& name) const {
   return found != files_.end() && found->second == Content::whole;
 }
 
+bool SimulatedFolder::seems_whole(const std::string& name) const {
+  const auto found = files_.find(name);
+  return found != files_.end() && found->second != Content::cut_short;
+}
+
 SimulatedTime SimulatedFolder::visibility_delay() {
   if (!faulty()) return SimulatedTime(0);
   // Measured on NFS v3 and v4.2: a name that was looked up too early is invisible for 30 to 60 s.

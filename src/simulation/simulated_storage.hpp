@@ -32,9 +32,13 @@ class SimulatedFolder {
   SimulatedTime transfer(std::uint32_t host, std::uint64_t bytes);
 
   /// A finished file gets its name. False if that name was taken: two writers shared it.
-  enum class Content : std::uint8_t { whole, damaged };
+  enum class Content : std::uint8_t { whole, damaged, cut_short };
   bool publish(const std::string& name, Content content);
+  /// A finished file that was whole suffers.
+  void damage(const std::string& name, Content content) { files_.at(name) = content; }
   bool has_whole(const std::string& name) const;
+  /// As far as a look at its size tells.
+  bool seems_whole(const std::string& name) const;
 
   /// What opening and reading a told name takes longer than it should: a name looked up too early
   /// stays invisible, an old state stays visible.

@@ -182,7 +182,10 @@ void SimulatedFarm::act(std::uint32_t index, Leave& each) {
   // By the late word of a run that was over, maybe, after another one has begun.
   const bool begun_again =
       std::any_of(runs_.begin(), runs_.end(), [](const Run& run) { return run.starts > 1; });
-  const bool comes_again = faulty() || worker.leaves || begun_again || runs_.size() > 1;
+  // Or a sink was killed while it made the output, and the next one found a damaged result.
+  const bool sink_comes_again = options_.faults.decay > 0;
+  const bool comes_again =
+      faulty() || worker.leaves || begun_again || sink_comes_again || runs_.size() > 1;
   if (comes_again) queue_.in(k_worker_down, [this, index] { start_worker(index); });
 }
 

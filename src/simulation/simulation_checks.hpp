@@ -28,6 +28,8 @@ class SimulationChecks {
   void whole_plan(const Plan& plan);
 
   void journalled(JobKey key, bool file_is_whole);
+  /// What the sink could not find whole any more: it may be accepted again.
+  void taken_back(JobKey key) { journalled_.erase(key); }
   void that(bool holds, const char* what) {
     if (!holds && broken_.empty()) broken_ = what;
   }

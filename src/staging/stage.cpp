@@ -76,7 +76,8 @@ std::string read_once(const std::filesystem::path& root, const FileRef& file,
   return bytes;
 }
 
-void verify_once(const std::filesystem::path& root, const FileRef& file) {
+void verify_once(const std::filesystem::path& root, const FileRef& file,
+                 const ReadPatience& patience) {
   const std::filesystem::path path = root / file.name;
   const Fd fd = open_once(root, file);
   Checksum sum;
@@ -84,6 +85,7 @@ void verify_once(const std::filesystem::path& root, const FileRef& file) {
   for (std::uint64_t left = file.size; left > 0; left -= piece.size()) {
     piece.resize(std::min<std::uint64_t>(piece.size(), left));
     if (read_up_to(fd.get(), piece, path) < piece.size()) break;  // the sum tells
+    tell_moved(patience, piece.size());
     sum.add(piece);
   }
   if (sum.value() != file.hash) {
@@ -191,7 +193,7 @@ std::string Stage::read(const FileRef& file, const ReadPatience& patience) const
 }
 
 void Stage::verify(const FileRef& file, const ReadPatience& patience) const {
-  patiently(*this, file, patience, [&] { verify_once(root_, file); });
+  patiently(*this, file, patience, [&] { verify_once(root_, file, patience); });
 }
 
 Fd Stage::open_told(const FileRef& file, const ReadPatience& patience) const {

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
+#include <atomic>
 #include <deque>
 #include <exception>
-#include <mutex>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -14,10 +14,10 @@
 #include <meshfarm/transport/sink.hpp>
 #include <meshfarm/util/errors.hpp>
 #include <meshfarm/util/log.hpp>
-#include <meshfarm/util/parallel.hpp>
 
 #include "transport/control_link.hpp"
 #include "transport/gatekeeper.hpp"
+#include "transport/result_checker.hpp"
 #include "transport/run_keys.hpp"
 #include "transport/sockets.hpp"
 #include "transport/task_thread.hpp"
@@ -31,12 +31,15 @@ constexpr std::size_t k_checks_per_batch = 256;
 /// Results are verified on so many threads: storage on a network answers one slowly, and many at
 /// once.
 constexpr unsigned k_checkers = 4;
+/// What was accepted before is verified beside that, and beside workers of this host.
+constexpr unsigned k_verifiers = 2;
+constexpr std::size_t k_verified_per_batch = 64;
 
-/// Who asks the sink to stop does not wait for storage.
-ReadPatience patience_until(const std::atomic<bool>* stop) {
+/// Who asks the sink to stop does not wait for storage, nor does a sink that leaves.
+ReadPatience patience_until(const std::atomic<bool>* stop, const std::atomic<bool>& leaves) {
   ReadPatience patience;
-  patience.moved = [stop](std::uint64_t) {
-    if (stop != nullptr && stop->load()) throw IncompleteError("stopped");
+  patience.moved = [stop, &leaves](std::uint64_t) {
+    if (leaves || (stop != nullptr && stop->load())) throw IncompleteError("stopped");
   };
   return patience;
 }
@@ -63,9 +66,11 @@ class SinkLoop {
         gate_(context_, keys_),
         results_(make_results_server(context_, keys_)),
         link_(context_, stage, options.security),
-        patience_(patience_until(options.stop)),
+        patience_(patience_until(options.stop, leaves_)),
         journal_patience_(journal_patience(patience_)),
+        verifying_patience_(journal_patience_),
         ledger_(read_journals(stage, options.run, journal_patience_)),
+        checker_(stage, options, ledger_.by_run),
         incarnation_(random_id()),
         core_({Role::sink,
                options.run,
@@ -77,6 +82,10 @@ class SinkLoop {
                {},
                options.algorithm},
               source, std::exchange(ledger_.accepted, {}), options.when_full) {}
+
+  ~SinkLoop() { leaves_ = true; }
+  SinkLoop(const SinkLoop&) = delete;
+  SinkLoop& operator=(const SinkLoop&) = delete;
 
   std::uint32_t run() {
     while (!left_) {
@@ -106,19 +115,15 @@ class SinkLoop {
     return bind_within(results_, options_.bind, {options_.first_port, options_.last_port});
   }
 
-  struct Checked {
-    Check check;
-    JobFailure problem = {};
-    bool to_record = false;
-  };
-
   void turn() {
     std::vector<zmq::pollitem_t> items = {{nullptr, disk_.fd(), ZMQ_POLLIN, 0},
+                                          {nullptr, verifier_.fd(), ZMQ_POLLIN, 0},
                                           {results_.handle(), 0, ZMQ_POLLIN, 0}};
     if (link_.socket() != nullptr) items.push_back({link_.socket()->handle(), 0, ZMQ_POLLIN, 0});
     wait_for(items, core_.pause(farm_clock()));
     const FarmTime now = farm_clock();
     if (disk_.take_finished()) disk_answers(now);
+    if (verifier_.take_finished()) verifier_answers(now);
     for (int count = 0; link_.socket() != nullptr && count < k_messages_per_turn; ++count) {
       const auto received = receive(*link_.socket());
       if (!received) break;
@@ -135,6 +140,7 @@ class SinkLoop {
     }
     perform(core_.tick(now));
     use_disk();
+    use_verifier();
   }
 
   void perform(const SinkActions& actions) {
@@ -147,7 +153,9 @@ class SinkLoop {
   void act(const Dial& each) { link_.dial(each.address); }
   void act(const HangUp&) { link_.hang_up(); }
   void act(const Say& each) { link_.say(each.message); }
-  void act(const Check& each) { to_check_.push_back(each); }
+  void act(const Check& each) {
+    (each.what == Check::What::accepted ? to_verify_ : to_check_).push_back(each);
+  }
   void act(const DoHere& each) { to_do_.push_back(each); }
   void act(const MakeOutput&) { make_output_ = true; }
   void act(const SinkLeaves& each) { left_ = each; }
@@ -156,10 +164,7 @@ class SinkLoop {
   void use_disk() {
     if (!disk_.idle() || left_) return;
     if (!to_check_.empty()) {
-      while (!to_check_.empty() && batch_.size() < k_checks_per_batch) {
-        batch_.push_back({std::move(to_check_.front())});
-        to_check_.pop_front();
-      }
+      batch_ = next_of(to_check_, k_checks_per_batch);
       disk_.start([this] { check_batch(); });
     } else if (!to_do_.empty()) {
       doing_ = std::move(to_do_.front());
@@ -171,6 +176,32 @@ class SinkLoop {
       making_output_ = true;
       problem_ = nullptr;
       disk_.start([this] { make_output(); });
+    }
+  }
+
+  /// What was accepted before is verified while fresh results come.
+  void use_verifier() {
+    if (!verifier_.idle() || left_ || to_verify_.empty()) return;
+    verified_ = next_of(to_verify_, k_verified_per_batch);
+    verifier_.start([this] {
+      checker_.check_all(verified_, verifying_patience_, verifying_patience_, k_verifiers);
+    });
+  }
+
+  static std::vector<CheckedResult> next_of(std::deque<Check>& waiting, std::size_t most) {
+    std::vector<CheckedResult> next;
+    for (; !waiting.empty() && next.size() < most; waiting.pop_front()) {
+      next.push_back({std::move(waiting.front())});
+    }
+    return next;
+  }
+
+  void verifier_answers(FarmTime now) {
+    for (const CheckedResult& each : std::exchange(verified_, {})) {
+      if (!each.problem.reason.empty()) {
+        log_warning("accepted before, now made again: " + each.problem.reason);
+      }
+      perform(core_.checked(each.check, each.problem, now));
     }
   }
 
@@ -189,7 +220,7 @@ class SinkLoop {
     }
     if (problem_) return perform(core_.fail(what(problem_)));
     std::string no_room;
-    for (const Checked& each : std::exchange(batch_, {})) {
+    for (const CheckedResult& each : std::exchange(batch_, {})) {
       const bool full = each.problem.kind == FailureKind::no_space;
       if (full) no_room = each.problem.reason;
       if (!full && !each.problem.reason.empty()) {
@@ -224,43 +255,16 @@ class SinkLoop {
 
   /// On the disk thread, as is all below.
   void check_batch() {
-    // Nobody hears of one result before all have been looked at: they are waited for together.
+    // They are waited for together.
     ReadPatience patience = patience_;
-    std::mutex mutex;
-    parallel_for(batch_.size(), k_checkers, [&](std::uint64_t i) {
-      Checked& each = batch_[i];
-      check(each, each.check.from_journal ? journal_patience_ : patience, mutex);
-    });
+    checker_.check_all(batch_, patience, journal_patience_, k_checkers);
     std::vector<std::string> records;
-    for (const Checked& each : batch_) {
+    for (const CheckedResult& each : batch_) {
       if (each.to_record) {
         records.push_back(encode_record({options_.run, {each.check.key, each.check.output}}));
       }
     }
     if (!records.empty()) write_records(records);
-  }
-
-  /// On one of several threads, which share their patience.
-  void check(Checked& each, ReadPatience& shared, std::mutex& mutex) const {
-    const Check& check = each.check;
-    try {
-      if (options_.inspect) options_.inspect(check.kind, check.output);
-      const ReadPatience patience = [&] {
-        const std::lock_guard lock(mutex);
-        return shared;
-      }();
-      stage_.verify(check.output.file, patience);
-      // What another run accepted is recorded as this one's, too, as long as that goes on.
-      each.to_record = !check.from_journal || !ledger_.by_run.contains(check.key);
-    } catch (const IoError& error) {
-      each.problem = {error.what(), FailureKind::unread};
-      const std::lock_guard lock(mutex);
-      spend(shared, error);
-    } catch (const Error& error) {
-      each.problem = {error.what()};
-    } catch (const std::bad_alloc&) {
-      each.problem = {"out of memory while reading " + check.output.file.name, FailureKind::unread};
-    }
   }
 
   void write_records(const std::vector<std::string>& records) {
@@ -271,7 +275,7 @@ class SinkLoop {
         problem_ = std::current_exception();
         return;
       }
-      for (Checked& each : batch_) {
+      for (CheckedResult& each : batch_) {
         if (each.to_record)
           each.problem = {what(std::current_exception()).text, FailureKind::no_space};
       }
@@ -325,12 +329,16 @@ class SinkLoop {
   Gatekeeper gate_;
   zmq::socket_t results_;
   ControlLink link_;
+  std::atomic<bool> leaves_{false};
   const ReadPatience patience_;
-  ReadPatience journal_patience_;  // the disk thread's once there is one
+  ReadPatience journal_patience_;    // the disk thread's once there is one
+  ReadPatience verifying_patience_;  // the verifier's
   Ledger ledger_;
+  const ResultChecker checker_;
   const std::uint64_t incarnation_;
   SinkCore core_;
   std::deque<Check> to_check_;
+  std::deque<Check> to_verify_;
   std::deque<DoHere> to_do_;
   std::uint64_t garbage_ = 0;
   bool told_of_waiting_ = false;
@@ -339,13 +347,17 @@ class SinkLoop {
   std::optional<SinkLeaves> left_;
   std::exception_ptr told_problem_;  // as the disk thread left it when it was last idle
   // The disk thread's while it works:
-  std::vector<Checked> batch_;
+  std::vector<CheckedResult> batch_;
   std::optional<DoHere> doing_;
   std::vector<AcceptedJob> accepted_;  // before it
   JobOutput made_;
   std::optional<JournalWriter> journal_;
   std::exception_ptr problem_;
-  TaskThread disk_;  // the last member, so that its thread ends first
+  // The verifier's while it works:
+  std::vector<CheckedResult> verified_;
+  // The last members, so that their threads end first.
+  TaskThread disk_;
+  TaskThread verifier_;
 };
 
 }  // namespace

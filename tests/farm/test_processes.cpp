@@ -340,6 +340,41 @@ TEST_CASE("an accepted result that is damaged later is noticed and made again") 
   bench().check_result(output);
 }
 
+TEST_CASE("results damaged while no sink is there are made again, whenever sinks are killed") {
+  const std::string stage = bench().cut();
+  Process ventilator = bench().ventilator(stage);
+  Process sink = bench().sink(stage);
+  Process one = bench().worker(stage);
+  Process two = bench().worker(stage);
+  REQUIRE(wait_for_results(stage, 10));
+  sink.signal(SIGKILL);
+  CHECK(sink.wait() == -SIGKILL);
+  int damaged = 0;
+  for (const auto& entry : fs::directory_iterator(fs::path(stage) / "results")) {
+    if (++damaged > 6) break;
+    if (damaged % 3 == 0) {
+      fs::resize_file(entry.path(), fs::file_size(entry.path()) - 1);
+      continue;
+    }
+    std::fstream file(entry.path(), std::ios::in | std::ios::out | std::ios::binary);
+    file.seekp(200);
+    file.put('\x55');
+  }
+  // One that has just begun to look, and one that may be taking back what is damaged.
+  for (const int life_ms : {30, 250}) {
+    sink = bench().sink(stage);
+    std::this_thread::sleep_for(std::chrono::milliseconds(life_ms));
+    sink.signal(SIGKILL);
+    sink.wait();
+  }
+  sink = bench().sink(stage);
+  CHECK(sink.wait() == 0);
+  CHECK(ventilator.wait() == 0);
+  CHECK(one.wait() == 0);
+  CHECK(two.wait() == 0);
+  bench().check_result(stage + ".ply");
+}
+
 TEST_CASE("a damaged manifest is one clear line") {
   const std::string stage = bench().cut();
   std::ofstream(fs::path(stage) / "manifest", std::ios::app) << "x";

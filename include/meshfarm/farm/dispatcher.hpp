@@ -90,7 +90,8 @@ class Dispatcher {
     FarmTime heard{0};
     bool ready = false;
     std::map<JobKey, JobOutput> told;
-    bool no_room = false;  // for what it writes
+    std::uint64_t unverified = 0;  // of what it accepted
+    bool no_room = false;          // for what it writes
   };
   /// The stage is full: nobody is to blame, and nothing is given out until a probe could be
   /// written.

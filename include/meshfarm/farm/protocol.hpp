@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
 //
-// All that ventilator (V), workers (W) and sink (S) say to each other. Version 5.
+// All that ventilator (V), workers (W) and sink (S) say to each other. Version 6.
 //
 //   frame   = "MFMS" | version u16 | type u16 | body      one message a frame, one frame a message
 //   body    = the fields of the struct in the order of their declaration, little endian
@@ -18,6 +18,7 @@
 //              V -> W    Done: the result may be forgotten
 //              V -> W    TryRead, of a result that S cannot read        W -> V  TriedRead
 //   sink       S -> V    an Accept for all it has, Ready     V -> W    SinkAt
+//              S says Hello anew, and all that again, when it takes back what it had accepted
 //   the end    V -> W,S  Stop       V -> S  JobFailed        S -> V    Complete | Failed
 #pragma once
 
@@ -33,7 +34,7 @@
 
 namespace meshfarm {
 
-inline constexpr std::uint16_t k_protocol_version = 5;
+inline constexpr std::uint16_t k_protocol_version = 6;
 inline constexpr std::size_t k_max_frame_bytes = 65'536;
 inline constexpr std::size_t k_max_text_bytes = 1024;          // names, addresses, reasons
 inline constexpr std::size_t k_max_summary_bytes = 16'384;     // JobOutput::summary
@@ -173,6 +174,9 @@ struct Accept {
   JobKey key;
   JobOutput output;
   JobTimes times;  // as in the Result
+  /// Of all that it has accepted: whose files an earlier sink verified, and this one did not yet.
+  /// The run is not over before, as one that turns out to be damaged is made again.
+  std::uint64_t unverified = 0;
 };
 struct Reject {
   std::uint32_t epoch = 0;
@@ -185,7 +189,8 @@ struct Reject {
 /// The sink has told all that it had accepted before; repeated with each of its heartbeats.
 struct Ready {
   std::uint32_t epoch = 0;
-  std::uint64_t accepted = 0;  // as many jobs, so that a lost Accept is noticed
+  std::uint64_t accepted = 0;    // as many jobs, so that a lost Accept is noticed
+  std::uint64_t unverified = 0;  // as in an Accept
 };
 /// Attempts at the job up to this one are settled: drop them and their results. A later one, which
 /// may have come down the lane already, is not meant.

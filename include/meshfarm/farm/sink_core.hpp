@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <map>
 #include <optional>
+#include <set>
 #include <span>
 #include <string>
 #include <utility>
@@ -12,19 +13,25 @@
 #include <vector>
 
 #include <meshfarm/farm/job_graph.hpp>
+#include <meshfarm/farm/known_results.hpp>
 #include <meshfarm/farm/membership.hpp>
 #include <meshfarm/farm/protocol.hpp>
 #include <meshfarm/farm/when_full.hpp>
 
 namespace meshfarm {
 
-/// A result whose file is to be verified, and journalled if it is not from a journal.
+/// A result whose file is to be checked.
 struct Check {
+  /// result: it came just now; verify its file and journal it.
+  /// known: a journal knows it; see whether a file of its name and size is there.
+  /// accepted: of those, one that was accepted by that look; verify it when nothing else waits.
+  enum class What : std::uint8_t { result, known, accepted };
+
   JobKey key;
   JobOutput output;
-  WorkerId worker;            // 0: from a journal
-  std::uint32_t attempt = 0;  // 0: from a journal
-  bool from_journal = false;
+  What what = What::result;
+  WorkerId worker = {};       // of a result; 0: the sink made it
+  std::uint32_t attempt = 0;  // of a worker's result
   JobTimes times = {};
   std::string kind = {};  // of the job
 };
@@ -50,24 +57,28 @@ using SinkAction = std::variant<Look, Dial, HangUp, Say, Check, DoHere, MakeOutp
 using SinkActions = std::vector<SinkAction>;
 
 /// The sink's mind: what is wanted, what is accepted, what the ventilator has been told. Pure.
-/// Holds: a job is accepted once, and told only after checked() said that it is verified and on
-/// disk.
+/// Holds: a job is accepted, and told, only after checked() said that its result is verified and
+/// on disk, or looked at if a journal knows it. Those are verified while the farm works: neither
+/// the output nor a job of the sink is made before, and what is damaged is taken back. For that the
+/// sink begins its graph again, without it, and greets the ventilator as a new sink would that has
+/// the others: the job is made again, and what was made from it before stays.
 class SinkCore {
  public:
-  /// `journal`: what earlier sinks accepted; believed after its files are checked again.
-  SinkCore(MemberOptions member, const JobSource& source, std::map<JobKey, JobOutput> journal,
+  /// `journal`: what earlier sinks accepted.
+  SinkCore(MemberOptions member, JobSource source, std::map<JobKey, JobOutput> journal,
            WhenFull when_full = WhenFull::wait)
       : member_(std::move(member)),
-        graph_(source()),
-        journal_(std::move(journal)),
+        source_(std::move(source)),
+        graph_(source_()),
+        known_(std::move(journal)),
         when_full_(when_full) {}
 
   SinkActions tick(FarmTime now);
   SinkActions found(std::span<const Endpoint> endpoints, FarmTime now);
   SinkActions on_control(const Message& message, FarmTime now);
   SinkActions on_result(const Message& message);
-  /// The answer to a Check: `problem` has no reason if the file is whole and the record is on the
-  /// disk. no_space: there is no room for the record.
+  /// The answer to a Check: `problem` has no reason if the file is as it should be, and the record
+  /// of what is not accepted yet is on the disk. no_space: there is no room for the record.
   SinkActions checked(const Check& check, const JobFailure& problem, FarmTime now);
   /// The answer to DoHere: what was made, if there is no problem.
   SinkActions did(const DoHere& what, const JobOutput& output, const SinkProblem& problem,
@@ -81,6 +92,8 @@ class SinkCore {
   SinkActions stop();
 
   const JobGraph& graph() const { return graph_; }
+  /// How many of the accepted are to be verified yet, or to be taken back.
+  std::uint64_t unverified() const { return known_.unverified() + damaged_.size(); }
   /// How long to wait for messages before tick() is called again, at most.
   FarmTime pause(FarmTime now) const { return member_.pause(now); }
   /// Of the ventilator that was joined last.
@@ -93,8 +106,14 @@ class SinkCore {
   void on(Membership::Event event, FarmTime now);
   void run_over();
   void take_result(const Result& result);
-  void want(const std::vector<WantedJob>& jobs);
+  std::optional<JobFailure> failure_to_tell(const Result& result, const JobFailure& failure);
+  void take_in(const Check& check);
+  void verified(const Check& check, const JobFailure& problem);
+  void begin_again(FarmTime now);
+  void want(std::vector<WantedJob> jobs);
+  std::vector<WantedJob> accept(const Check& check);
   void do_here(const DoHere& what);
+  void look_for_end();
   void tell_all();
   void say_again();
   void say_where_it_stands();
@@ -112,18 +131,30 @@ class SinkCore {
   SinkActions take();
 
   Membership member_;
+  struct Wanted {
+    std::string kind;
+    bool needs_others = false;
+  };
+
+  JobSource source_;
   JobGraph graph_;
-  std::map<JobKey, JobOutput> journal_;
-  std::map<JobKey, std::string> kinds_;  // of the jobs wanted
-  std::map<JobKey, Job> own_;            // of these, those that the sink does
-  std::vector<DoHere> not_done_;         // of these, those that there was no room for
+  KnownResults known_;
+  std::map<JobKey, Wanted> wanted_;  // the jobs that are, since the graph was begun
+  std::map<JobKey, Job> own_;        // of these, those that the sink does
+  std::vector<DoHere> waiting_;      // of these, those that wait until all is verified
+  std::set<JobKey> doing_;           // jobs of the sink that DoHere was said of
+  std::vector<DoHere> not_done_;     // of these, those that there was no room for
   SinkActions out_;
   Phase phase_ = Phase::collecting;
   bool begun_ = false;
   bool told_all_ = false;  // to the ventilator joined now
   std::map<JobKey, Check> checking_;
-  std::uint64_t checking_journal_ = 0;  // how many of those come from a journal
-  std::vector<JobKey> accepted_;        // in the order of acceptance
+  std::uint64_t looking_ = 0;     // how many of those a journal knows
+  std::vector<JobKey> accepted_;  // in the order of acceptance
+  std::set<JobKey> damaged_;      // of these, what is to be taken back
+  bool found_damage_ = false;
+  /// Attempts that read a damaged input while not all was verified.
+  std::set<std::pair<JobKey, std::uint32_t>> held_;
   std::map<JobKey, JobFailed> failed_;
   SinkProblem problem_;
   WhenFull when_full_;

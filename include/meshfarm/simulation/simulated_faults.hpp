@@ -24,6 +24,7 @@ struct SimulatedFaults {
   double write_error = 0;    // fsync or close fails, and no file is there
   double lost_answer = 0;    // the rename was done, but is reported as failed
   double damaged = 0;        // the file is short or damaged, and nobody was told
+  double decay = 0;          // an accepted file is damaged while no sink is there; per start of one
   double unseen = 0;         // a told name stays invisible to its reader for 30 s and more
   double stale = 0;          // a reader sees an old state of a file for some seconds
   double lane_fails = 0;     // no port is free for a lane

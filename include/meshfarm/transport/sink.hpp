@@ -37,7 +37,7 @@ struct SinkOptions {
 
 /// Collects results: verifies each file, journals it, tells the ventilator, until every job that
 /// `source` wants is accepted; results accepted by an earlier incarnation or run are taken from the
-/// journals after their files are verified again. Then calls `complete` with the outputs in the
+/// journals if their files are there, and verified again while the farm works. Then calls `complete` with the outputs in the
 /// order of the jobs' names, while it stays in touch with the ventilator, and tells the ventilator
 /// that the run is over.
 /// Returns the epoch of the ventilator that it served last.

@@ -404,6 +404,37 @@ TEST_CASE("a sink that is lost stops the farm until one is back and has told wha
   }
 }
 
+TEST_CASE("workers are not let go before the sink has verified what it accepted before") {
+  Desk desk(one_stage(2));
+  desk.worker("w", 5);
+  desk.say("s", Hello{Role::sink, k_run, 9, 1, "host", "results of s"});
+  const auto accept = [&](int job, std::uint64_t unverified) {
+    return desk.say("s", Accept{k_epoch, {}, key(job), {}, {}, unverified});
+  };
+  accept(0, 2);
+  accept(1, 2);
+  CHECK(said_to<Stop>("w", desk.say("s", Ready{k_epoch, 2, 2})).empty());
+  SUBCASE("all is whole") {
+    CHECK(said_to<Stop>("w", desk.say("s", Ready{k_epoch, 2, 1})).empty());
+    CHECK(said_to<Stop>("w", desk.say("s", Ready{k_epoch, 2, 0})).size() == 1);
+  }
+  SUBCASE("one is taken back: the sink says hello anew") {
+    desk.credit("w", 1, 3);
+    desk.say("s2", Hello{Role::sink, k_run, 9, 1, "host", "results of s"});
+    desk.say("s2", Accept{k_epoch, {}, key(0), {}, {}, 0});
+    CHECK(names(desk.say("s2", Ready{k_epoch, 1, 0})) == "job 1@1 ");
+    CHECK(said_to<Stop>("w", desk.accept("s2", key(1), 1)).size() == 1);
+  }
+  SUBCASE("the sink is lost, and a worker leaves: another sink may find damage") {
+    desk.worker("w2", 6);
+    desk.silence(FarmTime(2000));
+    for (const char* peer : {"w", "w2"})
+      desk.say(peer, Heartbeat{k_epoch, {peer[1] == 0 ? 1U : 2U}});
+    desk.silence(FarmTime(1001));
+    CHECK(said_to<Stop>("w", desk.say("w2", Release{k_epoch, {2}})).empty());
+  }
+}
+
 TEST_CASE("a process of another build is refused, and both versions are named") {
   Desk desk(one_stage(1));
   desk.sink("s", 9);

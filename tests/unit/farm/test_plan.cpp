@@ -174,5 +174,28 @@ TEST_CASE("stages follow each other, and a restart goes straight to the jobs tha
   }
 }
 
+TEST_CASE("a job that needs what was made again reads that") {
+  const JobKey first = key_of(make_job("first"));
+  const JobSource source = [] {
+    JobGraph graph({"first", "then"});
+    graph.add({0, 0}, make_job("first"));
+    graph.add({1, 0}, {{0, 0}}, [](JobGraph& so_far) {
+      Job job = make_job("then");
+      job.inputs = {so_far.output({0, 0}).file};
+      return job;
+    });
+    return graph;
+  };
+  Plan plan = started_plan(source);
+  plan.accept(first, {{"made", 5, 6}, ""});
+  const IssuedJob before = *plan.issue();
+  CHECK(before.job.inputs.at(0).name == "made");
+  plan.restart({});
+  plan.accept(first, {{"made again", 5, 6}, ""});
+  CHECK(plan.state(before.key) == JobState::running);
+  plan.give_back(before.key);
+  CHECK(plan.issue()->job.inputs.at(0).name == "made again");
+}
+
 }  // namespace
 }  // namespace meshfarm::test

@@ -30,9 +30,9 @@ std::vector<Message> one_of_each() {
           Assignment{1, 2, 3, 4, {"simplify", {part, part}, std::string("\0\1\2", 3), 77, 88, 99}},
           Result{1, 2, {3}, 4, 5, {6}, output, {7, 8, 9, 10, 11}},
           Result{1, 2, {3}, 4, 5, {6}, failure, {7, 8, 9, 10, 11}},
-          Accept{1, {2}, {3}, output, {4, 5, 6, 7, 8}},
+          Accept{1, {2}, {3}, output, {4, 5, 6, 7, 8}, 9},
           Reject{1, {2}, 3, {4}, failure, {"results/x", 5, 6}},
-          Ready{9, 10},
+          Ready{9, 10, 11},
           Done{{10}, 11},
           SinkAt{"tcp://h:4"},
           JobFailed{{11}, "poison", true},
@@ -145,9 +145,9 @@ TEST_CASE("who speaks another version is told so in a frame of that version") {
 }
 
 TEST_CASE("numbers on the wire never change") {
-  CHECK(encode(Stop{StopReason::leaving}) == std::string("MFMS\5\0\x12\0\2", 9));
+  CHECK(encode(Stop{StopReason::leaving}) == std::string("MFMS\6\0\x12\0\2", 9));
   CHECK(encode(Credit{1, {2}, 3}) ==
-        std::string("MFMS\5\0\6\0\1\0\0\0\2\0\0\0\3\0\0\0\0\0\0\0", 24));
+        std::string("MFMS\6\0\6\0\1\0\0\0\2\0\0\0\3\0\0\0\0\0\0\0", 24));
 }
 
 TEST_CASE("what is too long for a message is refused by the sender") {

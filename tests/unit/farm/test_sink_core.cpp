@@ -71,6 +71,20 @@ struct SinkBench {
     REQUIRE(checks.size() == 1);
     return core.checked(checks[0], {}, now);
   }
+  /// Files that journals know are there, of their sizes.
+  SinkActions look_at_all(const SinkActions& actions) {
+    return answer(actions, Check::What::known);
+  }
+  /// Files that were looked at are whole.
+  SinkActions verify(const SinkActions& actions) { return answer(actions, Check::What::accepted); }
+  SinkActions answer(const SinkActions& actions, Check::What what) {
+    SinkActions all;
+    for (const Check& each : only<Check>(actions)) {
+      if (each.what != what) continue;
+      for (SinkAction& action : core.checked(each, {}, now)) all.push_back(std::move(action));
+    }
+    return all;
+  }
   SinkActions silence(FarmTime duration) { return core.tick(now += duration); }
 
   SinkCore core;
@@ -82,7 +96,7 @@ TEST_CASE("a result is told only after its file is found whole and journalled") 
   bench.join(1);
   const auto checks = only<Check>(bench.result(key("job 1")));
   REQUIRE(checks.size() == 1);
-  CHECK_FALSE(checks[0].from_journal);
+  CHECK(checks[0].what == Check::What::result);
   CHECK(checks[0].attempt == 1);
   CHECK(only<Check>(bench.result(key("job 1"))).empty());  // said again: it is being checked
   const auto accepts = said<Accept>(bench.core.checked(checks[0], {}, bench.now));
@@ -129,13 +143,13 @@ TEST_CASE("what is not ours is dropped and counted") {
   CHECK(only<Check>(bench.result(job, 2)).size() == 1);
 }
 
-TEST_CASE("what a journal knows is checked again, and told to each ventilator before Ready") {
+TEST_CASE("what a journal knows is looked at, and told to each ventilator before Ready") {
   const JobKey known = key("job 0");
   const JobKey gone = key("job 1");
   SinkBench bench(3, {{known, output_of(known)}, {gone, output_of(gone)}, {{1}, output_of({1})}});
   const auto checks = only<Check>(bench.join(1));
   REQUIRE(checks.size() == 2);  // what no job is for is left alone
-  CHECK(checks[0].from_journal);
+  CHECK(checks[0].what == Check::What::known);
   CHECK(said<Ready>(bench.core.checked(checks[0], {}, bench.now))
             .empty());  // one is still being checked
   const SinkActions told = bench.core.checked(checks[1], {"it is not there"}, bench.now);
@@ -143,6 +157,7 @@ TEST_CASE("what a journal knows is checked again, and told to each ventilator be
   CHECK(said<Accept>(told).size() == 1);
   REQUIRE(said<Ready>(told).size() == 1);
   CHECK(said<Ready>(told)[0].accepted == 1);
+  CHECK(said<Ready>(told)[0].unverified == 1);
   CHECK(said<Accept>(bench.accept(key("job 2"))).size() == 1);
 
   bench.now += FarmTime(3001);
@@ -218,7 +233,7 @@ TEST_CASE("a record that there is no room for is written again, and told only th
   CHECK(said<Heartbeat>(beats)[0].no_room);
   const auto again = only<Check>(bench.silence(FarmTime(100)));
   REQUIRE(again.size() == 1);
-  CHECK_FALSE(again[0].from_journal);
+  CHECK(again[0].what == Check::What::result);
   const SinkActions told = bench.core.checked(again[0], {}, bench.now);
   CHECK(said<Accept>(told).size() == 1);
   CHECK(only<MakeOutput>(told).size() == 1);
@@ -290,7 +305,7 @@ TEST_CASE("a job of the sink is done there, verified, journalled and told as oth
   CHECK(said<Accept>(done).empty());
   const auto checks = only<Check>(done);
   REQUIRE(checks.size() == 1);
-  CHECK_FALSE(checks[0].from_journal);
+  CHECK(checks[0].what == Check::What::result);
   const SinkActions accepted = bench.core.checked(checks[0], {}, bench.now);
   const auto accepts = said<Accept>(accepted);
   REQUIRE(accepts.size() == 1);
@@ -309,12 +324,130 @@ TEST_CASE("what a journal knows of a job of the sink is used, or done again if i
     CHECK(only<DoHere>(next).empty());
     const auto checks = only<Check>(next);
     REQUIRE(checks.size() == 1);
-    CHECK(checks[0].from_journal);
+    CHECK(checks[0].what == Check::What::known);
     const JobFailure problem{is_whole ? "" : "damaged", FailureKind::attempt};
     const SinkActions then = bench.core.checked(checks[0], problem, bench.now);
-    CHECK(only<MakeOutput>(then).size() == (is_whole ? 1 : 0));
     CHECK(only<DoHere>(then).size() == (is_whole ? 0 : 1));
+    CHECK(only<MakeOutput>(then).empty());
+    if (!is_whole) continue;
+    CHECK(only<MakeOutput>(bench.verify(then)).size() == 1);
   }
+}
+
+// --- what is accepted by a look, and verified while the farm works
+
+std::map<JobKey, JobOutput> journal_of(const std::vector<std::string>& names) {
+  std::map<JobKey, JobOutput> journal;
+  for (const std::string& name : names) journal[key(name)] = output_of(key(name));
+  return journal;
+}
+
+/// Two jobs of workers, one that needs them, and one that needs that.
+JobSource chain() {
+  return in_stages({{make_job("job 0"), make_job("job 1")}, {make_job("then")}, {make_job("end")}});
+}
+
+TEST_CASE("the run is not over before all is verified") {
+  Bench bench(2, journal_of({"job 0", "job 1"}));
+  const SinkActions looked = bench.look_at_all(bench.join(1));
+  const auto reads = only<Check>(looked);
+  REQUIRE(reads.size() == 2);
+  CHECK(reads[0].what == Check::What::accepted);
+  CHECK(said<Ready>(looked).at(0).accepted == 2);
+  CHECK(said<Ready>(looked).at(0).unverified == 2);
+  CHECK(only<MakeOutput>(looked).empty());
+  CHECK(said<Ready>(bench.silence(FarmTime(1000))).at(0).unverified == 2);
+  CHECK(bench.core.checked(reads[1], {}, bench.now).empty());
+  const SinkActions all = bench.core.checked(reads[0], {}, bench.now);
+  CHECK(said<Ready>(all).at(0).unverified == 0);
+  CHECK(only<MakeOutput>(all).size() == 1);
+}
+
+TEST_CASE("a job of the sink waits until all is verified") {
+  Bench bench(then_own(), journal_of({"job 0"}));
+  const SinkActions looked = bench.look_at_all(bench.join(1));
+  CHECK(only<DoHere>(looked).empty());
+  CHECK(only<DoHere>(bench.verify(looked)).size() == 1);
+}
+
+TEST_CASE("what is damaged is taken back, as by a new sink that has the others") {
+  Bench bench(chain(), journal_of({"job 0", "job 1", "then"}));
+  SinkActions looked = bench.look_at_all(bench.join(1));
+  for (SinkAction& each : bench.look_at_all(looked)) looked.push_back(std::move(each));
+  const auto reads = only<Check>(looked);
+  CHECK(bench.core.graph().jobs_accepted() == 3);
+  bench.accept(key("end"));
+  for (const Check& each : reads) {
+    if (each.what != Check::What::accepted) continue;
+    const bool damaged = each.key == key("job 1");
+    CHECK(only<MakeOutput>(bench.core.checked(each, {damaged ? "it is damaged" : ""}, bench.now))
+              .empty());
+  }
+  const SinkActions again = bench.core.tick(bench.now);
+  CHECK(only<HangUp>(again).size() == 1);
+  CHECK(only<Check>(again).empty());  // the others are known to be whole
+  CHECK(only<DoHere>(again).empty());
+  const SinkActions told = bench.join(1);
+  CHECK(said<Accept>(told).size() == 1);
+  CHECK(said<Accept>(told).at(0).key == key("job 0"));
+  CHECK(said<Ready>(told).at(0).accepted == 1);
+  CHECK(said<Ready>(told).at(0).unverified == 0);
+  // It is made again: what was made from it stays as it is, from the journal or not.
+  const auto checks = only<Check>(bench.result(key("job 1"), 1, 2));
+  REQUIRE(checks.size() == 1);
+  const SinkActions rest = bench.core.checked(checks[0], {}, bench.now);
+  CHECK(said<Accept>(rest).size() == 3);
+  CHECK(said<Accept>(rest).at(0).output.file.name == checks[0].output.file.name);
+  CHECK(only<MakeOutput>(rest).size() == 1);
+}
+
+TEST_CASE("a result that comes while what it needs is taken back is not lost") {
+  Bench bench(chain(), journal_of({"job 0", "job 1"}));
+  const auto reads = only<Check>(bench.look_at_all(bench.join(1)));
+  REQUIRE(reads.size() == 2);
+  const auto checks = only<Check>(bench.result(key("then")));
+  REQUIRE(checks.size() == 1);
+  bench.core.checked(reads[0], {"it is damaged"}, bench.now);
+  bench.core.checked(reads[1], {}, bench.now);
+  bench.core.tick(bench.now);
+  bench.join(1);
+  CHECK(bench.result(key("then")).empty());  // not wanted yet
+  CHECK(said<Accept>(bench.core.checked(checks[0], {}, bench.now)).empty());
+  CHECK(said<Accept>(bench.accept(reads[0].key)).size() == 2);
+  CHECK(bench.core.graph().accepted(key("then")) != nullptr);
+}
+
+TEST_CASE("a worker that reads a damaged result first costs its host nothing") {
+  Bench bench(chain(), journal_of({"job 0", "job 1"}));
+  const auto reads = only<Check>(bench.look_at_all(bench.join(1)));
+  REQUIRE(reads.size() == 2);
+  const JobFailure failure{"damaged", FailureKind::damaged_input};
+  const Message failed = Result{7, 1, {3}, 5, 1, key("then"), failure, {}};
+  CHECK(bench.core.on_result(failed).empty());  // the worker says it again
+  bool damaged = false;
+  SUBCASE("its host reads what is whole") {}
+  SUBCASE("it is damaged") {
+    damaged = true;
+  }
+  bench.core.checked(reads[0], {damaged ? "damaged" : ""}, bench.now);
+  bench.core.checked(reads[1], {}, bench.now);
+  bench.core.tick(bench.now);
+  if (damaged) {
+    bench.join(1);
+    CHECK(bench.core.on_result(failed).empty());  // not wanted now
+    bench.accept(reads[0].key);
+  }
+  const auto told = said<Reject>(bench.core.on_result(failed));
+  REQUIRE(told.size() == 1);
+  CHECK(told[0].failure.kind == (damaged ? FailureKind::unread : FailureKind::damaged_input));
+}
+
+TEST_CASE("an input that is no result may be damaged: nobody waits to say so") {
+  Bench bench(chain(), journal_of({"job 0"}));
+  bench.look_at_all(bench.join(1));
+  const JobFailure failure{"damaged", FailureKind::damaged_input};
+  const Message failed = Result{7, 1, {3}, 5, 1, key("job 1"), failure, {}};
+  CHECK(said<Reject>(bench.core.on_result(failed)).size() == 1);
 }
 
 TEST_CASE("a job of the sink that fails ends the run, one without room is done again") {
