@@ -8,6 +8,7 @@
 #include <vector>
 
 #include <doctest/doctest.h>
+#include <malloc.h>
 
 #include <meshfarm/farm/plan.hpp>
 
@@ -191,20 +192,30 @@ JobSource tree_of(std::uint32_t jobs, std::uint32_t levels, std::uint32_t childr
   };
 }
 
-TEST_CASE("a tree of a hundred thousand jobs is planned in a moment") {
+/// Bytes that the process has allocated; 0 where a sanitizer allocates.
+std::size_t allocated() {
+  const struct mallinfo2 info = ::mallinfo2();
+  return info.uordblks + info.hblkhd;
+}
+
+TEST_CASE("a tree of a hundred thousand jobs is planned in a moment and 200 MB") {
+  const std::size_t before = allocated();
+  std::size_t most = before;
   const std::clock_t start = std::clock();  // others may use the machine, too
   Plan plan(tree_of(75'000, 8, 4), 3);
   plan.restart({});
   std::uint64_t done = 0;
   while (const auto issued = plan.issue()) {
     plan.accept(issued->key, made_of(issued->job));
-    ++done;
+    if (++done % 1000 == 0) most = std::max(most, allocated());
   }
   CHECK(plan.complete());
   CHECK(done > 99'000);
   const double took = static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
   MESSAGE(done, " jobs planned in ", took, " s of processor time");
   CHECK(took < 10);  // half a second, but for sanitizers
+  MESSAGE("they take ", (most - before) >> 20, " MiB");
+  CHECK(most - before < std::size_t{200} << 20);
 }
 
 }  // namespace
