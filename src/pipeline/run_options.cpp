@@ -154,8 +154,9 @@ std::uint64_t run_key(const Manifest& manifest, const RunOptions& options) {
   ByteWriter out;
   out.put(k_algorithm_version);
   out.put(checksum(encode_manifest(manifest)));
+  // A ratio and a count that come to the same are one run. Not where slabs are to be sorted yet:
+  // degenerate triangles are dropped then, and the ratio is that of what is left.
   out.put(target_triangles(manifest, options));
-  // Which may change once slabs are sorted, as degenerate triangles are dropped then.
   if (manifest.sorting) out.put(options.ratio);
   out.put(options.allocation);
   out.put(options.finish);
