@@ -1,5 +1,6 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
+#include <filesystem>
 #include <sstream>
 #include <utility>
 
@@ -11,6 +12,7 @@
 #include "cli/cut_step.hpp"
 #include "cli/measure_words.hpp"
 #include "cli/options.hpp"
+#include "cli/staged_picture.hpp"
 #include "cli/view_words.hpp"
 
 namespace meshfarm {
@@ -19,7 +21,7 @@ namespace {
 class RenderCommand : public Command {
  public:
   std::string_view name() const override { return "render"; }
-  std::string_view synopsis() const override { return "MESH -o PICTURE.png"; }
+  std::string_view synopsis() const override { return "MESH|STAGE -o PICTURE.png"; }
   std::string_view summary() const override {
     return "draw a picture of a mesh of any size, in bounded memory";
   }
@@ -47,11 +49,8 @@ class RenderCommand : public Command {
     options.progress = [&](std::string_view phase, double done) {
       printer.show({.phase = phase, .done = done});
     };
-    const auto source = open_mesh(mesh_, {.threads = options.threads,
-                                          .textures = textures_for(options),
-                                          .picture_bytes = options.memory_bytes / 2});
-    tell_textures(mesh_, source->info());
-    Rendering made = render_mesh(*source, options);
+    Rendering made =
+        std::filesystem::is_directory(mesh_) ? render_stage(mesh_, options) : render(options);
     printer.end();
     write_png(view_.output, std::move(made.picture));
     tell(made);
@@ -59,6 +58,14 @@ class RenderCommand : public Command {
   }
 
  private:
+  Rendering render(const RenderOptions& options) const {
+    const auto source = open_mesh(mesh_, {.threads = options.threads,
+                                          .textures = textures_for(options),
+                                          .picture_bytes = options.memory_bytes / 2});
+    tell_textures(mesh_, source->info());
+    return render_mesh(*source, options);
+  }
+
   void tell(const Rendering& made) const {
     std::string line = view_.output + ": " + std::to_string(made.triangles) + " triangles";
     if (!made.colours.empty()) line += ", coloured by " + made.colours;

@@ -83,12 +83,13 @@ Vec3 parse_up(const std::string& word) {
 }
 
 void parse_colour_by(const std::string& word, RenderOptions& render) {
-  static constexpr std::array<std::pair<std::string_view, ColourBy>, 8> k_words = {
+  static constexpr std::array<std::pair<std::string_view, ColourBy>, 9> k_words = {
       {{"auto", ColourBy::automatic},
        {"none", ColourBy::none},
        {"colour", ColourBy::colour},
        {"normal", ColourBy::normal},
        {"piece", ColourBy::piece},
+       {"part", ColourBy::part},
        {"label", ColourBy::label},
        {"height", ColourBy::height},
        {"quality", ColourBy::quality}}};
@@ -134,10 +135,10 @@ void ViewWords::add(po::options_description& options) {
       "colour-by",
       po::value(&colour_by_)
           ->default_value(colour_by_)
-          ->value_name("auto|none|colour|normal|piece|label|height|quality"),
+          ->value_name("auto|none|colour|normal|piece|part|label|height|quality"),
       "auto: the mesh's colours, if it has any; normal: which way triangles face; piece: what is "
-      "connected; label: materials or other labels of triangles; height: along the axis that is "
-      "up; "
+      "connected; part: what a stage is divided into; label: materials or other labels of "
+      "triangles; height: along the axis that is up; "
       "quality: the first number of the vertices that is no colour or normal; or the name of one")(
       "range", po::value(&range_)->value_name("LOW:HIGH"),
       "with a number to colour by: values at the ends of the scale (default: the least and the "

@@ -11,8 +11,7 @@
 #include <meshfarm/geometry/near_cells.hpp>
 #include <meshfarm/geometry/surface_bound.hpp>
 #include <meshfarm/geometry/vertices.hpp>
-
-#include "pipeline/input_surface.hpp"
+#include <meshfarm/pipeline/input_surface.hpp>
 
 namespace meshfarm {
 namespace {

@@ -9,9 +9,8 @@
 
 #include <meshfarm/geometry/distance.hpp>
 #include <meshfarm/geometry/point_meter.hpp>
+#include <meshfarm/pipeline/input_surface.hpp>
 #include <meshfarm/report/summary.hpp>
-
-#include "pipeline/input_surface.hpp"
 
 namespace meshfarm {
 

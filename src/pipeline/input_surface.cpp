@@ -1,13 +1,14 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
-#include "pipeline/input_surface.hpp"
-
 #include <algorithm>
 #include <string>
 #include <utility>
 
+#include <meshfarm/divide/slab.hpp>
 #include <meshfarm/io/part_file.hpp>
+#include <meshfarm/io/slab_file.hpp>
 #include <meshfarm/io/stream_file.hpp>
+#include <meshfarm/pipeline/input_surface.hpp>
 #include <meshfarm/staging/staged_reader.hpp>
 #include <meshfarm/util/errors.hpp>
 #include <meshfarm/util/parallel.hpp>
@@ -68,6 +69,7 @@ void InputSurface::show(const Wants& wants, const Show& show) {
   parallel_for(manifest_.parts.size(), threads_, [&](std::uint64_t p) {
     if (!is_first && !wants(boxes_[p])) return;
     const auto part = static_cast<std::uint32_t>(p);
+    if (manifest_.sorting) return show_slab(part, show);
     manifest_.scheme == Scheme::stream ? show_stream(part, show) : show_part(part, show);
   });
   show_between(wants, show);
@@ -82,6 +84,21 @@ void InputSurface::show_part(std::uint32_t p, const Show& show) {
     boundary_[p].assign(positions.begin(), positions.begin() + part.boundary_vertices);
   }
   show({positions, part.mesh.triangles, part.mesh.columns, positions, p});
+}
+
+/// Sorted as the job does it, for the numbers of its boundary vertices.
+void InputSurface::show_slab(std::uint32_t p, const Show& show) {
+  const FileRef& file = manifest_.parts[p].file;
+  const StreamMesh sorted =
+      sort_slab(decode_slab(stage_.read(file), file.name), *manifest_.sorting).stream;
+  const std::vector<Vec3>& positions = sorted.mesh.positions;
+  if (boxes_[p].empty()) {
+    for (std::size_t i = 0; i < positions.size(); ++i) {
+      boxes_[p].add(positions[i]);
+      if (sorted.boundary[i] != 0) boundary_[p].push_back(positions[i]);
+    }
+  }
+  show({positions, sorted.mesh.triangles, sorted.mesh.columns, positions, p});
 }
 
 void InputSurface::show_stream(std::uint32_t p, const Show& show) {

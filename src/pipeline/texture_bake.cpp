@@ -18,11 +18,10 @@
 #include <meshfarm/io/part_file.hpp>
 #include <meshfarm/io/tiled_picture.hpp>
 #include <meshfarm/pipeline/bake_job.hpp>
+#include <meshfarm/pipeline/input_surface.hpp>
 #include <meshfarm/util/errors.hpp>
 #include <meshfarm/util/log.hpp>
 #include <meshfarm/util/parallel.hpp>
-
-#include "pipeline/input_surface.hpp"
 
 namespace meshfarm {
 namespace {

@@ -50,6 +50,8 @@ void Paints::choose(const MeshFileInfo& info, const RenderOptions& options) {
       from_ = From::pieces;
       name_ = "piece";
       return;
+    case ColourBy::part:
+      throw DataError(options.name + ": is no stage, and has no parts to be coloured by");
     case ColourBy::height:
       from_ = From::heights;
       name_ = "height";

@@ -39,19 +39,9 @@ struct TriangleBlock {
   std::vector<Label> labels;
 };
 
-std::uint64_t megabytes(std::uint64_t bytes) {
-  return (bytes >> 20) + 1;
-}
-
 Canvas::Size size_of(const RenderOptions& options) {
-  const Canvas::Size size{options.width, options.height, options.samples};
-  const std::uint64_t bytes = Canvas::memory_for(size);
-  if (bytes > options.memory_bytes / 4 * 3) {
-    throw UsageError("--size " + std::to_string(size.width) + "x" + std::to_string(size.height) +
-                     " with --samples " + std::to_string(size.side) + " takes --memory " +
-                     std::to_string(megabytes(bytes / 3 * 4)) + "M");
-  }
-  return size;
+  check_canvas(options);
+  return {options.width, options.height, options.samples};
 }
 
 /// All vertices, as long as triangles are drawn.
@@ -305,6 +295,15 @@ Textures textures_for(const RenderOptions& options) {
   const bool by_colour =
       options.colour_by == ColourBy::automatic || options.colour_by == ColourBy::colour;
   return by_colour ? Textures::bake : Textures::drop;
+}
+
+void check_canvas(const RenderOptions& options) {
+  const Canvas::Size size{options.width, options.height, options.samples};
+  const std::uint64_t bytes = Canvas::memory_for(size);
+  if (bytes <= options.memory_bytes / 4 * 3) return;
+  throw UsageError("--size " + std::to_string(size.width) + "x" + std::to_string(size.height) +
+                   " with --samples " + std::to_string(size.side) + " takes --memory " +
+                   std::to_string((bytes / 3 * 4 >> 20) + 1) + "M");
 }
 
 Rendering render_mesh(MeshSource& source, const RenderOptions& options) {

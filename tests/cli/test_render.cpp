@@ -100,3 +100,36 @@ TEST_CASE("render refuses bad input in a line, and bad options as such") {
   refuse({mesh, "-o", to, "--colour-by", "height", "--range", "2:1"}, 2, "--range");
   refuse({mesh, "-o", to, "--size", "4000x4000", "--memory", "64M"}, 2, "takes --memory");
 }
+
+TEST_CASE("a stage is drawn by its parts, however it was divided") {
+  Shell shell;
+  const std::string mesh = shell.path("torus.ply");
+  REQUIRE(shell({"generate", "-o", mesh, "--triangles", "2000", "-q"}).code == 0);
+  const std::string to = shell.path("a.png");
+  const auto drawn = [&](std::vector<std::string> cut, std::vector<std::string> more) {
+    const std::string stage = shell.path("s.stage");
+    fs::remove_all(stage);
+    cut.insert(cut.begin(), {"cut", mesh, "--stage", stage, "-q", "--parts", "4"});
+    REQUIRE(shell(cut).code == 0);
+    more.insert(more.begin(), {"render", stage, "-o", to, "--size", "120x80"});
+    const Ran ran = shell(more);
+    CHECK_MESSAGE(ran.code == 0, ran.err);
+    return std::pair(read_text(to), ran.err);
+  };
+  const auto [parts, said] = drawn({}, {});
+  CHECK(has(said, "2000 triangles, coloured by part (4)"));
+  CHECK(drawn({}, {"--colour-by", "part", "--threads", "3"}).first == parts);
+  REQUIRE(shell({"render", mesh, "-o", to, "--size", "120x80"}).code == 0);
+  const std::string whole = read_text(to);
+  CHECK(whole != parts);
+  for (const std::vector<std::string>& cut : std::vector<std::vector<std::string>>{
+           {}, {"--scheme", "stream", "--sort", "here"}, {"--scheme", "stream", "--sort", "farm"}}) {
+    CHECK(drawn(cut, {"--colour-by", "none"}).first == whole);
+  }
+  const Ran by_height = shell({"render", shell.path("s.stage"), "-o", to, "--colour-by", "height"});
+  CHECK(by_height.code != 0);
+  CHECK(has(by_height.err, "a stage is coloured by part, normal or none"));
+  const Ran no_stage = shell({"render", mesh, "-o", to, "--colour-by", "part"});
+  CHECK(no_stage.code == 1);
+  CHECK(has(no_stage.err, "is no stage, and has no parts"));
+}

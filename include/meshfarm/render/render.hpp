@@ -23,6 +23,7 @@ enum class ColourBy : std::uint8_t {
   colour,   // of the vertices, or of the materials
   normal,   // which way triangles face
   piece,    // what is connected
+  part,     // what a stage is divided into
   label,    // what triangles belong to
   height,   // along the axis that is up
   quality,  // the first channel that is a number of its own
@@ -60,6 +61,9 @@ struct Rendering {
 
 /// Which textures to open a mesh with: their colours are those of the vertices.
 Textures textures_for(const RenderOptions& options);
+
+/// Throws UsageError for a picture that takes more than the memory.
+void check_canvas(const RenderOptions& options);
 
 /// Draws a mesh of any size: vertices are projected once, into scratch files where they do not fit,
 /// and triangles come as the source scans them. The same mesh gives the same picture, whatever the

@@ -19,17 +19,17 @@ struct SurfacePiece {
   TriangleColumnsView columns;  // of these
   /// Vertices that no piece of the same part showed before.
   std::span<const Vec3> fresh;
-  std::uint32_t part = 0;
+  std::uint32_t part = 0;  // as many as there are parts: between parts
 };
 
 /// The surface of the input, read from the stage: the parts or streams, and the triangles between
-/// them. A part a thread is in memory, of streams a few blocks.
+/// them. Of streams a few blocks are in memory, else a part or an unsorted slab a thread.
 class InputSurface {
  public:
   using Wants = std::function<bool(const Box&)>;
   using Show = std::function<void(const SurfacePiece&)>;
 
-  /// The manifest must be one of sorted streams. `threads`: 0 for one a core.
+  /// `threads`: 0 for one a core.
   InputSurface(const Stage& stage, const Manifest& manifest, unsigned threads);
   /// Shows the pieces of all parts whose boxes are wanted, and the triangles between parts, from
   /// several threads. At first, when no box is known, all parts are shown. The pieces of a part
@@ -38,6 +38,7 @@ class InputSurface {
 
  private:
   void show_part(std::uint32_t part, const Show& show);
+  void show_slab(std::uint32_t part, const Show& show);
   void show_stream(std::uint32_t part, const Show& show);
   void show_between(const Wants& wants, const Show& show) const;
   Vec3 corner(const BoundaryCorner& corner) const;
