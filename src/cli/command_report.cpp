@@ -2,12 +2,9 @@
 // SPDX-License-Identifier: MIT
 #include <optional>
 
-#include <meshfarm/pipeline/run_trace.hpp>
-#include <meshfarm/report/timeline.hpp>
-#include <meshfarm/staging/atomic_file.hpp>
-#include <meshfarm/util/log.hpp>
-
 #include "cli/command.hpp"
+#include "cli/cut_step.hpp"
+#include "cli/run_report.hpp"
 
 namespace meshfarm {
 namespace {
@@ -17,7 +14,7 @@ class ReportCommand : public Command {
   std::string_view name() const override { return "report"; }
   std::string_view synopsis() const override { return "STAGE [-o FILE]"; }
   std::string_view summary() const override {
-    return "a page with the timeline of a stage's run: who computed when";
+    return "a page about a stage's run: pictures, errors, figures, and where the time went";
   }
   void setup(po::options_description& options,
              po::positional_options_description& positional) override {
@@ -31,16 +28,9 @@ class ReportCommand : public Command {
     if (output_.empty()) output_ = stage_ + "/report.html";
   }
   int run() override {
-    const Stage stage = Stage::open(stage_);
-    const Manifest manifest =
-        decode_manifest(stage.read(ManifestName{}), stage.path(ManifestName{}).string());
-    std::optional<std::uint32_t> epoch;
-    if (epoch_ != 0) epoch = epoch_;
-    const Trace trace = read_newest_trace(stage, epoch);
-    AtomicFile file(output_);
-    file.write(render_run_page(manifest, trace, read_run_times(stage, trace.head.run)));
-    file.commit();
-    log_info("wrote " + output_);
+    check_place(output_);
+    write_run_report(
+        {stage_, output_, MadeBy::another, epoch_ == 0 ? std::nullopt : std::optional(epoch_)});
     return 0;
   }
 

@@ -15,6 +15,7 @@
 #include "cli/cut_step.hpp"
 #include "cli/local_farm.hpp"
 #include "cli/options.hpp"
+#include "cli/run_report.hpp"
 #include "cli/signals.hpp"
 #include "cli/texture_words.hpp"
 
@@ -42,6 +43,7 @@ class RunCommand : public Command {
         "output,o", po::value(&output_)->value_name("FILE"),
         "where the result goes; .ply, .glb, .gltf, .off, .obj or .stl (default: STAGE/result.ply)");
     output_words_.add(options);
+    add_report(options, report_);
     target_.add(options);
     target_.add_attributes(options);
     options.add_options()("workers", po::value(&workers_)->default_value(workers_)->value_name("N"),
@@ -74,10 +76,12 @@ class RunCommand : public Command {
     if (worker_words_) return print_worker_words();
     const std::atomic<bool>& stop = stop_on_signals();
     check_writable(output_);
+    if (!report_.empty()) check_place(report_);
     const Claim claim(claim_of(output_), output_ + ": is being made");
     const int code = run_local_farm(
         {stage_, output_, output_words_, target_, network_, schedule_, when_full_, talk_, workers_},
         stop);
+    if (code == 0 && !report_.empty()) write_run_report({stage_, report_, MadeBy::this_command});
     if (code == 3) {
       log_info("stopped; what is done is kept: the same command goes on from there");
     }
@@ -99,6 +103,7 @@ class RunCommand : public Command {
   std::string stage_;
   std::string output_;
   std::uint32_t workers_;
+  std::string report_;
   OutputWords output_words_;
   TargetOptions target_;
   NetworkOptions network_;

@@ -10,6 +10,7 @@
 #include "cli/cut_step.hpp"
 #include "cli/local_farm.hpp"
 #include "cli/options.hpp"
+#include "cli/run_report.hpp"
 #include "cli/signals.hpp"
 #include "cli/texture_words.hpp"
 
@@ -31,6 +32,7 @@ class SimplifyCommand : public Command {
         "output,o", po::value(&output_)->required()->value_name("FILE"),
         "where the result goes: .ply, .glb, .gltf, .off, .obj or .stl");
     output_words_.add(options);
+    add_report(options, report_);
     target_.add(options);
     options.add_options()("workers", po::value(&workers_)->default_value(workers_)->value_name("N"),
                           "worker processes (default: cores)");
@@ -64,11 +66,13 @@ class SimplifyCommand : public Command {
   int run() override {
     const std::atomic<bool>& stop = stop_on_signals();
     check_writable(output_);
+    if (!report_.empty()) check_place(report_);
     const Claim claim(claim_of(output_), output_ + ": is being made");
     cut_to_stage({input_, stage_, cut_, talk_, stop});
     const int code = run_local_farm(
         {stage_, output_, output_words_, target_, network_, schedule_, when_full_, talk_, workers_},
         stop);
+    if (code == 0 && !report_.empty()) write_run_report({stage_, report_, MadeBy::this_command});
     if (code == 0 && !keep_stage_) remove_stage(stage_);
     if (code == 3) {
       log_info(
@@ -86,6 +90,7 @@ class SimplifyCommand : public Command {
   bool keep_stage_ = false;
   bool in_batch_ = false;
   std::uint32_t workers_ = default_workers();
+  std::string report_;
   OutputWords output_words_;
   TargetOptions target_;
   CutWords cut_;

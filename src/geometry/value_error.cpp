@@ -14,6 +14,7 @@
 #include "geometry/bvh.hpp"
 #include "geometry/distance_sums.hpp"
 #include "geometry/random_unit.hpp"
+#include "geometry/turned.hpp"
 
 namespace meshfarm {
 namespace {
@@ -60,12 +61,6 @@ bool all_finite(std::span<const double> values) {
                      [](double value) { return std::isfinite(value); });
 }
 
-/// The angle between two vectors; not finite where one of them is 0.
-double degrees_between(Vec3 u, Vec3 v) {
-  if (!(squared_length(u) > 0) || !(squared_length(v) > 0)) return NAN;
-  return std::atan2(length(cross(u, v)), dot(u, v)) * (180 / std::acos(-1.0));
-}
-
 void compare(const ValueGroup& group, std::span<const double> a, std::span<const double> b,
              ValueSums& sums) {
   if (group.kind == ValueKind::direction) {
@@ -108,7 +103,8 @@ class Comparer {
       const Triangle& t = to_.mesh.triangles[guess];
       const std::vector<Vec3>& at = to_.mesh.positions;
       const auto shares = nearest_shares(point, at[t[0]], at[t[1]], at[t[2]]);
-      sampled.degrees[n] = static_cast<float>(degrees_off(point, source, nearest, shares));
+      sampled.degrees[n] = static_cast<float>(
+          degrees_turned(to_.mesh, bvh_, point, normal_of(from_.mesh, source), nearest, shares));
       blend(to_, guess, shares, there);
       compare_all(here, there, sums.values);
     }
@@ -116,28 +112,6 @@ class Comparer {
   }
 
  private:
-  static Vec3 normal_of(const Mesh& mesh, std::uint32_t triangle) {
-    const auto& [a, b, c] = mesh.triangles[triangle];
-    const Vec3 at = mesh.positions[a];
-    return cross(mesh.positions[b] - at, mesh.positions[c] - at);
-  }
-
-  /// How much the triangle that the point lies on is turned against the nearest, which has these
-  /// shares at the nearest point; below 0 if one of them has no normal.
-  double degrees_off(Vec3 point, std::uint32_t source, const Bvh::Nearest& nearest,
-                     const std::array<double, 3>& shares) const {
-    constexpr double k_inside = 1e-9;
-    const Vec3 here = normal_of(from_.mesh, source);
-    Vec3 there = normal_of(to_.mesh, nearest.triangle);
-    // Within a triangle only its other side can be as near.
-    const bool is_alone = std::min({shares[0], shares[1], shares[2]}) > k_inside;
-    if (!is_alone || !(dot(here, there) > 0)) {
-      there = bvh_.most_similar_normal(point, here, nearest.squared);
-    }
-    const double degrees = degrees_between(here, there);
-    return std::isfinite(degrees) ? degrees : -1;
-  }
-
   void blend(const ValuedMesh& mesh, std::uint32_t triangle, const std::array<double, 3>& shares,
              std::span<double> values) const {
     if (mesh.values_at) return mesh.values_at(triangle, shares, values);

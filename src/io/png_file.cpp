@@ -9,12 +9,15 @@
 
 namespace meshfarm {
 
+std::string encode_png(Texels texels) {
+  return encode_png(Picture{.width = texels.width,
+                            .height = texels.height,
+                            .step = texels.step,
+                            .texels = std::move(texels.bytes)});
+}
+
 void write_png(const std::filesystem::path& path, Texels texels) {
-  const Picture picture{.width = texels.width,
-                        .height = texels.height,
-                        .step = texels.step,
-                        .texels = std::move(texels.bytes)};
-  const std::string bytes = encode_png(picture);
+  const std::string bytes = encode_png(std::move(texels));
   AtomicFile file(path);
   file.write(bytes);
   file.commit();

@@ -9,6 +9,7 @@
 #include <meshfarm/util/checksum.hpp>
 
 #include "report/lines.hpp"
+#include "report/page_html.hpp"
 #include "report/svg.hpp"
 
 namespace meshfarm {
@@ -190,14 +191,6 @@ std::string progress_chart(const Frame& frame, const Trace& trace) {
   return svg.str();
 }
 
-std::string row_of(const std::vector<std::string>& cells, const char* tag) {
-  std::string text = "<tr>";
-  for (const std::string& cell : cells) {
-    text += "<" + std::string(tag) + ">" + escaped(cell) + "</" + std::string(tag) + ">";
-  }
-  return text + "</tr>\n";
-}
-
 std::string worker_table(const Frame& frame, const Trace& trace) {
   std::string text = "<table>\n" + row_of({"worker", "host", "jobs", "triangles", "triangles/s",
                                            "computing", "failed attempts", "left"},
@@ -255,22 +248,16 @@ std::string facts(const Manifest& manifest, const Trace& trace, const Frame& fra
 
 }  // namespace
 
-std::string render_run_page(const Manifest& manifest, const Trace& trace,
+std::string render_timeline(const Manifest& manifest, const Trace& trace,
                             const std::optional<RunTimes>& times) {
   const Frame frame = frame_of(trace);
-  return "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">\n<title>" +
-         escaped(manifest.input) +
-         "</title>\n<style>\n"
-         "body { font: 14px sans-serif; color: #333; margin: 24px auto; width: 1100px; }\n"
-         "table { border-collapse: collapse; } td, th { padding: 2px 12px 2px 0; text-align: left; "
-         "font-weight: normal; }\nth { color: #888; } h2 { font-size: 16px; margin: 24px 0 8px; }\n"
-         "</style></head><body>\n<h1>meshfarm run</h1>\n" +
-         facts(manifest, trace, frame, times) +
-         "<h2>Who computed when</h2>\n<p>A bar is a job (its colour the stage), light grey a "
+  return facts(manifest, trace, frame, times) +
+         "<h3>Who computed when</h3>\n<p>A bar is a job (its colour the stage), light grey a "
          "worker "
-         "that waits, red an attempt that failed or a worker that left.</p>\n" +
-         timeline(frame) + "<h2>Done</h2>\n" + progress_chart(frame, trace) + "<h2>Workers</h2>\n" +
-         worker_table(frame, trace) + "</body></html>\n";
+         "that waits, red an attempt that failed or a worker that left.</p>\n<div class=\"wide\">" +
+         timeline(frame) + "</div>\n<h3>Done</h3>\n<div class=\"wide\">" +
+         progress_chart(frame, trace) + "</div>\n<h3>Workers</h3>\n<div class=\"wide\">" +
+         worker_table(frame, trace) + "</div>\n";
 }
 
 }  // namespace meshfarm

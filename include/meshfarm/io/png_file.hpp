@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <string>
 #include <vector>
 
 namespace meshfarm {
@@ -21,6 +22,8 @@ struct Texels {
   }
 };
 
+/// A PNG file. Throws DataError for a picture that the format cannot hold.
+std::string encode_png(Texels texels);
 /// Writes a PNG that others see only whole. Throws IoError, or DataError for a picture that the
 /// format cannot hold.
 void write_png(const std::filesystem::path& path, Texels texels);

@@ -11,9 +11,9 @@
 
 namespace meshfarm {
 
-/// A run as one HTML page that needs nothing else: a summary, who computed when, how the work
-/// went down, and a table of the workers.
-std::string render_run_page(const Manifest& manifest, const Trace& trace,
+/// When a run's work was done, as a part of an HTML page: a summary, who computed when, how the
+/// work went down, and a table of the workers.
+std::string render_timeline(const Manifest& manifest, const Trace& trace,
                             const std::optional<RunTimes>& times);
 
 }  // namespace meshfarm

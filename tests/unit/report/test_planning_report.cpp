@@ -87,7 +87,7 @@ TEST_CASE("a run's page shows each job, and merges what cannot be told apart") {
     }
     return count;
   };
-  std::string page = render_run_page(manifest, trace, std::nullopt);
+  std::string page = render_timeline(manifest, trace, std::nullopt);
   CHECK(bars(page) == 10);
   CHECK(has(page, "&lt;host&gt;"));
   CHECK_FALSE(has(page, "<host>"));
@@ -100,7 +100,7 @@ TEST_CASE("a run's page shows each job, and merges what cannot be told apart") {
     job.compute_ms = 1;
     trace.done.push_back(job);
   }
-  page = render_run_page(manifest, trace, RunTimes{});
+  page = render_timeline(manifest, trace, RunTimes{});
   CHECK(page.size() < 500'000);
   CHECK(has(page, "20,010 jobs by 1 workers"));
 }

@@ -1,0 +1,42 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include <meshfarm/geometry/mesh.hpp>
+#include <meshfarm/geometry/triangle_index.hpp>
+
+namespace meshfarm {
+
+/// A point of a surface, and the normal of its triangle, of any length.
+struct FacingPoint {
+  Vec3 at;
+  Vec3 normal;
+};
+
+/// A piece of a surface, by what it adds to the whole.
+struct PieceSamples {
+  double area = 0;    // each point stands for an equal share of it
+  double volume = 0;  // between it and the origin, signed
+  std::vector<FacingPoint> points;
+};
+
+/// Takes so many points, stratified by area; none where the piece has no area.
+PieceSamples sample_piece(std::span<const Vec3> positions, std::span<const Triangle> triangles,
+                          std::uint64_t count, Vec3 origin);
+
+/// Where a mesh is nearest to a point.
+struct NearPlace {
+  double distance = 0;
+  std::uint32_t triangle = 0;
+  float degrees = -1;  // that this is turned by against the point's normal; -1 without normals
+};
+
+/// Depends on no threads (0: one a core).
+std::vector<NearPlace> find_near_places(const TriangleIndex& index,
+                                        std::span<const FacingPoint> points, unsigned threads);
+
+}  // namespace meshfarm

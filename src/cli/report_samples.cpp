@@ -1,0 +1,185 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#include "cli/report_samples.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+
+namespace meshfarm {
+namespace {
+
+constexpr double k_samples = 200'000;
+constexpr double k_angles = 500'000;
+
+/// The least value that at most the rest of this share of the area is beyond.
+double weighted_quantile(std::vector<std::pair<double, double>>& values, double share) {
+  std::sort(values.begin(), values.end());
+  double all = 0;
+  for (const auto& [value, area] : values) all += area;
+  double before = 0;
+  for (const auto& [value, area] : values) {
+    before += area;
+    if (before >= share * all) return value;
+  }
+  return values.empty() ? 0 : values.back().first;
+}
+
+std::vector<std::pair<double, double>> distances_of(std::span<const MeasuredPlace> places) {
+  std::vector<std::pair<double, double>> distances;
+  distances.reserve(places.size());
+  for (const MeasuredPlace& p : places) distances.emplace_back(p.near.distance, p.area);
+  return distances;
+}
+
+NormalDeviation normals_of(std::span<const MeasuredPlace> places) {
+  std::vector<std::pair<double, double>> degrees;
+  NormalDeviation made;
+  double area = 0;
+  for (const MeasuredPlace& p : places) {
+    if (p.near.degrees < 0) continue;
+    const auto turned = static_cast<double>(p.near.degrees);
+    degrees.emplace_back(turned, p.area);
+    area += p.area;
+    made.rms += p.area * turned * turned;
+    if (turned > 90) made.over_90 += p.area;
+  }
+  if (!(area > 0)) return {};
+  made.rms = std::sqrt(made.rms / area);
+  made.over_90 /= area;
+  made.p95 = weighted_quantile(degrees, 0.95);
+  return made;
+}
+
+}  // namespace
+
+InputSamples::InputSamples(const Manifest& manifest)
+    : triangles_(static_cast<double>(std::max<std::uint64_t>(1, manifest.triangles()))),
+      step_(static_cast<std::uint64_t>(std::ceil(triangles_ / k_angles))),
+      origin_((manifest.box.lo + manifest.box.hi) * 0.5),
+      parts_(manifest.parts.size() + 1) {}
+
+void InputSamples::add(const SurfacePiece& piece) {
+  const double share = static_cast<double>(piece.triangles.size()) / triangles_;
+  const auto count = static_cast<std::uint64_t>(std::max(1.0, std::round(share * k_samples)));
+  PieceSamples samples = sample_piece(piece.positions, piece.triangles, count, origin_);
+  OfPart& part = parts_[piece.part];
+  part.area += samples.area;
+  part.volume += samples.volume;
+  if (!samples.points.empty()) {
+    const double each = samples.area / static_cast<double>(samples.points.size());
+    part.pieces.push_back({std::move(samples.points), each});
+  }
+  std::vector<Triangle> some;
+  some.reserve(piece.triangles.size() / step_ + 1);
+  for (std::size_t i = 0; i < piece.triangles.size(); i += step_) {
+    some.push_back(piece.triangles[i]);
+  }
+  const std::lock_guard lock(mutex_);
+  angles_.add(piece.positions, some);
+}
+
+ShapeMeasures InputSamples::shape() const {
+  ShapeMeasures shape = angles_.measures();
+  shape.area = shape.volume = 0;
+  for (const OfPart& part : parts_) {
+    shape.area += part.area;
+    shape.volume += part.volume;
+  }
+  return shape;
+}
+
+std::vector<MeasuredPlace> InputSamples::measure(const TriangleIndex& result, unsigned threads) {
+  std::vector<FacingPoint> points;
+  std::vector<MeasuredPlace> places;
+  for (OfPart& part : parts_) {
+    for (const Some& some : part.pieces) {
+      for (const FacingPoint& p : some.points) {
+        points.push_back(p);
+        places.push_back({p, {}, some.area_of_each});
+      }
+    }
+    part.pieces = {};
+  }
+  const std::vector<NearPlace> found = find_near_places(result, points, threads);
+  for (std::size_t i = 0; i < found.size(); ++i) places[i].near = found[i];
+  return places;
+}
+
+SurfaceError error_of(std::span<const MeasuredPlace> places) {
+  SurfaceError error;
+  double area = 0;
+  for (const MeasuredPlace& p : places) {
+    const double d = p.near.distance;
+    area += p.area;
+    error.distance.rms += p.area * d * d;
+    error.distance.mean += p.area * d;
+    error.distance.max = std::max(error.distance.max, d);
+  }
+  if (!(area > 0)) return error;
+  error.distance.rms = std::sqrt(error.distance.rms / area);
+  error.distance.mean /= area;
+  std::vector<std::pair<double, double>> distances = distances_of(places);
+  error.quantiles = {weighted_quantile(distances, 0.95), weighted_quantile(distances, 0.99)};
+  error.normals = normals_of(places);
+  return error;
+}
+
+ErrorHistogram histogram_of(std::span<const MeasuredPlace> places) {
+  constexpr std::size_t k_bins = 40;
+  std::vector<std::pair<double, double>> distances = distances_of(places);
+  ErrorHistogram made;
+  made.end = weighted_quantile(distances, 0.99);
+  made.shares.resize(k_bins, 0);
+  double area = 0;
+  for (const auto& [distance, of_point] : distances) {
+    area += of_point;
+    const double bin = made.end > 0 ? distance / made.end * k_bins : 0;
+    if (bin >= k_bins && distance > made.end) {
+      made.beyond += of_point;
+    } else {
+      made.shares[std::min(static_cast<std::size_t>(bin), k_bins - 1)] += of_point;
+    }
+  }
+  if (!(area > 0)) return made;
+  made.beyond /= area;
+  for (double& share : made.shares) share /= area;
+  return made;
+}
+
+std::vector<float> errors_at_vertices(const Mesh& result, std::span<const MeasuredPlace> places) {
+  constexpr int k_rounds = 4;
+  std::vector<double> sums(result.positions.size(), 0);
+  std::vector<double> areas(result.positions.size(), 0);
+  for (const MeasuredPlace& p : places) {
+    for (const std::uint32_t vertex : result.triangles[p.near.triangle]) {
+      sums[vertex] += p.area * p.near.distance;
+      areas[vertex] += p.area;
+    }
+  }
+  std::vector<float> errors(sums.size(), -1);
+  for (std::size_t v = 0; v < sums.size(); ++v) {
+    if (areas[v] > 0) errors[v] = static_cast<float>(sums[v] / areas[v]);
+  }
+  for (int round = 0; round < k_rounds; ++round) {
+    std::fill(sums.begin(), sums.end(), 0);
+    std::fill(areas.begin(), areas.end(), 0);
+    for (const Triangle& t : result.triangles) {
+      for (const std::uint32_t from : t) {
+        if (errors[from] < 0) continue;
+        for (const std::uint32_t to : t) {
+          sums[to] += static_cast<double>(errors[from]);
+          areas[to] += 1;
+        }
+      }
+    }
+    for (std::size_t v = 0; v < sums.size(); ++v) {
+      if (errors[v] < 0 && areas[v] > 0) errors[v] = static_cast<float>(sums[v] / areas[v]);
+    }
+    if (std::none_of(errors.begin(), errors.end(), [](float e) { return e < 0; })) break;
+  }
+  for (float& error : errors) error = std::max(error, 0.0F);
+  return errors;
+}
+
+}  // namespace meshfarm

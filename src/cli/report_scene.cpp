@@ -1,0 +1,343 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#include "cli/report_scene.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <mutex>
+#include <optional>
+#include <utility>
+
+#include <meshfarm/geometry/crossings.hpp>
+#include <meshfarm/io/png_file.hpp>
+#include <meshfarm/pipeline/input_surface.hpp>
+#include <meshfarm/render/colour_scale.hpp>
+#include <meshfarm/render/surface_picture.hpp>
+#include <meshfarm/util/parallel.hpp>
+
+#include "cli/report_samples.hpp"
+
+namespace meshfarm {
+namespace {
+
+/// A larger result is not put into the page, nor are its triangles looked through for crossings.
+constexpr std::uint64_t k_most_in_model = 200'000;
+constexpr std::uint64_t k_most_for_crossings = 1'000'000;
+/// A smaller input is measured as a whole, too.
+constexpr std::uint64_t k_small_input = 1'500'000;
+
+struct NamedAngle {
+  const char* caption;
+  double azimuth;
+  double elevation;
+};
+constexpr std::array<NamedAngle, 3> k_views = {
+    {{"from the front", 25, 18}, {"from the right", 145, 18}, {"from the left", 265, 18}}};
+
+struct Zoom {
+  Vec3 at;
+  double radius = 0;
+  View view;
+
+  bool is_near(const Vec3& a, const Vec3& b, const Vec3& c) const {
+    Box box;
+    for (const Vec3& p : {a, b, c}) box.add(p);
+    return touches(box);
+  }
+  bool touches(const Box& box) const {
+    const double reach = 3 * radius;
+    return box.lo.x <= at.x + reach && box.hi.x >= at.x - reach && box.lo.y <= at.y + reach &&
+           box.hi.y >= at.y - reach && box.lo.z <= at.z + reach && box.hi.z >= at.z - reach;
+  }
+};
+
+/// Terrains and floors lie; all else stands.
+Vec3 up_of(const Box& box) {
+  const Vec3 sides = box.hi - box.lo;
+  return sides.z < 0.4 * std::min(sides.x, sides.y) ? Vec3{0, 0, 1} : Vec3{0, 1, 0};
+}
+
+/// From where a side that faces this way is seen best.
+View facing(Vec3 normal, Vec3 up) {
+  constexpr double k_degrees = 180 / 3.14159265358979323846;
+  const ViewAxes front({.azimuth = 0, .elevation = 0, .up = up});
+  const double size = length(normal);
+  const Vec3 to = size > 0 ? normal * (1 / size) : front.toward;
+  return {.projection = Projection::orthographic,
+          .azimuth = k_degrees * std::atan2(dot(front.right, to), dot(front.toward, to)),
+          .elevation = k_degrees * std::asin(std::clamp(dot(up, to), -1.0, 1.0)),
+          .up = up};
+}
+
+PagePicture to_page(SurfacePicture& picture) {
+  Texels texels = picture.finish();
+  PagePicture made{.width = texels.width, .height = texels.height};
+  made.png = encode_png(std::move(texels));
+  return made;
+}
+
+class SceneMaker {
+ public:
+  SceneMaker(RunPage& page, const Stage& stage, const Mesh& result, unsigned threads)
+      : page_(page),
+        result_(result),
+        threads_(threads),
+        input_(stage, page.manifest, threads),
+        up_(up_of(page.manifest.box)),
+        index_(result, threads),
+        samples_(page.manifest) {}
+
+  void make() {
+    set_cameras();
+    draw_input();
+    measure();
+    draw_map();
+    draw_zoom();
+    if (result_.triangles.size() <= k_most_in_model) add_model();
+    finish();
+  }
+
+ private:
+  enum class Of { input, result };
+  /// Where a picture goes once it is drawn.
+  struct Drawn {
+    PagePicture* to;
+    SurfacePicture picture;
+  };
+
+  static RenderOptions options_for(const View& view) {
+    RenderOptions options;
+    options.width = 640;
+    options.height = 480;
+    options.view = view;
+    options.colour_by = ColourBy::none;
+    options.transparent = true;
+    options.threads = 1;
+    return options;
+  }
+
+  /// By the result, which is where the input is; by both if parts of that are gone.
+  void set_cameras() {
+    Box box;
+    for (const Vec3& p : result_.positions) box.add(p);
+    const Box& whole = page_.manifest.box;
+    const double most = 0.01 * whole.diagonal();
+    const bool is_whole = length(box.lo - whole.lo) <= most && length(box.hi - whole.hi) <= most;
+    std::vector<Framing> framings;
+    for (const NamedAngle& each : k_views) {
+      const View view{.azimuth = each.azimuth, .elevation = each.elevation, .up = up_};
+      framings.emplace_back(view, SurfacePicture::frame_of(options_for(view)));
+      framings.back().add(result_.positions);
+      views_.push_back(view);
+    }
+    if (!is_whole) {
+      std::mutex mutex;
+      input_.show([](const Box&) { return true; },
+                  [&](const SurfacePiece& piece) {
+                    const std::lock_guard lock(mutex);
+                    for (Framing& framing : framings) framing.add(piece.fresh);
+                  });
+    }
+    for (const Framing& framing : framings) cameras_.push_back(framing.camera());
+  }
+
+  SurfacePicture& start(PagePicture& to, const RenderOptions& options, const Camera& camera) {
+    drawn_.push_back({&to, SurfacePicture(options, camera)});
+    return drawn_.back().picture;
+  }
+
+  /// All that needs the whole input, in one go.
+  void draw_input() {
+    drawn_.reserve(16);  // none moves
+    scene_.views.resize(views_.size());
+    std::vector<SurfacePicture*> of_input;
+    for (std::size_t i = 0; i < views_.size(); ++i) {
+      scene_.views[i].caption = k_views[i].caption;
+      of_input.push_back(&start(scene_.views[i].input, options_for(views_[i]), cameras_[i]));
+    }
+    RenderOptions by_part = options_for(views_[0]);
+    by_part.colour_by = ColourBy::part;
+    of_input.push_back(&start(scene_.parts, by_part, cameras_[0]));
+    const auto parts = static_cast<std::uint32_t>(page_.manifest.parts.size());
+    const bool keeps =
+        page_.manifest.scheme == Scheme::cut && page_.manifest.triangles() <= k_small_input;
+    pieces_.resize(keeps ? parts + 1 : 0);
+    input_.show([](const Box&) { return true; },
+                [&](const SurfacePiece& piece) {
+                  const bool is_part = piece.part < parts;
+                  for (SurfacePicture* const picture : of_input) {
+                    picture->draw(piece.positions, piece.triangles,
+                                  {.part = is_part ? piece.part : PiecePaint::k_between});
+                  }
+                  samples_.add(piece);
+                  if (keeps) keep(piece);
+                });
+    for (std::size_t i = 0; i < views_.size(); ++i) {
+      start(scene_.views[i].result, options_for(views_[i]), cameras_[i])
+          .draw(result_.positions, result_.triangles);
+    }
+  }
+
+  void keep(const SurfacePiece& piece) {
+    Mesh& to = pieces_[piece.part];
+    const auto first = static_cast<std::uint32_t>(to.positions.size());
+    to.positions.insert(to.positions.end(), piece.positions.begin(), piece.positions.end());
+    for (const auto& [a, b, c] : piece.triangles) {
+      to.triangles.push_back({a + first, b + first, c + first});
+    }
+  }
+
+  void measure() {
+    places_ = samples_.measure(index_, threads_);
+    figures_.samples = places_.size();
+    figures_.to_result = error_of(places_);
+    figures_.histogram = histogram_of(places_);
+    figures_.input.shape = samples_.shape();
+    if (!pieces_.empty()) measure_whole_input();
+    ShapeMeter meter(threads_);
+    meter.add(result_.positions, result_.triangles);
+    figures_.result.shape = meter.measures();
+    figures_.result.edges = measure_edge_lengths(result_, threads_);
+    if (result_.triangles.size() <= k_most_for_crossings) {
+      figures_.result.crossing_triangles = count_crossing_triangles(index_, {.threads = threads_});
+    }
+  }
+
+  void measure_whole_input() {
+    Mesh whole;
+    for (Mesh& piece : pieces_) {
+      const auto first = static_cast<std::uint32_t>(whole.positions.size());
+      whole.positions.insert(whole.positions.end(), piece.positions.begin(), piece.positions.end());
+      for (const auto& [a, b, c] : piece.triangles) {
+        whole.triangles.push_back({a + first, b + first, c + first});
+      }
+      piece = {};
+    }
+    figures_.input.edges = measure_edge_lengths(whole, threads_);
+    figures_.input.crossing_triangles = count_crossing_triangles(whole, {.threads = threads_});
+  }
+
+  void draw_map() {
+    errors_ = errors_at_vertices(result_, places_);
+    const double end = figures_.histogram.end;
+    RenderOptions options = options_for(views_[0]);
+    options.width = 800;
+    options.height = 600;
+    options.colour_by = ColourBy::quality;
+    options.range = {0.0, end > 0 ? end : 1};
+    Framing framing(options.view, SurfacePicture::frame_of(options));
+    framing.add(result_.positions);
+    start(scene_.map, options, framing.camera())
+        .draw(result_.positions, result_.triangles, {.values = errors_});
+    constexpr int k_stops = 32;
+    for (int i = 0; i < k_stops; ++i) {
+      scene_.scale.push_back(colour_on_scale(static_cast<double>(i) / (k_stops - 1)));
+    }
+  }
+
+  /// Where a sample is farthest off; so near that triangles of the result are large.
+  std::optional<Zoom> find_zoom() const {
+    const auto worst = std::max_element(places_.begin(), places_.end(),
+                                        [](const MeasuredPlace& a, const MeasuredPlace& b) {
+                                          return a.near.distance < b.near.distance;
+                                        });
+    if (worst == places_.end()) return std::nullopt;
+    const auto& [a, b, c] = result_.triangles[worst->near.triangle];
+    const Vec3 p = result_.positions[a], q = result_.positions[b], r = result_.positions[c];
+    const double side = std::max({length(q - p), length(r - q), length(p - r)});
+    const double most = page_.manifest.box.diagonal() / 4;
+    Zoom zoom{worst->point.at, std::min(most, std::max(3 * side, 3 * worst->near.distance)), {}};
+    zoom.view = facing(worst->point.normal, up_);
+    return zoom;
+  }
+
+  void draw_zoom() {
+    const std::optional<Zoom> zoom = find_zoom();
+    if (!zoom) return;
+    RenderOptions options = options_for(zoom->view);
+    options.wire = true;
+    const ViewAxes axes(zoom->view);
+    const double aspect = static_cast<double>(options.width) / options.height;
+    const std::array<std::pair<Vec3, double>, 3> reaches = {
+        {{axes.right, aspect}, {axes.up, 1}, {axes.toward, 3}}};
+    Framing framing(zoom->view, SurfacePicture::frame_of(options));
+    for (const auto& [axis, reach] : reaches) {
+      const Vec3 by = axis * (reach * zoom->radius);
+      framing.add(std::array{zoom->at + by, zoom->at - by});
+    }
+    const Camera camera = framing.camera();
+    const auto near = [&](std::span<const Vec3> at, std::span<const Triangle> triangles) {
+      std::vector<Triangle> found;
+      for (const Triangle& t : triangles) {
+        if (zoom->is_near(at[t[0]], at[t[1]], at[t[2]])) found.push_back(t);
+      }
+      return found;
+    };
+    SurfacePicture& of_input = start(scene_.zoom.input, options, camera);
+    input_.show([&](const Box& box) { return zoom->touches(box); },
+                [&](const SurfacePiece& piece) {
+                  of_input.draw(piece.positions, near(piece.positions, piece.triangles));
+                });
+    start(scene_.zoom.result, options, camera)
+        .draw(result_.positions, near(result_.positions, result_.triangles));
+    scene_.zoom.caption = zoom_caption(*zoom);
+  }
+
+  std::string zoom_caption(const Zoom& zoom) const {
+    const auto text = [](double value) {
+      std::array<char, 32> made{};
+      std::snprintf(made.data(), made.size(), "%.4g", value);
+      return std::string(made.data());
+    };
+    return "At " + text(zoom.at.x) + ", " + text(zoom.at.y) + ", " + text(zoom.at.z) +
+           " a point of the input is " + text(figures_.to_result.distance.max) +
+           " from the result: the most of all points looked at. Each picture is " +
+           text(2 * zoom.radius) + " high.";
+  }
+
+  void add_model() {
+    const double end = figures_.histogram.end;
+    std::vector<float> shares;
+    shares.reserve(errors_.size());
+    for (const float error : errors_) {
+      shares.push_back(end > 0 ? static_cast<float>(static_cast<double>(error) / end) : 0.0F);
+    }
+    scene_.model = encode_model(result_, shares);
+    const ViewAxes axes(views_[0]);
+    scene_.axes = {axes.right.x, axes.right.y,  axes.right.z,  axes.up.x,    axes.up.y,
+                   axes.up.z,    axes.toward.x, axes.toward.y, axes.toward.z};
+  }
+
+  void finish() {
+    parallel_for(drawn_.size(), threads_,
+                 [&](std::uint64_t i) { *drawn_[i].to = to_page(drawn_[i].picture); });
+    page_.scene = std::move(scene_);
+    page_.figures = std::move(figures_);
+  }
+
+  RunPage& page_;
+  const Mesh& result_;
+  unsigned threads_;
+  InputSurface input_;
+  Vec3 up_;
+  TriangleIndex index_;
+  InputSamples samples_;
+  std::vector<Mesh> pieces_;  // of a small input
+  std::vector<View> views_;
+  std::vector<Camera> cameras_;
+  std::vector<MeasuredPlace> places_;
+  std::vector<float> errors_;  // of the result's vertices
+  PageScene scene_;
+  PageFigures figures_;
+  std::vector<Drawn> drawn_;
+};
+
+}  // namespace
+
+void add_scene(RunPage& page, const Stage& stage, const Mesh& result, unsigned threads) {
+  SceneMaker(page, stage, result, threads).make();
+}
+
+}  // namespace meshfarm

@@ -1,0 +1,32 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include <boost/program_options.hpp>
+
+namespace meshfarm {
+
+namespace po = boost::program_options;
+
+/// Adds --report.
+void add_report(po::options_description& options, std::string& page);
+
+/// Whose run it is: the page tells the command, or else how to replay the stage.
+enum class MadeBy : std::uint8_t { this_command, another };
+
+struct RunReport {
+  std::string stage;
+  std::string page;  // the file to write
+  MadeBy made_by = MadeBy::another;
+  std::optional<std::uint32_t> epoch = {};  // of the run; else the last
+};
+
+/// Writes the page of a run: of its stage, and of its result if that is still what the run made.
+/// Throws IoError, or DataError if no run was traced.
+void write_run_report(const RunReport& report);
+
+}  // namespace meshfarm

@@ -1,0 +1,66 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#include <algorithm>
+#include <cmath>
+
+#include <meshfarm/geometry/channel_fit.hpp>
+#include <meshfarm/geometry/piece_samples.hpp>
+#include <meshfarm/util/parallel.hpp>
+
+#include "geometry/area_sampler.hpp"
+#include "geometry/bvh.hpp"
+#include "geometry/random_unit.hpp"
+#include "geometry/turned.hpp"
+
+namespace meshfarm {
+
+PieceSamples sample_piece(std::span<const Vec3> positions, std::span<const Triangle> triangles,
+                          std::uint64_t count, Vec3 origin) {
+  PieceSamples made;
+  std::vector<double> before;  // the area up to the end of each triangle
+  before.reserve(triangles.size());
+  for (const auto& [first, second, third] : triangles) {
+    const Vec3 a = positions[first];
+    const Vec3 normal = cross(positions[second] - a, positions[third] - a);
+    made.area += length(normal) / 2;
+    made.volume += dot(a - origin, normal) / 6;
+    before.push_back(made.area);
+  }
+  if (!(made.area > 0) || !std::isfinite(made.area)) return made;
+  const double share = made.area / static_cast<double>(count);
+  std::size_t at = 0;
+  made.points.reserve(count);
+  for (std::uint64_t n = 0; n < count; ++n) {
+    const double place = (static_cast<double>(n) + random_unit(3 * n)) * share;
+    const auto found =
+        std::lower_bound(before.begin() + static_cast<std::ptrdiff_t>(at), before.end() - 1, place);
+    at = static_cast<std::size_t>(found - before.begin());
+    const auto& [first, second, third] = triangles[at];
+    const Vec3 a = positions[first], b = positions[second], c = positions[third];
+    made.points.push_back({random_place(a, b, c, n), cross(b - a, c - a)});
+  }
+  return made;
+}
+
+std::vector<NearPlace> find_near_places(const TriangleIndex& index,
+                                        std::span<const FacingPoint> points, unsigned threads) {
+  std::vector<NearPlace> places(points.size());
+  const Mesh& mesh = index.mesh();
+  parallel_for(chunks_of(points.size()), threads, [&](std::uint64_t chunk) {
+    const std::size_t end = std::min(points.size(), (chunk + 1) * k_samples_a_chunk);
+    std::uint32_t guess = 0;
+    for (std::size_t i = chunk * k_samples_a_chunk; i < end; ++i) {
+      const auto& [point, normal] = points[i];
+      const Bvh::Nearest nearest = index.bvh().nearest(point, guess);
+      guess = nearest.triangle;
+      const Triangle& t = mesh.triangles[guess];
+      const auto shares =
+          nearest_shares(point, mesh.positions[t[0]], mesh.positions[t[1]], mesh.positions[t[2]]);
+      const double degrees = degrees_turned(mesh, index.bvh(), point, normal, nearest, shares);
+      places[i] = {std::sqrt(nearest.squared), guess, static_cast<float>(degrees)};
+    }
+  });
+  return places;
+}
+
+}  // namespace meshfarm
