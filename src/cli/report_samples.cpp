@@ -9,7 +9,7 @@
 namespace meshfarm {
 namespace {
 
-constexpr double k_samples = 200'000;
+constexpr double k_samples = 100'000;
 constexpr double k_angles = 500'000;
 
 /// The least value that at most the rest of this share of the area is beyond.
@@ -129,7 +129,7 @@ ErrorHistogram histogram_of(std::span<const MeasuredPlace> places) {
   constexpr std::size_t k_bins = 40;
   std::vector<std::pair<double, double>> distances = distances_of(places);
   ErrorHistogram made;
-  made.end = weighted_quantile(distances, 0.99);
+  made.end = weighted_quantile(distances, 0.95);
   made.shares.resize(k_bins, 0);
   double area = 0;
   for (const auto& [distance, of_point] : distances) {

@@ -56,7 +56,7 @@ class InputSamples {
 
 /// Sums the places up as compare does, each by its area.
 SurfaceError error_of(std::span<const MeasuredPlace> places);
-/// Up to what 99 % of the area are within.
+/// Up to what 95 % of the area are within.
 ErrorHistogram histogram_of(std::span<const MeasuredPlace> places);
 /// Of each vertex the mean distance of the places that are nearest to its triangles; where there
 /// are none, that of its neighbours.

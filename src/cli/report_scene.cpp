@@ -33,18 +33,25 @@ struct NamedAngle {
   double azimuth;
   double elevation;
 };
+constexpr double k_above = 48;  // of what lies
 constexpr std::array<NamedAngle, 3> k_views = {
     {{"from the front", 25, 18}, {"from the right", 145, 18}, {"from the left", 265, 18}}};
 
 struct Zoom {
   Vec3 at;
   double radius = 0;
+  double depth = 0;  // what is so much nearer to the viewer would hide it
   View view;
 
-  bool is_near(const Vec3& a, const Vec3& b, const Vec3& c) const {
+  bool shows(const std::array<Vec3, 3>& corners) const {
+    const ViewAxes axes(view);
     Box box;
-    for (const Vec3& p : {a, b, c}) box.add(p);
-    return touches(box);
+    bool is_before = true;
+    for (const Vec3& p : corners) {
+      box.add(p);
+      is_before = is_before && dot(axes.toward, p - at) > depth;
+    }
+    return !is_before && touches(box);
   }
   bool touches(const Box& box) const {
     const double reach = 3 * radius;
@@ -71,8 +78,7 @@ View facing(Vec3 normal, Vec3 up) {
           .up = up};
 }
 
-PagePicture to_page(SurfacePicture& picture) {
-  Texels texels = picture.finish();
+PagePicture to_page(Texels texels) {
   PagePicture made{.width = texels.width, .height = texels.height};
   made.png = encode_png(std::move(texels));
   return made;
@@ -100,17 +106,18 @@ class SceneMaker {
   }
 
  private:
-  enum class Of { input, result };
-  /// Where a picture goes once it is drawn.
+  /// Where a picture goes once it is drawn, and where its other look, if it has one.
   struct Drawn {
     PagePicture* to;
     SurfacePicture picture;
+    PagePicture* by_part = nullptr;
   };
 
-  static RenderOptions options_for(const View& view) {
+  /// `size`: of the page's width, in sixths.
+  static RenderOptions options_for(const View& view, std::uint32_t size = 3) {
     RenderOptions options;
-    options.width = 640;
-    options.height = 480;
+    options.width = 640 * size / 3;
+    options.height = 480 * size / 3;
     options.view = view;
     options.colour_by = ColourBy::none;
     options.transparent = true;
@@ -127,10 +134,11 @@ class SceneMaker {
     const bool is_whole = length(box.lo - whole.lo) <= most && length(box.hi - whole.hi) <= most;
     std::vector<Framing> framings;
     for (const NamedAngle& each : k_views) {
-      const View view{.azimuth = each.azimuth, .elevation = each.elevation, .up = up_};
-      framings.emplace_back(view, SurfacePicture::frame_of(options_for(view)));
+      const double elevation = up_.z != 0 ? k_above : each.elevation;
+      const View view{.azimuth = each.azimuth, .elevation = elevation, .up = up_};
+      pictures_.push_back(options_for(view, framings.empty() ? 3 : 2));
+      framings.emplace_back(view, SurfacePicture::frame_of(pictures_.back()));
       framings.back().add(result_.positions);
-      views_.push_back(view);
     }
     if (!is_whole) {
       std::mutex mutex;
@@ -151,15 +159,14 @@ class SceneMaker {
   /// All that needs the whole input, in one go.
   void draw_input() {
     drawn_.reserve(16);  // none moves
-    scene_.views.resize(views_.size());
+    scene_.views.resize(pictures_.size());
     std::vector<SurfacePicture*> of_input;
-    for (std::size_t i = 0; i < views_.size(); ++i) {
+    for (std::size_t i = 0; i < pictures_.size(); ++i) {
       scene_.views[i].caption = k_views[i].caption;
-      of_input.push_back(&start(scene_.views[i].input, options_for(views_[i]), cameras_[i]));
+      of_input.push_back(&start(scene_.views[i].input, pictures_[i], cameras_[i]));
     }
-    RenderOptions by_part = options_for(views_[0]);
-    by_part.colour_by = ColourBy::part;
-    of_input.push_back(&start(scene_.parts, by_part, cameras_[0]));
+    of_input.front()->add_look(ColourBy::part);
+    drawn_.front().by_part = &scene_.parts;
     const auto parts = static_cast<std::uint32_t>(page_.manifest.parts.size());
     const bool keeps =
         page_.manifest.scheme == Scheme::cut && page_.manifest.triangles() <= k_small_input;
@@ -174,8 +181,8 @@ class SceneMaker {
                   samples_.add(piece);
                   if (keeps) keep(piece);
                 });
-    for (std::size_t i = 0; i < views_.size(); ++i) {
-      start(scene_.views[i].result, options_for(views_[i]), cameras_[i])
+    for (std::size_t i = 0; i < pictures_.size(); ++i) {
+      start(scene_.views[i].result, pictures_[i], cameras_[i])
           .draw(result_.positions, result_.triangles);
     }
   }
@@ -222,9 +229,7 @@ class SceneMaker {
   void draw_map() {
     errors_ = errors_at_vertices(result_, places_);
     const double end = figures_.histogram.end;
-    RenderOptions options = options_for(views_[0]);
-    options.width = 800;
-    options.height = 600;
+    RenderOptions options = options_for(pictures_[0].view, 4);
     options.colour_by = ColourBy::quality;
     options.range = {0.0, end > 0 ? end : 1};
     Framing framing(options.view, SurfacePicture::frame_of(options));
@@ -248,7 +253,8 @@ class SceneMaker {
     const Vec3 p = result_.positions[a], q = result_.positions[b], r = result_.positions[c];
     const double side = std::max({length(q - p), length(r - q), length(p - r)});
     const double most = page_.manifest.box.diagonal() / 4;
-    Zoom zoom{worst->point.at, std::min(most, std::max(3 * side, 3 * worst->near.distance)), {}};
+    const double off = worst->near.distance;
+    Zoom zoom{worst->point.at, std::min(most, std::max(3 * side, 3 * off)), 2 * off, {}};
     zoom.view = facing(worst->point.normal, up_);
     return zoom;
   }
@@ -271,7 +277,7 @@ class SceneMaker {
     const auto near = [&](std::span<const Vec3> at, std::span<const Triangle> triangles) {
       std::vector<Triangle> found;
       for (const Triangle& t : triangles) {
-        if (zoom->is_near(at[t[0]], at[t[1]], at[t[2]])) found.push_back(t);
+        if (zoom->shows({at[t[0]], at[t[1]], at[t[2]]})) found.push_back(t);
       }
       return found;
     };
@@ -305,14 +311,17 @@ class SceneMaker {
       shares.push_back(end > 0 ? static_cast<float>(static_cast<double>(error) / end) : 0.0F);
     }
     scene_.model = encode_model(result_, shares);
-    const ViewAxes axes(views_[0]);
+    const ViewAxes axes(pictures_[0].view);
     scene_.axes = {axes.right.x, axes.right.y,  axes.right.z,  axes.up.x,    axes.up.y,
                    axes.up.z,    axes.toward.x, axes.toward.y, axes.toward.z};
   }
 
   void finish() {
-    parallel_for(drawn_.size(), threads_,
-                 [&](std::uint64_t i) { *drawn_[i].to = to_page(drawn_[i].picture); });
+    parallel_for(drawn_.size(), threads_, [&](std::uint64_t i) {
+      Drawn& drawn = drawn_[i];
+      *drawn.to = to_page(drawn.picture.finish());
+      if (drawn.by_part != nullptr) *drawn.by_part = to_page(drawn.picture.finish(1));
+    });
     page_.scene = std::move(scene_);
     page_.figures = std::move(figures_);
   }
@@ -324,8 +333,8 @@ class SceneMaker {
   Vec3 up_;
   TriangleIndex index_;
   InputSamples samples_;
-  std::vector<Mesh> pieces_;  // of a small input
-  std::vector<View> views_;
+  std::vector<Mesh> pieces_;             // of a small input
+  std::vector<RenderOptions> pictures_;  // the views
   std::vector<Camera> cameras_;
   std::vector<MeasuredPlace> places_;
   std::vector<float> errors_;  // of the result's vertices

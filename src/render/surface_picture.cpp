@@ -1,6 +1,8 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
 #include <cassert>
+#include <cmath>
+#include <memory>
 #include <vector>
 
 #include <meshfarm/render/surface_picture.hpp>
@@ -53,17 +55,24 @@ class PiecePainter {
 
 class SurfacePicture::Impl {
  public:
-  Impl(const RenderOptions& options, const Camera& camera)
-      : options_(options),
-        camera_(camera),
-        canvas_({options.width, options.height, options.samples}),
-        rasterizer_(camera_, canvas_, options.wire ? Wire::yes : Wire::no) {}
+  Impl(const RenderOptions& options, const Camera& camera) : camera_(camera) { add_look(options); }
+
+  std::size_t add_look(ColourBy colour_by) {
+    RenderOptions options = looks_.front()->options;
+    options.colour_by = colour_by;
+    add_look(options);
+    return looks_.size() - 1;
+  }
 
   void draw(std::span<const Vec3> positions, std::span<const Triangle> triangles,
             const PiecePaint& paint) {
-    PiecePainter painter(options_, paint);
+    std::vector<PiecePainter> painters;
+    for (const auto& look : looks_) painters.emplace_back(look->options, paint);
     const auto draw_one = [&](const Triangle& t, const std::array<ScreenPoint, 3>& corners) {
-      if (rasterizer_.may_cover(corners)) rasterizer_.draw(corners, painter.of(t));
+      if (!looks_.front()->rasterizer.may_cover(corners)) return;
+      for (std::size_t i = 0; i < looks_.size(); ++i) {
+        looks_[i]->rasterizer.draw(corners, painters[i].of(t));
+      }
     };
     // Of many vertices, as a sweep holds them, only those that are used.
     if (positions.size() > triangles.size()) {
@@ -73,25 +82,60 @@ class SurfacePicture::Impl {
       }
       return;
     }
-    std::vector<ScreenPoint> seen;
+    std::vector<Seen> seen;
     seen.reserve(positions.size());
-    for (const Vec3& p : positions) seen.push_back(camera_.project(p));
-    for (const Triangle& t : triangles) draw_one(t, {seen[t[0]], seen[t[1]], seen[t[2]]});
+    for (const Vec3& p : positions) seen.emplace_back(camera_.project(p));
+    for (const auto& [first, second, third] : triangles) {
+      const Seen &a = seen[first], &b = seen[second], &c = seen[third];
+      if ((a.column == b.column && b.column == c.column) || (a.row == b.row && b.row == c.row)) {
+        continue;
+      }
+      draw_one({first, second, third}, {a.point, b.point, c.point});
+    }
   }
 
-  Texels finish() {
-    std::vector<float> open_sky;
-    if (options_.colour_by != ColourBy::normal) {
-      open_sky = find_open_sky(canvas_, camera_, options_.threads);
-    }
-    return develop(canvas_, open_sky, options_);
+  Texels finish(std::size_t number) {
+    const Look& look = *looks_[number];
+    if (look.options.colour_by == ColourBy::normal) return develop(look.canvas, {}, look.options);
+    // All looks have the same depths.
+    if (open_sky_.empty()) open_sky_ = find_open_sky(look.canvas, camera_, look.options.threads);
+    return develop(look.canvas, open_sky_, look.options);
   }
 
  private:
-  RenderOptions options_;
+  struct Look {
+    Look(const RenderOptions& with, const Camera& camera)
+        : options(with),
+          canvas({with.width, with.height, with.samples}),
+          rasterizer(camera, canvas, with.wire ? Wire::yes : Wire::no) {}
+    RenderOptions options;
+    Canvas canvas;
+    Rasterizer rasterizer;
+  };
+
+  /// A vertex, and between which middles of samples it lies. Three between the same, as nearly all
+  /// of a large mesh are, cover none.
+  struct Seen {
+    explicit Seen(const ScreenPoint& p) : point(p), column(place(p.x)), row(place(p.y)) {}
+    /// The middle before; no number, which equals none, for what lies on one or far off.
+    static float place(float x) {
+      constexpr float k_far = 1e6F;
+      if (!(x > 0 && x < k_far)) return NAN;
+      const auto whole = static_cast<float>(static_cast<std::int32_t>(x));
+      return x == whole ? NAN : whole;
+    }
+    ScreenPoint point;
+    float column;
+    float row;
+  };
+
+  void add_look(const RenderOptions& options) {
+    looks_.push_back(std::make_unique<Look>(options, camera_));
+  }
+
   Camera camera_;
-  Canvas canvas_;
-  Rasterizer rasterizer_;
+  std::vector<std::unique_ptr<Look>> looks_;
+  std::vector<float> open_sky_;
 };
 
 SurfacePicture::SurfacePicture(const RenderOptions& options, const Camera& camera)
@@ -109,8 +153,12 @@ void SurfacePicture::draw(std::span<const Vec3> positions, std::span<const Trian
   impl_->draw(positions, triangles, paint);
 }
 
-Texels SurfacePicture::finish() {
-  return impl_->finish();
+std::size_t SurfacePicture::add_look(ColourBy colour_by) {
+  return impl_->add_look(colour_by);
+}
+
+Texels SurfacePicture::finish(std::size_t look) {
+  return impl_->finish(look);
 }
 
 }  // namespace meshfarm

@@ -106,7 +106,8 @@
   const radius = Math.hypot(...sides) / 2;
   const first = JSON.parse(data.dataset.axes);  // rows: right, up, toward the viewer
   let turn = first.slice();
-  let zoom = 1;
+  const first_zoom = 1.3;  // a sphere would not fit
+  let zoom = first_zoom;
   const shows = { error: true, edges: false };
 
   let waiting = false;
@@ -226,7 +227,7 @@
   on("farther", () => zoom_by(1 / 1.4));
   on("reset", () => {
     turn = first.slice();
-    zoom = 1;
+    zoom = first_zoom;
     draw_soon();
   });
 

@@ -32,6 +32,14 @@ class Table {
     }
     add({name, shown(input), shown(result), change});
   }
+  /// Of a mesh: what is left of it.
+  void add_sizes(const std::string& name, std::uint64_t input,
+                 const std::optional<std::uint64_t>& result) {
+    if (!result) return add({name, grouped(input), k_none, ""});
+    const double left =
+        static_cast<double>(*result) / static_cast<double>(std::max<std::uint64_t>(1, input));
+    add({name, grouped(input), grouped(*result), number(100 * left, "%.3g %% left")});
+  }
   void add_counts(const std::string& name, const std::optional<std::uint64_t>& input,
                   const std::optional<std::uint64_t>& result) {
     const auto text = [](const std::optional<std::uint64_t>& count) {
@@ -136,10 +144,8 @@ std::string figure_tables(const RunPage& page) {
   const PageFigures* figures = page.figures ? &*page.figures : nullptr;
   Table table({"", "input", "result", "change"});
   const Json output = summary.value("output", Json::object());
-  table.add_measures("triangles", static_cast<double>(m.input_triangles),
-                     output.value("triangles", 0.0));
-  table.add_measures("vertices", static_cast<double>(m.input_vertices),
-                     output.value("vertices", 0.0));
+  table.add_sizes("triangles", m.input_triangles, count_of(output, "triangles"));
+  table.add_sizes("vertices", m.input_vertices, count_of(output, "vertices"));
   const Json change = summary.value("topology_change", Json(nullptr));
   const auto of = [&](const char* which) {
     return change.is_object() ? change.value(which, Json(nullptr)) : Json(nullptr);

@@ -217,7 +217,7 @@ std::string facts(const Manifest& manifest, const Trace& trace, const Frame& fra
     computed += row.computed_s;
     threads += row.joined.threads;
   }
-  std::string text = "<table>\n";
+  std::string text = "<table class=\"facts\">\n";
   const auto add = [&](const std::string& name, const std::string& value) {
     text += row_of({name, value}, "td");
   };

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <array>
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <span>
@@ -34,11 +34,13 @@ class SurfacePicture {
   SurfacePicture(SurfacePicture&&) noexcept;
 
   static Frame frame_of(const RenderOptions& options);
+  /// Draws the same view in other colours, too. Call this first; returns the number of that look.
+  std::size_t add_look(ColourBy colour_by);
   /// From any number of threads at once.
   void draw(std::span<const Vec3> positions, std::span<const Triangle> triangles,
             const PiecePaint& paint = {});
-  /// Develops it, without a legend. Call this last.
-  Texels finish();
+  /// Develops a look, without a legend. Call this last.
+  Texels finish(std::size_t look = 0);
 
  private:
   class Impl;

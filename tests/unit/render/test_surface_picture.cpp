@@ -32,7 +32,7 @@ Camera camera_for(const RenderOptions& options, const Mesh& mesh) {
 }
 
 Mesh some_mesh() {
-  return test::grid(8, 8);
+  return test::torus(60, 200);  // of triangles as small as samples, and smaller ones
 }
 
 }  // namespace
@@ -77,4 +77,19 @@ TEST_CASE("values are on the scale of the range") {
   };
   CHECK(drawn(0) != drawn(1));
   CHECK(drawn(2) == drawn(3));
+}
+
+TEST_CASE("another look is the same picture in other colours") {
+  const Mesh mesh = some_mesh();
+  const RenderOptions options = small(ColourBy::none);
+  const auto alone = [&](ColourBy by) {
+    SurfacePicture picture(small(by), camera_for(options, mesh));
+    picture.draw(mesh.positions, mesh.triangles, {.part = 3});
+    return picture.finish().bytes;
+  };
+  SurfacePicture both(options, camera_for(options, mesh));
+  const std::size_t by_part = both.add_look(ColourBy::part);
+  both.draw(mesh.positions, mesh.triangles, {.part = 3});
+  CHECK(both.finish().bytes == alone(ColourBy::none));
+  CHECK(both.finish(by_part).bytes == alone(ColourBy::part));
 }
