@@ -254,9 +254,9 @@ class SceneMaker {
     const double side = std::max({length(q - p), length(r - q), length(p - r)});
     const double most = page_.manifest.box.diagonal() / 4;
     const double off = worst->near.distance;
-    Zoom zoom{worst->point.at, std::min(most, std::max(3 * side, 3 * off)), 2 * off, {}};
-    zoom.view = facing(worst->point.normal, up_);
-    return zoom;
+    const double radius = std::min(most, std::max(3 * side, 3 * off));
+    const double depth = std::max(2 * off, 0.6 * radius);
+    return Zoom{worst->point.at, radius, depth, facing(worst->point.normal, up_)};
   }
 
   void draw_zoom() {

@@ -106,7 +106,7 @@
   const radius = Math.hypot(...sides) / 2;
   const first = JSON.parse(data.dataset.axes);  // rows: right, up, toward the viewer
   let turn = first.slice();
-  const first_zoom = 1.3;  // a sphere would not fit
+  const first_zoom = 1.12;  // few meshes are spheres
   let zoom = first_zoom;
   const shows = { error: true, edges: false };
 
