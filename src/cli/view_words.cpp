@@ -19,13 +19,13 @@ struct NamedView {
   double azimuth;
   double elevation;
 };
-constexpr std::array<NamedView, 7> k_views = {{{"front", 0, 0},
-                                               {"right", 90, 0},
-                                               {"back", 180, 0},
-                                               {"left", 270, 0},
-                                               {"top", 0, 90},
-                                               {"bottom", 0, -90},
-                                               {"iso", 45, 35.264}}};
+constexpr std::array<NamedView, 7> k_named_views = {{{"front", 0, 0},
+                                                     {"right", 90, 0},
+                                                     {"back", 180, 0},
+                                                     {"left", 270, 0},
+                                                     {"top", 0, 90},
+                                                     {"bottom", 0, -90},
+                                                     {"iso", 45, 35.264}}};
 
 struct NamedAxis {
   std::string_view name;
@@ -57,9 +57,9 @@ std::optional<std::array<Number, 2>> pair_of(std::string_view text, char between
 }
 
 void parse_view(const std::string& word, View& view) {
-  const auto named = std::find_if(k_views.begin(), k_views.end(),
+  const auto named = std::find_if(k_named_views.begin(), k_named_views.end(),
                                   [&](const NamedView& each) { return each.name == word; });
-  if (named != k_views.end()) {
+  if (named != k_named_views.end()) {
     view.azimuth = named->azimuth;
     view.elevation = named->elevation;
     return;

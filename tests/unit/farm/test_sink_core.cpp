@@ -348,7 +348,7 @@ JobSource chain() {
 }
 
 TEST_CASE("the run is not over before all is verified") {
-  Bench bench(2, journal_of({"job 0", "job 1"}));
+  SinkBench bench(2, journal_of({"job 0", "job 1"}));
   const SinkActions looked = bench.look_at_all(bench.join(1));
   const auto reads = only<Check>(looked);
   REQUIRE(reads.size() == 2);
@@ -364,14 +364,14 @@ TEST_CASE("the run is not over before all is verified") {
 }
 
 TEST_CASE("a job of the sink waits until all is verified") {
-  Bench bench(then_own(), journal_of({"job 0"}));
+  SinkBench bench(then_own(), journal_of({"job 0"}));
   const SinkActions looked = bench.look_at_all(bench.join(1));
   CHECK(only<DoHere>(looked).empty());
   CHECK(only<DoHere>(bench.verify(looked)).size() == 1);
 }
 
 TEST_CASE("what is damaged is taken back, as by a new sink that has the others") {
-  Bench bench(chain(), journal_of({"job 0", "job 1", "then"}));
+  SinkBench bench(chain(), journal_of({"job 0", "job 1", "then"}));
   SinkActions looked = bench.look_at_all(bench.join(1));
   for (SinkAction& each : bench.look_at_all(looked)) looked.push_back(std::move(each));
   const auto reads = only<Check>(looked);
@@ -402,7 +402,7 @@ TEST_CASE("what is damaged is taken back, as by a new sink that has the others")
 }
 
 TEST_CASE("a result that comes while what it needs is taken back is not lost") {
-  Bench bench(chain(), journal_of({"job 0", "job 1"}));
+  SinkBench bench(chain(), journal_of({"job 0", "job 1"}));
   const auto reads = only<Check>(bench.look_at_all(bench.join(1)));
   REQUIRE(reads.size() == 2);
   const auto checks = only<Check>(bench.result(key("then")));
@@ -418,7 +418,7 @@ TEST_CASE("a result that comes while what it needs is taken back is not lost") {
 }
 
 TEST_CASE("a worker that reads a damaged result first costs its host nothing") {
-  Bench bench(chain(), journal_of({"job 0", "job 1"}));
+  SinkBench bench(chain(), journal_of({"job 0", "job 1"}));
   const auto reads = only<Check>(bench.look_at_all(bench.join(1)));
   REQUIRE(reads.size() == 2);
   const JobFailure failure{"damaged", FailureKind::damaged_input};
@@ -443,7 +443,7 @@ TEST_CASE("a worker that reads a damaged result first costs its host nothing") {
 }
 
 TEST_CASE("an input that is no result may be damaged: nobody waits to say so") {
-  Bench bench(chain(), journal_of({"job 0"}));
+  SinkBench bench(chain(), journal_of({"job 0"}));
   bench.look_at_all(bench.join(1));
   const JobFailure failure{"damaged", FailureKind::damaged_input};
   const Message failed = Result{7, 1, {3}, 5, 1, key("job 1"), failure, {}};

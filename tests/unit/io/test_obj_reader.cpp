@@ -122,10 +122,10 @@ TEST_CASE("what an OBJ has besides is named") {
                                                       "normals (1)", "groups (2)",
                                                       "smoothing groups (1)", "lines (1)",
                                                       "points (1)", "vc (1)", "curv2 (1)"});
-  using Names = std::vector<std::string>;
+  using Words = std::vector<std::string>;
   CHECK(read_bytes("v 0 0 0\nv 0 0 0 1 0 0\n").info.skipped.empty());
-  CHECK(read_bytes("v 0 0 0 1\n").info.skipped == Names{"vertex.weight"});
-  CHECK(read_bytes("v 0 0 0 1 1 1 1\n").info.skipped == Names{"vertex.weight"});
+  CHECK(read_bytes("v 0 0 0 1\n").info.skipped == Words{"vertex.weight"});
+  CHECK(read_bytes("v 0 0 0 1 1 1 1\n").info.skipped == Words{"vertex.weight"});
 }
 
 TEST_CASE("OBJ numbers are read by the rule of ascii PLY") {

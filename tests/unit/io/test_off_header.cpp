@@ -36,7 +36,7 @@ TEST_CASE("comments and blank lines in the body of an OFF are passed over") {
 }
 
 TEST_CASE("normals, colours and texture coordinates of an OFF are named") {
-  using Names = std::vector<std::string>;
+  using Words = std::vector<std::string>;
   const auto vertices = [](std::string_view more) {
     std::string text;
     for (const auto xyz : {"0 0 0", "1 0 0", "0 1 0", "1 1 0.5"}) {
@@ -47,17 +47,17 @@ TEST_CASE("normals, colours and texture coordinates of an OFF are named") {
   const auto names = [&](std::string_view word, std::string_view more) {
     const ReadFile read = read_bytes(std::string(word) + "\n4 2 0\n" + vertices(more));
     check_square(read);
-    Names told = read.info.skipped;
+    Words told = read.info.skipped;
     for (const Channel& channel : read.info.channels) {
       told.push_back(channel.name + std::to_string(static_cast<int>(channel.type)));
     }
     return told;
   };
-  CHECK(names("COFF", " 255 0 0 255") == Names{"red1", "green1", "blue1"});
-  CHECK(names("COFF", " 0.5 0.5 0.5") == Names{"red4", "green4", "blue4"});
-  CHECK(names("NOFF", " 0 0 1") == Names{"nx4", "ny4", "nz4"});
+  CHECK(names("COFF", " 255 0 0 255") == Words{"red1", "green1", "blue1"});
+  CHECK(names("COFF", " 0.5 0.5 0.5") == Words{"red4", "green4", "blue4"});
+  CHECK(names("NOFF", " 0 0 1") == Words{"nx4", "ny4", "nz4"});
   CHECK(names("CNOFF", " 0 0 1 1 1 1 1").size() == 6);
-  CHECK(names("STOFF", " 0 0") == Names{"vertex.s", "vertex.t"});
+  CHECK(names("STOFF", " 0 0") == Words{"vertex.s", "vertex.t"});
   CHECK(stderr_of([&] { names("COFF", " 255 0 0 255"); }).empty());
 }
 

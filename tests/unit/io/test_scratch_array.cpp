@@ -40,9 +40,9 @@ TEST_CASE("an array above its limit is in a scratch file, one below in memory") 
   CHECK(ScratchArray<std::uint64_t>(8, 64).size() == 8);
   CHECK_THROWS_AS(ScratchArray<std::uint64_t>(9, 64), IoError);
   // The limit that all have: untouched, the pages of neither take memory.
-  constexpr std::uint64_t k_most = ScratchArray<std::uint64_t>::k_most_in_memory / 8;
-  CHECK(ScratchArray<std::uint64_t>(k_most).size() == k_most);
-  CHECK_THROWS_AS(ScratchArray<std::uint64_t>(k_most + 1), IoError);
+  constexpr std::uint64_t k_most_numbers = ScratchArray<std::uint64_t>::k_most_in_memory / 8;
+  CHECK(ScratchArray<std::uint64_t>(k_most_numbers).size() == k_most_numbers);
+  CHECK_THROWS_AS(ScratchArray<std::uint64_t>(k_most_numbers + 1), IoError);
 }
 
 TEST_CASE("an array in a scratch file keeps what is written when its pages are given back") {

@@ -15,7 +15,7 @@
 namespace meshfarm {
 namespace {
 
-bool has(const std::string& text, std::string_view what) {
+bool page_has(const std::string& text, std::string_view what) {
   return text.find(what) != std::string::npos;
 }
 
@@ -80,14 +80,14 @@ TEST_CASE("bytes become base64") {
 
 TEST_CASE("a page of a run without pictures has its figures and times") {
   const std::string page = render_run_page(some_page());
-  CHECK(has(page, "<title>large &lt;mesh&gt;.ply → small.ply</title>"));
-  CHECK(has(page, "too &lt;few&gt; triangles"));
-  CHECK(has(page, "<pre>meshfarm simplify 'a &amp; b'</pre>"));
-  CHECK(has(page, "<b>12,000</b>"));
-  CHECK(has(page, "<b>4 s</b>"));
-  CHECK(has(page, "<td>pieces</td><td>2</td><td>1</td><td>−1</td>"));
-  CHECK_FALSE(has(page, "<img"));
-  CHECK_FALSE(has(page, "<script"));
+  CHECK(page_has(page, "<title>large &lt;mesh&gt;.ply → small.ply</title>"));
+  CHECK(page_has(page, "too &lt;few&gt; triangles"));
+  CHECK(page_has(page, "<pre>meshfarm simplify 'a &amp; b'</pre>"));
+  CHECK(page_has(page, "<b>12,000</b>"));
+  CHECK(page_has(page, "<b>4 s</b>"));
+  CHECK(page_has(page, "<td>pieces</td><td>2</td><td>1</td><td>−1</td>"));
+  CHECK_FALSE(page_has(page, "<img"));
+  CHECK_FALSE(page_has(page, "<script"));
 }
 
 TEST_CASE("a page with pictures loads nothing") {
@@ -98,21 +98,21 @@ TEST_CASE("a page with pictures loads nothing") {
   CHECK(count_of(page, "<img ") == 8);
   CHECK(count_of(page, "src=\"data:image/png;base64,YSBwaWN0dXJl\"") == 8);
   CHECK(count_of(page, "src=") == 8);
-  CHECK_FALSE(has(page, "@import"));
-  CHECK_FALSE(has(page, "url("));
-  CHECK_FALSE(has(page, "<link"));
+  CHECK_FALSE(page_has(page, "@import"));
+  CHECK_FALSE(page_has(page, "url("));
+  CHECK_FALSE(page_has(page, "<link"));
   CHECK(count_of(page, "http:") == count_of(page, "http://www.w3.org/2000/svg"));
-  CHECK(has(page, "<td>volume</td><td>4</td><td>3</td><td>-25 %</td>"));
-  CHECK(has(page, base64("a model")));
+  CHECK(page_has(page, "<td>volume</td><td>4</td><td>3</td><td>-25 %</td>"));
+  CHECK(page_has(page, base64("a model")));
   CHECK(render_run_page(run) == page);
   run.scene->model.clear();
-  CHECK_FALSE(has(render_run_page(run), "<script"));
+  CHECK_FALSE(page_has(render_run_page(run), "<script"));
 }
 
 TEST_CASE("a run that has not ended is said to be so") {
   RunPage run = some_page();
   run.summary.clear();
-  CHECK(has(render_run_page(run), "This run has not ended"));
+  CHECK(page_has(render_run_page(run), "This run has not ended"));
   CHECK_THROWS_AS(parse_run_result("{}", "it"), DataError);
   CHECK(parse_run_result(k_summary, "it").path == "out/small.ply");
 }
