@@ -3,13 +3,11 @@
 function(meshfarm_compile_options target)
   # Options structs are made with designated initialisers: a field that is not named has its
   # documented default, which -Wmissing-field-initializers would not allow.
-  # g++ 12 reports -Wrestrict falsely on std::string operator+ (GCC bug 105651), and
-  # -Wsubobject-linkage of any source that is compiled together with others.
+  # g++ 12 reports -Wrestrict falsely on std::string operator+ (GCC bug 105651).
   target_compile_options(${target} PRIVATE
     -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion
     -Wno-missing-field-initializers -ffp-contract=off -fno-math-errno
-    $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict>
-    $<$<CXX_COMPILER_ID:GNU>:-Wno-subobject-linkage>)
+    $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict>)
   if(MESHFARM_SANITIZE)
     target_compile_options(${target} PRIVATE -fsanitize=${MESHFARM_SANITIZE} -fno-omit-frame-pointer
                                              -fno-sanitize-recover=all -O1 -g1)
@@ -35,6 +33,14 @@ function(meshfarm_test_options target)
   target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-O1>)
 endfunction()
 
+# Compiles sources several together. Then a local name may be one of another source's unnamed
+# namespace, and g++ takes these namespaces for ones of a header.
+function(meshfarm_compile_together target sources)
+  set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE ${sources})
+  target_compile_options(${target} PRIVATE
+    -Wno-shadow $<$<CXX_COMPILER_ID:GNU>:-Wno-subobject-linkage>)
+endfunction()
+
 # meshfarm_layer(io USES geometry PACKAGES Boost::iostreams)
 # One folder = one layer = one static library meshfarm_<name> = one unit-test program test_<name>.
 # Most of the time of a compiler goes into the headers. No two sources of a layer define the same name,
@@ -52,8 +58,9 @@ function(meshfarm_layer name)
   list(TRANSFORM ARG_USES PREPEND meshfarm_ OUTPUT_VARIABLE uses)
   target_link_libraries(meshfarm_${name} PUBLIC ${uses} PRIVATE ${ARG_PACKAGES} Threads::Threads)
   meshfarm_compile_options(meshfarm_${name})
-  set_target_properties(meshfarm_${name} PROPERTIES UNITY_BUILD ${MESHFARM_UNITY}
-                                                    UNITY_BUILD_BATCH_SIZE 10)
+  if(MESHFARM_UNITY)
+    meshfarm_compile_together(meshfarm_${name} 10)
+  endif()
 
   file(GLOB tests CONFIGURE_DEPENDS tests/unit/${name}/test_*.cpp)
   if(MESHFARM_TESTS AND tests)
@@ -61,7 +68,7 @@ function(meshfarm_layer name)
     target_include_directories(test_${name} PRIVATE ${PROJECT_SOURCE_DIR}/src)
     target_link_libraries(test_${name} PRIVATE meshfarm_${name} Threads::Threads)
     meshfarm_test_options(test_${name})
-    set_target_properties(test_${name} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 6)
+    meshfarm_compile_together(test_${name} 6)
     add_test(NAME unit.${name} COMMAND test_${name})
     set_tests_properties(unit.${name} PROPERTIES TIMEOUT 300 COST 300 LABELS unit)
   endif()
