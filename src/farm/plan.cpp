@@ -20,8 +20,8 @@ JobState first_state(const Job& job) {
 }  // namespace
 
 bool Plan::ReadyJob::operator<(const ReadyJob& other) const {
-  // The largest first, so that the last jobs are short; then as asked for.
-  if (cost != other.cost) return cost > other.cost;
+  // The longest way first, so that the last jobs are short; then as asked for.
+  if (path != other.path) return path > other.path;
   return order < other.order;
 }
 
@@ -84,17 +84,26 @@ const Plan::ReadyJob* Plan::choose(const JobChoice& choice) const {
     return job.cost <= choice.max_cost && job.memory <= choice.max_memory &&
            (!choice.may || choice.may(job.key));
   };
-  int tries = 0;
-  for (auto at = ready_.lower_bound({choice.max_cost, 0, {}, 0}); at != ready_.end(); ++at) {
-    if (will_do(*at)) return &*at;
-    if (++tries == k_tries) break;
+  // From the longest way on; then from where no cost is too great any more; then by memory.
+  const auto short_ways = ready_.lower_bound({choice.max_cost, 0});
+  for (auto from = ready_.begin();; from = short_ways) {
+    int tries = 0;
+    for (auto at = from; at != ready_.end() && tries < k_tries; ++at, ++tries) {
+      if (will_do(*at)) return &*at;
+    }
+    if (tries < k_tries) return nullptr;
+    if (from == short_ways) break;
   }
-  if (tries < k_tries) return nullptr;
-  auto at = by_memory_.upper_bound({choice.max_memory, ReadyJob{0, k_last, {}, 0}});
-  for (tries = 0; at != by_memory_.begin() && tries < k_tries; ++tries) {
+  auto at = by_memory_.upper_bound({choice.max_memory, ReadyJob{0, k_last}});
+  for (int tries = 0; at != by_memory_.begin() && tries < k_tries; ++tries) {
     if (will_do((--at)->second)) return &at->second;
   }
   return nullptr;
+}
+
+Plan::ReadyJob Plan::ready_job(JobKey key, const Entry& entry) {
+  const Job& job = entry.job;
+  return {job.cost + job.after, entry.order, key, job.cost, job.memory};
 }
 
 std::vector<JobKey> Plan::ready_jobs() const {
@@ -212,14 +221,14 @@ void Plan::move_to(JobKey key, Entry& entry, JobState state) {
 }
 
 void Plan::add_ready(JobKey key, const Entry& entry) {
-  const ReadyJob job{entry.job.cost, entry.order, key, entry.job.memory};
+  const ReadyJob job = ready_job(key, entry);
   ready_.insert(job);
   if (job.memory != 0) by_memory_.insert({job.memory, job});
   counts_.cost_ready += job.cost;
 }
 
 void Plan::remove_ready(JobKey key, const Entry& entry) {
-  const ReadyJob job{entry.job.cost, entry.order, key, entry.job.memory};
+  const ReadyJob job = ready_job(key, entry);
   ready_.erase(job);
   if (job.memory != 0) by_memory_.erase({job.memory, job});
   counts_.cost_ready -= job.cost;

@@ -138,6 +138,17 @@ void ComposeStage::close_group(JobGraph& graph, std::size_t number, std::size_t 
   });
 }
 
+/// Of what joins a result of so many triangles and parts with others like it, level by level.
+std::uint64_t ComposeStage::work_after(std::uint64_t triangles, std::uint64_t parts) const {
+  std::uint64_t work = 0;
+  while (parts < manifest_.parts.size() && k_most_joined * triangles <= most_triangles_) {
+    triangles *= k_most_joined;
+    parts *= k_most_joined;
+    work += triangles;
+  }
+  return work;
+}
+
 Job ComposeStage::job_of(const Level& level, std::size_t first, std::size_t end) const {
   ComposeParameters parameters;
   for (std::size_t i = 0; i < first; ++i) parameters.first_part += level.parts[i].chosen.parts;
@@ -155,9 +166,11 @@ Job ComposeStage::job_of(const Level& level, std::size_t first, std::size_t end)
   job.kind = k_compose_kind;
   std::uint64_t weight = 0;
   std::uint64_t bytes = 0;
+  std::uint64_t composed = 0;
   for (std::size_t i = first; i < end; ++i) {
     const ComposedParts& each = level.parts[i];
     parameters.inputs.push_back({each.chosen.parts, each.chosen.rung});
+    composed += each.chosen.parts;
     job.inputs.push_back(each.chosen.file);
     job.cost += each.triangles;
     weight += each.weight;
@@ -165,6 +178,7 @@ Job ComposeStage::job_of(const Level& level, std::size_t first, std::size_t end)
   }
   parameters.floor = static_cast<std::uint64_t>(goal_.triangles * static_cast<double>(weight) /
                                                 static_cast<double>(weight_));
+  job.after = work_after(parameters.floor, composed);
   job.parameters = encode_parameters(parameters);
   job.memory =
       memory_of_composition(bytes, job.cost) + memory_of_channels(parameters.lines, job.cost);

@@ -66,6 +66,7 @@ class ComposeStage {
   void take(JobGraph& graph, std::size_t number);
   void join(JobGraph& graph, std::size_t number);
   void close_group(JobGraph& graph, std::size_t number, std::size_t end);
+  std::uint64_t work_after(std::uint64_t triangles, std::uint64_t parts) const;
   Job job_of(const Level& level, std::size_t first, std::size_t end) const;
   void end_level(JobGraph& graph, std::size_t number);
 

@@ -60,13 +60,16 @@ Job PartJobs::climb(std::uint32_t part, double headroom, TopologyMode topology) 
   parameters.lines = lines_of(manifest_, options_);
   parameters.lines.topology = topology;
   by_error() ? set_error_bound(parameters, part) : set_share(parameters, part, headroom);
-  return {std::string(k_simplify_kind),
+  Job job{std::string(k_simplify_kind),
           {entry.file},
           encode_parameters(parameters),
           entry.triangles,
           memory_of(entry, parameters.start_triangles) +
               memory_of_channels(parameters.lines, entry.triangles) +
               (by_error() ? k_bound_bytes_per_triangle * entry.triangles : 0)};
+  // Other sweeps need not wait for the stream's own.
+  if (by_error() && is_sampled(part)) job.after = manifest_.parts[part].triangles;
+  return job;
 }
 
 void PartJobs::set_error_bound(SimplifyParameters& parameters, std::uint32_t part) const {

@@ -65,18 +65,42 @@ Needs needs_of(std::span<const PlannedJob> jobs, const PlannedJob& job) {
   return {{0, static_cast<std::size_t>(end - jobs.begin())}};
 }
 
+using ByNeeds = std::map<Needs, std::vector<std::uint32_t>>;
+
+/// Of each job the longest chain of jobs after it.
+std::vector<std::uint64_t> work_after(std::span<const PlannedJob> jobs, const ByNeeds& by_needs) {
+  std::vector<const ByNeeds::value_type*> deepest_first;
+  for (const auto& each : by_needs) deepest_first.push_back(&each);
+  std::stable_sort(deepest_first.begin(), deepest_first.end(), [&](const auto* a, const auto* b) {
+    return jobs[a->second.front()].depth > jobs[b->second.front()].depth;
+  });
+  std::vector<std::uint64_t> after(jobs.size());
+  for (const auto* group : deepest_first) {
+    std::uint64_t longest = 0;
+    for (const std::uint32_t place : group->second) {
+      longest = std::max(longest, jobs[place].triangles + after[place]);
+    }
+    for (const PlannedJob::Range& each : group->first) {
+      for (std::size_t i = each.first; i < each.end; ++i) after[i] = std::max(after[i], longest);
+    }
+  }
+  return after;
+}
+
 /// Jobs that are named by their place.
 JobSource source_of(std::span<const PlannedJob> jobs) {
-  const auto by_needs = std::make_shared<std::map<Needs, std::vector<std::uint32_t>>>();
+  const auto by_needs = std::make_shared<ByNeeds>();
   for (std::uint32_t i = 0; i < jobs.size(); ++i) {
     (*by_needs)[needs_of(jobs, jobs[i])].push_back(i);
   }
-  const auto add = [jobs](JobGraph& graph, const std::vector<std::uint32_t>& places) {
+  const auto add = [jobs, after = work_after(jobs, *by_needs)](
+                       JobGraph& graph, const std::vector<std::uint32_t>& places) {
     for (const std::uint32_t place : places) {
       Job job;
       job.kind = "planned";
       job.parameters = std::to_string(place);
       job.cost = jobs[place].triangles;
+      job.after = after[place];
       graph.add({0, place}, std::move(job));
     }
   };

@@ -75,8 +75,9 @@ class Plan {
   void restart(const std::map<JobKey, JobOutput>& accepted);
   bool started() const { return started_; }
 
-  /// The ready job of the largest cost among those that will do becomes running, under an attempt
-  /// number of its own. (Where very many do not, one of the most memory that does.)
+  /// The ready job with the longest way to the end, its own cost and what follows, among those that
+  /// will do becomes running, under an attempt number of its own. (Where very many do not, the
+  /// first whose way is no longer than the greatest cost, or one of the most memory that does.)
   std::optional<IssuedJob> issue(const JobChoice& choice = {});
   /// This job, which is ready; or one more attempt at it if it is running.
   IssuedJob issue(JobKey key);
@@ -97,7 +98,7 @@ class Plan {
   const Job& job(JobKey key) const { return entries_.at(key).job; }
   /// Where a job that is known stands in the run.
   JobPlace place(JobKey key) const { return graph_.place(entries_.at(key).name); }
-  /// The largest cost first.
+  /// The longest way to the end first.
   std::vector<JobKey> ready_jobs() const;
   /// How many ready jobs need more memory than this.
   std::uint64_t ready_above(std::uint64_t memory) const;
@@ -132,9 +133,10 @@ class Plan {
     bool resumable = false;
   };
   struct ReadyJob {
-    std::uint64_t cost = 0;
+    std::uint64_t path = 0;  // the job's cost and what follows it
     std::uint64_t order = 0;
-    JobKey key;
+    JobKey key = {};
+    std::uint64_t cost = 0;
     std::uint64_t memory = 0;
     bool operator<(const ReadyJob& other) const;
   };
@@ -142,6 +144,7 @@ class Plan {
   void want(std::vector<WantedJob> jobs, const std::map<JobKey, JobOutput>& accepted);
   void add_ready(JobKey key, const Entry& entry);
   void remove_ready(JobKey key, const Entry& entry);
+  static ReadyJob ready_job(JobKey key, const Entry& entry);
   const ReadyJob* choose(const JobChoice& choice) const;
   void move_to(JobKey key, Entry& entry, JobState state);
   std::uint64_t& count_of(JobState state);

@@ -40,6 +40,25 @@ TEST_CASE("the largest job is given out first, equals as asked for") {
   CHECK(plan.counts().cost_known == 14);
 }
 
+TEST_CASE("what leads to much is given out first, but for who may take small jobs only") {
+  std::vector<Job> jobs = {make_job("a", 4), make_job("b", 1), make_job("c", 3)};
+  jobs[1].after = 5;
+  Plan plan = started_plan(in_stages({jobs}));
+  CHECK(plan.counts().cost_known == 8);
+  CHECK(plan.issue({.max_cost = 3})->job.parameters == "b");
+  CHECK(plan.issue({.max_cost = 3})->job.parameters == "c");
+  CHECK_FALSE(plan.issue({.max_cost = 3}));
+  CHECK(plan.issue()->job.parameters == "a");
+}
+
+TEST_CASE("a small job is found behind very many large ones") {
+  std::vector<Job> jobs = {make_job("small", 1)};
+  for (int i = 0; i < 1000; ++i) jobs.push_back(make_job("large " + std::to_string(i), 10));
+  Plan plan = started_plan(in_stages({jobs}));
+  CHECK(plan.issue({.max_cost = 3})->job.parameters == "small");
+  CHECK_FALSE(plan.issue({.max_cost = 3}));
+}
+
 /// A job that the sink does, and one more job.
 JobSource with_job_of_sink() {
   std::vector<Job> jobs = {make_job("theirs"), make_job("sink's")};
