@@ -122,8 +122,10 @@ TEST_CASE("a stage is drawn by its parts, however it was divided") {
   REQUIRE(shell({"render", mesh, "-o", to, "--size", "120x80"}).code == 0);
   const std::string whole = read_text(to);
   CHECK(whole != parts);
-  for (const std::vector<std::string>& cut : std::vector<std::vector<std::string>>{
-           {}, {"--scheme", "stream", "--sort", "here"}, {"--scheme", "stream", "--sort", "farm"}}) {
+  for (const std::vector<std::string>& cut :
+       std::vector<std::vector<std::string>>{{},
+                                             {"--scheme", "stream", "--sort", "here"},
+                                             {"--scheme", "stream", "--sort", "farm"}}) {
     CHECK(drawn(cut, {"--colour-by", "none"}).first == whole);
   }
   const Ran by_height = shell({"render", shell.path("s.stage"), "-o", to, "--colour-by", "height"});

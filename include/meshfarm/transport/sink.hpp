@@ -37,12 +37,11 @@ struct SinkOptions {
 
 /// Collects results: verifies each file, journals it, tells the ventilator, until every job that
 /// `source` wants is accepted; results accepted by an earlier incarnation or run are taken from the
-/// journals if their files are there, and verified again while the farm works. Then calls `complete` with the outputs in the
-/// order of the jobs' names, while it stays in touch with the ventilator, and tells the ventilator
-/// that the run is over.
-/// Returns the epoch of the ventilator that it served last.
-/// Throws IncompleteError when stopped or when the ventilator is lost, DataError when jobs failed
-/// for good.
+/// journals if their files are there, and verified again while the farm works. Then calls
+/// `complete` with the outputs in the order of the jobs' names, while it stays in touch with the
+/// ventilator, and tells the ventilator that the run is over. Returns the epoch of the ventilator
+/// that it served last. Throws IncompleteError when stopped or when the ventilator is lost,
+/// DataError when jobs failed for good.
 std::uint32_t run_sink(const Stage& stage, const JobSource& source, const SinkOptions& options,
                        const std::function<void(std::span<const AcceptedJob>)>& complete);
 
