@@ -62,7 +62,7 @@ std::optional<Mesh> read_result(const RunResult& made, std::vector<std::string>&
     const auto source = open_mesh(made.path, {.channels = false, .labels = false});
     Mesh result = read_mesh(*source);
     if (result.triangles.empty()) {
-      notes.push_back("There are no pictures: the result has no triangles.");
+      notes.emplace_back("There are no pictures: the result has no triangles.");
     } else if (result.triangles.size() == made.triangles) {
       return result;
     } else {

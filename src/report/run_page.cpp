@@ -173,7 +173,7 @@ class Page {
                css_of(page_.scene->scale[colour]),
                number(100 * h.shares[i], "%.3g %% of the area"));
     }
-    return svg.str() + "<div class=\"scale\" style=\"background:" + scale_css() +
+    return svg.str() + R"(<div class="scale" style="background:)" + scale_css() +
            "\"></div>\n<div class=\"ends\"><span>0</span><span>" + number(h.end / 2, "%.3g") +
            "</span><span>" + number(h.end, "%.3g") + "</span></div>\n" +
            paragraph(
@@ -234,7 +234,7 @@ class Page {
     if (!page_.scene || page_.scene->model.empty()) return {};
     Json axes = page_.scene->axes;
     Json scale = page_.scene->scale;
-    return "<script type=\"text/plain\" id=\"model\" data-axes=\"" + axes.dump() +
+    return R"(<script type="text/plain" id="model" data-axes=")" + axes.dump() +
            "\" data-scale=\"" + scale.dump() + "\">" + base64(page_.scene->model) +
            "</script>\n<script>\n" + std::string(k_page_js) + "</script>\n";
   }
