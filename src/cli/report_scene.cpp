@@ -11,6 +11,7 @@
 #include <utility>
 
 #include <meshfarm/geometry/crossings.hpp>
+#include <meshfarm/geometry/vertices.hpp>
 #include <meshfarm/io/png_file.hpp>
 #include <meshfarm/pipeline/input_surface.hpp>
 #include <meshfarm/render/colour_scale.hpp>
@@ -179,20 +180,11 @@ class SceneMaker {
                                   {.part = is_part ? piece.part : PiecePaint::k_between});
                   }
                   samples_.add(piece);
-                  if (keeps) keep(piece);
+                  if (keeps) append_surface(piece.positions, piece.triangles, pieces_[piece.part]);
                 });
     for (std::size_t i = 0; i < pictures_.size(); ++i) {
       start(scene_.views[i].result, pictures_[i], cameras_[i])
           .draw(result_.positions, result_.triangles);
-    }
-  }
-
-  void keep(const SurfacePiece& piece) {
-    Mesh& to = pieces_[piece.part];
-    const auto first = static_cast<std::uint32_t>(to.positions.size());
-    to.positions.insert(to.positions.end(), piece.positions.begin(), piece.positions.end());
-    for (const auto& [a, b, c] : piece.triangles) {
-      to.triangles.push_back({a + first, b + first, c + first});
     }
   }
 
@@ -215,11 +207,7 @@ class SceneMaker {
   void measure_whole_input() {
     Mesh whole;
     for (Mesh& piece : pieces_) {
-      const auto first = static_cast<std::uint32_t>(whole.positions.size());
-      whole.positions.insert(whole.positions.end(), piece.positions.begin(), piece.positions.end());
-      for (const auto& [a, b, c] : piece.triangles) {
-        whole.triangles.push_back({a + first, b + first, c + first});
-      }
+      append_surface(piece.positions, piece.triangles, whole);
       piece = {};
     }
     figures_.input.edges = measure_edge_lengths(whole, threads_);

@@ -85,11 +85,7 @@ Mesh input_near(const Stage& stage, const Manifest& manifest, const NearCells& n
              [&](const SurfacePiece& piece) { add_near(piece, near, of_part[piece.part]); });
   Mesh all;
   for (Mesh& mesh : of_part) {
-    const auto first = static_cast<std::uint32_t>(all.positions.size());
-    append_vertices(VertexView(mesh), all);
-    for (const auto& [a, b, c] : mesh.triangles) {
-      all.triangles.push_back({a + first, b + first, c + first});
-    }
+    append_surface(mesh.positions, mesh.triangles, all);
     mesh = {};
   }
   return all;

@@ -29,6 +29,7 @@ class Table {
     std::string change = k_none;
     if (input && result && *input != 0) {
       change = number(100 * (*result - *input) / std::abs(*input), "%+.3g %%");
+      if (change.front() == '-') change.replace(0, 1, "−");
     }
     add({name, shown(input), shown(result), change});
   }

@@ -65,6 +65,16 @@ inline void place_vertices(const VertexView& from, std::span<const std::uint32_t
   }
 }
 
+/// Adds a surface after what is there: positions and triangles.
+inline void append_surface(std::span<const Vec3> positions, std::span<const Triangle> triangles,
+                           Mesh& to) {
+  const auto first = static_cast<std::uint32_t>(to.positions.size());
+  append_vertices(VertexView(positions), to);
+  for (const auto& [a, b, c] : triangles) {
+    to.triangles.push_back({a + first, b + first, c + first});
+  }
+}
+
 /// Gives the corners of triangles the new numbers of their vertices.
 template <typename Triangles>
 void renumber_corners(Triangles& triangles, std::span<const std::uint32_t> number) {

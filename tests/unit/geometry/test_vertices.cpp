@@ -83,3 +83,12 @@ TEST_CASE("corners get the new numbers of their vertices") {
   renumber_corners(triangles, std::vector<std::uint32_t>{5, 6, 7, 8});
   CHECK(triangles == std::vector<Triangle>{{5, 6, 7}, {7, 6, 8}});
 }
+
+TEST_CASE("a surface is added after what is there") {
+  Mesh mesh = row({1, 2, 3}, false);
+  mesh.triangles = {{0, 1, 2}};
+  const Mesh more = row({4, 5, 6, 7}, false);
+  append_surface(more.positions, std::vector<Triangle>{{0, 1, 2}, {2, 1, 3}}, mesh);
+  CHECK(mesh.positions == row({1, 2, 3, 4, 5, 6, 7}, false).positions);
+  CHECK(mesh.triangles == std::vector<Triangle>{{0, 1, 2}, {3, 4, 5}, {5, 4, 6}});
+}

@@ -102,7 +102,7 @@ TEST_CASE("a page with pictures loads nothing") {
   CHECK_FALSE(page_has(page, "url("));
   CHECK_FALSE(page_has(page, "<link"));
   CHECK(count_of(page, "http:") == count_of(page, "http://www.w3.org/2000/svg"));
-  CHECK(page_has(page, "<td>volume</td><td>4</td><td>3</td><td>-25 %</td>"));
+  CHECK(page_has(page, "<td>volume</td><td>4</td><td>3</td><td>−25 %</td>"));
   CHECK(page_has(page, base64("a model")));
   CHECK(render_run_page(run) == page);
   run.scene->model.clear();
