@@ -19,14 +19,17 @@ function(meshfarm_compile_options target)
 endfunction()
 
 # Flags of a test program. Most of its time goes into compiling it, so its own code is optimised less
-# than what it tests.
+# than what it tests. OWN_MAIN: its sources have the main function.
 function(meshfarm_test_options target)
+  cmake_parse_arguments(ARG "OWN_MAIN" "" "" ${ARGN})
   if(NOT TARGET meshfarm_doctest_main)
     add_library(meshfarm_doctest_main OBJECT ${PROJECT_SOURCE_DIR}/tests/support/doctest_main.cpp)
     target_include_directories(meshfarm_doctest_main PRIVATE ${PROJECT_SOURCE_DIR}/tests)
     meshfarm_compile_options(meshfarm_doctest_main)
   endif()
-  target_sources(${target} PRIVATE $<TARGET_OBJECTS:meshfarm_doctest_main>)
+  if(NOT ARG_OWN_MAIN)
+    target_sources(${target} PRIVATE $<TARGET_OBJECTS:meshfarm_doctest_main>)
+  endif()
   target_include_directories(${target} PRIVATE ${PROJECT_SOURCE_DIR}/tests)
   target_compile_definitions(${target} PRIVATE DOCTEST_CONFIG_SUPER_FAST_ASSERTS)
   meshfarm_compile_options(${target})
@@ -48,7 +51,7 @@ endfunction()
 # then is 3 % slower.
 function(meshfarm_layer name)
   cmake_parse_arguments(ARG "" "" "USES;PACKAGES" ${ARGN})
-  file(GLOB sources CONFIGURE_DEPENDS src/${name}/*.cpp)
+  file(GLOB sources CONFIGURE_DEPENDS src/${name}/*.cpp src/${name}/*/*.cpp)
   add_library(meshfarm_${name} STATIC ${sources})
   add_library(meshfarm::${name} ALIAS meshfarm_${name})
   set_target_properties(meshfarm_${name} PROPERTIES EXPORT_NAME ${name})

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include <meshfarm/geometry/label_corners.hpp>
 
-#include "geometry/adjacency.hpp"
+#include "geometry/simplify/adjacency.hpp"
 
 namespace meshfarm {
 namespace {

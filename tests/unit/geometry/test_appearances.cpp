@@ -9,7 +9,7 @@
 #include <meshfarm/geometry/simplify.hpp>
 #include <meshfarm/util/errors.hpp>
 
-#include "geometry/appearance_star.hpp"
+#include "geometry/simplify/appearance_star.hpp"
 #include "test_simplify_meshes.hpp"
 
 using namespace meshfarm;

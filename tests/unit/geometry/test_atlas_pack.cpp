@@ -6,9 +6,9 @@
 
 #include <doctest/doctest.h>
 
-#include "geometry/atlas_horizon.hpp"
-#include "geometry/atlas_pack.hpp"
 #include "geometry/random_unit.hpp"
+#include "geometry/texture/atlas_horizon.hpp"
+#include "geometry/texture/atlas_pack.hpp"
 
 using namespace meshfarm;
 

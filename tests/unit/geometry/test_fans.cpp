@@ -6,7 +6,7 @@
 
 #include <doctest/doctest.h>
 
-#include "geometry/fans.hpp"
+#include "geometry/simplify/fans.hpp"
 
 using namespace meshfarm;
 

@@ -4,7 +4,7 @@
 
 #include <doctest/doctest.h>
 
-#include "geometry/orient.hpp"
+#include "geometry/simplify/orient.hpp"
 #include "test_simplify_meshes.hpp"
 
 using namespace meshfarm;

@@ -2,10 +2,10 @@
 // SPDX-License-Identifier: MIT
 #include <doctest/doctest.h>
 
-#include "geometry/adjacency.hpp"
-#include "geometry/collapse_star.hpp"
-#include "geometry/quadric.hpp"
-#include "geometry/simplify_cost.hpp"
+#include "geometry/simplify/adjacency.hpp"
+#include "geometry/simplify/collapse_star.hpp"
+#include "geometry/simplify/quadric.hpp"
+#include "geometry/simplify/simplify_cost.hpp"
 #include "test_simplify_meshes.hpp"
 
 using namespace meshfarm;

@@ -11,8 +11,8 @@
 #include <meshfarm/geometry/distance.hpp>
 #include <meshfarm/geometry/simplify.hpp>
 
-#include "geometry/rough_pass.hpp"
-#include "geometry/simplify_clean.hpp"
+#include "geometry/simplify/rough_pass.hpp"
+#include "geometry/simplify/simplify_clean.hpp"
 #include "test_simplify_meshes.hpp"
 
 using namespace meshfarm;

@@ -13,8 +13,8 @@
 #include <meshfarm/geometry/simplify.hpp>
 #include <meshfarm/util/errors.hpp>
 
-#include "geometry/simplify_clean.hpp"
-#include "geometry/simplify_lines.hpp"
+#include "geometry/simplify/simplify_clean.hpp"
+#include "geometry/simplify/simplify_lines.hpp"
 #include "test_simplify_meshes.hpp"
 
 using namespace meshfarm;

@@ -1,0 +1,322 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#include "geometry/simplify/collapse.hpp"
+
+#include <algorithm>
+#include <numeric>
+
+#include "geometry/simplify/vertex_flags.hpp"
+
+namespace meshfarm {
+namespace {
+
+constexpr std::uint32_t k_none = UINT32_MAX;
+
+constexpr std::uint32_t k_compared_at_once = 8;
+
+// Of triangles round an edge.
+constexpr std::uint32_t k_few_pairs = 3;
+
+// The neighbour of an open ring that no triangle begins at.
+template <typename Ring>
+std::uint32_t last_neighbour(const Ring& ring) {
+  const auto* const end = ring.next.data() + ring.size;
+  for (std::uint32_t i = 0; i < ring.size; ++i) {
+    if (std::find(ring.next.data(), end, ring.prev[i]) == end) return ring.prev[i];
+  }
+  return k_none;
+}
+
+template <typename Ring>
+std::uint32_t count_in(const Ring& ring, std::uint32_t vertex) {
+  std::uint32_t count = 0;
+  for (std::uint32_t i = 0; i < ring.size; ++i) count += ring.next[i] == vertex ? 1 : 0;
+  return count;
+}
+
+}  // namespace
+
+/// Lists the triangles at one end. All is written always and counted if wanted: which triangles
+/// are there no processor guesses.
+CollapseJudge::Walk CollapseJudge::walk(const Walk& walk, Ring& ring) const {
+  const std::uint32_t* const target = state_.target.data();
+  const std::uint32_t other = walk.other;
+  Corner* shared_end = walk.shared;
+  Corner* kept_end = walk.kept;
+  std::uint32_t size = 0;
+  for (const Corner& c : state_.adjacency->at(walk.vertex)) {
+    const std::uint32_t next = target[c.next];
+    const std::uint32_t prev = target[c.prev];
+    ring.next[size] = next;
+    ring.prev[size] = prev;
+    // Equal after another collapse of this pass: the triangle is gone.
+    const std::uint32_t there = next != prev ? 1 : 0;
+    const std::uint32_t shared = ((next == other) | (prev == other)) ? 1 : 0;
+    *shared_end = {next, prev};
+    *kept_end = {next, prev};
+    shared_end += there & shared;
+    kept_end += there & ~shared;
+    size += there;
+  }
+  ring.size = size;
+  ring.flags = state_.flags[walk.vertex];
+  return {walk.vertex, other, shared_end, kept_end};
+}
+
+/// Returns the number of shared triangles.
+std::uint32_t CollapseJudge::list_star(std::uint32_t a, std::uint32_t b) {
+  std::array<Corner, k_max_star> shared_again;
+  std::array<Corner, k_max_star> shared_once;
+  const Walk at_a = walk({a, b, shared_once.data(), corners_.data() + 2}, ring_a_);
+  // The ring that is searched may be compared beyond its end.
+  std::fill_n(ring_a_.next.begin() + ring_a_.size, k_compared_at_once, k_none);
+  const Walk at_b = walk({b, a, shared_again.data(), at_a.kept}, ring_b_);
+  *at_b.kept = {a, a};
+  corners_[0] = shared_once[0];
+  corners_[1] = shared_once[1];
+  kept_of_a_ = static_cast<std::uint32_t>(at_a.kept - corners_.data()) - 2;
+  kept_ = static_cast<std::uint32_t>(at_b.kept - corners_.data()) - 2;
+  return static_cast<std::uint32_t>(at_a.shared - shared_once.data());
+}
+
+std::uint32_t CollapseJudge::common_neighbours() const {
+  std::array<std::uint32_t, k_compared_at_once> equal{};
+  for (std::uint32_t i = 0; i < ring_b_.size; ++i) {
+    const std::uint32_t vertex = ring_b_.next[i];
+    for (std::uint32_t first = 0; first < ring_a_.size; first += k_compared_at_once) {
+      const std::uint32_t* const next = ring_a_.next.data() + first;
+      for (std::uint32_t l = 0; l < k_compared_at_once; ++l) equal[l] += next[l] == vertex ? 1 : 0;
+    }
+  }
+  std::uint32_t common = std::accumulate(equal.begin(), equal.end(), 0U);
+  if (!ring_a_.border() && !ring_b_.border()) return common;
+  const std::uint32_t last_a = ring_a_.border() ? last_neighbour(ring_a_) : k_none;
+  const std::uint32_t last_b = ring_b_.border() ? last_neighbour(ring_b_) : k_none;
+  if (last_a != k_none) common += count_in(ring_b_, last_a);
+  if (last_b != k_none) common += count_in(ring_a_, last_b);
+  return common + (last_a != k_none && last_a == last_b ? 1 : 0);
+}
+
+/// The link condition (Dey, Edelsbrunner, Guha, Nekhayev 1999), with all borders joined to one
+/// vertex at infinity. It also keeps two triangles from becoming one.
+bool CollapseJudge::link_allows(std::uint32_t shared) const {
+  if (shared == 2) {
+    if (ring_a_.border() && ring_b_.border()) return false;
+    if (ring_a_.size == 3 && ring_b_.size == 3) return false;
+  } else {
+    if (shared != 1 || (ring_a_.size == 1 && ring_b_.size == 1)) return false;
+  }
+  return common_neighbours() == shared;
+}
+
+void CollapseJudge::add_star(std::uint32_t shared) {
+  const Vec3* const positions = state_.positions.data();
+  const auto add = [&](std::uint32_t i, CollapseStar::Pair sides) {
+    const Corner& c0 = corners_[i];
+    const Corner& c1 = corners_[i + 1];
+    star_.add({positions[c0.next], positions[c0.prev], positions[c1.next], positions[c1.prev]},
+              sides);
+  };
+  // One at a border.
+  if (shared == 1) corners_[1] = {corners_[0].next, corners_[0].next};
+  add(0, CollapseStar::Pair{-1, -1});
+  for (std::uint32_t i = 0; i < kept_; i += 2) {
+    add(i + 2, CollapseStar::Pair{i < kept_of_a_ ? -1.0 : 1.0, i + 1 < kept_of_a_ ? -1.0 : 1.0});
+  }
+}
+
+/// After the star, whose places are those of the corners.
+void CollapseJudge::add_appearances(std::uint32_t a, std::uint32_t b, std::uint32_t shared) {
+  if (state_.appearances.empty()) return;
+  appearance_.clear(state_.appearance_scale);
+  const auto add = [&](std::uint32_t place, std::uint32_t vertex) {
+    const Corner& c = corners_[place];
+    appearance_.add(star_.triangle(place), state_.values_at(vertex, c));
+  };
+  for (std::uint32_t i = 0; i < shared; ++i) add(i, a);
+  for (std::uint32_t i = 0; i < kept_; ++i) add(i + 2, i < kept_of_a_ ? a : b);
+  appearance_.add_to(quadric_);
+}
+
+/// Those of the triangles of the vertex's ring, in its order; none where there are none.
+std::span<const CornerId> CollapseJudge::ids_of(std::uint32_t vertex,
+                                                std::span<CornerId> buffer) const {
+  const CornerFan fan = state_.adjacency->fan_at(vertex);
+  std::size_t size = 0;
+  for (std::size_t i = 0; i < fan.ids.size(); ++i) {
+    const Corner& c = fan.corners[i];
+    if (state_.target[c.next] != state_.target[c.prev]) buffer[size++] = fan.ids[i];
+  }
+  return buffer.first(size);
+}
+
+/// for_crease_edges of one end, as it is now.
+template <typename Candidate, typename Take>
+void CollapseJudge::for_creases_of(const Ring& ring, std::uint32_t vertex, Vec3 at,
+                                   const Candidate& is_candidate, const Take& take) const {
+  if ((ring.flags & k_crease) == 0) return;
+  std::array<Corner, k_max_star> corners;
+  for (std::uint32_t i = 0; i < ring.size; ++i) corners[i] = {ring.next[i], ring.prev[i]};
+  std::array<CornerId, k_max_star> ids;
+  for_crease_edges({std::span<const Corner>(corners.data(), ring.size), ids_of(vertex, ids),
+                    state_.adjacency->fan_at(vertex).columns},
+                   at, state_.positions, *state_.creases, is_candidate, take);
+}
+
+/// Adds the planes of the lines at one end, but for the edge to `without`.
+void CollapseJudge::add_lines(const Ring& ring, std::uint32_t vertex, Vec3 end,
+                              std::uint32_t without) {
+  const Vec3 at = middle_ + end;
+  Quadric planes;
+  const auto add = [&](const Corner& c, std::uint32_t neighbour, double weight) {
+    add_line_plane(planes, cross(state_.positions[c.next] - at, state_.positions[c.prev] - at),
+                   state_.positions[neighbour] - at, weight);
+  };
+  if (ring.border()) {
+    std::array<Corner, k_max_star> corners;
+    for (std::uint32_t i = 0; i < ring.size; ++i) corners[i] = {ring.next[i], ring.prev[i]};
+    for_border_edges(std::span<const Corner>(corners.data(), ring.size),
+                     [&](const Corner& c, std::uint32_t neighbour) {
+                       if (neighbour != without) add(c, neighbour, 1);
+                     });
+  }
+  const auto is_other_on_crease = [&](std::uint32_t neighbour) {
+    return neighbour != without && (state_.flags[neighbour] & k_crease) != 0;
+  };
+  const double weight = crease_weight(state_.adjacency->has_labels());
+  for_creases_of(ring, vertex, at, is_other_on_crease, [&](const Corner& one, const Corner& other) {
+    add(one, one.prev, weight);
+    add(other, one.prev, weight);
+  });
+  quadric_.add(planes, end);
+}
+
+/// The only neighbour along a crease but `without`.
+std::uint32_t CollapseJudge::next_on_line(const Ring& ring, std::uint32_t vertex,
+                                          std::uint32_t without) const {
+  std::uint32_t found = k_none;
+  std::uint32_t count = 0;
+  const auto is_other_on_crease = [&](std::uint32_t neighbour) {
+    return neighbour != without && (state_.flags[neighbour] & k_crease) != 0;
+  };
+  for_creases_of(ring, vertex, state_.positions[vertex], is_other_on_crease,
+                 [&](const Corner& one, const Corner&) {
+                   found = one.prev;
+                   ++count;
+                 });
+  return count == 1 ? found : k_none;
+}
+
+/// Moves x to where the areas on both sides of a line between labels stay as they are, seen along
+/// the mean normal: planes alone let all curves bulge. That saves 4 % of the lines' error on a
+/// dragon at 2 %, and 8 % of that of the input's lines to the result's.
+Vec3 CollapseJudge::keep_label_areas(std::uint32_t a, std::uint32_t b, Vec3 x) const {
+  if (!state_.adjacency->has_labels()) return x;
+  const std::uint32_t before = next_on_line(ring_a_, a, b);
+  const std::uint32_t after = next_on_line(ring_b_, b, a);
+  if (before == k_none || after == k_none) return x;
+  const Vec3 p = state_.positions[before] - middle_;
+  const Vec3 q = state_.positions[after] - middle_;
+  // Of a line that turns back on itself the area says little of its place.
+  if (!(squared_length(p - q) > quadric_.squared_length)) return x;
+  const Vec3 half = (state_.positions[b] - state_.positions[a]) * 0.5;
+  const Vec3& normal = quadric_.normals;
+  return quadric_.moved(x, cross(normal, p - q), dot(normal, cross(half, p + q)), 1);
+}
+
+/// A vertex that merges into a line from beside leaves the line as it is, and one that merges into
+/// a corner the corner.
+Vec3 CollapseJudge::line_position(std::uint32_t a, std::uint32_t b) const {
+  const bool at_a = line_rank(ring_a_.flags) > line_rank(ring_b_.flags);
+  return rounded(state_.positions[at_a ? a : b], state_.type);
+}
+
+Collapse CollapseJudge::judge(std::uint32_t a, std::uint32_t b, const CollapseLimits& limits) {
+  if (state_.adjacency->count(a) + state_.adjacency->count(b) > k_max_star) return {};
+  const std::uint32_t shared = list_star(a, b);
+  if (shared > limits.triangles) return {};
+  if (!link_allows(shared)) return {.by_topology = true};
+
+  const Vec3 half = (state_.positions[b] - state_.positions[a]) * 0.5;
+  middle_ = state_.positions[a] + half;
+  star_.clear(middle_, half);
+  add_star(shared);
+  quadric_ = {};
+  quadric_.squared_length = 4 * squared_length(half);
+  star_.sum_planes(quadric_);
+  add_appearances(a, b, shared);
+  if ((ring_a_.flags & k_line) != 0) add_lines(ring_a_, a, half * -1.0, k_none);
+  if ((ring_b_.flags & k_line) != 0) add_lines(ring_b_, b, half, a);
+  if (state_.has_uvs()) return best_with_uvs(a, b, shared, limits.max_cost);
+  return best_of_positions(a, b, shared, limits.max_cost);
+}
+
+Collapse CollapseJudge::best_of_positions(std::uint32_t a, std::uint32_t b, std::uint32_t shared,
+                                          double max_cost) {
+  if (line_rank(ring_a_.flags) != line_rank(ring_b_.flags)) {
+    const Vec3 point = line_position(a, b);
+    return at_position(point, shared, max_cost, Turn::wide);
+  }
+  const auto at_near = [&](Vec3 x) {
+    if (!quadric_.is_near(x)) return Collapse{};
+    return at_position(rounded(middle_ + x, state_.type), shared, max_cost, Turn::wide);
+  };
+  const bool keeps_areas = (ring_a_.flags & ring_b_.flags & k_crease) != 0;
+  const Vec3 least = quadric_.best();
+  const Collapse best = at_near(keeps_areas ? keep_label_areas(a, b, least) : least);
+  if (best.triangles > 0) return best;
+  // Where the best point is far off or would spoil a triangle, one of the ends may do: without them
+  // flat faces with sharp edges are dead ends. To let them turn triangles as far costs 6 % of the
+  // error on thin bridges.
+  const Vec3 half = (state_.positions[b] - state_.positions[a]) * 0.5;
+  const bool a_first = quadric_.cost(half * -1.0) <= quadric_.cost(half);
+  for (const std::uint32_t end : {a_first ? a : b, a_first ? b : a}) {
+    const Collapse there = at_position(state_.positions[end], shared, max_cost, Turn::narrow);
+    if (there.triangles > 0) return there;
+  }
+  // Of pieces that are nearly as small as can be, few collapses keep any of the volume.
+  return star_.pairs() <= k_few_pairs ? at_near(quadric_.cheapest()) : Collapse{};
+}
+
+/// On lines one of the ends: no other place is on a line of the pictures.
+Collapse CollapseJudge::best_with_uvs(std::uint32_t a, std::uint32_t b, std::uint32_t shared,
+                                      double max_cost) {
+  wedges_.list(state_, a, b, middle_);
+  const int rank_a = line_rank(ring_a_.flags);
+  const int rank_b = line_rank(ring_b_.flags);
+  blends_uvs_ = rank_a == 0 && rank_b == 0 && wedges_.is_even();
+  if (blends_uvs_) {
+    wedges_.add_to(quadric_);
+    return best_of_positions(a, b, shared, max_cost);
+  }
+  const auto at_end = [&](WedgeStar::End end, double most) {
+    const Vec3 position = state_.positions[end == WedgeStar::End::a ? a : b];
+    if (!wedges_.place_at(end, position - middle_)) return Collapse{};
+    Collapse made = at_position(position, shared, most, Turn::wide);
+    made.cost += wedges_.cost();
+    return made.cost <= most ? made : Collapse{};
+  };
+  if (rank_a != rank_b) {
+    return at_end(rank_a > rank_b ? WedgeStar::End::a : WedgeStar::End::b, max_cost);
+  }
+  const Collapse at_a = at_end(WedgeStar::End::a, max_cost);
+  const Collapse at_b = at_end(WedgeStar::End::b, at_a.triangles > 0 ? at_a.cost : max_cost);
+  if (at_a.triangles == 0 || (at_b.triangles > 0 && at_b.cost < at_a.cost)) return at_b;
+  return at_end(WedgeStar::End::a, max_cost);
+}
+
+/// Nothing if it costs more or a triangle would be spoiled.
+Collapse CollapseJudge::at_position(Vec3 position, std::uint32_t shared, double max_cost,
+                                    Turn turn) {
+  const Vec3 x = position - middle_;
+  double cost = quadric_.cost(x);
+  if (!(cost <= max_cost)) return {};
+  const std::optional<double> lost = star_.lost_area(kept_, x, turn);
+  if (!lost) return {};
+  cost = std::max(cost, quadric_.cost_of_lost_area(*lost));
+  if (!(cost <= max_cost)) return {};
+  if (blends_uvs_ && !wedges_.place(x)) return {};
+  return {shared, position, cost, false};
+}
+
+}  // namespace meshfarm

@@ -1,0 +1,314 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#include "geometry/simplify/collapse_general.hpp"
+
+#include <algorithm>
+#include <iterator>
+
+#include "geometry/simplify/vertex_flags.hpp"
+
+namespace meshfarm {
+namespace {
+
+/// What a change of the topology takes away lies farther from what is left than an edge's length:
+/// nobody knows how far. From 1 to 30 the error changes by some per cent.
+constexpr double k_loss_of_change = 2;
+/// Of the area of a piece that goes times its squared distance from the rest. Costs are sums over
+/// whole triangles of what only one corner moves, so that those of the same error are some times
+/// greater than that error. From 6 to 15 all is alike, with 1 or 40 scans of many pieces lose 10 %.
+constexpr double k_loss_of_piece = 10;
+
+bool contains(const std::vector<std::uint32_t>& sorted, std::uint32_t vertex) {
+  return std::binary_search(sorted.begin(), sorted.end(), vertex);
+}
+
+bool has(const Corner& corner, std::uint32_t vertex) {
+  return corner.next == vertex || corner.prev == vertex;
+}
+
+}  // namespace
+
+void GeneralJudge::list_end(std::uint32_t vertex, End& end) {
+  end.vertex = vertex;
+  end.neighbours.clear();
+  end.singular.clear();
+  ends_.clear();
+  for (const Corner& c : state_.adjacency->at(vertex)) {
+    ends_.push_back(c.next);
+    ends_.push_back(c.prev);
+  }
+  std::sort(ends_.begin(), ends_.end());
+  for (std::size_t first = 0, last = 0; first < ends_.size(); first = last) {
+    while (last < ends_.size() && ends_[last] == ends_[first]) ++last;
+    end.neighbours.push_back(ends_[first]);
+    if (last - first != 2) end.singular.push_back(ends_[first]);
+  }
+  const std::uint8_t flags = state_.flags[vertex];
+  end.rank = line_rank(flags);
+  if (!end.singular.empty()) end.rank = std::max(end.rank, end.singular.size() == 2 ? 1 : 2);
+}
+
+void GeneralJudge::list_triangles() {
+  shared_.clear();
+  kept_.clear();
+  for (const Corner& c : state_.adjacency->at(a_.vertex)) {
+    if (has(c, b_.vertex)) {
+      shared_.push_back(c);
+    } else {
+      kept_.push_back({c, false});
+    }
+  }
+  for (const Corner& c : state_.adjacency->at(b_.vertex)) {
+    if (!has(c, a_.vertex)) kept_.push_back({c, true});
+  }
+}
+
+/// Of two triangles that become one and face opposite ways both go; of two that face the same way
+/// that of b.
+void GeneralJudge::find_vanishing() {
+  vanishing_.clear();
+  for (Kept& of_b : kept_) {
+    if (!of_b.at_b) continue;
+    const auto [next, prev] = of_b.corner;
+    if (!contains(a_.neighbours, next) || !contains(a_.neighbours, prev)) continue;
+    for (Kept& of_a : kept_) {
+      if (of_a.at_b) break;
+      const Corner& c = of_a.corner;
+      if (of_a.vanishes || !has(c, next) || !has(c, prev)) continue;
+      of_b.vanishes = true;
+      vanishing_.emplace_back(next, prev);
+      if (c.next != prev) break;
+      of_a.vanishes = true;
+      vanishing_.emplace_back(c.next, c.prev);
+      break;
+    }
+  }
+  std::stable_partition(kept_.begin(), kept_.end(), [](const Kept& k) { return !k.vanishes; });
+  staying_ = static_cast<std::uint32_t>(kept_.size() - vanishing_.size());
+  removed_ = static_cast<std::uint32_t>(shared_.size() + vanishing_.size());
+}
+
+/// The link condition (Dey, Edelsbrunner, Guha, Nekhayev 1999), with all singular edges joined to
+/// one vertex at infinity.
+bool GeneralJudge::changes_topology() {
+  changed_.clear();
+  std::set_intersection(a_.neighbours.begin(), a_.neighbours.end(), b_.neighbours.begin(),
+                        b_.neighbours.end(), std::back_inserter(changed_));
+  const bool extra = changed_.size() != shared_.size();
+  const bool along = contains(a_.singular, b_.vertex);
+  const bool both = !a_.singular.empty() && !b_.singular.empty();
+  if (both && !along) return true;
+  const bool loop = both && std::any_of(a_.singular.begin(), a_.singular.end(),
+                                        [&](auto v) { return contains(b_.singular, v); });
+  return extra || loop || !vanishing_.empty() || staying_ == 0;
+}
+
+/// Whether the edge from an end to a neighbour has more than one triangle on either side.
+bool GeneralJudge::is_crowded(std::uint32_t vertex, const End& end) const {
+  int begin = 0;
+  int all = 0;
+  for (const Corner& c : state_.adjacency->at(end.vertex)) {
+    begin += c.next == vertex ? 1 : 0;
+    all += has(c, vertex) ? 1 : 0;
+  }
+  return begin > 1 || all - begin > 1;
+}
+
+/// Whether two edges that were fine become one that is crowded even after what is pinched has been
+/// cut apart. A result is to be no less manifold than its input.
+bool GeneralJudge::crowds_an_edge() {
+  merged_.clear();
+  for (std::size_t i = 0; i < staying_; ++i) merged_.push_back(kept_[i].corner);
+  bool is_split = false;
+  for (const std::uint32_t v : changed_) {
+    const auto joined =
+        std::count_if(merged_.begin(), merged_.end(), [v](const Corner& c) { return has(c, v); });
+    if (joined < 2 || is_crowded(v, a_) || is_crowded(v, b_)) continue;
+    if (!is_split) splitter_.split(merged_);
+    is_split = true;
+    const std::span<const std::uint32_t> fans = splitter_.fans();
+    for (std::size_t i = 0; i < merged_.size(); ++i) {
+      for (std::size_t k = 0; k < i; ++k) {
+        const bool same_side = (merged_[i].next == v && merged_[k].next == v) ||
+                               (merged_[i].prev == v && merged_[k].prev == v);
+        if (same_side && fans[i] == fans[k]) return true;
+      }
+    }
+  }
+  return false;
+}
+
+void GeneralJudge::add_star(Vec3 half) {
+  middle_ = state_.positions[a_.vertex] + half;
+  star_.clear(middle_, half);
+  const Vec3* const positions = state_.positions.data();
+  const Corner none{a_.vertex, a_.vertex};
+  const auto add = [&](const Corner& c0, const Corner& c1, CollapseStar::Pair sides) {
+    star_.add({positions[c0.next], positions[c0.prev], positions[c1.next], positions[c1.prev]},
+              sides);
+  };
+  const auto kept_at = [&](std::size_t i) { return i < kept_.size() ? kept_[i].corner : none; };
+  const auto side = [&](std::size_t i) { return i < kept_.size() && kept_[i].at_b ? 1.0 : -1.0; };
+  // Those that stay first: only they are looked at again for each position.
+  for (std::size_t i = 0; i < staying_; i += 2) {
+    const bool pair = i + 1 < staying_;
+    add(kept_at(i), pair ? kept_at(i + 1) : none,
+        CollapseStar::Pair{side(i), pair ? side(i + 1) : -1.0});
+  }
+  for (std::size_t i = staying_; i < kept_.size(); i += 2) {
+    add(kept_at(i), kept_at(i + 1), CollapseStar::Pair{side(i), side(i + 1)});
+  }
+  for (std::size_t i = 0; i < shared_.size(); i += 2) {
+    add(shared_[i], i + 1 < shared_.size() ? shared_[i + 1] : none, CollapseStar::Pair{-1.0, -1.0});
+  }
+  quadric_ = {};
+  quadric_.squared_length = 4 * squared_length(half);
+  star_.sum_planes(quadric_);
+  add_appearances();
+}
+
+/// After the star: triangles that stay, those that vanish and shared ones begin at even places.
+void GeneralJudge::add_appearances() {
+  if (state_.appearances.empty()) return;
+  appearance_.clear(state_.appearance_scale);
+  const auto even = [](std::size_t place) { return place + place % 2; };
+  const std::size_t vanishing = even(staying_);
+  const std::size_t shared = even(vanishing + kept_.size() - staying_);
+  const auto add = [&](std::size_t place, std::uint32_t vertex, const Corner& c) {
+    appearance_.add(star_.triangle(static_cast<std::uint32_t>(place)), state_.values_at(vertex, c));
+  };
+  for (std::size_t i = 0; i < shared_.size(); ++i) add(shared + i, a_.vertex, shared_[i]);
+  for (std::size_t i = 0; i < kept_.size(); ++i) {
+    const std::size_t place = i < staying_ ? i : vanishing + i - staying_;
+    add(place, (kept_[i].at_b ? b_ : a_).vertex, kept_[i].corner);
+  }
+  appearance_.add_to(quadric_);
+}
+
+/// Adds the planes along the singular edges of one end.
+void GeneralJudge::add_lines(const End& end, const End& other, Vec3 at) {
+  if (end.singular.empty()) return;
+  Quadric planes;
+  const Vec3 position = state_.positions[end.vertex];
+  for (const Corner& c : state_.adjacency->at(end.vertex)) {
+    const Vec3 normal =
+        cross(state_.positions[c.next] - position, state_.positions[c.prev] - position);
+    for (const std::uint32_t v : {c.next, c.prev}) {
+      const bool counted = v == other.vertex && end.vertex > other.vertex;
+      if (counted || !contains(end.singular, v)) continue;
+      add_line_plane(planes, normal, state_.positions[v] - position);
+    }
+  }
+  quadric_.add(planes, at);
+}
+
+Collapse GeneralJudge::at_position(Vec3 position, Turn turn) const {
+  const Vec3 x = position - middle_;
+  const std::optional<double> lost = star_.lost_area_from(0, staying_, x, {.turn = turn});
+  if (!lost) return {};
+  const double lost_cost = quadric_.cost_of_lost_area(*lost);
+  const double planes = quadric_.cost(x);
+  Collapse collapse{removed_, position, 0, false};
+  collapse.cost = std::max(planes, changes_ ? lost_cost * k_loss_of_change : lost_cost);
+  collapse.certain = std::max(planes, lost_cost);
+  return collapse;
+}
+
+/// The vertices that are used no more if nothing is left at the two ends.
+void GeneralJudge::list_removed() {
+  removed_vertices_.assign({a_.vertex, b_.vertex});
+  for (const End* end : {&a_, &b_}) {
+    for (const std::uint32_t v : end->neighbours) {
+      const auto fan = state_.adjacency->at(v);
+      const auto is_left = [&](const Corner& c) {
+        return !has(c, a_.vertex) && !has(c, b_.vertex);
+      };
+      if (std::none_of(fan.begin(), fan.end(), is_left)) removed_vertices_.push_back(v);
+    }
+  }
+  std::sort(removed_vertices_.begin(), removed_vertices_.end());
+}
+
+/// All triangles at both ends go: a piece, or what stands out from one.
+Collapse GeneralJudge::removal() {
+  list_removed();
+  Vec3 sum;
+  double area = 0;
+  const auto add = [&](Vec3 end, const Corner& c) {
+    const Vec3 p = state_.positions[c.next];
+    const Vec3 q = state_.positions[c.prev];
+    const double twice_area = length(cross(p - end, q - end));
+    area += 0.5 * twice_area;
+    sum = sum + (end + p + q) * (0.5 * twice_area / 3);
+  };
+  for (const Corner& c : shared_) add(state_.positions[a_.vertex], c);
+  for (const Kept& k : kept_) add(state_.positions[(k.at_b ? b_ : a_).vertex], k.corner);
+  const Vec3 centre = area > 0 ? sum * (1 / area) : middle_;
+  const double squared = surroundings_.squared_distance(
+      {state_.positions, state_.target, state_.adjacency}, centre, removed_vertices_);
+  Collapse collapse{removed_, middle_, k_loss_of_piece * area * squared, false};
+  if (area == 0) collapse.cost = 0;
+  return collapse;
+}
+
+GeneralCollapse GeneralJudge::judge(std::uint32_t a, std::uint32_t b,
+                                    std::uint64_t most_triangles) {
+  if (state_.adjacency->count(a) + state_.adjacency->count(b) > k_max_star) return {};
+  list_end(a, a_);
+  list_end(b, b_);
+  list_triangles();
+  if (shared_.empty()) return {};
+  find_vanishing();
+  if (removed_ > most_triangles) return {};
+  GeneralCollapse result;
+  result.changes_topology = changes_topology();
+  changes_ = result.changes_topology;
+  if (result.changes_topology && crowds_an_edge()) return {};
+  half_ = (state_.positions[b] - state_.positions[a]) * 0.5;
+  wedges_.clear();
+  if (staying_ == 0) {
+    appearance_.clear(state_.appearance_scale);
+    middle_ = state_.positions[a] + half_;
+    result.collapse = removal();
+    return result;
+  }
+  add_star(half_);
+  add_lines(a_, b_, half_ * -1.0);
+  add_lines(b_, a_, half_);
+  result.collapse = state_.has_uvs() ? best_with_uvs() : best_of_positions();
+  return result;
+}
+
+Collapse GeneralJudge::best_of_positions() {
+  const Vec3 at_a = state_.positions[a_.vertex];
+  const Vec3 at_b = state_.positions[b_.vertex];
+  if (a_.rank != b_.rank) return at_position(a_.rank > b_.rank ? at_a : at_b, Turn::wide);
+  if (a_.rank < 2) {
+    const Collapse best = at_position(rounded(middle_ + quadric_.best(), state_.type), Turn::wide);
+    if (best.triangles > 0) return best;
+  }
+  const bool a_first = quadric_.cost(half_ * -1.0) <= quadric_.cost(half_);
+  const Collapse first = at_position(a_first ? at_a : at_b, Turn::narrow);
+  return first.triangles > 0 ? first : at_position(a_first ? at_b : at_a, Turn::narrow);
+}
+
+/// Only at the ends, wherever they are: what is rare may be less good.
+Collapse GeneralJudge::best_with_uvs() {
+  wedges_.list(state_, a_.vertex, b_.vertex, middle_);
+  const auto at_end = [&](WedgeStar::End end) {
+    const bool is_a = end == WedgeStar::End::a;
+    if ((is_a ? a_.rank < b_.rank : b_.rank < a_.rank)) return Collapse{};
+    const Vec3 position = state_.positions[(is_a ? a_ : b_).vertex];
+    if (!wedges_.place_at(end, position - middle_)) return Collapse{};
+    Collapse made = at_position(position, a_.rank == b_.rank ? Turn::narrow : Turn::wide);
+    made.cost += wedges_.cost();
+    made.certain += wedges_.cost();
+    return made;
+  };
+  const Collapse at_a = at_end(WedgeStar::End::a);
+  const Collapse at_b = at_end(WedgeStar::End::b);
+  if (at_a.triangles == 0 || (at_b.triangles > 0 && at_b.cost < at_a.cost)) return at_b;
+  return at_end(WedgeStar::End::a);
+}
+
+}  // namespace meshfarm

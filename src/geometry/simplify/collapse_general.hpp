@@ -1,0 +1,98 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "geometry/simplify/collapse.hpp"
+#include "geometry/simplify/fans.hpp"
+#include "geometry/simplify/surroundings.hpp"
+
+namespace meshfarm {
+
+/// What a collapse that CollapseJudge cannot judge would do.
+struct GeneralCollapse {
+  Collapse collapse;  // its triangles are 0 if it may not be
+  /// It pinches off a handle or a strip, closes a hole, or removes a piece.
+  bool changes_topology = false;
+};
+
+/// Judges collapses on any complex of triangles: at vertices whose triangles are no single fan, and
+/// those that change the topology. Singular are edges that have not two triangles: they are lines,
+/// along which their vertices merge.
+class GeneralJudge {
+ public:
+  /// Target must be the identity: the adjacency is kept up to date.
+  explicit GeneralJudge(const CollapseState& state) : state_(state) {}
+  void move_to(const CollapseState& state) { state_ = state; }
+
+  /// Neither end may be fixed.
+  GeneralCollapse judge(std::uint32_t a, std::uint32_t b, std::uint64_t most_triangles);
+
+  // Of the last that was judged.
+
+  /// Kept triangles that the collapse makes equal to another: by their other two vertices.
+  std::span<const std::pair<std::uint32_t, std::uint32_t>> vanishing() const { return vanishing_; }
+  /// Vertices whose fans are other ones than before, apart from the merged one.
+  std::span<const std::uint32_t> changed() const { return changed_; }
+  /// If it may be: what the merged vertex gets.
+  MergedColumns columns_of(const Collapse& collapse) const {
+    return {state_.appearances.empty() ? Appearance{} : appearance_.at(collapse.position - middle_),
+            wedges_.merges()};
+  }
+
+ private:
+  struct End {
+    std::uint32_t vertex = 0;
+    std::vector<std::uint32_t> neighbours;  // ascending
+    std::vector<std::uint32_t> singular;    // of these, those across singular edges
+    int rank = 0;
+  };
+  struct Kept {
+    Corner corner;
+    bool at_b = false;
+    bool vanishes = false;
+  };
+
+  void list_end(std::uint32_t vertex, End& end);
+  void list_triangles();
+  void find_vanishing();
+  bool changes_topology();
+  bool is_crowded(std::uint32_t vertex, const End& end) const;
+  bool crowds_an_edge();
+  void add_star(Vec3 half);
+  void add_appearances();
+  void add_lines(const End& end, const End& other, Vec3 at);
+  Collapse best_of_positions();
+  Collapse best_with_uvs();
+  Collapse at_position(Vec3 position, Turn turn) const;
+  Collapse removal();
+  void list_removed();
+
+  CollapseState state_;
+  End a_;
+  End b_;
+  std::vector<Corner> shared_;  // as corners of a
+  std::vector<Kept> kept_;
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> vanishing_;
+  std::vector<std::uint32_t> changed_;
+  std::vector<std::uint32_t> ends_;
+  std::vector<Corner> merged_;
+  FanSplitter splitter_;
+  bool changes_ = false;
+  std::uint32_t removed_ = 0;
+  std::uint32_t staying_ = 0;
+  Vec3 middle_;
+  Vec3 half_;                                    // from there to b
+  std::vector<std::uint32_t> removed_vertices_;  // ascending
+  Surroundings surroundings_;
+  CollapseStar star_;
+  EdgeQuadric quadric_;
+  AppearanceStar appearance_;
+  WedgeStar wedges_;
+};
+
+}  // namespace meshfarm

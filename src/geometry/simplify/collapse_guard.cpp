@@ -1,0 +1,357 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#include "geometry/simplify/collapse_guard.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include <meshfarm/util/parallel.hpp>
+
+#include "geometry/bvh.hpp"
+#include "geometry/simplify/vertex_flags.hpp"
+
+namespace meshfarm {
+namespace {
+
+constexpr std::uint32_t k_no_point = UINT32_MAX;
+constexpr std::size_t k_points_at_once = 4096;
+/// A triangle is as good as any other if it is so near, as a share of the bound.
+constexpr double k_near_share = 0.5;
+/// Points of a new triangle are so far apart, in distances of the bound, but no more on a side.
+constexpr double k_spacing = 1.25;
+constexpr int k_least_steps = 2;
+constexpr int k_most_steps = 32;
+/// So many of the points held by a triangle may tell where to look.
+constexpr int k_most_hints = 16;
+constexpr std::size_t k_memo = 1U << 18;
+
+}  // namespace
+
+/// With the nearest of the triangle's corners.
+CollapseGuard::Place CollapseGuard::place_on(std::uint32_t point, const Triangle& triangle) const {
+  const Vec3 p = held_[point].point;
+  std::size_t best = 0;
+  double least = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < 3; ++i) {
+    const std::uint32_t v = triangle[i];
+    const bool moves = v == merge_.a && merge_.a != merge_.b;
+    const double squared = squared_length(p - (moves ? merge_.position : state_.positions[v]));
+    if (squared < least) {
+      least = squared;
+      best = i;
+    }
+  }
+  return {point, triangle[best], triangle[(best + 1) % 3], triangle[(best + 2) % 3], k_no_point};
+}
+
+void CollapseGuard::hold(std::uint32_t point, const Triangle& triangle) {
+  const Place place = place_on(point, triangle);
+  Held& held = held_[point];
+  held.next = place.next;
+  held.prev = place.prev;
+  held.following = std::exchange(bag_[place.owner], point);
+}
+
+void CollapseGuard::start(const CollapseState& state, const Mesh& mesh) {
+  move_to(state);
+  merge_ = {};
+  bag_.assign(mesh.positions.size(), k_no_point);
+  moves_.assign(mesh.positions.size(), 0);
+  memo_.assign(k_memo, 0);
+  held_.clear();
+  if (mesh.triangles.empty()) return;
+  const std::span<const SurfacePoint> points = bound_.points();
+  const Bvh bvh(mesh, bound_.options().threads);
+  std::vector<Bvh::Nearest> nearest(points.size());
+  const double most = bound_.distance() * bound_.distance();
+  const auto chunks = (points.size() + k_points_at_once - 1) / k_points_at_once;
+  parallel_for(chunks, bound_.options().threads, [&](std::uint64_t chunk) {
+    std::uint32_t guess = 0;
+    const std::size_t end = std::min(points.size(), (chunk + 1) * k_points_at_once);
+    for (std::size_t i = chunk * k_points_at_once; i < end; ++i) {
+      nearest[i] = bvh.nearest(points[i].at, guess);
+      guess = nearest[i].triangle;
+    }
+  });
+  const auto is_fixed = [&](std::uint32_t v) { return (state_.flags[v] & k_fixed) != 0; };
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const Triangle& t = mesh.triangles[nearest[i].triangle];
+    if (std::all_of(t.begin(), t.end(), is_fixed)) continue;
+    const auto limit = static_cast<float>(std::max(most, nearest[i].squared) * (1 + 0x1p-20));
+    held_.push_back({points[i].at, limit, points[i].share, points[i].triangle, k_no_point, 0, 0});
+    hold(static_cast<std::uint32_t>(held_.size() - 1), t);
+  }
+}
+
+void CollapseGuard::list_star(const Merge& merge) {
+  star_.clear();
+  ring_.clear();
+  const auto vanishes = [&](const Corner& c) {
+    return std::any_of(merge.vanishing.begin(), merge.vanishing.end(), [&](const auto& pair) {
+      return (pair.first == c.next && pair.second == c.prev) ||
+             (pair.first == c.prev && pair.second == c.next);
+    });
+  };
+  for (const std::uint32_t end : {merge.a, merge.b}) {
+    const std::uint32_t other = end == merge.a ? merge.b : merge.a;
+    for (const Corner& c : state_.adjacency->at(end)) {
+      for (const std::uint32_t v : {c.next, c.prev}) {
+        if (v != other) ring_.push_back(v);
+      }
+      if (c.next != other && c.prev != other && !vanishes(c)) star_.push_back(c);
+    }
+  }
+  std::sort(ring_.begin(), ring_.end());
+  ring_.erase(std::unique(ring_.begin(), ring_.end()), ring_.end());
+}
+
+bool CollapseGuard::allows(const Merge& merge) {
+  merge_ = merge;
+  places_.clear();
+  const std::uint32_t key = signature();
+  if (memo() == key) return false;
+  list_star(merge);
+  on_facet_.assign(star_.size(), k_no_point);
+  if (!star_.empty() && place_all() && is_star_near()) return true;
+  memo() = key;
+  return false;
+}
+
+/// Of the edge and how often its ends have moved; never 0.
+std::uint32_t CollapseGuard::signature() const {
+  std::uint64_t h = (std::uint64_t{merge_.a} << 32 | merge_.b) * 0x9e3779b97f4a7c15U;
+  h ^= h >> 29;
+  h += std::uint64_t{moves_[merge_.a]} << 32 | moves_[merge_.b];
+  h *= 0xbf58476d1ce4e5b9U;
+  return static_cast<std::uint32_t>(h >> 32) | 1U;
+}
+
+std::uint32_t& CollapseGuard::memo() {
+  const std::uint64_t h = (std::uint64_t{merge_.a} << 32 | merge_.b) * 0x94d049bb133111ebU;
+  return memo_[(h >> 40) % k_memo];
+}
+
+/// Of what another vertex than the ends holds: whether the triangle is one of theirs or not known.
+bool CollapseGuard::is_changed(const Held& held) const {
+  return held.next == held.prev || is_end(held.next) || is_end(held.prev);
+}
+
+bool CollapseGuard::place_all() {
+  if (!place_bag(merge_.a, true) || !place_bag(merge_.b, true)) return false;
+  return std::all_of(ring_.begin(), ring_.end(),
+                     [&](std::uint32_t v) { return place_bag(v, false); });
+}
+
+bool CollapseGuard::place_bag(std::uint32_t vertex, bool all) {
+  std::uint32_t before = k_no_point;
+  for (std::uint32_t i = bag_[vertex]; i != k_no_point; i = held_[i].following) {
+    if ((all || is_changed(held_[i])) && !place(vertex, i)) {
+      to_front(vertex, before, i);
+      return false;
+    }
+    before = i;
+  }
+  return true;
+}
+
+/// Points that were too far will be asked first.
+void CollapseGuard::to_front(std::uint32_t vertex, std::uint32_t before, std::uint32_t point) {
+  if (before == k_no_point) return;
+  held_[before].following = held_[point].following;
+  held_[point].following = std::exchange(bag_[vertex], point);
+}
+
+/// Where the triangle that a point was near to is in the star, if it is.
+std::size_t CollapseGuard::facet_of(std::uint32_t owner, const Held& held) const {
+  Corner corner{held.next, held.prev};
+  if (is_end(held.next)) corner = {held.prev, owner};
+  if (is_end(held.prev)) corner = {owner, held.next};
+  const auto found = std::find(star_.begin(), star_.end(), corner);
+  return found == star_.end() ? 0 : static_cast<std::size_t>(found - star_.begin());
+}
+
+/// Looks until it is near enough.
+void CollapseGuard::look_at_star(Vec3 point, std::size_t first, double enough,
+                                 Nearest& nearest) const {
+  for (std::size_t i = 0; i < star_.size() && nearest.squared > enough; ++i) {
+    const std::size_t facet = first + i < star_.size() ? first + i : first + i - star_.size();
+    const auto& [next, prev] = star_[facet];
+    const double squared =
+        squared_distance(point, merge_.position, state_.positions[next], state_.positions[prev]);
+    if (squared < nearest.squared) {
+      nearest = {squared, {merge_.a, next, prev}, static_cast<std::uint32_t>(facet)};
+    }
+  }
+}
+
+void CollapseGuard::look_round_star(Vec3 point, Nearest& nearest) const {
+  const std::uint32_t around = nearest_of_ring(point);
+  for (const auto& [next, prev] : state_.adjacency->at(around)) {
+    if (is_end(next) || is_end(prev)) continue;
+    const double squared = squared_distance(point, state_.positions[around], state_.positions[next],
+                                            state_.positions[prev]);
+    if (squared < nearest.squared) nearest = {squared, {around, next, prev}, k_no_point};
+  }
+}
+
+bool CollapseGuard::place(std::uint32_t owner, std::uint32_t point) {
+  const Held& held = held_[point];
+  const double most = held.limit;
+  const double enough = bound_.distance() * bound_.distance() * k_near_share * k_near_share;
+  Nearest nearest;
+  const std::size_t first = facet_of(owner, held);
+  look_at_star(held.point, first, enough, nearest);
+  if (nearest.squared > most) look_round_star(held.point, nearest);
+  if (!(nearest.squared <= most)) return false;
+  if (nearest.squared > enough && held.share != 0 && !is_cell_near(held, first)) return false;
+  Place& placed = places_.emplace_back(place_on(point, nearest.triangle));
+  if (nearest.facet != k_no_point) {
+    placed.following =
+        std::exchange(on_facet_[nearest.facet], static_cast<std::uint32_t>(places_.size() - 1));
+  }
+  return true;
+}
+
+/// Of what a point stands for: looked at only where the point itself is not quite near.
+bool CollapseGuard::is_cell_near(const Held& held, std::size_t first) const {
+  constexpr double k_to_corner = 0.7;
+  const Mesh& surface = bound_.surface();
+  const auto& [a, b, c] = surface.triangles[held.source];
+  const Vec3 middle =
+      (surface.positions[a] + surface.positions[b] + surface.positions[c]) * (1.0 / 3);
+  return std::all_of(surface.triangles[held.source].begin(), surface.triangles[held.source].end(),
+                     [&](std::uint32_t v) {
+                       const Vec3 point = held.point + (surface.positions[v] - middle) *
+                                                           (k_to_corner * held.share);
+                       Nearest nearest;
+                       look_at_star(point, first, held.limit, nearest);
+                       if (nearest.squared > held.limit) look_round_star(point, nearest);
+                       return nearest.squared <= held.limit;
+                     });
+}
+
+/// What is not near the star may be near what lies round that.
+std::uint32_t CollapseGuard::nearest_of_ring(Vec3 point) const {
+  return *std::min_element(ring_.begin(), ring_.end(), [&](std::uint32_t x, std::uint32_t y) {
+    return squared_length(state_.positions[x] - point) <
+           squared_length(state_.positions[y] - point);
+  });
+}
+
+/// From a point of a new triangle, exact only if it is not quite near. Points that are held near it
+/// tell where to look.
+double CollapseGuard::squared_to_surface(Vec3 point, std::uint32_t facet) {
+  const double enough = bound_.distance() * bound_.distance() * k_near_share * k_near_share;
+  double least = std::numeric_limits<double>::infinity();
+  int hints = 0;
+  for (std::uint32_t i = on_facet_[facet]; i != k_no_point && hints < k_most_hints;
+       i = places_[i].following, ++hints) {
+    const Held& held = held_[places_[i].point];
+    const double squared = squared_length(held.point - point);
+    if (squared < least) {
+      least = squared;
+      guess_ = held.source;
+    }
+  }
+  return least <= enough ? least : bound_.squared_distance_to(point, enough, guess_);
+}
+
+/// Looks at the points of a grid, and where one is not quite near at those half-way to the next.
+bool CollapseGuard::is_facet_near(std::uint32_t facet) {
+  const double most = bound_.distance() * bound_.distance();
+  const Vec3 along = state_.positions[star_[facet].next] - merge_.position;
+  const Vec3 across = state_.positions[star_[facet].prev] - merge_.position;
+  const double longest = std::sqrt(std::max(squared_length(along), squared_length(across)));
+  const double wanted = std::ceil(longest / (k_spacing * bound_.distance()));
+  const double steps = std::clamp<double>(wanted, k_least_steps, k_most_steps);
+  const auto squared_at = [&](double i, double j) {
+    return squared_to_surface(merge_.position + along * (i / steps) + across * (j / steps), facet);
+  };
+  for (double i = 0; i < steps; ++i) {
+    for (double j = 0; i + j < steps; ++j) {
+      const double squared = squared_at(i, j);
+      if (squared > most) return false;
+      if (squared <= most * k_near_share * k_near_share) continue;
+      for (const auto& [di, dj] : {std::pair(0.5, 0.0), {-0.5, 0.0}, {0.0, 0.5}, {0.0, -0.5}}) {
+        const bool inside = i + di >= 0 && j + dj >= 0 && i + di + j + dj <= steps;
+        if (inside && squared_at(i + di, j + dj) > most) return false;
+      }
+    }
+  }
+  return true;
+}
+
+/// The sides of the ring were there before.
+bool CollapseGuard::is_star_near() {
+  for (std::uint32_t facet = 0; facet < star_.size(); ++facet) {
+    if (!is_facet_near(facet)) return false;
+  }
+  return true;
+}
+
+void CollapseGuard::merge() {
+  const auto [a, b] = std::pair(merge_.a, merge_.b);
+  ++moves_[a];
+  bag_[a] = bag_[b] = k_no_point;
+  for (const std::uint32_t v : ring_) {
+    for (std::uint32_t* at = &bag_[v]; *at != k_no_point;) {
+      Held& held = held_[*at];
+      is_changed(held) ? * at = held.following : *(at = &held.following);
+    }
+  }
+  for (const Place& place : places_) {
+    Held& held = held_[place.point];
+    held.next = place.next;
+    held.prev = place.prev;
+    held.following = std::exchange(bag_[place.owner], place.point);
+  }
+}
+
+void CollapseGuard::split(std::uint32_t vertex, std::uint32_t first_copy) {
+  const auto copies = static_cast<std::uint32_t>(state_.positions.size());
+  bag_.resize(copies, k_no_point);
+  moves_.resize(copies, 0);
+  if (first_copy == copies) return;
+  merge_ = {};
+  for (std::uint32_t point = std::exchange(bag_[vertex], k_no_point); point != k_no_point;) {
+    const std::uint32_t following = held_[point].following;
+    hold(point, nearest_of_copies(held_[point].point, vertex, first_copy));
+    point = following;
+  }
+  for (std::uint32_t v = first_copy; v < copies; ++v) {
+    for (const Corner& c : state_.adjacency->at(v)) {
+      forget_triangles(c.next, vertex);
+      forget_triangles(c.prev, vertex);
+    }
+  }
+}
+
+/// The triangle nearest to a point, of a vertex and its copies from `first_copy` on.
+Triangle CollapseGuard::nearest_of_copies(Vec3 point, std::uint32_t vertex,
+                                          std::uint32_t first_copy) const {
+  double best = std::numeric_limits<double>::infinity();
+  Triangle nearest = {vertex, vertex, vertex};
+  const auto look_at = [&](std::uint32_t v) {
+    for (const Corner& c : state_.adjacency->at(v)) {
+      const double squared = squared_distance(point, state_.positions[v], state_.positions[c.next],
+                                              state_.positions[c.prev]);
+      if (squared >= best) continue;
+      best = squared;
+      nearest = {v, c.next, c.prev};
+    }
+  };
+  look_at(vertex);
+  for (std::uint32_t v = first_copy; v < state_.positions.size(); ++v) look_at(v);
+  return nearest;
+}
+
+/// Of the points that `owner` holds, those near a triangle of `vertex` do not know theirs any more.
+void CollapseGuard::forget_triangles(std::uint32_t owner, std::uint32_t vertex) {
+  for (std::uint32_t i = bag_[owner]; i != k_no_point; i = held_[i].following) {
+    Held& held = held_[i];
+    if (held.next == vertex || held.prev == vertex) held.next = held.prev = vertex;
+  }
+}
+
+}  // namespace meshfarm

@@ -1,0 +1,101 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include <meshfarm/geometry/surface_bound.hpp>
+
+#include "geometry/simplify/collapse.hpp"
+
+namespace meshfarm {
+
+/// Refuses collapses that would take a surface farther from another one than a bound allows, in
+/// either direction. Points of the other surface are held by the vertices that they are near to,
+/// each with a triangle within the bound; points of triangles that are new are looked for on the
+/// other surface.
+class CollapseGuard {
+ public:
+  struct Merge {
+    std::uint32_t a = 0;
+    std::uint32_t b = 0;  // becomes a
+    Vec3 position;
+    /// Triangles of either end that go though they have not both, by their other two vertices.
+    std::span<const std::pair<std::uint32_t, std::uint32_t>> vanishing;
+  };
+
+  explicit CollapseGuard(const SurfaceBound& bound) : bound_(bound) {}
+  void move_to(const CollapseState& state) { state_ = state; }
+
+  /// Hands the points out. Those that are too far from the start may become no farther.
+  void start(const CollapseState& state, const Mesh& mesh);
+
+  bool allows(const Merge& merge);
+  /// Before the merge that was allowed last is done.
+  void merge();
+  /// Some of the vertex's triangles are now at copies of it, the latest vertices.
+  void split(std::uint32_t vertex, std::uint32_t first_copy);
+
+ private:
+  struct Held {
+    Vec3 point;
+    float limit;               // squared: how far it may be, or is from the start
+    float share;               // SurfacePoint::share
+    std::uint32_t source;      // the triangle of the other surface
+    std::uint32_t following;   // held by the same vertex
+    std::uint32_t next, prev;  // of the triangle, with that vertex; may have become others
+  };
+  struct Place {
+    std::uint32_t point;
+    std::uint32_t owner, next, prev;
+    std::uint32_t following;  // on the same triangle of the star
+  };
+  struct Nearest {
+    double squared = HUGE_VAL;
+    Triangle triangle{};
+    std::uint32_t facet = 0;  // of the star, if it is one
+  };
+
+  void hold(std::uint32_t point, const Triangle& triangle);
+  Triangle nearest_of_copies(Vec3 point, std::uint32_t vertex, std::uint32_t first_copy) const;
+  void forget_triangles(std::uint32_t owner, std::uint32_t vertex);
+  Place place_on(std::uint32_t point, const Triangle& triangle) const;
+  void list_star(const Merge& merge);
+  bool is_end(std::uint32_t vertex) const { return vertex == merge_.a || vertex == merge_.b; }
+  bool is_changed(const Held& held) const;
+  std::size_t facet_of(std::uint32_t owner, const Held& held) const;
+  std::uint32_t nearest_of_ring(Vec3 point) const;
+  bool place_all();
+  bool place_bag(std::uint32_t vertex, bool all);
+  bool place(std::uint32_t owner, std::uint32_t point);
+  void look_at_star(Vec3 point, std::size_t first, double enough, Nearest& nearest) const;
+  void look_round_star(Vec3 point, Nearest& nearest) const;
+  bool is_cell_near(const Held& held, std::size_t first) const;
+  void to_front(std::uint32_t vertex, std::uint32_t before, std::uint32_t point);
+  bool is_star_near();
+  double squared_to_surface(Vec3 point, std::uint32_t facet);
+  bool is_facet_near(std::uint32_t facet);
+  std::uint32_t& memo();
+  std::uint32_t signature() const;
+
+  const SurfaceBound& bound_;
+  CollapseState state_;
+  std::vector<Held> held_;
+  std::vector<std::uint32_t> bag_;    // the first point that a vertex holds
+  std::vector<std::uint32_t> moves_;  // of each vertex
+  std::vector<std::uint32_t> memo_;   // of collapses that were refused
+
+  // Of the merge that is judged.
+  Merge merge_;
+  std::vector<Corner> star_;  // the triangles that it makes
+  std::vector<std::uint32_t> ring_;
+  std::vector<Place> places_;
+  std::vector<std::uint32_t> on_facet_;  // the first place on each triangle of the star
+  std::uint32_t guess_ = 0;
+};
+
+}  // namespace meshfarm

@@ -1,0 +1,107 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#include "geometry/simplify/collapse_star.hpp"
+
+namespace meshfarm {
+namespace {
+
+constexpr double k_cos_60_squared = 0.25;
+// Of the angle at the new vertex: near 0 and near 180 degrees alike are as good as no area.
+constexpr double k_least_sine_squared = 1e-6;
+
+}  // namespace
+
+void CollapseStar::sum_planes(EdgeQuadric& quadric) const {
+  const auto sum = [](const Pair& pair) { return pair[0] + pair[1]; };
+  const Sums& s = sums_;
+  quadric.a = quadric.a + Quadric{sum(s.xx), sum(s.xy), sum(s.xz), sum(s.yy), sum(s.yz), sum(s.zz)};
+  quadric.b = quadric.b + Vec3{sum(s.bx), sum(s.by), sum(s.bz)};
+  quadric.c += sum(s.c);
+  quadric.normals = {sum(s.nx), sum(s.ny), sum(s.nz)};
+  quadric.height = sum(s.height);
+  quadric.twice_area = sum(s.twice_area);
+}
+
+/// A sliver of the input may stay one, or nothing round it could ever collapse.
+bool CollapseStar::is_acceptable(const Two& two, int lane, Vec3 x) {
+  const auto at = [&](const Vec3Pair& a) { return Vec3{a.x[lane], a.y[lane], a.z[lane]}; };
+  const Vec3 p = at(two.p);
+  const Vec3 q = at(two.q);
+  const Vec3 end = at(two.end);
+  const Vec3 old_normal = at(two.normal);
+  const Vec3 normal = meshfarm::cross(p - x, q - x);
+  const double size = squared_length(normal);
+  const double old_size = squared_length(old_normal);
+  const double turn = meshfarm::dot(normal, old_normal);
+  const bool turned = !(turn > 0 && turn * turn >= k_cos_60_squared * size * old_size);
+  if (turned && old_size > 0) return false;
+  const double scale = squared_length(p - x) * squared_length(q - x);
+  if (size > k_least_sine_squared * scale) return true;
+  const double old_scale = squared_length(p - end) * squared_length(q - end);
+  return old_size <= k_least_sine_squared * old_scale && size * old_scale >= old_size * scale &&
+         (size > 0 || old_size == 0);
+}
+
+/// The normal of a sliver may turn by 60 degrees again and again and so fold over in the end. One
+/// that turns much must still face the way of its new neighbours, each counted by its area.
+bool CollapseStar::is_folded(std::uint32_t first, std::uint32_t kept, Vec3 x,
+                             double cos_squared) const {
+  const Vec3Pair to = from(x);
+  Vec3Pair sum{};
+  for (std::uint32_t i = 0; i < kept; i += 2) {
+    const Vec3Pair normal =
+        cross(minus(pairs_[first + i / 2].p, to), minus(pairs_[first + i / 2].q, to));
+    sum = {sum.x + normal.x, sum.y + normal.y, sum.z + normal.z};
+  }
+  const Vec3 all{sum.x[0] + sum.x[1], sum.y[0] + sum.y[1], sum.z[0] + sum.z[1]};
+  for (std::uint32_t i = 0; i < kept; ++i) {
+    const Two& two = pairs_[first + i / 2];
+    const auto at = [&](const Vec3Pair& a) { return Vec3{a.x[i % 2], a.y[i % 2], a.z[i % 2]}; };
+    const Vec3 normal = meshfarm::cross(at(two.p) - x, at(two.q) - x);
+    const Vec3 old_normal = at(two.normal);
+    const double turn = meshfarm::dot(normal, old_normal);
+    const double sizes = squared_length(normal) * two.squared_size[i % 2];
+    if (turn * turn < cos_squared * sizes && meshfarm::dot(normal, all) <= 0) return true;
+  }
+  return false;
+}
+
+std::optional<double> CollapseStar::lost_area_from(std::uint32_t first, std::uint32_t kept, Vec3 x,
+                                                   const TurnLimits& limits) const {
+  Pair twice_lost = sums_.twice_area;
+  Mask steep{};
+  Mask turning{};
+  const Vec3Pair to = from(x);
+  for (std::uint32_t i = 0; i < kept; i += 2) {
+    const Two& two = pairs_[first + i / 2];
+    const Vec3Pair p = minus(two.p, to);
+    const Vec3Pair q = minus(two.q, to);
+    const Vec3Pair normal = cross(p, q);
+    Pair size;
+    Pair turned;
+    Pair squared_p;
+    Pair squared_q;
+    dot(normal, normal, size);
+    dot(normal, two.normal, turned);
+    dot(p, p, squared_p);
+    dot(q, q, squared_q);
+    const Pair sizes = size * two.squared_size;
+    steep |= turned * turned < k_cos_30_squared * sizes;
+    turning |= turned * turned < limits.cos_squared * sizes;
+    const Mask good = (turned > 0) & (turned * turned >= k_cos_60_squared * sizes) &
+                      (size > k_least_sine_squared * (squared_p * squared_q));
+    if ((good[0] & good[1]) == 0) {
+      if (good[0] == 0 && !is_acceptable(two, 0, x)) return {};
+      // Beyond the last one is none; p == q makes it neither good nor an area.
+      if (good[1] == 0 && i + 1 < kept && !is_acceptable(two, 1, x)) return {};
+    }
+    Pair length;
+    root(size, length);
+    twice_lost -= length;
+  }
+  if (limits.turn == Turn::narrow && (steep[0] | steep[1]) != 0) return {};
+  if ((turning[0] | turning[1]) != 0 && is_folded(first, kept, x, limits.cos_squared)) return {};
+  return 0.5 * (twice_lost[0] + twice_lost[1]);
+}
+
+}  // namespace meshfarm

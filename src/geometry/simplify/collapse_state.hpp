@@ -1,0 +1,35 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include <meshfarm/geometry/mesh.hpp>
+
+#include "geometry/simplify/adjacency.hpp"
+#include "geometry/simplify/appearance_star.hpp"
+#include "geometry/simplify/simplify_lines.hpp"
+
+namespace meshfarm {
+
+/// The state that the collapses of one pass work on.
+struct CollapseState {
+  std::span<Vec3> positions;
+  std::span<const std::uint8_t> flags;    // VertexFlag
+  std::span<const std::uint32_t> target;  // the vertex that a vertex has become in this pass
+  const Adjacency* adjacency = nullptr;   // as it was when the pass began
+  PositionType type = PositionType::float64;
+  const CreaseTest* creases = nullptr;  // where vertices are flagged as on creases
+  std::span<Appearance> appearances;    // empty where they do not count
+  AppearanceScale appearance_scale;
+  double uv_scale = 0;  // LineOptions::uv_scale
+
+  /// Those of a triangle's corners, from the one at the vertex on.
+  AppearanceStar::Values values_at(std::uint32_t vertex, const Corner& c) const {
+    return {appearances[vertex], appearances[c.next], appearances[c.prev]};
+  }
+  bool has_uvs() const { return adjacency->has_uvs(); }
+};
+
+}  // namespace meshfarm

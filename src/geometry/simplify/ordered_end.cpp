@@ -1,0 +1,178 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#include "geometry/simplify/ordered_end.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include <meshfarm/geometry/distance.hpp>
+
+#include "geometry/simplify/adjacency.hpp"
+#include "geometry/simplify/collapse_guard.hpp"
+#include "geometry/simplify/simplify_rank.hpp"
+
+namespace meshfarm {
+namespace {
+
+// Topology is kept if the sum of the costs, which goes with the square of the error, or the last of
+// them is then no more than so many times what it would be without, or if the distance is. A few
+// dear ones are no reason.
+constexpr double k_fair = 1.44;
+constexpr double k_fair_distance = 1.2;
+constexpr std::uint64_t k_fair_samples = 10'000;
+// Once it is found fair, it is thought of again when so much of the triangles is left.
+constexpr double k_decided = 0.8;
+// With fewer refusals a collapse it is not even tried.
+constexpr double k_costly = 0.25;
+// With a bound, so much must be gained at least.
+constexpr double k_worth = 0.8;
+
+bool is_measurable(const Mesh& mesh) {
+  return !mesh.triangles.empty() &&
+         std::all_of(mesh.positions.begin(), mesh.positions.end(),
+                     [](Vec3 p) { return std::isfinite(squared_length(p) * squared_length(p)); });
+}
+
+/// Measures what became of a mesh. A cost does not know how far from what is left a lost piece
+/// lies.
+class DistanceFrom {
+ public:
+  /// `mesh` must outlive it.
+  explicit DistanceFrom(const Mesh& mesh) {
+    if (!is_measurable(mesh)) return;
+    points_ = sample_surface(mesh, {k_fair_samples, 1}).points;
+    to_mesh_.emplace(mesh, 1);
+  }
+
+  /// The squared RMS, the farther way; 0 if one of the two can't be measured.
+  double squared_to(const CollapseQueue& queue) const {
+    Mesh result;
+    std::vector<std::uint8_t> flags;
+    queue.copy_to(result, flags, 0);
+    if (!to_mesh_ || !is_measurable(result)) return 0;
+    const double there = DistanceMeter(result, 1).measure(points_).rms;
+    const double back = to_mesh_->measure(sample_surface(result, {k_fair_samples, 1}).points).rms;
+    return std::max(there, back) * std::max(there, back);
+  }
+
+ private:
+  std::vector<Vec3> points_;
+  std::optional<DistanceMeter> to_mesh_;
+};
+
+}  // namespace
+
+/// A copy of the mesh and the queue that works on it.
+struct OrderedEnd::Trial {
+  Trial(const WorkingMesh& mesh, TopologyMode topology, const SurfaceBound* bound)
+      : positions(mesh.mesh().positions),
+        appearances(mesh.mesh().appearances),
+        columns(mesh.mesh().columns),
+        flags(mesh.flags().begin(), mesh.flags().end()),
+        queue({positions, flags, adjacency, mesh.creases(), mesh.type(), mesh.seam_only(),
+               topology == TopologyMode::simplify,
+               topology == TopologyMode::automatic || topology == TopologyMode::keep_while_fair,
+               appearances, mesh.appearance_scale(), columns, mesh.uv_scale()},
+              ranking) {
+    adjacency.build(mesh.mesh().triangles, positions.size(), columns);
+    queue.start(mesh.mesh().triangles);
+    if (bound == nullptr) return;
+    guard.emplace(*bound);
+    queue.set_guard(*guard, mesh.mesh());
+  }
+
+  std::vector<Vec3> positions;
+  std::vector<Appearance> appearances;
+  TriangleColumns columns;
+  std::vector<std::uint8_t> flags;
+  Adjacency adjacency;
+  EdgeRanking ranking;
+  CollapseQueue queue;
+  std::optional<CollapseGuard> guard;
+};
+
+OrderedEnd::OrderedEnd(WorkingMesh& mesh, TopologyMode topology, const SurfaceBound* bound)
+    : mesh_(mesh), topology_(topology), bound_(bound) {}
+OrderedEnd::~OrderedEnd() = default;
+OrderedEnd::OrderedEnd(OrderedEnd&&) noexcept = default;
+
+std::optional<double> OrderedEnd::reduce(const SimplifyGoal& goal,
+                                         const std::function<bool(std::uint64_t)>& progress) {
+  if (!has_begun()) trial_ = std::make_unique<Trial>(mesh_, topology_, bound_);
+  const double paid_before = trial_->queue.paid();
+  bool goes_on = trial_->queue.reduce(goal, progress);
+  if (goes_on && topology_ == TopologyMode::automatic && !simplifies_topology() &&
+      must_decide(goal) && is_costly_to_keep(goal)) {
+    auto other = std::make_unique<Trial>(mesh_, TopologyMode::simplify, bound_);
+    goes_on = other->queue.reduce(goal, progress);
+    if (is_unfair(trial_->queue.paid() - paid_before, other->queue, goal)) {
+      trial_ = std::move(other);
+    }
+  }
+  mesh_.take(trial_->queue);
+  if (is_held()) return HUGE_VAL;
+  if (goes_on && mesh_.triangles() > goal.triangles + 1) return goal.max_cost;
+  return std::nullopt;
+}
+
+std::vector<Mesh> OrderedEnd::take_kept() {
+  return has_begun() ? trial_->queue.take_kept() : std::vector<Mesh>();
+}
+
+bool OrderedEnd::simplifies_topology() const {
+  return has_begun() && trial_->queue.any_topology();
+}
+
+bool OrderedEnd::is_held() const {
+  return has_begun() && trial_->queue.is_held();
+}
+
+bool OrderedEnd::is_hampered() const {
+  return has_begun() && trial_->queue.kept_topology() > trial_->queue.collapses();
+}
+
+/// Not again for a few collapses more: one that is dear would decide for all.
+bool OrderedEnd::must_decide(const SimplifyGoal& goal) {
+  const std::uint64_t left = trial_->queue.triangles();
+  if (left <= goal.triangles + 1 &&
+      static_cast<double>(left) > k_decided * static_cast<double>(decided_at_)) {
+    return false;
+  }
+  decided_at_ = left;
+  return true;
+}
+
+/// Whether so much is refused to keep the topology that it is worth a try without.
+bool OrderedEnd::is_costly_to_keep(const SimplifyGoal& goal) const {
+  const CollapseQueue& queue = trial_->queue;
+  if (bound_ == nullptr && std::isinf(goal.max_cost) && queue.triangles() > goal.triangles + 1) {
+    return true;
+  }
+  return queue.is_held() || static_cast<double>(queue.kept_topology()) >
+                                k_costly * static_cast<double>(queue.collapses());
+}
+
+/// Whether to keep the topology costs much more than to simplify it.
+bool OrderedEnd::is_unfair(double paid, const CollapseQueue& other,
+                           const SimplifyGoal& goal) const {
+  const CollapseQueue& kept = trial_->queue;
+  if (bound_ != nullptr) {
+    return static_cast<double>(other.triangles()) < k_worth * static_cast<double>(kept.triangles());
+  }
+  if (kept.triangles() > goal.triangles + 1) return other.triangles() < kept.triangles();
+  if (!(paid > k_fair * other.paid() && kept.dearest() > k_fair * other.dearest())) return false;
+  const DistanceFrom distance(mesh_.mesh());
+  const double squared = distance.squared_to(other);
+  const double squared_kept = distance.squared_to(kept);
+  // Both lie no nearer to the input than the mesh as it is does. A surface's error is as one over
+  // its triangles, which tells how far that is.
+  const double times = static_cast<double>(mesh_.triangles()) /
+                       static_cast<double>(std::max<std::uint64_t>(1, other.triangles()));
+  const double before = squared / std::max(times * times - 1, 1e-6);
+  return before + squared_kept > k_fair_distance * k_fair_distance * (before + squared);
+}
+
+}  // namespace meshfarm

@@ -1,0 +1,52 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include <meshfarm/geometry/simplify.hpp>
+
+#include "geometry/simplify/simplify_queue.hpp"
+#include "geometry/simplify/working_mesh.hpp"
+
+namespace meshfarm {
+
+/// The last part of the way: edges collapse strictly in order of their cost. Decides whether the
+/// topology is kept, where that is left to it.
+class OrderedEnd {
+ public:
+  /// `bound` may be null.
+  OrderedEnd(WorkingMesh& mesh, TopologyMode topology, const SurfaceBound* bound);
+  ~OrderedEnd();
+  OrderedEnd(OrderedEnd&&) noexcept;
+
+  /// Once it has begun the mesh is changed by this only.
+  bool has_begun() const { return trial_ != nullptr; }
+  /// Returns the cost up to which nothing is left that could collapse, if it was reached.
+  std::optional<double> reduce(const SimplifyGoal& goal,
+                               const std::function<bool(std::uint64_t)>& progress);
+
+  std::vector<Mesh> take_kept();
+  bool simplifies_topology() const;
+  bool is_held() const;
+  bool is_hampered() const;
+
+ private:
+  struct Trial;
+
+  bool must_decide(const SimplifyGoal& goal);
+  bool is_costly_to_keep(const SimplifyGoal& goal) const;
+  bool is_unfair(double paid, const CollapseQueue& other, const SimplifyGoal& goal) const;
+
+  WorkingMesh& mesh_;
+  TopologyMode topology_;
+  const SurfaceBound* bound_;
+  std::unique_ptr<Trial> trial_;
+  std::uint64_t decided_at_ = UINT64_MAX;  // triangles left when the topology was last thought of
+};
+
+}  // namespace meshfarm

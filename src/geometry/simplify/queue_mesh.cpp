@@ -1,0 +1,133 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+//
+// What the queue does to keep its mesh tidy, and how it hands it out.
+#include <algorithm>
+
+#include <meshfarm/geometry/vertices.hpp>
+
+#include "geometry/simplify/simplify_queue.hpp"
+#include "geometry/simplify/vertex_flags.hpp"
+
+namespace meshfarm {
+namespace {
+
+/// What a triangle has, from this corner on.
+void append_turned(const TriangleColumnsView& from, CornerId id, TriangleColumns& to) {
+  to.append(from, id / 3);
+  if (to.uvs.empty()) return;
+  const CornerId next = next_corner(id);
+  to.uvs.back() = {uv_of(from.uvs, id), uv_of(from.uvs, next), uv_of(from.uvs, next_corner(next))};
+}
+
+}  // namespace
+
+/// After a collapse that may have left fans other than before: drops triangles that have become
+/// equal, and takes vertices apart that hold several fans.
+void CollapseQueue::tidy(std::uint32_t merged) {
+  tidied_.assign(general_.changed().begin(), general_.changed().end());
+  for (const auto& [next, prev] : general_.vanishing()) {
+    mesh_.adjacency.remove(merged, {next, prev});
+    mesh_.adjacency.remove(next, {prev, merged});
+    mesh_.adjacency.remove(prev, {merged, next});
+    tidied_.push_back(next);
+    tidied_.push_back(prev);
+  }
+  tidied_.push_back(merged);
+  std::sort(tidied_.begin(), tidied_.end());
+  tidied_.erase(std::unique(tidied_.begin(), tidied_.end()), tidied_.end());
+  const std::size_t before = tidied_.size();
+  for (std::size_t i = 0; i < before; ++i) tidy_star(tidied_[i]);
+  for (const std::uint32_t v : tidied_) stale_[v] = 1;
+  for (const std::uint32_t v : tidied_) {
+    if (v != merged) look_again(v);
+  }
+}
+
+void CollapseQueue::tidy_star(std::uint32_t vertex) {
+  if ((mesh_.flags[vertex] & k_fixed) != 0 || mesh_.adjacency.count(vertex) == 0) return;
+  const std::uint32_t fans = splitter_.split(mesh_.adjacency.at(vertex));
+  // What touches is cut apart only where the topology may change.
+  if (fans == 1 || !mesh_.any_topology) {
+    classify(vertex);
+    return;
+  }
+  const auto first_copy = static_cast<std::uint32_t>(target_.size());
+  const CornerFan star = mesh_.adjacency.fan_at(vertex);
+  const std::vector<Corner> all(star.corners.begin(), star.corners.end());
+  const std::vector<CornerId> ids(star.ids.begin(), star.ids.end());
+  const std::vector<std::uint32_t> fan(splitter_.fans().begin(), splitter_.fans().end());
+  for (std::uint32_t f = 0; f < fans; ++f) {
+    joined_.clear();
+    joined_ids_.clear();
+    const std::uint32_t v = f == 0 ? vertex : add_copy(vertex);
+    for (std::size_t i = 0; i < all.size(); ++i) {
+      if (fan[i] != f) continue;
+      const auto [next, prev] = all[i];
+      join({all, ids}, i);
+      if (f == 0) continue;
+      mesh_.adjacency.replace(next, Corner{prev, vertex}, Corner{prev, v});
+      mesh_.adjacency.replace(prev, Corner{vertex, next}, Corner{v, next});
+    }
+    mesh_.adjacency.assign(v, {joined_, joined_ids_});
+    classify(v);
+  }
+  if (guard_ != nullptr) guard_->split(vertex, first_copy);
+}
+
+void CollapseQueue::classify(std::uint32_t vertex) {
+  splitter_.split(mesh_.adjacency.at(vertex));
+  std::uint8_t& flags = mesh_.flags[vertex];
+  flags &= static_cast<std::uint8_t>(~(k_border | k_complex));
+  if (splitter_.kind() == FanSplitter::Kind::open) flags |= k_border;
+  if (splitter_.kind() == FanSplitter::Kind::complex) flags |= k_complex;
+}
+
+std::uint32_t CollapseQueue::add_copy(std::uint32_t vertex) {
+  const std::uint32_t copy = mesh_.adjacency.add_vertex();
+  const Vec3 position = mesh_.positions[vertex];
+  const std::uint8_t flags = mesh_.flags[vertex];
+  mesh_.positions.push_back(position);
+  mesh_.flags.push_back(flags);
+  if (!mesh_.appearances.empty()) {
+    const Appearance appearance = mesh_.appearances[vertex];
+    mesh_.appearances.push_back(appearance);
+  }
+  target_.push_back(copy);
+  refused_.push_back(0);
+  looks_.push_back(0);
+  stale_.push_back(1);
+  ranking_.move_to(mesh_.positions, mesh_.flags, mesh_.appearances);
+  judge_.move_to(state());
+  general_.move_to(state());
+  if (guard_ != nullptr) guard_->move_to(state());
+  tidied_.push_back(copy);
+  return copy;
+}
+
+void CollapseQueue::copy_to(Mesh& mesh, std::vector<std::uint8_t>& flags,
+                            std::uint32_t locked) const {
+  clear_vertices(mesh);
+  mesh.triangles.clear();
+  mesh.columns.clear();
+  flags.clear();
+  std::vector<std::uint32_t> number(target_.size());
+  for (std::uint32_t v = 0; v < target_.size(); ++v) {
+    if (v >= locked && mesh_.adjacency.count(v) == 0) continue;
+    number[v] = static_cast<std::uint32_t>(mesh.positions.size());
+    append_vertex({mesh_.positions, mesh_.appearances}, v, mesh);
+    flags.push_back(mesh_.flags[v]);
+  }
+  mesh.triangles.reserve(triangles_);
+  for (std::uint32_t v = 0; v < target_.size(); ++v) {
+    const CornerFan fan = mesh_.adjacency.fan_at(v);
+    for (std::size_t i = 0; i < fan.corners.size(); ++i) {
+      const Corner& c = fan.corners[i];
+      if (c.next < v || c.prev < v) continue;
+      mesh.triangles.push_back({number[v], number[c.next], number[c.prev]});
+      if (!fan.ids.empty()) append_turned(mesh_.adjacency.columns(), fan.ids[i], mesh.columns);
+    }
+  }
+}
+
+}  // namespace meshfarm

@@ -1,0 +1,310 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#include "geometry/simplify/simplify_queue.hpp"
+
+#include <algorithm>
+#include <numeric>
+#include <tuple>
+
+#include "geometry/simplify/vertex_flags.hpp"
+
+namespace meshfarm {
+namespace {
+
+constexpr std::uint64_t k_told_every = 4096;  // collapses
+
+// So many of the edges are ranked at a time, the cheapest; dearer ones are not kept in order. The
+// order of collapses depends on it only where an edge becomes cheaper that is not looked at.
+constexpr double k_ranked_share = 0.35;
+// A mesh that was kept is dropped when it has so many times the triangles that are left.
+constexpr double k_far_more = 1.3;
+
+constexpr CostKey k_greatest = k_any_cost - 1;
+constexpr CostKey k_least_step = 4U << 20;  // a factor of 16
+
+// From so many refusals to keep the topology on, a collapse, all that is left is dear. A surface of
+// many handles whose result was still good had 1.6.
+constexpr std::uint64_t k_hopeless = 4;
+
+bool is_later(const QueuedEdge& x, const QueuedEdge& y) {
+  return x.is_later(y);
+}
+
+}  // namespace
+
+CollapseQueue::CollapseQueue(const QueuedMesh& mesh, EdgeRanking& ranking)
+    : mesh_(mesh), ranking_(ranking), judge_(state()), general_(state()) {}
+
+void CollapseQueue::start(std::span<const Triangle> triangles) {
+  const auto vertices = static_cast<std::uint32_t>(mesh_.positions.size());
+  triangles_ = triangles.size();
+  target_.resize(vertices);
+  std::iota(target_.begin(), target_.end(), 0U);
+  refused_.assign(vertices, 0);
+  looks_.assign(vertices, 0);
+  stale_.assign(vertices, 0);
+  heap_.clear();
+  ranking_.begin_pass({mesh_.positions, triangles, mesh_.flags, &mesh_.adjacency,
+                       &mesh_.creases.test(), mesh_.seam_only, true, mesh_.any_topology, true,
+                       mesh_.appearances, mesh_.appearance_scale, mesh_.uv_scale});
+  judge_.move_to(state());
+  general_.move_to(state());
+}
+
+/// The cheapest share of all edges, but those of a limit above the last one at least. What an edge
+/// ranks by may be more than the goal's cost where the edge itself costs nothing.
+void CollapseQueue::rank(double share) {
+  for (std::uint32_t v = 0; v < target_.size(); ++v) refresh(v);
+  const CostKey wanted = share < 1 ? ranking_.estimate_limit(share, HUGE_VAL) : k_greatest;
+  limit_ = std::max(wanted, limit_ + k_least_step);
+  if (limit_ >= std::min(key_of(most_cost_), k_greatest)) limit_ = k_greatest;
+  heap_.clear();
+  first_.clear();
+  next_first_ = 0;
+  kept_before_ = kept_topology_;
+  collapses_before_ = collapses_;
+  const auto vertices = static_cast<std::uint32_t>(target_.size());
+  for (const RankedEdge& e : ranking_.cheapest(0, vertices, {limit_, most_cost_})) {
+    first_.emplace_back(e, stamp_of(e.a, e.b));
+  }
+}
+
+void CollapseQueue::refresh(std::uint32_t vertex) {
+  if (stale_[vertex] == 0) return;
+  ranking_.refresh(vertex);
+  stale_[vertex] = 0;
+}
+
+bool CollapseQueue::has_free_border() const {
+  for (std::uint32_t v = 0; v < target_.size(); ++v) {
+    if ((mesh_.flags[v] & (k_border | k_fixed)) == k_border && !is_gone(v)) return true;
+  }
+  return false;
+}
+
+void CollapseQueue::push(const RankedEdge& edge) {
+  if (edge.key > limit_) return;
+  heap_.emplace_back(edge, stamp_of(edge.a, edge.b));
+  std::push_heap(heap_.begin(), heap_.end(), is_later);
+}
+
+const QueuedEdge* CollapseQueue::next() const {
+  const bool ranked = next_first_ < first_.size();
+  if (heap_.empty()) return ranked ? &first_[next_first_] : nullptr;
+  return ranked && !first_[next_first_].is_later(heap_[0]) ? &first_[next_first_] : heap_.data();
+}
+
+void CollapseQueue::drop_next() {
+  if (next() != heap_.data()) {
+    ++next_first_;
+    return;
+  }
+  std::pop_heap(heap_.begin(), heap_.end(), is_later);
+  heap_.pop_back();
+}
+
+CollapseState CollapseQueue::state() {
+  return {mesh_.positions, mesh_.flags,           target_,           &mesh_.adjacency,
+          mesh_.type,      &mesh_.creases.test(), mesh_.appearances, mesh_.appearance_scale,
+          mesh_.uv_scale};
+}
+
+Collapse CollapseQueue::judge(std::uint32_t a, std::uint32_t b, std::uint64_t most_triangles) {
+  by_general_ = ((mesh_.flags[a] | mesh_.flags[b]) & k_complex) != 0;
+  if (!by_general_) {
+    const Collapse collapse = judge_.judge(a, b, {most_triangles, HUGE_VAL});
+    if (collapse.triangles > 0 || !collapse.by_topology) return collapse;
+    if (!mesh_.any_topology) {
+      ++kept_topology_;
+      return {};
+    }
+  }
+  const GeneralCollapse general = general_.judge(a, b, most_triangles);
+  by_general_ = true;
+  if (!general.changes_topology || mesh_.any_topology) return general.collapse;
+  kept_topology_ += general.collapse.triangles > 0 ? 1 : 0;
+  return {};
+}
+
+void CollapseQueue::set_guard(CollapseGuard& guard, const Mesh& mesh) {
+  guard_ = &guard;
+  guard.start(state(), mesh);
+}
+
+/// Such an edge is looked at again when one of its ends has moved, not when what is round it has.
+bool CollapseQueue::is_guarded(std::uint32_t a, std::uint32_t b, const Collapse& collapse) {
+  if (guard_ == nullptr) return false;
+  CollapseGuard::Merge merge{a, b, collapse.position, {}};
+  if (by_general_) merge.vanishing = general_.vanishing();
+  return !guard_->allows(merge);
+}
+
+bool CollapseQueue::reduce(const SimplifyGoal& goal, const Progress& progress) {
+  most_cost_ = goal.max_cost;
+  double share = k_ranked_share;
+  limit_ = 0;
+  while (triangles_ > goal.triangles) {
+    const std::uint64_t before = triangles_;
+    rank(share);
+    const Stop stop = run(goal, progress);
+    held_ = held_ || stop == Stop::held;
+    if (stop != Stop::nothing_left) return stop != Stop::told;
+    if (limit_ >= k_greatest) return true;
+    // Dead ends: what is ranked is refused again and again.
+    if ((before - triangles_) * 50 < before) share = 1;
+  }
+  return true;
+}
+
+CollapseQueue::Stop CollapseQueue::run(const SimplifyGoal& goal, const Progress& progress) {
+  std::uint64_t collapses = 0;
+  std::optional<bool> any_border;  // asked once: one triangle too many goes at a border only
+  while (triangles_ > goal.triangles) {
+    // Something is to be left, whatever the goal.
+    const std::uint64_t excess = triangles_ - std::max<std::uint64_t>(1, goal.triangles);
+    if (excess == 0) return Stop::met;
+    if (excess == 1 && !any_border) any_border = has_free_border();
+    if (excess == 1 && !*any_border) return Stop::met;
+    if (is_hopeless()) return Stop::held;
+    const QueuedEdge* const first = next();
+    if (first == nullptr) return Stop::nothing_left;
+    const QueuedEdge queued = *first;
+    drop_next();
+    const std::uint32_t a = queued.a();
+    const std::uint32_t b = queued.b;
+    if (is_gone(a) || is_gone(b) || queued.stamp != stamp_of(a, b)) continue;
+    const Collapse collapse = judge(a, b, excess);
+    if (collapse.triangles == 0) {
+      refused_[a] = refused_[b] = 1;
+    } else if (collapse.cost > most_cost_) {
+      continue;  // dropped until something beside it changes
+    } else if (must_wait(queued, collapse.cost)) {
+      push({a, b, key_of(collapse.cost)});
+    } else if (!is_guarded(a, b, collapse)) {
+      keep(goal);
+      merge(a, b, collapse);
+      if (progress && ++collapses % k_told_every == 0 && !progress(triangles_)) return Stop::told;
+    }
+  }
+  return Stop::met;
+}
+
+bool CollapseQueue::is_hopeless() const {
+  const std::uint64_t refused = kept_topology_ - kept_before_;
+  const std::uint64_t done = collapses_ - collapses_before_;
+  return mesh_.stops_when_held && refused > k_hopeless * done + triangles_;
+}
+
+/// Whether it costs more than it was ranked by, and more than the next.
+bool CollapseQueue::must_wait(const QueuedEdge& queued, double cost) const {
+  const CostKey exact = key_of(cost);
+  if (exact <= queued.key()) return false;
+  const QueuedEdge* const other = next();
+  return exact > limit_ || (other != nullptr && other->key() < exact);
+}
+
+/// Before a collapse: so many triangles are not left any more.
+void CollapseQueue::keep(const SimplifyGoal& goal) {
+  bool is_due = false;
+  for (; next_kept_ < goal.keep_at.size() && triangles_ <= goal.keep_at[next_kept_]; ++next_kept_) {
+    is_due = true;
+  }
+  if (!is_due) return;
+  std::erase_if(kept_, [&](const Mesh& mesh) {
+    return static_cast<double>(mesh.triangles.size()) >
+           k_far_more * static_cast<double>(triangles_);
+  });
+  std::vector<std::uint8_t> flags;
+  copy_to(kept_.emplace_back(), flags, 0);
+}
+
+void CollapseQueue::list_ring(std::uint32_t vertex) {
+  ring_.clear();
+  for (const Corner& c : mesh_.adjacency.at(vertex)) {
+    ring_.push_back(c.next);
+    ring_.push_back(c.prev);
+  }
+  std::sort(ring_.begin(), ring_.end());
+  ring_.erase(std::unique(ring_.begin(), ring_.end()), ring_.end());
+}
+
+/// Makes the triangles of b ones of a; those that have both go.
+void CollapseQueue::join_stars(std::uint32_t a, std::uint32_t b) {
+  list_ring(b);
+  for (const std::uint32_t v : ring_) {
+    if (v != a) mesh_.adjacency.replace(v, b, a);
+  }
+  joined_.clear();
+  joined_ids_.clear();
+  for (const std::uint32_t end : {a, b}) {
+    const std::uint32_t other = end == a ? b : a;
+    const CornerFan fan = mesh_.adjacency.fan_at(end);
+    for (std::size_t i = 0; i < fan.corners.size(); ++i) {
+      const Corner& c = fan.corners[i];
+      if (c.next != other && c.prev != other) join(fan, i);
+    }
+  }
+  mesh_.adjacency.assign(b, {});
+  mesh_.adjacency.assign(a, {joined_, joined_ids_});
+}
+
+void CollapseQueue::join(const CornerFan& fan, std::size_t place) {
+  joined_.push_back(fan.corners[place]);
+  if (!fan.ids.empty()) joined_ids_.push_back(fan.ids[place]);
+}
+
+void CollapseQueue::merge(std::uint32_t a, std::uint32_t b, const Collapse& collapse) {
+  if (guard_ != nullptr) guard_->merge();
+  const MergedColumns columns =
+      by_general_ ? general_.columns_of(collapse) : judge_.columns_of(collapse);
+  if (mesh_.adjacency.has_uvs()) {
+    merge_wedges(columns.wedges, mesh_.adjacency.fan_at(a).ids, mesh_.adjacency.fan_at(b).ids,
+                 mesh_.columns.uvs);
+  }
+  join_stars(a, b);
+  target_[b] = a;
+  mesh_.flags[a] |= mesh_.flags[b];
+  mesh_.positions[a] = collapse.position;
+  if (!mesh_.appearances.empty()) mesh_.appearances[a] = columns.appearance;
+  triangles_ -= collapse.triangles;
+  max_cost_ = std::max(max_cost_, collapse.cost);
+  last_cost_ = collapse.cost;
+  const double certain = collapse.certain < 0 ? collapse.cost : collapse.certain;
+  paid_ += certain;
+  dearest_ = std::max(dearest_, certain);
+  ++collapses_;
+  if (by_general_) tidy(a);
+  list_ring(a);
+  if (mesh_.adjacency.has_uvs()) update_lines(a);
+  ranking_.refresh(a);
+  for (const std::uint32_t v : ring_) stale_[v] = 1;
+  look_again(a);
+  for (const std::uint32_t v : ring_) {
+    if (refused_[v] != 0) look_again(v);
+  }
+}
+
+/// A small chart goes with the last of its triangles, and with it the corners that only it made.
+/// Without texture coordinates they stay until the next pass.
+void CollapseQueue::update_lines(std::uint32_t merged) {
+  const auto update = [&](std::uint32_t v) {
+    std::uint8_t& flags = mesh_.flags[v];
+    if ((flags & k_crease) == 0) return;
+    const std::uint8_t now =
+        mesh_.creases.updated(v, mesh_.positions, mesh_.adjacency, mesh_.flags);
+    if (now == flags) return;
+    flags = now;
+    refused_[v] = 1;  // is looked at again
+  };
+  update(merged);
+  for (const std::uint32_t v : ring_) update(v);
+}
+
+void CollapseQueue::look_again(std::uint32_t vertex) {
+  refused_[vertex] = 0;
+  ++looks_[vertex];
+  refresh(vertex);
+  ranking_.for_edges_at(vertex, most_cost_, [&](const RankedEdge& edge) { push(edge); });
+}
+
+}  // namespace meshfarm

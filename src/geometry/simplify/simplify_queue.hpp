@@ -1,0 +1,161 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include <meshfarm/geometry/mesh.hpp>
+#include <meshfarm/geometry/simplify.hpp>
+
+#include "geometry/simplify/adjacency.hpp"
+#include "geometry/simplify/collapse.hpp"
+#include "geometry/simplify/collapse_general.hpp"
+#include "geometry/simplify/collapse_guard.hpp"
+#include "geometry/simplify/fans.hpp"
+#include "geometry/simplify/simplify_lines.hpp"
+#include "geometry/simplify/simplify_rank.hpp"
+
+namespace meshfarm {
+
+/// An edge in the queue: the cheaper one comes first, of two that are equally cheap that of lower
+/// vertices.
+struct QueuedEdge {
+  std::uint64_t order = 0;  // key, then the first end
+  std::uint32_t b = 0;
+  std::uint32_t stamp = 0;
+
+  QueuedEdge(const RankedEdge& edge, std::uint32_t stamped)
+      : order(std::uint64_t{edge.key} << 32 | edge.a), b(edge.b), stamp(stamped) {}
+  CostKey key() const { return static_cast<CostKey>(order >> 32); }
+  std::uint32_t a() const { return static_cast<std::uint32_t>(order); }
+  bool is_later(const QueuedEdge& other) const {
+    return order != other.order ? order > other.order : b > other.b;
+  }
+};
+
+/// A mesh that a queue of edges works on; the queue changes all of it.
+struct QueuedMesh {
+  std::vector<Vec3>& positions;
+  std::vector<std::uint8_t>& flags;  // VertexFlag
+  Adjacency& adjacency;
+  const CreaseLines& creases;
+  PositionType type = PositionType::float64;
+  bool seam_only = false;
+  bool any_topology = false;             // collapses may change it
+  bool stops_when_held = false;          // rather than go on where most of what is cheap is refused
+  std::vector<Appearance>& appearances;  // empty where they do not count
+  AppearanceScale appearance_scale;
+  TriangleColumns& columns;  // what the adjacency was built with
+  double uv_scale = 0;
+};
+
+/// Collapses edges strictly in order of their cost: what was refused, or has become cheaper, is
+/// looked at again as soon as something round it has changed. Slower than passes by a half, and as
+/// good as an order can be: for the last part of the way. Where the topology may change, what is
+/// pinched is cut apart.
+class CollapseQueue {
+ public:
+  using Progress = std::function<bool(std::uint64_t)>;
+
+  CollapseQueue(const QueuedMesh& mesh, EdgeRanking& ranking);
+
+  /// Ranks all edges. `triangles` are those that the adjacency was built from.
+  void start(std::span<const Triangle> triangles);
+  /// Then: what else refuses collapses. `mesh` is what the queue begins with.
+  void set_guard(CollapseGuard& guard, const Mesh& mesh);
+
+  /// Collapses until the goal is met or nothing that it allows is left. May be called again. False
+  /// if progress said stop.
+  bool reduce(const SimplifyGoal& goal, const Progress& progress);
+
+  /// The mesh as it is now, with the vertices in their order, and their flags.
+  void copy_to(Mesh& mesh, std::vector<std::uint8_t>& flags, std::uint32_t locked) const;
+
+  std::uint64_t triangles() const { return triangles_; }
+  bool any_topology() const { return mesh_.any_topology; }
+  double max_cost() const { return max_cost_; }
+  /// The cost of the last collapse.
+  double last_cost() const { return last_cost_; }
+  /// Whether it stopped because so many collapses are refused to keep the topology.
+  bool is_held() const { return held_; }
+  /// The sum of the costs of all collapses, and the greatest, both without guesses.
+  double paid() const { return paid_; }
+  double dearest() const { return dearest_; }
+  /// SimplifyGoal::keep_at.
+  std::vector<Mesh> take_kept() { return std::move(kept_); }
+  std::uint64_t collapses() const { return collapses_; }
+  /// Collapses that were refused to keep the topology.
+  std::uint64_t kept_topology() const { return kept_topology_; }
+
+ private:
+  enum class Stop : std::uint8_t { met, nothing_left, held, told };
+
+  void rank(double share);
+  Stop run(const SimplifyGoal& goal, const Progress& progress);
+  bool is_hopeless() const;
+  bool must_wait(const QueuedEdge& queued, double cost) const;
+  void refresh(std::uint32_t vertex);
+  bool is_gone(std::uint32_t vertex) const { return target_[vertex] != vertex; }
+  bool has_free_border() const;
+  const QueuedEdge* next() const;
+  void drop_next();
+  void push(const RankedEdge& edge);
+  std::uint32_t stamp_of(std::uint32_t a, std::uint32_t b) const { return looks_[a] + looks_[b]; }
+  Collapse judge(std::uint32_t a, std::uint32_t b, std::uint64_t most_triangles);
+  bool is_guarded(std::uint32_t a, std::uint32_t b, const Collapse& collapse);
+  void merge(std::uint32_t a, std::uint32_t b, const Collapse& collapse);
+  void keep(const SimplifyGoal& goal);
+  void update_lines(std::uint32_t merged);
+  void tidy(std::uint32_t merged);
+  void tidy_star(std::uint32_t vertex);
+  void classify(std::uint32_t vertex);
+  std::uint32_t add_copy(std::uint32_t vertex);
+  void join_stars(std::uint32_t a, std::uint32_t b);
+  void list_ring(std::uint32_t vertex);
+  void join(const CornerFan& fan, std::size_t place);
+  void look_again(std::uint32_t vertex);
+  CollapseState state();
+
+  QueuedMesh mesh_;
+  EdgeRanking& ranking_;
+  CollapseGuard* guard_ = nullptr;
+  std::vector<std::uint32_t> target_;  // the vertex that a vertex has become
+  std::vector<std::uint8_t> refused_;  // an edge at the vertex was refused since it last changed
+  // How often the edges at a vertex were ranked anew. Only increases, so that an entry is out of
+  // date if the sum of its ends' has changed.
+  std::vector<std::uint32_t> looks_;
+  std::vector<std::uint8_t> stale_;  // its quadric is that of a star that has changed
+  double most_cost_ = 0;             // the goal's
+  std::vector<QueuedEdge> first_;    // as ranked at the start, cheapest first
+  std::size_t next_first_ = 0;
+  std::vector<QueuedEdge> heap_;  // those that came later
+  CollapseJudge judge_;
+  GeneralJudge general_;
+  FanSplitter splitter_;
+  std::vector<std::uint32_t> tidied_;
+  std::vector<std::uint32_t> ring_;
+  std::vector<Corner> joined_;
+  std::vector<CornerId> joined_ids_;
+  std::uint64_t triangles_ = 0;
+  std::vector<Mesh> kept_;
+  std::size_t next_kept_ = 0;  // of the goal's counts
+  // As they were at the last ranking.
+  std::uint64_t kept_before_ = 0;
+  std::uint64_t collapses_before_ = 0;
+  double max_cost_ = 0;
+  double last_cost_ = 0;
+  double paid_ = 0;
+  double dearest_ = 0;
+  std::uint64_t collapses_ = 0;
+  std::uint64_t kept_topology_ = 0;
+  CostKey limit_ = 0;        // dearer edges wait for the next ranking
+  bool by_general_ = false;  // the general judge judged the last
+  bool held_ = false;
+};
+
+}  // namespace meshfarm

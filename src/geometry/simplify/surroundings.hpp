@@ -1,0 +1,40 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include <meshfarm/geometry/point_index.hpp>
+#include <meshfarm/geometry/vec.hpp>
+
+#include "geometry/simplify/adjacency.hpp"
+
+namespace meshfarm {
+
+/// A mesh that loses triangles: its vertices as they are now.
+struct ShrinkingMesh {
+  std::span<const Vec3> positions;
+  std::span<const std::uint32_t> target;  // the vertex that a vertex has become
+  const Adjacency* adjacency = nullptr;
+};
+
+/// Tells how far a piece is from the rest of a mesh: what is lost with it. Vertices stand for the
+/// surface, where they were when it was first asked.
+class Surroundings {
+ public:
+  /// The squared distance of the nearest vertex that is left and not one of `without` (ascending);
+  /// infinite if there is none.
+  double squared_distance(const ShrinkingMesh& mesh, Vec3 from,
+                          std::span<const std::uint32_t> without);
+
+ private:
+  void list_vertices(const ShrinkingMesh& mesh);
+
+  std::vector<std::uint32_t> vertices_;  // of the points
+  std::optional<PointIndex> index_;
+};
+
+}  // namespace meshfarm

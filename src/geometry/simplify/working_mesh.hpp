@@ -1,0 +1,98 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include <meshfarm/geometry/mesh.hpp>
+#include <meshfarm/geometry/simplify.hpp>
+
+#include "geometry/simplify/adjacency.hpp"
+#include "geometry/simplify/collapse.hpp"
+#include "geometry/simplify/simplify_clean.hpp"
+#include "geometry/simplify/simplify_lines.hpp"
+
+namespace meshfarm {
+
+class CollapseQueue;
+
+/// A mesh that is being simplified: clean, its vertices flagged, without unused vertices but the
+/// locked ones. A pass merges vertices, each at most once, and then compacts the mesh.
+class WorkingMesh {
+ public:
+  /// Throws as Simplifier does.
+  WorkingMesh(Mesh mesh, const SimplifyOptions& options);
+
+  const Mesh& mesh() const { return mesh_; }
+  std::uint64_t triangles() const { return mesh_.triangles.size(); }
+  std::uint32_t vertices() const { return static_cast<std::uint32_t>(mesh_.positions.size()); }
+  std::span<const std::uint8_t> flags() const { return flags_; }  // VertexFlag
+  const Adjacency& adjacency() const { return adjacency_; }       // as of the last begin_pass()
+  const CreaseLines& creases() const { return creases_; }
+  PositionType type() const { return type_; }
+  const AppearanceScale& appearance_scale() const { return appearance_scale_; }
+  double uv_scale() const { return uv_scale_; }
+  bool seam_only() const { return seam_only_; }
+  const Dropped& dropped() const { return dropped_; }
+  /// Those that no locked vertex has.
+  std::uint64_t free_triangles() const;
+  /// Whether there are more triangles than that, and some edge may go: the last one too many goes
+  /// at an open border only.
+  bool is_above(std::uint64_t triangles) const;
+  /// 1 a vertex that is, or was merged from, a seam vertex; empty without a seam.
+  std::vector<std::uint8_t> seam() const;
+
+  void begin_pass();
+  /// Of the pass that has begun.
+  CollapseState state();
+  /// Whether a vertex took part in a collapse of this pass.
+  std::span<const std::uint8_t> touched() const { return touched_; }
+  void merge(std::uint32_t a, std::uint32_t b, const Collapse& collapse,
+             const MergedColumns& columns);
+  /// `removed`: how many triangles have gone; `cost`: what the pass might pay.
+  void end_pass(std::uint64_t removed, double cost);
+  /// After a pass that has removed triangles: the new number of each vertex, or that of the one it
+  /// has merged into, which is smaller than those of all that stay and follow.
+  std::span<const std::uint32_t> numbers() const { return target_; }
+  /// Becomes what the queue has made of it.
+  void take(const CollapseQueue& queue);
+
+  /// The greatest cost paid so far.
+  double max_cost() const { return max_cost_; }
+  /// Simplifier::pass_cost.
+  double pass_cost() const { return pass_cost_; }
+
+ private:
+  bool has_free_border() const;
+  void compact();
+  void compact_appearances();
+  void compact_columns();
+  void drop_unused_vertices();
+  void move_vertex(std::uint32_t from, std::uint32_t to);
+  void keep_vertices(std::uint32_t count);
+
+  Mesh mesh_;
+  std::uint32_t locked_;
+  PositionType type_;
+  bool seam_only_;
+  AppearanceScale appearance_scale_;
+  double uv_scale_;
+  CreaseLines creases_;
+  Dropped dropped_;
+  std::vector<std::uint8_t> flags_;
+  Adjacency adjacency_;
+  bool adjacency_is_current_ = false;
+  std::vector<std::uint32_t> target_;  // the vertex that a vertex becomes in this pass
+  std::vector<std::uint8_t> touched_;
+  double max_cost_ = 0;
+  double pass_cost_ = 0;
+};
+
+/// How many triangles are left when all goals are met.
+inline std::uint64_t last_of(const SimplifyGoal& goal) {
+  return goal.last_triangles > 0 ? goal.last_triangles : goal.triangles;
+}
+
+}  // namespace meshfarm

@@ -1,0 +1,26 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "geometry/texture/atlas_charts.hpp"
+#include "geometry/texture/flat.hpp"
+
+namespace meshfarm {
+
+/// A chart laid flat: its area is that of the surface.
+struct FlatChart {
+  std::vector<std::uint32_t> triangles;
+  std::vector<FlatTriangle> corners;         // of each triangle; no two overlap
+  std::vector<std::array<Flat, 2>> outline;  // the sides that no two of its triangles share
+  Flat size;                                 // of its box, from (0, 0) on
+};
+
+/// Projects each chart along its axis, and turns it to the smallest box. A chart that would overlap
+/// itself is divided. Charts without any area are left out.
+std::vector<FlatChart> flatten_charts(const ChartSurface& surface, const Charts& charts,
+                                      unsigned threads);
+
+}  // namespace meshfarm
