@@ -26,7 +26,7 @@
 namespace meshfarm {
 namespace {
 
-using OrderedJson = nlohmann::ordered_json;
+using Json = nlohmann::ordered_json;
 
 constexpr std::uint64_t k_most_compressed_bytes = std::uint64_t{256} << 20;
 constexpr unsigned k_short_bits = 16;
@@ -158,8 +158,8 @@ class Packer {
       : layout_(layout),
         bounds_(bounds),
         words_(words),
-        document_(OrderedJson::parse(gltf_document(layout, bounds, words))) {
-    document_["bufferViews"] = OrderedJson::array();
+        document_(Json::parse(gltf_document(layout, bounds, words))) {
+    document_["bufferViews"] = Json::array();
   }
 
   std::string pack(std::string binary) {
@@ -216,12 +216,12 @@ class Packer {
       }
       std::memcpy(bytes.data() + k_stride * v, row.data(), sizeof row);
     }
-    OrderedJson& accessor = accessor_of_next();
+    Json& accessor = accessor_of_next();
     if (is_scaled_) accessor["componentType"] = k_gl_uint16;
     for (std::size_t axis = 0; axis < 3; ++axis) {
       const double unit = lattice_->step();
-      accessor["min"][axis] = is_scaled_ ? OrderedJson(lo[axis]) : OrderedJson(unit * lo[axis]);
-      accessor["max"][axis] = is_scaled_ ? OrderedJson(hi[axis]) : OrderedJson(unit * hi[axis]);
+      accessor["min"][axis] = is_scaled_ ? Json(lo[axis]) : Json(unit * lo[axis]);
+      accessor["max"][axis] = is_scaled_ ? Json(hi[axis]) : Json(unit * hi[axis]);
     }
     add_vertices(bytes, k_stride, filter);
   }
@@ -241,7 +241,7 @@ class Packer {
       meshopt_encodeFilterOct(bytes.data() + k_stride * first, end - first, k_stride, 8,
                               rows.data());
     }
-    OrderedJson& accessor = accessor_of_next();
+    Json& accessor = accessor_of_next();
     accessor["componentType"] = k_int8;
     accessor["normalized"] = true;
     add_vertices(bytes, k_stride, "OCTAHEDRAL");
@@ -269,7 +269,7 @@ class Packer {
       }
       std::memcpy(bytes.data() + k_short_uv_bytes * v, row.data(), sizeof row);
     }
-    OrderedJson& accessor = accessor_of_next();
+    Json& accessor = accessor_of_next();
     accessor["componentType"] = k_gl_uint16;
     accessor["normalized"] = true;
     add_vertices(bytes, k_short_uv_bytes);
@@ -282,7 +282,7 @@ class Packer {
                                            stride));
     accessor_of_next()["bufferView"] = document_["bufferViews"].size();
     accessor_of_next()["byteOffset"] = 0;
-    OrderedJson& view = add_view(made, layout_.vertices, stride, "ATTRIBUTES", filter);
+    Json& view = add_view(made, layout_.vertices, stride, "ATTRIBUTES", filter);
     view["byteStride"] = stride;
     view["target"] = 34962;
   }
@@ -302,18 +302,16 @@ class Packer {
   }
 
   /// Each attribute has one view, in the order of the accessors.
-  OrderedJson& accessor_of_next() {
-    return document_["accessors"][document_["bufferViews"].size()];
-  }
+  Json& accessor_of_next() { return document_["accessors"][document_["bufferViews"].size()]; }
 
-  OrderedJson& add_view(std::span<const unsigned char> stream, std::uint64_t rows,
-                        std::size_t stride, const char* mode, const char* filter) {
-    OrderedJson compression = {{"buffer", 0},
-                               {"byteOffset", binary_.size()},
-                               {"byteLength", stream.size()},
-                               {"byteStride", stride},
-                               {"mode", mode},
-                               {"count", rows}};
+  Json& add_view(std::span<const unsigned char> stream, std::uint64_t rows, std::size_t stride,
+                 const char* mode, const char* filter) {
+    Json compression = {{"buffer", 0},
+                        {"byteOffset", binary_.size()},
+                        {"byteLength", stream.size()},
+                        {"byteStride", stride},
+                        {"mode", mode},
+                        {"count", rows}};
     if (filter != nullptr) compression["filter"] = filter;
     document_["bufferViews"].push_back({{"buffer", 1},
                                         {"byteOffset", unpacked_},
@@ -331,7 +329,7 @@ class Packer {
     std::uint64_t next = end;
     for (std::size_t i = 0; i < words_.images.size(); ++i) {
       const std::uint64_t bytes = words_.images[i].bytes;
-      OrderedJson& views = document_["bufferViews"];
+      Json& views = document_["bufferViews"];
       document_["images"][i]["bufferView"] = views.size();
       views.push_back({{"buffer", 0}, {"byteOffset", next}, {"byteLength", bytes}});
       end = next + bytes;
@@ -345,19 +343,19 @@ class Packer {
     document_["buffers"] = {
         {{"byteLength", end}},
         {{"byteLength", unpacked_}, {"extensions", {{k_compression, {{"fallback", true}}}}}}};
-    OrderedJson extensions = {k_compression};
+    Json extensions = {k_compression};
     if (is_scaled_ || layout_.normals) extensions.push_back(k_quantisation);
     document_["extensionsUsed"] = extensions;
     document_["extensionsRequired"] = extensions;
     if (!lattice_) return;
-    OrderedJson& node = document_["nodes"][0];
+    Json& node = document_["nodes"][0];
     node["translation"] = lattice_->origin;
     const double step = lattice_->step();
     if (is_scaled_) node["scale"] = {step, step, step};
   }
 
   std::string glb() const {
-    std::string json = document_.dump(-1, ' ', false, OrderedJson::error_handler_t::replace);
+    std::string json = document_.dump(-1, ' ', false, Json::error_handler_t::replace);
     json.resize((json.size() + 3) / 4 * 4, ' ');
     std::string made;
     made.reserve(28 + json.size() + binary_.size());
@@ -381,7 +379,7 @@ class Packer {
   const GltfLayout& layout_;
   const GltfBounds& bounds_;
   const GltfWords& words_;
-  OrderedJson document_;
+  Json document_;
   std::optional<Lattice> lattice_;
   bool is_scaled_ = false;  // the lattice is the node's, not of the floats
   std::string binary_;

@@ -9,25 +9,25 @@
 namespace meshfarm {
 namespace {
 
-using Json = nlohmann::json;
+using Parsed = nlohmann::json;
 
 constexpr double k_most_whole = 9007199254740992.0;  // 2^53: sums of some of them fit 64 bits
 
 }  // namespace
 
-Json parse_gltf_json(std::string_view text, std::uint64_t start, const std::string& path) {
+Parsed parse_gltf_json(std::string_view text, std::uint64_t start, const std::string& path) {
   constexpr int k_most_levels = 64;
-  const auto check_depth = [&path](int depth, Json::parse_event_t, const Json&) {
+  const auto check_depth = [&path](int depth, Parsed::parse_event_t, const Parsed&) {
     if (depth <= k_most_levels) return true;
     throw DataError(path + ": its JSON has more than " + std::to_string(k_most_levels) +
                     " levels of arrays and objects");
   };
   try {
-    return Json::parse(text, check_depth);
-  } catch (const Json::parse_error& error) {
+    return Parsed::parse(text, check_depth);
+  } catch (const Parsed::parse_error& error) {
     throw DataError(path + ": its JSON is malformed at byte " +
                     std::to_string(start + (error.byte > 0 ? error.byte - 1 : 0)));
-  } catch (const Json::exception&) {
+  } catch (const Parsed::exception&) {
     throw DataError(path + ": its JSON has a number that is out of range");
   }
 }

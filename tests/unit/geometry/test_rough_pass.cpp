@@ -11,8 +11,8 @@
 #include <meshfarm/geometry/distance.hpp>
 #include <meshfarm/geometry/simplify.hpp>
 
+#include "collapse_bench.hpp"
 #include "geometry/simplify/rough_pass.hpp"
-#include "geometry/simplify/simplify_clean.hpp"
 #include "test_simplify_meshes.hpp"
 
 using namespace meshfarm;
@@ -20,23 +20,9 @@ using namespace meshfarm::simplify_test;
 
 namespace {
 
-/// A mesh with what a rough pass works on.
-struct RoughBench {
-  explicit RoughBench(Mesh m) : mesh(std::move(m)) {
-    flags = clean_surface(mesh, {}, adjacency).flags;
-    for (std::uint32_t v = 0; v < flags.size(); ++v) target.push_back(v);
-    touched.assign(flags.size(), 0);
-  }
-  CollapseState state() {
-    return {mesh.positions, flags, target, &adjacency, PositionType::float64};
-  }
+struct RoughBench : CollapseBench {
+  using CollapseBench::CollapseBench;
   RoughPartners partners() { return {state(), touched}; }
-
-  Mesh mesh;
-  Adjacency adjacency;
-  std::vector<std::uint8_t> flags;
-  std::vector<std::uint32_t> target;
-  std::vector<std::uint8_t> touched;
 };
 
 // A square sheet, smooth waves in one corner of it: an eighth of a side wide.
