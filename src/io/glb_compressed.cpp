@@ -364,11 +364,9 @@ class Packer {
       const auto bytes = static_cast<std::uint32_t>(word);
       made.append(reinterpret_cast<const char*>(&bytes), sizeof bytes);
     };
-    for (const std::size_t word :
-         {std::size_t{0x46546c67}, std::size_t{2}, 28 + json.size() + length, json.size()}) {
+    for (const std::size_t word : {std::size_t{0x46546c67}, std::size_t{2},
+                                   28 + json.size() + length, json.size(), std::size_t{0x4e4f534a}})
       put(word);
-    }
-    put(0x4e4f534a);
     made += json;
     put(length);
     put(0x004e4942);
