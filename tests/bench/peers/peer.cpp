@@ -11,6 +11,7 @@
 #include <limits>
 #include <utility>
 
+#include <meshfarm/geometry/vertices.hpp>
 #include <meshfarm/geometry/weld.hpp>
 #include <meshfarm/io/channel.hpp>
 #include <meshfarm/io/mesh_sink.hpp>
