@@ -64,8 +64,11 @@ void TargetOptions::add(po::options_description& options) {
       "allocation",
       po::value(&allocation)->default_value(allocation)->value_name("threshold|uniform"),
       "threshold: the same cost threshold in all parts; uniform: the same ratio in all parts")(
-      "finish", po::value(&finish)->default_value(finish)->value_name("global|boundary"),
-      "global: the last pass may change everything; boundary: only edges at seams")(
+      "finish", po::value(&finish)->default_value(finish)->value_name("auto|here|farm|boundary"),
+      "the last pass, to the exact count: here: the sink stitches all and may change everything; "
+      "farm: jobs do it piece by piece, and no process holds the whole result, where the other "
+      "options allow it; auto: farm for results too large for one process; boundary: the sink, "
+      "and only edges at seams")(
       "composition",
       po::value(&composition)->default_value(composition)->value_name("auto|tree|sink"),
       "how simplified parts are joined: tree: neighbours by jobs, a few at once; sink: all at once "
@@ -117,8 +120,9 @@ void TargetOptions::check() {
   if (allocation != "threshold" && allocation != "uniform") {
     throw UsageError("--allocation is 'threshold' or 'uniform', not '" + allocation + "'");
   }
-  if (finish != "global" && finish != "boundary") {
-    throw UsageError("--finish is 'global' or 'boundary', not '" + finish + "'");
+  if (finish != "auto" && finish != "here" && finish != "farm" && finish != "boundary" &&
+      finish != "global") {
+    throw UsageError("--finish is 'auto', 'here', 'farm' or 'boundary', not '" + finish + "'");
   }
   if (composition != "auto" && composition != "tree" && composition != "sink") {
     throw UsageError("--composition is 'auto', 'tree' or 'sink', not '" + composition + "'");
@@ -158,6 +162,9 @@ void TargetOptions::check() {
                     : composition == "tree" ? Composition::tree
                                             : Composition::sink;
   run.finish = finish == "boundary" ? Finish::boundary : Finish::global;
+  run.finish_place = finish == "auto"   ? FinishPlace::automatic
+                     : finish == "farm" ? FinishPlace::farm
+                                        : FinishPlace::here;  // 'global' is its older name
 }
 
 std::vector<std::string> TargetOptions::words() const {

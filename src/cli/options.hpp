@@ -47,7 +47,7 @@ struct TargetOptions {
   std::string error;
   std::string drop_components;
   std::string allocation = "threshold";
-  std::string finish = "global";
+  std::string finish = "auto";
   std::string composition = "auto";
   std::string topology = "auto";
 

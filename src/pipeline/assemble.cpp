@@ -16,6 +16,7 @@
 #include "pipeline/bake_stage.hpp"
 #include "pipeline/channel_values.hpp"
 #include "pipeline/finish_result.hpp"
+#include "pipeline/pieces_output.hpp"
 #include "pipeline/result_textures.hpp"
 #include "pipeline/texture_bake.hpp"
 
@@ -37,6 +38,7 @@ class Assembler::Impl {
 
   RunSummary complete(std::span<const AcceptedJob> accepted) {
     const ChosenRungs& chosen = take(accepted);
+    if (state_.finished) return complete_in_pieces(*state_.finished);
     // If another sink did the jobs, this one knows nothing of what it finished.
     if (!finished_) finish(chosen);
     Stopwatch watch;
@@ -76,12 +78,57 @@ class Assembler::Impl {
         [this] { check_stop(); }};
     finished_ = finish_result(stage_, manifest_, run_, chosen, options);
     finished_->summary.output = options_.output.string();
+    if (run_.finish_place == FinishPlace::farm) {
+      finished_->summary.why_finished_here = state_.why_finish_here;
+    }
     if (!bakes_texture(manifest_, run_)) return;
     Stopwatch watch;
     tell("charts", 0, 0);
     layout_ =
         lay_out_texture(stage_, manifest_, run_.texture_size, options_.threads, finished_->mesh);
     finished_->summary.finish_seconds += watch.lap();
+  }
+
+  /// What was too large to be finished here is written as it is read.
+  RunSummary complete_in_pieces(const FinishedPieces& result) {
+    Stopwatch watch;
+    RunSummary summary = summary_of_pieces(result);
+    tell("measure", 0, 0);
+    summary.error = error_of_pieces(stage_, manifest_, result, options_.threads);
+    summary.measure_seconds = watch.lap();
+    tell("write", 0, 0);
+    write_pieces(stage_, manifest_, result, options_.output, [this] { check_stop(); });
+    summary.write_seconds = watch.lap();
+    return summary;
+  }
+
+  RunSummary summary_of_pieces(const FinishedPieces& result) const {
+    RunSummary summary;
+    summary.manifest = manifest_;
+    summary.output = options_.output.string();
+    summary.target = asked_triangles(manifest_, run_);
+    summary.finished_in_pieces = result.pieces.size();
+    summary.dropped_degenerate = manifest_.coincident_corners;
+    summary.dropped_duplicate = manifest_.dropped_duplicate;
+    for (const ChosenRung& each : state_.chosen->rungs) {
+      summary.dropped_degenerate += each.dropped_degenerate;
+      summary.dropped_duplicate += each.dropped_duplicate;
+      summary.turned += each.turned;
+    }
+    for (const PieceOfResult& each : result.pieces) {
+      summary.dropped_degenerate += each.divided.dropped_degenerate;
+      summary.dropped_duplicate += each.divided.dropped_duplicate;
+      summary.turned += each.divided.turned;
+      summary.stitched += each.divided.weight.before;
+      if (each.parts > 0) summary.stitched += each.divided.gap_triangles;
+      summary.pieces.push_back({each.first_part, each.parts, each.error.to_output});
+    }
+    summary.triangles = result.triangles();
+    summary.vertices = result.vertices();
+    if (summary.triangles < summary.target) {
+      summary.why_not_exact = "where no open border is left, triangles go in pairs";
+    }
+    return summary;
   }
 
   void write(Mesh& result, const BakedTexture* baked) {

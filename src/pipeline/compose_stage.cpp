@@ -9,6 +9,7 @@
 #include <meshfarm/io/result_file.hpp>
 #include <meshfarm/pipeline/compose_job.hpp>
 
+#include "pipeline/finish_stage.hpp"
 #include "pipeline/run_stages.hpp"
 
 namespace meshfarm {
@@ -58,8 +59,13 @@ void ComposeStage::begin(JobGraph& graph, const ComposeGoal& goal, std::vector<C
                          Done done) {
   goal_ = goal;
   done_ = std::move(done);
-  for (const ComposedParts& each : parts) weight_ += each.weight;
-  most_triangles_ = most_triangles();
+  farms_finish_ = why_finish_here(manifest_, options_).empty();
+  std::uint64_t triangles = 0;
+  for (const ComposedParts& each : parts) {
+    weight_ += each.weight;
+    triangles += each.triangles;
+  }
+  most_triangles_ = most_triangles(triangles);
   Level& level = levels_.emplace_back();
   level.parts = std::move(parts);
   level.whole = true;
@@ -74,17 +80,18 @@ bool ComposeStage::can_join() const {
 }
 
 /// What whoever simplified the parts can hold: a sweep's window, or the largest of them.
-std::uint64_t ComposeStage::most_triangles() const {
+std::uint64_t ComposeStage::most_triangles(std::uint64_t all_triangles) const {
   std::uint64_t most = manifest_.window_triangles;
   if (manifest_.scheme == Scheme::stream) return most;
   for (const PartEntry& part : manifest_.parts) most = std::max(most, part.triangles);
+  if (farms_finish_) most = std::max({most, k_least_piece, 2 * all_triangles / k_most_pieces});
   return most;
 }
 
 /// By those that are taken: it may be clear before all are.
 bool ComposeStage::is_worth_it(const Level& level) const {
   if (!can_join()) return false;
-  if (options_.composition == Composition::tree) return true;
+  if (options_.composition == Composition::tree || farms_finish_) return true;
   return level.triangles >= k_worth_a_tree &&
          static_cast<double>(level.triangles) > k_worth_seams * goal_.triangles;
 }

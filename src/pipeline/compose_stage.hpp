@@ -61,7 +61,7 @@ class ComposeStage {
   };
 
   bool can_join() const;
-  std::uint64_t most_triangles() const;
+  std::uint64_t most_triangles(std::uint64_t all_triangles) const;
   bool is_worth_it(const Level& level) const;
   void take(JobGraph& graph, std::size_t number);
   void join(JobGraph& graph, std::size_t number);
@@ -76,6 +76,7 @@ class ComposeStage {
   Done done_;
   std::uint64_t weight_ = 0;          // of all
   std::uint64_t most_triangles_ = 0;  // of a group
+  bool farms_finish_ = false;
   std::deque<Level> levels_;
 };
 

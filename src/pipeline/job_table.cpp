@@ -7,6 +7,7 @@
 #include <meshfarm/pipeline/bake_job.hpp>
 #include <meshfarm/pipeline/compose_job.hpp>
 #include <meshfarm/pipeline/job_table.hpp>
+#include <meshfarm/pipeline/piece_jobs.hpp>
 #include <meshfarm/pipeline/simplify_job.hpp>
 #include <meshfarm/pipeline/sort_job.hpp>
 #include <meshfarm/pipeline/sweep_job.hpp>
@@ -21,7 +22,9 @@ constexpr std::pair<std::string_view, JobPointer> k_table[] = {
     {k_sort_kind, sort_to_stream},    {k_sample_kind, sample_stream},
     {k_simplify_kind, simplify_part}, {k_sweep_kind, sweep_stream},
     {k_compose_kind, compose_parts},  {k_tile_kind, tile_pictures},
-    {k_bake_kind, bake_chunk},
+    {k_bake_kind, bake_chunk},        {k_split_kind, split_piece},
+    {k_seam_kind, join_seams},        {k_reduce_kind, reduce_piece},
+    {k_measure_kind, measure_piece},
 };
 
 }  // namespace
@@ -41,6 +44,12 @@ void check_output(std::string_view kind, const JobOutput& output) {
     decode_finish_summary(output.summary, what);
   } else if (kind == k_tile_kind) {
     decode_tile_summary(output.summary, what);
+  } else if (kind == k_split_kind || kind == k_seam_kind) {
+    decode_divided_piece(output.summary, what);
+  } else if (kind == k_reduce_kind) {
+    decode_finished_piece(output.summary, what);
+  } else if (kind == k_measure_kind) {
+    decode_piece_error(output.summary, what);
   } else if (kind == k_bake_kind) {
     if (!output.summary.empty()) throw DataError(what + ": there should be none");
   } else {

@@ -15,6 +15,7 @@
 #include "pipeline/bake_stage.hpp"
 #include "pipeline/climb_stage.hpp"
 #include "pipeline/compose_stage.hpp"
+#include "pipeline/finish_stage.hpp"
 #include "pipeline/part_jobs.hpp"
 #include "pipeline/part_results.hpp"
 #include "pipeline/run_stages.hpp"
@@ -28,16 +29,21 @@ namespace {
 constexpr double k_finer = 1.2;
 constexpr std::int32_t k_most_finer = 6;
 
+/// Pieces are divided again when about so many times the target is left.
+constexpr double k_before_finish = 1.2;
+constexpr std::int32_t k_most_levels = 60;
+
 class Run {
  public:
   using Parts = std::vector<std::uint32_t>;
 
   Run(Manifest manifest, RunOptions options)
-      : options_(std::move(options)), state_{std::move(manifest), {}, {}} {}
+      : options_(std::move(options)), state_{std::move(manifest), {}, {}, {}, {}} {}
 
   /// Slabs are sorted, if there are any; from then on the run is the one that streams would have
   /// had.
   void begin(JobGraph& graph) {
+    state_.why_finish_here = why_finish_here(manifest(), options_);
     if (!manifest().sorting) return simplify(graph);
     graph.then(sorting_.ask(graph), [this](JobGraph& so_far) {
       state_.manifest.sorting.reset();
@@ -129,10 +135,42 @@ class Run {
         results().level, jobs().sweep_cost(results().level), jobs().wanted(),
         results().topology == TopologyMode::simplify ? TopologyMode::simplify : TopologyMode::keep};
     composing_.begin(graph, goal, reached(),
-                     [this](JobGraph& so_far, const std::vector<ComposedParts>& parts) {
+                     [this, goal](JobGraph& so_far, const std::vector<ComposedParts>& parts) {
                        choose(parts);
+                       if (state_.why_finish_here.empty()) return finish(so_far, goal, parts);
                        if (bakes_texture(manifest(), options_)) baking_.begin(so_far, *chosen());
                      });
+  }
+
+  /// In pieces; a result that cannot be made so is the sink's to make of what was chosen.
+  void finish(JobGraph& graph, const ComposeGoal& goal, const std::vector<ComposedParts>& parts) {
+    if (goal.topology == TopologyMode::simplify) {
+      state_.why_finish_here = "the topology is given up where that is cheapest in the whole";
+      return;
+    }
+    finishing_.begin(graph, finish_goal(goal.topology), parts,
+                     [this](JobGraph&, std::optional<FinishedPieces> made, std::string why_here) {
+                       state_.finished = std::move(made);
+                       state_.why_finish_here = std::move(why_here);
+                     });
+  }
+
+  /// By the ladders, between whose levels counts are taken to fall evenly.
+  FinishGoal finish_goal(TopologyMode topology) const {
+    const double wanted = k_before_finish * static_cast<double>(target_triangles(manifest(), options_));
+    const auto at = [this](std::int32_t level) {
+      return static_cast<double>(results().free_triangles(level));
+    };
+    std::int32_t level = std::max(0, results().level);
+    for (std::int32_t tried = 0; tried < k_most_levels && at(level + 1) > wanted; ++tried) ++level;
+    const double before = at(level);
+    const double after = at(level + 1);
+    const double way = before > wanted && before > after ? (before - wanted) / (before - after) : 0;
+    FinishGoal goal;
+    goal.step = k_steps_a_level * level + static_cast<std::int32_t>(k_steps_a_level * std::min(1.0, way));
+    goal.share = 1 / k_before_finish;
+    goal.topology = topology;
+    return goal;
   }
 
   /// What is to be stitched of each part, before anything is composed.
@@ -211,6 +249,7 @@ class Run {
   std::optional<Simplifying> simplifying_;
   std::size_t parts_done_ = 0;
   ComposeStage composing_{state_.manifest, options_};
+  FinishStage finishing_{state_.manifest, options_};
   BakeStage baking_{state_.manifest, options_, state_.baked};
 };
 

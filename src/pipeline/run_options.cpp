@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include <meshfarm/pipeline/algorithm.hpp>
+#include <meshfarm/pipeline/finished_pieces.hpp>
 #include <meshfarm/pipeline/run_options.hpp>
 #include <meshfarm/util/bytes.hpp>
 #include <meshfarm/util/checksum.hpp>
@@ -175,6 +176,8 @@ std::uint64_t run_key(const Manifest& manifest, const RunOptions& options) {
     out.put(chosen_textures(manifest, options));
     out.put(options.texture_size);
   }
+  // Older versions had one way.
+  if (why_finish_here(manifest, options).empty()) out.put(FinishPlace::farm);
   const std::uint64_t key = checksum(out.bytes());
   return key == 0 ? 1 : key;  // 0 means "any run" to the farm
 }

@@ -4,6 +4,7 @@
 #include <cstdint>
 
 #include <meshfarm/pipeline/budget.hpp>
+#include <meshfarm/pipeline/finished_pieces.hpp>
 #include <meshfarm/pipeline/sink_need.hpp>
 #include <meshfarm/util/errors.hpp>
 
@@ -55,7 +56,7 @@ std::optional<SinkNeed> sink_need(const Manifest& manifest, const RunOptions& op
 std::string check_sink_need(const Manifest& manifest, const RunOptions& options,
                             std::optional<std::uint64_t> free_bytes) {
   const auto need = sink_need(manifest, options);
-  if (!need) return {};
+  if (!need || why_finish_here(manifest, options).empty()) return {};
   // No less than the target is stitched, whatever the levels are.
   const std::uint64_t least = std::min(manifest.triangles(), target_triangles(manifest, options));
   if (least > k_most_triangles) {

@@ -44,6 +44,19 @@ Json input_json(const Manifest& m) {
           {"skipped", m.skipped}};
 }
 
+Json finish_json(const RunSummary& s) {
+  Json pieces = Json::array();
+  for (const ErrorOfPiece& each : s.pieces) {
+    Json json = to_json(each.to_output, s.manifest.box.diagonal());
+    json["first_part"] = each.first_part;
+    json["parts"] = each.parts;
+    pieces.push_back(std::move(json));
+  }
+  return {{"by", s.finished_in_pieces > 0 ? "farm" : "sink"},
+          {"why_here", s.why_finished_here},
+          {"input_to_output", std::move(pieces)}};
+}
+
 /// It may have been given up, and yet nothing went.
 bool is_kept(const RunSummary& s) {
   if (!s.topology) return !s.topology_simplified;
@@ -260,6 +273,7 @@ std::string render(const RunSummary& s, Format format) {
         {"parts", m.parts.size()},
         {"boundary_triangles", m.boundary_triangles},
         {"stitched_triangles", s.stitched},
+        {"finish", finish_json(s)},
         {"seconds",
          {{"cut", m.cut_seconds},
           {"farm", s.farm_seconds},
@@ -292,6 +306,12 @@ std::string render(const RunSummary& s, Format format) {
   if (!warning.empty()) lines.add("warning", warning);
   lines.add(parts_name(m), grouped(m.parts.size()) + ", stitched to " + grouped(s.stitched) +
                                " triangles before the finish");
+  if (s.finished_in_pieces > 0) {
+    lines.add("finish", "by jobs, in " + grouped(s.finished_in_pieces) +
+                            (s.finished_in_pieces == 1 ? " piece" : " pieces"));
+  } else if (!s.why_finished_here.empty()) {
+    lines.add("finish", "by the sink: " + s.why_finished_here);
+  }
   lines.add("time", std::string(scheme_name(m)) + " " + number(m.cut_seconds, "%.2f s") +
                         ", farm " + number(s.farm_seconds, "%.2f s") + ", stitch " +
                         number(s.stitch_seconds, "%.2f s") + ", finish " +

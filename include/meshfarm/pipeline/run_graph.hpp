@@ -10,6 +10,7 @@
 #include <meshfarm/farm/job_graph.hpp>
 #include <meshfarm/io/manifest.hpp>
 #include <meshfarm/pipeline/budget.hpp>
+#include <meshfarm/pipeline/finished_pieces.hpp>
 #include <meshfarm/pipeline/run_options.hpp>
 
 namespace meshfarm {
@@ -31,7 +32,9 @@ struct BakedTexture {
 struct RunState {
   Manifest manifest;                  // its slabs sorted, if there were some
   std::optional<ChosenRungs> chosen;  // once every job that makes the mesh is accepted
-  BakedTexture baked;                 // once all is
+  std::optional<FinishedPieces> finished;  // once all is, if the finish is made of jobs
+  std::string why_finish_here;             // else, why not
+  BakedTexture baked;                      // once all is
 };
 
 /// By the jobs that are accepted, in any order. Throws DataError for outputs that cannot be theirs.

@@ -26,6 +26,13 @@ enum class Finish : std::uint8_t {
   boundary,  // edges at boundary vertices only (Xiong et al. 2008, 3.3)
 };
 
+/// Who does the last pass, measures and knows the whole result.
+enum class FinishPlace : std::uint8_t {
+  automatic,  // the farm where the result is too large for one process to hold well
+  here,       // the sink
+  farm,       // jobs, each with a piece of the result, where the options have a way for it
+};
+
 /// How swept streams become one mesh.
 enum class Composition : std::uint8_t {
   automatic,  // as a tree where that is worth its jobs
@@ -69,6 +76,7 @@ struct RunOptions {
   Length error;  // where above 0: as few triangles as keep this distance
   Allocation allocation = Allocation::threshold;
   Finish finish = Finish::global;
+  FinishPlace finish_place = FinishPlace::automatic;
   Composition composition = Composition::automatic;
   LineOptions lines;
   Length drop_components;  // components with a smaller diagonal are left out

@@ -69,6 +69,13 @@ struct TexturesMade {
   double charts_share = 0;   // of it
 };
 
+/// How far the input of a piece of the result is from it.
+struct ErrorOfPiece {
+  std::uint32_t first_part = 0;
+  std::uint32_t parts = 0;  // 0: what lies round the seams
+  Distance to_output;
+};
+
 /// What a run made, for people and for programs.
 struct RunSummary {
   Manifest manifest;
@@ -96,6 +103,9 @@ struct RunSummary {
   std::uint64_t stitched = 0;            // triangles of the stitched mesh, before the finish
   std::uint64_t dropped_degenerate = 0;  // cut, parts and finish together
   std::uint64_t dropped_duplicate = 0;
+  std::uint64_t finished_in_pieces = 0;  // 0: the sink finished it
+  std::string why_finished_here;         // where the farm was to finish it
+  std::vector<ErrorOfPiece> pieces;
   double farm_seconds = 0;
   double stitch_seconds = 0;
   double finish_seconds = 0;

@@ -1,0 +1,41 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include <meshfarm/io/manifest.hpp>
+#include <meshfarm/pipeline/piece_jobs.hpp>
+#include <meshfarm/pipeline/run_options.hpp>
+
+namespace meshfarm {
+
+/// Why a run's finish is the sink's alone: the options that it has no way for, or that the sink
+/// does it well. Empty: its finish is made of jobs.
+std::string why_finish_here(const Manifest& manifest, const RunOptions& options);
+
+/// A piece of a result that is finished.
+struct PieceOfResult {
+  std::uint32_t first_part = 0;
+  std::uint32_t parts = 0;  // that it is made of; 0: the surroundings of the seams
+  FileRef divided_file;
+  DividedPiece divided;
+  FileRef finished_file;
+  FinishedPiece finished;
+  FileRef error_file;
+  PieceError error;
+};
+
+/// A result in pieces: it consists of their meshes and the gaps between them and the last of them,
+/// the surroundings of the seams. If there is one piece only, it has none.
+struct FinishedPieces {
+  std::vector<PieceOfResult> pieces;
+  std::uint64_t target = 0;
+
+  std::uint64_t triangles() const;
+  std::uint64_t vertices() const;
+};
+
+}  // namespace meshfarm

@@ -1,0 +1,160 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <meshfarm/farm/job.hpp>
+#include <meshfarm/pipeline/run_options.hpp>
+#include <meshfarm/report/summary.hpp>
+#include <meshfarm/staging/sections.hpp>
+
+namespace meshfarm {
+
+// The jobs of a finish that no process holds whole. Pieces, parts that were composed, are divided
+// again: what lies round a seam between pieces leaves its piece ("split") and is joined with all
+// else that does ("seam"). So the seams lie inside one of the new pieces, and what is held now lies
+// where nothing was held before. Each new piece is simplified to its quota of the triangles
+// ("reduce"), and measured ("measure").
+
+inline constexpr std::string_view k_split_kind = "split";
+inline constexpr std::string_view k_seam_kind = "seam";
+inline constexpr std::string_view k_reduce_kind = "reduce";
+inline constexpr std::string_view k_measure_kind = "measure";
+
+/// A section of a staged file.
+struct SectionRef {
+  FileRef file;
+  FileSection section;
+};
+
+/// Costs at which triangles are counted are the same in all pieces: so many steps are a level.
+inline constexpr std::int32_t k_steps_a_level = 4;
+double step_cost(std::int32_t step, double unit);
+
+/// How a piece is weighed: simplified step by step to so small a share of what it has at the first.
+struct WeighParameters {
+  double cost_unit = 0;          // of step 0
+  std::int32_t first_step = -1;  // -1: to be found
+  double last_share = 0;         // where it ends
+  double kept_share = 0;         // where the mesh is kept, to go on from there
+  LineOptions lines;
+};
+
+/// How many triangles a piece has at which cost.
+struct PieceWeight {
+  std::uint64_t before = 0;  // at no cost
+  std::int32_t first_step = 0;
+  std::vector<std::uint64_t> counts;  // after each step, falling
+
+  /// Once all is collapsed that costs no more than the step.
+  std::uint64_t at(std::int32_t step) const;
+  /// Whether it was seen to lose triangles one by one: at an open border.
+  bool can_be_odd() const;
+};
+
+/// A piece that is divided again, or the joined surroundings of the seams: sections of its file.
+struct DividedPiece {
+  FileSection mesh;     // a result whose boundary vertices are those that are shared
+  /// Of a piece: its triangles between the mesh and the surroundings. Of these: the input's
+  /// triangles between pieces.
+  FileSection gap;
+  FileSection strip;    // of a piece: what it gives to these, a result
+  FileSection samples;  // of the input, by which the error is measured
+  std::uint64_t gap_triangles = 0;
+  std::uint64_t strip_triangles = 0;  // of the surroundings: the input's between pieces
+  std::uint64_t shared = 0;  // vertices of the surroundings that the gap has
+  Box box;                   // of the piece as it came
+  std::vector<std::uint64_t> rungs;  // triangles of the result's rungs
+  std::uint64_t dropped_degenerate = 0;
+  std::uint64_t dropped_duplicate = 0;
+  std::uint64_t turned = 0;
+  PieceWeight weight;
+};
+std::string encode_summary(const DividedPiece& piece);
+DividedPiece decode_divided_piece(std::string_view bytes, std::string_view what);
+
+struct SplitParameters {
+  std::uint32_t rung = 0;
+  std::int32_t step = -1;  // what costs no more is collapsed before; -1: nothing
+  WeighParameters weigh;
+};
+std::string encode_parameters(const SplitParameters& parameters);
+SplitParameters decode_split_parameters(std::string_view bytes);
+
+/// Parameters of the seam job. It has no inputs, as none is to be read whole.
+struct SeamParameters {
+  struct Strip {
+    std::uint32_t parts = 1;
+    SectionRef ref;
+  };
+  std::vector<Strip> strips;  // of the pieces, in order
+  std::uint32_t all_parts = 0;
+  FileRef boundary;
+  double samples_per_triangle = 0;
+  WeighParameters weigh;
+};
+std::string encode_parameters(const SeamParameters& parameters);
+SeamParameters decode_seam_parameters(std::string_view bytes);
+
+struct ReduceParameters {
+  FileSection mesh;  // of the one input
+  std::uint32_t rung = 0;
+  std::uint64_t triangles = 0;
+  std::uint64_t points = 0;  // of the result, by area, to measure it by
+  std::uint64_t vertices = 0;  // and at most so many, and as many middles of sides
+  LineOptions lines;
+};
+std::string encode_parameters(const ReduceParameters& parameters);
+ReduceParameters decode_reduce_parameters(std::string_view bytes);
+
+/// A finished piece: sections of its file.
+struct FinishedPiece {
+  FileSection mesh;    // a result; its boundary vertices are those that are shared, unmoved
+  FileSection points;  // of its surface
+  std::uint64_t by_area = 0;  // the first of them
+  double area = 0;
+  std::uint64_t vertices = 0;
+  std::uint64_t triangles = 0;
+};
+std::string encode_summary(const FinishedPiece& piece);
+FinishedPiece decode_finished_piece(std::string_view bytes, std::string_view what);
+
+/// Parameters of a measure job. What it reads are sections.
+struct MeasureParameters {
+  std::uint32_t first_part = 0;  // of the input, that the piece is made of
+  std::uint32_t end_part = 0;    // none for the surroundings of the seams
+  Box box;                       // of the piece
+  SectionRef mesh;               // finished
+  SectionRef points;
+  SectionRef samples;         // of the input
+  SectionRef gap;             // DividedPiece::gap
+  SectionRef seam_mesh;       // of a piece: the finished surroundings; no name: there are none
+  SectionRef seam_points;     // of these
+  std::uint64_t by_area = 0;  // the first of the piece's points
+  std::uint64_t input_step = 1;  // every so-manieth vertex of the input is looked at
+};
+std::string encode_parameters(const MeasureParameters& parameters);
+MeasureParameters decode_measure_parameters(std::string_view bytes);
+
+/// What a measure job finds. Its file has the distances from the surroundings' points to its share
+/// of the input, 8 bytes each, HUGE_VAL where that is not near: of each point the least of all
+/// files counts.
+struct PieceError {
+  double input_area = 0;  // that the samples stand for
+  Distance to_output;
+  std::uint64_t input_samples = 0;
+  Distance to_input;  // of the piece's own points; none for the surroundings
+};
+std::string encode_summary(const PieceError& error);
+PieceError decode_piece_error(std::string_view bytes, std::string_view what);
+
+JobOutput split_piece(const Job& job, const JobContext& context);
+JobOutput join_seams(const Job& job, const JobContext& context);
+JobOutput reduce_piece(const Job& job, const JobContext& context);
+JobOutput measure_piece(const Job& job, const JobContext& context);
+
+}  // namespace meshfarm

@@ -1,0 +1,243 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#include "pipeline/finish_stage.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include <meshfarm/pipeline/budget.hpp>
+#include <meshfarm/pipeline/simplify_job.hpp>
+
+#include "pipeline/error_meter.hpp"
+#include "pipeline/quotas.hpp"
+#include "pipeline/run_stages.hpp"
+
+namespace meshfarm {
+namespace {
+
+/// Of the share of their triangles that all pieces keep: so far each is weighed, as one may keep
+/// less than others.
+constexpr double k_last_of_share = 0.6;
+/// Nearly each keeps less than so much of it.
+constexpr double k_kept_of_share = 1.3;
+/// So often quotas are mended.
+constexpr std::size_t k_most_rounds = 4;
+
+constexpr std::uint64_t k_piece_process_bytes = std::uint64_t{16} << 20;
+/// The mesh, what simplifies it, and the file that is written.
+constexpr std::uint64_t k_piece_triangle_bytes = 170;
+
+std::uint64_t steps_of(std::uint64_t count, std::uint64_t most) {
+  return std::max<std::uint64_t>(1, (count + most - 1) / most);
+}
+
+/// As of all, at least one.
+std::uint64_t share_of_points(std::uint64_t points, std::uint64_t triangles, std::uint64_t all) {
+  return 1 + points * triangles / std::max<std::uint64_t>(1, all);
+}
+
+}  // namespace
+
+void FinishStage::begin(JobGraph& graph, const FinishGoal& goal,
+                        const std::vector<ComposedParts>& parts, Done done) {
+  done_ = std::move(done);
+  made_.target = target_triangles(manifest_, options_);
+  if (parts.size() > k_most_pieces) {
+    return done_(graph, std::nullopt, "there are more pieces than a job can name");
+  }
+  step_ = goal.step;
+  weigh_.cost_unit = cost_unit(manifest_.box.diagonal());
+  weigh_.first_step = goal.step;
+  weigh_.last_share = std::min(1.0, k_last_of_share * goal.share);
+  weigh_.kept_share = std::min(1.0, k_kept_of_share * goal.share);
+  weigh_.lines = lines_of(manifest_, options_);
+  weigh_.lines.topology = goal.topology;
+  std::uint32_t first_part = 0;
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    PieceOfResult& piece = made_.pieces.emplace_back();
+    piece.first_part = first_part;
+    piece.parts = parts[i].chosen.parts;
+    first_part += piece.parts;
+    graph.add(job_name(RunStage::split, i), split_job(parts[i]));
+  }
+  graph.then({jobs_of(RunStage::split, 0, parts.size())}, [this](JobGraph& so_far) {
+    for (std::size_t i = 0; i < made_.pieces.size(); ++i) {
+      take_divided(so_far, i, job_name(RunStage::split, i));
+    }
+    made_.pieces.size() > 1 ? join_seams(so_far) : weigh(so_far);
+  });
+}
+
+void FinishStage::take_divided(const JobGraph& graph, std::size_t piece, const JobName& name) {
+  const JobOutput& output = graph.output(name);
+  made_.pieces[piece].divided_file = output.file;
+  made_.pieces[piece].divided =
+      decode_divided_piece(output.summary, "summary of " + output.file.name);
+}
+
+void FinishStage::join_seams(JobGraph& graph) {
+  const JobName name = job_name(RunStage::seam, 0);
+  graph.add(name, seam_job());
+  graph.then({just(name)}, [this, name](JobGraph& so_far) {
+    made_.pieces.emplace_back();
+    take_divided(so_far, made_.pieces.size() - 1, name);
+    weigh(so_far);
+  });
+}
+
+void FinishStage::weigh(JobGraph& graph) {
+  std::uint64_t gaps = 0;
+  std::uint64_t all = 0;
+  for (const PieceOfResult& each : made_.pieces) {
+    weights_.push_back(each.divided.weight);
+    all += each.divided.weight.before;
+    if (each.parts > 0) gaps += each.divided.gap_triangles;
+  }
+  if (gaps > made_.target || all + gaps < made_.target) {
+    return done_(graph, std::nullopt, "the pieces have no common threshold for the count");
+  }
+  reduce(graph, share_out_triangles(weights_, made_.target - gaps));
+}
+
+/// Those whose quota is new.
+void FinishStage::reduce(JobGraph& graph, const std::vector<std::uint64_t>& quotas) {
+  const std::size_t pieces = made_.pieces.size();
+  const std::size_t base = rounds_++ * pieces;
+  std::vector<std::size_t> asked;
+  JobNeeds needs;
+  for (std::size_t i = 0; i < pieces; ++i) {
+    if (i < quotas_.size() && quotas_[i] == quotas[i]) continue;
+    const JobName name = job_name(RunStage::reduce, base + i);
+    graph.add(name, reduce_job(i, quotas[i], made_.target));
+    asked.push_back(i);
+    needs.push_back(just(name));
+  }
+  quotas_ = quotas;
+  graph.then(needs, [this, asked, base](JobGraph& so_far) {
+    for (const std::size_t i : asked) {
+      const JobOutput& output = so_far.output(job_name(RunStage::reduce, base + i));
+      made_.pieces[i].finished_file = output.file;
+      made_.pieces[i].finished =
+          decode_finished_piece(output.summary, "summary of " + output.file.name);
+    }
+    look_at_count(so_far);
+  });
+}
+
+void FinishStage::look_at_count(JobGraph& graph) {
+  if (made_.triangles() <= made_.target) return measure(graph);
+  std::vector<std::uint64_t> made;
+  for (const PieceOfResult& each : made_.pieces) made.push_back(each.finished.triangles);
+  const std::vector<std::uint64_t> quotas =
+      rounds_ < k_most_rounds ? share_out_again(weights_, quotas_, made)
+                              : std::vector<std::uint64_t>();
+  if (quotas.empty()) {
+    return done_(graph, std::nullopt, "the pieces by themselves cannot be brought to the count");
+  }
+  reduce(graph, quotas);
+}
+
+void FinishStage::measure(JobGraph& graph) {
+  const std::size_t pieces = made_.pieces.size();
+  for (std::size_t i = 0; i < pieces; ++i) {
+    graph.add(job_name(RunStage::measure, i), measure_job(made_.pieces[i]));
+  }
+  graph.then({jobs_of(RunStage::measure, 0, pieces)}, [this](JobGraph& so_far) {
+    for (std::size_t i = 0; i < made_.pieces.size(); ++i) {
+      const JobOutput& output = so_far.output(job_name(RunStage::measure, i));
+      made_.pieces[i].error_file = output.file;
+      made_.pieces[i].error =
+          decode_piece_error(output.summary, "summary of " + output.file.name);
+    }
+    done_(so_far, std::move(made_), {});
+  });
+}
+
+Job FinishStage::split_job(const ComposedParts& parts) const {
+  Job job;
+  job.kind = k_split_kind;
+  job.inputs = {parts.chosen.file};
+  job.parameters = encode_parameters(SplitParameters{parts.chosen.rung, step_, weigh_});
+  job.cost = parts.triangles;
+  job.memory =
+      k_piece_process_bytes + parts.chosen.file.size + k_piece_triangle_bytes * parts.triangles;
+  return job;
+}
+
+Job FinishStage::seam_job() const {
+  SeamParameters parameters;
+  std::uint64_t triangles = manifest_.boundary_triangles;
+  for (const PieceOfResult& each : made_.pieces) {
+    parameters.strips.push_back({each.parts, {each.divided_file, each.divided.strip}});
+    triangles += each.divided.strip_triangles;
+  }
+  parameters.all_parts = static_cast<std::uint32_t>(manifest_.parts.size());
+  parameters.boundary = manifest_.boundary;
+  parameters.samples_per_triangle =
+      std::min(1.0, static_cast<double>(samples_for(manifest_, options_, manifest_.triangles())) /
+                        static_cast<double>(std::max<std::uint64_t>(1, manifest_.triangles())));
+  parameters.weigh = weigh_;
+  Job job;
+  job.kind = k_seam_kind;
+  job.parameters = encode_parameters(parameters);
+  job.cost = triangles;
+  job.memory = k_piece_process_bytes + manifest_.boundary.size + k_piece_triangle_bytes * triangles;
+  return job;
+}
+
+/// From the rung that is nearest above.
+Job FinishStage::reduce_job(std::size_t piece, std::uint64_t quota, std::uint64_t all) const {
+  const PieceOfResult& from = made_.pieces[piece];
+  const ErrorPoints points;
+  ReduceParameters parameters;
+  parameters.mesh = from.divided.mesh;
+  const std::vector<std::uint64_t>& rungs = from.divided.rungs;
+  while (parameters.rung + 1 < rungs.size() && rungs[parameters.rung + 1] >= quota) {
+    ++parameters.rung;
+  }
+  parameters.triangles = quota;
+  parameters.points = share_of_points(points.by_area, quota, all);
+  parameters.vertices = share_of_points(points.vertices, quota, all);
+  parameters.lines = weigh_.lines;
+  Job job;
+  job.kind = k_reduce_kind;
+  job.inputs = {from.divided_file};
+  job.parameters = encode_parameters(parameters);
+  job.cost = rungs[parameters.rung];
+  job.memory =
+      k_piece_process_bytes + from.divided_file.size + k_piece_triangle_bytes * job.cost;
+  return job;
+}
+
+Job FinishStage::measure_job(const PieceOfResult& piece) const {
+  const PieceOfResult& last = made_.pieces.back();
+  const ErrorPoints points;
+  MeasureParameters parameters;
+  parameters.first_part = piece.first_part;
+  parameters.end_part = piece.first_part + piece.parts;
+  parameters.box = piece.divided.box;
+  parameters.mesh = {piece.finished_file, piece.finished.mesh};
+  parameters.points = {piece.finished_file, piece.finished.points};
+  parameters.samples = {piece.divided_file, piece.divided.samples};
+  parameters.gap = {piece.divided_file, piece.divided.gap};
+  if (piece.parts > 0 && has_seams()) {
+    parameters.seam_mesh = {last.finished_file, last.finished.mesh};
+    parameters.seam_points = {last.finished_file, last.finished.points};
+  }
+  parameters.by_area = piece.finished.by_area;
+  parameters.input_step = steps_of(manifest_.input_vertices, points.input_vertices);
+  Job job;
+  job.kind = k_measure_kind;
+  job.parameters = encode_parameters(parameters);
+  std::uint64_t part = 0;  // the largest, as one is read at a time
+  for (std::uint32_t p = parameters.first_part; p < parameters.end_part; ++p) {
+    job.cost += manifest_.parts[p].triangles;
+    part = std::max(part, manifest_.parts[p].file.size + 60 * manifest_.parts[p].triangles);
+  }
+  const std::uint64_t result = piece.finished.triangles + last.finished.triangles;
+  job.cost = std::max<std::uint64_t>(1, job.cost / 4 + result);
+  job.memory = k_piece_process_bytes + part + 100 * result;
+  return job;
+}
+
+}  // namespace meshfarm

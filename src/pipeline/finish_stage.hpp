@@ -1,0 +1,70 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <meshfarm/farm/job_graph.hpp>
+#include <meshfarm/io/manifest.hpp>
+#include <meshfarm/pipeline/finished_pieces.hpp>
+#include <meshfarm/pipeline/run_options.hpp>
+
+#include "pipeline/compose_stage.hpp"
+
+namespace meshfarm {
+
+/// So many pieces a seam job can name.
+inline constexpr std::size_t k_most_pieces = 200;
+/// Smaller ones would be little more than what lies round the seams.
+inline constexpr std::uint64_t k_least_piece = 65'536;
+
+/// Where all pieces begin.
+struct FinishGoal {
+  std::int32_t step = -1;  // to which all is collapsed first: a little more is left than is wanted
+  double share = 1;        // of what is left then that the result has, about
+  TopologyMode topology = TopologyMode::keep;
+};
+
+/// The finish as jobs: pieces are divided again so that the seams lie inside, each is simplified to
+/// its quota under the one threshold that their weights tell, and measured where it is.
+class FinishStage {
+ public:
+  /// Called at the end; or once it is clear that the sink has to finish, with the reason.
+  using Done = std::function<void(JobGraph&, std::optional<FinishedPieces>, std::string why_here)>;
+
+  /// Both must outlive this.
+  FinishStage(const Manifest& manifest, const RunOptions& options)
+      : manifest_(manifest), options_(options) {}
+
+  void begin(JobGraph& graph, const FinishGoal& goal, const std::vector<ComposedParts>& parts,
+             Done done);
+
+ private:
+  Job split_job(const ComposedParts& parts) const;
+  Job seam_job() const;
+  Job reduce_job(std::size_t piece, std::uint64_t quota, std::uint64_t all) const;
+  Job measure_job(const PieceOfResult& piece) const;
+  void take_divided(const JobGraph& graph, std::size_t piece, const JobName& name);
+  void join_seams(JobGraph& graph);
+  void weigh(JobGraph& graph);
+  void reduce(JobGraph& graph, const std::vector<std::uint64_t>& quotas);
+  void look_at_count(JobGraph& graph);
+  void measure(JobGraph& graph);
+  bool has_seams() const { return made_.pieces.back().parts == 0; }
+
+  const Manifest& manifest_;
+  const RunOptions& options_;
+  Done done_;
+  std::int32_t step_ = -1;
+  WeighParameters weigh_;
+  FinishedPieces made_;
+  std::vector<PieceWeight> weights_;
+  std::vector<std::uint64_t> quotas_;
+  std::size_t rounds_ = 0;
+};
+
+}  // namespace meshfarm

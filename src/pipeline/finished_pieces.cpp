@@ -1,0 +1,50 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#include <meshfarm/pipeline/finished_pieces.hpp>
+#include <meshfarm/pipeline/sink_need.hpp>
+
+#include "pipeline/bake_stage.hpp"
+
+namespace meshfarm {
+namespace {
+
+/// What the sink stitches in so few triangles it finishes sooner by itself.
+constexpr std::uint64_t k_comfortable = 20'000'000;
+
+std::string why_not_farmed(const Manifest& manifest, const RunOptions& options) {
+  if (options.error.value > 0) return "a bound on the error is kept across the seams at once";
+  if (options.drop_components.value > 0) return "small components may span pieces";
+  if (options.finish == Finish::boundary) return "only edges at seams are to change";
+  if (options.allocation == Allocation::uniform) return "the parts have no common threshold";
+  if (manifest.scheme == Scheme::stream || manifest.sorting) return "the parts are streams";
+  if (!chosen_columns(manifest, options).empty()) return "channels are fitted to the whole result";
+  if (manifest.labels || manifest.uvs) return "lines between labels or charts may cross pieces";
+  return {};
+}
+
+}  // namespace
+
+std::string why_finish_here(const Manifest& manifest, const RunOptions& options) {
+  if (options.finish_place == FinishPlace::here) return "it is asked for";
+  std::string why = why_not_farmed(manifest, options);
+  if (!why.empty() || options.finish_place == FinishPlace::farm) return why;
+  const auto need = sink_need(manifest, options);
+  if (need && need->triangles > k_comfortable) return {};
+  return "the sink holds it well";
+}
+
+std::uint64_t FinishedPieces::triangles() const {
+  std::uint64_t sum = 0;
+  for (const PieceOfResult& each : pieces) {
+    sum += each.finished.triangles + (each.parts > 0 ? each.divided.gap_triangles : 0);
+  }
+  return sum;
+}
+
+std::uint64_t FinishedPieces::vertices() const {
+  std::uint64_t sum = 0;
+  for (const PieceOfResult& each : pieces) sum += each.finished.vertices;
+  return sum;
+}
+
+}  // namespace meshfarm

@@ -1,0 +1,357 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include <meshfarm/geometry/distance.hpp>
+#include <meshfarm/geometry/point_meter.hpp>
+#include <meshfarm/io/boundary_file.hpp>
+#include <meshfarm/io/manifest.hpp>
+#include <meshfarm/io/part_file.hpp>
+#include <meshfarm/io/regions.hpp>
+#include <meshfarm/pipeline/piece_jobs.hpp>
+#include <meshfarm/util/byte_lists.hpp>
+#include <meshfarm/util/bytes.hpp>
+#include <meshfarm/util/errors.hpp>
+
+#include "pipeline/piece_sections.hpp"
+
+namespace meshfarm {
+namespace {
+
+/// As the sink does (error_meter.cpp).
+constexpr double k_usual_in_rms = 4;
+constexpr double k_usual_in_spacings = 4;
+/// Of a piece's box, round it: there are the surroundings' points that its input may be near to.
+constexpr double k_margin_of_box = 0.05;
+
+Distance distance_of_points(std::span<const double> distances) {
+  Distance sums;
+  for (const double d : distances) {
+    sums.rms += d * d;
+    sums.mean += d;
+    sums.max = std::max(sums.max, d);
+  }
+  if (distances.empty()) return sums;
+  const auto count = static_cast<double>(distances.size());
+  return {std::sqrt(sums.rms / count), sums.mean / count, sums.max};
+}
+
+/// About, by so many of its triangles.
+double spacing_of(const Mesh& mesh) {
+  constexpr std::size_t k_looked_at = 10'000;
+  const std::size_t step = mesh.triangles.size() / k_looked_at + 1;
+  double sum = 0;
+  std::uint64_t count = 0;
+  for (std::size_t i = 0; i < mesh.triangles.size(); i += step, ++count) {
+    const auto& [a, b, c] = mesh.triangles[i];
+    sum += length(mesh.positions[b] - mesh.positions[a]);
+  }
+  return count == 0 ? 0 : sum / static_cast<double>(count);
+}
+
+void append_every(std::span<const Vec3> points, std::uint64_t step, std::vector<Vec3>& to) {
+  for (std::uint64_t i = 0; i < points.size(); i += step) to.push_back(points[i]);
+}
+
+/// So many of a surface's vertices bound the distances to it.
+constexpr std::size_t k_known_points = 1000;
+
+/// Of a surface that is in memory.
+std::vector<double> distances_to(const std::vector<const Mesh*>& surface,
+                                 const std::vector<Vec3>& points) {
+  std::vector<Vec3> some;
+  double spacing = 0;
+  for (const Mesh* mesh : surface) {
+    append_every(mesh->positions, mesh->positions.size() / k_known_points + 1, some);
+    spacing = std::max(spacing, spacing_of(*mesh));
+  }
+  if (some.empty() || points.empty()) return {};
+  PointMeter meter(points, {spacing, spacing / 2, some});
+  while (meter.begin_pass()) {
+    for (const Mesh* mesh : surface) meter.show(mesh->positions, mesh->triangles);
+  }
+  return meter.distances();
+}
+
+/// The input's surface that a piece is made of: parts, and the triangles between them.
+class PieceInput {
+ public:
+  using Show = std::function<void(const Mesh&)>;
+
+  PieceInput(const Stage& stage, std::uint32_t first, std::uint32_t end)
+      : stage_(stage),
+        manifest_(decode_manifest(stage.read(ManifestName{}), "the manifest")),
+        first_(first),
+        end_(end),
+        boxes_(end - first),
+        boundary_(end - first) {
+    if (end > manifest_.parts.size()) throw DataError("no such parts in the stage");
+  }
+
+  /// Parts whose boxes are wanted; at first all. Then what lies between them.
+  void show(const std::function<bool(const Box&)>& wants, const Show& show_part,
+            const Show& show_between) {
+    for (std::uint32_t p = first_; p < end_; ++p) {
+      Box& box = boxes_[p - first_];
+      if (!box.empty() && !wants(box)) continue;
+      const FileRef& file = manifest_.parts[p].file;
+      const Part part = decode_part(stage_.read(file), file.name);
+      const std::vector<Vec3>& positions = part.mesh.positions;
+      if (box.empty()) {
+        for (const Vec3& v : positions) box.add(v);
+        boundary_[p - first_].assign(positions.begin(),
+                                     positions.begin() + part.boundary_vertices);
+      }
+      show_part(part.mesh);
+    }
+    show_between(between());
+  }
+
+  double triangles() const {
+    std::uint64_t sum = 0;
+    for (std::uint32_t p = first_; p < end_; ++p) sum += manifest_.parts[p].triangles;
+    return static_cast<double>(std::max<std::uint64_t>(1, sum));
+  }
+
+ private:
+  Mesh between() const {
+    std::vector<PartRange> parts;
+    for (std::uint32_t p = first_; p < end_; ++p) parts.push_back({p, p + 1});
+    if (parts.size() < 2) return {};
+    const BoundaryRegions regions(stage_, manifest_.boundary, manifest_.boundary_index);
+    std::vector<BoundaryTriangle> triangles;
+    TriangleColumns columns;
+    for (const std::uint32_t region : Regions(regions.parts()).touched_by(parts)) {
+      regions.read(region, triangles, columns);
+    }
+    Mesh mesh;
+    const auto is_ours = [&](const BoundaryCorner& corner) {
+      return corner.part >= first_ && corner.part < end_ &&
+             corner.local < boundary_[corner.part - first_].size();
+    };
+    for (const BoundaryTriangle& t : triangles) {
+      if (!std::all_of(t.begin(), t.end(), is_ours)) continue;
+      const auto first = static_cast<std::uint32_t>(mesh.positions.size());
+      for (const BoundaryCorner& each : t) {
+        mesh.positions.push_back(boundary_[each.part - first_][each.local]);
+      }
+      mesh.triangles.push_back({first, first + 1, first + 2});
+    }
+    return mesh;
+  }
+
+  const Stage& stage_;
+  Manifest manifest_;
+  std::uint32_t first_;
+  std::uint32_t end_;
+  std::vector<Box> boxes_;
+  std::vector<std::vector<Vec3>> boundary_;
+};
+
+/// Some of the surroundings' points, by number.
+struct NearPoints {
+  std::vector<Vec3> points;
+  std::vector<std::uint32_t> numbers;
+};
+
+NearPoints points_near(const std::vector<Vec3>& points, const Box& box) {
+  const double margin = k_margin_of_box * box.diagonal();
+  const auto is_within = [margin](double x, double lo, double hi) {
+    return x >= lo - margin && x <= hi + margin;
+  };
+  NearPoints near;
+  for (std::uint32_t i = 0; i < points.size(); ++i) {
+    const Vec3& p = points[i];
+    if (!is_within(p.x, box.lo.x, box.hi.x) || !is_within(p.y, box.lo.y, box.hi.y) ||
+        !is_within(p.z, box.lo.z, box.hi.z)) {
+      continue;
+    }
+    near.points.push_back(p);
+    near.numbers.push_back(i);
+  }
+  return near;
+}
+
+/// Corners of the gap become those of the mesh, and new vertices.
+void append_gap(const PieceGap& gap, std::uint32_t shared, Mesh& mesh) {
+  const auto first = static_cast<std::uint32_t>(mesh.positions.size());
+  mesh.positions.insert(mesh.positions.end(), gap.positions.begin(), gap.positions.end());
+  for (const Triangle& t : gap.triangles) {
+    Triangle& added = mesh.triangles.emplace_back(t);
+    for (std::uint32_t& v : added) {
+      if (v >= shared) v += first - shared;
+      if (v >= mesh.positions.size()) throw DataError("a gap names a vertex that is not there");
+    }
+  }
+}
+
+class PieceMeter {
+ public:
+  PieceMeter(const MeasureParameters& parameters, const JobContext& context)
+      : parameters_(parameters), context_(context), mesh_(read_mesh_of_piece()) {
+    surface_.push_back(&mesh_);
+    if (parameters.seam_mesh.file.name.empty()) return;
+    seam_mesh_ = mesh_of(parameters.seam_mesh);
+    surface_.push_back(&seam_mesh_);
+  }
+
+  PieceError run() {
+    measure_samples();
+    is_piece() ? measure_to_parts() : measure_to_seams();
+    return error_;
+  }
+  const std::vector<double>& seam_distances() const { return seam_distances_; }
+
+ private:
+  bool is_piece() const { return parameters_.end_part > parameters_.first_part; }
+
+  Mesh mesh_of(const SectionRef& ref) const {
+    return decode_result(read_section(context_, ref), 0, ref.file.name).mesh;
+  }
+
+  std::vector<Vec3> points_of(const SectionRef& ref) const {
+    return decode_points(read_section(context_, ref), ref.file.name);
+  }
+
+  /// With the triangles between it and the surroundings.
+  Mesh read_mesh_of_piece() const {
+    const SectionRef& ref = parameters_.mesh;
+    const ResultMesh piece = decode_result(read_section(context_, ref), 0, ref.file.name);
+    Mesh mesh = piece.mesh;
+    if (!is_piece()) return mesh;
+    const PieceGap gap =
+        decode_gap(read_section(context_, parameters_.gap), parameters_.gap.file.name);
+    append_gap(gap, piece.boundary_vertices, mesh);
+    return mesh;
+  }
+
+  void measure_samples() {
+    const std::vector<SurfaceSamples> samples =
+        decode_samples(read_section(context_, parameters_.samples), parameters_.samples.file.name);
+    std::vector<Vec3> points;
+    for (const SurfaceSamples& each : samples) append_every(each.points, 1, points);
+    const std::vector<double> distances = distances_to(surface_, points);
+    if (distances.empty()) return;
+    std::size_t first = 0;
+    for (const SurfaceSamples& each : samples) {
+      if (each.points.empty()) continue;
+      const Distance d = distance_of_points(std::span(distances).subspan(first, each.points.size()));
+      first += each.points.size();
+      error_.input_area += each.area;
+      error_.to_output.rms += each.area * d.rms * d.rms;
+      error_.to_output.mean += each.area * d.mean;
+      error_.to_output.max = std::max(error_.to_output.max, d.max);
+    }
+    error_.input_samples = points.size();
+    if (!(error_.input_area > 0)) return;
+    error_.to_output.rms = std::sqrt(error_.to_output.rms / error_.input_area);
+    error_.to_output.mean /= error_.input_area;
+  }
+
+  /// The farthest that is looked for at first.
+  double usual(double spacing) const {
+    const Distance& d = error_.to_output;
+    return std::max(std::min(k_usual_in_rms * d.rms, k_usual_in_spacings * spacing),
+                    std::min(2 * d.max, spacing));
+  }
+
+  void measure_to_parts() {
+    const std::vector<Vec3> points = points_of(parameters_.points);
+    std::vector<Vec3> seam_points;
+    if (!parameters_.seam_points.file.name.empty()) {
+      seam_points = points_of(parameters_.seam_points);
+    }
+    const NearPoints near = points_near(seam_points, parameters_.box);
+    PieceInput input(context_.stage, parameters_.first_part, parameters_.end_part);
+    const std::vector<Vec3> known = known_points();
+    const double spacing = std::sqrt(2 * error_.input_area / input.triangles());
+    const double reach = std::max({usual(spacing), 2 * error_.to_output.max, spacing});
+    PointMeter own(points, {spacing, usual(spacing), known});
+    PointMeter to_near(near.points, {spacing, reach, known});
+    std::vector<Vec3> vertices;
+    to_near.begin_pass();
+    for (bool is_first = true; own.begin_pass() || is_first; is_first = false) {
+      const auto show = [&](const Mesh& mesh) {
+        own.show(mesh.positions, mesh.triangles);
+        if (is_first) to_near.show(mesh.positions, mesh.triangles);
+        if (!context_.progress(mesh.triangles.size())) {
+          throw IncompleteError("the job was given up");
+        }
+      };
+      const auto show_part = [&](const Mesh& mesh) {
+        show(mesh);
+        if (is_first) add_vertices(mesh, vertices);
+      };
+      input.show([&](const Box& box) { return own.wants(box); }, show_part, show);
+    }
+    error_.to_input = error_of_own(own.distances());
+    seam_distances_.assign(seam_points.size(), HUGE_VAL);
+    const std::vector<double> found = to_near.distances();
+    for (std::size_t i = 0; i < found.size(); ++i) {
+      if (found[i] < reach) seam_distances_[near.numbers[i]] = found[i];
+    }
+    for (const double d : distances_to(surface_, vertices)) {
+      error_.to_output.max = std::max(error_.to_output.max, d);
+    }
+  }
+
+  void add_vertices(const Mesh& part, std::vector<Vec3>& vertices) const {
+    append_every(part.positions, parameters_.input_step, vertices);
+    if (parameters_.input_step > 1) return;
+    append_every(middles_of_longest_sides(part.positions, part.triangles), 1, vertices);
+  }
+
+  /// RMS and mean by those that are shared out by area.
+  Distance error_of_own(const std::vector<double>& distances) const {
+    const std::size_t by_area = std::min<std::size_t>(parameters_.by_area, distances.size());
+    Distance error = distance_of_points(std::span(distances).first(by_area));
+    error.max = distance_of_points(distances).max;
+    return error;
+  }
+
+  /// The input's triangles between pieces are in memory.
+  void measure_to_seams() {
+    const std::vector<Vec3> points = points_of(parameters_.points);
+    const Mesh between =
+        decode_surface(read_section(context_, parameters_.gap), parameters_.gap.file.name);
+    seam_distances_ = distances_to({&between}, points);
+    seam_distances_.resize(points.size(), HUGE_VAL);
+  }
+
+  /// The distance to the nearest of these is no less than that to the input's surface.
+  std::vector<Vec3> known_points() const {
+    const std::vector<SurfaceSamples> samples =
+        decode_samples(read_section(context_, parameters_.samples), parameters_.samples.file.name);
+    std::vector<Vec3> known;
+    for (const SurfaceSamples& each : samples) append_every(each.points, 1, known);
+    if (known.empty()) throw DataError(parameters_.samples.file.name + ": has no samples");
+    return known;
+  }
+
+  const MeasureParameters& parameters_;
+  const JobContext& context_;
+  Mesh mesh_;
+  Mesh seam_mesh_;
+  std::vector<const Mesh*> surface_;  // of the result
+  PieceError error_;
+  std::vector<double> seam_distances_;
+};
+
+}  // namespace
+
+JobOutput measure_piece(const Job& job, const JobContext& context) {
+  const MeasureParameters parameters = decode_measure_parameters(job.parameters);
+  PieceMeter meter(parameters, context);
+  const PieceError error = meter.run();
+  ByteWriter file;
+  put_list(file, meter.seam_distances());
+  const ResultName name{key_of(job).value, context.attempt, context.incarnation};
+  return {context.publish(name, file.bytes()), encode_summary(error)};
+}
+
+}  // namespace meshfarm

@@ -1,0 +1,287 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+//
+// Parameters and summaries of the jobs of a farmed finish, version 1, little endian:
+//   weigh      = cost unit f64 | first step i32 | last share f64 | kept share f64 | lines
+//   split      = version u8 | rung u32 | step i32 | weigh
+//   seam       = version u8 | strips u32 x (parts u32 | ref) | all parts u32 | boundary |
+//                samples a triangle f64 | weigh
+//   reduce     = version u8 | section | rung u32 | triangles u64 | points u64 | vertices u64 | lines
+//   measure    = version u8 | first part u32 | end part u32 | box | 6 refs | by area u64 |
+//                input step u64
+//   ref        = file | section;  box = 6 x f64
+//   divided    = 4 sections | gap triangles u64 | strip triangles u64 | shared u64 | box |
+//                rungs u32 x u64 | dropped degenerate u64 | duplicate u64 | turned u64 |
+//                before u64 | first step i32 | counts u32 x u64
+//   finished   = 2 sections | by area u64 | area f64 | vertices u64 | triangles u64
+//   error      = area f64 | distance | samples u64 | distance;  distance = rms, mean, max f64
+#include <cmath>
+
+#include <meshfarm/pipeline/piece_jobs.hpp>
+#include <meshfarm/staging/file_ref.hpp>
+#include <meshfarm/util/byte_lists.hpp>
+#include <meshfarm/util/bytes.hpp>
+
+namespace meshfarm {
+namespace {
+
+constexpr std::uint8_t k_piece_version = 1;
+constexpr double k_most_piece_samples = 1000;  // a triangle
+
+void begin_parameters(ByteWriter& out) {
+  out.put(k_piece_version);
+}
+
+void expect_piece_version(ByteReader& in) {
+  if (in.get<std::uint8_t>() != k_piece_version) in.fail("made by another version of meshfarm");
+}
+
+void put_weigh(ByteWriter& out, const WeighParameters& weigh) {
+  out.put(weigh.cost_unit);
+  out.put(weigh.first_step);
+  out.put(weigh.last_share);
+  out.put(weigh.kept_share);
+  put(out, weigh.lines);
+}
+
+WeighParameters get_weigh(ByteReader& in) {
+  WeighParameters weigh;
+  weigh.cost_unit = in.get<double>();
+  weigh.first_step = in.get<std::int32_t>();
+  weigh.last_share = in.get<double>();
+  weigh.kept_share = in.get<double>();
+  weigh.lines = get_lines(in);
+  const auto is_share = [](double x) { return x >= 0 && x <= 1; };
+  if (!(weigh.cost_unit > 0) || !is_share(weigh.last_share) || !is_share(weigh.kept_share)) {
+    in.fail("impossible shares");
+  }
+  return weigh;
+}
+
+void put_ref(ByteWriter& out, const SectionRef& ref) {
+  put_file(out, ref.file);
+  out.put(ref.section);
+}
+
+SectionRef get_ref(ByteReader& in) {
+  FileRef file = get_file(in);
+  return {std::move(file), in.get<FileSection>()};
+}
+
+}  // namespace
+
+std::string encode_parameters(const SplitParameters& parameters) {
+  ByteWriter out;
+  begin_parameters(out);
+  out.put(parameters.rung);
+  out.put(parameters.step);
+  put_weigh(out, parameters.weigh);
+  return out.take();
+}
+
+SplitParameters decode_split_parameters(std::string_view bytes) {
+  ByteReader in(bytes, "parameters of a split job");
+  expect_piece_version(in);
+  SplitParameters parameters;
+  parameters.rung = in.get<std::uint32_t>();
+  parameters.step = in.get<std::int32_t>();
+  parameters.weigh = get_weigh(in);
+  in.expect_end();
+  return parameters;
+}
+
+std::string encode_parameters(const SeamParameters& parameters) {
+  ByteWriter out;
+  begin_parameters(out);
+  out.put(static_cast<std::uint32_t>(parameters.strips.size()));
+  for (const SeamParameters::Strip& strip : parameters.strips) {
+    out.put(strip.parts);
+    put_ref(out, strip.ref);
+  }
+  out.put(parameters.all_parts);
+  put_file(out, parameters.boundary);
+  out.put(parameters.samples_per_triangle);
+  put_weigh(out, parameters.weigh);
+  return out.take();
+}
+
+SeamParameters decode_seam_parameters(std::string_view bytes) {
+  ByteReader in(bytes, "parameters of a seam job");
+  expect_piece_version(in);
+  SeamParameters parameters;
+  std::uint64_t parts = 0;
+  const auto strips = in.get<std::uint32_t>();
+  for (std::uint32_t i = 0; i < strips; ++i) {
+    SeamParameters::Strip strip;
+    strip.parts = in.get<std::uint32_t>();
+    strip.ref = get_ref(in);
+    parts += strip.parts;
+    if (strip.parts == 0) in.fail("a piece of no parts");
+    parameters.strips.push_back(std::move(strip));
+  }
+  parameters.all_parts = in.get<std::uint32_t>();
+  if (parts != parameters.all_parts) in.fail("impossible parts");
+  parameters.boundary = get_file(in);
+  parameters.samples_per_triangle = in.get<double>();
+  const double samples = parameters.samples_per_triangle;
+  if (!(samples >= 0 && samples <= k_most_piece_samples)) in.fail("too many samples");
+  parameters.weigh = get_weigh(in);
+  in.expect_end();
+  return parameters;
+}
+
+std::string encode_parameters(const ReduceParameters& parameters) {
+  ByteWriter out;
+  begin_parameters(out);
+  out.put(parameters.mesh);
+  out.put(parameters.rung);
+  out.put(parameters.triangles);
+  out.put(parameters.points);
+  out.put(parameters.vertices);
+  put(out, parameters.lines);
+  return out.take();
+}
+
+ReduceParameters decode_reduce_parameters(std::string_view bytes) {
+  ByteReader in(bytes, "parameters of a reduce job");
+  expect_piece_version(in);
+  ReduceParameters parameters;
+  parameters.mesh = in.get<FileSection>();
+  parameters.rung = in.get<std::uint32_t>();
+  parameters.triangles = in.get<std::uint64_t>();
+  parameters.points = in.get<std::uint64_t>();
+  parameters.vertices = in.get<std::uint64_t>();
+  parameters.lines = get_lines(in);
+  in.expect_end();
+  return parameters;
+}
+
+std::string encode_parameters(const MeasureParameters& parameters) {
+  ByteWriter out;
+  begin_parameters(out);
+  out.put(parameters.first_part);
+  out.put(parameters.end_part);
+  out.put(parameters.box);
+  for (const SectionRef* ref :
+       {&parameters.mesh, &parameters.points, &parameters.samples, &parameters.gap,
+        &parameters.seam_mesh, &parameters.seam_points}) {
+    put_ref(out, *ref);
+  }
+  out.put(parameters.by_area);
+  out.put(parameters.input_step);
+  return out.take();
+}
+
+MeasureParameters decode_measure_parameters(std::string_view bytes) {
+  ByteReader in(bytes, "parameters of a measure job");
+  expect_piece_version(in);
+  MeasureParameters parameters;
+  parameters.first_part = in.get<std::uint32_t>();
+  parameters.end_part = in.get<std::uint32_t>();
+  parameters.box = in.get<Box>();
+  for (SectionRef* ref :
+       {&parameters.mesh, &parameters.points, &parameters.samples, &parameters.gap,
+        &parameters.seam_mesh, &parameters.seam_points}) {
+    *ref = get_ref(in);
+  }
+  parameters.by_area = in.get<std::uint64_t>();
+  parameters.input_step = in.get<std::uint64_t>();
+  if (parameters.input_step == 0 || parameters.first_part > parameters.end_part) {
+    in.fail("impossible parts");
+  }
+  in.expect_end();
+  return parameters;
+}
+
+std::string encode_summary(const DividedPiece& piece) {
+  ByteWriter out;
+  for (const FileSection& section : {piece.mesh, piece.gap, piece.strip, piece.samples}) {
+    out.put(section);
+  }
+  for (const std::uint64_t count : {piece.gap_triangles, piece.strip_triangles, piece.shared}) {
+    out.put(count);
+  }
+  out.put(piece.box);
+  put_list(out, piece.rungs);
+  out.put(piece.dropped_degenerate);
+  out.put(piece.dropped_duplicate);
+  out.put(piece.turned);
+  out.put(piece.weight.before);
+  out.put(piece.weight.first_step);
+  put_list(out, piece.weight.counts);
+  return out.take();
+}
+
+DividedPiece decode_divided_piece(std::string_view bytes, std::string_view what) {
+  ByteReader in(bytes, what);
+  DividedPiece piece;
+  for (FileSection* section : {&piece.mesh, &piece.gap, &piece.strip, &piece.samples}) {
+    *section = in.get<FileSection>();
+  }
+  for (std::uint64_t* count : {&piece.gap_triangles, &piece.strip_triangles, &piece.shared}) {
+    *count = in.get<std::uint64_t>();
+  }
+  piece.box = in.get<Box>();
+  piece.rungs = get_list<std::uint64_t>(in);
+  piece.dropped_degenerate = in.get<std::uint64_t>();
+  piece.dropped_duplicate = in.get<std::uint64_t>();
+  piece.turned = in.get<std::uint64_t>();
+  piece.weight.before = in.get<std::uint64_t>();
+  piece.weight.first_step = in.get<std::int32_t>();
+  piece.weight.counts = get_list<std::uint64_t>(in);
+  std::uint64_t before = piece.weight.before;
+  for (const std::uint64_t count : piece.weight.counts) {
+    if (count > before) in.fail("counts do not fall");
+    before = count;
+  }
+  if (piece.rungs.empty() || piece.weight.first_step < 0) in.fail("not weighed");
+  in.expect_end();
+  return piece;
+}
+
+std::string encode_summary(const FinishedPiece& piece) {
+  ByteWriter out;
+  out.put(piece.mesh);
+  out.put(piece.points);
+  out.put(piece.by_area);
+  out.put(piece.area);
+  out.put(piece.vertices);
+  out.put(piece.triangles);
+  return out.take();
+}
+
+FinishedPiece decode_finished_piece(std::string_view bytes, std::string_view what) {
+  ByteReader in(bytes, what);
+  FinishedPiece piece;
+  piece.mesh = in.get<FileSection>();
+  piece.points = in.get<FileSection>();
+  piece.by_area = in.get<std::uint64_t>();
+  piece.area = in.get<double>();
+  piece.vertices = in.get<std::uint64_t>();
+  piece.triangles = in.get<std::uint64_t>();
+  if (!(piece.area >= 0 && std::isfinite(piece.area))) in.fail("impossible area");
+  in.expect_end();
+  return piece;
+}
+
+std::string encode_summary(const PieceError& error) {
+  ByteWriter out;
+  out.put(error.input_area);
+  out.put(error.to_output);
+  out.put(error.input_samples);
+  out.put(error.to_input);
+  return out.take();
+}
+
+PieceError decode_piece_error(std::string_view bytes, std::string_view what) {
+  ByteReader in(bytes, what);
+  PieceError error;
+  error.input_area = in.get<double>();
+  error.to_output = in.get<Distance>();
+  error.input_samples = in.get<std::uint64_t>();
+  error.to_input = in.get<Distance>();
+  in.expect_end();
+  return error;
+}
+
+}  // namespace meshfarm

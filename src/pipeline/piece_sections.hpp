@@ -1,0 +1,63 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <meshfarm/geometry/distance.hpp>
+#include <meshfarm/geometry/mesh.hpp>
+#include <meshfarm/io/result_file.hpp>
+#include <meshfarm/pipeline/piece_jobs.hpp>
+
+namespace meshfarm {
+
+/// The triangles of a piece between its mesh and the surroundings of the seams: corners are the
+/// mesh's shared vertices, then those of the surroundings, whose positions are here.
+struct PieceGap {
+  std::vector<Vec3> positions;
+  std::vector<Triangle> triangles;
+};
+std::string encode_gap(const PieceGap& gap);
+PieceGap decode_gap(std::string_view bytes, std::string_view what);
+
+/// What a piece gives to the surroundings of the seams.
+struct PieceStrip {
+  ResultMesh mesh;                     // its boundary vertices are the piece's
+  std::vector<std::uint32_t> shared;   // vertices that are the gap's, in its order
+};
+std::string encode_strip(const PieceStrip& strip);
+PieceStrip decode_strip(std::string_view bytes, std::string_view what);
+
+std::string encode_samples(const std::vector<SurfaceSamples>& samples);
+std::vector<SurfaceSamples> decode_samples(std::string_view bytes, std::string_view what);
+
+std::string encode_surface(const Mesh& mesh);  // positions and triangles
+Mesh decode_surface(std::string_view bytes, std::string_view what);
+
+std::string encode_points(const std::vector<Vec3>& points);
+std::vector<Vec3> decode_points(std::string_view bytes, std::string_view what);
+
+/// Opens the file, for one section.
+std::string read_section(const JobContext& context, const SectionRef& ref);
+
+/// A mesh that is a result of one rung.
+std::string encode_piece(const Mesh& mesh, std::uint32_t locked, PositionType positions);
+
+/// What weighing makes of a mesh.
+struct WeighedMesh {
+  std::string ladder;  // a result: the mesh as it was, cleaned, and nearer to what is wanted of it
+  std::vector<std::uint64_t> rungs;  // its triangles
+  PieceWeight weight;
+  std::uint64_t dropped_degenerate = 0;
+  std::uint64_t dropped_duplicate = 0;
+  std::uint64_t turned = 0;
+};
+
+/// The first `locked` vertices stay.
+WeighedMesh weigh(Mesh mesh, std::uint32_t locked, PositionType positions,
+                  const WeighParameters& parameters, const JobContext& context);
+
+}  // namespace meshfarm

@@ -1,0 +1,219 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#include "pipeline/pieces_output.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <meshfarm/geometry/point_meter.hpp>
+#include <meshfarm/io/result_file.hpp>
+#include <meshfarm/pipeline/input_surface.hpp>
+#include <meshfarm/staging/sections.hpp>
+#include <meshfarm/util/byte_lists.hpp>
+#include <meshfarm/util/bytes.hpp>
+#include <meshfarm/util/errors.hpp>
+
+#include "pipeline/piece_sections.hpp"
+
+namespace meshfarm {
+namespace {
+
+std::string read_of(const Stage& stage, const FileRef& file, const FileSection& section) {
+  return SectionedFile(stage, file).read(section);
+}
+
+class PiecesWriter {
+ public:
+  PiecesWriter(const Stage& stage, const FinishedPieces& result, MeshSink& sink)
+      : stage_(stage), result_(result), sink_(sink) {
+    std::uint64_t next = 0;
+    for (const PieceOfResult& each : result.pieces) {
+      first_vertex_.push_back(next);
+      next += each.finished.vertices;
+    }
+  }
+
+  void vertices(std::size_t piece) { sink_.vertices(mesh_of(piece).mesh.positions); }
+
+  /// The mesh, then the gap to the surroundings, whose shared vertices come piece by piece.
+  void triangles(std::size_t i) {
+    const PieceOfResult& piece = result_.pieces[i];
+    const ResultMesh mesh = mesh_of(i);
+    put(mesh.mesh.triangles, [&](std::uint32_t v) { return first_vertex_[i] + v; });
+    if (piece.parts == 0) return;
+    const std::uint32_t locked = mesh.boundary_vertices;
+    const PieceGap gap = decode_gap(read_of(stage_, piece.divided_file, piece.divided.gap),
+                                    piece.divided_file.name);
+    const std::uint64_t of_seams = first_vertex_.back() + shared_;
+    put(gap.triangles, [&](std::uint32_t v) {
+      if (v >= locked + gap.positions.size()) {
+        throw DataError(piece.divided_file.name + ": a gap names a vertex that is not there");
+      }
+      return v < locked ? first_vertex_[i] + v : of_seams + (v - locked);
+    });
+    shared_ += gap.positions.size();
+  }
+
+ private:
+  ResultMesh mesh_of(std::size_t i) const {
+    const PieceOfResult& piece = result_.pieces[i];
+    ResultMesh mesh = decode_result(read_of(stage_, piece.finished_file, piece.finished.mesh), 0,
+                                    piece.finished_file.name);
+    if (mesh.mesh.positions.size() != piece.finished.vertices) {
+      throw DataError(piece.finished_file.name + ": has other vertices than its summary says");
+    }
+    return mesh;
+  }
+
+  template <class Number>
+  void put(const std::vector<Triangle>& triangles, const Number& number) {
+    constexpr std::size_t k_put_at_once = 65'536;
+    std::vector<WideTriangle> wide;
+    for (std::size_t first = 0; first < triangles.size(); first += k_put_at_once) {
+      const std::size_t end = std::min(triangles.size(), first + k_put_at_once);
+      wide.clear();
+      for (std::size_t i = first; i < end; ++i) {
+        const auto& [a, b, c] = triangles[i];
+        wide.push_back({number(a), number(b), number(c)});
+      }
+      sink_.triangles(TriangleView{wide, {}});
+    }
+  }
+
+  const Stage& stage_;
+  const FinishedPieces& result_;
+  MeshSink& sink_;
+  std::vector<std::uint64_t> first_vertex_;
+  std::uint64_t shared_ = 0;  // of the pieces before
+};
+
+/// Of each point of the seams' surroundings, the distance to the nearest of the input that any
+/// piece has.
+std::vector<double> seam_distances(const Stage& stage, const FinishedPieces& result) {
+  std::vector<double> least;
+  for (const PieceOfResult& piece : result.pieces) {
+    const std::string file = stage.read(piece.error_file);
+    ByteReader in(file, piece.error_file.name);
+    const std::vector<double> distances = get_list<double>(in);
+    in.expect_end();
+    if (least.empty()) least.assign(distances.size(), HUGE_VAL);
+    if (least.size() != distances.size()) in.fail("is of other points than the rest");
+    for (std::size_t i = 0; i < least.size(); ++i) least[i] = std::min(least[i], distances[i]);
+  }
+  return least;
+}
+
+/// Those that are not known are measured to all of the input.
+void find_missing(const Stage& stage, const Manifest& manifest, const PieceOfResult& seams,
+                  const FinishedPieces& result, unsigned threads, std::vector<double>& distances) {
+  if (std::find(distances.begin(), distances.end(), HUGE_VAL) == distances.end()) return;
+  const std::vector<Vec3> points = decode_points(
+      read_of(stage, seams.finished_file, seams.finished.points), seams.finished_file.name);
+  std::vector<Vec3> missing;
+  for (std::size_t i = 0; i < std::min(points.size(), distances.size()); ++i) {
+    if (distances[i] == HUGE_VAL) missing.push_back(points[i]);
+  }
+  std::vector<Vec3> known;
+  double area = 0;
+  for (const PieceOfResult& piece : result.pieces) {
+    area += piece.error.input_area;
+    for (const SurfaceSamples& each :
+         decode_samples(read_of(stage, piece.divided_file, piece.divided.samples),
+                        piece.divided_file.name)) {
+      known.insert(known.end(), each.points.begin(), each.points.end());
+    }
+  }
+  const double spacing =
+      std::sqrt(2 * area / static_cast<double>(std::max<std::uint64_t>(1, manifest.triangles())));
+  PointMeter meter(missing, {spacing, spacing, known});
+  InputSurface input(stage, manifest, threads);
+  while (meter.begin_pass()) {
+    input.show([&](const Box& box) { return meter.wants(box); },
+               [&](const SurfacePiece& piece) { meter.show(piece.positions, piece.triangles); });
+  }
+  const std::vector<double> found = meter.distances();
+  std::size_t next = 0;
+  for (double& d : distances) {
+    if (d == HUGE_VAL && next < found.size()) d = found[next++];
+  }
+}
+
+/// Adds what stands for so much of an area.
+void add_error(const Distance& of_piece, double area, Distance& sums) {
+  sums.rms += area * of_piece.rms * of_piece.rms;
+  sums.mean += area * of_piece.mean;
+  sums.max = std::max(sums.max, of_piece.max);
+}
+
+Distance error_of(const Distance& sums, double area) {
+  if (!(area > 0)) return {};
+  return {std::sqrt(sums.rms / area), sums.mean / area, sums.max};
+}
+
+Distance error_of_seams(const std::vector<double>& distances, std::uint64_t by_area) {
+  Distance sums;
+  const std::size_t counted = std::min<std::size_t>(by_area, distances.size());
+  for (std::size_t i = 0; i < distances.size(); ++i) {
+    sums.max = std::max(sums.max, distances[i]);
+    if (i >= counted) continue;
+    sums.rms += distances[i] * distances[i];
+    sums.mean += distances[i];
+  }
+  if (counted == 0) return sums;
+  const auto count = static_cast<double>(counted);
+  return {std::sqrt(sums.rms / count), sums.mean / count, sums.max};
+}
+
+}  // namespace
+
+void write_pieces(const Stage& stage, const Manifest& manifest, const FinishedPieces& result,
+                  const MeshOutput& output, const std::function<void()>& check_stop) {
+  const auto sink = create_mesh(output, {.vertices = result.vertices(),
+                                         .triangles = result.triangles(),
+                                         .positions = manifest.positions,
+                                         .comment = {},
+                                         .packing = output.packing});
+  PiecesWriter writer(stage, result, *sink);
+  for (std::size_t i = 0; i < result.pieces.size(); ++i) {
+    check_stop();
+    writer.vertices(i);
+  }
+  for (std::size_t i = 0; i < result.pieces.size(); ++i) {
+    check_stop();
+    writer.triangles(i);
+  }
+  sink->commit();
+}
+
+MeasuredError error_of_pieces(const Stage& stage, const Manifest& manifest,
+                              const FinishedPieces& result, unsigned threads) {
+  MeasuredError error;
+  double input_area = 0;
+  double area = 0;
+  Distance to_output;
+  Distance to_input;
+  for (const PieceOfResult& piece : result.pieces) {
+    add_error(piece.error.to_output, piece.error.input_area, to_output);
+    input_area += piece.error.input_area;
+    error.input_samples += piece.error.input_samples;
+    error.output_samples += piece.finished.by_area;
+    area += piece.finished.area;
+    if (piece.parts > 0) add_error(piece.error.to_input, piece.finished.area, to_input);
+  }
+  const PieceOfResult& last = result.pieces.back();
+  if (last.parts == 0) {
+    std::vector<double> distances = seam_distances(stage, result);
+    find_missing(stage, manifest, last, result, threads, distances);
+    add_error(error_of_seams(distances, last.finished.by_area), last.finished.area, to_input);
+  }
+  error.to_output = error_of(to_output, input_area);
+  error.to_input = error_of(to_input, area);
+  return error;
+}
+
+}  // namespace meshfarm

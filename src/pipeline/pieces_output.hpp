@@ -1,0 +1,25 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <functional>
+
+#include <meshfarm/io/manifest.hpp>
+#include <meshfarm/io/mesh_format.hpp>
+#include <meshfarm/pipeline/finished_pieces.hpp>
+#include <meshfarm/report/summary.hpp>
+#include <meshfarm/staging/stage.hpp>
+
+namespace meshfarm {
+
+/// Writes a result from its pieces, each of which is read twice: in memory that does not depend on
+/// the number of pieces. Calls `check_stop` between them, which may throw.
+void write_pieces(const Stage& stage, const Manifest& manifest, const FinishedPieces& result,
+                  const MeshOutput& output, const std::function<void()>& check_stop);
+
+/// The error of the whole by those of its pieces. The few points of the seams' surroundings that no
+/// piece's input is near to are measured here.
+MeasuredError error_of_pieces(const Stage& stage, const Manifest& manifest,
+                              const FinishedPieces& result, unsigned threads);
+
+}  // namespace meshfarm

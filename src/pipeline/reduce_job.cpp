@@ -1,0 +1,77 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#include <algorithm>
+#include <utility>
+#include <vector>
+
+#include <meshfarm/geometry/point_meter.hpp>
+#include <meshfarm/geometry/simplify.hpp>
+#include <meshfarm/pipeline/piece_jobs.hpp>
+#include <meshfarm/util/errors.hpp>
+
+#include "pipeline/piece_sections.hpp"
+
+namespace meshfarm {
+namespace {
+
+void append_thinned(std::span<const Vec3> points, std::uint64_t most, std::vector<Vec3>& to) {
+  if (most == 0) return;
+  const std::uint64_t step = std::max<std::uint64_t>(1, (points.size() + most - 1) / most);
+  for (std::size_t i = 0; i < points.size(); i += step) to.push_back(points[i]);
+}
+
+/// Vertices and the middles of sides show how far the surface is at most.
+std::vector<Vec3> points_of_piece(const Mesh& mesh, const ReduceParameters& parameters,
+                                  FinishedPiece& made) {
+  if (mesh.triangles.empty()) return {};
+  SurfaceSamples samples = sample_surface(
+      mesh, {.samples = std::max<std::uint64_t>(1, parameters.points), .threads = 1});
+  made.area = samples.area;
+  made.by_area = samples.points.size();
+  append_thinned(mesh.positions, parameters.vertices, samples.points);
+  append_thinned(middles_of_longest_sides(mesh.positions, mesh.triangles), parameters.vertices,
+                 samples.points);
+  return std::move(samples.points);
+}
+
+/// The file has little else.
+ResultMesh read_input(const FileRef& input, const ReduceParameters& parameters,
+                      const JobContext& context) {
+  const std::string file = context.read(input);
+  const auto& [offset, size, hash] = parameters.mesh;
+  if (offset > file.size() || size > file.size() - offset) {
+    throw DataError(input.name + ": has no such piece");
+  }
+  return decode_result(std::string_view(file).substr(offset, size), parameters.rung, input.name);
+}
+
+}  // namespace
+
+JobOutput reduce_piece(const Job& job, const JobContext& context) {
+  const ReduceParameters parameters = decode_reduce_parameters(job.parameters);
+  if (job.inputs.size() != 1) throw DataError("a reduce job takes one piece");
+  ResultMesh piece = read_input(job.inputs[0], parameters, context);
+  const std::uint32_t locked = piece.boundary_vertices;
+  const std::uint64_t before = piece.mesh.triangles.size();
+  Simplifier simplifier(std::move(piece.mesh), {.locked_vertices = locked,
+                                                .positions = piece.positions,
+                                                .lines = parameters.lines});
+  bool given_up = false;
+  simplifier.reduce({.triangles = parameters.triangles}, [&](std::uint64_t left) {
+    given_up = !context.progress(before - std::min(left, before));
+    return !given_up;
+  });
+  if (given_up) throw IncompleteError("the job was given up");
+  const Mesh& mesh = simplifier.mesh();
+  std::string file;
+  SectionWriter sections([&](std::string_view bytes) { file += bytes; });
+  FinishedPiece made;
+  made.mesh = sections.add(encode_piece(mesh, locked, piece.positions));
+  made.points = sections.add(encode_points(points_of_piece(mesh, parameters, made)));
+  made.vertices = mesh.positions.size();
+  made.triangles = mesh.triangles.size();
+  const ResultName name{key_of(job).value, context.attempt, context.incarnation};
+  return {context.publish(name, file), encode_summary(made)};
+}
+
+}  // namespace meshfarm

@@ -1,0 +1,274 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#include <algorithm>
+#include <cmath>
+#include <utility>
+#include <vector>
+
+#include <meshfarm/geometry/simplify.hpp>
+#include <meshfarm/geometry/vertices.hpp>
+#include <meshfarm/io/boundary_file.hpp>
+#include <meshfarm/pipeline/piece_jobs.hpp>
+#include <meshfarm/stitch/stitcher.hpp>
+#include <meshfarm/util/errors.hpp>
+
+#include "pipeline/piece_sections.hpp"
+
+namespace meshfarm {
+namespace {
+
+/// So many triangles from a seam a piece is as simple as the rest of it.
+constexpr int k_strip_rings = 6;
+
+/// Where each vertex of a piece goes.
+struct Sides {
+  std::vector<std::uint8_t> strip;   // a flag a vertex: it leaves
+  std::vector<std::uint8_t> shared;  // it is a corner of a triangle with corners on both sides
+};
+
+/// Vertices of no triangle stay where they are: the simplifier drops them.
+Sides sides_of(const Mesh& mesh, std::uint32_t boundary) {
+  Sides sides;
+  sides.strip.assign(mesh.positions.size(), 0);
+  std::fill_n(sides.strip.begin(), boundary, std::uint8_t{1});
+  for (int ring = 0; ring < k_strip_rings; ++ring) {
+    const std::vector<std::uint8_t> before = sides.strip;
+    for (const auto& [a, b, c] : mesh.triangles) {
+      if ((before[a] | before[b] | before[c]) != 0) {
+        sides.strip[a] = sides.strip[b] = sides.strip[c] = 1;
+      }
+    }
+  }
+  sides.shared.assign(mesh.positions.size(), 0);
+  for (const auto& [a, b, c] : mesh.triangles) {
+    const int in_strip = sides.strip[a] + sides.strip[b] + sides.strip[c];
+    if (in_strip == 1 || in_strip == 2) sides.shared[a] = sides.shared[b] = sides.shared[c] = 1;
+  }
+  return sides;
+}
+
+/// The vertices of some mesh, numbered anew: those that are wanted, in order.
+class Numbers {
+ public:
+  explicit Numbers(std::size_t vertices) : of_(vertices, k_left_out) {}
+  template <class Wants>
+  void add(const Wants& wants) {
+    for (std::uint32_t v = 0; v < of_.size(); ++v) {
+      if (of_[v] == k_left_out && wants(v)) of_[v] = count_++;
+    }
+  }
+  Mesh place(const Mesh& from) const {
+    Mesh mesh;
+    place_vertices(VertexView(from), of_, count_, mesh);
+    for (const auto& [a, b, c] : from.triangles) {
+      if (of_[a] != k_left_out && of_[b] != k_left_out && of_[c] != k_left_out) {
+        mesh.triangles.push_back({of_[a], of_[b], of_[c]});
+      }
+    }
+    return mesh;
+  }
+  std::uint32_t operator[](std::uint32_t vertex) const { return of_[vertex]; }
+  std::uint32_t count() const { return count_; }
+
+ private:
+  std::vector<std::uint32_t> of_;
+  std::uint32_t count_ = 0;
+};
+
+/// A piece in three: its mesh, what leaves it, and the triangles between the two.
+struct SplitMesh {
+  Mesh inner;
+  std::uint32_t locked = 0;  // the first vertices of the inner mesh
+  PieceGap gap;
+  PieceStrip strip;
+};
+
+SplitMesh split(const ResultMesh& piece) {
+  const Mesh& mesh = piece.mesh;
+  const Sides sides = sides_of(mesh, piece.boundary_vertices);
+  Numbers inner(mesh.positions.size());
+  inner.add([&](std::uint32_t v) { return sides.strip[v] == 0 && sides.shared[v] != 0; });
+  SplitMesh made;
+  made.locked = inner.count();
+  inner.add([&](std::uint32_t v) { return sides.strip[v] == 0; });
+  made.inner = inner.place(mesh);
+  Numbers strip(mesh.positions.size());
+  strip.add([&](std::uint32_t v) { return sides.strip[v] != 0; });
+  made.strip.mesh = {strip.place(mesh), piece.boundary_vertices, piece.positions, {}};
+  std::vector<std::uint32_t> place(mesh.positions.size(), 0);  // among the gap's corners
+  for (std::uint32_t v = 0; v < place.size(); ++v) {
+    if (sides.shared[v] == 0) continue;
+    place[v] = inner[v];
+    if (sides.strip[v] == 0) continue;
+    place[v] = made.locked + static_cast<std::uint32_t>(made.strip.shared.size());
+    made.strip.shared.push_back(strip[v]);
+    made.gap.positions.push_back(mesh.positions[v]);
+  }
+  for (const auto& [a, b, c] : mesh.triangles) {
+    const int in_strip = sides.strip[a] + sides.strip[b] + sides.strip[c];
+    if (in_strip == 1 || in_strip == 2) {
+      made.gap.triangles.push_back({place[a], place[b], place[c]});
+    }
+  }
+  return made;
+}
+
+/// What will be shared is held for the rest of the run: it had better be about as simple by then as
+/// the result.
+void approach(const SplitParameters& parameters, const JobContext& context, ResultMesh& piece,
+              DividedPiece& made) {
+  if (parameters.step < 0) return;
+  const std::uint64_t before = piece.mesh.triangles.size();
+  Simplifier simplifier(std::move(piece.mesh), {.locked_vertices = piece.boundary_vertices,
+                                                .positions = piece.positions,
+                                                .lines = parameters.weigh.lines});
+  bool given_up = false;
+  simplifier.reduce({.max_cost = step_cost(parameters.step, parameters.weigh.cost_unit)},
+                    [&](std::uint64_t left) {
+                      given_up = !context.progress(before - std::min(left, before));
+                      return !given_up;
+                    });
+  if (given_up) throw IncompleteError("the job was given up");
+  piece.mesh = simplifier.mesh();
+  made.dropped_degenerate = simplifier.dropped_degenerate();
+  made.dropped_duplicate = simplifier.dropped_duplicate();
+  made.turned = simplifier.turned();
+}
+
+/// Writes the sections as they are made.
+class PieceFile {
+ public:
+  FileSection add(std::string_view bytes) { return sections_.add(bytes); }
+  JobOutput publish(const Job& job, const JobContext& context, std::string summary) const {
+    const ResultName name{key_of(job).value, context.attempt, context.incarnation};
+    return {context.publish(name, file_), std::move(summary)};
+  }
+
+ private:
+  std::string file_;
+  SectionWriter sections_{[this](std::string_view bytes) { file_ += bytes; }};
+};
+
+void take_weighed(WeighedMesh weighed, PieceFile& file, DividedPiece& made) {
+  made.mesh = file.add(weighed.ladder);
+  made.rungs = std::move(weighed.rungs);
+  made.weight = std::move(weighed.weight);
+  made.dropped_degenerate += weighed.dropped_degenerate;
+  made.dropped_duplicate += weighed.dropped_duplicate;
+  made.turned += weighed.turned;
+}
+
+/// All strips, joined by the triangles between them: those of the input come last.
+class SeamJoiner {
+ public:
+  SeamJoiner(const SeamParameters& parameters, const JobContext& context)
+      : parameters_(parameters), context_(context) {
+    Stitcher stitcher(parameters.all_parts);
+    std::uint64_t first = 0;
+    for (const SeamParameters::Strip& each : parameters.strips) {
+      const PieceStrip strip = decode_strip(read_section(context, each.ref), each.ref.file.name);
+      positions_ = strip.mesh.positions;
+      stitcher.add(strip.mesh, each.parts);
+      for (const std::uint32_t v : strip.shared) {
+        shared_.push_back(static_cast<std::uint32_t>(first + v));
+      }
+      first += strip.mesh.mesh.positions.size();
+    }
+    stitched_ = stitcher.finish(
+        decode_boundary(context.stage.read(parameters.boundary), parameters.boundary.name));
+  }
+
+  /// The input's triangles between the pieces.
+  Mesh input() const {
+    const Mesh& mesh = stitched_.mesh;
+    Mesh input;
+    std::vector<std::uint32_t> number(mesh.positions.size(), k_left_out);
+    for (std::size_t i = mesh.triangles.size() - stitched_.boundary_triangles;
+         i < mesh.triangles.size(); ++i) {
+      Triangle& added = input.triangles.emplace_back();
+      for (std::size_t k = 0; k < 3; ++k) {
+        const std::uint32_t v = mesh.triangles[i][k];
+        if (number[v] == k_left_out) {
+          number[v] = static_cast<std::uint32_t>(input.positions.size());
+          input.positions.push_back(mesh.positions[v]);
+        }
+        added[k] = number[v];
+      }
+    }
+    return input;
+  }
+
+  /// Those that are shared come first, in the order of the pieces.
+  WeighedMesh weigh_joined() {
+    Mesh mesh;
+    std::vector<std::uint32_t> number(stitched_.mesh.positions.size(), k_left_out);
+    std::uint32_t next = 0;
+    for (const std::uint32_t v : shared_) number[v] = next++;
+    for (std::uint32_t& n : number) {
+      if (n == k_left_out) n = next++;
+    }
+    place_vertices(VertexView(stitched_.mesh), number, next, mesh);
+    mesh.triangles = std::move(stitched_.mesh.triangles);
+    renumber_corners(mesh.triangles, number);
+    stitched_ = {};
+    return weigh(std::move(mesh), static_cast<std::uint32_t>(shared_.size()), positions_,
+                 parameters_.weigh, context_);
+  }
+
+  std::uint64_t shared() const { return shared_.size(); }
+
+ private:
+  const SeamParameters& parameters_;
+  const JobContext& context_;
+  StitchedMesh stitched_;
+  std::vector<std::uint32_t> shared_;
+  PositionType positions_ = PositionType::float32;
+};
+
+}  // namespace
+
+JobOutput split_piece(const Job& job, const JobContext& context) {
+  if (job.inputs.size() != 1) throw DataError("a split job takes one piece");
+  const SplitParameters parameters = decode_split_parameters(job.parameters);
+  const FileRef& input = job.inputs[0];
+  ResultMesh piece = decode_result(context.read(input), parameters.rung, input.name);
+  piece.mesh.appearances = {};
+  piece.mesh.columns = {};
+  DividedPiece made;
+  for (const Vec3& v : piece.mesh.positions) made.box.add(v);
+  approach(parameters, context, piece, made);
+  SplitMesh halves = split(piece);
+  PieceFile file;
+  made.samples = file.add(encode_samples(piece.samples));
+  piece = {};
+  made.strip_triangles = halves.strip.mesh.mesh.triangles.size();
+  made.shared = halves.strip.shared.size();
+  made.gap_triangles = halves.gap.triangles.size();
+  const PositionType positions = halves.strip.mesh.positions;
+  made.strip = file.add(encode_strip(std::exchange(halves.strip, {})));
+  made.gap = file.add(encode_gap(std::exchange(halves.gap, {})));
+  take_weighed(
+      weigh(std::move(halves.inner), halves.locked, positions, parameters.weigh, context), file,
+      made);
+  return file.publish(job, context, encode_summary(made));
+}
+
+JobOutput join_seams(const Job& job, const JobContext& context) {
+  const SeamParameters parameters = decode_seam_parameters(job.parameters);
+  SeamJoiner joiner(parameters, context);
+  PieceFile file;
+  DividedPiece made;
+  const Mesh input = joiner.input();
+  made.strip_triangles = input.triangles.size();
+  made.shared = joiner.shared();
+  const auto wanted = static_cast<std::uint64_t>(
+      std::ceil(parameters.samples_per_triangle * static_cast<double>(input.triangles.size())));
+  std::vector<SurfaceSamples> samples;
+  if (wanted > 0) samples.push_back(sample_surface(input, {.samples = wanted, .threads = 1}));
+  made.samples = file.add(encode_samples(samples));
+  made.gap = file.add(encode_surface(input));
+  take_weighed(joiner.weigh_joined(), file, made);
+  return file.publish(job, context, encode_summary(made));
+}
+
+}  // namespace meshfarm

@@ -1,0 +1,237 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+//
+// A finish made of jobs, without processes. With Composition::sink every part is a piece.
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <string>
+
+#include <doctest/doctest.h>
+
+#include <meshfarm/divide/cut.hpp>
+#include <meshfarm/geometry/distance.hpp>
+#include <meshfarm/geometry/topology.hpp>
+#include <meshfarm/pipeline/assemble.hpp>
+#include <meshfarm/pipeline/job_table.hpp>
+#include <meshfarm/pipeline/run_graph.hpp>
+#include <meshfarm/util/file.hpp>
+
+#include "support/memory_source.hpp"
+#include "support/meshes.hpp"
+#include "support/next_jobs.hpp"
+#include "support/temp_folder.hpp"
+
+using namespace meshfarm;
+
+namespace {
+
+/// A stage, and runs on it.
+class FinishBench {
+ public:
+  FinishBench(const Mesh& mesh, std::uint32_t parts)
+      : stage_(Stage::create(folder_.path() / "stage")) {
+    test::MemorySource source(mesh);
+    manifest_ = cut_mesh(source, stage_, {.parts = parts});
+  }
+
+  static RunOptions farmed(std::uint64_t triangles) {
+    return {.triangles = triangles,
+            .finish_place = FinishPlace::farm,
+            .composition = Composition::sink};
+  }
+
+  /// In the order in which they are asked for, or the other way round.
+  RunSummary run(const RunOptions& options, const std::string& name, bool backwards = false) {
+    const JobSource jobs_of = make_job_source(manifest_, options);
+    const JobContext context{stage_, 1, ++incarnation_, [](std::uint64_t) { return true; }};
+    std::vector<AcceptedJob> accepted;
+    kinds_.clear();
+    for (std::vector<Job> jobs = test::next_jobs(jobs_of, accepted); !jobs.empty();
+         jobs = test::next_jobs(jobs_of, accepted)) {
+      if (backwards) std::reverse(jobs.begin(), jobs.end());
+      for (const Job& job : jobs) {
+        ++kinds_[job.kind];
+        accepted.push_back({key_of(job), do_job(job, context)});
+        check_output(job.kind, accepted.back().output);
+      }
+    }
+    return Assembler(stage_, manifest_, options, {.output = {path(name)}, .threads = 1})
+        .complete(accepted);
+  }
+
+  std::filesystem::path path(const std::string& name) const { return folder_.path() / name; }
+  Mesh mesh(const std::string& name) const { return read_mesh(*open_mesh(path(name))); }
+  std::map<std::string, int>& kinds() { return kinds_; }
+
+ private:
+  test::TempFolder folder_;
+  Stage stage_;
+  Manifest manifest_;
+  std::uint64_t incarnation_ = 0;
+  std::map<std::string, int> kinds_;
+};
+
+void check_clean(const Topology& t) {
+  CHECK(t.components == 1);
+  CHECK(t.nonmanifold_edges == 0);
+  CHECK(t.orientation_conflicts == 0);
+  CHECK(t.degenerate + t.zero_area + t.duplicate == 0);
+}
+
+Mesh waves(std::uint32_t side) {
+  Mesh mesh = test::grid(side, side);
+  for (Vec3& p : mesh.positions) p.z = 2 * std::sin(p.x * 0.11) * std::cos(p.y * 0.07);
+  return mesh;
+}
+
+}  // namespace
+
+TEST_CASE("pieces make a closed surface of the count, as good as the sink's") {
+  const Mesh torus = test::torus(240, 160);
+  FinishBench bench(torus, 6);
+  const RunSummary made = bench.run(FinishBench::farmed(16'000), "farm.ply");
+  CHECK(bench.kinds()["split"] == 6);
+  CHECK(bench.kinds()["seam"] == 1);
+  CHECK(bench.kinds()["reduce"] >= 7);
+  CHECK(bench.kinds()["measure"] == 7);
+  CHECK(made.finished_in_pieces == 7);
+  CHECK(made.triangles == 16'000);
+  CHECK(made.why_not_exact.empty());
+  const Mesh mesh = bench.mesh("farm.ply");
+  const Topology t = measure_topology(mesh);
+  check_clean(t);
+  CHECK(t.triangles == 16'000);
+  CHECK(t.euler == 0);
+  CHECK(t.border_edges == 0);
+  CHECK(made.vertices == mesh.positions.size());
+
+  const RunSummary here = bench.run({.triangles = 16'000}, "here.ply");
+  CHECK(here.finished_in_pieces == 0);
+  CHECK(made.error.greater().rms < 1.1 * here.error.greater().rms);
+  // It is what is measured with more points and in one place.
+  const DistanceOptions many{.samples = 100'000, .threads = 1};
+  const Distance forth = measure_distance(torus, mesh, many);
+  const Distance back = measure_distance(mesh, torus, many);
+  CHECK(made.error.to_output.rms == doctest::Approx(forth.rms).epsilon(0.03));
+  CHECK(made.error.to_input.rms == doctest::Approx(back.rms).epsilon(0.03));
+  CHECK(made.error.input_samples > 90'000);
+  REQUIRE(made.pieces.size() == 7);
+  CHECK(made.pieces.front().first_part == 0);
+  CHECK(made.pieces.back().parts == 0);
+}
+
+TEST_CASE("bytes and figures do not depend on the order of jobs, nor on who does them") {
+  FinishBench bench(waves(90), 5);
+  const RunSummary made = bench.run(FinishBench::farmed(4'001), "a.ply");
+  const RunSummary again = bench.run(FinishBench::farmed(4'001), "b.ply", true);
+  CHECK(read_file(bench.path("a.ply")) == read_file(bench.path("b.ply")));
+  CHECK(made.error.to_output.rms == again.error.to_output.rms);
+  CHECK(made.error.to_input.rms == again.error.to_input.rms);
+  CHECK(made.error.to_input.max == again.error.to_input.max);
+}
+
+TEST_CASE("an odd count needs an open border somewhere") {
+  FinishBench open(waves(90), 5);
+  CHECK(open.run(FinishBench::farmed(4'001), "open.ply").triangles == 4'001);
+  const Topology t = measure_topology(open.mesh("open.ply"));
+  check_clean(t);
+  CHECK(t.euler == 1);
+  FinishBench closed(test::torus(120, 80), 4);
+  const RunSummary made = closed.run(FinishBench::farmed(4'001), "closed.ply");
+  CHECK(made.triangles == 4'000);
+  CHECK_FALSE(made.why_not_exact.empty());
+}
+
+TEST_CASE("one piece has no seams") {
+  FinishBench bench(waves(60), 1);
+  const RunSummary made = bench.run(FinishBench::farmed(1'000), "o.ply");
+  CHECK(bench.kinds()["seam"] == 0);
+  CHECK(made.finished_in_pieces == 1);
+  CHECK(made.triangles == 1'000);
+  CHECK(made.error.output_samples > 10'000);
+}
+
+TEST_CASE("neighbours are composed until they are large enough for a piece") {
+  FinishBench bench(waves(90), 8);
+  RunOptions options = FinishBench::farmed(4'000);
+  options.composition = Composition::automatic;
+  const RunSummary made = bench.run(options, "o.ply");
+  CHECK(bench.kinds()["compose"] > 0);
+  CHECK(made.finished_in_pieces == 1);
+  CHECK(made.triangles == 4'000);
+}
+
+TEST_CASE("every format is written from pieces") {
+  FinishBench bench(waves(60), 4);
+  for (const std::string name : {"o.obj", "o.off", "o.stl", "o.gltf", "o.glb"}) {
+    CAPTURE(name);
+    CHECK(bench.run(FinishBench::farmed(2'000), name).triangles == 2'000);
+    const Mesh mesh = bench.mesh(name);
+    CHECK(mesh.triangles.size() == 2'000);
+    for (const Vec3& p : mesh.positions) CHECK(std::abs(p.z) < 2.1);
+  }
+}
+
+TEST_CASE("open borders and creases across pieces stay where they are to") {
+  FinishBench bench(waves(60), 4);
+  RunOptions options = FinishBench::farmed(2'000);
+  options.lines.preserve_border = true;
+  CHECK(bench.run(options, "border.ply").triangles == 2'000);
+  CHECK(measure_topology(bench.mesh("border.ply")).border_edges == 4 * 60);
+
+  Mesh roof = test::grid(80, 80);  // its ridge crosses all parts
+  for (Vec3& p : roof.positions) p.z = 30 - std::abs(p.x - 40) + 0.02 * std::sin(p.y * 2.1 + p.x);
+  FinishBench ridge(roof, 5);
+  options = FinishBench::farmed(1'500);
+  options.lines.crease_angle = 40;
+  CHECK(ridge.run(options, "roof.ply").triangles == 1'500);
+  const Mesh mesh = ridge.mesh("roof.ply");
+  const auto on_ridge = std::count_if(mesh.positions.begin(), mesh.positions.end(),
+                                      [](const Vec3& p) { return std::abs(p.x - 40) < 1e-6; });
+  CHECK(on_ridge >= 2);
+  for (const auto& [a, b, c] : mesh.triangles) {
+    double lo = HUGE_VAL;
+    double hi = -HUGE_VAL;
+    for (const std::uint32_t v : {a, b, c}) {
+      lo = std::min(lo, mesh.positions[v].x);
+      hi = std::max(hi, mesh.positions[v].x);
+    }
+    CHECK((lo >= 40 - 1e-3 || hi <= 40 + 1e-3));  // no triangle lies across
+  }
+}
+
+TEST_CASE("what pieces have no way for is the sink's, and it says why") {
+  FinishBench bench(waves(60), 4);
+  RunOptions options = FinishBench::farmed(2'000);
+  RunOptions here = options;
+  const auto expect_here = [&] {
+    here = options;
+    here.finish_place = FinishPlace::here;
+    const RunSummary made = bench.run(options, "farm.ply");
+    CHECK(made.finished_in_pieces == 0);
+    CHECK_FALSE(made.why_finished_here.empty());
+    CHECK(bench.kinds()["split"] == 0);
+    CHECK(bench.run(here, "here.ply").why_finished_here.empty());
+    CHECK(read_file(bench.path("farm.ply")) == read_file(bench.path("here.ply")));
+  };
+  options.drop_components = {0.01, true};
+  expect_here();
+  options = FinishBench::farmed(0);
+  options.error = {0.01, true};
+  expect_here();
+  options = FinishBench::farmed(2'000);
+  options.allocation = Allocation::uniform;
+  expect_here();
+  options = FinishBench::farmed(2'000);
+  options.lines.topology = TopologyMode::simplify;
+  expect_here();
+}
+
+TEST_CASE("more than there is cannot be asked of pieces") {
+  FinishBench bench(waves(40), 3);
+  const RunSummary made = bench.run(FinishBench::farmed(100'000), "o.ply");
+  CHECK(made.finished_in_pieces == 0);
+  CHECK(made.triangles == 3'200);
+  CHECK_FALSE(made.why_finished_here.empty());
+}
