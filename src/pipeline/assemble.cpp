@@ -94,7 +94,8 @@ class Assembler::Impl {
     Stopwatch watch;
     RunSummary summary = summary_of_pieces(result);
     tell("measure", 0, 0);
-    summary.error = error_of_pieces(stage_, manifest_, result, options_.threads);
+    summary.error =
+        error_of_pieces(stage_, manifest_, result, options_.threads, summary.pieces);
     summary.measure_seconds = watch.lap();
     tell("write", 0, 0);
     write_pieces(stage_, manifest_, result, options_.output, [this] { check_stop(); });
@@ -121,7 +122,6 @@ class Assembler::Impl {
       summary.turned += each.divided.turned;
       summary.stitched += each.divided.weight.before;
       if (each.parts > 0) summary.stitched += each.divided.gap_triangles;
-      summary.pieces.push_back({each.first_part, each.parts, each.error.to_output});
     }
     summary.triangles = result.triangles();
     summary.vertices = result.vertices();

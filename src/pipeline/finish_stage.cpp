@@ -140,7 +140,7 @@ void FinishStage::look_at_count(JobGraph& graph) {
 void FinishStage::measure(JobGraph& graph) {
   const std::size_t pieces = made_.pieces.size();
   for (std::size_t i = 0; i < pieces; ++i) {
-    graph.add(job_name(RunStage::measure, i), measure_job(made_.pieces[i]));
+    graph.add(job_name(RunStage::measure, i), measure_job(i));
   }
   graph.then({jobs_of(RunStage::measure, 0, pieces)}, [this](JobGraph& so_far) {
     for (std::size_t i = 0; i < made_.pieces.size(); ++i) {
@@ -209,7 +209,8 @@ Job FinishStage::reduce_job(std::size_t piece, std::uint64_t quota, std::uint64_
   return job;
 }
 
-Job FinishStage::measure_job(const PieceOfResult& piece) const {
+Job FinishStage::measure_job(std::size_t number) const {
+  const PieceOfResult& piece = made_.pieces[number];
   const PieceOfResult& last = made_.pieces.back();
   const ErrorPoints points;
   MeasureParameters parameters;
@@ -217,14 +218,16 @@ Job FinishStage::measure_job(const PieceOfResult& piece) const {
   parameters.end_part = piece.first_part + piece.parts;
   parameters.box = piece.divided.box;
   parameters.mesh = {piece.finished_file, piece.finished.mesh};
-  parameters.points = {piece.finished_file, piece.finished.points};
   parameters.samples = {piece.divided_file, piece.divided.samples};
   parameters.gap = {piece.divided_file, piece.divided.gap};
   if (piece.parts > 0 && has_seams()) {
     parameters.seam_mesh = {last.finished_file, last.finished.mesh};
-    parameters.seam_points = {last.finished_file, last.finished.points};
   }
-  parameters.by_area = piece.finished.by_area;
+  parameters.points.push_back({piece.finished_file, piece.finished.points});
+  for (const std::size_t near : made_.near(number)) {
+    const PieceOfResult& each = made_.pieces[near];
+    parameters.points.push_back({each.finished_file, each.finished.points});
+  }
   parameters.input_step = steps_of(manifest_.input_vertices, points.input_vertices);
   Job job;
   job.kind = k_measure_kind;

@@ -20,7 +20,7 @@ namespace meshfarm {
 /// So many pieces a seam job can name.
 inline constexpr std::size_t k_most_pieces = 200;
 /// Smaller ones would be little more than what lies round the seams.
-inline constexpr std::uint64_t k_least_piece = 65'536;
+inline constexpr std::uint64_t k_least_piece = 131'072;
 
 /// Where all pieces begin.
 struct FinishGoal {
@@ -47,7 +47,7 @@ class FinishStage {
   Job split_job(const ComposedParts& parts) const;
   Job seam_job() const;
   Job reduce_job(std::size_t piece, std::uint64_t quota, std::uint64_t all) const;
-  Job measure_job(const PieceOfResult& piece) const;
+  Job measure_job(std::size_t number) const;
   void take_divided(const JobGraph& graph, std::size_t piece, const JobName& name);
   void join_seams(JobGraph& graph);
   void weigh(JobGraph& graph);

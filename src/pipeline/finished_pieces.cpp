@@ -11,6 +11,18 @@ namespace {
 /// What the sink stitches in so few triangles it finishes sooner by itself.
 constexpr std::uint64_t k_comfortable = 20'000'000;
 
+/// Of their diagonals, round the boxes.
+constexpr double k_margin_of_boxes = 0.05;
+
+bool touch(const Box& a, const Box& b) {
+  const double margin = k_margin_of_boxes * (a.diagonal() + b.diagonal());
+  const auto meet = [margin](double a_lo, double a_hi, double b_lo, double b_hi) {
+    return a_lo <= b_hi + margin && b_lo <= a_hi + margin;
+  };
+  return meet(a.lo.x, a.hi.x, b.lo.x, b.hi.x) && meet(a.lo.y, a.hi.y, b.lo.y, b.hi.y) &&
+         meet(a.lo.z, a.hi.z, b.lo.z, b.hi.z);
+}
+
 std::string why_not_farmed(const Manifest& manifest, const RunOptions& options) {
   if (options.error.value > 0) return "a bound on the error is kept across the seams at once";
   if (options.drop_components.value > 0) return "small components may span pieces";
@@ -31,6 +43,18 @@ std::string why_finish_here(const Manifest& manifest, const RunOptions& options)
   const auto need = sink_need(manifest, options);
   if (need && need->triangles > k_comfortable) return {};
   return "the sink holds it well";
+}
+
+std::vector<std::size_t> FinishedPieces::near(std::size_t piece) const {
+  std::vector<std::size_t> near;
+  if (pieces[piece].parts == 0) return near;
+  for (std::size_t i = 0; i < pieces.size(); ++i) {
+    if (i == piece) continue;
+    if (pieces[i].parts == 0 || touch(pieces[i].divided.box, pieces[piece].divided.box)) {
+      near.push_back(i);
+    }
+  }
+  return near;
 }
 
 std::uint64_t FinishedPieces::triangles() const {

@@ -14,8 +14,6 @@
 #include <meshfarm/io/part_file.hpp>
 #include <meshfarm/io/regions.hpp>
 #include <meshfarm/pipeline/piece_jobs.hpp>
-#include <meshfarm/util/byte_lists.hpp>
-#include <meshfarm/util/bytes.hpp>
 #include <meshfarm/util/errors.hpp>
 
 #include "pipeline/piece_sections.hpp"
@@ -153,26 +151,33 @@ class PieceInput {
   std::vector<std::vector<Vec3>> boundary_;
 };
 
-/// Some of the surroundings' points, by number.
+/// Some of the points of several pieces, and where they stand.
 struct NearPoints {
+  struct Place {
+    std::size_t list = 0;
+    std::size_t number = 0;
+  };
   std::vector<Vec3> points;
-  std::vector<std::uint32_t> numbers;
+  std::vector<Place> places;
 };
 
-NearPoints points_near(const std::vector<Vec3>& points, const Box& box) {
+/// Of all lists but the first.
+NearPoints points_near(const std::vector<std::vector<Vec3>>& lists, const Box& box) {
   const double margin = k_margin_of_box * box.diagonal();
   const auto is_within = [margin](double x, double lo, double hi) {
     return x >= lo - margin && x <= hi + margin;
   };
   NearPoints near;
-  for (std::uint32_t i = 0; i < points.size(); ++i) {
-    const Vec3& p = points[i];
-    if (!is_within(p.x, box.lo.x, box.hi.x) || !is_within(p.y, box.lo.y, box.hi.y) ||
-        !is_within(p.z, box.lo.z, box.hi.z)) {
-      continue;
+  for (std::size_t list = 1; list < lists.size(); ++list) {
+    for (std::size_t i = 0; i < lists[list].size(); ++i) {
+      const Vec3& p = lists[list][i];
+      if (!is_within(p.x, box.lo.x, box.hi.x) || !is_within(p.y, box.lo.y, box.hi.y) ||
+          !is_within(p.z, box.lo.z, box.hi.z)) {
+        continue;
+      }
+      near.points.push_back(p);
+      near.places.push_back({list, i});
     }
-    near.points.push_back(p);
-    near.numbers.push_back(i);
   }
   return near;
 }
@@ -205,7 +210,7 @@ class PieceMeter {
     is_piece() ? measure_to_parts() : measure_to_seams();
     return error_;
   }
-  const std::vector<double>& seam_distances() const { return seam_distances_; }
+  const std::vector<std::vector<double>>& to_input() const { return to_input_; }
 
  private:
   bool is_piece() const { return parameters_.end_part > parameters_.first_part; }
@@ -214,8 +219,12 @@ class PieceMeter {
     return decode_result(read_section(context_, ref), 0, ref.file.name).mesh;
   }
 
-  std::vector<Vec3> points_of(const SectionRef& ref) const {
-    return decode_points(read_section(context_, ref), ref.file.name);
+  std::vector<std::vector<Vec3>> read_points() const {
+    std::vector<std::vector<Vec3>> points;
+    for (const SectionRef& ref : parameters_.points) {
+      points.push_back(decode_points(read_section(context_, ref), ref.file.name));
+    }
+    return points;
   }
 
   /// With the triangles between it and the surroundings.
@@ -260,18 +269,16 @@ class PieceMeter {
                     std::min(2 * d.max, spacing));
   }
 
+  /// The piece's own points are as near as they are; others may be nearer to what other pieces have.
   void measure_to_parts() {
-    const std::vector<Vec3> points = points_of(parameters_.points);
-    std::vector<Vec3> seam_points;
-    if (!parameters_.seam_points.file.name.empty()) {
-      seam_points = points_of(parameters_.seam_points);
-    }
-    const NearPoints near = points_near(seam_points, parameters_.box);
+    const std::vector<std::vector<Vec3>> points = read_points();
+    const NearPoints near = points_near(points, parameters_.box);
     PieceInput input(context_.stage, parameters_.first_part, parameters_.end_part);
     const std::vector<Vec3> known = known_points();
     const double spacing = std::sqrt(2 * error_.input_area / input.triangles());
-    const double reach = std::max({usual(spacing), 2 * error_.to_output.max, spacing});
-    PointMeter own(points, {spacing, usual(spacing), known});
+    // Hardly a point is as far as triangles of the result are long.
+    const double reach = std::max({2 * error_.to_output.max, spacing, spacing_of(mesh_)});
+    PointMeter own(points.front(), {spacing, usual(spacing), known});
     PointMeter to_near(near.points, {spacing, reach, known});
     std::vector<Vec3> vertices;
     to_near.begin_pass();
@@ -289,11 +296,11 @@ class PieceMeter {
       };
       input.show([&](const Box& box) { return own.wants(box); }, show_part, show);
     }
-    error_.to_input = error_of_own(own.distances());
-    seam_distances_.assign(seam_points.size(), HUGE_VAL);
+    for (const std::vector<Vec3>& each : points) to_input_.emplace_back(each.size(), HUGE_VAL);
+    to_input_.front() = own.distances();
     const std::vector<double> found = to_near.distances();
     for (std::size_t i = 0; i < found.size(); ++i) {
-      if (found[i] < reach) seam_distances_[near.numbers[i]] = found[i];
+      if (found[i] < reach) to_input_[near.places[i].list][near.places[i].number] = found[i];
     }
     for (const double d : distances_to(surface_, vertices)) {
       error_.to_output.max = std::max(error_.to_output.max, d);
@@ -306,21 +313,13 @@ class PieceMeter {
     append_every(middles_of_longest_sides(part.positions, part.triangles), 1, vertices);
   }
 
-  /// RMS and mean by those that are shared out by area.
-  Distance error_of_own(const std::vector<double>& distances) const {
-    const std::size_t by_area = std::min<std::size_t>(parameters_.by_area, distances.size());
-    Distance error = distance_of_points(std::span(distances).first(by_area));
-    error.max = distance_of_points(distances).max;
-    return error;
-  }
-
   /// The input's triangles between pieces are in memory.
   void measure_to_seams() {
-    const std::vector<Vec3> points = points_of(parameters_.points);
+    const std::vector<Vec3> points = read_points().front();
     const Mesh between =
         decode_surface(read_section(context_, parameters_.gap), parameters_.gap.file.name);
-    seam_distances_ = distances_to({&between}, points);
-    seam_distances_.resize(points.size(), HUGE_VAL);
+    to_input_.push_back(distances_to({&between}, points));
+    to_input_.front().resize(points.size(), HUGE_VAL);
   }
 
   /// The distance to the nearest of these is no less than that to the input's surface.
@@ -339,7 +338,7 @@ class PieceMeter {
   Mesh seam_mesh_;
   std::vector<const Mesh*> surface_;  // of the result
   PieceError error_;
-  std::vector<double> seam_distances_;
+  std::vector<std::vector<double>> to_input_;
 };
 
 }  // namespace
@@ -348,10 +347,8 @@ JobOutput measure_piece(const Job& job, const JobContext& context) {
   const MeasureParameters parameters = decode_measure_parameters(job.parameters);
   PieceMeter meter(parameters, context);
   const PieceError error = meter.run();
-  ByteWriter file;
-  put_list(file, meter.seam_distances());
   const ResultName name{key_of(job).value, context.attempt, context.incarnation};
-  return {context.publish(name, file.bytes()), encode_summary(error)};
+  return {context.publish(name, encode_distances(meter.to_input())), encode_summary(error)};
 }
 
 }  // namespace meshfarm

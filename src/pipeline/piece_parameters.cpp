@@ -7,14 +7,15 @@
 //   seam       = version u8 | strips u32 x (parts u32 | ref) | all parts u32 | boundary |
 //                samples a triangle f64 | weigh
 //   reduce     = version u8 | section | rung u32 | triangles u64 | points u64 | vertices u64 | lines
-//   measure    = version u8 | first part u32 | end part u32 | box | 6 refs | by area u64 |
+//   measure    = version u8 | first part u32 | end part u32 | box | 4 refs | points u32 x ref |
 //                input step u64
 //   ref        = file | section;  box = 6 x f64
 //   divided    = 4 sections | gap triangles u64 | strip triangles u64 | shared u64 | box |
 //                rungs u32 x u64 | dropped degenerate u64 | duplicate u64 | turned u64 |
 //                before u64 | first step i32 | counts u32 x u64
 //   finished   = 2 sections | by area u64 | area f64 | vertices u64 | triangles u64
-//   error      = area f64 | distance | samples u64 | distance;  distance = rms, mean, max f64
+//   error      = area f64 | rms f64 | mean f64 | max f64 | samples u64
+//   distances  = lists u32 x (points u32 x f64), the file of a measure job
 #include <cmath>
 
 #include <meshfarm/pipeline/piece_jobs.hpp>
@@ -163,11 +164,11 @@ std::string encode_parameters(const MeasureParameters& parameters) {
   out.put(parameters.end_part);
   out.put(parameters.box);
   for (const SectionRef* ref :
-       {&parameters.mesh, &parameters.points, &parameters.samples, &parameters.gap,
-        &parameters.seam_mesh, &parameters.seam_points}) {
+       {&parameters.mesh, &parameters.samples, &parameters.gap, &parameters.seam_mesh}) {
     put_ref(out, *ref);
   }
-  out.put(parameters.by_area);
+  out.put(static_cast<std::uint32_t>(parameters.points.size()));
+  for (const SectionRef& ref : parameters.points) put_ref(out, ref);
   out.put(parameters.input_step);
   return out.take();
 }
@@ -180,13 +181,14 @@ MeasureParameters decode_measure_parameters(std::string_view bytes) {
   parameters.end_part = in.get<std::uint32_t>();
   parameters.box = in.get<Box>();
   for (SectionRef* ref :
-       {&parameters.mesh, &parameters.points, &parameters.samples, &parameters.gap,
-        &parameters.seam_mesh, &parameters.seam_points}) {
+       {&parameters.mesh, &parameters.samples, &parameters.gap, &parameters.seam_mesh}) {
     *ref = get_ref(in);
   }
-  parameters.by_area = in.get<std::uint64_t>();
+  const auto points = in.get<std::uint32_t>();
+  for (std::uint32_t i = 0; i < points; ++i) parameters.points.push_back(get_ref(in));
   parameters.input_step = in.get<std::uint64_t>();
-  if (parameters.input_step == 0 || parameters.first_part > parameters.end_part) {
+  if (parameters.input_step == 0 || parameters.first_part > parameters.end_part ||
+      points == 0) {
     in.fail("impossible parts");
   }
   in.expect_end();
@@ -269,7 +271,6 @@ std::string encode_summary(const PieceError& error) {
   out.put(error.input_area);
   out.put(error.to_output);
   out.put(error.input_samples);
-  out.put(error.to_input);
   return out.take();
 }
 
@@ -279,9 +280,24 @@ PieceError decode_piece_error(std::string_view bytes, std::string_view what) {
   error.input_area = in.get<double>();
   error.to_output = in.get<Distance>();
   error.input_samples = in.get<std::uint64_t>();
-  error.to_input = in.get<Distance>();
   in.expect_end();
   return error;
+}
+
+std::string encode_distances(const std::vector<std::vector<double>>& distances) {
+  ByteWriter out;
+  out.put(static_cast<std::uint32_t>(distances.size()));
+  for (const std::vector<double>& each : distances) put_list(out, each);
+  return out.take();
+}
+
+std::vector<std::vector<double>> decode_distances(std::string_view bytes, std::string_view what) {
+  ByteReader in(bytes, what);
+  std::vector<std::vector<double>> distances;
+  const auto lists = in.get<std::uint32_t>();
+  for (std::uint32_t i = 0; i < lists; ++i) distances.push_back(get_list<double>(in));
+  in.expect_end();
+  return distances;
 }
 
 }  // namespace meshfarm

@@ -14,8 +14,6 @@
 #include <meshfarm/io/result_file.hpp>
 #include <meshfarm/pipeline/input_surface.hpp>
 #include <meshfarm/staging/sections.hpp>
-#include <meshfarm/util/byte_lists.hpp>
-#include <meshfarm/util/bytes.hpp>
 #include <meshfarm/util/errors.hpp>
 
 #include "pipeline/piece_sections.hpp"
@@ -92,18 +90,23 @@ class PiecesWriter {
   std::uint64_t shared_ = 0;  // of the pieces before
 };
 
-/// Of each point of the seams' surroundings, the distance to the nearest of the input that any
-/// piece has.
-std::vector<double> seam_distances(const Stage& stage, const FinishedPieces& result) {
-  std::vector<double> least;
-  for (const PieceOfResult& piece : result.pieces) {
-    const std::string file = stage.read(piece.error_file);
-    ByteReader in(file, piece.error_file.name);
-    const std::vector<double> distances = get_list<double>(in);
-    in.expect_end();
-    if (least.empty()) least.assign(distances.size(), HUGE_VAL);
-    if (least.size() != distances.size()) in.fail("is of other points than the rest");
-    for (std::size_t i = 0; i < least.size(); ++i) least[i] = std::min(least[i], distances[i]);
+/// Of the points of each piece, the distances to the nearest of the input that any piece has.
+std::vector<std::vector<double>> least_distances(const Stage& stage, const FinishedPieces& result) {
+  std::vector<std::vector<double>> least(result.pieces.size());
+  for (std::size_t i = 0; i < result.pieces.size(); ++i) {
+    const FileRef& file = result.pieces[i].error_file;
+    const std::vector<std::vector<double>> lists = decode_distances(stage.read(file), file.name);
+    std::vector<std::size_t> of = {i};
+    for (const std::size_t near : result.near(i)) of.push_back(near);
+    if (lists.size() != of.size()) throw DataError(file.name + ": is of other pieces");
+    for (std::size_t list = 0; list < lists.size(); ++list) {
+      std::vector<double>& known = least[of[list]];
+      if (known.empty()) known.assign(lists[list].size(), HUGE_VAL);
+      if (known.size() != lists[list].size()) throw DataError(file.name + ": is of other points");
+      for (std::size_t p = 0; p < known.size(); ++p) {
+        known[p] = std::min(known[p], lists[list][p]);
+      }
+    }
   }
   return least;
 }
@@ -155,7 +158,7 @@ Distance error_of(const Distance& sums, double area) {
   return {std::sqrt(sums.rms / area), sums.mean / area, sums.max};
 }
 
-Distance error_of_seams(const std::vector<double>& distances, std::uint64_t by_area) {
+Distance error_of_points(const std::vector<double>& distances, std::uint64_t by_area) {
   Distance sums;
   const std::size_t counted = std::min<std::size_t>(by_area, distances.size());
   for (std::size_t i = 0; i < distances.size(); ++i) {
@@ -191,7 +194,8 @@ void write_pieces(const Stage& stage, const Manifest& manifest, const FinishedPi
 }
 
 MeasuredError error_of_pieces(const Stage& stage, const Manifest& manifest,
-                              const FinishedPieces& result, unsigned threads) {
+                              const FinishedPieces& result, unsigned threads,
+                              std::vector<ErrorOfPiece>& of_pieces) {
   MeasuredError error;
   double input_area = 0;
   double area = 0;
@@ -202,14 +206,19 @@ MeasuredError error_of_pieces(const Stage& stage, const Manifest& manifest,
     input_area += piece.error.input_area;
     error.input_samples += piece.error.input_samples;
     error.output_samples += piece.finished.by_area;
-    area += piece.finished.area;
-    if (piece.parts > 0) add_error(piece.error.to_input, piece.finished.area, to_input);
   }
+  std::vector<std::vector<double>> distances = least_distances(stage, result);
   const PieceOfResult& last = result.pieces.back();
   if (last.parts == 0) {
-    std::vector<double> distances = seam_distances(stage, result);
-    find_missing(stage, manifest, last, result, threads, distances);
-    add_error(error_of_seams(distances, last.finished.by_area), last.finished.area, to_input);
+    find_missing(stage, manifest, last, result, threads, distances.back());
+  }
+  for (std::size_t i = 0; i < result.pieces.size(); ++i) {
+    const PieceOfResult& piece = result.pieces[i];
+    const Distance of_piece = error_of_points(distances[i], piece.finished.by_area);
+    add_error(of_piece, piece.finished.area, to_input);
+    area += piece.finished.area;
+    of_pieces.push_back({piece.first_part, piece.parts, piece.finished.triangles,
+                         piece.error.to_output, of_piece});
   }
   error.to_output = error_of(to_output, input_area);
   error.to_input = error_of(to_input, area);

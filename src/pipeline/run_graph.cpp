@@ -29,8 +29,9 @@ namespace {
 constexpr double k_finer = 1.2;
 constexpr std::int32_t k_most_finer = 6;
 
-/// Pieces are divided again when about so many times the target is left.
-constexpr double k_before_finish = 1.2;
+/// Pieces are divided again when so many times the target is left, seams not counted: what is held
+/// from then on is about as simple as the result.
+constexpr double k_before_finish = 1.02;
 constexpr std::int32_t k_most_levels = 60;
 
 class Run {

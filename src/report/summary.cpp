@@ -47,14 +47,16 @@ Json input_json(const Manifest& m) {
 Json finish_json(const RunSummary& s) {
   Json pieces = Json::array();
   for (const ErrorOfPiece& each : s.pieces) {
-    Json json = to_json(each.to_output, s.manifest.box.diagonal());
-    json["first_part"] = each.first_part;
-    json["parts"] = each.parts;
-    pieces.push_back(std::move(json));
+    const Json json = {{"first_part", each.first_part},
+                       {"parts", each.parts},
+                       {"triangles", each.triangles},
+                       {"input_to_output", to_json(each.to_output, s.manifest.box.diagonal())},
+                       {"output_to_input", to_json(each.to_input, s.manifest.box.diagonal())}};
+    pieces.push_back(json);
   }
   return {{"by", s.finished_in_pieces > 0 ? "farm" : "sink"},
           {"why_here", s.why_finished_here},
-          {"input_to_output", std::move(pieces)}};
+          {"pieces", std::move(pieces)}};
 }
 
 /// It may have been given up, and yet nothing went.

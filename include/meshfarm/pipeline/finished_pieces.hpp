@@ -34,6 +34,8 @@ struct FinishedPieces {
   std::vector<PieceOfResult> pieces;
   std::uint64_t target = 0;
 
+  /// Others whose surface may be near the input of a piece; none for the surroundings.
+  std::vector<std::size_t> near(std::size_t piece) const;
   std::uint64_t triangles() const;
   std::uint64_t vertices() const;
 };

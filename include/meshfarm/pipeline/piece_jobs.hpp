@@ -129,26 +129,26 @@ struct MeasureParameters {
   std::uint32_t end_part = 0;    // none for the surroundings of the seams
   Box box;                       // of the piece
   SectionRef mesh;               // finished
-  SectionRef points;
-  SectionRef samples;         // of the input
-  SectionRef gap;             // DividedPiece::gap
-  SectionRef seam_mesh;       // of a piece: the finished surroundings; no name: there are none
-  SectionRef seam_points;     // of these
-  std::uint64_t by_area = 0;  // the first of the piece's points
-  std::uint64_t input_step = 1;  // every so-manieth vertex of the input is looked at
+  SectionRef samples;            // of the input
+  SectionRef gap;                // DividedPiece::gap
+  SectionRef seam_mesh;  // of a piece: the finished surroundings; no name: there are none
+  std::vector<SectionRef> points;  // of the result: the piece's own, then those of pieces near it
+  std::uint64_t input_step = 1;    // every so-manieth vertex of the input is looked at
 };
 std::string encode_parameters(const MeasureParameters& parameters);
 MeasureParameters decode_measure_parameters(std::string_view bytes);
 
-/// What a measure job finds. Its file has the distances from the surroundings' points to its share
-/// of the input, 8 bytes each, HUGE_VAL where that is not near: of each point the least of all
+/// What a measure job finds. Its file has the distances from the points of the result to the
+/// piece's share of the input, HUGE_VAL where that is not near: of each point the least of all
 /// files counts.
 struct PieceError {
   double input_area = 0;  // that the samples stand for
   Distance to_output;
   std::uint64_t input_samples = 0;
-  Distance to_input;  // of the piece's own points; none for the surroundings
 };
+/// The file of a measure job: the distances of MeasureParameters::points.
+std::string encode_distances(const std::vector<std::vector<double>>& distances);
+std::vector<std::vector<double>> decode_distances(std::string_view bytes, std::string_view what);
 std::string encode_summary(const PieceError& error);
 PieceError decode_piece_error(std::string_view bytes, std::string_view what);
 

@@ -69,11 +69,13 @@ struct TexturesMade {
   double charts_share = 0;   // of it
 };
 
-/// How far the input of a piece of the result is from it.
+/// How far a piece of the result is from the input.
 struct ErrorOfPiece {
   std::uint32_t first_part = 0;
-  std::uint32_t parts = 0;  // 0: what lies round the seams
-  Distance to_output;
+  std::uint32_t parts = 0;      // of the input, that it is made of; 0: what lies round the seams
+  std::uint64_t triangles = 0;  // without those between it and the surroundings of the seams
+  Distance to_output;           // from its share of the input
+  Distance to_input;
 };
 
 /// What a run made, for people and for programs.
