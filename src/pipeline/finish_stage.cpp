@@ -17,11 +17,15 @@ namespace {
 
 /// Of the share of their triangles that all pieces keep: so far each is weighed, as one may keep
 /// less than others.
-constexpr double k_last_of_share = 0.6;
+constexpr double k_last_of_share = 0.8;
 /// Nearly each keeps less than so much of it.
 constexpr double k_kept_of_share = 1.3;
 /// So often quotas are mended.
 constexpr std::size_t k_most_rounds = 4;
+/// So often pieces are divided. The later one is so many steps before the threshold.
+constexpr std::size_t k_most_turns = 2;
+constexpr std::int32_t k_steps_before_end = 2;
+constexpr std::int32_t k_steps_for_turn = 2;
 
 constexpr std::uint64_t k_piece_process_bytes = std::uint64_t{16} << 20;
 /// The mesh, what simplifies it, and the file that is written.
@@ -52,17 +56,24 @@ void FinishStage::begin(JobGraph& graph, const FinishGoal& goal,
   weigh_.kept_share = std::min(1.0, k_kept_of_share * goal.share);
   weigh_.lines = lines_of(manifest_, options_);
   weigh_.lines.topology = goal.topology;
+  parts_ = parts;
+  divide(graph);
+}
+
+void FinishStage::divide(JobGraph& graph) {
+  const std::size_t base = turns_++ * parts_.size();
   std::uint32_t first_part = 0;
-  for (std::size_t i = 0; i < parts.size(); ++i) {
+  made_.pieces.clear();
+  for (std::size_t i = 0; i < parts_.size(); ++i) {
     PieceOfResult& piece = made_.pieces.emplace_back();
     piece.first_part = first_part;
-    piece.parts = parts[i].chosen.parts;
+    piece.parts = parts_[i].chosen.parts;
     first_part += piece.parts;
-    graph.add(job_name(RunStage::split, i), split_job(parts[i]));
+    graph.add(job_name(RunStage::split, base + i), split_job(parts_[i]));
   }
-  graph.then({jobs_of(RunStage::split, 0, parts.size())}, [this](JobGraph& so_far) {
+  graph.then({jobs_of(RunStage::split, base, parts_.size())}, [this, base](JobGraph& so_far) {
     for (std::size_t i = 0; i < made_.pieces.size(); ++i) {
-      take_divided(so_far, i, job_name(RunStage::split, i));
+      take_divided(so_far, i, job_name(RunStage::split, base + i));
     }
     made_.pieces.size() > 1 ? join_seams(so_far) : weigh(so_far);
   });
@@ -76,7 +87,7 @@ void FinishStage::take_divided(const JobGraph& graph, std::size_t piece, const J
 }
 
 void FinishStage::join_seams(JobGraph& graph) {
-  const JobName name = job_name(RunStage::seam, 0);
+  const JobName name = job_name(RunStage::seam, turns_ - 1);
   graph.add(name, seam_job());
   graph.then({just(name)}, [this, name](JobGraph& so_far) {
     made_.pieces.emplace_back();
@@ -88,6 +99,7 @@ void FinishStage::join_seams(JobGraph& graph) {
 void FinishStage::weigh(JobGraph& graph) {
   std::uint64_t gaps = 0;
   std::uint64_t all = 0;
+  weights_.clear();
   for (const PieceOfResult& each : made_.pieces) {
     weights_.push_back(each.divided.weight);
     all += each.divided.weight.before;
@@ -95,6 +107,14 @@ void FinishStage::weigh(JobGraph& graph) {
   }
   if (gaps > made_.target || all + gaps < made_.target) {
     return done_(graph, std::nullopt, "the pieces have no common threshold for the count");
+  }
+  // Where seams are much of the surface, the ladders tell of little of it: far from the end the
+  // pieces would share what is denser than the rest.
+  const std::int32_t step = step_below(weights_, made_.target - gaps) - k_steps_before_end;
+  if (made_.pieces.size() > 1 && turns_ < k_most_turns && step >= step_ + k_steps_for_turn) {
+    step_ = step;
+    weigh_.first_step = step;
+    return divide(graph);
   }
   reduce(graph, share_out_triangles(weights_, made_.target - gaps));
 }

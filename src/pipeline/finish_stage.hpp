@@ -19,8 +19,8 @@ namespace meshfarm {
 
 /// So many pieces a seam job can name.
 inline constexpr std::size_t k_most_pieces = 200;
-/// Smaller ones would be little more than what lies round the seams.
-inline constexpr std::uint64_t k_least_piece = 131'072;
+/// Parts are composed up to so many triangles: of smaller pieces much would lie round the seams.
+inline constexpr std::uint64_t k_least_piece = 262'144;
 
 /// Where all pieces begin.
 struct FinishGoal {
@@ -48,6 +48,7 @@ class FinishStage {
   Job seam_job() const;
   Job reduce_job(std::size_t piece, std::uint64_t quota, std::uint64_t all) const;
   Job measure_job(std::size_t number) const;
+  void divide(JobGraph& graph);
   void take_divided(const JobGraph& graph, std::size_t piece, const JobName& name);
   void join_seams(JobGraph& graph);
   void weigh(JobGraph& graph);
@@ -59,6 +60,8 @@ class FinishStage {
   const Manifest& manifest_;
   const RunOptions& options_;
   Done done_;
+  std::vector<ComposedParts> parts_;
+  std::size_t turns_ = 0;
   std::int32_t step_ = -1;
   WeighParameters weigh_;
   FinishedPieces made_;

@@ -25,6 +25,8 @@ namespace {
 /// What is left to be collapsed is little, or refused.
 constexpr std::int32_t k_idle_steps = 12;
 constexpr std::int32_t k_most_weigh_steps = 240;
+/// Less than this part of the triangles is not worth a rung.
+constexpr std::uint64_t k_worth_a_rung = 8;
 /// A first step by count finds the cost to begin at.
 constexpr std::uint64_t k_first_share = 20;
 
@@ -82,7 +84,8 @@ class Weighing {
       }
       made_.weight.counts.push_back(left);
       if (left <= last) return;
-      if (left <= kept && ladder_.rungs().size() == 1) snapshot();
+      const bool is_much_less = left < before_ - before_ / k_worth_a_rung;
+      if (left <= kept && is_much_less && ladder_.rungs().size() == 1) snapshot();
       idle = left < before ? 0 : idle + 1;
     }
   }

@@ -17,18 +17,6 @@ std::uint64_t sum_at(std::span<const PieceWeight> pieces, std::int32_t step) {
   return sum;
 }
 
-/// The lowest step with no more than the target, or the last there is.
-std::int32_t step_below(std::span<const PieceWeight> pieces, std::uint64_t target) {
-  std::int32_t first = pieces.front().first_step;
-  std::int32_t last = first;
-  for (const PieceWeight& each : pieces) {
-    first = std::min(first, each.first_step);
-    last = std::max(last, each.first_step + static_cast<std::int32_t>(each.counts.size()) - 1);
-  }
-  while (first < last && sum_at(pieces, first) > target) ++first;
-  return first;
-}
-
 /// Numbers of the pieces, that with most triangles first.
 std::vector<std::size_t> by_size(std::span<const std::uint64_t> quotas) {
   std::vector<std::size_t> order(quotas.size());
@@ -43,6 +31,17 @@ std::uint64_t even(std::uint64_t count) {
 }
 
 }  // namespace
+
+std::int32_t step_below(std::span<const PieceWeight> pieces, std::uint64_t target) {
+  std::int32_t first = pieces.front().first_step;
+  std::int32_t last = first;
+  for (const PieceWeight& each : pieces) {
+    first = std::min(first, each.first_step);
+    last = std::max(last, each.first_step + static_cast<std::int32_t>(each.counts.size()) - 1);
+  }
+  while (first < last && sum_at(pieces, first) > target) ++first;
+  return first;
+}
 
 std::vector<std::uint64_t> share_out_triangles(std::span<const PieceWeight> pieces,
                                                std::uint64_t target) {

@@ -10,6 +10,10 @@
 
 namespace meshfarm {
 
+/// The lowest step at which all pieces together have no more than the target; the last there is, if
+/// none does.
+std::int32_t step_below(std::span<const PieceWeight> pieces, std::uint64_t target);
+
 /// How many triangles each piece is to keep so that all together keep `target`: what all cost that
 /// is no more than one threshold is collapsed everywhere; of what lies between that step and the
 /// next each piece gives an even share. Differences to what a piece has are even, as inside a

@@ -56,9 +56,7 @@ std::optional<SinkNeed> sink_need(const Manifest& manifest, const RunOptions& op
 std::string check_sink_need(const Manifest& manifest, const RunOptions& options,
                             std::optional<std::uint64_t> free_bytes) {
   const auto need = sink_need(manifest, options);
-  if (!need || (options.finish_place != FinishPlace::here && why_finish_here(manifest, options).empty())) {
-    return {};
-  }
+  if (!need || why_finish_here(manifest, options).empty()) return {};
   // No less than the target is stitched, whatever the levels are.
   const std::uint64_t least = std::min(manifest.triangles(), target_triangles(manifest, options));
   if (least > k_most_triangles) {

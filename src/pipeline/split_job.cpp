@@ -18,7 +18,7 @@ namespace meshfarm {
 namespace {
 
 /// So many triangles from a seam a piece is as simple as the rest of it.
-constexpr int k_strip_rings = 6;
+constexpr int k_strip_rings = 4;
 
 /// Where each vertex of a piece goes.
 struct Sides {

@@ -46,15 +46,20 @@ TEST_CASE("the sink needs more for a large picture that it puts together") {
 
 TEST_CASE("what a sink can never hold is refused, what does not fit here is told") {
   const Manifest manifest = manifest_with(4'000'000'000);
-  CHECK_THROWS_WITH_AS(check_sink_need(manifest, {.ratio = 0.5}, std::nullopt),
+  const auto here = [](double ratio) {
+    return RunOptions{.ratio = ratio, .finish_place = FinishPlace::here};
+  };
+  CHECK_THROWS_WITH_AS(check_sink_need(manifest, here(0.5), std::nullopt),
                        "a result of 2000 million triangles is too large: the sink holds at most "
                        "1431 million; ask for fewer",
                        UsageError);
-  CHECK(check_sink_need(manifest, {.ratio = 0.3}, std::nullopt).find("may fail at the end") !=
+  CHECK(check_sink_need(manifest, here(0.3), std::nullopt).find("may fail at the end") !=
         std::string::npos);
-  CHECK(check_sink_need(manifest, {.ratio = 0.01}, std::nullopt).empty());
-  CHECK(check_sink_need(manifest, {.ratio = 0.01}, std::uint64_t{64} << 30).empty());
-  CHECK(check_sink_need(manifest, {.ratio = 0.01}, std::uint64_t{4} << 30).find("4096 are free") !=
+  CHECK(check_sink_need(manifest, here(0.01), std::nullopt).empty());
+  CHECK(check_sink_need(manifest, here(0.01), std::uint64_t{64} << 30).empty());
+  CHECK(check_sink_need(manifest, here(0.01), std::uint64_t{4} << 30).find("4096 are free") !=
         std::string::npos);
   CHECK(check_sink_need(manifest, {.error = {0.1, true}}, 1).empty());
+  CHECK(check_sink_need(manifest, {.ratio = 0.5}, 1).empty());  // no process holds it
+  CHECK(check_sink_need(manifest, {.ratio = 0.001}, 1).find("are free") != std::string::npos);
 }

@@ -1,0 +1,107 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+//
+// Runs of the real program whose finish is made of jobs: whatever is killed, the same bytes.
+#include <string>
+#include <vector>
+
+#include <doctest/doctest.h>
+
+#include "support/farm_bench.hpp"
+#include "support/process.hpp"
+
+using meshfarm::test::FarmBench;
+using meshfarm::test::Process;
+using meshfarm::test::Ran;
+using meshfarm::test::results_in;
+using meshfarm::test::wait_for_results;
+
+namespace {
+
+/// 100,000 triangles in 8 parts, each of which becomes a piece.
+class PiecesBench : public FarmBench {
+ public:
+  PiecesBench() : FarmBench("100000") {
+    const std::string output = path("expected.ply");
+    expect(meshfarm(with_target({"simplify", mesh(), "-o", output, "--parts", "8", "--workers",
+                                 "2", "--json"})),
+           output);
+  }
+
+  static std::vector<std::string> with_target(std::vector<std::string> words) {
+    words.insert(words.end(),
+                 {"--ratio", "0.2", "--finish", "farm", "--composition", "sink"});
+    return words;
+  }
+  std::string cut() { return FarmBench::cut({"--parts", "8"}); }
+  Process ventilator(const std::string& stage) {
+    return start(
+        with_target({"ventilator", stage, "--bind", "127.0.0.1", "--heartbeat-ms", "150"}));
+  }
+  Process sink(const std::string& stage) {
+    return start(
+        with_target({"sink", stage, "--bind", "127.0.0.1", "-o", stage + ".ply", "--json"}));
+  }
+};
+
+PiecesBench& bench() {
+  static PiecesBench instance;
+  return instance;
+}
+
+// 8 climbs and 8 splits, the seams, 9 pieces reduced and measured.
+constexpr std::size_t k_all_results = 8 + 8 + 1 + 9 + 9;
+
+}  // namespace
+
+TEST_CASE("1 and 5 workers finish pieces to the same bytes and figures") {
+  std::string figures;
+  for (const char* workers : {"1", "5"}) {
+    CAPTURE(workers);
+    const std::string output = bench().path(std::string("w") + workers + ".ply");
+    const Ran ran = bench().meshfarm(PiecesBench::with_target(
+        {"simplify", bench().mesh(), "-o", output, "--parts", "8", "--workers", workers, "--json"}));
+    CHECK(ran.code == 0);
+    bench().check_result(output);
+    const std::size_t first = ran.out.find("\"error\"");
+    const std::string error = ran.out.substr(first, ran.out.find("\"exact\"") - first);
+    if (figures.empty()) figures = error;
+    CHECK(error == figures);
+    CHECK(ran.out.find("\"by\": \"farm\"") != std::string::npos);
+  }
+}
+
+TEST_CASE("everything killed while pieces are made, and started again: the same bytes") {
+  for (const std::size_t results : {10U, 18U, 24U, 31U}) {
+    CAPTURE(results);
+    const std::string stage = bench().cut();
+    {
+      Process ventilator = bench().ventilator(stage);
+      Process sink = bench().sink(stage);
+      Process one = bench().start({"worker", stage});
+      REQUIRE(wait_for_results(stage, results));
+    }  // all are killed here
+    const Ran ran =
+        bench().meshfarm(PiecesBench::with_target({"replay", stage, "-o", stage + ".ply"}));
+    CHECK(ran.code == 0);
+    bench().check_result(stage + ".ply");
+    CHECK(results_in(stage) >= k_all_results);
+    const Ran again =
+        bench().meshfarm(PiecesBench::with_target({"replay", stage, "-o", stage + "-again.ply"}));
+    CHECK(again.code == 0);
+    bench().check_result(stage + "-again.ply");
+  }
+}
+
+TEST_CASE("a damaged piece is made again") {
+  const std::string stage = bench().cut();
+  REQUIRE(
+      bench().meshfarm(PiecesBench::with_target({"replay", stage, "-o", stage + ".ply"})).code == 0);
+  for (const auto& entry : std::filesystem::directory_iterator(stage + "/results")) {
+    std::filesystem::resize_file(entry.path(), std::filesystem::file_size(entry.path()) / 2);
+  }
+  REQUIRE(
+      bench().meshfarm(PiecesBench::with_target({"replay", stage, "-o", stage + "-2.ply"})).code ==
+      0);
+  bench().check_result(stage + "-2.ply");
+}
