@@ -94,8 +94,7 @@ class Assembler::Impl {
     Stopwatch watch;
     RunSummary summary = summary_of_pieces(result);
     tell("measure", 0, 0);
-    summary.error =
-        error_of_pieces(stage_, manifest_, result, options_.threads, summary.pieces);
+    summary.error = error_of_pieces(stage_, manifest_, result, options_.threads, summary.pieces);
     summary.measure_seconds = watch.lap();
     tell("write", 0, 0);
     write_pieces(stage_, manifest_, result, options_.output, [this] { check_stop(); });

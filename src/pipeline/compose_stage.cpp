@@ -79,8 +79,8 @@ bool ComposeStage::can_join() const {
          options_.composition != Composition::sink;
 }
 
-/// What whoever simplified the parts can hold: a sweep's window, or the largest of them. Pieces of a
-/// result need not be larger than is good for them.
+/// What whoever simplified the parts can hold: a sweep's window, or the largest of them. Pieces of
+/// a result need not be larger than is good for them.
 std::uint64_t ComposeStage::most_triangles(std::uint64_t all_triangles) const {
   if (farms_finish_) return std::max(k_least_piece, 2 * all_triangles / k_most_pieces);
   std::uint64_t most = manifest_.window_triangles;

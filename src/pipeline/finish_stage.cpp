@@ -148,9 +148,9 @@ void FinishStage::look_at_count(JobGraph& graph) {
   if (made_.triangles() <= made_.target) return measure(graph);
   std::vector<std::uint64_t> made;
   for (const PieceOfResult& each : made_.pieces) made.push_back(each.finished.triangles);
-  const std::vector<std::uint64_t> quotas =
-      rounds_ < k_most_rounds ? share_out_again(weights_, quotas_, made)
-                              : std::vector<std::uint64_t>();
+  const std::vector<std::uint64_t> quotas = rounds_ < k_most_rounds
+                                                ? share_out_again(weights_, quotas_, made)
+                                                : std::vector<std::uint64_t>();
   if (quotas.empty()) {
     return done_(graph, std::nullopt, "the pieces by themselves cannot be brought to the count");
   }
@@ -166,8 +166,7 @@ void FinishStage::measure(JobGraph& graph) {
     for (std::size_t i = 0; i < made_.pieces.size(); ++i) {
       const JobOutput& output = so_far.output(job_name(RunStage::measure, i));
       made_.pieces[i].error_file = output.file;
-      made_.pieces[i].error =
-          decode_piece_error(output.summary, "summary of " + output.file.name);
+      made_.pieces[i].error = decode_piece_error(output.summary, "summary of " + output.file.name);
     }
     done_(so_far, std::move(made_), {});
   });
@@ -224,8 +223,7 @@ Job FinishStage::reduce_job(std::size_t piece, std::uint64_t quota, std::uint64_
   job.inputs = {from.divided_file};
   job.parameters = encode_parameters(parameters);
   job.cost = rungs[parameters.rung];
-  job.memory =
-      k_piece_process_bytes + from.divided_file.size + k_piece_triangle_bytes * job.cost;
+  job.memory = k_piece_process_bytes + from.divided_file.size + k_piece_triangle_bytes * job.cost;
   return job;
 }
 

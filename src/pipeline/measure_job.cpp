@@ -102,8 +102,7 @@ class PieceInput {
       const std::vector<Vec3>& positions = part.mesh.positions;
       if (box.empty()) {
         for (const Vec3& v : positions) box.add(v);
-        boundary_[p - first_].assign(positions.begin(),
-                                     positions.begin() + part.boundary_vertices);
+        boundary_[p - first_].assign(positions.begin(), positions.begin() + part.boundary_vertices);
       }
       show_part(part.mesh);
     }
@@ -249,7 +248,8 @@ class PieceMeter {
     std::size_t first = 0;
     for (const SurfaceSamples& each : samples) {
       if (each.points.empty()) continue;
-      const Distance d = distance_of_points(std::span(distances).subspan(first, each.points.size()));
+      const Distance d =
+          distance_of_points(std::span(distances).subspan(first, each.points.size()));
       first += each.points.size();
       error_.input_area += each.area;
       error_.to_output.rms += each.area * d.rms * d.rms;
@@ -269,7 +269,8 @@ class PieceMeter {
                     std::min(2 * d.max, spacing));
   }
 
-  /// The piece's own points are as near as they are; others may be nearer to what other pieces have.
+  /// The piece's own points are as near as they are; others may be nearer to what other pieces
+  /// have.
   void measure_to_parts() {
     const std::vector<std::vector<Vec3>> points = read_points();
     const NearPoints near = points_near(points, parameters_.box);

@@ -6,8 +6,9 @@
 //   split      = version u8 | rung u32 | step i32 | weigh
 //   seam       = version u8 | strips u32 x (parts u32 | ref) | all parts u32 | boundary |
 //                samples a triangle f64 | weigh
-//   reduce     = version u8 | section | rung u32 | triangles u64 | points u64 | vertices u64 | lines
-//   measure    = version u8 | first part u32 | end part u32 | box | 4 refs | points u32 x ref |
+//   reduce     = version u8 | section | rung u32 | triangles u64 | points u64 | vertices u64 |
+//   lines measure    = version u8 | first part u32 | end part u32 | box | 4 refs | points u32 x ref
+//   |
 //                input step u64
 //   ref        = file | section;  box = 6 x f64
 //   divided    = 4 sections | gap triangles u64 | strip triangles u64 | shared u64 | box |
@@ -187,8 +188,7 @@ MeasureParameters decode_measure_parameters(std::string_view bytes) {
   const auto points = in.get<std::uint32_t>();
   for (std::uint32_t i = 0; i < points; ++i) parameters.points.push_back(get_ref(in));
   parameters.input_step = in.get<std::uint64_t>();
-  if (parameters.input_step == 0 || parameters.first_part > parameters.end_part ||
-      points == 0) {
+  if (parameters.input_step == 0 || parameters.first_part > parameters.end_part || points == 0) {
     in.fail("impossible parts");
   }
   in.expect_end();

@@ -44,9 +44,8 @@ class Weighing {
         parameters_(parameters),
         context_(context),
         before_(mesh.triangles.size()),
-        simplifier_(std::move(mesh), {.locked_vertices = locked,
-                                      .positions = positions,
-                                      .lines = parameters.lines}),
+        simplifier_(std::move(mesh),
+                    {.locked_vertices = locked, .positions = positions, .lines = parameters.lines}),
         ladder_({positions, false, locked, {}},
                 [this](std::string_view bytes) { made_.ladder += bytes; }) {}
 

@@ -25,8 +25,8 @@ PieceGap decode_gap(std::string_view bytes, std::string_view what);
 
 /// What a piece gives to the surroundings of the seams.
 struct PieceStrip {
-  ResultMesh mesh;                     // its boundary vertices are the piece's
-  std::vector<std::uint32_t> shared;   // vertices that are the gap's, in its order
+  ResultMesh mesh;                    // its boundary vertices are the piece's
+  std::vector<std::uint32_t> shared;  // vertices that are the gap's, in its order
 };
 std::string encode_strip(const PieceStrip& strip);
 PieceStrip decode_strip(std::string_view bytes, std::string_view what);

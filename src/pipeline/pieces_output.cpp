@@ -45,8 +45,8 @@ class PiecesWriter {
     put(mesh.mesh.triangles, [&](std::uint32_t v) { return first_vertex_[i] + v; });
     if (piece.parts == 0) return;
     const std::uint32_t locked = mesh.boundary_vertices;
-    const PieceGap gap = decode_gap(read_of(stage_, piece.divided_file, piece.divided.gap),
-                                    piece.divided_file.name);
+    const PieceGap gap =
+        decode_gap(read_of(stage_, piece.divided_file, piece.divided.gap), piece.divided_file.name);
     const std::uint64_t of_seams = first_vertex_.back() + shared_;
     put(gap.triangles, [&](std::uint32_t v) {
       if (v >= locked + gap.positions.size()) {
@@ -125,9 +125,8 @@ void find_missing(const Stage& stage, const Manifest& manifest, const PieceOfRes
   double area = 0;
   for (const PieceOfResult& piece : result.pieces) {
     area += piece.error.input_area;
-    for (const SurfaceSamples& each :
-         decode_samples(read_of(stage, piece.divided_file, piece.divided.samples),
-                        piece.divided_file.name)) {
+    for (const SurfaceSamples& each : decode_samples(
+             read_of(stage, piece.divided_file, piece.divided.samples), piece.divided_file.name)) {
       known.insert(known.end(), each.points.begin(), each.points.end());
     }
   }
@@ -217,8 +216,8 @@ MeasuredError error_of_pieces(const Stage& stage, const Manifest& manifest,
     const Distance of_piece = error_of_points(distances[i], piece.finished.by_area);
     add_error(of_piece, piece.finished.area, to_input);
     area += piece.finished.area;
-    of_pieces.push_back({piece.first_part, piece.parts, piece.finished.triangles,
-                         piece.error.to_output, of_piece});
+    of_pieces.push_back(
+        {piece.first_part, piece.parts, piece.finished.triangles, piece.error.to_output, of_piece});
   }
   error.to_output = error_of(to_output, input_area);
   error.to_input = error_of(to_input, area);

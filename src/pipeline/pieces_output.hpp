@@ -17,8 +17,8 @@ namespace meshfarm {
 void write_pieces(const Stage& stage, const Manifest& manifest, const FinishedPieces& result,
                   const MeshOutput& output, const std::function<void()>& check_stop);
 
-/// The error of the whole by those of its pieces, which it appends. The few points of the seams' surroundings that no
-/// piece's input is near to are measured here.
+/// The error of the whole by those of its pieces, which it appends. The few points of the seams'
+/// surroundings that no piece's input is near to are measured here.
 MeasuredError error_of_pieces(const Stage& stage, const Manifest& manifest,
                               const FinishedPieces& result, unsigned threads,
                               std::vector<ErrorOfPiece>& of_pieces);

@@ -73,7 +73,8 @@ std::vector<std::uint64_t> share_out_triangles(std::span<const PieceWeight> piec
   for (const std::size_t i : by_size(quotas)) {
     if (all <= target + 1) break;
     const std::uint64_t taken = std::min(even(all - target), even(quotas[i]));
-    const std::uint64_t fair = std::min<std::uint64_t>(taken, 2 + 2 * (all - target) / pieces.size());
+    const std::uint64_t fair =
+        std::min<std::uint64_t>(taken, 2 + 2 * (all - target) / pieces.size());
     quotas[i] -= even(fair);
     all -= even(fair);
   }

@@ -158,7 +158,8 @@ class Run {
 
   /// By the ladders, between whose levels counts are taken to fall evenly.
   FinishGoal finish_goal(TopologyMode topology) const {
-    const double wanted = k_before_finish * static_cast<double>(target_triangles(manifest(), options_));
+    const double wanted =
+        k_before_finish * static_cast<double>(target_triangles(manifest(), options_));
     const auto at = [this](std::int32_t level) {
       return static_cast<double>(results().free_triangles(level));
     };
@@ -168,7 +169,8 @@ class Run {
     const double after = at(level + 1);
     const double way = before > wanted && before > after ? (before - wanted) / (before - after) : 0;
     FinishGoal goal;
-    goal.step = k_steps_a_level * level + static_cast<std::int32_t>(k_steps_a_level * std::min(1.0, way));
+    goal.step =
+        k_steps_a_level * level + static_cast<std::int32_t>(k_steps_a_level * std::min(1.0, way));
     goal.share = 1 / k_before_finish;
     goal.topology = topology;
     return goal;

@@ -9,11 +9,25 @@
 namespace meshfarm {
 
 /// The stages of a run's jobs.
-enum class RunStage : std::uint32_t { sort, sample, climb, sweep, compose, split, seam, reduce, measure, finish, tile, bake };
+enum class RunStage : std::uint32_t {
+  sort,
+  sample,
+  climb,
+  sweep,
+  compose,
+  split,
+  seam,
+  reduce,
+  measure,
+  finish,
+  tile,
+  bake
+};
 
 /// Their names, in that order.
 inline JobGraph empty_graph(std::uint32_t algorithm) {
-  return JobGraph({"sort", "sample", "climb", "sweep", "compose", "split", "seam", "reduce", "measure", "finish", "tile", "bake"},
+  return JobGraph({"sort", "sample", "climb", "sweep", "compose", "split", "seam", "reduce",
+                   "measure", "finish", "tile", "bake"},
                   algorithm);
 }
 

@@ -247,9 +247,8 @@ JobOutput split_piece(const Job& job, const JobContext& context) {
   const PositionType positions = halves.strip.mesh.positions;
   made.strip = file.add(encode_strip(std::exchange(halves.strip, {})));
   made.gap = file.add(encode_gap(std::exchange(halves.gap, {})));
-  take_weighed(
-      weigh(std::move(halves.inner), halves.locked, positions, parameters.weigh, context), file,
-      made);
+  take_weighed(weigh(std::move(halves.inner), halves.locked, positions, parameters.weigh, context),
+               file, made);
   return file.publish(job, context, encode_summary(made));
 }
 

@@ -23,14 +23,13 @@ class PiecesBench : public FarmBench {
  public:
   PiecesBench() : FarmBench("100000") {
     const std::string output = path("expected.ply");
-    expect(meshfarm(with_target({"simplify", mesh(), "-o", output, "--parts", "8", "--workers",
-                                 "2", "--json"})),
+    expect(meshfarm(with_target(
+               {"simplify", mesh(), "-o", output, "--parts", "8", "--workers", "2", "--json"})),
            output);
   }
 
   static std::vector<std::string> with_target(std::vector<std::string> words) {
-    words.insert(words.end(),
-                 {"--ratio", "0.2", "--finish", "farm", "--composition", "sink"});
+    words.insert(words.end(), {"--ratio", "0.2", "--finish", "farm", "--composition", "sink"});
     return words;
   }
   std::string cut() { return FarmBench::cut({"--parts", "8"}); }
@@ -59,8 +58,9 @@ TEST_CASE("1 and 5 workers finish pieces to the same bytes and figures") {
   for (const char* workers : {"1", "5"}) {
     CAPTURE(workers);
     const std::string output = bench().path(std::string("w") + workers + ".ply");
-    const Ran ran = bench().meshfarm(PiecesBench::with_target(
-        {"simplify", bench().mesh(), "-o", output, "--parts", "8", "--workers", workers, "--json"}));
+    const Ran ran = bench().meshfarm(
+        PiecesBench::with_target({"simplify", bench().mesh(), "-o", output, "--parts", "8",
+                                  "--workers", workers, "--json"}));
     CHECK(ran.code == 0);
     bench().check_result(output);
     const std::size_t first = ran.out.find("\"error\"");
@@ -96,7 +96,8 @@ TEST_CASE("everything killed while pieces are made, and started again: the same 
 TEST_CASE("a damaged piece is made again") {
   const std::string stage = bench().cut();
   REQUIRE(
-      bench().meshfarm(PiecesBench::with_target({"replay", stage, "-o", stage + ".ply"})).code == 0);
+      bench().meshfarm(PiecesBench::with_target({"replay", stage, "-o", stage + ".ply"})).code ==
+      0);
   for (const auto& entry : std::filesystem::directory_iterator(stage + "/results")) {
     std::filesystem::resize_file(entry.path(), std::filesystem::file_size(entry.path()) / 2);
   }

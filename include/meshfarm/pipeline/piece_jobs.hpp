@@ -58,7 +58,7 @@ struct PieceWeight {
 
 /// A piece that is divided again, or the joined surroundings of the seams: sections of its file.
 struct DividedPiece {
-  FileSection mesh;     // a result whose boundary vertices are those that are shared
+  FileSection mesh;  // a result whose boundary vertices are those that are shared
   /// Of a piece: its triangles between the mesh and the surroundings. Of these: the input's
   /// triangles between pieces.
   FileSection gap;
@@ -66,9 +66,9 @@ struct DividedPiece {
   FileSection samples;  // of the input, by which the error is measured
   std::uint64_t gap_triangles = 0;
   std::uint64_t strip_triangles = 0;  // of the surroundings: the input's between pieces
-  std::uint64_t shared = 0;  // vertices of the surroundings that the gap has
-  Box box;                   // of the piece as it came
-  std::vector<std::uint64_t> rungs;  // triangles of the result's rungs
+  std::uint64_t shared = 0;           // vertices of the surroundings that the gap has
+  Box box;                            // of the piece as it came
+  std::vector<std::uint64_t> rungs;   // triangles of the result's rungs
   std::uint64_t dropped_degenerate = 0;
   std::uint64_t dropped_duplicate = 0;
   std::uint64_t turned = 0;
@@ -104,7 +104,7 @@ struct ReduceParameters {
   FileSection mesh;  // of the one input
   std::uint32_t rung = 0;
   std::uint64_t triangles = 0;
-  std::uint64_t points = 0;  // of the result, by area, to measure it by
+  std::uint64_t points = 0;    // of the result, by area, to measure it by
   std::uint64_t vertices = 0;  // and at most so many, and as many middles of sides
   LineOptions lines;
 };
@@ -113,8 +113,8 @@ ReduceParameters decode_reduce_parameters(std::string_view bytes);
 
 /// A finished piece: sections of its file.
 struct FinishedPiece {
-  FileSection mesh;    // a result; its boundary vertices are those that are shared, unmoved
-  FileSection points;  // of its surface
+  FileSection mesh;           // a result; its boundary vertices are those that are shared, unmoved
+  FileSection points;         // of its surface
   std::uint64_t by_area = 0;  // the first of them
   double area = 0;
   std::uint64_t vertices = 0;
@@ -125,13 +125,13 @@ FinishedPiece decode_finished_piece(std::string_view bytes, std::string_view wha
 
 /// Parameters of a measure job. What it reads are sections.
 struct MeasureParameters {
-  std::uint32_t first_part = 0;  // of the input, that the piece is made of
-  std::uint32_t end_part = 0;    // none for the surroundings of the seams
-  Box box;                       // of the piece
-  SectionRef mesh;               // finished
-  SectionRef samples;            // of the input
-  SectionRef gap;                // DividedPiece::gap
-  SectionRef seam_mesh;  // of a piece: the finished surroundings; no name: there are none
+  std::uint32_t first_part = 0;    // of the input, that the piece is made of
+  std::uint32_t end_part = 0;      // none for the surroundings of the seams
+  Box box;                         // of the piece
+  SectionRef mesh;                 // finished
+  SectionRef samples;              // of the input
+  SectionRef gap;                  // DividedPiece::gap
+  SectionRef seam_mesh;            // of a piece: the finished surroundings; no name: there are none
   std::vector<SectionRef> points;  // of the result: the piece's own, then those of pieces near it
   std::uint64_t input_step = 1;    // every so-manieth vertex of the input is looked at
 };

@@ -30,8 +30,8 @@ struct BakedTexture {
 
 /// What a run has come to.
 struct RunState {
-  Manifest manifest;                  // its slabs sorted, if there were some
-  std::optional<ChosenRungs> chosen;  // once every job that makes the mesh is accepted
+  Manifest manifest;                       // its slabs sorted, if there were some
+  std::optional<ChosenRungs> chosen;       // once every job that makes the mesh is accepted
   std::optional<FinishedPieces> finished;  // once all is, if the finish is made of jobs
   std::string why_finish_here;             // else, why not
   BakedTexture baked;                      // once all is
