@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include <meshfarm/util/byte_lists.hpp>
+
 #include "divide/cell_graph.hpp"
 
 namespace meshfarm {
@@ -36,6 +38,30 @@ std::uint32_t CellMap::divide() {
   part_of_cell_ = partition_cells(cells, {.parts = options_.parts, .threads = options_.threads});
   const auto last = std::max_element(part_of_cell_.begin(), part_of_cell_.end());
   return last == part_of_cell_.end() ? 0 : *last + 1;
+}
+
+std::string CellMap::encode(CellTree::Which which) const {
+  ByteWriter out;
+  out.put(options_.parts);
+  cells_.put(out, which);
+  put_list(out, part_of_cell_);
+  return out.take();
+}
+
+CellMap CellMap::decode(std::string_view bytes, unsigned threads) {
+  ByteReader in(bytes, "cells of a mesh");
+  const auto parts = in.get<std::uint32_t>();
+  CellMap map({parts, Weld::exact, threads}, CellTree::get(in));
+  map.part_of_cell_ = get_list<std::uint32_t>(in);
+  in.expect_end();
+  const std::span<const Cell> cells = map.cells_.cells();
+  if (!map.part_of_cell_.empty() && map.part_of_cell_.size() != cells.size()) {
+    in.fail("parts of other cells");
+  }
+  map.merges_ = std::any_of(cells.begin(), cells.end(), [](const Cell& each) {
+    return each.is_one;
+  });
+  return map;
 }
 
 void CellMap::find_targets(std::span<const Vec3> batch, ShareTargets& targets) {

@@ -2,6 +2,9 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <string>
+#include <string_view>
+#include <utility>
 #include <vector>
 
 #include "divide/cell_tree.hpp"
@@ -19,6 +22,11 @@ struct CellMapOptions {
 class CellMap : public ShareMap {
  public:
   CellMap(const Box& box, const CellMapOptions& options);
+  /// What is known so far, for another process; throws DataError for what encode() did not make.
+  std::string encode(CellTree::Which which) const;
+  static CellMap decode(std::string_view bytes, unsigned threads = 1);
+  /// Adds what a copy has counted.
+  void join(CellMap other) { cells_.join(std::move(other.cells_)); }
   std::string_view name() const override { return "cells"; }
   void count(std::span<const Vec3> batch) override;
   bool refine() override { return cells_.refine(); }
@@ -27,6 +35,9 @@ class CellMap : public ShareMap {
   void find_targets(std::span<const Vec3> batch, ShareTargets& targets) override;
 
  private:
+  CellMap(const CellMapOptions& options, CellTree cells)
+      : options_(options), cells_(std::move(cells)) {}
+
   CellMapOptions options_;
   CellTree cells_;
   std::vector<std::uint32_t> part_of_cell_;

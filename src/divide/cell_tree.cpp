@@ -24,9 +24,9 @@ std::uint64_t spread(std::uint64_t x) {
   return x ^ (x >> 31);
 }
 
-void join(Cell& cell, const Cell& other) {
+void add_cell(Cell& cell, const Cell& other) {
   cell.vertices += other.vertices;
-  cell.mean = cell.mean + other.mean;
+  for (std::size_t axis = 0; axis < 3; ++axis) cell.steps[axis] += other.steps[axis];
   cell.box.add(other.box.lo);
   cell.box.add(other.box.hi);
 }
@@ -69,9 +69,19 @@ void CellTree::add(Vec3 p) {
   if (last_ >= cells_.size() || cells_[last_].key != key) last_ = place_of(key);
   Cell& cell = cells_[last_];
   ++cell.vertices;
-  cell.mean = cell.mean + p;
+  const std::array<std::uint64_t, 3> steps = grids_[key >> k_index_bits].steps_to(p);
+  for (std::size_t axis = 0; axis < 3; ++axis) cell.steps[axis] += steps[axis];
   cell.box.add(p);
-  if (cells_.size() > limit_) coarsen();
+  while (cells_.size() > limit_) coarsen();
+}
+
+void CellTree::join(CellTree other) {
+  while (coarsened_ < other.coarsened_) coarsen();
+  while (other.coarsened_ < coarsened_) other.coarsen();
+  for (const Cell& cell : other.cells_) {
+    if (cell.key >> k_index_bits >= first_new_) add_cell(cells_[place_of(cell.key)], cell);
+  }
+  while (cells_.size() > limit_) coarsen();
 }
 
 std::size_t CellTree::place_of(std::uint64_t key) {
@@ -97,6 +107,7 @@ void CellTree::hash_all(std::size_t slots) {
 /// Makes all grids of this scan coarser by the same factor. So the grids do not depend on which
 /// vertex made the cells too many.
 void CellTree::coarsen() {
+  ++coarsened_;
   bool can_again = false;
   std::vector<bool> coarser(grids_.size(), false);
   for (std::uint32_t grid = first_new_; grid < grids_.size(); ++grid) {
@@ -116,7 +127,7 @@ void CellTree::coarsen() {
   std::size_t kept = 0;
   for (std::size_t i = 0; i < cells_.size(); ++i) {
     if (kept > 0 && cells_[kept - 1].key == cells_[i].key) {
-      join(cells_[kept - 1], cells_[i]);
+      add_cell(cells_[kept - 1], cells_[i]);
     } else {
       cells_[kept++] = cells_[i];
     }
@@ -128,6 +139,7 @@ void CellTree::coarsen() {
 }
 
 bool CellTree::refine() {
+  coarsened_ = 0;
   if (scans_++ == 0) {
     std::uint64_t all = 0;
     for (const Cell& cell : cells_) all += cell.vertices;
@@ -171,7 +183,6 @@ void CellTree::divide_points() {
     if (options_.weld == Weld::exact) {
       if (cell.vertices < k_crowd) continue;
       cell.is_one = true;
-      cell.mean = cell.mean * (1.0 / static_cast<double>(cell.vertices));
       cell.vertices = 1;
       continue;
     }
@@ -183,24 +194,23 @@ void CellTree::divide_points() {
       Cell piece = cell;
       piece.key = (grids_.size() + more.size()) << k_index_bits;
       piece.vertices = first_of(i + 1) - first_of(i);
-      piece.mean = cell.box.lo * static_cast<double>(piece.vertices);
       more.push_back(piece);
     }
     cell.vertices = first_of(1);
-    cell.mean = cell.box.lo * static_cast<double>(cell.vertices);
   }
   cells_.insert(cells_.end(), more.begin(), more.end());
 }
 
 void CellTree::finish() {
+  for (Cell& cell : cells_) {
+    const UniformGrid& grid = grids_[cell.key >> k_index_bits];
+    cell.mean = is_point(cell.box) ? cell.box.lo : grid.mean_of(cell.steps, cell.vertices);
+  }
   if (options_.parts > 1) divide_points();
   std::sort(cells_.begin(), cells_.end(), [](const Cell& a, const Cell& b) {
     return std::tuple(a.grid != 0, a.key) < std::tuple(b.grid != 0, b.key);
   });
-  for (Cell& cell : cells_) {
-    leaves_ += cell.grid == 0;
-    cell.mean = cell.mean * (1.0 / static_cast<double>(cell.vertices));
-  }
+  for (const Cell& cell : cells_) leaves_ += cell.grid == 0;
   std::uint64_t dealt_cells = 0;
   for (const auto& [key, dealt] : dealt_) dealt_cells += dealt.cells - 1;
   for (auto& [key, dealt] : dealt_) dealt.first += leaves_ - dealt_cells;

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
@@ -10,6 +11,7 @@
 #include <vector>
 
 #include <meshfarm/geometry/weld.hpp>
+#include <meshfarm/util/bytes.hpp>
 
 #include "divide/grid.hpp"
 
@@ -23,6 +25,7 @@ struct Cell {
   Box box;                 // of its vertices
   std::uint32_t grid = 0;  // by which it is divided; 0 is none
   bool is_one = false;     // a point with so many vertices that they are to become one at once
+  std::array<std::uint64_t, 3> steps{};  // the sum of its vertices' steps in its grid
 };
 
 struct CellTreeOptions {
@@ -41,13 +44,24 @@ struct CellTreeOptions {
 /// else they are dealt out, in their order, to cells at that point.
 ///
 /// Add all vertices, and again as long as refine() returns true. For vertices spread evenly over a
-/// surface, once is enough.
+/// surface, once is enough. Copies of a tree may be shown some vertices each, and then be joined:
+/// the cells are those that one tree would have.
 class CellTree {
  public:
   CellTree(const Box& box, const CellTreeOptions& options);
   void add(Vec3 p);
   /// Ends a scan. True if cells were divided: all vertices are to be added once more.
   bool refine();
+  /// Adds what a copy of this tree has counted since both were the same.
+  void join(CellTree other);
+
+  /// The cells that were counted since the last refine(), or all.
+  enum class Which : std::uint8_t { counted, all };
+  void put(ByteWriter& out, Which which) const;
+  /// Throws DataError for what put() did not write. Vertices must not be dealt out.
+  static CellTree get(ByteReader& in);
+  /// Whether vertices at one point go to several cells, by their order.
+  bool deals() const { return !dealt_.empty(); }
 
   /// After the last scan.
   std::span<const Cell> cells() const { return std::span(cells_).first(leaves_); }
@@ -88,12 +102,13 @@ class CellTree {
   std::vector<UniformGrid> grids_;
   std::uint32_t first_new_ = 0;       // grids from here on are counted into
   std::vector<std::uint32_t> slots_;  // place in cells_ + 1; 0 is free
-  std::vector<Cell> cells_;           // mean holds the sum until finish()
+  std::vector<Cell> cells_;           // the mean is there from finish() on
   std::size_t limit_;                 // grids are coarsened when there are more cells
   std::size_t leaves_ = 0;            // cells that are not divided come first in the end
   std::unordered_map<std::uint64_t, Dealt> dealt_;  // by the key of the cell
   std::uint64_t heavy_ = 0;
   unsigned scans_ = 0;
+  std::uint32_t coarsened_ = 0;  // how often, in this scan
   std::size_t last_ = 0;  // where add() was last
   std::uint64_t last_key_ = k_no_key;
   std::uint32_t last_number_ = 0;

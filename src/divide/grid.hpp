@@ -2,9 +2,11 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <array>
 #include <cstdint>
 
 #include <meshfarm/geometry/mesh.hpp>
+#include <meshfarm/util/bytes.hpp>
 
 namespace meshfarm {
 
@@ -23,9 +25,27 @@ class UniformGrid {
   /// Of the cell `finer` of the grid before it was coarsened, the cell that holds it now.
   std::uint64_t coarser_cell(std::uint64_t finer) const;
 
+  /// Where `p` lies, in whole steps from the lowest corner: 2^31 steps are the longest side, however
+  /// coarse the cells are. Sums of these do not depend on the order of the points.
+  std::array<std::uint64_t, 3> steps_to(Vec3 p) const {
+    constexpr double k_most = 4'294'967'295.0;
+    const auto along = [this](double x, double lo) {
+      const double steps = (x - lo) * steps_per_unit_;
+      return static_cast<std::uint64_t>(
+          static_cast<std::int64_t>(steps > 0 ? (steps < k_most ? steps : k_most) : 0));
+    };
+    return {along(p.x, lo_.x), along(p.y, lo_.y), along(p.z, lo_.z)};
+  }
+  /// The point that so many steps lead to, on the average of `points`.
+  Vec3 mean_of(const std::array<std::uint64_t, 3>& steps, std::uint64_t points) const;
+
+  void put(ByteWriter& out) const;
+  static UniformGrid get(ByteReader& in);
+
  private:
   Vec3 lo_;
   double cells_per_unit_ = 0;
+  double steps_per_unit_ = 0;
   unsigned bits_;
 };
 

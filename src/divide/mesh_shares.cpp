@@ -213,15 +213,21 @@ Vec3 MeshShares::position_of(SharePlace vertex) const {
 }
 
 SharedTriangles MeshShares::boundary(std::span<const BoundaryNumbers> numbers) const {
+  return number_seams(boundary_, boundary_columns_, numbers);
+}
+
+SharedTriangles number_seams(std::span<const SeamTriangle> seams, const TriangleColumns& columns,
+                             std::span<const BoundaryNumbers> numbers) {
   const auto index = [&](const SharePlace& corner) {
     const std::vector<std::uint32_t>& places = numbers[corner.share].places;
-    return static_cast<std::size_t>(std::lower_bound(places.begin(), places.end(), corner.place) -
-                                    places.begin());
+    const auto at = std::lower_bound(places.begin(), places.end(), corner.place);
+    if (at == places.end()) throw DataError("a boundary triangle of a vertex that is not there");
+    return static_cast<std::size_t>(at - places.begin());
   };
   SharedTriangles made;
-  made.triangles.reserve(boundary_.size());
-  for (std::size_t place = 0; place < boundary_.size(); ++place) {
-    const SeamTriangle& t = boundary_[place];
+  made.triangles.reserve(seams.size());
+  for (std::size_t place = 0; place < seams.size(); ++place) {
+    const SeamTriangle& t = seams[place];
     BoundaryTriangle corners;
     BoundaryTriangle points;
     for (std::size_t i = 0; i < 3; ++i) {
@@ -235,7 +241,7 @@ SharedTriangles MeshShares::boundary(std::span<const BoundaryNumbers> numbers) c
       ++made.degenerate;
     } else {
       made.triangles.push_back(corners);
-      made.columns.append(boundary_columns_, place);
+      made.columns.append(columns, place);
     }
   }
   return made;

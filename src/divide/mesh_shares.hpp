@@ -38,6 +38,10 @@ struct SharedTriangles {
   std::uint64_t coincident = 0;  // with two corners at one point, left out or not
 };
 
+/// By final numbers, one entry of `numbers` a share; the order kept.
+SharedTriangles number_seams(std::span<const SeamTriangle> seams, const TriangleColumns& columns,
+                             std::span<const BoundaryNumbers> numbers);
+
 /// Divides a mesh while it is scanned, in bounded memory. The caller assigns each vertex to a
 /// share. A triangle goes to the share of its vertices, or to the boundary if they are in several.
 /// The map from a vertex to its share and place is a mapped scratch file, of which few pages stay

@@ -212,6 +212,15 @@ std::uint64_t PlyElement::record_bytes(PlyFormat format) const {
   return size;
 }
 
+/// Floats hold every integer of 16 bits, doubles every one of 32.
+PositionType position_type_of(const PlyElement& vertices) {
+  for (const std::size_t axis : vertices.axes) {
+    const PlyType type = vertices.properties[axis].type;
+    if (type != PlyType::float32 && size_of(type) > 2) return PositionType::float64;
+  }
+  return PositionType::float32;
+}
+
 const PlyElement& PlyHeader::vertices() const {
   return *std::find_if(elements.begin(), elements.end(),
                        [](const PlyElement& element) { return element.role == PlyRole::vertices; });

@@ -10,6 +10,8 @@
 #include <string_view>
 #include <vector>
 
+#include <meshfarm/geometry/mesh.hpp>
+
 #include "ply_types.hpp"
 
 namespace meshfarm {
@@ -48,6 +50,9 @@ struct PlyElement {
   /// Bytes that a record takes in a file; with lists or as text, the fewest it can take.
   std::uint64_t record_bytes(PlyFormat format) const;
 };
+
+/// What holds the coordinates of these vertices exactly.
+PositionType position_type_of(const PlyElement& vertices);
 
 struct PlyHeader {
   PlyFormat format = PlyFormat::ascii;

@@ -32,15 +32,6 @@ std::string_view name_of(PlyFormat format) {
   return "";
 }
 
-/// Floats hold every integer of 16 bits, doubles every one of 32.
-PositionType position_type(const PlyElement& vertices) {
-  for (const std::size_t axis : vertices.axes) {
-    const PlyType type = vertices.properties[axis].type;
-    if (type != PlyType::float32 && size_of(type) > 2) return PositionType::float64;
-  }
-  return PositionType::float32;
-}
-
 bool is_used(const PlyElement& element, std::size_t property,
              std::span<const PlyChannel> channels) {
   if (element.role != PlyRole::vertices) {
@@ -256,7 +247,7 @@ class PlySource final : public MeshSource {
     info_.format = header_.title.empty() ? name_of(header_.format) : header_.title;
     info_.compression = name_of(file_.compression());
     info_.vertices = header_.vertices().count;
-    info_.positions = position_type(header_.vertices());
+    info_.positions = position_type_of(header_.vertices());
     if (options_.channels) channels_ = channels_of(header_.vertices());
     for (const PlyChannel& each : channels_) info_.channels.push_back(each.channel);
     if (options_.labels) find_labels();

@@ -1,0 +1,240 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#include <algorithm>
+#include <map>
+#include <numeric>
+#include <utility>
+
+#include <meshfarm/util/byte_lists.hpp>
+#include <meshfarm/util/errors.hpp>
+
+#include "divide/bundle_file.hpp"
+#include "divide/part_builder.hpp"
+#include "divide/seam_vertices.hpp"
+
+namespace meshfarm {
+namespace {
+
+std::vector<Vec3> read_positions(const SectionedFile& file, const FileSection& section,
+                                 PositionType type) {
+  if (type == PositionType::float64) return read_section<Vec3>(file, section);
+  std::vector<Vec3> positions;
+  const auto floats = read_section<std::array<float, 3>>(file, section);
+  positions.reserve(floats.size());
+  for (const auto& p : floats) positions.push_back({p[0], p[1], p[2]});
+  return positions;
+}
+
+/// Puts together what the bundles hold of a part.
+class ShareOfBlocks {
+ public:
+  ShareOfBlocks(const Stage& stage, const BundlesOfMesh& bundles, std::uint32_t part)
+      : stage_(stage),
+        bundles_(bundles),
+        part_(part),
+        places_(stage, bundles.vertices, bundles.parts) {
+    share_.type = bundles.positions;
+  }
+
+  void gather() {
+    gather_vertices();
+    gather_triangles();
+    for (const SeamTriangle& t : outer_) {
+      for (const SharePlace& corner : t) {
+        if (corner.share == part_) share_.boundary.push_back(corner.place);
+      }
+    }
+    share_.apart = find_apart(share_, part_, outer_,
+                              [&](SharePlace vertex) { return position_of(vertex); });
+  }
+
+  MeshShare take() { return std::move(share_); }
+  std::uint64_t points_left_out() const { return points_left_out_; }
+  /// Vertices of a crowd, and the first of it.
+  const std::map<std::uint32_t, std::uint32_t>& same() const { return same_; }
+
+ private:
+  void gather_vertices() {
+    share_.positions.reserve(places_.count(part_));
+    std::map<std::uint32_t, std::uint32_t> first_of_point;
+    for (std::size_t block = 0; block < places_.blocks(); ++block) {
+      const BundleEntry& entry = places_.entry(block, part_);
+      if (entry.count == 0) continue;
+      const auto positions = read_positions(places_.file(block), entry.section, share_.type);
+      if (positions.size() != entry.count) {
+        throw DataError(bundles_.vertices[block].file.name + ": has other vertices than it says");
+      }
+      share_.positions.insert(share_.positions.end(), positions.begin(), positions.end());
+      for (const CrowdVertex& each : read_section<CrowdVertex>(
+               places_.file(block), bundles_.vertices[block].bundle.crowds)) {
+        if (each.part != part_) continue;
+        const std::uint32_t place = places_.first(block, part_) + each.place;
+        const auto [first, is_first] = first_of_point.try_emplace(each.point, place);
+        if (!is_first) same_[place] = first->second;
+      }
+    }
+  }
+
+  void gather_triangles() {
+    for (const TriangleBundleRef& each : bundles_.triangles) {
+      const SectionedFile file(stage_, each.file);
+      for (const BundleEntry& entry : read_section<BundleEntry>(file, each.bundle.directory)) {
+        if (entry.part != part_) continue;
+        const auto triangles = unpack_triangles(file.read(entry.section));
+        if (!triangles || triangles->size() != entry.count) {
+          throw DataError(each.file.name + ": has other triangles than it says");
+        }
+        share_.triangles.insert(share_.triangles.end(), triangles->begin(), triangles->end());
+        const auto seams = read_section<SeamTriangle>(file, entry.seams);
+        outer_.insert(outer_.end(), seams.begin(), seams.end());
+      }
+    }
+    if (!same_.empty()) join_crowds();
+    check_corners();
+  }
+
+  /// What is one vertex was that within its block alone.
+  void join_crowds() {
+    const auto joined = [&](std::uint32_t place) {
+      const auto found = same_.find(place);
+      return found == same_.end() ? place : found->second;
+    };
+    for (Triangle& t : share_.triangles) t = {joined(t[0]), joined(t[1]), joined(t[2])};
+    points_left_out_ = std::erase_if(
+        share_.triangles, [](const Triangle& t) { return t[0] == t[1] && t[1] == t[2]; });
+    for (SeamTriangle& t : outer_) {
+      for (SharePlace& corner : t) {
+        if (corner.share == part_) corner.place = joined(corner.place);
+      }
+    }
+  }
+
+  void check_corners() const {
+    const std::size_t vertices = share_.positions.size();
+    const bool is_there = std::all_of(
+        share_.triangles.begin(), share_.triangles.end(), [&](const Triangle& t) {
+          return t[0] < vertices && t[1] < vertices && t[2] < vertices;
+        });
+    if (!is_there) throw DataError("a bundle has a triangle of a vertex that is not there");
+  }
+
+  /// Of another part's vertex: asked for where surfaces touch at a seam.
+  Vec3 position_of(SharePlace vertex) {
+    for (std::size_t block = 0; block < places_.blocks(); ++block) {
+      const std::uint32_t first = places_.first(block, vertex.share);
+      const BundleEntry& entry = places_.entry(block, vertex.share);
+      if (vertex.place < first || vertex.place - first >= entry.count) continue;
+      std::vector<Vec3>& positions = others_[{block, vertex.share}];
+      if (positions.empty()) {
+        positions = read_positions(places_.file(block), entry.section, share_.type);
+      }
+      return positions.at(vertex.place - first);
+    }
+    throw DataError("a bundle has a triangle of a vertex that is not there");
+  }
+
+  const Stage& stage_;
+  const BundlesOfMesh& bundles_;
+  std::uint32_t part_;
+  BlockPlaces places_;
+  MeshShare share_;
+  std::vector<SeamTriangle> outer_;
+  std::map<std::uint32_t, std::uint32_t> same_;
+  std::uint64_t points_left_out_ = 0;
+  std::map<std::pair<std::size_t, std::uint32_t>, std::vector<Vec3>> others_;
+};
+
+/// Those of a crowd are known by all of their places.
+void add_same(const std::map<std::uint32_t, std::uint32_t>& same, BoundaryNumbers& numbers) {
+  const std::vector<std::uint32_t> places = numbers.places;
+  const std::size_t known = places.size();
+  for (const auto& [place, first] : same) {
+    const auto at = std::lower_bound(places.begin(), places.end(), first);
+    if (at == places.end() || *at != first) continue;
+    const auto index = static_cast<std::size_t>(at - places.begin());
+    numbers.places.push_back(place);
+    numbers.numbers.push_back(numbers.numbers[index]);
+    if (!numbers.points.empty()) numbers.points.push_back(numbers.points[index]);
+  }
+  if (numbers.places.size() == known) return;
+  std::vector<std::size_t> order(numbers.places.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+    return numbers.places[a] < numbers.places[b];
+  });
+  BoundaryNumbers sorted;
+  for (const std::size_t i : order) {
+    sorted.places.push_back(numbers.places[i]);
+    sorted.numbers.push_back(numbers.numbers[i]);
+    if (!numbers.points.empty()) sorted.points.push_back(numbers.points[i]);
+  }
+  numbers = std::move(sorted);
+}
+
+std::string encode_numbers(const BoundaryNumbers& numbers) {
+  ByteWriter out;
+  put_list(out, numbers.places);
+  put_list(out, numbers.numbers);
+  put_list(out, numbers.points);
+  return out.take();
+}
+
+BoundaryNumbers decode_numbers(std::string_view bytes) {
+  ByteReader in(bytes, "numbers of boundary vertices");
+  BoundaryNumbers numbers;
+  numbers.places = get_list<std::uint32_t>(in);
+  numbers.numbers = get_list<std::uint32_t>(in);
+  numbers.points = get_list<std::uint32_t>(in);
+  in.expect_end();
+  const std::size_t count = numbers.places.size();
+  if (numbers.numbers.size() != count ||
+      (!numbers.points.empty() && numbers.points.size() != count)) {
+    in.fail("not as many as vertices");
+  }
+  return numbers;
+}
+
+}  // namespace
+
+PartOfBlocks build_from_blocks(const Stage& stage, const BundlesOfMesh& bundles,
+                               std::uint32_t part) {
+  if (part >= bundles.parts) throw DataError("there is no such part");
+  ShareOfBlocks share(stage, bundles, part);
+  share.gather();
+  MeshShare raw = share.take();
+  PartOfBlocks made;
+  made.shared_triangles = raw.triangles.size() + share.points_left_out();
+  BuiltPart built = build_part(std::move(raw), Weld::exact);
+  static_cast<WeldCounts&>(made) = built;
+  made.dropped_degenerate += share.points_left_out();
+  made.coincident_corners += share.points_left_out();
+  made.shared_boundary = static_cast<std::uint32_t>(built.boundary.places.size());
+  add_same(share.same(), built.boundary);
+  made.numbers = encode_numbers(built.boundary);
+  made.part = std::move(built.part);
+  return made;
+}
+
+JoinedBoundary join_boundary(const Stage& stage, const BundlesOfMesh& bundles,
+                             std::span<const std::string> numbers) {
+  std::vector<BoundaryNumbers> of_parts;
+  for (const std::string& each : numbers) of_parts.push_back(decode_numbers(each));
+  std::vector<SeamTriangle> seams;
+  for (const TriangleBundleRef& each : bundles.triangles) {
+    const SectionedFile file(stage, each.file);
+    const auto more = read_section<SeamTriangle>(file, each.bundle.seams);
+    seams.insert(seams.end(), more.begin(), more.end());
+  }
+  SharedTriangles shared = number_seams(seams, {}, of_parts);
+  JoinedBoundary joined;
+  joined.degenerate = shared.degenerate;
+  joined.coincident = shared.coincident;
+  joined.duplicate = drop_duplicates(shared.triangles, shared.columns);
+  joined.triangles = shared.triangles.size();
+  const auto parts = static_cast<std::uint32_t>(numbers.size());
+  sort_by_region(parts, shared.triangles, shared.columns);
+  joined.encoded = encode_boundary(parts, shared.triangles, shared.columns);
+  return joined;
+}
+
+}  // namespace meshfarm

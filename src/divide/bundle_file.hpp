@@ -1,0 +1,80 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+//
+// Bundles: what blocks of a mesh hold of each part. Sections (staging/sections.hpp), little endian:
+//   vertices:  directory = BundleEntry[], ascending by part; its section = positions, 3 x f32 or f64
+//              runs      = PlaceRun[], for all vertices of the block in order
+//              crowds    = CrowdVertex[]
+//   triangles: directory = BundleEntry[] of the triangles inside parts, ascending by part: packed
+//              (io/packed_triangles.hpp) | of those at the part's seams: SeamTriangle[]
+//              seams     = SeamTriangle[], in file order
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include <meshfarm/divide/block_cut.hpp>
+#include <meshfarm/util/bytes.hpp>
+#include <meshfarm/util/errors.hpp>
+
+#include "divide/mesh_shares.hpp"
+
+namespace meshfarm {
+
+struct BundleEntry {
+  std::uint32_t part = 0;
+  std::uint32_t count = 0;  // of vertices, or triangles
+  FileSection section;
+  FileSection seams;  // of triangles: those at the seams
+  static BundleEntry none(std::uint32_t part) { return {part, 0, {}, {}}; }
+};
+static_assert(sizeof(BundleEntry) == 56);
+
+/// Vertices in a row that go to one part, at places in a row of the block's section; those of
+/// MeshShares::k_no_share go nowhere.
+struct PlaceRun {
+  std::uint32_t part = 0;
+  std::uint32_t place = 0;
+  std::uint32_t count = 0;
+};
+
+/// The first of a block's vertices at a point that has too many to be kept.
+struct CrowdVertex {
+  std::uint32_t point = 0;  // its cell
+  std::uint32_t part = 0;
+  std::uint32_t place = 0;  // in the block's section
+};
+
+template <class T>
+std::vector<T> read_section(const SectionedFile& file, const FileSection& section) {
+  const std::string bytes = file.read(section);
+  return ByteReader(bytes, "a section of a bundle").get_array<T>(bytes.size() / sizeof(T));
+}
+
+/// Where each part's vertices of each block begin in the part, once those of all blocks are put one
+/// behind the other.
+class BlockPlaces {
+ public:
+  /// Throws DataError if a part gets 2^32 vertices.
+  BlockPlaces(const Stage& stage, std::span<const VertexBundleRef> bundles, std::uint32_t parts);
+  std::uint32_t first(std::size_t block, std::uint32_t part) const {
+    return first_[block * parts_ + part];
+  }
+  const BundleEntry& entry(std::size_t block, std::uint32_t part) const {
+    return entries_[block * parts_ + part];
+  }
+  std::uint32_t count(std::uint32_t part) const { return count_[part]; }
+  const SectionedFile& file(std::size_t block) const { return files_[block]; }
+  std::size_t blocks() const { return files_.size(); }
+
+ private:
+  std::uint32_t parts_;
+  std::vector<SectionedFile> files_;
+  std::vector<BundleEntry> entries_;  // blocks x parts
+  std::vector<std::uint32_t> first_;  // the same
+  std::vector<std::uint32_t> count_;
+};
+
+}  // namespace meshfarm
