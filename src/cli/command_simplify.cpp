@@ -55,6 +55,9 @@ class SimplifyCommand : public Command {
     target_.uv = textures.run;
     target_.check();
     cut_.check();
+    if (cut_.where == "farm" && !report_.empty()) {
+      throw UsageError("--report shows the parts of the input, which --cut farm does not keep");
+    }
     if (in_batch_) workers_ = 0;
     if ((workers_ == 0 && !in_batch_) || workers_ > 1000)
       throw UsageError("--workers: from 1 to 1000");

@@ -42,6 +42,7 @@ std::string options_of(const CutWords& words) {
     text += " --sort " + words.sort + " --window " + std::to_string(words.cut.window_triangles) +
             " --memory " + std::to_string(words.cut.sort_memory());
   }
+  if (words.where == "farm") text += " --cut farm";
   if (words.attributes != "auto") text += " --attributes " + words.attributes;
   text += std::string(" --uv ") + word_of(parse_uv(words.uv));
   return text + ", algorithm " + std::to_string(k_algorithm_version);

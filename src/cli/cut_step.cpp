@@ -5,15 +5,18 @@
 #include <cstdlib>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <system_error>
 #include <utility>
 
 #include <unistd.h>
 
+#include <meshfarm/divide/block_cut.hpp>
 #include <meshfarm/divide/cut.hpp>
 #include <meshfarm/io/channel_choice.hpp>
 #include <meshfarm/io/mesh_format.hpp>
 #include <meshfarm/io/mesh_source.hpp>
+#include <meshfarm/pipeline/cut_job.hpp>
 #include <meshfarm/staging/claim.hpp>
 #include <meshfarm/staging/stage.hpp>
 #include <meshfarm/util/errors.hpp>
@@ -58,6 +61,38 @@ std::unique_ptr<MeshSource> open_input(const CutStep& step) {
   return with_channels(std::move(opened), step.words.channels);
 }
 
+/// What a cut by jobs cannot keep.
+void check_farmable(const CutStep& step, const MeshFileInfo& info,
+                    const std::optional<Cutting>& cutting) {
+  std::string why;
+  if (!cutting) why = "it is no plain binary PLY file of triangles";
+  if (!info.channels.empty()) why = "its vertices have colours or other channels";
+  if (info.labels || info.uvs || !info.pictures.names.empty()) why = "it has labels or textures";
+  if (why.empty()) return;
+  throw UsageError(step.input + ": cannot be cut by the farm: " + why +
+                   (cutting ? "; --attributes none leaves these out, --cut here keeps them"
+                            : "; use --cut here"));
+}
+
+/// Leaves to the first jobs of a run to cut.
+Manifest plan_cut(const CutStep& step, const MeshSource& source, const Stage& stage) {
+  const MeshFileInfo& info = source.info();
+  const std::optional<Cutting> cutting = plan_cutting(step.input, step.words.cut.parts);
+  check_farmable(step, info, cutting);
+  Manifest manifest;
+  manifest.input = step.input;
+  manifest.input_format = info.format;
+  manifest.skipped = info.skipped;
+  manifest.partitioner = partitioner_of_blocks();
+  manifest.positions = info.positions;
+  manifest.input_vertices = info.vertices;
+  manifest.input_triangles = info.faces;
+  manifest.cutting = cutting;
+  publish_record(stage, record_of(step.input, step.words));
+  stage.publish(ManifestName{}, encode_manifest(manifest));
+  return manifest;
+}
+
 }  // namespace
 
 Manifest cut_to_stage(const CutStep& step) {
@@ -68,6 +103,7 @@ Manifest cut_to_stage(const CutStep& step) {
   const Claim claim(stage.root() / ".cut.claim", step.stage + ": is being cut");
   if (stage.has_manifest()) return taken_up(stage, wanted);
   if (!source) source = open_input(step);
+  if (step.words.where == "farm") return plan_cut(step, *source, stage);
   publish_record(stage, wanted);
   ProgressPrinter printer(step.talk.progress());
   CutOptions options = step.words.cut;

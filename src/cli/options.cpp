@@ -202,6 +202,9 @@ void CutWords::add(po::options_description& options) {
       "scheme", po::value(&scheme_word)->default_value(scheme_word)->value_name("cut|stream"),
       "cut: compact parts, each simplified in memory; stream: slabs along the "
       "longest axis, each swept through a bounded buffer")(
+      "cut", po::value(&where)->default_value(where)->value_name("here|farm|auto"),
+      "with --scheme cut: here: this host cuts; farm: the first jobs of a run cut, on all hosts, of "
+      "a binary PLY file of triangles that all hosts see; auto: here")(
       "sort", po::value(&sort)->default_value(sort)->value_name("here|farm"),
       "with --scheme stream: here: sort the slabs on this host; farm: the first jobs of a run sort "
       "them, on all hosts")(
@@ -243,6 +246,13 @@ void CutWords::check() {
   if (sort == "farm" && scheme_word != "stream") {
     throw UsageError("--sort farm goes with --scheme stream: parts of a cut are not sorted");
   }
+  if (where != "here" && where != "farm" && where != "auto") {
+    throw UsageError("--cut is 'here', 'farm' or 'auto', not '" + where + "'");
+  }
+  if (where == "farm" && scheme_word != "cut") {
+    throw UsageError("--cut farm goes with --scheme cut; with --scheme stream there is --sort farm");
+  }
+  if (where == "farm" && weld != "exact") throw UsageError("--cut farm goes with --weld exact");
   cut.scheme = scheme_word == "stream" ? Scheme::stream : Scheme::cut;
   cut.weld = weld == "off" ? Weld::off : Weld::exact;
   if (cut.parts > 1'000'000) throw UsageError("--parts: at most 1,000,000");
@@ -260,6 +270,7 @@ std::vector<std::string> CutWords::words() const {
   std::vector<std::string> words = {"--scheme", scheme_word, "--sort",  sort,
                                     "--weld",   weld,        "--window"};
   words.push_back(std::to_string(cut.window_triangles));
+  if (where != "auto") words.insert(words.end(), {"--cut", where});
   if (!memory.empty()) words.insert(words.end(), {"--memory", memory});
   if (attributes != "auto") words.insert(words.end(), {"--attributes", attributes});
   if (uv != "auto") words.insert(words.end(), {"--uv", uv});

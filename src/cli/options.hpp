@@ -67,6 +67,7 @@ struct CutWords {
   CutOptions cut;
   std::string scheme_word = "cut";
   std::string sort = "here";
+  std::string where = "auto";  // the cut is done
   std::string weld = "exact";
   std::string attributes = "auto";
   std::string uv = "auto";

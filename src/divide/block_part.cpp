@@ -203,7 +203,7 @@ PartOfBlocks build_from_blocks(const Stage& stage, const BundlesOfMesh& bundles,
   share.gather();
   MeshShare raw = share.take();
   PartOfBlocks made;
-  made.shared_triangles = raw.triangles.size() + share.points_left_out();
+  made.shared_triangles = raw.triangles.size();
   BuiltPart built = build_part(std::move(raw), Weld::exact);
   static_cast<WeldCounts&>(made) = built;
   made.dropped_degenerate += share.points_left_out();

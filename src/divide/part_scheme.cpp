@@ -51,6 +51,7 @@ class PartScheme : public CutScheme {
   }
 
   StagedShare stage_share(MeshShare share, std::uint32_t number) const override {
+    const std::uint64_t shared = share.triangles.size();
     BuiltPart built = build_part(std::move(share), options_.weld);
     Mesh& mesh = built.part.mesh;
     StagedShare staged;
@@ -59,7 +60,9 @@ class PartScheme : public CutScheme {
     staged.label_corners =
         count_label_corners(mesh.triangles, mesh.columns.labels, mesh.positions.size());
     staged.uv_facts = find_uv_facts(mesh, built.part.boundary_vertices);
-    staged.entry = {{}, mesh.positions.size(), mesh.triangles.size(), built.part.boundary_vertices};
+    staged.entry = {{}, mesh.positions.size(), mesh.triangles.size(), built.part.boundary_vertices,
+                    shared,
+                    static_cast<std::uint32_t>(staged.numbers.places.size())};
     const std::string bytes = encode_part(built.part);
     mesh = {};
     staged.entry.file = stage_.publish(PartName{number}, bytes);

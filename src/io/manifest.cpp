@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
 //
-// The manifest, kind "MNFT", version 7; the payload of a sealed file. Strings are u32 + characters,
+// The manifest, kind "MNFT", version 8; the payload of a sealed file. Strings are u32 + characters,
 // a file is name | size u64 | xxh3-64 u64:
 //   input | input format | scheme u8 (0 cut, 1 stream) | partitioner | window u64 | position type
 //   u8 | box 6 x f64 | input vertices u64 | input triangles u64 | coincident vertices u64 | dropped
@@ -11,13 +11,17 @@
 //   4 x f32 | with texture coordinates wrap u8 u8 | maps u32 x (use u8 | picture u32)) | label
 //   corners u64 | of texture coordinates: floor u64 | side f64 | pictures u32 x (name | file) |
 //   skipped u32 x string | cut seconds f64 | boundary triangles u64 | boundary file | its index
-//   (offset u64 | size u64 | checksum u64) | sorting |
-//   parts u32 x (file | vertices u64 | triangles u64 | boundary vertices u32) | samples u32 x the
-//   same: none, or one a part, its file's name empty where it has none sorting = u8 0: parts and
-//   streams are there | u8 1: slabs are, and how they are to be sorted (io/sorting.hpp)
+//   (offset u64 | size u64 | checksum u64) | sorting | cutting |
+//   parts u32 x (file | vertices u64 | triangles u64 | boundary vertices u32 | shared triangles u64
+//   | shared boundary vertices u32) | samples u32 x the same: none, or one a part, its file's name
+//   empty where it has none
+//   sorting = u8 0: parts and streams are there | u8 1: slabs are, and how they are to be sorted
+//   (io/sorting.hpp)
+//   cutting = u8 0: parts are there | u8 1: path | bytes u64 | changed i64 | parts u32 | vertex
+//   blocks u32 | triangle blocks u32; there are no parts then, and the boundary has no name
 // Version 1 had no scheme, window and samples, version 2 no sorting, version 3 no partitioner, no
 // coincident corners and no dropped not finite, version 4 no channels, version 5 no
-// labels, version 6 no index of the boundary.
+// labels, version 6 no index of the boundary, version 7 no cutting and nothing shared.
 #include <algorithm>
 #include <cmath>
 
@@ -33,7 +37,7 @@ namespace meshfarm {
 namespace {
 
 constexpr FileKind k_manifest_kind = {'M', 'N', 'F', 'T'};
-constexpr std::uint32_t k_manifest_version = 7;
+constexpr std::uint32_t k_manifest_version = 8;
 
 /// A manifest may name only files of the kind that stands in that place.
 template <class Name>
@@ -172,6 +176,8 @@ void put_parts(ByteWriter& out, const std::vector<PartEntry>& parts) {
     out.put(part.vertices);
     out.put(part.triangles);
     out.put(part.boundary_vertices);
+    out.put(part.shared_triangles);
+    out.put(part.shared_boundary);
   }
 }
 
@@ -184,6 +190,8 @@ std::vector<PartEntry> get_parts(ByteReader& in) {
     part.vertices = in.get<std::uint64_t>();
     part.triangles = in.get<std::uint64_t>();
     part.boundary_vertices = in.get<std::uint32_t>();
+    part.shared_triangles = in.get<std::uint64_t>();
+    part.shared_boundary = in.get<std::uint32_t>();
     if (part.boundary_vertices > part.vertices) in.fail("more boundary vertices than vertices");
     parts.push_back(std::move(part));
   }
@@ -193,6 +201,7 @@ std::vector<PartEntry> get_parts(ByteReader& in) {
 }  // namespace
 
 std::uint64_t Manifest::triangles() const {
+  if (cutting) return input_triangles;
   std::uint64_t sum = boundary_triangles;
   for (const PartEntry& part : parts) sum += part.triangles;
   return sum;
@@ -210,6 +219,34 @@ void set_uv_facts(Manifest& manifest, std::span<const UvFacts> of_parts) {
   const double share = inner > 0 ? static_cast<double>(all) / static_cast<double>(inner) : 1;
   manifest.uv_floor = static_cast<std::uint64_t>(share * static_cast<double>(facts.floor));
   manifest.uv_side = facts.side();
+}
+
+void put_cutting(ByteWriter& out, const Cutting& cutting) {
+  out.put_string(cutting.path);
+  out.put(cutting.bytes);
+  out.put(cutting.changed_ns);
+  out.put(cutting.parts);
+  out.put(cutting.vertex_blocks);
+  out.put(cutting.triangle_blocks);
+}
+
+Cutting get_cutting(ByteReader& in) {
+  constexpr std::uint32_t k_most_parts = 1'000'000;
+  Cutting cutting;
+  cutting.path = in.get_string();
+  cutting.bytes = in.get<std::uint64_t>();
+  cutting.changed_ns = in.get<std::int64_t>();
+  cutting.parts = in.get<std::uint32_t>();
+  cutting.vertex_blocks = in.get<std::uint32_t>();
+  cutting.triangle_blocks = in.get<std::uint32_t>();
+  const auto is_possible = [](std::uint32_t blocks) {
+    return blocks > 0 && blocks <= k_most_cut_blocks;
+  };
+  if (cutting.parts == 0 || cutting.parts > k_most_parts || !is_possible(cutting.vertex_blocks) ||
+      !is_possible(cutting.triangle_blocks)) {
+    in.fail("impossible cut");
+  }
+  return cutting;
 }
 
 std::string encode_manifest(const Manifest& m) {
@@ -239,6 +276,8 @@ std::string encode_manifest(const Manifest& m) {
   out.put(m.boundary_index);
   out.put(static_cast<std::uint8_t>(m.sorting ? 1 : 0));
   if (m.sorting) put(out, *m.sorting);
+  out.put(static_cast<std::uint8_t>(m.cutting ? 1 : 0));
+  if (m.cutting) put_cutting(out, *m.cutting);
   put_parts(out, m.parts);
   put_parts(out, m.samples);
   return seal(k_manifest_kind, k_manifest_version, out.bytes());
@@ -270,12 +309,16 @@ Manifest decode_manifest(std::string_view file, std::string_view what) {
   m.cut_seconds = in.get<double>();
   m.boundary_triangles = in.get<std::uint64_t>();
   m.boundary = get_file(in);
-  check_name<BoundaryName>(in, m.boundary);
   m.boundary_index = in.get<FileSection>();
   const auto unsorted = in.get<std::uint8_t>();
   if (unsorted > (m.scheme == Scheme::stream ? 1 : 0)) in.fail("parts are not to be sorted");
   if (unsorted == 1) m.sorting = get_sorting(in);
+  const auto uncut = in.get<std::uint8_t>();
+  if (uncut > (m.scheme == Scheme::cut ? 1 : 0)) in.fail("streams are not to be cut");
+  if (uncut == 1) m.cutting = get_cutting(in);
+  if (!m.cutting) check_name<BoundaryName>(in, m.boundary);
   m.parts = get_parts(in);
+  if (m.cutting && !m.parts.empty()) in.fail("parts that are to be cut");
   for (const PartEntry& part : m.parts) {
     if (m.scheme == Scheme::cut) {
       check_name<PartName>(in, part.file);

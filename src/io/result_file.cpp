@@ -5,7 +5,7 @@
 // counts come after what they count.
 //   result  = head | rungs, finest first | 0 u8 | tail | xxh3-64 of everything before
 //   head    = "MFRM" | "RSLT" | version u32 | byte order u32 0x01020304 | vertex format u8 |
-//             boundary vertices u32
+//             boundary vertices u32 | beside u64 | so many bytes that are no part of the mesh
 //   rung    = blocks | 2 u8
 //   block   = 1 u8 | vertices u32 | triangles u32 | vertices | triangles x 3 x u32 | columns
 //   tail    = the boundary vertices | sets u32 | sets x samples |
@@ -16,10 +16,13 @@
 // Columns are labels, u32 a triangle, then texture coordinates, 6 x f32 a triangle, if it says so.
 // A rung's vertices are the boundary vertices, then those of its blocks. Of a block's vertices
 // there are at most 65536, and as many triangles.
-//   Version 2. Version 1 was sealed, with the counts in front and one set of samples.
+//   Version 3. Version 1 was sealed, with the counts in front and one set of samples; version 2 had
+//   nothing beside.
 // The summary that travels with the message:
 //   dropped degenerate u64 | dropped duplicate u64 | held by topology u8 | turned u64 |
-//   rungs u32 | rungs as above
+//   rungs u32 | rungs as above | of a part that was built by the same job: vertices u64 |
+//   triangles u64 | boundary vertices u32 | coincident vertices u64 | dropped degenerate u64 |
+//   coincident corners u64 | what is beside (offset u64 | size u64 | checksum u64)
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -41,7 +44,7 @@ namespace {
 
 constexpr FileKind k_result_magic = {'M', 'F', 'R', 'M'};
 constexpr FileKind k_result_kind = {'R', 'S', 'L', 'T'};
-constexpr std::uint32_t k_result_version = 2;
+constexpr std::uint32_t k_result_version = 3;
 constexpr std::uint32_t k_result_byte_order = 0x01020304;
 constexpr std::uint32_t k_max_rungs = 256;
 constexpr std::uint32_t k_most_in_result_block = 65536;
@@ -137,6 +140,12 @@ class ResultReader {
     format_ = *format;
     result_.positions = format_.positions;
     result_.boundary_vertices = get<std::uint32_t>();
+    for (auto left = get<std::uint64_t>(); left > 0;) {
+      const auto some = std::min<std::uint64_t>(left, k_most_in_result_block);
+      bytes_.resize(some);
+      take();
+      left -= some;
+    }
   }
 
   void read_block(bool is_wanted) {
@@ -230,6 +239,19 @@ class ResultReader {
   ResultMesh result_;
 };
 
+BuiltFacts get_built(ByteReader& in) {
+  BuiltFacts built;
+  built.vertices = in.get<std::uint64_t>();
+  built.triangles = in.get<std::uint64_t>();
+  built.boundary_vertices = in.get<std::uint32_t>();
+  if (built.boundary_vertices > built.vertices) in.fail("more boundary vertices than vertices");
+  built.coincident_vertices = in.get<std::uint64_t>();
+  built.dropped_degenerate = in.get<std::uint64_t>();
+  built.coincident_corners = in.get<std::uint64_t>();
+  built.beside = in.get<FileSection>();
+  return built;
+}
+
 }  // namespace
 
 std::string encode_summary(const ResultSummary& summary) {
@@ -239,6 +261,16 @@ std::string encode_summary(const ResultSummary& summary) {
   out.put(static_cast<std::uint8_t>(summary.held_by_topology ? 1 : 0));
   out.put(summary.turned);
   put_rungs(out, summary.rungs);
+  if (summary.built) {
+    const BuiltFacts& built = *summary.built;
+    out.put(built.vertices);
+    out.put(built.triangles);
+    out.put(built.boundary_vertices);
+    out.put(built.coincident_vertices);
+    out.put(built.dropped_degenerate);
+    out.put(built.coincident_corners);
+    out.put(built.beside);
+  }
   return out.take();
 }
 
@@ -252,11 +284,12 @@ ResultSummary decode_summary(std::string_view bytes, std::string_view what) {
   summary.held_by_topology = held == 1;
   summary.turned = in.get<std::uint64_t>();
   summary.rungs = get_rungs(in);
+  if (in.remaining() > 0) summary.built = get_built(in);
   in.expect_end();
   return summary;
 }
 
-ResultWriter::ResultWriter(const Vertices& vertices, Write write)
+ResultWriter::ResultWriter(const Vertices& vertices, Write write, std::string_view beside)
     : vertices_(vertices), write_(std::move(write)) {
   ByteWriter out;
   out.put(k_result_magic);
@@ -265,7 +298,10 @@ ResultWriter::ResultWriter(const Vertices& vertices, Write write)
   out.put(k_result_byte_order);
   put_vertex_format(out, {vertices_.positions, vertices_.appearances, vertices_.columns});
   out.put(vertices_.boundary);
+  out.put(static_cast<std::uint64_t>(beside.size()));
+  beside_ = {out.bytes().size(), beside.size(), checksum(beside)};
   put(out.bytes());
+  put(beside);
 }
 
 void ResultWriter::put(std::string_view bytes) {

@@ -9,6 +9,7 @@
 #include <meshfarm/io/mesh_format.hpp>
 #include <meshfarm/pipeline/assemble.hpp>
 #include <meshfarm/pipeline/bake_job.hpp>
+#include <meshfarm/pipeline/cut_job.hpp>
 #include <meshfarm/pipeline/run_graph.hpp>
 #include <meshfarm/util/errors.hpp>
 #include <meshfarm/util/stopwatch.hpp>
@@ -29,6 +30,7 @@ class Assembler::Impl {
 
   JobOutput do_job(const Job& job, const JobContext& context,
                    std::span<const AcceptedJob> accepted) {
+    if (job.kind == k_join_kind) return join_boundary_of_parts(job, context);
     if (job.kind != k_finish_kind) throw DataError("a sink does no " + job.kind + " jobs");
     finish(take(accepted));
     tell("new texture", 0, 0);

@@ -11,9 +11,9 @@ namespace {
 
 /// Points of the input by which the error of the result is measured: the RMS of as many varies by
 /// less than one per cent.
-constexpr double k_error_samples = 100'000;
+constexpr std::uint64_t k_error_samples = 100'000;
 /// A bound is on the greatest distance, which more points find more of, vertices most.
-constexpr double k_bound_samples = 200'000;
+constexpr std::uint64_t k_bound_samples = 200'000;
 
 }  // namespace
 
@@ -25,8 +25,11 @@ std::uint64_t samples_for(const Manifest& manifest, const RunOptions& options,
                           std::uint64_t triangles) {
   const double share = static_cast<double>(triangles) /
                        static_cast<double>(std::max<std::uint64_t>(1, manifest.triangles()));
-  const double all = options.error.value > 0 ? k_bound_samples : k_error_samples;
-  return static_cast<std::uint64_t>(std::ceil(share * all));
+  return static_cast<std::uint64_t>(std::ceil(share * static_cast<double>(all_samples(options))));
+}
+
+std::uint64_t all_samples(const RunOptions& options) {
+  return options.error.value > 0 ? k_bound_samples : k_error_samples;
 }
 
 std::uint32_t rung_at(std::span<const Rung> ladder, std::int32_t level) {

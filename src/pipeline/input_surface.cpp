@@ -4,6 +4,7 @@
 #include <string>
 #include <utility>
 
+#include <meshfarm/divide/block_cut.hpp>
 #include <meshfarm/divide/slab.hpp>
 #include <meshfarm/io/part_file.hpp>
 #include <meshfarm/io/slab_file.hpp>
@@ -63,6 +64,9 @@ InputSurface::InputSurface(const Stage& stage, const Manifest& manifest, unsigne
     : stage_(stage), manifest_(manifest), threads_(threads) {}
 
 void InputSurface::show(const Wants& wants, const Show& show) {
+  if (manifest_.cutting) {
+    throw DataError("this stage keeps no parts of the input: its runs cut it (--cut farm)");
+  }
   const bool is_first = boxes_.empty();
   boxes_.resize(manifest_.parts.size());
   boundary_.resize(manifest_.parts.size());
@@ -75,9 +79,14 @@ void InputSurface::show(const Wants& wants, const Show& show) {
   show_between(wants, show);
 }
 
-void InputSurface::show_part(std::uint32_t p, const Show& show) {
+Part InputSurface::read_part(std::uint32_t p) const {
+  if (manifest_.bundles) return build_from_blocks(stage_, *manifest_.bundles, p).part;
   const FileRef& file = manifest_.parts[p].file;
-  const Part part = decode_part(stage_.read(file), file.name);
+  return decode_part(stage_.read(file), file.name);
+}
+
+void InputSurface::show_part(std::uint32_t p, const Show& show) {
+  const Part part = read_part(p);
   const std::vector<Vec3>& positions = part.mesh.positions;
   if (boxes_[p].empty()) {
     for (const Vec3& v : positions) boxes_[p].add(v);

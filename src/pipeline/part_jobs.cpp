@@ -13,6 +13,12 @@ namespace {
 /// The part as it came, its hierarchy, and the points that stand for it, up to five a triangle.
 constexpr std::uint64_t k_bound_bytes_per_triangle = 500;
 
+/// Of a part that is not built yet: tenths of the average that it may have, bytes a triangle that
+/// it would have as a file, and what it takes to build a triangle, of the work to simplify it.
+constexpr std::uint64_t k_largest_part = 12;
+constexpr std::uint64_t k_part_bytes = 24;
+constexpr std::uint64_t k_build_share = 6;
+
 /// What a simplify job needs by and large: the part's file and its mesh (20 and 40 bytes a
 /// triangle), the simplifier (50 to 70), and the ladder, whose rungs shrink by a third or more from
 /// the first on.
@@ -30,16 +36,21 @@ std::uint64_t memory_of_sweep(std::uint64_t window_triangles) {
 
 }  // namespace
 
-PartJobs::PartJobs(const Manifest& manifest, const RunOptions& options)
-    : manifest_(manifest), options_(options), target_(target_triangles(manifest, options)) {}
+PartJobs::PartJobs(const Manifest& manifest, const RunOptions& options,
+                   const BundlesOfMesh* bundles)
+    : manifest_(manifest), options_(options), bundles_(bundles) {}
+
+std::uint64_t PartJobs::target() const {
+  return target_triangles(manifest_, options_);
+}
 
 double PartJobs::ratio() const {
-  return std::min(1.0, static_cast<double>(target_) /
+  return std::min(1.0, static_cast<double>(target()) /
                            static_cast<double>(std::max<std::uint64_t>(1, manifest_.triangles())));
 }
 
 double PartJobs::wanted() const {
-  return provision(ratio()) * static_cast<double>(target_);
+  return provision(ratio()) * static_cast<double>(target());
 }
 
 bool PartJobs::is_sampled(std::uint32_t part) const {
@@ -52,14 +63,20 @@ const PartEntry& PartJobs::climbed(std::uint32_t part) const {
 }
 
 Job PartJobs::climb(std::uint32_t part, double headroom, TopologyMode topology) const {
-  const PartEntry& entry = climbed(part);
   SimplifyParameters parameters;
   parameters.allocation = options_.allocation;
-  parameters.samples = samples_for(manifest_, options_, entry.triangles);
   parameters.cost_unit = cost_unit(manifest_.box.diagonal());
   parameters.lines = lines_of(manifest_, options_);
   parameters.lines.topology = topology;
-  by_error() ? set_error_bound(parameters, part) : set_share(parameters, part, headroom);
+  if (bundles_ != nullptr) return build_and_climb(part, headroom, std::move(parameters));
+  const PartEntry& entry = climbed(part);
+  if (manifest_.scheme == Scheme::cut) {
+    set_share(parameters, share_rule(headroom), entry.shared_triangles, entry.shared_boundary);
+  } else {
+    const ShareRule rule{ratio(), headroom, manifest_.triangles(), all_samples(options_)};
+    set_share(parameters, rule, entry.triangles, entry.boundary_vertices);
+  }
+  if (by_error()) set_error_bound(parameters, part);
   Job job{std::string(k_simplify_kind),
           {entry.file},
           encode_parameters(parameters),
@@ -72,27 +89,40 @@ Job PartJobs::climb(std::uint32_t part, double headroom, TopologyMode topology) 
   return job;
 }
 
+/// How large the part is going to be is known on the average.
+Job PartJobs::build_and_climb(std::uint32_t part, double headroom,
+                              SimplifyParameters parameters) const {
+  const std::uint64_t parts = std::max<std::uint64_t>(1, manifest_.parts.size());
+  const std::uint64_t triangles = k_largest_part * manifest_.input_triangles / parts / 10 + 1;
+  parameters.build = PartToBuild{*bundles_, part, share_rule(headroom)};
+  PartEntry likely;
+  likely.triangles = triangles;
+  likely.file.size = k_part_bytes * triangles;
+  return {std::string(k_simplify_kind),
+          {},
+          encode_parameters(parameters),
+          triangles + triangles / k_build_share,
+          memory_of(likely, triangles)};
+}
+
+/// By the input's triangles, as far as they have positions.
+ShareRule PartJobs::share_rule(double headroom) const {
+  const std::uint64_t all = manifest_.input_triangles - manifest_.dropped_not_finite;
+  const auto some = static_cast<double>(std::max<std::uint64_t>(1, all));
+  double ratio = options_.ratio;
+  if (options_.triangles != 0) ratio = static_cast<double>(options_.triangles) / some;
+  if (manifest_.uvs) ratio = static_cast<double>(target()) / some;
+  if (by_error()) ratio = 1;
+  return {std::min(1.0, ratio), headroom, all, all_samples(options_)};
+}
+
 void PartJobs::set_error_bound(SimplifyParameters& parameters, std::uint32_t part) const {
   parameters.allocation = Allocation::threshold;
   // What a sample tells is done to its stream by cost alone.
   const double share = is_sampled(part) ? k_error_share : k_bound_share_of_parts;
   parameters.max_error = share * options_.error.in(manifest_.box);
   parameters.start_triangles = climbed(part).triangles;
-}
-
-void PartJobs::set_share(SimplifyParameters& parameters, std::uint32_t part,
-                         double headroom) const {
-  const PartEntry& entry = climbed(part);
-  const double share = ratio() * static_cast<double>(entry.triangles);
-  parameters.share_triangles = static_cast<std::uint64_t>(share);
-  double start = share;
-  if (options_.allocation == Allocation::threshold) {
-    start = share * headroom * provision(ratio()) / 2 + 2.0 * entry.boundary_vertices;
-    if (start > 0.7 * static_cast<double>(entry.triangles)) {
-      start = static_cast<double>(entry.triangles);
-    }
-  }
-  parameters.start_triangles = static_cast<std::uint64_t>(start);
+  parameters.share_triangles = 0;
 }
 
 Job PartJobs::sweep(std::uint32_t part, std::int32_t level, TopologyMode topology) const {

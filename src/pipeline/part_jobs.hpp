@@ -18,10 +18,11 @@ constexpr double k_error_share = 0.5;
 /// options alone.
 class PartJobs {
  public:
-  /// Both must outlive this.
-  PartJobs(const Manifest& manifest, const RunOptions& options);
+  /// All must outlive this. `bundles`: what parts are to be built of; null if they are there.
+  PartJobs(const Manifest& manifest, const RunOptions& options,
+           const BundlesOfMesh* bundles = nullptr);
 
-  std::uint64_t target() const { return target_; }
+  std::uint64_t target() const;
   /// Of the triangles that are there, those that are wanted.
   double ratio() const;
   /// What the parts are to keep together for the finish to choose from.
@@ -42,11 +43,12 @@ class PartJobs {
  private:
   const PartEntry& climbed(std::uint32_t part) const;
   void set_error_bound(SimplifyParameters& parameters, std::uint32_t part) const;
-  void set_share(SimplifyParameters& parameters, std::uint32_t part, double headroom) const;
+  Job build_and_climb(std::uint32_t part, double headroom, SimplifyParameters parameters) const;
+  ShareRule share_rule(double headroom) const;
 
   const Manifest& manifest_;
   const RunOptions& options_;
-  std::uint64_t target_;
+  const BundlesOfMesh* bundles_;
 };
 
 }  // namespace meshfarm

@@ -11,10 +11,12 @@
 
 #include <meshfarm/pipeline/algorithm.hpp>
 #include <meshfarm/pipeline/run_graph.hpp>
+#include <meshfarm/util/errors.hpp>
 
 #include "pipeline/bake_stage.hpp"
 #include "pipeline/climb_stage.hpp"
 #include "pipeline/compose_stage.hpp"
+#include "pipeline/cut_stage.hpp"
 #include "pipeline/finish_stage.hpp"
 #include "pipeline/part_jobs.hpp"
 #include "pipeline/part_results.hpp"
@@ -41,10 +43,13 @@ class Run {
   Run(Manifest manifest, RunOptions options)
       : options_(std::move(options)), state_{std::move(manifest), {}, {}, {}, {}} {}
 
-  /// Slabs are sorted, if there are any; from then on the run is the one that streams would have
-  /// had.
+  /// The input is cut, or slabs are sorted, if that is to be done; from then on the run is the one
+  /// that parts or streams would have had.
   void begin(JobGraph& graph) {
     state_.why_finish_here = why_finish_here(manifest(), options_);
+    if (manifest().cutting) {
+      return cutting_.begin(graph, [this](JobGraph& so_far) { simplify(so_far); });
+    }
     if (!manifest().sorting) return simplify(graph);
     graph.then(sorting_.ask(graph), [this](JobGraph& so_far) {
       state_.manifest.sorting.reset();
@@ -56,7 +61,7 @@ class Run {
  private:
   /// Every part is climbed, and every long stream is swept.
   void simplify(JobGraph& graph) {
-    simplifying_.emplace(manifest(), options_,
+    simplifying_.emplace(manifest(), options_, cutting_.bundles(),
                          [this](std::uint32_t part) { return sorting_.sample_of(part); });
     const Parts all = parts_that([](std::uint32_t) { return true; });
     if (jobs().by_error()) return simplify_to_error(graph, all);
@@ -69,9 +74,13 @@ class Run {
   void climb(JobGraph& graph, const Parts& parts) {
     graph.then(climbs().ask(graph, parts), [this, parts](JobGraph& so_far) {
       climbs().take(so_far, parts);
-      const Parts again = climbs().choose_level();
-      again.empty() ? sweep(so_far) : climb(so_far, again);
+      cutting_.join(so_far, results(), [this](JobGraph& joined) { choose_level(joined); });
     });
+  }
+
+  void choose_level(JobGraph& graph) {
+    const Parts again = climbs().choose_level();
+    again.empty() ? sweep(graph) : climb(graph, again);
   }
 
   void sweep(JobGraph& graph) {
@@ -98,8 +107,10 @@ class Run {
     graph.then(all, [this, streams, parts](JobGraph& so_far) {
       sweeps().take(so_far, streams);
       climbs().take(so_far, parts);
-      climbs().choose_level();
-      compose(so_far);
+      cutting_.join(so_far, results(), [this](JobGraph& joined) {
+        climbs().choose_level();
+        compose(joined);
+      });
     });
   }
 
@@ -220,9 +231,9 @@ class Run {
 
   /// Those are made once the slabs are sorted.
   struct Simplifying {
-    Simplifying(const Manifest& manifest, const RunOptions& options,
+    Simplifying(const Manifest& manifest, const RunOptions& options, const BundlesOfMesh* bundles,
                 std::function<JobNeeds(std::uint32_t)> sample_of)
-        : jobs(manifest, options),
+        : jobs(manifest, options, bundles),
           results(manifest.parts.size()),
           climbs(manifest, options, jobs, results, std::move(sample_of)),
           sweeps(manifest, options, jobs, results) {}
@@ -248,6 +259,7 @@ class Run {
 
   RunOptions options_;
   RunState state_;
+  CutStage cutting_{state_.manifest};
   SortStage sorting_{state_.manifest};
   std::optional<Simplifying> simplifying_;
   std::size_t parts_done_ = 0;
@@ -268,6 +280,11 @@ std::pair<JobGraph, std::shared_ptr<const Run>> begin_run(const Manifest& manife
 }  // namespace
 
 JobSource make_job_source(const Manifest& manifest, const RunOptions& options) {
+  if (manifest.cutting && options.error.value > 0) {
+    throw UsageError(
+        "--error looks at the parts of the input, which a cut by the farm does not keep: "
+        "use --cut here");
+  }
   return [manifest, options] { return begin_run(manifest, options).first; };
 }
 
@@ -292,6 +309,7 @@ std::uint64_t memory_wanted(const Manifest& manifest, const RunOptions& options)
   JobGraph graph = make_job_source(manifest, options)();
   for (const WantedJob& each : graph.begin()) wanted = std::max(wanted, each.job.memory);
   if (bakes_texture(manifest, options)) wanted = std::max(wanted, memory_of_bake(manifest));
+  if (manifest.cutting) return std::max(wanted, memory_wanted(as_if_cut(manifest), options));
   return manifest.sorting ? std::max(wanted, memory_wanted(as_if_sorted(manifest), options))
                           : wanted;
 }

@@ -155,10 +155,10 @@ std::uint64_t run_key(const Manifest& manifest, const RunOptions& options) {
   ByteWriter out;
   out.put(k_algorithm_version);
   out.put(checksum(encode_manifest(manifest)));
-  // A ratio and a count that come to the same are one run. Not where slabs are to be sorted yet:
-  // degenerate triangles are dropped then, and the ratio is that of what is left.
+  // A ratio and a count that come to the same are one run. Not where slabs are to be sorted yet, or
+  // parts to be cut: degenerate triangles are dropped then, and the ratio is that of what is left.
   out.put(target_triangles(manifest, options));
-  if (manifest.sorting) out.put(options.ratio);
+  if (manifest.sorting || manifest.cutting) out.put(options.ratio);
   out.put(options.allocation);
   out.put(options.finish);
   out.put(options.composition);

@@ -10,9 +10,15 @@ namespace meshfarm {
 
 /// The stages of a run's jobs.
 enum class RunStage : std::uint32_t {
+  survey,
+  count,
+  partition,
+  vertices,
+  triangles,
   sort,
   sample,
   climb,
+  join,
   sweep,
   compose,
   split,
@@ -26,9 +32,10 @@ enum class RunStage : std::uint32_t {
 
 /// Their names, in that order.
 inline JobGraph empty_graph(std::uint32_t algorithm) {
-  return JobGraph({"sort", "sample", "climb", "sweep", "compose", "split", "seam", "reduce",
-                   "measure", "finish", "tile", "bake"},
-                  algorithm);
+  return JobGraph(
+      {"survey", "count", "partition", "vertices", "triangles", "sort", "sample", "climb", "join",
+       "sweep", "compose", "split", "seam", "reduce", "measure", "finish", "tile", "bake"},
+      algorithm);
 }
 
 inline JobName job_name(RunStage stage, std::size_t index) {

@@ -2,25 +2,29 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include <meshfarm/geometry/simplify.hpp>
 #include <meshfarm/io/part_file.hpp>
 #include <meshfarm/io/result_file.hpp>
 #include <meshfarm/io/stream_file.hpp>
+#include <meshfarm/pipeline/budget.hpp>
 #include <meshfarm/pipeline/simplify_job.hpp>
 #include <meshfarm/util/bytes.hpp>
 #include <meshfarm/util/checksum.hpp>
 #include <meshfarm/util/errors.hpp>
 
 #include "pipeline/bounded_part.hpp"
+#include "pipeline/bundle_list.hpp"
 
 namespace meshfarm {
 namespace {
 
-// Version 5: allocation u8 | start u64 | even share u64 | samples u64 | cost unit f64 |
-// greatest error f64 | lines (run_options.hpp).
-// Version 4 knew no appearances and labels.
-constexpr std::uint8_t k_climb_version = 5;
+// Version 6: allocation u8 | start u64 | even share u64 | samples u64 | cost unit f64 |
+// greatest error f64 | lines (run_options.hpp) | builds u8 | if it does: part u32 | ratio f64 |
+// headroom f64 | all triangles u64 | all samples u64 | bundles (bundle_list.hpp).
+// Version 4 knew no appearances and labels, version 5 nothing to build.
+constexpr std::uint8_t k_climb_version = 6;
 constexpr std::uint64_t k_most_climb_samples = 100'000'000;
 constexpr std::int32_t k_top_level = 52;
 // A part keeps no less than this fraction of its even share: what of it is flat goes in the finish.
@@ -29,7 +33,8 @@ constexpr std::uint64_t k_shares_per_floor = 2;
 /// Climbs the levels and keeps a snapshot wherever the mesh changed.
 class LadderBuilder {
  public:
-  LadderBuilder(Part part, const SimplifyParameters& parameters, const JobContext& context)
+  LadderBuilder(Part part, const SimplifyParameters& parameters, const JobContext& context,
+                std::string_view beside)
       : samples_(sample_surface(part.mesh, {.samples = parameters.samples, .threads = 1})),
         parameters_(parameters),
         context_(context),
@@ -38,7 +43,7 @@ class LadderBuilder {
         simplifier_(std::move(part.mesh), {.locked_vertices = part.boundary_vertices,
                                            .positions = part.positions,
                                            .lines = parameters.lines}),
-        result_(vertices_, [this](std::string_view bytes) { file_ += bytes; }) {}
+        result_(vertices_, [this](std::string_view bytes) { file_ += bytes; }, beside) {}
 
   void build() {
     if (parameters_.allocation == Allocation::uniform) {
@@ -54,6 +59,7 @@ class LadderBuilder {
     result_.finish(VertexView(simplifier_.mesh()).part(0, vertices_.boundary), {&samples_, 1});
     return std::move(file_);
   }
+  const FileSection& beside() const { return result_.beside(); }
   ResultSummary summary() const {
     return {result_.rungs(), simplifier_.dropped_degenerate(), simplifier_.dropped_duplicate(),
             simplifier_.is_hampered_by_topology(), simplifier_.turned()};
@@ -123,6 +129,45 @@ Part read_part(const JobContext& context, const FileRef& input) {
   }
 }
 
+PartToBuild get_part_to_build(ByteReader& in) {
+  PartToBuild build;
+  build.part = in.get<std::uint32_t>();
+  build.rule.ratio = in.get<double>();
+  build.rule.headroom = in.get<double>();
+  build.rule.all_triangles = in.get<std::uint64_t>();
+  build.rule.all_samples = in.get<std::uint64_t>();
+  if (!(build.rule.ratio > 0 && build.rule.ratio <= 1) || !(build.rule.headroom > 0) ||
+      build.rule.all_samples > k_most_climb_samples) {
+    in.fail("impossible share");
+  }
+  build.bundles = get_bundles(in);
+  return build;
+}
+
+/// A part of the stage, or one that is built here, with what is told of it then.
+struct PartAtHand {
+  Part part;
+  std::string beside;
+  std::optional<BuiltFacts> facts;
+};
+
+PartAtHand part_at_hand(const Job& job, const JobContext& context,
+                        SimplifyParameters& parameters) {
+  if (!parameters.build) {
+    if (job.inputs.size() != 1) throw DataError("a simplify job takes one part");
+    return {read_part(context, job.inputs[0]), {}, {}};
+  }
+  PartOfBlocks built =
+      build_from_blocks(context.stage, parameters.build->bundles, parameters.build->part);
+  set_share(parameters, parameters.build->rule, built.shared_triangles, built.shared_boundary);
+  const Mesh& mesh = built.part.mesh;
+  const BuiltFacts facts{mesh.positions.size(),      mesh.triangles.size(),
+                         built.part.boundary_vertices, built.coincident_vertices,
+                         built.dropped_degenerate,   built.coincident_corners,
+                         {}};
+  return {std::move(built.part), std::move(built.numbers), facts};
+}
+
 }  // namespace
 
 std::string encode_parameters(const SimplifyParameters& parameters) {
@@ -135,6 +180,14 @@ std::string encode_parameters(const SimplifyParameters& parameters) {
   out.put(parameters.cost_unit);
   out.put(parameters.max_error);
   put(out, parameters.lines);
+  out.put(static_cast<std::uint8_t>(parameters.build ? 1 : 0));
+  if (!parameters.build) return out.take();
+  out.put(parameters.build->part);
+  out.put(parameters.build->rule.ratio);
+  out.put(parameters.build->rule.headroom);
+  out.put(parameters.build->rule.all_triangles);
+  out.put(parameters.build->rule.all_samples);
+  put_bundles(out, parameters.build->bundles);
   return out.take();
 }
 
@@ -151,8 +204,27 @@ SimplifyParameters decode_parameters(std::string_view bytes) {
   parameters.cost_unit = in.get<double>();
   parameters.max_error = in.get<double>();
   parameters.lines = get_lines(in);
+  const auto builds = in.get<std::uint8_t>();
+  if (builds > 1) in.fail("impossible part");
+  if (builds == 1) parameters.build = get_part_to_build(in);
   in.expect_end();
   return parameters;
+}
+
+void set_share(SimplifyParameters& parameters, const ShareRule& rule,
+               std::uint64_t shared_triangles, std::uint32_t shared_boundary) {
+  const auto triangles = static_cast<double>(shared_triangles);
+  const double share = rule.ratio * triangles;
+  double start = share;
+  if (parameters.allocation == Allocation::threshold) {
+    start = share * rule.headroom * provision(rule.ratio) / 2 + 2.0 * shared_boundary;
+    if (start > 0.7 * triangles) start = triangles;
+  }
+  parameters.share_triangles = static_cast<std::uint64_t>(share);
+  parameters.start_triangles = static_cast<std::uint64_t>(start);
+  const auto all = static_cast<double>(std::max<std::uint64_t>(1, rule.all_triangles));
+  parameters.samples = static_cast<std::uint64_t>(
+      std::ceil(triangles / all * static_cast<double>(rule.all_samples)));
 }
 
 double level_cost(std::int32_t level, double unit) {
@@ -171,9 +243,9 @@ double cost_unit(double diagonal) {
 }
 
 JobOutput simplify_part(const Job& job, const JobContext& context) {
-  if (job.inputs.size() != 1) throw DataError("a simplify job takes one part");
-  const SimplifyParameters parameters = decode_parameters(job.parameters);
-  Part part = read_part(context, job.inputs[0]);
+  SimplifyParameters parameters = decode_parameters(job.parameters);
+  PartAtHand at_hand = part_at_hand(job, context, parameters);
+  Part& part = at_hand.part;
   if (!(parameters.lines.appearance_scale.length > 0)) part.mesh.appearances = {};
   part.mesh.columns.keep(parameters.lines.columns);
   const ResultName name{key_of(job).value, context.attempt, context.incarnation};
@@ -181,10 +253,13 @@ JobOutput simplify_part(const Job& job, const JobContext& context) {
     const BoundedPart bounded = simplify_to_bound(std::move(part), parameters, context);
     return {context.publish(name, bounded.file), encode_summary(bounded.summary)};
   }
-  LadderBuilder ladder(std::move(part), parameters, context);
+  LadderBuilder ladder(std::move(part), parameters, context, at_hand.beside);
   ladder.build();
   const std::string file = ladder.take_file();
-  return {context.publish(name, file), encode_summary(ladder.summary())};
+  ResultSummary summary = ladder.summary();
+  summary.built = at_hand.facts;
+  if (summary.built) summary.built->beside = ladder.beside();
+  return {context.publish(name, file), encode_summary(summary)};
 }
 
 }  // namespace meshfarm

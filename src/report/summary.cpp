@@ -226,6 +226,7 @@ std::string render(const Manifest& m, const std::string& stage, Format format) {
                        {"scheme", scheme_name(m)},
                        {"partitioner", m.partitioner},
                        {"parts", m.parts.size()},
+                       {"cut", !m.cutting.has_value()},
                        {"sorted", !m.sorting.has_value()},
                        {"boundary_triangles", m.boundary_triangles},
                        {"dropped",
@@ -237,8 +238,11 @@ std::string render(const Manifest& m, const std::string& stage, Format format) {
   }
   Lines lines;
   add_input(lines, m);
-  lines.add("stage", stage + ": " + grouped(m.parts.size()) + " " + parts_name(m) + ", " +
-                         grouped(m.boundary_triangles) + " boundary triangles");
+  lines.add("stage", stage + (m.cutting ? ": to be cut into " + grouped(m.cutting->parts) +
+                                              " parts by the first jobs of a run"
+                                        : ": " + grouped(m.parts.size()) + " " + parts_name(m) +
+                                              ", " + grouped(m.boundary_triangles) +
+                                              " boundary triangles"));
   lines.add("time", number(m.cut_seconds, "%.2f s"));
   return lines.text();
 }

@@ -11,6 +11,7 @@
 
 #include <meshfarm/divide/weld_counts.hpp>
 #include <meshfarm/io/boundary_file.hpp>
+#include <meshfarm/io/bundles.hpp>
 #include <meshfarm/io/mesh_blocks.hpp>
 #include <meshfarm/io/part_file.hpp>
 #include <meshfarm/staging/sections.hpp>
@@ -48,31 +49,6 @@ struct Partition {
 Partition partition_blocks(std::string_view cells, std::span<const std::string> counted,
                            unsigned threads);
 
-/// What is known of a bundle of vertices, beside its file.
-struct VertexBundle {
-  FileSection directory;  // which parts' vertices are where
-  FileSection runs;       // the part of each vertex of the block, and its place there
-  FileSection crowds;     // the first vertices at points that have too many
-  std::uint64_t merged = 0;
-};
-/// Which bundle lies where, in the order of the blocks.
-struct VertexBundleRef {
-  FileRef file;
-  VertexBundle bundle;
-};
-
-/// What is known of a bundle of triangles.
-struct TriangleBundle {
-  FileSection directory;
-  FileSection seams;  // all triangles between parts
-  std::uint64_t dropped = 0;          // those that use a vertex without a position
-  std::uint64_t points_left_out = 0;  // those whose corners are all one vertex
-};
-struct TriangleBundleRef {
-  FileRef file;
-  TriangleBundle bundle;
-};
-
 using WriteBytes = std::function<void(std::string_view)>;
 
 /// `partition`: of partition_blocks().
@@ -83,14 +59,6 @@ VertexBundle scatter_vertices(std::string_view partition, const MeshBlocks& mesh
 TriangleBundle scatter_triangles(const Stage& stage, std::span<const VertexBundleRef> bundles,
                                  std::uint32_t parts, const MeshBlocks& mesh,
                                  const BlockRange& triangles, const WriteBytes& write);
-
-/// All of a mesh that was scattered.
-struct BundlesOfMesh {
-  PositionType positions = PositionType::float32;
-  std::uint32_t parts = 0;
-  std::vector<VertexBundleRef> vertices;
-  std::vector<TriangleBundleRef> triangles;
-};
 
 /// A part as the cut makes it, and what it came from.
 struct PartOfBlocks : WeldCounts {

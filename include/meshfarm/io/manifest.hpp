@@ -12,6 +12,7 @@
 #include <meshfarm/geometry/mesh.hpp>
 #include <meshfarm/geometry/sweep_order.hpp>
 #include <meshfarm/geometry/uv_facts.hpp>
+#include <meshfarm/io/bundles.hpp>
 #include <meshfarm/io/channel_file.hpp>
 #include <meshfarm/io/labels.hpp>
 #include <meshfarm/staging/sections.hpp>
@@ -31,7 +32,31 @@ struct PartEntry {
   std::uint64_t vertices = 0;
   std::uint64_t triangles = 0;
   std::uint32_t boundary_vertices = 0;
+  /// Of a part, as it was shared out: before triangles were dropped and vertices welded. Whoever
+  /// simplifies a part goes by these, as they are known before any part is made.
+  std::uint64_t shared_triangles = 0;
+  std::uint32_t shared_boundary = 0;
 };
+
+/// So that a message has room for the names of all.
+inline constexpr std::uint32_t k_most_cut_blocks = 128;
+
+/// A cut that the first jobs of a run do, over blocks of the input's records.
+struct Cutting {
+  std::string path;             // of the input, as all hosts see it
+  std::uint64_t bytes = 0;      // that it has
+  std::int64_t changed_ns = 0;  // when it was written last
+  std::uint32_t parts = 0;      // asked for
+  std::uint32_t vertex_blocks = 0;
+  std::uint32_t triangle_blocks = 0;
+  friend bool operator==(const Cutting&, const Cutting&) = default;
+};
+
+class ByteReader;
+class ByteWriter;
+void put_cutting(ByteWriter& out, const Cutting& cutting);
+/// Throws DataError for what put_cutting() did not write.
+Cutting get_cutting(ByteReader& in);
 
 /// What a cut made of one input: everything a run needs to know. Published last, never changed.
 struct Manifest {
@@ -69,12 +94,16 @@ struct Manifest {
   /// sorted stream is then missing: coincident vertices, dropped triangles and samples. Counts of
   /// triangles and vertices are those of the input.
   std::optional<Sorting> sorting;
+  /// Set if a run has to cut first. What is known only then is missing: box, boundary and parts.
+  std::optional<Cutting> cutting;
+  /// What parts are built of, whoever wants one, where a run has cut. Never staged.
+  std::optional<BundlesOfMesh> bundles;
   std::vector<PartEntry> parts;    // or streams, or slabs
   std::vector<PartEntry> samples;  // of long streams, by stream: a piece as a part; else no name
 
   /// Which columns triangles have.
   ColumnSet columns() const { return {labels.has_value(), uvs}; }
-  /// Triangles that the parts and the boundary hold.
+  /// Triangles that the parts and the boundary hold; before the cut, those of the input.
   std::uint64_t triangles() const;
 };
 

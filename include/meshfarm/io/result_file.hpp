@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -13,6 +14,7 @@
 #include <meshfarm/geometry/mesh.hpp>
 #include <meshfarm/io/fill.hpp>
 #include <meshfarm/io/part_file.hpp>
+#include <meshfarm/staging/sections.hpp>
 #include <meshfarm/util/checksum.hpp>
 
 namespace meshfarm {
@@ -26,6 +28,18 @@ struct Rung {
   double error = 0;                  // greatest distance from the samples, where it was measured
 };
 
+/// What is known of a part that was built and simplified by one job: what PartEntry tells, and what
+/// was found on the way.
+struct BuiltFacts {
+  std::uint64_t vertices = 0;
+  std::uint64_t triangles = 0;
+  std::uint32_t boundary_vertices = 0;
+  std::uint64_t coincident_vertices = 0;
+  std::uint64_t dropped_degenerate = 0;
+  std::uint64_t coincident_corners = 0;
+  FileSection beside;  // of the result's file
+};
+
 /// What is known of a result without reading its file. Travels with the result message.
 struct ResultSummary {
   std::vector<Rung> rungs;
@@ -33,6 +47,7 @@ struct ResultSummary {
   std::uint64_t dropped_duplicate = 0;
   bool held_by_topology = false;  // keeping it refused more than was collapsed
   std::uint64_t turned = 0;       // triangles that faced another way than most of their piece
+  std::optional<BuiltFacts> built = {};
 };
 
 std::string encode_summary(const ResultSummary& summary);
@@ -52,7 +67,8 @@ class ResultWriter {
     std::uint32_t boundary = 0;
     ColumnSet columns = {};
   };
-  ResultWriter(const Vertices& vertices, Write write);
+  /// `beside`: bytes that the file holds for others than those who read the mesh.
+  ResultWriter(const Vertices& vertices, Write write, std::string_view beside = {});
   /// More of a rung: its next vertices, counted on from the boundary vertices, and triangles of any
   /// of the rung's vertices, those to come included; with the columns that the mesh has.
   void add(VertexView vertices, std::span<const Triangle> triangles,
@@ -64,6 +80,8 @@ class ResultWriter {
   /// Samples: points of the part as it came, by which the error of the final mesh is measured.
   void finish(const VertexView& boundary, std::span<const SurfaceSamples> samples);
 
+  /// Where the bytes beside the mesh are.
+  const FileSection& beside() const { return beside_; }
   bool empty() const { return rungs_.empty(); }
   const std::vector<Rung>& rungs() const { return rungs_; }
 
@@ -72,6 +90,7 @@ class ResultWriter {
 
   Vertices vertices_;
   Write write_;
+  FileSection beside_;
   Rung rung_;  // the counts of what was added of the next rung
   std::vector<Rung> rungs_;
   Checksum sum_;

@@ -49,6 +49,9 @@ double provision(double ratio);
 std::uint64_t samples_for(const Manifest& manifest, const RunOptions& options,
                           std::uint64_t triangles);
 
+/// Of the whole surface.
+std::uint64_t all_samples(const RunOptions& options);
+
 /// Of one ladder: the coarsest rung that is not above `level`, else its first.
 std::uint32_t rung_at(std::span<const Rung> ladder, std::int32_t level);
 

@@ -9,6 +9,7 @@
 
 #include <meshfarm/io/boundary_file.hpp>
 #include <meshfarm/io/manifest.hpp>
+#include <meshfarm/io/part_file.hpp>
 
 namespace meshfarm {
 
@@ -37,6 +38,7 @@ class InputSurface {
   void show(const Wants& wants, const Show& show);
 
  private:
+  Part read_part(std::uint32_t part) const;
   void show_part(std::uint32_t part, const Show& show);
   void show_slab(std::uint32_t part, const Show& show);
   void show_stream(std::uint32_t part, const Show& show);

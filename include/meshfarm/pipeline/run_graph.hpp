@@ -18,8 +18,8 @@ namespace meshfarm {
 /// The jobs of a run. src/pipeline/run_graph.cpp tells it from top to bottom.
 JobSource make_job_source(const Manifest& manifest, const RunOptions& options);
 
-/// What the largest job needs that is known of, in bytes. Where slabs are still to be sorted, what
-/// comes after that is estimated.
+/// What the largest job needs that is known of, in bytes. Where the input is still to be cut, or
+/// slabs to be sorted, what comes after that is estimated.
 std::uint64_t memory_wanted(const Manifest& manifest, const RunOptions& options);
 
 /// A new texture, as workers have baked it.
@@ -30,7 +30,7 @@ struct BakedTexture {
 
 /// What a run has come to.
 struct RunState {
-  Manifest manifest;                       // its slabs sorted, if there were some
+  Manifest manifest;                       // cut, or its slabs sorted, if that was to be done
   std::optional<ChosenRungs> chosen;       // once every job that makes the mesh is accepted
   std::optional<FinishedPieces> finished;  // once all is, if the finish is made of jobs
   std::string why_finish_here;             // else, why not

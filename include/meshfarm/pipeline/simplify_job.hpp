@@ -3,15 +3,33 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 
+#include <meshfarm/divide/block_cut.hpp>
 #include <meshfarm/farm/job.hpp>
 #include <meshfarm/pipeline/run_options.hpp>
 
 namespace meshfarm {
 
 inline constexpr std::string_view k_simplify_kind = "simplify";
+
+/// How a part's share of the target is found, by what was shared out to it: known to whoever builds
+/// the part, whether that is the cut or the job itself.
+struct ShareRule {
+  double ratio = 1;                // of all triangles, those that are wanted
+  double headroom = 1;             // a ladder begins at so many times the share
+  std::uint64_t all_triangles = 0;
+  std::uint64_t all_samples = 0;   // points of the whole surface
+};
+
+/// A part that the job builds itself, of the bundles of a cut by blocks.
+struct PartToBuild {
+  BundlesOfMesh bundles;
+  std::uint32_t part = 0;
+  ShareRule rule;
+};
 
 /// Parameters of a simplify job.
 struct SimplifyParameters {
@@ -22,7 +40,12 @@ struct SimplifyParameters {
   double cost_unit = 0;               // cost of level 0
   double max_error = 0;               // where above 0: one rung, as far as this distance is kept
   LineOptions lines;
+  std::optional<PartToBuild> build;  // the job has no input then, and finds its share by the rule
 };
+
+/// Sets first rung, share and samples of a part.
+void set_share(SimplifyParameters& parameters, const ShareRule& rule,
+               std::uint64_t shared_triangles, std::uint32_t shared_boundary);
 
 std::string encode_parameters(const SimplifyParameters& parameters);
 SimplifyParameters decode_parameters(std::string_view bytes);
@@ -38,7 +61,7 @@ std::int32_t level_of(double cost, double unit);
 /// Level 0 of a mesh with this diagonal: distances of 2^-50 of it.
 double cost_unit(double diagonal);
 
-/// Simplifies one part or stream (the job's input) to a ladder that ends at half its even share,
+/// Simplifies one part or stream (the job's input, or one that it builds) to a ladder that ends at half its even share,
 /// or with Allocation::uniform to one rung.
 JobOutput simplify_part(const Job& job, const JobContext& context);
 

@@ -124,7 +124,8 @@ int check_same_cut(const Mesh& mesh, std::uint32_t parts, std::size_t blocks,
     CAPTURE(p);
     const PartOfBlocks& made = cut.parts_made[p];
     CHECK(checksum(encode_part(made.part)) == checksum(stage.read(manifest.parts[p].file)));
-    CHECK(made.shared_triangles >= manifest.parts[p].triangles);
+    CHECK(made.shared_triangles == manifest.parts[p].shared_triangles);
+    CHECK(made.shared_boundary == manifest.parts[p].shared_boundary);
     sum.dropped_degenerate += made.dropped_degenerate;
     sum.coincident_vertices += made.coincident_vertices;
     sum.coincident_corners += made.coincident_corners;

@@ -1,0 +1,50 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include <meshfarm/geometry/mesh.hpp>
+#include <meshfarm/staging/sections.hpp>
+#include <meshfarm/staging/stage.hpp>
+
+namespace meshfarm {
+
+// What jobs make of blocks of a mesh's file (divide/block_cut.hpp): a staged file each, with a
+// section for each part that the block has something of.
+
+/// What is known of a bundle of vertices, beside its file.
+struct VertexBundle {
+  FileSection directory;  // which parts' vertices are where
+  FileSection runs;       // the part of each vertex of the block, and its place there
+  FileSection crowds;     // the first vertices at points that have too many
+  std::uint64_t merged = 0;
+};
+/// Which bundle lies where, in the order of the blocks.
+struct VertexBundleRef {
+  FileRef file;
+  VertexBundle bundle;
+};
+
+/// What is known of a bundle of triangles.
+struct TriangleBundle {
+  FileSection directory;
+  FileSection seams;  // all triangles between parts
+  std::uint64_t dropped = 0;          // those that use a vertex without a position
+  std::uint64_t points_left_out = 0;  // those whose corners are all one vertex
+};
+struct TriangleBundleRef {
+  FileRef file;
+  TriangleBundle bundle;
+};
+
+/// All of a mesh that was scattered.
+struct BundlesOfMesh {
+  PositionType positions = PositionType::float32;
+  std::uint32_t parts = 0;
+  std::vector<VertexBundleRef> vertices;
+  std::vector<TriangleBundleRef> triangles;
+};
+
+}  // namespace meshfarm

@@ -1,0 +1,84 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <meshfarm/divide/block_cut.hpp>
+#include <meshfarm/farm/job.hpp>
+#include <meshfarm/io/manifest.hpp>
+
+namespace meshfarm {
+
+// The jobs of a cut by blocks of the input (divide/block_cut.hpp), in the order of their stages. A
+// simplify job builds its part itself.
+
+inline constexpr std::string_view k_survey_kind = "survey";
+inline constexpr std::string_view k_count_kind = "count";
+inline constexpr std::string_view k_partition_kind = "partition";
+inline constexpr std::string_view k_vertices_kind = "scatter-vertices";
+inline constexpr std::string_view k_triangles_kind = "scatter-triangles";
+inline constexpr std::string_view k_join_kind = "join";
+
+/// Parameters of all but the join. A job reads what else it needs of the stage's manifest.
+struct CutJobParameters {
+  Cutting cutting;
+  std::uint32_t block = 0;
+  std::uint32_t round = 0;  // of counting: the first begins with the box, others with a file
+  Box box;                  // of the first round
+  BundlesOfMesh bundles;    // to scatter triangles: those of the vertices
+};
+std::string encode_parameters(const CutJobParameters& parameters);
+CutJobParameters decode_cut_parameters(std::string_view bytes);
+
+std::string encode_summary(const BlockSurvey& survey);
+BlockSurvey decode_survey(std::string_view summary, std::string_view what);
+
+struct PartitionSummary {
+  bool counts_again = false;
+  std::uint32_t parts = 0;
+};
+std::string encode_summary(const PartitionSummary& summary);
+PartitionSummary decode_partition_summary(std::string_view summary, std::string_view what);
+
+/// Where a ladder's file tells of its boundary vertices.
+struct PartNumbers {
+  FileRef file;
+  FileSection section;
+};
+/// Parameters of the join, which the sink does.
+struct JoinParameters {
+  BundlesOfMesh bundles;
+  std::vector<PartNumbers> numbers;  // of all parts
+};
+std::string encode_parameters(const JoinParameters& parameters);
+JoinParameters decode_join_parameters(std::string_view bytes);
+
+/// The output is a boundary file.
+struct JoinSummary {
+  FileSection index;
+  std::uint64_t triangles = 0;
+  std::uint64_t degenerate = 0;
+  std::uint64_t coincident = 0;
+  std::uint64_t duplicate = 0;
+};
+std::string encode_summary(const JoinSummary& summary);
+JoinSummary decode_join_summary(std::string_view summary, std::string_view what);
+
+JobOutput survey_vertices_of_block(const Job& job, const JobContext& context);
+JobOutput count_vertices_of_block(const Job& job, const JobContext& context);
+JobOutput partition_cells_of_blocks(const Job& job, const JobContext& context);
+JobOutput scatter_vertices_of_block(const Job& job, const JobContext& context);
+JobOutput scatter_triangles_of_block(const Job& job, const JobContext& context);
+JobOutput join_boundary_of_parts(const Job& job, const JobContext& context);
+
+/// What a cut by jobs is to be of this file, `parts` 0: as many as a cut would make; nothing if its
+/// records cannot be read by themselves. Throws IoError.
+std::optional<Cutting> plan_cutting(const std::filesystem::path& input, std::uint32_t parts);
+
+}  // namespace meshfarm

@@ -1,0 +1,28 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+//
+// Bundles as they stand in parameters of jobs:
+//   bundles  = position type u8 | parts u32 | vertices u32 x (file | directory section | runs
+//              section | crowds section | merged u64) | triangles u32 x (file | directory section |
+//              seams section | dropped u64 | points left out u64)
+// A summary has what follows the file.
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include <meshfarm/divide/block_cut.hpp>
+#include <meshfarm/util/bytes.hpp>
+
+namespace meshfarm {
+
+void put_bundles(ByteWriter& out, const BundlesOfMesh& bundles);
+/// Throws DataError for what put_bundles() did not write.
+BundlesOfMesh get_bundles(ByteReader& in);
+
+std::string encode_summary(const VertexBundle& bundle);
+std::string encode_summary(const TriangleBundle& bundle);
+VertexBundle decode_vertex_bundle(std::string_view summary, std::string_view what);
+TriangleBundle decode_triangle_bundle(std::string_view summary, std::string_view what);
+
+}  // namespace meshfarm

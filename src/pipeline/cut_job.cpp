@@ -1,0 +1,166 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#include <algorithm>
+#include <memory>
+#include <utility>
+
+#include <sys/stat.h>
+
+#include <meshfarm/divide/cut.hpp>
+#include <meshfarm/pipeline/cut_job.hpp>
+#include <meshfarm/util/errors.hpp>
+
+#include "pipeline/bundle_list.hpp"
+
+namespace meshfarm {
+namespace {
+
+struct FileFacts {
+  std::uint64_t bytes = 0;
+  std::int64_t changed_ns = 0;
+};
+
+FileFacts facts_of(const std::filesystem::path& path) {
+  struct stat status {};
+  if (::stat(path.c_str(), &status) != 0) throw_errno("cannot look at", path);
+  return {static_cast<std::uint64_t>(status.st_size),
+          std::int64_t{status.st_mtim.tv_sec} * 1'000'000'000 + status.st_mtim.tv_nsec};
+}
+
+/// The input, as it was when the cut was planned. A host that does not see it says so: another may.
+std::unique_ptr<MeshBlocks> open_input(const Cutting& cutting) {
+  FileFacts facts;
+  std::unique_ptr<MeshBlocks> mesh;
+  try {
+    facts = facts_of(cutting.path);
+    if (facts.bytes == cutting.bytes) mesh = open_blocks(cutting.path);
+  } catch (const IoError& error) {
+    throw UnreadIoError(error);
+  }
+  if (mesh == nullptr || facts.changed_ns != cutting.changed_ns) {
+    throw UnreadDataError(cutting.path +
+                          ": was changed since the cut was begun, or is another file on this host");
+  }
+  return mesh;
+}
+
+ResultName cut_result_name(const Job& job, const JobContext& context) {
+  return {key_of(job).value, context.attempt, context.incarnation};
+}
+
+void expect_to_be_wanted(const Job& job, const JobContext& context) {
+  if (!context.progress(job.cost)) throw IncompleteError("the job was given up");
+}
+
+JobOutput publish_bytes(const Job& job, const JobContext& context, std::string_view bytes,
+                        std::string summary) {
+  expect_to_be_wanted(job, context);
+  return {context.publish(cut_result_name(job, context), bytes), std::move(summary)};
+}
+
+/// What a job's function makes in sections.
+template <class Make>
+JobOutput write_sections(const Job& job, const JobContext& context, const Make& make) {
+  const auto file = context.create(cut_result_name(job, context));
+  std::string summary = encode_summary(make([&](std::string_view bytes) { file->write(bytes); }));
+  expect_to_be_wanted(job, context);
+  return {file->commit(), std::move(summary)};
+}
+
+BlockRange vertices_of(const CutJobParameters& parameters, const MeshBlocks& mesh) {
+  return block_of(mesh.vertices(), parameters.cutting.vertex_blocks, parameters.block);
+}
+
+/// The cells that are counted in this round: the first input, if it is not the first.
+std::string cells_of(const CutJobParameters& parameters, const Job& job,
+                     const JobContext& context) {
+  if (parameters.round == 0) return begin_cells(parameters.box, parameters.cutting.parts);
+  return context.read(job.inputs.at(0));
+}
+
+}  // namespace
+
+JobOutput survey_vertices_of_block(const Job& job, const JobContext& context) {
+  const CutJobParameters parameters = decode_cut_parameters(job.parameters);
+  const auto mesh = open_input(parameters.cutting);
+  std::string summary = encode_summary(survey_block(*mesh, vertices_of(parameters, *mesh)));
+  return publish_bytes(job, context, std::string(summary), summary);
+}
+
+JobOutput count_vertices_of_block(const Job& job, const JobContext& context) {
+  const CutJobParameters parameters = decode_cut_parameters(job.parameters);
+  const auto mesh = open_input(parameters.cutting);
+  const std::string counted =
+      count_block(cells_of(parameters, job, context), *mesh, vertices_of(parameters, *mesh));
+  return publish_bytes(job, context, counted, {});
+}
+
+JobOutput partition_cells_of_blocks(const Job& job, const JobContext& context) {
+  const CutJobParameters parameters = decode_cut_parameters(job.parameters);
+  const std::size_t first = parameters.round == 0 ? 0 : 1;
+  std::vector<std::string> counted;
+  for (std::size_t i = first; i < job.inputs.size(); ++i) {
+    counted.push_back(context.read(job.inputs[i]));
+  }
+  const Partition made = partition_blocks(cells_of(parameters, job, context), counted, 1);
+  return publish_bytes(job, context, made.bytes,
+                       encode_summary(PartitionSummary{made.counts_again, made.parts}));
+}
+
+JobOutput scatter_vertices_of_block(const Job& job, const JobContext& context) {
+  const CutJobParameters parameters = decode_cut_parameters(job.parameters);
+  const auto mesh = open_input(parameters.cutting);
+  const std::string partition = context.read(job.inputs.at(0));
+  return write_sections(job, context, [&](const WriteBytes& write) {
+    return scatter_vertices(partition, *mesh, vertices_of(parameters, *mesh), write);
+  });
+}
+
+JobOutput scatter_triangles_of_block(const Job& job, const JobContext& context) {
+  const CutJobParameters parameters = decode_cut_parameters(job.parameters);
+  const auto mesh = open_input(parameters.cutting);
+  const BlockRange triangles =
+      block_of(mesh->triangles(), parameters.cutting.triangle_blocks, parameters.block);
+  return write_sections(job, context, [&](const WriteBytes& write) {
+    return scatter_triangles(context.stage, parameters.bundles.vertices, parameters.bundles.parts,
+                             *mesh, triangles, write);
+  });
+}
+
+JobOutput join_boundary_of_parts(const Job& job, const JobContext& context) {
+  const JoinParameters parameters = decode_join_parameters(job.parameters);
+  std::vector<std::string> numbers;
+  for (const PartNumbers& each : parameters.numbers) {
+    numbers.push_back(SectionedFile(context.stage, each.file).read(each.section));
+  }
+  const JoinedBoundary made = join_boundary(context.stage, parameters.bundles, numbers);
+  const JoinSummary summary{made.encoded.index, made.triangles, made.degenerate, made.coincident,
+                            made.duplicate};
+  return publish_bytes(job, context, made.encoded.file, encode_summary(summary));
+}
+
+std::optional<Cutting> plan_cutting(const std::filesystem::path& input, std::uint32_t parts) {
+  // Jobs of about so many records: enough for all workers of a cluster, few enough that each is
+  // worth its messages and its files.
+  constexpr std::uint64_t k_triangles_of_block = 500'000;
+  constexpr std::uint64_t k_vertices_of_block = 500'000;
+  const auto mesh = open_blocks(input);
+  if (mesh == nullptr) return std::nullopt;
+  const auto blocks = [](std::uint64_t records, std::uint64_t size) {
+    return static_cast<std::uint32_t>(
+        std::clamp<std::uint64_t>(records / size, 1, k_most_cut_blocks / 2));
+  };
+  const FileFacts facts = facts_of(input);
+  Cutting cutting;
+  cutting.path = std::filesystem::canonical(input).string();
+  cutting.bytes = facts.bytes;
+  cutting.changed_ns = facts.changed_ns;
+  cutting.parts = parts != 0
+                      ? parts
+                      : default_parts(Scheme::cut, std::max(mesh->triangles(), mesh->vertices()));
+  cutting.vertex_blocks = blocks(mesh->vertices(), k_vertices_of_block);
+  cutting.triangle_blocks = blocks(mesh->triangles(), k_triangles_of_block);
+  return cutting;
+}
+
+}  // namespace meshfarm

@@ -1,0 +1,224 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#include "pipeline/cut_stage.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include <meshfarm/pipeline/cut_job.hpp>
+#include <meshfarm/util/errors.hpp>
+
+#include "pipeline/bundle_list.hpp"
+#include "pipeline/run_stages.hpp"
+
+namespace meshfarm {
+namespace {
+
+/// Measured: so many vertices, or triangles, take the work of simplifying one triangle.
+constexpr std::uint64_t k_surveyed = 200;
+constexpr std::uint64_t k_counted = 60;
+constexpr std::uint64_t k_scattered_vertices = 40;
+constexpr std::uint64_t k_scattered_triangles = 25;
+
+constexpr std::uint64_t k_cut_process_bytes = std::uint64_t{16} << 20;
+constexpr std::uint64_t k_cell_bytes_in_memory = 300;   // in a tree, and as it is written
+constexpr std::uint64_t k_cell_bytes_of_graph = 1'000;  // while it is partitioned
+constexpr std::uint64_t k_most_cells = std::uint64_t{1} << 20;
+constexpr std::uint64_t k_cells_a_part = 1024;
+
+std::uint64_t likely_cells(std::uint32_t parts) {
+  return std::min(k_most_cells, k_cells_a_part * parts);
+}
+
+std::string what_of(const JobOutput& output) {
+  return "summary of " + output.file.name;
+}
+
+}  // namespace
+
+void CutStage::begin(JobGraph& graph, JobGraph::Step then) {
+  cuts_ = true;
+  cutting_ = *manifest_.cutting;
+  bundles_.positions = manifest_.positions;
+  then_ = std::move(then);
+  survey(graph);
+}
+
+std::uint64_t CutStage::vertices_of_block() const {
+  return manifest_.input_vertices / cutting_.vertex_blocks + 1;
+}
+
+std::uint64_t CutStage::triangles_of_block() const {
+  return manifest_.input_triangles / cutting_.triangle_blocks + 1;
+}
+
+Job CutStage::job_of(std::string_view kind, std::uint64_t cost, std::uint64_t memory) const {
+  Job job;
+  job.kind = kind;
+  job.cost = 1 + cost;
+  job.memory = k_cut_process_bytes + memory;
+  return job;
+}
+
+void CutStage::survey(JobGraph& graph) {
+  for (std::uint32_t b = 0; b < cutting_.vertex_blocks; ++b) {
+    Job job = job_of(k_survey_kind, vertices_of_block() / k_surveyed, 0);
+    job.parameters = encode_parameters(CutJobParameters{cutting_, b, 0, {}, {}});
+    graph.add(job_name(RunStage::survey, b), std::move(job));
+  }
+  graph.then({jobs_of(RunStage::survey, 0, cutting_.vertex_blocks)}, [this](JobGraph& so_far) {
+    take_surveys(so_far);
+    count(so_far, 0);
+  });
+}
+
+void CutStage::take_surveys(const JobGraph& graph) {
+  for (std::uint32_t b = 0; b < cutting_.vertex_blocks; ++b) {
+    const JobOutput& output = graph.output(job_name(RunStage::survey, b));
+    const BlockSurvey survey = decode_survey(output.summary, what_of(output));
+    manifest_.box.add(survey.box.lo);
+    manifest_.box.add(survey.box.hi);
+  }
+}
+
+/// A round: all blocks, then the partition, which may ask for another one.
+void CutStage::count(JobGraph& graph, std::uint32_t round) {
+  const std::uint32_t blocks = cutting_.vertex_blocks;
+  const std::uint64_t cells = likely_cells(cutting_.parts);
+  for (std::uint32_t b = 0; b < blocks; ++b) {
+    Job job = job_of(k_count_kind, vertices_of_block() / k_counted, k_cell_bytes_in_memory * cells);
+    if (round > 0) job.inputs = {cells_};
+    job.parameters = encode_parameters(
+        CutJobParameters{cutting_, b, round, round == 0 ? manifest_.box : Box{}, {}});
+    graph.add(job_name(RunStage::count, round * blocks + b), std::move(job));
+  }
+  const JobRange counted = jobs_of(RunStage::count, std::size_t{round} * blocks, blocks);
+  const JobName name = job_name(RunStage::partition, round);
+  graph.add(name, {counted}, [this, round, blocks, cells](JobGraph& so_far) {
+    Job job = job_of(k_partition_kind, cells, k_cell_bytes_of_graph * cells);
+    if (round > 0) job.inputs = {cells_};
+    for (std::uint32_t b = 0; b < blocks; ++b) {
+      job.inputs.push_back(so_far.output(job_name(RunStage::count, round * blocks + b)).file);
+    }
+    job.parameters = encode_parameters(
+        CutJobParameters{cutting_, 0, round, round == 0 ? manifest_.box : Box{}, {}});
+    return std::optional<Job>(std::move(job));
+  });
+  graph.then({just(name)}, [this, round, name](JobGraph& so_far) {
+    const JobOutput& output = so_far.output(name);
+    const PartitionSummary made = decode_partition_summary(output.summary, what_of(output));
+    cells_ = output.file;
+    if (made.counts_again) return count(so_far, round + 1);
+    bundles_.parts = made.parts;
+    scatter_vertices(so_far);
+  });
+}
+
+void CutStage::scatter_vertices(JobGraph& graph) {
+  const std::uint64_t cells = likely_cells(cutting_.parts);
+  for (std::uint32_t b = 0; b < cutting_.vertex_blocks; ++b) {
+    Job job = job_of(k_vertices_kind, vertices_of_block() / k_scattered_vertices,
+                     k_cell_bytes_in_memory * cells + 60 * vertices_of_block());
+    job.inputs = {cells_};
+    job.parameters = encode_parameters(CutJobParameters{cutting_, b, 0, {}, {}});
+    graph.add(job_name(RunStage::vertices, b), std::move(job));
+  }
+  graph.then({jobs_of(RunStage::vertices, 0, cutting_.vertex_blocks)}, [this](JobGraph& so_far) {
+    take_vertices(so_far);
+    scatter_triangles(so_far);
+  });
+}
+
+void CutStage::take_vertices(const JobGraph& graph) {
+  for (std::uint32_t b = 0; b < cutting_.vertex_blocks; ++b) {
+    const JobOutput& output = graph.output(job_name(RunStage::vertices, b));
+    const VertexBundle bundle = decode_vertex_bundle(output.summary, what_of(output));
+    bundles_.vertices.push_back({output.file, bundle});
+    manifest_.coincident_vertices += bundle.merged;
+  }
+}
+
+void CutStage::scatter_triangles(JobGraph& graph) {
+  for (std::uint32_t b = 0; b < cutting_.triangle_blocks; ++b) {
+    Job job = job_of(k_triangles_kind, triangles_of_block() / k_scattered_triangles,
+                     80 * triangles_of_block() + 16 * vertices_of_block());
+    job.parameters = encode_parameters(CutJobParameters{cutting_, b, 0, {}, bundles_});
+    graph.add(job_name(RunStage::triangles, b), std::move(job));
+  }
+  graph.then({jobs_of(RunStage::triangles, 0, cutting_.triangle_blocks)}, [this](JobGraph& so_far) {
+    take_triangles(so_far);
+    manifest_.cutting.reset();
+    manifest_.parts.resize(bundles_.parts);
+    manifest_.bundles = bundles_;
+    then_(so_far);
+  });
+}
+
+void CutStage::take_triangles(const JobGraph& graph) {
+  for (std::uint32_t b = 0; b < cutting_.triangle_blocks; ++b) {
+    const JobOutput& output = graph.output(job_name(RunStage::triangles, b));
+    const TriangleBundle bundle = decode_triangle_bundle(output.summary, what_of(output));
+    bundles_.triangles.push_back({output.file, bundle});
+    manifest_.dropped_not_finite += bundle.dropped;
+    manifest_.dropped_degenerate += bundle.points_left_out;
+    manifest_.coincident_corners += bundle.points_left_out;
+  }
+}
+
+void CutStage::join(JobGraph& graph, const PartResults& results, JobGraph::Step then) {
+  if (!cuts_ || std::exchange(joined_, true)) return then(graph);
+  take_ladders(results);
+  JoinParameters parameters{bundles_, {}};
+  for (std::size_t p = 0; p < results.files.size(); ++p) {
+    parameters.numbers.push_back({results.files[p], results.summaries[p].built.value().beside});
+  }
+  Job job = job_of(k_join_kind, 0, 0);
+  job.parameters = encode_parameters(parameters);
+  job.by_sink = true;
+  const JobName name = job_name(RunStage::join, 0);
+  graph.add(name, std::move(job));
+  graph.then({just(name)}, [this, name, then = std::move(then)](JobGraph& so_far) {
+    take_boundary(so_far.output(name));
+    then(so_far);
+  });
+}
+
+void CutStage::take_ladders(const PartResults& results) {
+  for (std::size_t p = 0; p < results.files.size(); ++p) {
+    const std::optional<BuiltFacts>& built = results.summaries[p].built;
+    if (!built) throw DataError(results.files[p].name + ": does not tell of the part it is of");
+    PartEntry& part = manifest_.parts[p];
+    part.vertices = built->vertices;
+    part.triangles = built->triangles;
+    part.boundary_vertices = built->boundary_vertices;
+    manifest_.coincident_vertices += built->coincident_vertices;
+    manifest_.dropped_degenerate += built->dropped_degenerate;
+    manifest_.coincident_corners += built->coincident_corners;
+  }
+}
+
+void CutStage::take_boundary(const JobOutput& joined) {
+  const JoinSummary summary = decode_join_summary(joined.summary, what_of(joined));
+  manifest_.boundary = joined.file;
+  manifest_.boundary_index = summary.index;
+  manifest_.boundary_triangles = summary.triangles;
+  manifest_.dropped_degenerate += summary.degenerate;
+  manifest_.coincident_corners += summary.coincident;
+  manifest_.dropped_duplicate = summary.duplicate;
+}
+
+Manifest as_if_cut(Manifest manifest) {
+  const std::uint32_t parts = manifest.cutting->parts;
+  manifest.cutting.reset();
+  PartEntry part;
+  constexpr std::uint64_t k_tenths = 12;  // of the average that a part may have
+  part.triangles = k_tenths * manifest.input_triangles / parts / 10 + 1;
+  part.vertices = part.triangles / 2 + 1;
+  part.shared_triangles = part.triangles;
+  constexpr std::uint64_t k_part_bytes = 24;
+  part.file.size = k_part_bytes * part.triangles;
+  manifest.parts.assign(parts, part);
+  return manifest;
+}
+
+}  // namespace meshfarm
