@@ -69,6 +69,7 @@ class DoctorCommand : public Command {
     const Manifest manifest =
         decode_manifest(stage.read(ManifestName{}), stage.path(ManifestName{}).string());
     for (const PartEntry& part : manifest.parts) facts.part_bytes += part.file.size;
+    if (manifest.cutting) facts.part_bytes = 2 * manifest.cutting->bytes;  // bundles, and ladders
     if (manifest.sorting) facts.part_bytes *= 2;  // the streams take as much as the slabs
     try {
       publish_host_card(stage, this_host());

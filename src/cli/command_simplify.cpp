@@ -71,7 +71,7 @@ class SimplifyCommand : public Command {
     check_writable(output_);
     if (!report_.empty()) check_place(report_);
     const Claim claim(claim_of(output_), output_ + ": is being made");
-    cut_to_stage({input_, stage_, cut_, talk_, stop});
+    cut_to_stage({input_, stage_, cut_, talk_, stop, farm_pays()});
     const int code = run_local_farm(
         {stage_, output_, output_words_, target_, network_, schedule_, when_full_, talk_, workers_},
         stop);
@@ -87,6 +87,13 @@ class SimplifyCommand : public Command {
   }
 
  private:
+  /// Measured: the jobs of a cut take as much of the processors' time as a cut here, which takes all
+  /// processors. What looks at the parts later needs a cut that keeps them.
+  bool farm_pays() const {
+    const bool keeps_parts = keep_stage_ || in_batch_ || !report_.empty();
+    return !keeps_parts && target_.run.error.value == 0 && 2 * workers_ >= default_workers();
+  }
+
   std::string input_;
   std::string output_;
   std::string stage_;

@@ -35,14 +35,14 @@ const char* word_of(Textures textures) {
 }
 
 /// Threads are left out: they change no byte.
-std::string options_of(const CutWords& words) {
+std::string options_of(const CutWords& words, bool farmed) {
   std::string text = "--scheme " + words.scheme_word + " --weld " + words.weld + " --parts " +
                      std::to_string(words.cut.parts);
   if (words.cut.scheme == Scheme::stream) {
     text += " --sort " + words.sort + " --window " + std::to_string(words.cut.window_triangles) +
             " --memory " + std::to_string(words.cut.sort_memory());
   }
-  if (words.where == "farm") text += " --cut farm";
+  if (farmed) text += " --cut farm";
   if (words.attributes != "auto") text += " --attributes " + words.attributes;
   text += std::string(" --uv ") + word_of(parse_uv(words.uv));
   return text + ", algorithm " + std::to_string(k_algorithm_version);
@@ -50,7 +50,7 @@ std::string options_of(const CutWords& words) {
 
 }  // namespace
 
-CutRecord record_of(const std::string& input, const CutWords& words) {
+CutRecord record_of(const std::string& input, const CutWords& words, bool farmed) {
   const Fd fd = open_for_read(input);
   struct stat status {};
   if (::fstat(fd.get(), &status) != 0) throw_errno("cannot look at", input);
@@ -65,7 +65,7 @@ CutRecord record_of(const std::string& input, const CutWords& words) {
     sum.add(piece);
   }
   record.sum = sum.value();
-  record.options = options_of(words);
+  record.options = options_of(words, farmed);
   return record;
 }
 

@@ -20,8 +20,8 @@ struct CutRecord {
   std::string options;          // of the cut, as far as they matter to what is cut
 };
 
-/// Throws IoError if the input cannot be read.
-CutRecord record_of(const std::string& input, const CutWords& words);
+/// `farmed`: whether the farm is to cut. Throws IoError if the input cannot be read.
+CutRecord record_of(const std::string& input, const CutWords& words, bool farmed = false);
 /// In what they differ, for a message; empty if they are the same.
 std::string difference(const CutRecord& staged, const CutRecord& wanted);
 

@@ -31,10 +31,15 @@ namespace meshfarm {
 namespace {
 
 /// The cut that the stage holds, if it is the one that is wanted.
-Manifest taken_up(const Stage& stage, const CutRecord& wanted) {
+Manifest taken_up(const Stage& stage, const CutStep& step) {
   const std::string root = stage.root().string();
   const auto staged = read_record(stage);
-  const std::string what = staged ? difference(*staged, wanted) : "a cut of an older version";
+  const auto differs = [&](bool farmed) {
+    return difference(*staged, record_of(step.input, step.words, farmed));
+  };
+  std::string what = "a cut of an older version";
+  if (staged) what = differs(step.words.where == "farm");
+  if (staged && !what.empty() && step.words.where == "auto" && differs(true).empty()) what.clear();
   if (!what.empty()) {
     throw DataError(root + ": holds a finished cut of " + what + "; 'meshfarm replay " + root +
                     "' uses it, or remove it to cut again");
@@ -61,24 +66,36 @@ std::unique_ptr<MeshSource> open_input(const CutStep& step) {
   return with_channels(std::move(opened), step.words.channels);
 }
 
-/// What a cut by jobs cannot keep.
-void check_farmable(const CutStep& step, const MeshFileInfo& info,
-                    const std::optional<Cutting>& cutting) {
-  std::string why;
-  if (!cutting) why = "it is no plain binary PLY file of triangles";
-  if (!info.channels.empty()) why = "its vertices have colours or other channels";
-  if (info.labels || info.uvs || !info.pictures.names.empty()) why = "it has labels or textures";
-  if (why.empty()) return;
-  throw UsageError(step.input + ": cannot be cut by the farm: " + why +
-                   (cutting ? "; --attributes none leaves these out, --cut here keeps them"
-                            : "; use --cut here"));
+/// Why the farm cannot cut this; empty if it can.
+std::string why_not_by_farm(const MeshFileInfo& info, const std::optional<Cutting>& cutting) {
+  if (!cutting) return "it is no plain binary PLY file of triangles; use --cut here";
+  if (info.labels || info.uvs || !info.channels.empty()) {
+    return "it has colours, labels or other attributes; --attributes none leaves them out, --cut "
+           "here keeps them";
+  }
+  return {};
+}
+
+/// What the farm is to cut; nothing if this process is.
+std::optional<Cutting> cutting_for(const CutStep& step, const MeshSource& source) {
+  // Measured: from about so many triangles on, jobs of a cut take no longer than a cut here.
+  constexpr std::uint64_t k_worth_jobs = 1'000'000;
+  const CutWords& words = step.words;
+  const bool is_asked = words.where == "farm";
+  const bool may = words.where == "auto" && step.farm_pays && words.cut.scheme == Scheme::cut &&
+                   words.cut.weld == Weld::exact && words.memory.empty() &&
+                   source.info().faces >= k_worth_jobs;
+  if (!is_asked && !may) return std::nullopt;
+  std::optional<Cutting> cutting = plan_cutting(step.input, {words.cut.parts, words.blocks});
+  const std::string why = why_not_by_farm(source.info(), cutting);
+  if (why.empty()) return cutting;
+  if (is_asked) throw UsageError(step.input + ": cannot be cut by the farm: " + why);
+  return std::nullopt;
 }
 
 /// Leaves to the first jobs of a run to cut.
-Manifest plan_cut(const CutStep& step, const MeshSource& source, const Stage& stage) {
-  const MeshFileInfo& info = source.info();
-  const std::optional<Cutting> cutting = plan_cutting(step.input, step.words.cut.parts);
-  check_farmable(step, info, cutting);
+Manifest plan_cut(const CutStep& step, const MeshFileInfo& info, const Cutting& cutting,
+                  const Stage& stage) {
   Manifest manifest;
   manifest.input = step.input;
   manifest.input_format = info.format;
@@ -88,7 +105,7 @@ Manifest plan_cut(const CutStep& step, const MeshSource& source, const Stage& st
   manifest.input_vertices = info.vertices;
   manifest.input_triangles = info.faces;
   manifest.cutting = cutting;
-  publish_record(stage, record_of(step.input, step.words));
+  publish_record(stage, record_of(step.input, step.words, true));
   stage.publish(ManifestName{}, encode_manifest(manifest));
   return manifest;
 }
@@ -96,15 +113,16 @@ Manifest plan_cut(const CutStep& step, const MeshSource& source, const Stage& st
 }  // namespace
 
 Manifest cut_to_stage(const CutStep& step) {
-  const CutRecord wanted = record_of(step.input, step.words);
   // An input that cannot be read, or has not what is asked for, leaves no stage behind.
   std::unique_ptr<MeshSource> source = holds_cut(step.stage) ? nullptr : open_input(step);
   const Stage stage = Stage::create(step.stage);
   const Claim claim(stage.root() / ".cut.claim", step.stage + ": is being cut");
-  if (stage.has_manifest()) return taken_up(stage, wanted);
+  if (stage.has_manifest()) return taken_up(stage, step);
   if (!source) source = open_input(step);
-  if (step.words.where == "farm") return plan_cut(step, *source, stage);
-  publish_record(stage, wanted);
+  if (const auto cutting = cutting_for(step, *source)) {
+    return plan_cut(step, source->info(), *cutting, stage);
+  }
+  publish_record(stage, record_of(step.input, step.words));
   ProgressPrinter printer(step.talk.progress());
   CutOptions options = step.words.cut;
   options.input_name = step.input;

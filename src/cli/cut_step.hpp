@@ -17,6 +17,9 @@ struct CutStep {
   const CutWords& words;
   const TalkOptions& talk;
   const std::atomic<bool>& stop;
+  /// What --cut auto comes to where the farm can cut: true for a run that keeps no parts, on as many
+  /// workers as make it worth it.
+  bool farm_pays = false;
 };
 
 /// Cuts a file, or makes streams of it, in a stage that holds no manifest yet, with progress on

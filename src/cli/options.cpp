@@ -204,7 +204,11 @@ void CutWords::add(po::options_description& options) {
       "longest axis, each swept through a bounded buffer")(
       "cut", po::value(&where)->default_value(where)->value_name("here|farm|auto"),
       "with --scheme cut: here: this host cuts; farm: the first jobs of a run cut, on all hosts, of "
-      "a binary PLY file of triangles that all hosts see; auto: here")(
+      "a binary PLY file of triangles that all hosts see; auto: farm, if simplify keeps no parts, "
+      "the mesh is large, and there are workers enough")(
+      "blocks", po::value(&blocks)->value_name("N"),
+      "with --cut farm: blocks of vertices, and of triangles, up to 64 (default: of about 500,000 "
+      "each); the parts do not depend on it")(
       "sort", po::value(&sort)->default_value(sort)->value_name("here|farm"),
       "with --scheme stream: here: sort the slabs on this host; farm: the first jobs of a run sort "
       "them, on all hosts")(
@@ -249,6 +253,7 @@ void CutWords::check() {
   if (where != "here" && where != "farm" && where != "auto") {
     throw UsageError("--cut is 'here', 'farm' or 'auto', not '" + where + "'");
   }
+  if (blocks > k_most_cut_blocks / 2) throw UsageError("--blocks: from 1 to 64");
   if (where == "farm" && scheme_word != "cut") {
     throw UsageError("--cut farm goes with --scheme cut; with --scheme stream there is --sort farm");
   }
@@ -271,6 +276,7 @@ std::vector<std::string> CutWords::words() const {
                                     "--weld",   weld,        "--window"};
   words.push_back(std::to_string(cut.window_triangles));
   if (where != "auto") words.insert(words.end(), {"--cut", where});
+  if (blocks != 0) words.insert(words.end(), {"--blocks", std::to_string(blocks)});
   if (!memory.empty()) words.insert(words.end(), {"--memory", memory});
   if (attributes != "auto") words.insert(words.end(), {"--attributes", attributes});
   if (uv != "auto") words.insert(words.end(), {"--uv", uv});

@@ -68,6 +68,7 @@ struct CutWords {
   std::string scheme_word = "cut";
   std::string sort = "here";
   std::string where = "auto";  // the cut is done
+  std::uint32_t blocks = 0;    // that the farm cuts by
   std::string weld = "exact";
   std::string attributes = "auto";
   std::string uv = "auto";

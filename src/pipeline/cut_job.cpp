@@ -139,27 +139,27 @@ JobOutput join_boundary_of_parts(const Job& job, const JobContext& context) {
   return publish_bytes(job, context, made.encoded.file, encode_summary(summary));
 }
 
-std::optional<Cutting> plan_cutting(const std::filesystem::path& input, std::uint32_t parts) {
-  // Jobs of about so many records: enough for all workers of a cluster, few enough that each is
-  // worth its messages and its files.
-  constexpr std::uint64_t k_triangles_of_block = 500'000;
-  constexpr std::uint64_t k_vertices_of_block = 500'000;
+std::optional<Cutting> plan_cutting(const std::filesystem::path& input,
+                                    const CutPlanOptions& options) {
   const auto mesh = open_blocks(input);
   if (mesh == nullptr) return std::nullopt;
-  const auto blocks = [](std::uint64_t records, std::uint64_t size) {
-    return static_cast<std::uint32_t>(
-        std::clamp<std::uint64_t>(records / size, 1, k_most_cut_blocks / 2));
+  const auto blocks = [&](std::uint64_t records) {
+    // Enough for all workers of a cluster, few enough that each is worth its messages and files.
+    constexpr std::uint64_t k_records = 500'000;
+    const std::uint64_t wanted = options.blocks != 0 ? options.blocks : records / k_records;
+    return static_cast<std::uint32_t>(std::clamp<std::uint64_t>(wanted, 1, k_most_cut_blocks / 2));
   };
   const FileFacts facts = facts_of(input);
   Cutting cutting;
   cutting.path = std::filesystem::canonical(input).string();
   cutting.bytes = facts.bytes;
   cutting.changed_ns = facts.changed_ns;
-  cutting.parts = parts != 0
-                      ? parts
-                      : default_parts(Scheme::cut, std::max(mesh->triangles(), mesh->vertices()));
-  cutting.vertex_blocks = blocks(mesh->vertices(), k_vertices_of_block);
-  cutting.triangle_blocks = blocks(mesh->triangles(), k_triangles_of_block);
+  cutting.parts = options.parts;
+  if (cutting.parts == 0) {
+    cutting.parts = default_parts(Scheme::cut, std::max(mesh->triangles(), mesh->vertices()));
+  }
+  cutting.vertex_blocks = blocks(mesh->vertices());
+  cutting.triangle_blocks = blocks(mesh->triangles());
   return cutting;
 }
 

@@ -15,10 +15,11 @@ namespace meshfarm {
 namespace {
 
 /// Measured: so many vertices, or triangles, take the work of simplifying one triangle.
-constexpr std::uint64_t k_surveyed = 200;
-constexpr std::uint64_t k_counted = 60;
-constexpr std::uint64_t k_scattered_vertices = 40;
-constexpr std::uint64_t k_scattered_triangles = 25;
+constexpr std::uint64_t k_surveyed = 50;
+constexpr std::uint64_t k_counted = 15;
+constexpr std::uint64_t k_scattered_vertices = 9;
+constexpr std::uint64_t k_scattered_triangles = 8;
+constexpr std::uint64_t k_partitioned = 5;  // times the work, a cell
 
 constexpr std::uint64_t k_cut_process_bytes = std::uint64_t{16} << 20;
 constexpr std::uint64_t k_cell_bytes_in_memory = 300;   // in a tree, and as it is written
@@ -52,6 +53,13 @@ std::uint64_t CutStage::triangles_of_block() const {
   return manifest_.input_triangles / cutting_.triangle_blocks + 1;
 }
 
+/// Of a block, by and large: coordinates.
+std::uint64_t CutStage::bytes_of_vertices() const {
+  const std::uint64_t all =
+      3 * static_cast<std::uint64_t>(manifest_.positions) * manifest_.input_vertices;
+  return std::min(all, cutting_.bytes) / cutting_.vertex_blocks;
+}
+
 Job CutStage::job_of(std::string_view kind, std::uint64_t cost, std::uint64_t memory) const {
   Job job;
   job.kind = kind;
@@ -63,6 +71,7 @@ Job CutStage::job_of(std::string_view kind, std::uint64_t cost, std::uint64_t me
 void CutStage::survey(JobGraph& graph) {
   for (std::uint32_t b = 0; b < cutting_.vertex_blocks; ++b) {
     Job job = job_of(k_survey_kind, vertices_of_block() / k_surveyed, 0);
+    job.reads = bytes_of_vertices();
     job.parameters = encode_parameters(CutJobParameters{cutting_, b, 0, {}, {}});
     graph.add(job_name(RunStage::survey, b), std::move(job));
   }
@@ -88,6 +97,7 @@ void CutStage::count(JobGraph& graph, std::uint32_t round) {
   for (std::uint32_t b = 0; b < blocks; ++b) {
     Job job = job_of(k_count_kind, vertices_of_block() / k_counted, k_cell_bytes_in_memory * cells);
     if (round > 0) job.inputs = {cells_};
+    job.reads = bytes_of_vertices();
     job.parameters = encode_parameters(
         CutJobParameters{cutting_, b, round, round == 0 ? manifest_.box : Box{}, {}});
     graph.add(job_name(RunStage::count, round * blocks + b), std::move(job));
@@ -95,7 +105,7 @@ void CutStage::count(JobGraph& graph, std::uint32_t round) {
   const JobRange counted = jobs_of(RunStage::count, std::size_t{round} * blocks, blocks);
   const JobName name = job_name(RunStage::partition, round);
   graph.add(name, {counted}, [this, round, blocks, cells](JobGraph& so_far) {
-    Job job = job_of(k_partition_kind, cells, k_cell_bytes_of_graph * cells);
+    Job job = job_of(k_partition_kind, k_partitioned * cells, k_cell_bytes_of_graph * cells);
     if (round > 0) job.inputs = {cells_};
     for (std::uint32_t b = 0; b < blocks; ++b) {
       job.inputs.push_back(so_far.output(job_name(RunStage::count, round * blocks + b)).file);
@@ -120,6 +130,7 @@ void CutStage::scatter_vertices(JobGraph& graph) {
     Job job = job_of(k_vertices_kind, vertices_of_block() / k_scattered_vertices,
                      k_cell_bytes_in_memory * cells + 60 * vertices_of_block());
     job.inputs = {cells_};
+    job.reads = bytes_of_vertices();
     job.parameters = encode_parameters(CutJobParameters{cutting_, b, 0, {}, {}});
     graph.add(job_name(RunStage::vertices, b), std::move(job));
   }
@@ -142,6 +153,8 @@ void CutStage::scatter_triangles(JobGraph& graph) {
   for (std::uint32_t b = 0; b < cutting_.triangle_blocks; ++b) {
     Job job = job_of(k_triangles_kind, triangles_of_block() / k_scattered_triangles,
                      80 * triangles_of_block() + 16 * vertices_of_block());
+    job.reads = (cutting_.bytes - cutting_.vertex_blocks * bytes_of_vertices()) /
+                cutting_.triangle_blocks;
     job.parameters = encode_parameters(CutJobParameters{cutting_, b, 0, {}, bundles_});
     graph.add(job_name(RunStage::triangles, b), std::move(job));
   }

@@ -37,6 +37,7 @@ class CutStage {
   void take_ladders(const PartResults& results);
   void take_boundary(const JobOutput& joined);
   Job job_of(std::string_view kind, std::uint64_t cost, std::uint64_t memory) const;
+  std::uint64_t bytes_of_vertices() const;
   std::uint64_t vertices_of_block() const;
   std::uint64_t triangles_of_block() const;
 

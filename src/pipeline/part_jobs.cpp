@@ -17,7 +17,7 @@ constexpr std::uint64_t k_bound_bytes_per_triangle = 500;
 /// it would have as a file, and what it takes to build a triangle, of the work to simplify it.
 constexpr std::uint64_t k_largest_part = 12;
 constexpr std::uint64_t k_part_bytes = 24;
-constexpr std::uint64_t k_build_share = 6;
+constexpr std::uint64_t k_build_share = 4;
 
 /// What a simplify job needs by and large: the part's file and its mesh (20 and 40 bytes a
 /// triangle), the simplifier (50 to 70), and the ladder, whose rungs shrink by a third or more from
@@ -93,16 +93,20 @@ Job PartJobs::climb(std::uint32_t part, double headroom, TopologyMode topology) 
 Job PartJobs::build_and_climb(std::uint32_t part, double headroom,
                               SimplifyParameters parameters) const {
   const std::uint64_t parts = std::max<std::uint64_t>(1, manifest_.parts.size());
-  const std::uint64_t triangles = k_largest_part * manifest_.input_triangles / parts / 10 + 1;
+  const std::uint64_t average = manifest_.input_triangles / parts + 1;
+  const std::uint64_t triangles = k_largest_part * average / 10;
   parameters.build = PartToBuild{*bundles_, part, share_rule(headroom)};
   PartEntry likely;
   likely.triangles = triangles;
   likely.file.size = k_part_bytes * triangles;
-  return {std::string(k_simplify_kind),
+  Job job{std::string(k_simplify_kind),
           {},
           encode_parameters(parameters),
-          triangles + triangles / k_build_share,
+          average + average / k_build_share,
           memory_of(likely, triangles)};
+  for (const VertexBundleRef& each : bundles_->vertices) job.reads += each.file.size / parts;
+  for (const TriangleBundleRef& each : bundles_->triangles) job.reads += each.file.size / parts;
+  return job;
 }
 
 /// By the input's triangles, as far as they have positions.

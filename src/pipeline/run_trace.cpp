@@ -48,6 +48,7 @@ TraceLine line_of(const JobAccepted& e, double t) {
   }
   line.triangles = e.job.cost;
   line.memory = e.job.memory;
+  line.read_bytes = e.job.reads;
   for (const FileRef& input : e.job.inputs) line.read_bytes += input.size;
   line.written_bytes = e.output_bytes;
   line.read_ms = e.times.read_ms;

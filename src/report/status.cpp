@@ -134,7 +134,7 @@ Json as_json(const StageStatus& status) {
   Json json = {{"stage", status.stage},
                {"input", status.manifest.input},
                {"triangles", status.manifest.triangles()},
-               {"parts", status.manifest.parts.size()},
+               {"parts", status.manifest.part_count()},
                {"cut_s", status.manifest.cut_seconds}};
   if (!status.trace) {
     json["phase"] = "cut";
@@ -224,8 +224,11 @@ std::string render(const StageStatus& status, Format format) {
   }
   std::string text = line("stage", status.stage + ", " + status.manifest.input + ", " +
                                        grouped(status.manifest.triangles()) + " triangles in " +
-                                       grouped(status.manifest.parts.size()) + " parts");
-  if (!status.trace) return text + line("run", "none yet; the cut is whole");
+                                       grouped(status.manifest.part_count()) + " parts");
+  if (!status.trace) {
+    return text + line("run", status.manifest.cutting ? "none yet; the first is to cut"
+                                                      : "none yet; the cut is whole");
+  }
   const Facts facts = facts_of(status);
   const TraceState& s = facts.state;
   text += line("run", "epoch " + std::to_string(status.trace->head.epoch) + " on " +

@@ -222,7 +222,7 @@ std::string facts(const Manifest& manifest, const Trace& trace, const Frame& fra
     text += row_of({name, value}, "td");
   };
   add("input", manifest.input + ", " + grouped(manifest.triangles()) + " triangles in " +
-                   grouped(manifest.parts.size()) + " parts");
+                   grouped(manifest.part_count()) + " parts");
   add("run", to_hex(trace.head.run) + ", epoch " + std::to_string(trace.head.epoch) + " on " +
                  trace.head.host);
   add("end", !trace.end                   ? "not yet"

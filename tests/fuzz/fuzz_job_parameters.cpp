@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include <meshfarm/pipeline/bake_job.hpp>
 #include <meshfarm/pipeline/compose_job.hpp>
+#include <meshfarm/pipeline/cut_job.hpp>
 #include <meshfarm/pipeline/simplify_job.hpp>
 #include <meshfarm/pipeline/sort_job.hpp>
 #include <meshfarm/pipeline/sweep_job.hpp>
@@ -28,6 +29,11 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   try_to(decode_sort_parameters, bytes);
   try_to(decode_tile_parameters, bytes);
   try_to(decode_bake_parameters, bytes);
+  try_to(decode_cut_parameters, bytes);
+  try_to(decode_join_parameters, bytes);
+  try_to([](std::string_view summary) { decode_survey(summary, "summary"); }, bytes);
+  try_to([](std::string_view summary) { decode_partition_summary(summary, "summary"); }, bytes);
+  try_to([](std::string_view summary) { decode_join_summary(summary, "summary"); }, bytes);
   try_to([](std::string_view summary) { decode_finish_summary(summary, "summary"); }, bytes);
   try_to([](std::string_view summary) { decode_tile_summary(summary, "summary"); }, bytes);
   try_to([](std::string_view summary) { decode_sort_summary(summary, "summary"); }, bytes);

@@ -36,6 +36,9 @@ struct Job {
   /// Estimated work of the longest chain of jobs that can only follow this one, in triangles: what
   /// leads to much is begun first. No part of what the job is.
   std::uint64_t after = 0;
+  /// About so many bytes are read that are no inputs: sections of files, or of the mesh itself. No
+  /// part of what the job is.
+  std::uint64_t reads = 0;
 };
 
 JobKey key_of(const Job& job);

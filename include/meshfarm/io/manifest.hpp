@@ -105,6 +105,8 @@ struct Manifest {
   ColumnSet columns() const { return {labels.has_value(), uvs}; }
   /// Triangles that the parts and the boundary hold; before the cut, those of the input.
   std::uint64_t triangles() const;
+  /// Before the cut as many as are asked for.
+  std::size_t part_count() const { return cutting ? cutting->parts : parts.size(); }
 };
 
 /// Sets the floor and the side by those of the parts, in order: about as much lies between parts as

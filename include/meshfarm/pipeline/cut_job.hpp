@@ -77,8 +77,13 @@ JobOutput scatter_vertices_of_block(const Job& job, const JobContext& context);
 JobOutput scatter_triangles_of_block(const Job& job, const JobContext& context);
 JobOutput join_boundary_of_parts(const Job& job, const JobContext& context);
 
-/// What a cut by jobs is to be of this file, `parts` 0: as many as a cut would make; nothing if its
-/// records cannot be read by themselves. Throws IoError.
-std::optional<Cutting> plan_cutting(const std::filesystem::path& input, std::uint32_t parts);
+struct CutPlanOptions {
+  std::uint32_t parts = 0;   // 0: as many as a cut would make
+  std::uint32_t blocks = 0;  // of vertices, and of triangles; 0: of about half a million each
+};
+/// What a cut by jobs is to be of this file; nothing if its records cannot be read by themselves.
+/// Throws IoError.
+std::optional<Cutting> plan_cutting(const std::filesystem::path& input,
+                                    const CutPlanOptions& options);
 
 }  // namespace meshfarm

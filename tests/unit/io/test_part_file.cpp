@@ -8,6 +8,7 @@
 #include <meshfarm/io/manifest.hpp>
 #include <meshfarm/io/part_file.hpp>
 #include <meshfarm/io/result_file.hpp>
+#include <meshfarm/util/checksum.hpp>
 #include <meshfarm/util/errors.hpp>
 
 #include "support/damage.hpp"
@@ -234,6 +235,51 @@ TEST_CASE("a manifest of slabs tells how they are to be sorted, and of nothing e
   m.sorting = Sorting{};
   m.scheme = Scheme::cut;
   CHECK_THROWS_AS(decode_manifest(encode_manifest(m), "manifest"), DataError);
+}
+
+TEST_CASE("a manifest of what a run is to cut has that alone, and no parts") {
+  Manifest m = sample_manifest();
+  m.cutting = Cutting{"/data/lucy.ply", 190, -7, 28, 5, 9};
+  m.boundary = {};
+  CHECK_THROWS_AS(decode_manifest(encode_manifest(m), "manifest"), DataError);  // parts
+  m.parts.clear();
+  const Manifest back = decode_manifest(encode_manifest(m), "manifest");
+  CHECK(back.cutting == m.cutting);
+  CHECK(back.triangles() == m.input_triangles);
+  CHECK(back.part_count() == 28);
+  test::check_refuses_damage(
+      encode_manifest(m), [](std::string_view file) { return decode_manifest(file, "manifest"); });
+  for (const std::uint32_t blocks : {0U, k_most_cut_blocks + 1}) {
+    m.cutting->vertex_blocks = blocks;
+    CHECK_THROWS_AS(decode_manifest(encode_manifest(m), "manifest"), DataError);
+  }
+  m.cutting->vertex_blocks = 1;
+  m.scheme = Scheme::stream;
+  CHECK_THROWS_AS(decode_manifest(encode_manifest(m), "manifest"), DataError);
+}
+
+TEST_CASE("a result holds bytes beside its mesh, and its summary tells where") {
+  const std::string beside(100'000, 'b');
+  std::string file;
+  ResultWriter writer({PositionType::float32, false, 2},
+                      [&](std::string_view bytes) { file += bytes; }, beside);
+  const Mesh mesh = test::tetrahedron();
+  writer.add_rung(3, mesh, 4);
+  writer.finish(std::span(mesh.positions).first(2), {});
+  CHECK(file.substr(writer.beside().offset, writer.beside().size) == beside);
+  CHECK(writer.beside().hash == checksum(beside));
+  CHECK(decode_result(file, 0, "result").mesh.triangles == mesh.triangles);
+  file[writer.beside().offset + 50'000] = 'c';
+  CHECK_THROWS_AS(decode_result(file, 0, "result"), DataError);
+  ResultSummary summary{writer.rungs()};
+  CHECK_FALSE(decode_summary(encode_summary(summary), "s").built.has_value());
+  summary.built = BuiltFacts{10, 11, 2, 3, 4, 5, writer.beside()};
+  const auto back = decode_summary(encode_summary(summary), "s").built;
+  REQUIRE(back.has_value());
+  CHECK(back->boundary_vertices == 2);
+  CHECK(back->beside == writer.beside());
+  summary.built->boundary_vertices = 12;
+  CHECK_THROWS_AS(decode_summary(encode_summary(summary), "s"), DataError);
 }
 
 TEST_CASE("a manifest that is damaged or names a file outside its place is refused") {
