@@ -270,7 +270,7 @@ Line line_of(const Json& json) {
   return line;
 }
 
-void add(const Json& json, Trace& trace) {
+void add_json(const Json& json, Trace& trace) {
   std::string kind;
   get(json, "kind", kind);
   if (kind == "joined") trace.joined.push_back(line_of<TraceJoined>(json));
@@ -288,25 +288,38 @@ std::string to_line(const TraceLine& line) {
   return json.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
+void TraceFeed::add_line(std::string_view line, Trace& trace) {
+  const std::string where = what_ + ", line " + std::to_string(++lines_) + ": ";
+  try {
+    const Json json = Json::parse(line);
+    if (!json.is_object()) throw DataError("no JSON object");
+    if (lines_ == 1) trace.head = read_head(json);
+    add_json(json, trace);
+  } catch (const Json::exception& error) {
+    throw DataError(where + error.what());
+  } catch (const DataError& error) {
+    throw DataError(where + error.what());
+  }
+}
+
+void TraceFeed::add(std::string_view piece, Trace& trace) {
+  for (std::size_t end = piece.find('\n'); end != std::string_view::npos; end = piece.find('\n')) {
+    if (rest_.empty()) {
+      add_line(piece.substr(0, end), trace);
+    } else {
+      rest_ += piece.substr(0, end);
+      add_line(std::exchange(rest_, {}), trace);
+    }
+    piece.remove_prefix(end + 1);
+  }
+  rest_ += piece;
+}
+
 Trace parse_trace(std::string_view text, std::string_view what) {
   Trace trace;
-  std::size_t number = 0;
-  for (std::size_t end = text.find('\n'); end != std::string_view::npos; end = text.find('\n')) {
-    const std::string_view line = text.substr(0, end);
-    text.remove_prefix(end + 1);
-    const std::string where = std::string(what) + ", line " + std::to_string(++number) + ": ";
-    try {
-      const Json json = Json::parse(line);
-      if (!json.is_object()) throw DataError("no JSON object");
-      if (number == 1) trace.head = read_head(json);
-      add(json, trace);
-    } catch (const Json::exception& error) {
-      throw DataError(where + error.what());
-    } catch (const DataError& error) {
-      throw DataError(where + error.what());
-    }
-  }
-  if (number == 0) throw DataError(std::string(what) + ": an empty trace");
+  TraceFeed feed{std::string(what)};
+  feed.add(text, trace);
+  if (feed.lines() == 0) throw DataError(std::string(what) + ": an empty trace");
   return trace;
 }
 

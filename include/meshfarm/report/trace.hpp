@@ -6,6 +6,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -125,5 +126,24 @@ struct Trace {
 
 /// A last line that is not whole yet is left out. Throws DataError naming `what`.
 Trace parse_trace(std::string_view text, std::string_view what);
+
+/// Reads a trace piece by piece, as it grows.
+class TraceFeed {
+ public:
+  /// `what`: its name, for messages.
+  explicit TraceFeed(std::string what) : what_(std::move(what)) {}
+  /// Adds what the next piece has; a last line that is not whole waits for its rest. Throws
+  /// DataError; the trace is of no use then.
+  void add(std::string_view piece, Trace& trace);
+  /// Lines so far. The first has the head.
+  std::uint64_t lines() const { return lines_; }
+
+ private:
+  void add_line(std::string_view line, Trace& trace);
+
+  std::string what_;
+  std::string rest_;
+  std::uint64_t lines_ = 0;
+};
 
 }  // namespace meshfarm
