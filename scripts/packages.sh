@@ -8,7 +8,7 @@ packages=(g++ cmake ninja-build pkg-config make python3 dpkg-dev file groff-base
   libzmq3-dev cppzmq-dev libmetis-dev libboost-dev libboost-iostreams-dev
   libboost-program-options-dev doctest-dev libxxhash-dev libspdlog-dev libnanoflann-dev
   nlohmann-json3-dev libmeshoptimizer-dev zlib1g-dev libzstd-dev libpng-dev libturbojpeg0-dev
-  libdraco-dev)
+  libdraco-dev libcpp-httplib-dev)
 for word in "$@"; do
   case "$word" in
     --fuzz) packages+=(clang libclang-rt-dev) ;;

@@ -6,8 +6,11 @@
 
 namespace meshfarm {
 
-// src/report/page.css and page.js, compiled in by cmake/MeshfarmEmbed.cmake.
+// Files of src/report, compiled in by cmake/MeshfarmEmbed.cmake.
 extern const std::string_view k_page_css;
 extern const std::string_view k_page_js;
+extern const std::string_view k_live_css;
+extern const std::string_view k_live_js;
+extern const std::string_view k_live_html;
 
 }  // namespace meshfarm

@@ -37,6 +37,7 @@ constexpr std::array k_packages{
     Package{"cppzmq", "zmq.hpp"},
     Package{"cppzmq", "zmq_addon.hpp"},
     Package{"cppzmq", "zmq.h"},
+    Package{"PkgConfig::httplib", "httplib.h"},
     // The system's sockets are for the layer of ZeroMQ alone, too.
     Package{"cppzmq", "sys/socket.h"},
     Package{"cppzmq", "sys/un.h"},
