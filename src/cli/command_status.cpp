@@ -2,79 +2,156 @@
 // SPDX-License-Identifier: MIT
 #include <chrono>
 #include <iostream>
-#include <thread>
+#include <optional>
 
-#include <unistd.h>
-
-#include <meshfarm/pipeline/run_trace.hpp>
+#include <meshfarm/report/live_page.hpp>
 #include <meshfarm/report/status.hpp>
-#include <meshfarm/staging/file_system.hpp>
+#include <meshfarm/report/status_screen.hpp>
+#include <meshfarm/transport/page_server.hpp>
 #include <meshfarm/util/errors.hpp>
+#include <meshfarm/util/log.hpp>
 
 #include "cli/command.hpp"
 #include "cli/options.hpp"
-#include "cli/signals.hpp"
+#include "cli/signal_wait.hpp"
+#include "cli/stage_watch.hpp"
+#include "cli/terminal_screen.hpp"
 
 namespace meshfarm {
 namespace {
 
+constexpr std::chrono::milliseconds k_look_every{1000};
+constexpr std::chrono::milliseconds k_look_for_keys_every{200};
+/// A log gets no more lines than this, and one for each change of the phase.
+constexpr int k_looks_a_line = 5;
+
 class StatusCommand : public Command {
  public:
   std::string_view name() const override { return "status"; }
-  std::string_view synopsis() const override { return "STAGE [--watch]"; }
+  std::string_view synopsis() const override { return "STAGE [--watch | --serve PORT]"; }
   std::string_view summary() const override {
     return "how far a stage's run is, and what each worker does";
   }
   void setup(po::options_description& options,
              po::positional_options_description& positional) override {
     options.add_options()("stage", po::value(&stage_)->required(), "")(
-        "watch", po::bool_switch(&watch_), "again every second, until the run is over")(
-        "json", po::bool_switch(&json_), "as JSON (with --watch: one object after another)");
+        "watch", po::bool_switch(&watch_),
+        "until the run is over: as a screen that is renewed every second (q leaves it), or as "
+        "lines where the output is no terminal")(
+        "serve", po::value<int>()->value_name("PORT")->notifier([this](int port) { port_ = port; }),
+        "as a page for browsers of this host, at http://localhost:PORT (0: any port that is "
+        "free), until it is interrupted")("json", po::bool_switch(&json_),
+                                          "as JSON (with --watch: one object after another)");
     positional.add("stage", 1);
   }
+  void check() override {
+    if (port_ && (watch_ || json_)) throw UsageError("--serve goes without --watch and --json");
+    if (port_ && (*port_ < 0 || *port_ > 65535)) throw UsageError("--serve: a port is 0 to 65535");
+  }
   int run() override {
-    const std::atomic<bool>& stop = stop_on_signals();
     const Stage stage = Stage::open(stage_);
-    for (;;) {
-      const StageStatus status = look(stage);
-      const bool screen = watch_ && !json_ && ::isatty(STDOUT_FILENO) == 1;
-      if (screen) std::cout << "\x1b[H\x1b[2J";
-      std::cout << render(status, json_ ? Format::json : Format::text) << std::flush;
-      if (!watch_ || is_over(status)) return 0;
-      for (int i = 0; i < 10 && !stop; ++i) {
-        std::this_thread::sleep_for(std::chrono::milliseconds(100));
-      }
-      if (stop) return 0;
+    if (port_) return serve(stage);
+    if (!watch_) {
+      std::cout << render(StageLook(stage, stage_).look(), format());
+      return 0;
     }
+    const SignalWait signals;
+    const StageWatch watch(stage, stage_);
+    if (json_) return print_objects(watch, signals);
+    return TerminalScreen::is_there() ? show(watch, signals) : print_lines(watch, signals);
   }
 
  private:
-  StageStatus look(const Stage& stage) const {
-    StageStatus status;
-    status.stage = stage_;
-    status.manifest =
-        decode_manifest(stage.read(ManifestName{}), stage.path(ManifestName{}).string());
-    if (!stage.traces().empty()) {
-      status.trace = read_newest_trace(stage);
-      if (status.trace->end) status.times = read_run_times(stage, status.trace->head.run);
+  Format format() const { return json_ ? Format::json : Format::text; }
+
+  /// Waits a second. Whether to go on.
+  static bool goes_on(const SignalWait& signals) {
+    const auto end = std::chrono::steady_clock::now() + k_look_every;
+    for (;;) {
+      const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(
+          end - std::chrono::steady_clock::now());
+      if (left.count() <= 0) return true;
+      const std::optional<int> signal = signals.next(left);
+      if (signal && SignalWait::ends(*signal)) return false;
+      if (signal == SIGTSTP) signals.stop();
     }
-    status.now_unix_s = server_unix_s(stage.path(TraceName{1}).parent_path());
-    status.no_room = is_silent(status) && is_full(stage);
-    return status;
   }
 
-  /// On a full disk the ventilator cannot even write that it waits for room.
-  static bool is_full(const Stage& stage) {
-    constexpr std::uint64_t k_little = 64 << 10;
-    try {
-      probe_room(stage.root() / "log", k_little);
-    } catch (const IoError& error) {
-      return is_no_space(error);
+  int serve(const Stage& stage) const {
+    const SignalWait signals;
+    const StageWatch watch(stage, stage_);
+    const PageServer server(
+        static_cast<std::uint16_t>(*port_),
+        [&](const std::string& path) -> std::optional<ServedPage> {
+          if (path == "/") return ServedPage{"text/html", render_live_page()};
+          if (path != "/status.json") return std::nullopt;
+          return ServedPage{"application/json", render(watch.facts(), Format::json)};
+        });
+    std::cout << "http://localhost:" << server.port() << std::endl;
+    while (goes_on(signals)) {
     }
-    return false;
+    return 0;
+  }
+
+  static int print_objects(const StageWatch& watch, const SignalWait& signals) {
+    for (;;) {
+      const StatusFacts facts = watch.facts();
+      std::cout << render(facts, Format::json) << std::flush;
+      if (facts.over || !std::cout || !goes_on(signals)) return 0;
+    }
+  }
+
+  static int print_lines(const StageWatch& watch, const SignalWait& signals) {
+    std::string phase;
+    for (int looks = 0;; ++looks) {
+      const StatusFacts facts = watch.facts();
+      if (facts.over) {
+        std::cout << render(facts, Format::text) << std::flush;
+        return 0;
+      }
+      const std::string what = facts.phase.substr(0, facts.phase.find_first_of("0123456789"));
+      if (what != phase || looks % k_looks_a_line == 0) {
+        std::cout << status_line(facts) << std::flush;
+        phase = what;
+      }
+      if (!std::cout || !goes_on(signals)) return 0;
+    }
+  }
+
+  static int show(const StageWatch& watch, const SignalWait& signals) {
+    std::optional<TerminalScreen> screen(std::in_place);
+    const Letters letters = TerminalScreen::letters();
+    StatusFacts facts = watch.facts();
+    while (!facts.over) {
+      screen->show(frame_of(status_screen(facts, screen->size(), letters)));
+      if (!stays(*screen, signals)) return 0;
+      facts = watch.facts();
+    }
+    screen.reset();
+    std::cout << render(facts, Format::text) << std::flush;
+    return 0;
+  }
+
+  /// Waits until it is time for the next frame. Whether there is to be one.
+  static bool stays(TerminalScreen& screen, const SignalWait& signals) {
+    const auto end = std::chrono::steady_clock::now() + k_look_every;
+    while (std::chrono::steady_clock::now() < end) {
+      const std::optional<int> signal = signals.next(k_look_for_keys_every);
+      if (screen.quit_was_pressed()) return false;
+      if (!signal) continue;
+      if (SignalWait::ends(*signal)) return false;
+      if (signal == SIGTSTP) {
+        screen.leave();
+        signals.stop();
+      }
+      screen.enter();  // if it was left
+      return true;     // another size, or another screen
+    }
+    return true;
   }
 
   std::string stage_;
+  std::optional<int> port_;
   bool watch_ = false;
   bool json_ = false;
 };

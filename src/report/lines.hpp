@@ -22,4 +22,12 @@ inline std::string number(double value, const char* format) {
   return text;
 }
 
+inline std::string mib(std::uint64_t bytes) {
+  return grouped(bytes >> 20) + " MiB";
+}
+
+inline std::string gib(std::uint64_t bytes) {
+  return number(static_cast<double>(bytes) / (1 << 30), "%.1f GiB");
+}
+
 }  // namespace meshfarm

@@ -1,0 +1,40 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include <meshfarm/report/status.hpp>
+
+namespace meshfarm {
+
+/// What bars are made of.
+enum class Letters : std::uint8_t { ascii, unicode };
+
+struct ScreenSize {
+  std::size_t columns = 80;
+  std::size_t rows = 24;
+};
+
+struct ScreenLine {
+  enum class Look : std::uint8_t { plain, strong, dim, warning };
+  std::string text;  // UTF-8, no control characters, at most as wide as the screen
+  Look look = Look::plain;
+};
+
+/// The status as lines that fill at most the screen: how far the run is, its stages, and what each
+/// worker did and holds.
+std::vector<ScreenLine> status_screen(const StatusFacts& facts, const ScreenSize& size,
+                                      Letters letters);
+
+/// What a terminal takes to show the lines in place of the last frame, with no moment between in
+/// which they are gone (ECMA-48: cursor home, erase to the end of line, of page).
+std::string frame_of(const std::vector<ScreenLine>& lines);
+
+/// The status as one line, for a log.
+std::string status_line(const StatusFacts& facts);
+
+}  // namespace meshfarm

@@ -1,0 +1,62 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <chrono>
+#include <memory>
+#include <optional>
+#include <string>
+#include <thread>
+
+#include <meshfarm/pipeline/run_follower.hpp>
+#include <meshfarm/report/status.hpp>
+#include <meshfarm/staging/stage.hpp>
+
+namespace meshfarm {
+
+/// Looks at a stage as often as it is asked to, and reads only what is new.
+class StageLook {
+ public:
+  /// `name`: the stage as the user named it.
+  StageLook(Stage stage, std::string name);
+  /// Throws IoError or DataError; it can be asked again.
+  StatusFacts look();
+
+ private:
+  using Clock = std::chrono::steady_clock;
+
+  void tell_time();
+  void find_times();
+  bool is_full();
+  static bool is_time_for(std::optional<Clock::time_point>& last, Clock::duration every);
+
+  Stage stage_;
+  RunFollower follower_;
+  StageStatus status_;
+  std::optional<Clock::time_point> clock_read_;
+  std::optional<Clock::time_point> times_read_;
+  std::optional<Clock::time_point> room_probed_;
+  std::optional<double> server_ahead_s_;  // of our clock
+  bool was_full_ = false;
+};
+
+/// Looks at a stage every second by a thread of its own, as storage that stalls would keep others
+/// waiting.
+class StageWatch {
+ public:
+  StageWatch(Stage stage, std::string name);
+  /// Does not wait for storage that stalls.
+  ~StageWatch();
+  StageWatch(const StageWatch&) = delete;
+  StageWatch& operator=(const StageWatch&) = delete;
+
+  /// What is known now: as it was seen last, and how long ago that was.
+  StatusFacts facts() const;
+
+ private:
+  struct Shared;
+  std::shared_ptr<Shared> shared_;
+  std::thread thread_;
+};
+
+}  // namespace meshfarm
