@@ -5,6 +5,7 @@
 #include "cli/command.hpp"
 #include "cli/cut_step.hpp"
 #include "cli/run_report.hpp"
+#include "cli/view_words.hpp"
 
 namespace meshfarm {
 namespace {
@@ -21,16 +22,21 @@ class ReportCommand : public Command {
     options.add_options()("stage", po::value(&stage_)->required(), "")(
         "output,o", po::value(&output_)->value_name("FILE"),
         "where the page goes, as HTML (default: STAGE/report.html)")(
-        "epoch", po::value(&epoch_)->value_name("N"), "the run of this epoch (default: the last)");
+        "epoch", po::value(&epoch_)->value_name("N"), "the run of this epoch (default: the last)")(
+        "up", po::value(&up_)->value_name("x|y|z|-x|-y|-z"),
+        "the mesh's axis that points up (default: y, or z if the mesh lies)");
     positional.add("stage", 1);
   }
   void check() override {
+    if (!up_.empty()) parse_up(up_);
     if (output_.empty()) output_ = stage_ + "/report.html";
   }
   int run() override {
     check_place(output_);
-    write_run_report(
-        {stage_, output_, MadeBy::another, epoch_ == 0 ? std::nullopt : std::optional(epoch_)});
+    RunReport report{stage_, output_, MadeBy::another};
+    if (epoch_ != 0) report.epoch = epoch_;
+    if (!up_.empty()) report.up = parse_up(up_);
+    write_run_report(report);
     return 0;
   }
 
@@ -38,6 +44,7 @@ class ReportCommand : public Command {
   std::string stage_;
   std::string output_;
   std::uint32_t epoch_ = 0;
+  std::string up_;
 };
 
 }  // namespace

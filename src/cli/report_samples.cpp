@@ -10,26 +10,37 @@ namespace meshfarm {
 namespace {
 
 constexpr double k_samples = 100'000;
-constexpr double k_angles = 500'000;
+constexpr double k_angles = 200'000;
 
-/// The least value that at most the rest of this share of the area is beyond.
-double weighted_quantile(std::vector<std::pair<double, double>>& values, double share) {
-  std::sort(values.begin(), values.end());
-  double all = 0;
-  for (const auto& [value, area] : values) all += area;
-  double before = 0;
-  for (const auto& [value, area] : values) {
-    before += area;
-    if (before >= share * all) return value;
+/// Values, each with the area that it stands for, in order.
+class Weighted {
+ public:
+  explicit Weighted(std::vector<std::pair<double, double>> values) : values_(std::move(values)) {
+    std::sort(values_.begin(), values_.end());
+    for (const auto& [value, area] : values_) area_ += area;
   }
-  return values.empty() ? 0 : values.back().first;
-}
+  const std::vector<std::pair<double, double>>& values() const { return values_; }
+  double area() const { return area_; }
+  /// The least value that at most the rest of this share of the area is beyond.
+  double quantile(double share) const {
+    double before = 0;
+    for (const auto& [value, area] : values_) {
+      before += area;
+      if (before >= share * area_) return value;
+    }
+    return values_.empty() ? 0 : values_.back().first;
+  }
 
-std::vector<std::pair<double, double>> distances_of(std::span<const MeasuredPlace> places) {
+ private:
+  std::vector<std::pair<double, double>> values_;
+  double area_ = 0;
+};
+
+Weighted distances_of(std::span<const MeasuredPlace> places) {
   std::vector<std::pair<double, double>> distances;
   distances.reserve(places.size());
   for (const MeasuredPlace& p : places) distances.emplace_back(p.near.distance, p.area);
-  return distances;
+  return Weighted(std::move(distances));
 }
 
 NormalDeviation normals_of(std::span<const MeasuredPlace> places) {
@@ -47,7 +58,45 @@ NormalDeviation normals_of(std::span<const MeasuredPlace> places) {
   if (!(area > 0)) return {};
   made.rms = std::sqrt(made.rms / area);
   made.over_90 /= area;
-  made.p95 = weighted_quantile(degrees, 0.95);
+  made.p95 = Weighted(std::move(degrees)).quantile(0.95);
+  return made;
+}
+
+SurfaceError error_of(std::span<const MeasuredPlace> places, const Weighted& distances) {
+  SurfaceError error;
+  double area = 0;
+  for (const MeasuredPlace& p : places) {
+    const double d = p.near.distance;
+    area += p.area;
+    error.distance.rms += p.area * d * d;
+    error.distance.mean += p.area * d;
+    error.distance.max = std::max(error.distance.max, d);
+  }
+  if (!(area > 0)) return error;
+  error.distance.rms = std::sqrt(error.distance.rms / area);
+  error.distance.mean /= area;
+  error.quantiles = {distances.quantile(0.95), distances.quantile(0.99)};
+  error.normals = normals_of(places);
+  return error;
+}
+
+ErrorHistogram histogram_of(const Weighted& distances) {
+  constexpr std::size_t k_bins = 40;
+  ErrorHistogram made;
+  made.end = distances.quantile(0.95);
+  made.shares.resize(k_bins, 0);
+  const double area = distances.area();
+  for (const auto& [distance, of_point] : distances.values()) {
+    const double bin = made.end > 0 ? distance / made.end * k_bins : 0;
+    if (bin >= k_bins && distance > made.end) {
+      made.beyond += of_point;
+    } else {
+      made.shares[std::min(static_cast<std::size_t>(bin), k_bins - 1)] += of_point;
+    }
+  }
+  if (!(area > 0)) return made;
+  made.beyond /= area;
+  for (double& share : made.shares) share /= area;
   return made;
 }
 
@@ -106,45 +155,9 @@ std::vector<MeasuredPlace> InputSamples::measure(const TriangleIndex& result, un
   return places;
 }
 
-SurfaceError error_of(std::span<const MeasuredPlace> places) {
-  SurfaceError error;
-  double area = 0;
-  for (const MeasuredPlace& p : places) {
-    const double d = p.near.distance;
-    area += p.area;
-    error.distance.rms += p.area * d * d;
-    error.distance.mean += p.area * d;
-    error.distance.max = std::max(error.distance.max, d);
-  }
-  if (!(area > 0)) return error;
-  error.distance.rms = std::sqrt(error.distance.rms / area);
-  error.distance.mean /= area;
-  std::vector<std::pair<double, double>> distances = distances_of(places);
-  error.quantiles = {weighted_quantile(distances, 0.95), weighted_quantile(distances, 0.99)};
-  error.normals = normals_of(places);
-  return error;
-}
-
-ErrorHistogram histogram_of(std::span<const MeasuredPlace> places) {
-  constexpr std::size_t k_bins = 40;
-  std::vector<std::pair<double, double>> distances = distances_of(places);
-  ErrorHistogram made;
-  made.end = weighted_quantile(distances, 0.95);
-  made.shares.resize(k_bins, 0);
-  double area = 0;
-  for (const auto& [distance, of_point] : distances) {
-    area += of_point;
-    const double bin = made.end > 0 ? distance / made.end * k_bins : 0;
-    if (bin >= k_bins && distance > made.end) {
-      made.beyond += of_point;
-    } else {
-      made.shares[std::min(static_cast<std::size_t>(bin), k_bins - 1)] += of_point;
-    }
-  }
-  if (!(area > 0)) return made;
-  made.beyond /= area;
-  for (double& share : made.shares) share /= area;
-  return made;
+ErrorFigures error_figures_of(std::span<const MeasuredPlace> places) {
+  const Weighted distances = distances_of(places);
+  return {error_of(places, distances), histogram_of(distances)};
 }
 
 std::vector<float> errors_at_vertices(const Mesh& result, std::span<const MeasuredPlace> places) {

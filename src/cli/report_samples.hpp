@@ -54,10 +54,11 @@ class InputSamples {
   ShapeMeter angles_{1};
 };
 
-/// Sums the places up as compare does, each by its area.
-SurfaceError error_of(std::span<const MeasuredPlace> places);
-/// Up to what 95 % of the area are within.
-ErrorHistogram histogram_of(std::span<const MeasuredPlace> places);
+struct ErrorFigures {
+  SurfaceError error;        // as compare has it, each place by its area
+  ErrorHistogram histogram;  // up to what 95 % of the area are within
+};
+ErrorFigures error_figures_of(std::span<const MeasuredPlace> places);
 /// Of each vertex the mean distance of the places that are nearest to its triangles; where there
 /// are none, that of its neighbours.
 std::vector<float> errors_at_vertices(const Mesh& result, std::span<const MeasuredPlace> places);

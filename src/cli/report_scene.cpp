@@ -6,7 +6,6 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
-#include <mutex>
 #include <optional>
 #include <utility>
 
@@ -18,6 +17,7 @@
 #include <meshfarm/render/surface_picture.hpp>
 #include <meshfarm/util/parallel.hpp>
 
+#include "cli/input_framing.hpp"
 #include "cli/report_samples.hpp"
 
 namespace meshfarm {
@@ -28,6 +28,11 @@ constexpr std::uint64_t k_most_in_model = 200'000;
 constexpr std::uint64_t k_most_for_crossings = 1'000'000;
 /// A smaller input is measured as a whole, too.
 constexpr std::uint64_t k_small_input = 1'500'000;
+
+/// Widths of pictures, in pixels.
+constexpr std::uint32_t k_wide = 580;
+constexpr std::uint32_t k_narrow = 320;
+constexpr std::uint32_t k_map = 640;
 
 struct NamedAngle {
   const char* caption;
@@ -43,9 +48,9 @@ struct Zoom {
   double radius = 0;
   double depth = 0;  // what is so much nearer to the viewer would hide it
   View view;
+  ViewAxes axes;
 
   bool shows(const std::array<Vec3, 3>& corners) const {
-    const ViewAxes axes(view);
     Box box;
     bool is_before = true;
     for (const Vec3& p : corners) {
@@ -61,10 +66,18 @@ struct Zoom {
   }
 };
 
-/// Terrains and floors lie; all else stands.
-Vec3 up_of(const Box& box) {
+/// Terrains and floors lie, all else stands: whether the side that is up is the least by far.
+bool lies(const Box& box, Vec3 up) {
   const Vec3 sides = box.hi - box.lo;
-  return sides.z < 0.4 * std::min(sides.x, sides.y) ? Vec3{0, 0, 1} : Vec3{0, 1, 0};
+  const double high = std::abs(dot(sides, up));
+  std::array<double, 3> of = {sides.x, sides.y, sides.z};
+  std::sort(of.begin(), of.end());
+  return high == of[0] && high < 0.4 * of[1];
+}
+
+Vec3 up_of(const Box& box) {
+  constexpr Vec3 k_z{0, 0, 1};
+  return lies(box, k_z) ? k_z : Vec3{0, 1, 0};
 }
 
 /// From where a side that faces this way is seen best.
@@ -81,19 +94,19 @@ View facing(Vec3 normal, Vec3 up) {
 
 PagePicture to_page(Texels texels) {
   PagePicture made{.width = texels.width, .height = texels.height};
-  made.png = encode_png(std::move(texels));
+  made.png = encode_png(std::move(texels), PngSize::soon);
   return made;
 }
 
 class SceneMaker {
  public:
-  SceneMaker(RunPage& page, const Stage& stage, const Mesh& result, unsigned threads)
+  SceneMaker(RunPage& page, const Stage& stage, const Mesh& result, const SceneOptions& options)
       : page_(page),
         result_(result),
-        threads_(threads),
-        input_(stage, page.manifest, threads),
-        up_(up_of(page.manifest.box)),
-        index_(result, threads),
+        threads_(options.threads),
+        input_(stage, page.manifest, options.threads),
+        up_(options.up.value_or(up_of(page.manifest.box))),
+        index_(result, options.threads),
         samples_(page.manifest) {}
 
   void make() {
@@ -114,14 +127,15 @@ class SceneMaker {
     PagePicture* by_part = nullptr;
   };
 
-  /// `size`: of the page's width, in sixths.
-  static RenderOptions options_for(const View& view, std::uint32_t size = 3) {
+  /// `width`: as wide as it is on a page for desks.
+  static RenderOptions options_for(const View& view, std::uint32_t width = k_wide) {
     RenderOptions options;
-    options.width = 640 * size / 3;
-    options.height = 480 * size / 3;
+    options.width = width;
+    options.height = width * 3 / 4;
     options.view = view;
     options.colour_by = ColourBy::none;
     options.transparent = true;
+    options.quick = true;
     options.threads = 1;
     return options;
   }
@@ -135,20 +149,13 @@ class SceneMaker {
     const bool is_whole = length(box.lo - whole.lo) <= most && length(box.hi - whole.hi) <= most;
     std::vector<Framing> framings;
     for (const NamedAngle& each : k_views) {
-      const double elevation = up_.z != 0 ? k_above : each.elevation;
+      const double elevation = lies(whole, up_) ? k_above : each.elevation;
       const View view{.azimuth = each.azimuth, .elevation = elevation, .up = up_};
-      pictures_.push_back(options_for(view, framings.empty() ? 3 : 2));
+      pictures_.push_back(options_for(view, framings.empty() ? k_wide : k_narrow));
       framings.emplace_back(view, SurfacePicture::frame_of(pictures_.back()));
       framings.back().add(result_.positions);
     }
-    if (!is_whole) {
-      std::mutex mutex;
-      input_.show([](const Box&) { return true; },
-                  [&](const SurfacePiece& piece) {
-                    const std::lock_guard lock(mutex);
-                    for (Framing& framing : framings) framing.add(piece.fresh);
-                  });
-    }
+    if (!is_whole) add_input(input_, framings);
     for (const Framing& framing : framings) cameras_.push_back(framing.camera());
   }
 
@@ -191,8 +198,9 @@ class SceneMaker {
   void measure() {
     places_ = samples_.measure(index_, threads_);
     figures_.samples = places_.size();
-    figures_.to_result = error_of(places_);
-    figures_.histogram = histogram_of(places_);
+    ErrorFigures figures = error_figures_of(places_);
+    figures_.to_result = figures.error;
+    figures_.histogram = std::move(figures.histogram);
     figures_.input.shape = samples_.shape();
     if (!pieces_.empty()) measure_whole_input();
     ShapeMeter meter(threads_);
@@ -217,7 +225,7 @@ class SceneMaker {
   void draw_map() {
     errors_ = errors_at_vertices(result_, places_);
     const double end = figures_.histogram.end;
-    RenderOptions options = options_for(pictures_[0].view, 4);
+    RenderOptions options = options_for(pictures_[0].view, k_map);
     options.colour_by = ColourBy::quality;
     options.range = {0.0, end > 0 ? end : 1};
     Framing framing(options.view, SurfacePicture::frame_of(options));
@@ -244,7 +252,8 @@ class SceneMaker {
     const double off = worst->near.distance;
     const double radius = std::min(most, std::max(3 * side, 3 * off));
     const double depth = std::max(2 * off, 0.6 * radius);
-    return Zoom{worst->point.at, radius, depth, facing(worst->point.normal, up_)};
+    const View view = facing(worst->point.normal, up_);
+    return Zoom{worst->point.at, radius, depth, view, ViewAxes(view)};
   }
 
   void draw_zoom() {
@@ -252,7 +261,7 @@ class SceneMaker {
     if (!zoom) return;
     RenderOptions options = options_for(zoom->view);
     options.wire = true;
-    const ViewAxes axes(zoom->view);
+    const ViewAxes& axes = zoom->axes;
     const double aspect = static_cast<double>(options.width) / options.height;
     const std::array<std::pair<Vec3, double>, 3> reaches = {
         {{axes.right, aspect}, {axes.up, 1}, {axes.toward, 3}}};
@@ -333,8 +342,8 @@ class SceneMaker {
 
 }  // namespace
 
-void add_scene(RunPage& page, const Stage& stage, const Mesh& result, unsigned threads) {
-  SceneMaker(page, stage, result, threads).make();
+void add_scene(RunPage& page, const Stage& stage, const Mesh& result, const SceneOptions& options) {
+  SceneMaker(page, stage, result, options).make();
 }
 
 }  // namespace meshfarm

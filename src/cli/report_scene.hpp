@@ -2,15 +2,22 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <optional>
+
 #include <meshfarm/geometry/mesh.hpp>
 #include <meshfarm/report/run_page.hpp>
 #include <meshfarm/staging/stage.hpp>
 
 namespace meshfarm {
 
+struct SceneOptions {
+  std::optional<Vec3> up = {};  // the axis that points up; else by the input's shape
+  unsigned threads = 0;         // 0: one a core
+};
+
 /// Measures and draws the page's meshes: sets page.figures and page.scene. The input is read from
 /// the stage once as a whole, and once more in parts; of it points are kept, and all of it where it
-/// is small. The result must have triangles. Depends on no threads (0: one a core).
-void add_scene(RunPage& page, const Stage& stage, const Mesh& result, unsigned threads);
+/// is small. The result must have triangles. Depends on no threads.
+void add_scene(RunPage& page, const Stage& stage, const Mesh& result, const SceneOptions& options);
 
 }  // namespace meshfarm

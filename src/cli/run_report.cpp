@@ -96,7 +96,7 @@ void write_run_report(const RunReport& report) {
           {"replay", report.stage, "-o", made.path, "--triangles", std::to_string(made.triangles)});
     }
     if (const std::optional<Mesh> result = read_result(made, page.notes)) {
-      add_scene(page, stage, *result, 0);
+      add_scene(page, stage, *result, {.up = report.up});
     }
   }
   AtomicFile file(report.page);

@@ -8,6 +8,8 @@
 
 #include <boost/program_options.hpp>
 
+#include <meshfarm/geometry/vec.hpp>
+
 namespace meshfarm {
 
 namespace po = boost::program_options;
@@ -23,6 +25,7 @@ struct RunReport {
   std::string page;  // the file to write
   MadeBy made_by = MadeBy::another;
   std::optional<std::uint32_t> epoch = {};  // of the run; else the last
+  std::optional<Vec3> up = {};              // the axis that points up; else by the input's shape
 };
 
 /// Writes the page of a run: of its stage, and of its result if that is still what the run made.

@@ -11,6 +11,8 @@
 #include <meshfarm/staging/stage.hpp>
 #include <meshfarm/util/errors.hpp>
 
+#include "cli/input_framing.hpp"
+
 namespace meshfarm {
 namespace {
 
@@ -48,23 +50,18 @@ Rendering render_stage(const std::string& folder, RenderOptions options) {
   InputSurface input(stage, manifest, options.threads);
   Shown shown(options, manifest.triangles());
   Framing framing(options.view, SurfacePicture::frame_of(options));
-  std::mutex mutex;
-  const auto all = [](const Box&) { return true; };
-  input.show(all, [&](const SurfacePiece& piece) {
-    shown.add("look", piece.triangles.size());
-    const std::lock_guard lock(mutex);
-    framing.add(piece.fresh);
-  });
+  add_input(input, {&framing, 1}, [&](std::uint64_t triangles) { shown.add("look", triangles); });
   Rendering made;
   made.triangles = shown.take();
   if (made.triangles == 0) throw DataError(folder + ": has no triangles to draw");
   SurfacePicture picture(options, framing.camera());
-  input.show(all, [&](const SurfacePiece& piece) {
-    const bool is_part = piece.part < manifest.parts.size();
-    picture.draw(piece.positions, piece.triangles,
-                 {.part = is_part ? piece.part : PiecePaint::k_between});
-    shown.add("draw", piece.triangles.size());
-  });
+  input.show([](const Box&) { return true; },
+             [&](const SurfacePiece& piece) {
+               const bool is_part = piece.part < manifest.parts.size();
+               picture.draw(piece.positions, piece.triangles,
+                            {.part = is_part ? piece.part : PiecePaint::k_between});
+               shown.add("draw", piece.triangles.size());
+             });
   made.picture = picture.finish();
   made.vertices = manifest.input_vertices;
   if (options.colour_by == ColourBy::part) {

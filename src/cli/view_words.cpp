@@ -75,13 +75,6 @@ void parse_view(const std::string& word, View& view) {
   view.elevation = (*angles)[1];
 }
 
-Vec3 parse_up(const std::string& word) {
-  const auto named = std::find_if(k_axes.begin(), k_axes.end(),
-                                  [&](const NamedAxis& each) { return each.name == word; });
-  if (named == k_axes.end()) throw UsageError("--up is x, y, z, -x, -y or -z, not '" + word + "'");
-  return named->axis;
-}
-
 void parse_colour_by(const std::string& word, RenderOptions& render) {
   static constexpr std::array<std::pair<std::string_view, ColourBy>, 9> k_words = {
       {{"auto", ColourBy::automatic},
@@ -116,6 +109,13 @@ std::array<std::uint8_t, 3> parse_background(const std::string& word) {
 }
 
 }  // namespace
+
+Vec3 parse_up(const std::string& word) {
+  const auto named = std::find_if(k_axes.begin(), k_axes.end(),
+                                  [&](const NamedAxis& each) { return each.name == word; });
+  if (named == k_axes.end()) throw UsageError("--up is x, y, z, -x, -y or -z, not '" + word + "'");
+  return named->axis;
+}
 
 void ViewWords::add(po::options_description& options) {
   options.add_options()("output,o", po::value(&output)->required()->value_name("FILE"),

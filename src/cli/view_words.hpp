@@ -31,4 +31,7 @@ struct ViewWords {
   std::string background_ = "white";
 };
 
+/// "x" to "-z" as a direction. Throws UsageError naming --up.
+Vec3 parse_up(const std::string& word);
+
 }  // namespace meshfarm

@@ -17,14 +17,14 @@ namespace meshfarm {
 PieceSamples sample_piece(std::span<const Vec3> positions, std::span<const Triangle> triangles,
                           std::uint64_t count, Vec3 origin) {
   PieceSamples made;
-  std::vector<double> before;  // the area up to the end of each triangle
-  before.reserve(triangles.size());
-  for (const auto& [first, second, third] : triangles) {
+  std::vector<double> before(triangles.size());  // the area up to the end of each triangle
+  for (std::size_t i = 0; i < triangles.size(); ++i) {
+    const auto& [first, second, third] = triangles[i];
     const Vec3 a = positions[first];
     const Vec3 normal = cross(positions[second] - a, positions[third] - a);
     made.area += length(normal) / 2;
     made.volume += dot(a - origin, normal) / 6;
-    before.push_back(made.area);
+    before[i] = made.area;
   }
   if (!(made.area > 0) || !std::isfinite(made.area)) return made;
   const double share = made.area / static_cast<double>(count);

@@ -28,22 +28,23 @@ void check_size(const Picture& picture) {
 
 }  // namespace
 
-std::string encode_png(const Picture& picture) {
+std::string encode_png(const Picture& picture, PngSize size) {
   check_size(picture);
   png_image image{};
   image.version = PNG_IMAGE_VERSION;
   image.width = picture.width;
   image.height = picture.height;
   image.format = picture.step == 4 ? PNG_FORMAT_RGBA : PNG_FORMAT_RGB;
+  if (size == PngSize::soon) image.flags |= PNG_IMAGE_FLAG_FAST;
   const std::unique_ptr<png_image, decltype(&png_image_free)> owner(&image, png_image_free);
   // What bytes that cannot be compressed take, so that they are compressed once.
-  png_alloc_size_t size = PNG_IMAGE_PNG_SIZE_MAX(image);
-  std::string bytes(size, '\0');
-  if (png_image_write_to_memory(&image, bytes.data(), &size, 0, picture.texels.data(), 0,
+  png_alloc_size_t taken = PNG_IMAGE_PNG_SIZE_MAX(image);
+  std::string bytes(taken, '\0');
+  if (png_image_write_to_memory(&image, bytes.data(), &taken, 0, picture.texels.data(), 0,
                                 nullptr) == 0) {
     fail_png(image);
   }
-  bytes.resize(size);
+  bytes.resize(taken);
   bytes.shrink_to_fit();
   return bytes;
 }

@@ -4,6 +4,8 @@
 
 #include <string>
 
+#include <meshfarm/io/png_file.hpp>
+
 #include "picture.hpp"
 
 namespace meshfarm {
@@ -16,7 +18,7 @@ struct JpegOptions {
 
 // The picture's bytes as a file of that format. The same picture gives the same bytes with the same
 // version of the encoder. Both throw DataError for a picture that the format cannot hold.
-std::string encode_png(const Picture& picture);
+std::string encode_png(const Picture& picture, PngSize size = PngSize::least);
 /// Without alpha.
 std::string encode_jpeg(const Picture& picture, const JpegOptions& options = {});
 

@@ -9,11 +9,12 @@
 
 namespace meshfarm {
 
-std::string encode_png(Texels texels) {
+std::string encode_png(Texels texels, PngSize size) {
   return encode_png(Picture{.width = texels.width,
                             .height = texels.height,
                             .step = texels.step,
-                            .texels = std::move(texels.bytes)});
+                            .texels = std::move(texels.bytes)},
+                    size);
 }
 
 void write_png(const std::filesystem::path& path, Texels texels) {

@@ -37,23 +37,6 @@ ViewAxes::ViewAxes(const View& view) {
   up = cross(toward, right);
 }
 
-ScreenPoint Camera::project(Vec3 world) const {
-  const Vec3 p = axes_.seen(world) - eye_;
-  const double by_distance = projection_ == Projection::perspective ? -1 / p.z : 1;
-  const double depth = projection_ == Projection::perspective ? by_distance - far_ : p.z;
-  return {static_cast<float>(centre_x_ + scale_ * p.x * by_distance),
-          static_cast<float>(centre_y_ - scale_ * p.y * by_distance),
-          static_cast<float>(depth / (near_ - far_))};
-}
-
-Vec3 Camera::unproject(const ScreenPoint& p) const {
-  const double depth = far_ + static_cast<double>(p.depth) * (near_ - far_);
-  const double distance = projection_ == Projection::perspective ? 1 / depth : 1;
-  const double z = projection_ == Projection::perspective ? -distance : depth;
-  return {(static_cast<double>(p.x) - centre_x_) / scale_ * distance,
-          (centre_y_ - static_cast<double>(p.y)) / scale_ * distance, z};
-}
-
 Framing::Framing(const View& view, const Frame& frame)
     : axes_(view), projection_(view.projection), frame_(frame) {
   reach_.fill(-HUGE_VAL);

@@ -14,16 +14,18 @@ constexpr std::size_t k_levels = 4096;  // of light, that are told apart: by the
 /// Between sRGB and light, both ways (IEC 61966-2-1).
 struct Tables {
   std::array<float, 256> light{};
+  std::array<float, 256> root{};  // of light
   std::vector<std::uint8_t> srgb;
 
   Tables() : srgb(k_levels + 1) {
     for (std::size_t i = 0; i < light.size(); ++i) {
       const double s = static_cast<double>(i) / 255;
       light[i] = static_cast<float>(s <= 0.04045 ? s / 12.92 : std::pow((s + 0.055) / 1.055, 2.4));
+      root[i] = std::sqrt(light[i]);
     }
     for (std::size_t i = 0; i <= k_levels; ++i) {
-      const double root = static_cast<double>(i) / k_levels;
-      const double x = root * root;
+      const double of_light = static_cast<double>(i) / k_levels;
+      const double x = of_light * of_light;
       const double s = x <= 0.0031308 ? 12.92 * x : 1.055 * std::pow(x, 1 / 2.4) - 0.055;
       srgb[i] = static_cast<std::uint8_t>(std::lround(255 * s));
     }
@@ -35,9 +37,9 @@ const Tables& tables() {
   return k_tables;
 }
 
-std::uint8_t level_of(float light) {
-  const float root = std::sqrt(std::clamp(light, 0.0F, 1.0F));
-  return tables().srgb[static_cast<std::size_t>(std::lround(root * k_levels))];
+/// Of the square root of light, from 0 to 1.
+std::uint8_t level_of(const Tables& table, float root) {
+  return table.srgb[static_cast<std::size_t>(std::lrint(root * k_levels))];
 }
 
 constexpr std::array<Srgb, 12> k_palette = {{{92, 146, 204},
@@ -73,7 +75,18 @@ Light light_of(const Srgb& colour) {
 }
 
 Srgb srgb_of(Light light) {
-  return {level_of(light.red), level_of(light.green), level_of(light.blue)};
+  const Tables& table = tables();
+  const auto level = [&](float one) {
+    return level_of(table, std::sqrt(std::clamp(one, 0.0F, 1.0F)));
+  };
+  return {level(light.red), level(light.green), level(light.blue)};
+}
+
+Srgb dimmed(const Srgb& colour, float root_of_light) {
+  const Tables& table = tables();
+  return {level_of(table, table.root[colour[0]] * root_of_light),
+          level_of(table, table.root[colour[1]] * root_of_light),
+          level_of(table, table.root[colour[2]] * root_of_light)};
 }
 
 Srgb colour_of_number(std::uint64_t number) {

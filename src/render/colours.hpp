@@ -24,6 +24,8 @@ struct Light {
 Light light_of(const Srgb& colour);
 /// Light above 1 is cut off.
 Srgb srgb_of(Light light);
+/// A colour in less light, from 0 to 1: by its square root.
+Srgb dimmed(const Srgb& colour, float root_of_light);
 
 /// In 24 bits.
 constexpr std::uint32_t packed(const Srgb& colour) {

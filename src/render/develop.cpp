@@ -3,6 +3,7 @@
 #include "render/develop.hpp"
 
 #include <array>
+#include <cmath>
 
 #include <meshfarm/util/parallel.hpp>
 
@@ -24,14 +25,14 @@ constexpr std::uint32_t rounded_ratio(std::uint32_t a, std::uint32_t b) {
   return (2 * a + b) / (2 * b);
 }
 
-Sum sum_of(const Canvas& canvas, std::uint32_t x, std::uint32_t y, float light) {
+Sum sum_of(const Canvas& canvas, std::uint32_t x, std::uint32_t y, float root_of_light) {
   const std::uint32_t side = canvas.size().side;
   Sum sum;
   for (std::uint32_t row = y * side; row < (y + 1) * side; ++row) {
     for (std::uint32_t column = x * side; column < (x + 1) * side; ++column) {
       const Canvas::Sample sample = canvas.at(canvas.place(column, row));
       if (sample.empty()) continue;
-      sum.add(light == 1 ? sample.colour() : srgb_of(light_of(sample.colour()) * light));
+      sum.add(root_of_light == 1 ? sample.colour() : dimmed(sample.colour(), root_of_light));
     }
   }
   return sum;
@@ -49,7 +50,7 @@ Texels develop(const Canvas& canvas, const std::vector<float>& open_sky,
     const auto y = static_cast<std::uint32_t>(row);
     for (std::uint32_t x = 0; x < size.width; ++x) {
       const float light = open_sky.empty() ? 1 : open_sky[row * size.width + x];
-      const Sum sum = sum_of(canvas, x, y, light);
+      const Sum sum = sum_of(canvas, x, y, std::sqrt(light));
       std::uint8_t* texel = picture.at(x, y);
       const std::uint32_t parts = options.transparent ? sum.covered : all;
       for (std::size_t i = 0; i < 3 && parts > 0; ++i) {

@@ -16,12 +16,12 @@ constexpr std::size_t k_looks = 16;  // from each pixel
 constexpr int k_turns = 4;           // of a square of pixels, this wide, each looks differently
 constexpr std::size_t k_square = std::size_t{k_turns} * k_turns;
 constexpr double k_radius = 0.06;  // how far, of the picture's shorter side
+constexpr double k_reach = 2.25;   // times its square: farther ones do not count
 constexpr double k_strength = 1.5;
 
-/// Steps to look at, in shares of the radius: a spiral, turned differently for each pixel of a
-/// square.
-using Looks = std::array<std::array<double, 2>, k_looks>;
-std::array<Looks, k_square> spirals() {
+/// Steps to look at, in pixels: a spiral, turned differently for each pixel of a square.
+using Looks = std::array<std::array<int, 2>, k_looks>;
+std::array<Looks, k_square> spirals(double radius) {
   const double golden = std::numbers::pi * (3 - std::sqrt(5.0));
   std::array<Looks, k_square> made{};
   for (std::size_t turn = 0; turn < made.size(); ++turn) {
@@ -30,28 +30,39 @@ std::array<Looks, k_square> spirals() {
     for (std::size_t i = 0; i < k_looks; ++i) {
       const double share = (static_cast<double>(i) + 0.5) / k_looks;
       const double angle = start + golden * static_cast<double>(i);
-      made[turn][i] = {share * std::cos(angle), share * std::sin(angle)};
+      made[turn][i] = {static_cast<int>(std::lround(share * std::cos(angle) * radius)),
+                       static_cast<int>(std::lround(share * std::sin(angle) * radius))};
     }
   }
   return made;
 }
 
+constexpr float k_not_known = -1;
+
 class Sky {
  public:
-  Sky(const Canvas& canvas, const Camera& camera)
+  /// `step`: how far pixels are apart that are looked from; those between get their mean.
+  Sky(const Canvas& canvas, const Camera& camera, int step)
       : canvas_(canvas),
         camera_(camera),
+        step_(step),
         width_(static_cast<int>(canvas.size().width)),
         height_(static_cast<int>(canvas.size().height)),
-        looks_(spirals()),
-        depths_(std::size_t{canvas.size().width} * canvas.size().height, -1.0F) {}
+        radius_(std::max(4.0, k_radius * std::min(width_, height_))),
+        looks_(spirals(radius_)),
+        depths_(std::size_t{canvas.size().width} * canvas.size().height, -1.0F) {
+    const double side = canvas.size().side;
+    for (int x = 0; x < width_; ++x) across_.push_back(camera.across((x + 0.5) * side - 0.5));
+    for (int y = 0; y < height_; ++y) along_.push_back(camera.along((y + 0.5) * side - 0.5));
+  }
 
   std::vector<float> find(unsigned threads) {
     const auto rows = static_cast<std::uint64_t>(height_);
     parallel_for(rows, threads, [&](std::uint64_t y) { find_depths(static_cast<int>(y)); });
-    std::vector<float> rough(depths_.size(), 1.0F);
+    std::vector<float> rough(depths_.size(), k_not_known);
     parallel_for(rows, threads, [&](std::uint64_t y) {
-      for (int x = 0; x < width_; ++x) {
+      if (y % static_cast<std::uint64_t>(step_) != 0) return;
+      for (int x = 0; x < width_; x += step_) {
         const std::size_t at = place(x, static_cast<int>(y));
         if (depths_[at] >= 0) rough[at] = open_at(x, static_cast<int>(y));
       }
@@ -87,10 +98,11 @@ class Sky {
     }
   }
 
-  Vec3 point(int x, int y) const {
-    const double side = canvas_.size().side;
-    return camera_.unproject({static_cast<float>((x + 0.5) * side - 0.5),
-                              static_cast<float>((y + 0.5) * side - 0.5), depths_[place(x, y)]});
+  Vec3 point(int x, int y) const { return at_depth_of(x, y, x); }
+  /// The place of another column as far away as this one.
+  Vec3 at_depth_of(int x, int y, int column) const {
+    return camera_.unproject(across_[static_cast<std::size_t>(column)],
+                             along_[static_cast<std::size_t>(y)], depths_[place(x, y)]);
   }
 
   /// The step to a neighbour along the surface: of both sides the one with less of a step in depth.
@@ -115,31 +127,25 @@ class Sky {
     const double size = length(normal);
     if (!(size > 0)) return 1;
     normal = normal * (1 / size);
-    const double radius = std::max(4.0, k_radius * std::min(width_, height_));
     // The same length on the surface as the radius on the picture.
     const int beside = x + 1 < width_ ? x + 1 : x - 1;
     const double unit = length(at_depth_of(x, y, beside) - here);
+    const double reach = radius_ * unit;
+    const double farthest = k_reach * reach * reach;
     double hidden = 0;
-    const int turn = y % k_turns * k_turns + x % k_turns;
+    const int turn = y / step_ % k_turns * k_turns + x / step_ % k_turns;
     for (const auto& [dx, dy] : looks_[static_cast<std::size_t>(turn)]) {
-      const int lx = x + static_cast<int>(std::lround(dx * radius));
-      const int ly = y + static_cast<int>(std::lround(dy * radius));
+      const int lx = x + dx;
+      const int ly = y + dy;
       if (!is_inside(lx, ly) || depths_[place(lx, ly)] < 0) continue;
       const Vec3 step = point(lx, ly) - here;
-      const double away = length(step);
-      if (!(away > 0)) continue;
-      const double far = away / (radius * unit);
-      const double rise = std::max(0.0, dot(step, normal) / away - 0.08);
-      hidden += rise * std::max(0.0, 1 - far * far / 2.25);
+      const double above = dot(step, normal);
+      const double squared = dot(step, step);
+      if (!(above > 0) || !(squared < farthest)) continue;  // most hide nothing
+      const double rise = std::max(0.0, above / std::sqrt(squared) - 0.08);
+      hidden += rise * (1 - squared / farthest);
     }
     return static_cast<float>(std::clamp(1 - k_strength * hidden / k_looks, 0.0, 1.0));
-  }
-
-  /// The place of another column as far away as this one.
-  Vec3 at_depth_of(int x, int y, int column) const {
-    const double side = canvas_.size().side;
-    return camera_.unproject({static_cast<float>((column + 0.5) * side - 0.5),
-                              static_cast<float>((y + 0.5) * side - 0.5), depths_[place(x, y)]});
   }
 
   /// The mean of a square in which all directions are looked in once, of the same surface.
@@ -147,30 +153,37 @@ class Sky {
     const float depth = depths_[place(x, y)];
     float sum = 0;
     float weight = 0;
-    for (int dy = -k_turns / 2; dy < k_turns / 2; ++dy) {
-      for (int dx = -k_turns / 2; dx < k_turns / 2; ++dx) {
-        if (!is_inside(x + dx, y + dy)) continue;
-        const std::size_t at = place(x + dx, y + dy);
-        if (depths_[at] < 0 || std::abs(depths_[at] - depth) > 0.02F) continue;
+    const int first_x = x / step_ * step_ - k_turns / 2 * step_;
+    const int first_y = y / step_ * step_ - k_turns / 2 * step_;
+    for (int ny = first_y; ny < first_y + k_turns * step_; ny += step_) {
+      for (int nx = first_x; nx < first_x + k_turns * step_; nx += step_) {
+        if (!is_inside(nx, ny)) continue;
+        const std::size_t at = place(nx, ny);
+        if (rough[at] < 0 || std::abs(depths_[at] - depth) > 0.02F) continue;
         sum += rough[at];
         weight += 1;
       }
     }
-    return sum / weight;
+    return weight > 0 ? sum / weight : open_at(x, y);
   }
 
   const Canvas& canvas_;
   const Camera& camera_;
+  int step_;
   int width_;
   int height_;
+  double radius_;  // in pixels
   std::array<Looks, k_square> looks_;
   std::vector<float> depths_;
+  std::vector<double> across_;  // of the columns' middles, as Camera has it
+  std::vector<double> along_;   // of the rows'
 };
 
 }  // namespace
 
-std::vector<float> find_open_sky(const Canvas& canvas, const Camera& camera, unsigned threads) {
-  return Sky(canvas, camera).find(threads);
+std::vector<float> find_open_sky(const Canvas& canvas, const Camera& camera,
+                                 const RenderOptions& options) {
+  return Sky(canvas, camera, options.quick ? 2 : 1).find(options.threads);
 }
 
 }  // namespace meshfarm

@@ -48,6 +48,7 @@ struct Rasterizer::Covered {
   const CornerColours& colours;
   Facing facing;
   Light all;                         // its colour, with light on it, if it has one
+  Srgb flat{};                       // the same as it is drawn, if nothing changes it
   std::array<double, 3> nearness{};  // of the corners
   std::array<double, 3> heights{};   // over the sides that face the corners, in samples
 };
@@ -156,6 +157,23 @@ void Rasterizer::prepare(Covered& triangle, double area) const {
   } else {
     triangle.all = triangle.colours.lights[0] * triangle.facing.light;
   }
+  if (is_flat(triangle)) triangle.flat = srgb_of(tinted(triangle, triangle.all));
+}
+
+/// Whether all its samples have one colour.
+bool Rasterizer::is_flat(const Covered& triangle) const {
+  using Kind = CornerColours::Kind;
+  const Kind kind = triangle.colours.kind;
+  return wire_ == Wire::no && (kind == Kind::one || kind == Kind::normal);
+}
+
+/// What is seen from behind looks so.
+Light Rasterizer::tinted(const Covered& triangle, Light light) {
+  if (!triangle.facing.is_back || triangle.colours.kind == CornerColours::Kind::normal) {
+    return light;
+  }
+  return {light.red * k_back_tint.red, light.green * k_back_tint.green,
+          light.blue * k_back_tint.blue};
 }
 
 void Rasterizer::draw_sample(const Covered& triangle, std::uint64_t place,
@@ -166,11 +184,8 @@ void Rasterizer::draw_sample(const Covered& triangle, std::uint64_t place,
   }
   depth = std::clamp(depth, 0.0, 1.0);
   if (!canvas_.shows(place, depth)) return;
-  Light light = colour_at(triangle, shares);
-  if (triangle.facing.is_back && triangle.colours.kind != CornerColours::Kind::normal) {
-    light = {light.red * k_back_tint.red, light.green * k_back_tint.green,
-             light.blue * k_back_tint.blue};
-  }
+  if (is_flat(triangle)) return canvas_.draw(place, {depth, triangle.flat});
+  Light light = tinted(triangle, colour_at(triangle, shares));
   if (wire_ == Wire::yes) {
     const float wire = wire_at(triangle, shares);
     light = light * (1 - wire) + k_wire_colour * wire;

@@ -62,6 +62,8 @@ class Rasterizer {
   void prepare(Covered& triangle, double area) const;
   void draw_sample(const Covered& triangle, std::uint64_t place,
                    const std::array<double, 3>& shares);
+  bool is_flat(const Covered& triangle) const;
+  static Light tinted(const Covered& triangle, Light light);
   Light colour_at(const Covered& triangle, const std::array<double, 3>& shares) const;
   float wire_at(const Covered& triangle, const std::array<double, 3>& shares) const;
 

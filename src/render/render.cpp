@@ -258,7 +258,7 @@ class Renderer {
   Rendering finish(const Camera& camera) {
     std::vector<float> open_sky;
     if (paints_.from() != Paints::From::normals) {
-      open_sky = find_open_sky(canvas_, camera, options_.threads);
+      open_sky = find_open_sky(canvas_, camera, options_);
     }
     made_.picture = develop(canvas_, open_sky, options_);
     made_.colours = paints_.name();

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
 #include <cassert>
-#include <cmath>
+#include <cstdint>
 #include <memory>
 #include <vector>
 
@@ -82,15 +82,13 @@ class SurfacePicture::Impl {
       }
       return;
     }
-    std::vector<Seen> seen;
-    seen.reserve(positions.size());
-    for (const Vec3& p : positions) seen.emplace_back(camera_.project(p));
-    for (const auto& [first, second, third] : triangles) {
-      const Seen &a = seen[first], &b = seen[second], &c = seen[third];
-      if ((a.column == b.column && b.column == c.column) || (a.row == b.row && b.row == c.row)) {
-        continue;
-      }
-      draw_one({first, second, third}, {a.point, b.point, c.point});
+    // Those of most triangles of a large mesh lie between the same middles of samples: these cover
+    // none, and their corners need not be kept.
+    const std::vector<Cell> cells = cells_of(camera_, positions);
+    for (const Triangle& t : triangles) {
+      if (is_one_cell(cells[t[0]], cells[t[1]], cells[t[2]])) continue;
+      draw_one(t, {camera_.project(positions[t[0]]), camera_.project(positions[t[1]]),
+                   camera_.project(positions[t[2]])});
     }
   }
 
@@ -98,7 +96,7 @@ class SurfacePicture::Impl {
     const Look& look = *looks_[number];
     if (look.options.colour_by == ColourBy::normal) return develop(look.canvas, {}, look.options);
     // All looks have the same depths.
-    if (open_sky_.empty()) open_sky_ = find_open_sky(look.canvas, camera_, look.options.threads);
+    if (open_sky_.empty()) open_sky_ = find_open_sky(look.canvas, camera_, look.options);
     return develop(look.canvas, open_sky_, look.options);
   }
 
@@ -113,21 +111,37 @@ class SurfacePicture::Impl {
     Rasterizer rasterizer;
   };
 
-  /// A vertex, and between which middles of samples it lies. Three between the same, as nearly all
-  /// of a large mesh are, cover none.
-  struct Seen {
-    explicit Seen(const ScreenPoint& p) : point(p), column(place(p.x)), row(place(p.y)) {}
-    /// The middle before; no number, which equals none, for what lies on one or far off.
-    static float place(float x) {
-      constexpr float k_far = 1e6F;
-      if (!(x > 0 && x < k_far)) return NAN;
-      const auto whole = static_cast<float>(static_cast<std::int32_t>(x));
-      return x == whole ? NAN : whole;
+  /// Between which columns of middles of samples a vertex lies (the upper half), and which rows.
+  using Cell = std::uint32_t;
+  static constexpr std::uint32_t k_anywhere = 0xffff;  // on one, or far off
+
+  static std::uint32_t place(float x) {
+    constexpr auto k_far = static_cast<float>(k_anywhere);
+    const float near = x > 0 ? (x < k_far ? x : k_far) : 0;  // 0 for what is not a number
+    const auto whole = static_cast<std::int32_t>(near);
+    // What is at 0 or far off is whole, too.
+    const auto known = -static_cast<std::uint32_t>(near != static_cast<float>(whole));
+    return (static_cast<std::uint32_t>(whole) | ~known) & k_anywhere;
+  }
+  /// Without branches, which would be guessed wrong.
+  static std::vector<Cell> cells_of(const Camera& camera, std::span<const Vec3> positions) {
+    std::vector<Cell> cells(positions.size());
+    for (std::size_t i = 0; i < positions.size(); ++i) {
+      const ScreenPoint p = camera.project(positions[i]);
+      cells[i] = place(p.x) << 16 | place(p.y);
     }
-    ScreenPoint point;
-    float column;
-    float row;
-  };
+    return cells;
+  }
+  /// Whether three are surely between the same columns, or rows.
+  static bool is_one_cell(Cell a, Cell b, Cell c) {
+    // Without branches, which would be guessed wrong often.
+    const Cell differs = (a ^ b) | (a ^ c);
+    const auto same = [](bool is_same, bool is_known) {
+      return static_cast<unsigned>(is_same) & static_cast<unsigned>(is_known);
+    };
+    return (same(differs >> 16 == 0, a >> 16 != k_anywhere) |
+            same((differs & k_anywhere) == 0, (a & k_anywhere) != k_anywhere)) != 0;
+  }
 
   void add_look(const RenderOptions& options) {
     looks_.push_back(std::make_unique<Look>(options, camera_));

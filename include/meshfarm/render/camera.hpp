@@ -53,9 +53,29 @@ struct ScreenPoint {
 /// Projects the world onto the picture. Straight lines stay straight, in depth, too.
 class Camera {
  public:
-  ScreenPoint project(Vec3 world) const;
+  ScreenPoint project(Vec3 world) const {
+    const Vec3 p = axes_.seen(world) - eye_;
+    const bool is_flat = projection_ == Projection::orthographic;
+    const double by_distance = is_flat ? 1 : -1 / p.z;
+    const double depth = is_flat ? p.z : by_distance - far_;
+    return {static_cast<float>(centre_x_ + scale_ * p.x * by_distance),
+            static_cast<float>(centre_y_ - scale_ * p.y * by_distance),
+            static_cast<float>(depth / (near_ - far_))};
+  }
   /// The point as the viewer sees it: x to the right, y up, z toward the viewer.
-  Vec3 unproject(const ScreenPoint& p) const;
+  Vec3 unproject(const ScreenPoint& p) const {
+    return unproject(across(static_cast<double>(p.x)), along(static_cast<double>(p.y)), p.depth);
+  }
+  /// The same where across() of its column and along() of its row are known.
+  Vec3 unproject(double across_x, double along_y, float depth) const {
+    const double place = far_ + static_cast<double>(depth) * (near_ - far_);
+    const bool is_flat = projection_ == Projection::orthographic;
+    const double distance = is_flat ? 1 : 1 / place;
+    return {across_x * distance, along_y * distance, is_flat ? place : -distance};
+  }
+  /// Where a column or a row of samples lies, at distance 1.
+  double across(double x) const { return (x - centre_x_) / scale_; }
+  double along(double y) const { return (centre_y_ - y) / scale_; }
   /// One by the distance, without perspective 1. Values can be blended linearly over the picture if
   /// they are multiplied by it.
   double nearness(double depth) const {

@@ -40,6 +40,7 @@ struct RenderOptions {
   std::string channel;                         // with ColourBy::channel
   std::optional<std::array<double, 2>> range;  // of the colours of values; else all values
   bool wire = false;                           // draw the triangles' edges, too
+  bool quick = false;                          // shade it less finely
   bool transparent = false;                    // where nothing is; else the background
   std::array<std::uint8_t, 3> background{255, 255, 255};
   std::uint64_t memory_bytes = std::uint64_t{512} << 20;
