@@ -1,5 +1,6 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
+#include <filesystem>
 #include <iostream>
 
 #include <meshfarm/geometry/distance.hpp>
@@ -41,13 +42,23 @@ class CompareCommand : public Command {
     measure_.check();
   }
   int run() override {
-    if (!map_.empty()) check_writable(map_);
+    if (!map_.empty()) check_map();
     const Comparison comparison = compare_meshes(a_, b_, {measure_.divide, distance_, map_});
     std::cout << render(comparison, talk_.format());
     return 0;
   }
 
  private:
+  void check_map() const {
+    check_writable(map_);
+    for (const std::string& mesh : {a_, b_}) {
+      std::error_code not_there;
+      if (std::filesystem::equivalent(map_, mesh, not_there)) {
+        throw UsageError("--map: " + map_ + " is " + mesh + ", which it would write over");
+      }
+    }
+  }
+
   std::string a_;
   std::string b_;
   DistanceOptions distance_;
