@@ -7,6 +7,8 @@
 #include <iostream>
 #include <memory>
 
+#include <meshfarm/geometry/crossings.hpp>
+#include <meshfarm/geometry/surface_measures.hpp>
 #include <meshfarm/geometry/uv_facts.hpp>
 #include <meshfarm/geometry/weld.hpp>
 #include <meshfarm/io/mesh_source.hpp>
@@ -34,12 +36,18 @@ class InfoCommand : public Command {
              po::positional_options_description& positional) override {
     options.add_options()("file", po::value(&file_)->required(), "")(
         "no-topology", po::bool_switch(&no_topology_),
-        "counts and box only: in one scan, and without scratch files");
+        "counts and box only: in one scan, and without scratch files")(
+        "figures", po::bool_switch(&figures_),
+        "area, volume, angles, lengths of borders and of edges over 40 degrees, and triangles that "
+        "cut others, too");
     measure_.add(options);
     talk_.add(options);
     positional.add("file", 1);
   }
-  void check() override { measure_.check(); }
+  void check() override {
+    if (figures_ && no_topology_) throw UsageError("--figures goes without --no-topology");
+    measure_.check();
+  }
   int run() override {
     if (std::filesystem::is_directory(file_)) {
       const Stage stage = Stage::open(file_);
@@ -121,8 +129,31 @@ class InfoCommand : public Command {
     const SurfaceTopology topology = surface.measure_topology();
     summary.welded = topology.welded;
     summary.as_it_is = topology.as_it_is;
+    if (figures_) add_figures(surface, topology, summary);
     if (!summary.file.textures.empty()) summary.texture_floor = texture_floor(surface);
     return summary;
+  }
+
+  void add_figures(const DividedSurface& surface, const SurfaceTopology& topology,
+                   FileSummary& summary) const {
+    const unsigned threads = measure_.divide.threads;
+    ShapeMeter meter(threads);
+    surface.show([&](std::span<const Vec3> positions, std::span<const Triangle> triangles) {
+      meter.add(positions, triangles);
+    });
+    SurfaceFigures& figures = summary.figures.emplace();
+    figures.shape = meter.measures();
+    figures.is_closed = topology.welded.unmatched_edges == 0;
+    const std::uint64_t needed = memory_to_hold(surface.vertices(), surface.triangles());
+    if (needed > measure_.divide.memory_bytes) {
+      summary.not_measured = why_too_little(needed, measure_.divide.memory_bytes);
+      return;
+    }
+    const auto source = open_mesh(file_, {.channels = false, .labels = false});
+    const Mesh mesh = read_mesh(*source);
+    figures.edges = measure_edge_lengths(mesh, threads);
+    figures.crossing_triangles = count_crossing_triangles(mesh, {.threads = threads});
+    if (!figures.crossing_triangles) figures.crossings_skipped = k_too_many_at_one_place;
   }
 
   /// 0 if --memory does not hold the mesh.
@@ -145,6 +176,7 @@ class InfoCommand : public Command {
 
   std::string file_;
   bool no_topology_ = false;
+  bool figures_ = false;
   MeasureWords measure_;
   TalkOptions talk_;
 };

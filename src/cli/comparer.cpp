@@ -19,6 +19,7 @@
 #include <meshfarm/util/errors.hpp>
 
 #include "cli/compared_mesh.hpp"
+#include "cli/measure_words.hpp"
 
 namespace meshfarm {
 namespace {
@@ -28,23 +29,11 @@ constexpr std::uint64_t k_bytes_of_labels = 2 * sizeof(Label);
 
 /// What it takes to hold both, and the hierarchy of one at a time.
 std::uint64_t memory_for(const DividedSurface& a, const DividedSurface& b) {
-  // While it is built, with what the allocator keeps: measured.
-  constexpr std::uint64_t k_hierarchy_bytes = 72;
-  return sizeof(Vec3) * (a.vertices() + b.vertices()) +
-         sizeof(Triangle) * (a.triangles() + b.triangles()) +
-         k_hierarchy_bytes * std::max(a.triangles(), b.triangles());
-}
-
-/// As --memory takes it; rounded up, so that it is enough.
-std::string size_text(std::uint64_t bytes) {
-  const bool is_large = bytes >= std::uint64_t{10} << 20;
-  const unsigned shift = is_large ? 20 : 10;
-  const std::uint64_t units = (bytes + (std::uint64_t{1} << shift) - 1) >> shift;
-  return std::to_string(units) + (is_large ? "M" : "K");
-}
-
-std::string why_not(std::uint64_t needed, std::uint64_t memory) {
-  return "that takes --memory " + size_text(needed) + ", and there is " + size_text(memory);
+  const bool a_is_larger = a.triangles() > b.triangles();
+  const DividedSurface& larger = a_is_larger ? a : b;
+  const DividedSurface& other = a_is_larger ? b : a;
+  return memory_to_hold(larger.vertices(), larger.triangles()) + sizeof(Vec3) * other.vertices() +
+         sizeof(Triangle) * other.triangles();
 }
 
 class MeshComparer {
@@ -78,13 +67,13 @@ class MeshComparer {
       const Mesh a = read_mesh(*source_a_), b = read_mesh(*source_b_);
       measure_held({a, {}}, {b, {}}, {});
     } else if (!options_.map.empty()) {
-      throw UsageError("--map: " + why_not(meshes, memory));
+      throw UsageError("--map: " + why_too_little(meshes, memory));
     } else {
       measure_divided();
-      comparison_.not_measured = why_not(meshes, memory);
+      comparison_.not_measured = why_too_little(meshes, memory);
     }
     if (values > 0 && meshes + values > memory) {
-      const std::string why = why_not(meshes + values, memory);
+      const std::string why = why_too_little(meshes + values, memory);
       if (!channels_.pairs.empty()) comparison_.channels_skipped = why;
       if (have_labels) comparison_.labels_skipped = why;
     }
@@ -141,7 +130,7 @@ class MeshComparer {
   void count_crossings(const TriangleIndex& index, SurfaceFigures& figures) const {
     figures.crossing_triangles =
         count_crossing_triangles(index, {.threads = options_.divide.threads});
-    if (!figures.crossing_triangles) figures.crossings_skipped = "too many lie at one place";
+    if (!figures.crossing_triangles) figures.crossings_skipped = k_too_many_at_one_place;
   }
 
   void write_map(const TriangleIndex& a, const Mesh& b) {

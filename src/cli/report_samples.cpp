@@ -6,41 +6,19 @@
 #include <cmath>
 #include <functional>
 
+#include <meshfarm/geometry/weighted_values.hpp>
+
 namespace meshfarm {
 namespace {
 
 constexpr double k_samples = 100'000;
 constexpr double k_angles = 200'000;
 
-/// Values, each with the area that it stands for, in order.
-class Weighted {
- public:
-  explicit Weighted(std::vector<std::pair<double, double>> values) : values_(std::move(values)) {
-    std::sort(values_.begin(), values_.end());
-    for (const auto& [value, area] : values_) area_ += area;
-  }
-  const std::vector<std::pair<double, double>>& values() const { return values_; }
-  double area() const { return area_; }
-  /// The least value that at most the rest of this share of the area is beyond.
-  double quantile(double share) const {
-    double before = 0;
-    for (const auto& [value, area] : values_) {
-      before += area;
-      if (before >= share * area_) return value;
-    }
-    return values_.empty() ? 0 : values_.back().first;
-  }
-
- private:
-  std::vector<std::pair<double, double>> values_;
-  double area_ = 0;
-};
-
-Weighted distances_of(std::span<const MeasuredPlace> places) {
+WeightedValues distances_of(std::span<const MeasuredPlace> places) {
   std::vector<std::pair<double, double>> distances;
   distances.reserve(places.size());
   for (const MeasuredPlace& p : places) distances.emplace_back(p.near.distance, p.area);
-  return Weighted(std::move(distances));
+  return WeightedValues(std::move(distances));
 }
 
 NormalDeviation normals_of(std::span<const MeasuredPlace> places) {
@@ -58,11 +36,11 @@ NormalDeviation normals_of(std::span<const MeasuredPlace> places) {
   if (!(area > 0)) return {};
   made.rms = std::sqrt(made.rms / area);
   made.over_90 /= area;
-  made.p95 = Weighted(std::move(degrees)).quantile(0.95);
+  made.p95 = WeightedValues(std::move(degrees)).quantile(0.95);
   return made;
 }
 
-SurfaceError error_of(std::span<const MeasuredPlace> places, const Weighted& distances) {
+SurfaceError error_of(std::span<const MeasuredPlace> places, const WeightedValues& distances) {
   SurfaceError error;
   double area = 0;
   for (const MeasuredPlace& p : places) {
@@ -80,12 +58,12 @@ SurfaceError error_of(std::span<const MeasuredPlace> places, const Weighted& dis
   return error;
 }
 
-ErrorHistogram histogram_of(const Weighted& distances) {
+ErrorHistogram histogram_of(const WeightedValues& distances) {
   constexpr std::size_t k_bins = 40;
   ErrorHistogram made;
   made.end = distances.quantile(0.95);
   made.shares.resize(k_bins, 0);
-  const double area = distances.area();
+  const double area = distances.weight();
   for (const auto& [distance, of_point] : distances.values()) {
     const double bin = made.end > 0 ? distance / made.end * k_bins : 0;
     if (bin >= k_bins && distance > made.end) {
@@ -156,7 +134,7 @@ std::vector<MeasuredPlace> InputSamples::measure(const TriangleIndex& result, un
 }
 
 ErrorFigures error_figures_of(std::span<const MeasuredPlace> places) {
-  const Weighted distances = distances_of(places);
+  const WeightedValues distances = distances_of(places);
   return {error_of(places, distances), histogram_of(distances)};
 }
 

@@ -14,16 +14,19 @@
 namespace meshfarm {
 namespace {
 
-/// Measures one chunk of so many samples, which `point(n)` gives.
-template <class Point>
-DistanceSums measure_chunk(const Bvh& bvh, std::uint64_t count, std::uint64_t chunk, Point point) {
+/// Measures one chunk of so many samples, which `point(n)` gives; `take(n, distance)` is told each.
+template <class Point, class Take>
+DistanceSums measure_chunk(const Bvh& bvh, std::uint64_t count, std::uint64_t chunk, Point point,
+                           const Take& take) {
   const std::uint64_t end = std::min(count, (chunk + 1) * k_samples_a_chunk);
   DistanceSums sums;
   std::uint32_t guess = 0;
   for (std::uint64_t n = chunk * k_samples_a_chunk; n < end; ++n) {
     const Bvh::Nearest nearest = bvh.nearest(point(n), guess);
     guess = nearest.triangle;
-    sums.add({nearest.squared, std::sqrt(nearest.squared), nearest.squared});
+    const double distance = std::sqrt(nearest.squared);
+    sums.add({nearest.squared, distance, nearest.squared});
+    take(n, distance);
   }
   return sums;
 }
@@ -39,9 +42,10 @@ Distance measure_distance(const Mesh& from, const Mesh& to, const DistanceOption
   const AreaSampler sampler(from, before, options.samples);
   std::vector<DistanceSums> chunks(chunks_of(options.samples));
   parallel_for(chunks.size(), options.threads, [&](std::uint64_t chunk) {
-    chunks[chunk] =
-        measure_chunk(bvh, options.samples, chunk,
-                      [own = sampler](std::uint64_t n) mutable { return own.sample(n); });
+    chunks[chunk] = measure_chunk(
+        bvh, options.samples, chunk,
+        [own = sampler](std::uint64_t n) mutable { return own.sample(n); },
+        [](std::uint64_t, double) {});
   });
   DistanceSums all;
   for (const DistanceSums& chunk : chunks) all.add(chunk);
@@ -63,16 +67,23 @@ class DistanceMeter::Impl {
  public:
   Impl(const Mesh& to, unsigned threads) : bvh_(to, threads), threads_(threads) {}
 
-  std::vector<Distance> measure_each(std::span<const Points> sets) const {
+  std::vector<Distance> measure_each(std::span<const Points> sets,
+                                     std::span<double> of_points) const {
     std::vector<ChunkOfSet> chunks;
+    std::vector<std::size_t> first = {0};  // point of each set, among all
+    for (const Points& set : sets) first.push_back(first.back() + set.size());
     for (std::size_t set = 0; set < sets.size(); ++set) {
       const std::uint64_t count = chunks_of(sets[set].size());
       for (std::uint64_t chunk = 0; chunk < count; ++chunk) chunks.push_back({set, chunk, {}});
     }
     parallel_for(chunks.size(), threads_, [&](std::uint64_t i) {
-      const Points points = sets[chunks[i].set];
-      chunks[i].sums = measure_chunk(bvh_, points.size(), chunks[i].chunk,
-                                     [&](std::uint64_t n) { return points[n]; });
+      const std::size_t set = chunks[i].set;
+      const Points points = sets[set];
+      chunks[i].sums = measure_chunk(
+          bvh_, points.size(), chunks[i].chunk, [&](std::uint64_t n) { return points[n]; },
+          [&](std::uint64_t n, double distance) {
+            if (!of_points.empty()) of_points[first[set] + n] = distance;
+          });
     });
     std::vector<DistanceSums> sums(sets.size());
     for (const ChunkOfSet& each : chunks) sums[each.set].add(each.sums);
@@ -114,7 +125,7 @@ DistanceMeter::~DistanceMeter() = default;
 DistanceMeter::DistanceMeter(DistanceMeter&&) noexcept = default;
 
 Distance DistanceMeter::measure(Points points) const {
-  return impl_->measure_each({&points, 1}).front();
+  return impl_->measure_each({&points, 1}, {}).front();
 }
 
 double DistanceMeter::farthest(Points points, double least) const {
@@ -125,8 +136,9 @@ std::uint32_t DistanceMeter::nearest_triangle(Vec3 point) const {
   return impl_->nearest_triangle(point);
 }
 
-std::vector<Distance> DistanceMeter::measure_each(std::span<const Points> sets) const {
-  return impl_->measure_each(sets);
+std::vector<Distance> DistanceMeter::measure_each(std::span<const Points> sets,
+                                                  std::span<double> of_points) const {
+  return impl_->measure_each(sets, of_points);
 }
 
 }  // namespace meshfarm

@@ -7,6 +7,8 @@
 #include <mutex>
 #include <utility>
 
+#include <meshfarm/geometry/value_error.hpp>
+#include <meshfarm/geometry/weighted_values.hpp>
 #include <meshfarm/util/parallel.hpp>
 
 namespace meshfarm {
@@ -97,10 +99,11 @@ ErrorMeter::ResultPoints ErrorMeter::points_of(const Mesh& result) const {
 }
 
 /// Every set of samples counts by the area it stands for.
-Distance ErrorMeter::measure_samples(const DistanceMeter& meter) const {
+void ErrorMeter::measure_samples(const DistanceMeter& meter, MeasuredError& measured) const {
   std::vector<DistanceMeter::Points> points;
   for (const SurfaceSamples& part : samples_) points.emplace_back(part.points);
-  const std::vector<Distance> distances = meter.measure_each(points);
+  std::vector<double> of_points(surface_.size());
+  const std::vector<Distance> distances = meter.measure_each(points, of_points);
   Distance error;
   for (std::size_t i = 0; i < samples_.size(); ++i) {
     const Distance& d = distances[i];
@@ -108,7 +111,17 @@ Distance ErrorMeter::measure_samples(const DistanceMeter& meter) const {
     error.mean += samples_[i].area * d.mean;
     error.max = std::max(error.max, d.max);
   }
-  return {std::sqrt(error.rms / area_), error.mean / area_, error.max};
+  measured.to_output = {std::sqrt(error.rms / area_), error.mean / area_, error.max};
+  std::vector<std::pair<double, double>> weighted;
+  weighted.reserve(of_points.size());
+  for (const SurfaceSamples& part : samples_) {
+    const double each = part.area / static_cast<double>(part.points.size());
+    for (std::size_t i = 0; i < part.points.size(); ++i) {
+      weighted.emplace_back(of_points[weighted.size()], each);
+    }
+  }
+  const WeightedValues values(std::move(weighted));
+  measured.to_output_quantiles = DistanceQuantiles{values.quantile(0.95), values.quantile(0.99)};
 }
 
 double ErrorMeter::estimate_rms(const Mesh& result) const {
@@ -145,7 +158,7 @@ MeasuredError ErrorMeter::measure(const Mesh& result) {
   MeasuredError error;
   if (result.triangles.empty() || !(area_ > 0)) return error;
   const DistanceMeter to_result(result, threads_);
-  error.to_output = measure_samples(to_result);
+  measure_samples(to_result, error);
   const ResultPoints from = points_of(result);
   // The maximum where that is within the neighbours' distance: the first pass then finds them all.
   const double usual =
@@ -161,6 +174,9 @@ MeasuredError ErrorMeter::measure(const Mesh& result) {
   const std::vector<double> distances = to_input.distances();
   error.to_input = distance_of(std::span(distances).first(from.by_area));
   error.to_input.max = distance_of(distances).max;
+  std::vector<double> by_area(distances.begin(),
+                              distances.begin() + static_cast<std::ptrdiff_t>(from.by_area));
+  error.to_input_quantiles = quantiles_of(by_area);
   error.input_samples = surface_.size();
   error.output_samples = from.by_area;
   return error;

@@ -47,7 +47,8 @@ class ErrorMeter {
   };
 
   ResultPoints points_of(const Mesh& result) const;
-  Distance measure_samples(const DistanceMeter& meter) const;
+  /// From the input to the result.
+  void measure_samples(const DistanceMeter& meter, MeasuredError& measured) const;
   void show_input(PointMeter& to_input, const std::function<void(std::span<const Vec3>)>& vertices);
 
   const Manifest& manifest_;

@@ -12,6 +12,7 @@
 #include <meshfarm/geometry/components.hpp>
 #include <meshfarm/geometry/distance.hpp>
 #include <meshfarm/geometry/simplify.hpp>
+#include <meshfarm/geometry/surface_measures.hpp>
 #include <meshfarm/geometry/topology.hpp>
 #include <meshfarm/io/boundary_file.hpp>
 #include <meshfarm/io/result_file.hpp>
@@ -68,6 +69,7 @@ class ResultFinish {
     summary_.error = meter_->measure(result);
     look_for_better(chosen);
     if (better_mesh_) take_better(chosen, result);
+    describe(result);
     options_.check_stop();
     summary_.measure_seconds = watch.lap();
     return {std::move(result), std::move(summary_)};
@@ -254,6 +256,16 @@ class ResultFinish {
   void count(const Mesh& result) {
     summary_.triangles = result.triangles.size();
     summary_.vertices = result.positions.size();
+  }
+
+  void describe(const Mesh& result) {
+    SurfaceFigures figures;
+    ShapeMeter meter(options_.threads);
+    meter.add(result.positions, result.triangles);
+    figures.shape = meter.measures();
+    figures.edges = measure_edge_lengths(result, options_.threads);
+    figures.is_closed = summary_.topology && summary_.topology->after.unmatched_edges == 0;
+    summary_.result = figures;
   }
 
   /// An estimate, of one direction only, which may be the lesser: it tells what to measure.

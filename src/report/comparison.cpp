@@ -70,18 +70,6 @@ Json to_json(const SurfaceError& error, double diagonal) {
   return json;
 }
 
-Json to_json(const SurfaceFigures& figures) {
-  const auto& [shape, is_closed, edges, crossing, skipped] = figures;
-  return {{"area", shape.area},
-          {"volume", is_closed ? Json(shape.volume) : Json(nullptr)},
-          {"border_length", edges ? Json(edges->border) : Json(nullptr)},
-          {"feature_length", edges ? Json(edges->feature) : Json(nullptr)},
-          {"smallest_angle_p1_degrees", shape.smallest_angle_p1},
-          {"below_5_degrees", shape.share_below_5},
-          {"crossing_triangles", crossing ? Json(*crossing) : Json(nullptr)},
-          {"crossings_not_counted", skipped.empty() ? Json(nullptr) : Json(skipped)}};
-}
-
 /// From A to B, in percent of A; nothing where that has none.
 std::optional<double> change(double a, double b) {
   if (a == 0) return std::nullopt;
@@ -111,27 +99,6 @@ std::string text_of(const SurfaceError& error, double diagonal) {
 std::string text_of(const NormalDeviation& normals) {
   return "rms " + number(normals.rms, "%.3g") + "  95 % " + number(normals.p95, "%.3g") +
          " degrees, more than 90 on " + number(100 * normals.over_90, "%.3g") + " % of the area";
-}
-
-void add_figures(Lines& lines, const SurfaceFigures& figures) {
-  const ShapeMeasures& shape = figures.shape;
-  std::string sizes =
-      "area " + number(shape.area, "%.6g") +
-      (figures.is_closed ? ", volume " + number(shape.volume, "%.6g") : ", no volume: not closed");
-  if (figures.edges) {
-    sizes += ", border " + number(figures.edges->border, "%.4g") + " long, edges over " +
-             number(k_feature_degrees, "%g") + " degrees " +
-             number(figures.edges->feature, "%.4g") + " long";
-  }
-  lines.add("", sizes);
-  lines.add("", "smallest angles: 1 % of the triangles up to " +
-                    number(shape.smallest_angle_p1, "%.3g") + " degrees, " +
-                    number(100 * shape.share_below_5, "%.3g") + " % below 5 degrees");
-  if (figures.crossing_triangles) {
-    lines.add("", grouped(*figures.crossing_triangles) + " triangles cut or touch others");
-  } else if (!figures.crossings_skipped.empty()) {
-    lines.add("", "triangles that cut others not counted: " + figures.crossings_skipped);
-  }
 }
 
 void add_changes(Lines& lines, const Comparison& c) {
@@ -215,10 +182,10 @@ std::string render(const Comparison& c, Format format) {
   Lines lines;
   lines.add("A", c.path_a + ", " + grouped(c.welded_a.triangles) + " triangles");
   add_topology(lines, "", c.welded_a, c.as_it_is_a);
-  add_figures(lines, c.figures_a);
+  add_figures(lines, "", c.figures_a);
   lines.add("B", c.path_b + ", " + grouped(c.welded_b.triangles) + " triangles");
   add_topology(lines, "", c.welded_b, c.as_it_is_b);
-  add_figures(lines, c.figures_b);
+  add_figures(lines, "", c.figures_b);
   add_changes(lines, c);
   lines.add("A to B", text_of(c.a_to_b, c.diagonal));
   lines.add("B to A", text_of(c.b_to_a, c.diagonal));

@@ -38,6 +38,8 @@ std::string render(const FileSummary& s, Format format) {
                  {"diagonal", s.box.diagonal()}};
     if (s.welded) json["topology"] = to_json(*s.welded);
     if (s.as_it_is) json["topology_not_welded"] = to_json(*s.as_it_is);
+    if (s.figures) json["surface"] = to_json(*s.figures);
+    if (!s.not_measured.empty()) json["not_measured"] = s.not_measured;
     return dumped(json);
   }
   Lines lines;
@@ -62,6 +64,10 @@ std::string render(const FileSummary& s, Format format) {
   if (!s.file.skipped.empty()) lines.add("not kept", joined(s.file.skipped));
   add_box(lines, s.box);
   if (s.welded && s.as_it_is) add_topology(lines, "topology", *s.welded, *s.as_it_is);
+  if (s.figures) add_figures(lines, "surface", *s.figures);
+  if (!s.not_measured.empty()) {
+    lines.add("not measured", "lengths of edges, crossings: " + s.not_measured);
+  }
   return lines.text();
 }
 

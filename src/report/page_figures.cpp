@@ -98,8 +98,13 @@ void add_topology(Table& table, const Json& input, const Json& result) {
   add("edges of more than two triangles", "nonmanifold_edges");
 }
 
+bool has_figure(const Json& error, const char* direction, const char* figure) {
+  return error.is_object() && error.contains(direction) &&
+         error.at(direction).value(figure, Json(nullptr)).is_number();
+}
+
 std::string share_of(const Json& error, const char* direction, const char* figure) {
-  if (!error.is_object() || !error.contains(direction)) return k_none;
+  if (!has_figure(error, direction, figure)) return k_none;
   return number(error.at(direction).value(figure, 0.0), "%.3g");
 }
 
@@ -108,14 +113,22 @@ std::string error_table(const Json& summary, const PageFigures* figures, double 
   const Json error = summary.value("error", Json(nullptr));
   if (!error.is_object() && figures == nullptr) return {};
   Table table({"distances, of the diagonal", "input to result", "result to input", ""});
-  for (const char* const figure : {"rms", "mean", "max"}) {
-    table.add({figure, share_of(error, "input_to_output", figure),
+  const auto add = [&](const char* name, const char* figure) {
+    table.add({name, share_of(error, "input_to_output", figure),
                share_of(error, "output_to_input", figure), ""});
-  }
+  };
+  add("rms", "rms");
+  add("mean", "mean");
+  const bool has_quantiles = has_figure(error, "input_to_output", "p95");
+  if (has_quantiles) add("95 %", "p95");
+  if (has_quantiles) add("99 %", "p99");
+  add("max", "max");
   if (figures != nullptr) {
     const SurfaceError& e = figures->to_result;
-    table.add({"95 %", number(e.quantiles.p95 / diagonal, "%.3g"), k_none, ""});
-    table.add({"99 %", number(e.quantiles.p99 / diagonal, "%.3g"), k_none, ""});
+    if (!has_quantiles) {  // a run of an older version
+      table.add({"95 %", number(e.quantiles.p95 / diagonal, "%.3g"), k_none, ""});
+      table.add({"99 %", number(e.quantiles.p99 / diagonal, "%.3g"), k_none, ""});
+    }
     if (e.normals) {
       table.add({"normals turned, RMS", number(e.normals->rms, "%.3g°"), k_none, ""});
       table.add({"normals turned, 95 %", number(e.normals->p95, "%.3g°"), k_none, ""});

@@ -16,12 +16,19 @@
 namespace meshfarm {
 namespace {
 
+void add_quantiles(const std::optional<DistanceQuantiles>& quantiles, double diagonal, Json& json) {
+  json["p95"] = quantiles ? Json(quantiles->p95 / diagonal) : Json(nullptr);
+  json["p99"] = quantiles ? Json(quantiles->p99 / diagonal) : Json(nullptr);
+}
+
 Json error_json(const MeasuredError& error, double diagonal) {
   Json json = to_json(error.greater(), diagonal);
   json["of"] = "the greater of both directions, fractions of the diagonal";
   json["input_to_output"] = to_json(error.to_output, diagonal);
+  add_quantiles(error.to_output_quantiles, diagonal, json["input_to_output"]);
   json["input_to_output"]["samples"] = error.input_samples;
   json["output_to_input"] = to_json(error.to_input, diagonal);
+  add_quantiles(error.to_input_quantiles, diagonal, json["output_to_input"]);
   json["output_to_input"]["samples"] = error.output_samples;
   return json;
 }
@@ -65,13 +72,6 @@ bool is_kept(const RunSummary& s) {
   const auto& [before, after, gone] = *s.topology;
   return before.components == after.components && before.euler == after.euler &&
          (before.border_edges == 0) == (after.border_edges == 0);
-}
-
-/// Nothing where borders or edges that are not manifold make the Euler characteristic tell more
-/// than handles.
-std::optional<std::int64_t> handles_of(const Topology& t) {
-  if (t.border_edges + t.nonmanifold_edges > 0) return std::nullopt;
-  return (2 * static_cast<std::int64_t>(t.components) - t.euler) / 2;
 }
 
 Json topology_json(const Topology& t) {
@@ -238,11 +238,11 @@ std::string render(const Manifest& m, const std::string& stage, Format format) {
   }
   Lines lines;
   add_input(lines, m);
-  lines.add("stage", stage + (m.cutting ? ": to be cut into " + grouped(m.cutting->parts) +
-                                              " parts by the first jobs of a run"
-                                        : ": " + grouped(m.parts.size()) + " " + parts_name(m) +
-                                              ", " + grouped(m.boundary_triangles) +
-                                              " boundary triangles"));
+  lines.add("stage",
+            stage + (m.cutting ? ": to be cut into " + grouped(m.cutting->parts) +
+                                     " parts by the first jobs of a run"
+                               : ": " + grouped(m.parts.size()) + " " + parts_name(m) + ", " +
+                                     grouped(m.boundary_triangles) + " boundary triangles"));
   lines.add("time", number(m.cut_seconds, "%.2f s"));
   return lines.text();
 }
@@ -265,6 +265,7 @@ std::string render(const RunSummary& s, Format format) {
         {"turned", s.turned},
         {"error",
          s.error.input_samples == 0 ? Json(nullptr) : error_json(s.error, m.box.diagonal())},
+        {"surface", s.result ? to_json(*s.result) : Json(nullptr)},
         {"channels", channels_json(s)},
         {"labels", to_json(s.labels)},
         {"textures", textures_json(s)},
@@ -308,6 +309,7 @@ std::string render(const RunSummary& s, Format format) {
     lines.add("", grouped(s.target) + " were asked for: " + s.why_not_exact);
   }
   if (s.error.input_samples > 0) add_error(lines, s.error, s.max_error, m.box.diagonal());
+  if (s.result) add_figures(lines, "surface", *s.result);
   add_channels(lines, s);
   if (!warning.empty()) lines.add("warning", warning);
   lines.add(parts_name(m), grouped(m.parts.size()) + ", stitched to " + grouped(s.stitched) +

@@ -26,11 +26,13 @@ Json to_json(const Box& box) {
 }
 
 Json to_json(const Topology& t) {
+  const auto handles = handles_of(t);
   return {{"vertices", t.vertices},
           {"unused_vertices", t.vertices - t.used_vertices},
           {"triangles", t.triangles},
           {"components", t.components},
           {"euler", t.euler},
+          {"handles", handles ? Json(*handles) : Json(nullptr)},
           {"border_edges", t.border_edges},
           {"nonmanifold_edges", t.nonmanifold_edges},
           {"orientation_conflicts", t.orientation_conflicts},
@@ -43,11 +45,19 @@ Json to_json(const Distance& d, double diagonal) {
   return {{"rms", d.rms / diagonal}, {"mean", d.mean / diagonal}, {"max", d.max / diagonal}};
 }
 
+std::optional<std::int64_t> handles_of(const Topology& t) {
+  if (t.border_edges + t.nonmanifold_edges > 0) return std::nullopt;
+  return (2 * static_cast<std::int64_t>(t.components) - t.euler) / 2;
+}
+
 std::string text_of(const Topology& t) {
+  const auto handles = handles_of(t);
   return grouped(t.components) + " components, " + grouped(t.border_edges) + " border edges, " +
          grouped(t.nonmanifold_edges) + " non-manifold edges, " + grouped(t.degenerate) +
          " degenerate, " + grouped(t.zero_area) + " of zero area, " + grouped(t.duplicate) +
-         " duplicate, Euler characteristic " + std::to_string(t.euler);
+         " duplicate, Euler characteristic " + std::to_string(t.euler) +
+         (handles ? ", " + std::to_string(*handles) + (*handles == 1 ? " handle" : " handles")
+                  : "");
 }
 
 void add_topology(Lines& lines, const std::string& label, const Topology& welded,
@@ -121,6 +131,39 @@ Json to_json(const TexturesMade& textures) {
 Json to_json(const std::optional<LabelMeaning>& labels) {
   if (!labels) return nullptr;
   return {{"name", labels->name}, {"materials", material_names(*labels)}};
+}
+
+Json to_json(const SurfaceFigures& figures) {
+  const auto& [shape, is_closed, edges, crossing, skipped] = figures;
+  return {{"area", shape.area},
+          {"volume", is_closed ? Json(shape.volume) : Json(nullptr)},
+          {"border_length", edges ? Json(edges->border) : Json(nullptr)},
+          {"feature_length", edges ? Json(edges->feature) : Json(nullptr)},
+          {"smallest_angle_p1_degrees", shape.smallest_angle_p1},
+          {"below_5_degrees", shape.share_below_5},
+          {"crossing_triangles", crossing ? Json(*crossing) : Json(nullptr)},
+          {"crossings_not_counted", skipped.empty() ? Json(nullptr) : Json(skipped)}};
+}
+
+void add_figures(Lines& lines, const std::string& label, const SurfaceFigures& figures) {
+  const ShapeMeasures& shape = figures.shape;
+  std::string sizes =
+      "area " + number(shape.area, "%.6g") +
+      (figures.is_closed ? ", volume " + number(shape.volume, "%.6g") : ", no volume: not closed");
+  if (figures.edges) {
+    sizes += ", border " + number(figures.edges->border, "%.4g") + " long, edges over " +
+             number(k_feature_degrees, "%g") + " degrees " +
+             number(figures.edges->feature, "%.4g") + " long";
+  }
+  lines.add(label, sizes);
+  lines.add("", "smallest angles: 1 % of the triangles up to " +
+                    number(shape.smallest_angle_p1, "%.3g") + " degrees, " +
+                    number(100 * shape.share_below_5, "%.3g") + " % below 5 degrees");
+  if (figures.crossing_triangles) {
+    lines.add("", grouped(*figures.crossing_triangles) + " triangles cut or touch others");
+  } else if (!figures.crossings_skipped.empty()) {
+    lines.add("", "triangles that cut others not counted: " + figures.crossings_skipped);
+  }
 }
 
 }  // namespace meshfarm

@@ -50,6 +50,11 @@ Json to_json(const Topology& topology);
 /// As fractions of the diagonal.
 Json to_json(const Distance& distance, double diagonal);
 std::string text_of(const Topology& topology);
+/// Genus, of all pieces together. Nothing where borders or edges that are not manifold make the
+/// Euler characteristic tell more than handles.
+std::optional<std::int64_t> handles_of(const Topology& topology);
+Json to_json(const SurfaceFigures& figures);
+void add_figures(Lines& lines, const std::string& label, const SurfaceFigures& figures);
 /// As the file has it only where that is something else than the welded.
 void add_topology(Lines& lines, const std::string& label, const Topology& welded,
                   const Topology& as_it_is);

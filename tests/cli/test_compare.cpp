@@ -285,6 +285,13 @@ TEST_CASE("compare tells sizes, angles and crossings of both meshes, and how the
   CHECK(has(json.out, "\"crossing_triangles\": 0,"));
   CHECK(has(json.out, "\"not_measured\": null"));
   CHECK(bench.compare("a.ply", "b.ply", {"--json", "--threads", "1"}).out == json.out);
+  const Ran info = bench.run({"info", bench.path("a.ply"), "--figures", "--json"});
+  CHECK(number_after(info.out, "\"area\": ") == number_after(json.out, "\"area\": "));
+  CHECK(number_after(info.out, "\"handles\": ") == 0);
+  CHECK(has(info.out, "\"crossing_triangles\": 0,"));
+  const Ran small = bench.run({"info", bench.path("a.ply"), "--figures", "--memory", "64K"});
+  CHECK(has(small.out, "area "));
+  CHECK(has(small.out, "lengths of edges, crossings: that takes --memory "));
   const Ran crossing = bench.compare("c.ply", "c.ply");
   const std::size_t end = crossing.out.find(" triangles cut or touch others");
   REQUIRE(end != std::string::npos);
@@ -332,6 +339,11 @@ TEST_CASE("compare writes a map of the distances, with a number and a colour at 
   CHECK(small.code == 2);
   CHECK(has(small.err, "--map"));
   CHECK(bench.compare("a.ply", "b.ply", {"--map", bench.path("map.xyz")}).code == 1);
+  for (const char* const input : {"a.ply", "b.ply"}) {
+    const Ran over = bench.compare("a.ply", "b.ply", {"--map", bench.path(input)});
+    CHECK(over.code == 2);
+    CHECK(has(over.err, "which it would write over"));
+  }
 }
 
 TEST_CASE("compare says what it leaves out of meshes that do not fit into its memory") {

@@ -49,8 +49,10 @@ class DistanceMeter {
   using Points = std::span<const Vec3>;
   /// The points' distances; zeros for no points.
   Distance measure(Points points) const;
-  /// The distances of each set by itself, measured all at once.
-  std::vector<Distance> measure_each(std::span<const Points> sets) const;
+  /// The distances of each set by itself, measured all at once. `of_points`, where it is not empty,
+  /// takes those of all points in order.
+  std::vector<Distance> measure_each(std::span<const Points> sets,
+                                     std::span<double> of_points = {}) const;
   /// The greatest distance of the points, or `least` if none is beyond that: much cheaper than to
   /// measure them all. On one thread.
   double farthest(Points points, double least) const;

@@ -28,6 +28,9 @@ enum class Format { text, json };
 struct MeasuredError {
   Distance to_output;
   Distance to_input;
+  /// Nothing where the result was measured in pieces.
+  std::optional<DistanceQuantiles> to_output_quantiles = {};
+  std::optional<DistanceQuantiles> to_input_quantiles = {};
   std::uint64_t input_samples = 0;  // by area; 0: there is nothing to measure
   std::uint64_t output_samples = 0;
 
@@ -78,6 +81,15 @@ struct ErrorOfPiece {
   Distance to_input;
 };
 
+/// The shape of a mesh by itself.
+struct SurfaceFigures {
+  ShapeMeasures shape;
+  bool is_closed = false;  // so that the volume means something
+  std::optional<EdgeLengths> edges;
+  std::optional<std::uint64_t> crossing_triangles;
+  std::string crossings_skipped;  // why these were not counted though the mesh is in memory
+};
+
 /// What a run made, for people and for programs.
 struct RunSummary {
   Manifest manifest;
@@ -95,9 +107,10 @@ struct RunSummary {
   std::uint64_t turned = 0;  // triangles that faced another way than most of their piece
   DroppedComponents dropped_components;  // and their triangles before the finish
   MeasuredError error;
-  std::vector<ChannelError> channels;  // that were written
-  std::optional<LabelMeaning> labels;  // that were written
-  bool labels_too_fine = false;        // so they were dropped
+  std::optional<SurfaceFigures> result;  // its own figures; nothing where it is in pieces
+  std::vector<ChannelError> channels;    // that were written
+  std::optional<LabelMeaning> labels;    // that were written
+  bool labels_too_fine = false;          // so they were dropped
   TexturesMade textures;
   std::vector<std::string> channels_not_wanted;  // of the stage's and its labels, their names
   /// Where the result went to ruin and a few triangles more would not have.
@@ -128,6 +141,8 @@ struct FileSummary {
   /// With coincident vertices welded as a run does, and as the file has them.
   std::optional<Topology> welded;
   std::optional<Topology> as_it_is;
+  std::optional<SurfaceFigures> figures;
+  std::string not_measured;  // why lengths of edges and crossings were not
 };
 
 /// What `info` tells of a stream.
@@ -154,15 +169,6 @@ struct LabelDifference {
   std::string name_b;
   double a_to_b = 0;  // the share of A's area with another label at the nearest place of B
   double b_to_a = 0;
-};
-
-/// What `compare` tells of the shape of a mesh by itself.
-struct SurfaceFigures {
-  ShapeMeasures shape;
-  bool is_closed = false;  // so that the volume means something
-  std::optional<EdgeLengths> edges;
-  std::optional<std::uint64_t> crossing_triangles;
-  std::string crossings_skipped;  // why these were not counted though the mesh is in memory
 };
 
 /// What `compare` tells of two meshes.

@@ -249,5 +249,9 @@ TEST_CASE("samples and a meter measure what measure_distance does") {
     CHECK(each[i].mean == DistanceMeter(to, 1).measure(sets[i]).mean);
   }
   CHECK(std::max(each[0].max, each[2].max) == each[3].max);
+  std::vector<double> of_points(10'000);
+  meter.measure_each(sets, of_points);
+  CHECK(*std::max_element(of_points.begin(), of_points.begin() + 10) == each[0].max);
+  CHECK(std::equal(of_points.begin(), of_points.begin() + 5000, of_points.begin() + 5000));
   CHECK(sample_surface({}, {.samples = 10}).points.empty());
 }
