@@ -9,6 +9,7 @@
 #include <meshfarm/util/errors.hpp>
 
 #include "pipeline/bundle_list.hpp"
+#include "pipeline/part_jobs.hpp"
 #include "pipeline/run_stages.hpp"
 
 namespace meshfarm {
@@ -30,6 +31,23 @@ constexpr std::uint64_t k_cells_a_part = 1024;
 std::uint64_t likely_cells(std::uint32_t parts) {
   return std::min(k_most_cells, k_cells_a_part * parts);
 }
+
+/// In bytes, beside that of the process.
+struct MemoryOfCut {
+  explicit MemoryOfCut(const Manifest& manifest, const Cutting& cutting) {
+    const std::uint64_t cells = likely_cells(cutting.parts);
+    const std::uint64_t vertices = manifest.input_vertices / cutting.vertex_blocks + 1;
+    const std::uint64_t triangles = manifest.input_triangles / cutting.triangle_blocks + 1;
+    count = k_cell_bytes_in_memory * cells;
+    partition = k_cell_bytes_of_graph * cells;
+    scatter_vertices = count + 60 * vertices;
+    scatter_triangles = 80 * triangles + 16 * vertices;
+  }
+  std::uint64_t count = 0;
+  std::uint64_t partition = 0;
+  std::uint64_t scatter_vertices = 0;
+  std::uint64_t scatter_triangles = 0;
+};
 
 std::string what_of(const JobOutput& output) {
   return "summary of " + output.file.name;
@@ -95,7 +113,8 @@ void CutStage::count(JobGraph& graph, std::uint32_t round) {
   const std::uint32_t blocks = cutting_.vertex_blocks;
   const std::uint64_t cells = likely_cells(cutting_.parts);
   for (std::uint32_t b = 0; b < blocks; ++b) {
-    Job job = job_of(k_count_kind, vertices_of_block() / k_counted, k_cell_bytes_in_memory * cells);
+    Job job = job_of(k_count_kind, vertices_of_block() / k_counted,
+                     MemoryOfCut(manifest_, cutting_).count);
     if (round > 0) job.inputs = {cells_};
     job.reads = bytes_of_vertices();
     job.parameters = encode_parameters(
@@ -105,7 +124,8 @@ void CutStage::count(JobGraph& graph, std::uint32_t round) {
   const JobRange counted = jobs_of(RunStage::count, std::size_t{round} * blocks, blocks);
   const JobName name = job_name(RunStage::partition, round);
   graph.add(name, {counted}, [this, round, blocks, cells](JobGraph& so_far) {
-    Job job = job_of(k_partition_kind, k_partitioned * cells, k_cell_bytes_of_graph * cells);
+    Job job = job_of(k_partition_kind, k_partitioned * cells,
+                     MemoryOfCut(manifest_, cutting_).partition);
     if (round > 0) job.inputs = {cells_};
     for (std::uint32_t b = 0; b < blocks; ++b) {
       job.inputs.push_back(so_far.output(job_name(RunStage::count, round * blocks + b)).file);
@@ -125,10 +145,9 @@ void CutStage::count(JobGraph& graph, std::uint32_t round) {
 }
 
 void CutStage::scatter_vertices(JobGraph& graph) {
-  const std::uint64_t cells = likely_cells(cutting_.parts);
   for (std::uint32_t b = 0; b < cutting_.vertex_blocks; ++b) {
     Job job = job_of(k_vertices_kind, vertices_of_block() / k_scattered_vertices,
-                     k_cell_bytes_in_memory * cells + 60 * vertices_of_block());
+                     MemoryOfCut(manifest_, cutting_).scatter_vertices);
     job.inputs = {cells_};
     job.reads = bytes_of_vertices();
     job.parameters = encode_parameters(CutJobParameters{cutting_, b, 0, {}, {}});
@@ -152,7 +171,7 @@ void CutStage::take_vertices(const JobGraph& graph) {
 void CutStage::scatter_triangles(JobGraph& graph) {
   for (std::uint32_t b = 0; b < cutting_.triangle_blocks; ++b) {
     Job job = job_of(k_triangles_kind, triangles_of_block() / k_scattered_triangles,
-                     80 * triangles_of_block() + 16 * vertices_of_block());
+                     MemoryOfCut(manifest_, cutting_).scatter_triangles);
     job.reads = (cutting_.bytes - cutting_.vertex_blocks * bytes_of_vertices()) /
                 cutting_.triangle_blocks;
     job.parameters = encode_parameters(CutJobParameters{cutting_, b, 0, {}, bundles_});
@@ -218,6 +237,14 @@ void CutStage::take_boundary(const JobOutput& joined) {
   manifest_.dropped_degenerate += summary.degenerate;
   manifest_.coincident_corners += summary.coincident;
   manifest_.dropped_duplicate = summary.duplicate;
+}
+
+std::uint64_t memory_of_cut(const Manifest& manifest) {
+  const MemoryOfCut memory(manifest, *manifest.cutting);
+  const std::uint64_t average = manifest.input_triangles / manifest.cutting->parts + 1;
+  return std::max({k_cut_process_bytes + std::max(memory.count, memory.partition),
+                   k_cut_process_bytes + std::max(memory.scatter_vertices, memory.scatter_triangles),
+                   memory_to_build(average)});
 }
 
 Manifest as_if_cut(Manifest manifest) {

@@ -50,6 +50,9 @@ class CutStage {
   BundlesOfMesh bundles_;
 };
 
+/// What the largest job of a cut takes, in bytes.
+std::uint64_t memory_of_cut(const Manifest& manifest);
+
 /// What will be once the input is cut, as far as it can be told: for estimates only.
 Manifest as_if_cut(Manifest manifest);
 

@@ -36,6 +36,13 @@ std::uint64_t memory_of_sweep(std::uint64_t window_triangles) {
 
 }  // namespace
 
+std::uint64_t memory_to_build(std::uint64_t average_triangles) {
+  PartEntry likely;
+  likely.triangles = k_largest_part * average_triangles / 10;
+  likely.file.size = k_part_bytes * likely.triangles;
+  return memory_of(likely, likely.triangles);
+}
+
 PartJobs::PartJobs(const Manifest& manifest, const RunOptions& options,
                    const BundlesOfMesh* bundles)
     : manifest_(manifest), options_(options), bundles_(bundles) {}
@@ -94,16 +101,12 @@ Job PartJobs::build_and_climb(std::uint32_t part, double headroom,
                               SimplifyParameters parameters) const {
   const std::uint64_t parts = std::max<std::uint64_t>(1, manifest_.parts.size());
   const std::uint64_t average = manifest_.input_triangles / parts + 1;
-  const std::uint64_t triangles = k_largest_part * average / 10;
   parameters.build = PartToBuild{*bundles_, part, share_rule(headroom)};
-  PartEntry likely;
-  likely.triangles = triangles;
-  likely.file.size = k_part_bytes * triangles;
   Job job{std::string(k_simplify_kind),
           {},
           encode_parameters(parameters),
           average + average / k_build_share,
-          memory_of(likely, triangles)};
+          memory_to_build(average)};
   for (const VertexBundleRef& each : bundles_->vertices) job.reads += each.file.size / parts;
   for (const TriangleBundleRef& each : bundles_->triangles) job.reads += each.file.size / parts;
   return job;

@@ -14,6 +14,9 @@ namespace meshfarm {
 /// Of a bound on the error, streams that are swept by cost may take up this share.
 constexpr double k_error_share = 0.5;
 
+/// What it takes to build a part, of which so many triangles are the average, and to climb it.
+std::uint64_t memory_to_build(std::uint64_t average_triangles);
+
 /// Makes the jobs of single parts and streams, and knows what in them follows from the run's
 /// options alone.
 class PartJobs {

@@ -309,7 +309,10 @@ std::uint64_t memory_wanted(const Manifest& manifest, const RunOptions& options)
   JobGraph graph = make_job_source(manifest, options)();
   for (const WantedJob& each : graph.begin()) wanted = std::max(wanted, each.job.memory);
   if (bakes_texture(manifest, options)) wanted = std::max(wanted, memory_of_bake(manifest));
-  if (manifest.cutting) return std::max(wanted, memory_wanted(as_if_cut(manifest), options));
+  if (manifest.cutting) {
+    wanted = std::max(wanted, memory_of_cut(manifest));
+    return std::max(wanted, memory_wanted(as_if_cut(manifest), options));
+  }
   return manifest.sorting ? std::max(wanted, memory_wanted(as_if_sorted(manifest), options))
                           : wanted;
 }

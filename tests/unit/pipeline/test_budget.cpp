@@ -23,7 +23,12 @@ Manifest manifest_of(std::uint32_t parts, std::uint64_t triangles_each) {
   m.box.add({0, 0, 0});
   m.box.add({1, 1, 1});
   for (std::uint32_t p = 0; p < parts; ++p) {
-    m.parts.push_back({{to_string(PartName{p}), 100, p}, triangles_each / 2, triangles_each, 10});
+    m.parts.push_back({{to_string(PartName{p}), 100, p},
+                       triangles_each / 2,
+                       triangles_each,
+                       10,
+                       triangles_each,
+                       10});
     m.input_triangles += triangles_each;
   }
   return m;
@@ -404,14 +409,18 @@ TEST_CASE("parameters come back; damaged ones are refused") {
   }
   CHECK_THROWS_AS(decode_parameters(bytes + "x"), DataError);
   CHECK_THROWS_AS(decode_parameters("\x09" + bytes.substr(1)), DataError);
-  // The topology stands last but for the two numbers of appearances and what is said of labels.
+  // The topology stands last but for the two numbers of appearances, what is said of labels, and
+  // that there is nothing to build.
   std::string other = bytes;
-  other[bytes.size() - 2 * sizeof(double) - 2] = 4;
+  other[bytes.size() - 2 * sizeof(double) - 3] = 4;
   CHECK_THROWS_AS(decode_parameters(other), DataError);
   other = bytes;
   other.back() = 4;
   CHECK_THROWS_AS(decode_parameters(other), DataError);
   other = bytes;
-  other[bytes.size() - 2] = static_cast<char>(0xff);
+  other[bytes.size() - 2] = 4;
+  CHECK_THROWS_AS(decode_parameters(other), DataError);
+  other = bytes;
+  other[bytes.size() - 3] = static_cast<char>(0xff);
   CHECK_THROWS_AS(decode_parameters(other), DataError);
 }
