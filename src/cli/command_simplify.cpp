@@ -71,7 +71,8 @@ class SimplifyCommand : public Command {
     check_writable(output_);
     if (!report_.empty()) check_place(report_);
     const Claim claim(claim_of(output_), output_ + ": is being made");
-    cut_to_stage({input_, stage_, cut_, talk_, stop, farm_pays()});
+    cut_to_stage({input_, stage_, cut_, talk_, stop,
+                  [this](std::uint64_t triangles) { return farm_pays(triangles); }});
     const int code = run_local_farm(
         {stage_, output_, output_words_, target_, network_, schedule_, when_full_, talk_, workers_},
         stop);
@@ -87,11 +88,19 @@ class SimplifyCommand : public Command {
   }
 
  private:
-  /// Measured: the jobs of a cut take as much of the processors' time as a cut here, which takes all
-  /// processors. What looks at the parts later needs a cut that keeps them.
-  bool farm_pays() const {
-    const bool keeps_parts = keep_stage_ || in_batch_ || !report_.empty();
-    return !keeps_parts && target_.run.error.value == 0 && 2 * workers_ >= default_workers();
+  /// Measured: from about a million triangles on, the jobs of a cut take as much of the processors'
+  /// time as a cut here, which takes all processors. What looks at parts later needs a cut that
+  /// keeps them, as does a result so large that it may be finished in pieces.
+  bool farm_pays(std::uint64_t triangles) const {
+    constexpr std::uint64_t k_worth_jobs = 1'000'000;
+    constexpr double k_large_result = 5e6;
+    const RunOptions& run = target_.run;
+    const bool keeps_parts = keep_stage_ || in_batch_ || !report_.empty() || run.error.value > 0;
+    if (keeps_parts || run.finish_place == FinishPlace::farm) return false;
+    const double result = run.triangles != 0 ? static_cast<double>(run.triangles)
+                                             : run.ratio * static_cast<double>(triangles);
+    return triangles >= k_worth_jobs && result <= k_large_result &&
+           2 * workers_ >= default_workers();
   }
 
   std::string input_;

@@ -78,13 +78,11 @@ std::string why_not_by_farm(const MeshFileInfo& info, const std::optional<Cuttin
 
 /// What the farm is to cut; nothing if this process is.
 std::optional<Cutting> cutting_for(const CutStep& step, const MeshSource& source) {
-  // Measured: from about so many triangles on, jobs of a cut take no longer than a cut here.
-  constexpr std::uint64_t k_worth_jobs = 1'000'000;
   const CutWords& words = step.words;
   const bool is_asked = words.where == "farm";
-  const bool may = words.where == "auto" && step.farm_pays && words.cut.scheme == Scheme::cut &&
-                   words.cut.weld == Weld::exact && words.memory.empty() &&
-                   source.info().faces >= k_worth_jobs;
+  const bool may = words.where == "auto" && step.farm_pays && step.farm_pays(source.info().faces) &&
+                   words.cut.scheme == Scheme::cut && words.cut.weld == Weld::exact &&
+                   words.memory.empty();
   if (!is_asked && !may) return std::nullopt;
   std::optional<Cutting> cutting = plan_cutting(step.input, {words.cut.parts, words.blocks});
   const std::string why = why_not_by_farm(source.info(), cutting);

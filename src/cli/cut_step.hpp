@@ -3,6 +3,8 @@
 #pragma once
 
 #include <atomic>
+#include <cstdint>
+#include <functional>
 #include <string>
 
 #include <meshfarm/io/manifest.hpp>
@@ -17,9 +19,9 @@ struct CutStep {
   const CutWords& words;
   const TalkOptions& talk;
   const std::atomic<bool>& stop;
-  /// What --cut auto comes to where the farm can cut: true for a run that keeps no parts, on as many
-  /// workers as make it worth it.
-  bool farm_pays = false;
+  /// What --cut auto comes to for a mesh of so many triangles, if the farm can cut it; may be
+  /// empty.
+  std::function<bool(std::uint64_t triangles)> farm_pays = {};
 };
 
 /// Cuts a file, or makes streams of it, in a stage that holds no manifest yet, with progress on

@@ -203,7 +203,8 @@ void CutWords::add(po::options_description& options) {
       "cut: compact parts, each simplified in memory; stream: slabs along the "
       "longest axis, each swept through a bounded buffer")(
       "cut", po::value(&where)->default_value(where)->value_name("here|farm|auto"),
-      "with --scheme cut: here: this host cuts; farm: the first jobs of a run cut, on all hosts, of "
+      "with --scheme cut: here: this host cuts; farm: the first jobs of a run cut, on all hosts, "
+      "of "
       "a binary PLY file of triangles that all hosts see; auto: farm, if simplify keeps no parts, "
       "the mesh is large, and there are workers enough")(
       "blocks", po::value(&blocks)->value_name("N"),
@@ -255,7 +256,8 @@ void CutWords::check() {
   }
   if (blocks > k_most_cut_blocks / 2) throw UsageError("--blocks: from 1 to 64");
   if (where == "farm" && scheme_word != "cut") {
-    throw UsageError("--cut farm goes with --scheme cut; with --scheme stream there is --sort farm");
+    throw UsageError(
+        "--cut farm goes with --scheme cut; with --scheme stream there is --sort farm");
   }
   if (where == "farm" && weld != "exact") throw UsageError("--cut farm goes with --weld exact");
   cut.scheme = scheme_word == "stream" ? Scheme::stream : Scheme::cut;

@@ -44,8 +44,8 @@ class ShareOfBlocks {
         if (corner.share == part_) share_.boundary.push_back(corner.place);
       }
     }
-    share_.apart = find_apart(share_, part_, outer_,
-                              [&](SharePlace vertex) { return position_of(vertex); });
+    share_.apart =
+        find_apart(share_, part_, outer_, [&](SharePlace vertex) { return position_of(vertex); });
   }
 
   MeshShare take() { return std::move(share_); }
@@ -65,8 +65,8 @@ class ShareOfBlocks {
         throw DataError(bundles_.vertices[block].file.name + ": has other vertices than it says");
       }
       share_.positions.insert(share_.positions.end(), positions.begin(), positions.end());
-      for (const CrowdVertex& each : read_section<CrowdVertex>(
-               places_.file(block), bundles_.vertices[block].bundle.crowds)) {
+      for (const CrowdVertex& each :
+           read_section<CrowdVertex>(places_.file(block), bundles_.vertices[block].bundle.crowds)) {
         if (each.part != part_) continue;
         const std::uint32_t place = places_.first(block, part_) + each.place;
         const auto [first, is_first] = first_of_point.try_emplace(each.point, place);
@@ -112,9 +112,8 @@ class ShareOfBlocks {
   void check_corners() const {
     const std::size_t vertices = share_.positions.size();
     const bool is_there = std::all_of(
-        share_.triangles.begin(), share_.triangles.end(), [&](const Triangle& t) {
-          return t[0] < vertices && t[1] < vertices && t[2] < vertices;
-        });
+        share_.triangles.begin(), share_.triangles.end(),
+        [&](const Triangle& t) { return t[0] < vertices && t[1] < vertices && t[2] < vertices; });
     if (!is_there) throw DataError("a bundle has a triangle of a vertex that is not there");
   }
 
@@ -159,9 +158,8 @@ void add_same(const std::map<std::uint32_t, std::uint32_t>& same, BoundaryNumber
   if (numbers.places.size() == known) return;
   std::vector<std::size_t> order(numbers.places.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
-  std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
-    return numbers.places[a] < numbers.places[b];
-  });
+  std::sort(order.begin(), order.end(),
+            [&](std::size_t a, std::size_t b) { return numbers.places[a] < numbers.places[b]; });
   BoundaryNumbers sorted;
   for (const std::size_t i : order) {
     sorted.places.push_back(numbers.places[i]);

@@ -2,7 +2,8 @@
 // SPDX-License-Identifier: MIT
 //
 // Bundles: what blocks of a mesh hold of each part. Sections (staging/sections.hpp), little endian:
-//   vertices:  directory = BundleEntry[], ascending by part; its section = positions, 3 x f32 or f64
+//   vertices:  directory = BundleEntry[], ascending by part; its section = positions, 3 x f32 or
+//   f64
 //              runs      = PlaceRun[], for all vertices of the block in order
 //              crowds    = CrowdVertex[]
 //   triangles: directory = BundleEntry[] of the triangles inside parts, ascending by part: packed

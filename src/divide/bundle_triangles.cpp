@@ -20,7 +20,8 @@ class CornerJoin {
 
   std::vector<SeamTriangle> find(std::span<const WideTriangle> triangles) const {
     std::vector<bool> touched(bundles_.size(), false);
-    const std::uint64_t size = std::max<std::uint64_t>(1, block_of(vertices_, bundles_.size(), 0).count);
+    const std::uint64_t size =
+        std::max<std::uint64_t>(1, block_of(vertices_, bundles_.size(), 0).count);
     std::uint64_t last = UINT64_MAX;
     for (const WideTriangle& t : triangles) {
       for (const std::uint64_t v : t) {

@@ -118,8 +118,7 @@ BlockPlaces::BlockPlaces(const Stage& stage, std::span<const VertexBundleRef> bu
       count_(parts, 0) {
   for (std::size_t block = 0; block < bundles.size(); ++block) {
     files_.emplace_back(stage, bundles[block].file);
-    const auto entries =
-        read_section<BundleEntry>(files_.back(), bundles[block].bundle.directory);
+    const auto entries = read_section<BundleEntry>(files_.back(), bundles[block].bundle.directory);
     for (const BundleEntry& entry : entries) {
       if (entry.part >= parts) throw DataError(bundles[block].file.name + ": of other parts");
       entries_[block * parts + entry.part] = entry;

@@ -58,9 +58,8 @@ CellMap CellMap::decode(std::string_view bytes, unsigned threads) {
   if (!map.part_of_cell_.empty() && map.part_of_cell_.size() != cells.size()) {
     in.fail("parts of other cells");
   }
-  map.merges_ = std::any_of(cells.begin(), cells.end(), [](const Cell& each) {
-    return each.is_one;
-  });
+  map.merges_ =
+      std::any_of(cells.begin(), cells.end(), [](const Cell& each) { return each.is_one; });
   return map;
 }
 

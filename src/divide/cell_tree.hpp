@@ -109,7 +109,7 @@ class CellTree {
   std::uint64_t heavy_ = 0;
   unsigned scans_ = 0;
   std::uint32_t coarsened_ = 0;  // how often, in this scan
-  std::size_t last_ = 0;  // where add() was last
+  std::size_t last_ = 0;         // where add() was last
   std::uint64_t last_key_ = k_no_key;
   std::uint32_t last_number_ = 0;
 };

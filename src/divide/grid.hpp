@@ -25,8 +25,8 @@ class UniformGrid {
   /// Of the cell `finer` of the grid before it was coarsened, the cell that holds it now.
   std::uint64_t coarser_cell(std::uint64_t finer) const;
 
-  /// Where `p` lies, in whole steps from the lowest corner: 2^31 steps are the longest side, however
-  /// coarse the cells are. Sums of these do not depend on the order of the points.
+  /// Where `p` lies, in whole steps from the lowest corner: 2^31 steps are the longest side,
+  /// however coarse the cells are. Sums of these do not depend on the order of the points.
   std::array<std::uint64_t, 3> steps_to(Vec3 p) const {
     constexpr double k_most = 4'294'967'295.0;
     const auto along = [this](double x, double lo) {

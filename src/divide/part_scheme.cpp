@@ -60,7 +60,10 @@ class PartScheme : public CutScheme {
     staged.label_corners =
         count_label_corners(mesh.triangles, mesh.columns.labels, mesh.positions.size());
     staged.uv_facts = find_uv_facts(mesh, built.part.boundary_vertices);
-    staged.entry = {{}, mesh.positions.size(), mesh.triangles.size(), built.part.boundary_vertices,
+    staged.entry = {{},
+                    mesh.positions.size(),
+                    mesh.triangles.size(),
+                    built.part.boundary_vertices,
                     shared,
                     static_cast<std::uint32_t>(staged.numbers.places.size())};
     const std::string bytes = encode_part(built.part);

@@ -2,9 +2,8 @@
 // SPDX-License-Identifier: MIT
 //
 // Of the jobs of a cut; version 1:
-// parameters: version u8 | cutting (io/manifest.hpp) | block u32 | round u32 | box 6 x f64 | bundles
-// (bundle_list.hpp)
-// join parameters: version u8 | bundles | parts u32 x (file | section)
+// parameters: version u8 | cutting (io/manifest.hpp) | block u32 | round u32 | box 6 x f64 |
+// bundles (bundle_list.hpp) join parameters: version u8 | bundles | parts u32 x (file | section)
 // survey: box 6 x f64 | not finite u64
 // partition: counts again u8 | parts u32
 // join summary: index section | triangles u64 | degenerate u64 | coincident u64 | duplicate u64

@@ -124,8 +124,8 @@ void CutStage::count(JobGraph& graph, std::uint32_t round) {
   const JobRange counted = jobs_of(RunStage::count, std::size_t{round} * blocks, blocks);
   const JobName name = job_name(RunStage::partition, round);
   graph.add(name, {counted}, [this, round, blocks, cells](JobGraph& so_far) {
-    Job job = job_of(k_partition_kind, k_partitioned * cells,
-                     MemoryOfCut(manifest_, cutting_).partition);
+    Job job =
+        job_of(k_partition_kind, k_partitioned * cells, MemoryOfCut(manifest_, cutting_).partition);
     if (round > 0) job.inputs = {cells_};
     for (std::uint32_t b = 0; b < blocks; ++b) {
       job.inputs.push_back(so_far.output(job_name(RunStage::count, round * blocks + b)).file);
@@ -172,8 +172,8 @@ void CutStage::scatter_triangles(JobGraph& graph) {
   for (std::uint32_t b = 0; b < cutting_.triangle_blocks; ++b) {
     Job job = job_of(k_triangles_kind, triangles_of_block() / k_scattered_triangles,
                      MemoryOfCut(manifest_, cutting_).scatter_triangles);
-    job.reads = (cutting_.bytes - cutting_.vertex_blocks * bytes_of_vertices()) /
-                cutting_.triangle_blocks;
+    job.reads =
+        (cutting_.bytes - cutting_.vertex_blocks * bytes_of_vertices()) / cutting_.triangle_blocks;
     job.parameters = encode_parameters(CutJobParameters{cutting_, b, 0, {}, bundles_});
     graph.add(job_name(RunStage::triangles, b), std::move(job));
   }
@@ -242,9 +242,10 @@ void CutStage::take_boundary(const JobOutput& joined) {
 std::uint64_t memory_of_cut(const Manifest& manifest) {
   const MemoryOfCut memory(manifest, *manifest.cutting);
   const std::uint64_t average = manifest.input_triangles / manifest.cutting->parts + 1;
-  return std::max({k_cut_process_bytes + std::max(memory.count, memory.partition),
-                   k_cut_process_bytes + std::max(memory.scatter_vertices, memory.scatter_triangles),
-                   memory_to_build(average)});
+  return std::max(
+      {k_cut_process_bytes + std::max(memory.count, memory.partition),
+       k_cut_process_bytes + std::max(memory.scatter_vertices, memory.scatter_triangles),
+       memory_to_build(average)});
 }
 
 Manifest as_if_cut(Manifest manifest) {

@@ -43,7 +43,8 @@ class LadderBuilder {
         simplifier_(std::move(part.mesh), {.locked_vertices = part.boundary_vertices,
                                            .positions = part.positions,
                                            .lines = parameters.lines}),
-        result_(vertices_, [this](std::string_view bytes) { file_ += bytes; }, beside) {}
+        result_(
+            vertices_, [this](std::string_view bytes) { file_ += bytes; }, beside) {}
 
   void build() {
     if (parameters_.allocation == Allocation::uniform) {
@@ -151,8 +152,7 @@ struct PartAtHand {
   std::optional<BuiltFacts> facts;
 };
 
-PartAtHand part_at_hand(const Job& job, const JobContext& context,
-                        SimplifyParameters& parameters) {
+PartAtHand part_at_hand(const Job& job, const JobContext& context, SimplifyParameters& parameters) {
   if (!parameters.build) {
     if (job.inputs.size() != 1) throw DataError("a simplify job takes one part");
     return {read_part(context, job.inputs[0]), {}, {}};
@@ -161,9 +161,12 @@ PartAtHand part_at_hand(const Job& job, const JobContext& context,
       build_from_blocks(context.stage, parameters.build->bundles, parameters.build->part);
   set_share(parameters, parameters.build->rule, built.shared_triangles, built.shared_boundary);
   const Mesh& mesh = built.part.mesh;
-  const BuiltFacts facts{mesh.positions.size(),      mesh.triangles.size(),
-                         built.part.boundary_vertices, built.coincident_vertices,
-                         built.dropped_degenerate,   built.coincident_corners,
+  const BuiltFacts facts{mesh.positions.size(),
+                         mesh.triangles.size(),
+                         built.part.boundary_vertices,
+                         built.coincident_vertices,
+                         built.dropped_degenerate,
+                         built.coincident_corners,
                          {}};
   return {std::move(built.part), std::move(built.numbers), facts};
 }

@@ -29,7 +29,7 @@ class Bench : public FarmBench {
 
   std::vector<std::string> simplify(const std::string& output, const std::string& workers,
                                     const std::vector<std::string>& more) const {
-    std::vector<std::string> words = {"simplify", mesh(), "-o",        output, "--ratio",
+    std::vector<std::string> words = {"simplify", mesh(),    "-o", output,      "--ratio",
                                       "0.02",     "--parts", "12", "--workers", workers};
     words.insert(words.end(), more.begin(), more.end());
     return words;

@@ -18,10 +18,10 @@ inline constexpr std::string_view k_simplify_kind = "simplify";
 /// How a part's share of the target is found, by what was shared out to it: known to whoever builds
 /// the part, whether that is the cut or the job itself.
 struct ShareRule {
-  double ratio = 1;                // of all triangles, those that are wanted
-  double headroom = 1;             // a ladder begins at so many times the share
+  double ratio = 1;     // of all triangles, those that are wanted
+  double headroom = 1;  // a ladder begins at so many times the share
   std::uint64_t all_triangles = 0;
-  std::uint64_t all_samples = 0;   // points of the whole surface
+  std::uint64_t all_samples = 0;  // points of the whole surface
 };
 
 /// A part that the job builds itself, of the bundles of a cut by blocks.
@@ -61,8 +61,8 @@ std::int32_t level_of(double cost, double unit);
 /// Level 0 of a mesh with this diagonal: distances of 2^-50 of it.
 double cost_unit(double diagonal);
 
-/// Simplifies one part or stream (the job's input, or one that it builds) to a ladder that ends at half its even share,
-/// or with Allocation::uniform to one rung.
+/// Simplifies one part or stream (the job's input, or one that it builds) to a ladder that ends at
+/// half its even share, or with Allocation::uniform to one rung.
 JobOutput simplify_part(const Job& job, const JobContext& context);
 
 }  // namespace meshfarm

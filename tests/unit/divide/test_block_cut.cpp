@@ -107,7 +107,7 @@ class SteppedCut {
 
 /// Both cuts of a mesh, part by part.
 int check_same_cut(const Mesh& mesh, std::uint32_t parts, std::size_t blocks,
-               PositionType positions = PositionType::float32) {
+                   PositionType positions = PositionType::float32) {
   CAPTURE(blocks);
   const test::TempFolder folder;
   const auto file = folder.path() / "mesh.ply";

@@ -261,8 +261,8 @@ TEST_CASE("a manifest of what a run is to cut has that alone, and no parts") {
 TEST_CASE("a result holds bytes beside its mesh, and its summary tells where") {
   const std::string beside(100'000, 'b');
   std::string file;
-  ResultWriter writer({PositionType::float32, false, 2},
-                      [&](std::string_view bytes) { file += bytes; }, beside);
+  ResultWriter writer(
+      {PositionType::float32, false, 2}, [&](std::string_view bytes) { file += bytes; }, beside);
   const Mesh mesh = test::tetrahedron();
   writer.add_rung(3, mesh, 4);
   writer.finish(std::span(mesh.positions).first(2), {});

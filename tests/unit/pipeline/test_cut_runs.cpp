@@ -112,8 +112,9 @@ TEST_CASE("a run that cuts by blocks makes the bytes of one whose input was cut"
     for (const std::uint32_t blocks : {1U, 3U, 17U}) {
       CAPTURE(blocks);
       const StagedRun farm = plan_for_farm(
-          file, folder.path() / ("farm" + std::to_string(blocks) + std::to_string(run.triangles) +
-                                 std::to_string(static_cast<int>(run.allocation))),
+          file,
+          folder.path() / ("farm" + std::to_string(blocks) + std::to_string(run.triangles) +
+                           std::to_string(static_cast<int>(run.allocation))),
           blocks);
       const RunEnd made = end_of(farm, run, folder.path() / "farm.ply");
       CHECK(made.bytes == expected.bytes);
