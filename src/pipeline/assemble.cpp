@@ -80,7 +80,8 @@ class Assembler::Impl {
         [this] { check_stop(); }};
     finished_ = finish_result(stage_, manifest_, run_, chosen, options);
     finished_->summary.output = options_.output.string();
-    if (run_.finish_place == FinishPlace::farm) {
+    // Or it was to be by itself, and could not.
+    if (run_.finish_place == FinishPlace::farm || why_finish_here(manifest_, run_).empty()) {
       finished_->summary.why_finished_here = state_.why_finish_here;
     }
     if (!bakes_texture(manifest_, run_)) return;
