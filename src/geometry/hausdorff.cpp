@@ -1,0 +1,157 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include <meshfarm/geometry/hausdorff.hpp>
+#include <meshfarm/util/parallel.hpp>
+
+#include "geometry/bvh.hpp"
+#include "geometry/piece_bounder.hpp"
+
+namespace meshfarm {
+namespace {
+
+constexpr std::uint64_t k_chunk = 1024;
+/// Chunks that are bounded at once know the lower bound of those before. More and more: what is
+/// farthest is soon found, and threads should not wait for each other.
+constexpr std::uint64_t k_first_chunks = 8;
+constexpr std::uint64_t k_most_chunks = 1024;
+/// A vertex is near if it is within this share of what is enough.
+constexpr double k_near_share = 0.5;
+
+constexpr std::uint32_t k_unused = UINT32_MAX;
+
+std::uint64_t chunks_of_all(std::size_t count) {
+  return (count + k_chunk - 1) / k_chunk;
+}
+
+class SurfaceBounder {
+ public:
+  SurfaceBounder(std::span<const Vec3> positions, std::span<const Triangle> triangles,
+                 const TriangleIndex& to, const HausdorffOptions& options)
+      : positions_(positions), triangles_(triangles), to_(to), options_(options) {
+    Box box;
+    for (const Triangle& t : to.mesh().triangles) add(box, to.mesh().positions, t);
+    for (const Triangle& t : triangles) add(box, positions, t);
+    rounding_ = rounding_of(box);
+  }
+
+  DistanceBounds bound() {
+    find_near_triangles();
+    const std::uint64_t chunks = chunks_of_all(triangles_.size());
+    std::uint64_t at_once = k_first_chunks;
+    for (std::uint64_t first = 0; first < chunks && !is_beyond(); at_once *= 2) {
+      at_once = std::min({at_once, chunks - first, k_most_chunks});
+      std::vector<DistanceBounds> found(at_once);
+      parallel_for(at_once, options_.threads,
+                   [&](std::uint64_t i) { found[i] = bound_chunk(first + i); });
+      for (const DistanceBounds& each : found) add(each);
+      first += at_once;
+    }
+    bounds_.upper = std::max(bounds_.upper, bounds_.lower);
+    return bounds_;
+  }
+
+ private:
+  static void add(Box& box, std::span<const Vec3> positions, const Triangle& t) {
+    for (const std::uint32_t v : t) box.add(positions[v]);
+  }
+  void add(const DistanceBounds& other) {
+    bounds_.lower = std::max(bounds_.lower, other.lower);
+    bounds_.upper = std::max(bounds_.upper, other.upper);
+  }
+  bool is_beyond() const { return options_.stops_beyond && bounds_.lower > options_.enough; }
+
+  /// Of each vertex that is used. Where they are beyond what is enough, so is the surface.
+  void find_near_triangles() {
+    near_.assign(positions_.size(), k_unused);
+    for (const Triangle& t : triangles_) near_[t[0]] = near_[t[1]] = near_[t[2]] = 0;
+    const double enough = k_near_share * k_near_share * options_.enough * options_.enough;
+    std::vector<double> farthest(chunks_of_all(positions_.size()), 0);
+    parallel_for(farthest.size(), options_.threads, [&](std::uint64_t chunk) {
+      std::uint32_t guess = 0;
+      const std::size_t end = std::min(positions_.size(), (chunk + 1) * k_chunk);
+      for (std::size_t v = chunk * k_chunk; v < end; ++v) {
+        if (near_[v] == k_unused) continue;
+        const Bvh::Nearest nearest = to_.bvh().nearest(positions_[v], guess, enough);
+        near_[v] = guess = nearest.triangle;
+        farthest[chunk] = std::max(farthest[chunk], nearest.squared);
+      }
+    });
+    double most = 0;
+    for (const double squared : farthest) most = std::max(most, squared);
+    if (most > enough) bounds_.lower = std::max(0.0, std::sqrt(most) * (1 - 0x1p-44) - rounding_);
+  }
+
+  DistanceBounds bound_chunk(std::uint64_t chunk) const {
+    PieceBounder pieces(to_.mesh(), to_.bvh(), rounding_);
+    HausdorffOptions options = options_;
+    DistanceBounds found = bounds_;
+    const std::size_t end = std::min(triangles_.size(), (chunk + 1) * k_chunk);
+    for (std::size_t i = chunk * k_chunk; i < end; ++i) {
+      const double gap = std::max(options_.gap, options_.relative_gap * found.lower);
+      options.enough = std::max(options_.enough, found.lower + gap);
+      const DistanceBounds each = bound_triangle(triangles_[i], options, pieces);
+      found.lower = std::max(found.lower, each.lower);
+      found.upper = std::max(found.upper, each.upper);
+      if (options_.stops_beyond && found.lower > options_.enough) {
+        found.upper = HUGE_VAL;
+        break;
+      }
+    }
+    return found;
+  }
+
+  /// Most are near one triangle as a whole, which then is near one of the corners.
+  DistanceBounds bound_triangle(const Triangle& t, const HausdorffOptions& options,
+                                PieceBounder& pieces) const {
+    const Corners corners = corners_of(positions_, t);
+    const Mesh& to = to_.mesh();
+    for (std::size_t i = 0; i < 3; ++i) {
+      const std::uint32_t near = near_[t[i]];
+      if (i > 0 && near == near_[t[i - 1]]) continue;
+      const double upper =
+          farthest_corner(corners, corners_of(to.positions, to.triangles[near])) * (1 + 0x1p-44) +
+          rounding_;
+      if (upper <= options.enough) return {0, upper};
+    }
+    std::uint32_t guess = near_[t[0]];
+    return pieces.bound(corners, options, guess);
+  }
+
+  std::span<const Vec3> positions_;
+  std::span<const Triangle> triangles_;
+  const TriangleIndex& to_;
+  HausdorffOptions options_;
+  double rounding_ = 0;
+  std::vector<std::uint32_t> near_;  // a triangle near each vertex
+  DistanceBounds bounds_;
+};
+
+}  // namespace
+
+DistanceBounds bound_distance(std::span<const Vec3> positions, std::span<const Triangle> triangles,
+                              const TriangleIndex& to, const HausdorffOptions& options) {
+  if (triangles.empty()) return {};
+  return SurfaceBounder(positions, triangles, to, options).bound();
+}
+
+DistanceBounds bound_distance(const Mesh& from, const Mesh& to, const HausdorffOptions& options) {
+  if (from.triangles.empty()) return {};
+  if (to.triangles.empty()) return {HUGE_VAL, HUGE_VAL};
+  const TriangleIndex index(to, options.threads);
+  return bound_distance(from.positions, from.triangles, index, options);
+}
+
+HausdorffOptions within(double distance, unsigned threads) {
+  HausdorffOptions options;
+  options.enough = distance;
+  options.gap = distance * 0x1p-10;
+  options.stops_beyond = true;
+  options.threads = threads;
+  return options;
+}
+
+}  // namespace meshfarm

@@ -1,0 +1,129 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#include "geometry/piece_bounder.hpp"
+
+#include <cmath>
+#include <utility>
+
+namespace meshfarm {
+namespace {
+
+/// So thin triangles are not sure on which side of them a point is.
+constexpr double k_thin = 1e-10;
+constexpr double k_rounding = 0x1p-44;
+
+/// Of the segment's nearest point.
+double squared_above(Vec3 p, Vec3 a, Vec3 b) {
+  const Vec3 ab = b - a;
+  const double all = dot(ab, ab);
+  const double along = all > 0 ? std::clamp(dot(p - a, ab) / all, 0.0, 1.0) : 0;
+  return std::min(squared_length(p - (a + ab * along)), squared_length(p - a));
+}
+
+std::size_t longest_side(const Corners& corners) {
+  std::size_t longest = 0;
+  double most = -1;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const double squared = squared_length(corners[(i + 1) % 3] - corners[i]);
+    if (squared > most) {
+      most = squared;
+      longest = i;
+    }
+  }
+  return longest;
+}
+
+}  // namespace
+
+double distance_above(Vec3 p, const Corners& triangle) {
+  const auto& [a, b, c] = triangle;
+  const Vec3 ab = b - a, ac = c - a, ap = p - a;
+  const Vec3 normal = cross(ab, ac);
+  const double area = dot(normal, normal);
+  const double at_b = dot(cross(ap, ac), normal);
+  const double at_c = dot(cross(ab, ap), normal);
+  double best = HUGE_VAL;
+  if (area > 0 && at_b >= 0 && at_c >= 0 && at_b + at_c <= area) {
+    best = squared_length(ap - ab * (at_b / area) - ac * (at_c / area));
+    if (area > k_thin * dot(ab, ab) * dot(ac, ac)) return std::sqrt(best);
+  }
+  best = std::min({best, squared_above(p, a, b), squared_above(p, b, c), squared_above(p, c, a)});
+  return std::sqrt(best);
+}
+
+double farthest_corner(const Corners& corners, const Corners& triangle) {
+  double farthest = 0;
+  for (const Vec3 p : corners) farthest = std::max(farthest, distance_above(p, triangle));
+  return farthest;
+}
+
+double rounding_of(const Box& box) {
+  if (box.empty()) return 0;
+  double greatest = 0;
+  for (int axis = 0; axis < 3; ++axis) {
+    greatest = std::max({greatest, std::abs(box.lo[axis]), std::abs(box.hi[axis])});
+  }
+  return k_rounding * greatest;
+}
+
+/// What is no farther is settled.
+double PieceBounder::target() const {
+  const double gap = std::max(options_.gap, options_.relative_gap * bounds_.lower);
+  return std::max(options_.enough - rounding_, bounds_.lower + gap);
+}
+
+/// Tightens the piece's bound, and that from below.
+bool PieceBounder::is_settled(Piece& piece) {
+  piece.upper = std::min(piece.upper, farthest_from(piece, piece.guess));
+  const double most = target();
+  if (piece.upper <= most) return true;
+  const auto& [a, b, c] = piece.corners;
+  const Vec3 middle = (a + b + c) * (1.0 / 3);
+  double radius = 0;
+  for (const Vec3 p : piece.corners) radius = std::max(radius, length(p - middle));
+  const double enough = most > radius ? (most - radius) * (most - radius) : 0;
+  const Bvh::Nearest nearest = bvh_.nearest(middle, piece.guess, enough);
+  if (nearest.squared > enough) bounds_.lower = std::max(bounds_.lower, std::sqrt(nearest.squared));
+  const Corners there = corners_of(to_.positions, to_.triangles[nearest.triangle]);
+  piece.upper = std::min(piece.upper, distance_above(middle, there) + radius);
+  if (nearest.triangle != piece.guess) {
+    piece.upper = std::min(piece.upper, farthest_corner(piece.corners, there));
+    piece.guess = nearest.triangle;
+  }
+  return piece.upper <= target();
+}
+
+void PieceBounder::look_at(Piece piece) {
+  if (is_settled(piece)) {
+    bounds_.upper = std::max(bounds_.upper, piece.upper);
+    return;
+  }
+  open_.push_back(piece);
+  std::push_heap(open_.begin(), open_.end());
+}
+
+DistanceBounds PieceBounder::bound(const Corners& corners, const HausdorffOptions& options,
+                                   std::uint32_t& guess) {
+  options_ = options;
+  bounds_ = {};
+  open_.clear();
+  look_at({corners, HUGE_VAL, guess});
+  for (std::uint64_t pieces = 1; !open_.empty(); ++pieces) {
+    const bool is_beyond = options_.stops_beyond && bounds_.lower > options_.enough;
+    if (is_beyond || pieces >= options_.most_pieces || open_.front().upper <= target()) break;
+    std::pop_heap(open_.begin(), open_.end());
+    const Piece top = open_.back();
+    open_.pop_back();
+    const std::size_t side = longest_side(top.corners);
+    const Vec3 from = top.corners[side], to = top.corners[(side + 1) % 3];
+    const Vec3 opposite = top.corners[(side + 2) % 3], middle = from * 0.5 + to * 0.5;
+    look_at({{from, middle, opposite}, top.upper, top.guess});
+    look_at({{middle, to, opposite}, top.upper, top.guess});
+    guess = top.guess;
+  }
+  if (!open_.empty()) bounds_.upper = std::max(bounds_.upper, open_.front().upper);
+  const double lower = std::max(0.0, bounds_.lower * (1 - k_rounding) - rounding_);
+  return {lower, std::max(lower, bounds_.upper * (1 + k_rounding) + rounding_)};
+}
+
+}  // namespace meshfarm

@@ -1,0 +1,69 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include <meshfarm/geometry/hausdorff.hpp>
+#include <meshfarm/geometry/mesh.hpp>
+
+#include "geometry/bvh.hpp"
+
+namespace meshfarm {
+
+using Corners = std::array<Vec3, 3>;
+
+inline Corners corners_of(std::span<const Vec3> positions, const Triangle& t) {
+  return {positions[t[0]], positions[t[1]], positions[t[2]]};
+}
+
+/// No less than the distance of `p` to the triangle, but for the rounding of a few operations on
+/// coordinates: it is that to a point of the triangle, however thin this is.
+double distance_above(Vec3 p, const Corners& triangle);
+
+/// The greatest of the corners' distances to the triangle. As a triangle is convex, no point between
+/// the corners is farther.
+double farthest_corner(const Corners& corners, const Corners& triangle);
+
+/// What rounding may change of distances between points with such coordinates.
+double rounding_of(const Box& box);
+
+/// Bounds the distance of the farthest point of a triangle to a surface, by pieces: what is left in
+/// doubt is cut in two.
+class PieceBounder {
+ public:
+  /// Both must outlive it. `rounding`: of all coordinates (rounding_of).
+  PieceBounder(const Mesh& to, const Bvh& bvh, double rounding)
+      : to_(to), bvh_(bvh), rounding_(rounding) {}
+
+  /// `guess`: a triangle near the corners; becomes another one. The options' threads don't matter.
+  DistanceBounds bound(const Corners& corners, const HausdorffOptions& options,
+                       std::uint32_t& guess);
+
+ private:
+  struct Piece {
+    Corners corners;
+    double upper;
+    std::uint32_t guess;
+    bool operator<(const Piece& other) const { return upper < other.upper; }
+  };
+
+  double target() const;
+  void look_at(Piece piece);
+  bool is_settled(Piece& piece);
+  double farthest_from(const Piece& piece, std::uint32_t triangle) const {
+    return farthest_corner(piece.corners, corners_of(to_.positions, to_.triangles[triangle]));
+  }
+
+  const Mesh& to_;
+  const Bvh& bvh_;
+  double rounding_;
+  HausdorffOptions options_;
+  DistanceBounds bounds_;    // but for rounding; above, of what is settled
+  std::vector<Piece> open_;  // a heap: the piece that may be farthest is on top
+};
+
+}  // namespace meshfarm
