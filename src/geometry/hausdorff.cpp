@@ -21,6 +21,9 @@ constexpr std::uint64_t k_most_chunks = 1024;
 /// A vertex is near if it is within this share of what is enough.
 constexpr double k_near_share = 0.5;
 
+/// Where a point is so near to a distance, as a share of it, nothing is proven.
+constexpr double k_gap_of_proof = 0x1p-10;
+
 constexpr std::uint32_t k_unused = UINT32_MAX;
 
 std::uint64_t chunks_of_all(std::size_t count) {
@@ -52,6 +55,23 @@ class SurfaceBounder {
     }
     bounds_.upper = std::max(bounds_.upper, bounds_.lower);
     return bounds_;
+  }
+
+  /// Those whose upper bound is more than is enough.
+  std::vector<std::uint32_t> find_beyond() {
+    find_near_triangles();
+    std::vector<std::vector<std::uint32_t>> found(chunks_of_all(triangles_.size()));
+    parallel_for(found.size(), options_.threads, [&](std::uint64_t chunk) {
+      PieceBounder pieces(to_.mesh(), to_.bvh(), rounding_);
+      const std::size_t end = std::min(triangles_.size(), (chunk + 1) * k_chunk);
+      for (std::size_t i = chunk * k_chunk; i < end; ++i) {
+        const double upper = bound_triangle(triangles_[i], options_, pieces).upper;
+        if (upper > options_.enough) found[chunk].push_back(static_cast<std::uint32_t>(i));
+      }
+    });
+    std::vector<std::uint32_t> all;
+    for (const auto& each : found) all.insert(all.end(), each.begin(), each.end());
+    return all;
   }
 
  private:
@@ -96,10 +116,7 @@ class SurfaceBounder {
       const DistanceBounds each = bound_triangle(triangles_[i], options, pieces);
       found.lower = std::max(found.lower, each.lower);
       found.upper = std::max(found.upper, each.upper);
-      if (options_.stops_beyond && found.lower > options_.enough) {
-        found.upper = HUGE_VAL;
-        break;
-      }
+      if (options_.stops_beyond && found.lower > options_.enough) break;
     }
     return found;
   }
@@ -145,13 +162,22 @@ DistanceBounds bound_distance(const Mesh& from, const Mesh& to, const HausdorffO
   return bound_distance(from.positions, from.triangles, index, options);
 }
 
-HausdorffOptions within(double distance, unsigned threads) {
+std::vector<std::uint32_t> find_beyond(std::span<const Vec3> positions,
+                                       std::span<const Triangle> triangles, const TriangleIndex& to,
+                                       double distance, unsigned threads) {
   HausdorffOptions options;
   options.enough = distance;
-  options.gap = distance * 0x1p-10;
+  options.gap = distance * k_gap_of_proof;
   options.stops_beyond = true;
   options.threads = threads;
-  return options;
+  return SurfaceBounder(positions, triangles, to, options).find_beyond();
+}
+
+void drop_coincident_corners(Mesh& mesh) {
+  keep_triangles(mesh, [&](std::size_t i) {
+    const auto [a, b, c] = corners_of(mesh.positions, mesh.triangles[i]);
+    return a != b && b != c && c != a;
+  });
 }
 
 }  // namespace meshfarm

@@ -2,9 +2,9 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <span>
+#include <vector>
 
 #include <meshfarm/geometry/mesh.hpp>
 #include <meshfarm/geometry/triangle_index.hpp>
@@ -41,7 +41,13 @@ DistanceBounds bound_distance(std::span<const Vec3> positions, std::span<const T
 /// The same for surfaces that may be empty: from something to nothing it is infinite.
 DistanceBounds bound_distance(const Mesh& from, const Mesh& to, const HausdorffOptions& options);
 
-/// Options that decide whether all is within a distance: whether `upper` is no more than that.
-HausdorffOptions within(double distance, unsigned threads);
+/// Which of the triangles are not proven to be within the distance as a whole, ascending: all that
+/// have a point beyond it, and maybe some that come within a thousandth of it.
+std::vector<std::uint32_t> find_beyond(std::span<const Vec3> positions,
+                                       std::span<const Triangle> triangles, const TriangleIndex& to,
+                                       double distance, unsigned threads);
+
+/// Leaves out triangles with two corners at one place: they are no surface, and a run drops them.
+void drop_coincident_corners(Mesh& mesh);
 
 }  // namespace meshfarm

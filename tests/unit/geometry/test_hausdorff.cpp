@@ -32,7 +32,8 @@ DistanceBounds bounds_of(const Mesh& from, const Mesh& to, double gap = k_gap) {
 }
 
 bool is_within(const Mesh& from, const Mesh& to, double distance) {
-  return bound_distance(from, to, within(distance, 1)).upper <= distance;
+  const TriangleIndex index(to, 1);
+  return find_beyond(from.positions, from.triangles, index, distance, 2).empty();
 }
 
 /// Whether the bounds hold what is known, and are as near as they should be.
@@ -157,6 +158,32 @@ TEST_CASE("hausdorff: no sample is beyond the bounds, whatever the triangles are
     CHECK(is_within(from, to, found.upper * 1.002));
     CHECK_FALSE(is_within(from, to, found.lower * 0.999));
   }
+}
+
+TEST_CASE("hausdorff: triangles beyond a distance are found, and no others") {
+  Mesh bent = test::grid(10, 10);
+  for (Vec3& p : bent.positions) p.z = std::max(0.0, p.x - 6) * 0.5;
+  const Mesh flat = test::grid(10, 10);
+  const TriangleIndex index(flat, 1);
+  const auto beyond = find_beyond(bent.positions, bent.triangles, index, 0.75, 3);
+  std::vector<std::uint32_t> known;
+  for (std::uint32_t i = 0; i < bent.triangles.size(); ++i) {
+    const auto [a, b, c] = corners_of(bent.positions, bent.triangles[i]);
+    if (std::max({a.z, b.z, c.z}) > 0.75) known.push_back(i);
+  }
+  CHECK(known.size() == 60);
+  CHECK(beyond == known);
+}
+
+TEST_CASE("hausdorff: triangles with two corners at one place are dropped, with their columns") {
+  Mesh mesh = test::octahedron();
+  mesh.positions.push_back(mesh.positions[0]);
+  mesh.triangles.insert(mesh.triangles.begin() + 3, {0, 6, 2});
+  mesh.triangles.push_back({1, 1, 4});
+  mesh.columns.labels = {0, 1, 2, 99, 3, 4, 5, 6, 7, 99};
+  drop_coincident_corners(mesh);
+  CHECK(mesh.triangles == test::octahedron().triangles);
+  CHECK(mesh.columns.labels == std::vector<Label>{0, 1, 2, 3, 4, 5, 6, 7});
 }
 
 TEST_CASE("hausdorff: what is enough is not told apart, and saves the rest") {
