@@ -38,6 +38,15 @@ Length parse_length(const std::string& text, std::string_view option) {
   return length;
 }
 
+/// Pieces that are left out are far from all that stays.
+void check_certify(const RunOptions& run) {
+  if (!run.certify) return;
+  if (!(run.error.value > 0)) throw UsageError("--certify proves a bound: it needs --error");
+  if (run.drop_components.value > 0) {
+    throw UsageError("--certify proves the distance of the whole input: not with --drop-components");
+  }
+}
+
 }  // namespace
 
 void TalkOptions::add(po::options_description& options) {
@@ -61,6 +70,9 @@ void TargetOptions::add(po::options_description& options) {
       "keep as few triangles as stay within this distance of the input, measured at sampled "
       "points: "
       "in the mesh's unit, or as a share of the diagonal, for example 0.1%")(
+      "certify", po::bool_switch(&run.certify),
+      "with --error: prove the distance for every point of both surfaces; where that fails the "
+      "result keeps more triangles")(
       "allocation",
       po::value(&allocation)->default_value(allocation)->value_name("threshold|uniform"),
       "threshold: the same cost threshold in all parts; uniform: the same ratio in all parts")(
@@ -145,6 +157,7 @@ void TargetOptions::check() {
   if (!drop_components.empty()) {
     run.drop_components = parse_length(drop_components, "--drop-components");
   }
+  check_certify(run);
   if (normals != "blend" && normals != "recompute" && normals != "drop") {
     throw UsageError("--normals is 'blend', 'recompute' or 'drop', not '" + normals + "'");
   }
@@ -189,6 +202,7 @@ std::vector<std::string> TargetOptions::words() const {
   }
   if (!error.empty()) {
     words.insert(words.end(), {"--error", error});
+    if (run.certify) words.emplace_back("--certify");
   } else if (run.triangles != 0) {
     words.insert(words.end(), {"--triangles", std::to_string(run.triangles)});
   } else {

@@ -36,7 +36,7 @@ struct TalkOptions {
   ProgressStyle progress() const;
 };
 
-/// --ratio, --triangles, --error, --allocation, --finish, --composition, --topology,
+/// --ratio, --triangles, --error, --certify, --allocation, --finish, --composition, --topology,
 /// --preserve-border, --crease-angle, --drop-components, --weight, --normals.
 struct TargetOptions {
   RunOptions run;

@@ -30,6 +30,15 @@ std::uint64_t chunks_of_all(std::size_t count) {
   return (count + k_chunk - 1) / k_chunk;
 }
 
+HausdorffOptions proof_of(double distance, unsigned threads) {
+  HausdorffOptions options;
+  options.enough = distance;
+  options.gap = distance * k_gap_of_proof;
+  options.stops_beyond = true;
+  options.threads = threads;
+  return options;
+}
+
 class SurfaceBounder {
  public:
   SurfaceBounder(std::span<const Vec3> positions, std::span<const Triangle> triangles,
@@ -165,12 +174,12 @@ DistanceBounds bound_distance(const Mesh& from, const Mesh& to, const HausdorffO
 std::vector<std::uint32_t> find_beyond(std::span<const Vec3> positions,
                                        std::span<const Triangle> triangles, const TriangleIndex& to,
                                        double distance, unsigned threads) {
-  HausdorffOptions options;
-  options.enough = distance;
-  options.gap = distance * k_gap_of_proof;
-  options.stops_beyond = true;
-  options.threads = threads;
-  return SurfaceBounder(positions, triangles, to, options).find_beyond();
+  return SurfaceBounder(positions, triangles, to, proof_of(distance, threads)).find_beyond();
+}
+
+bool is_within(const Mesh& from, const TriangleIndex& to, double distance, unsigned threads) {
+  const HausdorffOptions options = proof_of(distance, threads);
+  return bound_distance(from.positions, from.triangles, to, options).upper <= distance;
 }
 
 void drop_coincident_corners(Mesh& mesh) {

@@ -158,6 +158,12 @@ bool keeps_map(const std::filesystem::path& path, MapUse use) {
   return std::find(maps.begin(), maps.end(), use) != maps.end();
 }
 
+bool keeps_doubles(const std::filesystem::path& path) {
+  check_output_format(path);
+  const auto create = find_output_format(path)->create;
+  return create != create_glb && create != create_gltf && create != create_stl;
+}
+
 std::unique_ptr<MeshSink> create_mesh(const std::filesystem::path& path,
                                       const MeshSinkOptions& options) {
   check_output_format(path);

@@ -1,6 +1,8 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
 #include <algorithm>
+#include <cmath>
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <utility>
@@ -23,10 +25,31 @@
 
 namespace meshfarm {
 
+namespace {
+
+/// How far a vertex may be from its place in the file: where this has no doubles.
+double rounding_of_file(const std::filesystem::path& path, PositionType positions, const Box& box) {
+  if (positions == PositionType::float32 || keeps_doubles(path) || box.empty()) return 0;
+  double greatest = 0;
+  for (int axis = 0; axis < 3; ++axis) {
+    greatest = std::max({greatest, std::abs(box.lo[axis]), std::abs(box.hi[axis])});
+  }
+  // glTF counts from another place of the mesh, up to twice as far.
+  return 2 * std::sqrt(3.0) * 0x1p-24 * greatest;
+}
+
+/// Quantised positions would be off by more than what is proven.
+AssembleOptions for_run(AssembleOptions options, const RunOptions& run) {
+  if (run.certify) options.output.packing = Packing::plain;
+  return options;
+}
+
+}  // namespace
+
 class Assembler::Impl {
  public:
   Impl(const Stage& stage, const Manifest& manifest, const RunOptions& run, AssembleOptions options)
-      : stage_(stage), staged_(manifest), run_(run), options_(std::move(options)) {}
+      : stage_(stage), staged_(manifest), run_(run), options_(for_run(std::move(options), run)) {}
 
   JobOutput do_job(const Job& job, const JobContext& context,
                    std::span<const AcceptedJob> accepted) {
@@ -83,6 +106,10 @@ class Assembler::Impl {
     // Or it was to be by itself, and could not.
     if (run_.finish_place == FinishPlace::farm || why_finish_here(manifest_, run_).empty()) {
       finished_->summary.why_finished_here = state_.why_finish_here;
+    }
+    if (run_.certify) {
+      finished_->summary.certified_error +=
+          rounding_of_file(options_.output, manifest_.positions, manifest_.box);
     }
     if (!bakes_texture(manifest_, run_)) return;
     Stopwatch watch;

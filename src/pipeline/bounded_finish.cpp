@@ -4,10 +4,13 @@
 
 #include <algorithm>
 #include <iterator>
+#include <optional>
+#include <span>
 #include <unordered_map>
 #include <utility>
 #include <vector>
 
+#include <meshfarm/geometry/hausdorff.hpp>
 #include <meshfarm/geometry/near_cells.hpp>
 #include <meshfarm/geometry/surface_bound.hpp>
 #include <meshfarm/geometry/vertices.hpp>
@@ -20,8 +23,19 @@ namespace {
 constexpr int k_rings = 5;
 /// In distances of the bound: what is farther from a surface matters to nothing that is made of it.
 constexpr double k_reach = 2;
+/// So often what is not proven is left as it was stitched, before all is.
+constexpr int k_attempts = 4;
 
-/// And those of no triangle, which are to go.
+/// The vertices of no triangle are to go.
+void flag_unused(const Mesh& mesh, std::vector<std::uint8_t>& flags) {
+  std::vector<std::uint8_t> used(flags.size(), 0);
+  for (const auto& [a, b, c] : mesh.triangles) used[a] = used[b] = used[c] = 1;
+  for (std::size_t v = 0; v < flags.size(); ++v) {
+    if (used[v] == 0) flags[v] = 1;
+  }
+}
+
+/// And those of no triangle.
 std::vector<std::uint8_t> vertices_round(const Mesh& mesh, std::vector<std::uint8_t> near) {
   std::vector<std::uint8_t> flags;
   for (int ring = 0; ring < k_rings; ++ring) {
@@ -30,11 +44,7 @@ std::vector<std::uint8_t> vertices_round(const Mesh& mesh, std::vector<std::uint
       if ((flags[a] | flags[b] | flags[c]) != 0) near[a] = near[b] = near[c] = 1;
     }
   }
-  flags.assign(near.size(), 0);  // now: of a triangle
-  for (const auto& [a, b, c] : mesh.triangles) flags[a] = flags[b] = flags[c] = 1;
-  for (std::size_t v = 0; v < near.size(); ++v) {
-    if (flags[v] == 0) near[v] = 1;
-  }
+  flag_unused(mesh, near);
   return near;
 }
 
@@ -91,6 +101,103 @@ Mesh input_near(const Stage& stage, const Manifest& manifest, const NearCells& n
   return all;
 }
 
+/// The triangles none of whose corners moves, in an order of their own.
+std::vector<Triangle> fixed_triangles(const Mesh& mesh, std::uint32_t locked) {
+  std::vector<Triangle> fixed;
+  for (Triangle t : mesh.triangles) {
+    std::sort(t.begin(), t.end());
+    if (t[2] < locked && !is_degenerate(t)) fixed.push_back(t);
+  }
+  std::sort(fixed.begin(), fixed.end());
+  fixed.erase(std::unique(fixed.begin(), fixed.end()), fixed.end());
+  return fixed;
+}
+
+/// Proves what the finish has made round the seams. What is farther from them was proven before,
+/// part by part.
+class SeamProof {
+ public:
+  /// `input`: all of it that is near what may change.
+  SeamProof(Mesh input, const BoundedFinishOptions& options)
+      : input_(std::move(input)), options_(options) {
+    drop_coincident_corners(input_);
+    if (!input_.triangles.empty()) index_.emplace(input_, options.threads);
+  }
+
+  /// What is not proven of `result`, made of `stitched`, whose first `locked` vertices have not
+  /// moved: triangles of either surface.
+  Mesh find_unproven(const Mesh& stitched, std::uint32_t locked, const Mesh& result) const {
+    const std::vector<Triangle> before = fixed_triangles(stitched, locked);
+    if (!index_ || result.triangles.empty() || before != fixed_triangles(result, locked)) {
+      return stitched;
+    }
+    std::vector<Triangle> changed;
+    std::copy_if(
+        result.triangles.begin(), result.triangles.end(), std::back_inserter(changed),
+        [&](const Triangle& t) { return *std::max_element(t.begin(), t.end()) >= locked; });
+    Mesh unproven;
+    add_beyond(result.positions, changed, *index_, unproven);
+    add_beyond(input_.positions, input_.triangles, TriangleIndex(result, options_.threads),
+               unproven);
+    return unproven;
+  }
+
+ private:
+  void add_beyond(std::span<const Vec3> positions, std::span<const Triangle> triangles,
+                  const TriangleIndex& to, Mesh& unproven) const {
+    std::vector<Triangle> beyond;
+    for (const std::uint32_t i :
+         find_beyond(positions, triangles, to, options_.certified_error, options_.threads)) {
+      beyond.push_back(triangles[i]);
+    }
+    if (!beyond.empty()) append_surface(positions, beyond, unproven);
+  }
+
+  Mesh input_;
+  std::optional<TriangleIndex> index_;
+  const BoundedFinishOptions& options_;
+};
+
+BoundedFinish simplified(Mesh mesh, std::uint32_t locked, const SurfaceBound* bound,
+                         const Manifest& manifest, const BoundedFinishOptions& options) {
+  Simplifier simplifier(std::move(mesh), {.locked_vertices = locked,
+                                          .positions = manifest.positions,
+                                          .lines = options.lines,
+                                          .bound = bound});
+  if (bound != nullptr) {
+    simplifier.reduce({}, [&](std::uint64_t left) {
+      options.progress(left);
+      return true;
+    });
+  }
+  return {simplifier.mesh(), simplifier.dropped_degenerate(), simplifier.dropped_duplicate(),
+          simplifier.turned()};
+}
+
+/// Where the proof fails, what was stitched stays as it is; in the end all of it, which has a proof.
+BoundedFinish finish_with_proof(Mesh stitched, std::uint32_t locked, const SurfaceBound& bound,
+                                const Manifest& manifest, const BoundedFinishOptions& options) {
+  const SeamProof proof(bound.surface(), options);
+  for (int attempt = 0; attempt < k_attempts; ++attempt) {
+    BoundedFinish finish = simplified(stitched, locked, &bound, manifest, options);
+    const Mesh unproven = proof.find_unproven(stitched, locked, finish.mesh);
+    if (unproven.triangles.empty()) return finish;
+    const NearCells near(unproven.positions, unproven.triangles,
+                         k_reach * options.certified_error);
+    std::vector<std::uint8_t> flags(stitched.positions.size(), 0);
+    for (std::uint32_t v = locked; v < flags.size(); ++v) {
+      const Vec3 p = stitched.positions[v];
+      flags[v] = near.touch({p, p}) ? 0 : 1;
+    }
+    flag_unused(stitched, flags);
+    locked = put_last(stitched, flags);
+  }
+  std::vector<std::uint8_t> flags(stitched.positions.size(), 0);
+  flag_unused(stitched, flags);
+  locked = put_last(stitched, flags);
+  return simplified(std::move(stitched), locked, nullptr, manifest, options);
+}
+
 }  // namespace
 
 BoundedFinish finish_to_bound(const Stage& stage, const Manifest& manifest, StitchedMesh stitched,
@@ -107,16 +214,9 @@ BoundedFinish finish_to_bound(const Stage& stage, const Manifest& manifest, Stit
   Mesh input = input_near(stage, manifest, near, options.threads);
   if (input.triangles.empty()) return {std::move(mesh)};
   const SurfaceBound bound(std::move(input), {options.max_error, options.threads, true});
-  Simplifier simplifier(std::move(mesh), {.locked_vertices = locked,
-                                          .positions = manifest.positions,
-                                          .lines = options.lines,
-                                          .bound = &bound});
-  simplifier.reduce({}, [&](std::uint64_t left) {
-    options.progress(left);
-    return true;
-  });
-  return {simplifier.mesh(), simplifier.dropped_degenerate(), simplifier.dropped_duplicate(),
-          simplifier.turned()};
+  return options.certified_error > 0
+             ? finish_with_proof(std::move(mesh), locked, bound, manifest, options)
+             : simplified(std::move(mesh), locked, &bound, manifest, options);
 }
 
 }  // namespace meshfarm

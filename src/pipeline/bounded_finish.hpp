@@ -13,6 +13,9 @@ namespace meshfarm {
 
 struct BoundedFinishOptions {
   double max_error = 0;
+  /// Where above 0: what is made is proven to be within this distance of the input, if what was
+  /// stitched is.
+  double certified_error = 0;
   LineOptions lines;
   unsigned threads = 0;
   std::function<void(std::uint64_t triangles_left)> progress;

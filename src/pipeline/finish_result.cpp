@@ -145,6 +145,7 @@ class ResultFinish {
     BoundedFinish finish =
         finish_to_bound(stage_, manifest_, std::move(stitched),
                         {.max_error = k_bound_share * summary_.max_error,
+                         .certified_error = run_.certify ? summary_.max_error : 0,
                          .lines = lines_,
                          .threads = options_.threads,
                          .progress = [&](std::uint64_t left) {
@@ -153,6 +154,7 @@ class ResultFinish {
     summary_.dropped_degenerate += finish.dropped_degenerate;
     summary_.dropped_duplicate += finish.dropped_duplicate;
     summary_.turned += finish.turned;
+    if (run_.certify) summary_.certified_error = summary_.max_error;
     return std::move(finish.mesh);
   }
 

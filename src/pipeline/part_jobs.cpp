@@ -18,6 +18,8 @@ constexpr std::uint64_t k_bound_bytes_per_triangle = 500;
 constexpr std::uint64_t k_largest_part = 12;
 constexpr std::uint64_t k_part_bytes = 24;
 constexpr std::uint64_t k_build_share = 4;
+/// To prove the bound: the part once more, and a hierarchy of it.
+constexpr std::uint64_t k_proof_bytes_per_triangle = 100;
 
 /// What a simplify job needs by and large: the part's file and its mesh (20 and 40 bytes a
 /// triangle), the simplifier (50 to 70), and the ladder, whose rungs shrink by a third or more from
@@ -60,8 +62,9 @@ double PartJobs::wanted() const {
   return provision(ratio()) * static_cast<double>(target());
 }
 
+/// A proof needs a stream in memory, as it came: it is climbed as a part.
 bool PartJobs::is_sampled(std::uint32_t part) const {
-  return !manifest_.samples.empty() && !manifest_.samples[part].file.name.empty();
+  return !options_.certify && !manifest_.samples.empty() && !manifest_.samples[part].file.name.empty();
 }
 
 /// What is climbed: the part, or a sample of a long stream.
@@ -90,7 +93,8 @@ Job PartJobs::climb(std::uint32_t part, double headroom, TopologyMode topology) 
           entry.triangles,
           memory_of(entry, parameters.start_triangles) +
               memory_of_channels(parameters.lines, entry.triangles) +
-              (by_error() ? k_bound_bytes_per_triangle * entry.triangles : 0)};
+              (by_error() ? k_bound_bytes_per_triangle * entry.triangles : 0) +
+              (options_.certify ? k_proof_bytes_per_triangle * entry.triangles : 0)};
   // Other sweeps need not wait for the stream's own.
   if (by_error() && is_sampled(part)) job.after = manifest_.parts[part].triangles;
   return job;
@@ -130,6 +134,7 @@ void PartJobs::set_error_bound(SimplifyParameters& parameters, std::uint32_t par
   parameters.max_error = share * options_.error.in(manifest_.box);
   parameters.start_triangles = climbed(part).triangles;
   parameters.share_triangles = 0;
+  if (options_.certify) parameters.certified_error = options_.error.in(manifest_.box);
 }
 
 Job PartJobs::sweep(std::uint32_t part, std::int32_t level, TopologyMode topology) const {

@@ -165,6 +165,8 @@ std::uint64_t run_key(const Manifest& manifest, const RunOptions& options) {
   put(out, lines_of(manifest, options));
   out.put(options.drop_components.in(manifest.box));
   out.put(options.error.in(manifest.box));
+  // Where nothing is to be proven, this says nothing: keys are those of older versions.
+  if (options.certify) out.put(std::uint8_t{1});
   // Where all are kept as they come, this says nothing: keys are those of older versions.
   if (!options.channels.all || options.normals != Normals::blend) {
     out.put(options.normals);

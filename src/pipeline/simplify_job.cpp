@@ -20,11 +20,13 @@
 namespace meshfarm {
 namespace {
 
-// Version 6: allocation u8 | start u64 | even share u64 | samples u64 | cost unit f64 |
-// greatest error f64 | lines (run_options.hpp) | builds u8 | if it does: part u32 | ratio f64 |
-// headroom f64 | all triangles u64 | all samples u64 | bundles (bundle_list.hpp).
-// Version 4 knew no appearances and labels, version 5 nothing to build.
-constexpr std::uint8_t k_climb_version = 6;
+// Version 7: allocation u8 | start u64 | even share u64 | samples u64 | cost unit f64 |
+// greatest error f64 | certified error f64 | lines (run_options.hpp) | builds u8 | if it does:
+// part u32 | ratio f64 | headroom f64 | all triangles u64 | all samples u64 | bundles
+// (bundle_list.hpp).
+// Version 4 knew no appearances and labels, version 5 nothing to build, version 6 no certified
+// error.
+constexpr std::uint8_t k_climb_version = 7;
 constexpr std::uint64_t k_most_climb_samples = 100'000'000;
 constexpr std::int32_t k_top_level = 52;
 // A part keeps no less than this fraction of its even share: what of it is flat goes in the finish.
@@ -182,6 +184,7 @@ std::string encode_parameters(const SimplifyParameters& parameters) {
   out.put(parameters.samples);
   out.put(parameters.cost_unit);
   out.put(parameters.max_error);
+  out.put(parameters.certified_error);
   put(out, parameters.lines);
   out.put(static_cast<std::uint8_t>(parameters.build ? 1 : 0));
   if (!parameters.build) return out.take();
@@ -206,6 +209,7 @@ SimplifyParameters decode_parameters(std::string_view bytes) {
   if (parameters.samples > k_most_climb_samples) in.fail("too many samples");
   parameters.cost_unit = in.get<double>();
   parameters.max_error = in.get<double>();
+  parameters.certified_error = in.get<double>();
   parameters.lines = get_lines(in);
   const auto builds = in.get<std::uint8_t>();
   if (builds > 1) in.fail("impossible part");

@@ -149,6 +149,25 @@ void add_input(Lines& lines, const Manifest& m) {
   }
 }
 
+std::string bound_text(const RunSummary& s) {
+  const double diagonal = s.manifest.box.diagonal();
+  if (s.certified_error > 0) {
+    return "certified: no point of either surface is farther from the other than " +
+           number(s.certified_error / diagonal, "%.6g") + " of the diagonal";
+  }
+  return "sampled, not certified: " + number(s.max_error / diagonal, "%.6g") + " of the diagonal";
+}
+
+/// Of the greatest distance: proven, or only what samples tell.
+Json bound_json(const RunSummary& s) {
+  const double diagonal = s.manifest.box.diagonal();
+  if (s.certified_error > 0) {
+    return {{"kind", "certified"}, {"max", s.certified_error / diagonal}};
+  }
+  if (s.error.input_samples == 0) return nullptr;
+  return {{"kind", "sampled"}, {"max", s.error.greater().max / diagonal}};
+}
+
 void add_error(Lines& lines, const MeasuredError& error, double most, double diagonal) {
   lines.add("error", text_of(error.greater(), diagonal) +
                          "  of the diagonal, the greater of both directions");
@@ -258,6 +277,7 @@ std::string render(const RunSummary& s, Format format) {
         {"output", {{"path", s.output}, {"triangles", s.triangles}, {"vertices", s.vertices}}},
         {"target", s.target},
         {"max_error", s.max_error > 0 ? Json(s.max_error / m.box.diagonal()) : Json(nullptr)},
+        {"bound", bound_json(s)},
         {"exact", s.why_not_exact.empty()},
         {"why_not_exact", s.why_not_exact},
         {"topology", is_kept(s) ? "kept" : "simplified"},
@@ -310,6 +330,7 @@ std::string render(const RunSummary& s, Format format) {
   }
   if (s.error.input_samples > 0) add_error(lines, s.error, s.max_error, m.box.diagonal());
   if (s.result) add_figures(lines, "surface", *s.result);
+  if (s.max_error > 0) lines.add("bound", bound_text(s));
   add_channels(lines, s);
   if (!warning.empty()) lines.add("warning", warning);
   lines.add(parts_name(m), grouped(m.parts.size()) + ", stitched to " + grouped(s.stitched) +

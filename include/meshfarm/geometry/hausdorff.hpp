@@ -47,6 +47,9 @@ std::vector<std::uint32_t> find_beyond(std::span<const Vec3> positions,
                                        std::span<const Triangle> triangles, const TriangleIndex& to,
                                        double distance, unsigned threads);
 
+/// Whether there are none of these: sooner known where there are some.
+bool is_within(const Mesh& from, const TriangleIndex& to, double distance, unsigned threads);
+
 /// Leaves out triangles with two corners at one place: they are no surface, and a run drops them.
 void drop_coincident_corners(Mesh& mesh);
 

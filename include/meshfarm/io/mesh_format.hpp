@@ -32,6 +32,9 @@ bool keeps_uvs(const std::filesystem::path& path);
 /// And for pictures of this use.
 bool keeps_map(const std::filesystem::path& path, MapUse use);
 
+/// Whether a file of this name keeps positions of 64 bits as they are.
+bool keeps_doubles(const std::filesystem::path& path);
+
 /// Where a mesh goes, and how.
 struct MeshOutput {
   std::filesystem::path path;

@@ -74,6 +74,8 @@ struct RunOptions {
   double ratio = 0;  // of the input's triangles; used when triangles is 0
   std::uint64_t triangles = 0;
   Length error;  // where above 0: as few triangles as keep this distance
+  /// Whether that is proven of every point of both surfaces, not only measured.
+  bool certify = false;
   Allocation allocation = Allocation::threshold;
   Finish finish = Finish::global;
   FinishPlace finish_place = FinishPlace::automatic;

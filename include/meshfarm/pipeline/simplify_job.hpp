@@ -39,6 +39,9 @@ struct SimplifyParameters {
   std::uint64_t samples = 0;          // points of the part to measure the final error by
   double cost_unit = 0;               // cost of level 0
   double max_error = 0;               // where above 0: one rung, as far as this distance is kept
+  /// Where above 0: that no distance is greater than this is proven of every point. At least
+  /// max_error.
+  double certified_error = 0;
   LineOptions lines;
   std::optional<PartToBuild> build;  // the job has no input then, and finds its share by the rule
 };

@@ -11,6 +11,7 @@
 
 #include <meshfarm/geometry/components.hpp>
 #include <meshfarm/geometry/distance.hpp>
+#include <meshfarm/geometry/hausdorff.hpp>
 #include <meshfarm/geometry/surface_measures.hpp>
 #include <meshfarm/geometry/topology.hpp>
 #include <meshfarm/geometry/value_error.hpp>
@@ -98,6 +99,9 @@ struct RunSummary {
   std::string output;           // path of the result
   std::uint64_t target = 0;     // triangles asked for, 0: as few as max_error allows
   double max_error = 0;         // the greatest distance allowed, in the mesh's unit; 0: any
+  /// No point of the result is farther from the input, and none of the input from the result; 0:
+  /// that is not proven.
+  double certified_error = 0;
   std::uint64_t triangles = 0;  // triangles made
   std::uint64_t vertices = 0;
   std::string why_not_exact;         // empty when triangles == target
@@ -178,6 +182,12 @@ struct Comparison {
   double diagonal = 0;  // of A's bounding box; distances are fractions of it
   SurfaceError a_to_b;
   SurfaceError b_to_a;
+  /// Of the greatest distances over all points, where that was asked for.
+  struct Certified {
+    DistanceBounds a_to_b;
+    DistanceBounds b_to_a;
+  };
+  std::optional<Certified> certified;
   SurfaceFigures figures_a;
   SurfaceFigures figures_b;
   std::string not_measured;  // why normals, edges and crossings were not

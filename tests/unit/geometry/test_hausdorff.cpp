@@ -33,7 +33,9 @@ DistanceBounds bounds_of(const Mesh& from, const Mesh& to, double gap = k_gap) {
 
 bool is_within(const Mesh& from, const Mesh& to, double distance) {
   const TriangleIndex index(to, 1);
-  return find_beyond(from.positions, from.triangles, index, distance, 2).empty();
+  const bool is = is_within(from, index, distance, 2);
+  CHECK(is == find_beyond(from.positions, from.triangles, index, distance, 2).empty());
+  return is;
 }
 
 /// Whether the bounds hold what is known, and are as near as they should be.

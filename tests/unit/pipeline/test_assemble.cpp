@@ -8,6 +8,7 @@
 #include <doctest/doctest.h>
 
 #include <meshfarm/divide/cut.hpp>
+#include <meshfarm/geometry/hausdorff.hpp>
 #include <meshfarm/geometry/topology.hpp>
 #include <meshfarm/io/result_file.hpp>
 #include <meshfarm/pipeline/assemble.hpp>
@@ -284,6 +285,35 @@ TEST_CASE("a bound on the error leaves no dense seams") {
   CHECK(parts.summary.stitched > 2 * parts.summary.triangles);
   CHECK(parts.summary.triangles * 10 < whole.summary.triangles * 13);
   CHECK(parts.summary.error.greater().max <= 0.02);
+}
+
+TEST_CASE("a bound that is proven holds at every point, with hardly more triangles") {
+  constexpr double k_bound = 0.1;
+  Mesh sheet = test::grid(45, 30);  // ridges, and slots across them
+  for (Vec3& p : sheet.positions) {
+    p.z = 0.7 * std::abs(std::fmod(p.x, 6.0) - 3) + 0.1 * std::sin(p.y * 5.1);
+  }
+  std::erase_if(sheet.triangles, [&](const Triangle& t) {
+    return std::all_of(t.begin(), t.end(), [&](std::uint32_t v) {
+      const double x = sheet.positions[v].x;
+      return std::fmod(x, 15) >= 7 && std::fmod(x, 15) <= 8 && sheet.positions[v].y > 10;
+    });
+  });
+  const test::TempFolder folder;
+  RunOptions run{.error = {k_bound, false}};
+  const Made sampled = simplify(sheet, 5, run, folder.path() / "sampled");
+  run.certify = true;
+  const Made proven = simplify(sheet, 5, run, folder.path() / "proven");
+  CHECK(sampled.summary.certified_error == 0);
+  CHECK(proven.summary.certified_error == k_bound);
+  CHECK(proven.mesh.triangles.size() * 10 < sampled.mesh.triangles.size() * 12);
+  const auto check = [&](const Mesh& from, const Mesh& to) {
+    const DistanceBounds found = bound_distance(from, to, {.gap = k_bound / 500});
+    CHECK(found.lower <= k_bound);
+    CHECK(found.upper <= k_bound * 1.0021);
+  };
+  check(sheet, proven.mesh);
+  check(proven.mesh, sheet);
 }
 
 TEST_CASE("components that are smaller than asked for are left out, and counted") {

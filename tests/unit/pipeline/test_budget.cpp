@@ -300,6 +300,18 @@ TEST_CASE("with a bound on the error each part is taken as far as it allows, and
   CHECK(chosen_of(manifest, options, done).rungs.size() == 2);
 }
 
+TEST_CASE("a bound that is to be proven is asked of the parts, with memory for it, and another run") {
+  const Manifest manifest = manifest_of(2, 100'000);
+  const RunOptions measured{.error = {0.2, false}};
+  const RunOptions proven{.error = {0.2, false}, .certify = true};
+  const Job before = next_of(manifest, measured)({})[0];
+  const Job after = next_of(manifest, proven)({})[0];
+  CHECK(decode_parameters(before.parameters).certified_error == 0);
+  CHECK(decode_parameters(after.parameters).certified_error == 0.2);
+  CHECK(after.memory > before.memory);
+  CHECK(run_key(manifest, proven) != run_key(manifest, measured));
+}
+
 TEST_CASE("the paper's allocation is the same ratio in each part, and once") {
   const Manifest manifest = manifest_of(2, 100'000);
   const RunOptions options{.ratio = 0.02, .allocation = Allocation::uniform};
@@ -390,6 +402,7 @@ TEST_CASE("parameters come back; damaged ones are refused") {
                              77,
                              0.25,
                              0.5,
+                             0.625,
                              {true, 40, TopologyMode::simplify, {0.75, 1.5}, {false}}};
   const std::string bytes = encode_parameters(p);
   const SimplifyParameters back = decode_parameters(bytes);
@@ -398,6 +411,7 @@ TEST_CASE("parameters come back; damaged ones are refused") {
   CHECK(back.samples == 77);
   CHECK(back.cost_unit == 0.25);
   CHECK(back.max_error == 0.5);
+  CHECK(back.certified_error == 0.625);
   CHECK(back.lines.preserve_border);
   CHECK(back.lines.crease_angle == 40);
   CHECK(back.lines.topology == TopologyMode::simplify);

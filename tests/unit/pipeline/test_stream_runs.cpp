@@ -10,6 +10,7 @@
 
 #include <meshfarm/divide/cut.hpp>
 #include <meshfarm/geometry/distance.hpp>
+#include <meshfarm/geometry/hausdorff.hpp>
 #include <meshfarm/geometry/topology.hpp>
 #include <meshfarm/io/mesh_source.hpp>
 #include <meshfarm/pipeline/assemble.hpp>
@@ -98,6 +99,21 @@ TEST_CASE("swept streams, climbed streams and the uncut mesh end as good, closed
   CHECK(swept.summary.error.input_samples > 66'000);
   CHECK(swept.summary.error.greater().rms ==
         doctest::Approx(uncut.summary.error.greater().rms).epsilon(0.05));
+}
+
+TEST_CASE("a bound is proven of streams as of parts") {
+  const Mesh mesh = test::torus(80, 60);
+  const RunOptions run{.error = {0.01, false}, .certify = true};
+  const CutOptions streams{.scheme = Scheme::stream, .parts = 3, .window_triangles = 1000};
+  const test::TempFolder folder;
+  const MadeByStreams made = simplify_streams(mesh, streams, run, folder / "certified");
+  CHECK(std::count(made.kinds.begin(), made.kinds.end(), k_sweep_kind) == 0);
+  CHECK(made.summary.certified_error == 0.01);
+  const DistanceBounds there = bound_distance(mesh, made.mesh, {.gap = 1e-5});
+  const DistanceBounds back = bound_distance(made.mesh, mesh, {.gap = 1e-5});
+  CHECK(std::max(there.lower, back.lower) <= 0.01);
+  CHECK(std::max(there.upper, back.upper) <= 0.01 + 1.1e-5);
+  CHECK(made.mesh.triangles.size() < mesh.triangles.size() / 5);
 }
 
 TEST_CASE("composed as a tree, the result is as good, closed, and exact") {

@@ -1,0 +1,36 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <array>
+#include <optional>
+
+#include <meshfarm/geometry/mesh.hpp>
+#include <meshfarm/geometry/triangle_index.hpp>
+
+namespace meshfarm {
+
+/// What is simplified to a bound that is to be proven tries these shares of it, until the proof
+/// holds.
+inline constexpr std::array<double, 4> k_certified_shares = {1, 0.85, 0.6, 0.3};
+
+/// Proves that no point of a surface is farther than a distance from a result, and none of the
+/// result farther from the surface.
+class BoundProof {
+ public:
+  /// Of the surface, triangles with two corners at one place do not count.
+  BoundProof(Mesh surface, double distance, unsigned threads);
+  BoundProof(const BoundProof&) = delete;  // the index knows where the surface is
+  BoundProof& operator=(const BoundProof&) = delete;
+
+  /// False where it may not be so.
+  bool holds_for(const Mesh& result) const;
+
+ private:
+  Mesh surface_;
+  std::optional<TriangleIndex> index_;
+  double distance_;
+  unsigned threads_;
+};
+
+}  // namespace meshfarm

@@ -1,0 +1,85 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#include <algorithm>
+#include <iterator>
+
+#include <doctest/doctest.h>
+
+#include <meshfarm/divide/cut.hpp>
+#include <meshfarm/geometry/hausdorff.hpp>
+#include <meshfarm/pipeline/input_surface.hpp>
+
+#include "pipeline/bounded_finish.hpp"
+#include "pipeline/bounded_part.hpp"
+#include "support/memory_source.hpp"
+#include "support/meshes.hpp"
+#include "support/temp_folder.hpp"
+
+using namespace meshfarm;
+
+namespace {
+
+/// Of both directions.
+double farthest(const Mesh& a, const Mesh& b) {
+  const HausdorffOptions options{.gap = 1e-4};
+  return std::max(bound_distance(a, b, options).lower, bound_distance(b, a, options).lower);
+}
+
+Mesh simplified(const Mesh& mesh, double max_error, double certified_error,
+                const test::TempFolder& folder) {
+  SimplifyParameters parameters;
+  parameters.samples = 1000;
+  parameters.cost_unit = 1e-9;
+  parameters.max_error = max_error;
+  parameters.certified_error = certified_error;
+  const Stage stage = Stage::create(folder / std::to_string(certified_error));
+  const JobContext context{stage, 1, 7, [](std::uint64_t) { return true; }};
+  const BoundedPart made = simplify_to_bound({.mesh = mesh}, parameters, context);
+  return decode_result(made.file, 0, "the part").mesh;
+}
+
+}  // namespace
+
+TEST_CASE("a part keeps more where what is simplified is not within what is to be proven") {
+  const Mesh torus = test::torus(60, 40);
+  const test::TempFolder folder;
+  const Mesh sampled = simplified(torus, 0.05, 0, folder);
+  CHECK(farthest(torus, sampled) > 0.04);
+  std::size_t before = sampled.triangles.size();
+  // The first tries fail; at last none is within what is to be proven but the part itself.
+  for (const double certified : {0.025, 1e-7}) {
+    CAPTURE(certified);
+    const Mesh proven = simplified(torus, 0.05, certified, folder);
+    CHECK(farthest(torus, proven) <= certified);
+    CHECK(proven.triangles.size() > before);
+    before = proven.triangles.size();
+  }
+  CHECK(before == torus.triangles.size());
+}
+
+TEST_CASE("a finish leaves as it was stitched what is not within what is to be proven") {
+  const Mesh torus = test::torus(60, 40);
+  const test::TempFolder folder;
+  test::MemorySource source(torus);
+  const Stage stage = Stage::create(folder / "stage");
+  const Manifest manifest = cut_mesh(source, stage, {.parts = 2});
+  const StitchedMesh stitched{torus, std::vector<std::uint8_t>(torus.positions.size(), 1), 0, {}};
+  const auto finished = [&](double certified_error) {
+    return finish_to_bound(stage, manifest, stitched,
+                           {.max_error = 0.05,
+                            .certified_error = certified_error,
+                            .lines = {},
+                            .threads = 2,
+                            .progress = [](std::uint64_t) {}})
+        .mesh;
+  };
+  const Mesh sampled = finished(0);
+  CHECK(farthest(torus, sampled) > 0.04);
+  for (const double certified : {0.044, 0.02}) {
+    CAPTURE(certified);
+    const Mesh proven = finished(certified);
+    CHECK(farthest(torus, proven) <= certified);
+    CHECK(proven.triangles.size() >= sampled.triangles.size());
+  }
+  CHECK(finished(1e-7).triangles.size() == torus.triangles.size());
+}
