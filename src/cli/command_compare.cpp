@@ -32,7 +32,9 @@ class CompareCommand : public Command {
         "samples", po::value(&distance_.samples)->default_value(distance_.samples)->value_name("N"),
         "points on each surface")("map", po::value(&map_)->value_name("FILE"),
                                   "write B with the distance of each vertex from A, as 'quality' "
-                                  "and as colours");
+                                  "and as colours")(
+        "certify", po::bool_switch(&certify_),
+        "bound the greatest distances from above and below, over all points of both surfaces");
     measure_.add(options);
     talk_.add(options);
     positional.add("a", 1).add("b", 1);
@@ -43,7 +45,8 @@ class CompareCommand : public Command {
   }
   int run() override {
     if (!map_.empty()) check_map();
-    const Comparison comparison = compare_meshes(a_, b_, {measure_.divide, distance_, map_});
+    const Comparison comparison =
+        compare_meshes(a_, b_, {measure_.divide, distance_, certify_, map_});
     std::cout << render(comparison, talk_.format());
     return 0;
   }
@@ -62,6 +65,7 @@ class CompareCommand : public Command {
   std::string a_;
   std::string b_;
   DistanceOptions distance_;
+  bool certify_ = false;
   std::string map_;
   MeasureWords measure_;
   TalkOptions talk_;

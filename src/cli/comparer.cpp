@@ -9,6 +9,7 @@
 
 #include <meshfarm/divide/divided_distance.hpp>
 #include <meshfarm/geometry/crossings.hpp>
+#include <meshfarm/geometry/hausdorff.hpp>
 #include <meshfarm/geometry/quantile.hpp>
 #include <meshfarm/geometry/surface_measures.hpp>
 #include <meshfarm/geometry/value_error.hpp>
@@ -27,6 +28,10 @@ namespace {
 /// Of a triangle, with the numbers that both meshes share.
 constexpr std::uint64_t k_bytes_of_labels = 2 * sizeof(Label);
 
+/// Bounds of a distance are so near to each other: as a share of the diagonal, or of the distance.
+constexpr double k_certified_gap = 1e-5;
+constexpr double k_certified_relative_gap = 0.01;
+
 /// What it takes to hold both, and the hierarchy of one at a time.
 std::uint64_t memory_for(const DividedSurface& a, const DividedSurface& b) {
   const bool a_is_larger = a.triangles() > b.triangles();
@@ -34,6 +39,12 @@ std::uint64_t memory_for(const DividedSurface& a, const DividedSurface& b) {
   const DividedSurface& other = a_is_larger ? b : a;
   return memory_to_hold(larger.vertices(), larger.triangles()) + sizeof(Vec3) * other.vertices() +
          sizeof(Triangle) * other.triangles();
+}
+
+/// What it takes to bound distances beside that: both again, without what is no surface.
+std::uint64_t memory_for_bounds(const DividedSurface& a, const DividedSurface& b) {
+  return (sizeof(Vec3) + sizeof(std::uint32_t)) * (a.vertices() + b.vertices()) +
+         sizeof(Triangle) * (a.triangles() + b.triangles());
 }
 
 class MeshComparer {
@@ -56,7 +67,8 @@ class MeshComparer {
 
   Comparison compare() {
     const std::uint64_t memory = options_.divide.memory_bytes;
-    const std::uint64_t meshes = memory_for(a_, b_);
+    const std::uint64_t meshes =
+        memory_for(a_, b_) + (options_.certify ? memory_for_bounds(a_, b_) : 0);
     const bool have_labels = source_a_->info().labels && source_b_->info().labels;
     const std::uint64_t values =
         sizeof(float) * channels_.columns_a.size() * (a_.vertices() + b_.vertices()) +
@@ -68,6 +80,8 @@ class MeshComparer {
       measure_held({a, {}}, {b, {}}, {});
     } else if (!options_.map.empty()) {
       throw UsageError("--map: " + why_too_little(meshes, memory));
+    } else if (options_.certify) {
+      throw UsageError("--certify: " + why_too_little(meshes, memory));
     } else {
       measure_divided();
       comparison_.not_measured = why_too_little(meshes, memory);
@@ -125,6 +139,18 @@ class MeshComparer {
         });
     measure_shape(a.mesh, comparison_.figures_a);
     measure_shape(b.mesh, comparison_.figures_b);
+    if (options_.certify)
+      certify({a.mesh.positions, a.mesh.triangles}, {b.mesh.positions, b.mesh.triangles});
+  }
+
+  void certify(Mesh a, Mesh b) {
+    drop_coincident_corners(a);
+    drop_coincident_corners(b);
+    HausdorffOptions options;
+    options.gap = k_certified_gap * comparison_.diagonal;
+    options.relative_gap = k_certified_relative_gap;
+    options.threads = options_.divide.threads;
+    comparison_.certified = {bound_distance(a, b, options), bound_distance(b, a, options)};
   }
 
   void count_crossings(const TriangleIndex& index, SurfaceFigures& figures) const {

@@ -1,5 +1,6 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
+#include <algorithm>
 #include <cmath>
 #include <optional>
 
@@ -101,6 +102,31 @@ std::string text_of(const NormalDeviation& normals) {
          " degrees, more than 90 on " + number(100 * normals.over_90, "%.3g") + " % of the area";
 }
 
+Json to_json(const DistanceBounds& bounds, double diagonal) {
+  return {{"at_least", bounds.lower / diagonal}, {"at_most", bounds.upper / diagonal}};
+}
+
+/// The greater of both directions: the Hausdorff distance.
+Json certified_json(const Comparison& c) {
+  if (!c.certified) return nullptr;
+  const auto& [there, back] = *c.certified;
+  const DistanceBounds greater{std::max(there.lower, back.lower),
+                               std::max(there.upper, back.upper)};
+  return {{"a_to_b", to_json(there, c.diagonal)},
+          {"b_to_a", to_json(back, c.diagonal)},
+          {"greater", to_json(greater, c.diagonal)}};
+}
+
+void add_certified(Lines& lines, const Comparison& c) {
+  if (!c.certified) return;
+  const auto add = [&](const char* name, const DistanceBounds& bounds) {
+    lines.add(name, "max from " + number(bounds.lower / c.diagonal, "%.4g") + " to " +
+                        number(bounds.upper / c.diagonal, "%.4g") + ", of all points");
+  };
+  add("certified A to B", c.certified->a_to_b);
+  add("certified B to A", c.certified->b_to_a);
+}
+
 void add_changes(Lines& lines, const Comparison& c) {
   std::string text;
   if (const auto area = area_change(c)) text = "area " + number(*area, "%+.3g") + " %";
@@ -161,6 +187,7 @@ std::string render(const Comparison& c, Format format) {
                        {"diagonal", c.diagonal},
                        {"a_to_b", to_json(c.a_to_b, c.diagonal)},
                        {"b_to_a", to_json(c.b_to_a, c.diagonal)},
+                       {"certified", certified_json(c)},
                        {"surface_a", to_json(c.figures_a)},
                        {"surface_b", to_json(c.figures_b)},
                        {"area_change_percent", to_json(area_change(c))},
@@ -189,6 +216,7 @@ std::string render(const Comparison& c, Format format) {
   add_changes(lines, c);
   lines.add("A to B", text_of(c.a_to_b, c.diagonal));
   lines.add("B to A", text_of(c.b_to_a, c.diagonal));
+  add_certified(lines, c);
   lines.add("unit", "A's diagonal, " + number(c.diagonal, "%.9g"));
   if (c.a_to_b.normals) lines.add("facing A to B", text_of(*c.a_to_b.normals));
   if (c.b_to_a.normals) lines.add("facing B to A", text_of(*c.b_to_a.normals));

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 //
 // What `meshfarm compare` tells of two files.
+#include <algorithm>
 #include <cmath>
 #include <functional>
 
@@ -344,6 +345,40 @@ TEST_CASE("compare writes a map of the distances, with a number and a colour at 
     CHECK(over.code == 2);
     CHECK(has(over.err, "which it would write over"));
   }
+}
+
+TEST_CASE("compare bounds the greatest distances over all points, where that is asked for") {
+  Bench bench;
+  // A slot that the lid's vertices do not show: the lid is 3 from the sheet in its middle.
+  Mesh sheet = test::grid(24, 24);
+  std::erase_if(sheet.triangles, [&](const Triangle& t) {
+    return std::all_of(t.begin(), t.end(), [&](std::uint32_t v) {
+      return sheet.positions[v].x >= 9 && sheet.positions[v].x <= 15;
+    });
+  });
+  Mesh lid = test::grid(1, 1);
+  for (Vec3& p : lid.positions) p = p * 24;
+  // What is no surface is not far from anything.
+  lid.positions.push_back({0, 0, 100});
+  lid.triangles.push_back({4, 4, 4});
+  write_mesh(bench.path("a.ply"), sheet, PositionType::float32);
+  write_mesh(bench.path("b.ply"), lid, PositionType::float32);
+  const Ran plain = bench.compare("a.ply", "b.ply", {"--json"});
+  CHECK(has(plain.out, "\"certified\": null"));
+  const Ran json = bench.compare("a.ply", "b.ply", {"--json", "--certify"});
+  REQUIRE(json.code == 0);
+  const std::string bounds = json.out.substr(json.out.find("\"certified\": {"));
+  const std::string back = bounds.substr(bounds.find("\"b_to_a\""));
+  const double diagonal = 24 * std::sqrt(2.0);
+  CHECK(number_after(bounds, "\"at_most\": ") < 2e-5);  // A to B stands first
+  CHECK(number_after(back, "\"at_least\": ") <= 3 / diagonal);
+  CHECK(number_after(back, "\"at_most\": ") >= 3 / diagonal);
+  CHECK(number_after(back, "\"at_most\": ") <= 3.04 / diagonal);
+  const Ran text = bench.compare("a.ply", "b.ply", {"--certify"});
+  CHECK(has(text.out, "certified B to A  max from 0.08"));
+  const Ran small = bench.compare("a.ply", "b.ply", {"--certify", "--memory", "64K"});
+  CHECK(small.code == 2);
+  CHECK(has(small.err, "--certify: that takes --memory "));
 }
 
 TEST_CASE("compare says what it leaves out of meshes that do not fit into its memory") {
