@@ -43,7 +43,8 @@ void check_certify(const RunOptions& run) {
   if (!run.certify) return;
   if (!(run.error.value > 0)) throw UsageError("--certify proves a bound: it needs --error");
   if (run.drop_components.value > 0) {
-    throw UsageError("--certify proves the distance of the whole input: not with --drop-components");
+    throw UsageError(
+        "--certify proves the distance of the whole input: not with --drop-components");
   }
 }
 

@@ -13,13 +13,13 @@
 namespace meshfarm {
 namespace {
 
-constexpr std::uint64_t k_chunk = 1024;
+constexpr std::uint64_t k_triangles_at_once = 1024;
 /// Chunks that are bounded at once know the lower bound of those before. More and more: what is
 /// farthest is soon found, and threads should not wait for each other.
 constexpr std::uint64_t k_first_chunks = 8;
 constexpr std::uint64_t k_most_chunks = 1024;
 /// A vertex is near if it is within this share of what is enough.
-constexpr double k_near_share = 0.5;
+constexpr double k_near_corner_share = 0.5;
 
 /// Where a point is so near to a distance, as a share of it, nothing is proven.
 constexpr double k_gap_of_proof = 0x1p-10;
@@ -27,7 +27,7 @@ constexpr double k_gap_of_proof = 0x1p-10;
 constexpr std::uint32_t k_unused = UINT32_MAX;
 
 std::uint64_t chunks_of_all(std::size_t count) {
-  return (count + k_chunk - 1) / k_chunk;
+  return (count + k_triangles_at_once - 1) / k_triangles_at_once;
 }
 
 HausdorffOptions proof_of(double distance, unsigned threads) {
@@ -72,8 +72,8 @@ class SurfaceBounder {
     std::vector<std::vector<std::uint32_t>> found(chunks_of_all(triangles_.size()));
     parallel_for(found.size(), options_.threads, [&](std::uint64_t chunk) {
       PieceBounder pieces(to_.mesh(), to_.bvh(), rounding_);
-      const std::size_t end = std::min(triangles_.size(), (chunk + 1) * k_chunk);
-      for (std::size_t i = chunk * k_chunk; i < end; ++i) {
+      const std::size_t end = std::min(triangles_.size(), (chunk + 1) * k_triangles_at_once);
+      for (std::size_t i = chunk * k_triangles_at_once; i < end; ++i) {
         const double upper = bound_triangle(triangles_[i], options_, pieces).upper;
         if (upper > options_.enough) found[chunk].push_back(static_cast<std::uint32_t>(i));
       }
@@ -97,12 +97,13 @@ class SurfaceBounder {
   void find_near_triangles() {
     near_.assign(positions_.size(), k_unused);
     for (const Triangle& t : triangles_) near_[t[0]] = near_[t[1]] = near_[t[2]] = 0;
-    const double enough = k_near_share * k_near_share * options_.enough * options_.enough;
+    const double enough =
+        k_near_corner_share * k_near_corner_share * options_.enough * options_.enough;
     std::vector<double> farthest(chunks_of_all(positions_.size()), 0);
     parallel_for(farthest.size(), options_.threads, [&](std::uint64_t chunk) {
       std::uint32_t guess = 0;
-      const std::size_t end = std::min(positions_.size(), (chunk + 1) * k_chunk);
-      for (std::size_t v = chunk * k_chunk; v < end; ++v) {
+      const std::size_t end = std::min(positions_.size(), (chunk + 1) * k_triangles_at_once);
+      for (std::size_t v = chunk * k_triangles_at_once; v < end; ++v) {
         if (near_[v] == k_unused) continue;
         const Bvh::Nearest nearest = to_.bvh().nearest(positions_[v], guess, enough);
         near_[v] = guess = nearest.triangle;
@@ -118,8 +119,8 @@ class SurfaceBounder {
     PieceBounder pieces(to_.mesh(), to_.bvh(), rounding_);
     HausdorffOptions options = options_;
     DistanceBounds found = bounds_;
-    const std::size_t end = std::min(triangles_.size(), (chunk + 1) * k_chunk);
-    for (std::size_t i = chunk * k_chunk; i < end; ++i) {
+    const std::size_t end = std::min(triangles_.size(), (chunk + 1) * k_triangles_at_once);
+    for (std::size_t i = chunk * k_triangles_at_once; i < end; ++i) {
       const double gap = std::max(options_.gap, options_.relative_gap * found.lower);
       options.enough = std::max(options_.enough, found.lower + gap);
       const DistanceBounds each = bound_triangle(triangles_[i], options, pieces);
@@ -133,7 +134,7 @@ class SurfaceBounder {
   /// Most are near one triangle as a whole, which then is near one of the corners.
   DistanceBounds bound_triangle(const Triangle& t, const HausdorffOptions& options,
                                 PieceBounder& pieces) const {
-    const Corners corners = corners_of(positions_, t);
+    const CornerPoints corners = corners_of(positions_, t);
     const Mesh& to = to_.mesh();
     for (std::size_t i = 0; i < 3; ++i) {
       const std::uint32_t near = near_[t[i]];

@@ -10,7 +10,7 @@ namespace {
 
 /// So thin triangles are not sure on which side of them a point is.
 constexpr double k_thin = 1e-10;
-constexpr double k_rounding = 0x1p-44;
+constexpr double k_relative_rounding = 0x1p-44;
 
 /// Of the segment's nearest point.
 double squared_above(Vec3 p, Vec3 a, Vec3 b) {
@@ -20,7 +20,7 @@ double squared_above(Vec3 p, Vec3 a, Vec3 b) {
   return std::min(squared_length(p - (a + ab * along)), squared_length(p - a));
 }
 
-std::size_t longest_side(const Corners& corners) {
+std::size_t side_to_cut(const CornerPoints& corners) {
   std::size_t longest = 0;
   double most = -1;
   for (std::size_t i = 0; i < 3; ++i) {
@@ -35,7 +35,7 @@ std::size_t longest_side(const Corners& corners) {
 
 }  // namespace
 
-double distance_above(Vec3 p, const Corners& triangle) {
+double distance_above(Vec3 p, const CornerPoints& triangle) {
   const auto& [a, b, c] = triangle;
   const Vec3 ab = b - a, ac = c - a, ap = p - a;
   const Vec3 normal = cross(ab, ac);
@@ -51,7 +51,7 @@ double distance_above(Vec3 p, const Corners& triangle) {
   return std::sqrt(best);
 }
 
-double farthest_corner(const Corners& corners, const Corners& triangle) {
+double farthest_corner(const CornerPoints& corners, const CornerPoints& triangle) {
   double farthest = 0;
   for (const Vec3 p : corners) farthest = std::max(farthest, distance_above(p, triangle));
   return farthest;
@@ -63,7 +63,7 @@ double rounding_of(const Box& box) {
   for (int axis = 0; axis < 3; ++axis) {
     greatest = std::max({greatest, std::abs(box.lo[axis]), std::abs(box.hi[axis])});
   }
-  return k_rounding * greatest;
+  return k_relative_rounding * greatest;
 }
 
 /// What is no farther is settled.
@@ -84,7 +84,7 @@ bool PieceBounder::is_settled(Piece& piece) {
   const double enough = most > radius ? (most - radius) * (most - radius) : 0;
   const Bvh::Nearest nearest = bvh_.nearest(middle, piece.guess, enough);
   if (nearest.squared > enough) bounds_.lower = std::max(bounds_.lower, std::sqrt(nearest.squared));
-  const Corners there = corners_of(to_.positions, to_.triangles[nearest.triangle]);
+  const CornerPoints there = corners_of(to_.positions, to_.triangles[nearest.triangle]);
   piece.upper = std::min(piece.upper, distance_above(middle, there) + radius);
   if (nearest.triangle != piece.guess) {
     piece.upper = std::min(piece.upper, farthest_corner(piece.corners, there));
@@ -102,7 +102,7 @@ void PieceBounder::look_at(Piece piece) {
   std::push_heap(open_.begin(), open_.end());
 }
 
-DistanceBounds PieceBounder::bound(const Corners& corners, const HausdorffOptions& options,
+DistanceBounds PieceBounder::bound(const CornerPoints& corners, const HausdorffOptions& options,
                                    std::uint32_t& guess) {
   options_ = options;
   bounds_ = {};
@@ -114,7 +114,7 @@ DistanceBounds PieceBounder::bound(const Corners& corners, const HausdorffOption
     std::pop_heap(open_.begin(), open_.end());
     const Piece top = open_.back();
     open_.pop_back();
-    const std::size_t side = longest_side(top.corners);
+    const std::size_t side = side_to_cut(top.corners);
     const Vec3 from = top.corners[side], to = top.corners[(side + 1) % 3];
     const Vec3 opposite = top.corners[(side + 2) % 3], middle = from * 0.5 + to * 0.5;
     look_at({{from, middle, opposite}, top.upper, top.guess});
@@ -122,8 +122,8 @@ DistanceBounds PieceBounder::bound(const Corners& corners, const HausdorffOption
     guess = top.guess;
   }
   if (!open_.empty()) bounds_.upper = std::max(bounds_.upper, open_.front().upper);
-  const double lower = std::max(0.0, bounds_.lower * (1 - k_rounding) - rounding_);
-  return {lower, std::max(lower, bounds_.upper * (1 + k_rounding) + rounding_)};
+  const double lower = std::max(0.0, bounds_.lower * (1 - k_relative_rounding) - rounding_);
+  return {lower, std::max(lower, bounds_.upper * (1 + k_relative_rounding) + rounding_)};
 }
 
 }  // namespace meshfarm

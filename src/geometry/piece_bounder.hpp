@@ -14,19 +14,19 @@
 
 namespace meshfarm {
 
-using Corners = std::array<Vec3, 3>;
+using CornerPoints = std::array<Vec3, 3>;
 
-inline Corners corners_of(std::span<const Vec3> positions, const Triangle& t) {
+inline CornerPoints corners_of(std::span<const Vec3> positions, const Triangle& t) {
   return {positions[t[0]], positions[t[1]], positions[t[2]]};
 }
 
 /// No less than the distance of `p` to the triangle, but for the rounding of a few operations on
 /// coordinates: it is that to a point of the triangle, however thin this is.
-double distance_above(Vec3 p, const Corners& triangle);
+double distance_above(Vec3 p, const CornerPoints& triangle);
 
-/// The greatest of the corners' distances to the triangle. As a triangle is convex, no point between
-/// the corners is farther.
-double farthest_corner(const Corners& corners, const Corners& triangle);
+/// The greatest of the corners' distances to the triangle. As a triangle is convex, no point
+/// between the corners is farther.
+double farthest_corner(const CornerPoints& corners, const CornerPoints& triangle);
 
 /// What rounding may change of distances between points with such coordinates.
 double rounding_of(const Box& box);
@@ -40,12 +40,12 @@ class PieceBounder {
       : to_(to), bvh_(bvh), rounding_(rounding) {}
 
   /// `guess`: a triangle near the corners; becomes another one. The options' threads don't matter.
-  DistanceBounds bound(const Corners& corners, const HausdorffOptions& options,
+  DistanceBounds bound(const CornerPoints& corners, const HausdorffOptions& options,
                        std::uint32_t& guess);
 
  private:
   struct Piece {
-    Corners corners;
+    CornerPoints corners;
     double upper;
     std::uint32_t guess;
     bool operator<(const Piece& other) const { return upper < other.upper; }

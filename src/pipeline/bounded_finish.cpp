@@ -174,7 +174,8 @@ BoundedFinish simplified(Mesh mesh, std::uint32_t locked, const SurfaceBound* bo
           simplifier.turned()};
 }
 
-/// Where the proof fails, what was stitched stays as it is; in the end all of it, which has a proof.
+/// Where the proof fails, what was stitched stays as it is; in the end all of it, which has a
+/// proof.
 BoundedFinish finish_with_proof(Mesh stitched, std::uint32_t locked, const SurfaceBound& bound,
                                 const Manifest& manifest, const BoundedFinishOptions& options) {
   const SeamProof proof(bound.surface(), options);
@@ -182,8 +183,7 @@ BoundedFinish finish_with_proof(Mesh stitched, std::uint32_t locked, const Surfa
     BoundedFinish finish = simplified(stitched, locked, &bound, manifest, options);
     const Mesh unproven = proof.find_unproven(stitched, locked, finish.mesh);
     if (unproven.triangles.empty()) return finish;
-    const NearCells near(unproven.positions, unproven.triangles,
-                         k_reach * options.certified_error);
+    const NearCells near(unproven.positions, unproven.triangles, k_reach * options.certified_error);
     std::vector<std::uint8_t> flags(stitched.positions.size(), 0);
     for (std::uint32_t v = locked; v < flags.size(); ++v) {
       const Vec3 p = stitched.positions[v];

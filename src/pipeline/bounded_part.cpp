@@ -49,10 +49,11 @@ class PartSimplifier {
   }
 
   Simplifier cleaned(Part part, const SurfaceBound* bound) const {
-    return {std::move(part.mesh), {.locked_vertices = part.boundary_vertices,
-                                   .positions = part.positions,
-                                   .lines = parameters_.lines,
-                                   .bound = bound}};
+    return {std::move(part.mesh),
+            {.locked_vertices = part.boundary_vertices,
+             .positions = part.positions,
+             .lines = parameters_.lines,
+             .bound = bound}};
   }
 
   bool goes_on(std::uint64_t before, std::uint64_t left) const {

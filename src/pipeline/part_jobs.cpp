@@ -64,7 +64,8 @@ double PartJobs::wanted() const {
 
 /// A proof needs a stream in memory, as it came: it is climbed as a part.
 bool PartJobs::is_sampled(std::uint32_t part) const {
-  return !options_.certify && !manifest_.samples.empty() && !manifest_.samples[part].file.name.empty();
+  return !options_.certify && !manifest_.samples.empty() &&
+         !manifest_.samples[part].file.name.empty();
 }
 
 /// What is climbed: the part, or a sample of a long stream.

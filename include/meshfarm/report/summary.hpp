@@ -94,11 +94,11 @@ struct SurfaceFigures {
 /// What a run made, for people and for programs.
 struct RunSummary {
   Manifest manifest;
-  std::uint64_t run = 0;        // its key
-  std::uint32_t epoch = 0;      // of the ventilator that its sink served
-  std::string output;           // path of the result
-  std::uint64_t target = 0;     // triangles asked for, 0: as few as max_error allows
-  double max_error = 0;         // the greatest distance allowed, in the mesh's unit; 0: any
+  std::uint64_t run = 0;     // its key
+  std::uint32_t epoch = 0;   // of the ventilator that its sink served
+  std::string output;        // path of the result
+  std::uint64_t target = 0;  // triangles asked for, 0: as few as max_error allows
+  double max_error = 0;      // the greatest distance allowed, in the mesh's unit; 0: any
   /// No point of the result is farther from the input, and none of the input from the result; 0:
   /// that is not proven.
   double certified_error = 0;

@@ -256,7 +256,7 @@ TEST_CASE("hausdorff: the distance to a needle is never told too small") {
   for (int i = 0; i < 2000; ++i) {
     const Vec3 a = point(), b = point();
     const double thin = std::pow(10.0, -3 - i % 16);
-    const Corners needle = {a, b, a + (b - a) * 0.5 + point() * thin};
+    const CornerPoints needle = {a, b, a + (b - a) * 0.5 + point() * thin};
     const Vec3 p = point();
     const Vec3 ab = b - a;
     const double along = std::clamp(dot(p - a, ab) / dot(ab, ab), 0.0, 1.0);

@@ -300,7 +300,8 @@ TEST_CASE("with a bound on the error each part is taken as far as it allows, and
   CHECK(chosen_of(manifest, options, done).rungs.size() == 2);
 }
 
-TEST_CASE("a bound that is to be proven is asked of the parts, with memory for it, and another run") {
+TEST_CASE(
+    "a bound that is to be proven is asked of the parts, with memory for it, and another run") {
   const Manifest manifest = manifest_of(2, 100'000);
   const RunOptions measured{.error = {0.2, false}};
   const RunOptions proven{.error = {0.2, false}, .certify = true};
