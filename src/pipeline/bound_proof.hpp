@@ -3,12 +3,18 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <optional>
+#include <vector>
 
 #include <meshfarm/geometry/mesh.hpp>
 #include <meshfarm/geometry/triangle_index.hpp>
 
 namespace meshfarm {
+
+/// Renumbers the vertices: those that are flagged come last, the order kept otherwise. Returns how
+/// many are not.
+std::uint32_t put_last(Mesh& mesh, const std::vector<std::uint8_t>& flags);
 
 /// What is simplified to a bound that is to be proven tries these shares of it, until the proof
 /// holds.
@@ -25,6 +31,10 @@ class BoundProof {
 
   /// False where it may not be so.
   bool holds_for(const Mesh& result) const;
+  /// Whether the result is near the surface: that direction alone.
+  bool is_near(const Mesh& result) const;
+  /// The triangles of the surface that may be too far from the result.
+  std::vector<Triangle> find_lost(const Mesh& result) const;
 
  private:
   Mesh surface_;

@@ -16,6 +16,8 @@
 #include <meshfarm/geometry/vertices.hpp>
 #include <meshfarm/pipeline/input_surface.hpp>
 
+#include "pipeline/bound_proof.hpp"
+
 namespace meshfarm {
 namespace {
 
@@ -46,27 +48,6 @@ std::vector<std::uint8_t> vertices_round(const Mesh& mesh, std::vector<std::uint
   }
   flag_unused(mesh, near);
   return near;
-}
-
-/// Renumbers the vertices: those that are flagged come last, the order kept otherwise. Returns how
-/// many are not.
-std::uint32_t put_last(Mesh& mesh, const std::vector<std::uint8_t>& flags) {
-  std::vector<std::uint32_t> number(flags.size());
-  std::uint32_t next = 0;
-  std::uint32_t first = 0;
-  for (const std::uint8_t wanted : {std::uint8_t{0}, std::uint8_t{1}}) {
-    for (std::uint32_t v = 0; v < flags.size(); ++v) {
-      if (flags[v] == wanted) number[v] = next++;
-    }
-    if (wanted == 0) first = next;
-  }
-  Mesh ordered;
-  place_vertices(VertexView(mesh), number, next, ordered);
-  ordered.triangles = std::move(mesh.triangles);
-  ordered.columns = std::move(mesh.columns);
-  renumber_corners(ordered.triangles, number);
-  mesh = std::move(ordered);
-  return first;
 }
 
 /// Adds the triangles of a piece that are near, each with vertices of its own piece.

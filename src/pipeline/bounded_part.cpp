@@ -6,6 +6,7 @@
 #include <optional>
 #include <span>
 #include <utility>
+#include <vector>
 
 #include <meshfarm/geometry/distance.hpp>
 #include <meshfarm/geometry/hausdorff.hpp>
@@ -24,6 +25,11 @@ std::int32_t level_reached(double cost, double unit) {
   const std::int32_t level = level_of(cost, unit);
   return level_cost(level, unit) > cost ? level - 1 : level;
 }
+
+/// Where no more than this share of a part's triangles is lost, these are kept as they came, and
+/// the rest is simplified again as far as before; so often.
+constexpr double k_little_lost = 0.002;
+constexpr std::size_t k_most_tries = 4;
 
 class PartSimplifier {
  public:
@@ -61,13 +67,30 @@ class PartSimplifier {
     throw IncompleteError("the job was given up");
   }
 
-  /// As simple as it may be with a proof; the part as it came has one.
+  /// As simple as it may be with a proof; the part as it came has one. What of it was lost stays,
+  /// where that is little.
   Simplifier certified(const Part& part) const {
     const BoundProof proof(part.mesh, parameters_.certified_error, 1);
-    for (const double share : k_certified_shares) {
-      Simplifier simplifier = simplified(part, share);
-      if (proof.holds_for(simplifier.mesh())) return simplifier;
+    std::vector<std::uint8_t> moves(part.mesh.positions.size(), 1);
+    std::fill(moves.begin(), moves.begin() + part.boundary_vertices, std::uint8_t{0});
+    std::size_t tries = 0;
+    for (std::size_t i = 0; i < k_certified_shares.size();) {
+      Part with_locked = part;
+      with_locked.boundary_vertices = put_last(with_locked.mesh, moves);
+      Simplifier simplifier = simplified(std::move(with_locked), k_certified_shares[i]);
       goes_on(1, 1);
+      const bool is_near = proof.is_near(simplifier.mesh());
+      const std::vector<Triangle> lost = proof.find_lost(simplifier.mesh());
+      if (is_near && lost.empty()) return simplifier;
+      const bool is_little = static_cast<double>(lost.size()) <
+                             k_little_lost * static_cast<double>(part.mesh.triangles.size());
+      if (is_little) {
+        for (const auto& [a, b, c] : lost) moves[a] = moves[b] = moves[c] = 0;
+      }
+      if (!is_near || !is_little || ++tries >= k_most_tries) {
+        ++i;
+        tries = 0;
+      }
     }
     return cleaned(part, nullptr);
   }

@@ -375,7 +375,7 @@ TEST_CASE("compare bounds the greatest distances over all points, where that is 
   CHECK(number_after(back, "\"at_most\": ") >= 3 / diagonal);
   CHECK(number_after(back, "\"at_most\": ") <= 3.04 / diagonal);
   const Ran text = bench.compare("a.ply", "b.ply", {"--certify"});
-  CHECK(has(text.out, "certified B to A  max from 0.08"));
+  CHECK(has(text.out, "certified B to A max from 0.08"));
   const Ran small = bench.compare("a.ply", "b.ply", {"--certify", "--memory", "64K"});
   CHECK(small.code == 2);
   CHECK(has(small.err, "--certify: that takes --memory "));
