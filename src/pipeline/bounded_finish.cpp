@@ -3,6 +3,7 @@
 #include "pipeline/bounded_finish.hpp"
 
 #include <algorithm>
+#include <array>
 #include <iterator>
 #include <optional>
 #include <span>
@@ -82,16 +83,41 @@ Mesh input_near(const Stage& stage, const Manifest& manifest, const NearCells& n
   return all;
 }
 
-/// The triangles none of whose corners moves, in an order of their own.
-std::vector<Triangle> fixed_triangles(const Mesh& mesh, std::uint32_t locked) {
-  std::vector<Triangle> fixed;
-  for (Triangle t : mesh.triangles) {
-    std::sort(t.begin(), t.end());
-    if (t[2] < locked && !is_degenerate(t)) fixed.push_back(t);
+/// A triangle by its places: vertices may be taken apart, or their numbers change.
+using Places = std::array<std::array<double, 3>, 3>;
+
+Places places_of(const Mesh& mesh, const Triangle& t) {
+  Places places{};
+  for (std::size_t i = 0; i < 3; ++i) {
+    const Vec3 p = mesh.positions[t[i]];
+    places[i] = {p.x, p.y, p.z};
+  }
+  std::sort(places.begin(), places.end());
+  return places;
+}
+
+/// Those of the first `locked` vertices, in an order of their own.
+std::vector<Places> fixed_places(const Mesh& mesh, std::uint32_t locked) {
+  std::vector<Places> fixed;
+  for (const Triangle& t : mesh.triangles) {
+    if (*std::max_element(t.begin(), t.end()) < locked && !is_degenerate(t)) {
+      fixed.push_back(places_of(mesh, t));
+    }
   }
   std::sort(fixed.begin(), fixed.end());
-  fixed.erase(std::unique(fixed.begin(), fixed.end()), fixed.end());
   return fixed;
+}
+
+/// Whether none of them has gone. Tells which of the triangles are others.
+bool are_kept(const std::vector<Places>& fixed, const Mesh& mesh, std::vector<Triangle>& others) {
+  std::vector<std::uint8_t> is_there(fixed.size(), 0);
+  for (const Triangle& t : mesh.triangles) {
+    const auto [first, last] = std::equal_range(fixed.begin(), fixed.end(), places_of(mesh, t));
+    if (first == last) others.push_back(t);
+    std::fill(is_there.begin() + (first - fixed.begin()), is_there.begin() + (last - fixed.begin()),
+              std::uint8_t{1});
+  }
+  return std::find(is_there.begin(), is_there.end(), 0) == is_there.end();
 }
 
 /// Proves what the finish has made round the seams. What is farther from them was proven before,
@@ -108,14 +134,11 @@ class SeamProof {
   /// What is not proven of `result`, made of `stitched`, whose first `locked` vertices have not
   /// moved: triangles of either surface.
   Mesh find_unproven(const Mesh& stitched, std::uint32_t locked, const Mesh& result) const {
-    const std::vector<Triangle> before = fixed_triangles(stitched, locked);
-    if (!index_ || result.triangles.empty() || before != fixed_triangles(result, locked)) {
+    std::vector<Triangle> changed;
+    if (!index_ || result.triangles.empty() ||
+        !are_kept(fixed_places(stitched, locked), result, changed)) {
       return stitched;
     }
-    std::vector<Triangle> changed;
-    std::copy_if(
-        result.triangles.begin(), result.triangles.end(), std::back_inserter(changed),
-        [&](const Triangle& t) { return *std::max_element(t.begin(), t.end()) >= locked; });
     Mesh unproven;
     add_beyond(result.positions, changed, *index_, unproven);
     add_beyond(input_.positions, input_.triangles, TriangleIndex(result, options_.threads),

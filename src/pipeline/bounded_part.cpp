@@ -31,6 +31,16 @@ std::int32_t level_reached(double cost, double unit) {
 constexpr double k_little_lost = 0.002;
 constexpr std::size_t k_most_tries = 4;
 
+/// These triangles and those that touch them.
+void keep_round(const Mesh& mesh, const std::vector<Triangle>& lost,
+                std::vector<std::uint8_t>& moves) {
+  std::vector<std::uint8_t> flags(moves.size(), 0);
+  for (const auto& [a, b, c] : lost) flags[a] = flags[b] = flags[c] = 1;
+  for (const auto& [a, b, c] : mesh.triangles) {
+    if ((flags[a] | flags[b] | flags[c]) != 0) moves[a] = moves[b] = moves[c] = 0;
+  }
+}
+
 class PartSimplifier {
  public:
   PartSimplifier(const SimplifyParameters& parameters, const JobContext& context)
@@ -85,7 +95,7 @@ class PartSimplifier {
       const bool is_little = static_cast<double>(lost.size()) <
                              k_little_lost * static_cast<double>(part.mesh.triangles.size());
       if (is_little) {
-        for (const auto& [a, b, c] : lost) moves[a] = moves[b] = moves[c] = 0;
+        keep_round(part.mesh, lost, moves);
       }
       if (!is_near || !is_little || ++tries >= k_most_tries) {
         ++i;
