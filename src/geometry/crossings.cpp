@@ -16,14 +16,6 @@ namespace {
 
 constexpr std::size_t k_leaves_a_chunk = 1024;
 
-/// Without branches, of which half would be guessed wrong.
-bool do_touch(const Box& a, const Box& b) {
-  const double x = std::max(a.lo.x - b.hi.x, b.lo.x - a.hi.x);
-  const double y = std::max(a.lo.y - b.hi.y, b.lo.y - a.hi.y);
-  const double z = std::max(a.lo.z - b.hi.z, b.lo.z - a.hi.z);
-  return std::max({x, y, z}) <= 0;
-}
-
 class CrossingFinder {
  public:
   CrossingFinder(const TriangleIndex& index, const CrossingOptions& options)

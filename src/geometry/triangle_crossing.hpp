@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <algorithm>
 #include <array>
 
 #include <meshfarm/geometry/mesh.hpp>
@@ -10,6 +11,14 @@
 namespace meshfarm {
 
 using TriangleCorners = std::array<Vec3, 3>;
+
+/// Without branches, of which half would be guessed wrong.
+inline bool do_touch(const Box& a, const Box& b) {
+  const double x = std::max(a.lo.x - b.hi.x, b.lo.x - a.hi.x);
+  const double y = std::max(a.lo.y - b.hi.y, b.lo.y - a.hi.y);
+  const double z = std::max(a.lo.z - b.hi.z, b.lo.z - a.hi.z);
+  return std::max({x, y, z}) <= 0;
+}
 
 /// A triangle, and what tells soon that it does not cross another one.
 struct CrossingTriangle {

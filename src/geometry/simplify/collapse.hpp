@@ -44,7 +44,9 @@ struct MergedColumns {
 /// neighbours may have.
 class CollapseJudge {
  public:
-  explicit CollapseJudge(const CollapseState& state) : state_(state) {}
+  explicit CollapseJudge(const CollapseState& state) : state_(state) {
+    star_.set_unfolding(state.unfolds);
+  }
   /// The state has moved in memory.
   void move_to(const CollapseState& state) { state_ = state; }
 

@@ -26,7 +26,9 @@ struct GeneralCollapse {
 class GeneralJudge {
  public:
   /// Target must be the identity: the adjacency is kept up to date.
-  explicit GeneralJudge(const CollapseState& state) : state_(state) {}
+  explicit GeneralJudge(const CollapseState& state) : state_(state) {
+    star_.set_unfolding(state.unfolds);
+  }
   void move_to(const CollapseState& state) { state_ = state; }
 
   /// Neither end may be fixed.

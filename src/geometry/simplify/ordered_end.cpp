@@ -12,6 +12,7 @@
 
 #include "geometry/simplify/adjacency.hpp"
 #include "geometry/simplify/collapse_guard.hpp"
+#include "geometry/simplify/crossing_guard.hpp"
 #include "geometry/simplify/simplify_rank.hpp"
 
 namespace meshfarm {
@@ -75,10 +76,15 @@ struct OrderedEnd::Trial {
         queue({positions, flags, adjacency, mesh.creases(), mesh.type(), mesh.seam_only(),
                topology == TopologyMode::simplify,
                topology == TopologyMode::automatic || topology == TopologyMode::keep_while_fair,
-               appearances, mesh.appearance_scale(), columns, mesh.uv_scale()},
+               appearances, mesh.appearance_scale(), columns, mesh.uv_scale(),
+               mesh.avoids_crossings()},
               ranking) {
     adjacency.build(mesh.mesh().triangles, positions.size(), columns);
     queue.start(mesh.mesh().triangles);
+    if (mesh.avoids_crossings()) {
+      crossings.emplace();
+      queue.set_guard(*crossings, mesh.mesh().triangles);
+    }
     if (bound == nullptr) return;
     guard.emplace(*bound);
     queue.set_guard(*guard, mesh.mesh());
@@ -92,6 +98,7 @@ struct OrderedEnd::Trial {
   EdgeRanking ranking;
   CollapseQueue queue;
   std::optional<CollapseGuard> guard;
+  std::optional<CrossingGuard> crossings;
 };
 
 OrderedEnd::OrderedEnd(WorkingMesh& mesh, TopologyMode topology, const SurfaceBound* bound)

@@ -73,6 +73,7 @@ void CollapseQueue::tidy_star(std::uint32_t vertex) {
     classify(v);
   }
   if (guard_ != nullptr) guard_->split(vertex, first_copy);
+  if (crossings_ != nullptr) crossings_->split(vertex, first_copy);
 }
 
 void CollapseQueue::classify(std::uint32_t vertex) {
@@ -101,6 +102,7 @@ std::uint32_t CollapseQueue::add_copy(std::uint32_t vertex) {
   judge_.move_to(state());
   general_.move_to(state());
   if (guard_ != nullptr) guard_->move_to(state());
+  if (crossings_ != nullptr) crossings_->move_to(state());
   tidied_.push_back(copy);
   return copy;
 }

@@ -110,6 +110,10 @@ std::uint64_t RankedPasses::run(const SimplifyGoal& goal, const Pass& pass) {
   CollapseLimits limits{excess, pass.max_cost};
   double reached = pass.max_cost;
   DriftMeter drifts(mesh_.state());
+  CrossingGuard guard;
+  if (mesh_.avoids_crossings()) {
+    guard.start(mesh_.state(), mesh_.mesh().triangles, CrossingGuard::Where::thin_walls);
+  }
   collapses_ = refused_for_topology_ = refused_for_bound_ = 0;
   for (std::uint32_t first = 0; first < vertices && limits.triangles > 0; first += pass.block) {
     const std::uint32_t last = std::min(vertices, first + pass.block);
@@ -117,7 +121,11 @@ std::uint64_t RankedPasses::run(const SimplifyGoal& goal, const Pass& pass) {
       if ((touched[e.a] | touched[e.b]) != 0) continue;
       const Collapse collapse = judge.judge(e.a, e.b, limits);
       refused_for_topology_ += collapse.by_topology ? 1 : 0;
-      if (collapse.triangles == 0 || !may_drift(drifts, e, collapse)) continue;
+      if (collapse.triangles == 0) continue;
+      const bool is_guarded = mesh_.avoids_crossings() && guard.concerns(e.a, e.b);
+      if (is_guarded && guard.crosses({e.a, e.b, collapse.position, {}})) continue;
+      if (!may_drift(drifts, e, collapse)) continue;
+      if (is_guarded) guard.merge();
       ++collapses_;
       mesh_.merge(e.a, e.b, collapse, judge.columns_of(collapse));
       limits.triangles -= collapse.triangles;

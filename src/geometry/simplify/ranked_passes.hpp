@@ -11,6 +11,7 @@
 
 #include "geometry/simplify/collapse.hpp"
 #include "geometry/simplify/collapse_drift.hpp"
+#include "geometry/simplify/crossing_guard.hpp"
 #include "geometry/simplify/simplify_rank.hpp"
 #include "geometry/simplify/working_mesh.hpp"
 

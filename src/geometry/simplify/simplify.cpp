@@ -35,6 +35,9 @@ struct Simplifier::Impl {
 
   void reduce(const SimplifyGoal& goal, const Progress& progress) {
     if (!(goal.max_cost > exhausted_cost)) return;
+    if (!std::exchange(is_flagged, true)) {
+      mesh.flag_thin_walls(last_of(goal), bound != nullptr ? bound->distance() : 0);
+    }
     const std::uint64_t before = mesh.triangles();
     auto came_to = RankedPasses::End::near;
     const bool is_used_up = bound != nullptr && bound->options().is_used_up;
@@ -75,6 +78,7 @@ struct Simplifier::Impl {
   RankedPasses passes;
   OrderedEnd end;
   std::vector<std::uint8_t> seam;
+  bool is_flagged = false;     // thin walls
   double exhausted_cost = -1;  // nothing is left that costs no more
 };
 

@@ -16,6 +16,7 @@
 #include "geometry/simplify/collapse.hpp"
 #include "geometry/simplify/collapse_general.hpp"
 #include "geometry/simplify/collapse_guard.hpp"
+#include "geometry/simplify/crossing_guard.hpp"
 #include "geometry/simplify/fans.hpp"
 #include "geometry/simplify/simplify_lines.hpp"
 #include "geometry/simplify/simplify_rank.hpp"
@@ -52,6 +53,7 @@ struct QueuedMesh {
   AppearanceScale appearance_scale;
   TriangleColumns& columns;  // what the adjacency was built with
   double uv_scale = 0;
+  bool unfolds = false;  // CollapseState::unfolds
 };
 
 /// Collapses edges strictly in order of their cost: what was refused, or has become cheaper, is
@@ -68,6 +70,7 @@ class CollapseQueue {
   void start(std::span<const Triangle> triangles);
   /// Then: what else refuses collapses. `mesh` is what the queue begins with.
   void set_guard(CollapseGuard& guard, const Mesh& mesh);
+  void set_guard(CrossingGuard& guard, std::span<const Triangle> triangles);
 
   /// Collapses until the goal is met or nothing that it allows is left. May be called again. False
   /// if progress said stop.
@@ -107,6 +110,8 @@ class CollapseQueue {
   void push(const RankedEdge& edge);
   std::uint32_t stamp_of(std::uint32_t a, std::uint32_t b) const { return looks_[a] + looks_[b]; }
   Collapse judge(std::uint32_t a, std::uint32_t b, std::uint64_t most_triangles);
+  CollapseGuard::Merge planned(std::uint32_t a, std::uint32_t b, const Collapse& collapse) const;
+  bool must_not_cross(const QueuedEdge& queued, const Collapse& collapse);
   bool is_guarded(std::uint32_t a, std::uint32_t b, const Collapse& collapse);
   void merge(std::uint32_t a, std::uint32_t b, const Collapse& collapse);
   void keep(const SimplifyGoal& goal);
@@ -124,6 +129,7 @@ class CollapseQueue {
   QueuedMesh mesh_;
   EdgeRanking& ranking_;
   CollapseGuard* guard_ = nullptr;
+  CrossingGuard* crossings_ = nullptr;
   std::vector<std::uint32_t> target_;  // the vertex that a vertex has become
   std::vector<std::uint8_t> refused_;  // an edge at the vertex was refused since it last changed
   // How often the edges at a vertex were ranked anew. Only increases, so that an entry is out of

@@ -8,12 +8,13 @@ namespace meshfarm {
 
 /// What a vertex may do, one byte each; a merged vertex inherits all but that it is fixed.
 enum VertexFlag : std::uint8_t {
-  k_fixed = 1,    // neither moves nor goes
-  k_border = 2,   // on an edge that has one triangle
-  k_seam = 4,     // SimplifyOptions::seam
-  k_crease = 8,   // on an edge sharper than LineOptions::crease_angle
-  k_corner = 16,  // where creases meet or end
-  k_complex = 32  // its triangles are not one consistently oriented fan
+  k_fixed = 1,     // neither moves nor goes
+  k_border = 2,    // on an edge that has one triangle
+  k_seam = 4,      // SimplifyOptions::seam
+  k_crease = 8,    // on an edge sharper than LineOptions::crease_angle
+  k_corner = 16,   // where creases meet or end
+  k_complex = 32,  // its triangles are not one consistently oriented fan
+  k_thin = 64      // another sheet is near
 };
 
 /// Passes leave the edges at these vertices alone.

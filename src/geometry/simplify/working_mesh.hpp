@@ -35,6 +35,7 @@ class WorkingMesh {
   const AppearanceScale& appearance_scale() const { return appearance_scale_; }
   double uv_scale() const { return uv_scale_; }
   bool seam_only() const { return seam_only_; }
+  bool avoids_crossings() const { return avoids_crossings_; }
   const Dropped& dropped() const { return dropped_; }
   /// Those that no locked vertex has.
   std::uint64_t free_triangles() const;
@@ -43,6 +44,10 @@ class WorkingMesh {
   bool is_above(std::uint64_t triangles) const;
   /// 1 a vertex that is, or was merged from, a seam vertex; empty without a seam.
   std::vector<std::uint8_t> seam() const;
+
+  /// Where crossings are avoided: flags as k_thin what another sheet may be near to. `last` is how
+  /// many triangles will be left when all is done, `bound` how far the surface may move or 0.
+  void flag_thin_walls(std::uint64_t last, double bound);
 
   void begin_pass();
   /// Of the pass that has begun.
@@ -77,6 +82,7 @@ class WorkingMesh {
   std::uint32_t locked_;
   PositionType type_;
   bool seam_only_;
+  bool avoids_crossings_;
   AppearanceScale appearance_scale_;
   double uv_scale_;
   CreaseLines creases_;

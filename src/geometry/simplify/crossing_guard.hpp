@@ -1,0 +1,70 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include <meshfarm/geometry/mesh.hpp>
+
+#include "geometry/simplify/box_tree.hpp"
+#include "geometry/simplify/collapse_guard.hpp"
+#include "geometry/simplify/collapse_state.hpp"
+#include "geometry/triangle_crossing.hpp"
+
+namespace meshfarm {
+
+/// Knows which collapses would make triangles cross: after which more pairs would than before
+/// (do_cross). So what crosses from the start locks nothing.
+class CrossingGuard {
+ public:
+  using Merge = CollapseGuard::Merge;
+  enum class Where : std::uint8_t {
+    everywhere,
+    thin_walls  // only collapses whose ends are on a vertex flagged as k_thin or beside one
+  };
+
+  void move_to(const CollapseState& state) { state_ = state; }
+
+  /// The mesh as it is. Triangles with coordinates that are not finite cross nothing.
+  void start(const CollapseState& state, std::span<const Triangle> triangles, Where where);
+
+  /// Whether it is to be asked about a collapse, and told of it.
+  bool concerns(std::uint32_t a, std::uint32_t b) const {
+    return levels_.empty() || (levels_[a] | levels_[b]) != 0;
+  }
+  bool crosses(const Merge& merge);
+  /// Before the merge that was judged last is done.
+  void merge();
+  /// Some of the vertex's triangles are now at copies of it, the latest vertices.
+  void split(std::uint32_t vertex, std::uint32_t first_copy);
+
+ private:
+  std::vector<Triangle> chosen(std::span<const Triangle> triangles);
+  Box box_of(const Triangle& t) const;
+  CrossingTriangle triangle_of(const Triangle& t) const;
+  Box box_round(const Merge& merge) const;
+  bool vanishes(const Triangle& t) const;
+  void list(const Merge& merge);
+  std::size_t count_before() const;
+  std::size_t count(const std::vector<CrossingTriangle>& star, std::size_t enough) const;
+
+  CollapseState state_;
+  std::vector<Triangle> triangles_;  // by slot; with two corners alike: gone
+  BoxTree boxes_;
+  /// Of each vertex how near it is to a thin wall, if only these count: 4 on one, 3 and 2 within
+  /// one edge and two, 1 if some other triangle of it is in a slot.
+  std::vector<std::uint8_t> levels_;
+
+  // Of the merge that is judged.
+  Merge merge_;
+  std::vector<std::uint32_t> touching_;
+  std::vector<std::uint32_t> star_;    // slots of the triangles at its ends
+  std::vector<std::uint32_t> others_;  // slots of those round about
+  std::vector<CrossingTriangle> fresh_;
+};
+
+}  // namespace meshfarm

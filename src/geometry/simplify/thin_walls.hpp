@@ -1,0 +1,17 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include <meshfarm/geometry/mesh.hpp>
+
+namespace meshfarm {
+
+/// Flags as k_thin the vertices that may have another sheet within `reach`: near them are triangles
+/// that face the other way, by their centres. No sheet is missed that far, if triangles are small
+/// beside it; most of what is flagged is no nearer than twice that.
+void flag_thin_walls(const Mesh& mesh, double reach, std::span<std::uint8_t> flags);
+
+}  // namespace meshfarm
