@@ -89,8 +89,11 @@ void TargetOptions::add(po::options_description& options) {
       "topology", po::value(&topology)->default_value(topology)->value_name("auto|keep|simplify"),
       "handles, holes and pieces: keep: never close or remove any; simplify: do so where it costs "
       "least; auto: keep them as long as the target can be met at a fair error")(
-      "preserve-border", po::bool_switch(&run.lines.preserve_border),
-      "leave the vertices on open borders as they are")(
+      "crossings", po::value(&crossings)->default_value(crossings)->value_name("allow|avoid"),
+      "thin walls: avoid: what would make triangles cross others comes last, or never with "
+      "--error; "
+      "allow: nobody looks")("preserve-border", po::bool_switch(&run.lines.preserve_border),
+                             "leave the vertices on open borders as they are")(
       "crease-angle", po::value(&run.lines.crease_angle)->value_name("DEGREES"),
       "keep edges that are sharper than this in place: their vertices merge only along them")(
       "drop-components", po::value(&drop_components)->value_name("LENGTH"),
@@ -152,6 +155,10 @@ void TargetOptions::check() {
   run.lines.topology = topology == "auto"   ? TopologyMode::automatic
                        : topology == "keep" ? TopologyMode::keep
                                             : TopologyMode::simplify;
+  if (crossings != "allow" && crossings != "avoid") {
+    throw UsageError("--crossings is 'allow' or 'avoid', not '" + crossings + "'");
+  }
+  run.lines.crossings = crossings == "avoid" ? CrossingMode::avoid : CrossingMode::allow;
   if (!(run.lines.crease_angle >= 0 && run.lines.crease_angle < 180)) {
     throw UsageError("--crease-angle must be 0 (no creases) or more, and below 180 degrees");
   }
@@ -185,6 +192,7 @@ std::vector<std::string> TargetOptions::words() const {
   std::vector<std::string> words = {"--allocation", allocation,      "--finish",
                                     finish,         "--composition", composition};
   words.insert(words.end(), {"--topology", topology});
+  if (crossings != "allow") words.insert(words.end(), {"--crossings", crossings});
   if (run.lines.preserve_border) words.emplace_back("--preserve-border");
   if (run.lines.crease_angle > 0) {
     words.insert(words.end(), {"--crease-angle", shortest(run.lines.crease_angle)});

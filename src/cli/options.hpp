@@ -37,7 +37,7 @@ struct TalkOptions {
 };
 
 /// --ratio, --triangles, --error, --certify, --allocation, --finish, --composition, --topology,
-/// --preserve-border, --crease-angle, --drop-components, --weight, --normals.
+/// --crossings, --preserve-border, --crease-angle, --drop-components, --weight, --normals.
 struct TargetOptions {
   RunOptions run;
   std::string attributes = "auto";
@@ -50,6 +50,7 @@ struct TargetOptions {
   std::string finish = "auto";
   std::string composition = "auto";
   std::string topology = "auto";
+  std::string crossings = "allow";
 
   void add(po::options_description& options);
   /// --texture-size.

@@ -25,6 +25,9 @@ bool has_pictures(const LabelMeaning& labels) {
                      [](const Material& material) { return !material.maps.empty(); });
 }
 
+constexpr std::uint8_t k_border = 1;     // is preserved
+constexpr std::uint8_t k_crossings = 2;  // are avoided
+
 // Of the columns that lines keep.
 constexpr std::uint8_t k_labels = 1;
 constexpr std::uint8_t k_uvs = 2;
@@ -117,7 +120,8 @@ std::uint64_t memory_of_channels(const LineOptions& lines, std::uint64_t triangl
 }
 
 void put(ByteWriter& out, const LineOptions& lines) {
-  out.put(static_cast<std::uint8_t>(lines.preserve_border ? 1 : 0));
+  out.put(static_cast<std::uint8_t>((lines.preserve_border ? k_border : 0) |
+                                    (lines.crossings == CrossingMode::avoid ? k_crossings : 0)));
   out.put(lines.crease_angle);
   out.put(lines.topology);
   out.put(lines.appearance_scale.length);
@@ -129,9 +133,10 @@ void put(ByteWriter& out, const LineOptions& lines) {
 
 LineOptions get_lines(ByteReader& in) {
   LineOptions lines;
-  const auto preserve_border = in.get<std::uint8_t>();
-  if (preserve_border > 1) in.fail("impossible options of borders");
-  lines.preserve_border = preserve_border == 1;
+  const auto kept = in.get<std::uint8_t>();
+  if (kept > (k_border | k_crossings)) in.fail("impossible options of borders and crossings");
+  lines.preserve_border = (kept & k_border) != 0;
+  lines.crossings = (kept & k_crossings) != 0 ? CrossingMode::avoid : CrossingMode::allow;
   lines.crease_angle = in.get<double>();
   if (!(lines.crease_angle >= 0 && lines.crease_angle < 180)) in.fail("impossible crease angle");
   lines.topology = in.get<TopologyMode>();

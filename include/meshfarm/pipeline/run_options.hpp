@@ -127,8 +127,8 @@ LineOptions lines_of(const Manifest& manifest, const RunOptions& options);
 /// most.
 std::uint64_t memory_of_channels(const LineOptions& lines, std::uint64_t triangles);
 
-/// As they stand in a job's parameters: preserve border u8 | crease angle f64 |
-/// topology u8 | length of appearances f64 | steepest f64 | columns u8: 1 labels, 2 texture
+/// As they stand in a job's parameters: u8: 1 preserve border, 2 avoid crossings | crease angle f64
+/// | topology u8 | length of appearances f64 | steepest f64 | columns u8: 1 labels, 2 texture
 /// coordinates; with these their weight f64.
 void put(ByteWriter& out, const LineOptions& lines);
 LineOptions get_lines(ByteReader& in);

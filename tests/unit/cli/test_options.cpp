@@ -119,6 +119,7 @@ TEST_CASE("words that name no choice are told with the choices") {
   check("--finish", "'global' or 'boundary'");
   check("--composition", "'auto', 'tree' or 'sink'");
   check("--topology", "'auto', 'keep' or 'simplify'");
+  check("--crossings", "'allow' or 'avoid'");
   check("--normals", "'blend', 'recompute' or 'drop'");
 }
 
@@ -144,7 +145,8 @@ TEST_CASE("a target's words say all of it again") {
   const Words lines[] = {
       {"--ratio=0.125"},
       {"--triangles=7", "--allocation=uniform", "--finish=boundary", "--composition=sink"},
-      {"--error=0.1%", "--topology=keep", "--preserve-border", "--crease-angle=30.5"},
+      {"--error=0.1%", "--topology=keep", "--crossings=avoid", "--preserve-border",
+       "--crease-angle=30.5"},
       {"--ratio=0.1", "--drop-components=2%", "--weight=colour=0.01", "--normals=recompute"},
       {"--ratio=0.1", "--attributes=none", "--uv=bake", "--texture-size=1024"}};
   for (const Words& line : lines) {
@@ -160,6 +162,7 @@ TEST_CASE("a target's words say all of it again") {
     CHECK(first.run.finish == again.run.finish);
     CHECK(first.run.composition == again.run.composition);
     CHECK(first.run.lines.topology == again.run.lines.topology);
+    CHECK(first.run.lines.crossings == again.run.lines.crossings);
     CHECK(first.run.lines.preserve_border == again.run.lines.preserve_border);
     CHECK(first.run.lines.crease_angle == again.run.lines.crease_angle);
     CHECK(first.run.drop_components.value == again.run.drop_components.value);

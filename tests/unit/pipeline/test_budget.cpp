@@ -397,14 +397,15 @@ TEST_CASE("the more colours weigh, the steeper ones count") {
 }
 
 TEST_CASE("parameters come back; damaged ones are refused") {
-  const SimplifyParameters p{Allocation::uniform,
-                             12,
-                             3,
-                             77,
-                             0.25,
-                             0.5,
-                             0.625,
-                             {true, 40, TopologyMode::simplify, {0.75, 1.5}, {false}}};
+  const SimplifyParameters p{
+      Allocation::uniform,
+      12,
+      3,
+      77,
+      0.25,
+      0.5,
+      0.625,
+      {true, 40, TopologyMode::simplify, {0.75, 1.5}, {false}, 0, CrossingMode::avoid}};
   const std::string bytes = encode_parameters(p);
   const SimplifyParameters back = decode_parameters(bytes);
   CHECK(back.allocation == Allocation::uniform);
@@ -414,6 +415,7 @@ TEST_CASE("parameters come back; damaged ones are refused") {
   CHECK(back.max_error == 0.5);
   CHECK(back.certified_error == 0.625);
   CHECK(back.lines.preserve_border);
+  CHECK(back.lines.crossings == CrossingMode::avoid);
   CHECK(back.lines.crease_angle == 40);
   CHECK(back.lines.topology == TopologyMode::simplify);
   CHECK(back.lines.appearance_scale.length == 0.75);
