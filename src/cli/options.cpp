@@ -9,6 +9,7 @@
 #include <meshfarm/transport/addresses.hpp>
 #include <meshfarm/util/errors.hpp>
 
+#include "cli/choice_words.hpp"
 #include "cli/texture_words.hpp"
 #include "cli/weight_words.hpp"
 
@@ -24,30 +25,6 @@ std::uint16_t parse_port(std::string_view text) {
   return port;
 }
 
-/// "0.5%": of the diagonal; "2.5": in the mesh's unit.
-Length parse_length(const std::string& text, std::string_view option) {
-  Length length;
-  length.of_diagonal = text.ends_with('%');
-  const char* last = text.data() + text.size() - (length.of_diagonal ? 1 : 0);
-  const auto [end, error] = std::from_chars(text.data(), last, length.value);
-  if (error != std::errc{} || end != last || !(length.value >= 0) || !std::isfinite(length.value)) {
-    throw UsageError(std::string(option) +
-                     " takes a length in the mesh's unit, or a share of the diagonal as in 0.5%");
-  }
-  if (length.of_diagonal) length.value /= 100;
-  return length;
-}
-
-/// Pieces that are left out are far from all that stays.
-void check_certify(const RunOptions& run) {
-  if (!run.certify) return;
-  if (!(run.error.value > 0)) throw UsageError("--certify proves a bound: it needs --error");
-  if (run.drop_components.value > 0) {
-    throw UsageError(
-        "--certify proves the distance of the whole input: not with --drop-components");
-  }
-}
-
 }  // namespace
 
 void TalkOptions::add(po::options_description& options) {
@@ -61,163 +38,6 @@ void TalkOptions::add_quiet(po::options_description& options) {
 
 ProgressStyle TalkOptions::progress() const {
   return quiet ? ProgressStyle::none : progress_style_of_stderr();
-}
-
-void TargetOptions::add(po::options_description& options) {
-  options.add_options()("ratio", po::value(&run.ratio)->value_name("R"),
-                        "share of the input's triangles to keep, for example 0.01")(
-      "triangles", po::value(&run.triangles)->value_name("N"), "number of triangles to keep")(
-      "error", po::value(&error)->value_name("LENGTH"),
-      "keep as few triangles as stay within this distance of the input, measured at sampled "
-      "points: "
-      "in the mesh's unit, or as a share of the diagonal, for example 0.1%")(
-      "certify", po::bool_switch(&run.certify),
-      "with --error: prove the distance for every point of both surfaces; where that fails the "
-      "result keeps more triangles")(
-      "allocation",
-      po::value(&allocation)->default_value(allocation)->value_name("threshold|uniform"),
-      "threshold: the same cost threshold in all parts; uniform: the same ratio in all parts")(
-      "finish", po::value(&finish)->default_value(finish)->value_name("auto|here|farm|boundary"),
-      "the last pass, to the exact count: here: the sink stitches all and may change everything; "
-      "farm: jobs do it piece by piece, and no process holds the whole result, where the other "
-      "options allow it; auto: farm for results too large for one process; boundary: the sink, "
-      "and only edges at seams")(
-      "composition",
-      po::value(&composition)->default_value(composition)->value_name("auto|tree|sink"),
-      "how simplified parts are joined: tree: neighbours by jobs, a few at once; sink: all at once "
-      "by the sink; auto: tree if there are many more triangles than wanted")(
-      "topology", po::value(&topology)->default_value(topology)->value_name("auto|keep|simplify"),
-      "handles, holes and pieces: keep: never close or remove any; simplify: do so where it costs "
-      "least; auto: keep them as long as the target can be met at a fair error")(
-      "crossings", po::value(&crossings)->default_value(crossings)->value_name("allow|avoid"),
-      "thin walls: avoid: what would make triangles cross others comes last, or never with "
-      "--error; "
-      "allow: nobody looks")("preserve-border", po::bool_switch(&run.lines.preserve_border),
-                             "leave the vertices on open borders as they are")(
-      "crease-angle", po::value(&run.lines.crease_angle)->value_name("DEGREES"),
-      "keep edges that are sharper than this in place: their vertices merge only along them")(
-      "drop-components", po::value(&drop_components)->value_name("LENGTH"),
-      "leave out pieces smaller than this: in the mesh's unit, or as a share of the diagonal, for "
-      "example 0.5%")("weight", po::value(&weight)->value_name("NAME=W,..."), k_weight_help)(
-      "normals", po::value(&normals)->default_value(normals)->value_name("blend|recompute|drop"),
-      "the normals of the result, if the input has any: blend: as near to the input's as can be; "
-      "recompute: those of the result's triangles; drop: none");
-}
-
-void TargetOptions::add_texture_size(po::options_description& options) {
-  options.add_options()("texture-size", po::value(&run.texture_size)->value_name("PIXELS"),
-                        "sides of a picture that is made by --uv bake (default: by the input's)");
-}
-
-void TargetOptions::add_attributes(po::options_description& options) {
-  add_texture_size(options);
-  options.add_options()("uv", po::value(&uv)->default_value(uv)->value_name("auto|keep|bake|drop"),
-                        "the stage's textures: keep: their charts and pictures stay; bake: a new "
-                        "picture is made; drop: they are left out; auto: keep if the number of "
-                        "triangles can be met so, else bake");
-  options.add_options()(
-      "attributes", po::value(&attributes)->default_value(attributes)->value_name("auto|none|LIST"),
-      "which channels and labels of the stage the result has: auto: all that the output's format "
-      "has "
-      "a place for; LIST: these, as in red,green,blue ('colours' and 'normals' stand for theirs)");
-}
-
-void TargetOptions::check() {
-  const int given =
-      (run.ratio != 0 ? 1 : 0) + (run.triangles != 0 ? 1 : 0) + (error.empty() ? 0 : 1);
-  if (given != 1) throw UsageError("give one of --ratio, --triangles and --error, above 0");
-  if (run.ratio != 0 && !(run.ratio > 0 && run.ratio <= 1)) {
-    throw UsageError("--ratio must be above 0 and not above 1");
-  }
-  if (!error.empty()) {
-    run.error = parse_length(error, "--error");
-    if (!(run.error.value > 0)) throw UsageError("--error must be above 0");
-  }
-  if (allocation != "threshold" && allocation != "uniform") {
-    throw UsageError("--allocation is 'threshold' or 'uniform', not '" + allocation + "'");
-  }
-  if (finish != "auto" && finish != "here" && finish != "farm" && finish != "boundary" &&
-      finish != "global") {
-    throw UsageError("--finish is 'auto', 'here', 'farm' or 'boundary', not '" + finish + "'");
-  }
-  if (composition != "auto" && composition != "tree" && composition != "sink") {
-    throw UsageError("--composition is 'auto', 'tree' or 'sink', not '" + composition + "'");
-  }
-  if (composition == "tree" &&
-      (!error.empty() || allocation == "uniform" || finish == "boundary")) {
-    throw UsageError(
-        "--composition tree goes by the one cost threshold: not with --error, --allocation uniform "
-        "or --finish boundary");
-  }
-  if (topology != "auto" && topology != "keep" && topology != "simplify") {
-    throw UsageError("--topology is 'auto', 'keep' or 'simplify', not '" + topology + "'");
-  }
-  run.lines.topology = topology == "auto"   ? TopologyMode::automatic
-                       : topology == "keep" ? TopologyMode::keep
-                                            : TopologyMode::simplify;
-  if (crossings != "allow" && crossings != "avoid") {
-    throw UsageError("--crossings is 'allow' or 'avoid', not '" + crossings + "'");
-  }
-  run.lines.crossings = crossings == "avoid" ? CrossingMode::avoid : CrossingMode::allow;
-  if (!(run.lines.crease_angle >= 0 && run.lines.crease_angle < 180)) {
-    throw UsageError("--crease-angle must be 0 (no creases) or more, and below 180 degrees");
-  }
-  if (!drop_components.empty()) {
-    run.drop_components = parse_length(drop_components, "--drop-components");
-  }
-  check_certify(run);
-  if (normals != "blend" && normals != "recompute" && normals != "drop") {
-    throw UsageError("--normals is 'blend', 'recompute' or 'drop', not '" + normals + "'");
-  }
-  run.normals = normals == "blend"       ? Normals::blend
-                : normals == "recompute" ? Normals::recompute
-                                         : Normals::drop;
-  run.channels = parse_choice(attributes, "--attributes");
-  run.textures = parse_texture_mode(uv);
-  if (run.texture_size != 0 && (run.texture_size < 64 || run.texture_size > 16'384)) {
-    throw UsageError("--texture-size: from 64 to 16384 pixels");
-  }
-  parse_weights(weight, run);
-  run.allocation = allocation == "uniform" ? Allocation::uniform : Allocation::threshold;
-  run.composition = composition == "auto"   ? Composition::automatic
-                    : composition == "tree" ? Composition::tree
-                                            : Composition::sink;
-  run.finish = finish == "boundary" ? Finish::boundary : Finish::global;
-  run.finish_place = finish == "auto"   ? FinishPlace::automatic
-                     : finish == "farm" ? FinishPlace::farm
-                                        : FinishPlace::here;  // 'global' is its older name
-}
-
-std::vector<std::string> TargetOptions::words() const {
-  std::vector<std::string> words = {"--allocation", allocation,      "--finish",
-                                    finish,         "--composition", composition};
-  words.insert(words.end(), {"--topology", topology});
-  if (crossings != "allow") words.insert(words.end(), {"--crossings", crossings});
-  if (run.lines.preserve_border) words.emplace_back("--preserve-border");
-  if (run.lines.crease_angle > 0) {
-    words.insert(words.end(), {"--crease-angle", shortest(run.lines.crease_angle)});
-  }
-  if (const std::string weights = weight_words(run); !weights.empty()) {
-    words.insert(words.end(), {"--weight", weights});
-  }
-  if (normals != "blend") words.insert(words.end(), {"--normals", normals});
-  if (attributes != "auto") words.insert(words.end(), {"--attributes", attributes});
-  if (uv != "auto") words.insert(words.end(), {"--uv", uv});
-  if (run.texture_size != 0) {
-    words.insert(words.end(), {"--texture-size", std::to_string(run.texture_size)});
-  }
-  if (!drop_components.empty()) {
-    words.insert(words.end(), {"--drop-components", drop_components});
-  }
-  if (!error.empty()) {
-    words.insert(words.end(), {"--error", error});
-    if (run.certify) words.emplace_back("--certify");
-  } else if (run.triangles != 0) {
-    words.insert(words.end(), {"--triangles", std::to_string(run.triangles)});
-  } else {
-    words.insert(words.end(), {"--ratio", shortest(run.ratio)});
-  }
-  return words;
 }
 
 void CutWords::add(po::options_description& options) {
@@ -260,17 +80,12 @@ void CutWords::add(po::options_description& options) {
 }
 
 void CutWords::check() {
-  if (scheme_word != "cut" && scheme_word != "stream") {
-    throw UsageError("--scheme is 'cut' or 'stream', not '" + scheme_word + "'");
-  }
-  if (weld != "exact" && weld != "off") {
-    throw UsageError("--weld is 'exact' or 'off', not '" + weld + "'");
-  }
+  cut.scheme =
+      chosen<Scheme>("--scheme", scheme_word, {{"cut", Scheme::cut}, {"stream", Scheme::stream}});
+  cut.weld = chosen<Weld>("--weld", weld, {{"exact", Weld::exact}, {"off", Weld::off}});
   channels = parse_choice(attributes, "--attributes");
   parse_uv(uv);
-  if (sort != "here" && sort != "farm") {
-    throw UsageError("--sort is 'here' or 'farm', not '" + sort + "'");
-  }
+  cut.sort = chosen<SortAt>("--sort", sort, {{"here", SortAt::here}, {"farm", SortAt::farm}});
   if (sort == "farm" && scheme_word != "stream") {
     throw UsageError("--sort farm goes with --scheme stream: parts of a cut are not sorted");
   }
@@ -283,13 +98,10 @@ void CutWords::check() {
         "--cut farm goes with --scheme cut; with --scheme stream there is --sort farm");
   }
   if (where == "farm" && weld != "exact") throw UsageError("--cut farm goes with --weld exact");
-  cut.scheme = scheme_word == "stream" ? Scheme::stream : Scheme::cut;
-  cut.weld = weld == "off" ? Weld::off : Weld::exact;
   if (cut.parts > 1'000'000) throw UsageError("--parts: at most 1,000,000");
   if (cut.window_triangles < 1000 || cut.window_triangles > 1'000'000'000) {
     throw UsageError("--window: from 1,000 to 1,000,000,000 triangles");
   }
-  cut.sort = sort == "farm" ? SortAt::farm : SortAt::here;
   cut.scratch = scratch;
   if (memory.empty()) return;
   cut.memory_bytes = parse_size(memory, "--memory");
@@ -391,10 +203,8 @@ void ScheduleWords::add(po::options_description& described) {
 }
 
 void ScheduleWords::check() {
-  if (schedule != "dynamic" && schedule != "static") {
-    throw UsageError("--schedule is 'dynamic' or 'static', not '" + schedule + "'");
-  }
-  options.schedule = schedule == "static" ? Schedule::fixed : Schedule::dynamic;
+  options.schedule = chosen<Schedule>(
+      "--schedule", schedule, {{"dynamic", Schedule::dynamic}, {"static", Schedule::fixed}});
   if (hang_s == 0 || hang_s > 86'400) throw UsageError("--hang-seconds: from 1 to 86400");
 }
 

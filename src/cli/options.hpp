@@ -61,6 +61,10 @@ struct TargetOptions {
   void check();
   /// The same as words for a command line.
   std::vector<std::string> words() const;
+
+ private:
+  void check_joining();
+  void check_surface();
 };
 
 /// --scheme, --sort, --parts, --weld, --attributes, --uv, --threads, --memory, --window, --scratch.

@@ -236,80 +236,49 @@ void add_channels(Lines& lines, const RunSummary& s) {
   }
 }
 
-}  // namespace
-
-std::string render(const Manifest& m, const std::string& stage, Format format) {
-  if (format == Format::json) {
-    const Json json = {{"stage", stage},
-                       {"input", input_json(m)},
-                       {"scheme", scheme_name(m)},
-                       {"partitioner", m.partitioner},
-                       {"parts", m.parts.size()},
-                       {"cut", !m.cutting.has_value()},
-                       {"sorted", !m.sorting.has_value()},
-                       {"boundary_triangles", m.boundary_triangles},
-                       {"dropped",
-                        {{"degenerate", m.coincident_corners},
-                         {"duplicate", m.dropped_duplicate},
-                         {"not_finite", m.dropped_not_finite}}},
-                       {"seconds", m.cut_seconds}};
-    return dumped(json);
-  }
-  Lines lines;
-  add_input(lines, m);
-  lines.add("stage",
-            stage + (m.cutting ? ": to be cut into " + grouped(m.cutting->parts) +
-                                     " parts by the first jobs of a run"
-                               : ": " + grouped(m.parts.size()) + " " + parts_name(m) + ", " +
-                                     grouped(m.boundary_triangles) + " boundary triangles"));
-  lines.add("time", number(m.cut_seconds, "%.2f s"));
-  return lines.text();
+Json run_json(const RunSummary& s, const std::string& warning) {
+  const Manifest& m = s.manifest;
+  return {
+      {"run", to_hex(s.run)},
+      {"epoch", s.epoch},
+      {"input", input_json(m)},
+      {"output", {{"path", s.output}, {"triangles", s.triangles}, {"vertices", s.vertices}}},
+      {"target", s.target},
+      {"max_error", s.max_error > 0 ? Json(s.max_error / m.box.diagonal()) : Json(nullptr)},
+      {"bound", bound_json(s)},
+      {"exact", s.why_not_exact.empty()},
+      {"why_not_exact", s.why_not_exact},
+      {"topology", is_kept(s) ? "kept" : "simplified"},
+      {"topology_change", topology_json(s)},
+      {"turned", s.turned},
+      {"error", s.error.input_samples == 0 ? Json(nullptr) : error_json(s.error, m.box.diagonal())},
+      {"surface", s.result ? to_json(*s.result) : Json(nullptr)},
+      {"channels", channels_json(s)},
+      {"labels", to_json(s.labels)},
+      {"textures", textures_json(s)},
+      {"warning", warning.empty() ? Json(nullptr) : Json(warning)},
+      {"better", better_json(s)},
+      {"dropped",
+       {{"degenerate", s.dropped_degenerate},
+        {"duplicate", s.dropped_duplicate},
+        {"not_finite", m.dropped_not_finite},
+        {"components", s.dropped_components.components}}},
+      {"scheme", scheme_name(m)},
+      {"parts", m.parts.size()},
+      {"boundary_triangles", m.boundary_triangles},
+      {"stitched_triangles", s.stitched},
+      {"finish", finish_json(s)},
+      {"seconds",
+       {{"cut", m.cut_seconds},
+        {"farm", s.farm_seconds},
+        {"stitch", s.stitch_seconds},
+        {"finish", s.finish_seconds},
+        {"measure", s.measure_seconds},
+        {"write", s.write_seconds}}}};
 }
 
-std::string render(const RunSummary& s, Format format) {
+std::string run_text(const RunSummary& s, const std::string& warning) {
   const Manifest& m = s.manifest;
-  const std::string warning = warning_of(s);
-  if (format == Format::json) {
-    const Json json = {
-        {"run", to_hex(s.run)},
-        {"epoch", s.epoch},
-        {"input", input_json(m)},
-        {"output", {{"path", s.output}, {"triangles", s.triangles}, {"vertices", s.vertices}}},
-        {"target", s.target},
-        {"max_error", s.max_error > 0 ? Json(s.max_error / m.box.diagonal()) : Json(nullptr)},
-        {"bound", bound_json(s)},
-        {"exact", s.why_not_exact.empty()},
-        {"why_not_exact", s.why_not_exact},
-        {"topology", is_kept(s) ? "kept" : "simplified"},
-        {"topology_change", topology_json(s)},
-        {"turned", s.turned},
-        {"error",
-         s.error.input_samples == 0 ? Json(nullptr) : error_json(s.error, m.box.diagonal())},
-        {"surface", s.result ? to_json(*s.result) : Json(nullptr)},
-        {"channels", channels_json(s)},
-        {"labels", to_json(s.labels)},
-        {"textures", textures_json(s)},
-        {"warning", warning.empty() ? Json(nullptr) : Json(warning)},
-        {"better", better_json(s)},
-        {"dropped",
-         {{"degenerate", s.dropped_degenerate},
-          {"duplicate", s.dropped_duplicate},
-          {"not_finite", m.dropped_not_finite},
-          {"components", s.dropped_components.components}}},
-        {"scheme", scheme_name(m)},
-        {"parts", m.parts.size()},
-        {"boundary_triangles", m.boundary_triangles},
-        {"stitched_triangles", s.stitched},
-        {"finish", finish_json(s)},
-        {"seconds",
-         {{"cut", m.cut_seconds},
-          {"farm", s.farm_seconds},
-          {"stitch", s.stitch_seconds},
-          {"finish", s.finish_seconds},
-          {"measure", s.measure_seconds},
-          {"write", s.write_seconds}}}};
-    return dumped(json);
-  }
   Lines lines;
   add_input(lines, m);
   if (s.dropped_degenerate + s.dropped_duplicate > 0) {
@@ -348,6 +317,41 @@ std::string render(const RunSummary& s, Format format) {
                         number(s.measure_seconds, "%.2f s") + ", write " +
                         number(s.write_seconds, "%.2f s"));
   return lines.text();
+}
+
+}  // namespace
+
+std::string render(const Manifest& m, const std::string& stage, Format format) {
+  if (format == Format::json) {
+    const Json json = {{"stage", stage},
+                       {"input", input_json(m)},
+                       {"scheme", scheme_name(m)},
+                       {"partitioner", m.partitioner},
+                       {"parts", m.parts.size()},
+                       {"cut", !m.cutting.has_value()},
+                       {"sorted", !m.sorting.has_value()},
+                       {"boundary_triangles", m.boundary_triangles},
+                       {"dropped",
+                        {{"degenerate", m.coincident_corners},
+                         {"duplicate", m.dropped_duplicate},
+                         {"not_finite", m.dropped_not_finite}}},
+                       {"seconds", m.cut_seconds}};
+    return dumped(json);
+  }
+  Lines lines;
+  add_input(lines, m);
+  lines.add("stage",
+            stage + (m.cutting ? ": to be cut into " + grouped(m.cutting->parts) +
+                                     " parts by the first jobs of a run"
+                               : ": " + grouped(m.parts.size()) + " " + parts_name(m) + ", " +
+                                     grouped(m.boundary_triangles) + " boundary triangles"));
+  lines.add("time", number(m.cut_seconds, "%.2f s"));
+  return lines.text();
+}
+
+std::string render(const RunSummary& s, Format format) {
+  const std::string warning = warning_of(s);
+  return format == Format::json ? dumped(run_json(s, warning)) : run_text(s, warning);
 }
 
 std::string warning_of(const RunSummary& s) {

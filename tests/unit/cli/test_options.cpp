@@ -116,11 +116,26 @@ TEST_CASE("words that name no choice are told with the choices") {
     CHECK(tells(error, "'most'"));
   };
   check("--allocation", "'threshold' or 'uniform'");
-  check("--finish", "'global' or 'boundary'");
+  check("--finish", "'auto', 'here', 'farm' or 'boundary'");
   check("--composition", "'auto', 'tree' or 'sink'");
   check("--topology", "'auto', 'keep' or 'simplify'");
   check("--crossings", "'allow' or 'avoid'");
   check("--normals", "'blend', 'recompute' or 'drop'");
+}
+
+TEST_CASE("the finish has an older name, and one way that is the paper's") {
+  CHECK(target_of({"--ratio=0.1"}).run.finish_place == FinishPlace::automatic);
+  CHECK(target_of({"--ratio=0.1", "--finish=global"}).run.finish_place == FinishPlace::here);
+  CHECK(target_of({"--ratio=0.1", "--finish=farm"}).run.finish_place == FinishPlace::farm);
+  const RunOptions paper = target_of({"--ratio=0.1", "--finish=boundary"}).run;
+  CHECK(paper.finish == Finish::boundary);
+  CHECK(paper.finish_place == FinishPlace::here);
+}
+
+TEST_CASE("a proof needs a bound, of the whole input") {
+  CHECK(target_of({"--error=1", "--certify"}).run.certify);
+  CHECK(tells(error_of({"--ratio=0.1", "--certify"}, target_of), "--certify"));
+  CHECK(tells(error_of({"--error=1", "--certify", "--drop-components=1"}, target_of), "--certify"));
 }
 
 TEST_CASE("a tree has one threshold for all parts") {
