@@ -33,13 +33,13 @@ double age_of(const StageStatus& status) {
 }
 
 /// How a run is called that goes on, and whether it works and whether it needs somebody.
-struct Phase {
+struct LivePhase {
   std::string words;
   bool works = false;
   bool warns = false;
 };
 
-Phase phase_while_full(double age_s) {
+LivePhase phase_while_full(double age_s) {
   std::string words = "no room on the stage, waiting";
   if (age_s > k_silent_s) {
     words += "; the ventilator, if it lives, could write nothing for " + duration_text(age_s);
@@ -48,7 +48,7 @@ Phase phase_while_full(double age_s) {
 }
 
 /// While the ventilator writes.
-Phase phase_heard(const TraceState& state) {
+LivePhase phase_heard(const TraceState& state) {
   if (!state.sink) return {"waiting for the sink"};
   const bool farmed = state.jobs_known > 0 && state.jobs_done == state.jobs_known;
   if (state.no_room) {
@@ -63,13 +63,13 @@ Phase phase_heard(const TraceState& state) {
   return {"simplifying", true};
 }
 
-Phase phase_of(const TraceState& state, double age_s, bool age_is_known) {
+LivePhase phase_of(const TraceState& state, double age_s, bool age_is_known) {
   if (age_s > k_silent_s) {
     return {"no word from the ventilator for " + duration_text(age_s) +
                 " (killed, cut off, or its storage stalls)",
             false, true};
   }
-  Phase phase = phase_heard(state);
+  LivePhase phase = phase_heard(state);
   if (age_is_known && age_s <= k_quiet_s) return phase;
   phase.words += age_is_known ? " when last heard of, " + duration_text(age_s) + " ago"
                               : " when last heard of; when, cannot be told";
@@ -84,9 +84,9 @@ void name_phase(const StageStatus& status, StatusFacts& facts) {
     facts.warns = !failure.empty();
     return;
   }
-  const Phase phase = status.no_room
-                          ? phase_while_full(facts.age_s)
-                          : phase_of(facts.state, facts.age_s, status.now_unix_s.has_value());
+  const LivePhase phase = status.no_room
+                              ? phase_while_full(facts.age_s)
+                              : phase_of(facts.state, facts.age_s, status.now_unix_s.has_value());
   facts.phase = phase.words;
   facts.works = phase.works;
   facts.warns = phase.warns;
