@@ -57,7 +57,7 @@ compile() {
 # sanitized FOLDER SANITIZERS CHOICE TESTS [TARGET...]: CHOICE is an option of ctest that chooses by
 # TESTS, a regular expression.
 sanitized() {
-  begin "tests with $2: $4"
+  begin "tests with $2 ($3 $4)"
   compile "$1" "$2" "${@:5}"
   ctest --test-dir "$root/$1" --output-on-failure -j "$jobs" "$3" "$4"
 }
