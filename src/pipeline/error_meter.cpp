@@ -34,18 +34,6 @@ std::uint64_t step_for(std::uint64_t count, std::uint64_t most) {
   return std::max<std::uint64_t>(1, (count + most - 1) / most);
 }
 
-Distance distance_of(std::span<const double> distances) {
-  Distance sums;
-  for (const double d : distances) {
-    sums.rms += d * d;
-    sums.mean += d;
-    sums.max = std::max(sums.max, d);
-  }
-  if (distances.empty()) return sums;
-  const auto count = static_cast<double>(distances.size());
-  return {std::sqrt(sums.rms / count), sums.mean / count, sums.max};
-}
-
 /// The greatest of what several threads find.
 class Greatest {
  public:
@@ -65,6 +53,18 @@ class Greatest {
 };
 
 }  // namespace
+
+Distance distance_of(std::span<const double> distances) {
+  Distance sums;
+  for (const double d : distances) {
+    sums.rms += d * d;
+    sums.mean += d;
+    sums.max = std::max(sums.max, d);
+  }
+  if (distances.empty()) return sums;
+  const auto count = static_cast<double>(distances.size());
+  return {std::sqrt(sums.rms / count), sums.mean / count, sums.max};
+}
 
 ErrorMeter::ErrorMeter(const Stage& stage, const Manifest& manifest,
                        std::vector<SurfaceSamples> samples, unsigned threads,

@@ -14,6 +14,9 @@
 
 namespace meshfarm {
 
+/// The RMS, the mean and the greatest of them.
+Distance distance_of(std::span<const double> distances);
+
 /// How many points are looked at for the maximum: all that the sum of squares needs and more.
 struct ErrorPoints {
   std::uint64_t by_area = 20'000;         // of the result

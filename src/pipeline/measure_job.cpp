@@ -16,6 +16,7 @@
 #include <meshfarm/pipeline/piece_jobs.hpp>
 #include <meshfarm/util/errors.hpp>
 
+#include "pipeline/error_meter.hpp"
 #include "pipeline/piece_sections.hpp"
 
 namespace meshfarm {
@@ -26,18 +27,6 @@ constexpr double k_usual_in_rms = 4;
 constexpr double k_usual_in_spacings = 4;
 /// Of a piece's box, round it: there are the surroundings' points that its input may be near to.
 constexpr double k_margin_of_box = 0.05;
-
-Distance distance_of_points(std::span<const double> distances) {
-  Distance sums;
-  for (const double d : distances) {
-    sums.rms += d * d;
-    sums.mean += d;
-    sums.max = std::max(sums.max, d);
-  }
-  if (distances.empty()) return sums;
-  const auto count = static_cast<double>(distances.size());
-  return {std::sqrt(sums.rms / count), sums.mean / count, sums.max};
-}
 
 /// About, by so many of its triangles.
 double spacing_of(const Mesh& mesh) {
@@ -248,8 +237,7 @@ class PieceMeter {
     std::size_t first = 0;
     for (const SurfaceSamples& each : samples) {
       if (each.points.empty()) continue;
-      const Distance d =
-          distance_of_points(std::span(distances).subspan(first, each.points.size()));
+      const Distance d = distance_of(std::span(distances).subspan(first, each.points.size()));
       first += each.points.size();
       error_.input_area += each.area;
       error_.to_output.rms += each.area * d.rms * d.rms;
