@@ -89,7 +89,7 @@ class SinkLoop {
 
   std::uint32_t run() {
     while (!left_) {
-      if (options_.stop != nullptr && options_.stop->load()) perform(core_.stop());
+      if (stopped()) perform(core_.stop());
       turn();
     }
     tell_of_strangers(gate_.refused(), garbage_);
@@ -110,6 +110,8 @@ class SinkLoop {
   }
 
  private:
+  bool stopped() const { return options_.stop != nullptr && options_.stop->load(); }
+
   std::string listen() {
     gate_.watch(results_);
     return bind_within(results_, options_.bind, {options_.first_port, options_.last_port});
@@ -122,8 +124,12 @@ class SinkLoop {
     if (link_.socket() != nullptr) items.push_back({link_.socket()->handle(), 0, ZMQ_POLLIN, 0});
     wait_for(items, core_.pause(farm_clock()));
     const FarmTime now = farm_clock();
-    if (disk_.take_finished()) disk_answers(now);
-    if (verifier_.take_finished()) verifier_answers(now);
+    const bool disk_finished = disk_.take_finished();
+    const bool verifier_finished = verifier_.take_finished();
+    // What a stop ended early says nothing about the results that were looked at.
+    if (stopped()) return;
+    if (disk_finished) disk_answers(now);
+    if (verifier_finished) verifier_answers(now);
     for (int count = 0; link_.socket() != nullptr && count < k_messages_per_turn; ++count) {
       const auto received = receive(*link_.socket());
       if (!received) break;

@@ -77,6 +77,7 @@ struct Farm {
   std::chrono::milliseconds patience{20'000};
   std::chrono::milliseconds hang{30'000};
   WhenFull when_full = WhenFull::wait;
+  SchedulerOptions schedule = {};
 
   auto ventilator(JobSource source, std::function<void(const FarmProgress&)> progress = {}) {
     VentilatorOptions options;
@@ -84,6 +85,7 @@ struct Farm {
     options.heartbeat = heartbeat;
     options.hang = hang;
     options.when_full = when_full;
+    options.schedule = schedule;
     options.progress = std::move(progress);
     return [this, source, options](const std::atomic<bool>& stop) mutable {
       options.stop = &stop;
