@@ -1,6 +1,9 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
 
+#include <string>
+#include <string_view>
+
 #include <meshfarm/staging/claim.hpp>
 #include <meshfarm/staging/stage.hpp>
 #include <meshfarm/util/errors.hpp>
@@ -55,9 +58,7 @@ class SimplifyCommand : public Command {
     target_.uv = textures.run;
     target_.check();
     cut_.check();
-    if (cut_.where == "farm" && !report_.empty()) {
-      throw UsageError("--report shows the parts of the input, which --cut farm does not keep");
-    }
+    if (cut_.where == "farm") check_farmed_cut();
     if (in_batch_) workers_ = 0;
     if ((workers_ == 0 && !in_batch_) || workers_ > 1000)
       throw UsageError("--workers: from 1 to 1000");
@@ -88,6 +89,16 @@ class SimplifyCommand : public Command {
   }
 
  private:
+  /// Before there is a stage that a later command would find in its way.
+  void check_farmed_cut() const {
+    constexpr std::string_view k_not_kept =
+        "the parts of the input, which --cut farm does not keep: use --cut here";
+    if (!report_.empty()) throw UsageError("--report shows " + std::string(k_not_kept));
+    if (target_.run.error.value > 0) {
+      throw UsageError("--error looks at " + std::string(k_not_kept));
+    }
+  }
+
   /// Measured: from about five million triangles on, the jobs of a cut take no more of the
   /// processors' time as a cut here, which takes all processors. What looks at parts later needs a
   /// cut that keeps them, as does a result so large that it may be finished in pieces.

@@ -137,6 +137,10 @@ TEST_CASE("a cut by the farm: what it cannot read or keep is one line, and no st
   REQUIRE(bench().meshfarm({"generate", "-o", off, "--triangles", "1000"}).code == 0);
   refused({"simplify", off, "-o", off + ".ply", "--ratio", "0.5", "--cut", "farm"},
           "cannot be cut by the farm: it is no plain binary PLY file of triangles");
+  const std::string bound = bench().path("bound.ply");
+  refused({"simplify", bench().mesh(), "-o", bound, "--error", "1%", "--cut", "farm"},
+          "use --cut here");
+  CHECK_FALSE(fs::exists(bound + ".stage"));
   const std::string stage = bench().planned();
   refused({"replay", stage, "-o", stage + ".ply", "--error", "0.01"}, "--cut here");
   const Ran status = bench().meshfarm({"status", stage});
