@@ -31,13 +31,16 @@ function(meshfarm_test_options target)
     target_sources(${target} PRIVATE $<TARGET_OBJECTS:meshfarm_doctest_main>)
   endif()
   target_include_directories(${target} PRIVATE ${PROJECT_SOURCE_DIR}/tests)
-  target_compile_definitions(${target} PRIVATE DOCTEST_CONFIG_SUPER_FAST_ASSERTS)
   meshfarm_compile_options(${target})
+  set(kind tests)
   set(optimisation -O1)
   if(ARG_LIGHT)
+    set(kind light_tests)
     set(optimisation -O0)
   endif()
-  target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:${optimisation}>)
+  set(flags -DDOCTEST_CONFIG_SUPER_FAST_ASSERTS $<$<CONFIG:Release>:${optimisation}>)
+  target_compile_options(${target} PRIVATE ${flags})
+  meshfarm_precompile(${target} ${kind} "${flags}" <doctest/doctest.h>)
 endfunction()
 
 # Compiles sources several together. Then a local name may be one of another source's unnamed
@@ -48,11 +51,37 @@ function(meshfarm_compile_together target sources)
     -Wno-shadow $<$<CXX_COMPILER_ID:GNU>:-Wno-subobject-linkage>)
 endfunction()
 
+# meshfarm_precompile(TARGET KIND FLAGS [HEADER...])
+# The headers that most sources include are compiled once for all targets of a kind (layers, tests),
+# whose flags must be the same: those of meshfarm_compile_options() and FLAGS.
+function(meshfarm_precompile target kind flags)
+  if(NOT MESHFARM_UNITY)
+    return()
+  endif()
+  set(headers meshfarm_headers_of_${kind})
+  if(NOT TARGET ${headers})
+    file(GENERATE OUTPUT ${PROJECT_BINARY_DIR}/${headers}.cpp CONTENT "")
+    add_library(${headers} OBJECT ${PROJECT_BINARY_DIR}/${headers}.cpp)
+    meshfarm_compile_options(${headers})
+    target_compile_options(${headers} PRIVATE ${flags})
+    target_precompile_headers(${headers} PRIVATE
+      <algorithm> <array> <atomic> <bit> <charconv> <chrono> <cmath> <cstdint> <cstring>
+      <filesystem> <fstream> <functional> <iostream> <limits> <map> <memory> <mutex> <numeric>
+      <optional> <set> <span> <sstream> <string> <string_view> <thread> <unordered_map> <utility>
+      <variant> <vector> ${ARGN})
+  endif()
+  target_precompile_headers(${target} REUSE_FROM ${headers})
+  # To g++ a header that was precompiled is no system header any more: it warns falsely of <string>.
+  foreach(warning array-bounds stringop-overflow stringop-overread)
+    target_compile_options(${target} PRIVATE $<$<CXX_COMPILER_ID:GNU>:-Wno-${warning}>)
+  endforeach()
+endfunction()
+
 # meshfarm_layer(io USES geometry PACKAGES Boost::iostreams)
 # One folder = one layer = one static library meshfarm_<name> = one unit-test program test_<name>.
 # Most of the time of a compiler goes into the headers. No two sources of a layer define the same name,
-# so that they can be compiled together (MESHFARM_UNITY), as tests always are. What g++ makes of them
-# then is 3 % slower.
+# so that they can be compiled together (MESHFARM_UNITY), as unit tests always are. What g++ makes of
+# them then is 3 % slower.
 function(meshfarm_layer name)
   cmake_parse_arguments(ARG "" "" "USES;PACKAGES" ${ARGN})
   file(GLOB sources CONFIGURE_DEPENDS src/${name}/*.cpp src/${name}/*/*.cpp)
@@ -67,6 +96,7 @@ function(meshfarm_layer name)
   meshfarm_compile_options(meshfarm_${name})
   if(MESHFARM_UNITY)
     meshfarm_compile_together(meshfarm_${name} 10)
+    meshfarm_precompile(meshfarm_${name} layers "")
   endif()
 
   file(GLOB tests CONFIGURE_DEPENDS tests/unit/${name}/test_*.cpp)
