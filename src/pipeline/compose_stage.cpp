@@ -59,7 +59,6 @@ void ComposeStage::begin(JobGraph& graph, const ComposeGoal& goal, std::vector<C
                          Done done) {
   goal_ = goal;
   done_ = std::move(done);
-  farms_finish_ = why_finish_here(manifest_, options_).empty();
   std::uint64_t triangles = 0;
   for (const ComposedParts& each : parts) {
     weight_ += each.weight;
@@ -82,7 +81,7 @@ bool ComposeStage::can_join() const {
 /// What whoever simplified the parts can hold: a sweep's window, or the largest of them. Pieces of
 /// a result need not be larger than is good for them.
 std::uint64_t ComposeStage::most_triangles(std::uint64_t all_triangles) const {
-  if (farms_finish_) return std::max(k_least_piece, 2 * all_triangles / k_most_pieces);
+  if (goal_.for_pieces) return std::max(k_least_piece, 2 * all_triangles / k_most_pieces);
   std::uint64_t most = manifest_.window_triangles;
   if (manifest_.scheme == Scheme::stream) return most;
   for (const PartEntry& part : manifest_.parts) most = std::max(most, part.triangles);
@@ -92,7 +91,7 @@ std::uint64_t ComposeStage::most_triangles(std::uint64_t all_triangles) const {
 /// By those that are taken: it may be clear before all are.
 bool ComposeStage::is_worth_it(const Level& level) const {
   if (!can_join()) return false;
-  if (options_.composition == Composition::tree || farms_finish_) return true;
+  if (options_.composition == Composition::tree || goal_.for_pieces) return true;
   return level.triangles >= k_worth_a_tree &&
          static_cast<double>(level.triangles) > k_worth_seams * goal_.triangles;
 }

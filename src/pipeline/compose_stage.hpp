@@ -26,6 +26,7 @@ struct ComposeGoal {
   double max_cost = 0;
   double triangles = 0;
   TopologyMode topology = TopologyMode::keep;
+  bool for_pieces = false;  // what comes of it is finished piece by piece
 };
 
 /// Joins neighbours, and what came of that again (Xiong et al. 2008, 4.3): a few at once, and no
@@ -76,7 +77,6 @@ class ComposeStage {
   Done done_;
   std::uint64_t weight_ = 0;          // of all
   std::uint64_t most_triangles_ = 0;  // of a group
-  bool farms_finish_ = false;
   std::deque<Level> levels_;
 };
 

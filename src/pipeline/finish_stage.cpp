@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <utility>
 
+#include <meshfarm/farm/protocol.hpp>
 #include <meshfarm/pipeline/budget.hpp>
 #include <meshfarm/pipeline/simplify_job.hpp>
 
@@ -30,6 +31,8 @@ constexpr std::int32_t k_steps_for_turn = 2;
 constexpr std::uint64_t k_piece_process_bytes = std::uint64_t{16} << 20;
 /// The mesh, what simplifies it, and the file that is written.
 constexpr std::uint64_t k_piece_triangle_bytes = 170;
+/// A part that is built for the occasion, and what it is built of.
+constexpr std::uint64_t k_built_triangle_bytes = 120;
 
 std::uint64_t steps_of(std::uint64_t count, std::uint64_t most) {
   return std::max<std::uint64_t>(1, (count + most - 1) / most);
@@ -159,8 +162,15 @@ void FinishStage::look_at_count(JobGraph& graph) {
 
 void FinishStage::measure(JobGraph& graph) {
   const std::size_t pieces = made_.pieces.size();
+  std::vector<Job> jobs;
   for (std::size_t i = 0; i < pieces; ++i) {
-    graph.add(job_name(RunStage::measure, i), measure_job(i));
+    jobs.push_back(measure_job(i));
+    if (jobs.back().parameters.size() > k_max_parameters_bytes) {
+      return done_(graph, std::nullopt, "there are more pieces than a job can name");
+    }
+  }
+  for (std::size_t i = 0; i < pieces; ++i) {
+    graph.add(job_name(RunStage::measure, i), std::move(jobs[i]));
   }
   graph.then({jobs_of(RunStage::measure, 0, pieces)}, [this](JobGraph& so_far) {
     for (std::size_t i = 0; i < made_.pieces.size(); ++i) {
@@ -234,6 +244,9 @@ Job FinishStage::measure_job(std::size_t number) const {
   MeasureParameters parameters;
   parameters.first_part = piece.first_part;
   parameters.end_part = piece.first_part + piece.parts;
+  parameters.boundary = manifest_.boundary;
+  parameters.boundary_index = manifest_.boundary_index;
+  parameters.bundles = manifest_.bundles;
   parameters.box = piece.divided.box;
   parameters.mesh = {piece.finished_file, piece.finished.mesh};
   parameters.samples = {piece.divided_file, piece.divided.samples};
@@ -247,18 +260,38 @@ Job FinishStage::measure_job(std::size_t number) const {
     parameters.points.push_back({each.finished_file, each.finished.points});
   }
   parameters.input_step = steps_of(manifest_.input_vertices, points.input_vertices);
+  std::uint64_t part = 0;  // the largest, as one is in memory at a time
+  std::uint64_t read = 0;
+  for (std::uint32_t p = parameters.first_part; p < parameters.end_part; ++p) {
+    const PartEntry& entry = manifest_.parts[p];
+    parameters.triangles += entry.triangles;
+    read += entry.file.size;
+    part = std::max(part, manifest_.bundles ? k_built_triangle_bytes * entry.triangles
+                                            : entry.file.size + 60 * entry.triangles);
+  }
   Job job;
   job.kind = k_measure_kind;
   job.parameters = encode_parameters(parameters);
-  std::uint64_t part = 0;  // the largest, as one is read at a time
-  for (std::uint32_t p = parameters.first_part; p < parameters.end_part; ++p) {
-    job.cost += manifest_.parts[p].triangles;
-    part = std::max(part, manifest_.parts[p].file.size + 60 * manifest_.parts[p].triangles);
-  }
+  job.reads = manifest_.bundles ? bytes_of_bundles(parameters.triangles) : read;
   const std::uint64_t result = piece.finished.triangles + last.finished.triangles;
-  job.cost = std::max<std::uint64_t>(1, job.cost / 4 + result);
+  // To build a part takes about as long as to measure to it.
+  const std::uint64_t shown = parameters.triangles / (manifest_.bundles ? 2 : 4);
+  job.cost = std::max<std::uint64_t>(1, shown + result);
   job.memory = k_piece_process_bytes + part + 100 * result;
   return job;
+}
+
+/// Of so many triangles of the input, about.
+std::uint64_t FinishStage::bytes_of_bundles(std::uint64_t triangles) const {
+  double bytes = 0;
+  for (const VertexBundleRef& each : manifest_.bundles->vertices) {
+    bytes += static_cast<double>(each.file.size);
+  }
+  for (const TriangleBundleRef& each : manifest_.bundles->triangles) {
+    bytes += static_cast<double>(each.file.size);
+  }
+  const auto all = static_cast<double>(std::max<std::uint64_t>(1, manifest_.triangles()));
+  return static_cast<std::uint64_t>(bytes * static_cast<double>(triangles) / all);
 }
 
 }  // namespace meshfarm

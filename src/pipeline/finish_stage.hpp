@@ -55,6 +55,7 @@ class FinishStage {
   void reduce(JobGraph& graph, const std::vector<std::uint64_t>& quotas);
   void look_at_count(JobGraph& graph);
   void measure(JobGraph& graph);
+  std::uint64_t bytes_of_bundles(std::uint64_t triangles) const;
   bool has_seams() const { return made_.pieces.back().parts == 0; }
 
   const Manifest& manifest_;

@@ -29,7 +29,6 @@ std::string why_not_farmed(const Manifest& manifest, const RunOptions& options) 
   if (options.finish == Finish::boundary) return "only edges at seams are to change";
   if (options.allocation == Allocation::uniform) return "the parts have no common threshold";
   if (manifest.scheme == Scheme::stream || manifest.sorting) return "the parts are streams";
-  if (manifest.cutting || manifest.bundles) return "the parts of the input are not kept";
   if (!chosen_columns(manifest, options).empty()) return "channels are fitted to the whole result";
   if (manifest.labels || manifest.uvs) return "lines between labels or charts may cross pieces";
   return {};

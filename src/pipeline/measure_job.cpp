@@ -2,21 +2,17 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <span>
 #include <utility>
 #include <vector>
 
 #include <meshfarm/geometry/distance.hpp>
 #include <meshfarm/geometry/point_meter.hpp>
-#include <meshfarm/io/boundary_file.hpp>
-#include <meshfarm/io/manifest.hpp>
-#include <meshfarm/io/part_file.hpp>
-#include <meshfarm/io/regions.hpp>
 #include <meshfarm/pipeline/piece_jobs.hpp>
 #include <meshfarm/util/errors.hpp>
 
 #include "pipeline/error_meter.hpp"
+#include "pipeline/piece_input.hpp"
 #include "pipeline/piece_sections.hpp"
 
 namespace meshfarm {
@@ -64,80 +60,6 @@ std::vector<double> distances_to(const std::vector<const Mesh*>& surface,
   }
   return meter.distances();
 }
-
-/// The input's surface that a piece is made of: parts, and the triangles between them.
-class PieceInput {
- public:
-  using Show = std::function<void(const Mesh&)>;
-
-  PieceInput(const Stage& stage, std::uint32_t first, std::uint32_t end)
-      : stage_(stage),
-        manifest_(decode_manifest(stage.read(ManifestName{}), "the manifest")),
-        first_(first),
-        end_(end),
-        boxes_(end - first),
-        boundary_(end - first) {
-    if (end > manifest_.parts.size()) throw DataError("no such parts in the stage");
-  }
-
-  /// Parts whose boxes are wanted; at first all. Then what lies between them.
-  void show(const std::function<bool(const Box&)>& wants, const Show& show_part,
-            const Show& show_between) {
-    for (std::uint32_t p = first_; p < end_; ++p) {
-      Box& box = boxes_[p - first_];
-      if (!box.empty() && !wants(box)) continue;
-      const FileRef& file = manifest_.parts[p].file;
-      const Part part = decode_part(stage_.read(file), file.name);
-      const std::vector<Vec3>& positions = part.mesh.positions;
-      if (box.empty()) {
-        for (const Vec3& v : positions) box.add(v);
-        boundary_[p - first_].assign(positions.begin(), positions.begin() + part.boundary_vertices);
-      }
-      show_part(part.mesh);
-    }
-    show_between(between());
-  }
-
-  double triangles() const {
-    std::uint64_t sum = 0;
-    for (std::uint32_t p = first_; p < end_; ++p) sum += manifest_.parts[p].triangles;
-    return static_cast<double>(std::max<std::uint64_t>(1, sum));
-  }
-
- private:
-  Mesh between() const {
-    std::vector<PartRange> parts;
-    for (std::uint32_t p = first_; p < end_; ++p) parts.push_back({p, p + 1});
-    if (parts.size() < 2) return {};
-    const BoundaryRegions regions(stage_, manifest_.boundary, manifest_.boundary_index);
-    std::vector<BoundaryTriangle> triangles;
-    TriangleColumns columns;
-    for (const std::uint32_t region : Regions(regions.parts()).touched_by(parts)) {
-      regions.read(region, triangles, columns);
-    }
-    Mesh mesh;
-    const auto is_ours = [&](const BoundaryCorner& corner) {
-      return corner.part >= first_ && corner.part < end_ &&
-             corner.local < boundary_[corner.part - first_].size();
-    };
-    for (const BoundaryTriangle& t : triangles) {
-      if (!std::all_of(t.begin(), t.end(), is_ours)) continue;
-      const auto first = static_cast<std::uint32_t>(mesh.positions.size());
-      for (const BoundaryCorner& each : t) {
-        mesh.positions.push_back(boundary_[each.part - first_][each.local]);
-      }
-      mesh.triangles.push_back({first, first + 1, first + 2});
-    }
-    return mesh;
-  }
-
-  const Stage& stage_;
-  Manifest manifest_;
-  std::uint32_t first_;
-  std::uint32_t end_;
-  std::vector<Box> boxes_;
-  std::vector<std::vector<Vec3>> boundary_;
-};
 
 /// Some of the points of several pieces, and where they stand.
 struct NearPoints {
@@ -262,9 +184,10 @@ class PieceMeter {
   void measure_to_parts() {
     const std::vector<std::vector<Vec3>> points = read_points();
     const NearPoints near = points_near(points, parameters_.box);
-    PieceInput input(context_.stage, parameters_.first_part, parameters_.end_part);
+    PieceInput input(context_.stage, parameters_);
     const std::vector<Vec3> known = known_points();
-    const double spacing = std::sqrt(2 * error_.input_area / input.triangles());
+    const auto triangles = static_cast<double>(std::max<std::uint64_t>(1, parameters_.triangles));
+    const double spacing = std::sqrt(2 * error_.input_area / triangles);
     // Hardly a point is as far as triangles of the result are long.
     const double reach = std::max({2 * error_.to_output.max, spacing, spacing_of(mesh_)});
     PointMeter own(points.front(), {spacing, usual(spacing), known});

@@ -1,15 +1,15 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
 //
-// Parameters and summaries of the jobs of a farmed finish, version 1, little endian:
+// Parameters and summaries of the jobs of a farmed finish, version 2, little endian:
 //   weigh      = cost unit f64 | first step i32 | last share f64 | kept share f64 | lines
 //   split      = version u8 | rung u32 | step i32 | weigh
 //   seam       = version u8 | strips u32 x (parts u32 | ref) | all parts u32 | boundary |
 //                samples a triangle f64 | weigh
-//   reduce     = version u8 | section | rung u32 | triangles u64 | points u64 | vertices u64 |
-//   lines measure    = version u8 | first part u32 | end part u32 | box | 4 refs | points u32 x ref
-//   |
-//                input step u64
+//   reduce     = version u8 | section | rung u32 | triangles u64 | points u64 | vertices u64 | lines
+//   measure    = version u8 | first part u32 | end part u32 | triangles u64 | boundary | section |
+//                box | 4 refs | points u32 x ref | input step u64 | builds u8 | if it does: bundles
+//                (bundle_list.hpp)
 //   ref        = file | section;  box = 6 x f64
 //   divided    = 4 sections | gap triangles u64 | strip triangles u64 | shared u64 | box |
 //                rungs u32 x u64 | dropped degenerate u64 | duplicate u64 | turned u64 |
@@ -17,6 +17,7 @@
 //   finished   = 2 sections | by area u64 | area f64 | vertices u64 | triangles u64
 //   error      = area f64 | rms f64 | mean f64 | max f64 | samples u64
 //   distances  = lists u32 x (points u32 x f64), the file of a measure job
+// In version 1 parts were always kept.
 #include <cmath>
 
 #include <meshfarm/pipeline/piece_jobs.hpp>
@@ -24,10 +25,12 @@
 #include <meshfarm/util/byte_lists.hpp>
 #include <meshfarm/util/bytes.hpp>
 
+#include "pipeline/bundle_list.hpp"
+
 namespace meshfarm {
 namespace {
 
-constexpr std::uint8_t k_piece_version = 1;
+constexpr std::uint8_t k_piece_version = 2;
 constexpr double k_most_piece_samples = 1000;  // a triangle
 
 void begin_parameters(ByteWriter& out) {
@@ -163,6 +166,9 @@ std::string encode_parameters(const MeasureParameters& parameters) {
   begin_parameters(out);
   out.put(parameters.first_part);
   out.put(parameters.end_part);
+  out.put(parameters.triangles);
+  put_file(out, parameters.boundary);
+  out.put(parameters.boundary_index);
   out.put(parameters.box);
   for (const SectionRef* ref :
        {&parameters.mesh, &parameters.samples, &parameters.gap, &parameters.seam_mesh}) {
@@ -171,6 +177,8 @@ std::string encode_parameters(const MeasureParameters& parameters) {
   out.put(static_cast<std::uint32_t>(parameters.points.size()));
   for (const SectionRef& ref : parameters.points) put_ref(out, ref);
   out.put(parameters.input_step);
+  out.put(static_cast<std::uint8_t>(parameters.bundles ? 1 : 0));
+  if (parameters.bundles) put_bundles(out, *parameters.bundles);
   return out.take();
 }
 
@@ -180,6 +188,9 @@ MeasureParameters decode_measure_parameters(std::string_view bytes) {
   MeasureParameters parameters;
   parameters.first_part = in.get<std::uint32_t>();
   parameters.end_part = in.get<std::uint32_t>();
+  parameters.triangles = in.get<std::uint64_t>();
+  parameters.boundary = get_file(in);
+  parameters.boundary_index = in.get<FileSection>();
   parameters.box = in.get<Box>();
   for (SectionRef* ref :
        {&parameters.mesh, &parameters.samples, &parameters.gap, &parameters.seam_mesh}) {
@@ -191,6 +202,9 @@ MeasureParameters decode_measure_parameters(std::string_view bytes) {
   if (parameters.input_step == 0 || parameters.first_part > parameters.end_part || points == 0) {
     in.fail("impossible parts");
   }
+  const auto builds = in.get<std::uint8_t>();
+  if (builds > 1) in.fail("impossible parts");
+  if (builds == 1) parameters.bundles = get_bundles(in);
   in.expect_end();
   return parameters;
 }

@@ -145,7 +145,8 @@ class Run {
   void compose(JobGraph& graph) {
     const ComposeGoal goal{
         results().level, jobs().sweep_cost(results().level), jobs().wanted(),
-        results().topology == TopologyMode::simplify ? TopologyMode::simplify : TopologyMode::keep};
+        results().topology == TopologyMode::simplify ? TopologyMode::simplify : TopologyMode::keep,
+        state_.why_finish_here.empty()};
     composing_.begin(graph, goal, reached(),
                      [this, goal](JobGraph& so_far, const std::vector<ComposedParts>& parts) {
                        choose(parts);

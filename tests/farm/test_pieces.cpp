@@ -33,6 +33,9 @@ class PiecesBench : public FarmBench {
     return words;
   }
   std::string cut() { return FarmBench::cut({"--parts", "8"}); }
+  std::string planned() {
+    return FarmBench::cut({"--parts", "8", "--cut", "farm", "--blocks", "3"});
+  }
   Process ventilator(const std::string& stage) {
     return start(
         with_target({"ventilator", stage, "--bind", "127.0.0.1", "--heartbeat-ms", "150"}));
@@ -69,6 +72,50 @@ TEST_CASE("1 and 5 workers finish pieces to the same bytes and figures") {
     CHECK(error == figures);
     CHECK(ran.out.find("\"by\": \"farm\"") != std::string::npos);
   }
+}
+
+TEST_CASE("pieces of an input that jobs have cut: the same bytes and figures") {
+  struct Case {
+    const char* workers;
+    const char* blocks;
+  };
+  const auto error_of = [](const std::string& out) {
+    const std::size_t first = out.find("\"error\"");
+    return out.substr(first, out.find("\"channels\"", first) - first);
+  };
+  std::string figures;
+  for (const Case& each : {Case{"2", ""}, Case{"1", "3"}, Case{"2", "17"}, Case{"5", "1"}}) {
+    CAPTURE(each.blocks);
+    const std::string output = bench().path("cut.ply");
+    std::filesystem::remove(output);
+    std::vector<std::string> words = {"simplify", bench().mesh(), "-o",         output,  "--parts",
+                                      "8",        "--workers",    each.workers, "--json"};
+    const bool farms = *each.blocks != '\0';
+    words.insert(words.end(), {"--cut", farms ? "farm" : "here"});
+    if (farms) words.insert(words.end(), {"--blocks", each.blocks});
+    const Ran ran = bench().meshfarm(PiecesBench::with_target(words));
+    CHECK(ran.code == 0);
+    bench().check_result(output);
+    if (figures.empty()) figures = error_of(ran.out);
+    CHECK(error_of(ran.out) == figures);
+    CHECK(ran.out.find("\"by\": \"farm\"") != std::string::npos);
+  }
+}
+
+TEST_CASE("killed at any stage, a run that cuts and finishes by jobs goes on") {
+  const std::string stage = bench().planned();
+  for (const std::size_t results : {3U, 10U, 20U, 29U, 36U}) {
+    CAPTURE(results);
+    Process run = bench().start(
+        PiecesBench::with_target({"replay", stage, "-o", stage + ".ply", "--workers", "2"}));
+    REQUIRE(wait_for_results(stage, results));
+    run.signal(SIGKILL);  // its children end with it
+    CHECK(run.wait() == -SIGKILL);
+  }
+  const Ran ran =
+      bench().meshfarm(PiecesBench::with_target({"replay", stage, "-o", stage + ".ply"}));
+  CHECK(ran.code == 0);
+  bench().check_result(stage + ".ply");
 }
 
 TEST_CASE("everything killed while pieces are made, and started again: the same bytes") {

@@ -3,11 +3,13 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include <meshfarm/farm/job.hpp>
+#include <meshfarm/io/bundles.hpp>
 #include <meshfarm/pipeline/run_options.hpp>
 #include <meshfarm/report/summary.hpp>
 #include <meshfarm/staging/sections.hpp>
@@ -127,6 +129,10 @@ FinishedPiece decode_finished_piece(std::string_view bytes, std::string_view wha
 struct MeasureParameters {
   std::uint32_t first_part = 0;    // of the input, that the piece is made of
   std::uint32_t end_part = 0;      // none for the surroundings of the seams
+  std::uint64_t triangles = 0;     // of these parts
+  FileRef boundary;                // the triangles between all parts
+  FileSection boundary_index;
+  std::optional<BundlesOfMesh> bundles;  // what parts are built of, if they are not kept
   Box box;                         // of the piece
   SectionRef mesh;                 // finished
   SectionRef samples;              // of the input
