@@ -308,7 +308,7 @@ SinkActions SinkCore::did(const DoHere& what, const JobOutput& output, const Sin
   doing_.erase(what.key);
   if (!problem.text.empty()) return fail(problem);
   again_pause_ = FarmTime(0);
-  const Check check{what.key, output, Check::What::result, {}, 0, {}, what.job.kind};
+  const Check check{what.key, output, Check::What::result, {}, 0, what.times, what.job.kind};
   if (checking_.try_emplace(what.key, check).second) act(check);
   return take();
 }

@@ -205,6 +205,8 @@ void CutStage::join(JobGraph& graph, const PartResults& results, JobGraph::Step 
     parameters.numbers.push_back({results.files[p], results.summaries[p].built.value().beside});
   }
   Job job = job_of(k_join_kind, 0, 0);
+  for (const PartNumbers& each : parameters.numbers) job.reads += each.section.size;
+  for (const TriangleBundleRef& each : bundles_.triangles) job.reads += each.bundle.seams.size;
   job.parameters = encode_parameters(parameters);
   job.by_sink = true;
   const JobName name = job_name(RunStage::join, 0);

@@ -245,6 +245,7 @@ class TracedJobs {
 std::vector<PlannedJob> planned_jobs(const Trace& trace) {
   std::map<std::uint32_t, Speed> speeds;
   for (const TraceDone& each : trace.done) {
+    if (each.worker == k_sink_of_trace) continue;
     Speed& speed = speeds[each.worker];
     speed.triangles += static_cast<double>(each.triangles);
     speed.seconds += compute_s(each);
@@ -255,7 +256,8 @@ std::vector<PlannedJob> planned_jobs(const Trace& trace) {
   std::set<std::uint64_t> known;
   for (const TraceDone& each : trace.done) {
     if (!known.insert(each.job).second) continue;
-    const double relative = fastest > 0 ? speeds.at(each.worker).value() / fastest : 1;
+    const bool scales = fastest > 0 && each.worker != k_sink_of_trace;
+    const double relative = scales ? speeds.at(each.worker).value() / fastest : 1;
     traced.add(each, compute_s(each) * relative);
   }
   return traced.sorted();

@@ -154,7 +154,7 @@ Trace read_traced_run(const Stage& stage) {
     const std::uint32_t first = workers;
     for (const TraceJoined& each : before.joined) workers = std::max(workers, first + each.worker);
     for (TraceDone each : before.done) {
-      each.worker += first;
+      if (each.worker != k_sink_of_trace) each.worker += first;
       done.push_back(each);
     }
   }

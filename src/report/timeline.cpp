@@ -81,6 +81,7 @@ Frame frame_of(const Trace& trace) {
   for (const TraceLeft& each : trace.left) frame.rows[each.worker].left = each.t;
   for (const TraceFailed& each : trace.failed) frame.rows[each.worker].failures.push_back(each.t);
   for (const TraceDone& each : trace.done) {
+    if (each.worker == k_sink_of_trace) continue;
     Row& row = frame.rows[each.worker];
     row.spans.push_back(span_of(each, number_of(frame.stages, stage_of(each))));
     row.computed_s += each.compute_ms / 1000.0;

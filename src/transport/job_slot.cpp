@@ -3,7 +3,6 @@
 #include "transport/job_slot.hpp"
 
 #include <algorithm>
-#include <ctime>
 #include <new>
 #include <utility>
 
@@ -13,18 +12,6 @@
 #include "transport/sockets.hpp"
 
 namespace meshfarm {
-namespace {
-
-/// Processor time that this thread has used.
-std::uint64_t thread_cpu_us() {
-  timespec used{};
-  if (::clock_gettime(CLOCK_THREAD_CPUTIME_ID, &used) != 0) return 0;
-  return static_cast<std::uint64_t>(used.tv_sec) * 1'000'000 +
-         static_cast<std::uint64_t>(used.tv_nsec) / 1000;
-}
-
-}  // namespace
-
 /// What is written while the job computes: storage that stalls is told apart from a job that hangs.
 class JobSlot::OutputFile : public JobFile {
  public:

@@ -313,7 +313,11 @@ class SinkLoop {
       };
       if (!options_.do_here)
         throw Error("a " + doing_->job.kind + " job for a sink that does none");
+      const FarmTime begin = farm_clock();
+      const std::uint64_t cpu_before_us = thread_cpu_us();
       made_ = options_.do_here(doing_->job, {stage_, 1, incarnation_, goes_on}, accepted_);
+      doing_->times.compute_ms = static_cast<std::uint32_t>((farm_clock() - begin).count());
+      doing_->times.cpu_us = 1 + thread_cpu_us() - cpu_before_us;
     } catch (...) {
       problem_ = std::current_exception();
     }

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
+#include <ctime>
 #include <random>
 
 #include <sys/resource.h>
@@ -254,6 +255,13 @@ void wait_for(std::vector<zmq::pollitem_t>& items, std::chrono::milliseconds tim
 
 FarmTime farm_clock() {
   return std::chrono::duration_cast<FarmTime>(std::chrono::steady_clock::now().time_since_epoch());
+}
+
+std::uint64_t thread_cpu_us() {
+  timespec used{};
+  if (::clock_gettime(CLOCK_THREAD_CPUTIME_ID, &used) != 0) return 0;
+  return static_cast<std::uint64_t>(used.tv_sec) * 1'000'000 +
+         static_cast<std::uint64_t>(used.tv_nsec) / 1000;
 }
 
 }  // namespace meshfarm

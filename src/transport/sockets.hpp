@@ -68,5 +68,7 @@ bool send_frame(zmq::socket_t& router, std::string_view peer, std::string_view f
 /// Waits until one of the items has something or the time is up; a signal ends it early.
 void wait_for(std::vector<zmq::pollitem_t>& items, std::chrono::milliseconds timeout);
 FarmTime farm_clock();
+/// Processor time that this thread has used.
+std::uint64_t thread_cpu_us();
 
 }  // namespace meshfarm

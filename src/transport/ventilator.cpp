@@ -33,10 +33,13 @@ constexpr FarmTime k_look_every{1000};
 constexpr FarmTime k_state_every_per_worker{5};
 
 /// A job that no message can carry is our caller's mistake: it is found before anything is sent.
+/// The sink makes its own jobs by itself.
 JobSource checked_source(const JobSource& source) {
   return [source] {
     JobGraph graph = source();
-    graph.inspect([](const Job& job) { encode(Assignment{0, 0, 0, 0, job}); });
+    graph.inspect([](const Job& job) {
+      if (!job.by_sink) encode(Assignment{0, 0, 0, 0, job});
+    });
     return graph;
   };
 }

@@ -68,6 +68,18 @@ TEST_CASE("a cut by the farm: any number of workers and blocks make the bytes of
   }
 }
 
+TEST_CASE("a cut by the farm: of more parts than a message can name") {
+  const auto simplify = [](const std::string& output, const char* place) {
+    return bench().meshfarm({"simplify", bench().mesh(), "-o", output, "--ratio", "0.02", "--parts",
+                             "400", "--workers", "2", "--cut", place});
+  };
+  const std::string here = bench().path("here.ply");
+  const std::string farmed = bench().path("farmed.ply");
+  CHECK(simplify(here, "here").code == 0);
+  CHECK(simplify(farmed, "farm").code == 0);
+  CHECK(meshfarm::test::read_text(farmed) == meshfarm::test::read_text(here));
+}
+
 TEST_CASE("a cut by the farm: killed at every stage, a run goes on, and cuts only once") {
   const std::string stage = bench().planned();
   // In the survey, as cells are counted, vertices and triangles scattered, parts climbed, at the

@@ -28,7 +28,7 @@ struct WorkerLeft {
   std::string why;
 };
 struct JobAccepted {
-  WorkerId worker;  // who did it
+  WorkerId worker;  // who did it; 0: the sink
   JobKey key;
   Job job;
   JobPlace place;

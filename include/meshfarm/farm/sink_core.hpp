@@ -39,6 +39,7 @@ struct Check {
 struct DoHere {
   JobKey key;
   Job job;
+  JobTimes times = {};  // once it is done
 };
 /// Make the run's output of JobGraph::outputs(); answered by completed().
 struct MakeOutput {};

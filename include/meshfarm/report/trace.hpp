@@ -40,6 +40,9 @@ struct TraceLeft {
   std::uint32_t worker = 0;
   std::string why;
 };
+/// In place of a worker's number.
+inline constexpr std::uint32_t k_sink_of_trace = 0;
+
 /// A job whose result was accepted.
 struct TraceDone {
   /// Neighbours of one stage.
@@ -49,7 +52,7 @@ struct TraceDone {
     std::uint32_t count = 0;
   };
   double t = 0;
-  std::uint32_t worker = 0;
+  std::uint32_t worker = k_sink_of_trace;
   std::uint64_t job = 0;  // its key
   std::string kind;
   std::string stage;            // of the run's jobs; empty in old traces
