@@ -218,11 +218,19 @@ SharedTriangles MeshShares::boundary(std::span<const BoundaryNumbers> numbers) c
 
 SharedTriangles number_seams(std::span<const SeamTriangle> seams, const TriangleColumns& columns,
                              std::span<const BoundaryNumbers> numbers) {
+  constexpr std::size_t k_looked_at = 4;
+  // Neighbours in the file mostly have the same vertices, or the next.
+  std::vector<std::size_t> last(numbers.size(), 0);
   const auto index = [&](const SharePlace& corner) {
     const std::vector<std::uint32_t>& places = numbers[corner.share].places;
-    const auto at = std::lower_bound(places.begin(), places.end(), corner.place);
-    if (at == places.end()) throw DataError("a boundary triangle of a vertex that is not there");
-    return static_cast<std::size_t>(at - places.begin());
+    std::size_t& at = last[corner.share];
+    for (std::size_t i = at; i < std::min(at + k_looked_at, places.size()); ++i) {
+      if (places[i] == corner.place) return at = i;
+    }
+    at = static_cast<std::size_t>(std::lower_bound(places.begin(), places.end(), corner.place) -
+                                  places.begin());
+    if (at == places.size()) throw DataError("a boundary triangle of a vertex that is not there");
+    return at;
   };
   SharedTriangles made;
   made.triangles.reserve(seams.size());

@@ -8,7 +8,9 @@
 //   texture coordinates 6 x f32, if all have them)
 // What stands before the triangles is the index. Version 1 had the count of triangles alone.
 #include <algorithm>
+#include <bit>
 #include <cstring>
+#include <numeric>
 #include <utility>
 
 #include <meshfarm/io/boundary_file.hpp>
@@ -77,6 +79,23 @@ std::uint32_t region_of(const BoundaryTriangle& t, const Regions& regions) {
   return regions.of(least, greatest);
 }
 
+BoundaryTriangle sorted_corners(BoundaryTriangle t) {
+  if (t[1] < t[0]) std::swap(t[0], t[1]);
+  if (t[2] < t[1]) std::swap(t[1], t[2]);
+  if (t[1] < t[0]) std::swap(t[0], t[1]);
+  return t;
+}
+
+std::uint64_t hash_of(const BoundaryTriangle& t) {
+  std::uint64_t hash = 0;
+  for (const BoundaryCorner& each : t) {
+    hash ^= std::uint64_t{each.part} << 32 | each.local;
+    hash *= 0x9e3779b97f4a7c15ULL;
+    hash ^= hash >> 29;
+  }
+  return hash;
+}
+
 /// Appends triangles with their columns.
 void get_triangles(ByteReader& in, std::uint64_t count, const ColumnSet& set,
                    std::vector<BoundaryTriangle>& triangles, TriangleColumns& columns) {
@@ -99,17 +118,17 @@ std::uint64_t drop_duplicates(std::vector<BoundaryTriangle>& triangles) {
 }
 
 std::uint64_t drop_duplicates(std::vector<BoundaryTriangle>& triangles, TriangleColumns& columns) {
-  std::vector<std::pair<BoundaryTriangle, std::size_t>> sorted;
-  sorted.reserve(triangles.size());
-  for (std::size_t i = 0; i < triangles.size(); ++i) {
-    BoundaryTriangle key = triangles[i];
-    std::sort(key.begin(), key.end());
-    sorted.emplace_back(key, i);
-  }
-  std::sort(sorted.begin(), sorted.end());
+  // The first of those with the same corners stays, whatever the hashes are.
+  std::vector<std::uint64_t> known(std::bit_ceil(2 * triangles.size() + 1), 0);  // 1 + place
   std::vector<bool> duplicate(triangles.size(), false);
-  for (std::size_t i = 1; i < sorted.size(); ++i) {
-    if (sorted[i].first == sorted[i - 1].first) duplicate[sorted[i].second] = true;
+  for (std::size_t i = 0; i < triangles.size(); ++i) {
+    const BoundaryTriangle corners = sorted_corners(triangles[i]);
+    std::size_t slot = hash_of(corners) & (known.size() - 1);
+    while (known[slot] != 0 && sorted_corners(triangles[known[slot] - 1]) != corners) {
+      slot = (slot + 1) & (known.size() - 1);
+    }
+    duplicate[i] = known[slot] != 0;
+    if (!duplicate[i]) known[slot] = i + 1;
   }
   return keep_triangles(triangles, columns, [&](std::size_t i) { return !duplicate[i]; });
 }
@@ -117,17 +136,20 @@ std::uint64_t drop_duplicates(std::vector<BoundaryTriangle>& triangles, Triangle
 void sort_by_region(std::uint32_t parts, std::vector<BoundaryTriangle>& triangles,
                     TriangleColumns& columns) {
   const Regions regions(parts);
-  std::vector<std::pair<std::uint32_t, std::size_t>> order;
-  order.reserve(triangles.size());
+  std::vector<std::uint32_t> region(triangles.size());
+  std::vector<std::size_t> next(std::size_t{regions.count()} + 1, 0);  // place in order, by region
   for (std::size_t i = 0; i < triangles.size(); ++i) {
-    order.emplace_back(region_of(triangles[i], regions), i);
+    region[i] = region_of(triangles[i], regions);
+    ++next[region[i] + 1];
   }
-  if (std::is_sorted(order.begin(), order.end())) return;
-  std::sort(order.begin(), order.end());
+  if (std::is_sorted(region.begin(), region.end())) return;
+  std::partial_sum(next.begin(), next.end(), next.begin());
+  std::vector<std::size_t> order(triangles.size());
+  for (std::size_t i = 0; i < triangles.size(); ++i) order[next[region[i]]++] = i;
   std::vector<BoundaryTriangle> sorted;
   TriangleColumns columns_sorted;
   sorted.reserve(triangles.size());
-  for (const auto& [region, place] : order) {
+  for (const std::size_t place : order) {
     sorted.push_back(triangles[place]);
     columns_sorted.append(columns, place);
   }
