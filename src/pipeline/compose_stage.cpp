@@ -81,7 +81,10 @@ bool ComposeStage::can_join() const {
 /// What whoever simplified the parts can hold: a sweep's window, or the largest of them. Pieces of
 /// a result need not be larger than is good for them.
 std::uint64_t ComposeStage::most_triangles(std::uint64_t all_triangles) const {
-  if (goal_.for_pieces) return std::max(k_least_piece, 2 * all_triangles / k_most_pieces);
+  if (goal_.for_pieces) {
+    return std::max(std::clamp(all_triangles / k_pieces_of_all, k_least_piece, k_usual_piece),
+                    2 * all_triangles / k_most_pieces);
+  }
   std::uint64_t most = manifest_.window_triangles;
   if (manifest_.scheme == Scheme::stream) return most;
   for (const PartEntry& part : manifest_.parts) most = std::max(most, part.triangles);

@@ -19,8 +19,12 @@ namespace meshfarm {
 
 /// So many pieces a seam job can name.
 inline constexpr std::size_t k_most_pieces = 200;
-/// Parts are composed up to so many triangles: of smaller pieces much would lie round the seams.
-inline constexpr std::uint64_t k_least_piece = 262'144;
+/// Parts are composed up to a sixteenth of all triangles, so that two dozen workers have a piece
+/// each, within these bounds: of smaller pieces much would lie round the seams, and larger ones are
+/// worth no process's memory.
+inline constexpr std::uint64_t k_least_piece = 32'768;
+inline constexpr std::uint64_t k_usual_piece = 262'144;
+inline constexpr std::uint64_t k_pieces_of_all = 16;
 
 /// Where all pieces begin.
 struct FinishGoal {
