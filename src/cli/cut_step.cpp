@@ -84,7 +84,8 @@ std::optional<Cutting> cutting_for(const CutStep& step, const MeshSource& source
                    words.cut.scheme == Scheme::cut && words.cut.weld == Weld::exact &&
                    words.memory.empty();
   if (!is_asked && !may) return std::nullopt;
-  std::optional<Cutting> cutting = plan_cutting(step.input, {words.cut.parts, words.blocks});
+  std::optional<Cutting> cutting =
+      plan_cutting(step.input, {words.cut.parts, words.blocks, words.where == "farm"});
   const std::string why = why_not_by_farm(source.info(), cutting);
   if (why.empty()) return cutting;
   if (is_asked) throw UsageError(step.input + ": cannot be cut by the farm: " + why);

@@ -51,7 +51,7 @@ void CutWords::add(po::options_description& options) {
       "a binary PLY file of triangles that all hosts see; auto: farm, if simplify keeps no parts, "
       "the mesh is large, and there are workers enough")(
       "blocks", po::value(&blocks)->value_name("N"),
-      "with --cut farm: blocks of vertices, and of triangles, up to 64 (default: of about 500,000 "
+      "with --cut farm: blocks of vertices, and of triangles, up to 64 (default: of about 300,000 "
       "each); the parts do not depend on it")(
       "sort", po::value(&sort)->default_value(sort)->value_name("here|farm"),
       "with --scheme stream: here: sort the slabs on this host; farm: the first jobs of a run sort "

@@ -139,13 +139,21 @@ JobOutput join_boundary_of_parts(const Job& job, const JobContext& context) {
   return publish_bytes(job, context, made.encoded.file, encode_summary(summary));
 }
 
+/// Two dozen workers are done at about the same time where each has four parts or more. Smaller
+/// parts, or more of them, cost all: the partition is one job, and seams are most of small parts.
+std::uint32_t parts_for_cluster(std::uint64_t triangles) {
+  constexpr std::uint64_t k_part = 300'000;
+  constexpr std::uint64_t k_most = 192;
+  return static_cast<std::uint32_t>(std::clamp<std::uint64_t>(triangles / k_part, 1, k_most));
+}
+
 std::optional<Cutting> plan_cutting(const std::filesystem::path& input,
                                     const CutPlanOptions& options) {
   const auto mesh = open_blocks(input);
   if (mesh == nullptr) return std::nullopt;
   const auto blocks = [&](std::uint64_t records) {
     // Enough for all workers of a cluster, few enough that each is worth its messages and files.
-    constexpr std::uint64_t k_records = 500'000;
+    constexpr std::uint64_t k_records = 300'000;
     const std::uint64_t wanted = options.blocks != 0 ? options.blocks : records / k_records;
     return static_cast<std::uint32_t>(std::clamp<std::uint64_t>(wanted, 1, k_most_cut_blocks / 2));
   };
@@ -156,7 +164,9 @@ std::optional<Cutting> plan_cutting(const std::filesystem::path& input,
   cutting.changed_ns = facts.changed_ns;
   cutting.parts = options.parts;
   if (cutting.parts == 0) {
-    cutting.parts = default_parts(Scheme::cut, std::max(mesh->triangles(), mesh->vertices()));
+    const std::uint64_t triangles = std::max(mesh->triangles(), mesh->vertices());
+    cutting.parts = default_parts(Scheme::cut, triangles);
+    if (options.for_cluster) cutting.parts = std::max(cutting.parts, parts_for_cluster(triangles));
   }
   cutting.vertex_blocks = blocks(mesh->vertices());
   cutting.triangle_blocks = blocks(mesh->triangles());

@@ -78,8 +78,9 @@ JobOutput scatter_triangles_of_block(const Job& job, const JobContext& context);
 JobOutput join_boundary_of_parts(const Job& job, const JobContext& context);
 
 struct CutPlanOptions {
-  std::uint32_t parts = 0;   // 0: as many as a cut would make
-  std::uint32_t blocks = 0;  // of vertices, and of triangles; 0: of about half a million each
+  std::uint32_t parts = 0;   // 0: as many as a cut here would make
+  std::uint32_t blocks = 0;  // of vertices, and of triangles; 0: of about 300,000 each
+  bool for_cluster = false;  // more parts, if none are told, so that two dozen workers end together
 };
 /// What a cut by jobs is to be of this file; nothing if its records cannot be read by themselves.
 /// Throws IoError.
