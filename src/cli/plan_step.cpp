@@ -88,6 +88,8 @@ void PlanWords::add(po::options_description& options) {
   options.add_options()("delay",
                         po::value(&delay_ms)->default_value(delay_ms, "0.1")->value_name("MS"),
                         "of a message, in milliseconds");
+  options.add_options()("limits", po::bool_switch(&limits),
+                        "for each farm: what each stage takes, and what limits it");
   options.add_options()("paper", po::bool_switch(&paper),
                         "the paper's tables 1 or 2 and figure 4 (-o FILE: as SVG)");
   options.add_options()("off", po::value(&off)->default_value(off, "0.2")->value_name("SHARE"),
@@ -140,7 +142,12 @@ PlanSummary PlanWords::plan_of(const std::string& stage, const std::vector<Farm>
   for (const Farm& farm : farms) {
     const PlannedRun run = simulate_run(jobs, farm_of(farm));
     plan.lines.push_back(
-        {farm.name, run.farm_s, run.ideal_s, plan.one_s / run.farm_s, run.storage_busy});
+        {farm.name, run.farm_s, run.ideal_s, plan.one_s / run.farm_s, run.storage_busy, {}});
+    if (!limits) continue;
+    for (PlannedStage& each : simulate_stages(jobs, farm_of(farm))) {
+      plan.lines.back().stages.push_back({std::move(each.name), each.jobs, each.takes_s,
+                                          each.ideal_s, each.longest_s, each.storage_s});
+    }
   }
   return plan;
 }

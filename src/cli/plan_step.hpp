@@ -24,6 +24,7 @@ struct PlanWords {
   double off = 0.2;
   std::uint64_t parts = 0;
   bool paper = false;
+  bool limits = false;  // of each stage
   std::string output;
 
   void add(po::options_description& options);

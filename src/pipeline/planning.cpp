@@ -160,7 +160,9 @@ class TracedJobs {
   void add(const TraceDone& done, double seconds) {
     const std::uint32_t depth = done.stage.empty() ? done.round : depth_of(done.needs);
     places_[done.stage][done.index] = jobs_.size();
-    jobs_.push_back({{depth, done.triangles, done.read_bytes, done.written_bytes, seconds}, &done});
+    jobs_.push_back(
+        {{depth, done.triangles, done.read_bytes, done.written_bytes, seconds, {}, done.stage},
+         &done});
   }
 
   std::vector<PlannedJob> sorted() {
@@ -271,8 +273,13 @@ std::vector<PlannedJob> as_parts(std::span<const PlannedJob> jobs, std::uint64_t
   std::vector<PlannedJob> parts;
   for (std::uint64_t i = 0; i < count; ++i) {
     const PlannedJob& like = jobs[static_cast<std::size_t>(static_cast<double>(i) * share)];
-    parts.push_back({like.depth, of(like.triangles), of(like.read_bytes), of(like.written_bytes),
-                     like.compute_s * share});
+    parts.push_back({like.depth,
+                     of(like.triangles),
+                     of(like.read_bytes),
+                     of(like.written_bytes),
+                     like.compute_s * share,
+                     {},
+                     like.stage});
   }
   return parts;
 }
@@ -313,6 +320,32 @@ PlannedRun simulate_run(std::span<const PlannedJob> jobs, const PlannedFarm& far
   run.farm_s = seconds(result.last_accept - result.first_push);
   run.storage_busy = run.farm_s > 0 ? std::min(1.0, result.server_busy_s / run.farm_s) : 0;
   return run;
+}
+
+std::vector<PlannedStage> simulate_stages(std::span<const PlannedJob> jobs,
+                                          const PlannedFarm& farm) {
+  double speed = 0;
+  for (const WorkerGroup& group : farm.groups) {
+    speed += static_cast<double>(group.count) * group.speed;
+  }
+  std::vector<PlannedStage> stages;
+  double before = 0;
+  for (std::size_t first = 0, end = 0; first < jobs.size(); first = end) {
+    PlannedStage& stage = stages.emplace_back();
+    stage.name = jobs[first].stage;
+    double bytes = 0;
+    for (; end < jobs.size() && jobs[end].depth == jobs[first].depth; ++end) {
+      const PlannedJob& job = jobs[end];
+      ++stage.jobs;
+      stage.ideal_s += job.compute_s / speed;
+      stage.longest_s = std::max(stage.longest_s, job.compute_s);
+      bytes += static_cast<double>(job.read_bytes + job.written_bytes);
+    }
+    stage.storage_s = bytes / farm.server_bytes_per_s;
+    const double ends = simulate_run(jobs.first(end), farm).farm_s;
+    stage.takes_s = std::max(0.0, ends - std::exchange(before, ends));
+  }
+  return stages;
 }
 
 }  // namespace meshfarm

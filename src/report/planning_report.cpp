@@ -11,6 +11,9 @@
 namespace meshfarm {
 namespace {
 
+/// What a stage takes beyond what it waits for at least.
+constexpr double k_far_more = 2;
+
 std::string padded(std::string text, std::size_t width) {
   if (text.size() < width) text.insert(0, width - text.size(), ' ');
   return text;
@@ -29,6 +32,42 @@ double whole(const PlanSummary& plan, double farm_s) {
   return plan.cut_s + farm_s + plan.assemble_s;
 }
 
+Json as_json(const std::vector<PlanStage>& stages) {
+  Json list = Json::array();
+  for (const PlanStage& each : stages) {
+    list.push_back({{"stage", each.name},
+                    {"jobs", each.jobs},
+                    {"takes_s", each.takes_s},
+                    {"ideal_s", each.ideal_s},
+                    {"longest_s", each.longest_s},
+                    {"storage_s", each.storage_s}});
+  }
+  return list;
+}
+
+/// The greatest of what a stage waits for: it takes no less than any of them.
+std::string limit_of(const PlanStage& stage) {
+  const double most = std::max({stage.ideal_s, stage.longest_s, stage.storage_s});
+  if (stage.takes_s > k_far_more * most) return "files and messages";
+  if (most == stage.ideal_s) return "work";
+  return most == stage.longest_s ? "longest job" : "storage";
+}
+
+/// What takes how long on a farm, and what each stage waits for.
+std::string stages_of(const PlanLine& line) {
+  if (line.stages.empty()) return {};
+  std::string text = "\n" + labelled("stages with " + line.farm, 22) +
+                     "      jobs     takes      work   longest   storage  limit\n";
+  for (const PlanStage& each : line.stages) {
+    text += labelled("  " + each.name, 22) + padded(grouped(each.jobs), 10);
+    for (const double s : {each.takes_s, each.ideal_s, each.longest_s, each.storage_s}) {
+      text += padded(seconds(s), 10);
+    }
+    text += "  " + limit_of(each) + "\n";
+  }
+  return text;
+}
+
 Json as_json(const PlanSummary& plan) {
   Json lines = Json::array();
   for (const PlanLine& line : plan.lines) {
@@ -39,6 +78,7 @@ Json as_json(const PlanSummary& plan) {
                      {"storage_busy", line.storage_busy},
                      {"whole_s", whole(plan, line.farm_s)},
                      {"whole_speed_up", whole(plan, plan.one_s) / whole(plan, line.farm_s)}});
+    if (!line.stages.empty()) lines.back()["stages"] = as_json(line.stages);
   }
   return {{"stage", plan.stage},        {"jobs", plan.jobs},
           {"schedule", plan.schedule},  {"triangles", plan.triangles_in},
@@ -82,6 +122,7 @@ std::string render(const PlanSummary& plan, Format format) {
             padded(number(whole(plan, plan.one_s) / all, "%.2f"), 10) +
             padded(number(100 * line.storage_busy, "%.0f %%"), 9) + "\n";
   }
+  for (const PlanLine& line : plan.lines) text += stages_of(line);
   return text;
 }
 

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <span>
+#include <string>
 #include <vector>
 
 #include <meshfarm/farm/schedule.hpp>
@@ -25,6 +26,7 @@ struct PlannedJob {
   std::uint64_t written_bytes = 0;
   double compute_s = 0;
   std::vector<Range> needs = {};  // if none are given: all jobs of less depth
+  std::string stage = {};
 };
 
 /// The jobs of a trace, sorted by depth. Speed 1 is that of the trace's worker that did most work
@@ -66,5 +68,18 @@ struct PlannedRun {
 /// Simulates the farm on virtual time, with the real processes' own logic. Throws Error if that
 /// does not come to its end.
 PlannedRun simulate_run(std::span<const PlannedJob> jobs, const PlannedFarm& farm);
+
+/// Jobs of one depth, on some farm.
+struct PlannedStage {
+  std::string name;
+  std::uint64_t jobs = 0;
+  double takes_s = 0;    // from the end of those before it to its own
+  double ideal_s = 0;    // its work over all speed
+  double longest_s = 0;  // of its jobs, on a worker of speed 1
+  double storage_s = 0;  // its bytes over the server's link
+};
+/// What takes how long, in order. Runs the simulation once a stage.
+std::vector<PlannedStage> simulate_stages(std::span<const PlannedJob> jobs,
+                                          const PlannedFarm& farm);
 
 }  // namespace meshfarm

@@ -10,13 +10,24 @@
 
 namespace meshfarm {
 
+/// A stage of a run on one farm.
+struct PlanStage {
+  std::string name;
+  std::uint64_t jobs = 0;
+  double takes_s = 0;    // from the end of those before it
+  double ideal_s = 0;    // its work over all speed
+  double longest_s = 0;  // of its jobs
+  double storage_s = 0;  // its bytes over the storage's link
+};
+
 /// How long a dataset would take on one farm.
 struct PlanLine {
   std::string farm;  // "24", "16 x 1 + 8 x 0.333"
   double farm_s = 0;
   double ideal_s = 0;
-  double speed_up = 0;      // of the farmed phase, against one worker of speed 1
-  double storage_busy = 0;  // share of the time that the storage's link is busy
+  double speed_up = 0;                 // of the farmed phase, against one worker of speed 1
+  double storage_busy = 0;             // share of the time that the storage's link is busy
+  std::vector<PlanStage> stages = {};  // if they are asked for
 };
 
 /// What a run of the past says of farms of the future.
