@@ -378,4 +378,14 @@ ResultMesh decode_result(std::string_view file, std::size_t rung, std::string_vi
   return result;
 }
 
+std::string_view beside_of(std::string_view file, std::string_view what) {
+  constexpr std::size_t k_size_at =
+      2 * sizeof(FileKind) + 2 * sizeof(std::uint32_t) + 1 + sizeof(std::uint32_t);
+  ByteReader in(file.substr(std::min(k_size_at, file.size())), what);
+  const auto size = in.get<std::uint64_t>();
+  const std::size_t begin = k_size_at + sizeof size;
+  if (size > file.size() - begin) in.fail("too short for what is beside its mesh");
+  return file.substr(begin, size);
+}
+
 }  // namespace meshfarm

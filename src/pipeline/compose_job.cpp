@@ -15,13 +15,16 @@
 #include <meshfarm/util/bytes.hpp>
 #include <meshfarm/util/errors.hpp>
 
+#include "pipeline/piece_sections.hpp"
+
 namespace meshfarm {
 namespace {
 
-// Version 4: first part u32 | all parts u32 | inputs u32 x (parts u32 | rung u32) |
+// Version 5: first part u32 | all parts u32 | inputs u32 x (parts u32 | rung u32) |
 // boundary (name | size u64 | hash u64) | its index (offset u64 | size u64 | hash u64) | level i32
-// | greatest cost f64 | floor u64 | samples a triangle f64 | lines (run_options.hpp).
-constexpr std::uint8_t k_compose_version = 4;
+// | greatest cost f64 | floor u64 | samples a triangle f64 | keeps between u8 |
+// lines (run_options.hpp). Version 4 kept nothing.
+constexpr std::uint8_t k_compose_version = 5;
 constexpr double k_max_samples_per_triangle = 1000;
 
 class Composer {
@@ -41,6 +44,7 @@ class Composer {
     const Seams seams = read_seams();
     StitchedMesh stitched = stitcher_.finish(seams.triangles, seams.columns);
     sample_seams(stitched);
+    if (parameters_.keeps_between) append_surface_of(last_triangles(stitched));
     const auto locked = static_cast<std::uint32_t>(stitched.open.size());
     Simplifier simplifier(
         open_first(std::move(stitched)),
@@ -56,6 +60,12 @@ class Composer {
     positions_ = result.positions;
     stitcher_.add(result, parameters_.inputs[i].parts);
     std::move(result.samples.begin(), result.samples.end(), std::back_inserter(samples_));
+    if (!parameters_.keeps_between || parameters_.inputs[i].parts == 1) return;
+    append_surface_of(decode_surface(beside_of(file, job_.inputs[i].name), job_.inputs[i].name));
+  }
+
+  void append_surface_of(const Mesh& more) {
+    append_surface(more.positions, more.triangles, between_);
   }
 
   /// The boundary triangles that touch the group.
@@ -136,8 +146,10 @@ class Composer {
   JobOutput write(const Simplifier& simplifier, std::uint32_t locked) const {
     std::string file;
     const Mesh& mesh = simplifier.mesh();
-    ResultWriter result({positions_, !mesh.appearances.empty(), locked, mesh.columns.set()},
-                        [&](std::string_view bytes) { file += bytes; });
+    ResultWriter result(
+        {positions_, !mesh.appearances.empty(), locked, mesh.columns.set()},
+        [&](std::string_view bytes) { file += bytes; },
+        parameters_.keeps_between ? encode_surface(between_) : std::string());
     result.add_rung(parameters_.level, mesh, simplifier.free_triangles());
     result.finish(VertexView(mesh).part(0, locked), samples_);
     const ResultName name{key_of(job_).value, context_.attempt, context_.incarnation};
@@ -152,6 +164,7 @@ class Composer {
   Stitcher stitcher_;
   PositionType positions_ = PositionType::float32;
   std::vector<SurfaceSamples> samples_;
+  Mesh between_;
 };
 
 }  // namespace
@@ -172,6 +185,7 @@ std::string encode_parameters(const ComposeParameters& parameters) {
   out.put(parameters.max_cost);
   out.put(parameters.floor);
   out.put(parameters.samples_per_triangle);
+  out.put(static_cast<std::uint8_t>(parameters.keeps_between ? 1 : 0));
   put(out, parameters.lines);
   return out.take();
 }
@@ -200,6 +214,7 @@ ComposeParameters decode_compose_parameters(std::string_view bytes) {
   parameters.samples_per_triangle = in.get<double>();
   const double samples = parameters.samples_per_triangle;
   if (!(samples >= 0 && samples <= k_max_samples_per_triangle)) in.fail("too many samples");
+  parameters.keeps_between = in.get<std::uint8_t>() != 0;
   parameters.lines = get_lines(in);
   in.expect_end();
   return parameters;

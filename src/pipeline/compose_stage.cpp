@@ -170,6 +170,7 @@ Job ComposeStage::job_of(const Level& level, std::size_t first, std::size_t end)
   parameters.samples_per_triangle =
       std::min(1.0, static_cast<double>(samples_for(manifest_, options_, manifest_.triangles())) /
                         static_cast<double>(std::max<std::uint64_t>(1, manifest_.triangles())));
+  parameters.keeps_between = goal_.for_pieces;
   parameters.lines = lines_of(manifest_, options_);
   parameters.lines.topology = goal_.topology;
   Job job;

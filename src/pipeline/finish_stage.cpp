@@ -3,6 +3,7 @@
 #include "pipeline/finish_stage.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include <meshfarm/farm/protocol.hpp>
@@ -33,6 +34,10 @@ constexpr std::uint64_t k_piece_process_bytes = std::uint64_t{16} << 20;
 constexpr std::uint64_t k_piece_triangle_bytes = 170;
 /// A part that is built for the occasion, and what it is built of.
 constexpr std::uint64_t k_built_triangle_bytes = 120;
+/// Of the input, by one job, at least.
+constexpr std::uint64_t k_measured_at_once = 400'000;
+/// To read the result that is measured, and to arrange its points, is worth so many triangles.
+constexpr std::uint64_t k_before_measuring = 100'000;
 
 std::uint64_t steps_of(std::uint64_t count, std::uint64_t most) {
   return std::max<std::uint64_t>(1, (count + most - 1) / most);
@@ -41,6 +46,21 @@ std::uint64_t steps_of(std::uint64_t count, std::uint64_t most) {
 /// As of all, at least one.
 std::uint64_t share_of_points(std::uint64_t points, std::uint64_t triangles, std::uint64_t all) {
   return 1 + points * triangles / std::max<std::uint64_t>(1, all);
+}
+
+/// Of a share of the piece.
+void add_error(const PieceError& more, PieceError& error) {
+  const double area = error.input_area + more.input_area;
+  error.input_samples += more.input_samples;
+  error.to_output.max = std::max(error.to_output.max, more.to_output.max);
+  if (!(more.input_area > 0)) return;
+  const auto mean = [&](double a, double b) {
+    return (a * error.input_area + b * more.input_area) / area;
+  };
+  const Distance& d = more.to_output;
+  error.to_output.rms = std::sqrt(mean(error.to_output.rms * error.to_output.rms, d.rms * d.rms));
+  error.to_output.mean = mean(error.to_output.mean, d.mean);
+  error.input_area = area;
 }
 
 }  // namespace
@@ -160,33 +180,60 @@ void FinishStage::look_at_count(JobGraph& graph) {
   reduce(graph, quotas);
 }
 
+/// As many jobs a piece as its input is worth.
 void FinishStage::measure(JobGraph& graph) {
-  const std::size_t pieces = made_.pieces.size();
   std::vector<Job> jobs;
-  for (std::size_t i = 0; i < pieces; ++i) {
-    jobs.push_back(measure_job(i));
-    if (jobs.back().parameters.size() > k_max_parameters_bytes) {
-      return done_(graph, std::nullopt, "there are more pieces than a job can name");
+  std::vector<std::size_t> end;  // of a piece's jobs
+  for (std::size_t i = 0; i < made_.pieces.size(); ++i) {
+    const std::vector<PartRange> ranges = ranges_of(made_.pieces[i]);
+    for (std::uint32_t share = 0; share < ranges.size(); ++share) {
+      jobs.push_back(measure_job(i, ranges, share));
+      if (jobs.back().parameters.size() > k_max_parameters_bytes) {
+        return done_(graph, std::nullopt, "there are more pieces than a job can name");
+      }
     }
+    end.push_back(jobs.size());
   }
-  for (std::size_t i = 0; i < pieces; ++i) {
-    graph.add(job_name(RunStage::measure, i), std::move(jobs[i]));
+  for (std::size_t j = 0; j < jobs.size(); ++j) {
+    graph.add(job_name(RunStage::measure, j), std::move(jobs[j]));
   }
-  graph.then({jobs_of(RunStage::measure, 0, pieces)}, [this](JobGraph& so_far) {
-    for (std::size_t i = 0; i < made_.pieces.size(); ++i) {
-      const JobOutput& output = so_far.output(job_name(RunStage::measure, i));
-      made_.pieces[i].error_file = output.file;
-      made_.pieces[i].error = decode_piece_error(output.summary, "summary of " + output.file.name);
+  graph.then({jobs_of(RunStage::measure, 0, end.back())}, [this, end](JobGraph& so_far) {
+    for (std::size_t i = 0, j = 0; i < made_.pieces.size(); ++i) {
+      for (; j < end[i]; ++j) take_measured(so_far, made_.pieces[i], j);
     }
     done_(so_far, std::move(made_), {});
   });
+}
+
+void FinishStage::take_measured(const JobGraph& graph, PieceOfResult& piece, std::size_t job) {
+  const JobOutput& output = graph.output(job_name(RunStage::measure, job));
+  piece.error_files.push_back(output.file);
+  add_error(decode_piece_error(output.summary, "summary of " + output.file.name), piece.error);
+}
+
+/// Neighbouring parts of the input. First an empty range: what lies between the parts of a piece,
+/// or between the pieces.
+std::vector<PartRange> FinishStage::ranges_of(const PieceOfResult& piece) const {
+  std::vector<PartRange> ranges;
+  if (piece.parts != 1) ranges.push_back({piece.first_part, piece.first_part});
+  std::uint64_t triangles = k_measured_at_once;
+  for (std::uint32_t p = piece.first_part; p < piece.first_part + piece.parts; ++p) {
+    if (triangles >= k_measured_at_once) {
+      ranges.push_back({p, p});
+      triangles = 0;
+    }
+    triangles += manifest_.parts[p].triangles;
+    ranges.back().end = p + 1;
+  }
+  return ranges;
 }
 
 Job FinishStage::split_job(const ComposedParts& parts) const {
   Job job;
   job.kind = k_split_kind;
   job.inputs = {parts.chosen.file};
-  job.parameters = encode_parameters(SplitParameters{parts.chosen.rung, step_, weigh_});
+  job.parameters =
+      encode_parameters(SplitParameters{parts.chosen.rung, step_, parts.chosen.parts > 1, weigh_});
   job.cost = parts.triangles;
   job.memory =
       k_piece_process_bytes + parts.chosen.file.size + k_piece_triangle_bytes * parts.triangles;
@@ -237,20 +284,27 @@ Job FinishStage::reduce_job(std::size_t piece, std::uint64_t quota, std::uint64_
   return job;
 }
 
-Job FinishStage::measure_job(std::size_t number) const {
+Job FinishStage::measure_job(std::size_t number, const std::vector<PartRange>& ranges,
+                             std::uint32_t share) const {
   const PieceOfResult& piece = made_.pieces[number];
   const PieceOfResult& last = made_.pieces.back();
   const ErrorPoints points;
   MeasureParameters parameters;
-  parameters.first_part = piece.first_part;
-  parameters.end_part = piece.first_part + piece.parts;
-  parameters.boundary = manifest_.boundary;
-  parameters.boundary_index = manifest_.boundary_index;
+  parameters.first_part = ranges[share].first;
+  parameters.end_part = ranges[share].end;
+  parameters.share = share;
+  parameters.shares = static_cast<std::uint32_t>(ranges.size());
+  for (std::uint32_t p = piece.first_part; p < piece.first_part + piece.parts; ++p) {
+    parameters.triangles += manifest_.parts[p].triangles;
+  }
   parameters.bundles = manifest_.bundles;
   parameters.box = piece.divided.box;
   parameters.mesh = {piece.finished_file, piece.finished.mesh};
   parameters.samples = {piece.divided_file, piece.divided.samples};
   parameters.gap = {piece.divided_file, piece.divided.gap};
+  if (piece.parts > 1 && ranges[share].first == ranges[share].end) {
+    parameters.between = {piece.divided_file, piece.divided.between};
+  }
   if (piece.parts > 0 && has_seams()) {
     parameters.seam_mesh = {last.finished_file, last.finished.mesh};
   }
@@ -260,23 +314,25 @@ Job FinishStage::measure_job(std::size_t number) const {
     parameters.points.push_back({each.finished_file, each.finished.points});
   }
   parameters.input_step = steps_of(manifest_.input_vertices, points.input_vertices);
-  std::uint64_t part = 0;  // the largest, as one is in memory at a time
+  std::uint64_t part = 0;  // all that the job has
   std::uint64_t read = 0;
+  std::uint64_t triangles = 0;
   for (std::uint32_t p = parameters.first_part; p < parameters.end_part; ++p) {
     const PartEntry& entry = manifest_.parts[p];
-    parameters.triangles += entry.triangles;
+    triangles += entry.triangles;
     read += entry.file.size;
-    part = std::max(part, manifest_.bundles ? k_built_triangle_bytes * entry.triangles
-                                            : entry.file.size + 60 * entry.triangles);
+    part += manifest_.bundles ? k_built_triangle_bytes * entry.triangles
+                              : entry.file.size + 60 * entry.triangles;
   }
   Job job;
   job.kind = k_measure_kind;
   job.parameters = encode_parameters(parameters);
-  job.reads = manifest_.bundles ? bytes_of_bundles(parameters.triangles) : read;
+  job.reads = manifest_.bundles ? bytes_of_bundles(triangles) : read;
   const std::uint64_t result = piece.finished.triangles + last.finished.triangles;
   // To build a part takes about as long as to measure to it.
-  const std::uint64_t shown = parameters.triangles / (manifest_.bundles ? 2 : 4);
-  job.cost = std::max<std::uint64_t>(1, shown + result);
+  const std::uint64_t shown = triangles / (manifest_.bundles ? 2 : 4);
+  job.cost = k_before_measuring + shown + result;
+  if (piece.parts == 0) job.cost += 2 * piece.divided.strip_triangles;
   job.memory = k_piece_process_bytes + part + 100 * result;
   return job;
 }

@@ -10,6 +10,7 @@
 
 #include <meshfarm/farm/job_graph.hpp>
 #include <meshfarm/io/manifest.hpp>
+#include <meshfarm/io/regions.hpp>
 #include <meshfarm/pipeline/finished_pieces.hpp>
 #include <meshfarm/pipeline/run_options.hpp>
 
@@ -19,10 +20,10 @@ namespace meshfarm {
 
 /// So many pieces a seam job can name.
 inline constexpr std::size_t k_most_pieces = 200;
-/// Parts are composed up to a sixteenth of all triangles, so that two dozen workers have a piece
-/// each, within these bounds: of smaller pieces much would lie round the seams, and larger ones are
+/// Parts are composed up to a sixteenth of all triangles, so that many workers have a piece each,
+/// within these bounds: of smaller pieces much would lie round the seams, and larger ones are
 /// worth no process's memory.
-inline constexpr std::uint64_t k_least_piece = 32'768;
+inline constexpr std::uint64_t k_least_piece = 131'072;
 inline constexpr std::uint64_t k_usual_piece = 262'144;
 inline constexpr std::uint64_t k_pieces_of_all = 16;
 
@@ -51,7 +52,10 @@ class FinishStage {
   Job split_job(const ComposedParts& parts) const;
   Job seam_job() const;
   Job reduce_job(std::size_t piece, std::uint64_t quota, std::uint64_t all) const;
-  Job measure_job(std::size_t number) const;
+  Job measure_job(std::size_t number, const std::vector<PartRange>& ranges,
+                  std::uint32_t share) const;
+  std::vector<PartRange> ranges_of(const PieceOfResult& piece) const;
+  static void take_measured(const JobGraph& graph, PieceOfResult& piece, std::size_t job);
   void divide(JobGraph& graph);
   void take_divided(const JobGraph& graph, std::size_t piece, const JobName& name);
   void join_seams(JobGraph& graph);

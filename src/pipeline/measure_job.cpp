@@ -21,8 +21,6 @@ namespace {
 /// As the sink does (error_meter.cpp).
 constexpr double k_usual_in_rms = 4;
 constexpr double k_usual_in_spacings = 4;
-/// Of a piece's box, round it: there are the surroundings' points that its input may be near to.
-constexpr double k_margin_of_box = 0.05;
 
 /// About, by so many of its triangles.
 double spacing_of(const Mesh& mesh) {
@@ -44,14 +42,21 @@ void append_every(std::span<const Vec3> points, std::uint64_t step, std::vector<
 /// So many of a surface's vertices bound the distances to it.
 constexpr std::size_t k_known_points = 1000;
 
+double squared_distance(const Vec3& p, const Box& box) {
+  const auto beyond = [](double x, double lo, double hi) {
+    return std::max({lo - x, x - hi, 0.0});
+  };
+  const Vec3 d = {beyond(p.x, box.lo.x, box.hi.x), beyond(p.y, box.lo.y, box.hi.y),
+                  beyond(p.z, box.lo.z, box.hi.z)};
+  return dot(d, d);
+}
+
 /// Of a surface that is in memory.
-std::vector<double> distances_to(const std::vector<const Mesh*>& surface,
-                                 const std::vector<Vec3>& points) {
+std::vector<double> distances_to_all(const std::vector<const Mesh*>& surface,
+                                     const std::vector<Vec3>& points, double spacing) {
   std::vector<Vec3> some;
-  double spacing = 0;
   for (const Mesh* mesh : surface) {
     append_every(mesh->positions, mesh->positions.size() / k_known_points + 1, some);
-    spacing = std::max(spacing, spacing_of(*mesh));
   }
   if (some.empty() || points.empty()) return {};
   PointMeter meter(points, {spacing, spacing / 2, some});
@@ -61,35 +66,85 @@ std::vector<double> distances_to(const std::vector<const Mesh*>& surface,
   return meter.distances();
 }
 
+/// Triangles with a corner within so much of the box, or with their box round some of it.
+Mesh part_within(const Mesh& mesh, Box box, double margin) {
+  const Vec3 far = {margin, margin, margin};
+  box.lo = box.lo - far;
+  box.hi = box.hi + far;
+  Mesh part;
+  for (const auto& [a, b, c] : mesh.triangles) {
+    Box of;
+    for (const std::uint32_t v : {a, b, c}) of.add(mesh.positions[v]);
+    const bool is_apart = of.lo.x > box.hi.x || of.hi.x < box.lo.x || of.lo.y > box.hi.y ||
+                          of.hi.y < box.lo.y || of.lo.z > box.hi.z || of.hi.z < box.lo.z;
+    if (is_apart) continue;
+    const auto first = static_cast<std::uint32_t>(part.positions.size());
+    for (const std::uint32_t v : {a, b, c}) part.positions.push_back(mesh.positions[v]);
+    part.triangles.push_back({first, first + 1, first + 2});
+  }
+  return part;
+}
+
+/// The same, where most of the surface is far from the points: what is farther than the margin is
+/// nearest to none of them if all are nearer to the rest.
+std::vector<double> distances_to(const std::vector<const Mesh*>& surface,
+                                 const std::vector<Vec3>& points) {
+  constexpr double k_margin_in_spacings = 3;
+  double spacing = 0;
+  for (const Mesh* mesh : surface) spacing = std::max(spacing, spacing_of(*mesh));
+  Box box;
+  for (const Vec3& p : points) box.add(p);
+  const double margin = k_margin_in_spacings * spacing;
+  std::vector<Mesh> within;
+  std::vector<const Mesh*> near;
+  for (const Mesh* mesh : surface) within.push_back(part_within(*mesh, box, margin));
+  for (const Mesh& mesh : within) near.push_back(&mesh);
+  std::vector<double> distances = distances_to_all(near, points, spacing);
+  const bool is_near =
+      std::all_of(distances.begin(), distances.end(), [margin](double d) { return d <= margin; });
+  if (is_near && distances.size() == points.size()) return distances;
+  return distances_to_all(surface, points, spacing);
+}
+
 /// Some of the points of several pieces, and where they stand.
-struct NearPoints {
+struct SomePoints {
   struct Place {
     std::size_t list = 0;
     std::size_t number = 0;
   };
   std::vector<Vec3> points;
   std::vector<Place> places;
+
+  void add(const std::vector<std::vector<Vec3>>& lists, std::size_t list, std::size_t number) {
+    points.push_back(lists[list][number]);
+    places.push_back({list, number});
+  }
 };
 
 /// Of all lists but the first.
-NearPoints points_near(const std::vector<std::vector<Vec3>>& lists, const Box& box) {
-  const double margin = k_margin_of_box * box.diagonal();
-  const auto is_within = [margin](double x, double lo, double hi) {
-    return x >= lo - margin && x <= hi + margin;
-  };
-  NearPoints near;
+SomePoints points_near(const std::vector<std::vector<Vec3>>& lists, const Box& box, double margin) {
+  SomePoints near;
   for (std::size_t list = 1; list < lists.size(); ++list) {
     for (std::size_t i = 0; i < lists[list].size(); ++i) {
-      const Vec3& p = lists[list][i];
-      if (!is_within(p.x, box.lo.x, box.hi.x) || !is_within(p.y, box.lo.y, box.hi.y) ||
-          !is_within(p.z, box.lo.z, box.hi.z)) {
-        continue;
-      }
-      near.points.push_back(p);
-      near.places.push_back({list, i});
+      if (squared_distance(lists[list][i], box) < margin * margin) near.add(lists, list, i);
     }
   }
   return near;
+}
+
+/// Of the first list, those to which something in the box may be nearer than some points of the
+/// surface.
+SomePoints points_that_want(const std::vector<std::vector<Vec3>>& lists, const Box& box,
+                            const PointMeterHints& hints) {
+  PointMeter meter(lists.front(), hints);
+  while (meter.begin_pass()) {
+  }
+  const std::vector<double> bounds = meter.distances();
+  SomePoints some;
+  for (std::size_t i = 0; i < bounds.size(); ++i) {
+    if (squared_distance(lists.front()[i], box) <= bounds[i] * bounds[i]) some.add(lists, 0, i);
+  }
+  return some;
 }
 
 /// Corners of the gap become those of the mesh, and new vertices.
@@ -117,13 +172,13 @@ class PieceMeter {
 
   PieceError run() {
     measure_samples();
-    is_piece() ? measure_to_parts() : measure_to_seams();
+    is_piece() ? measure_to_input() : measure_to_seams();
     return error_;
   }
   const std::vector<std::vector<double>>& to_input() const { return to_input_; }
 
  private:
-  bool is_piece() const { return parameters_.end_part > parameters_.first_part; }
+  bool is_piece() const { return parameters_.triangles > 0; }
 
   Mesh mesh_of(const SectionRef& ref) const {
     return decode_result(read_section(context_, ref), 0, ref.file.name).mesh;
@@ -153,17 +208,36 @@ class PieceMeter {
     const std::vector<SurfaceSamples> samples =
         decode_samples(read_section(context_, parameters_.samples), parameters_.samples.file.name);
     std::vector<Vec3> points;
-    for (const SurfaceSamples& each : samples) append_every(each.points, 1, points);
+    std::uint64_t all = 0;
+    for (const SurfaceSamples& each : samples) {
+      area_ += each.area;
+      all += each.points.size();
+    }
+    // Neighbours: sets are of neighbouring parts.
+    const std::uint64_t begin = all * parameters_.share / parameters_.shares;
+    const std::uint64_t end = all * (parameters_.share + 1) / parameters_.shares;
+    std::vector<std::size_t> counts;  // of each set's
+    std::uint64_t number = 0;
+    for (const SurfaceSamples& each : samples) {
+      const std::size_t before = points.size();
+      for (const Vec3& p : each.points) {
+        if (number >= begin && number < end) points.push_back(p);
+        ++number;
+      }
+      counts.push_back(points.size() - before);
+    }
     const std::vector<double> distances = distances_to(surface_, points);
     if (distances.empty()) return;
     std::size_t first = 0;
-    for (const SurfaceSamples& each : samples) {
-      if (each.points.empty()) continue;
-      const Distance d = distance_of(std::span(distances).subspan(first, each.points.size()));
-      first += each.points.size();
-      error_.input_area += each.area;
-      error_.to_output.rms += each.area * d.rms * d.rms;
-      error_.to_output.mean += each.area * d.mean;
+    for (std::size_t set = 0; set < samples.size(); ++set) {
+      if (counts[set] == 0) continue;
+      const Distance d = distance_of(std::span(distances).subspan(first, counts[set]));
+      first += counts[set];
+      const double area = samples[set].area * static_cast<double>(counts[set]) /
+                          static_cast<double>(samples[set].points.size());
+      error_.input_area += area;
+      error_.to_output.rms += area * d.rms * d.rms;
+      error_.to_output.mean += area * d.mean;
       error_.to_output.max = std::max(error_.to_output.max, d.max);
     }
     error_.input_samples = points.size();
@@ -179,43 +253,45 @@ class PieceMeter {
                     std::min(2 * d.max, spacing));
   }
 
-  /// The piece's own points are as near as they are; others may be nearer to what other pieces
-  /// have.
-  void measure_to_parts() {
+  /// The piece's own points are as near as they are, to what one of its jobs has; others may be
+  /// nearer to what other pieces have.
+  void measure_to_input() {
+    const PieceInput input = read_piece_input(context_.stage, parameters_);
     const std::vector<std::vector<Vec3>> points = read_points();
-    const NearPoints near = points_near(points, parameters_.box);
-    PieceInput input(context_.stage, parameters_);
     const std::vector<Vec3> known = known_points();
-    const auto triangles = static_cast<double>(std::max<std::uint64_t>(1, parameters_.triangles));
-    const double spacing = std::sqrt(2 * error_.input_area / triangles);
+    const auto triangles = static_cast<double>(parameters_.triangles);
+    const double spacing = std::sqrt(2 * area_ / triangles);
     // Hardly a point is as far as triangles of the result are long.
     const double reach = std::max({2 * error_.to_output.max, spacing, spacing_of(mesh_)});
-    PointMeter own(points.front(), {spacing, usual(spacing), known});
-    PointMeter to_near(near.points, {spacing, reach, known});
-    std::vector<Vec3> vertices;
-    to_near.begin_pass();
-    for (bool is_first = true; own.begin_pass() || is_first; is_first = false) {
-      const auto show = [&](const Mesh& mesh) {
-        own.show(mesh.positions, mesh.triangles);
-        if (is_first) to_near.show(mesh.positions, mesh.triangles);
-        if (!context_.progress(mesh.triangles.size())) {
-          throw IncompleteError("the job was given up");
-        }
-      };
-      const auto show_part = [&](const Mesh& mesh) {
-        show(mesh);
-        if (is_first) add_vertices(mesh, vertices);
-      };
-      input.show([&](const Box& box) { return own.wants(box); }, show_part, show);
-    }
+    const SomePoints near = points_near(points, input.box, reach);
+    const SomePoints own = points_that_want(points, input.box, {spacing, usual(spacing), known});
     for (const std::vector<Vec3>& each : points) to_input_.emplace_back(each.size(), HUGE_VAL);
-    to_input_.front() = own.distances();
-    const std::vector<double> found = to_near.distances();
-    for (std::size_t i = 0; i < found.size(); ++i) {
-      if (found[i] < reach) to_input_[near.places[i].list][near.places[i].number] = found[i];
-    }
+    PointMeter to_own(own.points, {spacing, usual(spacing), known});
+    while (to_own.begin_pass()) show(input, to_own);
+    take_found(own, to_own.distances(), HUGE_VAL);
+    PointMeter to_near(near.points, {spacing, reach, known});
+    if (to_near.begin_pass()) show(input, to_near);
+    take_found(near, to_near.distances(), reach);
+    std::vector<Vec3> vertices;
+    for (const Mesh& part : input.parts) add_vertices(part, vertices);
     for (const double d : distances_to(surface_, vertices)) {
       error_.to_output.max = std::max(error_.to_output.max, d);
+    }
+  }
+
+  void show(const PieceInput& input, PointMeter& meter) const {
+    for (const Mesh& part : input.parts) show(part, meter);
+    show(input.between, meter);
+  }
+
+  void show(const Mesh& mesh, PointMeter& meter) const {
+    meter.show(mesh.positions, mesh.triangles);
+    if (!context_.progress(mesh.triangles.size())) throw IncompleteError("the job was given up");
+  }
+
+  void take_found(const SomePoints& some, const std::vector<double>& found, double below) {
+    for (std::size_t i = 0; i < found.size(); ++i) {
+      if (found[i] < below) to_input_[some.places[i].list][some.places[i].number] = found[i];
     }
   }
 
@@ -250,6 +326,7 @@ class PieceMeter {
   Mesh seam_mesh_;
   std::vector<const Mesh*> surface_;  // of the result
   PieceError error_;
+  double area_ = 0;  // of the piece's input
   std::vector<std::vector<double>> to_input_;
 };
 

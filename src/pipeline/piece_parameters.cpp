@@ -3,21 +3,21 @@
 //
 // Parameters and summaries of the jobs of a farmed finish, version 2, little endian:
 //   weigh      = cost unit f64 | first step i32 | last share f64 | kept share f64 | lines
-//   split      = version u8 | rung u32 | step i32 | weigh
+//   split      = version u8 | rung u32 | step i32 | is composed u8 | weigh
 //   seam       = version u8 | strips u32 x (parts u32 | ref) | all parts u32 | boundary |
 //                samples a triangle f64 | weigh
-//   reduce     = version u8 | section | rung u32 | triangles u64 | points u64 | vertices u64 | lines
-//   measure    = version u8 | first part u32 | end part u32 | triangles u64 | boundary | section |
-//                box | 4 refs | points u32 x ref | input step u64 | builds u8 | if it does: bundles
-//                (bundle_list.hpp)
+//   reduce     = version u8 | section | rung u32 | triangles u64 | points u64 | vertices u64 |
+//   lines measure    = version u8 | first part u32 | end part u32 | triangles u64 | share u32 |
+//                shares u32 | box | 5 refs | points u32 x ref | input step u64 | builds u8 |
+//                if it does: bundles (bundle_list.hpp)
 //   ref        = file | section;  box = 6 x f64
-//   divided    = 4 sections | gap triangles u64 | strip triangles u64 | shared u64 | box |
+//   divided    = 5 sections | gap triangles u64 | strip triangles u64 | shared u64 | box |
 //                rungs u32 x u64 | dropped degenerate u64 | duplicate u64 | turned u64 |
 //                before u64 | first step i32 | counts u32 x u64
 //   finished   = 2 sections | by area u64 | area f64 | vertices u64 | triangles u64
 //   error      = area f64 | rms f64 | mean f64 | max f64 | samples u64
 //   distances  = lists u32 x (points u32 x f64), the file of a measure job
-// In version 1 parts were always kept.
+// In version 1 parts were always kept, and a piece was measured by one job.
 #include <cmath>
 
 #include <meshfarm/pipeline/piece_jobs.hpp>
@@ -80,6 +80,7 @@ std::string encode_parameters(const SplitParameters& parameters) {
   begin_parameters(out);
   out.put(parameters.rung);
   out.put(parameters.step);
+  out.put(static_cast<std::uint8_t>(parameters.is_composed ? 1 : 0));
   put_weigh(out, parameters.weigh);
   return out.take();
 }
@@ -90,6 +91,7 @@ SplitParameters decode_split_parameters(std::string_view bytes) {
   SplitParameters parameters;
   parameters.rung = in.get<std::uint32_t>();
   parameters.step = in.get<std::int32_t>();
+  parameters.is_composed = in.get<std::uint8_t>() != 0;
   parameters.weigh = get_weigh(in);
   in.expect_end();
   return parameters;
@@ -167,11 +169,11 @@ std::string encode_parameters(const MeasureParameters& parameters) {
   out.put(parameters.first_part);
   out.put(parameters.end_part);
   out.put(parameters.triangles);
-  put_file(out, parameters.boundary);
-  out.put(parameters.boundary_index);
+  out.put(parameters.share);
+  out.put(parameters.shares);
   out.put(parameters.box);
-  for (const SectionRef* ref :
-       {&parameters.mesh, &parameters.samples, &parameters.gap, &parameters.seam_mesh}) {
+  for (const SectionRef* ref : {&parameters.mesh, &parameters.samples, &parameters.gap,
+                                &parameters.between, &parameters.seam_mesh}) {
     put_ref(out, *ref);
   }
   out.put(static_cast<std::uint32_t>(parameters.points.size()));
@@ -189,17 +191,18 @@ MeasureParameters decode_measure_parameters(std::string_view bytes) {
   parameters.first_part = in.get<std::uint32_t>();
   parameters.end_part = in.get<std::uint32_t>();
   parameters.triangles = in.get<std::uint64_t>();
-  parameters.boundary = get_file(in);
-  parameters.boundary_index = in.get<FileSection>();
+  parameters.share = in.get<std::uint32_t>();
+  parameters.shares = in.get<std::uint32_t>();
   parameters.box = in.get<Box>();
-  for (SectionRef* ref :
-       {&parameters.mesh, &parameters.samples, &parameters.gap, &parameters.seam_mesh}) {
+  for (SectionRef* ref : {&parameters.mesh, &parameters.samples, &parameters.gap,
+                          &parameters.between, &parameters.seam_mesh}) {
     *ref = get_ref(in);
   }
   const auto points = in.get<std::uint32_t>();
   for (std::uint32_t i = 0; i < points; ++i) parameters.points.push_back(get_ref(in));
   parameters.input_step = in.get<std::uint64_t>();
-  if (parameters.input_step == 0 || parameters.first_part > parameters.end_part || points == 0) {
+  if (parameters.share >= parameters.shares || parameters.input_step == 0 ||
+      parameters.first_part > parameters.end_part || points == 0) {
     in.fail("impossible parts");
   }
   const auto builds = in.get<std::uint8_t>();
@@ -211,7 +214,8 @@ MeasureParameters decode_measure_parameters(std::string_view bytes) {
 
 std::string encode_summary(const DividedPiece& piece) {
   ByteWriter out;
-  for (const FileSection& section : {piece.mesh, piece.gap, piece.strip, piece.samples}) {
+  for (const FileSection& section :
+       {piece.mesh, piece.gap, piece.strip, piece.samples, piece.between}) {
     out.put(section);
   }
   for (const std::uint64_t count : {piece.gap_triangles, piece.strip_triangles, piece.shared}) {
@@ -231,7 +235,8 @@ std::string encode_summary(const DividedPiece& piece) {
 DividedPiece decode_divided_piece(std::string_view bytes, std::string_view what) {
   ByteReader in(bytes, what);
   DividedPiece piece;
-  for (FileSection* section : {&piece.mesh, &piece.gap, &piece.strip, &piece.samples}) {
+  for (FileSection* section :
+       {&piece.mesh, &piece.gap, &piece.strip, &piece.samples, &piece.between}) {
     *section = in.get<FileSection>();
   }
   for (std::uint64_t* count : {&piece.gap_triangles, &piece.strip_triangles, &piece.shared}) {

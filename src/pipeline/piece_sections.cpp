@@ -14,6 +14,7 @@
 #include <utility>
 
 #include <meshfarm/geometry/simplify.hpp>
+#include <meshfarm/geometry/vertices.hpp>
 #include <meshfarm/staging/sections.hpp>
 #include <meshfarm/util/byte_lists.hpp>
 #include <meshfarm/util/bytes.hpp>
@@ -178,6 +179,25 @@ std::vector<SurfaceSamples> decode_samples(std::string_view bytes, std::string_v
   }
   in.expect_end();
   return samples;
+}
+
+Mesh last_triangles(const StitchedMesh& stitched) {
+  const Mesh& mesh = stitched.mesh;
+  Mesh last;
+  std::vector<std::uint32_t> number(mesh.positions.size(), k_left_out);
+  for (std::size_t i = mesh.triangles.size() - stitched.boundary_triangles;
+       i < mesh.triangles.size(); ++i) {
+    Triangle& added = last.triangles.emplace_back();
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::uint32_t v = mesh.triangles[i][k];
+      if (number[v] == k_left_out) {
+        number[v] = static_cast<std::uint32_t>(last.positions.size());
+        last.positions.push_back(mesh.positions[v]);
+      }
+      added[k] = number[v];
+    }
+  }
+  return last;
 }
 
 std::string encode_surface(const Mesh& mesh) {

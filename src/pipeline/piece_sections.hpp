@@ -11,6 +11,7 @@
 #include <meshfarm/geometry/mesh.hpp>
 #include <meshfarm/io/result_file.hpp>
 #include <meshfarm/pipeline/piece_jobs.hpp>
+#include <meshfarm/stitch/stitcher.hpp>
 
 namespace meshfarm {
 
@@ -34,6 +35,8 @@ PieceStrip decode_strip(std::string_view bytes, std::string_view what);
 std::string encode_samples(const std::vector<SurfaceSamples>& samples);
 std::vector<SurfaceSamples> decode_samples(std::string_view bytes, std::string_view what);
 
+/// Those of the triangles between what was stitched that come last, by themselves.
+Mesh last_triangles(const StitchedMesh& stitched);
 std::string encode_surface(const Mesh& mesh);  // positions and triangles
 Mesh decode_surface(std::string_view bytes, std::string_view what);
 

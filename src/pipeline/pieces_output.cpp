@@ -90,22 +90,26 @@ class PiecesWriter {
   std::uint64_t shared_ = 0;  // of the pieces before
 };
 
+/// `lists`: of the points of these pieces.
+void take_least(const std::vector<std::vector<double>>& lists, const std::vector<std::size_t>& of,
+                const std::string& what, std::vector<std::vector<double>>& least) {
+  if (lists.size() != of.size()) throw DataError(what + ": is of other pieces");
+  for (std::size_t list = 0; list < lists.size(); ++list) {
+    std::vector<double>& known = least[of[list]];
+    if (known.empty()) known.assign(lists[list].size(), HUGE_VAL);
+    if (known.size() != lists[list].size()) throw DataError(what + ": is of other points");
+    for (std::size_t p = 0; p < known.size(); ++p) known[p] = std::min(known[p], lists[list][p]);
+  }
+}
+
 /// Of the points of each piece, the distances to the nearest of the input that any piece has.
 std::vector<std::vector<double>> least_distances(const Stage& stage, const FinishedPieces& result) {
   std::vector<std::vector<double>> least(result.pieces.size());
   for (std::size_t i = 0; i < result.pieces.size(); ++i) {
-    const FileRef& file = result.pieces[i].error_file;
-    const std::vector<std::vector<double>> lists = decode_distances(stage.read(file), file.name);
     std::vector<std::size_t> of = {i};
     for (const std::size_t near : result.near(i)) of.push_back(near);
-    if (lists.size() != of.size()) throw DataError(file.name + ": is of other pieces");
-    for (std::size_t list = 0; list < lists.size(); ++list) {
-      std::vector<double>& known = least[of[list]];
-      if (known.empty()) known.assign(lists[list].size(), HUGE_VAL);
-      if (known.size() != lists[list].size()) throw DataError(file.name + ": is of other points");
-      for (std::size_t p = 0; p < known.size(); ++p) {
-        known[p] = std::min(known[p], lists[list][p]);
-      }
+    for (const FileRef& file : result.pieces[i].error_files) {
+      take_least(decode_distances(stage.read(file), file.name), of, file.name, least);
     }
   }
   return least;

@@ -179,24 +179,7 @@ class SeamJoiner {
   }
 
   /// The input's triangles between the pieces.
-  Mesh input() const {
-    const Mesh& mesh = stitched_.mesh;
-    Mesh input;
-    std::vector<std::uint32_t> number(mesh.positions.size(), k_left_out);
-    for (std::size_t i = mesh.triangles.size() - stitched_.boundary_triangles;
-         i < mesh.triangles.size(); ++i) {
-      Triangle& added = input.triangles.emplace_back();
-      for (std::size_t k = 0; k < 3; ++k) {
-        const std::uint32_t v = mesh.triangles[i][k];
-        if (number[v] == k_left_out) {
-          number[v] = static_cast<std::uint32_t>(input.positions.size());
-          input.positions.push_back(mesh.positions[v]);
-        }
-        added[k] = number[v];
-      }
-    }
-    return input;
-  }
+  Mesh input() const { return last_triangles(stitched_); }
 
   /// Those that are shared come first, in the order of the pieces.
   WeighedMesh weigh_joined() {
@@ -231,7 +214,8 @@ JobOutput split_piece(const Job& job, const JobContext& context) {
   if (job.inputs.size() != 1) throw DataError("a split job takes one piece");
   const SplitParameters parameters = decode_split_parameters(job.parameters);
   const FileRef& input = job.inputs[0];
-  ResultMesh piece = decode_result(context.read(input), parameters.rung, input.name);
+  const std::string composed = context.read(input);
+  ResultMesh piece = decode_result(composed, parameters.rung, input.name);
   piece.mesh.appearances = {};
   piece.mesh.columns = {};
   DividedPiece made;
@@ -240,6 +224,7 @@ JobOutput split_piece(const Job& job, const JobContext& context) {
   SplitMesh halves = split(piece);
   PieceFile file;
   made.samples = file.add(encode_samples(piece.samples));
+  if (parameters.is_composed) made.between = file.add(beside_of(composed, input.name));
   piece = {};
   made.strip_triangles = halves.strip.mesh.mesh.triangles.size();
   made.shared = halves.strip.shared.size();

@@ -114,5 +114,7 @@ struct ResultMesh {
 ResultMesh read_result(const Fill& fill, std::size_t rung, std::string_view what);
 /// The same from a file's bytes, which must end where the result does.
 ResultMesh decode_result(std::string_view file, std::size_t rung, std::string_view what);
+/// What a result that was decoded holds beside its mesh.
+std::string_view beside_of(std::string_view file, std::string_view what);
 
 }  // namespace meshfarm

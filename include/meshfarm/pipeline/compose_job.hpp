@@ -31,6 +31,7 @@ struct ComposeParameters {
   double max_cost = 0;              // what the level costs
   std::uint64_t floor = 0;          // triangles that are to be left
   double samples_per_triangle = 0;  // of the seams, to measure the final error by
+  bool keeps_between = false;       // the input's triangles between the parts, to measure to them
   LineOptions lines;
 };
 
@@ -40,7 +41,8 @@ ComposeParameters decode_compose_parameters(std::string_view bytes);
 /// Joins the results of neighbours by the boundary triangles between them (Xiong et al. 2008, 4.3)
 /// and simplifies what was locked there under the same cost threshold as the parts were.
 /// What the group shares with parts outside of it stays as it is. Of the boundary side file only
-/// the regions are read that the group touches.
+/// the regions are read that the group touches. The triangles that are kept stand beside the
+/// result: a surface (piece_sections.hpp).
 JobOutput compose_parts(const Job& job, const JobContext& context);
 
 }  // namespace meshfarm

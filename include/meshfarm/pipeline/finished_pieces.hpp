@@ -24,8 +24,8 @@ struct PieceOfResult {
   DividedPiece divided;
   FileRef finished_file;
   FinishedPiece finished;
-  FileRef error_file;
-  PieceError error;
+  std::vector<FileRef> error_files;  // of the jobs that measured it
+  PieceError error;                  // by all of them
 };
 
 /// A result in pieces: it consists of their meshes and the gaps between them and the last of them,

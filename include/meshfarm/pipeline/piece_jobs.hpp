@@ -66,6 +66,7 @@ struct DividedPiece {
   FileSection gap;
   FileSection strip;    // of a piece: what it gives to these, a result
   FileSection samples;  // of the input, by which the error is measured
+  FileSection between;  // of a composed piece: the input's triangles between its parts
   std::uint64_t gap_triangles = 0;
   std::uint64_t strip_triangles = 0;  // of the surroundings: the input's between pieces
   std::uint64_t shared = 0;           // vertices of the surroundings that the gap has
@@ -82,6 +83,7 @@ DividedPiece decode_divided_piece(std::string_view bytes, std::string_view what)
 struct SplitParameters {
   std::uint32_t rung = 0;
   std::int32_t step = -1;  // what costs no more is collapsed before; -1: nothing
+  bool is_composed = false;
   WeighParameters weigh;
 };
 std::string encode_parameters(const SplitParameters& parameters);
@@ -125,18 +127,19 @@ struct FinishedPiece {
 std::string encode_summary(const FinishedPiece& piece);
 FinishedPiece decode_finished_piece(std::string_view bytes, std::string_view what);
 
-/// Parameters of a measure job. What it reads are sections.
+/// Parameters of a measure job, one of several of a piece. What it reads are sections.
 struct MeasureParameters {
-  std::uint32_t first_part = 0;    // of the input, that the piece is made of
-  std::uint32_t end_part = 0;      // none for the surroundings of the seams
-  std::uint64_t triangles = 0;     // of these parts
-  FileRef boundary;                // the triangles between all parts
-  FileSection boundary_index;
+  std::uint32_t first_part = 0;  // of the input, that the job measures to
+  std::uint32_t end_part = 0;
+  std::uint64_t triangles = 0;  // of the input in the whole piece; 0: the surroundings of the seams
   std::optional<BundlesOfMesh> bundles;  // what parts are built of, if they are not kept
+  std::uint32_t share = 0;               // of the samples, that the job takes
+  std::uint32_t shares = 1;
   Box box;                         // of the piece
   SectionRef mesh;                 // finished
   SectionRef samples;              // of the input
   SectionRef gap;                  // DividedPiece::gap
+  SectionRef between;              // DividedPiece::between; no name: another job's, or none
   SectionRef seam_mesh;            // of a piece: the finished surroundings; no name: there are none
   std::vector<SectionRef> points;  // of the result: the piece's own, then those of pieces near it
   std::uint64_t input_step = 1;    // every so-manieth vertex of the input is looked at
@@ -145,7 +148,7 @@ std::string encode_parameters(const MeasureParameters& parameters);
 MeasureParameters decode_measure_parameters(std::string_view bytes);
 
 /// What a measure job finds. Its file has the distances from the points of the result to the
-/// piece's share of the input, HUGE_VAL where that is not near: of each point the least of all
+/// job's share of the input, HUGE_VAL where that is not near: of each point the least of all
 /// files counts.
 struct PieceError {
   double input_area = 0;  // that the samples stand for

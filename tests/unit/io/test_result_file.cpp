@@ -55,6 +55,22 @@ TEST_CASE("each rung of a result comes back") {
   CHECK_THROWS_AS(decode_result(file, 3, "r"), DataError);
 }
 
+TEST_CASE("what a result holds beside its mesh comes back, and is cut off with it") {
+  const Mesh mesh = test::tetrahedron();
+  for (const std::string beside : {"", "other bytes"}) {
+    std::string file;
+    ResultWriter writer(
+        {PositionType::float32, false, 2}, [&file](std::string_view bytes) { file += bytes; },
+        beside);
+    writer.add_rung(0, mesh, 4);
+    writer.finish(first_two(mesh), {});
+    CHECK(beside_of(file, "r") == beside);
+    CHECK(decode_result(file, 0, "r").mesh.triangles == mesh.triangles);
+    CHECK(file.substr(writer.beside().offset, writer.beside().size) == beside);
+    CHECK_THROWS_AS(beside_of(file.substr(0, 28), "r"), DataError);
+  }
+}
+
 TEST_CASE("labels come back with each rung") {
   Mesh mesh = test::grid(300, 250);
   for (Label i = 0; i < mesh.triangles.size(); ++i) mesh.columns.labels.push_back(i / 3);

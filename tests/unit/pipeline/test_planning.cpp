@@ -132,5 +132,45 @@ TEST_CASE("jobs are taken from a trace: once each, by processor time, as the fas
   CHECK_THROWS_AS(planned_jobs(Trace{}), DataError);
 }
 
+TEST_CASE("the sink's own jobs are planned as it took them, whatever their cost was held to be") {
+  Trace trace;
+  TraceDone done;
+  done.triangles = 1000;
+  done.job = 1;
+  done.stage = "climb";
+  done.worker = 1;
+  done.cpu_us = 10'000;
+  trace.done.push_back(done);
+  done.job = 2;
+  done.stage = "join";
+  done.needs = {{"climb", 0, 1}};
+  done.worker = k_sink_of_trace;
+  done.triangles = 1;
+  done.cpu_us = 30'000;
+  trace.done.push_back(done);
+  const auto jobs = planned_jobs(trace);
+  REQUIRE(jobs.size() == 2);
+  CHECK(jobs[0].compute_s == doctest::Approx(0.01));
+  CHECK(jobs[1].compute_s == doctest::Approx(0.03));
+  CHECK(jobs[1].stage == "join");
+}
+
+TEST_CASE("of each stage it is told what it takes and what it waits for") {
+  std::vector<PlannedJob> jobs = jobs_of(48);
+  for (PlannedJob& job : jobs) job.stage = "climb";
+  jobs.push_back({1, 1'000'000, 0, 0, 2.0, {}, "join"});
+  const PlannedFarm farm = farm_of({{24, 1}});
+  const auto stages = simulate_stages(jobs, farm);
+  REQUIRE(stages.size() == 2);
+  CHECK(stages[0].name == "climb");
+  CHECK(stages[0].jobs == 48);
+  CHECK(stages[0].takes_s >= stages[0].ideal_s);
+  CHECK(stages[0].storage_s == doctest::Approx(48 * 2.8e6 / 12.5e9));
+  CHECK(stages[1].longest_s == doctest::Approx(2));
+  CHECK(stages[1].ideal_s == doctest::Approx(2.0 / 24));
+  CHECK(stages[1].takes_s == doctest::Approx(2).epsilon(0.05));
+  CHECK(stages[0].takes_s + stages[1].takes_s == doctest::Approx(simulate_run(jobs, farm).farm_s));
+}
+
 }  // namespace
 }  // namespace meshfarm
