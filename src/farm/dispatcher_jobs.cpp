@@ -49,8 +49,7 @@ void Dispatcher::on(const PeerId& peer, const Accept& accept) {
   } else {
     const bool fresh = plan_.accept(accept.key, accept.output);
     if (fresh && !full_) relapses_ = 0;
-    // The sink's own jobs have their times; what a journal told has none.
-    const bool is_done = accept.worker.value != 0 || accept.times.cpu_us > 0;
+    const bool is_done = accept.worker.value != 0 || accept.times.cpu_us > 0;  // not from a journal
     if (fresh && options_.tell && is_done) {
       tell(JobAccepted{accept.worker, accept.key, plan_.job(accept.key), plan_.place(accept.key),
                        accept.output.file.size, accept.times});
