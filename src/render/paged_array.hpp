@@ -3,6 +3,7 @@
 #pragma once
 
 #include <algorithm>
+#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
@@ -63,7 +64,7 @@ class PagedArray<T>::View {
   explicit View(PagedArray& array, unsigned views = 1) : array_(array) {
     if (!array.file_) return;
     const std::uint64_t pages = array.room_.memory_bytes / views / (k_items * sizeof(T));
-    slots_.resize(std::min(std::max(pages, k_least_pages), array.size() / k_items + 1));
+    slots_.resize(std::bit_floor(std::max(pages, k_least_pages)));  // a page's slot is found often
     items_ = std::make_unique_for_overwrite<T[]>(slots_.size() * k_items);
   }
 
@@ -74,7 +75,7 @@ class PagedArray<T>::View {
       return;
     }
     page_of(i)[i % k_items] = item;
-    slots_[i / k_items % slots_.size()].is_changed = true;
+    slots_[slot_of(i / k_items)].is_changed = true;
   }
   /// Writes what was set, which no other view sees before.
   void flush() {
@@ -89,9 +90,10 @@ class PagedArray<T>::View {
     bool is_changed = false;
   };
 
+  std::size_t slot_of(std::uint64_t page) const { return page & (slots_.size() - 1); }
   T* page_of(std::uint64_t i) {
     const std::uint64_t page = i / k_items;
-    const std::size_t slot = page % slots_.size();
+    const std::size_t slot = slot_of(page);
     if (slots_[slot].page != page) {
       write_back(slot);
       slots_[slot].page = UINT64_MAX;  // should the read fail

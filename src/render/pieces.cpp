@@ -7,6 +7,8 @@
 #include <cmath>
 #include <vector>
 
+#include <meshfarm/util/bucket_file.hpp>
+
 #include "render/colours.hpp"
 
 namespace meshfarm {
@@ -28,47 +30,54 @@ bool at_one_place(const ScreenPoint& a, const ScreenPoint& b) {
 
 }  // namespace
 
-Pieces::Pieces(PagedArray<ScreenPoint>& vertices, const ArrayRoom& room)
+Pieces::Pieces(PagedArray<ScreenPoint>& vertices, const ArrayRoom& room,
+               std::uint64_t memory_for_places)
     : array_(vertices.size(), room), before_(array_) {
-  join_at_one_place(vertices, room.memory_bytes);
+  join_at_one_place(vertices, {room.folder, memory_for_places});
 }
 
-/// As many passes over all vertices as it takes to hold the places of one pass in memory.
-void Pieces::join_at_one_place(PagedArray<ScreenPoint>& array, std::uint64_t memory_bytes) {
-  constexpr std::uint64_t k_least = std::uint64_t{1} << 16;
-  constexpr std::uint64_t k_vertex = UINT32_MAX;  // bits of it; the others are of the hash
+/// Vertices at one place come into one bucket, and few enough are in it for a cache.
+void Pieces::join_at_one_place(PagedArray<ScreenPoint>& array, const ArrayRoom& room) {
+  constexpr std::uint64_t k_in_a_bucket = std::uint64_t{1} << 15;
+  constexpr std::uint64_t k_most_buckets = std::uint64_t{1} << 13;
   const std::uint64_t count = array.size();
+  const std::uint64_t buckets = std::min(k_most_buckets, count / k_in_a_bucket + 1);
   PagedArray<ScreenPoint>::View vertices(array);
-  const std::uint64_t places =
-      std::min(std::bit_ceil(2 * count + 1),
-               std::max(k_least, std::bit_floor(memory_bytes / sizeof(std::uint64_t) + 1)));
-  const std::uint64_t passes = 2 * count / places + 1;
-  std::vector<std::uint64_t> table(places);  // one more than a vertex, and its hash; or 0
-  for (std::uint64_t pass = 0; pass < passes; ++pass) {
-    std::fill(table.begin(), table.end(), 0);
-    for (std::uint64_t v = 0; v < count; ++v) {
-      const ScreenPoint here = vertices.get(v);
-      const std::uint64_t hash = hash_of(here);
-      if (std::isnan(here.x) || (hash >> 40) % passes != pass) continue;
-      const auto is_here = [&](std::uint64_t other) {
-        return (other & ~k_vertex) == (hash & ~k_vertex) &&
-               at_one_place(vertices.get((other & k_vertex) - 1), here);
-      };
-      std::uint64_t at = hash & (places - 1);
-      while (table[at] != 0 && !is_here(table[at])) at = (at + 1) & (places - 1);
-      if (table[at] == 0) {
-        table[at] = (hash & ~k_vertex) | (v + 1);
-      } else {
-        join((table[at] & k_vertex) - 1, v);
-      }
+  BucketFile places(room.folder, buckets, room.memory_bytes);
+  for (std::uint64_t v = 0; v < count; ++v) {
+    const ScreenPoint here = vertices.get(v);
+    if (std::isnan(here.x)) continue;
+    places.put((hash_of(here) & UINT32_MAX) * buckets >> 32,
+               PlacedVertex{here, static_cast<std::uint32_t>(v)});
+  }
+  places.finish();
+  std::vector<std::uint32_t> table;
+  for (std::uint64_t bucket = 0; bucket < buckets; ++bucket) {
+    join_at_one_place(places.read<PlacedVertex>(bucket), table);
+  }
+}
+
+void Pieces::join_at_one_place(const std::vector<PlacedVertex>& vertices,
+                               std::vector<std::uint32_t>& table) {
+  const std::uint64_t mask = std::bit_ceil(2 * vertices.size() + 1) - 1;
+  table.assign(mask + 1, 0);  // one more than an index, or 0
+  for (std::uint32_t i = 0; i < vertices.size(); ++i) {
+    std::uint64_t at = (hash_of(vertices[i].place) >> 32) & mask;
+    while (table[at] != 0 && !at_one_place(vertices[table[at] - 1].place, vertices[i].place)) {
+      at = (at + 1) & mask;
+    }
+    if (table[at] == 0) {
+      table[at] = i + 1;
+    } else {
+      join(vertices[table[at] - 1].vertex, vertices[i].vertex);
     }
   }
 }
 
 void Pieces::join(std::span<const WideTriangle> triangles) {
   for (const WideTriangle& t : triangles) {
-    join(t[0], t[1]);
-    join(t[0], t[2]);
+    const std::uint64_t first = join_firsts(first_of(t[0]), first_of(t[1]));
+    join_firsts(first, first_of(t[2]));
   }
 }
 
@@ -100,11 +109,15 @@ std::uint64_t Pieces::first_of(std::uint64_t vertex) {
 }
 
 void Pieces::join(std::uint64_t a, std::uint64_t b) {
-  const std::uint64_t first_a = first_of(a);
-  const std::uint64_t first_b = first_of(b);
-  if (first_a == first_b) return;
-  const auto [first, second] = std::minmax(first_a, first_b);
+  join_firsts(first_of(a), first_of(b));
+}
+
+/// Returns the first of both.
+std::uint64_t Pieces::join_firsts(std::uint64_t a, std::uint64_t b) {
+  if (a == b) return a;
+  const auto [first, second] = std::minmax(a, b);
   before_.set(second, static_cast<std::uint32_t>(second - first));
+  return first;
 }
 
 }  // namespace meshfarm

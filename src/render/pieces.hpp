@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <span>
+#include <vector>
 
 #include <meshfarm/io/labels.hpp>
 #include <meshfarm/render/camera.hpp>
@@ -17,18 +18,26 @@ class Pieces {
  public:
   static constexpr std::uint64_t k_most_vertices = UINT32_MAX - 1;
 
-  /// Takes 4 bytes a vertex, by `room`, and as much as that allows while places are compared.
-  /// Throws IoError.
-  Pieces(PagedArray<ScreenPoint>& vertices, const ArrayRoom& room);
+  /// Takes 4 bytes a vertex, by `room`. While places are compared, 16 more in `memory_for_places`
+  /// or, beyond that, in a scratch file, and some 34 MB. Throws IoError.
+  Pieces(PagedArray<ScreenPoint>& vertices, const ArrayRoom& room, std::uint64_t memory_for_places);
   void join(std::span<const WideTriangle> triangles);
   /// Gives each vertex the colour of its piece, and returns how many pieces there are. Their order
   /// is that of their vertices, so that nothing but the file decides on a colour.
   std::uint64_t colour(PagedArray<std::uint32_t>& array);
 
  private:
-  void join_at_one_place(PagedArray<ScreenPoint>& array, std::uint64_t memory_bytes);
+  struct PlacedVertex {
+    ScreenPoint place;
+    std::uint32_t vertex = 0;
+  };
+
+  void join_at_one_place(PagedArray<ScreenPoint>& array, const ArrayRoom& room);
+  void join_at_one_place(const std::vector<PlacedVertex>& vertices,
+                         std::vector<std::uint32_t>& table);
   std::uint64_t first_of(std::uint64_t vertex);
   void join(std::uint64_t a, std::uint64_t b);
+  std::uint64_t join_firsts(std::uint64_t a, std::uint64_t b);
 
   PagedArray<std::uint32_t> array_;
   PagedArray<std::uint32_t>::View

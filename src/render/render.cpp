@@ -137,16 +137,25 @@ class Renderer {
     return framing.camera();
   }
 
-  /// All arrays in memory if they fit beside the canvas, else in scratch files.
-  ArrayRoom room() const {
+  /// What is left beside the canvas.
+  std::uint64_t memory_for_arrays() const {
     const std::uint64_t memory = options_.memory_bytes;
     const std::uint64_t others = Canvas::memory_for(canvas_.size()) + memory / 8;
-    const std::uint64_t left = memory > others ? memory - others : memory / 8;
+    return memory > others ? memory - others : memory / 8;
+  }
+
+  /// All arrays in memory if they fit, else in scratch files.
+  ArrayRoom room() const {
+    const std::uint64_t left = memory_for_arrays();
+    const bool fits = made_.vertices < left / bytes_of_vertex();
+    return {options_.folder, fits ? left : left / 4};
+  }
+
+  std::uint64_t bytes_of_vertex() const {
     std::uint64_t bytes = sizeof(ScreenPoint);
     if (paints_.are_of_vertices()) bytes += sizeof(std::uint32_t);
-    if (paints_.from() == Paints::From::pieces) bytes += 3 * sizeof(std::uint32_t);
-    const bool fits = made_.vertices < left / bytes;
-    return {options_.folder, fits ? left : left / 4};
+    if (paints_.from() == Paints::From::pieces) bytes += sizeof(std::uint32_t);
+    return bytes;
   }
 
   std::unique_ptr<Kept> keep_vertices(const Camera& camera) {
@@ -200,7 +209,9 @@ class Renderer {
                       " vertices is too large to be coloured by piece: the limit is " +
                       std::to_string(Pieces::k_most_vertices));
     }
-    Pieces pieces(kept.points, kept.room);
+    const std::uint64_t left = memory_for_arrays();
+    const std::uint64_t arrays = made_.vertices * bytes_of_vertex();
+    Pieces pieces(kept.points, kept.room, arrays < left ? left - arrays : left / 4);
     std::uint64_t seen = 0;
     source_.scan_triangles([&](const TriangleView& batch) {
       pieces.join(batch);
