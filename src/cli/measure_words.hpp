@@ -26,6 +26,5 @@ struct MeasureWords {
 std::uint64_t memory_to_hold(std::uint64_t vertices, std::uint64_t triangles);
 /// Why what takes so much is not done, and what --memory would be enough.
 std::string why_too_little(std::uint64_t needed, std::uint64_t memory);
-inline constexpr const char* k_too_many_at_one_place = "too many lie at one place";
 
 }  // namespace meshfarm

@@ -65,7 +65,7 @@ SurfaceSamples sample_surface(const Mesh& mesh, const DistanceOptions& options) 
 
 class DistanceMeter::Impl {
  public:
-  Impl(const Mesh& to, unsigned threads) : bvh_(to, threads), threads_(threads) {}
+  Impl(const Mesh& to, unsigned threads) : index_(to, threads), threads_(threads) {}
 
   std::vector<Distance> measure_each(std::span<const Points> sets,
                                      std::span<double> of_points) const {
@@ -80,7 +80,7 @@ class DistanceMeter::Impl {
       const std::size_t set = chunks[i].set;
       const Points points = sets[set];
       chunks[i].sums = measure_chunk(
-          bvh_, points.size(), chunks[i].chunk, [&](std::uint64_t n) { return points[n]; },
+          index_.bvh(), points.size(), chunks[i].chunk, [&](std::uint64_t n) { return points[n]; },
           [&](std::uint64_t n, double distance) {
             if (!of_points.empty()) of_points[first[set] + n] = distance;
           });
@@ -99,14 +99,16 @@ class DistanceMeter::Impl {
     double farthest = enough;
     std::uint32_t guess = 0;
     for (const Vec3& p : points) {
-      const Bvh::Nearest nearest = bvh_.nearest(p, guess, enough);
+      const Bvh::Nearest nearest = index_.bvh().nearest(p, guess, enough);
       guess = nearest.triangle;
       farthest = std::max(farthest, nearest.squared);
     }
     return farthest > enough ? std::sqrt(farthest) : least;
   }
 
-  std::uint32_t nearest_triangle(Vec3 point) const { return bvh_.nearest(point, 0).triangle; }
+  std::uint32_t nearest_triangle(Vec3 point) const { return index_.bvh().nearest(point, 0).triangle;
+  }
+  const TriangleIndex& index() const { return index_; }
 
  private:
   struct ChunkOfSet {
@@ -115,7 +117,7 @@ class DistanceMeter::Impl {
     DistanceSums sums;
   };
 
-  Bvh bvh_;
+  TriangleIndex index_;
   unsigned threads_;
 };
 
@@ -134,6 +136,10 @@ double DistanceMeter::farthest(Points points, double least) const {
 
 std::uint32_t DistanceMeter::nearest_triangle(Vec3 point) const {
   return impl_->nearest_triangle(point);
+}
+
+const TriangleIndex& DistanceMeter::index() const {
+  return impl_->index();
 }
 
 std::vector<Distance> DistanceMeter::measure_each(std::span<const Points> sets,

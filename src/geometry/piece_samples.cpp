@@ -2,9 +2,12 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
 #include <cmath>
+#include <utility>
+#include <vector>
 
 #include <meshfarm/geometry/channel_fit.hpp>
 #include <meshfarm/geometry/piece_samples.hpp>
+#include <meshfarm/geometry/weighted_values.hpp>
 #include <meshfarm/util/parallel.hpp>
 
 #include "geometry/area_sampler.hpp"
@@ -61,6 +64,26 @@ std::vector<NearPlace> find_near_places(const TriangleIndex& index,
     }
   });
   return places;
+}
+
+NormalDeviation normals_of(std::span<const NearPlace> places, std::span<const double> areas) {
+  std::vector<std::pair<double, double>> degrees;
+  degrees.reserve(places.size());
+  NormalDeviation made;
+  double area = 0;
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    if (places[i].degrees < 0) continue;
+    const auto turned = static_cast<double>(places[i].degrees);
+    degrees.emplace_back(turned, areas[i]);
+    area += areas[i];
+    made.rms += areas[i] * turned * turned;
+    if (turned > 90) made.over_90 += areas[i];
+  }
+  if (!(area > 0)) return {};
+  made.rms = std::sqrt(made.rms / area);
+  made.over_90 /= area;
+  made.p95 = WeightedValues(std::move(degrees)).quantile(0.95);
+  return made;
 }
 
 }  // namespace meshfarm

@@ -73,7 +73,8 @@ ErrorMeter::ErrorMeter(const Stage& stage, const Manifest& manifest,
       threads_(threads),
       points_(points),
       samples_(std::move(samples)),
-      input_(stage, manifest, threads) {
+      input_(stage, manifest, threads),
+      normals_(manifest) {
   for (const SurfaceSamples& part : samples_) {
     if (part.points.empty()) continue;
     area_ += part.area;
@@ -146,6 +147,7 @@ void ErrorMeter::show_input(PointMeter& to_input,
                 [&](const SurfacePiece& piece) {
                   to_input.show(piece.positions, piece.triangles);
                   if (!is_first) return;
+                  if (!facing_) normals_.add(piece);
                   vertices(thinned(piece.fresh, step));
                   if (step == 1) {
                     vertices(middles_of_longest_sides(piece.positions, piece.triangles));
@@ -154,7 +156,14 @@ void ErrorMeter::show_input(PointMeter& to_input,
   }
 }
 
-MeasuredError ErrorMeter::measure(const Mesh& result) {
+void ErrorMeter::measure_normals(const TriangleIndex& result, MeasuredError& measured) const {
+  const std::vector<NearPlace> places = find_near_places(result, facing_->points, threads_);
+  measured.to_output_normals = normals_of(places, facing_->areas);
+  measured.normal_samples = places.size();
+}
+
+MeasuredError ErrorMeter::measure(const Mesh& result,
+                                  const std::function<void(const TriangleIndex&)>& with_index) {
   MeasuredError error;
   if (result.triangles.empty() || !(area_ > 0)) return error;
   const DistanceMeter to_result(result, threads_);
@@ -171,6 +180,8 @@ MeasuredError ErrorMeter::measure(const Mesh& result) {
     greatest.add(to_result.farthest(vertices, least));
   });
   error.to_output.max = greatest.value();
+  if (!facing_) facing_ = normals_.take();
+  measure_normals(to_result.index(), error);
   const std::vector<double> distances = to_input.distances();
   error.to_input = distance_of(std::span(distances).first(from.by_area));
   error.to_input.max = distance_of(distances).max;
@@ -179,6 +190,7 @@ MeasuredError ErrorMeter::measure(const Mesh& result) {
   error.to_input_quantiles = quantiles_of(by_area);
   error.input_samples = surface_.size();
   error.output_samples = from.by_area;
+  if (with_index) with_index(to_result.index());
   return error;
 }
 

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -11,6 +12,8 @@
 #include <meshfarm/geometry/point_meter.hpp>
 #include <meshfarm/pipeline/input_surface.hpp>
 #include <meshfarm/report/summary.hpp>
+
+#include "pipeline/normal_samples.hpp"
 
 namespace meshfarm {
 
@@ -39,7 +42,9 @@ class ErrorMeter {
   ErrorMeter(const Stage& stage, const Manifest& manifest, std::vector<SurfaceSamples> samples,
              unsigned threads, const ErrorPoints& points = {});
 
-  MeasuredError measure(const Mesh& result);
+  /// What else is to be measured with the result's index may be done in `with_index`.
+  MeasuredError measure(const Mesh& result,
+                        const std::function<void(const TriangleIndex&)>& with_index = {});
   /// About the RMS from the input to the result, by few points: much cheaper.
   double estimate_rms(const Mesh& result) const;
 
@@ -53,6 +58,7 @@ class ErrorMeter {
   /// From the input to the result.
   void measure_samples(const DistanceMeter& meter, MeasuredError& measured) const;
   void show_input(PointMeter& to_input, const std::function<void(std::span<const Vec3>)>& vertices);
+  void measure_normals(const TriangleIndex& result, MeasuredError& measured) const;
 
   const Manifest& manifest_;
   unsigned threads_;
@@ -62,6 +68,8 @@ class ErrorMeter {
   double spacing_ = 0;         // of its vertices, about
   std::vector<Vec3> surface_;  // all samples
   InputSurface input_;
+  NormalSamples normals_;
+  std::optional<NormalSamples::Points> facing_;  // once all of the input was shown
 };
 
 }  // namespace meshfarm

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include <meshfarm/geometry/components.hpp>
+#include <meshfarm/geometry/crossings.hpp>
 #include <meshfarm/geometry/distance.hpp>
 #include <meshfarm/geometry/simplify.hpp>
 #include <meshfarm/geometry/surface_measures.hpp>
@@ -66,7 +67,8 @@ class ResultFinish {
     compare_topology(chosen.kept, result);
     summary_.finish_seconds = watch.lap();
     tell("measure", 0, 0);
-    summary_.error = meter_->measure(result);
+    summary_.error = meter_->measure(
+        result, [&](const TriangleIndex& index) { count_crossings(index, result); });
     look_for_better(chosen);
     if (better_mesh_) take_better(chosen, result);
     describe(result);
@@ -253,6 +255,20 @@ class ResultFinish {
     summary_.better.reset();
     count(result);
     compare_topology(chosen.kept, result);
+    if (result.triangles.empty()) return;
+    count_crossings(TriangleIndex(result, options_.threads), result);
+  }
+
+  /// Takes about as long for a triangle of the result as a run for two of the input.
+  void count_crossings(const TriangleIndex& index, const Mesh& result) {
+    constexpr std::uint64_t k_always = 10'000;
+    constexpr std::uint64_t k_of_input = 64;
+    const std::uint64_t most = std::max(k_always, manifest_.triangles() / k_of_input);
+    figures_.crossing_triangles.reset();
+    figures_.crossings_skipped = "the result has more than a 64th of the input's triangles";
+    if (result.triangles.size() > most) return;
+    figures_.crossing_triangles = count_crossing_triangles(index, {.threads = options_.threads});
+    figures_.crossings_skipped = figures_.crossing_triangles ? "" : k_too_many_at_one_place;
   }
 
   void count(const Mesh& result) {
@@ -261,13 +277,12 @@ class ResultFinish {
   }
 
   void describe(const Mesh& result) {
-    SurfaceFigures figures;
     ShapeMeter meter(options_.threads);
     meter.add(result.positions, result.triangles);
-    figures.shape = meter.measures();
-    figures.edges = measure_edge_lengths(result, options_.threads);
-    figures.is_closed = summary_.topology && summary_.topology->after.unmatched_edges == 0;
-    summary_.result = figures;
+    figures_.shape = meter.measures();
+    figures_.edges = measure_edge_lengths(result, options_.threads);
+    figures_.is_closed = summary_.topology && summary_.topology->after.unmatched_edges == 0;
+    summary_.result = figures_;
   }
 
   /// An estimate, of one direction only, which may be the lesser: it tells what to measure.
@@ -327,6 +342,7 @@ class ResultFinish {
   RunSummary summary_;
   std::vector<Mesh> larger_;  // what the result was before it was so small
   std::optional<ErrorMeter> meter_;
+  SurfaceFigures figures_;  // of the result
 };
 
 }  // namespace

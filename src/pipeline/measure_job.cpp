@@ -175,7 +175,7 @@ class PieceMeter {
     is_piece() ? measure_to_input() : measure_to_seams();
     return error_;
   }
-  const std::vector<std::vector<double>>& to_input() const { return to_input_; }
+  const MeasuredPoints& points() const { return points_; }
 
  private:
   bool is_piece() const { return parameters_.triangles > 0; }
@@ -233,14 +233,16 @@ class PieceMeter {
       if (counts[set] == 0) continue;
       const Distance d = distance_of(std::span(distances).subspan(first, counts[set]));
       first += counts[set];
-      const double area = samples[set].area * static_cast<double>(counts[set]) /
-                          static_cast<double>(samples[set].points.size());
+      const double of_point = samples[set].area / static_cast<double>(samples[set].points.size());
+      points_.areas.insert(points_.areas.end(), counts[set], of_point);
+      const double area = of_point * static_cast<double>(counts[set]);
       error_.input_area += area;
       error_.to_output.rms += area * d.rms * d.rms;
       error_.to_output.mean += area * d.mean;
       error_.to_output.max = std::max(error_.to_output.max, d.max);
     }
     error_.input_samples = points.size();
+    points_.to_output = distances;
     if (!(error_.input_area > 0)) return;
     error_.to_output.rms = std::sqrt(error_.to_output.rms / error_.input_area);
     error_.to_output.mean /= error_.input_area;
@@ -265,7 +267,7 @@ class PieceMeter {
     const double reach = std::max({2 * error_.to_output.max, spacing, spacing_of(mesh_)});
     const SomePoints near = points_near(points, input.box, reach);
     const SomePoints own = points_that_want(points, input.box, {spacing, usual(spacing), known});
-    for (const std::vector<Vec3>& each : points) to_input_.emplace_back(each.size(), HUGE_VAL);
+    for (const std::vector<Vec3>& each : points) points_.to_input.emplace_back(each.size(), HUGE_VAL);
     PointMeter to_own(own.points, {spacing, usual(spacing), known});
     while (to_own.begin_pass()) show(input, to_own);
     take_found(own, to_own.distances(), HUGE_VAL);
@@ -291,7 +293,7 @@ class PieceMeter {
 
   void take_found(const SomePoints& some, const std::vector<double>& found, double below) {
     for (std::size_t i = 0; i < found.size(); ++i) {
-      if (found[i] < below) to_input_[some.places[i].list][some.places[i].number] = found[i];
+      if (found[i] < below) points_.to_input[some.places[i].list][some.places[i].number] = found[i];
     }
   }
 
@@ -306,8 +308,8 @@ class PieceMeter {
     const std::vector<Vec3> points = read_points().front();
     const Mesh between =
         decode_surface(read_section(context_, parameters_.gap), parameters_.gap.file.name);
-    to_input_.push_back(distances_to({&between}, points));
-    to_input_.front().resize(points.size(), HUGE_VAL);
+    points_.to_input.push_back(distances_to({&between}, points));
+    points_.to_input.front().resize(points.size(), HUGE_VAL);
   }
 
   /// The distance to the nearest of these is no less than that to the input's surface.
@@ -327,7 +329,7 @@ class PieceMeter {
   std::vector<const Mesh*> surface_;  // of the result
   PieceError error_;
   double area_ = 0;  // of the piece's input
-  std::vector<std::vector<double>> to_input_;
+  MeasuredPoints points_;
 };
 
 }  // namespace
@@ -337,7 +339,7 @@ JobOutput measure_piece(const Job& job, const JobContext& context) {
   PieceMeter meter(parameters, context);
   const PieceError error = meter.run();
   const ResultName name{key_of(job).value, context.attempt, context.incarnation};
-  return {context.publish(name, encode_distances(meter.to_input())), encode_summary(error)};
+  return {context.publish(name, encode_points(meter.points())), encode_summary(error)};
 }
 
 }  // namespace meshfarm

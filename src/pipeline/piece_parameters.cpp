@@ -16,7 +16,8 @@
 //                before u64 | first step i32 | counts u32 x u64
 //   finished   = 2 sections | by area u64 | area f64 | vertices u64 | triangles u64
 //   error      = area f64 | rms f64 | mean f64 | max f64 | samples u64
-//   distances  = lists u32 x (points u32 x f64), the file of a measure job
+//   measured   = lists u32 x (points u32 x f64) | distances u32 x f64 | areas u32 x f64,
+//                the file of a measure job
 // In version 1 parts were always kept, and a piece was measured by one job.
 #include <cmath>
 
@@ -303,20 +304,25 @@ PieceError decode_piece_error(std::string_view bytes, std::string_view what) {
   return error;
 }
 
-std::string encode_distances(const std::vector<std::vector<double>>& distances) {
+std::string encode_points(const MeasuredPoints& points) {
   ByteWriter out;
-  out.put(static_cast<std::uint32_t>(distances.size()));
-  for (const std::vector<double>& each : distances) put_list(out, each);
+  out.put(static_cast<std::uint32_t>(points.to_input.size()));
+  for (const std::vector<double>& each : points.to_input) put_list(out, each);
+  put_list(out, points.to_output);
+  put_list(out, points.areas);
   return out.take();
 }
 
-std::vector<std::vector<double>> decode_distances(std::string_view bytes, std::string_view what) {
+MeasuredPoints decode_measured_points(std::string_view bytes, std::string_view what) {
   ByteReader in(bytes, what);
-  std::vector<std::vector<double>> distances;
+  MeasuredPoints points;
   const auto lists = in.get<std::uint32_t>();
-  for (std::uint32_t i = 0; i < lists; ++i) distances.push_back(get_list<double>(in));
+  for (std::uint32_t i = 0; i < lists; ++i) points.to_input.push_back(get_list<double>(in));
+  points.to_output = get_list<double>(in);
+  points.areas = get_list<double>(in);
+  if (points.areas.size() != points.to_output.size()) in.fail("not each point has an area");
   in.expect_end();
-  return distances;
+  return points;
 }
 
 }  // namespace meshfarm

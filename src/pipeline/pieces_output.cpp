@@ -11,6 +11,8 @@
 #include <vector>
 
 #include <meshfarm/geometry/point_meter.hpp>
+#include <meshfarm/geometry/value_error.hpp>
+#include <meshfarm/geometry/weighted_values.hpp>
 #include <meshfarm/io/result_file.hpp>
 #include <meshfarm/pipeline/input_surface.hpp>
 #include <meshfarm/staging/sections.hpp>
@@ -102,17 +104,37 @@ void take_least(const std::vector<std::vector<double>>& lists, const std::vector
   }
 }
 
-/// Of the points of each piece, the distances to the nearest of the input that any piece has.
-std::vector<std::vector<double>> least_distances(const Stage& stage, const FinishedPieces& result) {
-  std::vector<std::vector<double>> least(result.pieces.size());
-  for (std::size_t i = 0; i < result.pieces.size(); ++i) {
+using WeightedDistances = std::vector<std::pair<double, double>>;
+
+/// What the measure jobs of all pieces found.
+struct FoundDistances {
+  /// Of the points of each piece, the distances to the nearest of the input that any piece has.
+  std::vector<std::vector<double>> to_input;
+  /// From the samples of each piece, with the areas that they stand for.
+  std::vector<WeightedDistances> to_output;
+};
+
+FoundDistances found_distances(const Stage& stage, const FinishedPieces& result) {
+  const std::size_t count = result.pieces.size();
+  FoundDistances found{std::vector<std::vector<double>>(count),
+                       std::vector<WeightedDistances>(count)};
+  for (std::size_t i = 0; i < count; ++i) {
     std::vector<std::size_t> of = {i};
     for (const std::size_t near : result.near(i)) of.push_back(near);
     for (const FileRef& file : result.pieces[i].error_files) {
-      take_least(decode_distances(stage.read(file), file.name), of, file.name, least);
+      const MeasuredPoints points = decode_measured_points(stage.read(file), file.name);
+      take_least(points.to_input, of, file.name, found.to_input);
+      for (std::size_t p = 0; p < points.areas.size(); ++p) {
+        found.to_output[i].emplace_back(points.to_output[p], points.areas[p]);
+      }
     }
   }
-  return least;
+  return found;
+}
+
+DistanceQuantiles quantiles(WeightedDistances distances) {
+  const WeightedValues values(std::move(distances));
+  return {values.quantile(0.95), values.quantile(0.99)};
 }
 
 /// Those that are not known are measured to all of the input.
@@ -210,19 +232,29 @@ MeasuredError error_of_pieces(const Stage& stage, const Manifest& manifest,
     error.input_samples += piece.error.input_samples;
     error.output_samples += piece.finished.by_area;
   }
-  std::vector<std::vector<double>> distances = least_distances(stage, result);
+  FoundDistances found = found_distances(stage, result);
+  std::vector<std::vector<double>>& distances = found.to_input;
   const PieceOfResult& last = result.pieces.back();
   if (last.parts == 0) {
     find_missing(stage, manifest, last, result, threads, distances.back());
   }
+  WeightedDistances all_to_output;
+  WeightedDistances all_to_input;
   for (std::size_t i = 0; i < result.pieces.size(); ++i) {
     const PieceOfResult& piece = result.pieces[i];
     const Distance of_piece = error_of_points(distances[i], piece.finished.by_area);
     add_error(of_piece, piece.finished.area, to_input);
     area += piece.finished.area;
-    of_pieces.push_back(
-        {piece.first_part, piece.parts, piece.finished.triangles, piece.error.to_output, of_piece});
+    const std::size_t counted = std::min<std::size_t>(piece.finished.by_area, distances[i].size());
+    const double of_point = piece.finished.area / static_cast<double>(counted);
+    for (std::size_t p = 0; p < counted; ++p) all_to_input.emplace_back(distances[i][p], of_point);
+    all_to_output.insert(all_to_output.end(), found.to_output[i].begin(), found.to_output[i].end());
+    of_pieces.push_back({piece.first_part, piece.parts, piece.finished.triangles,
+                         piece.error.to_output, of_piece, quantiles(std::move(found.to_output[i])),
+                         quantiles_of(std::span(distances[i]).first(counted))});
   }
+  error.to_output_quantiles = quantiles(std::move(all_to_output));
+  error.to_input_quantiles = quantiles(std::move(all_to_input));
   error.to_output = error_of(to_output, input_area);
   error.to_input = error_of(to_input, area);
   return error;

@@ -62,12 +62,7 @@ Json to_json(const SurfaceError& error, double diagonal) {
   Json json = to_json(error.distance, diagonal);
   json["p95"] = error.quantiles.p95 / diagonal;
   json["p99"] = error.quantiles.p99 / diagonal;
-  json["normals"] = nullptr;
-  if (error.normals) {
-    json["normals"] = {{"rms_degrees", error.normals->rms},
-                       {"p95_degrees", error.normals->p95},
-                       {"over_90", error.normals->over_90}};
-  }
+  json["normals"] = to_json(error.normals);
   return json;
 }
 
@@ -95,11 +90,6 @@ std::string text_of(const SurfaceError& error, double diagonal) {
   return "rms " + share(error.distance.rms) + "  mean " + share(error.distance.mean) + "  95 % " +
          share(error.quantiles.p95) + "  99 % " + share(error.quantiles.p99) + "  max " +
          share(error.distance.max);
-}
-
-std::string text_of(const NormalDeviation& normals) {
-  return "rms " + number(normals.rms, "%.3g") + "  95 % " + number(normals.p95, "%.3g") +
-         " degrees, more than 90 on " + number(100 * normals.over_90, "%.3g") + " % of the area";
 }
 
 Json to_json(const DistanceBounds& bounds, double diagonal) {

@@ -27,6 +27,10 @@ Json error_json(const MeasuredError& error, double diagonal) {
   json["input_to_output"] = to_json(error.to_output, diagonal);
   add_quantiles(error.to_output_quantiles, diagonal, json["input_to_output"]);
   json["input_to_output"]["samples"] = error.input_samples;
+  json["input_to_output"]["normals"] = to_json(error.to_output_normals);
+  if (error.to_output_normals) {
+    json["input_to_output"]["normals"]["samples"] = error.normal_samples;
+  }
   json["output_to_input"] = to_json(error.to_input, diagonal);
   add_quantiles(error.to_input_quantiles, diagonal, json["output_to_input"]);
   json["output_to_input"]["samples"] = error.output_samples;
@@ -54,12 +58,15 @@ Json input_json(const Manifest& m) {
 Json finish_json(const RunSummary& s) {
   Json pieces = Json::array();
   for (const ErrorOfPiece& each : s.pieces) {
-    const Json json = {{"first_part", each.first_part},
-                       {"parts", each.parts},
-                       {"triangles", each.triangles},
-                       {"input_to_output", to_json(each.to_output, s.manifest.box.diagonal())},
-                       {"output_to_input", to_json(each.to_input, s.manifest.box.diagonal())}};
-    pieces.push_back(json);
+    const double diagonal = s.manifest.box.diagonal();
+    Json json = {{"first_part", each.first_part},
+                 {"parts", each.parts},
+                 {"triangles", each.triangles},
+                 {"input_to_output", to_json(each.to_output, diagonal)},
+                 {"output_to_input", to_json(each.to_input, diagonal)}};
+    add_quantiles(each.to_output_quantiles, diagonal, json["input_to_output"]);
+    add_quantiles(each.to_input_quantiles, diagonal, json["output_to_input"]);
+    pieces.push_back(std::move(json));
   }
   return {{"by", s.finished_in_pieces > 0 ? "farm" : "sink"},
           {"why_here", s.why_finished_here},
@@ -175,6 +182,10 @@ void add_error(Lines& lines, const MeasuredError& error, double most, double dia
                     " points of the input to the output");
   lines.add("", text_of(error.to_input, diagonal) + "  from " + grouped(error.output_samples) +
                     " points of the output to the input");
+  if (error.to_output_normals) {
+    lines.add("", "facing: " + text_of(*error.to_output_normals) + ", from " +
+                      grouped(error.normal_samples) + " points of the input");
+  }
   if (most > 0 && error.greater().max > most) {
     lines.add("", "the bound of " + number(most / diagonal, "%.3g") + " is not kept everywhere");
   }

@@ -77,6 +77,18 @@ std::string text_of(const Distance& d, double diagonal) {
          "  max " + number(d.max / diagonal, "%.3g");
 }
 
+Json to_json(const std::optional<NormalDeviation>& normals) {
+  if (!normals) return nullptr;
+  return {{"rms_degrees", normals->rms},
+          {"p95_degrees", normals->p95},
+          {"over_90", normals->over_90}};
+}
+
+std::string text_of(const NormalDeviation& normals) {
+  return "rms " + number(normals.rms, "%.3g") + "  95 % " + number(normals.p95, "%.3g") +
+         " degrees, more than 90 on " + number(100 * normals.over_90, "%.3g") + " % of the area";
+}
+
 std::string dumped(const Json& json) {
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }

@@ -49,6 +49,9 @@ Json to_json(const Box& box);
 Json to_json(const Topology& topology);
 /// As fractions of the diagonal.
 Json to_json(const Distance& distance, double diagonal);
+/// Null where they were not measured.
+Json to_json(const std::optional<NormalDeviation>& normals);
+std::string text_of(const NormalDeviation& normals);
 std::string text_of(const Topology& topology);
 /// Genus, of all pieces together. Nothing where borders or edges that are not manifold make the
 /// Euler characteristic tell more than handles.

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include <meshfarm/geometry/mesh.hpp>
+#include <meshfarm/geometry/triangle_index.hpp>
 
 namespace meshfarm {
 
@@ -58,6 +59,8 @@ class DistanceMeter {
   double farthest(Points points, double least) const;
   /// The index of the triangle that is nearest to the point.
   std::uint32_t nearest_triangle(Vec3 point) const;
+  /// Of `to`, for other measures.
+  const TriangleIndex& index() const;
 
  private:
   class Impl;

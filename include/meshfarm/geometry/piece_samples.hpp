@@ -8,6 +8,7 @@
 
 #include <meshfarm/geometry/mesh.hpp>
 #include <meshfarm/geometry/triangle_index.hpp>
+#include <meshfarm/geometry/value_error.hpp>
 
 namespace meshfarm {
 
@@ -38,5 +39,8 @@ struct NearPlace {
 /// Depends on no threads (0: one a core).
 std::vector<NearPlace> find_near_places(const TriangleIndex& index,
                                         std::span<const FacingPoint> points, unsigned threads);
+
+/// Of places that each stand for so much of an area. Those without normals do not count.
+NormalDeviation normals_of(std::span<const NearPlace> places, std::span<const double> areas);
 
 }  // namespace meshfarm

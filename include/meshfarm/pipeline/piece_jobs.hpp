@@ -147,17 +147,22 @@ struct MeasureParameters {
 std::string encode_parameters(const MeasureParameters& parameters);
 MeasureParameters decode_measure_parameters(std::string_view bytes);
 
-/// What a measure job finds. Its file has the distances from the points of the result to the
-/// job's share of the input, HUGE_VAL where that is not near: of each point the least of all
-/// files counts.
+/// What a measure job finds of its share of the input.
 struct PieceError {
   double input_area = 0;  // that the samples stand for
   Distance to_output;
   std::uint64_t input_samples = 0;
 };
-/// The file of a measure job: the distances of MeasureParameters::points.
-std::string encode_distances(const std::vector<std::vector<double>>& distances);
-std::vector<std::vector<double>> decode_distances(std::string_view bytes, std::string_view what);
+/// The file of a measure job. Of each point of the result the least distance of all files counts.
+struct MeasuredPoints {
+  /// From MeasureParameters::points to the job's share of the input, HUGE_VAL where that is not
+  /// near.
+  std::vector<std::vector<double>> to_input;
+  std::vector<double> to_output;  // from the samples of the share
+  std::vector<double> areas;      // that these stand for
+};
+std::string encode_points(const MeasuredPoints& points);
+MeasuredPoints decode_measured_points(std::string_view bytes, std::string_view what);
 std::string encode_summary(const PieceError& error);
 PieceError decode_piece_error(std::string_view bytes, std::string_view what);
 

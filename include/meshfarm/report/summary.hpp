@@ -29,9 +29,12 @@ enum class Format { text, json };
 struct MeasuredError {
   Distance to_output;
   Distance to_input;
-  /// Nothing where the result was measured in pieces.
+  /// Nothing where the result was measured in pieces, each of which has its own.
   std::optional<DistanceQuantiles> to_output_quantiles = {};
   std::optional<DistanceQuantiles> to_input_quantiles = {};
+  /// At points of the input; nothing where the result was measured in pieces.
+  std::optional<NormalDeviation> to_output_normals = {};
+  std::uint64_t normal_samples = 0;
   std::uint64_t input_samples = 0;  // by area; 0: there is nothing to measure
   std::uint64_t output_samples = 0;
 
@@ -80,6 +83,8 @@ struct ErrorOfPiece {
   std::uint64_t triangles = 0;  // without those between it and the surroundings of the seams
   Distance to_output;           // from its share of the input
   Distance to_input;
+  DistanceQuantiles to_output_quantiles;
+  DistanceQuantiles to_input_quantiles;
 };
 
 /// The shape of a mesh by itself.
@@ -90,6 +95,9 @@ struct SurfaceFigures {
   std::optional<std::uint64_t> crossing_triangles;
   std::string crossings_skipped;  // why these were not counted though the mesh is in memory
 };
+
+/// For crossings_skipped.
+inline constexpr const char* k_too_many_at_one_place = "too many lie at one place";
 
 /// What a run made, for people and for programs.
 struct RunSummary {

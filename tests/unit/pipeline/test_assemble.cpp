@@ -88,6 +88,21 @@ TEST_CASE("a closed surface stays closed and gets its count, from any number of 
   }
 }
 
+TEST_CASE("crossings are counted where the result is small beside the input") {
+  const test::TempFolder folder;
+  const auto crossings = [&](std::uint64_t triangles) {
+    return simplify(test::icosphere(6), 2, {.triangles = triangles},
+                    folder.path() / std::to_string(triangles))
+        .summary.result.value();
+  };
+  const SurfaceFigures few = crossings(9'000);
+  CHECK(few.crossing_triangles == 0U);
+  CHECK(few.crossings_skipped.empty());
+  const SurfaceFigures many = crossings(20'000);
+  CHECK_FALSE(many.crossing_triangles);
+  CHECK(many.crossings_skipped.find("64th") != std::string::npos);
+}
+
 TEST_CASE("an odd count of a closed surface is one fewer, and the summary says why") {
   const test::TempFolder folder;
   const Made made = simplify(test::torus(60, 40), 4, {.triangles = 501}, folder.path());

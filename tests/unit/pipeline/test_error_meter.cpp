@@ -7,6 +7,8 @@
 
 #include <meshfarm/divide/cut.hpp>
 
+#include <meshfarm/geometry/value_error.hpp>
+
 #include "pipeline/error_meter.hpp"
 #include "support/memory_source.hpp"
 #include "support/meshes.hpp"
@@ -88,6 +90,37 @@ TEST_CASE("the same figures from any number of threads") {
       CHECK((one.*direction).max == (three.*direction).max);
     }
   }
+}
+
+TEST_CASE("normals of a run are those of two meshes in memory, by either scheme") {
+  const Mesh fine = test::torus(300, 150);
+  const Mesh coarse = test::torus(30, 15);
+  const SurfaceError expected = measure_error({fine, {}}, {coarse, {}}, {}, {});
+  for (const Scheme scheme : {Scheme::cut, Scheme::stream}) {
+    const MeasuredError told = measure(fine, coarse, scheme);
+    REQUIRE(told.to_output_normals);
+    CHECK(told.normal_samples > 1'900);
+    CHECK(told.normal_samples <= 2'000);
+    CHECK(told.to_output_normals->rms == doctest::Approx(expected.normals->rms).epsilon(0.03));
+    CHECK(told.to_output_normals->p95 == doctest::Approx(expected.normals->p95).epsilon(0.03));
+    CHECK(told.to_output_normals->over_90 == 0);
+    const MeasuredError again = measure(fine, coarse, scheme, 1);
+    CHECK(again.to_output_normals->rms == told.to_output_normals->rms);
+    CHECK(again.to_output_normals->p95 == told.to_output_normals->p95);
+  }
+}
+
+TEST_CASE("of triangles of unequal size normals count by area") {
+  Mesh sheet = test::grid(200, 100);  // the left half leans in the result, and is denser
+  for (Vec3& p : sheet.positions) p.x = p.x < 100 ? p.x * 0.5 : p.x - 50;
+  Mesh leaning = sheet;
+  for (Vec3& p : leaning.positions) p.z = p.x < 50 ? 0.02 * (50 - p.x) : 0;
+  const MeasuredError told = measure(sheet, leaning, Scheme::cut);
+  const double degrees = std::atan(0.02) * 180 / 3.14159265358979323846;
+  REQUIRE(told.to_output_normals);
+  CHECK(told.to_output_normals->rms ==
+        doctest::Approx(degrees * std::sqrt(1.0 / 3)).epsilon(0.03));
+  CHECK(told.to_output_normals->p95 == doctest::Approx(degrees).epsilon(0.001));
 }
 
 TEST_CASE("an empty result has no error to tell") {

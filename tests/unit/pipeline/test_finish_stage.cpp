@@ -6,12 +6,14 @@
 #include <cmath>
 #include <map>
 #include <string>
+#include <utility>
 
 #include <doctest/doctest.h>
 
 #include <meshfarm/divide/cut.hpp>
 #include <meshfarm/geometry/distance.hpp>
 #include <meshfarm/geometry/topology.hpp>
+#include <meshfarm/geometry/value_error.hpp>
 #include <meshfarm/pipeline/assemble.hpp>
 #include <meshfarm/pipeline/job_table.hpp>
 #include <meshfarm/pipeline/run_graph.hpp>
@@ -116,6 +118,23 @@ TEST_CASE("pieces make a closed surface of the count, as good as the sink's") {
   CHECK(made.error.to_output.rms == doctest::Approx(forth.rms).epsilon(0.03));
   CHECK(made.error.to_input.rms == doctest::Approx(back.rms).epsilon(0.03));
   CHECK(made.error.input_samples > 90'000);
+  REQUIRE(made.error.to_input_quantiles);
+  const SurfaceError all = measure_error({mesh, {}}, {torus, {}}, {}, many);
+  CHECK(made.error.to_input_quantiles->p95 == doctest::Approx(all.quantiles.p95).epsilon(0.05));
+  CHECK(made.error.to_input_quantiles->p99 == doctest::Approx(all.quantiles.p99).epsilon(0.08));
+  REQUIRE(made.error.to_output_quantiles);
+  const SurfaceError forth_all = measure_error({torus, {}}, {mesh, {}}, {}, many);
+  CHECK(made.error.to_output_quantiles->p95 ==
+        doctest::Approx(forth_all.quantiles.p95).epsilon(0.05));
+  for (const ErrorOfPiece& each : made.pieces) {
+    for (const auto& [distance, quantiles] :
+         {std::pair(each.to_output, each.to_output_quantiles),
+          std::pair(each.to_input, each.to_input_quantiles)}) {
+      CHECK(distance.mean < quantiles.p95);
+      CHECK(quantiles.p95 < quantiles.p99);
+      CHECK(quantiles.p99 <= distance.max);
+    }
+  }
   REQUIRE(made.pieces.size() == 7);
   CHECK(made.pieces.front().first_part == 0);
   CHECK(made.pieces.back().parts == 0);
