@@ -2,8 +2,6 @@
 // SPDX-License-Identifier: MIT
 #include "cli/stage_watch.hpp"
 
-#include <condition_variable>
-#include <mutex>
 #include <utility>
 
 #include <meshfarm/io/manifest.hpp>
@@ -85,19 +83,15 @@ bool StageLook::is_full() {
   return was_full_;
 }
 
-struct StageWatch::Shared {
+struct StageWatch::Shared : SideThread::Signals {
   using Clock = std::chrono::steady_clock;
 
   Shared(Stage stage, std::string name) : look(std::move(stage), std::move(name)) {}
 
   StageLook look;  // the thread's own
-  mutable std::mutex mutex;
-  std::condition_variable changed;
   StatusFacts facts;
   Clock::time_point seen = Clock::now();
   std::string problem;
-  bool end = false;
-  bool ended = false;
 
   void run();
 };
@@ -122,25 +116,16 @@ void StageWatch::Shared::run() {
     problem = why;
     changed.wait_until(lock, begin + k_look_every, [this] { return end; });
   }
-  ended = true;
-  changed.notify_all();
 }
 
 StageWatch::StageWatch(Stage stage, std::string name)
     : shared_(std::make_shared<Shared>(std::move(stage), std::move(name))) {
   shared_->facts = shared_->look.look();
-  thread_ = std::thread([shared = shared_] { shared->run(); });
+  thread_.emplace(
+      shared_, [shared = shared_] { shared->run(); }, k_last_wait);
 }
 
-StageWatch::~StageWatch() {
-  std::unique_lock lock(shared_->mutex);
-  shared_->end = true;
-  shared_->changed.notify_all();
-  const bool ended =
-      shared_->changed.wait_for(lock, k_last_wait, [this] { return shared_->ended; });
-  lock.unlock();
-  ended ? thread_.join() : thread_.detach();  // it keeps what it uses
-}
+StageWatch::~StageWatch() = default;
 
 StatusFacts StageWatch::facts() const {
   const std::lock_guard lock(shared_->mutex);

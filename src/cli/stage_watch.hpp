@@ -6,11 +6,11 @@
 #include <memory>
 #include <optional>
 #include <string>
-#include <thread>
 
 #include <meshfarm/pipeline/run_follower.hpp>
 #include <meshfarm/report/status.hpp>
 #include <meshfarm/staging/stage.hpp>
+#include <meshfarm/util/side_thread.hpp>
 
 namespace meshfarm {
 
@@ -56,7 +56,7 @@ class StageWatch {
  private:
   struct Shared;
   std::shared_ptr<Shared> shared_;
-  std::thread thread_;
+  std::optional<SideThread> thread_;
 };
 
 }  // namespace meshfarm

@@ -1,9 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
 #include <chrono>
-#include <condition_variable>
 #include <memory>
-#include <mutex>
 #include <utility>
 
 #include <fcntl.h>
@@ -24,14 +22,10 @@ constexpr std::size_t k_most_waiting_bytes = std::size_t{64} << 20;
 
 }  // namespace
 
-struct LineLog::Shared {
+struct LineLog::Shared : SideThread::Signals {
   std::filesystem::path path;
-  std::mutex mutex;
-  std::condition_variable changed;
   std::string waiting;
   std::size_t in_work = 0;  // bytes that could not be written yet
-  bool end = false;
-  bool ended = false;
 
   // The thread's own:
   Fd file;
@@ -86,24 +80,15 @@ void LineLog::Shared::run() {
     if (last && failed) break;
     in_work = bytes.size();
   }
-  ended = true;
-  changed.notify_all();
 }
 
 LineLog::LineLog(std::filesystem::path path) : shared_(std::make_shared<Shared>()) {
   shared_->path = std::move(path);
-  thread_ = std::thread([shared = shared_] { shared->run(); });
+  thread_.emplace(
+      shared_, [shared = shared_] { shared->run(); }, k_last_wait);
 }
 
-LineLog::~LineLog() {
-  std::unique_lock lock(shared_->mutex);
-  shared_->end = true;
-  shared_->changed.notify_all();
-  const bool ended =
-      shared_->changed.wait_for(lock, k_last_wait, [this] { return shared_->ended; });
-  lock.unlock();
-  ended ? thread_.join() : thread_.detach();  // it keeps what it uses
-}
+LineLog::~LineLog() = default;
 
 void LineLog::add(std::string_view line) {
   const std::lock_guard lock(shared_->mutex);

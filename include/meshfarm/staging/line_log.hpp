@@ -4,9 +4,11 @@
 
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
-#include <thread>
+
+#include <meshfarm/util/side_thread.hpp>
 
 namespace meshfarm {
 
@@ -29,7 +31,7 @@ class LineLog {
  private:
   struct Shared;
   std::shared_ptr<Shared> shared_;
-  std::thread thread_;
+  std::optional<SideThread> thread_;
 };
 
 }  // namespace meshfarm
