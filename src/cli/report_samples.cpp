@@ -21,23 +21,14 @@ WeightedValues distances_of(std::span<const MeasuredPlace> places) {
   return WeightedValues(std::move(distances));
 }
 
-NormalDeviation normals_of(std::span<const MeasuredPlace> places) {
-  std::vector<std::pair<double, double>> degrees;
-  NormalDeviation made;
-  double area = 0;
+NormalDeviation deviation_of(std::span<const MeasuredPlace> places) {
+  std::vector<NearPlace> near;
+  std::vector<double> areas;
   for (const MeasuredPlace& p : places) {
-    if (p.near.degrees < 0) continue;
-    const auto turned = static_cast<double>(p.near.degrees);
-    degrees.emplace_back(turned, p.area);
-    area += p.area;
-    made.rms += p.area * turned * turned;
-    if (turned > 90) made.over_90 += p.area;
+    near.push_back(p.near);
+    areas.push_back(p.area);
   }
-  if (!(area > 0)) return {};
-  made.rms = std::sqrt(made.rms / area);
-  made.over_90 /= area;
-  made.p95 = WeightedValues(std::move(degrees)).quantile(0.95);
-  return made;
+  return normals_of(near, areas);
 }
 
 SurfaceError error_of(std::span<const MeasuredPlace> places, const WeightedValues& distances) {
@@ -54,7 +45,7 @@ SurfaceError error_of(std::span<const MeasuredPlace> places, const WeightedValue
   error.distance.rms = std::sqrt(error.distance.rms / area);
   error.distance.mean /= area;
   error.quantiles = {distances.quantile(0.95), distances.quantile(0.99)};
-  error.normals = normals_of(places);
+  error.normals = deviation_of(places);
   return error;
 }
 

@@ -103,6 +103,7 @@ class SceneMaker {
   SceneMaker(RunPage& page, const Stage& stage, const Mesh& result, const SceneOptions& options)
       : page_(page),
         result_(result),
+        options_(options),
         threads_(options.threads),
         input_(stage, page.manifest, options.threads),
         up_(options.up.value_or(up_of(page.manifest.box))),
@@ -182,10 +183,9 @@ class SceneMaker {
     input_.show([](const Box&) { return true; },
                 [&](const SurfacePiece& piece) {
                   const bool is_part = piece.part < parts;
-                  for (SurfacePicture* const picture : of_input) {
-                    picture->draw(piece.positions, piece.triangles,
-                                  {.part = is_part ? piece.part : PiecePaint::k_between});
-                  }
+                  SurfacePicture::draw_in_all(
+                      of_input, piece.positions, piece.triangles,
+                      {.part = is_part ? piece.part : PiecePaint::k_between});
                   samples_.add(piece);
                   if (keeps) append_surface(piece.positions, piece.triangles, pieces_[piece.part]);
                 });
@@ -207,7 +207,8 @@ class SceneMaker {
     meter.add(result_.positions, result_.triangles);
     figures_.result.shape = meter.measures();
     figures_.result.edges = measure_edge_lengths(result_, threads_);
-    if (result_.triangles.size() <= k_most_for_crossings) {
+    figures_.result.crossing_triangles = options_.crossings;
+    if (!options_.crossings && result_.triangles.size() <= k_most_for_crossings) {
       figures_.result.crossing_triangles = count_crossing_triangles(index_, {.threads = threads_});
     }
   }
@@ -325,6 +326,7 @@ class SceneMaker {
 
   RunPage& page_;
   const Mesh& result_;
+  SceneOptions options_;
   unsigned threads_;
   InputSurface input_;
   Vec3 up_;

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <cstdint>
 #include <optional>
 
 #include <meshfarm/geometry/mesh.hpp>
@@ -12,7 +13,8 @@ namespace meshfarm {
 
 struct SceneOptions {
   std::optional<Vec3> up = {};  // the axis that points up; else by the input's shape
-  unsigned threads = 0;         // 0: one a core
+  std::optional<std::uint64_t> crossings = {};  // triangles of the result, if they are counted
+  unsigned threads = 0;                         // 0: one a core
 };
 
 /// Measures and draws the page's meshes: sets page.figures and page.scene. The input is read from

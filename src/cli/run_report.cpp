@@ -96,7 +96,7 @@ void write_run_report(const RunReport& report) {
           {"replay", report.stage, "-o", made.path, "--triangles", std::to_string(made.triangles)});
     }
     if (const std::optional<Mesh> result = read_result(made, page.notes)) {
-      add_scene(page, stage, *result, {.up = report.up});
+      add_scene(page, stage, *result, {.up = report.up, .crossings = made.crossing_triangles});
     }
   }
   AtomicFile file(report.page);

@@ -19,28 +19,40 @@ namespace meshfarm {
 
 PieceSamples sample_piece(std::span<const Vec3> positions, std::span<const Triangle> triangles,
                           std::uint64_t count, Vec3 origin) {
+  constexpr std::size_t k_block = 16;  // a number for each triangle would take long to write
   PieceSamples made;
-  std::vector<double> before(triangles.size());  // the area up to the end of each triangle
+  std::vector<double> before;  // the area up to the end of each block
+  before.reserve(triangles.size() / k_block + 1);
+  const auto normal_at = [&](const Triangle& t) {
+    const Vec3 a = positions[t[0]];
+    return cross(positions[t[1]] - a, positions[t[2]] - a);
+  };
   for (std::size_t i = 0; i < triangles.size(); ++i) {
-    const auto& [first, second, third] = triangles[i];
-    const Vec3 a = positions[first];
-    const Vec3 normal = cross(positions[second] - a, positions[third] - a);
+    const Vec3 normal = normal_at(triangles[i]);
     made.area += length(normal) / 2;
-    made.volume += dot(a - origin, normal) / 6;
-    before[i] = made.area;
+    made.volume += dot(positions[triangles[i][0]] - origin, normal) / 6;
+    if (i % k_block == k_block - 1 || i + 1 == triangles.size()) before.push_back(made.area);
   }
   if (!(made.area > 0) || !std::isfinite(made.area)) return made;
   const double share = made.area / static_cast<double>(count);
-  std::size_t at = 0;
+  std::size_t block = 0;
   made.points.reserve(count);
   for (std::uint64_t n = 0; n < count; ++n) {
     const double place = (static_cast<double>(n) + random_unit(3 * n)) * share;
-    const auto found =
-        std::lower_bound(before.begin() + static_cast<std::ptrdiff_t>(at), before.end() - 1, place);
-    at = static_cast<std::size_t>(found - before.begin());
+    const auto found = std::lower_bound(before.begin() + static_cast<std::ptrdiff_t>(block),
+                                        before.end() - 1, place);
+    block = static_cast<std::size_t>(found - before.begin());
+    const std::size_t last = std::min(triangles.size(), (block + 1) * k_block) - 1;
+    std::size_t at = block * k_block;
+    Vec3 normal = normal_at(triangles[at]);
+    double area = (block > 0 ? before[block - 1] : 0) + length(normal) / 2;
+    while (area < place && at < last) {  // the same sums as above
+      normal = normal_at(triangles[++at]);
+      area += length(normal) / 2;
+    }
     const auto& [first, second, third] = triangles[at];
-    const Vec3 a = positions[first], b = positions[second], c = positions[third];
-    made.points.push_back({random_place(a, b, c, n), cross(b - a, c - a)});
+    made.points.push_back(
+        {random_place(positions[first], positions[second], positions[third], n), normal});
   }
   return made;
 }

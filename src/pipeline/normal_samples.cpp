@@ -42,8 +42,7 @@ void NormalSamples::add(const SurfacePiece& piece) {
       sample_piece(piece.positions, some, static_cast<std::uint64_t>(count), {});
   if (found.points.empty()) return;
   // So that a piece that was passed over for its size counts by the next.
-  const double each =
-      found.area / static_cast<double>(some.size()) / per_triangle_;
+  const double each = found.area / static_cast<double>(some.size()) / per_triangle_;
   Points& to = part.sampled;
   to.points.insert(to.points.end(), found.points.begin(), found.points.end());
   to.areas.insert(to.areas.end(), found.points.size(), each);

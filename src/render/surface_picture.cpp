@@ -1,5 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
+#include <array>
+#include <bit>
 #include <cassert>
 #include <cstdint>
 #include <memory>
@@ -11,6 +13,7 @@
 #include "render/develop.hpp"
 #include "render/occlusion.hpp"
 #include "render/rasterizer.hpp"
+#include "render/sample_cells.hpp"
 
 namespace meshfarm {
 namespace {
@@ -64,31 +67,22 @@ class SurfacePicture::Impl {
     return looks_.size() - 1;
   }
 
-  void draw(std::span<const Vec3> positions, std::span<const Triangle> triangles,
-            const PiecePaint& paint) {
-    std::vector<PiecePainter> painters;
-    for (const auto& look : looks_) painters.emplace_back(look->options, paint);
-    const auto draw_one = [&](const Triangle& t, const std::array<ScreenPoint, 3>& corners) {
-      if (!looks_.front()->rasterizer.may_cover(corners)) return;
-      for (std::size_t i = 0; i < looks_.size(); ++i) {
-        looks_[i]->rasterizer.draw(corners, painters[i].of(t));
-      }
-    };
-    // Of many vertices, as a sweep holds them, only those that are used.
-    if (positions.size() > triangles.size()) {
-      for (const Triangle& t : triangles) {
-        draw_one(t, {camera_.project(positions[t[0]]), camera_.project(positions[t[1]]),
-                     camera_.project(positions[t[2]])});
-      }
-      return;
-    }
-    // Those of most triangles of a large mesh lie between the same middles of samples: these cover
-    // none, and their corners need not be kept.
-    const std::vector<Cell> cells = cells_of(camera_, positions);
-    for (const Triangle& t : triangles) {
-      if (is_one_cell(cells[t[0]], cells[t[1]], cells[t[2]])) continue;
-      draw_one(t, {camera_.project(positions[t[0]]), camera_.project(positions[t[1]]),
-                   camera_.project(positions[t[2]])});
+  const Camera& camera() const { return camera_; }
+
+  std::vector<PiecePainter> painters(const PiecePaint& paint) const {
+    std::vector<PiecePainter> made;
+    for (const auto& look : looks_) made.emplace_back(look->options, paint);
+    return made;
+  }
+
+  void draw(std::span<const Vec3> positions, const Triangle& t,
+            std::vector<PiecePainter>& painters) {
+    const std::array<ScreenPoint, 3> corners = {camera_.project(positions[t[0]]),
+                                                camera_.project(positions[t[1]]),
+                                                camera_.project(positions[t[2]])};
+    if (!looks_.front()->rasterizer.may_cover(corners)) return;
+    for (std::size_t i = 0; i < looks_.size(); ++i) {
+      looks_[i]->rasterizer.draw(corners, painters[i].of(t));
     }
   }
 
@@ -111,38 +105,6 @@ class SurfacePicture::Impl {
     Rasterizer rasterizer;
   };
 
-  /// Between which columns of middles of samples a vertex lies (the upper half), and which rows.
-  using Cell = std::uint32_t;
-  static constexpr std::uint32_t k_anywhere = 0xffff;  // on one, or far off
-
-  static std::uint32_t place(float x) {
-    constexpr auto k_far = static_cast<float>(k_anywhere);
-    const float near = x > 0 ? (x < k_far ? x : k_far) : 0;  // 0 for what is not a number
-    const auto whole = static_cast<std::int32_t>(near);
-    // What is at 0 or far off is whole, too.
-    const auto known = -static_cast<std::uint32_t>(near != static_cast<float>(whole));
-    return (static_cast<std::uint32_t>(whole) | ~known) & k_anywhere;
-  }
-  /// Without branches, which would be guessed wrong.
-  static std::vector<Cell> cells_of(const Camera& camera, std::span<const Vec3> positions) {
-    std::vector<Cell> cells(positions.size());
-    for (std::size_t i = 0; i < positions.size(); ++i) {
-      const ScreenPoint p = camera.project(positions[i]);
-      cells[i] = place(p.x) << 16 | place(p.y);
-    }
-    return cells;
-  }
-  /// Whether three are surely between the same columns, or rows.
-  static bool is_one_cell(Cell a, Cell b, Cell c) {
-    // Without branches, which would be guessed wrong often.
-    const Cell differs = (a ^ b) | (a ^ c);
-    const auto same = [](bool is_same, bool is_known) {
-      return static_cast<unsigned>(is_same) & static_cast<unsigned>(is_known);
-    };
-    return (same(differs >> 16 == 0, a >> 16 != k_anywhere) |
-            same((differs & k_anywhere) == 0, (a & k_anywhere) != k_anywhere)) != 0;
-  }
-
   void add_look(const RenderOptions& options) {
     looks_.push_back(std::make_unique<Look>(options, camera_));
   }
@@ -164,7 +126,37 @@ Frame SurfacePicture::frame_of(const RenderOptions& options) {
 
 void SurfacePicture::draw(std::span<const Vec3> positions, std::span<const Triangle> triangles,
                           const PiecePaint& paint) {
-  impl_->draw(positions, triangles, paint);
+  SurfacePicture* const self = this;
+  draw_in_all({&self, 1}, positions, triangles, paint);
+}
+
+void SurfacePicture::draw_in_all(std::span<SurfacePicture* const> pictures,
+                                 std::span<const Vec3> positions,
+                                 std::span<const Triangle> triangles, const PiecePaint& paint) {
+  if (pictures.size() > SampleCells::k_most_cameras) {
+    draw_in_all(pictures.subspan(SampleCells::k_most_cameras), positions, triangles, paint);
+    pictures = pictures.first(SampleCells::k_most_cameras);
+  }
+  std::vector<const Camera*> cameras;
+  std::vector<std::vector<PiecePainter>> painters;
+  for (const SurfacePicture* const each : pictures) {
+    cameras.push_back(&each->impl_->camera());
+    painters.push_back(each->impl_->painters(paint));
+  }
+  // Of many vertices, as a sweep holds them, only those that are used.
+  if (positions.size() > triangles.size()) {
+    for (std::size_t i = 0; i < pictures.size(); ++i) {
+      for (const Triangle& t : triangles) pictures[i]->impl_->draw(positions, t, painters[i]);
+    }
+    return;
+  }
+  const SampleCells cells(cameras, positions);
+  for (const Triangle& t : triangles) {
+    for (unsigned left = cells.may_cover(t); left != 0; left &= left - 1) {
+      const auto i = static_cast<std::size_t>(std::countr_zero(left));
+      pictures[i]->impl_->draw(positions, t, painters[i]);
+    }
+  }
 }
 
 std::size_t SurfacePicture::add_look(ColourBy colour_by) {

@@ -78,12 +78,6 @@ void add_shapes(Table& table, const SurfaceFigures& input, const SurfaceFigures&
                    result.crossing_triangles);
 }
 
-/// A count of the summary's, if it is known.
-std::optional<std::uint64_t> count_of(const Json& topology, const char* name) {
-  if (!topology.is_object() || !topology.value(name, Json(nullptr)).is_number()) return {};
-  return static_cast<std::uint64_t>(std::max<std::int64_t>(0, topology.at(name)));
-}
-
 bool is_closed(const Json& topology) {
   return count_of(topology, "border_edges") == 0U && count_of(topology, "nonmanifold_edges") == 0U;
 }
@@ -123,9 +117,13 @@ std::string error_table(const Json& summary, const PageFigures* figures, double 
   if (has_quantiles) add("95 %", "p95");
   if (has_quantiles) add("99 %", "p99");
   add("max", "max");
+  if (const std::optional<double> proven = proven_bound(summary)) {
+    const std::string bound = number(*proven, "%.3g");
+    table.add({"proven for every point", "≤ " + bound, "≤ " + bound, ""});
+  }
   if (figures != nullptr) {
     const SurfaceError& e = figures->to_result;
-    if (!has_quantiles) {  // a run of an older version
+    if (!has_quantiles) {  // of a result that was measured in pieces
       table.add({"95 %", number(e.quantiles.p95 / diagonal, "%.3g"), k_none, ""});
       table.add({"99 %", number(e.quantiles.p99 / diagonal, "%.3g"), k_none, ""});
     }
@@ -152,8 +150,18 @@ std::string channel_table(const Json& summary) {
 
 }  // namespace
 
-std::string figure_tables(const RunPage& page) {
-  const Json summary = page.summary.empty() ? Json::object() : Json::parse(page.summary);
+std::optional<std::uint64_t> count_of(const Json& of, const char* name) {
+  if (!of.is_object() || !of.value(name, Json(nullptr)).is_number()) return {};
+  return static_cast<std::uint64_t>(std::max<std::int64_t>(0, of.at(name)));
+}
+
+std::optional<double> proven_bound(const Json& summary) {
+  const Json bound = summary.value("bound", Json(nullptr));
+  if (!bound.is_object() || bound.value("kind", "") != "certified") return {};
+  return bound.value("max", 0.0);
+}
+
+std::string figure_tables(const RunPage& page, const Json& summary) {
   const Manifest& m = page.manifest;
   const PageFigures* figures = page.figures ? &*page.figures : nullptr;
   Table table({"", "input", "result", "change"});

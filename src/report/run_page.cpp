@@ -59,7 +59,7 @@ class Page {
       : page_(page),
         summary_(page.summary.empty() ? Json::object() : Json::parse(page.summary)),
         output_(summary_.value("output", Json::object()).value("path", "")) {
-    if (!page.summary.empty()) times_ = parse_run_times(page.summary, "the run's summary");
+    if (!page.summary.empty()) times_ = run_times_of(summary_, "the run's summary");
   }
 
   std::string render() const {
@@ -68,7 +68,7 @@ class Page {
            escaped(title()) + "</title>\n<style>\n" + std::string(k_page_css) +
            "</style>\n</head>\n<body>\n" + head() + section("Input and result", views()) +
            section("Error", map()) + section("Where it is farthest off", zoom()) +
-           section("Parts", parts()) + section("Figures", figure_tables(page_)) +
+           section("Parts", parts()) + section("Figures", figure_tables(page_, summary_)) +
            section("Time", phases() + render_timeline(page_.manifest, page_.trace, times_)) +
            section("Again", command()) + model() + "</body>\n</html>\n";
   }
@@ -114,11 +114,18 @@ class Page {
       const Json error = summary_.value("error", Json(nullptr));
       if (error.is_object()) {
         text += card(number(error.value("rms", 0.0), "%.2g"),
-                     "RMS error, of the diagonal; max " + number(error.value("max", 0.0), "%.2g"));
+                     "RMS error, of the diagonal; " + greatest(error.value("max", 0.0)));
       }
       text += card(time_text(sum_of(phases_of(*times_))), "from input to result");
     }
     return text + "</div>\n";
+  }
+
+  /// Proven, or of the points that were looked at.
+  std::string greatest(double of_points) const {
+    const auto proven = proven_bound(summary_);
+    return proven ? "proven to be within " + number(*proven, "%.3g") + " everywhere"
+                  : "max " + number(of_points, "%.2g");
   }
 
   static std::string pair_of(const PicturePair& pair) {
@@ -253,8 +260,13 @@ std::string render_run_page(const RunPage& page) {
 
 RunResult parse_run_result(std::string_view text, std::string_view what) {
   try {
-    const Json output = Json::parse(text).at("output");
-    return {output.at("path").get<std::string>(), output.at("triangles").get<std::uint64_t>()};
+    const Json json = Json::parse(text);
+    const Json& output = json.at("output");
+    RunResult result{output.at("path").get<std::string>(),
+                     output.at("triangles").get<std::uint64_t>()};
+    const Json surface = json.value("surface", Json(nullptr));
+    if (surface.is_object()) result.crossing_triangles = count_of(surface, "crossing_triangles");
+    return result;
   } catch (const std::exception& error) {
     throw DataError(std::string(what) + ": no summary of a run: " + error.what());
   }

@@ -381,8 +381,13 @@ std::string warning_of(const RunSummary& s) {
 }
 
 RunTimes parse_run_times(std::string_view text, std::string_view what) {
+  const Json json = Json::parse(text, nullptr, false);
+  if (json.is_discarded()) throw DataError(std::string(what) + ": is no JSON");
+  return run_times_of(json, what);
+}
+
+RunTimes run_times_of(const Json& json, std::string_view what) {
   try {
-    const Json json = Json::parse(text);
     const Json& seconds = json.at("seconds");
     const Json& triangles = json.at("output").at("triangles");
     if (!triangles.is_number_unsigned()) throw DataError("its triangles are no count");

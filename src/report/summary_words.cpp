@@ -79,9 +79,8 @@ std::string text_of(const Distance& d, double diagonal) {
 
 Json to_json(const std::optional<NormalDeviation>& normals) {
   if (!normals) return nullptr;
-  return {{"rms_degrees", normals->rms},
-          {"p95_degrees", normals->p95},
-          {"over_90", normals->over_90}};
+  return {
+      {"rms_degrees", normals->rms}, {"p95_degrees", normals->p95}, {"over_90", normals->over_90}};
 }
 
 std::string text_of(const NormalDeviation& normals) {

@@ -4,6 +4,7 @@
 
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <meshfarm/geometry/distance.hpp>
@@ -62,6 +63,8 @@ void add_figures(Lines& lines, const std::string& label, const SurfaceFigures& f
 void add_topology(Lines& lines, const std::string& label, const Topology& welded,
                   const Topology& as_it_is);
 std::string text_of(const Distance& distance, double diagonal);
+/// Throws DataError naming `what`.
+RunTimes run_times_of(const Json& summary, std::string_view what);
 /// What is written to a file or a terminal; text that is no UTF-8 is replaced.
 std::string dumped(const Json& json);
 

@@ -83,6 +83,32 @@ class Camera {
   }
   const ViewAxes& axes() const { return axes_; }
 
+  /// What project() does, by rows of a matrix: a point p is at
+  /// x = middle_x + (dot(x, p) + x0) / d, y = middle_y + (dot(y, p) + y0) / d, where
+  /// d = dot(z, p) + z0 is above 0 before the viewer.
+  struct Rows {
+    Vec3 x, y, z;
+    double x0 = 0, y0 = 0, z0 = 1;
+    double middle_x = 0, middle_y = 0;
+    double scale = 1;  // the length of x, and of y
+  };
+  Rows rows() const {
+    Rows rows{axes_.right * scale_,
+              axes_.up * -scale_,
+              {},
+              -scale_ * eye_.x,
+              scale_ * eye_.y,
+              1,
+              centre_x_,
+              centre_y_,
+              scale_};
+    if (projection_ == Projection::perspective) {
+      rows.z = axes_.toward * -1;
+      rows.z0 = eye_.z;
+    }
+    return rows;
+  }
+
  private:
   friend class Framing;
   explicit Camera(const ViewAxes& axes) : axes_(axes) {}

@@ -39,6 +39,10 @@ class SurfacePicture {
   /// From any number of threads at once.
   void draw(std::span<const Vec3> positions, std::span<const Triangle> triangles,
             const PiecePaint& paint = {});
+  /// The same in several pictures, which takes less time than one after the other.
+  static void draw_in_all(std::span<SurfacePicture* const> pictures,
+                          std::span<const Vec3> positions, std::span<const Triangle> triangles,
+                          const PiecePaint& paint = {});
   /// Develops a look, without a legend. Call this last.
   Texels finish(std::size_t look = 0);
 

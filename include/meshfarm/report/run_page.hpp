@@ -71,10 +71,11 @@ struct RunPage {
 /// One HTML page that loads nothing. The same run gives the same page, but for times.
 std::string render_run_page(const RunPage& page);
 
-/// Where a run's result went: of its summary as JSON.
+/// Where a run's result went, and what is known of it: of its summary as JSON.
 struct RunResult {
   std::string path;
   std::uint64_t triangles = 0;
+  std::optional<std::uint64_t> crossing_triangles = {};
 };
 /// Throws DataError naming `what`.
 RunResult parse_run_result(std::string_view text, std::string_view what);

@@ -6,7 +6,6 @@
 #include <doctest/doctest.h>
 
 #include <meshfarm/divide/cut.hpp>
-
 #include <meshfarm/geometry/value_error.hpp>
 
 #include "pipeline/error_meter.hpp"
@@ -118,8 +117,7 @@ TEST_CASE("of triangles of unequal size normals count by area") {
   const MeasuredError told = measure(sheet, leaning, Scheme::cut);
   const double degrees = std::atan(0.02) * 180 / 3.14159265358979323846;
   REQUIRE(told.to_output_normals);
-  CHECK(told.to_output_normals->rms ==
-        doctest::Approx(degrees * std::sqrt(1.0 / 3)).epsilon(0.03));
+  CHECK(told.to_output_normals->rms == doctest::Approx(degrees * std::sqrt(1.0 / 3)).epsilon(0.03));
   CHECK(told.to_output_normals->p95 == doctest::Approx(degrees).epsilon(0.001));
 }
 

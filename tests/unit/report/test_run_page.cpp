@@ -90,6 +90,27 @@ TEST_CASE("a page of a run without pictures has its figures and times") {
   CHECK_FALSE(page_has(page, "<script"));
 }
 
+TEST_CASE("a bound that is proven is told as one, and one that is not is none") {
+  RunPage run = some_page();
+  CHECK_FALSE(page_has(render_run_page(run), "proven"));
+  const std::string rest = run.summary.substr(1);
+  run.summary = R"({"bound": {"kind": "sampled", "max": 0.011},)" + rest;
+  CHECK_FALSE(page_has(render_run_page(run), "proven"));
+  run.summary = R"({"bound": {"kind": "certified", "max": 0.012},)" + rest;
+  const std::string page = render_run_page(run);
+  CHECK(page_has(page, "proven to be within 0.012 everywhere"));
+  CHECK(page_has(page, "<td>proven for every point</td><td>≤ 0.012</td><td>≤ 0.012</td>"));
+}
+
+TEST_CASE("what a run counted of its result need not be counted again") {
+  CHECK_FALSE(parse_run_result(k_summary, "it").crossing_triangles);
+  const std::string rest = std::string(k_summary).substr(1);
+  CHECK(parse_run_result(R"({"surface": {"crossing_triangles": 7},)" + rest, "it")
+            .crossing_triangles == 7U);
+  CHECK_FALSE(parse_run_result(R"({"surface": {"crossing_triangles": null},)" + rest, "it")
+                  .crossing_triangles);
+}
+
 TEST_CASE("a page with pictures loads nothing") {
   RunPage run = some_page();
   run.scene = some_scene();
