@@ -204,7 +204,7 @@ class Page {
   std::string parts() const {
     if (!page_.scene || page_.scene->parts.png.empty()) return {};
     const Manifest& m = page_.manifest;
-    return "<div class=\"pair\">\n" +
+    return "<div class=\"pair aside\">\n" +
            figure_of(page_.scene->parts, "the parts of the input", "the parts of the input") +
            "<div>" +
            paragraph(grouped(m.parts.size()) + (m.scheme == Scheme::stream ? " slabs" : " parts") +
