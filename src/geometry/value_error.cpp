@@ -13,6 +13,7 @@
 #include "geometry/area_sampler.hpp"
 #include "geometry/bvh.hpp"
 #include "geometry/distance_sums.hpp"
+#include "geometry/farthest_point.hpp"
 #include "geometry/random_unit.hpp"
 #include "geometry/turned.hpp"
 
@@ -54,6 +55,7 @@ struct ChunkSums {
   DistanceSums distance;
   std::vector<ValueSums> values;
   std::uint64_t other_labels = 0;
+  FarPoint farthest;
 };
 
 bool all_finite(std::span<const double> values) {
@@ -85,7 +87,7 @@ class Comparer {
 
   /// Fills in those samples that are in the chunk.
   ChunkSums compare_chunk(AreaSampler sampler, std::uint64_t chunk, Sampled& sampled) const {
-    ChunkSums sums{{}, std::vector<ValueSums>(groups_.size()), 0};
+    ChunkSums sums{{}, std::vector<ValueSums>(groups_.size()), 0, {}};
     std::vector<double> here(columns_);
     std::vector<double> there(columns_);
     const std::uint64_t samples = sampled.distances.size();
@@ -98,6 +100,9 @@ class Comparer {
       sampled.distances[n] = std::sqrt(nearest.squared);
       sums.distance.add({nearest.squared, sampled.distances[n], nearest.squared});
       const auto source = static_cast<std::uint32_t>(sampler.triangle());
+      if (sampled.distances[n] > sums.farthest.distance) {
+        sums.farthest = {sampled.distances[n], source};
+      }
       if (has_labels_ && from_.labels[source] != to_.labels[guess]) ++sums.other_labels;
       blend(from_, source, random_shares(n), here);
       const Triangle& t = to_.mesh.triangles[guess];
@@ -183,13 +188,16 @@ SurfaceError measure_error(const ValuedMesh& from, const ValuedMesh& to,
   DistanceSums distance;
   std::vector<ValueSums> sums(groups.size());
   std::uint64_t other_labels = 0;
+  std::vector<FarPoint> far;
   for (const ChunkSums& chunk : chunks) {
     distance.add(chunk.distance);
+    far.push_back(chunk.farthest);
     other_labels += chunk.other_labels;
     for (std::size_t g = 0; g < groups.size(); ++g) sums[g].add(chunk.values[g]);
   }
   SurfaceError error;
   error.distance = distance.over(options.samples);
+  error.distance.max = find_farthest(from.mesh, index.bvh(), far, options.threads);
   if (with_index) with_index(index);
   error.quantiles = quantiles_of(sampled.distances);
   error.normals = deviation_of(sampled.degrees);

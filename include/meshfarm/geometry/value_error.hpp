@@ -77,11 +77,12 @@ struct SurfaceError {
   double other_labels = 0;
 };
 
-/// Measures distances as measure_distance does, to the bit, and at the same points by how much the
-/// values and labels differ: values blended linearly over the triangle, or as ValuesAt tells, at
-/// the point and at the nearest point of `to`. Memory and errors are those of measure_distance; 12
-/// bytes more a sample. What else is to be measured with the index of the mesh of `to` may be done
-/// in `with_index`.
+/// Measures distances as measure_distance does, to the bit, but for the greatest: that is searched
+/// for at all corners of triangles, and in the triangles that are farthest. At the same points
+/// measures by how much the values and labels differ: values blended linearly over the triangle, or
+/// as ValuesAt tells, at the point and at the nearest point of `to`. Memory and errors are those of
+/// measure_distance; 12 bytes more a sample. What else is to be measured with the index of the mesh
+/// of `to` may be done in `with_index`.
 SurfaceError measure_error(const ValuedMesh& from, const ValuedMesh& to,
                            std::span<const ValueGroup> groups, const DistanceOptions& options,
                            const std::function<void(const TriangleIndex&)>& with_index = {});
