@@ -12,11 +12,11 @@
 namespace meshfarm {
 namespace {
 
-constexpr std::size_t k_chunk = 4096;    // triangles; fixed, as is what is found in one
-constexpr std::size_t k_searched = 200;  // triangles
-constexpr int k_first_steps = 10;        // along a side
-constexpr int k_steps = 5;
-constexpr int k_rounds = 5;
+constexpr std::size_t k_corner_chunk = 4096;  // triangles; fixed, as is what is found in one
+constexpr std::size_t k_searched = 200;       // triangles
+constexpr int k_first_steps = 10;             // along a side
+constexpr int k_next_steps = 5;
+constexpr int k_search_rounds = 5;
 
 bool is_farther(const FarPoint& a, const FarPoint& b) {
   return a.distance != b.distance ? a.distance > b.distance : a.triangle < b.triangle;
@@ -31,8 +31,8 @@ class TriangleSearch {
   double farthest() {
     look_round(0, 0, 1, k_first_steps);
     double side = 2.0 / k_first_steps;
-    for (int round = 0; round < k_rounds; ++round, side *= 2.0 / k_steps) {
-      look_round(at_[0] - side / 2, at_[1] - side / 2, side, k_steps);
+    for (int round = 0; round < k_search_rounds; ++round, side *= 2.0 / k_next_steps) {
+      look_round(at_[0] - side / 2, at_[1] - side / 2, side, k_next_steps);
     }
     return std::sqrt(farthest_);
   }
@@ -73,12 +73,12 @@ class TriangleSearch {
 /// Of each chunk of triangles the corner that is farthest, if it is farther than `least`.
 std::vector<FarPoint> far_corners(const Mesh& from, const Bvh& to, double least, unsigned threads) {
   const std::size_t count = from.triangles.size();
-  std::vector<FarPoint> found((count + k_chunk - 1) / k_chunk);
+  std::vector<FarPoint> found((count + k_corner_chunk - 1) / k_corner_chunk);
   parallel_for(found.size(), threads, [&](std::uint64_t chunk) {
     double farthest = least * least;
     std::uint32_t guess = 0;
-    const std::size_t end = std::min(count, (chunk + 1) * k_chunk);
-    for (std::size_t i = chunk * k_chunk; i < end; ++i) {
+    const std::size_t end = std::min(count, (chunk + 1) * k_corner_chunk);
+    for (std::size_t i = chunk * k_corner_chunk; i < end; ++i) {
       for (const std::uint32_t vertex : from.triangles[i]) {
         const Bvh::Nearest nearest = to.nearest(from.positions[vertex], guess, farthest);
         guess = nearest.triangle;

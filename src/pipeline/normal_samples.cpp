@@ -11,7 +11,7 @@ namespace {
 constexpr double k_least_points = 2'000;
 constexpr double k_most_points = 20'000;
 constexpr double k_points_a_triangle = 0.005;
-constexpr std::uint64_t k_most_triangles = 250'000;
+constexpr std::uint64_t k_most_sampled = 250'000;
 
 std::vector<Triangle> every(std::uint64_t step, std::span<const Triangle> triangles) {
   std::vector<Triangle> some;
@@ -23,7 +23,7 @@ std::vector<Triangle> every(std::uint64_t step, std::span<const Triangle> triang
 }  // namespace
 
 NormalSamples::NormalSamples(const Manifest& manifest)
-    : step_((manifest.triangles() + k_most_triangles - 1) / k_most_triangles),
+    : step_((manifest.triangles() + k_most_sampled - 1) / k_most_sampled),
       parts_(manifest.parts.size() + 1) {
   const auto triangles = static_cast<double>(std::max<std::uint64_t>(1, manifest.triangles()));
   const double points = k_points_a_triangle * triangles;

@@ -13,9 +13,8 @@ namespace {
 using Floats = float __attribute__((vector_size(16)));
 using Ints = std::int32_t __attribute__((vector_size(16)));
 
-constexpr std::size_t k_lanes = SampleCells::k_most_cameras;
-constexpr std::size_t k_block = 512;  // vertices that are measured from the first of them
-constexpr double k_unit = 0x1p-24;    // what a float is rounded by, relatively
+constexpr std::size_t k_from_first = 512;  // vertices that are measured from the first of them
+constexpr double k_unit = 0x1p-24;         // what a float is rounded by, relatively
 constexpr std::int32_t k_no_cell = 0xffff;
 
 /// Camera::Rows of all cameras, one a lane. Lanes without a camera see all at one place.
@@ -90,9 +89,9 @@ SampleCells::SampleCells(std::span<const Camera* const> cameras, std::span<const
     : cells_(std::make_unique_for_overwrite<Lanes[]>(positions.size())) {
   assert(cameras.size() <= k_most_cameras);
   const LaneRows rows = rows_of(cameras);
-  std::array<std::array<float, 3>, k_block> from_first;
-  for (std::size_t begin = 0; begin < positions.size(); begin += k_block) {
-    const std::size_t count = std::min(k_block, positions.size() - begin);
+  std::array<std::array<float, 3>, k_from_first> from_first;
+  for (std::size_t begin = 0; begin < positions.size(); begin += k_from_first) {
+    const std::size_t count = std::min(k_from_first, positions.size() - begin);
     const Vec3 first = positions[begin];
     double reach = 0;  // not a number stays without a cell by itself
     for (std::size_t i = 0; i < count; ++i) {

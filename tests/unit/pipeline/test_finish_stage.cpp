@@ -127,9 +127,8 @@ TEST_CASE("pieces make a closed surface of the count, as good as the sink's") {
   CHECK(made.error.to_output_quantiles->p95 ==
         doctest::Approx(forth_all.quantiles.p95).epsilon(0.05));
   for (const ErrorOfPiece& each : made.pieces) {
-    for (const auto& [distance, quantiles] :
-         {std::pair(each.to_output, each.to_output_quantiles),
-          std::pair(each.to_input, each.to_input_quantiles)}) {
+    for (const auto& [distance, quantiles] : {std::pair(each.to_output, each.to_output_quantiles),
+                                              std::pair(each.to_input, each.to_input_quantiles)}) {
       CHECK(distance.mean < quantiles.p95);
       CHECK(quantiles.p95 < quantiles.p99);
       CHECK(quantiles.p99 <= distance.max);

@@ -39,7 +39,7 @@ struct Told {
   std::uint64_t none = 0;
 };
 
-Told look(const Mesh& mesh, const std::vector<Camera>& cameras) {
+Told looked_at(const Mesh& mesh, const std::vector<Camera>& cameras) {
   std::vector<const Camera*> all;
   for (const Camera& each : cameras) all.push_back(&each);
   const SampleCells cells(all, mesh.positions);
@@ -67,8 +67,8 @@ TEST_CASE("triangles are left out only where they cover no sample, and nearly al
     CAPTURE(offset.x);
     Mesh mesh = sphere;
     for (Vec3& p : mesh.positions) p = p + offset;
-    const Told told = look(mesh, {camera_of(mesh, {.azimuth = 25, .elevation = 18}, 90),
-                                  camera_of(mesh, flat, 120), camera_of(mesh, {}, 60)});
+    const Told told = looked_at(mesh, {camera_of(mesh, {.azimuth = 25, .elevation = 18}, 90),
+                                       camera_of(mesh, flat, 120), camera_of(mesh, {}, 60)});
     CHECK(told.wrong == 0);
     CHECK(told.none > 40'000);
     CHECK(told.in_vain * 50 < told.none);
@@ -84,5 +84,5 @@ TEST_CASE("what is not a number, behind the viewer or off the picture is in doub
   mesh.positions[20] = mesh.positions[20] * 1e9;
   mesh.positions[30] = mesh.positions[30] * -40;
   mesh.positions[33] = {100, 100, 100};
-  CHECK(look(mesh, cameras).wrong == 0);
+  CHECK(looked_at(mesh, cameras).wrong == 0);
 }
