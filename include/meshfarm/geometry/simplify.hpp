@@ -148,6 +148,9 @@ class Simplifier {
   bool is_held_by_topology() const;
   /// Whether more was refused to keep the topology than collapsed, of what was done in order.
   bool is_hampered_by_topology() const;
+  /// Whether of what the last reduce() tried one edge in a hundred or more was refused to keep the
+  /// topology, or edges collapse in order by now, of which is_hampered_by_topology() tells.
+  bool is_slowed_by_topology() const;
   std::uint64_t dropped_degenerate() const;
   std::uint64_t dropped_duplicate() const;
   /// Triangles of the input that faced another way than most of their piece, and were turned.

@@ -13,8 +13,8 @@ namespace {
 constexpr double k_pass_share = 0.35;
 
 // As long as there are so many times the triangles of the goal, more may be taken at once: the
-// error is made later.
-constexpr std::uint64_t k_far = 4;
+// error is made later. From 4 times on, it is 1 % more at a tenth of the triangles.
+constexpr std::uint64_t k_far = 8;
 constexpr double k_far_share = 0.5;
 
 // A pass that removes less than this part of the triangles finds that what it ranks is refused.
@@ -26,6 +26,14 @@ constexpr double k_least_ranked = 0.05;
 constexpr std::uint64_t k_near = 2;
 constexpr double k_near_of_large = 1.25;
 constexpr std::uint64_t k_large = 50'000;
+
+// Of the collapses: refused to keep the topology. On smooth surfaces it is one in a thousand.
+constexpr double k_slowed = 0.01;
+
+// Refused in a pass, of the triangles: what is left that is cheap is not worth an order, which
+// takes long from many triangles on. With 10,000 a body model has 2 % more error.
+constexpr double k_little_refused = 0.01;
+constexpr std::uint64_t k_many = 25'000;
 
 // With a bound, the passes end when it may be near for this part of the collapses.
 constexpr double k_bounded = 0.2;
@@ -49,6 +57,7 @@ RankedPasses::RankedPasses(WorkingMesh& mesh, const SurfaceBound* bound)
 
 RankedPasses::End RankedPasses::reduce(const SimplifyGoal& goal,
                                        const std::function<bool(std::uint64_t)>& progress) {
+  all_collapses_ = all_refused_for_topology_ = 0;
   while (mesh_.is_above(goal.triangles) && !is_near(goal)) {
     mesh_.begin_pass();
     ranking_.begin_pass({mesh_.mesh().positions, mesh_.mesh().triangles, mesh_.flags(),
@@ -58,6 +67,8 @@ RankedPasses::End RankedPasses::reduce(const SimplifyGoal& goal,
     const Pass pass = plan(goal);
     const std::uint64_t before = mesh_.triangles();
     const std::uint64_t removed = run(goal, pass);
+    all_collapses_ += collapses_;
+    all_refused_for_topology_ += refused_for_topology_;
     if (progress && !progress(mesh_.triangles())) return End::told;
     // What is cheap is refused: what is dear is not to be taken for it.
     if (refused_for_topology_ > collapses_) return End::dead_end;
@@ -73,6 +84,17 @@ RankedPasses::End RankedPasses::reduce(const SimplifyGoal& goal,
     }
   }
   return End::near;
+}
+
+bool RankedPasses::is_slowed_by_topology() const {
+  return static_cast<double>(all_refused_for_topology_) >
+         k_slowed * static_cast<double>(all_collapses_);
+}
+
+bool RankedPasses::refuses_little() const {
+  const std::uint64_t left = mesh_.triangles();
+  return left > k_many &&
+         static_cast<double>(tried_ - collapses_) <= k_little_refused * static_cast<double>(left);
 }
 
 bool RankedPasses::is_near(const SimplifyGoal& goal) const {
@@ -114,11 +136,12 @@ std::uint64_t RankedPasses::run(const SimplifyGoal& goal, const Pass& pass) {
   if (mesh_.avoids_crossings()) {
     guard.start(mesh_.state(), mesh_.mesh().triangles, CrossingGuard::Where::thin_walls);
   }
-  collapses_ = refused_for_topology_ = refused_for_bound_ = 0;
+  tried_ = collapses_ = refused_for_topology_ = refused_for_bound_ = 0;
   for (std::uint32_t first = 0; first < vertices && limits.triangles > 0; first += pass.block) {
     const std::uint32_t last = std::min(vertices, first + pass.block);
     for (const RankedEdge& e : ranking_.cheapest(first, last, {pass.limit, pass.max_cost})) {
       if ((touched[e.a] | touched[e.b]) != 0) continue;
+      ++tried_;
       const Collapse collapse = judge.judge(e.a, e.b, limits);
       refused_for_topology_ += collapse.by_topology ? 1 : 0;
       if (collapse.triangles == 0) continue;

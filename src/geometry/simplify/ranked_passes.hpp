@@ -32,6 +32,10 @@ class RankedPasses {
   RankedPasses(WorkingMesh& mesh, const SurfaceBound* bound);
 
   End reduce(const SimplifyGoal& goal, const std::function<bool(std::uint64_t)>& progress);
+  /// Simplifier::is_slowed_by_topology, of the last reduce().
+  bool is_slowed_by_topology() const;
+  /// Whether the last pass could do nearly all that it tried, and there are many triangles left.
+  bool refuses_little() const;
 
  private:
   struct Pass {
@@ -53,9 +57,12 @@ class RankedPasses {
   // Ranks by bounds, so that what is flat goes before what is nearly flat. Where little of that is
   // left most of what ranks low is dearer, and refused.
   bool ranks_by_bounds_ = true;
-  std::uint64_t collapses_ = 0;             // of the last pass
-  std::uint64_t refused_for_topology_ = 0;  // in the last pass
-  std::uint64_t refused_for_bound_ = 0;     // in the last pass
+  std::uint64_t all_collapses_ = 0;             // of the last reduce()
+  std::uint64_t all_refused_for_topology_ = 0;  // in the last reduce()
+  std::uint64_t tried_ = 0;                     // edges in the last pass
+  std::uint64_t collapses_ = 0;                 // of the last pass
+  std::uint64_t refused_for_topology_ = 0;      // in the last pass
+  std::uint64_t refused_for_bound_ = 0;         // in the last pass
 };
 
 }  // namespace meshfarm

@@ -1,5 +1,6 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
+#include <cmath>
 #include <utility>
 
 #include <meshfarm/geometry/simplify.hpp>
@@ -16,7 +17,7 @@ namespace {
 constexpr double k_least_rough = 0.1;
 
 // Where passes have come to the end of what a cost allows, and have left no more than this of the
-// triangles, few are refused.
+// triangles, few are refused. Nor are many if the last pass could do nearly all that it tried.
 constexpr double k_healthy = 0.66;
 
 using Progress = std::function<bool(std::uint64_t)>;
@@ -46,7 +47,7 @@ struct Simplifier::Impl {
       came_to = goes_on ? passes.reduce(goal, progress) : RankedPasses::End::told;
     }
     const bool is_told = came_to == RankedPasses::End::told && bound == nullptr;
-    if (came_to == RankedPasses::End::exhausted && is_healthy(before)) {
+    if (came_to == RankedPasses::End::exhausted && is_healthy(before, goal)) {
       exhausted_cost = goal.max_cost;
     } else if (!is_told && mesh.is_above(goal.triangles)) {
       if (const auto cost = end.reduce(goal, progress)) exhausted_cost = *cost;
@@ -67,9 +68,10 @@ struct Simplifier::Impl {
     return true;
   }
 
-  bool is_healthy(std::uint64_t before) const {
-    return topology != TopologyMode::simplify && bound == nullptr &&
-           static_cast<double>(mesh.triangles()) < k_healthy * static_cast<double>(before);
+  bool is_healthy(std::uint64_t before, const SimplifyGoal& goal) const {
+    if (topology == TopologyMode::simplify || bound != nullptr) return false;
+    if (std::isfinite(goal.max_cost) && passes.refuses_little()) return true;
+    return static_cast<double>(mesh.triangles()) < k_healthy * static_cast<double>(before);
   }
 
   WorkingMesh mesh;
@@ -114,6 +116,9 @@ bool Simplifier::is_hampered_by_topology() const {
 }
 bool Simplifier::is_held_by_topology() const {
   return impl_->end.is_held();
+}
+bool Simplifier::is_slowed_by_topology() const {
+  return impl_->end.has_begun() || impl_->passes.is_slowed_by_topology();
 }
 std::uint64_t Simplifier::dropped_degenerate() const {
   return impl_->mesh.dropped().degenerate;

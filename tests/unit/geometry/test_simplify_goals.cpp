@@ -48,3 +48,33 @@ TEST_CASE("what is kept on the way is the mesh as it was, and changes no result"
   CHECK(kept[1].triangles.size() == 500);
   CHECK(measure_topology(kept[1]).euler == 0);
 }
+
+TEST_CASE("a cost that leaves little to do is no reason to go on in order") {
+  Simplifier smooth(test::torus(400, 400), {});
+  smooth.reduce({.triangles = 110'000, .last_triangles = 1000});
+  const double reached = smooth.pass_cost();
+  const auto left = [&] { return static_cast<double>(smooth.triangles()); };
+  const double before = left();
+  smooth.reduce({.triangles = 1000, .max_cost = 0.9 * reached});
+  CHECK(left() > 0.95 * before);
+  CHECK_FALSE(smooth.is_slowed_by_topology());
+  smooth.reduce({.triangles = 1000, .max_cost = 4 * reached});
+  CHECK(left() < 0.9 * before);
+  CHECK_FALSE(smooth.is_slowed_by_topology());
+  smooth.reduce({.triangles = 1000});  // the last of it in order
+  CHECK(smooth.triangles() == 1000);
+  CHECK(smooth.is_slowed_by_topology());
+}
+
+TEST_CASE("it is told where the topology refuses much") {
+  Mesh specks;
+  for (int i = 0; i < 2000; ++i) {
+    Mesh speck = test::octahedron();
+    for (Vec3& p : speck.positions) p = p + Vec3{3.0 * i, 0, 0};
+    test::append(specks, speck);
+  }
+  Simplifier simplifier(specks, {.lines = {.topology = TopologyMode::keep_while_fair}});
+  CHECK_FALSE(simplifier.is_slowed_by_topology());
+  simplifier.reduce({.triangles = 9000, .last_triangles = 100});
+  CHECK(simplifier.is_slowed_by_topology());
+}
