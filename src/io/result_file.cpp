@@ -16,13 +16,13 @@
 // Columns are labels, u32 a triangle, then texture coordinates, 6 x f32 a triangle, if it says so.
 // A rung's vertices are the boundary vertices, then those of its blocks. Of a block's vertices
 // there are at most 65536, and as many triangles.
-//   Version 3. Version 1 was sealed, with the counts in front and one set of samples; version 2 had
-//   nothing beside.
+//   Version 4. Version 1 was sealed, with the counts in front and one set of samples; version 2 had
+//   nothing beside; in version 3 the summary did not say whether a ladder goes on.
 // The summary that travels with the message:
-//   dropped degenerate u64 | dropped duplicate u64 | held by topology u8 | turned u64 |
-//   rungs u32 | rungs as above | of a part that was built by the same job: vertices u64 |
-//   triangles u64 | boundary vertices u32 | coincident vertices u64 | dropped degenerate u64 |
-//   coincident corners u64 | what is beside (offset u64 | size u64 | checksum u64)
+//   dropped degenerate u64 | dropped duplicate u64 | held by topology u8 | goes on u8 |
+//   turned u64 | rungs u32 | rungs as above | of a part that was built by the same job: vertices
+//   u64 | triangles u64 | boundary vertices u32 | coincident vertices u64 | dropped degenerate u64
+//   | coincident corners u64 | what is beside (offset u64 | size u64 | checksum u64)
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -44,7 +44,7 @@ namespace {
 
 constexpr FileKind k_result_magic = {'M', 'F', 'R', 'M'};
 constexpr FileKind k_result_kind = {'R', 'S', 'L', 'T'};
-constexpr std::uint32_t k_result_version = 3;
+constexpr std::uint32_t k_result_version = 4;
 constexpr std::uint32_t k_result_byte_order = 0x01020304;
 constexpr std::uint32_t k_max_rungs = 256;
 constexpr std::uint32_t k_most_in_result_block = 65536;
@@ -259,6 +259,7 @@ std::string encode_summary(const ResultSummary& summary) {
   out.put(summary.dropped_degenerate);
   out.put(summary.dropped_duplicate);
   out.put(static_cast<std::uint8_t>(summary.held_by_topology ? 1 : 0));
+  out.put(static_cast<std::uint8_t>(summary.goes_on ? 1 : 0));
   out.put(summary.turned);
   put_rungs(out, summary.rungs);
   if (summary.built) {
@@ -280,8 +281,10 @@ ResultSummary decode_summary(std::string_view bytes, std::string_view what) {
   summary.dropped_degenerate = in.get<std::uint64_t>();
   summary.dropped_duplicate = in.get<std::uint64_t>();
   const auto held = in.get<std::uint8_t>();
-  if (held > 1) in.fail("impossible summary");
+  const auto goes_on = in.get<std::uint8_t>();
+  if (held > 1 || goes_on > 1) in.fail("impossible summary");
   summary.held_by_topology = held == 1;
+  summary.goes_on = goes_on == 1;
   summary.turned = in.get<std::uint64_t>();
   summary.rungs = get_rungs(in);
   if (in.remaining() > 0) summary.built = get_built(in);

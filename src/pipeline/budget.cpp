@@ -5,6 +5,7 @@
 #include <limits>
 
 #include <meshfarm/pipeline/budget.hpp>
+#include <meshfarm/pipeline/simplify_job.hpp>
 
 namespace meshfarm {
 namespace {
@@ -38,18 +39,24 @@ std::uint32_t rung_at(std::span<const Rung> ladder, std::int32_t level) {
   return rung;
 }
 
-std::int32_t common_level(std::span<const std::vector<Rung>> ladders, std::uint64_t wanted) {
+std::uint64_t free_triangles_at(const ResultSummary& part, std::int32_t level) {
+  const Rung& rung = part.rungs[rung_at(part.rungs, level)];
+  if (!part.goes_on || level <= part.rungs.back().level) return rung.free_triangles;
+  auto left = static_cast<double>(rung.free_triangles);
+  for (std::int32_t below = rung.level; below < level; ++below) left /= k_level_step;
+  return static_cast<std::uint64_t>(left);
+}
+
+std::int32_t common_level(std::span<const ResultSummary> parts, std::uint64_t wanted) {
   std::int32_t lowest = std::numeric_limits<std::int32_t>::max();
   std::int32_t highest = std::numeric_limits<std::int32_t>::min();
-  for (const std::vector<Rung>& ladder : ladders) {
-    lowest = std::min(lowest, ladder.front().level);
-    highest = std::max(highest, ladder.back().level);
+  for (const ResultSummary& part : parts) {
+    lowest = std::min(lowest, part.rungs.front().level);
+    highest = std::max(highest, part.rungs.back().level);
   }
   for (std::int32_t level = highest; level > lowest; --level) {
     std::uint64_t free = 0;
-    for (const std::vector<Rung>& ladder : ladders) {
-      free += ladder[rung_at(ladder, level)].free_triangles;
-    }
+    for (const ResultSummary& part : parts) free += free_triangles_at(part, level);
     if (free >= wanted) return level;
   }
   return lowest;

@@ -76,9 +76,9 @@ void ClimbStage::stand_for_stream(std::uint32_t part) {
 
 std::vector<std::uint32_t> ClimbStage::choose_level() {
   if (climbed_.empty()) return {};
-  std::vector<std::vector<Rung>> ladders;
-  for (const std::uint32_t part : climbed_) ladders.push_back(results_.summaries[part].rungs);
-  results_.level = common_level(ladders, static_cast<std::uint64_t>(jobs_.wanted()));
+  std::vector<ResultSummary> climbed;
+  for (const std::uint32_t part : climbed_) climbed.push_back(results_.summaries[part]);
+  results_.level = common_level(climbed, static_cast<std::uint64_t>(jobs_.wanted()));
   if (results_.topology == TopologyMode::keep_while_fair && is_unfair()) {
     keep_coarsest();
     results_.topology = TopologyMode::simplify;
@@ -102,9 +102,11 @@ bool ClimbStage::is_unfair() const {
   double held = 0;
   double least = 0;
   bool any = false;
-  for (const ResultSummary& result : results_.summaries) {
+  for (std::uint32_t p = 0; p < results_.summaries.size(); ++p) {
+    const ResultSummary& result = results_.summaries[p];
     const Rung& last = result.rungs.back();
-    least += static_cast<double>(last.free_triangles);
+    const auto left = static_cast<double>(last.free_triangles);
+    least += result.goes_on ? std::min(left, jobs_.least_of(p)) : left;
     if (!result.held_by_topology) continue;
     any = true;
     if (last.level < results_.level) held += static_cast<double>(last.free_triangles);

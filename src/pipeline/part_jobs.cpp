@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include <meshfarm/pipeline/budget.hpp>
+#include <meshfarm/pipeline/finished_pieces.hpp>
 #include <meshfarm/pipeline/sweep_job.hpp>
 
 namespace meshfarm {
@@ -47,7 +48,10 @@ std::uint64_t memory_to_build(std::uint64_t average_triangles) {
 
 PartJobs::PartJobs(const Manifest& manifest, const RunOptions& options,
                    const BundlesOfMesh* bundles)
-    : manifest_(manifest), options_(options), bundles_(bundles) {}
+    : manifest_(manifest),
+      options_(options),
+      bundles_(bundles),
+      finishes_here_(!why_finish_here(manifest, options).empty()) {}
 
 std::uint64_t PartJobs::target() const {
   return target_triangles(manifest_, options_);
@@ -84,7 +88,8 @@ Job PartJobs::climb(std::uint32_t part, double headroom, TopologyMode topology) 
   if (manifest_.scheme == Scheme::cut) {
     set_share(parameters, share_rule(headroom), entry.shared_triangles, entry.shared_boundary);
   } else {
-    const ShareRule rule{ratio(), headroom, manifest_.triangles(), all_samples(options_)};
+    const ShareRule rule{ratio(), headroom, end_of_ladders(), manifest_.triangles(),
+                         all_samples(options_)};
     set_share(parameters, rule, entry.triangles, entry.boundary_vertices);
   }
   if (by_error()) set_error_bound(parameters, part);
@@ -125,7 +130,17 @@ ShareRule PartJobs::share_rule(double headroom) const {
   if (options_.triangles != 0) ratio = static_cast<double>(options_.triangles) / some;
   if (manifest_.uvs) ratio = static_cast<double>(target()) / some;
   if (by_error()) ratio = 1;
-  return {std::min(1.0, ratio), headroom, all, all_samples(options_)};
+  return {std::min(1.0, ratio), headroom, end_of_ladders(), all, all_samples(options_)};
+}
+
+/// Of what is kept for the finish. A finish in pieces asks how the counts fall down to the target.
+double PartJobs::end_of_ladders() const {
+  constexpr double k_of_target = 0.5;
+  return finishes_here_ ? k_level_step : k_of_target;
+}
+
+double PartJobs::least_of(std::uint32_t part) const {
+  return ratio() * static_cast<double>(manifest_.parts[part].triangles) / k_shares_per_floor;
 }
 
 void PartJobs::set_error_bound(SimplifyParameters& parameters, std::uint32_t part) const {

@@ -34,6 +34,8 @@ class PartJobs {
   /// Whether levels are to be found: the same ratio everywhere needs none.
   bool climbs_samples() const { return by_error() || options_.allocation == Allocation::threshold; }
   bool is_sampled(std::uint32_t part) const;
+  /// The triangles that any ladder of this part leaves.
+  double least_of(std::uint32_t part) const;
 
   /// Climbs the ladder of a part, or of a sample of a long stream, from so many times its even
   /// share.
@@ -48,10 +50,12 @@ class PartJobs {
   void set_error_bound(SimplifyParameters& parameters, std::uint32_t part) const;
   Job build_and_climb(std::uint32_t part, double headroom, SimplifyParameters parameters) const;
   ShareRule share_rule(double headroom) const;
+  double end_of_ladders() const;
 
   const Manifest& manifest_;
   const RunOptions& options_;
   const BundlesOfMesh* bundles_;
+  bool finishes_here_;  // the sink, as one mesh
 };
 
 }  // namespace meshfarm

@@ -23,9 +23,7 @@ struct PartResults {
   }
   std::uint64_t free_triangles(std::int32_t at_level) const {
     std::uint64_t sum = 0;
-    for (const ResultSummary& each : summaries) {
-      sum += each.rungs[rung_at(each.rungs, at_level)].free_triangles;
-    }
+    for (const ResultSummary& each : summaries) sum += free_triangles_at(each, at_level);
     return sum;
   }
 

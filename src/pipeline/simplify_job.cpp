@@ -20,17 +20,16 @@
 namespace meshfarm {
 namespace {
 
-// Version 7: allocation u8 | start u64 | even share u64 | samples u64 | cost unit f64 |
+// Version 8: allocation u8 | start u64 | even share u64 | end u64 | samples u64 | cost unit f64 |
 // greatest error f64 | certified error f64 | lines (run_options.hpp) | builds u8 | if it does:
-// part u32 | ratio f64 | headroom f64 | all triangles u64 | all samples u64 | bundles
+// part u32 | ratio f64 | headroom f64 | end f64 | all triangles u64 | all samples u64 | bundles
 // (bundle_list.hpp).
 // Version 4 knew no appearances and labels, version 5 nothing to build, version 6 no certified
-// error.
-constexpr std::uint8_t k_climb_version = 7;
+// error, version 7 no end.
+constexpr std::uint8_t k_climb_version = 8;
 constexpr std::uint64_t k_most_climb_samples = 100'000'000;
 constexpr std::int32_t k_top_level = 52;
-// A part keeps no less than this fraction of its even share: what of it is flat goes in the finish.
-constexpr std::uint64_t k_shares_per_floor = 2;
+constexpr double k_mostly_free = 0.8;  // of triangles
 
 /// Climbs the levels and keeps a snapshot wherever the mesh changed.
 class LadderBuilder {
@@ -64,8 +63,13 @@ class LadderBuilder {
   }
   const FileSection& beside() const { return result_.beside(); }
   ResultSummary summary() const {
-    return {result_.rungs(), simplifier_.dropped_degenerate(), simplifier_.dropped_duplicate(),
-            simplifier_.is_hampered_by_topology(), simplifier_.turned()};
+    return {result_.rungs(),
+            simplifier_.dropped_degenerate(),
+            simplifier_.dropped_duplicate(),
+            simplifier_.is_hampered_by_topology(),
+            simplifier_.turned(),
+            {},
+            goes_on_};
   }
 
  private:
@@ -92,7 +96,19 @@ class LadderBuilder {
       reduce({.triangles = floor, .max_cost = level_cost(level, parameters_.cost_unit)});
       if (simplifier_.is_held_by_topology()) return;
       if (simplifier_.triangles() < result_.rungs().back().triangles) snapshot(level);
+      goes_on_ = is_enough(floor);
+      if (goes_on_) return;
     }
+  }
+
+  /// Whether the next rung would have less than what is wanted, and nothing is in doubt: it is not
+  /// made, and nor are those after it. Where much is locked counts fall anyhow.
+  bool is_enough(std::uint64_t floor) const {
+    const std::uint64_t left = simplifier_.triangles();
+    return left > floor && left <= parameters_.end_triangles &&
+           !simplifier_.is_slowed_by_topology() &&
+           static_cast<double>(simplifier_.free_triangles()) >
+               k_mostly_free * static_cast<double>(left);
   }
 
   void reduce(const SimplifyGoal& goal) {
@@ -117,6 +133,7 @@ class LadderBuilder {
   Simplifier simplifier_;
   std::string file_;
   ResultWriter result_;
+  bool goes_on_ = false;
 };
 
 /// A part, or a stream as one. What is not whole may be read whole by the next attempt; what is
@@ -137,10 +154,11 @@ PartToBuild get_part_to_build(ByteReader& in) {
   build.part = in.get<std::uint32_t>();
   build.rule.ratio = in.get<double>();
   build.rule.headroom = in.get<double>();
+  build.rule.end = in.get<double>();
   build.rule.all_triangles = in.get<std::uint64_t>();
   build.rule.all_samples = in.get<std::uint64_t>();
   if (!(build.rule.ratio > 0 && build.rule.ratio <= 1) || !(build.rule.headroom > 0) ||
-      build.rule.all_samples > k_most_climb_samples) {
+      !(build.rule.end > 0) || build.rule.all_samples > k_most_climb_samples) {
     in.fail("impossible share");
   }
   build.bundles = get_bundles(in);
@@ -181,6 +199,7 @@ std::string encode_parameters(const SimplifyParameters& parameters) {
   out.put(parameters.allocation);
   out.put(parameters.start_triangles);
   out.put(parameters.share_triangles);
+  out.put(parameters.end_triangles);
   out.put(parameters.samples);
   out.put(parameters.cost_unit);
   out.put(parameters.max_error);
@@ -191,6 +210,7 @@ std::string encode_parameters(const SimplifyParameters& parameters) {
   out.put(parameters.build->part);
   out.put(parameters.build->rule.ratio);
   out.put(parameters.build->rule.headroom);
+  out.put(parameters.build->rule.end);
   out.put(parameters.build->rule.all_triangles);
   out.put(parameters.build->rule.all_samples);
   put_bundles(out, parameters.build->bundles);
@@ -205,6 +225,7 @@ SimplifyParameters decode_parameters(std::string_view bytes) {
   if (parameters.allocation > Allocation::uniform) in.fail("unknown allocation");
   parameters.start_triangles = in.get<std::uint64_t>();
   parameters.share_triangles = in.get<std::uint64_t>();
+  parameters.end_triangles = in.get<std::uint64_t>();
   parameters.samples = in.get<std::uint64_t>();
   if (parameters.samples > k_most_climb_samples) in.fail("too many samples");
   parameters.cost_unit = in.get<double>();
@@ -222,13 +243,20 @@ void set_share(SimplifyParameters& parameters, const ShareRule& rule,
                std::uint64_t shared_triangles, std::uint32_t shared_boundary) {
   const auto triangles = static_cast<double>(shared_triangles);
   const double share = rule.ratio * triangles;
+  const double kept = share * provision(rule.ratio);
   double start = share;
+  double end = 0;
   if (parameters.allocation == Allocation::threshold) {
-    start = share * rule.headroom * provision(rule.ratio) / 2 + 2.0 * shared_boundary;
-    if (start > 0.7 * triangles) start = triangles;
+    start = rule.headroom * kept / 2 + 2.0 * shared_boundary;
+    end = rule.end * kept;
+    if (start > 0.7 * triangles) {
+      start = triangles;
+      end = std::min(end, kept);  // the first rung after the part as it came is anyone's guess
+    }
   }
   parameters.share_triangles = static_cast<std::uint64_t>(share);
   parameters.start_triangles = static_cast<std::uint64_t>(start);
+  parameters.end_triangles = static_cast<std::uint64_t>(end);
   const auto all = static_cast<double>(std::max<std::uint64_t>(1, rule.all_triangles));
   parameters.samples = static_cast<std::uint64_t>(
       std::ceil(triangles / all * static_cast<double>(rule.all_samples)));

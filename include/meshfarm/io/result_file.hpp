@@ -48,6 +48,7 @@ struct ResultSummary {
   bool held_by_topology = false;  // keeping it refused more than was collapsed
   std::uint64_t turned = 0;       // triangles that faced another way than most of their piece
   std::optional<BuiltFacts> built = {};
+  bool goes_on = false;  // the ladder ends where the next rung was not going to be wanted
 };
 
 std::string encode_summary(const ResultSummary& summary);

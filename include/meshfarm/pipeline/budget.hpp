@@ -55,8 +55,12 @@ std::uint64_t all_samples(const RunOptions& options);
 /// Of one ladder: the coarsest rung that is not above `level`, else its first.
 std::uint32_t rung_at(std::span<const Rung> ladder, std::int32_t level);
 
-/// The coarsest level at which the ladders together still hold `wanted` free triangles; the finest
+/// Free triangles of a part at a level. Where its ladder ends but goes on, so many as a smooth
+/// surface would have.
+std::uint64_t free_triangles_at(const ResultSummary& part, std::int32_t level);
+
+/// The coarsest level at which the parts together still hold `wanted` free triangles; the finest
 /// there is if none does.
-std::int32_t common_level(std::span<const std::vector<Rung>> ladders, std::uint64_t wanted);
+std::int32_t common_level(std::span<const ResultSummary> parts, std::uint64_t wanted);
 
 }  // namespace meshfarm

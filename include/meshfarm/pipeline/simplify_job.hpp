@@ -20,6 +20,7 @@ inline constexpr std::string_view k_simplify_kind = "simplify";
 struct ShareRule {
   double ratio = 1;     // of all triangles, those that are wanted
   double headroom = 1;  // a ladder begins at so many times the share
+  double end = 1;       // and may end at so many times what is kept for the finish
   std::uint64_t all_triangles = 0;
   std::uint64_t all_samples = 0;  // points of the whole surface
 };
@@ -36,6 +37,7 @@ struct SimplifyParameters {
   Allocation allocation = Allocation::threshold;
   std::uint64_t start_triangles = 0;  // the first rung: at most this many triangles
   std::uint64_t share_triangles = 0;  // the part's even share of the target
+  std::uint64_t end_triangles = 0;    // the first rung with no more may be the last
   std::uint64_t samples = 0;          // points of the part to measure the final error by
   double cost_unit = 0;               // cost of level 0
   double max_error = 0;               // where above 0: one rung, as far as this distance is kept
@@ -46,7 +48,7 @@ struct SimplifyParameters {
   std::optional<PartToBuild> build;  // the job has no input then, and finds its share by the rule
 };
 
-/// Sets first rung, share and samples of a part.
+/// Sets first rung, share, last rung and samples of a part.
 void set_share(SimplifyParameters& parameters, const ShareRule& rule,
                std::uint64_t shared_triangles, std::uint32_t shared_boundary);
 
@@ -59,13 +61,19 @@ inline constexpr std::int32_t k_input_level = -1;
 /// Cost levels rise by a factor of four from `unit`; on a smooth surface that is a step of 1.6 in
 /// triangles, as a cost is an area times a squared distance.
 double level_cost(std::int32_t level, double unit);
+inline constexpr double k_level_step = 1.6;
 /// The lowest level, 0 or above, whose cost is at least `cost`.
 std::int32_t level_of(double cost, double unit);
 /// Level 0 of a mesh with this diagonal: distances of 2^-50 of it.
 double cost_unit(double diagonal);
 
-/// Simplifies one part or stream (the job's input, or one that it builds) to a ladder that ends at
-/// half its even share, or with Allocation::uniform to one rung.
+/// The least of its even share that a ladder leaves: what of a part is flat goes in the finish.
+inline constexpr std::uint64_t k_shares_per_floor = 2;  // half
+
+/// Simplifies one part or stream (the job's input, or one that it builds) to a ladder, or with
+/// Allocation::uniform to one rung. Where hardly anything is refused to keep the topology, the
+/// ladder ends once there is little enough; else, as it may then have to be given up, it goes down
+/// to half of the even share.
 JobOutput simplify_part(const Job& job, const JobContext& context);
 
 }  // namespace meshfarm

@@ -151,9 +151,10 @@ TEST_CASE("a rung may be empty") {
 TEST_CASE("a summary comes back; a damaged one is refused") {
   const std::vector<Rung> rungs = {{3, 5, 10, 8, 0.5}, {4, 3, 6, 2, 0.75}};
   for (const bool held : {false, true}) {
-    const std::string bytes = encode_summary({rungs, 7, 9, held, 11});
+    const std::string bytes = encode_summary({rungs, 7, 9, held, 11, {}, !held});
     const ResultSummary back = decode_summary(bytes, "s");
     CHECK(back.held_by_topology == held);
+    CHECK(back.goes_on == !held);
     CHECK(back.dropped_degenerate == 7);
     CHECK(back.dropped_duplicate == 9);
     CHECK(back.turned == 11);
@@ -167,6 +168,9 @@ TEST_CASE("a summary comes back; a damaged one is refused") {
   }
   std::string impossible = encode_summary({rungs, 7, 9, true});
   impossible[16] = 2;  // held: after two counts
+  CHECK_THROWS_AS(decode_summary(impossible, "s"), DataError);
+  impossible[16] = 1;
+  impossible[17] = 2;  // goes on
   CHECK_THROWS_AS(decode_summary(impossible, "s"), DataError);
 }
 

@@ -77,13 +77,27 @@ TEST_CASE("the rung at a level is the coarsest that is not above it") {
 }
 
 TEST_CASE("the common level is the coarsest that leaves enough") {
-  const std::vector<std::vector<Rung>> ladders = {{rung(1, 100), rung(2, 50), rung(3, 20)},
-                                                  {rung(1, 10), rung(3, 2)}};
-  CHECK(common_level(ladders, 22) == 3);
-  CHECK(common_level(ladders, 23) == 2);
-  CHECK(common_level(ladders, 60) == 2);
-  CHECK(common_level(ladders, 61) == 1);
-  CHECK(common_level(ladders, 1000) == 1);
+  const std::vector<ResultSummary> parts = {{{rung(1, 100), rung(2, 50), rung(3, 20)}},
+                                            {{rung(1, 10), rung(3, 2)}}};
+  CHECK(common_level(parts, 22) == 3);
+  CHECK(common_level(parts, 23) == 2);
+  CHECK(common_level(parts, 60) == 2);
+  CHECK(common_level(parts, 61) == 1);
+  CHECK(common_level(parts, 1000) == 1);
+}
+
+TEST_CASE("a ladder that goes on is taken to fall as that of a smooth surface") {
+  ResultSummary part{{rung(1, 320), rung(3, 160)}};
+  CHECK(free_triangles_at(part, 9) == 160);
+  part.goes_on = true;
+  CHECK(free_triangles_at(part, 0) == 320);
+  CHECK(free_triangles_at(part, 2) == 320);
+  CHECK(free_triangles_at(part, 3) == 160);
+  CHECK(free_triangles_at(part, 4) == 100);
+  CHECK(free_triangles_at(part, 6) == 39);
+  const std::vector<ResultSummary> parts = {part, {{rung(2, 900), rung(4, 600), rung(5, 500)}}};
+  CHECK(common_level(parts, 562) == 5);
+  CHECK(common_level(parts, 563) == 4);
 }
 
 TEST_CASE("levels and costs fit each other") {
@@ -110,6 +124,13 @@ TEST_CASE("every part is asked for once at first, with the same parameters each 
   CHECK(p.start_triangles > 2 * 1000);
   CHECK(p.start_triangles < 10 * 1000);
   CHECK(p.share_triangles == 1000);
+  // Twice the share is wanted; one level above is 1.6 times as many.
+  CHECK(p.end_triangles == 3200);
+  const auto end_of = [&](const RunOptions& other) {
+    return decode_parameters(next_of(manifest, other)({})[0].parameters).end_triangles;
+  };
+  CHECK(end_of({.ratio = 0.5}) == 62'500);  // without a first rung by count
+  CHECK(end_of({.ratio = 0.01, .finish_place = FinishPlace::farm}) == 1000);
 }
 
 TEST_CASE("when the ladders reach the common level the run is complete") {
@@ -224,6 +245,16 @@ TEST_CASE("parts whose topology leaves more than the target are asked for again 
   };
   CHECK(source(both(2000)).empty());
   CHECK(source(both(2002)).size() == 2);
+  // One that goes on would have left half of its share.
+  const auto beside = [&](std::uint64_t triangles) {
+    ResultSummary other{{rung(10, 2500)}};
+    other.goes_on = true;
+    AcceptedJob going = accepted(jobs[1], {});
+    going.output.summary = encode_summary(other);
+    return std::vector{accepted_held(jobs[0], {rung(10, 2500), rung(14, triangles)}), going};
+  };
+  CHECK(source(beside(1500)).empty());
+  CHECK(source(beside(1501)).size() == 2);
 }
 
 TEST_CASE("who says what becomes of the topology is asked once") {
@@ -401,6 +432,7 @@ TEST_CASE("parameters come back; damaged ones are refused") {
       Allocation::uniform,
       12,
       3,
+      5,
       77,
       0.25,
       0.5,
@@ -410,6 +442,7 @@ TEST_CASE("parameters come back; damaged ones are refused") {
   const SimplifyParameters back = decode_parameters(bytes);
   CHECK(back.allocation == Allocation::uniform);
   CHECK(back.start_triangles == 12);
+  CHECK(back.end_triangles == 5);
   CHECK(back.samples == 77);
   CHECK(back.cost_unit == 0.25);
   CHECK(back.max_error == 0.5);
