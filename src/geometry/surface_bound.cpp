@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <utility>
 #include <vector>
 
@@ -12,9 +13,10 @@
 namespace meshfarm {
 namespace {
 
-/// Points are so far apart, in distances of the bound. Between them a surface is seldom farther off
-/// by more than a tenth.
-constexpr double k_bound_spacing = 1.5;
+/// Points inside of triangles are so far apart, in distances of the bound.
+constexpr double k_bound_spacing = 6;
+/// Of shorter sides the ends are enough.
+constexpr double k_long_side = 1.5;
 /// A small bound on large triangles does not ask for more points than this a triangle, all in all.
 constexpr double k_most_points = 4;
 
@@ -28,18 +30,54 @@ double steps_for(double side, double spacing) {
   return side > spacing ? std::ceil(side / spacing) : 0;
 }
 
-std::vector<SurfacePoint> used_vertices(const Mesh& mesh) {
-  std::vector<std::uint8_t> used(mesh.positions.size(), 0);
+/// The points of the vertices that a triangle has, and their numbers.
+std::vector<SurfacePoint> used_vertices(const Mesh& mesh, std::vector<std::uint32_t>& numbers) {
+  numbers.assign(mesh.positions.size(), UINT32_MAX);
   std::vector<SurfacePoint> vertices;
   vertices.reserve(mesh.positions.size());
   for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
     for (const std::uint32_t v : mesh.triangles[t]) {
-      if (std::exchange(used[v], std::uint8_t{1}) == 0)
-        vertices.push_back({mesh.positions[v], t, 0});
+      if (numbers[v] != UINT32_MAX) continue;
+      numbers[v] = static_cast<std::uint32_t>(vertices.size());
+      vertices.push_back({mesh.positions[v], t, 0});
     }
   }
   return vertices;
 }
+
+/// The long sides of all triangles, once from each end.
+class LongSides {
+ public:
+  LongSides(const Mesh& mesh, std::span<const std::uint32_t> numbers, double distance) {
+    const double least = k_long_side * distance;
+    std::vector<std::uint64_t> sides;
+    for (const Triangle& t : mesh.triangles) {
+      for (std::size_t i = 0; i < 3; ++i) {
+        const std::uint32_t a = t[i], b = t[(i + 1) % 3];
+        if (squared_length(mesh.positions[b] - mesh.positions[a]) <= least * least) continue;
+        sides.push_back(std::uint64_t{numbers[a]} << 32 | numbers[b]);
+        sides.push_back(std::uint64_t{numbers[b]} << 32 | numbers[a]);
+      }
+    }
+    std::sort(sides.begin(), sides.end());
+    sides.erase(std::unique(sides.begin(), sides.end()), sides.end());
+    first_.assign(numbers.size() + 1, 0);
+    for (const std::uint64_t side : sides) {
+      ++first_[(side >> 32) + 1];
+      across_.push_back(static_cast<std::uint32_t>(side));
+    }
+    std::partial_sum(first_.begin(), first_.end(), first_.begin());
+  }
+
+  std::span<const std::uint32_t> at(std::uint32_t point) const {
+    if (point + 1 >= first_.size()) return {};
+    return std::span(across_).subspan(first_[point], first_[point + 1] - first_[point]);
+  }
+
+ private:
+  std::vector<std::uint32_t> first_;  // of each point; one more than there are vertices
+  std::vector<std::uint32_t> across_;
+};
 
 double count_inside(const Mesh& mesh, double spacing) {
   double count = 0;
@@ -89,13 +127,18 @@ class SurfaceBound::Impl {
       : surface_(std::move(surface)),
         options_(options),
         bvh_(surface_, options.threads),
-        points_(used_vertices(surface_)) {
+        points_(used_vertices(surface_, numbers_)),
+        sides_(surface_, numbers_, options.distance) {
+    numbers_ = {};
     const std::vector<SurfacePoint> inside = points_inside(surface_, options.distance);
     points_.insert(points_.end(), inside.begin(), inside.end());
   }
 
   const SurfaceBoundOptions& options() const { return options_; }
   std::span<const SurfacePoint> points() const { return points_; }
+  std::span<const std::uint32_t> across_sides(std::uint32_t point) const {
+    return sides_.at(point);
+  }
   const Mesh& surface() const { return surface_; }
   double squared_distance_to(Vec3 point, double enough, std::uint32_t& guess) const {
     const Bvh::Nearest nearest = bvh_.nearest(point, guess, enough);
@@ -107,7 +150,9 @@ class SurfaceBound::Impl {
   Mesh surface_;
   SurfaceBoundOptions options_;
   Bvh bvh_;
+  std::vector<std::uint32_t> numbers_;  // of vertices; while it is made
   std::vector<SurfacePoint> points_;
+  LongSides sides_;
 };
 
 SurfaceBound::SurfaceBound(Mesh surface, const SurfaceBoundOptions& options)
@@ -120,6 +165,9 @@ const SurfaceBoundOptions& SurfaceBound::options() const {
 }
 std::span<const SurfacePoint> SurfaceBound::points() const {
   return impl_->points();
+}
+std::span<const std::uint32_t> SurfaceBound::across_sides(std::uint32_t point) const {
+  return impl_->across_sides(point);
 }
 const Mesh& SurfaceBound::surface() const {
   return impl_->surface();

@@ -26,7 +26,7 @@ struct SurfacePoint {
 };
 
 /// A surface, and how far one that is made of it may be from it and it from that. Needs about 100
-/// bytes a triangle, and 40 for each point.
+/// bytes a triangle, 40 for each point, and 8 for each long side.
 class SurfaceBound {
  public:
   /// The mesh must have a triangle and finite coordinates.
@@ -36,9 +36,11 @@ class SurfaceBound {
 
   const SurfaceBoundOptions& options() const;
   double distance() const { return options().distance; }
-  /// What stands for the surface: its vertices, and points of triangles that are so large that the
-  /// vertices alone do not tell how far they are from another surface.
+  /// What stands for the surface: its vertices first, and points inside of large triangles.
   std::span<const SurfacePoint> points() const;
+  /// Of a vertex's point: those at the other ends of its sides, if they are so long that the points
+  /// alone do not tell how far they are from another surface.
+  std::span<const std::uint32_t> across_sides(std::uint32_t point) const;
   const Mesh& surface() const;
   /// The squared distance to the surface, or to some triangle of it if that is at most `enough`.
   /// `guess` is a triangle near the point, becomes the one that was found, and saves time.

@@ -18,12 +18,12 @@ constexpr std::uint32_t k_no_point = UINT32_MAX;
 constexpr std::size_t k_points_at_once = 4096;
 /// A triangle is as good as any other if it is so near, as a share of the bound.
 constexpr double k_near_share = 0.5;
-/// Points of a new triangle are so far apart, in distances of the bound, but no more on a side.
-constexpr double k_spacing = 1.25;
-constexpr int k_least_steps = 2;
-constexpr int k_most_steps = 32;
-/// So many of the points held by a triangle may tell where to look.
-constexpr int k_most_hints = 16;
+/// The same at the start, where the triangles are small.
+constexpr double k_start_share = 0.25;
+/// Points of a side of the surface are so far apart, in distances of the bound, but no more than
+/// that.
+constexpr double k_side_spacing = 0.75;
+constexpr double k_most_on_side = 32;
 constexpr std::size_t k_memo = 1U << 18;
 
 }  // namespace
@@ -42,12 +42,14 @@ CollapseGuard::Place CollapseGuard::place_on(std::uint32_t point, const Triangle
       best = i;
     }
   }
-  return {point, triangle[best], triangle[(best + 1) % 3], triangle[(best + 2) % 3], k_no_point};
+  return {point,      triangle[best], triangle[(best + 1) % 3], triangle[(best + 2) % 3],
+          k_no_point, k_no_point};
 }
 
 void CollapseGuard::hold(std::uint32_t point, const Triangle& triangle) {
   const Place place = place_on(point, triangle);
   Held& held = held_[point];
+  held.owner = place.owner;
   held.next = place.next;
   held.prev = place.prev;
   held.following = std::exchange(bag_[place.owner], point);
@@ -65,21 +67,25 @@ void CollapseGuard::start(const CollapseState& state, const Mesh& mesh) {
   const Bvh bvh(mesh, bound_.options().threads);
   std::vector<Bvh::Nearest> nearest(points.size());
   const double most = bound_.distance() * bound_.distance();
+  const double enough = most * k_start_share * k_start_share;
   const auto chunks = (points.size() + k_points_at_once - 1) / k_points_at_once;
   parallel_for(chunks, bound_.options().threads, [&](std::uint64_t chunk) {
     std::uint32_t guess = 0;
     const std::size_t end = std::min(points.size(), (chunk + 1) * k_points_at_once);
     for (std::size_t i = chunk * k_points_at_once; i < end; ++i) {
-      nearest[i] = bvh.nearest(points[i].at, guess);
+      nearest[i] = bvh.nearest(points[i].at, guess, enough);
       guess = nearest[i].triangle;
     }
   });
+  held_of_.assign(points.size(), k_no_point);
   const auto is_fixed = [&](std::uint32_t v) { return (state_.flags[v] & k_fixed) != 0; };
   for (std::size_t i = 0; i < points.size(); ++i) {
     const Triangle& t = mesh.triangles[nearest[i].triangle];
     if (std::all_of(t.begin(), t.end(), is_fixed)) continue;
     const auto limit = static_cast<float>(std::max(most, nearest[i].squared) * (1 + 0x1p-20));
-    held_.push_back({points[i].at, limit, points[i].share, points[i].triangle, k_no_point, 0, 0});
+    held_of_[i] = static_cast<std::uint32_t>(held_.size());
+    held_.push_back({points[i].at, limit, points[i].share, points[i].triangle, k_no_point, 0, 0, 0,
+                     static_cast<std::uint32_t>(i)});
     hold(static_cast<std::uint32_t>(held_.size() - 1), t);
   }
 }
@@ -113,7 +119,7 @@ bool CollapseGuard::allows(const Merge& merge) {
   if (memo() == key) return false;
   list_star(merge);
   on_facet_.assign(star_.size(), k_no_point);
-  if (!star_.empty() && place_all() && is_star_near()) return true;
+  if (!star_.empty() && place_all() && are_sides_near() && is_star_near()) return true;
   memo() = key;
   return false;
 }
@@ -185,14 +191,18 @@ void CollapseGuard::look_at_star(Vec3 point, std::size_t first, double enough,
   }
 }
 
-void CollapseGuard::look_round_star(Vec3 point, Nearest& nearest) const {
-  const std::uint32_t around = nearest_of_ring(point);
+/// Of a vertex of the ring.
+void CollapseGuard::look_round(std::uint32_t around, Vec3 point, Nearest& nearest) const {
   for (const auto& [next, prev] : state_.adjacency->at(around)) {
     if (is_end(next) || is_end(prev)) continue;
     const double squared = squared_distance(point, state_.positions[around], state_.positions[next],
                                             state_.positions[prev]);
     if (squared < nearest.squared) nearest = {squared, {around, next, prev}, k_no_point};
   }
+}
+
+void CollapseGuard::look_round_star(Vec3 point, Nearest& nearest) const {
+  look_round(nearest_of_ring(point), point, nearest);
 }
 
 bool CollapseGuard::place(std::uint32_t owner, std::uint32_t point) {
@@ -206,9 +216,67 @@ bool CollapseGuard::place(std::uint32_t owner, std::uint32_t point) {
   if (!(nearest.squared <= most)) return false;
   if (nearest.squared > enough && held.share != 0 && !is_cell_near(held, first)) return false;
   Place& placed = places_.emplace_back(place_on(point, nearest.triangle));
+  placed.facet = nearest.facet;
+  held_[point].place = static_cast<std::uint32_t>(places_.size() - 1);
   if (nearest.facet != k_no_point) {
     placed.following =
         std::exchange(on_facet_[nearest.facet], static_cast<std::uint32_t>(places_.size() - 1));
+  }
+  return true;
+}
+
+double CollapseGuard::squared_to(Vec3 point, const Triangle& triangle) const {
+  const auto at = [&](std::uint32_t v) {
+    return v == merge_.a ? merge_.position : state_.positions[v];
+  };
+  return squared_distance(point, at(triangle[0]), at(triangle[1]), at(triangle[2]));
+}
+
+/// A side of the surface is near as a whole if both of its ends are near one triangle.
+bool CollapseGuard::are_sides_near() {
+  return std::all_of(places_.begin(), places_.end(), [&](const Place& place) {
+    const auto across = bound_.across_sides(held_[place.point].number);
+    return std::all_of(across.begin(), across.end(),
+                       [&](std::uint32_t other) { return is_side_near(place, held_of_[other]); });
+  });
+}
+
+bool CollapseGuard::is_side_near(const Place& place, std::uint32_t across) {
+  if (across == k_no_point) return true;
+  const Held& from = held_[place.point];
+  const Held& to = held_[across];
+  Triangle at_end = {to.owner, to.next, to.prev};
+  if (to.place < places_.size() && places_[to.place].point == across) {
+    const Place& other = places_[to.place];
+    if (across < place.point || (other.facet == place.facet && other.facet != k_no_point)) {
+      return true;
+    }
+    at_end = {other.owner, other.next, other.prev};
+  } else if (to.next == to.prev) {
+    return true;
+  }
+  if (squared_to(to.point, {place.owner, place.next, place.prev}) <= to.limit) return true;
+  if (squared_to(from.point, at_end) <= from.limit) return true;
+  return is_side_near(from, to, at_end, place.facet == k_no_point ? 0 : place.facet);
+}
+
+/// Of points between the ends, if these are near different triangles.
+bool CollapseGuard::is_side_near(const Held& from, const Held& to, const Triangle& at_end,
+                                 std::size_t first) const {
+  const double most = std::max(from.limit, to.limit);
+  const Vec3 along = to.point - from.point;
+  const double steps = std::clamp<double>(
+      std::ceil(length(along) / (k_side_spacing * bound_.distance())), 2, k_most_on_side);
+  for (double i = 1; i < steps; ++i) {
+    const Vec3 point = from.point + along * (i / steps);
+    if (squared_to(point, at_end) <= most) continue;
+    Nearest nearest;
+    look_at_star(point, first, most, nearest);
+    if (nearest.squared > most) look_round_star(point, nearest);
+    for (std::size_t k = 0; k < ring_.size() && nearest.squared > most; ++k) {
+      look_round(ring_[k], point, nearest);
+    }
+    if (nearest.squared > most) return false;
   }
   return true;
 }
@@ -239,53 +307,22 @@ std::uint32_t CollapseGuard::nearest_of_ring(Vec3 point) const {
   });
 }
 
-/// From a point of a new triangle, exact only if it is not quite near. Points that are held near it
-/// tell where to look.
-double CollapseGuard::squared_to_surface(Vec3 point, std::uint32_t facet) {
-  const double enough = bound_.distance() * bound_.distance() * k_near_share * k_near_share;
-  double least = std::numeric_limits<double>::infinity();
-  int hints = 0;
-  for (std::uint32_t i = on_facet_[facet]; i != k_no_point && hints < k_most_hints;
-       i = places_[i].following, ++hints) {
-    const Held& held = held_[places_[i].point];
-    const double squared = squared_length(held.point - point);
-    if (squared < least) {
-      least = squared;
-      guess_ = held.source;
-    }
-  }
-  return least <= enough ? least : bound_.squared_distance_to(point, enough, guess_);
-}
-
-/// Looks at the points of a grid, and where one is not quite near at those half-way to the next.
-bool CollapseGuard::is_facet_near(std::uint32_t facet) {
-  const double most = bound_.distance() * bound_.distance();
-  const Vec3 along = state_.positions[star_[facet].next] - merge_.position;
-  const Vec3 across = state_.positions[star_[facet].prev] - merge_.position;
-  const double longest = std::sqrt(std::max(squared_length(along), squared_length(across)));
-  const double wanted = std::ceil(longest / (k_spacing * bound_.distance()));
-  const double steps = std::clamp<double>(wanted, k_least_steps, k_most_steps);
-  const auto squared_at = [&](double i, double j) {
-    return squared_to_surface(merge_.position + along * (i / steps) + across * (j / steps), facet);
-  };
-  for (double i = 0; i < steps; ++i) {
-    for (double j = 0; i + j < steps; ++j) {
-      const double squared = squared_at(i, j);
-      if (squared > most) return false;
-      if (squared <= most * k_near_share * k_near_share) continue;
-      for (const auto& [di, dj] : {std::pair(0.5, 0.0), {-0.5, 0.0}, {0.0, 0.5}, {0.0, -0.5}}) {
-        const bool inside = i + di >= 0 && j + dj >= 0 && i + di + j + dj <= steps;
-        if (inside && squared_at(i + di, j + dj) > most) return false;
-      }
-    }
-  }
-  return true;
-}
-
 /// The sides of the ring were there before.
 bool CollapseGuard::is_star_near() {
-  for (std::uint32_t facet = 0; facet < star_.size(); ++facet) {
-    if (!is_facet_near(facet)) return false;
+  if (!probe_.is_near(merge_.position)) return false;
+  for (const std::uint32_t v : ring_) {
+    if (!probe_.is_side_near(merge_.position, state_.positions[v])) return false;
+  }
+  for (std::size_t facet = 0; facet < star_.size(); ++facet) {
+    feet_.clear();
+    for (std::uint32_t i = on_facet_[facet]; i != k_no_point; i = places_[i].following) {
+      feet_.push_back(held_[places_[i].point].point);
+    }
+    const auto& [next, prev] = star_[facet];
+    if (!probe_.is_inside_near({merge_.position, state_.positions[next], state_.positions[prev]},
+                               feet_)) {
+      return false;
+    }
   }
   return true;
 }
@@ -302,6 +339,7 @@ void CollapseGuard::merge() {
   }
   for (const Place& place : places_) {
     Held& held = held_[place.point];
+    held.owner = place.owner;
     held.next = place.next;
     held.prev = place.prev;
     held.following = std::exchange(bag_[place.owner], place.point);

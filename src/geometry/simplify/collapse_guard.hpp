@@ -11,13 +11,14 @@
 #include <meshfarm/geometry/surface_bound.hpp>
 
 #include "geometry/simplify/collapse.hpp"
+#include "geometry/simplify/surface_probe.hpp"
 
 namespace meshfarm {
 
 /// Refuses collapses that would take a surface farther from another one than a bound allows, in
 /// either direction. Points of the other surface are held by the vertices that they are near to,
-/// each with a triangle within the bound; points of triangles that are new are looked for on the
-/// other surface.
+/// each with a triangle within the bound; so are its long sides, by what their ends are near to.
+/// Points of triangles that are new are looked for on the other surface.
 class CollapseGuard {
  public:
   struct Merge {
@@ -28,7 +29,7 @@ class CollapseGuard {
     std::span<const std::pair<std::uint32_t, std::uint32_t>> vanishing;
   };
 
-  explicit CollapseGuard(const SurfaceBound& bound) : bound_(bound) {}
+  explicit CollapseGuard(const SurfaceBound& bound) : bound_(bound), probe_(bound) {}
   void move_to(const CollapseState& state) { state_ = state; }
 
   /// Hands the points out. Those that are too far from the start may become no farther.
@@ -43,16 +44,20 @@ class CollapseGuard {
  private:
   struct Held {
     Vec3 point;
-    float limit;               // squared: how far it may be, or is from the start
-    float share;               // SurfacePoint::share
-    std::uint32_t source;      // the triangle of the other surface
-    std::uint32_t following;   // held by the same vertex
-    std::uint32_t next, prev;  // of the triangle, with that vertex; may have become others
+    float limit;              // squared: how far it may be, or is from the start
+    float share;              // SurfacePoint::share
+    std::uint32_t source;     // the triangle of the other surface
+    std::uint32_t following;  // held by the same vertex
+    // The triangle, from the vertex that holds it; may have become another.
+    std::uint32_t owner, next, prev;
+    std::uint32_t number;     // of the bound's points
+    std::uint32_t place = 0;  // the last one that it was to get
   };
   struct Place {
     std::uint32_t point;
     std::uint32_t owner, next, prev;
     std::uint32_t following;  // on the same triangle of the star
+    std::uint32_t facet;      // that one, if it is one of the star
   };
   struct Nearest {
     double squared = HUGE_VAL;
@@ -73,21 +78,26 @@ class CollapseGuard {
   bool place_bag(std::uint32_t vertex, bool all);
   bool place(std::uint32_t owner, std::uint32_t point);
   void look_at_star(Vec3 point, std::size_t first, double enough, Nearest& nearest) const;
+  void look_round(std::uint32_t around, Vec3 point, Nearest& nearest) const;
   void look_round_star(Vec3 point, Nearest& nearest) const;
+  bool are_sides_near();
+  bool is_side_near(const Place& place, std::uint32_t across);
+  bool is_side_near(const Held& from, const Held& to, const Triangle& at_end,
+                    std::size_t first) const;
+  double squared_to(Vec3 point, const Triangle& triangle) const;
   bool is_cell_near(const Held& held, std::size_t first) const;
   void to_front(std::uint32_t vertex, std::uint32_t before, std::uint32_t point);
   bool is_star_near();
-  double squared_to_surface(Vec3 point, std::uint32_t facet);
-  bool is_facet_near(std::uint32_t facet);
   std::uint32_t& memo();
   std::uint32_t signature() const;
 
   const SurfaceBound& bound_;
   CollapseState state_;
   std::vector<Held> held_;
-  std::vector<std::uint32_t> bag_;    // the first point that a vertex holds
-  std::vector<std::uint32_t> moves_;  // of each vertex
-  std::vector<std::uint32_t> memo_;   // of collapses that were refused
+  std::vector<std::uint32_t> held_of_;  // for each of the bound's points
+  std::vector<std::uint32_t> bag_;      // the first point that a vertex holds
+  std::vector<std::uint32_t> moves_;    // of each vertex
+  std::vector<std::uint32_t> memo_;     // of collapses that were refused
 
   // Of the merge that is judged.
   Merge merge_;
@@ -95,7 +105,8 @@ class CollapseGuard {
   std::vector<std::uint32_t> ring_;
   std::vector<Place> places_;
   std::vector<std::uint32_t> on_facet_;  // the first place on each triangle of the star
-  std::uint32_t guess_ = 0;
+  std::vector<Vec3> feet_;
+  SurfaceProbe probe_;
 };
 
 }  // namespace meshfarm

@@ -67,6 +67,15 @@ Mesh terraces() {
   return mesh;
 }
 
+/// Rough, with sides many times as long as the bounds that are tried.
+Mesh jagged_ridges() {
+  Mesh mesh = test::grid(60, 60);
+  for (Vec3& p : mesh.positions) {
+    p.z = 0.5 * std::sin(p.x * 2.9 + p.y) + 0.5 * std::cos(p.y * 2.3 - p.x * 0.7);
+  }
+  return mesh;
+}
+
 }  // namespace
 
 TEST_CASE("a bound is kept in both directions, and the rest is simplified as far as it goes") {
@@ -84,6 +93,15 @@ TEST_CASE("what is flat does not span slots or steps that are wider than the bou
     const Mesh result = simplified_to_bound(mesh, 1);
     CHECK(farthest(mesh, result) <= k_tolerance);
     CHECK(result.triangles.size() < 150);
+  }
+}
+
+TEST_CASE("between long sides of the surface the bound is kept, too") {
+  const Mesh mesh = jagged_ridges();
+  for (const double bound : {0.15, 0.2, 0.3}) {
+    const Mesh result = simplified_to_bound(mesh, bound);
+    CHECK(farthest(mesh, result) <= k_tolerance * bound);
+    CHECK(result.triangles.size() < mesh.triangles.size() * 19 / 20);
   }
 }
 
@@ -127,6 +145,11 @@ TEST_CASE("a surface of a bound knows how far a point is, and what stands for it
         doctest::Approx(0.5).epsilon(0.02));
   CHECK(bound.squared_distance_to({0, 0, 1.05}, 0.01, guess) <= 0.01);
   CHECK(bound.points().size() >= 642);
-  // Of two triangles the vertices alone tell little.
-  CHECK(SurfaceBound(test::grid(1, 1), {.distance = 0.1}).points().size() == 4 + 2 * 10 * 10);
+  // Of two triangles the vertices alone tell little: points inside, and five sides.
+  const SurfaceBound of_two(test::grid(1, 1), {.distance = 0.1});
+  CHECK(of_two.points().size() == 4 + 2 * 3 * 3);
+  std::size_t sides = 0;
+  for (std::uint32_t i = 0; i < of_two.points().size(); ++i) sides += of_two.across_sides(i).size();
+  CHECK(sides == 2 * 5);
+  CHECK(SurfaceBound(test::grid(1, 1), {.distance = 1}).across_sides(0).empty());
 }
