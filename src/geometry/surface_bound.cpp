@@ -17,6 +17,8 @@ namespace {
 constexpr double k_bound_spacing = 6;
 /// Of shorter sides the ends are enough.
 constexpr double k_long_side = 1.5;
+/// Triangles with longer sides are not small.
+constexpr double k_small_side = 4;
 /// A small bound on large triangles does not ask for more points than this a triangle, all in all.
 constexpr double k_most_points = 4;
 
@@ -43,6 +45,15 @@ std::vector<SurfacePoint> used_vertices(const Mesh& mesh, std::vector<std::uint3
     }
   }
   return vertices;
+}
+
+void flag_dense(const Mesh& mesh, std::span<const std::uint32_t> numbers, double distance,
+                std::vector<SurfacePoint>& points) {
+  for (SurfacePoint& point : points) point.is_dense = true;
+  for (const Triangle& t : mesh.triangles) {
+    if (longest_side(mesh, t) <= k_small_side * distance) continue;
+    for (const std::uint32_t v : t) points[numbers[v]].is_dense = false;
+  }
 }
 
 /// The long sides of all triangles, once from each end.
@@ -129,6 +140,7 @@ class SurfaceBound::Impl {
         bvh_(surface_, options.threads),
         points_(used_vertices(surface_, numbers_)),
         sides_(surface_, numbers_, options.distance) {
+    flag_dense(surface_, numbers_, options.distance, points_);
     numbers_ = {};
     const std::vector<SurfacePoint> inside = points_inside(surface_, options.distance);
     points_.insert(points_.end(), inside.begin(), inside.end());

@@ -23,6 +23,8 @@ struct SurfacePoint {
   /// It stands for a triangle round it, as large as this share of its own; below 0: of one that is
   /// turned round.
   float share = 0;
+  /// A vertex of small triangles only: the surface has others near it.
+  bool is_dense = false;
 };
 
 /// A surface, and how far one that is made of it may be from it and it from that. Needs about 100

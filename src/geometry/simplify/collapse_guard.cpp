@@ -14,7 +14,6 @@
 namespace meshfarm {
 namespace {
 
-constexpr std::uint32_t k_no_point = UINT32_MAX;
 constexpr std::size_t k_points_at_once = 4096;
 /// A triangle is as good as any other if it is so near, as a share of the bound.
 constexpr double k_near_share = 0.5;
@@ -84,8 +83,9 @@ void CollapseGuard::start(const CollapseState& state, const Mesh& mesh) {
     if (std::all_of(t.begin(), t.end(), is_fixed)) continue;
     const auto limit = static_cast<float>(std::max(most, nearest[i].squared) * (1 + 0x1p-20));
     held_of_[i] = static_cast<std::uint32_t>(held_.size());
-    held_.push_back({points[i].at, limit, points[i].share, points[i].triangle, k_no_point, 0, 0, 0,
-                     static_cast<std::uint32_t>(i)});
+    const SurfacePoint& from = points[i];
+    held_.push_back({from.at, limit, from.share, from.triangle, k_no_point, 0, 0, 0,
+                     static_cast<std::uint32_t>(i), 0, from.is_dense});
     hold(static_cast<std::uint32_t>(held_.size() - 1), t);
   }
 }
@@ -260,6 +260,19 @@ bool CollapseGuard::is_side_near(const Place& place, std::uint32_t across) {
   return is_side_near(from, to, at_end, place.facet == k_no_point ? 0 : place.facet);
 }
 
+/// Of what was not, the collapse changes nothing.
+bool CollapseGuard::was_near_star(Vec3 point, double most) const {
+  for (const std::uint32_t end : {merge_.a, merge_.b}) {
+    for (const auto& [next, prev] : state_.adjacency->at(end)) {
+      if (squared_distance(point, state_.positions[end], state_.positions[next],
+                           state_.positions[prev]) <= most) {
+        return true;
+      }
+    }
+  }
+  return false;
+}
+
 /// Of points between the ends, if these are near different triangles.
 bool CollapseGuard::is_side_near(const Held& from, const Held& to, const Triangle& at_end,
                                  std::size_t first) const {
@@ -276,7 +289,7 @@ bool CollapseGuard::is_side_near(const Held& from, const Held& to, const Triangl
     for (std::size_t k = 0; k < ring_.size() && nearest.squared > most; ++k) {
       look_round(ring_[k], point, nearest);
     }
-    if (nearest.squared > most) return false;
+    if (nearest.squared > most && was_near_star(point, most)) return false;
   }
   return true;
 }
@@ -316,7 +329,8 @@ bool CollapseGuard::is_star_near() {
   for (std::size_t facet = 0; facet < star_.size(); ++facet) {
     feet_.clear();
     for (std::uint32_t i = on_facet_[facet]; i != k_no_point; i = places_[i].following) {
-      feet_.push_back(held_[places_[i].point].point);
+      const Held& held = held_[places_[i].point];
+      if (held.is_dense) feet_.push_back(held.point);
     }
     const auto& [next, prev] = star_[facet];
     if (!probe_.is_inside_near({merge_.position, state_.positions[next], state_.positions[prev]},
@@ -343,52 +357,6 @@ void CollapseGuard::merge() {
     held.next = place.next;
     held.prev = place.prev;
     held.following = std::exchange(bag_[place.owner], place.point);
-  }
-}
-
-void CollapseGuard::split(std::uint32_t vertex, std::uint32_t first_copy) {
-  const auto copies = static_cast<std::uint32_t>(state_.positions.size());
-  bag_.resize(copies, k_no_point);
-  moves_.resize(copies, 0);
-  if (first_copy == copies) return;
-  merge_ = {};
-  for (std::uint32_t point = std::exchange(bag_[vertex], k_no_point); point != k_no_point;) {
-    const std::uint32_t following = held_[point].following;
-    hold(point, nearest_of_copies(held_[point].point, vertex, first_copy));
-    point = following;
-  }
-  for (std::uint32_t v = first_copy; v < copies; ++v) {
-    for (const Corner& c : state_.adjacency->at(v)) {
-      forget_triangles(c.next, vertex);
-      forget_triangles(c.prev, vertex);
-    }
-  }
-}
-
-/// The triangle nearest to a point, of a vertex and its copies from `first_copy` on.
-Triangle CollapseGuard::nearest_of_copies(Vec3 point, std::uint32_t vertex,
-                                          std::uint32_t first_copy) const {
-  double best = std::numeric_limits<double>::infinity();
-  Triangle nearest = {vertex, vertex, vertex};
-  const auto look_at = [&](std::uint32_t v) {
-    for (const Corner& c : state_.adjacency->at(v)) {
-      const double squared = squared_distance(point, state_.positions[v], state_.positions[c.next],
-                                              state_.positions[c.prev]);
-      if (squared >= best) continue;
-      best = squared;
-      nearest = {v, c.next, c.prev};
-    }
-  };
-  look_at(vertex);
-  for (std::uint32_t v = first_copy; v < state_.positions.size(); ++v) look_at(v);
-  return nearest;
-}
-
-/// Of the points that `owner` holds, those near a triangle of `vertex` do not know theirs any more.
-void CollapseGuard::forget_triangles(std::uint32_t owner, std::uint32_t vertex) {
-  for (std::uint32_t i = bag_[owner]; i != k_no_point; i = held_[i].following) {
-    Held& held = held_[i];
-    if (held.next == vertex || held.prev == vertex) held.next = held.prev = vertex;
   }
 }
 

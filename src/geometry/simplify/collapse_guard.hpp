@@ -42,6 +42,8 @@ class CollapseGuard {
   void split(std::uint32_t vertex, std::uint32_t first_copy);
 
  private:
+  static constexpr std::uint32_t k_no_point = UINT32_MAX;
+
   struct Held {
     Vec3 point;
     float limit;              // squared: how far it may be, or is from the start
@@ -52,6 +54,7 @@ class CollapseGuard {
     std::uint32_t owner, next, prev;
     std::uint32_t number;     // of the bound's points
     std::uint32_t place = 0;  // the last one that it was to get
+    bool is_dense = false;    // SurfacePoint::is_dense
   };
   struct Place {
     std::uint32_t point;
@@ -84,6 +87,7 @@ class CollapseGuard {
   bool is_side_near(const Place& place, std::uint32_t across);
   bool is_side_near(const Held& from, const Held& to, const Triangle& at_end,
                     std::size_t first) const;
+  bool was_near_star(Vec3 point, double most) const;
   double squared_to(Vec3 point, const Triangle& triangle) const;
   bool is_cell_near(const Held& held, std::size_t first) const;
   void to_front(std::uint32_t vertex, std::uint32_t before, std::uint32_t point);

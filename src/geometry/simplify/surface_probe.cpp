@@ -14,11 +14,8 @@ constexpr double k_quite_near = 0.5;
 /// Points that are looked at are so far apart, in distances of the bound, but no more on a side.
 constexpr double k_probe_spacing = 1.25;
 constexpr double k_most_on_a_side = 32;
-/// So large, in distances of the bound, is a cell of which one point tells enough.
-constexpr double k_cell_size = 2.5;
-/// With fewer points for a cell the surface's own triangles are larger than cells. Their sides then
-/// cross the inside of a triangle, and all of that is looked at.
-constexpr double k_few_feet = 0.5;
+/// So large, in distances of the bound, is a cell.
+constexpr double k_cell_size = 2;
 /// In so thin triangles no cell can be told.
 constexpr double k_least_angle = 1e-10;
 
@@ -85,22 +82,25 @@ bool SurfaceProbe::is_inside_near(const std::array<Vec3, 3>& triangle, std::span
   const double longest =
       std::sqrt(std::max(squared_length(grid.along), squared_length(grid.across)));
   grid.steps = steps_for(longest, k_cell_size, 1);
-  const double cells = grid.steps * (grid.steps + 1) / 2;
-  const bool are_few = static_cast<double>(feet.size()) < k_few_feet * cells;
-  if (are_few) grid.steps = steps_for(longest, k_probe_spacing, 2);
-  if (!are_few) mark_cells(grid, feet);
+  mark_cells(grid, feet);
   const auto steps = static_cast<std::size_t>(grid.steps);
+  grid.steps *= 2;
   for (std::size_t i = 0; i < steps; ++i) {
     for (std::size_t j = 0; i + j < steps; ++j) {
-      if (!are_few && is_marked_round(i * steps + j, i, j, steps)) continue;
-      if (!is_cell_near(grid, static_cast<double>(i), static_cast<double>(j))) return false;
+      if (is_marked_round(i * steps + j, i, j, steps)) continue;
+      const double x = 2.0 * static_cast<double>(i), y = 2.0 * static_cast<double>(j);
+      if (!is_cell_near(grid, x, y) || !is_cell_near(grid, x + 1, y) ||
+          !is_cell_near(grid, x, y + 1)) {
+        return false;
+      }
+      if (i + j + 1 < steps && !is_cell_near(grid, x + 1, y + 1)) return false;
     }
   }
   return true;
 }
 
-/// Looks at a cell's middle, and where that is not quite near at those of its sides. At the
-/// triangle's third side a cell is half as large.
+/// Looks at a quarter of a cell: at its middle, and where that is not quite near at those of
+/// its sides. At the triangle's third side it is half as large.
 bool SurfaceProbe::is_cell_near(const Grid& grid, double i, double j) {
   const double most = bound_.distance() * bound_.distance();
   const double enough = most * k_quite_near * k_quite_near;

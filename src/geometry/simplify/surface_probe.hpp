@@ -25,7 +25,7 @@ class SurfaceProbe {
   /// Of a side; not its ends.
   bool is_side_near(Vec3 from, Vec3 to);
   /// Of a triangle whose sides and corners are near. `feet`: points of the surface that are within
-  /// the bound of this triangle.
+  /// the bound of this triangle, and have others near them.
   bool is_inside_near(const std::array<Vec3, 3>& triangle, std::span<const Vec3> feet);
 
  private:
