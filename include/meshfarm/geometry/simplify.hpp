@@ -28,12 +28,13 @@ enum class TopologyMode : std::uint8_t {
 /// What becomes of collapses whose new triangles would cross others.
 enum class CrossingMode : std::uint8_t {
   allow,
-  /// They are refused, but for those near the goal, which cost 1,024 times as much and are refused
+  /// They are refused, but for those near the goal, which cost 16 times as much and are refused
   /// only under a bound on the error: so the goal is met. Such is a collapse that adds to the pairs
   /// of triangles that cross (crossings.hpp); those of the input lock nothing. Near the goal all
   /// collapses are looked at; far from it those in thin walls, where triangles face each other
-  /// within 0.15 of the length that edges have in the end, or about as near. What is folded over
-  /// may unfold, though that turns triangles by more than 60 degrees.
+  /// within 0.15 of the length that edges have in the end, or about as near. Without a bound and
+  /// a seam, TopologyMode::automatic is `simplify` then: a handle smaller than the triangles can
+  /// neither be kept apart nor face the right way.
   avoid,
 };
 

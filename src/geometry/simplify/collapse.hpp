@@ -44,9 +44,7 @@ struct MergedColumns {
 /// neighbours may have.
 class CollapseJudge {
  public:
-  explicit CollapseJudge(const CollapseState& state) : state_(state) {
-    star_.set_unfolding(state.unfolds);
-  }
+  explicit CollapseJudge(const CollapseState& state) : state_(state) {}
   /// The state has moved in memory.
   void move_to(const CollapseState& state) { state_ = state; }
 

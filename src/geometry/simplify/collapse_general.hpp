@@ -26,9 +26,7 @@ struct GeneralCollapse {
 class GeneralJudge {
  public:
   /// Target must be the identity: the adjacency is kept up to date.
-  explicit GeneralJudge(const CollapseState& state) : state_(state) {
-    star_.set_unfolding(state.unfolds);
-  }
+  explicit GeneralJudge(const CollapseState& state) : state_(state) {}
   void move_to(const CollapseState& state) { state_ = state; }
 
   /// Neither end may be fixed.

@@ -22,12 +22,6 @@ void CollapseStar::sum_planes(EdgeQuadric& quadric) const {
   quadric.twice_area = sum(s.twice_area);
 }
 
-bool CollapseStar::unfolds(Vec3 old_normal, Vec3 normal) const {
-  if (!unfolds_) return false;
-  const Vec3 all{sums_.nx[0] + sums_.nx[1], sums_.ny[0] + sums_.ny[1], sums_.nz[0] + sums_.nz[1]};
-  return meshfarm::dot(old_normal, all) < 0 && meshfarm::dot(normal, all) > 0;
-}
-
 /// A sliver of the input may stay one, or nothing round it could ever collapse.
 bool CollapseStar::is_acceptable(const Two& two, int lane, Vec3 x) const {
   const auto at = [&](const Vec3Pair& a) { return Vec3{a.x[lane], a.y[lane], a.z[lane]}; };
@@ -40,7 +34,7 @@ bool CollapseStar::is_acceptable(const Two& two, int lane, Vec3 x) const {
   const double old_size = squared_length(old_normal);
   const double turn = meshfarm::dot(normal, old_normal);
   const bool turned = !(turn > 0 && turn * turn >= k_cos_60_squared * size * old_size);
-  if (turned && old_size > 0 && !unfolds(old_normal, normal)) return false;
+  if (turned && old_size > 0) return false;
   const double scale = squared_length(p - x) * squared_length(q - x);
   if (size > k_least_sine_squared * scale) return true;
   const double old_scale = squared_length(p - end) * squared_length(q - end);

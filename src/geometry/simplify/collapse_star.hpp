@@ -36,9 +36,6 @@ class CollapseStar {
     const Vec3& q1;
   };
 
-  /// Whether triangles that face against the sum of the star may turn by any angle to face with it.
-  void set_unfolding(bool unfolds) { unfolds_ = unfolds; }
-
   /// The edge from middle - half to middle + half.
   void clear(Vec3 middle, Vec3 half) {
     middle_ = middle;
@@ -98,13 +95,11 @@ class CollapseStar {
   static void root(const Pair& a, Pair& result) { result = Pair{std::sqrt(a[0]), std::sqrt(a[1])}; }
   void add_planes(const Two& two);
   bool is_folded(std::uint32_t first, std::uint32_t kept, Vec3 x, double cos_squared) const;
-  bool unfolds(Vec3 old_normal, Vec3 normal) const;
   bool is_acceptable(const Two& two, int lane, Vec3 x) const;
 
   Vec3 middle_;
   Vec3 half_;
   std::uint32_t size_ = 0;  // of pairs_
-  bool unfolds_ = false;
   Sums sums_{};
   std::array<Two, k_capacity / 2 + 2> pairs_;
 };

@@ -23,8 +23,7 @@ struct CollapseState {
   const CreaseTest* creases = nullptr;  // where vertices are flagged as on creases
   std::span<Appearance> appearances;    // empty where they do not count
   AppearanceScale appearance_scale;
-  double uv_scale = 0;   // LineOptions::uv_scale
-  bool unfolds = false;  // triangles that are folded over may turn back
+  double uv_scale = 0;  // LineOptions::uv_scale
 
   /// Those of a triangle's corners, from the one at the vertex on.
   AppearanceStar::Values values_at(std::uint32_t vertex, const Corner& c) const {

@@ -76,8 +76,7 @@ struct OrderedEnd::Trial {
         queue({positions, flags, adjacency, mesh.creases(), mesh.type(), mesh.seam_only(),
                topology == TopologyMode::simplify,
                topology == TopologyMode::automatic || topology == TopologyMode::keep_while_fair,
-               appearances, mesh.appearance_scale(), columns, mesh.uv_scale(),
-               mesh.avoids_crossings()},
+               appearances, mesh.appearance_scale(), columns, mesh.uv_scale()},
               ranking) {
     adjacency.build(mesh.mesh().triangles, positions.size(), columns);
     queue.start(mesh.mesh().triangles);

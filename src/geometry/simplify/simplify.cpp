@@ -22,13 +22,22 @@ constexpr double k_healthy = 0.66;
 
 using Progress = std::function<bool(std::uint64_t)>;
 
+/// Where crossings are avoided small handles are not kept at any cost: the triangles of a handle
+/// smaller than they are cross each other, and face the wrong way.
+TopologyMode chosen_topology(const SimplifyOptions& options) {
+  const LineOptions& lines = options.lines;
+  const bool gives_way = lines.topology == TopologyMode::automatic && options.bound == nullptr &&
+                         lines.crossings == CrossingMode::avoid && options.seam.empty();
+  return gives_way ? TopologyMode::simplify : lines.topology;
+}
+
 }  // namespace
 
 /// Rough passes far from the goal, then ranked ones, and the last part of the way in order.
 struct Simplifier::Impl {
   Impl(Mesh input, const SimplifyOptions& options)
       : mesh(std::move(input), options),
-        topology(options.lines.topology),
+        topology(chosen_topology(options)),
         bound(options.bound),
         passes(mesh, bound),
         end(mesh, topology, bound),

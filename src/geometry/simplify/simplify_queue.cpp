@@ -19,9 +19,9 @@ constexpr double k_ranked_share = 0.35;
 // A mesh that was kept is dropped when it has so many times the triangles that are left.
 constexpr double k_far_more = 1.3;
 
-// What makes triangles cross costs so many times as much, 32 times the distance. With 16 scans keep
-// half of the crossings that they would have; where it is a million, thin walls lose their shape.
-constexpr double k_loss_of_crossing = 1024;
+// What makes triangles cross costs so many times as much, four times the distance. With 64 a third
+// as many of a skull's triangles cross, but walls thinner than the error lose their shape.
+constexpr double k_loss_of_crossing = 16;
 
 constexpr CostKey k_greatest = k_any_cost - 1;
 constexpr CostKey k_least_step = 4U << 20;  // a factor of 16
@@ -110,7 +110,7 @@ void CollapseQueue::drop_next() {
 CollapseState CollapseQueue::state() {
   return {mesh_.positions, mesh_.flags,           target_,           &mesh_.adjacency,
           mesh_.type,      &mesh_.creases.test(), mesh_.appearances, mesh_.appearance_scale,
-          mesh_.uv_scale,  mesh_.unfolds};
+          mesh_.uv_scale};
 }
 
 Collapse CollapseQueue::judge(std::uint32_t a, std::uint32_t b, std::uint64_t most_triangles) {

@@ -53,7 +53,6 @@ struct QueuedMesh {
   AppearanceScale appearance_scale;
   TriangleColumns& columns;  // what the adjacency was built with
   double uv_scale = 0;
-  bool unfolds = false;  // CollapseState::unfolds
 };
 
 /// Collapses edges strictly in order of their cost: what was refused, or has become cheaper, is

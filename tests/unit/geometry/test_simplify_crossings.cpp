@@ -119,3 +119,18 @@ TEST_CASE("crossings: what is pinched and cut apart is still looked at") {
   CHECK(simplifier.triangles() <= 301);
   CHECK(count_crossing(simplifier.mesh()) <= count_crossing(mesh));
 }
+
+TEST_CASE("crossings: a thin neck is kept only if it must") {
+  const auto gives_way = [](CrossingMode crossings, TopologyMode topology) {
+    SimplifyOptions options;
+    options.lines.crossings = crossings;
+    options.lines.topology = topology;
+    Simplifier simplifier(test::torus_with_neck(40, 24), options);
+    simplifier.reduce({.triangles = 200});
+    CHECK(simplifier.triangles() <= 201);
+    return simplifier.simplifies_topology();
+  };
+  CHECK(gives_way(CrossingMode::avoid, TopologyMode::automatic));
+  CHECK(!gives_way(CrossingMode::avoid, TopologyMode::keep));
+  CHECK(!gives_way(CrossingMode::allow, TopologyMode::automatic));
+}
