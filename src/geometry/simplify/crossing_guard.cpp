@@ -16,15 +16,21 @@ bool has_corner(const Triangle& t, std::uint32_t vertex) {
   return t[0] == vertex || t[1] == vertex || t[2] == vertex;
 }
 
-/// Whether all of a star faces one way: then no two of its triangles cross.
-bool is_like_a_plane(const std::vector<CrossingTriangle>& star) {
+/// Whether a normal is no farther than so from a direction, by the squared cosine.
+bool is_along(Vec3 normal, Vec3 way, double cos_squared) {
+  const double along = dot(normal, way);
+  return along > 0 && along * along > cos_squared * squared_length(normal) * squared_length(way);
+}
+
+/// The way that all of a star faces, if there is one: then no two of its triangles cross.
+std::optional<Vec3> way_of(const std::vector<CrossingTriangle>& star) {
+  constexpr double k_least = 1e-9;
   Vec3 sum;
   for (const CrossingTriangle& t : star) sum = sum + t.normal;
-  const double least = 1e-9 * squared_length(sum);
-  return std::all_of(star.begin(), star.end(), [&](const CrossingTriangle& t) {
-    const double along = dot(t.normal, sum);
-    return along > 0 && along * along > least * squared_length(t.normal);
-  });
+  const bool faces_one_way =
+      std::all_of(star.begin(), star.end(),
+                  [&](const CrossingTriangle& t) { return is_along(t.normal, sum, k_least); });
+  return faces_one_way ? std::optional(sum) : std::nullopt;
 }
 
 }  // namespace
@@ -131,10 +137,13 @@ void CrossingGuard::list(const Merge& merge) {
   touching_.clear();
   star_.clear();
   others_.clear();
+  ring_.clear();
   boxes_.find_touching(box_round(merge), touching_);
   for (const std::uint32_t slot : touching_) {
     const Triangle& t = triangles_[slot];
-    (has_corner(t, merge.a) || has_corner(t, merge.b) ? star_ : others_).push_back(slot);
+    const bool is_star = has_corner(t, merge.a) || has_corner(t, merge.b);
+    (is_star ? star_ : others_).push_back(slot);
+    if (is_star) ring_.insert(ring_.end(), t.begin(), t.end());
   }
 }
 
@@ -143,6 +152,7 @@ void CrossingGuard::list(const Merge& merge) {
 std::size_t CrossingGuard::count(const std::vector<CrossingTriangle>& star,
                                  std::size_t enough) const {
   std::size_t pairs = 0;
+  const std::optional<Vec3> way = way_of(star);
   Box box;
   for (const CrossingTriangle& t : star) {
     box.add(t.box.lo);
@@ -152,6 +162,7 @@ std::size_t CrossingGuard::count(const std::vector<CrossingTriangle>& star,
     const Triangle& t = triangles_[slot];
     const Box around = box_of(t);
     if (!do_touch(around, box)) continue;
+    if (way && goes_on(t, *way)) continue;
     std::optional<CrossingTriangle> other;
     for (const CrossingTriangle& own : star) {
       if (!do_touch(own.box, around)) continue;
@@ -159,13 +170,25 @@ std::size_t CrossingGuard::count(const std::vector<CrossingTriangle>& star,
       if (do_cross(own, *other) && ++pairs >= enough) return pairs;
     }
   }
-  if (is_like_a_plane(star)) return pairs;
+  if (way) return pairs;
   for (std::size_t i = 0; i < star.size(); ++i) {
     for (std::size_t k = 0; k < i; ++k) {
       if (do_cross(star[i], star[k]) && ++pairs >= enough) return pairs;
     }
   }
   return pairs;
+}
+
+/// Whether a triangle beside the star goes on the way that the star faces: then they do not cross.
+bool CrossingGuard::goes_on(const Triangle& t, Vec3 way) const {
+  constexpr double k_cos_60_squared = 0.25;
+  const bool is_beside = std::any_of(t.begin(), t.end(), [&](std::uint32_t v) {
+    return std::find(ring_.begin(), ring_.end(), v) != ring_.end();
+  });
+  if (!is_beside) return false;
+  const Vec3 p = state_.positions[t[0]];
+  return is_along(cross(state_.positions[t[1]] - p, state_.positions[t[2]] - p), way,
+                  k_cos_60_squared);
 }
 
 std::size_t CrossingGuard::count_before() const {

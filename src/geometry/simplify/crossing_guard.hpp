@@ -49,6 +49,7 @@ class CrossingGuard {
   Box box_round(const Merge& merge) const;
   bool vanishes(const Triangle& t) const;
   void list(const Merge& merge);
+  bool goes_on(const Triangle& t, Vec3 way) const;
   std::size_t count_before() const;
   std::size_t count(const std::vector<CrossingTriangle>& star, std::size_t enough) const;
 
@@ -64,6 +65,7 @@ class CrossingGuard {
   std::vector<std::uint32_t> touching_;
   std::vector<std::uint32_t> star_;    // slots of the triangles at its ends
   std::vector<std::uint32_t> others_;  // slots of those round about
+  std::vector<std::uint32_t> ring_;    // the corners of the star
   std::vector<CrossingTriangle> fresh_;
 };
 

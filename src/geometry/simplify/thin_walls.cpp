@@ -53,13 +53,17 @@ class FacingCells {
     std::vector<std::uint8_t> opposed(cells_.size(), 0);
     for (std::size_t i = 1; i < cells_.size(); ++i) {
       const std::uint64_t key = cells_[i].key;
-      std::uint8_t round = 0;
-      for (std::uint64_t k = 0; k < 27; ++k) {
-        // Keys of neighbours: none is at the end of its axis.
-        const std::uint64_t beside = key + (k % 3) * k_x + (k / 3 % 3) * k_y + (k / 9) * k_z;
-        round |= cells_[find(beside - k_x - k_y - k_z)].ways;
+      const std::uint8_t against = opposite(cells_[i].ways);
+      if ((against & cells_[i].ways) != 0) opposed[i] = 1;
+      // Keys of neighbours: none is at the end of its axis. Of two beside each other one looks.
+      for (std::uint64_t k = 14; k < 27; ++k) {
+        const std::uint64_t beside =
+            key + (k % 3) * k_x + (k / 3 % 3) * k_y + (k / 9) * k_z - k_x - k_y - k_z;
+        const std::uint32_t other = find(beside);
+        if ((against & cells_[other].ways) == 0) continue;
+        opposed[i] = 1;
+        opposed[other] = 1;
       }
-      opposed[i] = (opposite(cells_[i].ways) & round) != 0 ? 1 : 0;
     }
     return opposed;
   }
