@@ -66,7 +66,8 @@ void TargetOptions::add(po::options_description& options) {
       "by the sink; auto: tree if there are many more triangles than wanted")(
       "topology", po::value(&topology)->default_value(topology)->value_name("auto|keep|simplify"),
       "handles, holes and pieces: keep: never close or remove any; simplify: do so where it costs "
-      "least; auto: keep them as long as the target can be met at a fair error")(
+      "least; auto: keep them as long as the target can be met at a fair error; with "
+      "--crossings avoid as simplify in the last pass")(
       "crossings", po::value(&crossings)->default_value(crossings)->value_name("allow|avoid"),
       "thin walls: avoid: what would make triangles cross others comes last, or never with "
       "--error; "

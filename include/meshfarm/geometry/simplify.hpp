@@ -31,10 +31,10 @@ enum class CrossingMode : std::uint8_t {
   /// They are refused, but for those near the goal, which cost 16 times as much and are refused
   /// only under a bound on the error: so the goal is met. Such is a collapse that adds to the pairs
   /// of triangles that cross (crossings.hpp); those of the input lock nothing. Near the goal all
-  /// collapses are looked at; far from it those in thin walls, where triangles face each other
-  /// within 0.15 of the length that edges have in the end, or about as near. Without a bound and
-  /// a seam, TopologyMode::automatic is `simplify` then: a handle smaller than the triangles can
-  /// neither be kept apart nor face the right way.
+  /// collapses are looked at, farther away those in thin walls, farthest none. Walls are thin where
+  /// triangles face each other within 0.15 of the length that edges have in the end, or about as
+  /// near. Without a bound and a seam, TopologyMode::automatic is `simplify` then: a handle smaller
+  /// than the triangles can neither be kept apart nor face the right way.
   avoid,
 };
 

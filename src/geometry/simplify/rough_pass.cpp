@@ -6,7 +6,6 @@
 #include <cmath>
 #include <vector>
 
-#include "geometry/simplify/crossing_guard.hpp"
 #include "geometry/simplify/simplify_rank.hpp"
 #include "geometry/simplify/vertex_flags.hpp"
 
@@ -41,10 +40,6 @@ std::uint64_t RoughPass::run(const SimplifyGoal& goal) {
   mesh_.begin_pass();
   const std::span<const std::uint8_t> touched = mesh_.touched();
   CollapseJudge judge(mesh_.state());
-  CrossingGuard guard;
-  if (mesh_.avoids_crossings()) {
-    guard.start(mesh_.state(), mesh_.mesh().triangles, CrossingGuard::Where::thin_walls);
-  }
   const RoughPartners partners(mesh_.state(), touched);
   const std::uint64_t excess = mesh_.triangles() - goal.triangles;
   const double left = static_cast<double>(last_of(goal)) / static_cast<double>(mesh_.triangles());
@@ -58,10 +53,6 @@ std::uint64_t RoughPass::run(const SimplifyGoal& goal) {
     const auto [a, b] = std::minmax(v, other);
     const Collapse collapse = judge.judge(a, b, limits);
     if (collapse.triangles == 0) continue;
-    if (mesh_.avoids_crossings() && guard.concerns(a, b)) {
-      if (guard.crosses({a, b, collapse.position, {}})) continue;
-      guard.merge();
-    }
     mesh_.merge(a, b, collapse, judge.columns_of(collapse));
     limits.triangles -= collapse.triangles;
   }
