@@ -27,9 +27,9 @@ std::optional<Vec3> way_of(const std::vector<CrossingTriangle>& star) {
   constexpr double k_least = 1e-9;
   Vec3 sum;
   for (const CrossingTriangle& t : star) sum = sum + t.normal;
-  const bool faces_one_way =
-      std::all_of(star.begin(), star.end(),
-                  [&](const CrossingTriangle& t) { return is_along(t.normal, sum, k_least); });
+  const bool faces_one_way = std::all_of(star.begin(), star.end(), [&](const CrossingTriangle& t) {
+    return is_along(t.normal, sum, k_least);
+  });
   return faces_one_way ? std::optional(sum) : std::nullopt;
 }
 

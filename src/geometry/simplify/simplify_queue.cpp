@@ -19,9 +19,10 @@ constexpr double k_ranked_share = 0.35;
 // A mesh that was kept is dropped when it has so many times the triangles that are left.
 constexpr double k_far_more = 1.3;
 
-// What makes triangles cross costs so many times as much, four times the distance. With 64 a third
-// as many of a skull's triangles cross, but walls thinner than the error lose their shape.
-constexpr double k_loss_of_crossing = 16;
+// What makes triangles cross costs so many times as much, eight times the distance. With 16 more
+// than twice as many of a skull's triangles cross; with 1,024 walls thinner than the error lose
+// their shape.
+constexpr double k_loss_of_crossing = 64;
 
 constexpr CostKey k_greatest = k_any_cost - 1;
 constexpr CostKey k_least_step = 4U << 20;  // a factor of 16
