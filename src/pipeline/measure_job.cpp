@@ -267,7 +267,8 @@ class PieceMeter {
     const double reach = std::max({2 * error_.to_output.max, spacing, spacing_of(mesh_)});
     const SomePoints near = points_near(points, input.box, reach);
     const SomePoints own = points_that_want(points, input.box, {spacing, usual(spacing), known});
-    for (const std::vector<Vec3>& each : points) points_.to_input.emplace_back(each.size(), HUGE_VAL);
+    for (const std::vector<Vec3>& each : points)
+      points_.to_input.emplace_back(each.size(), HUGE_VAL);
     PointMeter to_own(own.points, {spacing, usual(spacing), known});
     while (to_own.begin_pass()) show(input, to_own);
     take_found(own, to_own.distances(), HUGE_VAL);

@@ -7,7 +7,8 @@
 //   seam       = version u8 | strips u32 x (parts u32 | ref) | all parts u32 | boundary |
 //                samples a triangle f64 | weigh
 //   reduce     = version u8 | section | rung u32 | triangles u64 | points u64 | vertices u64 |
-//   lines measure    = version u8 | first part u32 | end part u32 | triangles u64 | share u32 |
+//                lines
+//   measure    = version u8 | first part u32 | end part u32 | triangles u64 | share u32 |
 //                shares u32 | box | 5 refs | points u32 x ref | input step u64 | builds u8 |
 //                if it does: bundles (bundle_list.hpp)
 //   ref        = file | section;  box = 6 x f64
@@ -18,6 +19,7 @@
 //   error      = area f64 | rms f64 | mean f64 | max f64 | samples u64
 //   measured   = lists u32 x (points u32 x f64) | distances u32 x f64 | areas u32 x f64,
 //                the file of a measure job
+//
 // In version 1 parts were always kept, and a piece was measured by one job.
 #include <cmath>
 
