@@ -45,7 +45,7 @@ std::string result_of(const BatchReport::File& file) {
   }
 }
 
-std::size_t count_of(const BatchReport& report, State state) {
+std::size_t jobs_in(const BatchReport& report, State state) {
   return static_cast<std::size_t>(
       std::count_if(report.files.begin(), report.files.end(),
                     [&](const BatchReport::File& each) { return each.state == state; }));
@@ -62,10 +62,10 @@ std::string as_json(const BatchReport& report) {
                      {"summary", summary_of(each)}});
   }
   const Json json = {{"files", files},
-                     {"done", count_of(report, State::done)},
-                     {"done_before", count_of(report, State::done_before)},
-                     {"failed", count_of(report, State::failed)},
-                     {"not_done", count_of(report, State::stopped)}};
+                     {"done", jobs_in(report, State::done)},
+                     {"done_before", jobs_in(report, State::done_before)},
+                     {"failed", jobs_in(report, State::failed)},
+                     {"not_done", jobs_in(report, State::stopped)}};
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
@@ -89,9 +89,9 @@ std::string render(const BatchReport& report, Format format) {
     text += "\n";
   }
   text += grouped(report.files.size()) + (report.files.size() == 1 ? " file: " : " files: ") +
-          grouped(count_of(report, State::done)) + " done";
+          grouped(jobs_in(report, State::done)) + " done";
   for (const State state : {State::done_before, State::failed, State::stopped}) {
-    const std::size_t count = count_of(report, state);
+    const std::size_t count = jobs_in(report, state);
     if (count > 0) text += ", " + grouped(count) + " " + name_of(state);
   }
   return text + "\n";

@@ -16,31 +16,10 @@
 namespace meshfarm {
 namespace {
 
-void add_quantiles(const std::optional<DistanceQuantiles>& quantiles, double diagonal, Json& json) {
-  json["p95"] = quantiles ? Json(quantiles->p95 / diagonal) : Json(nullptr);
-  json["p99"] = quantiles ? Json(quantiles->p99 / diagonal) : Json(nullptr);
-}
-
-Json error_json(const MeasuredError& error, double diagonal) {
-  Json json = to_json(error.greater(), diagonal);
-  json["of"] = "the greater of both directions, fractions of the diagonal";
-  json["input_to_output"] = to_json(error.to_output, diagonal);
-  add_quantiles(error.to_output_quantiles, diagonal, json["input_to_output"]);
-  json["input_to_output"]["samples"] = error.input_samples;
-  json["input_to_output"]["normals"] = to_json(error.to_output_normals);
-  if (error.to_output_normals) {
-    json["input_to_output"]["normals"]["samples"] = error.normal_samples;
-  }
-  json["output_to_input"] = to_json(error.to_input, diagonal);
-  add_quantiles(error.to_input_quantiles, diagonal, json["output_to_input"]);
-  json["output_to_input"]["samples"] = error.output_samples;
-  return json;
-}
-
 Json better_json(const RunSummary& s) {
   if (!s.better) return nullptr;
   return {{"triangles", s.better->triangles},
-          {"error", error_json(s.better->error, s.manifest.box.diagonal())}};
+          {"error", to_json(s.better->error, s.manifest.box.diagonal())}};
 }
 
 Json input_json(const Manifest& m) {
@@ -262,7 +241,7 @@ Json run_json(const RunSummary& s, const std::string& warning) {
       {"topology", is_kept(s) ? "kept" : "simplified"},
       {"topology_change", topology_json(s)},
       {"turned", s.turned},
-      {"error", s.error.input_samples == 0 ? Json(nullptr) : error_json(s.error, m.box.diagonal())},
+      {"error", s.error.input_samples == 0 ? Json(nullptr) : to_json(s.error, m.box.diagonal())},
       {"surface", s.result ? to_json(*s.result) : Json(nullptr)},
       {"channels", channels_json(s)},
       {"labels", to_json(s.labels)},

@@ -83,6 +83,27 @@ Json to_json(const std::optional<NormalDeviation>& normals) {
       {"rms_degrees", normals->rms}, {"p95_degrees", normals->p95}, {"over_90", normals->over_90}};
 }
 
+void add_quantiles(const std::optional<DistanceQuantiles>& quantiles, double diagonal, Json& json) {
+  json["p95"] = quantiles ? Json(quantiles->p95 / diagonal) : Json(nullptr);
+  json["p99"] = quantiles ? Json(quantiles->p99 / diagonal) : Json(nullptr);
+}
+
+Json to_json(const MeasuredError& error, double diagonal) {
+  Json json = to_json(error.greater(), diagonal);
+  json["of"] = "the greater of both directions, fractions of the diagonal";
+  json["input_to_output"] = to_json(error.to_output, diagonal);
+  add_quantiles(error.to_output_quantiles, diagonal, json["input_to_output"]);
+  json["input_to_output"]["samples"] = error.input_samples;
+  json["input_to_output"]["normals"] = to_json(error.to_output_normals);
+  if (error.to_output_normals) {
+    json["input_to_output"]["normals"]["samples"] = error.normal_samples;
+  }
+  json["output_to_input"] = to_json(error.to_input, diagonal);
+  add_quantiles(error.to_input_quantiles, diagonal, json["output_to_input"]);
+  json["output_to_input"]["samples"] = error.output_samples;
+  return json;
+}
+
 std::string text_of(const NormalDeviation& normals) {
   return "rms " + number(normals.rms, "%.3g") + "  95 % " + number(normals.p95, "%.3g") +
          " degrees, more than 90 on " + number(100 * normals.over_90, "%.3g") + " % of the area";

@@ -52,6 +52,10 @@ Json to_json(const Topology& topology);
 Json to_json(const Distance& distance, double diagonal);
 /// Null where they were not measured.
 Json to_json(const std::optional<NormalDeviation>& normals);
+/// The greater of both directions, and both.
+Json to_json(const MeasuredError& error, double diagonal);
+/// As fractions of the diagonal; null where they were not measured.
+void add_quantiles(const std::optional<DistanceQuantiles>& quantiles, double diagonal, Json& json);
 std::string text_of(const NormalDeviation& normals);
 std::string text_of(const Topology& topology);
 /// Genus, of all pieces together. Nothing where borders or edges that are not manifold make the
