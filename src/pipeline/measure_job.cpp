@@ -97,6 +97,8 @@ std::vector<double> distances_to(const std::vector<const Mesh*>& surface,
   const double margin = k_margin_in_spacings * spacing;
   std::vector<Mesh> within;
   std::vector<const Mesh*> near;
+  within.reserve(surface.size());
+  near.reserve(surface.size());
   for (const Mesh* mesh : surface) within.push_back(part_within(*mesh, box, margin));
   for (const Mesh& mesh : within) near.push_back(&mesh);
   std::vector<double> distances = distances_to_all(near, points, spacing);

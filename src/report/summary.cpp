@@ -365,14 +365,14 @@ RunTimes parse_run_times(std::string_view text, std::string_view what) {
   return run_times_of(json, what);
 }
 
-RunTimes run_times_of(const Json& json, std::string_view what) {
+RunTimes run_times_of(const Json& summary, std::string_view what) {
   try {
-    const Json& seconds = json.at("seconds");
-    const Json& triangles = json.at("output").at("triangles");
+    const Json& seconds = summary.at("seconds");
+    const Json& triangles = summary.at("output").at("triangles");
     if (!triangles.is_number_unsigned()) throw DataError("its triangles are no count");
     const auto at = [&](const char* name) { return seconds.at(name).get<double>(); };
-    return {std::stoull(json.at("run").get<std::string>(), nullptr, 16),
-            json.value("epoch", std::uint32_t{0}),
+    return {std::stoull(summary.at("run").get<std::string>(), nullptr, 16),
+            summary.value("epoch", std::uint32_t{0}),
             triangles.get<std::uint64_t>(),
             at("cut"),
             at("farm"),
