@@ -5,6 +5,7 @@ include(CMakePackageConfigHelpers)
 set(layers util geometry staging io)
 list(TRANSFORM layers PREPEND meshfarm_ OUTPUT_VARIABLE layer_targets)
 install(TARGETS meshfarm RUNTIME COMPONENT program)
+install(TARGETS meshfarm_web LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}/meshfarm COMPONENT program)
 install(PROGRAMS scripts/launch-common.sh scripts/launch-local.sh scripts/launch-ssh.sh
                  scripts/launch-slurm.sh
         DESTINATION ${CMAKE_INSTALL_DATADIR}/meshfarm COMPONENT program)

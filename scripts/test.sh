@@ -90,8 +90,8 @@ if [ "$all" = yes ]; then
   # TSan does not see into libzmq, which is not built with it.
   TSAN_OPTIONS=ignore_noninstrumented_modules=1 \
     sanitized build-tsan thread --tests-regex \
-    '^unit\.(util|staging|farm|transport|simulation|render)$' \
-    test_util test_staging test_farm test_transport test_simulation test_render
+    '^unit\.(util|staging|farm|transport|web|simulation|render)$' \
+    test_util test_staging test_farm test_transport test_web test_simulation test_render
   begin "lint"
   "$root/scripts/lint.sh"
 fi

@@ -1,13 +1,9 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
-#include <atomic>
-#include <cerrno>
-#include <chrono>
-#include <thread>
+#include <system_error>
 #include <utility>
 
-#include <httplib.h>
-#include <sys/socket.h>
+#include <dlfcn.h>
 
 #include <meshfarm/transport/page_server.hpp>
 #include <meshfarm/util/errors.hpp>
@@ -15,99 +11,26 @@
 namespace meshfarm {
 namespace {
 
-constexpr const char* k_host = "127.0.0.1";
-constexpr std::size_t k_threads = 8;        // a browser holds some connections that it does not use
-constexpr std::size_t k_most_bytes = 4096;  // of what is sent along: nothing is expected
-
-/// Names of this host, whatever the port: a tunnel has another.
-bool names_this_host(const std::string& host) {
-  const std::string name =
-      host.substr(0, host.rfind(':') == std::string::npos || host.back() == ']' ? host.size()
-                                                                                : host.rfind(':'));
-  return name == k_host || name == "localhost" || name == "[::1]";
+/// The module's function. The module stays loaded to the end of the process.
+ListenFunction* load() {
+  void* const module = ::dlopen(k_page_module, RTLD_NOW | RTLD_LOCAL);
+  void* const function = module == nullptr ? nullptr : ::dlsym(module, k_page_function);
+  if (function == nullptr) {
+    const char* const reason = ::dlerror();
+    throw Error(std::string("cannot serve pages: ") + (reason != nullptr ? reason : k_page_module));
+  }
+  return reinterpret_cast<ListenFunction*>(function);
 }
 
 }  // namespace
 
-class PageServer::Impl {
- public:
-  Impl(std::uint16_t port, Answer answer) : answer_(std::move(answer)) {
-    set_up();
-    const int bound = port == 0 ? server_.bind_to_any_port(k_host)
-                                : (server_.bind_to_port(k_host, port) ? port : -1);
-    if (bound <= 0) {
-      throw IoError("cannot listen on", std::string(k_host) + ":" + std::to_string(port),
-                    errno != 0 ? errno : EADDRINUSE);
-    }
-    port_ = static_cast<std::uint16_t>(bound);
-    thread_ = std::thread([this] {
-      server_.listen_after_bind();
-      ended_ = true;
-    });
+PageServer::PageServer(std::uint16_t port, PageAnswer answer) {
+  static ListenFunction* const listen = load();
+  try {
+    listener_.reset(listen(port, std::move(answer)));
+  } catch (const std::system_error& error) {
+    throw IoError("cannot listen on", "127.0.0.1:" + std::to_string(port), error.code().value());
   }
-  ~Impl() {
-    // Before it runs it would not hear of the end.
-    while (!server_.is_running() && !ended_) std::this_thread::yield();
-    server_.stop();
-    thread_.join();
-  }
-  Impl(const Impl&) = delete;
-  Impl& operator=(const Impl&) = delete;
-
-  std::uint16_t port() const { return port_; }
-
- private:
-  void set_up() {
-    // By itself the library lets two servers share a port, and each would get some requests.
-    server_.set_socket_options([](socket_t socket) {
-      const int yes = 1;
-      ::setsockopt(socket, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes);
-    });
-    server_.new_task_queue = [] { return new httplib::ThreadPool(k_threads); };
-    // A connection that is kept is polled a hundred times a second.
-    server_.set_keep_alive_max_count(1);
-    server_.set_read_timeout(std::chrono::seconds(2));
-    server_.set_write_timeout(std::chrono::seconds(2));
-    server_.set_idle_interval(std::chrono::milliseconds(250));
-    server_.set_payload_max_length(k_most_bytes);
-    server_.set_default_headers({{"Cache-Control", "no-store"},
-                                 {"X-Content-Type-Options", "nosniff"},
-                                 {"Referrer-Policy", "no-referrer"},
-                                 {"Content-Security-Policy",
-                                  "default-src 'none'; style-src 'unsafe-inline'; script-src "
-                                  "'unsafe-inline'; connect-src 'self'; img-src data:; base-uri "
-                                  "'none'; form-action 'none'; frame-ancestors 'none'"}});
-    server_.Get(".*", [this](const httplib::Request& request, httplib::Response& response) {
-      answer(request, response);
-    });
-  }
-
-  void answer(const httplib::Request& request, httplib::Response& response) const {
-    if (!names_this_host(request.get_header_value("Host"))) {
-      response.status = 403;
-      return response.set_content("ask for localhost\n", "text/plain");
-    }
-    const std::optional<ServedPage> page = answer_(request.path);
-    if (!page) {
-      response.status = 404;
-      return response.set_content("no such page\n", "text/plain");
-    }
-    response.set_content(page->body, page->type);
-  }
-
-  Answer answer_;
-  httplib::Server server_;
-  std::uint16_t port_ = 0;
-  std::atomic<bool> ended_{false};
-  std::thread thread_;
-};
-
-PageServer::PageServer(std::uint16_t port, Answer answer)
-    : impl_(std::make_unique<Impl>(port, std::move(answer))) {}
-PageServer::~PageServer() = default;
-
-std::uint16_t PageServer::port() const {
-  return impl_->port();
 }
 
 }  // namespace meshfarm

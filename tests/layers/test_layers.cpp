@@ -51,7 +51,7 @@ constexpr std::array k_packages{
     Package{"nlohmann_json::nlohmann_json", "nlohmann/"},
     Package{"meshoptimizer::meshoptimizer", "meshoptimizer.h"},
     Package{"PNG::PNG", "png.h"},
-    Package{"$<TARGET_NAME_IF_EXISTS:draco::draco>", "draco/"},
+    Package{"$<TARGET_NAME_IF_EXISTS:draco::draco_static>", "draco/"},
     Package{"PkgConfig::turbojpeg", "turbojpeg.h"},
     Package{"PkgConfig::xxhash", "xxhash.h"},
     Package{"spdlog::spdlog", "spdlog/"},

@@ -3,37 +3,24 @@
 #pragma once
 
 #include <cstdint>
-#include <functional>
 #include <memory>
-#include <optional>
-#include <string>
+
+#include <meshfarm/transport/page_listener.hpp>
 
 namespace meshfarm {
-
-struct ServedPage {
-  std::string type;  // "application/json"
-  std::string body;
-};
 
 /// Serves pages to browsers of this host: it listens on 127.0.0.1 only, and answers only who asked
 /// for this host, so that no page of another site can read what it says through a name of its own.
 class PageServer {
  public:
-  /// The page of a path ("/", "/status.json"), or nothing. Called by several threads.
-  using Answer = std::function<std::optional<ServedPage>(const std::string& path)>;
-
   /// Serves by threads of its own until it is destroyed. Port 0: any that is free. Throws IoError
-  /// if the port is not.
-  PageServer(std::uint16_t port, Answer answer);
-  ~PageServer();
-  PageServer(const PageServer&) = delete;
-  PageServer& operator=(const PageServer&) = delete;
+  /// if the port is not, Error if the module that serves is not installed.
+  PageServer(std::uint16_t port, PageAnswer answer);
 
-  std::uint16_t port() const;
+  std::uint16_t port() const { return listener_->port(); }
 
  private:
-  class Impl;
-  std::unique_ptr<Impl> impl_;
+  std::unique_ptr<PageListener> listener_;
 };
 
 }  // namespace meshfarm
