@@ -31,7 +31,7 @@ NormalDeviation deviation_of(std::span<const MeasuredPlace> places) {
   return normals_of(near, areas);
 }
 
-SurfaceError error_of(std::span<const MeasuredPlace> places, const WeightedValues& distances) {
+SurfaceError error_of(std::span<const MeasuredPlace> places, WeightedValues& distances) {
   SurfaceError error;
   double area = 0;
   for (const MeasuredPlace& p : places) {
@@ -49,7 +49,7 @@ SurfaceError error_of(std::span<const MeasuredPlace> places, const WeightedValue
   return error;
 }
 
-ErrorHistogram histogram_of(const WeightedValues& distances) {
+ErrorHistogram histogram_of(WeightedValues& distances) {
   constexpr std::size_t k_bins = 40;
   ErrorHistogram made;
   made.end = distances.quantile(0.95);
@@ -125,7 +125,7 @@ std::vector<MeasuredPlace> InputSamples::measure(const TriangleIndex& result, un
 }
 
 ErrorFigures error_figures_of(std::span<const MeasuredPlace> places) {
-  const WeightedValues distances = distances_of(places);
+  WeightedValues distances = distances_of(places);
   return {error_of(places, distances), histogram_of(distances)};
 }
 

@@ -121,7 +121,7 @@ void ErrorMeter::measure_samples(const DistanceMeter& meter, MeasuredError& meas
       weighted.emplace_back(of_points[weighted.size()], each);
     }
   }
-  const WeightedValues values(std::move(weighted));
+  WeightedValues values(std::move(weighted));
   measured.to_output_quantiles = DistanceQuantiles{values.quantile(0.95), values.quantile(0.99)};
 }
 

@@ -133,7 +133,7 @@ FoundDistances found_distances(const Stage& stage, const FinishedPieces& result)
 }
 
 DistanceQuantiles quantiles(WeightedDistances distances) {
-  const WeightedValues values(std::move(distances));
+  WeightedValues values(std::move(distances));
   return {values.quantile(0.95), values.quantile(0.99)};
 }
 
