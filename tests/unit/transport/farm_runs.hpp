@@ -5,8 +5,11 @@
 #include <atomic>
 #include <chrono>
 #include <memory>
+#include <mutex>
+#include <set>
 #include <string>
 #include <thread>
+#include <utility>
 #include <vector>
 
 #include <doctest/doctest.h>
@@ -43,13 +46,34 @@ inline std::vector<std::string> run_farm(Farm& farm, const JobSource& source, in
   return summaries;
 }
 
-/// The trivial job, counted.
-inline JobFunction counted(std::atomic<int>& count) {
-  return [&count](const Job& job, const JobContext& context) {
-    ++count;
+/// The trivial job, its attempts counted.
+inline JobFunction counted(std::atomic<int>& attempts) {
+  return [&attempts](const Job& job, const JobContext& context) {
+    ++attempts;
     return do_trivial_job(job, context);
   };
 }
+
+/// The jobs that were done by several workers. On a busy machine some are attempted twice.
+class DoneJobs {
+ public:
+  /// The trivial job, noted here.
+  JobFunction noting() {
+    return [this](const Job& job, const JobContext& context) {
+      {
+        const std::lock_guard lock(mutex_);
+        jobs_.insert(job.parameters);
+      }
+      return do_trivial_job(job, context);
+    };
+  }
+  /// How many since it was asked last. Asked when no worker runs.
+  std::size_t take() { return std::exchange(jobs_, {}).size(); }
+
+ private:
+  std::mutex mutex_;
+  std::set<std::string> jobs_;
+};
 
 /// The trivial job, as slow as a few heartbeats are long in all.
 inline JobOutput do_slow_job(const Job& job, const JobContext& context) {
