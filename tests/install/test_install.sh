@@ -13,3 +13,13 @@ cmake --build "$work/build" > /dev/null
 made=$("$work/build/consumer" "$work/in.ply" "$work/out.ply")
 [ "$made" = 1000 ] || { echo "made $made triangles instead of 1000" >&2; exit 1; }
 "$work/prefix/bin/meshfarm" info "$work/out.ply" | grep -q 'Euler characteristic 0'
+# The module that serves pages is found where it was installed.
+"$work/prefix/bin/meshfarm" cut "$work/in.ply" --stage "$work/stage" --parts 2 > /dev/null
+"$work/prefix/bin/meshfarm" status "$work/stage" --serve 0 > "$work/served" &
+for _ in $(seq 100); do
+  sleep 0.1
+  [ ! -s "$work/served" ] || break
+done
+kill -INT $!
+wait $!
+grep -q '^http://localhost:' "$work/served"

@@ -12,6 +12,7 @@ cpack --config "$1/CPackConfig.cmake" -B "$work" > "$work/log" 2>&1 || { cat "$w
 mapfile -t packages < <(find "$work" -maxdepth 1 -name 'meshfarm_*.deb')
 [ ${#packages[@]} -eq 1 ] || fail "made ${#packages[@]} packages"
 dpkg-deb --field "${packages[0]}" Depends | grep -q libzmq5 || fail "does not depend on libzmq5"
+dpkg-deb --field "${packages[0]}" Depends | grep -q libcpp-httplib || fail "has no module that serves"
 dpkg-deb --extract "${packages[0]}" "$work/root"
 [ ! -e "$work/root/usr/include" ] || fail "has the library's headers"
 program=$work/root/usr/bin/meshfarm

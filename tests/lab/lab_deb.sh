@@ -37,6 +37,8 @@ in_root() {
     meshfarm generate -o in.ply --triangles 20000 --quiet
     meshfarm simplify in.ply -o out.ply --ratio 0.1 --quiet
     meshfarm info out.ply
+    meshfarm cut in.ply --stage stage --parts 2
+    timeout 5 meshfarm status stage --serve 0 | grep localhost
     man meshfarm-simplify | grep -q -- "--ratio"
     . /usr/share/bash-completion/bash_completion
     _completion_loader meshfarm || [ $? -eq 124 ]
