@@ -14,7 +14,9 @@ for word in "$@"; do
     *) echo "usage: test.sh [--all]" >&2; exit 2 ;;
   esac
 done
-jobs=$(($(nproc) + 1)) # some tests wait for most of their time
+# Most tests wait for much of their time; under sanitizers they compute.
+jobs=$(($(nproc) * 2 + 1))
+sanitized_jobs=$(($(nproc) + 1))
 build_options=(-DMESHFARM_TESTS=ON)
 if [ "$all" = no ]; then
   # Sources of a layer compiled together: that takes half of the time.
@@ -59,7 +61,7 @@ compile() {
 sanitized() {
   begin "tests with $2 ($3 $4)"
   compile "$1" "$2" "${@:5}"
-  ctest --test-dir "$root/$1" --output-on-failure -j "$jobs" "$3" "$4"
+  ctest --test-dir "$root/$1" --output-on-failure -j "$sanitized_jobs" "$3" "$4"
 }
 
 beside_labs() {
