@@ -3,6 +3,8 @@
 #include "divide/cell_graph.hpp"
 
 #include <algorithm>
+#include <cstdint>
+#include <cstdlib>
 #include <numeric>
 #include <string>
 #include <utility>
@@ -12,6 +14,39 @@
 #include <meshfarm/geometry/point_index.hpp>
 #include <meshfarm/util/errors.hpp>
 #include <meshfarm/util/parallel.hpp>
+
+namespace {
+
+/// What rand() would give if no other thread called it: glibc's own numbers, of each thread.
+class OwnRandom {
+ public:
+  OwnRandom() { ::initstate_r(1, state_, sizeof state_, &data_); }
+  void seed(unsigned number) { ::srandom_r(number, &data_); }
+  int next() {
+    std::int32_t number = 0;
+    ::random_r(&data_, &number);
+    return number;
+  }
+
+ private:
+  char state_[128] = {};  // as rand() has
+  random_data data_ = {};
+};
+
+thread_local OwnRandom own_random;
+
+}  // namespace
+
+// METIS draws from rand(), which belongs to the whole process, and so does the thread of ZeroMQ that
+// connects again to a ventilator or a sink that is gone: a partition made meanwhile would be another
+// one. These come before those of the C library, for shared libraries, too.
+extern "C" __attribute__((visibility("default"))) int rand() noexcept {
+  return own_random.next();
+}
+
+extern "C" __attribute__((visibility("default"))) void srand(unsigned number) noexcept {
+  own_random.seed(number);
+}
 
 namespace meshfarm {
 namespace {

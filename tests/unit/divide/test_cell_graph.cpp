@@ -1,10 +1,13 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <set>
 #include <string>
+#include <thread>
 
+#include <dlfcn.h>
 #include <doctest/doctest.h>
 
 #include <meshfarm/util/checksum.hpp>
@@ -52,6 +55,23 @@ TEST_CASE("METIS cuts a square of cells into even, whole parts, the same each ti
       CHECK(static_cast<double>(size) < 1.2 * even);
     }
   }
+}
+
+TEST_CASE("parts stay the same while other threads draw random numbers") {
+  const CellTree tree = square_of_cells(32);
+  const auto quiet = partition_cells(tree.cells(), {.parts = 8});
+  // That of the C library, from which ZeroMQ's threads may draw.
+  auto* const draw = reinterpret_cast<int (*)()>(::dlsym(RTLD_NEXT, "rand"));
+  REQUIRE(static_cast<bool>(draw));
+  std::atomic<bool> ends = false;
+  std::thread other([&] {
+    while (!ends) draw();
+  });
+  int changed = 0;
+  for (int i = 0; i < 10; ++i) changed += partition_cells(tree.cells(), {.parts = 8}) != quiet;
+  ends = true;
+  other.join();
+  CHECK(changed == 0);
 }
 
 TEST_CASE("the version of METIS that parts depend on makes the parts that it always made") {
