@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 the meshfarm authors
 # SPDX-License-Identifier: MIT
-"""See scripts/soak.sh, which calls this: soak.py PROGRAM RUNS FIRST_SEED"""
+"""See scripts/soak.sh, which calls this: soak.py PROGRAM RUNS FIRST_SEED here|farm"""
 import filecmp
 import os
 import random
@@ -11,16 +11,29 @@ import sys
 import tempfile
 import time
 
-RATIO = ["--ratio", "0.02"]
 MOST_FAULTS = 8
 LIMIT_S = 120  # a run that has not ended by then never will
+
+
+class Kind:
+    """Where input is cut and the result finished, and of what mesh."""
+
+    def __init__(self, place):
+        farm = place == "farm"
+        self.triangles = "60000" if farm else "300000"
+        self.parts = ["--parts", "8" if farm else "24"]
+        self.blocks = ["--cut", "farm", "--blocks", "3"] if farm else []
+        self.target = ["--ratio", "0.2" if farm else "0.02"]
+        if farm:
+            self.target += ["--finish", "farm", "--composition", "sink"]
 
 
 class Run:
     """One run, its four processes, and what is done to them."""
 
-    def __init__(self, program, folder, mesh, seed):
+    def __init__(self, program, kind, folder, mesh, seed):
         self.program = program
+        self.kind = kind
         self.random = random.Random(seed)
         self.stage = os.path.join(folder, "stage")
         self.output = os.path.join(folder, "out.ply")
@@ -28,7 +41,7 @@ class Run:
         shutil.rmtree(self.stage, ignore_errors=True)
         if os.path.exists(self.output):
             os.remove(self.output)
-        subprocess.run([program, "cut", mesh, "--stage", self.stage, "--parts", "24", "-q"],
+        subprocess.run([program, "cut", mesh, "--stage", self.stage, "-q"] + kind.parts + kind.blocks,
                        check=True, stdout=subprocess.DEVNULL)
         self.stopped = []  # (pid, when it goes on)
         self.done = set()
@@ -41,7 +54,7 @@ class Run:
         role = name.split()[0]
         words = [self.program, role, self.stage, "-q"]
         if role != "worker":
-            words += RATIO + ["--bind", "127.0.0.1"]
+            words += self.kind.target + ["--bind", "127.0.0.1"]
         words += {"ventilator": ["--heartbeat-ms", "100", "--wait", "10"],
                   "sink": ["-o", self.output, "--wait", "30"],
                   "worker": ["--wait", "30"]}[role]
@@ -70,8 +83,10 @@ class Run:
                  if name not in self.done and p.poll() is None]
         if alive:
             process = self.random.choice(alive)
-            if self.random.random() < 0.7:
-                self.signal(process.pid, signal.SIGKILL)
+            drawn = self.random.random()
+            if drawn < 0.7:
+                asked = drawn < 0.15
+                self.signal(process.pid, signal.SIGTERM if asked else signal.SIGKILL)
             else:
                 self.signal(process.pid, signal.SIGSTOP)
                 self.stopped.append((process.pid, now + self.random.uniform(0.05, 1)))
@@ -125,15 +140,16 @@ class Run:
 
 def main():
     program, runs, first = sys.argv[1], int(sys.argv[2]), int(sys.argv[3])
+    kind = Kind(sys.argv[4])
     folder = tempfile.mkdtemp(prefix="meshfarm-soak-")
     mesh = os.path.join(folder, "mesh.ply")
     expected = os.path.join(folder, "expected.ply")
-    subprocess.run([program, "generate", "-o", mesh, "--triangles", "300000", "-q"], check=True)
-    subprocess.run([program, "simplify", mesh, "-o", expected, "--parts", "24", "-q"] + RATIO,
+    subprocess.run([program, "generate", "-o", mesh, "--triangles", kind.triangles, "-q"], check=True)
+    subprocess.run([program, "simplify", mesh, "-o", expected, "-q"] + kind.parts + kind.target,
                    check=True, stdout=subprocess.DEVNULL)
     bad = faults = 0
     for seed in range(first, first + runs):
-        run = Run(program, folder, mesh, seed)
+        run = Run(program, kind, folder, mesh, seed)
         begin = time.time()
         ended = run.to_the_end()
         willing = run.leave()
@@ -146,6 +162,8 @@ def main():
             kept = os.path.join(folder, f"bad-{seed}")
             shutil.copytree(run.stage, kept, dirs_exist_ok=True)
             shutil.copy(run.log.name, os.path.join(kept, "messages"))
+            if os.path.exists(run.output):
+                shutil.copy(run.output, kept)
         if (seed - first + 1) % 50 == 0:
             print(f"{seed - first + 1} runs, {faults} faults, {bad} bad", flush=True)
     print(f"{runs} runs, {faults} faults, {bad} bad")
