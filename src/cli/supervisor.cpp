@@ -78,11 +78,21 @@ void Supervisor::ended(Child& child, int status) {
                       : " was ended by signal " + std::to_string(WTERMSIG(status))) +
                 " and is started again");
     spawn(child);
+    if (!child.worker()) call_workers_back();
     return;
   }
   if (!child.worker() || !has_live_worker()) {
     failure_ = WIFEXITED(status) ? WEXITSTATUS(status) : 1;
     if (child.worker()) log_error("no worker is left");
+  }
+}
+
+/// They left as all was done: a sink that comes anew may find that something is to be made again.
+void Supervisor::call_workers_back() {
+  for (Child& child : children_) {
+    if (!child.worker() || !child.done) continue;
+    child.done = false;
+    spawn(child);
   }
 }
 

@@ -38,6 +38,7 @@ class Supervisor {
   void spawn(Child& child);
   void reap();
   void ended(Child& child, int status);
+  void call_workers_back();
   void end_all();
   enum class Which { all, essentials };
   bool wait_all(Which which, int timeout_ms);

@@ -41,6 +41,7 @@ void append_to(const fs::path& path, char c) {
 ///   killed            is ended by a signal
 ///   waits             until SIGTERM ends it, or for a minute
 ///   soon              exits with 0 after half a second
+///   dies              is ended by a signal after half a second
 std::vector<std::string> child(const std::string& name, const fs::path& starts,
                                const std::vector<std::string>& acts) {
   std::vector<std::string> words = {name, starts.string()};
@@ -53,7 +54,10 @@ int act(const std::string& what) {
   if (what == "bad") return 1;
   if (what == "killed") ::raise(SIGKILL);
   if (what == "waits") ::sleep(60);
-  if (what == "soon") std::this_thread::sleep_for(std::chrono::milliseconds(500));
+  if (what == "soon" || what == "dies") {
+    std::this_thread::sleep_for(std::chrono::milliseconds(500));
+  }
+  if (what == "dies") ::raise(SIGKILL);
   return 0;
 }
 
@@ -107,6 +111,16 @@ TEST_CASE("what a signal ends is started again") {
   CHECK(crew.starts_of("ventilator") == 3);
   CHECK(crew.starts_of("sink") == 2);
   CHECK(crew.starts_of("worker0") == 2);
+}
+
+TEST_CASE("workers that were done come back to a sink that is started again") {
+  Crew crew({"soon"}, {"dies", "soon"});
+  crew.add_worker({"done", "waits"});
+  crew.add_worker({"waits"});
+  CHECK(crew.supervisor.run() == 0);
+  CHECK(crew.starts_of("sink") == 2);
+  CHECK(crew.starts_of("worker0") == 2);
+  CHECK(crew.starts_of("worker1") == 1);
 }
 
 TEST_CASE("a worker that left before the end is started again, others that left are not") {
