@@ -79,6 +79,7 @@ void RunTrace::add(const TraceLine& line) {
 void RunTrace::event(const FarmEvent& event, FarmTime at) {
   last_s_ = seconds(at);
   if (const auto* began = std::get_if<RunBegan>(&event)) {
+    begin_ = std::chrono::steady_clock::now() - at;
     head_.epoch = began->epoch;
     head_.host = began->host;
     head_.unix_s = unix_seconds(stage_);
@@ -117,7 +118,8 @@ void RunTrace::state(const FarmProgress& progress, const std::vector<WorkerStatu
 }
 
 void RunTrace::end(const std::string& failure) {
-  add(TraceEnd{last_s_, failure});
+  const std::chrono::duration<double> since = std::chrono::steady_clock::now() - begin_;
+  add(TraceEnd{std::max(last_s_, since.count()), failure});
   log_.reset();
 }
 

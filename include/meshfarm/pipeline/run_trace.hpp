@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <chrono>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -36,6 +37,7 @@ class RunTrace {
   const Stage& stage_;
   TraceHead head_;
   double last_s_ = 0;
+  std::chrono::steady_clock::time_point begin_;  // of the run, by its first event
   std::unique_ptr<LineLog> log_;
 };
 

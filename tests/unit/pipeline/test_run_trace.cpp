@@ -1,5 +1,8 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
+#include <chrono>
+#include <thread>
+
 #include <doctest/doctest.h>
 
 #include <meshfarm/farm/endpoint.hpp>
@@ -60,6 +63,19 @@ TEST_CASE("what a ventilator tells is in the stage's trace") {
   CHECK(read.left.at(0).why == "left");
   CHECK(read.end->failure == "why");
   CHECK(read.end->t == 2.5);
+}
+
+TEST_CASE("a trace ends when its run did, not at the last that was told before") {
+  test::TempFolder folder;
+  const Stage stage = Stage::create(folder / "stage");
+  RunTrace trace(stage, {});
+  VentilatorOptions options;
+  trace.follow(options);
+  options.event(RunBegan{1, "here"}, FarmTime(0));
+  options.event(WorkerLeft{{1}, "left"}, FarmTime(10));
+  std::this_thread::sleep_for(std::chrono::milliseconds(60));
+  trace.end("stopped");
+  CHECK(read_newest_trace(stage).end->t >= 0.06);
 }
 
 TEST_CASE("jobs that were done before a ventilator was killed belong to its run") {
