@@ -149,8 +149,7 @@ class Assembler::Impl {
       summary.dropped_degenerate += each.divided.dropped_degenerate;
       summary.dropped_duplicate += each.divided.dropped_duplicate;
       summary.turned += each.divided.turned;
-      summary.stitched += each.divided.weight.before;
-      if (each.parts > 0) summary.stitched += each.divided.gap_triangles;
+      summary.stitched += each.divided.weight.before + each.divided.gap_triangles;
     }
     summary.triangles = result.triangles();
     summary.vertices = result.vertices();

@@ -34,6 +34,9 @@ constexpr std::uint64_t k_piece_process_bytes = std::uint64_t{16} << 20;
 constexpr std::uint64_t k_piece_triangle_bytes = 170;
 /// A part that is built for the occasion, and what it is built of.
 constexpr std::uint64_t k_built_triangle_bytes = 120;
+/// A seam job is for so many triangles round the seams, and has those of so many pieces more.
+constexpr std::uint64_t k_seam_triangles = 24'000;
+constexpr std::uint64_t k_pieces_round_group = 20;
 /// Of the input, by one job, at least.
 constexpr std::uint64_t k_measured_at_once = 400'000;
 /// To read the result that is measured, and to arrange its points, is worth so many triangles.
@@ -92,7 +95,7 @@ void FinishStage::divide(JobGraph& graph) {
     piece.first_part = first_part;
     piece.parts = parts_[i].chosen.parts;
     first_part += piece.parts;
-    graph.add(job_name(RunStage::split, base + i), split_job(parts_[i]));
+    graph.add(job_name(RunStage::split, base + i), split_job(parts_[i], i));
   }
   graph.then({jobs_of(RunStage::split, base, parts_.size())}, [this, base](JobGraph& so_far) {
     for (std::size_t i = 0; i < made_.pieces.size(); ++i) {
@@ -110,11 +113,19 @@ void FinishStage::take_divided(const JobGraph& graph, std::size_t piece, const J
 }
 
 void FinishStage::join_seams(JobGraph& graph) {
-  const JobName name = job_name(RunStage::seam, turns_ - 1);
-  graph.add(name, seam_job());
-  graph.then({just(name)}, [this, name](JobGraph& so_far) {
-    made_.pieces.emplace_back();
-    take_divided(so_far, made_.pieces.size() - 1, name);
+  std::uint64_t triangles = manifest_.boundary_triangles;
+  for (const PieceOfResult& each : made_.pieces) triangles += each.divided.strip_triangles;
+  const auto groups = static_cast<std::uint32_t>(
+      std::clamp<std::uint64_t>(triangles / k_seam_triangles, 1, made_.pieces.size()));
+  const std::size_t first = std::exchange(seam_jobs_, seam_jobs_ + groups);
+  for (std::uint32_t group = 0; group < groups; ++group) {
+    graph.add(job_name(RunStage::seam, first + group), seam_job(group, groups));
+  }
+  graph.then({jobs_of(RunStage::seam, first, groups)}, [this, first, groups](JobGraph& so_far) {
+    for (std::uint32_t group = 0; group < groups; ++group) {
+      made_.pieces.emplace_back();
+      take_divided(so_far, made_.pieces.size() - 1, job_name(RunStage::seam, first + group));
+    }
     weigh(so_far);
   });
 }
@@ -126,7 +137,7 @@ void FinishStage::weigh(JobGraph& graph) {
   for (const PieceOfResult& each : made_.pieces) {
     weights_.push_back(each.divided.weight);
     all += each.divided.weight.before;
-    if (each.parts > 0) gaps += each.divided.gap_triangles;
+    gaps += each.divided.gap_triangles;
   }
   if (gaps > made_.target || all + gaps < made_.target) {
     return done_(graph, std::nullopt, "the pieces have no common threshold for the count");
@@ -228,20 +239,23 @@ std::vector<PartRange> FinishStage::ranges_of(const PieceOfResult& piece) const 
   return ranges;
 }
 
-Job FinishStage::split_job(const ComposedParts& parts) const {
+Job FinishStage::split_job(const ComposedParts& parts, std::size_t number) const {
   Job job;
   job.kind = k_split_kind;
   job.inputs = {parts.chosen.file};
   job.parameters =
-      encode_parameters(SplitParameters{parts.chosen.rung, step_, parts.chosen.parts > 1, weigh_});
+      encode_parameters(SplitParameters{static_cast<std::uint32_t>(number), parts.chosen.rung,
+                                        step_, parts.chosen.parts > 1, weigh_});
   job.cost = parts.triangles;
   job.memory =
       k_piece_process_bytes + parts.chosen.file.size + k_piece_triangle_bytes * parts.triangles;
   return job;
 }
 
-Job FinishStage::seam_job() const {
+Job FinishStage::seam_job(std::uint32_t group, std::uint32_t groups) const {
   SeamParameters parameters;
+  parameters.group = group;
+  parameters.groups = groups;
   std::uint64_t triangles = manifest_.boundary_triangles;
   for (const PieceOfResult& each : made_.pieces) {
     parameters.strips.push_back({each.parts, {each.divided_file, each.divided.strip}});
@@ -249,6 +263,7 @@ Job FinishStage::seam_job() const {
   }
   parameters.all_parts = static_cast<std::uint32_t>(manifest_.parts.size());
   parameters.boundary = manifest_.boundary;
+  parameters.boundary_index = manifest_.boundary_index;
   parameters.samples_per_triangle =
       std::min(1.0, static_cast<double>(samples_for(manifest_, options_, manifest_.triangles())) /
                         static_cast<double>(std::max<std::uint64_t>(1, manifest_.triangles())));
@@ -256,8 +271,11 @@ Job FinishStage::seam_job() const {
   Job job;
   job.kind = k_seam_kind;
   job.parameters = encode_parameters(parameters);
-  job.cost = triangles;
-  job.memory = k_piece_process_bytes + manifest_.boundary.size + k_piece_triangle_bytes * triangles;
+  job.cost = triangles / groups + 1;
+  const std::uint64_t pieces = made_.pieces.size();
+  const std::uint64_t near = std::min(pieces, pieces / groups + 1 + k_pieces_round_group);
+  job.memory = k_piece_process_bytes +
+               (manifest_.boundary.size + k_piece_triangle_bytes * triangles) * near / pieces;
   return job;
 }
 
@@ -287,7 +305,6 @@ Job FinishStage::reduce_job(std::size_t piece, std::uint64_t quota, std::uint64_
 Job FinishStage::measure_job(std::size_t number, const std::vector<PartRange>& ranges,
                              std::uint32_t share) const {
   const PieceOfResult& piece = made_.pieces[number];
-  const PieceOfResult& last = made_.pieces.back();
   const ErrorPoints points;
   MeasureParameters parameters;
   parameters.first_part = ranges[share].first;
@@ -302,11 +319,15 @@ Job FinishStage::measure_job(std::size_t number, const std::vector<PartRange>& r
   parameters.mesh = {piece.finished_file, piece.finished.mesh};
   parameters.samples = {piece.divided_file, piece.divided.samples};
   parameters.gap = {piece.divided_file, piece.divided.gap};
-  if (piece.parts > 1 && ranges[share].first == ranges[share].end) {
+  if (piece.parts != 1 && ranges[share].first == ranges[share].end) {
     parameters.between = {piece.divided_file, piece.divided.between};
   }
-  if (piece.parts > 0 && has_seams()) {
-    parameters.seam_mesh = {last.finished_file, last.finished.mesh};
+  std::uint64_t result = piece.finished.triangles;
+  for (const std::size_t near : made_.seams_near(number)) {
+    const PieceOfResult& each = made_.pieces[near];
+    parameters.seams.push_back(
+        {{each.finished_file, each.finished.mesh}, {each.divided_file, each.divided.gap}});
+    result += each.finished.triangles;
   }
   parameters.points.push_back({piece.finished_file, piece.finished.points});
   for (const std::size_t near : made_.near(number)) {
@@ -328,7 +349,6 @@ Job FinishStage::measure_job(std::size_t number, const std::vector<PartRange>& r
   job.kind = k_measure_kind;
   job.parameters = encode_parameters(parameters);
   job.reads = manifest_.bundles ? bytes_of_bundles(triangles) : read;
-  const std::uint64_t result = piece.finished.triangles + last.finished.triangles;
   // To build a part takes about as long as to measure to it.
   const std::uint64_t shown = triangles / (manifest_.bundles ? 2 : 4);
   job.cost = k_before_measuring + shown + result;

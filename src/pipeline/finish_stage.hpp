@@ -49,8 +49,8 @@ class FinishStage {
              Done done);
 
  private:
-  Job split_job(const ComposedParts& parts) const;
-  Job seam_job() const;
+  Job split_job(const ComposedParts& parts, std::size_t number) const;
+  Job seam_job(std::uint32_t group, std::uint32_t groups) const;
   Job reduce_job(std::size_t piece, std::uint64_t quota, std::uint64_t all) const;
   Job measure_job(std::size_t number, const std::vector<PartRange>& ranges,
                   std::uint32_t share) const;
@@ -64,13 +64,13 @@ class FinishStage {
   void look_at_count(JobGraph& graph);
   void measure(JobGraph& graph);
   std::uint64_t bytes_of_bundles(std::uint64_t triangles) const;
-  bool has_seams() const { return made_.pieces.back().parts == 0; }
 
   const Manifest& manifest_;
   const RunOptions& options_;
   Done done_;
   std::vector<ComposedParts> parts_;
   std::size_t turns_ = 0;
+  std::size_t seam_jobs_ = 0;  // of all turns
   std::int32_t step_ = -1;
   WeighParameters weigh_;
   FinishedPieces made_;

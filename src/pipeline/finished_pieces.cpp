@@ -50,9 +50,16 @@ std::vector<std::size_t> FinishedPieces::near(std::size_t piece) const {
   if (pieces[piece].parts == 0) return near;
   for (std::size_t i = 0; i < pieces.size(); ++i) {
     if (i == piece) continue;
-    if (pieces[i].parts == 0 || touch(pieces[i].divided.box, pieces[piece].divided.box)) {
-      near.push_back(i);
-    }
+    if (touch(pieces[i].divided.box, pieces[piece].divided.box)) near.push_back(i);
+  }
+  return near;
+}
+
+std::vector<std::size_t> FinishedPieces::seams_near(std::size_t piece) const {
+  std::vector<std::size_t> near;
+  for (std::size_t i = 0; i < pieces.size(); ++i) {
+    if (i == piece || pieces[i].parts > 0) continue;
+    if (touch(pieces[i].divided.box, pieces[piece].divided.box)) near.push_back(i);
   }
   return near;
 }
@@ -60,7 +67,7 @@ std::vector<std::size_t> FinishedPieces::near(std::size_t piece) const {
 std::uint64_t FinishedPieces::triangles() const {
   std::uint64_t sum = 0;
   for (const PieceOfResult& each : pieces) {
-    sum += each.finished.triangles + (each.parts > 0 ? each.divided.gap_triangles : 0);
+    sum += each.finished.triangles + each.divided.gap_triangles;
   }
   return sum;
 }

@@ -165,11 +165,11 @@ void append_gap(const PieceGap& gap, std::uint32_t shared, Mesh& mesh) {
 class PieceMeter {
  public:
   PieceMeter(const MeasureParameters& parameters, const JobContext& context)
-      : parameters_(parameters), context_(context), mesh_(read_mesh_of_piece()) {
-    surface_.push_back(&mesh_);
-    if (parameters.seam_mesh.file.name.empty()) return;
-    seam_mesh_ = mesh_of(parameters.seam_mesh);
-    surface_.push_back(&seam_mesh_);
+      : parameters_(parameters), context_(context) {
+    meshes_.reserve(1 + parameters.seams.size());
+    meshes_.push_back(read_mesh({parameters.mesh, parameters.gap}));
+    for (const SeamSurface& each : parameters.seams) meshes_.push_back(read_mesh(each));
+    for (const Mesh& each : meshes_) surface_.push_back(&each);
   }
 
   PieceError run() {
@@ -182,10 +182,6 @@ class PieceMeter {
  private:
   bool is_piece() const { return parameters_.triangles > 0; }
 
-  Mesh mesh_of(const SectionRef& ref) const {
-    return decode_result(read_section(context_, ref), 0, ref.file.name).mesh;
-  }
-
   std::vector<std::vector<Vec3>> read_points() const {
     std::vector<std::vector<Vec3>> points;
     for (const SectionRef& ref : parameters_.points) {
@@ -194,16 +190,13 @@ class PieceMeter {
     return points;
   }
 
-  /// With the triangles between it and the surroundings.
-  Mesh read_mesh_of_piece() const {
-    const SectionRef& ref = parameters_.mesh;
-    const ResultMesh piece = decode_result(read_section(context_, ref), 0, ref.file.name);
-    Mesh mesh = piece.mesh;
-    if (!is_piece()) return mesh;
-    const PieceGap gap =
-        decode_gap(read_section(context_, parameters_.gap), parameters_.gap.file.name);
-    append_gap(gap, piece.boundary_vertices, mesh);
-    return mesh;
+  /// With the triangles between it and others.
+  Mesh read_mesh(const SeamSurface& from) const {
+    const SectionRef& ref = from.mesh;
+    ResultMesh piece = decode_result(read_section(context_, ref), 0, ref.file.name);
+    const PieceGap gap = decode_gap(read_section(context_, from.gap), from.gap.file.name);
+    append_gap(gap, piece.boundary_vertices, piece.mesh);
+    return std::move(piece.mesh);
   }
 
   void measure_samples() {
@@ -266,7 +259,7 @@ class PieceMeter {
     const auto triangles = static_cast<double>(parameters_.triangles);
     const double spacing = std::sqrt(2 * area_ / triangles);
     // Hardly a point is as far as triangles of the result are long.
-    const double reach = std::max({2 * error_.to_output.max, spacing, spacing_of(mesh_)});
+    const double reach = std::max({2 * error_.to_output.max, spacing, spacing_of(meshes_.front())});
     const SomePoints near = points_near(points, input.box, reach);
     const SomePoints own = points_that_want(points, input.box, {spacing, usual(spacing), known});
     for (const std::vector<Vec3>& each : points)
@@ -310,7 +303,7 @@ class PieceMeter {
   void measure_to_seams() {
     const std::vector<Vec3> points = read_points().front();
     const Mesh between =
-        decode_surface(read_section(context_, parameters_.gap), parameters_.gap.file.name);
+        decode_surface(read_section(context_, parameters_.between), parameters_.between.file.name);
     points_.to_input.push_back(distances_to({&between}, points));
     points_.to_input.front().resize(points.size(), HUGE_VAL);
   }
@@ -327,9 +320,8 @@ class PieceMeter {
 
   const MeasureParameters& parameters_;
   const JobContext& context_;
-  Mesh mesh_;
-  Mesh seam_mesh_;
-  std::vector<const Mesh*> surface_;  // of the result
+  std::vector<Mesh> meshes_;  // the piece's first
+  std::vector<const Mesh*> surface_;  // of the result: these
   PieceError error_;
   double area_ = 0;  // of the piece's input
   MeasuredPoints points_;

@@ -1,16 +1,16 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
 //
-// Parameters and summaries of the jobs of a farmed finish, version 2, little endian:
+// Parameters and summaries of the jobs of a farmed finish, version 3, little endian:
 //   weigh      = cost unit f64 | first step i32 | last share f64 | kept share f64 | lines
-//   split      = version u8 | rung u32 | step i32 | is composed u8 | weigh
-//   seam       = version u8 | strips u32 x (parts u32 | ref) | all parts u32 | boundary |
-//                samples a triangle f64 | weigh
+//   split      = version u8 | piece u32 | rung u32 | step i32 | is composed u8 | weigh
+//   seam       = version u8 | strips u32 x (parts u32 | ref) | group u32 | groups u32 |
+//                all parts u32 | boundary | its index, a section | samples a triangle f64 | weigh
 //   reduce     = version u8 | section | rung u32 | triangles u64 | points u64 | vertices u64 |
 //                lines
 //   measure    = version u8 | first part u32 | end part u32 | triangles u64 | share u32 |
-//                shares u32 | box | 5 refs | points u32 x ref | input step u64 | builds u8 |
-//                if it does: bundles (bundle_list.hpp)
+//                shares u32 | box | 4 refs | seams u32 x (ref | ref) | points u32 x ref |
+//                input step u64 | builds u8 | if it does: bundles (bundle_list.hpp)
 //   ref        = file | section;  box = 6 x f64
 //   divided    = 5 sections | gap triangles u64 | strip triangles u64 | shared u64 | box |
 //                rungs u32 x u64 | dropped degenerate u64 | duplicate u64 | turned u64 |
@@ -20,7 +20,8 @@
 //   measured   = lists u32 x (points u32 x f64) | distances u32 x f64 | areas u32 x f64,
 //                the file of a measure job
 //
-// In version 1 parts were always kept, and a piece was measured by one job.
+// In version 1 parts were always kept, and a piece was measured by one job. In version 2 the
+// surroundings of the seams were one piece.
 #include <cmath>
 
 #include <meshfarm/pipeline/piece_jobs.hpp>
@@ -33,7 +34,7 @@
 namespace meshfarm {
 namespace {
 
-constexpr std::uint8_t k_piece_version = 2;
+constexpr std::uint8_t k_piece_version = 3;
 constexpr double k_most_piece_samples = 1000;  // a triangle
 
 void begin_parameters(ByteWriter& out) {
@@ -81,6 +82,7 @@ SectionRef get_ref(ByteReader& in) {
 std::string encode_parameters(const SplitParameters& parameters) {
   ByteWriter out;
   begin_parameters(out);
+  out.put(parameters.piece);
   out.put(parameters.rung);
   out.put(parameters.step);
   out.put(static_cast<std::uint8_t>(parameters.is_composed ? 1 : 0));
@@ -92,6 +94,7 @@ SplitParameters decode_split_parameters(std::string_view bytes) {
   ByteReader in(bytes, "parameters of a split job");
   expect_piece_version(in);
   SplitParameters parameters;
+  parameters.piece = in.get<std::uint32_t>();
   parameters.rung = in.get<std::uint32_t>();
   parameters.step = in.get<std::int32_t>();
   parameters.is_composed = in.get<std::uint8_t>() != 0;
@@ -108,8 +111,11 @@ std::string encode_parameters(const SeamParameters& parameters) {
     out.put(strip.parts);
     put_ref(out, strip.ref);
   }
+  out.put(parameters.group);
+  out.put(parameters.groups);
   out.put(parameters.all_parts);
   put_file(out, parameters.boundary);
+  out.put(parameters.boundary_index);
   out.put(parameters.samples_per_triangle);
   put_weigh(out, parameters.weigh);
   return out.take();
@@ -129,9 +135,14 @@ SeamParameters decode_seam_parameters(std::string_view bytes) {
     if (strip.parts == 0) in.fail("a piece of no parts");
     parameters.strips.push_back(std::move(strip));
   }
+  parameters.group = in.get<std::uint32_t>();
+  parameters.groups = in.get<std::uint32_t>();
   parameters.all_parts = in.get<std::uint32_t>();
-  if (parts != parameters.all_parts) in.fail("impossible parts");
+  if (parts != parameters.all_parts || parameters.group >= parameters.groups) {
+    in.fail("impossible parts");
+  }
   parameters.boundary = get_file(in);
+  parameters.boundary_index = in.get<FileSection>();
   parameters.samples_per_triangle = in.get<double>();
   const double samples = parameters.samples_per_triangle;
   if (!(samples >= 0 && samples <= k_most_piece_samples)) in.fail("too many samples");
@@ -175,9 +186,14 @@ std::string encode_parameters(const MeasureParameters& parameters) {
   out.put(parameters.share);
   out.put(parameters.shares);
   out.put(parameters.box);
-  for (const SectionRef* ref : {&parameters.mesh, &parameters.samples, &parameters.gap,
-                                &parameters.between, &parameters.seam_mesh}) {
+  for (const SectionRef* ref :
+       {&parameters.mesh, &parameters.samples, &parameters.gap, &parameters.between}) {
     put_ref(out, *ref);
+  }
+  out.put(static_cast<std::uint32_t>(parameters.seams.size()));
+  for (const SeamSurface& each : parameters.seams) {
+    put_ref(out, each.mesh);
+    put_ref(out, each.gap);
   }
   out.put(static_cast<std::uint32_t>(parameters.points.size()));
   for (const SectionRef& ref : parameters.points) put_ref(out, ref);
@@ -197,9 +213,14 @@ MeasureParameters decode_measure_parameters(std::string_view bytes) {
   parameters.share = in.get<std::uint32_t>();
   parameters.shares = in.get<std::uint32_t>();
   parameters.box = in.get<Box>();
-  for (SectionRef* ref : {&parameters.mesh, &parameters.samples, &parameters.gap,
-                          &parameters.between, &parameters.seam_mesh}) {
+  for (SectionRef* ref :
+       {&parameters.mesh, &parameters.samples, &parameters.gap, &parameters.between}) {
     *ref = get_ref(in);
+  }
+  const auto seams = in.get<std::uint32_t>();
+  for (std::uint32_t i = 0; i < seams; ++i) {
+    SectionRef mesh = get_ref(in);
+    parameters.seams.push_back({std::move(mesh), get_ref(in)});
   }
   const auto points = in.get<std::uint32_t>();
   for (std::uint32_t i = 0; i < points; ++i) parameters.points.push_back(get_ref(in));

@@ -2,10 +2,11 @@
 // SPDX-License-Identifier: MIT
 //
 // Sections of the files of a farmed finish, little endian; counts are u32:
-//   gap     = positions x 3 x f64 | triangles x 3 x u32
+//   gap     = positions x 3 x f64 | triangles x 3 x u32 | vertices x (piece u32 | vertex u32)
 //   strip   = result, a string | shared x u32
 //   samples = sets x (area f64 | points x 3 x f64)
-//   surface = as a gap;  points = points x 3 x f64
+//   surface = positions x 3 x f64 | triangles x 3 x u32;  points = points x 3 x f64
+//   shared  = vertices x (piece u32 | vertex u32)
 // A piece's mesh is a result (result_file.cpp).
 #include "pipeline/piece_sections.hpp"
 
@@ -129,6 +130,7 @@ void put_surface(ByteWriter& out, const std::vector<Vec3>& positions,
 std::string encode_gap(const PieceGap& gap) {
   ByteWriter out;
   put_surface(out, gap.positions, gap.triangles);
+  put_list(out, gap.vertices);
   return out.take();
 }
 
@@ -137,6 +139,8 @@ PieceGap decode_gap(std::string_view bytes, std::string_view what) {
   PieceGap gap;
   gap.positions = get_list<Vec3>(in);
   gap.triangles = get_list<Triangle>(in);
+  gap.vertices = get_list<SeamVertex>(in);
+  if (gap.vertices.size() != gap.positions.size()) in.fail("not each position is of a vertex");
   in.expect_end();
   return gap;
 }
@@ -181,23 +185,27 @@ std::vector<SurfaceSamples> decode_samples(std::string_view bytes, std::string_v
   return samples;
 }
 
-Mesh last_triangles(const StitchedMesh& stitched) {
-  const Mesh& mesh = stitched.mesh;
-  Mesh last;
+Mesh surface_of(const Mesh& mesh, std::span<const Triangle> triangles) {
+  Mesh surface;
   std::vector<std::uint32_t> number(mesh.positions.size(), k_left_out);
-  for (std::size_t i = mesh.triangles.size() - stitched.boundary_triangles;
-       i < mesh.triangles.size(); ++i) {
-    Triangle& added = last.triangles.emplace_back();
+  surface.triangles.reserve(triangles.size());
+  for (const Triangle& t : triangles) {
+    Triangle& added = surface.triangles.emplace_back();
     for (std::size_t k = 0; k < 3; ++k) {
-      const std::uint32_t v = mesh.triangles[i][k];
+      const std::uint32_t v = t[k];
       if (number[v] == k_left_out) {
-        number[v] = static_cast<std::uint32_t>(last.positions.size());
-        last.positions.push_back(mesh.positions[v]);
+        number[v] = static_cast<std::uint32_t>(surface.positions.size());
+        surface.positions.push_back(mesh.positions[v]);
       }
       added[k] = number[v];
     }
   }
-  return last;
+  return surface;
+}
+
+Mesh last_triangles(const StitchedMesh& stitched) {
+  const std::span<const Triangle> triangles = stitched.mesh.triangles;
+  return surface_of(stitched.mesh, triangles.last(stitched.boundary_triangles));
 }
 
 std::string encode_surface(const Mesh& mesh) {
@@ -207,14 +215,31 @@ std::string encode_surface(const Mesh& mesh) {
 }
 
 Mesh decode_surface(std::string_view bytes, std::string_view what) {
-  PieceGap surface = decode_gap(bytes, what);
+  ByteReader in(bytes, what);
+  Mesh surface;
+  surface.positions = get_list<Vec3>(in);
+  surface.triangles = get_list<Triangle>(in);
+  in.expect_end();
   const std::size_t vertices = surface.positions.size();
   for (const Triangle& t : surface.triangles) {
     if (*std::max_element(t.begin(), t.end()) >= vertices) {
       throw DataError(std::string(what) + ": a triangle names a vertex that is not there");
     }
   }
-  return {std::move(surface.positions), std::move(surface.triangles)};
+  return surface;
+}
+
+std::string encode_shared(const std::vector<SeamVertex>& vertices) {
+  ByteWriter out;
+  put_list(out, vertices);
+  return out.take();
+}
+
+std::vector<SeamVertex> decode_shared(std::string_view bytes, std::string_view what) {
+  ByteReader in(bytes, what);
+  std::vector<SeamVertex> vertices = get_list<SeamVertex>(in);
+  in.expect_end();
+  return vertices;
 }
 
 std::string encode_points(const std::vector<Vec3>& points) {
@@ -241,6 +266,20 @@ std::string encode_piece(const Mesh& mesh, std::uint32_t locked, PositionType po
   result.add_rung(0, mesh, 0);
   result.finish(VertexView(mesh).part(0, locked), {});
   return file;
+}
+
+void PieceFile::add_weighed(WeighedMesh weighed, DividedPiece& made) {
+  made.mesh = add(weighed.ladder);
+  made.rungs = std::move(weighed.rungs);
+  made.weight = std::move(weighed.weight);
+  made.dropped_degenerate += weighed.dropped_degenerate;
+  made.dropped_duplicate += weighed.dropped_duplicate;
+  made.turned += weighed.turned;
+}
+
+JobOutput PieceFile::publish(const Job& job, const JobContext& context, std::string summary) const {
+  const ResultName name{key_of(job).value, context.attempt, context.incarnation};
+  return {context.publish(name, file_), std::move(summary)};
 }
 
 double step_cost(std::int32_t step, double unit) {

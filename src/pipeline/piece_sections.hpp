@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -15,10 +16,12 @@
 
 namespace meshfarm {
 
-/// The triangles of a piece between its mesh and the surroundings of the seams: corners are the
-/// mesh's shared vertices, then those of the surroundings, whose positions are here.
+/// The triangles of a piece between its mesh and the surroundings of the seams, or of a group of
+/// these between its mesh and other groups: corners are the mesh's shared vertices, then those of
+/// groups, whose positions are here.
 struct PieceGap {
   std::vector<Vec3> positions;
+  std::vector<SeamVertex> vertices;  // which they are
   std::vector<Triangle> triangles;
 };
 std::string encode_gap(const PieceGap& gap);
@@ -35,10 +38,16 @@ PieceStrip decode_strip(std::string_view bytes, std::string_view what);
 std::string encode_samples(const std::vector<SurfaceSamples>& samples);
 std::vector<SurfaceSamples> decode_samples(std::string_view bytes, std::string_view what);
 
+/// Some of a mesh's triangles by themselves.
+Mesh surface_of(const Mesh& mesh, std::span<const Triangle> triangles);
 /// Those of the triangles between what was stitched that come last, by themselves.
 Mesh last_triangles(const StitchedMesh& stitched);
 std::string encode_surface(const Mesh& mesh);  // positions and triangles
 Mesh decode_surface(std::string_view bytes, std::string_view what);
+
+/// What a group shares: its mesh's first vertices, in order.
+std::string encode_shared(const std::vector<SeamVertex>& vertices);
+std::vector<SeamVertex> decode_shared(std::string_view bytes, std::string_view what);
 
 std::string encode_points(const std::vector<Vec3>& points);
 std::vector<Vec3> decode_points(std::string_view bytes, std::string_view what);
@@ -57,6 +66,18 @@ struct WeighedMesh {
   std::uint64_t dropped_degenerate = 0;
   std::uint64_t dropped_duplicate = 0;
   std::uint64_t turned = 0;
+};
+
+/// The file of a piece or a group, whose sections are written as they are made.
+class PieceFile {
+ public:
+  FileSection add(std::string_view bytes) { return sections_.add(bytes); }
+  void add_weighed(WeighedMesh weighed, DividedPiece& made);
+  JobOutput publish(const Job& job, const JobContext& context, std::string summary) const;
+
+ private:
+  std::string file_;
+  SectionWriter sections_{[this](std::string_view bytes) { file_ += bytes; }};
 };
 
 /// The first `locked` vertices stay.

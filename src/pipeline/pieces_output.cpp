@@ -34,32 +34,52 @@ class PiecesWriter {
     std::uint64_t next = 0;
     for (const PieceOfResult& each : result.pieces) {
       first_vertex_.push_back(next);
+      if (each.parts == 0) add_shared(each, next);
       next += each.finished.vertices;
     }
+    std::sort(shared_.begin(), shared_.end());
   }
 
   void vertices(std::size_t piece) { sink_.vertices(mesh_of(piece).mesh.positions); }
 
-  /// The mesh, then the gap to the surroundings, whose shared vertices come piece by piece.
+  /// The mesh, then the gap to the surroundings, or to other groups of them.
   void triangles(std::size_t i) {
     const PieceOfResult& piece = result_.pieces[i];
     const ResultMesh mesh = mesh_of(i);
     put(mesh.mesh.triangles, [&](std::uint32_t v) { return first_vertex_[i] + v; });
-    if (piece.parts == 0) return;
     const std::uint32_t locked = mesh.boundary_vertices;
-    const PieceGap gap =
+    PieceGap gap =
         decode_gap(read_of(stage_, piece.divided_file, piece.divided.gap), piece.divided_file.name);
-    const std::uint64_t of_seams = first_vertex_.back() + shared_;
+    if (gap.triangles.size() < piece.divided.gap_triangles) {
+      throw DataError(piece.divided_file.name + ": has other triangles than its summary says");
+    }
+    gap.triangles.resize(piece.divided.gap_triangles);
     put(gap.triangles, [&](std::uint32_t v) {
-      if (v >= locked + gap.positions.size()) {
-        throw DataError(piece.divided_file.name + ": a gap names a vertex that is not there");
-      }
-      return v < locked ? first_vertex_[i] + v : of_seams + (v - locked);
+      return v < locked ? first_vertex_[i] + v : place_of(gap, v - locked, piece.divided_file.name);
     });
-    shared_ += gap.positions.size();
   }
 
  private:
+  /// A vertex that groups share, and which it is of the result.
+  using SharedPlace = std::pair<SeamVertex, std::uint64_t>;
+
+  void add_shared(const PieceOfResult& group, std::uint64_t first) {
+    const std::string& name = group.divided_file.name;
+    for (const SeamVertex& each :
+         decode_shared(read_of(stage_, group.divided_file, group.divided.strip), name)) {
+      shared_.emplace_back(each, first++);
+    }
+  }
+
+  std::uint64_t place_of(const PieceGap& gap, std::uint32_t v, const std::string& what) const {
+    if (v < gap.vertices.size()) {
+      const auto at = std::lower_bound(shared_.begin(), shared_.end(),
+                                       SharedPlace(gap.vertices[v], 0));
+      if (at != shared_.end() && at->first == gap.vertices[v]) return at->second;
+    }
+    throw DataError(what + ": a gap names a vertex that is not there");
+  }
+
   ResultMesh mesh_of(std::size_t i) const {
     const PieceOfResult& piece = result_.pieces[i];
     ResultMesh mesh = decode_result(read_of(stage_, piece.finished_file, piece.finished.mesh), 0,
@@ -89,7 +109,7 @@ class PiecesWriter {
   const FinishedPieces& result_;
   MeshSink& sink_;
   std::vector<std::uint64_t> first_vertex_;
-  std::uint64_t shared_ = 0;  // of the pieces before
+  std::vector<SharedPlace> shared_;  // ascending
 };
 
 /// `lists`: of the points of these pieces.
@@ -234,9 +254,9 @@ MeasuredError error_of_pieces(const Stage& stage, const Manifest& manifest,
   }
   FoundDistances found = found_distances(stage, result);
   std::vector<std::vector<double>>& distances = found.to_input;
-  const PieceOfResult& last = result.pieces.back();
-  if (last.parts == 0) {
-    find_missing(stage, manifest, last, result, threads, distances.back());
+  for (std::size_t i = 0; i < result.pieces.size(); ++i) {
+    if (result.pieces[i].parts > 0) continue;
+    find_missing(stage, manifest, result.pieces[i], result, threads, distances[i]);
   }
   WeightedDistances all_to_output;
   WeightedDistances all_to_input;

@@ -1,15 +1,12 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
 #include <algorithm>
-#include <cmath>
 #include <utility>
 #include <vector>
 
 #include <meshfarm/geometry/simplify.hpp>
 #include <meshfarm/geometry/vertices.hpp>
-#include <meshfarm/io/boundary_file.hpp>
 #include <meshfarm/pipeline/piece_jobs.hpp>
-#include <meshfarm/stitch/stitcher.hpp>
 #include <meshfarm/util/errors.hpp>
 
 #include "pipeline/piece_sections.hpp"
@@ -83,7 +80,7 @@ struct SplitMesh {
   PieceStrip strip;
 };
 
-SplitMesh split(const ResultMesh& piece) {
+SplitMesh split(const ResultMesh& piece, std::uint32_t piece_number) {
   const Mesh& mesh = piece.mesh;
   const Sides sides = sides_of(mesh, piece.boundary_vertices);
   Numbers inner(mesh.positions.size());
@@ -102,6 +99,7 @@ SplitMesh split(const ResultMesh& piece) {
     if (sides.strip[v] == 0) continue;
     place[v] = made.locked + static_cast<std::uint32_t>(made.strip.shared.size());
     made.strip.shared.push_back(strip[v]);
+    made.gap.vertices.push_back({piece_number, strip[v]});
     made.gap.positions.push_back(mesh.positions[v]);
   }
   for (const auto& [a, b, c] : mesh.triangles) {
@@ -135,79 +133,6 @@ void approach(const SplitParameters& parameters, const JobContext& context, Resu
   made.turned = simplifier.turned();
 }
 
-/// Writes the sections as they are made.
-class PieceFile {
- public:
-  FileSection add(std::string_view bytes) { return sections_.add(bytes); }
-  JobOutput publish(const Job& job, const JobContext& context, std::string summary) const {
-    const ResultName name{key_of(job).value, context.attempt, context.incarnation};
-    return {context.publish(name, file_), std::move(summary)};
-  }
-
- private:
-  std::string file_;
-  SectionWriter sections_{[this](std::string_view bytes) { file_ += bytes; }};
-};
-
-void take_weighed(WeighedMesh weighed, PieceFile& file, DividedPiece& made) {
-  made.mesh = file.add(weighed.ladder);
-  made.rungs = std::move(weighed.rungs);
-  made.weight = std::move(weighed.weight);
-  made.dropped_degenerate += weighed.dropped_degenerate;
-  made.dropped_duplicate += weighed.dropped_duplicate;
-  made.turned += weighed.turned;
-}
-
-/// All strips, joined by the triangles between them: those of the input come last.
-class SeamJoiner {
- public:
-  SeamJoiner(const SeamParameters& parameters, const JobContext& context)
-      : parameters_(parameters), context_(context) {
-    Stitcher stitcher(parameters.all_parts);
-    std::uint64_t first = 0;
-    for (const SeamParameters::Strip& each : parameters.strips) {
-      const PieceStrip strip = decode_strip(read_section(context, each.ref), each.ref.file.name);
-      positions_ = strip.mesh.positions;
-      stitcher.add(strip.mesh, each.parts);
-      for (const std::uint32_t v : strip.shared) {
-        shared_.push_back(static_cast<std::uint32_t>(first + v));
-      }
-      first += strip.mesh.mesh.positions.size();
-    }
-    stitched_ = stitcher.finish(
-        decode_boundary(context.stage.read(parameters.boundary), parameters.boundary.name));
-  }
-
-  /// The input's triangles between the pieces.
-  Mesh input() const { return last_triangles(stitched_); }
-
-  /// Those that are shared come first, in the order of the pieces.
-  WeighedMesh weigh_joined() {
-    Mesh mesh;
-    std::vector<std::uint32_t> number(stitched_.mesh.positions.size(), k_left_out);
-    std::uint32_t next = 0;
-    for (const std::uint32_t v : shared_) number[v] = next++;
-    for (std::uint32_t& n : number) {
-      if (n == k_left_out) n = next++;
-    }
-    place_vertices(VertexView(stitched_.mesh), number, next, mesh);
-    mesh.triangles = std::move(stitched_.mesh.triangles);
-    renumber_corners(mesh.triangles, number);
-    stitched_ = {};
-    return weigh(std::move(mesh), static_cast<std::uint32_t>(shared_.size()), positions_,
-                 parameters_.weigh, context_);
-  }
-
-  std::uint64_t shared() const { return shared_.size(); }
-
- private:
-  const SeamParameters& parameters_;
-  const JobContext& context_;
-  StitchedMesh stitched_;
-  std::vector<std::uint32_t> shared_;
-  PositionType positions_ = PositionType::float32;
-};
-
 }  // namespace
 
 JobOutput split_piece(const Job& job, const JobContext& context) {
@@ -221,7 +146,7 @@ JobOutput split_piece(const Job& job, const JobContext& context) {
   DividedPiece made;
   for (const Vec3& v : piece.mesh.positions) made.box.add(v);
   approach(parameters, context, piece, made);
-  SplitMesh halves = split(piece);
+  SplitMesh halves = split(piece, parameters.piece);
   PieceFile file;
   made.samples = file.add(encode_samples(piece.samples));
   if (parameters.is_composed) made.between = file.add(beside_of(composed, input.name));
@@ -232,26 +157,8 @@ JobOutput split_piece(const Job& job, const JobContext& context) {
   const PositionType positions = halves.strip.mesh.positions;
   made.strip = file.add(encode_strip(std::exchange(halves.strip, {})));
   made.gap = file.add(encode_gap(std::exchange(halves.gap, {})));
-  take_weighed(weigh(std::move(halves.inner), halves.locked, positions, parameters.weigh, context),
-               file, made);
-  return file.publish(job, context, encode_summary(made));
-}
-
-JobOutput join_seams(const Job& job, const JobContext& context) {
-  const SeamParameters parameters = decode_seam_parameters(job.parameters);
-  SeamJoiner joiner(parameters, context);
-  PieceFile file;
-  DividedPiece made;
-  const Mesh input = joiner.input();
-  made.strip_triangles = input.triangles.size();
-  made.shared = joiner.shared();
-  const auto wanted = static_cast<std::uint64_t>(
-      std::ceil(parameters.samples_per_triangle * static_cast<double>(input.triangles.size())));
-  std::vector<SurfaceSamples> samples;
-  if (wanted > 0) samples.push_back(sample_surface(input, {.samples = wanted, .threads = 1}));
-  made.samples = file.add(encode_samples(samples));
-  made.gap = file.add(encode_surface(input));
-  take_weighed(joiner.weigh_joined(), file, made);
+  file.add_weighed(
+      weigh(std::move(halves.inner), halves.locked, positions, parameters.weigh, context), made);
   return file.publish(job, context, encode_summary(made));
 }
 

@@ -40,6 +40,10 @@ void Stitcher::add(const ResultMesh& result, std::uint32_t parts) {
   stitched_.seam.resize(mesh.positions.size(), 0);
 }
 
+void Stitcher::skip(std::uint32_t parts) {
+  piece_of_part_.insert(piece_of_part_.end(), parts, k_elsewhere);
+}
+
 std::uint32_t Stitcher::piece_of(const BoundaryCorner& corner) const {
   if (corner.part >= all_parts_) {
     throw DataError("a boundary triangle names part " + std::to_string(corner.part) +

@@ -19,7 +19,7 @@ std::string why_finish_here(const Manifest& manifest, const RunOptions& options)
 /// A piece of a result that is finished.
 struct PieceOfResult {
   std::uint32_t first_part = 0;
-  std::uint32_t parts = 0;  // that it is made of; 0: the surroundings of the seams
+  std::uint32_t parts = 0;  // that it is made of; 0: a group of the surroundings of the seams
   FileRef divided_file;
   DividedPiece divided;
   FileRef finished_file;
@@ -28,7 +28,7 @@ struct PieceOfResult {
   PieceError error;                  // by all of them
 };
 
-/// A result in pieces: it consists of their meshes and the gaps between them and the last of them,
+/// A result in pieces: it consists of their meshes and the gaps between them. The last of them are
 /// the surroundings of the seams. If there is one piece only, it has none.
 struct FinishedPieces {
   std::vector<PieceOfResult> pieces;
@@ -36,6 +36,8 @@ struct FinishedPieces {
 
   /// Others whose surface may be near the input of a piece; none for the surroundings.
   std::vector<std::size_t> near(std::size_t piece) const;
+  /// Groups of the surroundings that may be near a piece, or another group.
+  std::vector<std::size_t> seams_near(std::size_t piece) const;
   std::uint64_t triangles() const;
   std::uint64_t vertices() const;
 };

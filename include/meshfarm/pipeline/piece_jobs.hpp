@@ -17,10 +17,11 @@
 namespace meshfarm {
 
 // The jobs of a finish that no process holds whole. Pieces, parts that were composed, are divided
-// again: what lies round a seam between pieces leaves its piece ("split") and is joined with all
-// else that does ("seam"). So the seams lie inside one of the new pieces, and what is held now lies
-// where nothing was held before. Each new piece is simplified to its quota of the triangles
-// ("reduce"), and measured ("measure").
+// again: what lies round a seam between pieces leaves its piece ("split") and is joined with what
+// does on the seam's other side ("seam"). So the seams lie inside of new pieces, and what is held
+// now lies where nothing was held before. The surroundings of all seams are one piece or several
+// groups: where groups meet, a few vertices stay held. Each new piece is simplified to its quota of
+// the triangles ("reduce"), and measured ("measure").
 
 inline constexpr std::string_view k_split_kind = "split";
 inline constexpr std::string_view k_seam_kind = "seam";
@@ -58,19 +59,27 @@ struct PieceWeight {
   bool can_be_odd() const;
 };
 
-/// A piece that is divided again, or the joined surroundings of the seams: sections of its file.
+/// A vertex of the surroundings of the seams before they are joined.
+struct SeamVertex {
+  std::uint32_t piece = 0;
+  std::uint32_t vertex = 0;  // of what the piece gives to them
+  friend auto operator<=>(const SeamVertex&, const SeamVertex&) = default;
+};
+
+/// A piece that is divided again, or a group of the seams' surroundings: sections of its file.
 struct DividedPiece {
   FileSection mesh;  // a result whose boundary vertices are those that are shared
-  /// Of a piece: its triangles between the mesh and the surroundings. Of these: the input's
-  /// triangles between pieces.
+  /// Of a piece: its triangles between the mesh and the surroundings. Of a group: those between it
+  /// and other groups.
   FileSection gap;
-  FileSection strip;    // of a piece: what it gives to these, a result
+  FileSection strip;    // of a piece: what it gives to the groups. Of a group: what is shared
   FileSection samples;  // of the input, by which the error is measured
-  FileSection between;  // of a composed piece: the input's triangles between its parts
-  std::uint64_t gap_triangles = 0;
-  std::uint64_t strip_triangles = 0;  // of the surroundings: the input's between pieces
-  std::uint64_t shared = 0;           // vertices of the surroundings that the gap has
-  Box box;                            // of the piece as it came
+  /// Of a composed piece: the input's triangles between its parts. Of a group: those between pieces.
+  FileSection between;
+  std::uint64_t gap_triangles = 0;    // that are the piece's to write: the first of the gap
+  std::uint64_t strip_triangles = 0;  // of a group: the input's between pieces
+  std::uint64_t shared = 0;           // vertices of other pieces that the gap has
+  Box box;                            // of a piece as it came; of a group
   std::vector<std::uint64_t> rungs;   // triangles of the result's rungs
   std::uint64_t dropped_degenerate = 0;
   std::uint64_t dropped_duplicate = 0;
@@ -81,6 +90,7 @@ std::string encode_summary(const DividedPiece& piece);
 DividedPiece decode_divided_piece(std::string_view bytes, std::string_view what);
 
 struct SplitParameters {
+  std::uint32_t piece = 0;
   std::uint32_t rung = 0;
   std::int32_t step = -1;  // what costs no more is collapsed before; -1: nothing
   bool is_composed = false;
@@ -89,15 +99,19 @@ struct SplitParameters {
 std::string encode_parameters(const SplitParameters& parameters);
 SplitParameters decode_split_parameters(std::string_view bytes);
 
-/// Parameters of the seam job. It has no inputs, as none is to be read whole.
+/// Parameters of a seam job. It has no inputs, as none is to be read whole. A seam is of the group
+/// that the first of its pieces is of; groups are neighbouring pieces, about as many in each.
 struct SeamParameters {
   struct Strip {
     std::uint32_t parts = 1;
     SectionRef ref;
   };
   std::vector<Strip> strips;  // of the pieces, in order
+  std::uint32_t group = 0;
+  std::uint32_t groups = 1;
   std::uint32_t all_parts = 0;
   FileRef boundary;
+  FileSection boundary_index;
   double samples_per_triangle = 0;
   WeighParameters weigh;
 };
@@ -127,11 +141,17 @@ struct FinishedPiece {
 std::string encode_summary(const FinishedPiece& piece);
 FinishedPiece decode_finished_piece(std::string_view bytes, std::string_view what);
 
+/// A group of the surroundings that is finished: DividedPiece::gap, and FinishedPiece::mesh.
+struct SeamSurface {
+  SectionRef mesh;
+  SectionRef gap;
+};
+
 /// Parameters of a measure job, one of several of a piece. What it reads are sections.
 struct MeasureParameters {
   std::uint32_t first_part = 0;  // of the input, that the job measures to
   std::uint32_t end_part = 0;
-  std::uint64_t triangles = 0;  // of the input in the whole piece; 0: the surroundings of the seams
+  std::uint64_t triangles = 0;  // of the input in the whole piece; 0: a group of the surroundings
   std::optional<BundlesOfMesh> bundles;  // what parts are built of, if they are not kept
   std::uint32_t share = 0;               // of the samples, that the job takes
   std::uint32_t shares = 1;
@@ -140,7 +160,7 @@ struct MeasureParameters {
   SectionRef samples;              // of the input
   SectionRef gap;                  // DividedPiece::gap
   SectionRef between;              // DividedPiece::between; no name: another job's, or none
-  SectionRef seam_mesh;            // of a piece: the finished surroundings; no name: there are none
+  std::vector<SeamSurface> seams;  // those near the piece, or other groups near the group
   std::vector<SectionRef> points;  // of the result: the piece's own, then those of pieces near it
   std::uint64_t input_step = 1;    // every so-manieth vertex of the input is looked at
 };

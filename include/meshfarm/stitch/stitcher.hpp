@@ -36,6 +36,8 @@ class Stitcher {
   /// Adds the next part, or a piece composed of the next `parts` parts. Throws DataError if the
   /// whole has too many vertices for 32-bit indices.
   void add(const ResultMesh& result, std::uint32_t parts = 1);
+  /// Leaves out the next `parts` parts: they are as those that were not added.
+  void skip(std::uint32_t parts);
   /// Adds the boundary triangles between the pieces. `boundary` must also have those between a
   /// piece and parts that were not added. Throws DataError if a corner is no boundary vertex.
   /// Labels: one a boundary triangle, or none.
