@@ -39,7 +39,8 @@ Partition partition_blocks(std::string_view cells, std::span<const std::string> 
   Partition partition;
   partition.counts_again = map.refine();
   if (!partition.counts_again) partition.parts = map.divide();
-  partition.bytes = map.encode(CellTree::Which::all);
+  partition.bytes =
+      map.encode(partition.counts_again ? CellTree::Which::all : CellTree::Which::places);
   return partition;
 }
 

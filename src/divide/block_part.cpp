@@ -44,6 +44,10 @@ class ShareOfBlocks {
         if (corner.share == part_) share_.boundary.push_back(corner.place);
       }
     }
+  }
+
+  /// Before anything is welded.
+  void keep_sheets_apart() {
     share_.apart =
         find_apart(share_, part_, outer_, [&](SharePlace vertex) { return position_of(vertex); });
   }
@@ -199,6 +203,7 @@ PartOfBlocks build_from_blocks(const Stage& stage, const BundlesOfMesh& bundles,
   if (part >= bundles.parts) throw DataError("there is no such part");
   ShareOfBlocks share(stage, bundles, part);
   share.gather();
+  share.keep_sheets_apart();
   MeshShare raw = share.take();
   PartOfBlocks made;
   made.shared_triangles = raw.triangles.size();
@@ -211,6 +216,13 @@ PartOfBlocks build_from_blocks(const Stage& stage, const BundlesOfMesh& bundles,
   made.numbers = encode_numbers(built.boundary);
   made.part = std::move(built.part);
   return made;
+}
+
+Mesh surface_from_blocks(const Stage& stage, const BundlesOfMesh& bundles, std::uint32_t part) {
+  if (part >= bundles.parts) throw DataError("there is no such part");
+  ShareOfBlocks share(stage, bundles, part);
+  share.gather();
+  return build_part(share.take(), Weld::off).part.mesh;
 }
 
 JoinedBoundary join_boundary(const Stage& stage, const BundlesOfMesh& bundles,

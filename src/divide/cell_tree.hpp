@@ -55,8 +55,9 @@ class CellTree {
   /// Adds what a copy of this tree has counted since both were the same.
   void join(CellTree other);
 
-  /// The cells that were counted since the last refine(), or all.
-  enum class Which : std::uint8_t { counted, all };
+  /// The cells that were counted since the last refine(), or all; or all, but of each only what
+  /// number_of() needs.
+  enum class Which : std::uint8_t { counted, all, places };
   void put(ByteWriter& out, Which which) const;
   /// Throws DataError for what put() did not write. Vertices must not be dealt out.
   static CellTree get(ByteReader& in);

@@ -1,37 +1,44 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
 //
-// A tree of cells as it stands in files of jobs:
-//   first grid's bits u32 | parts u32 | weld u8 | most cells u64 | first new grid u32 | limit u64 |
-//   leaves u64 | heavy u64 | scans u32 | coarsened u32 | grids u32 x (corner 3 x f64 | cells a unit
-//   f64 | steps a unit f64 | bits u32) | cells u64 x (key u64 | vertices u64 | steps 3 x u64 |
-//   mean 3 x f64 | box 6 x f64 | grid u32 | is one u8)
+// A tree of cells as it stands in files of jobs, version 2:
+//   which u8 | first grid's bits u32 | parts u32 | weld u8 | most cells u64 | first new grid u32 |
+//   limit u64 | leaves u64 | heavy u64 | scans u32 | coarsened u32 | grids u32 x (corner 3 x f64 |
+//   cells a unit f64 | steps a unit f64 | bits u32) | cells u64 x (key u64 | vertices u64 | steps 3
+//   x u64 | mean 3 x f64 | box 6 x f64 | grid u32 | is one u8), or, of places, cells u64 x (key u64
+//   | grid u32 | is one u8)
+// Version 1 had no places.
 #include "divide/cell_tree.hpp"
 
 namespace meshfarm {
 namespace {
 
 constexpr std::uint64_t k_cell_bytes = 117;
+constexpr std::uint64_t k_place_bytes = 13;
 
-void put_cell(ByteWriter& out, const Cell& cell) {
+void put_cell(ByteWriter& out, const Cell& cell, CellTree::Which which) {
   out.put(cell.key);
-  out.put(cell.vertices);
-  out.put(cell.steps);
-  out.put(cell.mean);
-  out.put(cell.box.lo);
-  out.put(cell.box.hi);
+  if (which != CellTree::Which::places) {
+    out.put(cell.vertices);
+    out.put(cell.steps);
+    out.put(cell.mean);
+    out.put(cell.box.lo);
+    out.put(cell.box.hi);
+  }
   out.put(cell.grid);
   out.put(static_cast<std::uint8_t>(cell.is_one ? 1 : 0));
 }
 
-Cell get_cell(ByteReader& in) {
+Cell get_cell(ByteReader& in, CellTree::Which which) {
   Cell cell;
   cell.key = in.get<std::uint64_t>();
-  cell.vertices = in.get<std::uint64_t>();
-  cell.steps = in.get<std::array<std::uint64_t, 3>>();
-  cell.mean = in.get<Vec3>();
-  cell.box.lo = in.get<Vec3>();
-  cell.box.hi = in.get<Vec3>();
+  if (which != CellTree::Which::places) {
+    cell.vertices = in.get<std::uint64_t>();
+    cell.steps = in.get<std::array<std::uint64_t, 3>>();
+    cell.mean = in.get<Vec3>();
+    cell.box.lo = in.get<Vec3>();
+    cell.box.hi = in.get<Vec3>();
+  }
   cell.grid = in.get<std::uint32_t>();
   cell.is_one = in.get<std::uint8_t>() != 0;
   return cell;
@@ -40,6 +47,7 @@ Cell get_cell(ByteReader& in) {
 }  // namespace
 
 void CellTree::put(ByteWriter& out, Which which) const {
+  out.put(which);
   out.put(static_cast<std::uint32_t>(options_.bits));
   out.put(options_.parts);
   out.put(static_cast<std::uint8_t>(options_.weld == Weld::exact ? 1 : 0));
@@ -53,17 +61,19 @@ void CellTree::put(ByteWriter& out, Which which) const {
   out.put(static_cast<std::uint32_t>(grids_.size()));
   for (const UniformGrid& grid : grids_) grid.put(out);
   const auto is_wanted = [&](const Cell& cell) {
-    return which == Which::all || cell.key >> k_index_bits >= first_new_;
+    return which != Which::counted || cell.key >> k_index_bits >= first_new_;
   };
   std::uint64_t wanted = 0;
   for (const Cell& cell : cells_) wanted += is_wanted(cell) ? 1 : 0;
   out.put(wanted);
   for (const Cell& cell : cells_) {
-    if (is_wanted(cell)) put_cell(out, cell);
+    if (is_wanted(cell)) put_cell(out, cell, which);
   }
 }
 
 CellTree CellTree::get(ByteReader& in) {
+  const auto which = in.get<Which>();
+  if (which > Which::places) in.fail("unknown cells");
   CellTreeOptions options;
   options.bits = in.get<std::uint32_t>();
   options.parts = in.get<std::uint32_t>();
@@ -80,11 +90,13 @@ CellTree CellTree::get(ByteReader& in) {
   tree.grids_.clear();
   for (std::uint32_t i = 0; i < grids; ++i) tree.grids_.push_back(UniformGrid::get(in));
   const auto cells = in.get<std::uint64_t>();
-  if (grids == 0 || cells > in.remaining() / k_cell_bytes || tree.leaves_ > cells) {
+  if (grids == 0 ||
+      cells > in.remaining() / (which == Which::places ? k_place_bytes : k_cell_bytes) ||
+      tree.leaves_ > cells) {
     in.fail("impossible cells");
   }
   for (std::uint64_t i = 0; i < cells; ++i) {
-    tree.cells_.push_back(get_cell(in));
+    tree.cells_.push_back(get_cell(in, which));
     const Cell& cell = tree.cells_.back();
     if (cell.grid >= grids || cell.key >> k_index_bits >= grids) in.fail("a cell of no grid");
   }

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
 //
-// Of the jobs of a cut; version 1:
+// Of the jobs of a cut; version 2 (in version 1 a partition told all of each cell):
 // parameters: version u8 | cutting (io/manifest.hpp) | block u32 | round u32 | box 6 x f64 |
 // bundles (bundle_list.hpp) join parameters: version u8 | bundles | parts u32 x (file | section)
 // survey: box 6 x f64 | not finite u64
@@ -18,7 +18,7 @@
 namespace meshfarm {
 namespace {
 
-constexpr std::uint8_t k_cut_job_version = 1;
+constexpr std::uint8_t k_cut_job_version = 2;
 
 void expect_cut_version(ByteReader& in) {
   if (in.get<std::uint8_t>() != k_cut_job_version) in.fail("made by another version of meshfarm");

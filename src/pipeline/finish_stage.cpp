@@ -38,9 +38,9 @@ constexpr std::uint64_t k_built_triangle_bytes = 120;
 constexpr std::uint64_t k_seam_triangles = 24'000;
 constexpr std::uint64_t k_pieces_round_group = 20;
 /// Of the input, by one job, at least.
-constexpr std::uint64_t k_measured_at_once = 400'000;
+constexpr std::uint64_t k_measured_at_once = 200'000;
 /// To read the result that is measured, and to arrange its points, is worth so many triangles.
-constexpr std::uint64_t k_before_measuring = 100'000;
+constexpr std::uint64_t k_before_measuring = 20'000;
 
 std::uint64_t steps_of(std::uint64_t count, std::uint64_t most) {
   return std::max<std::uint64_t>(1, (count + most - 1) / most);

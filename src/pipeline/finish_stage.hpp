@@ -20,12 +20,12 @@ namespace meshfarm {
 
 /// So many pieces a seam job can name.
 inline constexpr std::size_t k_most_pieces = 200;
-/// Parts are composed up to a sixteenth of all triangles, so that many workers have a piece each,
-/// within these bounds: of smaller pieces much would lie round the seams, and larger ones are
-/// worth no process's memory.
-inline constexpr std::uint64_t k_least_piece = 131'072;
+/// Parts are composed up to a 32nd of all triangles, so that many workers have a piece each, within
+/// these bounds: of smaller pieces much would lie round the seams, and larger ones are worth no
+/// process's memory.
+inline constexpr std::uint64_t k_least_piece = 60'000;
 inline constexpr std::uint64_t k_usual_piece = 262'144;
-inline constexpr std::uint64_t k_pieces_of_all = 16;
+inline constexpr std::uint64_t k_pieces_of_all = 32;
 
 /// Where all pieces begin.
 struct FinishGoal {

@@ -320,7 +320,7 @@ class PieceMeter {
 
   const MeasureParameters& parameters_;
   const JobContext& context_;
-  std::vector<Mesh> meshes_;  // the piece's first
+  std::vector<Mesh> meshes_;          // the piece's first
   std::vector<const Mesh*> surface_;  // of the result: these
   PieceError error_;
   double area_ = 0;  // of the piece's input

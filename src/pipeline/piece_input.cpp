@@ -24,7 +24,7 @@ PieceInput read_piece_input(const Stage& stage, const MeasureParameters& paramet
   PieceInput input;
   for (std::uint32_t p = parameters.first_part; p < parameters.end_part; ++p) {
     if (bundles) {
-      input.parts.push_back(build_from_blocks(stage, *bundles, p).part.mesh);
+      input.parts.push_back(surface_from_blocks(stage, *bundles, p));
       continue;
     }
     const FileRef& file = manifest.parts[p].file;

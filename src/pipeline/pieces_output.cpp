@@ -73,8 +73,8 @@ class PiecesWriter {
 
   std::uint64_t place_of(const PieceGap& gap, std::uint32_t v, const std::string& what) const {
     if (v < gap.vertices.size()) {
-      const auto at = std::lower_bound(shared_.begin(), shared_.end(),
-                                       SharedPlace(gap.vertices[v], 0));
+      const auto at =
+          std::lower_bound(shared_.begin(), shared_.end(), SharedPlace(gap.vertices[v], 0));
       if (at != shared_.end() && at->first == gap.vertices[v]) return at->second;
     }
     throw DataError(what + ": a gap names a vertex that is not there");

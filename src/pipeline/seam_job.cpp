@@ -159,9 +159,8 @@ class JoinedStrips {
 
   /// From the seams ring by ring; what is not reached is of the piece's own group.
   void spread(const Strip& strip, std::uint32_t own) {
-    const std::span<const Triangle> triangles = std::span(mesh().triangles)
-                                                    .first(strip.end_triangle)
-                                                    .subspan(strip.first_triangle);
+    const std::span<const Triangle> triangles =
+        std::span(mesh().triangles).first(strip.end_triangle).subspan(strip.first_triangle);
     std::vector<std::pair<std::uint32_t, std::uint32_t>> reached;
     do {
       reached.clear();
@@ -175,8 +174,8 @@ class JoinedStrips {
       for (const auto& [v, group] : reached) group_[v] = std::min(group_[v], group);
     } while (!reached.empty());
     const std::size_t number = static_cast<std::size_t>(&strip - strips_.data());
-    const std::size_t end = number + 1 < strips_.size() ? strips_[number + 1].first_vertex
-                                                        : mesh().positions.size();
+    const std::size_t end =
+        number + 1 < strips_.size() ? strips_[number + 1].first_vertex : mesh().positions.size();
     for (std::size_t v = strip.first_vertex; v < end; ++v) {
       if (group_[v] == k_no_group) group_[v] = own;
     }
@@ -227,8 +226,8 @@ class GroupMaker {
 
  private:
   int ours_of(const Triangle& t) const {
-    return static_cast<int>(std::count_if(
-        t.begin(), t.end(), [this](std::uint32_t v) { return strips_.is_ours(v); }));
+    return static_cast<int>(
+        std::count_if(t.begin(), t.end(), [this](std::uint32_t v) { return strips_.is_ours(v); }));
   }
   bool is_between_groups(const Triangle& t) const {
     const int ours = ours_of(t);
@@ -303,7 +302,8 @@ JobOutput join_seams(const Job& job, const JobContext& context) {
   const auto wanted = static_cast<std::uint64_t>(
       std::ceil(parameters.samples_per_triangle * static_cast<double>(made.strip_triangles)));
   std::vector<SurfaceSamples> samples;
-  if (wanted > 0) samples.push_back(sample_surface(group.between, {.samples = wanted, .threads = 1}));
+  if (wanted > 0)
+    samples.push_back(sample_surface(group.between, {.samples = wanted, .threads = 1}));
   made.samples = file.add(encode_samples(samples));
   made.between = file.add(encode_surface(group.between));
   made.gap = file.add(encode_gap(group.gap));

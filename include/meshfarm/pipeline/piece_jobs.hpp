@@ -74,7 +74,8 @@ struct DividedPiece {
   FileSection gap;
   FileSection strip;    // of a piece: what it gives to the groups. Of a group: what is shared
   FileSection samples;  // of the input, by which the error is measured
-  /// Of a composed piece: the input's triangles between its parts. Of a group: those between pieces.
+  /// Of a composed piece: the input's triangles between its parts. Of a group: those between
+  /// pieces.
   FileSection between;
   std::uint64_t gap_triangles = 0;    // that are the piece's to write: the first of the gap
   std::uint64_t strip_triangles = 0;  // of a group: the input's between pieces
