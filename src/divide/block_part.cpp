@@ -230,6 +230,9 @@ JoinedBoundary join_boundary(const Stage& stage, const BundlesOfMesh& bundles,
   std::vector<BoundaryNumbers> of_parts;
   for (const std::string& each : numbers) of_parts.push_back(decode_numbers(each));
   std::vector<SeamTriangle> seams;
+  std::uint64_t bytes = 0;
+  for (const TriangleBundleRef& each : bundles.triangles) bytes += each.bundle.seams.size;
+  seams.reserve(bytes / sizeof(SeamTriangle));
   for (const TriangleBundleRef& each : bundles.triangles) {
     const SectionedFile file(stage, each.file);
     const auto more = read_section<SeamTriangle>(file, each.bundle.seams);

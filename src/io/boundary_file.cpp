@@ -165,6 +165,7 @@ EncodedBoundary encode_boundary(std::uint32_t parts, const std::vector<BoundaryT
                   (set.labels ? k_boundary_labels : 0) | (set.uvs ? k_boundary_uvs : 0)};
   std::vector<RegionEntry> entries(regions.count());
   ByteWriter out;
+  out.reserve(index_bytes(head) + triangles.size() * head.triangle_bytes());
   out.put(head);
   out.put_array(std::span<const RegionEntry>(entries));  // filled in below
   std::size_t place = 0;

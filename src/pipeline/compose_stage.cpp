@@ -82,7 +82,11 @@ bool ComposeStage::can_join() const {
 /// a result need not be larger than is good for them.
 std::uint64_t ComposeStage::most_triangles(std::uint64_t all_triangles) const {
   if (goal_.for_pieces) {
-    return std::max(std::clamp(all_triangles / k_pieces_of_all, k_least_piece, k_usual_piece),
+    const double seams = static_cast<double>(manifest_.boundary_triangles) /
+                         static_cast<double>(std::max<std::uint64_t>(1, manifest_.triangles()));
+    const std::uint64_t least = std::clamp(static_cast<std::uint64_t>(k_least_by_seams * seams),
+                                           k_least_piece, k_least_with_long_seams);
+    return std::max(std::clamp(all_triangles / k_pieces_of_all, least, k_usual_piece),
                     2 * all_triangles / k_most_pieces);
   }
   std::uint64_t most = manifest_.window_triangles;

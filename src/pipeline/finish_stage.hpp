@@ -22,8 +22,11 @@ namespace meshfarm {
 inline constexpr std::size_t k_most_pieces = 200;
 /// Parts are composed up to a 32nd of all triangles, so that many workers have a piece each, within
 /// these bounds: of smaller pieces much would lie round the seams, and larger ones are worth no
-/// process's memory.
+/// process's memory. Where boundary triangles are many, so many times their share of the input is
+/// the least.
 inline constexpr std::uint64_t k_least_piece = 60'000;
+inline constexpr std::uint64_t k_least_with_long_seams = 131'072;
+inline constexpr double k_least_by_seams = 1e7;
 inline constexpr std::uint64_t k_usual_piece = 262'144;
 inline constexpr std::uint64_t k_pieces_of_all = 32;
 
