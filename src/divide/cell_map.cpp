@@ -12,11 +12,11 @@ namespace meshfarm {
 namespace {
 
 /// Parts of 200 to 1000 cells each: fine enough for even sizes and smooth seams. Many parts have
-/// 80 to 600: one process divides the cells of all.
+/// 40 to 340: one process divides the cells of all.
 unsigned grid_bits(std::uint32_t parts) {
   if (parts == 1) return 0;
   constexpr std::uint64_t k_of_few = 512;
-  constexpr std::uint64_t k_of_many = 170;
+  constexpr std::uint64_t k_of_many = 85;
   constexpr std::uint64_t k_few = 32;
   const std::uint64_t wanted =
       std::max(k_of_few * std::min<std::uint64_t>(parts, k_few), k_of_many * std::uint64_t{parts});

@@ -205,7 +205,7 @@ class GroupMaker {
 
   GroupMesh make() {
     share();
-    std::uint32_t count = static_cast<std::uint32_t>(made_.shared.size());
+    auto count = static_cast<std::uint32_t>(made_.shared.size());
     for (std::uint32_t v = 0; v < number_.size(); ++v) {
       if (number_[v] == k_left_out && strips_.is_ours(v)) number_[v] = count++;
     }
@@ -276,7 +276,7 @@ class GroupMaker {
   GroupMesh made_;
 };
 
-Box box_of(const GroupMesh& group) {
+Box box_of_group(const GroupMesh& group) {
   Box box;
   for (const auto* positions :
        {&group.mesh.positions, &group.gap.positions, &group.between.positions}) {
@@ -295,7 +295,7 @@ JobOutput join_seams(const Job& job, const JobContext& context) {
   strips.reset();
   PieceFile file;
   DividedPiece made;
-  made.box = box_of(group);
+  made.box = box_of_group(group);
   made.strip_triangles = group.between.triangles.size();
   made.shared = group.shared.size();
   made.gap_triangles = group.gap_triangles;
