@@ -2,12 +2,17 @@
 // SPDX-License-Identifier: MIT
 #include "geometry/simplify/collapse_star.hpp"
 
+#include <algorithm>
+
 namespace meshfarm {
 namespace {
 
 constexpr double k_cos_60_squared = 0.25;
 // Of the angle at the new vertex: near 0 and near 180 degrees alike are as good as no area.
 constexpr double k_least_sine_squared = 1e-6;
+// What is so thin already may become four times as thin, down to this.
+constexpr double k_least_of_slivers = 1e-12;
+constexpr double k_thinner_squared = 1.0 / 16;
 
 }  // namespace
 
@@ -22,7 +27,8 @@ void CollapseStar::sum_planes(EdgeQuadric& quadric) const {
   quadric.twice_area = sum(s.twice_area);
 }
 
-/// A sliver of the input may stay one, or nothing round it could ever collapse.
+/// A sliver of the input may stay one, or nothing round it could ever collapse. A needle whose tip
+/// is at x, and that stands straight on its short side, has a normal as good as any.
 bool CollapseStar::is_acceptable(const Two& two, int lane, Vec3 x) const {
   const auto at = [&](const Vec3Pair& a) { return Vec3{a.x[lane], a.y[lane], a.z[lane]}; };
   const Vec3 p = at(two.p);
@@ -38,8 +44,12 @@ bool CollapseStar::is_acceptable(const Two& two, int lane, Vec3 x) const {
   const double scale = squared_length(p - x) * squared_length(q - x);
   if (size > k_least_sine_squared * scale) return true;
   const double old_scale = squared_length(p - end) * squared_length(q - end);
-  return old_size <= k_least_sine_squared * old_scale && size * old_scale >= old_size * scale &&
-         (size > 0 || old_size == 0);
+  if (old_size > k_least_sine_squared * old_scale) return false;
+  const double opposite = squared_length(p - q);
+  const double shorter = std::min(squared_length(p - x), squared_length(q - x));
+  if (opposite < shorter && size > k_least_sine_squared * opposite * shorter) return true;
+  const double thinner = size > k_least_of_slivers * scale ? k_thinner_squared : 1;
+  return size * old_scale >= thinner * old_size * scale && (size > 0 || old_size == 0);
 }
 
 /// The normal of a sliver may turn by 60 degrees again and again and so fold over in the end. One
