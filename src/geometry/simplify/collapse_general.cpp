@@ -243,12 +243,10 @@ Collapse GeneralJudge::removal() {
   };
   for (const Corner& c : shared_) add(state_.positions[a_.vertex], c);
   for (const Kept& k : kept_) add(state_.positions[(k.at_b ? b_ : a_).vertex], k.corner);
-  const Vec3 centre = area > 0 ? sum * (1 / area) : middle_;
+  if (area == 0) return {removed_, middle_, 0, false};
   const double squared = surroundings_.squared_distance(
-      {state_.positions, state_.target, state_.adjacency}, centre, removed_vertices_);
-  Collapse collapse{removed_, middle_, k_loss_of_piece * area * squared, false};
-  if (area == 0) collapse.cost = 0;
-  return collapse;
+      {state_.positions, state_.target, state_.adjacency}, sum * (1 / area), removed_vertices_);
+  return {removed_, middle_, k_loss_of_piece * area * squared, false};
 }
 
 GeneralCollapse GeneralJudge::judge(std::uint32_t a, std::uint32_t b,
