@@ -182,6 +182,8 @@ class ResultFinish {
       });
     };
     reduce_to(target);
+    // Sheets that are simplified in pairs may have left two or three.
+    if (simplifier.triangles() > target + 1) reduce_to(target);
     // A closed surface loses triangles in pairs: of an odd target one fewer is taken, not one more.
     if (simplifier.triangles() == target + 1 && target > 0) reduce_to(target - 1);
     return simplifier;

@@ -1,96 +1,134 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
-#include <cmath>
+#include <algorithm>
+#include <optional>
 #include <utility>
 
 #include <meshfarm/geometry/simplify.hpp>
 
-#include "geometry/simplify/ordered_end.hpp"
-#include "geometry/simplify/ranked_passes.hpp"
-#include "geometry/simplify/rough_pass.hpp"
-#include "geometry/simplify/working_mesh.hpp"
+#include "geometry/simplify/reduction.hpp"
+#include "geometry/simplify/sheet_pairs.hpp"
 
 namespace meshfarm {
 namespace {
 
-// Less than this part of the triangles removed is not worth a rough pass.
-constexpr double k_least_rough = 0.1;
+// Where sheets end their vertices are held: no more of them than this share of the triangles that
+// are left in the end.
+constexpr std::uint64_t k_triangles_a_held = 10;
+// Two sheets lose their triangles by four.
+constexpr std::uint64_t k_least_excess = 4;
 
-// Where passes have come to the end of what a cost allows, and have left no more than this of the
-// triangles, few are refused. Nor are many if the last pass could do nearly all that it tried.
-constexpr double k_healthy = 0.66;
-
-using Progress = std::function<bool(std::uint64_t)>;
-
-/// Where crossings are avoided small handles are not kept at any cost: the triangles of a handle
-/// smaller than they are cross each other, and face the wrong way.
-TopologyMode chosen_topology(const SimplifyOptions& options) {
-  const LineOptions& lines = options.lines;
-  const bool gives_way = lines.topology == TopologyMode::automatic && options.bound == nullptr &&
-                         lines.crossings == CrossingMode::avoid && options.seam.empty();
-  return gives_way ? TopologyMode::simplify : lines.topology;
+/// Whether a sheet may stand for its twin, if there are any.
+bool may_pair(const Mesh& input, const SimplifyOptions& options) {
+  const bool has_more =
+      options.lines.columns.and_in(input.columns.set()).any() ||
+      (options.lines.appearance_scale.length > 0 && !input.appearances.empty());
+  return options.lines.crossings == CrossingMode::avoid && options.bound == nullptr &&
+         options.seam.empty() && !has_more;
 }
 
 }  // namespace
 
-/// Rough passes far from the goal, then ranked ones, and the last part of the way in order.
+/// Where most of the surface is in two sheets of the same triangles, one of them is reduced for
+/// both; else all of it.
 struct Simplifier::Impl {
-  Impl(Mesh input, const SimplifyOptions& options)
-      : mesh(std::move(input), options),
-        topology(chosen_topology(options)),
-        bound(options.bound),
-        passes(mesh, bound),
-        end(mesh, topology, bound),
-        seam(mesh.seam()) {}
+  Impl(Mesh input, const SimplifyOptions& given)
+      : locked(given.locked_vertices),
+        positions(given.positions),
+        lines(given.lines),
+        may_be_paired(may_pair(input, given)),
+        reduction(std::make_unique<Reduction>(std::move(input), given)),
+        seam(reduction->mesh().seam()),
+        dropped(reduction->mesh().dropped()) {}
 
-  void reduce(const SimplifyGoal& goal, const Progress& progress) {
-    if (!(goal.max_cost > exhausted_cost)) return;
-    if (!std::exchange(is_flagged, true)) {
-      mesh.flag_thin_walls(last_of(goal), bound != nullptr ? bound->distance() : 0);
+  void reduce(const SimplifyGoal& goal, const Reduction::Progress& progress) {
+    if (std::exchange(may_be_paired, false)) pair_sheets(goal);
+    both.reset();
+    if (pairs) {
+      if (reduce_pairs(goal, progress)) return;
+      take_apart();
     }
-    const std::uint64_t before = mesh.triangles();
-    auto came_to = RankedPasses::End::near;
-    const bool is_used_up = bound != nullptr && bound->options().is_used_up;
-    if (!end.has_begun() && !is_used_up) {
-      const bool goes_on = reduce_roughly(goal, progress);
-      came_to = goes_on ? passes.reduce(goal, progress) : RankedPasses::End::told;
-    }
-    const bool is_told = came_to == RankedPasses::End::told && bound == nullptr;
-    if (came_to == RankedPasses::End::exhausted && is_healthy(before, goal)) {
-      exhausted_cost = goal.max_cost;
-    } else if (!is_told && mesh.is_above(goal.triangles)) {
-      if (const auto cost = end.reduce(goal, progress)) exhausted_cost = *cost;
-    }
-    seam = mesh.seam();
+    reduction->reduce(goal, progress);
+    seam = reduction->mesh().seam();
   }
 
-  /// False if progress says stop.
-  bool reduce_roughly(const SimplifyGoal& goal, const Progress& progress) {
-    while (!mesh.seam_only() && bound == nullptr && mesh.is_above(goal.triangles) &&
-           RoughPass::is_worth_it(mesh, goal)) {
-      const auto before = static_cast<double>(mesh.triangles());
-      const std::uint64_t removed = RoughPass(mesh).run(goal);
-      if (removed == 0) break;
-      if (progress && !progress(mesh.triangles())) return false;
-      if (static_cast<double>(removed) < k_least_rough * before) break;
+  void pair_sheets(const SimplifyGoal& goal) {
+    const double thickness = reduction->flag_thin_walls(goal);
+    const WorkingMesh& mesh = reduction->mesh();
+    if (!(thickness > 0)) return;
+    pairs = SheetPairs::find(
+        mesh.mesh(), mesh.flags(),
+        {locked, positions, thickness, last_of(goal) / k_triangles_a_held});
+    if (pairs) restart(pairs->take_single(), pairs->locked());
+  }
+
+  void take_apart() {
+    Mesh mesh = pairs->both(reduction->mesh().mesh());
+    pairs.reset();
+    restart(std::move(mesh), locked);
+  }
+
+  void restart(Mesh mesh, std::uint32_t locked_now) {
+    paid = max_cost();
+    SimplifyOptions options{.locked_vertices = locked_now, .positions = positions, .lines = lines};
+    options.lines.columns.labels = true;  // of pairs
+    reduction = std::make_unique<Reduction>(std::move(mesh), options);
+  }
+
+  /// False if it was asked again for what it could not do before.
+  bool reduce_pairs(const SimplifyGoal& goal, const Reduction::Progress& progress) {
+    bool goes_on = true;
+    bool is_new = goal.triangles < asked.triangles || goal.max_cost > asked.max_cost;
+    asked = goal;
+    while (goes_on) {
+      const Mesh& single = reduction->mesh().mesh();
+      const std::uint64_t before = single.triangles.size();
+      const std::uint64_t all = pairs->triangles_of(single);
+      const std::uint64_t excess = all - std::min(all, goal.triangles);
+      if (excess < k_least_excess) return is_new || excess <= 1;
+      const auto share_of = [&](std::uint64_t count) {
+        return static_cast<std::uint64_t>(static_cast<double>(count) *
+                                          static_cast<double>(before) / static_cast<double>(all));
+      };
+      SimplifyGoal of_single{before - excess / 2, goal.max_cost, share_of(goal.last_triangles), {}};
+      for (const std::uint64_t count : goal.keep_at) of_single.keep_at.push_back(share_of(count));
+      reduction->reduce(of_single, [&](std::uint64_t left) {
+        goes_on = !progress || progress(all - std::min(all, 2 * (before - left)));
+        return goes_on;
+      });
+      if (reduction->mesh().triangles() == before) return is_new;
+      is_new = true;
     }
     return true;
   }
 
-  bool is_healthy(std::uint64_t before, const SimplifyGoal& goal) const {
-    if (topology == TopologyMode::simplify || bound != nullptr) return false;
-    if (std::isfinite(goal.max_cost) && passes.refuses_little()) return true;
-    return static_cast<double>(mesh.triangles()) < k_healthy * static_cast<double>(before);
+  const Mesh& mesh() const {
+    const Mesh& whole = reduction->mesh().mesh();
+    if (!pairs) return whole;
+    if (!both) both = pairs->both(whole);
+    return *both;
   }
+  std::uint64_t free_triangles() const {
+    if (!pairs) return reduction->mesh().free_triangles();
+    const std::vector<Triangle>& triangles = mesh().triangles;
+    return static_cast<std::uint64_t>(
+        std::count_if(triangles.begin(), triangles.end(), [&](const Triangle& t) {
+          return t[0] >= locked && t[1] >= locked && t[2] >= locked;
+        }));
+  }
+  double max_cost() const { return std::max(paid, reduction->mesh().max_cost()); }
 
-  WorkingMesh mesh;
-  TopologyMode topology;
-  const SurfaceBound* bound;
-  RankedPasses passes;
-  OrderedEnd end;
+  std::uint32_t locked;
+  PositionType positions;
+  LineOptions lines;
+  bool may_be_paired;  // as nobody has looked
+  std::unique_ptr<Reduction> reduction;
   std::vector<std::uint8_t> seam;
-  bool is_flagged = false;     // thin walls
-  double exhausted_cost = -1;  // nothing is left that costs no more
+  Dropped dropped;
+  double paid = 0;  // before the reduction
+  std::optional<SheetPairs> pairs;
+  SimplifyGoal asked{.triangles = UINT64_MAX, .max_cost = -1, .last_triangles = 0, .keep_at = {}};
+  mutable std::optional<Mesh> both;
 };
 
 Simplifier::Simplifier(Mesh mesh, const SimplifyOptions& options)
@@ -103,40 +141,43 @@ void Simplifier::reduce(const SimplifyGoal& goal,
   impl_->reduce(goal, progress);
 }
 const Mesh& Simplifier::mesh() const {
-  return impl_->mesh.mesh();
+  return impl_->mesh();
 }
 std::uint64_t Simplifier::free_triangles() const {
-  return impl_->mesh.free_triangles();
+  return impl_->free_triangles();
 }
 double Simplifier::max_cost() const {
-  return impl_->mesh.max_cost();
+  return impl_->max_cost();
 }
 double Simplifier::pass_cost() const {
-  return impl_->mesh.pass_cost();
+  return impl_->reduction->mesh().pass_cost();
 }
 std::vector<Mesh> Simplifier::take_kept() {
-  return impl_->end.take_kept();
+  std::vector<Mesh> kept = impl_->reduction->take_kept();
+  if (!impl_->pairs) return kept;
+  for (Mesh& mesh : kept) mesh = impl_->pairs->both(mesh);
+  return kept;
 }
 bool Simplifier::simplifies_topology() const {
-  return impl_->end.simplifies_topology();
+  return impl_->reduction->end().simplifies_topology();
 }
 bool Simplifier::is_hampered_by_topology() const {
-  return impl_->end.is_hampered();
+  return impl_->reduction->end().is_hampered();
 }
 bool Simplifier::is_held_by_topology() const {
-  return impl_->end.is_held();
+  return impl_->reduction->end().is_held();
 }
 bool Simplifier::is_slowed_by_topology() const {
-  return impl_->end.has_begun() || impl_->passes.is_slowed_by_topology();
+  return impl_->reduction->is_slowed_by_topology();
 }
 std::uint64_t Simplifier::dropped_degenerate() const {
-  return impl_->mesh.dropped().degenerate;
+  return impl_->dropped.degenerate;
 }
 std::uint64_t Simplifier::dropped_duplicate() const {
-  return impl_->mesh.dropped().duplicate;
+  return impl_->dropped.duplicate;
 }
 std::uint64_t Simplifier::turned() const {
-  return impl_->mesh.dropped().turned;
+  return impl_->dropped.turned;
 }
 std::span<const std::uint8_t> Simplifier::seam() const {
   return impl_->seam;

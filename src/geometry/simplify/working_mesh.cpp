@@ -78,8 +78,8 @@ std::vector<std::uint8_t> WorkingMesh::seam() const {
   return seam;
 }
 
-void WorkingMesh::flag_thin_walls(std::uint64_t last, double bound) {
-  if (!avoids_crossings_) return;
+double WorkingMesh::flag_thin_walls(std::uint64_t last, double bound) {
+  if (!avoids_crossings_) return 0;
   double area = 0;
   for (const Triangle& t : mesh_.triangles) {
     const Vec3 p = mesh_.positions[t[0]];
@@ -89,7 +89,9 @@ void WorkingMesh::flag_thin_walls(std::uint64_t last, double bound) {
   const double left =
       std::max({1.0, static_cast<double>(last), static_cast<double>(triangles()) / k_most_at_once});
   const double edge = std::sqrt(k_edge_of_area * area / left);
-  meshfarm::flag_thin_walls(mesh_, bound > 0 ? 2 * bound : k_thin_share * edge, flags_);
+  const double reach = bound > 0 ? 2 * bound : k_thin_share * edge;
+  meshfarm::flag_thin_walls(mesh_, reach, flags_);
+  return reach;
 }
 
 void WorkingMesh::begin_pass() {

@@ -47,7 +47,8 @@ class WorkingMesh {
 
   /// Where crossings are avoided: flags as k_thin what another sheet may be near to. `last` is how
   /// many triangles will be left when all is done, `bound` how far the surface may move or 0.
-  void flag_thin_walls(std::uint64_t last, double bound);
+  /// Returns how near that is, else 0.
+  double flag_thin_walls(std::uint64_t last, double bound);
 
   void begin_pass();
   /// Of the pass that has begun.

@@ -10,6 +10,7 @@
 #include <meshfarm/geometry/generate.hpp>
 #include <meshfarm/geometry/simplify.hpp>
 #include <meshfarm/geometry/surface_bound.hpp>
+#include <meshfarm/geometry/topology.hpp>
 
 #include "support/meshes.hpp"
 
@@ -27,6 +28,8 @@ Mesh reduced_to(const Mesh& mesh, double ratio, CrossingMode mode) {
   Simplifier simplifier(mesh, options);
   const auto wanted =
       static_cast<std::uint64_t>(ratio * static_cast<double>(mesh.triangles.size()));
+  simplifier.reduce({.triangles = wanted});
+  CHECK(simplifier.triangles() <= wanted + 3);
   simplifier.reduce({.triangles = wanted});
   CHECK(simplifier.triangles() <= wanted + 1);
   CHECK(simplifier.triangles() + 2 >= wanted);
@@ -69,6 +72,30 @@ TEST_CASE("crossings: a shell's sheets stay apart") {
   REQUIRE(count_crossing(shell) == 0);
   CHECK(count_crossing(reduced_to(shell, 0.4, CrossingMode::allow)) > 20);
   CHECK(count_crossing(reduced_to(shell, 0.4, CrossingMode::avoid)) == 0);
+}
+
+TEST_CASE("crossings: sheets that are nearer than the error stay apart") {
+  const Mesh shell = in_memory(*generate_mesh(Shape::shell, 100'000));
+  const Mesh some = reduced_to(shell, 0.02, CrossingMode::avoid);
+  CHECK(count_crossing(reduced_to(shell, 0.02, CrossingMode::allow)) > 1000);
+  CHECK(count_crossing(some) == 0);
+  CHECK(measure_topology(some).components == 2);
+}
+
+TEST_CASE("crossings: sheets that are nearer than the error meet any count") {
+  SimplifyOptions options{.locked_vertices = 4};
+  options.lines.crossings = CrossingMode::avoid;
+  const Mesh shell = in_memory(*generate_mesh(Shape::shell, 20'000));
+  Simplifier simplifier(shell, options);
+  for (const std::uint64_t count : {8000U, 2002U, 2000U, 1001U}) {
+    for (int turn = 0; turn < 2; ++turn) simplifier.reduce({.triangles = count});
+    CHECK(simplifier.triangles() >= count);
+    CHECK(simplifier.triangles() <= count + 1);
+    CHECK(simplifier.free_triangles() <= simplifier.triangles());
+    for (std::size_t v = 0; v < 4; ++v) {
+      CHECK(simplifier.mesh().positions[v] == shell.positions[v]);
+    }
+  }
 }
 
 TEST_CASE("crossings: spheres side by side and in each other stay apart") {

@@ -1,0 +1,82 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#include "geometry/simplify/reduction.hpp"
+
+#include <cmath>
+#include <utility>
+
+#include "geometry/simplify/rough_pass.hpp"
+
+namespace meshfarm {
+namespace {
+
+// Less than this part of the triangles removed is not worth a rough pass.
+constexpr double k_least_rough = 0.1;
+
+// Where passes have come to the end of what a cost allows, and have left no more than this of the
+// triangles, few are refused. Nor are many if the last pass could do nearly all that it tried.
+constexpr double k_healthy = 0.66;
+
+/// Where crossings are avoided small handles are not kept at any cost: the triangles of a handle
+/// smaller than they are cross each other, and face the wrong way.
+TopologyMode chosen_topology(const SimplifyOptions& options) {
+  const LineOptions& lines = options.lines;
+  const bool gives_way = lines.topology == TopologyMode::automatic && options.bound == nullptr &&
+                         lines.crossings == CrossingMode::avoid && options.seam.empty();
+  return gives_way ? TopologyMode::simplify : lines.topology;
+}
+
+}  // namespace
+
+Reduction::Reduction(Mesh input, const SimplifyOptions& options)
+    : mesh_(std::move(input), options),
+      topology_(chosen_topology(options)),
+      bound_(options.bound),
+      passes_(mesh_, bound_),
+      end_(mesh_, topology_, bound_) {}
+
+double Reduction::flag_thin_walls(const SimplifyGoal& goal) {
+  if (thickness_ < 0) {
+    thickness_ = mesh_.flag_thin_walls(last_of(goal), bound_ != nullptr ? bound_->distance() : 0);
+  }
+  return thickness_;
+}
+
+void Reduction::reduce(const SimplifyGoal& goal, const Progress& progress) {
+  if (!(goal.max_cost > exhausted_cost_)) return;
+  flag_thin_walls(goal);
+  const std::uint64_t before = mesh_.triangles();
+  auto came_to = RankedPasses::End::near;
+  const bool is_used_up = bound_ != nullptr && bound_->options().is_used_up;
+  if (!end_.has_begun() && !is_used_up) {
+    const bool goes_on = reduce_roughly(goal, progress);
+    came_to = goes_on ? passes_.reduce(goal, progress) : RankedPasses::End::told;
+  }
+  const bool is_told = came_to == RankedPasses::End::told && bound_ == nullptr;
+  if (came_to == RankedPasses::End::exhausted && is_healthy(before, goal)) {
+    exhausted_cost_ = goal.max_cost;
+  } else if (!is_told && mesh_.is_above(goal.triangles)) {
+    if (const auto cost = end_.reduce(goal, progress)) exhausted_cost_ = *cost;
+  }
+}
+
+/// False if progress says stop.
+bool Reduction::reduce_roughly(const SimplifyGoal& goal, const Progress& progress) {
+  while (!mesh_.seam_only() && bound_ == nullptr && mesh_.is_above(goal.triangles) &&
+         RoughPass::is_worth_it(mesh_, goal)) {
+    const auto before = static_cast<double>(mesh_.triangles());
+    const std::uint64_t removed = RoughPass(mesh_).run(goal);
+    if (removed == 0) break;
+    if (progress && !progress(mesh_.triangles())) return false;
+    if (static_cast<double>(removed) < k_least_rough * before) break;
+  }
+  return true;
+}
+
+bool Reduction::is_healthy(std::uint64_t before, const SimplifyGoal& goal) const {
+  if (topology_ == TopologyMode::simplify || bound_ != nullptr) return false;
+  if (std::isfinite(goal.max_cost) && passes_.refuses_little()) return true;
+  return static_cast<double>(mesh_.triangles()) < k_healthy * static_cast<double>(before);
+}
+
+}  // namespace meshfarm
