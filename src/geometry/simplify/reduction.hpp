@@ -30,9 +30,7 @@ class Reduction {
   const WorkingMesh& mesh() const { return mesh_; }
   const OrderedEnd& end() const { return end_; }
   std::vector<Mesh> take_kept() { return end_.take_kept(); }
-  bool is_slowed_by_topology() const {
-    return end_.has_begun() || passes_.is_slowed_by_topology();
-  }
+  bool is_slowed_by_topology() const { return end_.has_begun() || passes_.is_slowed_by_topology(); }
 
  private:
   bool reduce_roughly(const SimplifyGoal& goal, const Progress& progress);

@@ -215,9 +215,9 @@ std::optional<SheetPairs> SheetPairs::find(const Mesh& mesh, std::span<const std
 
 std::uint64_t SheetPairs::triangles_of(const Mesh& single) const {
   const std::vector<Label>& labels = single.columns.labels;
-  const std::size_t pairs = labels.empty() ? single.triangles.size()
-                                           : static_cast<std::size_t>(std::count(
-                                                 labels.begin(), labels.end(), k_paired));
+  const std::size_t pairs =
+      labels.empty() ? single.triangles.size()
+                     : static_cast<std::size_t>(std::count(labels.begin(), labels.end(), k_paired));
   return single.triangles.size() + pairs;
 }
 

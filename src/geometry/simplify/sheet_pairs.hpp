@@ -20,7 +20,7 @@ class SheetPairs {
   struct Wall {
     std::uint32_t locked = 0;  // of the mesh: the first vertices
     PositionType positions = PositionType::float64;
-    double reach = 0;                 // no vertex is farther from its twin
+    double reach = 0;                // no vertex is farther from its twin
     std::uint64_t most_held_up = 0;  // no more vertices are held where sheets end than so many
   };
 
@@ -31,8 +31,8 @@ class SheetPairs {
                                         const Wall& wall);
 
   /// One sheet of each pair and all else, to be taken once. The first locked() vertices must stay:
-  /// those of the mesh that are locked, and then those where a sheet ends. If not all triangles have
-  /// a twin, labels tell which have.
+  /// those of the mesh that are locked, and then those where a sheet ends. If not all triangles
+  /// have a twin, labels tell which have.
   Mesh take_single() { return std::move(single_); }
   std::uint32_t locked() const { return static_cast<std::uint32_t>(twins_.size()); }
 

@@ -20,9 +20,8 @@ constexpr std::uint64_t k_least_excess = 4;
 
 /// Whether a sheet may stand for its twin, if there are any.
 bool may_pair(const Mesh& input, const SimplifyOptions& options) {
-  const bool has_more =
-      options.lines.columns.and_in(input.columns.set()).any() ||
-      (options.lines.appearance_scale.length > 0 && !input.appearances.empty());
+  const bool has_more = options.lines.columns.and_in(input.columns.set()).any() ||
+                        (options.lines.appearance_scale.length > 0 && !input.appearances.empty());
   return options.lines.crossings == CrossingMode::avoid && options.bound == nullptr &&
          options.seam.empty() && !has_more;
 }
@@ -56,9 +55,8 @@ struct Simplifier::Impl {
     const double thickness = reduction->flag_thin_walls(goal);
     const WorkingMesh& mesh = reduction->mesh();
     if (!(thickness > 0)) return;
-    pairs = SheetPairs::find(
-        mesh.mesh(), mesh.flags(),
-        {locked, positions, thickness, last_of(goal) / k_triangles_a_held});
+    pairs = SheetPairs::find(mesh.mesh(), mesh.flags(),
+                             {locked, positions, thickness, last_of(goal) / k_triangles_a_held});
     if (pairs) restart(pairs->take_single(), pairs->locked());
   }
 
@@ -87,8 +85,8 @@ struct Simplifier::Impl {
       const std::uint64_t excess = all - std::min(all, goal.triangles);
       if (excess < k_least_excess) return is_new || excess <= 1;
       const auto share_of = [&](std::uint64_t count) {
-        return static_cast<std::uint64_t>(static_cast<double>(count) *
-                                          static_cast<double>(before) / static_cast<double>(all));
+        return static_cast<std::uint64_t>(static_cast<double>(count) * static_cast<double>(before) /
+                                          static_cast<double>(all));
       };
       SimplifyGoal of_single{before - excess / 2, goal.max_cost, share_of(goal.last_triangles), {}};
       for (const std::uint64_t count : goal.keep_at) of_single.keep_at.push_back(share_of(count));
@@ -111,10 +109,9 @@ struct Simplifier::Impl {
   std::uint64_t free_triangles() const {
     if (!pairs) return reduction->mesh().free_triangles();
     const std::vector<Triangle>& triangles = mesh().triangles;
-    return static_cast<std::uint64_t>(
-        std::count_if(triangles.begin(), triangles.end(), [&](const Triangle& t) {
-          return t[0] >= locked && t[1] >= locked && t[2] >= locked;
-        }));
+    return static_cast<std::uint64_t>(std::count_if(
+        triangles.begin(), triangles.end(),
+        [&](const Triangle& t) { return t[0] >= locked && t[1] >= locked && t[2] >= locked; }));
   }
   double max_cost() const { return std::max(paid, reduction->mesh().max_cost()); }
 

@@ -1,7 +1,5 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
-#include "geometry/simplify/sheet_pairs.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -10,6 +8,7 @@
 
 #include <doctest/doctest.h>
 
+#include "geometry/simplify/sheet_pairs.hpp"
 #include "geometry/simplify/vertex_flags.hpp"
 #include "support/meshes.hpp"
 
