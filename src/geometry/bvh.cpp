@@ -72,4 +72,25 @@ Bvh::Nearest Bvh::nearest(Vec3 p, std::uint32_t guess, double enough) const {
   return query.best;
 }
 
+/// The loop of nearest(), but what is too far is never looked at.
+Bvh::Nearest Bvh::any_within(Vec3 p, double squared) const {
+  Query query(p, to_frame(p), scale_);
+  query.limit = query.limit_of(squared);
+  BvhStack stack;
+  std::size_t size = 0;
+  stack[size++] = {0, 0, 0};
+  while (size > 0 && !(query.best.squared <= squared)) {
+    const BvhEntry top = stack[--size];
+    if (top.bound >= query.limit) continue;
+    if (top.count > 0) {
+      visit_leaf(query, top.child, top.count);
+      query.limit = std::min(query.limit, query.limit_of(squared));
+      continue;
+    }
+    const Node& node = nodes_[top.child];
+    query.push(node, stack, size);
+  }
+  return query.best.squared <= squared ? query.best : Nearest{};
+}
+
 }  // namespace meshfarm

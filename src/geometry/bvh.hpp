@@ -32,6 +32,8 @@ class Bvh {
   /// The triangle nearest to `p`, or some triangle whose squared distance is at most `enough`. A
   /// good `guess` saves time.
   Nearest nearest(Vec3 p, std::uint32_t guess, double enough = 0) const;
+  /// Some triangle whose squared distance is at most `squared`; infinite if there is none.
+  Nearest any_within(Vec3 p, double squared) const;
   /// The nearest of the triangles whose normals are within 90 degrees of `normal`, if one is nearer
   /// than the root of `most_squared`; else its squared distance is infinite.
   Nearest nearest_facing(Vec3 p, Vec3 normal, std::uint32_t guess, double most_squared) const;

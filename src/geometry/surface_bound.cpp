@@ -9,6 +9,7 @@
 #include <meshfarm/geometry/surface_bound.hpp>
 
 #include "geometry/bvh.hpp"
+#include "geometry/surface_walk.hpp"
 
 namespace meshfarm {
 namespace {
@@ -138,6 +139,7 @@ class SurfaceBound::Impl {
       : surface_(std::move(surface)),
         options_(options),
         bvh_(surface_, options.threads),
+        walk_(surface_),
         points_(used_vertices(surface_, numbers_)),
         sides_(surface_, numbers_, options.distance) {
     flag_dense(surface_, numbers_, options.distance, points_);
@@ -152,16 +154,21 @@ class SurfaceBound::Impl {
     return sides_.at(point);
   }
   const Mesh& surface() const { return surface_; }
-  double squared_distance_to(Vec3 point, double enough, std::uint32_t& guess) const {
-    const Bvh::Nearest nearest = bvh_.nearest(point, guess, enough);
-    guess = nearest.triangle;
-    return nearest.squared;
+  double squared_distance_near(Vec3 point, double enough, std::uint32_t& guess) const {
+    const double most = options_.distance * options_.distance;
+    Bvh::Nearest found = walk_.towards(point, guess, enough);
+    guess = found.triangle;
+    if (found.squared <= most) return found.squared;
+    found = bvh_.any_within(point, most);
+    if (found.squared <= most) guess = found.triangle;
+    return found.squared;
   }
 
  private:
   Mesh surface_;
   SurfaceBoundOptions options_;
   Bvh bvh_;
+  SurfaceWalk walk_;
   std::vector<std::uint32_t> numbers_;  // of vertices; while it is made
   std::vector<SurfacePoint> points_;
   LongSides sides_;
@@ -184,8 +191,8 @@ std::span<const std::uint32_t> SurfaceBound::across_sides(std::uint32_t point) c
 const Mesh& SurfaceBound::surface() const {
   return impl_->surface();
 }
-double SurfaceBound::squared_distance_to(Vec3 point, double enough, std::uint32_t& guess) const {
-  return impl_->squared_distance_to(point, enough, guess);
+double SurfaceBound::squared_distance_near(Vec3 point, double enough, std::uint32_t& guess) const {
+  return impl_->squared_distance_near(point, enough, guess);
 }
 
 }  // namespace meshfarm

@@ -9,6 +9,7 @@
 #include <meshfarm/util/parallel.hpp>
 
 #include "geometry/bvh.hpp"
+#include "geometry/distance_across.hpp"
 #include "geometry/simplify/vertex_flags.hpp"
 
 namespace meshfarm {
@@ -59,6 +60,7 @@ void CollapseGuard::start(const CollapseState& state, const Mesh& mesh) {
   merge_ = {};
   bag_.assign(mesh.positions.size(), k_no_point);
   moves_.assign(mesh.positions.size(), 0);
+  has_failed_.assign(mesh.positions.size(), 0);
   memo_.assign(k_memo, 0);
   held_.clear();
   if (mesh.triangles.empty()) return;
@@ -85,9 +87,10 @@ void CollapseGuard::start(const CollapseState& state, const Mesh& mesh) {
     held_of_[i] = static_cast<std::uint32_t>(held_.size());
     const SurfacePoint& from = points[i];
     held_.push_back({from.at, limit, from.share, from.triangle, k_no_point, 0, 0, 0,
-                     static_cast<std::uint32_t>(i), 0, from.is_dense});
+                     static_cast<std::uint32_t>(i), from.is_dense});
     hold(static_cast<std::uint32_t>(held_.size() - 1), t);
   }
+  place_of_.assign(held_.size(), 0);
 }
 
 void CollapseGuard::list_star(const Merge& merge) {
@@ -119,7 +122,10 @@ bool CollapseGuard::allows(const Merge& merge) {
   if (memo() == key) return false;
   list_star(merge);
   on_facet_.assign(star_.size(), k_no_point);
-  if (!star_.empty() && place_all() && are_sides_near() && is_star_near()) return true;
+  if (!star_.empty() && probe_.is_near(merge_.position) && place_all() && are_sides_near() &&
+      is_star_near()) {
+    return true;
+  }
   memo() = key;
   return false;
 }
@@ -143,7 +149,22 @@ bool CollapseGuard::is_changed(const Held& held) const {
   return held.next == held.prev || is_end(held.next) || is_end(held.prev);
 }
 
+/// What has failed often fails again.
+bool CollapseGuard::fails_again(std::uint32_t vertex) {
+  const std::uint32_t first = bag_[vertex];
+  if (has_failed_[vertex] == 0 || first == k_no_point) return false;
+  if (!is_end(vertex) && !is_changed(held_[first])) return false;
+  const bool is_placed = place(vertex, first);
+  places_.clear();
+  on_facet_.assign(star_.size(), k_no_point);
+  return !is_placed;
+}
+
 bool CollapseGuard::place_all() {
+  if (fails_again(merge_.a) || fails_again(merge_.b)) return false;
+  if (std::any_of(ring_.begin(), ring_.end(), [&](std::uint32_t v) { return fails_again(v); })) {
+    return false;
+  }
   if (!place_bag(merge_.a, true) || !place_bag(merge_.b, true)) return false;
   return std::all_of(ring_.begin(), ring_.end(),
                      [&](std::uint32_t v) { return place_bag(v, false); });
@@ -163,6 +184,7 @@ bool CollapseGuard::place_bag(std::uint32_t vertex, bool all) {
 
 /// Points that were too far will be asked first.
 void CollapseGuard::to_front(std::uint32_t vertex, std::uint32_t before, std::uint32_t point) {
+  has_failed_[vertex] = 1;
   if (before == k_no_point) return;
   held_[before].following = held_[point].following;
   held_[point].following = std::exchange(bag_[vertex], point);
@@ -177,17 +199,17 @@ std::size_t CollapseGuard::facet_of(std::uint32_t owner, const Held& held) const
   return found == star_.end() ? 0 : static_cast<std::size_t>(found - star_.begin());
 }
 
-/// Looks until it is near enough.
-void CollapseGuard::look_at_star(Vec3 point, std::size_t first, double enough,
+/// Looks until one is near enough, or below the point and no farther than `most`.
+void CollapseGuard::look_at_star(Vec3 point, std::size_t first, double enough, double most,
                                  Nearest& nearest) const {
   for (std::size_t i = 0; i < star_.size() && nearest.squared > enough; ++i) {
     const std::size_t facet = first + i < star_.size() ? first + i : first + i - star_.size();
     const auto& [next, prev] = star_[facet];
-    const double squared =
-        squared_distance(point, merge_.position, state_.positions[next], state_.positions[prev]);
-    if (squared < nearest.squared) {
-      nearest = {squared, {merge_.a, next, prev}, static_cast<std::uint32_t>(facet)};
-    }
+    const DistanceAcross here =
+        distance_across(point, merge_.position, state_.positions[next], state_.positions[prev]);
+    if (!(here.squared < nearest.squared)) continue;
+    nearest = {here.squared, {merge_.a, next, prev}, static_cast<std::uint32_t>(facet)};
+    if (here.is_inside() && here.squared <= most) return;
   }
 }
 
@@ -211,13 +233,13 @@ bool CollapseGuard::place(std::uint32_t owner, std::uint32_t point) {
   const double enough = bound_.distance() * bound_.distance() * k_near_share * k_near_share;
   Nearest nearest;
   const std::size_t first = facet_of(owner, held);
-  look_at_star(held.point, first, enough, nearest);
+  look_at_star(held.point, first, enough, most, nearest);
   if (nearest.squared > most) look_round_star(held.point, nearest);
   if (!(nearest.squared <= most)) return false;
   if (nearest.squared > enough && held.share != 0 && !is_cell_near(held, first)) return false;
   Place& placed = places_.emplace_back(place_on(point, nearest.triangle));
   placed.facet = nearest.facet;
-  held_[point].place = static_cast<std::uint32_t>(places_.size() - 1);
+  place_of_[point] = static_cast<std::uint32_t>(places_.size() - 1);
   if (nearest.facet != k_no_point) {
     placed.following =
         std::exchange(on_facet_[nearest.facet], static_cast<std::uint32_t>(places_.size() - 1));
@@ -243,18 +265,18 @@ bool CollapseGuard::are_sides_near() {
 
 bool CollapseGuard::is_side_near(const Place& place, std::uint32_t across) {
   if (across == k_no_point) return true;
-  const Held& from = held_[place.point];
-  const Held& to = held_[across];
-  Triangle at_end = {to.owner, to.next, to.prev};
-  if (to.place < places_.size() && places_[to.place].point == across) {
-    const Place& other = places_[to.place];
-    if (across < place.point || (other.facet == place.facet && other.facet != k_no_point)) {
-      return true;
-    }
-    at_end = {other.owner, other.next, other.prev};
-  } else if (to.next == to.prev) {
+  const std::uint32_t found = place_of_[across];
+  const bool is_placed = found < places_.size() && places_[found].point == across;
+  const Place* other = is_placed ? &places_[found] : nullptr;
+  if (other != nullptr &&
+      (across < place.point || (other->facet == place.facet && other->facet != k_no_point))) {
     return true;
   }
+  const Held& from = held_[place.point];
+  const Held& to = held_[across];
+  if (other == nullptr && to.next == to.prev) return true;
+  const Triangle at_end = other != nullptr ? Triangle{other->owner, other->next, other->prev}
+                                           : Triangle{to.owner, to.next, to.prev};
   if (squared_to(to.point, {place.owner, place.next, place.prev}) <= to.limit) return true;
   if (squared_to(from.point, at_end) <= from.limit) return true;
   return is_side_near(from, to, at_end, place.facet == k_no_point ? 0 : place.facet);
@@ -284,7 +306,7 @@ bool CollapseGuard::is_side_near(const Held& from, const Held& to, const Triangl
     const Vec3 point = from.point + along * (i / steps);
     if (squared_to(point, at_end) <= most) continue;
     Nearest nearest;
-    look_at_star(point, first, most, nearest);
+    look_at_star(point, first, most, most, nearest);
     if (nearest.squared > most) look_round_star(point, nearest);
     for (std::size_t k = 0; k < ring_.size() && nearest.squared > most; ++k) {
       look_round(ring_[k], point, nearest);
@@ -306,7 +328,7 @@ bool CollapseGuard::is_cell_near(const Held& held, std::size_t first) const {
                        const Vec3 point = held.point + (surface.positions[v] - middle) *
                                                            (k_to_corner * held.share);
                        Nearest nearest;
-                       look_at_star(point, first, held.limit, nearest);
+                       look_at_star(point, first, held.limit, held.limit, nearest);
                        if (nearest.squared > held.limit) look_round_star(point, nearest);
                        return nearest.squared <= held.limit;
                      });
@@ -320,9 +342,8 @@ std::uint32_t CollapseGuard::nearest_of_ring(Vec3 point) const {
   });
 }
 
-/// The sides of the ring were there before.
+/// The sides of the ring were there before, and the merged vertex is near.
 bool CollapseGuard::is_star_near() {
-  if (!probe_.is_near(merge_.position)) return false;
   for (const std::uint32_t v : ring_) {
     if (!probe_.is_side_near(merge_.position, state_.positions[v])) return false;
   }

@@ -52,9 +52,8 @@ class CollapseGuard {
     std::uint32_t following;  // held by the same vertex
     // The triangle, from the vertex that holds it; may have become another.
     std::uint32_t owner, next, prev;
-    std::uint32_t number;     // of the bound's points
-    std::uint32_t place = 0;  // the last one that it was to get
-    bool is_dense = false;    // SurfacePoint::is_dense
+    std::uint32_t number;   // of the bound's points
+    bool is_dense = false;  // SurfacePoint::is_dense
   };
   struct Place {
     std::uint32_t point;
@@ -77,10 +76,12 @@ class CollapseGuard {
   bool is_changed(const Held& held) const;
   std::size_t facet_of(std::uint32_t owner, const Held& held) const;
   std::uint32_t nearest_of_ring(Vec3 point) const;
+  bool fails_again(std::uint32_t vertex);
   bool place_all();
   bool place_bag(std::uint32_t vertex, bool all);
   bool place(std::uint32_t owner, std::uint32_t point);
-  void look_at_star(Vec3 point, std::size_t first, double enough, Nearest& nearest) const;
+  void look_at_star(Vec3 point, std::size_t first, double enough, double most,
+                    Nearest& nearest) const;
   void look_round(std::uint32_t around, Vec3 point, Nearest& nearest) const;
   void look_round_star(Vec3 point, Nearest& nearest) const;
   bool are_sides_near();
@@ -98,16 +99,18 @@ class CollapseGuard {
   const SurfaceBound& bound_;
   CollapseState state_;
   std::vector<Held> held_;
-  std::vector<std::uint32_t> held_of_;  // for each of the bound's points
-  std::vector<std::uint32_t> bag_;      // the first point that a vertex holds
-  std::vector<std::uint32_t> moves_;    // of each vertex
-  std::vector<std::uint32_t> memo_;     // of collapses that were refused
+  std::vector<std::uint32_t> held_of_;    // for each of the bound's points
+  std::vector<std::uint32_t> bag_;        // the first point that a vertex holds
+  std::vector<std::uint8_t> has_failed_;  // a vertex's first point was too far once
+  std::vector<std::uint32_t> moves_;      // of each vertex
+  std::vector<std::uint32_t> memo_;       // of collapses that were refused
 
   // Of the merge that is judged.
   Merge merge_;
   std::vector<Corner> star_;  // the triangles that it makes
   std::vector<std::uint32_t> ring_;
   std::vector<Place> places_;
+  std::vector<std::uint32_t> place_of_;  // of each point held, the last one that it was to get
   std::vector<std::uint32_t> on_facet_;  // the first place on each triangle of the star
   std::vector<Vec3> feet_;
   SurfaceProbe probe_;

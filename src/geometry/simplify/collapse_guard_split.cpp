@@ -12,6 +12,7 @@ void CollapseGuard::split(std::uint32_t vertex, std::uint32_t first_copy) {
   const auto copies = static_cast<std::uint32_t>(state_.positions.size());
   bag_.resize(copies, k_no_point);
   moves_.resize(copies, 0);
+  has_failed_.resize(copies, 0);
   if (first_copy == copies) return;
   merge_ = {};
   for (std::uint32_t point = std::exchange(bag_[vertex], k_no_point); point != k_no_point;) {

@@ -13,20 +13,24 @@ namespace {
 constexpr double k_quite_near = 0.5;
 /// Points that are looked at are so far apart, in distances of the bound, but no more on a side.
 constexpr double k_probe_spacing = 1.25;
-constexpr double k_most_on_a_side = 32;
-/// So large, in distances of the bound, is a cell.
+constexpr double k_most_on_side = 32;
+/// Inside of triangles so far, and in no more rows.
+constexpr double k_row_spacing = 1;
+constexpr double k_most_rows = 64;
+/// So large, in distances of the bound, is a cell, but no smaller than this share of the base.
 constexpr double k_cell_size = 2;
-/// In so thin triangles no cell can be told.
-constexpr double k_least_angle = 1e-10;
+constexpr double k_least_cell = 1.0 / 32;
+/// So thin triangles are looked at along their sides only.
+constexpr double k_least_height = 1e-6;
 
 }  // namespace
 
-double SurfaceProbe::steps_for(double length, double spacing, double least) const {
-  return std::clamp(std::ceil(length / (spacing * bound_.distance())), least, k_most_on_a_side);
+double SurfaceProbe::steps_for(double length, double spacing, double most) const {
+  return std::clamp(std::ceil(length / (spacing * bound_.distance())), 1.0, most);
 }
 
 double SurfaceProbe::squared_to_surface(Vec3 point, double enough) {
-  return bound_.squared_distance_to(point, enough, guess_);
+  return bound_.squared_distance_near(point, enough, guess_);
 }
 
 bool SurfaceProbe::is_near(Vec3 point) {
@@ -38,7 +42,7 @@ bool SurfaceProbe::is_side_near(Vec3 from, Vec3 to) {
   const double most = bound_.distance() * bound_.distance();
   const double enough = most * k_quite_near * k_quite_near;
   const Vec3 along = to - from;
-  const double steps = steps_for(length(along), k_probe_spacing, 2);
+  const double steps = std::max(2.0, steps_for(length(along), k_probe_spacing, k_most_on_side));
   const auto squared_at = [&](double i) {
     return squared_to_surface(from + along * (i / steps), enough);
   };
@@ -51,69 +55,88 @@ bool SurfaceProbe::is_side_near(Vec3 from, Vec3 to) {
   return true;
 }
 
-void SurfaceProbe::mark_cells(const Grid& grid, std::span<const Vec3> feet) {
-  const auto steps = static_cast<std::size_t>(grid.steps);
-  cells_.assign(steps * steps, 0);
-  const double aa = squared_length(grid.along), cc = squared_length(grid.across);
-  const double ac = dot(grid.along, grid.across);
-  const double determinant = aa * cc - ac * ac;
-  if (!(determinant > k_least_angle * aa * cc)) return;
-  const double scale = grid.steps / determinant;
+SurfaceProbe::Rows SurfaceProbe::rows_of(const std::array<Vec3, 3>& triangle) {
+  std::size_t first = 0;
+  double most = -1;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const double squared = squared_length(triangle[(i + 1) % 3] - triangle[i]);
+    if (!(squared > most)) continue;
+    most = squared;
+    first = i;
+  }
+  Rows rows{triangle[first], triangle[(first + 1) % 3] - triangle[first],
+            triangle[(first + 2) % 3] - triangle[first]};
+  rows.base = std::sqrt(most);
+  if (!(rows.base > 0)) return rows;
+  rows.along = rows.along * (1 / rows.base);
+  rows.apex = dot(rows.up, rows.along);
+  rows.up = rows.up - rows.along * rows.apex;
+  rows.height = length(rows.up);
+  if (rows.height > 0) rows.up = rows.up * (1 / rows.height);
+  return rows;
+}
+
+void SurfaceProbe::mark_cells(const Rows& rows, std::span<const Vec3> feet) {
+  cell_ = std::max(k_cell_size * bound_.distance(), rows.base * k_least_cell);
+  columns_ = static_cast<std::size_t>(rows.base / cell_) + 1;
+  lines_ = static_cast<std::size_t>(rows.height / cell_) + 1;
+  cells_.assign(columns_ * lines_, 0);
   for (const Vec3 foot : feet) {
-    const Vec3 from = foot - grid.origin;
-    const double a = dot(from, grid.along), c = dot(from, grid.across);
-    const double i = std::floor(std::clamp((a * cc - c * ac) * scale, 0.0, grid.steps - 1));
-    const double j = std::floor(std::clamp((c * aa - a * ac) * scale, 0.0, grid.steps - 1 - i));
-    cells_[static_cast<std::size_t>(i) * steps + static_cast<std::size_t>(j)] = 1;
+    const Vec3 from = foot - rows.origin;
+    const double x = std::clamp(dot(from, rows.along), 0.0, rows.base);
+    const double y = std::clamp(dot(from, rows.up), 0.0, rows.height);
+    cells_[cell_of(x, y)] = 1;
   }
 }
 
 /// The cell or one beside it.
-bool SurfaceProbe::is_marked_round(std::size_t cell, std::size_t i, std::size_t j,
-                                   std::size_t steps) const {
-  const bool is_last = i + j + 1 >= steps;
-  return cells_[cell] != 0 || (j > 0 && cells_[cell - 1] != 0) ||
-         (i > 0 && cells_[cell - steps] != 0) || (!is_last && cells_[cell + 1] != 0) ||
-         (!is_last && cells_[cell + steps] != 0);
+bool SurfaceProbe::is_marked_round(double x, double y) const {
+  const auto column = static_cast<std::size_t>(x / cell_);
+  const auto line = static_cast<std::size_t>(y / cell_);
+  const std::size_t cell = cell_of(x, y);
+  return cells_[cell] != 0 || (column > 0 && cells_[cell - 1] != 0) ||
+         (line > 0 && cells_[cell - columns_] != 0) ||
+         (column + 1 < columns_ && cells_[cell + 1] != 0) ||
+         (line + 1 < lines_ && cells_[cell + columns_] != 0);
 }
 
 bool SurfaceProbe::is_inside_near(const std::array<Vec3, 3>& triangle, std::span<const Vec3> feet) {
-  Grid grid{triangle[0], triangle[1] - triangle[0], triangle[2] - triangle[0]};
-  const double longest =
-      std::sqrt(std::max(squared_length(grid.along), squared_length(grid.across)));
-  grid.steps = steps_for(longest, k_cell_size, 1);
-  mark_cells(grid, feet);
-  const auto steps = static_cast<std::size_t>(grid.steps);
-  grid.steps *= 2;
-  for (std::size_t i = 0; i < steps; ++i) {
-    for (std::size_t j = 0; i + j < steps; ++j) {
-      if (is_marked_round(i * steps + j, i, j, steps)) continue;
-      const double x = 2.0 * static_cast<double>(i), y = 2.0 * static_cast<double>(j);
-      if (!is_cell_near(grid, x, y) || !is_cell_near(grid, x + 1, y) ||
-          !is_cell_near(grid, x, y + 1)) {
-        return false;
-      }
-      if (i + j + 1 < steps && !is_cell_near(grid, x + 1, y + 1)) return false;
-    }
+  Rows rows = rows_of(triangle);
+  if (!(rows.height > k_least_height * rows.base)) return true;
+  rows.count = steps_for(rows.height, k_row_spacing, k_most_rows);
+  mark_cells(rows, feet);
+  for (double row = 0; row < rows.count; ++row) {
+    if (!is_row_near(rows, row)) return false;
   }
   return true;
 }
 
-/// Looks at a quarter of a cell: at its middle, and where that is not quite near at those of
-/// its sides. At the triangle's third side it is half as large.
-bool SurfaceProbe::is_cell_near(const Grid& grid, double i, double j) {
+/// Every other row is looked at backwards: so each place is near the last.
+bool SurfaceProbe::is_row_near(const Rows& rows, double row) {
+  const double y = rows.height * ((row + 0.5) / rows.count);
+  const double steps = steps_for(rows.width(y), k_row_spacing, k_most_rows);
+  const bool is_back = std::fmod(row, 2) > 0;
+  for (double i = 0; i < steps; ++i) {
+    const double share = ((is_back ? steps - 1 - i : i) + 0.5) / steps;
+    if (is_marked_round(rows.first(y) + rows.width(y) * share, y)) continue;
+    if (!is_cell_near(rows, share, 0.5 / steps, y)) return false;
+  }
+  return true;
+}
+
+/// Looks at its middle, and where that is not quite near at those of its sides.
+bool SurfaceProbe::is_cell_near(const Rows& rows, double share, double half, double y) {
   const double most = bound_.distance() * bound_.distance();
   const double enough = most * k_quite_near * k_quite_near;
-  const double half = i + j + 1 < grid.steps ? 0.5 : 1.0 / 3;
-  const double x = i + half, y = j + half;
-  const double squared = squared_to_surface(grid.at(x, y), enough);
+  const auto squared_at = [&](double of_width, double up) {
+    return squared_to_surface(rows.at(rows.first(up) + rows.width(up) * of_width, up), enough);
+  };
+  const double squared = squared_at(share, y);
   if (squared <= enough) return true;
-  if (squared > most) return false;
-  const std::array<std::pair<double, double>, 4> beside = {
-      std::pair(half, 0.0), std::pair(-half, 0.0), std::pair(0.0, half), std::pair(0.0, -half)};
-  return std::all_of(beside.begin(), beside.end(), [&](const std::pair<double, double>& by) {
-    return squared_to_surface(grid.at(x + by.first, y + by.second), enough) <= most;
-  });
+  const double half_row = 0.5 * rows.height / rows.count;
+  return squared <= most && squared_at(share - half, y) <= most &&
+         squared_at(share + half, y) <= most && squared_at(share, y - half_row) <= most &&
+         squared_at(share, y + half_row) <= most;
 }
 
 }  // namespace meshfarm

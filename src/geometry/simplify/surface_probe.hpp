@@ -29,24 +29,33 @@ class SurfaceProbe {
   bool is_inside_near(const std::array<Vec3, 3>& triangle, std::span<const Vec3> feet);
 
  private:
-  /// Divides the first two sides of a triangle.
-  struct Grid {
-    Vec3 origin, along, across;
-    double steps = 0;
-    Vec3 at(double i, double j) const {
-      return origin + along * (i / steps) + across * (j / steps);
-    }
+  /// Divides a triangle into rows along its longest side.
+  struct Rows {
+    Vec3 origin, along, up;       // of length 1, at right angles
+    double base = 0, height = 0;  // of the triangle
+    double apex = 0;              // where along the base it is highest
+    double count = 0;             // of the rows
+    double first(double y) const { return apex * (y / height); }
+    double width(double y) const { return base * (1 - y / height); }
+    Vec3 at(double x, double y) const { return origin + along * x + up * y; }
   };
 
-  double steps_for(double length, double spacing, double least) const;
+  static Rows rows_of(const std::array<Vec3, 3>& triangle);
+  double steps_for(double length, double spacing, double most) const;
   double squared_to_surface(Vec3 point, double enough);
-  void mark_cells(const Grid& grid, std::span<const Vec3> feet);
-  bool is_marked_round(std::size_t cell, std::size_t i, std::size_t j, std::size_t steps) const;
-  bool is_cell_near(const Grid& grid, double i, double j);
+  void mark_cells(const Rows& rows, std::span<const Vec3> feet);
+  std::size_t cell_of(double x, double y) const {
+    return static_cast<std::size_t>(y / cell_) * columns_ + static_cast<std::size_t>(x / cell_);
+  }
+  bool is_marked_round(double x, double y) const;
+  bool is_row_near(const Rows& rows, double row);
+  bool is_cell_near(const Rows& rows, double share, double half, double y);
 
   const SurfaceBound& bound_;
-  std::vector<std::uint8_t> cells_;  // 1: a foot lies in it
-  std::uint32_t guess_ = 0;          // a triangle of the surface
+  std::vector<std::uint8_t> cells_;      // 1: a foot lies in it
+  std::size_t columns_ = 0, lines_ = 0;  // of cells
+  double cell_ = 0;                      // their size
+  std::uint32_t guess_ = 0;              // a triangle of the surface
 };
 
 }  // namespace meshfarm

@@ -141,9 +141,10 @@ TEST_CASE("locked vertices stay, and a bound on another surface is one on that")
 TEST_CASE("a surface of a bound knows how far a point is, and what stands for it") {
   const SurfaceBound bound(test::icosphere(3), {.distance = 0.1});
   std::uint32_t guess = 0;
-  CHECK(std::sqrt(bound.squared_distance_to({0, 0, 1.5}, 0, guess)) ==
-        doctest::Approx(0.5).epsilon(0.02));
-  CHECK(bound.squared_distance_to({0, 0, 1.05}, 0.01, guess) <= 0.01);
+  CHECK(std::isinf(bound.squared_distance_near({0, 0, 1.5}, 0, guess)));
+  CHECK(std::sqrt(bound.squared_distance_near({0, 0, 1.09}, 0, guess)) ==
+        doctest::Approx(0.09).epsilon(0.05));
+  CHECK(bound.squared_distance_near({0, 0, 1.05}, 0.01, guess) <= 0.01);
   CHECK(bound.points().size() >= 642);
   // Of two triangles the vertices alone tell little: points inside, and five sides.
   const SurfaceBound of_two(test::grid(1, 1), {.distance = 0.1});

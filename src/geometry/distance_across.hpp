@@ -1,0 +1,56 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cmath>
+#include <cstddef>
+
+#include <meshfarm/geometry/vec.hpp>
+
+namespace meshfarm {
+
+/// How far a point is from a triangle, and which of its sides is nearest, if the point is beyond
+/// one. Degenerate triangles are the segments or points that they are.
+struct DistanceAcross {
+  static constexpr std::size_t k_inside = 3;
+  double squared = HUGE_VAL;
+  std::size_t side = k_inside;  // 0: from the first corner to the second
+
+  bool is_inside() const { return side == k_inside; }
+
+  void offer_side(std::size_t number, Vec3 p, Vec3 from, Vec3 to) {
+    const Vec3 along = to - from, ahead = p - from;
+    const double done = dot(ahead, along), all = dot(along, along);
+    double here = 0;
+    if (!(done > 0)) {
+      here = dot(ahead, ahead);
+    } else if (done >= all) {
+      here = squared_length(p - to);
+    } else {
+      here = squared_length(ahead - along * (done / all));
+    }
+    if (!(here < squared)) return;
+    squared = here;
+    side = number;
+  }
+};
+
+inline DistanceAcross distance_across(Vec3 p, Vec3 a, Vec3 b, Vec3 c) {
+  const Vec3 ab = b - a, ac = c - a, ap = p - a;
+  const Vec3 normal = cross(ab, ac);
+  const double area = dot(normal, normal);
+  const double at_b = dot(cross(ap, ac), normal);
+  const double at_c = dot(cross(ab, ap), normal);
+  const double at_a = area - at_b - at_c;
+  if (area > 0 && at_a >= 0 && at_b >= 0 && at_c >= 0) {
+    const double height = dot(ap, normal);
+    return {height * height / area, DistanceAcross::k_inside};
+  }
+  DistanceAcross found;
+  if (!(area > 0) || at_c < 0) found.offer_side(0, p, a, b);
+  if (!(area > 0) || at_a < 0) found.offer_side(1, p, b, c);
+  if (!(area > 0) || at_b < 0) found.offer_side(2, p, c, a);
+  return found;
+}
+
+}  // namespace meshfarm
