@@ -67,8 +67,8 @@ class Assembler::Impl {
     // If another sink did the jobs, this one knows nothing of what it finished.
     if (!finished_) finish(chosen);
     Stopwatch watch;
-    write(finished_->mesh, layout_ ? &state_.baked : nullptr);
     RunSummary summary = std::move(finished_->summary);
+    write(finished_->mesh, layout_ ? &state_.baked : nullptr, summary);
     finished_.reset();
     summary.write_seconds = watch.lap();
     return summary;
@@ -119,7 +119,8 @@ class Assembler::Impl {
     finished_->summary.finish_seconds += watch.lap();
   }
 
-  /// What was too large to be finished here is written as it is read.
+  /// What was too large to be finished here is written as it is read, but for what is fitted to the
+  /// whole.
   RunSummary complete_in_pieces(const FinishedPieces& result) {
     Stopwatch watch;
     RunSummary summary = summary_of_pieces(result);
@@ -127,7 +128,13 @@ class Assembler::Impl {
     summary.error = error_of_pieces(stage_, manifest_, result, options_.threads, summary.pieces);
     summary.measure_seconds = watch.lap();
     tell("write", 0, 0);
-    write_pieces(stage_, manifest_, result, options_.output, [this] { check_stop(); });
+    const auto stop = [this] { check_stop(); };
+    if (has_attributes(manifest_)) {
+      Mesh mesh = mesh_of_pieces(stage_, result, stop);
+      write(mesh, nullptr, summary);
+    } else {
+      write_pieces(stage_, manifest_, result, options_.output, stop);
+    }
     summary.write_seconds = watch.lap();
     return summary;
   }
@@ -153,14 +160,16 @@ class Assembler::Impl {
     }
     summary.triangles = result.triangles();
     summary.vertices = result.vertices();
+    if (summary.triangles > summary.target) {
+      summary.why_not_exact = "the charts of its textures are kept, and need about so many";
+    }
     if (summary.triangles < summary.target) {
       summary.why_not_exact = "where no open border is left, triangles go in pairs";
     }
     return summary;
   }
 
-  void write(Mesh& result, const BakedTexture* baked) {
-    RunSummary& summary = finished_->summary;
+  void write(Mesh& result, const BakedTexture* baked, RunSummary& summary) {
     const ChannelFitting fitting{chosen_columns(manifest_, run_), run_.normals, options_.threads};
     const std::vector<Channel> chosen = channels_at(manifest_.channels.channels, fitting.columns);
     const std::vector<Channel> kept = kept_channels(options_.output, chosen);
@@ -178,7 +187,7 @@ class Assembler::Impl {
     if (manifest_.labels && !labels && !summary.labels_too_fine && !becomes_picture) {
       summary.channels_not_wanted.push_back(manifest_.labels->name);
     }
-    const PictureFiles pictures = make_textures(result, labels, baked);
+    const PictureFiles pictures = make_textures(result, labels, baked, summary);
     if (kept.empty()) {
       return write_mesh(options_.output, result, manifest_.positions, {}, {}, labels, pictures);
     }
@@ -194,7 +203,7 @@ class Assembler::Impl {
   }
 
   PictureFiles make_textures(Mesh& result, std::optional<LabelMeaning>& labels,
-                             const BakedTexture* baked) {
+                             const BakedTexture* baked, RunSummary& summary) {
     std::optional<MadeTexture> made;
     if (baked != nullptr) {
       tell("texture", 0, 0);
@@ -205,7 +214,7 @@ class Assembler::Impl {
     }
     ResultTextures textures =
         textures_of_result(stage_, manifest_, run_, options_.output, made, result);
-    finished_->summary.textures = textures.made;
+    summary.textures = textures.made;
     if (textures.labels) labels = std::move(textures.labels);
     return std::move(textures.pictures);
   }

@@ -247,8 +247,9 @@ Job FinishStage::split_job(const ComposedParts& parts, std::size_t number) const
       encode_parameters(SplitParameters{static_cast<std::uint32_t>(number), parts.chosen.rung,
                                         step_, parts.chosen.parts > 1, weigh_});
   job.cost = parts.triangles;
-  job.memory =
-      k_piece_process_bytes + parts.chosen.file.size + k_piece_triangle_bytes * parts.triangles;
+  job.memory = k_piece_process_bytes + parts.chosen.file.size +
+               k_piece_triangle_bytes * parts.triangles +
+               memory_of_channels(weigh_.lines, parts.triangles);
   return job;
 }
 
@@ -274,8 +275,10 @@ Job FinishStage::seam_job(std::uint32_t group, std::uint32_t groups) const {
   job.cost = triangles / groups + 1;
   const std::uint64_t pieces = made_.pieces.size();
   const std::uint64_t near = std::min(pieces, pieces / groups + 1 + k_pieces_round_group);
-  job.memory = k_piece_process_bytes +
-               (manifest_.boundary.size + k_piece_triangle_bytes * triangles) * near / pieces;
+  job.memory =
+      k_piece_process_bytes + (manifest_.boundary.size + k_piece_triangle_bytes * triangles +
+                               memory_of_channels(weigh_.lines, triangles)) *
+                                  near / pieces;
   return job;
 }
 
@@ -298,7 +301,8 @@ Job FinishStage::reduce_job(std::size_t piece, std::uint64_t quota, std::uint64_
   job.inputs = {from.divided_file};
   job.parameters = encode_parameters(parameters);
   job.cost = rungs[parameters.rung];
-  job.memory = k_piece_process_bytes + from.divided_file.size + k_piece_triangle_bytes * job.cost;
+  job.memory = k_piece_process_bytes + from.divided_file.size + k_piece_triangle_bytes * job.cost +
+               memory_of_channels(weigh_.lines, job.cost);
   return job;
 }
 

@@ -29,8 +29,7 @@ std::string why_not_farmed(const Manifest& manifest, const RunOptions& options) 
   if (options.finish == Finish::boundary) return "only edges at seams are to change";
   if (options.allocation == Allocation::uniform) return "the parts have no common threshold";
   if (manifest.scheme == Scheme::stream || manifest.sorting) return "the parts are streams";
-  if (!chosen_columns(manifest, options).empty()) return "channels are fitted to the whole result";
-  if (manifest.labels || manifest.uvs) return "lines between labels or charts may cross pieces";
+  if (bakes_texture(manifest, options)) return "a new texture is laid out on the whole result";
   return {};
 }
 
@@ -43,6 +42,10 @@ std::string why_finish_here(const Manifest& manifest, const RunOptions& options)
   const auto need = sink_need(manifest, options);
   if (need && need->triangles > k_comfortable) return {};
   return "the sink holds it well";
+}
+
+bool has_attributes(const Manifest& manifest) {
+  return !manifest.channels.channels.empty() || manifest.labels || manifest.uvs;
 }
 
 std::vector<std::size_t> FinishedPieces::near(std::size_t piece) const {

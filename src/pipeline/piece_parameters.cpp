@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
 //
-// Parameters and summaries of the jobs of a farmed finish, version 3, little endian:
+// Parameters and summaries of the jobs of a farmed finish, version 4, little endian:
 //   weigh      = cost unit f64 | first step i32 | last share f64 | kept share f64 | lines
 //   split      = version u8 | piece u32 | rung u32 | step i32 | is composed u8 | weigh
 //   seam       = version u8 | strips u32 x (parts u32 | ref) | group u32 | groups u32 |
@@ -21,7 +21,7 @@
 //                the file of a measure job
 //
 // In version 1 parts were always kept, and a piece was measured by one job. In version 2 the
-// surroundings of the seams were one piece.
+// surroundings of the seams were one piece. In version 3 triangles of gaps had no columns.
 #include <cmath>
 
 #include <meshfarm/pipeline/piece_jobs.hpp>
@@ -34,7 +34,7 @@
 namespace meshfarm {
 namespace {
 
-constexpr std::uint8_t k_piece_version = 3;
+constexpr std::uint8_t k_piece_version = 4;
 constexpr double k_most_piece_samples = 1000;  // a triangle
 
 void begin_parameters(ByteWriter& out) {

@@ -2,7 +2,8 @@
 // SPDX-License-Identifier: MIT
 //
 // Sections of the files of a farmed finish, little endian; counts are u32:
-//   gap     = positions x 3 x f64 | triangles x 3 x u32 | vertices x (piece u32 | vertex u32)
+//   gap     = surface | vertices x (piece u32 | vertex u32) | labels x u32 |
+//             texture coordinates x 6 x f32: of each triangle, or none
 //   strip   = result, a string | shared x u32
 //   samples = sets x (area f64 | points x 3 x f64)
 //   surface = positions x 3 x f64 | triangles x 3 x u32;  points = points x 3 x f64
@@ -38,6 +39,10 @@ std::int32_t step_of(double cost, double unit) {
   return step;
 }
 
+ResultWriter::Vertices vertices_of(const Mesh& mesh, std::uint32_t locked, PositionType positions) {
+  return {positions, !mesh.appearances.empty(), locked, mesh.columns.set()};
+}
+
 class Weighing {
  public:
   Weighing(Mesh mesh, std::uint32_t locked, PositionType positions,
@@ -48,7 +53,7 @@ class Weighing {
         before_(mesh.triangles.size()),
         simplifier_(std::move(mesh),
                     {.locked_vertices = locked, .positions = positions, .lines = parameters.lines}),
-        ladder_({positions, false, locked, {}},
+        ladder_(vertices_of(simplifier_.mesh(), locked, positions),
                 [this](std::string_view bytes) { made_.ladder += bytes; }) {}
 
   WeighedMesh run() {
@@ -125,12 +130,20 @@ void put_surface(ByteWriter& out, const std::vector<Vec3>& positions,
   put_list(out, triangles);
 }
 
+bool names_others(const std::vector<Triangle>& triangles, std::size_t vertices) {
+  return std::any_of(triangles.begin(), triangles.end(), [vertices](const Triangle& t) {
+    return *std::max_element(t.begin(), t.end()) >= vertices;
+  });
+}
+
 }  // namespace
 
 std::string encode_gap(const PieceGap& gap) {
   ByteWriter out;
   put_surface(out, gap.positions, gap.triangles);
   put_list(out, gap.vertices);
+  put_list(out, gap.columns.labels);
+  put_list(out, gap.columns.uvs);
   return out.take();
 }
 
@@ -141,6 +154,10 @@ PieceGap decode_gap(std::string_view bytes, std::string_view what) {
   gap.triangles = get_list<Triangle>(in);
   gap.vertices = get_list<SeamVertex>(in);
   if (gap.vertices.size() != gap.positions.size()) in.fail("not each position is of a vertex");
+  gap.columns.labels = get_list<Label>(in);
+  gap.columns.uvs = get_list<CornerUvs>(in);
+  const TriangleColumnsView columns = gap.columns;
+  if (!columns.fits(columns.set(), gap.triangles.size())) in.fail("columns of other triangles");
   in.expect_end();
   return gap;
 }
@@ -220,11 +237,8 @@ Mesh decode_surface(std::string_view bytes, std::string_view what) {
   surface.positions = get_list<Vec3>(in);
   surface.triangles = get_list<Triangle>(in);
   in.expect_end();
-  const std::size_t vertices = surface.positions.size();
-  for (const Triangle& t : surface.triangles) {
-    if (*std::max_element(t.begin(), t.end()) >= vertices) {
-      throw DataError(std::string(what) + ": a triangle names a vertex that is not there");
-    }
+  if (names_others(surface.triangles, surface.positions.size())) {
+    in.fail("a triangle names a vertex that is not there");
   }
   return surface;
 }
@@ -261,7 +275,7 @@ std::string read_section(const JobContext& context, const SectionRef& ref) {
 
 std::string encode_piece(const Mesh& mesh, std::uint32_t locked, PositionType positions) {
   std::string file;
-  ResultWriter result({positions, false, locked, {}},
+  ResultWriter result(vertices_of(mesh, locked, positions),
                       [&](std::string_view bytes) { file += bytes; });
   result.add_rung(0, mesh, 0);
   result.finish(VertexView(mesh).part(0, locked), {});

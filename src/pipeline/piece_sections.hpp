@@ -23,6 +23,7 @@ struct PieceGap {
   std::vector<Vec3> positions;
   std::vector<SeamVertex> vertices;  // which they are
   std::vector<Triangle> triangles;
+  TriangleColumns columns;  // of these
 };
 std::string encode_gap(const PieceGap& gap);
 PieceGap decode_gap(std::string_view bytes, std::string_view what);

@@ -40,13 +40,26 @@ class PiecesWriter {
     std::sort(shared_.begin(), shared_.end());
   }
 
+  void write(const std::function<void()>& check_stop) {
+    for (std::size_t i = 0; i < result_.pieces.size(); ++i) {
+      check_stop();
+      vertices(i);
+    }
+    for (std::size_t i = 0; i < result_.pieces.size(); ++i) {
+      check_stop();
+      triangles(i);
+    }
+  }
+
+ private:
   void vertices(std::size_t piece) { sink_.vertices(mesh_of(piece).mesh.positions); }
 
   /// The mesh, then the gap to the surroundings, or to other groups of them.
   void triangles(std::size_t i) {
     const PieceOfResult& piece = result_.pieces[i];
     const ResultMesh mesh = mesh_of(i);
-    put(mesh.mesh.triangles, [&](std::uint32_t v) { return first_vertex_[i] + v; });
+    put(mesh.mesh.triangles, mesh.mesh.columns,
+        [&](std::uint32_t v) { return first_vertex_[i] + v; });
     const std::uint32_t locked = mesh.boundary_vertices;
     PieceGap gap =
         decode_gap(read_of(stage_, piece.divided_file, piece.divided.gap), piece.divided_file.name);
@@ -54,12 +67,12 @@ class PiecesWriter {
       throw DataError(piece.divided_file.name + ": has other triangles than its summary says");
     }
     gap.triangles.resize(piece.divided.gap_triangles);
-    put(gap.triangles, [&](std::uint32_t v) {
+    gap.columns.resize(piece.divided.gap_triangles);
+    put(gap.triangles, gap.columns, [&](std::uint32_t v) {
       return v < locked ? first_vertex_[i] + v : place_of(gap, v - locked, piece.divided_file.name);
     });
   }
 
- private:
   /// A vertex that groups share, and which it is of the result.
   using SharedPlace = std::pair<SeamVertex, std::uint64_t>;
 
@@ -91,7 +104,8 @@ class PiecesWriter {
   }
 
   template <class Number>
-  void put(const std::vector<Triangle>& triangles, const Number& number) {
+  void put(const std::vector<Triangle>& triangles, const TriangleColumnsView& columns,
+           const Number& number) {
     constexpr std::size_t k_put_at_once = 65'536;
     std::vector<WideTriangle> wide;
     for (std::size_t first = 0; first < triangles.size(); first += k_put_at_once) {
@@ -101,7 +115,7 @@ class PiecesWriter {
         const auto& [a, b, c] = triangles[i];
         wide.push_back({number(a), number(b), number(c)});
       }
-      sink_.triangles(TriangleView{wide, {}});
+      sink_.triangles(TriangleView{wide, columns.part(first, end - first)});
     }
   }
 
@@ -110,6 +124,37 @@ class PiecesWriter {
   MeshSink& sink_;
   std::vector<std::uint64_t> first_vertex_;
   std::vector<SharedPlace> shared_;  // ascending
+};
+
+/// Takes all into memory.
+class MeshInMemory : public MeshSink {
+ public:
+  void vertices(std::span<const Vec3> batch) override {
+    mesh_.positions.insert(mesh_.positions.end(), batch.begin(), batch.end());
+  }
+  void vertices(std::span<const Vec3> batch, std::span<const float> /*values*/) override {
+    vertices(batch);
+  }
+  void triangles(const TriangleView& batch) override {
+    for (const auto& [a, b, c] : batch.corners) {
+      mesh_.triangles.push_back({static_cast<std::uint32_t>(a), static_cast<std::uint32_t>(b),
+                                 static_cast<std::uint32_t>(c)});
+    }
+    mesh_.columns.append(batch.columns);
+  }
+  void triangles(std::span<const Triangle> batch, const TriangleColumnsView& columns) override {
+    mesh_.triangles.insert(mesh_.triangles.end(), batch.begin(), batch.end());
+    mesh_.columns.append(columns);
+  }
+  void commit() override {}
+  void reserve(const FinishedPieces& result) {
+    mesh_.positions.reserve(result.vertices());
+    mesh_.triangles.reserve(result.triangles());
+  }
+  Mesh take() { return std::move(mesh_); }
+
+ private:
+  Mesh mesh_;
 };
 
 /// `lists`: of the points of these pieces.
@@ -226,16 +271,21 @@ void write_pieces(const Stage& stage, const Manifest& manifest, const FinishedPi
                                          .positions = manifest.positions,
                                          .comment = {},
                                          .packing = output.packing});
-  PiecesWriter writer(stage, result, *sink);
-  for (std::size_t i = 0; i < result.pieces.size(); ++i) {
-    check_stop();
-    writer.vertices(i);
-  }
-  for (std::size_t i = 0; i < result.pieces.size(); ++i) {
-    check_stop();
-    writer.triangles(i);
-  }
+  PiecesWriter(stage, result, *sink).write(check_stop);
   sink->commit();
+}
+
+Mesh mesh_of_pieces(const Stage& stage, const FinishedPieces& result,
+                    const std::function<void()>& check_stop) {
+  if (result.vertices() > UINT32_MAX) {
+    throw DataError("a result of " + std::to_string(result.vertices()) +
+                    " vertices is too large for its colours or textures: ask for fewer triangles, "
+                    "or leave them out with --attributes none");
+  }
+  MeshInMemory mesh;
+  mesh.reserve(result);
+  PiecesWriter(stage, result, mesh).write(check_stop);
+  return mesh.take();
 }
 
 MeasuredError error_of_pieces(const Stage& stage, const Manifest& manifest,

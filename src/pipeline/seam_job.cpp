@@ -46,26 +46,30 @@ class SeamTriangles {
     return piece_of_part_[corner.part];
   }
 
-  std::vector<BoundaryTriangle> at(const std::vector<std::uint8_t>& pieces) const {
+  struct Some {
+    std::vector<BoundaryTriangle> triangles;
+    TriangleColumns columns;
+  };
+  Some at(const std::vector<std::uint8_t>& pieces) const {
     std::set<std::uint32_t> touched;
     for (std::size_t piece = 0; piece < pieces.size(); ++piece) {
       if (pieces[piece] == 0) continue;
       const std::vector<std::uint32_t> more = Regions(regions_.parts()).touched_by({parts_[piece]});
       touched.insert(more.begin(), more.end());
     }
-    std::vector<BoundaryTriangle> triangles;
-    TriangleColumns columns;
-    for (const std::uint32_t region : touched) regions_.read(region, triangles, columns);
-    std::erase_if(triangles, [&](const BoundaryTriangle& t) {
-      return std::none_of(t.begin(), t.end(),
-                          [&](const BoundaryCorner& c) { return pieces[piece_of(c)] != 0; });
+    Some some;
+    for (const std::uint32_t region : touched) regions_.read(region, some.triangles, some.columns);
+    keep_triangles(some.triangles, some.columns, [&](std::size_t i) {
+      const BoundaryTriangle& t = some.triangles[i];
+      return std::any_of(t.begin(), t.end(),
+                         [&](const BoundaryCorner& c) { return pieces[piece_of(c)] != 0; });
     });
-    return triangles;
+    return some;
   }
 
   /// The pieces, and those that share a boundary triangle with one of them.
   std::vector<std::uint8_t> with_neighbours(std::vector<std::uint8_t> pieces) const {
-    for (const BoundaryTriangle& t : at(pieces)) {
+    for (const BoundaryTriangle& t : at(pieces).triangles) {
       for (const BoundaryCorner& corner : t) pieces[piece_of(corner)] = 1;
     }
     return pieces;
@@ -125,7 +129,7 @@ class JoinedStrips {
   }
 
   void stitch(const JobContext& context, const std::vector<std::uint8_t>& near,
-              const std::vector<BoundaryTriangle>& seams) {
+              SeamTriangles::Some seams) {
     Stitcher stitcher(parameters_.all_parts);
     Strip next;
     for (std::size_t i = 0; i < near.size(); ++i) {
@@ -144,7 +148,8 @@ class JoinedStrips {
       next.first_triangle += static_cast<std::uint32_t>(strip.mesh.mesh.triangles.size());
       strips_.back().end_triangle = next.first_triangle;
     }
-    stitched_ = stitcher.finish(seams);
+    seams.columns.keep(parameters_.weigh.lines.columns);
+    stitched_ = stitcher.finish(seams.triangles, seams.columns);
   }
 
   /// A corner of triangles of several groups is of the first of them.
@@ -210,9 +215,11 @@ class GroupMaker {
       if (number_[v] == k_left_out && strips_.is_ours(v)) number_[v] = count++;
     }
     place_vertices(VertexView(strips_.mesh()), number_, count, made_.mesh);
-    made_.mesh.appearances = {};
-    for (const Triangle& t : strips_.mesh().triangles) {
-      if (ours_of(t) == 3) made_.mesh.triangles.push_back(t);
+    const Mesh& all = strips_.mesh();
+    for (std::size_t i = 0; i < all.triangles.size(); ++i) {
+      if (ours_of(all.triangles[i]) != 3) continue;
+      made_.mesh.triangles.push_back(all.triangles[i]);
+      made_.mesh.columns.append(all.columns, i);
     }
     renumber_corners(made_.mesh.triangles, number_);
     make_gap();
@@ -263,9 +270,13 @@ class GroupMaker {
         added[k] = at;
       }
     };
+    const Mesh& all = strips_.mesh();
     for (const bool wanted : {true, false}) {
-      for (const Triangle& t : strips_.mesh().triangles) {
-        if (is_between_groups(t) && strips_.is_ours(t[0]) == wanted) add(t);
+      for (std::size_t i = 0; i < all.triangles.size(); ++i) {
+        const Triangle& t = all.triangles[i];
+        if (!is_between_groups(t) || strips_.is_ours(t[0]) != wanted) continue;
+        add(t);
+        made_.gap.columns.append(all.columns, i);
       }
       if (wanted) made_.gap_triangles = made_.gap.triangles.size();
     }

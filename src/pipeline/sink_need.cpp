@@ -36,6 +36,16 @@ std::uint64_t bytes_of_bake(const RunOptions& options, double triangles) {
                                     k_bytes_per_texel * side * side);
 }
 
+/// Of a finish in pieces, which holds the result while attributes are fitted to it.
+SinkNeed need_of_pieces(const Manifest& manifest, const RunOptions& options) {
+  constexpr std::uint64_t k_held_bytes = 90;
+  constexpr std::uint64_t k_bytes_of_channel = 40;
+  const std::uint64_t triangles =
+      std::min(manifest.triangles(), target_triangles(manifest, options));
+  const std::uint64_t channels = chosen_columns(manifest, options).size();
+  return {triangles, k_process_bytes + (k_held_bytes + k_bytes_of_channel * channels) * triangles};
+}
+
 }  // namespace
 
 std::optional<SinkNeed> sink_need(const Manifest& manifest, const RunOptions& options) {
@@ -55,8 +65,12 @@ std::optional<SinkNeed> sink_need(const Manifest& manifest, const RunOptions& op
 
 std::string check_sink_need(const Manifest& manifest, const RunOptions& options,
                             std::optional<std::uint64_t> free_bytes) {
-  const auto need = sink_need(manifest, options);
-  if (!need || why_finish_here(manifest, options).empty()) return {};
+  auto need = sink_need(manifest, options);
+  if (!need) return {};
+  if (why_finish_here(manifest, options).empty()) {
+    if (!has_attributes(manifest)) return {};
+    need = need_of_pieces(manifest, options);
+  }
   // No less than the target is stitched, whatever the levels are.
   const std::uint64_t least = std::min(manifest.triangles(), target_triangles(manifest, options));
   if (least > k_most_triangles) {

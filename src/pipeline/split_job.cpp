@@ -57,9 +57,11 @@ class Numbers {
   Mesh place(const Mesh& from) const {
     Mesh mesh;
     place_vertices(VertexView(from), of_, count_, mesh);
-    for (const auto& [a, b, c] : from.triangles) {
+    for (std::size_t i = 0; i < from.triangles.size(); ++i) {
+      const auto& [a, b, c] = from.triangles[i];
       if (of_[a] != k_left_out && of_[b] != k_left_out && of_[c] != k_left_out) {
         mesh.triangles.push_back({of_[a], of_[b], of_[c]});
+        mesh.columns.append(from.columns, i);
       }
     }
     return mesh;
@@ -102,10 +104,12 @@ SplitMesh split(const ResultMesh& piece, std::uint32_t piece_number) {
     made.gap.vertices.push_back({piece_number, strip[v]});
     made.gap.positions.push_back(mesh.positions[v]);
   }
-  for (const auto& [a, b, c] : mesh.triangles) {
+  for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
+    const auto& [a, b, c] = mesh.triangles[i];
     const int in_strip = sides.strip[a] + sides.strip[b] + sides.strip[c];
     if (in_strip == 1 || in_strip == 2) {
       made.gap.triangles.push_back({place[a], place[b], place[c]});
+      made.gap.columns.append(mesh.columns, i);
     }
   }
   return made;
@@ -141,8 +145,9 @@ JobOutput split_piece(const Job& job, const JobContext& context) {
   const FileRef& input = job.inputs[0];
   const std::string composed = context.read(input);
   ResultMesh piece = decode_result(composed, parameters.rung, input.name);
-  piece.mesh.appearances = {};
-  piece.mesh.columns = {};
+  const LineOptions& lines = parameters.weigh.lines;
+  if (!(lines.appearance_scale.length > 0)) piece.mesh.appearances = {};
+  piece.mesh.columns.keep(lines.columns);
   DividedPiece made;
   for (const Vec3& v : piece.mesh.positions) made.box.add(v);
   approach(parameters, context, piece, made);

@@ -148,6 +148,24 @@ TEST_CASE("a coloured scan comes back coloured, the same from any number of work
   CHECK(bench.simplify("in.ply", "1.ply", {"--weight", "colour=-1"}).code == 2);
 }
 
+TEST_CASE("a finish in pieces keeps colours and normals as the sink's does") {
+  Bench bench;
+  const Ran here = bench.simplify("in.ply", "here.ply", {"--finish", "here"});
+  REQUIRE(here.code == 0);
+  for (const std::string workers : {"1", "2", "5"}) {
+    const Ran ran =
+        bench.simplify("in.ply", workers + ".ply",
+                       {"--finish", "farm", "--composition", "sink", "--workers", workers});
+    REQUIRE(ran.code == 0);
+    CHECK(has(ran.out, "finish           by jobs, in 7 pieces"));
+    CHECK(has(ran.out, " 4,096 triangles"));
+    CHECK(red_error(ran) < 1.1 * red_error(here));
+    check_values(bench.path(workers + ".ply"));
+  }
+  CHECK(read_text(bench.path("1.ply")) == read_text(bench.path("2.ply")));
+  CHECK(read_text(bench.path("1.ply")) == read_text(bench.path("5.ply")));
+}
+
 TEST_CASE("a picture on a flat wall stays") {
   Bench bench;
   Mesh wall = test::grid(240, 160);

@@ -127,6 +127,18 @@ void check_slices(const std::string& path, const std::vector<Material>& material
 
 }  // namespace
 
+TEST_CASE("a finish in pieces keeps materials and their lines, which cross the pieces") {
+  Bench bench;
+  for (const std::string workers : {"1", "3"}) {
+    const Ran ran = bench.simplify(
+        workers + "/o.obj", {"--finish", "farm", "--composition", "sink", "--workers", workers});
+    REQUIRE(ran.code == 0);
+    CHECK(has(ran.out, "finish           by jobs, in 7 pieces"));
+    check_slices(bench.path(workers + "/o.obj"), materials_of(bench.path(workers + "/o.obj")));
+  }
+  CHECK(read_text(bench.path("1/o.obj")) == read_text(bench.path("3/o.obj")));
+}
+
 TEST_CASE("materials come back with their lines, the same from any number of workers") {
   Bench bench;
   for (const std::string scheme : {"cut", "stream"}) {

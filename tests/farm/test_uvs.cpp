@@ -207,6 +207,25 @@ TEST_CASE("textures are kept, the same from any number of workers") {
   }
 }
 
+TEST_CASE("a finish in pieces keeps textures, whose charts cross the pieces") {
+  Bench bench;
+  for (const std::string workers : {"1", "3"}) {
+    const Ran ran = bench.simplify(
+        workers + "/pieces.obj",
+        {"--ratio", "0.3", "--finish", "farm", "--composition", "sink", "--workers", workers});
+    REQUIRE(ran.code == 0);
+    CHECK(has(ran.out, "finish           by jobs, in 6 pieces"));
+    CHECK(has(ran.out, "textures         kept: 1 picture"));
+    CHECK(has(ran.out, " 4,320 triangles"));
+  }
+  CHECK(bench.bytes_of("1/pieces.obj") == bench.bytes_of("3/pieces.obj"));
+  check_kept(bench.path("1/pieces.obj"));
+  CHECK(psnr_of(read_textured(bench.path("1/pieces.obj"))) > 28);
+  const Ran baked = bench.simplify("b.obj", {"--ratio", "0.3", "--finish", "farm", "--uv", "bake"});
+  CHECK(baked.code == 0);
+  CHECK(has(baked.out, "by the sink: a new texture is laid out on the whole result"));
+}
+
 TEST_CASE("textures are kept by all formats that have a place for them") {
   Bench bench;
   REQUIRE(bench({"cut", bench.path("in.obj"), "--stage", bench.path("s")}).code == 0);

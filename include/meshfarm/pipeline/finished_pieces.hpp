@@ -16,6 +16,9 @@ namespace meshfarm {
 /// does it well. Empty: its finish is made of jobs.
 std::string why_finish_here(const Manifest& manifest, const RunOptions& options);
 
+/// Whether there is more of the input than its shape.
+bool has_attributes(const Manifest& manifest);
+
 /// A piece of a result that is finished.
 struct PieceOfResult {
   std::uint32_t first_part = 0;

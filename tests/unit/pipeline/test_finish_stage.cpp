@@ -243,6 +243,28 @@ TEST_CASE("open borders and creases across pieces stay where they are to") {
   CHECK(lying_across("here.ply") == 0);
 }
 
+TEST_CASE("triangles keep their labels, whose lines cross pieces") {
+  Mesh mesh = waves(90);
+  for (const Triangle& t : mesh.triangles) {
+    double y = 0;
+    for (const std::uint32_t v : t) y += mesh.positions[v].y / 3;
+    mesh.columns.labels.push_back(y < 45 ? 3 : 5);
+  }
+  FinishBench bench(mesh, 5);
+  const RunSummary made = bench.run(FinishBench::farmed(4'000), "farm.ply");
+  CHECK(made.finished_in_pieces == 6);
+  CHECK(made.triangles == 4'000);
+  CHECK(made.labels->name == "region");
+  const Mesh result = bench.mesh("farm.ply");
+  REQUIRE(result.columns.labels.size() == 4'000);
+  for (std::size_t i = 0; i < result.triangles.size(); ++i) {
+    double y = 0;
+    for (const std::uint32_t v : result.triangles[i]) y += result.positions[v].y / 3;
+    if (std::abs(y - 45) > 0.01) CHECK(result.columns.labels[i] == (y < 45 ? 3U : 5U));
+  }
+  check_clean(measure_topology(result));
+}
+
 TEST_CASE("what pieces have no way for is the sink's, and it says why") {
   FinishBench bench(waves(60), 4);
   RunOptions options = FinishBench::farmed(2'000);
