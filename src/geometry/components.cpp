@@ -74,6 +74,18 @@ DroppedComponents drop_small_components(Mesh& mesh, double diagonal) {
   return dropped;
 }
 
+std::vector<std::uint32_t> lowest_connected(std::size_t vertices,
+                                            std::span<const Triangle> triangles) {
+  UnionFind pieces(vertices);
+  for (const Triangle& t : triangles) {
+    pieces.join(t[0], t[1]);
+    pieces.join(t[1], t[2]);
+  }
+  std::vector<std::uint32_t> lowest(vertices);
+  for (std::uint32_t v = 0; v < vertices; ++v) lowest[v] = pieces.find(v);
+  return lowest;
+}
+
 GoneComponents find_gone_components(const Mesh& before, const Mesh& after, unsigned threads) {
   UnionFind pieces = components_of(before);
   std::vector<double> areas(before.positions.size(), -1);  // of those that are not found again

@@ -158,6 +158,7 @@ class Assembler::Impl {
       summary.turned += each.divided.turned;
       summary.stitched += each.divided.weight.before + each.divided.gap_triangles;
     }
+    summary.dropped_components = result.dropped_components;
     summary.triangles = result.triangles();
     summary.vertices = result.vertices();
     if (summary.triangles > summary.target) {

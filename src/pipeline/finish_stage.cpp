@@ -37,6 +37,8 @@ constexpr std::uint64_t k_built_triangle_bytes = 120;
 /// A seam job is for so many triangles round the seams, and has those of so many pieces more.
 constexpr std::uint64_t k_seam_triangles = 24'000;
 constexpr std::uint64_t k_pieces_round_group = 20;
+/// Of the triangles between parts: the file, and what is made of it.
+constexpr std::uint64_t k_boundary_copies = 6;
 /// Of the input, by one job, at least.
 constexpr std::uint64_t k_measured_at_once = 200'000;
 /// To read the result that is measured, and to arrange its points, is worth so many triangles.
@@ -83,7 +85,27 @@ void FinishStage::begin(JobGraph& graph, const FinishGoal& goal,
   weigh_.lines = lines_of(manifest_, options_);
   weigh_.lines.topology = goal.topology;
   parts_ = parts;
-  divide(graph);
+  options_.drop_components.in(manifest_.box) > 0 ? find_components(graph) : divide(graph);
+}
+
+void FinishStage::find_components(JobGraph& graph) {
+  const JobName name = job_name(RunStage::components, 0);
+  Job job = components_job();
+  if (job.parameters.size() > k_max_parameters_bytes) {
+    return done_(graph, std::nullopt, "there are more pieces than a job can name");
+  }
+  graph.add(name, std::move(job));
+  graph.then({just(name)}, [this, name](JobGraph& so_far) {
+    const JobOutput& output = so_far.output(name);
+    const SmallComponents found =
+        decode_small_components(output.summary, "summary of " + output.file.name);
+    if (found.pieces.size() != parts_.size()) {
+      throw DataError(output.file.name + ": is of other pieces");
+    }
+    made_.dropped_components = found.dropped;
+    for (const FileSection& each : found.pieces) small_components_.push_back({output.file, each});
+    divide(so_far);
+  });
 }
 
 void FinishStage::divide(JobGraph& graph) {
@@ -239,13 +261,33 @@ std::vector<PartRange> FinishStage::ranges_of(const PieceOfResult& piece) const 
   return ranges;
 }
 
+Job FinishStage::components_job() const {
+  ComponentsParameters parameters;
+  Job job;
+  job.kind = k_components_kind;
+  std::uint64_t most = 0;
+  for (const ComposedParts& each : parts_) {
+    parameters.pieces.push_back({each.chosen.parts, each.chosen.rung, each.chosen.file});
+    most = std::max(most, each.chosen.file.size + k_piece_triangle_bytes * each.triangles +
+                              memory_of_channels(weigh_.lines, each.triangles));
+    job.cost += each.triangles;
+    job.reads += each.chosen.file.size;
+  }
+  parameters.all_parts = static_cast<std::uint32_t>(manifest_.parts.size());
+  parameters.boundary = manifest_.boundary;
+  parameters.diagonal = options_.drop_components.in(manifest_.box);
+  job.parameters = encode_parameters(parameters);
+  job.memory = k_piece_process_bytes + most + k_boundary_copies * manifest_.boundary.size;
+  return job;
+}
+
 Job FinishStage::split_job(const ComposedParts& parts, std::size_t number) const {
   Job job;
   job.kind = k_split_kind;
   job.inputs = {parts.chosen.file};
-  job.parameters =
-      encode_parameters(SplitParameters{static_cast<std::uint32_t>(number), parts.chosen.rung,
-                                        step_, parts.chosen.parts > 1, weigh_});
+  job.parameters = encode_parameters(SplitParameters{
+      static_cast<std::uint32_t>(number), parts.chosen.rung, step_, parts.chosen.parts > 1,
+      small_components_.empty() ? SectionRef{} : small_components_[number], weigh_});
   job.cost = parts.triangles;
   job.memory = k_piece_process_bytes + parts.chosen.file.size +
                k_piece_triangle_bytes * parts.triangles +

@@ -53,6 +53,8 @@ class FinishStage {
 
  private:
   Job split_job(const ComposedParts& parts, std::size_t number) const;
+  void find_components(JobGraph& graph);
+  Job components_job() const;
   Job seam_job(std::uint32_t group, std::uint32_t groups) const;
   Job reduce_job(std::size_t piece, std::uint64_t quota, std::uint64_t all) const;
   Job measure_job(std::size_t number, const std::vector<PartRange>& ranges,
@@ -72,6 +74,7 @@ class FinishStage {
   const RunOptions& options_;
   Done done_;
   std::vector<ComposedParts> parts_;
+  std::vector<SectionRef> small_components_;  // of each piece; none if they are not to be left out
   std::size_t turns_ = 0;
   std::size_t seam_jobs_ = 0;  // of all turns
   std::int32_t step_ = -1;

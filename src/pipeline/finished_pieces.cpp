@@ -25,7 +25,6 @@ bool touch(const Box& a, const Box& b) {
 
 std::string why_not_farmed(const Manifest& manifest, const RunOptions& options) {
   if (options.error.value > 0) return "a bound on the error is kept across the seams at once";
-  if (options.drop_components.value > 0) return "small components may span pieces";
   if (options.finish == Finish::boundary) return "only edges at seams are to change";
   if (options.allocation == Allocation::uniform) return "the parts have no common threshold";
   if (manifest.scheme == Scheme::stream || manifest.sorting) return "the parts are streams";

@@ -35,6 +35,7 @@ constexpr std::pair<std::string_view, JobPointer> k_table[] = {
     {k_vertices_kind, scatter_vertices_of_block},
     {k_triangles_kind, scatter_triangles_of_block},
     {k_join_kind, join_boundary_of_parts},
+    {k_components_kind, find_small_components},
     {k_split_kind, split_piece},
     {k_seam_kind, join_seams},
     {k_reduce_kind, reduce_piece},
@@ -78,6 +79,8 @@ void check_output(std::string_view kind, const JobOutput& output) {
     decode_finish_summary(output.summary, what);
   } else if (kind == k_tile_kind) {
     decode_tile_summary(output.summary, what);
+  } else if (kind == k_components_kind) {
+    decode_small_components(output.summary, what);
   } else if (kind == k_split_kind || kind == k_seam_kind) {
     decode_divided_piece(output.summary, what);
   } else if (kind == k_reduce_kind) {

@@ -4,10 +4,10 @@
 // Sections of the files of a farmed finish, little endian; counts are u32:
 //   gap     = surface | vertices x (piece u32 | vertex u32) | labels x u32 |
 //             texture coordinates x 6 x f32: of each triangle, or none
-//   strip   = result, a string | shared x u32
+//   strip   = result, a string | shared x u32 | dropped x u32
 //   samples = sets x (area f64 | points x 3 x f64)
 //   surface = positions x 3 x f64 | triangles x 3 x u32;  points = points x 3 x f64
-//   shared  = vertices x (piece u32 | vertex u32)
+//   shared  = vertices x (piece u32 | vertex u32);  vertices = vertices x u32
 // A piece's mesh is a result (result_file.cpp).
 #include "pipeline/piece_sections.hpp"
 
@@ -166,6 +166,7 @@ std::string encode_strip(const PieceStrip& strip) {
   ByteWriter out;
   out.put_string(encode_piece(strip.mesh.mesh, strip.mesh.boundary_vertices, strip.mesh.positions));
   put_list(out, strip.shared);
+  put_list(out, strip.dropped);
   return out.take();
 }
 
@@ -174,8 +175,11 @@ PieceStrip decode_strip(std::string_view bytes, std::string_view what) {
   PieceStrip strip;
   strip.mesh = decode_result(in.get_string(), 0, what);
   strip.shared = get_list<std::uint32_t>(in);
+  strip.dropped = get_list<std::uint32_t>(in);
   const auto is_none = [&](std::uint32_t v) { return v >= strip.mesh.mesh.positions.size(); };
-  if (std::any_of(strip.shared.begin(), strip.shared.end(), is_none)) in.fail("no such vertex");
+  for (const auto* list : {&strip.shared, &strip.dropped}) {
+    if (std::any_of(list->begin(), list->end(), is_none)) in.fail("no such vertex");
+  }
   in.expect_end();
   return strip;
 }
@@ -252,6 +256,19 @@ std::string encode_shared(const std::vector<SeamVertex>& vertices) {
 std::vector<SeamVertex> decode_shared(std::string_view bytes, std::string_view what) {
   ByteReader in(bytes, what);
   std::vector<SeamVertex> vertices = get_list<SeamVertex>(in);
+  in.expect_end();
+  return vertices;
+}
+
+std::string encode_vertices(const std::vector<std::uint32_t>& vertices) {
+  ByteWriter out;
+  put_list(out, vertices);
+  return out.take();
+}
+
+std::vector<std::uint32_t> decode_vertices(std::string_view bytes, std::string_view what) {
+  ByteReader in(bytes, what);
+  std::vector<std::uint32_t> vertices = get_list<std::uint32_t>(in);
   in.expect_end();
   return vertices;
 }

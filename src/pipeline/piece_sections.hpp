@@ -32,6 +32,8 @@ PieceGap decode_gap(std::string_view bytes, std::string_view what);
 struct PieceStrip {
   ResultMesh mesh;                    // its boundary vertices are the piece's
   std::vector<std::uint32_t> shared;  // vertices that are the gap's, in its order
+  /// Boundary vertices of components that are left out, rising.
+  std::vector<std::uint32_t> dropped;
 };
 std::string encode_strip(const PieceStrip& strip);
 PieceStrip decode_strip(std::string_view bytes, std::string_view what);
@@ -49,6 +51,8 @@ Mesh decode_surface(std::string_view bytes, std::string_view what);
 /// What a group shares: its mesh's first vertices, in order.
 std::string encode_shared(const std::vector<SeamVertex>& vertices);
 std::vector<SeamVertex> decode_shared(std::string_view bytes, std::string_view what);
+std::string encode_vertices(const std::vector<std::uint32_t>& vertices);
+std::vector<std::uint32_t> decode_vertices(std::string_view bytes, std::string_view what);
 
 std::string encode_points(const std::vector<Vec3>& points);
 std::vector<Vec3> decode_points(std::string_view bytes, std::string_view what);

@@ -21,6 +21,7 @@ enum class RunStage : std::uint32_t {
   join,
   sweep,
   compose,
+  components,
   split,
   seam,
   reduce,
@@ -32,10 +33,10 @@ enum class RunStage : std::uint32_t {
 
 /// Their names, in that order.
 inline JobGraph empty_graph(std::uint32_t algorithm) {
-  return JobGraph(
-      {"survey", "count", "partition", "vertices", "triangles", "sort", "sample", "climb", "join",
-       "sweep", "compose", "split", "seam", "reduce", "measure", "finish", "tile", "bake"},
-      algorithm);
+  return JobGraph({"survey", "count", "partition", "vertices", "triangles", "sort", "sample",
+                   "climb", "join", "sweep", "compose", "components", "split", "seam", "reduce",
+                   "measure", "finish", "tile", "bake"},
+                  algorithm);
 }
 
 inline JobName job_name(RunStage stage, std::size_t index) {

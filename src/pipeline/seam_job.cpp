@@ -101,6 +101,10 @@ class JoinedStrips {
   }
 
   const Mesh& mesh() const { return stitched_.mesh; }
+  /// Of a component that is left out. In the strips there is nothing of it, but between them.
+  bool is_dropped(const Triangle& t) const {
+    return std::any_of(t.begin(), t.end(), [this](std::uint32_t v) { return dropped_[v] != 0; });
+  }
   bool is_ours(std::uint32_t vertex) const { return group_[vertex] == parameters_.group; }
   /// Of the input.
   std::span<const Triangle> boundary_triangles() const {
@@ -144,6 +148,8 @@ class JoinedStrips {
       positions_ = strip.mesh.positions;
       stitcher.add(strip.mesh, each.parts);
       for (const std::uint32_t v : strip.shared) shared_.push_back(next.first_vertex + v);
+      dropped_.resize(next.first_vertex + strip.mesh.mesh.positions.size(), 0);
+      for (const std::uint32_t v : strip.dropped) dropped_[next.first_vertex + v] = 1;
       next.first_vertex += static_cast<std::uint32_t>(strip.mesh.mesh.positions.size());
       next.first_triangle += static_cast<std::uint32_t>(strip.mesh.mesh.triangles.size());
       strips_.back().end_triangle = next.first_triangle;
@@ -190,6 +196,7 @@ class JoinedStrips {
   StitchedMesh stitched_;
   std::vector<Strip> strips_;
   std::vector<std::uint32_t> shared_;
+  std::vector<std::uint8_t> dropped_;  // a flag a vertex
   std::vector<std::uint32_t> group_;
   PositionType positions_ = PositionType::float32;
 };
@@ -217,7 +224,7 @@ class GroupMaker {
     place_vertices(VertexView(strips_.mesh()), number_, count, made_.mesh);
     const Mesh& all = strips_.mesh();
     for (std::size_t i = 0; i < all.triangles.size(); ++i) {
-      if (ours_of(all.triangles[i]) != 3) continue;
+      if (ours_of(all.triangles[i]) != 3 || strips_.is_dropped(all.triangles[i])) continue;
       made_.mesh.triangles.push_back(all.triangles[i]);
       made_.mesh.columns.append(all.columns, i);
     }
@@ -238,7 +245,7 @@ class GroupMaker {
   }
   bool is_between_groups(const Triangle& t) const {
     const int ours = ours_of(t);
-    return ours == 1 || ours == 2;
+    return (ours == 1 || ours == 2) && !strips_.is_dropped(t);
   }
 
   void share(std::uint32_t v) {

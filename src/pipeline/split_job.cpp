@@ -4,6 +4,7 @@
 #include <utility>
 #include <vector>
 
+#include <meshfarm/geometry/components.hpp>
 #include <meshfarm/geometry/simplify.hpp>
 #include <meshfarm/geometry/vertices.hpp>
 #include <meshfarm/pipeline/piece_jobs.hpp>
@@ -115,6 +116,27 @@ SplitMesh split(const ResultMesh& piece, std::uint32_t piece_number) {
   return made;
 }
 
+/// Leaves out these components, which their lowest vertices tell. Returns their boundary vertices.
+std::vector<std::uint32_t> drop_components(const SectionRef& components, const JobContext& context,
+                                           ResultMesh& piece) {
+  std::vector<std::uint32_t> boundary;
+  if (components.file.name.empty()) return boundary;
+  Mesh& mesh = piece.mesh;
+  std::vector<std::uint8_t> is_dropped(mesh.positions.size(), 0);
+  for (const std::uint32_t v :
+       decode_vertices(read_section(context, components), components.file.name)) {
+    if (v >= is_dropped.size()) throw DataError(components.file.name + ": no such vertex");
+    is_dropped[v] = 1;
+  }
+  const std::vector<std::uint32_t> lowest = lowest_connected(mesh.positions.size(), mesh.triangles);
+  keep_triangles(mesh,
+                 [&](std::size_t i) { return is_dropped[lowest[mesh.triangles[i][0]]] == 0; });
+  for (std::uint32_t v = 0; v < piece.boundary_vertices; ++v) {
+    if (is_dropped[lowest[v]] != 0) boundary.push_back(v);
+  }
+  return boundary;
+}
+
 /// What will be shared is held for the rest of the run: it had better be about as simple by then as
 /// the result.
 void approach(const SplitParameters& parameters, const JobContext& context, ResultMesh& piece,
@@ -150,8 +172,10 @@ JobOutput split_piece(const Job& job, const JobContext& context) {
   piece.mesh.columns.keep(lines.columns);
   DividedPiece made;
   for (const Vec3& v : piece.mesh.positions) made.box.add(v);
+  std::vector<std::uint32_t> dropped = drop_components(parameters.small_components, context, piece);
   approach(parameters, context, piece, made);
   SplitMesh halves = split(piece, parameters.piece);
+  halves.strip.dropped = std::move(dropped);
   PieceFile file;
   made.samples = file.add(encode_samples(piece.samples));
   if (parameters.is_composed) made.between = file.add(beside_of(composed, input.name));

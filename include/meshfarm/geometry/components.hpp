@@ -2,7 +2,10 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <span>
+#include <vector>
 
 #include <meshfarm/geometry/mesh.hpp>
 
@@ -16,6 +19,11 @@ struct DroppedComponents {
 /// Removes the triangles of every connected component whose bounding box has a diagonal below
 /// `diagonal`. Vertices stay where they are, used or not. Triangles must name vertices that exist.
 DroppedComponents drop_small_components(Mesh& mesh, double diagonal);
+
+/// Of each of so many vertices the lowest that triangles connect it with; of one without triangles
+/// itself. Triangles must name vertices that exist.
+std::vector<std::uint32_t> lowest_connected(std::size_t vertices,
+                                            std::span<const Triangle> triangles);
 
 /// What a connected component is by size.
 struct GoneComponents {

@@ -36,6 +36,7 @@ struct PieceOfResult {
 struct FinishedPieces {
   std::vector<PieceOfResult> pieces;
   std::uint64_t target = 0;
+  DroppedComponents dropped_components;
 
   /// Others whose surface may be near the input of a piece; none for the surroundings.
   std::vector<std::size_t> near(std::size_t piece) const;

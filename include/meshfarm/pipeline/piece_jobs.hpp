@@ -9,6 +9,7 @@
 #include <vector>
 
 #include <meshfarm/farm/job.hpp>
+#include <meshfarm/geometry/components.hpp>
 #include <meshfarm/io/bundles.hpp>
 #include <meshfarm/pipeline/run_options.hpp>
 #include <meshfarm/report/summary.hpp>
@@ -21,8 +22,10 @@ namespace meshfarm {
 // does on the seam's other side ("seam"). So the seams lie inside of new pieces, and what is held
 // now lies where nothing was held before. The surroundings of all seams are one piece or several
 // groups: where groups meet, a few vertices stay held. Each new piece is simplified to its quota of
-// the triangles ("reduce"), and measured ("measure").
+// the triangles ("reduce"), and measured ("measure"). Small components are looked for before that
+// ("components").
 
+inline constexpr std::string_view k_components_kind = "components";
 inline constexpr std::string_view k_split_kind = "split";
 inline constexpr std::string_view k_seam_kind = "seam";
 inline constexpr std::string_view k_reduce_kind = "reduce";
@@ -90,11 +93,37 @@ struct DividedPiece {
 std::string encode_summary(const DividedPiece& piece);
 DividedPiece decode_divided_piece(std::string_view bytes, std::string_view what);
 
+/// Parameters of the job that finds components which are to be left out. They may span pieces. It
+/// reads these one after the other: none is an input.
+struct ComponentsParameters {
+  struct Piece {
+    std::uint32_t parts = 1;
+    std::uint32_t rung = 0;
+    FileRef file;
+  };
+  std::vector<Piece> pieces;  // in order
+  std::uint32_t all_parts = 0;
+  FileRef boundary;
+  double diagonal = 0;  // smaller ones are left out
+};
+std::string encode_parameters(const ComponentsParameters& parameters);
+ComponentsParameters decode_components_parameters(std::string_view bytes);
+
+/// What it finds: of each piece a section of its file, with the lowest vertices of the components
+/// of the piece that are to be left out.
+struct SmallComponents {
+  std::vector<FileSection> pieces;
+  DroppedComponents dropped;  // a component that spans pieces counts once
+};
+std::string encode_summary(const SmallComponents& components);
+SmallComponents decode_small_components(std::string_view bytes, std::string_view what);
+
 struct SplitParameters {
   std::uint32_t piece = 0;
   std::uint32_t rung = 0;
   std::int32_t step = -1;  // what costs no more is collapsed before; -1: nothing
   bool is_composed = false;
+  SectionRef small_components;  // to be left out before; no name: there are none
   WeighParameters weigh;
 };
 std::string encode_parameters(const SplitParameters& parameters);
@@ -187,6 +216,7 @@ MeasuredPoints decode_measured_points(std::string_view bytes, std::string_view w
 std::string encode_summary(const PieceError& error);
 PieceError decode_piece_error(std::string_view bytes, std::string_view what);
 
+JobOutput find_small_components(const Job& job, const JobContext& context);
 JobOutput split_piece(const Job& job, const JobContext& context);
 JobOutput join_seams(const Job& job, const JobContext& context);
 JobOutput reduce_piece(const Job& job, const JobContext& context);

@@ -7,6 +7,7 @@
 #include <map>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include <doctest/doctest.h>
 
@@ -14,6 +15,7 @@
 #include <meshfarm/geometry/distance.hpp>
 #include <meshfarm/geometry/topology.hpp>
 #include <meshfarm/geometry/value_error.hpp>
+#include <meshfarm/geometry/vertices.hpp>
 #include <meshfarm/pipeline/assemble.hpp>
 #include <meshfarm/pipeline/job_table.hpp>
 #include <meshfarm/pipeline/run_graph.hpp>
@@ -265,6 +267,38 @@ TEST_CASE("triangles keep their labels, whose lines cross pieces") {
   check_clean(measure_topology(result));
 }
 
+TEST_CASE("small components are left out whole, though they span pieces") {
+  Mesh mesh = waves(90);
+  const Mesh ball = test::icosphere(3);
+  const auto add_ball = [&](Vec3 centre, double radius) {
+    std::vector<Vec3> positions;
+    positions.reserve(ball.positions.size());
+    for (const Vec3& p : ball.positions) positions.push_back(centre + p * radius);
+    append_surface(positions, ball.triangles, mesh);
+  };
+  for (int i = 0; i < 25; ++i) {
+    add_ball({8.0 + 18 * (i % 5), 8.0 + 18 * (i / 5), 9}, i % 6 == 0 ? 5 : 3);
+  }
+  FinishBench bench(mesh, 6);
+  RunOptions options = FinishBench::farmed(9'001);
+  options.drop_components = {12, false};  // of the smaller balls the diagonals are 10.4
+  const RunSummary made = bench.run(options, "farm.ply");
+  CHECK(bench.kinds()["components"] == 1);
+  CHECK(made.finished_in_pieces == 7);
+  CHECK(made.triangles == 9'001);
+  CHECK(made.dropped_components.components == 20);
+  const Topology t = measure_topology(bench.mesh("farm.ply"));
+  CHECK(t.components == 1 + 5);
+  CHECK(t.border_edges > 0);
+  CHECK(t.euler == 1 + 5 * 2);
+  bench.run(options, "again.ply", true);
+  CHECK(read_file(bench.path("farm.ply")) == read_file(bench.path("again.ply")));
+  options.finish_place = FinishPlace::here;
+  const RunSummary here = bench.run(options, "here.ply");
+  CHECK(here.dropped_components.components == 20);
+  CHECK(here.triangles == 9'001);
+}
+
 TEST_CASE("what pieces have no way for is the sink's, and it says why") {
   FinishBench bench(waves(60), 4);
   RunOptions options = FinishBench::farmed(2'000);
@@ -279,8 +313,6 @@ TEST_CASE("what pieces have no way for is the sink's, and it says why") {
     CHECK(bench.run(here, "here.ply").why_finished_here.empty());
     CHECK(read_file(bench.path("farm.ply")) == read_file(bench.path("here.ply")));
   };
-  options.drop_components = {0.01, true};
-  expect_here();
   options = FinishBench::farmed(0);
   options.error = {0.01, true};
   expect_here();
