@@ -34,8 +34,11 @@ constexpr std::uint64_t k_piece_process_bytes = std::uint64_t{16} << 20;
 constexpr std::uint64_t k_piece_triangle_bytes = 170;
 /// A part that is built for the occasion, and what it is built of.
 constexpr std::uint64_t k_built_triangle_bytes = 120;
-/// A seam job is for so many triangles round the seams, and has those of so many pieces more.
+/// A seam job is for so many triangles round the seams, or more where there are jobs for two dozen
+/// workers, up to the second number. It also has those of so many pieces more.
 constexpr std::uint64_t k_seam_triangles = 24'000;
+constexpr std::uint64_t k_most_seam_triangles = 150'000;
+constexpr std::uint64_t k_usual_groups = 24;
 constexpr std::uint64_t k_pieces_round_group = 20;
 /// Of the triangles between parts: the file, and what is made of it.
 constexpr std::uint64_t k_boundary_copies = 6;
@@ -137,8 +140,9 @@ void FinishStage::take_divided(const JobGraph& graph, std::size_t piece, const J
 void FinishStage::join_seams(JobGraph& graph) {
   std::uint64_t triangles = manifest_.boundary_triangles;
   for (const PieceOfResult& each : made_.pieces) triangles += each.divided.strip_triangles;
-  const auto groups = static_cast<std::uint32_t>(
-      std::clamp<std::uint64_t>(triangles / k_seam_triangles, 1, made_.pieces.size()));
+  const std::uint64_t most = std::max(k_usual_groups, triangles / k_most_seam_triangles);
+  const auto groups = static_cast<std::uint32_t>(std::clamp<std::uint64_t>(
+      triangles / k_seam_triangles, 1, std::min<std::uint64_t>(most, made_.pieces.size())));
   const std::size_t first = std::exchange(seam_jobs_, seam_jobs_ + groups);
   for (std::uint32_t group = 0; group < groups; ++group) {
     graph.add(job_name(RunStage::seam, first + group), seam_job(group, groups));
