@@ -1,5 +1,13 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
+//
+// Components that are left out may span pieces: what a piece tells of those that do is which of its
+// boundary vertices they connect, and their boxes. So one piece is in memory at a time.
+//
+// Parameters, version 1, and summary, little endian:
+//   components = version u8 | pieces u32 x (parts u32 | rung u32 | file) | all parts u32 |
+//                boundary | diagonal f64
+//   small      = pieces u32 x section | components u64 | triangles u64
 #include <algorithm>
 #include <span>
 #include <string>
@@ -10,13 +18,18 @@
 #include <meshfarm/io/boundary_file.hpp>
 #include <meshfarm/io/result_file.hpp>
 #include <meshfarm/pipeline/piece_jobs.hpp>
+#include <meshfarm/staging/file_ref.hpp>
 #include <meshfarm/stitch/stitcher.hpp>
+#include <meshfarm/util/byte_lists.hpp>
+#include <meshfarm/util/bytes.hpp>
 #include <meshfarm/util/errors.hpp>
 
 #include "pipeline/piece_sections.hpp"
 
 namespace meshfarm {
 namespace {
+
+constexpr std::uint8_t k_components_version = 1;
 
 struct ComponentSize {
   Box box;
@@ -118,6 +131,64 @@ class ComponentFinder {
 };
 
 }  // namespace
+
+std::string encode_parameters(const ComponentsParameters& parameters) {
+  ByteWriter out;
+  out.put(k_components_version);
+  out.put(static_cast<std::uint32_t>(parameters.pieces.size()));
+  for (const ComponentsParameters::Piece& piece : parameters.pieces) {
+    out.put(piece.parts);
+    out.put(piece.rung);
+    put_file(out, piece.file);
+  }
+  out.put(parameters.all_parts);
+  put_file(out, parameters.boundary);
+  out.put(parameters.diagonal);
+  return out.take();
+}
+
+ComponentsParameters decode_components_parameters(std::string_view bytes) {
+  ByteReader in(bytes, "parameters of a components job");
+  if (in.get<std::uint8_t>() != k_components_version)
+    in.fail("made by another version of meshfarm");
+  ComponentsParameters parameters;
+  std::uint64_t parts = 0;
+  const auto pieces = in.get<std::uint32_t>();
+  for (std::uint32_t i = 0; i < pieces; ++i) {
+    ComponentsParameters::Piece piece;
+    piece.parts = in.get<std::uint32_t>();
+    piece.rung = in.get<std::uint32_t>();
+    piece.file = get_file(in);
+    parts += piece.parts;
+    if (piece.parts == 0) in.fail("a piece of no parts");
+    parameters.pieces.push_back(std::move(piece));
+  }
+  parameters.all_parts = in.get<std::uint32_t>();
+  if (parts != parameters.all_parts) in.fail("impossible parts");
+  parameters.boundary = get_file(in);
+  parameters.diagonal = in.get<double>();
+  if (!(parameters.diagonal > 0)) in.fail("impossible diagonal");
+  in.expect_end();
+  return parameters;
+}
+
+std::string encode_summary(const SmallComponents& components) {
+  ByteWriter out;
+  put_list(out, components.pieces);
+  out.put(components.dropped.components);
+  out.put(components.dropped.triangles);
+  return out.take();
+}
+
+SmallComponents decode_small_components(std::string_view bytes, std::string_view what) {
+  ByteReader in(bytes, what);
+  SmallComponents components;
+  components.pieces = get_list<FileSection>(in);
+  components.dropped.components = in.get<std::uint64_t>();
+  components.dropped.triangles = in.get<std::uint64_t>();
+  in.expect_end();
+  return components;
+}
 
 JobOutput find_small_components(const Job& job, const JobContext& context) {
   const ComponentsParameters parameters = decode_components_parameters(job.parameters);

@@ -10,6 +10,7 @@
 #include <meshfarm/pipeline/budget.hpp>
 #include <meshfarm/pipeline/simplify_job.hpp>
 
+#include "pipeline/components_stage.hpp"
 #include "pipeline/error_meter.hpp"
 #include "pipeline/quotas.hpp"
 #include "pipeline/run_stages.hpp"
@@ -40,8 +41,6 @@ constexpr std::uint64_t k_seam_triangles = 24'000;
 constexpr std::uint64_t k_most_seam_triangles = 150'000;
 constexpr std::uint64_t k_usual_groups = 24;
 constexpr std::uint64_t k_pieces_round_group = 20;
-/// Of the triangles between parts: the file, and what is made of it.
-constexpr std::uint64_t k_boundary_copies = 6;
 /// Of the input, by one job, at least.
 constexpr std::uint64_t k_measured_at_once = 200'000;
 /// To read the result that is measured, and to arrange its points, is worth so many triangles.
@@ -93,7 +92,7 @@ void FinishStage::begin(JobGraph& graph, const FinishGoal& goal,
 
 void FinishStage::find_components(JobGraph& graph) {
   const JobName name = job_name(RunStage::components, 0);
-  Job job = components_job();
+  Job job = components_job(manifest_, options_, parts_);
   if (job.parameters.size() > k_max_parameters_bytes) {
     return done_(graph, std::nullopt, "there are more pieces than a job can name");
   }
@@ -263,26 +262,6 @@ std::vector<PartRange> FinishStage::ranges_of(const PieceOfResult& piece) const 
     ranges.back().end = p + 1;
   }
   return ranges;
-}
-
-Job FinishStage::components_job() const {
-  ComponentsParameters parameters;
-  Job job;
-  job.kind = k_components_kind;
-  std::uint64_t most = 0;
-  for (const ComposedParts& each : parts_) {
-    parameters.pieces.push_back({each.chosen.parts, each.chosen.rung, each.chosen.file});
-    most = std::max(most, each.chosen.file.size + k_piece_triangle_bytes * each.triangles +
-                              memory_of_channels(weigh_.lines, each.triangles));
-    job.cost += each.triangles;
-    job.reads += each.chosen.file.size;
-  }
-  parameters.all_parts = static_cast<std::uint32_t>(manifest_.parts.size());
-  parameters.boundary = manifest_.boundary;
-  parameters.diagonal = options_.drop_components.in(manifest_.box);
-  job.parameters = encode_parameters(parameters);
-  job.memory = k_piece_process_bytes + most + k_boundary_copies * manifest_.boundary.size;
-  return job;
 }
 
 Job FinishStage::split_job(const ComposedParts& parts, std::size_t number) const {

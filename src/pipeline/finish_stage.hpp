@@ -54,7 +54,6 @@ class FinishStage {
  private:
   Job split_job(const ComposedParts& parts, std::size_t number) const;
   void find_components(JobGraph& graph);
-  Job components_job() const;
   Job seam_job(std::uint32_t group, std::uint32_t groups) const;
   Job reduce_job(std::size_t piece, std::uint64_t quota, std::uint64_t all) const;
   Job measure_job(std::size_t number, const std::vector<PartRange>& ranges,

@@ -3,8 +3,6 @@
 //
 // Parameters and summaries of the jobs of a farmed finish, version 4, little endian:
 //   weigh      = cost unit f64 | first step i32 | last share f64 | kept share f64 | lines
-//   components = version u8 | pieces u32 x (parts u32 | rung u32 | file) | all parts u32 |
-//                boundary | diagonal f64
 //   split      = version u8 | piece u32 | rung u32 | step i32 | is composed u8 | ref | weigh
 //   seam       = version u8 | strips u32 x (parts u32 | ref) | group u32 | groups u32 |
 //                all parts u32 | boundary | its index, a section | samples a triangle f64 | weigh
@@ -14,7 +12,6 @@
 //                shares u32 | box | 4 refs | seams u32 x (ref | ref) | points u32 x ref |
 //                input step u64 | builds u8 | if it does: bundles (bundle_list.hpp)
 //   ref        = file | section;  box = 6 x f64
-//   small      = pieces u32 x section | components u64 | triangles u64
 //   divided    = 5 sections | gap triangles u64 | strip triangles u64 | shared u64 | box |
 //                rungs u32 x u64 | dropped degenerate u64 | duplicate u64 | turned u64 |
 //                before u64 | first step i32 | counts u32 x u64
@@ -82,63 +79,6 @@ SectionRef get_ref(ByteReader& in) {
 }
 
 }  // namespace
-
-std::string encode_parameters(const ComponentsParameters& parameters) {
-  ByteWriter out;
-  begin_parameters(out);
-  out.put(static_cast<std::uint32_t>(parameters.pieces.size()));
-  for (const ComponentsParameters::Piece& piece : parameters.pieces) {
-    out.put(piece.parts);
-    out.put(piece.rung);
-    put_file(out, piece.file);
-  }
-  out.put(parameters.all_parts);
-  put_file(out, parameters.boundary);
-  out.put(parameters.diagonal);
-  return out.take();
-}
-
-ComponentsParameters decode_components_parameters(std::string_view bytes) {
-  ByteReader in(bytes, "parameters of a components job");
-  expect_piece_version(in);
-  ComponentsParameters parameters;
-  std::uint64_t parts = 0;
-  const auto pieces = in.get<std::uint32_t>();
-  for (std::uint32_t i = 0; i < pieces; ++i) {
-    ComponentsParameters::Piece piece;
-    piece.parts = in.get<std::uint32_t>();
-    piece.rung = in.get<std::uint32_t>();
-    piece.file = get_file(in);
-    parts += piece.parts;
-    if (piece.parts == 0) in.fail("a piece of no parts");
-    parameters.pieces.push_back(std::move(piece));
-  }
-  parameters.all_parts = in.get<std::uint32_t>();
-  if (parts != parameters.all_parts) in.fail("impossible parts");
-  parameters.boundary = get_file(in);
-  parameters.diagonal = in.get<double>();
-  if (!(parameters.diagonal > 0)) in.fail("impossible diagonal");
-  in.expect_end();
-  return parameters;
-}
-
-std::string encode_summary(const SmallComponents& components) {
-  ByteWriter out;
-  put_list(out, components.pieces);
-  out.put(components.dropped.components);
-  out.put(components.dropped.triangles);
-  return out.take();
-}
-
-SmallComponents decode_small_components(std::string_view bytes, std::string_view what) {
-  ByteReader in(bytes, what);
-  SmallComponents components;
-  components.pieces = get_list<FileSection>(in);
-  components.dropped.components = in.get<std::uint64_t>();
-  components.dropped.triangles = in.get<std::uint64_t>();
-  in.expect_end();
-  return components;
-}
 
 std::string encode_parameters(const SplitParameters& parameters) {
   ByteWriter out;

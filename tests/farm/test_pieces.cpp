@@ -2,12 +2,20 @@
 // SPDX-License-Identifier: MIT
 //
 // Runs of the real program whose finish is made of jobs: whatever is killed, the same bytes.
+#include <algorithm>
+#include <cmath>
 #include <string>
 #include <vector>
 
 #include <doctest/doctest.h>
 
+#include <meshfarm/geometry/topology.hpp>
+#include <meshfarm/geometry/vertices.hpp>
+#include <meshfarm/io/mesh_format.hpp>
+#include <meshfarm/io/mesh_source.hpp>
+
 #include "support/farm_bench.hpp"
+#include "support/meshes.hpp"
 #include "support/process.hpp"
 
 using meshfarm::test::FarmBench;
@@ -152,4 +160,53 @@ TEST_CASE("a damaged piece is made again") {
       bench().meshfarm(PiecesBench::with_target({"replay", stage, "-o", stage + "-2.ply"})).code ==
       0);
   bench().check_result(stage + "-2.ply");
+}
+
+namespace {
+
+/// A wavy sheet with so many balls over it, every fourth of them twice as large as the others.
+meshfarm::Mesh sheet_and_balls(int balls) {
+  using meshfarm::Vec3;
+  meshfarm::Mesh mesh = meshfarm::test::grid(120, 120);
+  for (Vec3& p : mesh.positions) p.z = 2 * std::sin(p.x * 0.11) * std::cos(p.y * 0.07);
+  const meshfarm::Mesh ball = meshfarm::test::icosphere(3);
+  for (int i = 0; i < balls; ++i) {
+    const Vec3 centre = {12.0 + 24 * (i % 5), 12.0 + 24 * (i / 5 % 5), 9};
+    std::vector<Vec3> positions = ball.positions;
+    for (Vec3& p : positions) p = centre + p * (i % 4 == 0 ? 6.0 : 3.0);
+    meshfarm::append_surface(positions, ball.triangles, mesh);
+  }
+  for (Vec3& p : mesh.positions) p = meshfarm::rounded(p, meshfarm::PositionType::float32);
+  return mesh;
+}
+
+}  // namespace
+
+TEST_CASE("small components that span pieces are left out, as by the sink") {
+  using namespace meshfarm;
+  const std::string input = bench().path("balls.ply");
+  write_mesh(input, sheet_and_balls(25), PositionType::float32);
+  const auto simplify = [&](const std::string& name, std::vector<std::string> more) {
+    std::vector<std::string> words = {"simplify", input, "-o", bench().path(name), "--parts", "7"};
+    more.insert(more.end(),
+                {"--triangles", "12001", "--drop-components", "15", "--composition", "sink"});
+    words.insert(words.end(), more.begin(), more.end());
+    const Ran ran = bench().meshfarm(words);
+    REQUIRE(ran.code == 0);
+    CHECK(ran.out.find("18 small components") != std::string::npos);
+    const Topology t = measure_topology(read_mesh(*open_mesh(bench().path(name))));
+    CHECK(t.triangles == 12'001);
+    CHECK(t.components == 1 + 7);
+    CHECK(t.euler == 1 + 2 * 7);
+    return ran.out;
+  };
+  simplify("here.ply", {"--finish", "here"});
+  for (const std::string workers : {"1", "2", "5"}) {
+    const std::string out =
+        simplify("farm" + workers + ".ply", {"--finish", "farm", "--workers", workers});
+    CHECK(out.find("finish           by jobs, in ") != std::string::npos);
+  }
+  using meshfarm::test::read_text;
+  CHECK(read_text(bench().path("farm1.ply")) == read_text(bench().path("farm2.ply")));
+  CHECK(read_text(bench().path("farm1.ply")) == read_text(bench().path("farm5.ply")));
 }
