@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
 #include <algorithm>
+#include <utility>
 
 #include <meshfarm/farm/dispatcher.hpp>
 #include <meshfarm/util/checksum.hpp>
@@ -301,6 +302,22 @@ std::optional<JobKey> Dispatcher::the_one_to_blame(const std::vector<JobKey>& su
     if (scheduler_.is_suspect(key)) before.push_back(key);
   }
   return before.size() == 1 ? std::optional(before.front()) : std::nullopt;
+}
+
+/// A sink that lost results is not as far as the run was: it takes no results of the jobs that come
+/// later. Whoever holds those would be thought to be late, and be given nothing else.
+void Dispatcher::restart_plan() {
+  plan_.restart(std::exchange(sink_->told, {}));
+  scheduler_.deal_again();
+  for (const auto& [id, worker] : workers_) {
+    const std::vector<Scheduler::Held> held = scheduler_.held(id);
+    for (const Scheduler::Held& each : held) {
+      if (plan_.wants(each.key)) continue;
+      send(worker.peer, Done{each.key, attempt_number(each.attempt)});
+      scheduler_.drop(id, each.key, now_);
+      plan_.give_back(each.key);
+    }
+  }
 }
 
 void Dispatcher::lose_sink() {

@@ -221,7 +221,7 @@ void Dispatcher::on(const PeerId& peer, const Ready& ready) {
     return lose_sink();
   }
   sink_->ready = true;
-  plan_.restart(std::exchange(sink_->told, {}));
+  restart_plan();
   over_ = over_ && plan_.complete();  // a sink that lost results needs workers again
   for (const LostJob& lost : plan_.lost()) {
     send(peer, JobFailed{lost.key, clipped(lost.reasons), lost.resumable});

@@ -39,6 +39,12 @@ void Scheduler::deal(const Plan& plan) {
   }
 }
 
+void Scheduler::deal_again() {
+  for (auto& [id, set] : sets_) set.clear();
+  dealt_.clear();
+  undealt_.clear();
+}
+
 /// What was dealt to those who may not be given it any more is to be dealt again.
 void Scheduler::take_back(const Plan& plan) {
   const bool any_bad = next_ban_end_ != FarmTime::max();

@@ -150,6 +150,7 @@ class Dispatcher {
   void lose_sink();
   std::uint32_t attempt_number(std::uint32_t attempt) const;
   void settle(JobKey key, WorkerId reporter);
+  void restart_plan();
   void drop(WorkerId holder, JobKey key);
   enum class Blame { host, nobody, host_if_others_can };
   void reject_attempt(const Reject& reject, Blame blame);

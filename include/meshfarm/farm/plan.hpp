@@ -89,6 +89,8 @@ class Plan {
   void fail_attempt(JobKey key, const std::string& reason, Failing failing);
   /// Takes a failure back that turned out to be none; a job given up for it is ready again.
   void forgive(JobKey key, const std::string& reason);
+  /// Whether it is a job of the run as far as that has come since the last restart.
+  bool wants(JobKey key) const { return entries_.contains(key) && entries_.at(key).wanted; }
   /// False if the job is not wanted or done already.
   bool accept(JobKey key, const JobOutput& output);
 

@@ -63,6 +63,8 @@ class Scheduler {
   void suspect(JobKey key) { suspects_.insert(key); }
   bool is_suspect(JobKey key) const { return suspects_.contains(key); }
   void settled(JobKey key);
+  /// The plan was restarted: by the fixed schedule all that is ready is dealt out anew.
+  void deal_again();
 
   /// What to send to whom now, if anything: the plan has issued it, and the worker holds it.
   std::optional<Pick> next(Plan& plan, FarmTime now);
