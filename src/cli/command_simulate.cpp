@@ -35,6 +35,10 @@ class SimulateCommand : public Command {
     options.add_options()("jobs",
                           po::value(&seeds_.jobs)->default_value(seeds_.jobs)->value_name("N"),
                           "with --seeds: jobs in each history");
+    options.add_options()(
+        "graph", po::value(&graph_)->default_value(graph_)->value_name("WHICH"),
+        "with --seeds: 'run', the jobs of a whole run, cut and finish included, or "
+        "'stages', three stages");
     options.add_options()("threads", po::value(&seeds_.threads)->value_name("N"),
                           "with --seeds: histories tried at once (default: one a core)");
     talk_.add(options);
@@ -61,6 +65,8 @@ class SimulateCommand : public Command {
 
  private:
   void check_seeds() {
+    if (graph_ != "run" && graph_ != "stages") throw UsageError("--graph: run or stages");
+    seeds_.graph = graph_ == "run" ? SimulatedGraph::whole_run : SimulatedGraph::few_stages;
     if (seed_ != 0) seeds_.first = seed_;
     if (seeds_.count == 0) seeds_.count = 1;
     if (seeds_.count > 10'000'000) throw UsageError("--seeds: at most 10000000");
@@ -84,6 +90,7 @@ class SimulateCommand : public Command {
     summary.seeds = seeds_.count;
     summary.workers = seeds_.workers;
     summary.jobs = seeds_.jobs;
+    summary.graph = graph_;
     summary.events = result.events;
     summary.virtual_s = result.virtual_s;
     summary.wall_s =
@@ -99,6 +106,7 @@ class SimulateCommand : public Command {
   bool plans_ = false;
   std::string workers_;
   std::uint64_t seed_ = 0;
+  std::string graph_ = "run";
   SeedsOptions seeds_;
   PlanWords plan_;
   TalkOptions talk_;

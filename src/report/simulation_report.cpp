@@ -20,7 +20,8 @@ std::string hex(std::uint64_t value) {
 
 std::string again(const SeedsSummary& s, std::uint64_t seed) {
   return "meshfarm simulate --seed " + std::to_string(seed) + " --workers " +
-         std::to_string(s.workers) + " --jobs " + std::to_string(s.jobs);
+         std::to_string(s.workers) + " --jobs " + std::to_string(s.jobs) +
+         (s.graph == "run" ? "" : " --graph " + s.graph);
 }
 
 std::string as_json(const SeedsSummary& s) {

@@ -12,15 +12,6 @@
 namespace meshfarm {
 namespace {
 
-Job made_up(const std::string& name) {
-  Job job;
-  job.kind = "simulated";
-  job.parameters = name;
-  job.cost = 100 + checksum(name) % 900;
-  job.memory = job.cost << 20;  // 100 MiB to 1 GiB
-  return job;
-}
-
 /// Whether a run needs the job of these parameters; `summaries` are what it makes.
 bool needs(std::span<const std::string> summaries, const std::string& parameters) {
   Job job;
@@ -43,6 +34,15 @@ std::string problem_of_end(const std::string& failure, std::span<const AcceptedJ
 
 }  // namespace
 
+Job made_up_job(const std::string& name) {
+  Job job;
+  job.kind = "simulated";
+  job.parameters = name;
+  job.cost = 100 + checksum(name) % 900;
+  job.memory = job.cost << 20;  // 100 MiB to 1 GiB
+  return job;
+}
+
 std::string simulated_summary(const Job& job) {
   return to_hex(checksum("made of " + job.parameters));
 }
@@ -53,7 +53,7 @@ JobSource simulated_jobs(std::uint64_t count, const std::string& target) {
   const auto named = [&](const std::string& name, std::uint64_t many, std::uint64_t common) {
     std::vector<Job> jobs;
     for (std::uint64_t i = 0; i < many; ++i) {
-      jobs.push_back(made_up((i < common ? "" : target) + name + std::to_string(i)));
+      jobs.push_back(made_up_job((i < common ? "" : target) + name + std::to_string(i)));
     }
     return jobs;
   };
@@ -68,7 +68,7 @@ JobSource simulated_jobs(std::uint64_t count, const std::string& target) {
     for (const Job& job : *most) graph.add({k_most, jobs++}, job);
     graph.add({k_all, 0}, {all_of(k_most, jobs)}, [jobs](JobGraph& so_far) {
       const std::string needs = jobs == 0 ? "nothing" : so_far.output({k_most, jobs - 1}).summary;
-      Job all = made_up("all, to " + needs);
+      Job all = made_up_job("all, to " + needs);
       all.by_sink = true;
       return all;
     });

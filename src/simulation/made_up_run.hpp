@@ -12,6 +12,8 @@
 
 namespace meshfarm {
 
+/// A job of 0.1 to 1 s, told by its name.
+Job made_up_job(const std::string& name);
 /// What a simulated job makes: told by its parameters alone.
 std::string simulated_summary(const Job& job);
 /// Made-up jobs of 0.1 to 1 s in three stages: most, then one that depends on all of them, then the

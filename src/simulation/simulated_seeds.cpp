@@ -10,6 +10,7 @@
 #include "simulation/dice.hpp"
 #include "simulation/faults_of_seed.hpp"
 #include "simulation/made_up_run.hpp"
+#include "simulation/whole_run.hpp"
 
 namespace meshfarm {
 namespace {
@@ -102,9 +103,9 @@ SimulationOptions farm_of(const SeedsOptions& seeds, std::uint64_t seed, const J
 }  // namespace
 
 SeedsResult simulate_seeds(const SeedsOptions& options) {
-  const Task task(simulated_jobs(options.jobs));
-  const Task other(
-      simulated_jobs(std::max<std::uint64_t>(1, options.jobs / k_of_the_jobs), "other "));
+  const auto make_jobs = options.graph == SimulatedGraph::whole_run ? whole_run : simulated_jobs;
+  const Task task(make_jobs(options.jobs, ""));
+  const Task other(make_jobs(std::max<std::uint64_t>(1, options.jobs / k_of_the_jobs), "other "));
   std::vector<SeedResult> each(options.count);
   parallel_for(options.count, options.threads, [&](std::uint64_t i) {
     const SimulationOptions farm = farm_of(options, options.first + i, other.source);

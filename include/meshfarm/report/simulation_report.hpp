@@ -19,6 +19,7 @@ struct SeedsSummary {
   std::uint64_t seeds = 0;
   std::uint32_t workers = 0;
   std::uint64_t jobs = 0;
+  std::string graph = "run";  // the words of --graph
   std::uint64_t events = 0;
   double virtual_s = 0;
   double wall_s = 0;

@@ -8,12 +8,17 @@
 
 namespace meshfarm {
 
+/// What the jobs of a history are: some stages that are enough to go wrong in every way, or all
+/// those of a run that cuts its input and finishes its result by jobs.
+enum class SimulatedGraph { few_stages, whole_run };
+
 /// Histories to simulate for the sake of correctness: every seed with its own mix of faults.
 struct SeedsOptions {
   std::uint64_t first = 1;
   std::uint64_t count = 0;
   std::uint32_t workers = 24;  // every third is slower, two are on a host
-  std::uint64_t jobs = 1024;
+  std::uint64_t jobs = 1024;   // about so many in a whole run
+  SimulatedGraph graph = SimulatedGraph::few_stages;
   unsigned threads = 0;  // 0: one a core
 };
 

@@ -46,6 +46,20 @@ TEST_CASE("a sink that comes after its run's end leaves, with the output") {
   check_each({{64796, 2, 20}});
 }
 
+TEST_CASE("a run that cuts and finishes by jobs ends with its bytes, whatever is mixed in") {
+  for (const std::uint32_t workers : {1U, 2U, 5U, 24U}) {
+    CAPTURE(workers);
+    const SeedsResult result = simulate_seeds({.count = 100,
+                                               .workers = workers,
+                                               .jobs = std::uint64_t{64} + 16 * workers,
+                                               .graph = SimulatedGraph::whole_run});
+    for (const SeedProblem& problem : result.problems) {
+      CAPTURE(problem.seed);
+      FAIL_CHECK(problem.what);
+    }
+  }
+}
+
 TEST_CASE("farms of few workers end, whatever is mixed in") {
   for (const std::uint32_t workers : {1U, 2U, 3U, 5U}) {
     CAPTURE(workers);
