@@ -69,6 +69,7 @@ class VentilatorCommand : public FarmCommand {
     options.patience = std::chrono::seconds(wait_s_);
     options.was_completed = [&, run = options.run] { return was_completed(stage, run); };
     options.progress = [&](const FarmProgress& p) { show(printer, p); };
+    options.ended = [&](bool sink_was_told) { sink_was_told_ = sink_was_told; };
     TraceHead head;
     head.run = options.run;
     head.heartbeat_ms = heartbeat_ms_;
@@ -86,7 +87,7 @@ class VentilatorCommand : public FarmCommand {
     trace.end({});
   }
 
-  bool sink_reports_failures() const override { return true; }
+  bool sink_reports_failures() const override { return sink_was_told_; }
 
  private:
   static bool was_completed(const Stage& stage, std::uint64_t run) {
@@ -131,6 +132,7 @@ class VentilatorCommand : public FarmCommand {
   NetworkOptions network_;
   ScheduleWords schedule_;
   FullWords when_full_;
+  bool sink_was_told_ = false;
   std::uint32_t heartbeat_ms_ = 1000;
   std::uint32_t wait_s_ = 60;
 };

@@ -224,7 +224,7 @@ class SinkLoop {
       perform(core_.did(done, std::exchange(made_, {}), problem, now));
       return tell_of_room(problem.text);
     }
-    if (problem_) return perform(core_.fail(what(problem_)));
+    if (problem_) return perform(core_.fail({what_is_kept(problem_), true}));
     std::string no_room;
     for (const CheckedResult& each : std::exchange(batch_, {})) {
       const bool full = each.problem.kind == FailureKind::no_space;
@@ -242,6 +242,11 @@ class SinkLoop {
     const bool waits = core_.waits_for_room();
     if (waits == std::exchange(told_of_waiting_, waits)) return;
     log_warning(waits ? "no room, waiting: " + reason : "there is room again");
+  }
+
+  /// Of a journal that cannot be written.
+  static std::string what_is_kept(const std::exception_ptr& problem) {
+    return what(problem).text + "; what the journal has is kept: run the same command again";
   }
 
   static SinkProblem what(const std::exception_ptr& problem) {

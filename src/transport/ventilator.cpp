@@ -72,6 +72,7 @@ class VentilatorLoop {
       turn();
       look_for_sink(farm_clock());
     }
+    if (options_.ended) options_.ended(dispatcher_.progress().sink_present);
     if (options_.progress) options_.progress(progress());
     next_state_ = FarmTime(0);
     tell_state(farm_clock());

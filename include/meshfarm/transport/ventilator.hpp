@@ -34,8 +34,11 @@ struct VentilatorOptions {
   std::chrono::milliseconds heartbeat{1000};
   std::chrono::milliseconds hang{30'000};  // a job that makes no progress for so long hangs
   SchedulerOptions schedule = {};
-  std::uint32_t max_attempts = 3;                     // a job that failed this often is given up
-  WhenFull when_full = WhenFull::wait;                // of the stage
+  std::uint32_t max_attempts = 3;       // a job that failed this often is given up
+  WhenFull when_full = WhenFull::wait;  // of the stage
+  /// Once the run is over for a reason that the sink was told, or would have been if it was there;
+  /// whatever else is thrown nobody else knows of. May be empty.
+  std::function<void(bool sink_was_told)> ended;
   std::function<void(const FarmProgress&)> progress;  // about twice a second; may be empty
   /// What happens, and the ventilator's age; may be empty.
   std::function<void(const FarmEvent&, FarmTime)> event;
