@@ -58,7 +58,16 @@ make_stage() {
   "$MESHFARM" cut "$work/mesh.ply" --stage "$stage" --parts "$parts" --quiet > /dev/null
 }
 check_result() {
-  cmp "$1" "$work/expected.ply" || fail "other bytes than undisturbed: $1"
+  cmp "$1" "${2:-$work/expected.ply}" || fail "other bytes than undisturbed: $1"
+}
+# A stage at the folder $2 whose first run is to cut the mesh, once that is made, into $1 parts by
+# jobs; what becomes of it to the target of $farmed, $work/expected-farmed.ply, cut by one process.
+farmed=(--ratio 0.2 --finish farm --composition sink)
+make_farmed_stage() {
+  [ -e "$work/expected-farmed.ply" ] ||
+    "$MESHFARM" simplify "$work/mesh.ply" -o "$work/expected-farmed.ply" --parts "$1" --cut here \
+      "${farmed[@]}" --quiet > /dev/null
+  "$MESHFARM" cut "$work/mesh.ply" --stage "$2" --parts "$1" --cut farm --blocks 6 --quiet > /dev/null
 }
 
 # Waits at most $1 seconds until the command that follows succeeds.

@@ -14,11 +14,13 @@ trap 'rm -rf "$work"' EXIT
   skip_forbidden "User-Mode Linux does not boot here: $(tail -n 1 "$work/boot.log")"
 
 make_stage 60000 24 "$work/stage"
+make_farmed_stage 8 "$work/farmed"
 failed=
 pids=()
 for version in 3 4.2; do
   "$lab_here/nfs/boot.sh" $version 900 "$lab_here/nfs/scenario.sh" "$MESHFARM" "$work/stage" \
-    "$work/expected.ply" > "$work/log.$version" 2>&1 &
+    "$work/expected.ply" "$work/farmed" "$work/expected-farmed.ply" "${farmed[@]}" \
+    > "$work/log.$version" 2>&1 &
   pids+=($!)
 done
 for i in 0 1; do wait "${pids[$i]}" || failed+=" $?"; done

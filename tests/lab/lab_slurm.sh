@@ -27,14 +27,14 @@ wait_for 30 nodes_idle 3 || fail "no idle nodes: $(on_host 1 sinfo)"
 make_slow_program "$work/slow-meshfarm" 250
 
 # A run in one of the shapes, with a node killed once it has some results.
-run_shape() { # SHAPE STAGE
-  local stage=$2 launcher code=0
-  make_stage 200000 80 "$stage"
-  say "a run in the shape '$1' on three nodes"
+run_shape() { # SHAPE STAGE EXPECTED TARGET...
+  local shape=$1 stage=$2 expected=$3 launcher code=0
+  shift 3
+  say "a run in the shape '$shape' on three nodes"
   # Some sites pass no environment on.
-  MESHFARM=$work/slow-meshfarm on_host 1 "$lab_root/scripts/launch-slurm.sh" "$1" 3 \
+  MESHFARM=$work/slow-meshfarm on_host 1 "$lab_root/scripts/launch-slurm.sh" "$shape" 3 \
     --export=NONE -- "$stage" \
-    --ratio 0.05 -o "$stage.ply" > "$stage.out" 2>&1 &
+    "$@" -o "$stage.ply" > "$stage.out" 2>&1 &
   launcher=$!
   wait_for 60 has_results "$stage" 15 || fail "no results: $(cat "$stage".*)"
   on_host 1 squeue --noheader --states=RUNNING --format '%i on %N' | sed 's/^/          /'
@@ -43,13 +43,15 @@ run_shape() { # SHAPE STAGE
   wait $launcher || code=$?
   say "the run is over"
   [ $code -eq 0 ] || fail "the launcher's code is $code: $(cat "$stage".*)"
-  check_result "$stage.ply"
+  check_result "$stage.ply" "$expected"
   wait_for 60 no_jobs || fail "jobs are left: $(on_host 1 squeue)"
   say "done, the same bytes, no job left"
 }
 
-run_shape array "$work/stage-array"
+make_stage 200000 80 "$work/stage-array"
+run_shape array "$work/stage-array" "$work/expected.ply" --ratio 0.05
 start_node 4
 on_host 1 scontrol update "NodeName=${hosts_prefix}4" State=RESUME 2> /dev/null || true
 wait_for 60 nodes_idle 3 || fail "node 4 does not come back: $(on_host 1 sinfo)"
-run_shape allocation "$work/stage-allocation"
+make_farmed_stage 16 "$work/stage-allocation"
+run_shape allocation "$work/stage-allocation" "$work/expected-farmed.ply" "${farmed[@]}"

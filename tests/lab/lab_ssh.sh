@@ -82,11 +82,11 @@ say "done, the same bytes; host 3's jobs were elsewhere after $((away - cut)) ms
 [ $((away - cut)) -le 4200 ] || fail "that is more than three heartbeats"
 wait_for 20 no_workers_left || fail "workers are left after the run"
 
-say "a launcher that is killed takes its workers along"
-"$MESHFARM" cut "$work/mesh.ply" --stage "$stage-2" --parts 120 --quiet > /dev/null
+say "a launcher that is killed takes its workers along; cut and finish are jobs from here on"
+make_farmed_stage 24 "$stage-2"
 stage=$stage-2
 # Not through on_host: its processes are not ours to kill by one number.
-on_host 1 setsid "$lab_root/scripts/launch-ssh.sh" host2:1 host3:1 -- "$stage" --ratio 0.05 \
+on_host 1 setsid "$lab_root/scripts/launch-ssh.sh" host2:1 host3:1 -- "$stage" "${farmed[@]}" \
   -o "$work/out2.ply" --bind 10.77.0.1 > /dev/null 2>&1 &
 wait_for 30 has_results "$stage" 5 || fail "no results of the second run"
 pkill -KILL -f "launch-ssh.sh host2:1 host3:1 -- $stage"
@@ -96,7 +96,7 @@ say "an interrupted one leaves a stage that the same command takes up"
 pkill -TERM -f "$MESHFARM run $stage" || true
 # It leaves the output to the next only when it is gone.
 wait_for 20 no_run_left || fail "a run that was asked to leave is still there"
-on_host 1 "$lab_root/scripts/launch-ssh.sh" host2:1 host3:1 -- "$stage" --ratio 0.05 \
+on_host 1 "$lab_root/scripts/launch-ssh.sh" host2:1 host3:1 -- "$stage" "${farmed[@]}" \
   -o "$work/out2.ply" --bind 10.77.0.1 > /dev/null 2> "$work/run2.err" &
 launcher=$!
 wait_for 30 has_results "$stage" 40 || fail "no results of the third run: $(cat "$work/run2.err")"
@@ -107,7 +107,7 @@ wait $launcher || code=$?
 [ $code -eq 3 ] || fail "an interrupted launcher's code is $code: $(cat "$work/run2.err")"
 wait_for 5 no_workers_left || fail "workers outlive an interrupted launcher"
 say "it is taken up"
-on_host 1 "$lab_root/scripts/launch-ssh.sh" host2:1 host3:1 -- "$stage" --ratio 0.05 \
+on_host 1 "$lab_root/scripts/launch-ssh.sh" host2:1 host3:1 -- "$stage" "${farmed[@]}" \
   -o "$work/out2.ply" --bind 10.77.0.1 > /dev/null 2>&1 || fail "the run was not taken up"
-check_result "$work/out2.ply"
+check_result "$work/out2.ply" "$work/expected-farmed.ply"
 say "done"

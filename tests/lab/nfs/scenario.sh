@@ -4,11 +4,17 @@
 # restarted or away for long, the links cut. Each ends with the same bytes, or with code 3 and with the
 # same bytes when the same command is given again; what only takes its time must not stop a run, nor
 # cost a worker its life.
-#   scenario.sh PROGRAM CUT-STAGE EXPECTED.ply
+#   scenario.sh PROGRAM CUT-STAGE EXPECTED.ply FARMED-STAGE EXPECTED-FARMED.ply TARGET...
+# The last are of a run whose cut and finish are jobs.
 set -uo pipefail
 meshfarm=$1
 cut_stage=$2
 expected=$3
+farmed_stage=$4
+farmed_expected=$5
+shift 5
+farmed_target=("$@")
+target=(--ratio 0.05)
 logs=$(mktemp -d)
 ventilator_side=/mnt/c1
 worker_side=/mnt/c2
@@ -49,7 +55,7 @@ start() { # STAGE
     "${launcher[@]}" "$meshfarm" worker "$side/$1" -q --threads 1 > "$logs/$1.worker.${side##*/}" 2>&1 &
     workers+=($!)
   done
-  "${launcher[@]}" "$meshfarm" run "$ventilator_side/$1" --ratio 0.05 -o "$ventilator_side/$1.ply" \
+  "${launcher[@]}" "$meshfarm" run "$ventilator_side/$1" "${target[@]}" -o "$ventilator_side/$1.ply" \
     --bind 127.0.0.1 -q > "$logs/$1.run" 2>&1 &
   run=$!
 }
@@ -183,3 +189,18 @@ wait_for 60 has_results link1 3 || fail "no results"
 cut_link 1 20
 finish 120
 check link1
+
+say "cut and finish are jobs, and the server is restarted while there is something to cut"
+cut_stage=$farmed_stage
+expected=$farmed_expected
+target=("${farmed_target[@]}")
+new_stage farmed
+start farmed
+wait_for 60 has_results farmed 8 || fail "no results"
+rpc.nfsd 0
+sleep 3
+rpc.nfsd 4
+wait_for 60 has_results farmed 40 || fail "no pieces"
+kill -KILL "${workers[0]}"
+finish 120
+check farmed
