@@ -63,6 +63,15 @@ Bench& streams() {
   return instance;
 }
 
+/// The first run cuts, and finishes in pieces: surveys, counts and scatters, climbs, splits,
+/// reduces and measures, and streams the pieces into the output.
+Bench& farmed() {
+  static Bench instance(
+      "20000", {"--parts", "3", "--cut", "farm", "--blocks", "2"},
+      {"--workers", "2", "--ratio", "0.3", "--finish", "farm", "--composition", "sink"});
+  return instance;
+}
+
 bool all_of_them() {
   const char* wish = std::getenv("MESHFARM_FAULTS");
   return wish != nullptr && std::string(wish) == "all";
@@ -147,7 +156,8 @@ std::vector<std::string> kinds_of(const std::string& call) {
   return kinds;
 }
 
-void try_all(const std::string& role) {
+/// How many of the faults struck, of those that were tried.
+int try_all(Bench& bench, const std::string& role) {
   int struck = 0;
   for (const std::string call :
        {"write", "fsync", "close", "rename", "link", "open", "read", "unlink", "fdatasync"}) {
@@ -155,27 +165,61 @@ void try_all(const std::string& role) {
     for (const std::string& kind : kinds) {
       const int step = all_of_them() ? 1 : 2;
       const bool seldom = call == "link" || call == "open" || call == "read" || call == "unlink";
-      const int most = all_of_them() ? 100 : seldom ? 1 : 3;
-      for (int nth = 1; nth <= most && survives(parts(), role, call, kind, nth); nth += step)
+      const int most = all_of_them() ? 400 : seldom ? 1 : 3;
+      for (int nth = 1; nth <= most && survives(bench, role, call, kind, nth); nth += step)
         ++struck;
     }
   }
   MESSAGE(role, ": ", struck, " faults");
-  CHECK(struck >= 12);
+  return struck;
 }
 
 }  // namespace
 
 TEST_CASE("a worker's files may fail at any call") {
-  try_all("worker");
+  CHECK(try_all(parts(), "worker") >= 12);
 }
 
 TEST_CASE("the sink's files may fail at any call") {
-  try_all("sink");
+  CHECK(try_all(parts(), "sink") >= 12);
 }
 
 TEST_CASE("the ventilator's files may fail at any call") {
-  try_all("ventilator");
+  CHECK(try_all(parts(), "ventilator") >= 12);
+}
+
+TEST_CASE("a run that is cut and finished by jobs survives a fault at any call") {
+  if (all_of_them()) {
+    for (const char* role : {"worker", "sink", "ventilator"}) CHECK(try_all(farmed(), role) >= 12);
+    return;
+  }
+  CHECK(survives(farmed(), "worker", "rename", "kill", 5));
+  CHECK(survives(farmed(), "worker", "write", "EIO", 9));
+  CHECK(survives(farmed(), "sink", "write", "kill", 6));
+  CHECK(survives(farmed(), "sink", "rename", "lost", 1));
+  CHECK(survives(farmed(), "ventilator", "write", "kill", 3));
+}
+
+TEST_CASE("a journal that cannot be written any more stops the run for now, in one line") {
+  Bench& bench = parts();
+  bench.fresh();
+  const std::string stage = bench.path("run/stage");
+  meshfarm::test::Process run = bench.start(
+      {"run", stage, "--ratio", "0.05", "-o", bench.path("run/out.ply"), "--bind", "127.0.0.1"});
+  REQUIRE(meshfarm::test::wait_until([&] {
+    return bench.meshfarm({"status", stage}).out.find("waiting for workers") != std::string::npos;
+  }));
+  fs::rename(stage + "/journal", stage + "/journal-away");
+  std::ofstream(stage + "/journal") << "no folder";
+  meshfarm::test::Process worker = bench.start({"worker", stage});
+  CHECK(run.wait() == 3);
+  CAPTURE(run.err());
+  CHECK(errors_in(run.err()) == 1);
+  CHECK(run.err().find("run the same command again") != std::string::npos);
+  fs::remove(stage + "/journal");
+  fs::rename(stage + "/journal-away", stage + "/journal");
+  CHECK(bench.replay("run/stage", "run/out.ply").code == 0);
+  bench.check_result(bench.path("run/out.ply"));
 }
 
 TEST_CASE("a disk that is full for a while is waited for, and status says so") {
