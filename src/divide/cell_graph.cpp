@@ -37,9 +37,9 @@ thread_local OwnRandom own_random;
 
 }  // namespace
 
-// METIS draws from rand(), which belongs to the whole process, and so does the thread of ZeroMQ that
-// connects again to a ventilator or a sink that is gone: a partition made meanwhile would be another
-// one. These come before those of the C library, for shared libraries, too.
+// METIS draws from rand(), which belongs to the whole process, and so does the thread of ZeroMQ
+// that connects again to a ventilator or a sink that is gone: a partition made meanwhile would be
+// another one. These come before those of the C library, for shared libraries, too.
 extern "C" __attribute__((visibility("default"))) int rand() noexcept {
   return own_random.next();
 }
