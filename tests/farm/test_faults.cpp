@@ -222,6 +222,19 @@ TEST_CASE("a journal that cannot be written any more stops the run for now, in o
   bench.check_result(bench.path("run/out.ply"));
 }
 
+TEST_CASE("a ventilator that fails before a sink was told says why") {
+  Bench& bench = parts();
+  bench.fresh();
+  const std::string stage = bench.path("run/stage");
+  REQUIRE(bench.replay("run/stage", "run/out.ply").code == 0);
+  for (const auto& entry : fs::directory_iterator(stage + "/control")) {
+    if (entry.path().extension() == ".keys") std::ofstream(entry.path()) << "damaged";
+  }
+  const Ran ran = bench.meshfarm({"ventilator", stage, "--ratio", "0.05", "--supervised"});
+  CHECK(ran.code == 1);
+  CHECK(errors_in(ran.err) == 1);
+}
+
 TEST_CASE("a disk that is full for a while is waited for, and status says so") {
   Bench& bench = parts();
   bench.fresh();

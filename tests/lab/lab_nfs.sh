@@ -19,7 +19,7 @@ failed=
 pids=()
 for version in 3 4.2; do
   "$lab_here/nfs/boot.sh" $version 900 "$lab_here/nfs/scenario.sh" "$MESHFARM" "$work/stage" \
-    "$work/expected.ply" "$work/farmed" "$work/expected-farmed.ply" "${farmed[@]}" \
+    "$work/expected.ply" "$work/mesh.ply" "$work/expected-farmed.ply" "${farmed[@]}" \
     > "$work/log.$version" 2>&1 &
   pids+=($!)
 done

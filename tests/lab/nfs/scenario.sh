@@ -4,13 +4,13 @@
 # restarted or away for long, the links cut. Each ends with the same bytes, or with code 3 and with the
 # same bytes when the same command is given again; what only takes its time must not stop a run, nor
 # cost a worker its life.
-#   scenario.sh PROGRAM CUT-STAGE EXPECTED.ply FARMED-STAGE EXPECTED-FARMED.ply TARGET...
-# The last are of a run whose cut and finish are jobs.
+#   scenario.sh PROGRAM CUT-STAGE EXPECTED.ply MESH.ply EXPECTED-FARMED.ply TARGET...
+# The last are of a run whose cut, into 8 parts, and finish are jobs.
 set -uo pipefail
 meshfarm=$1
 cut_stage=$2
 expected=$3
-farmed_stage=$4
+mesh=$4
 farmed_expected=$5
 shift 5
 farmed_target=("$@")
@@ -191,10 +191,12 @@ finish 120
 check link1
 
 say "cut and finish are jobs, and the server is restarted while there is something to cut"
-cut_stage=$farmed_stage
 expected=$farmed_expected
 target=("${farmed_target[@]}")
-new_stage farmed
+# The input is on NFS, too: workers see whether it is the one that the stage was made for.
+cp "$mesh" "$ventilator_side/mesh.ply" || fail "no room for the mesh"
+"$meshfarm" cut "$ventilator_side/mesh.ply" --stage "$ventilator_side/farmed" --parts 8 --cut farm \
+  --blocks 6 -q > /dev/null || fail "the cut is not planned"
 start farmed
 wait_for 60 has_results farmed 8 || fail "no results"
 rpc.nfsd 0
