@@ -15,7 +15,7 @@
 namespace meshfarm {
 namespace {
 
-enum Stage : std::uint32_t {
+enum StageOfWholeRun : std::uint32_t {
   k_survey,
   k_count,
   k_partition,
