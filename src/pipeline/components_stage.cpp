@@ -4,8 +4,14 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <utility>
 
+#include <meshfarm/farm/protocol.hpp>
 #include <meshfarm/pipeline/piece_jobs.hpp>
+#include <meshfarm/util/errors.hpp>
+
+#include "pipeline/finish_stage.hpp"
+#include "pipeline/run_stages.hpp"
 
 namespace meshfarm {
 namespace {
@@ -37,6 +43,26 @@ Job components_job(const Manifest& manifest, const RunOptions& options,
   job.parameters = encode_parameters(parameters);
   job.memory = k_finder_process_bytes + most + k_boundary_copies * manifest.boundary.size;
   return job;
+}
+
+void FinishStage::find_components(JobGraph& graph) {
+  const JobName name = job_name(RunStage::components, 0);
+  Job job = components_job(manifest_, options_, parts_);
+  if (job.parameters.size() > k_max_parameters_bytes) {
+    return done_(graph, std::nullopt, "there are more pieces than a job can name");
+  }
+  graph.add(name, std::move(job));
+  graph.then({just(name)}, [this, name](JobGraph& so_far) {
+    const JobOutput& output = so_far.output(name);
+    const SmallComponents found =
+        decode_small_components(output.summary, "summary of " + output.file.name);
+    if (found.pieces.size() != parts_.size()) {
+      throw DataError(output.file.name + ": is of other pieces");
+    }
+    made_.dropped_components = found.dropped;
+    for (const FileSection& each : found.pieces) small_components_.push_back({output.file, each});
+    divide(so_far);
+  });
 }
 
 }  // namespace meshfarm

@@ -10,7 +10,6 @@
 #include <meshfarm/pipeline/budget.hpp>
 #include <meshfarm/pipeline/simplify_job.hpp>
 
-#include "pipeline/components_stage.hpp"
 #include "pipeline/error_meter.hpp"
 #include "pipeline/quotas.hpp"
 #include "pipeline/run_stages.hpp"
@@ -27,6 +26,8 @@ constexpr double k_kept_of_share = 1.3;
 constexpr std::size_t k_most_rounds = 4;
 /// So often pieces are divided. The later one is so many steps before the threshold.
 constexpr std::size_t k_most_turns = 2;
+/// Where nothing was collapsed before, what is wanted may be so many times farther.
+constexpr double k_from_the_start = 8;
 constexpr std::int32_t k_steps_before_end = 2;
 constexpr std::int32_t k_steps_for_turn = 2;
 
@@ -90,26 +91,6 @@ void FinishStage::begin(JobGraph& graph, const FinishGoal& goal,
   options_.drop_components.in(manifest_.box) > 0 ? find_components(graph) : divide(graph);
 }
 
-void FinishStage::find_components(JobGraph& graph) {
-  const JobName name = job_name(RunStage::components, 0);
-  Job job = components_job(manifest_, options_, parts_);
-  if (job.parameters.size() > k_max_parameters_bytes) {
-    return done_(graph, std::nullopt, "there are more pieces than a job can name");
-  }
-  graph.add(name, std::move(job));
-  graph.then({just(name)}, [this, name](JobGraph& so_far) {
-    const JobOutput& output = so_far.output(name);
-    const SmallComponents found =
-        decode_small_components(output.summary, "summary of " + output.file.name);
-    if (found.pieces.size() != parts_.size()) {
-      throw DataError(output.file.name + ": is of other pieces");
-    }
-    made_.dropped_components = found.dropped;
-    for (const FileSection& each : found.pieces) small_components_.push_back({output.file, each});
-    divide(so_far);
-  });
-}
-
 void FinishStage::divide(JobGraph& graph) {
   const std::size_t base = turns_++ * parts_.size();
   std::uint32_t first_part = 0;
@@ -164,13 +145,22 @@ void FinishStage::weigh(JobGraph& graph) {
     all += each.divided.weight.before;
     gaps += each.divided.gap_triangles;
   }
+  // The ladders tell of what was left out, too: all began too far.
+  if (all + gaps < made_.target && step_ >= 0 && made_.dropped_components.components > 0 &&
+      turns_ < k_most_turns) {
+    step_ = weigh_.first_step = -1;
+    weigh_.last_share /= k_from_the_start;
+    weigh_.kept_share /= k_from_the_start;
+    return divide(graph);
+  }
   if (gaps > made_.target || all + gaps < made_.target) {
     return done_(graph, std::nullopt, "the pieces have no common threshold for the count");
   }
   // Where seams are much of the surface, the ladders tell of little of it: far from the end the
   // pieces would share what is denser than the rest.
   const std::int32_t step = step_below(weights_, made_.target - gaps) - k_steps_before_end;
-  if (made_.pieces.size() > 1 && turns_ < k_most_turns && step >= step_ + k_steps_for_turn) {
+  const std::size_t most_turns = step_ < 0 ? k_most_turns + 1 : k_most_turns;
+  if (made_.pieces.size() > 1 && turns_ < most_turns && step >= step_ + k_steps_for_turn) {
     step_ = step;
     weigh_.first_step = step;
     return divide(graph);
