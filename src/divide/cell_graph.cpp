@@ -44,6 +44,8 @@ extern "C" __attribute__((visibility("default"))) int rand() noexcept {
   return own_random.next();
 }
 
+// The name in the C library is a reserved one.
+// NOLINTNEXTLINE(readability-inconsistent-declaration-parameter-name)
 extern "C" __attribute__((visibility("default"))) void srand(unsigned number) noexcept {
   own_random.seed(number);
 }
