@@ -56,21 +56,6 @@ std::uint64_t share_of_points(std::uint64_t points, std::uint64_t triangles, std
   return 1 + points * triangles / std::max<std::uint64_t>(1, all);
 }
 
-/// Of a share of the piece.
-void add_error(const PieceError& more, PieceError& error) {
-  const double area = error.input_area + more.input_area;
-  error.input_samples += more.input_samples;
-  error.to_output.max = std::max(error.to_output.max, more.to_output.max);
-  if (!(more.input_area > 0)) return;
-  const auto mean = [&](double a, double b) {
-    return (a * error.input_area + b * more.input_area) / area;
-  };
-  const Distance& d = more.to_output;
-  error.to_output.rms = std::sqrt(mean(error.to_output.rms * error.to_output.rms, d.rms * d.rms));
-  error.to_output.mean = mean(error.to_output.mean, d.mean);
-  error.input_area = area;
-}
-
 }  // namespace
 
 void FinishStage::begin(JobGraph& graph, const FinishGoal& goal,
@@ -234,7 +219,7 @@ void FinishStage::measure(JobGraph& graph) {
 void FinishStage::take_measured(const JobGraph& graph, PieceOfResult& piece, std::size_t job) {
   const JobOutput& output = graph.output(job_name(RunStage::measure, job));
   piece.error_files.push_back(output.file);
-  add_error(decode_piece_error(output.summary, "summary of " + output.file.name), piece.error);
+  add_share(decode_piece_error(output.summary, "summary of " + output.file.name), piece.error);
 }
 
 /// Neighbouring parts of the input. First an empty range: what lies between the parts of a piece,

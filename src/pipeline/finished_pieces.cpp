@@ -1,5 +1,8 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
+#include <algorithm>
+#include <cmath>
+
 #include <meshfarm/pipeline/finished_pieces.hpp>
 #include <meshfarm/pipeline/sink_need.hpp>
 
@@ -33,6 +36,20 @@ std::string why_not_farmed(const Manifest& manifest, const RunOptions& options) 
 }
 
 }  // namespace
+
+void add_share(const PieceError& more, PieceError& error) {
+  const double area = error.input_area + more.input_area;
+  error.input_samples += more.input_samples;
+  error.to_output.max = std::max(error.to_output.max, more.to_output.max);
+  if (!(more.input_area > 0)) return;
+  const auto mean = [&](double a, double b) {
+    return (a * error.input_area + b * more.input_area) / area;
+  };
+  const Distance& d = more.to_output;
+  error.to_output.rms = std::sqrt(mean(error.to_output.rms * error.to_output.rms, d.rms * d.rms));
+  error.to_output.mean = mean(error.to_output.mean, d.mean);
+  error.input_area = area;
+}
 
 std::string why_finish_here(const Manifest& manifest, const RunOptions& options) {
   if (options.finish_place == FinishPlace::here) return "it is asked for";

@@ -203,6 +203,9 @@ struct PieceError {
   Distance to_output;
   std::uint64_t input_samples = 0;
 };
+/// Adds what was found of another share of the piece.
+void add_share(const PieceError& more, PieceError& error);
+
 /// The file of a measure job. Of each point of the result the least distance of all files counts.
 struct MeasuredPoints {
   /// From MeasureParameters::points to the job's share of the input, HUGE_VAL where that is not
