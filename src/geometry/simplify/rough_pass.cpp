@@ -28,6 +28,14 @@ constexpr std::uint32_t k_rough_vertices = 2048;
 constexpr std::size_t k_least_rough_sample = 128;
 // With fewer vertices that merge a pass is not worth its time.
 constexpr double k_least_rough_share = 0.3;
+// At one in so many it is looked whether another edge than the shortest would cost far less.
+constexpr std::size_t k_looked_round = 8;
+
+double quantile(std::vector<double>& costs, double share) {
+  const auto rank = static_cast<std::ptrdiff_t>(share * static_cast<double>(costs.size() - 1));
+  std::nth_element(costs.begin(), costs.begin() + rank, costs.end());
+  return costs[static_cast<std::size_t>(rank)];
+}
 
 }  // namespace
 
@@ -97,20 +105,37 @@ std::optional<double> RoughPartners::estimate_limit(CollapseJudge& judge, double
   const std::uint32_t one_in = std::max(1U, vertices / k_rough_vertices);
   const CollapseLimits no_limits{UINT64_MAX, HUGE_VAL};
   std::vector<double> costs;
+  std::vector<double> cheapest;  // of some of them, whatever the edge
   for (std::uint32_t first = 0; vertices - first >= one_in; first += one_in) {
     const std::uint32_t vertex = first + scrambled(first) % one_in;
     const std::uint32_t other = of(vertex);
     if (other == vertex) continue;
     const Collapse collapse =
         judge.judge(std::min(vertex, other), std::max(vertex, other), no_limits);
-    if (collapse.triangles > 0) costs.push_back(collapse.cost);
+    if (collapse.triangles == 0) continue;
+    if (costs.size() % k_looked_round == 0) {
+      cheapest.push_back(std::min(collapse.cost, cheapest_at(vertex, judge)));
+    }
+    costs.push_back(collapse.cost);
   }
   if (costs.size() < k_least_rough_sample) return {};
   const auto can = std::count_if(costs.begin(), costs.end(), [&](double c) { return c <= most; });
   if (static_cast<double>(can) < k_least_rough_share * static_cast<double>(costs.size())) return {};
-  const auto rank = static_cast<std::size_t>(share * static_cast<double>(costs.size() - 1));
-  std::nth_element(costs.begin(), costs.begin() + static_cast<std::ptrdiff_t>(rank), costs.end());
-  return std::min(costs[rank], most);
+  const double limit = quantile(costs, share);
+  if (limit > std::ldexp(quantile(cheapest, share), k_greatest_jump)) return {};
+  return std::min(limit, most);
+}
+
+double RoughPartners::cheapest_at(std::uint32_t vertex, CollapseJudge& judge) const {
+  double least = HUGE_VAL;
+  for (const Corner& c : state_.adjacency->at(vertex)) {
+    const std::uint32_t end = state_.target[c.next];
+    if (end == vertex) continue;
+    const auto [a, b] = std::minmax(vertex, end);
+    const Collapse collapse = judge.judge(a, b, {UINT64_MAX, least});
+    if (collapse.triangles > 0) least = std::min(least, collapse.cost);
+  }
+  return least;
 }
 
 }  // namespace meshfarm

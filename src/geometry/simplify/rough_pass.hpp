@@ -24,10 +24,14 @@ class RoughPartners {
   std::uint32_t of(std::uint32_t vertex) const;
 
   /// The cost that the cheapest `share` (0 to 1) of the vertices would pay to merge with their
-  /// partners, but no more than `most`, estimated from a sample; nothing if too few could for it.
+  /// partners, but no more than `most`, estimated from a sample; nothing if too few could for it,
+  /// or if edges that are not the shortest cost far less: along steep folds they go for nothing.
   std::optional<double> estimate_limit(CollapseJudge& judge, double share, double most) const;
 
  private:
+  /// What the cheapest collapse of an edge at the vertex costs.
+  double cheapest_at(std::uint32_t vertex, CollapseJudge& judge) const;
+
   CollapseState state_;
   std::span<const std::uint8_t> touched_;
 };

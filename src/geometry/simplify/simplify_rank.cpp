@@ -23,6 +23,9 @@ std::uint32_t bucket_of(CostKey key) {
 constexpr std::uint32_t k_sampled_vertices = 4096;
 constexpr std::uint64_t k_least_sample = 2000;
 
+// A key has the sign, eleven bits of the exponent, and the first of the fraction.
+constexpr int k_exponent_shift = 20;
+
 // Keys of infinity and of what is no number are greater.
 constexpr CostKey k_greatest_finite = 0x7FEFFFFF;
 
@@ -260,11 +263,17 @@ CostKey EdgeRanking::estimate_limit(double share, double most) {
   }
   const double wanted = std::min(share * static_cast<double>(sampled), most / one_in);
   std::uint64_t sum = 0;
+  CostKey greatest = k_any_cost;
   for (std::uint32_t bucket = 0; bucket < starts_.size(); ++bucket) {
     sum += starts_[bucket];
-    if (sum > 0 && static_cast<double>(sum) >= wanted) return ((bucket + 1) << k_bucket_shift) - 1;
+    if (sum == 0) continue;
+    const CostKey key = ((bucket + 1) << k_bucket_shift) - 1;
+    if (static_cast<double>(sum) >= wanted || key >= greatest) return std::min(key, greatest);
+    if (greatest == k_any_cost && static_cast<double>(sum) >= wanted / 2) {
+      greatest = key + (k_greatest_jump << k_exponent_shift);
+    }
   }
-  return k_any_cost;
+  return greatest;
 }
 
 std::span<const RankedEdge> EdgeRanking::cheapest(std::uint32_t first, std::uint32_t last,

@@ -26,6 +26,11 @@ CostKey key_of(double cost);
 /// The greatest cost that has this key.
 double cost_of(CostKey key);
 
+/// What a pass takes costs at most so many times what half of it does, as a power of two: where
+/// straight edges and flat faces go for nothing, a share of all edges would reach into what is dear
+/// before the rest of what is free has its turn.
+constexpr int k_greatest_jump = 10;
+
 /// Scrambles a number, so that a sample follows no pattern of the numbering.
 constexpr std::uint32_t scrambled(std::uint32_t vertex) {
   return vertex * 2654435769U;
