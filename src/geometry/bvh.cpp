@@ -7,19 +7,9 @@
 #include <cmath>
 
 #include "geometry/bvh_query.hpp"
+#include "geometry/distance_across.hpp"
 
 namespace meshfarm {
-namespace {
-
-double squared_to_segment(Vec3 p, Vec3 a, Vec3 b) {
-  const Vec3 ab = b - a, ap = p - a;
-  const double along = dot(ap, ab), all = dot(ab, ab);
-  if (!(along > 0)) return dot(ap, ap);
-  if (along >= all) return squared_length(p - b);
-  return squared_length(ap - ab * (along / all));
-}
-
-}  // namespace
 
 double squared_distance(Vec3 p, Vec3 a, Vec3 b, Vec3 c) {
   const Vec3 ab = b - a, ac = c - a, ap = p - a;

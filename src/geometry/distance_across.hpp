@@ -9,6 +9,15 @@
 
 namespace meshfarm {
 
+/// From a point to the segment from a to b, which may be a point.
+inline double squared_to_segment(Vec3 p, Vec3 a, Vec3 b) {
+  const Vec3 ab = b - a, ap = p - a;
+  const double along = dot(ap, ab), all = dot(ab, ab);
+  if (!(along > 0)) return dot(ap, ap);
+  if (along >= all) return squared_length(p - b);
+  return squared_length(ap - ab * (along / all));
+}
+
 /// How far a point is from a triangle, and which of its sides is nearest, if the point is beyond
 /// one. Degenerate triangles are the segments or points that they are.
 struct DistanceAcross {
@@ -19,16 +28,7 @@ struct DistanceAcross {
   bool is_inside() const { return side == k_inside; }
 
   void offer_side(std::size_t number, Vec3 p, Vec3 from, Vec3 to) {
-    const Vec3 along = to - from, ahead = p - from;
-    const double done = dot(ahead, along), all = dot(along, along);
-    double here = 0;
-    if (!(done > 0)) {
-      here = dot(ahead, ahead);
-    } else if (done >= all) {
-      here = squared_length(p - to);
-    } else {
-      here = squared_length(ahead - along * (done / all));
-    }
+    const double here = squared_to_segment(p, from, to);
     if (!(here < squared)) return;
     squared = here;
     side = number;
