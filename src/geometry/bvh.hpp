@@ -75,6 +75,9 @@ class Bvh {
   void split_into_nodes(std::span<const MortonItem> items);
   void set_leaf_boxes(Node& node) const;
   void set_inner_boxes(Node& node) const;
+  /// Nearest first, until what was found is near enough. What is farther than the query's limit at
+  /// the begin is never looked at.
+  void search(Query& query, double enough) const;
   void visit_leaf(Query& query, std::uint32_t first, std::uint32_t count) const;
   static Leaf leaf_of(const Node& node, std::size_t k);
 

@@ -49,7 +49,7 @@ inline DistanceAcross distance_across(Vec3 p, Vec3 a, Vec3 b, Vec3 c) {
   DistanceAcross found;
   if (!(area > 0) || at_c < 0) found.offer_side(0, p, a, b);
   if (!(area > 0) || at_a < 0) found.offer_side(1, p, b, c);
-  if (!(area > 0) || at_b < 0) found.offer_side(2, p, c, a);
+  if (!(area > 0) || at_b < 0) found.offer_side(2, p, a, c);
   return found;
 }
 

@@ -206,7 +206,7 @@ JobOutput find_small_components(const Job& job, const JobContext& context) {
   SmallComponents made;
   made.dropped = finder.sum();
   for (const std::vector<std::uint32_t>& each : dropped) {
-    made.pieces.push_back(sections.add(encode_vertices(each)));
+    made.pieces.push_back(sections.add(encode_list(each)));
   }
   const ResultName name{key_of(job).value, context.attempt, context.incarnation};
   return {context.publish(name, file), encode_summary(made)};

@@ -9,6 +9,7 @@
 #include <meshfarm/geometry/distance.hpp>
 #include <meshfarm/geometry/point_meter.hpp>
 #include <meshfarm/pipeline/piece_jobs.hpp>
+#include <meshfarm/util/byte_lists.hpp>
 #include <meshfarm/util/errors.hpp>
 
 #include "pipeline/error_meter.hpp"
@@ -185,7 +186,7 @@ class PieceMeter {
   std::vector<std::vector<Vec3>> read_points() const {
     std::vector<std::vector<Vec3>> points;
     for (const SectionRef& ref : parameters_.points) {
-      points.push_back(decode_points(read_section(context_, ref), ref.file.name));
+      points.push_back(decode_list<Vec3>(read_section(context_, ref), ref.file.name));
     }
     return points;
   }

@@ -247,45 +247,6 @@ Mesh decode_surface(std::string_view bytes, std::string_view what) {
   return surface;
 }
 
-std::string encode_shared(const std::vector<SeamVertex>& vertices) {
-  ByteWriter out;
-  put_list(out, vertices);
-  return out.take();
-}
-
-std::vector<SeamVertex> decode_shared(std::string_view bytes, std::string_view what) {
-  ByteReader in(bytes, what);
-  std::vector<SeamVertex> vertices = get_list<SeamVertex>(in);
-  in.expect_end();
-  return vertices;
-}
-
-std::string encode_vertices(const std::vector<std::uint32_t>& vertices) {
-  ByteWriter out;
-  put_list(out, vertices);
-  return out.take();
-}
-
-std::vector<std::uint32_t> decode_vertices(std::string_view bytes, std::string_view what) {
-  ByteReader in(bytes, what);
-  std::vector<std::uint32_t> vertices = get_list<std::uint32_t>(in);
-  in.expect_end();
-  return vertices;
-}
-
-std::string encode_points(const std::vector<Vec3>& points) {
-  ByteWriter out;
-  put_list(out, points);
-  return out.take();
-}
-
-std::vector<Vec3> decode_points(std::string_view bytes, std::string_view what) {
-  ByteReader in(bytes, what);
-  std::vector<Vec3> points = get_list<Vec3>(in);
-  in.expect_end();
-  return points;
-}
-
 std::string read_section(const JobContext& context, const SectionRef& ref) {
   return SectionedFile(context.stage, ref.file).read(ref.section);
 }

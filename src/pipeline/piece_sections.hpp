@@ -48,15 +48,6 @@ Mesh last_triangles(const StitchedMesh& stitched);
 std::string encode_surface(const Mesh& mesh);  // positions and triangles
 Mesh decode_surface(std::string_view bytes, std::string_view what);
 
-/// What a group shares: its mesh's first vertices, in order.
-std::string encode_shared(const std::vector<SeamVertex>& vertices);
-std::vector<SeamVertex> decode_shared(std::string_view bytes, std::string_view what);
-std::string encode_vertices(const std::vector<std::uint32_t>& vertices);
-std::vector<std::uint32_t> decode_vertices(std::string_view bytes, std::string_view what);
-
-std::string encode_points(const std::vector<Vec3>& points);
-std::vector<Vec3> decode_points(std::string_view bytes, std::string_view what);
-
 /// Opens the file, for one section.
 std::string read_section(const JobContext& context, const SectionRef& ref);
 

@@ -16,6 +16,7 @@
 #include <meshfarm/io/result_file.hpp>
 #include <meshfarm/pipeline/input_surface.hpp>
 #include <meshfarm/staging/sections.hpp>
+#include <meshfarm/util/byte_lists.hpp>
 #include <meshfarm/util/errors.hpp>
 
 #include "pipeline/piece_sections.hpp"
@@ -79,7 +80,7 @@ class PiecesWriter {
   void add_shared(const PieceOfResult& group, std::uint64_t first) {
     const std::string& name = group.divided_file.name;
     for (const SeamVertex& each :
-         decode_shared(read_of(stage_, group.divided_file, group.divided.strip), name)) {
+         decode_list<SeamVertex>(read_of(stage_, group.divided_file, group.divided.strip), name)) {
       shared_.emplace_back(each, first++);
     }
   }
@@ -206,7 +207,7 @@ DistanceQuantiles quantiles(WeightedDistances distances) {
 void find_missing(const Stage& stage, const Manifest& manifest, const PieceOfResult& seams,
                   const FinishedPieces& result, unsigned threads, std::vector<double>& distances) {
   if (std::find(distances.begin(), distances.end(), HUGE_VAL) == distances.end()) return;
-  const std::vector<Vec3> points = decode_points(
+  const std::vector<Vec3> points = decode_list<Vec3>(
       read_of(stage, seams.finished_file, seams.finished.points), seams.finished_file.name);
   std::vector<Vec3> missing;
   for (std::size_t i = 0; i < std::min(points.size(), distances.size()); ++i) {

@@ -7,6 +7,7 @@
 #include <meshfarm/geometry/point_meter.hpp>
 #include <meshfarm/geometry/simplify.hpp>
 #include <meshfarm/pipeline/piece_jobs.hpp>
+#include <meshfarm/util/byte_lists.hpp>
 #include <meshfarm/util/errors.hpp>
 
 #include "pipeline/piece_sections.hpp"
@@ -67,7 +68,7 @@ JobOutput reduce_piece(const Job& job, const JobContext& context) {
   SectionWriter sections([&](std::string_view bytes) { file += bytes; });
   FinishedPiece made;
   made.mesh = sections.add(encode_piece(mesh, locked, piece.positions));
-  made.points = sections.add(encode_points(points_of_piece(mesh, parameters, made)));
+  made.points = sections.add(encode_list(points_of_piece(mesh, parameters, made)));
   made.vertices = mesh.positions.size();
   made.triangles = mesh.triangles.size();
   const ResultName name{key_of(job).value, context.attempt, context.incarnation};

@@ -17,6 +17,7 @@
 #include <meshfarm/io/regions.hpp>
 #include <meshfarm/pipeline/piece_jobs.hpp>
 #include <meshfarm/stitch/stitcher.hpp>
+#include <meshfarm/util/byte_lists.hpp>
 #include <meshfarm/util/errors.hpp>
 
 #include "pipeline/piece_sections.hpp"
@@ -325,7 +326,7 @@ JobOutput join_seams(const Job& job, const JobContext& context) {
   made.samples = file.add(encode_samples(samples));
   made.between = file.add(encode_surface(group.between));
   made.gap = file.add(encode_gap(group.gap));
-  made.strip = file.add(encode_shared(group.shared));
+  made.strip = file.add(encode_list(group.shared));
   file.add_weighed(weigh(std::move(group.mesh), static_cast<std::uint32_t>(made.shared), positions,
                          parameters.weigh, context),
                    made);

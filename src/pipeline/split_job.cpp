@@ -8,6 +8,7 @@
 #include <meshfarm/geometry/simplify.hpp>
 #include <meshfarm/geometry/vertices.hpp>
 #include <meshfarm/pipeline/piece_jobs.hpp>
+#include <meshfarm/util/byte_lists.hpp>
 #include <meshfarm/util/errors.hpp>
 
 #include "pipeline/piece_sections.hpp"
@@ -124,7 +125,7 @@ std::vector<std::uint32_t> drop_components(const SectionRef& components, const J
   Mesh& mesh = piece.mesh;
   std::vector<std::uint8_t> is_dropped(mesh.positions.size(), 0);
   for (const std::uint32_t v :
-       decode_vertices(read_section(context, components), components.file.name)) {
+       decode_list<std::uint32_t>(read_section(context, components), components.file.name)) {
     if (v >= is_dropped.size()) throw DataError(components.file.name + ": no such vertex");
     is_dropped[v] = 1;
   }

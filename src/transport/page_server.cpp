@@ -17,7 +17,8 @@ ListenFunction* load() {
   void* const function = module == nullptr ? nullptr : ::dlsym(module, k_page_function);
   if (function == nullptr) {
     const char* const reason = ::dlerror();
-    throw Error(std::string("cannot serve pages: ") + (reason != nullptr ? reason : k_page_module));
+    throw Error(std::string("cannot serve pages: ") + (reason != nullptr ? reason : k_page_module) +
+                "; install the program whole: the module lies in lib/meshfarm or beside it");
   }
   return reinterpret_cast<ListenFunction*>(function);
 }

@@ -4,6 +4,8 @@
 
 #include <cstdint>
 #include <span>
+#include <string>
+#include <string_view>
 #include <vector>
 
 #include <meshfarm/util/bytes.hpp>
@@ -20,6 +22,23 @@ void put_list(ByteWriter& out, const std::vector<T>& values) {
 template <class T>
 std::vector<T> get_list(ByteReader& in) {
   return in.get_array<T>(in.get<std::uint32_t>());
+}
+
+/// A file or section that is one list.
+template <class T>
+std::string encode_list(const std::vector<T>& values) {
+  ByteWriter out;
+  put_list(out, values);
+  return out.take();
+}
+
+/// Throws an error that names `what` where more or less than a list is there.
+template <class T>
+std::vector<T> decode_list(std::string_view bytes, std::string_view what) {
+  ByteReader in(bytes, what);
+  std::vector<T> values = get_list<T>(in);
+  in.expect_end();
+  return values;
 }
 
 }  // namespace meshfarm
