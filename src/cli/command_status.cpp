@@ -20,7 +20,7 @@
 namespace meshfarm {
 namespace {
 
-constexpr std::chrono::milliseconds k_look_every{1000};
+constexpr std::chrono::milliseconds k_refresh_every{1000};
 constexpr std::chrono::milliseconds k_look_for_keys_every{200};
 /// A log gets no more lines than this, and one for each change of the phase.
 constexpr int k_looks_a_line = 5;
@@ -66,7 +66,7 @@ class StatusCommand : public Command {
 
   /// Waits a second. Whether to go on.
   static bool goes_on(const SignalWait& signals) {
-    const auto end = std::chrono::steady_clock::now() + k_look_every;
+    const auto end = std::chrono::steady_clock::now() + k_refresh_every;
     for (;;) {
       const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(
           end - std::chrono::steady_clock::now());
@@ -134,7 +134,7 @@ class StatusCommand : public Command {
 
   /// Waits until it is time for the next frame. Whether there is to be one.
   static bool stays(TerminalScreen& screen, const SignalWait& signals) {
-    const auto end = std::chrono::steady_clock::now() + k_look_every;
+    const auto end = std::chrono::steady_clock::now() + k_refresh_every;
     while (std::chrono::steady_clock::now() < end) {
       const std::optional<int> signal = signals.next(k_look_for_keys_every);
       if (screen.quit_was_pressed()) return false;

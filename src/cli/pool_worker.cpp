@@ -17,7 +17,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr std::chrono::milliseconds k_look_every{300};
+constexpr std::chrono::milliseconds k_choose_every{300};
 /// A run that is served shows so in its trace within this.
 constexpr std::chrono::milliseconds k_until_seen{2000};
 /// A run that is over for workers is not joined again before its trace says so...
@@ -38,7 +38,7 @@ class PoolWorker {
         continue;
       }
       if (work_.wait && Clock::now() - idle_since > *work_.wait) return;
-      pause(k_look_every);
+      pause(k_choose_every);
     }
   }
 

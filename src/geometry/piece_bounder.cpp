@@ -9,7 +9,7 @@ namespace meshfarm {
 namespace {
 
 /// So thin triangles are not sure on which side of them a point is.
-constexpr double k_thin = 1e-10;
+constexpr double k_sliver = 1e-10;
 constexpr double k_relative_rounding = 0x1p-44;
 
 /// Of the segment's nearest point.
@@ -45,7 +45,7 @@ double distance_above(Vec3 p, const CornerPoints& triangle) {
   double best = HUGE_VAL;
   if (area > 0 && at_b >= 0 && at_c >= 0 && at_b + at_c <= area) {
     best = squared_length(ap - ab * (at_b / area) - ac * (at_c / area));
-    if (area > k_thin * dot(ab, ab) * dot(ac, ac)) return std::sqrt(best);
+    if (area > k_sliver * dot(ab, ab) * dot(ac, ac)) return std::sqrt(best);
   }
   best = std::min({best, squared_above(p, a, b), squared_above(p, b, c), squared_above(p, c, a)});
   return std::sqrt(best);

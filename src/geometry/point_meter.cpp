@@ -18,7 +18,7 @@ namespace {
 /// So many triangles are first looked at by their common box where no grid helps.
 constexpr std::size_t k_run = 32;
 /// The farthest place to look at is a little beyond what is known, so that it is found again.
-constexpr double k_beyond = 1 + 0x1p-20;
+constexpr double k_a_little_more = 1 + 0x1p-20;
 /// Of the distance between vertices: to look a little farther costs nothing, nor do larger cells.
 constexpr double k_least_reach = 0.25;
 constexpr double k_meter_cell = 2;
@@ -48,7 +48,7 @@ class PointMeter::Impl {
  public:
   Impl(std::span<const Vec3> points, const PointMeterHints& hints)
       : hints_(hints),
-        reach_(k_beyond * std::max(hints.usual, k_least_reach * hints.spacing)),
+        reach_(k_a_little_more * std::max(hints.usual, k_least_reach * hints.spacing)),
         points_(points.size()) {
     for (std::size_t i = 0; i < points.size(); ++i) {
       points_[i].place = points[i];
@@ -113,7 +113,7 @@ class PointMeter::Impl {
     for (const std::uint32_t i : searching) {
       const Bvh::Nearest nearest = bvh.nearest(points_[i].place, guess);
       guess = nearest.triangle;
-      points_[i].squared = nearest.squared * k_beyond;
+      points_[i].squared = nearest.squared * k_a_little_more;
     }
     return searching;
   }

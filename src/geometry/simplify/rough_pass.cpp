@@ -31,7 +31,7 @@ constexpr double k_least_rough_share = 0.3;
 // At one in so many it is looked whether another edge than the shortest would cost far less.
 constexpr std::size_t k_looked_round = 8;
 
-double quantile(std::vector<double>& costs, double share) {
+double cost_at(std::vector<double>& costs, double share) {
   const auto rank = static_cast<std::ptrdiff_t>(share * static_cast<double>(costs.size() - 1));
   std::nth_element(costs.begin(), costs.begin() + rank, costs.end());
   return costs[static_cast<std::size_t>(rank)];
@@ -121,8 +121,8 @@ std::optional<double> RoughPartners::estimate_limit(CollapseJudge& judge, double
   if (costs.size() < k_least_rough_sample) return {};
   const auto can = std::count_if(costs.begin(), costs.end(), [&](double c) { return c <= most; });
   if (static_cast<double>(can) < k_least_rough_share * static_cast<double>(costs.size())) return {};
-  const double limit = quantile(costs, share);
-  if (limit > std::ldexp(quantile(cheapest, share), k_greatest_jump)) return {};
+  const double limit = cost_at(costs, share);
+  if (limit > std::ldexp(cost_at(cheapest, share), k_greatest_jump)) return {};
   return std::min(limit, most);
 }
 

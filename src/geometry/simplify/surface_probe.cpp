@@ -13,7 +13,7 @@ namespace {
 constexpr double k_quite_near = 0.5;
 /// Points that are looked at are so far apart, in distances of the bound, but no more on a side.
 constexpr double k_probe_spacing = 1.25;
-constexpr double k_most_on_side = 32;
+constexpr double k_most_probes = 32;
 /// Inside of triangles so far, and in no more rows.
 constexpr double k_row_spacing = 1;
 constexpr double k_most_rows = 64;
@@ -21,7 +21,7 @@ constexpr double k_most_rows = 64;
 constexpr double k_cell_size = 2;
 constexpr double k_least_cell = 1.0 / 32;
 /// So thin triangles are looked at along their sides only.
-constexpr double k_least_height = 1e-6;
+constexpr double k_flat_height = 1e-6;
 
 }  // namespace
 
@@ -42,7 +42,7 @@ bool SurfaceProbe::is_side_near(Vec3 from, Vec3 to) {
   const double most = bound_.distance() * bound_.distance();
   const double enough = most * k_quite_near * k_quite_near;
   const Vec3 along = to - from;
-  const double steps = std::max(2.0, steps_for(length(along), k_probe_spacing, k_most_on_side));
+  const double steps = std::max(2.0, steps_for(length(along), k_probe_spacing, k_most_probes));
   const auto squared_at = [&](double i) {
     return squared_to_surface(from + along * (i / steps), enough);
   };
@@ -102,7 +102,7 @@ bool SurfaceProbe::is_marked_round(double x, double y) const {
 
 bool SurfaceProbe::is_inside_near(const std::array<Vec3, 3>& triangle, std::span<const Vec3> feet) {
   Rows rows = rows_of(triangle);
-  if (!(rows.height > k_least_height * rows.base)) return true;
+  if (!(rows.height > k_flat_height * rows.base)) return true;
   rows.count = steps_for(rows.height, k_row_spacing, k_most_rows);
   mark_cells(rows, feet);
   for (double row = 0; row < rows.count; ++row) {

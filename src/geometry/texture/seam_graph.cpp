@@ -18,9 +18,9 @@ constexpr std::uint32_t k_no_corner = SeamGraph::k_none;
 // if it is 0.6, and the bends of scans do not if it is 0.3.
 constexpr double k_bent = 0.45;
 
-class Reduction {
+class SeamReduction {
  public:
-  explicit Reduction(SeamGraph& graph) : graph_(graph), became_(graph.charts.size()) {
+  explicit SeamReduction(SeamGraph& graph) : graph_(graph), became_(graph.charts.size()) {
     std::iota(became_.begin(), became_.end(), 0U);
     waiting_ = became_;
   }
@@ -163,7 +163,7 @@ class Reduction {
 }  // namespace
 
 std::uint64_t floor_of(SeamGraph graph) {
-  Reduction reduction(graph);
+  SeamReduction reduction(graph);
   reduction.run();
   const std::vector<std::int64_t> others = reduction.other_vertices();
   std::uint64_t floor = 0;

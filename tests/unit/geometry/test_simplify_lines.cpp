@@ -22,15 +22,15 @@ using namespace meshfarm::simplify_test;
 
 namespace {
 
-constexpr int k_side = 24;
+constexpr int k_units = 24;
 
 /// How many of the cube's faces a point of its surface lies on: 1 inside a face, 2 on an edge.
 int faces_at(const std::array<int, 3>& p) {
   return static_cast<int>(
-      std::count_if(p.begin(), p.end(), [](int c) { return c == 0 || c == k_side; }));
+      std::count_if(p.begin(), p.end(), [](int c) { return c == 0 || c == k_units; }));
 }
 
-/// A cube of k_side units a side, rough on its faces but not on its edges.
+/// A cube of k_units units a side, rough on its faces but not on its edges.
 Mesh rough_cube() {
   Mesh mesh;
   std::map<std::array<int, 3>, std::uint32_t> index;
@@ -40,17 +40,17 @@ Mesh rough_cube() {
       const double rough =
           faces_at(p) > 1 ? 0 : 0.2 * std::sin(7.0 * p[0] + 5.0 * p[1] + 3.0 * p[2]);
       Vec3 position{p[0] * 1.0, p[1] * 1.0, p[2] * 1.0};
-      if (p[0] == 0 || p[0] == k_side) position.x += rough;
-      if (p[1] == 0 || p[1] == k_side) position.y += rough;
-      if (p[2] == 0 || p[2] == k_side) position.z += rough;
+      if (p[0] == 0 || p[0] == k_units) position.x += rough;
+      if (p[1] == 0 || p[1] == k_units) position.y += rough;
+      if (p[2] == 0 || p[2] == k_units) position.z += rough;
       mesh.positions.push_back(position);
     }
     return at->second;
   };
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    for (const int level : {0, k_side}) {
-      for (int u = 0; u < k_side; ++u) {
-        for (int v = 0; v < k_side; ++v) {
+    for (const int level : {0, k_units}) {
+      for (int u = 0; u < k_units; ++u) {
+        for (int v = 0; v < k_units; ++v) {
           std::array<std::uint32_t, 4> corner{};
           for (int i = 0; i < 4; ++i) {
             std::array<int, 3> p{};
@@ -70,7 +70,7 @@ Mesh rough_cube() {
 }
 
 bool is_cube_corner(Vec3 p) {
-  const auto at_end = [](double c) { return c == 0 || c == k_side; };
+  const auto at_end = [](double c) { return c == 0 || c == k_units; };
   return at_end(p.x) && at_end(p.y) && at_end(p.z);
 }
 
@@ -83,7 +83,7 @@ double length_on_cube_edges(const Mesh& mesh, double near) {
       const std::uint32_t b = t[(i + 1) % 3];
       if (a > b) continue;  // the other triangle has it the other way round
       const auto on_same = [&](double ca, double cb) {
-        return std::abs(ca - cb) < near && (std::abs(ca) < near || std::abs(ca - k_side) < near);
+        return std::abs(ca - cb) < near && (std::abs(ca) < near || std::abs(ca - k_units) < near);
       };
       const Vec3 p = mesh.positions[a];
       const Vec3 q = mesh.positions[b];
@@ -145,7 +145,7 @@ TEST_CASE("flags tell creases and their corners") {
 
 TEST_CASE("the edges of a cube stay sharp with a crease angle") {
   const Mesh cube = rough_cube();
-  const double edges = 12.0 * k_side;
+  const double edges = 12.0 * k_units;
   REQUIRE(length_on_cube_edges(cube, 1e-9) == doctest::Approx(edges));
   const Mesh kept = simplified(cube, {.crease_angle = 60}, 200);
   CHECK(kept.triangles.size() == 200);

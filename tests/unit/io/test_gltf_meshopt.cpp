@@ -24,7 +24,7 @@ struct Compressed {
 };
 
 /// Rows of a buffer view, as they were compressed.
-struct Packed {
+struct PackedRows {
   std::string mode = "ATTRIBUTES";
   std::string filter;
   std::size_t rows = 0;
@@ -34,8 +34,8 @@ struct Packed {
   std::string more_of_view;
 };
 
-Packed packed_rows(const void* rows, std::size_t count, std::size_t stride,
-                   std::string_view accessor, std::string_view filter = "") {
+PackedRows packed_rows(const void* rows, std::size_t count, std::size_t stride,
+                       std::string_view accessor, std::string_view filter = "") {
   std::string bytes(meshopt_encodeVertexBufferBound(count, stride), '\0');
   bytes.resize(meshopt_encodeVertexBuffer(reinterpret_cast<unsigned char*>(bytes.data()),
                                           bytes.size(), rows, count, stride));
@@ -48,7 +48,7 @@ Packed packed_rows(const void* rows, std::size_t count, std::size_t stride,
 
 constexpr std::string_view k_of_floats = R"("componentType":5126,"type":"VEC3")";
 
-Packed packed_positions(const std::vector<Vec3>& positions) {
+PackedRows packed_positions(const std::vector<Vec3>& positions) {
   std::vector<float> floats;
   for (const Vec3& p : positions) {
     for (const double x : {p.x, p.y, p.z}) floats.push_back(static_cast<float>(x));
@@ -56,7 +56,7 @@ Packed packed_positions(const std::vector<Vec3>& positions) {
   return packed_rows(floats.data(), positions.size(), 12, k_of_floats);
 }
 
-Packed packed_triangles(const Mesh& mesh, std::string_view mode, std::size_t stride) {
+PackedRows packed_triangles(const Mesh& mesh, std::string_view mode, std::size_t stride) {
   const std::uint32_t* const corners = mesh.triangles.front().data();
   const std::size_t count = 3 * mesh.triangles.size();
   const std::size_t vertices = mesh.positions.size();
@@ -77,7 +77,7 @@ Packed packed_triangles(const Mesh& mesh, std::string_view mode, std::size_t str
           .more_of_view = ""};
 }
 
-std::string view_of(const Packed& packed, std::size_t start) {
+std::string view_of(const PackedRows& packed, std::size_t start) {
   const auto number = [](std::size_t value) { return std::to_string(value); };
   const std::string filter = packed.filter.empty() ? "" : R"(,"filter":")" + packed.filter + "\"";
   return R"({"buffer":1,"byteLength":)" + number(packed.rows * packed.stride) +
@@ -88,7 +88,7 @@ std::string view_of(const Packed& packed, std::size_t start) {
 }
 
 /// A mesh of one primitive, of which `primitive` tells the accessors.
-Compressed compressed(const std::vector<Packed>& all,
+Compressed compressed(const std::vector<PackedRows>& all,
                       std::string_view primitive = R"("attributes":{"POSITION":0},"indices":1)") {
   Compressed made;
   std::string accessors;
@@ -208,7 +208,7 @@ TEST_CASE("normals that were filtered as octahedra are read, of 8 and of 16 bits
     meshopt_encodeFilterOct(filtered.data(), count, stride, stride == 4 ? 8 : 16, normals.data());
     const std::string accessor = "\"componentType\":" + std::string(stride == 4 ? "5120" : "5122") +
                                  R"(,"type":"VEC3","normalized":true)";
-    Packed rows = packed_rows(filtered.data(), count, stride, accessor, "OCTAHEDRAL");
+    PackedRows rows = packed_rows(filtered.data(), count, stride, accessor, "OCTAHEDRAL");
     rows.more_of_view = ",\"byteStride\":" + std::to_string(stride);
     const std::vector<float> values = channels_of(
         compressed({packed_positions(mesh.positions), rows, packed_triangles(mesh, "TRIANGLES", 4)},
@@ -233,7 +233,7 @@ TEST_CASE("rows that were filtered as quaternions are read") {
   }
   std::string filtered(count * 8, '\0');
   meshopt_encodeFilterQuat(filtered.data(), count, 8, 16, turns.data());
-  Packed rows =
+  PackedRows rows =
       packed_rows(filtered.data(), count, 8,
                   R"("componentType":5122,"type":"VEC3","normalized":true)", "QUATERNION");
   rows.more_of_view = R"(,"byteStride":8)";
@@ -248,7 +248,7 @@ TEST_CASE("of compressed buffer views few are held in memory, however many there
   constexpr std::size_t k_views = 8;
   constexpr std::size_t k_rows = 1'200'000;  // 14.4 MB
   std::string primitives;
-  std::vector<Packed> all;
+  std::vector<PackedRows> all;
   for (std::size_t i = 0; i < k_views; ++i) {
     const std::vector<float> floats(3 * k_rows, static_cast<float>(i));
     all.push_back(packed_rows(floats.data(), k_rows, 12, k_of_floats));
