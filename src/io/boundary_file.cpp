@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <bit>
 #include <cstring>
+#include <limits>
 #include <numeric>
 #include <utility>
 
@@ -86,14 +87,15 @@ BoundaryTriangle sorted_corners(BoundaryTriangle t) {
   return t;
 }
 
+/// Of the corners in any order.
 std::uint64_t hash_of(const BoundaryTriangle& t) {
   std::uint64_t hash = 0;
   for (const BoundaryCorner& each : t) {
-    hash ^= std::uint64_t{each.part} << 32 | each.local;
-    hash *= 0x9e3779b97f4a7c15ULL;
-    hash ^= hash >> 29;
+    std::uint64_t mixed = (std::uint64_t{each.part} << 32 | each.local) * 0x9e3779b97f4a7c15ULL;
+    mixed ^= mixed >> 29;
+    hash += mixed * 0xbf58476d1ce4e5b9ULL;
   }
-  return hash;
+  return hash ^ hash >> 32;
 }
 
 /// Appends triangles with their columns.
@@ -119,16 +121,26 @@ std::uint64_t drop_duplicates(std::vector<BoundaryTriangle>& triangles) {
 
 std::uint64_t drop_duplicates(std::vector<BoundaryTriangle>& triangles, TriangleColumns& columns) {
   // The first of those with the same corners stays, whatever the hashes are.
-  std::vector<std::uint64_t> known(std::bit_ceil(2 * triangles.size() + 1), 0);  // 1 + place
+  struct Known {
+    std::uint32_t hash = 0;   // tells most others without a look at their corners
+    std::uint32_t place = 0;  // 1 + it
+  };
+  if (triangles.size() >= std::numeric_limits<std::uint32_t>::max()) {
+    throw DataError("2^32 boundary triangles or more");
+  }
+  std::vector<Known> known(std::bit_ceil(2 * triangles.size() + 1));
   std::vector<bool> duplicate(triangles.size(), false);
   for (std::size_t i = 0; i < triangles.size(); ++i) {
-    const BoundaryTriangle corners = sorted_corners(triangles[i]);
-    std::size_t slot = hash_of(corners) & (known.size() - 1);
-    while (known[slot] != 0 && sorted_corners(triangles[known[slot] - 1]) != corners) {
-      slot = (slot + 1) & (known.size() - 1);
-    }
-    duplicate[i] = known[slot] != 0;
-    if (!duplicate[i]) known[slot] = i + 1;
+    const std::uint64_t hash = hash_of(triangles[i]);
+    const auto tag = static_cast<std::uint32_t>(hash >> 32);
+    const auto is_same = [&](const Known& other) {
+      return other.hash == tag &&
+             sorted_corners(triangles[other.place - 1]) == sorted_corners(triangles[i]);
+    };
+    std::size_t slot = hash & (known.size() - 1);
+    while (known[slot].place != 0 && !is_same(known[slot])) slot = (slot + 1) & (known.size() - 1);
+    duplicate[i] = known[slot].place != 0;
+    if (!duplicate[i]) known[slot] = {tag, static_cast<std::uint32_t>(i + 1)};
   }
   return keep_triangles(triangles, columns, [&](std::size_t i) { return !duplicate[i]; });
 }

@@ -50,11 +50,14 @@ class Stitcher {
     std::uint32_t parts = 1;
     std::uint32_t first_vertex = 0;
     std::uint32_t boundary_vertices = 0;
-    /// What the boundary vertices are, ascending; of a single part their local indices tell.
-    std::vector<BoundaryCorner> corners;
   };
 
   std::uint32_t piece_of(const BoundaryCorner& corner) const;
+  /// Gives a place to each corner that may be, in the order of parts and local indices.
+  void make_room(std::span<const BoundaryTriangle> boundary);
+  std::size_t place_of(const BoundaryCorner& corner) const {
+    return first_corner_[corner.part - first_part_] + corner.local;
+  }
   void find_corners(std::span<const BoundaryTriangle> boundary);
   std::uint32_t vertex_of(const BoundaryCorner& corner) const;
 
@@ -62,6 +65,10 @@ class Stitcher {
   std::uint32_t first_part_;
   std::vector<Piece> pieces_;
   std::vector<std::uint32_t> piece_of_part_;  // from first_part_ on
+  std::vector<std::size_t> first_corner_;     // by part, from first_part_ on: its first place
+  /// By place, of a piece of several parts: the number of the boundary vertex in the piece. Of a
+  /// single part the local index tells.
+  std::vector<std::uint32_t> number_;
   StitchedMesh stitched_;
 };
 
