@@ -16,11 +16,11 @@ namespace meshfarm {
 namespace {
 
 /// Measured: so many vertices, or triangles, take the work of simplifying one triangle.
-constexpr std::uint64_t k_surveyed = 50;
+constexpr std::uint64_t k_surveyed = 30;
 constexpr std::uint64_t k_counted = 15;
 constexpr std::uint64_t k_scattered_vertices = 9;
 constexpr std::uint64_t k_scattered_triangles = 8;
-constexpr std::uint64_t k_partitioned = 5;  // times the work, a cell
+constexpr std::uint64_t k_partitioned = 2;  // times the work, a cell
 
 constexpr std::uint64_t k_cut_process_bytes = std::uint64_t{16} << 20;
 constexpr std::uint64_t k_cell_bytes_in_memory = 300;   // in a tree, and as it is written

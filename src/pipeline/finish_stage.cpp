@@ -42,6 +42,10 @@ constexpr std::uint64_t k_seam_triangles = 24'000;
 constexpr std::uint64_t k_most_seam_triangles = 150'000;
 constexpr std::uint64_t k_usual_groups = 24;
 constexpr std::uint64_t k_pieces_round_group = 20;
+/// Measured: to join them takes the work of simplifying so many times as many, to split a piece so
+/// many times its triangles.
+constexpr std::uint64_t k_seam_work = 3;
+constexpr std::uint64_t k_split_work = 2;
 /// Of fewer pieces groups meet nearly everywhere: on foam in 7 pieces that is 2.5 % of the error.
 constexpr std::uint64_t k_least_pieces_for_groups = 12;
 /// Of the input, by one job, at least.
@@ -252,7 +256,7 @@ Job FinishStage::split_job(const ComposedParts& parts, std::size_t number) const
   job.parameters = encode_parameters(SplitParameters{
       static_cast<std::uint32_t>(number), parts.chosen.rung, step_, parts.chosen.parts > 1,
       small_components_.empty() ? SectionRef{} : small_components_[number], weigh_});
-  job.cost = parts.triangles;
+  job.cost = k_split_work * parts.triangles;
   job.memory = k_piece_process_bytes + parts.chosen.file.size +
                k_piece_triangle_bytes * parts.triangles +
                memory_of_channels(weigh_.lines, parts.triangles);
@@ -278,7 +282,7 @@ Job FinishStage::seam_job(std::uint32_t group, std::uint32_t groups) const {
   Job job;
   job.kind = k_seam_kind;
   job.parameters = encode_parameters(parameters);
-  job.cost = triangles / groups + 1;
+  job.cost = k_seam_work * triangles / groups + 1;
   const std::uint64_t pieces = made_.pieces.size();
   const std::uint64_t near = std::min(pieces, pieces / groups + 1 + k_pieces_round_group);
   job.memory =
@@ -360,7 +364,7 @@ Job FinishStage::measure_job(std::size_t number, const std::vector<PartRange>& r
   job.parameters = encode_parameters(parameters);
   job.reads = manifest_.bundles ? bytes_of_bundles(triangles) : read;
   // To build a part takes about as long as to measure to it.
-  const std::uint64_t shown = triangles / (manifest_.bundles ? 2 : 4);
+  const std::uint64_t shown = triangles / (manifest_.bundles ? 4 : 8);
   job.cost = k_before_measuring + shown + result;
   if (piece.parts == 0) job.cost += 2 * piece.divided.strip_triangles;
   job.memory = k_piece_process_bytes + part + 100 * result;
