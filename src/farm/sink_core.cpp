@@ -16,6 +16,8 @@ constexpr FarmTime k_first_pause{1000};
 constexpr FarmTime k_longest_sink_pause{5000};
 /// The output takes longer to try.
 constexpr FarmTime k_longest_output_pause{60'000};
+/// To read less takes hardly longer than to look at it.
+constexpr std::uint64_t k_large_bytes = std::uint64_t{256} << 10;
 
 }  // namespace
 
@@ -123,8 +125,15 @@ void SinkCore::take_result(const Result& result) {
     ++dropped_;
     return;
   }
-  const Check check{result.key,     output,       Check::What::result,        result.worker,
-                    result.attempt, result.times, wanted_.at(result.key).kind};
+  const bool looks = output.file.size >= k_large_bytes && !found_damage_;
+  const Check::What what = looks ? Check::What::large : Check::What::result;
+  const Check check{result.key,
+                    output,
+                    what,
+                    result.worker,
+                    result.attempt,
+                    result.times,
+                    wanted_.at(result.key).kind};
   if (checking_.try_emplace(result.key, check).second) act(check);
 }
 
@@ -186,6 +195,10 @@ SinkActions SinkCore::checked(const Check& check, const JobFailure& problem, Far
 void SinkCore::take_in(const Check& check) {
   if (check.what == Check::What::known) {
     known_.looked_at(check.key);
+  } else if (check.what == Check::What::large) {
+    known_.add_looked_at(check.key, check.output);
+  }
+  if (check.what != Check::What::result) {
     act(Check{check.key, check.output, Check::What::accepted, {}, 0, {}, check.kind});
   }
   if (graph_.waits_for(check.key)) return want(accept(check));

@@ -91,6 +91,8 @@ class SimulatedFarm {
     Sink sink;
     SimulationChecks checks;
     std::map<JobKey, JobOutput> journal;
+    std::deque<Check> to_verify;                // what its sink accepted by a look
+    unsigned verifying = 0;                     // how many of those it reads
     std::map<WorkerId, std::uint32_t> members;  // of the ventilator's epoch: whose lane it is
     SimulatedTime centre_free{0};
     SimulatedTime sink_free{0};
@@ -229,6 +231,7 @@ class SimulatedFarm {
   void sink_act(Run& run, const Check& each);
   void sink_act(Run& run, const DoHere& each);
   void check_known(Run& run, const Check& each);
+  void verify_next(Run& run);
   void check_by_sick_mount(Run& run, const Check& each, SimulatedTime readable);
   void sink_act(Run& run, MakeOutput& each);
   void sink_act(Run& run, SinkLeaves& each);

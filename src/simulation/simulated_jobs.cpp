@@ -18,8 +18,11 @@ void SimulatedFarm::act(std::uint32_t index, Begin& each) {
   in_work.key = each.key;
   in_work.attempt = each.attempt;
   in_work.job = std::move(each.job);
-  in_work.work = options_.work ? options_.work(in_work.job)
-                               : SimulatedWork{static_cast<double>(in_work.job.cost) * 1e-3, 0, 0};
+  // Half of the results are large.
+  const std::uint64_t made_up = (each.key.value % 2) << 20;
+  in_work.work = options_.work
+                     ? options_.work(in_work.job)
+                     : SimulatedWork{static_cast<double>(in_work.job.cost) * 1e-3, 0, made_up};
   in_work.clock = JobClock(farm_now());
   const SimulatedTime delay = folder_.visibility_delay();
   const SimulatedTime readable = std::max(folder_.readable(worker.host), lost_part(in_work.key));
@@ -78,7 +81,7 @@ void SimulatedFarm::begin_computing(Worker& worker, std::uint32_t slot) {
   const std::string& name = in_work.job.parameters;
   const SimulatedFaults& faults = options_.faults;
   for (const FileRef& input : in_work.job.inputs) {
-    if (faults.decay <= 0 || folder_.has_whole(input.name)) continue;
+    if ((faults.decay <= 0 && faults.damaged <= 0) || folder_.has_whole(input.name)) continue;
     return fail_job(worker, slot, "its input is damaged", FailureKind::damaged_input);
   }
   const bool poison = !faults.poison.empty() && name == faults.poison;

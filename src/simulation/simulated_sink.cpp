@@ -12,6 +12,8 @@ namespace {
 constexpr std::chrono::milliseconds k_sink_down{8000};
 /// Longer than any fault: one that comes after its run's end leaves by itself.
 constexpr FarmTime k_patience = std::chrono::minutes(10);
+/// As in src/transport/sink.cpp.
+constexpr unsigned k_verifiers = 2;
 
 }  // namespace
 
@@ -28,6 +30,8 @@ void SimulatedFarm::start_sink(Run& run) {
   member.host = "sink";
   member.results = run.sink.here;
   member.patience = k_patience;
+  run.to_verify.clear();
+  run.verifying = 0;
   suffer(run);
   run.sink.core = std::make_unique<SinkCore>(member, *run.source, run.journal, options_.when_full);
   tick_sink(run, life);
@@ -81,17 +85,23 @@ void SimulatedFarm::sink_act(Run& run, Say& each) {
 }
 
 void SimulatedFarm::sink_act(Run& run, const Check& each) {
-  if (each.what != Check::What::result) return check_known(run, each);
+  if (each.what == Check::What::known) return check_known(run, each);
+  if (each.what == Check::What::accepted) {
+    run.to_verify.push_back(each);
+    return verify_next(run);
+  }
   const SimulatedTime readable = folder_.readable(run.sink.host);
   if (readable > queue_.now()) return check_by_sick_mount(run, each, readable);
-  SimulatedTime there =
-      folder_.transfer(run.sink.host, each.output.file.size) + folder_.visibility_delay();
+  const bool looks = each.what == Check::What::large;
+  SimulatedTime there = folder_.transfer(run.sink.host, looks ? 0 : each.output.file.size) +
+                        folder_.visibility_delay();
   if (options_.centre.per_result.count() > 0) {
     there = run.sink_free = std::max(run.sink_free, there) + options_.centre.per_result;
   }
-  queue_.at(there, [this, &run, each, life = run.sink.life] {
-    when_awake(run.sink, life, [this, &run, each] {
-      const bool whole = folder_.has_whole(each.output.file.name);
+  queue_.at(there, [this, &run, each, looks, life = run.sink.life] {
+    when_awake(run.sink, life, [this, &run, each, looks] {
+      const std::string& name = each.output.file.name;
+      const bool whole = looks ? folder_.seems_whole(name) : folder_.has_whole(name);
       if (whole && folder_.full()) {
         return sink_does(
             run, run.sink.core->checked(each, {"no space left on device", FailureKind::no_space},
@@ -109,19 +119,38 @@ void SimulatedFarm::sink_act(Run& run, const Check& each) {
   });
 }
 
-/// A look at a file that a journal knows, or, when nothing else waits, its verification.
+/// A look at a file that a journal knows.
 void SimulatedFarm::check_known(Run& run, const Check& each) {
-  const bool looks = each.what == Check::What::known;
-  const SimulatedTime there = folder_.transfer(run.sink.host, looks ? 0 : each.output.file.size) +
-                              folder_.visibility_delay();
-  const SimulatedTime later = up_to(std::chrono::milliseconds(!looks && faulty() ? 30'000 : 1));
-  queue_.at(there + later, [this, &run, each, looks, life = run.sink.life] {
-    when_awake(run.sink, life, [this, &run, each, looks] {
-      const std::string& name = each.output.file.name;
-      const bool fine = looks ? folder_.seems_whole(name) : folder_.has_whole(name);
+  const SimulatedTime there = folder_.transfer(run.sink.host, 0) + folder_.visibility_delay();
+  const SimulatedTime later = up_to(std::chrono::milliseconds(1));
+  queue_.at(there + later, [this, &run, each, life = run.sink.life] {
+    when_awake(run.sink, life, [this, &run, each] {
+      const bool fine = folder_.seems_whole(each.output.file.name);
       if (!fine) run.checks.taken_back(each.key);
       if (fine && chance(options_.faults.crash_at_job / 4)) return kill_sink(run);
       sink_does(run, run.sink.core->checked(each, {fine ? "" : "the file is damaged"}, farm_now()));
+    });
+  });
+}
+
+/// When nothing else waits: files that were looked at.
+void SimulatedFarm::verify_next(Run& run) {
+  if (run.to_verify.empty() || run.verifying == k_verifiers) return;
+  ++run.verifying;
+  const Check each = std::move(run.to_verify.front());
+  run.to_verify.pop_front();
+  const SimulatedTime there =
+      folder_.transfer(run.sink.host, each.output.file.size) + folder_.visibility_delay();
+  const SimulatedTime later = up_to(std::chrono::milliseconds(faulty() ? 30'000 : 0));
+  queue_.at(there + later, [this, &run, each, life = run.sink.life] {
+    when_awake(run.sink, life, [this, &run, each, life] {
+      const bool fine = folder_.has_whole(each.output.file.name);
+      if (!fine) run.checks.taken_back(each.key);
+      if (fine && chance(options_.faults.crash_at_job / 4)) return kill_sink(run);
+      --run.verifying;
+      result_.last_accept = queue_.now();
+      sink_does(run, run.sink.core->checked(each, {fine ? "" : "the file is damaged"}, farm_now()));
+      if (run.sink.life == life) verify_next(run);
     });
   });
 }
@@ -144,7 +173,8 @@ void SimulatedFarm::check_by_sick_mount(Run& run, const Check& each, SimulatedTi
 }
 
 void SimulatedFarm::journal(Run& run, const Check& check) {
-  run.checks.journalled(check.key, folder_.has_whole(check.output.file.name));
+  const bool looked = check.what == Check::What::large;
+  run.checks.journalled(check.key, looked || folder_.has_whole(check.output.file.name));
   run.journal[check.key] = check.output;
   result_.last_accept = queue_.now();
   note(check.key.value);

@@ -9,12 +9,20 @@
 
 namespace meshfarm {
 
+namespace {
+
+bool is_fresh(const Check& check) {
+  return check.what == Check::What::result || check.what == Check::What::large;
+}
+
+}  // namespace
+
 void ResultChecker::check_all(std::vector<CheckedResult>& batch, ReadPatience& fresh,
                               ReadPatience& known, unsigned threads) const {
   std::mutex mutex;
   parallel_for(batch.size(), threads, [&](std::uint64_t i) {
     CheckedResult& each = batch[i];
-    check(each, each.check.what == Check::What::result ? fresh : known, mutex);
+    check(each, is_fresh(each.check) ? fresh : known, mutex);
   });
 }
 
@@ -28,13 +36,13 @@ void ResultChecker::check(CheckedResult& each, ReadPatience& shared, std::mutex&
       const std::lock_guard lock(mutex);
       return shared;
     }();
-    if (known) {
+    if (known || check.what == Check::What::large) {
       stage_.open_told(check.output.file, patience);
     } else {
       stage_.verify(check.output.file, patience);
     }
     // What another run accepted is recorded as this one's, too, as long as that goes on.
-    each.to_record = check.what == Check::What::result || (known && !recorded_.contains(check.key));
+    each.to_record = is_fresh(check) || (known && !recorded_.contains(check.key));
   } catch (const IoError& error) {
     each.problem = {error.what(), FailureKind::unread};
     const std::lock_guard lock(mutex);

@@ -11,8 +11,9 @@
 namespace meshfarm {
 
 /// The results that a sink need not wait for, and how far it trusts each. Those of journals were
-/// verified once, by the sink that wrote the record; but their files may have suffered since. A
-/// look at their sizes is cheap, and enough to go on with; to read them all takes long.
+/// verified once, by the sink that wrote the record, or were large; but their files may have
+/// suffered since. A look at their sizes is cheap, and enough to go on with; to read them all takes
+/// long.
 class KnownResults {
  public:
   enum class Trust : std::uint8_t { journal, looked_at, verified };
@@ -35,6 +36,12 @@ class KnownResults {
   std::uint64_t unverified() const { return unverified_; }
 
   void looked_at(JobKey key) { set(results_.at(key), Trust::looked_at); }
+  /// One that came just now.
+  void add_looked_at(JobKey key, const JobOutput& output) {
+    Known& known = results_[key];
+    known.output = output;
+    set(known, Trust::looked_at);
+  }
   void verified(JobKey key) { set(results_.at(key), Trust::verified); }
   /// One that this sink verified. What is known of the job already stays.
   void add(JobKey key, const JobOutput& output) {

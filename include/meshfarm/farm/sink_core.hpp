@@ -23,9 +23,11 @@ namespace meshfarm {
 /// A result whose file is to be checked.
 struct Check {
   /// result: it came just now; verify its file and journal it.
+  /// large: it came just now; see whether a file of its name and size is there, and journal it.
   /// known: a journal knows it; see whether a file of its name and size is there.
-  /// accepted: of those, one that was accepted by that look; verify it when nothing else waits.
-  enum class What : std::uint8_t { result, known, accepted };
+  /// accepted: of the last two, one that was accepted by that look; verify it when nothing else
+  /// waits.
+  enum class What : std::uint8_t { result, large, known, accepted };
 
   JobKey key;
   JobOutput output;
@@ -59,10 +61,12 @@ using SinkActions = std::vector<SinkAction>;
 
 /// The sink's mind: what is wanted, what is accepted, what the ventilator has been told. Pure.
 /// Holds: a job is accepted, and told, only after checked() said that its result is verified and
-/// on disk, or looked at if a journal knows it. Those are verified while the farm works: neither
+/// on disk, or looked at if a journal knows it, or if it is large: all results go through the
+/// sink's link, and jobs would wait for that. Those are verified while the farm works: neither
 /// the output nor a job of the sink is made before, and what is damaged is taken back. For that the
 /// sink begins its graph again, without it, and greets the ventilator as a new sink would that has
-/// the others: the job is made again, and what was made from it before stays.
+/// the others: the job is made again, and what was made from it before stays. From then on all
+/// that comes is verified first, so that who damages results is found out.
 class SinkCore {
  public:
   /// `journal`: what earlier sinks accepted.

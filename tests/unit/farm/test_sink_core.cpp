@@ -417,6 +417,66 @@ TEST_CASE("a result that comes while what it needs is taken back is not lost") {
   CHECK(bench.core.graph().accepted(key("then")) != nullptr);
 }
 
+// --- what is large is accepted by a look, too
+
+JobOutput large(JobOutput output) {
+  output.file.size = std::uint64_t{1} << 20;
+  return output;
+}
+
+/// Its file is there, of its size. Returns what is to be read then.
+Check accept_large(SinkBench& bench, JobKey of) {
+  const auto looks = only<Check>(
+      bench.core.on_result(Result{7, 1, {3}, 5, 1, of, large(output_of(of)), {1, 2, 3, 4}}));
+  REQUIRE(looks.size() == 1);
+  CHECK(looks[0].what == Check::What::large);
+  const SinkActions told = bench.core.checked(looks[0], {}, bench.now);
+  REQUIRE(said<Accept>(told).size() == 1);
+  CHECK(said<Accept>(told)[0].worker == WorkerId{3});
+  CHECK(said<Accept>(told)[0].times.compute_ms == 3);
+  CHECK(said<Accept>(told)[0].unverified > 0);
+  CHECK(only<MakeOutput>(told).empty());
+  const auto reads = only<Check>(told);
+  REQUIRE(reads.size() == 1);
+  CHECK(reads[0].what == Check::What::accepted);
+  return reads[0];
+}
+
+TEST_CASE("a large result is told after a look, and the run is over once it is verified") {
+  SinkBench bench(1);
+  bench.join(1);
+  const Check read = accept_large(bench, key("job 0"));
+  CHECK(bench.core.unverified() == 1);
+  CHECK(only<MakeOutput>(bench.core.checked(read, {}, bench.now)).size() == 1);
+}
+
+TEST_CASE("a large result that is not there is rejected") {
+  SinkBench bench(1);
+  bench.join(1);
+  const auto looks = only<Check>(bench.core.on_result(
+      Result{7, 1, {3}, 5, 1, key("job 0"), large(output_of(key("job 0"))), {}}));
+  const SinkActions told = bench.core.checked(looks.at(0), {"cut short"}, bench.now);
+  CHECK(said<Reject>(told).size() == 1);
+  CHECK(bench.core.unverified() == 0);
+}
+
+TEST_CASE("a large result that is damaged is taken back, and what comes then is verified first") {
+  SinkBench bench(chain());
+  bench.join(1);
+  bench.accept(key("job 0"));
+  const Check read = accept_large(bench, key("job 1"));
+  CHECK(said<Accept>(bench.accept(key("then"))).size() == 1);
+  bench.core.checked(read, {"it is damaged"}, bench.now);
+  CHECK(only<HangUp>(bench.core.tick(bench.now)).size() == 1);
+  CHECK(said<Ready>(bench.join(1)).at(0).accepted == 1);
+  const auto checks = only<Check>(bench.core.on_result(
+      Result{7, 1, {3}, 5, 2, key("job 1"), large(output_of(key("job 1"), 2)), {}}));
+  REQUIRE(checks.size() == 1);
+  CHECK(checks[0].what == Check::What::result);
+  CHECK(said<Accept>(bench.core.checked(checks[0], {}, bench.now)).size() == 2);
+  CHECK(bench.core.unverified() == 0);
+}
+
 TEST_CASE("a worker that reads a damaged result first costs its host nothing") {
   SinkBench bench(chain(), journal_of({"job 0", "job 1"}));
   const auto reads = only<Check>(bench.look_at_all(bench.join(1)));
