@@ -75,10 +75,26 @@ void check_entries(const Head& head, std::span<const RegionEntry> entries, std::
   }
 }
 
-std::uint32_t region_of(const BoundaryTriangle& t, const Regions& regions) {
-  const auto [least, greatest] = std::minmax({t[0].part, t[1].part, t[2].part});
-  return regions.of(least, greatest);
-}
+/// Of triangles one after the other: neighbours mostly lie between the same parts.
+class RegionOf {
+ public:
+  explicit RegionOf(std::uint32_t parts) : regions_(parts) {}
+  std::uint32_t operator()(const BoundaryTriangle& t) {
+    const auto [least, greatest] = std::minmax({t[0].part, t[1].part, t[2].part});
+    if (least != least_ || greatest != greatest_) {
+      least_ = least;
+      greatest_ = greatest;
+      region_ = regions_.of(least, greatest);
+    }
+    return region_;
+  }
+
+ private:
+  Regions regions_;
+  std::uint32_t least_ = 0;
+  std::uint32_t greatest_ = 0;
+  std::uint32_t region_ = regions_.of(0, 0);
+};
 
 BoundaryTriangle sorted_corners(BoundaryTriangle t) {
   if (t[1] < t[0]) std::swap(t[0], t[1]);
@@ -147,11 +163,11 @@ std::uint64_t drop_duplicates(std::vector<BoundaryTriangle>& triangles, Triangle
 
 void sort_by_region(std::uint32_t parts, std::vector<BoundaryTriangle>& triangles,
                     TriangleColumns& columns) {
-  const Regions regions(parts);
+  RegionOf region_of(parts);
   std::vector<std::uint32_t> region(triangles.size());
-  std::vector<std::size_t> next(std::size_t{regions.count()} + 1, 0);  // place in order, by region
+  std::vector<std::size_t> next(std::size_t{Regions(parts).count()} + 1, 0);  // by region
   for (std::size_t i = 0; i < triangles.size(); ++i) {
-    region[i] = region_of(triangles[i], regions);
+    region[i] = region_of(triangles[i]);
     ++next[region[i] + 1];
   }
   if (std::is_sorted(region.begin(), region.end())) return;
@@ -171,11 +187,11 @@ void sort_by_region(std::uint32_t parts, std::vector<BoundaryTriangle>& triangle
 
 EncodedBoundary encode_boundary(std::uint32_t parts, const std::vector<BoundaryTriangle>& triangles,
                                 const TriangleColumnsView& columns) {
-  const Regions regions(parts);
+  RegionOf region_of(parts);
   const ColumnSet set = columns.set();
   const Head head{triangles.size(), parts,
                   (set.labels ? k_boundary_labels : 0) | (set.uvs ? k_boundary_uvs : 0)};
-  std::vector<RegionEntry> entries(regions.count());
+  std::vector<RegionEntry> entries(head.regions());
   ByteWriter out;
   out.reserve(index_bytes(head) + triangles.size() * head.triangle_bytes());
   out.put(head);
@@ -184,7 +200,7 @@ EncodedBoundary encode_boundary(std::uint32_t parts, const std::vector<BoundaryT
   for (std::uint32_t region = 0; region < entries.size(); ++region) {
     const std::size_t begin = out.bytes().size();
     const std::size_t first = place;
-    for (; place < triangles.size() && region_of(triangles[place], regions) == region; ++place) {
+    for (; place < triangles.size() && region_of(triangles[place]) == region; ++place) {
       out.put(triangles[place]);
       put_columns(out, columns.part(place, 1));
     }
