@@ -154,7 +154,12 @@ std::optional<Cutting> plan_cutting(const std::filesystem::path& input,
   const auto blocks = [&](std::uint64_t records) {
     // Enough for all workers of a cluster, few enough that each is worth its messages and files.
     constexpr std::uint64_t k_records = 300'000;
-    const std::uint64_t wanted = options.blocks != 0 ? options.blocks : records / k_records;
+    constexpr std::uint64_t k_usual_workers = 24;  // they end together, if there are so many
+    std::uint64_t wanted = records / k_records;
+    if (wanted > k_usual_workers) {
+      wanted = (wanted + k_usual_workers - 1) / k_usual_workers * k_usual_workers;
+    }
+    if (options.blocks != 0) wanted = options.blocks;
     return static_cast<std::uint32_t>(std::clamp<std::uint64_t>(wanted, 1, k_most_cut_blocks / 2));
   };
   const FileFacts facts = facts_of(input);
