@@ -317,7 +317,8 @@ PlannedRun simulate_run(std::span<const PlannedJob> jobs, const PlannedFarm& far
   if (!result.ended || !result.broken.empty() || !result.failure.empty()) {
     throw Error("the simulated run did not come to its end: " + result.broken + result.failure);
   }
-  run.farm_s = seconds(result.last_accept - result.first_push);
+  run.accepted_s = seconds(result.last_accept - result.first_push);
+  run.farm_s = seconds(std::max(result.last_accept, result.last_verified) - result.first_push);
   run.storage_busy = run.farm_s > 0 ? std::min(1.0, result.server_busy_s / run.farm_s) : 0;
   return run;
 }
@@ -342,7 +343,7 @@ std::vector<PlannedStage> simulate_stages(std::span<const PlannedJob> jobs,
       bytes += static_cast<double>(job.read_bytes + job.written_bytes);
     }
     stage.storage_s = bytes / farm.server_bytes_per_s;
-    const double ends = simulate_run(jobs.first(end), farm).farm_s;
+    const double ends = simulate_run(jobs.first(end), farm).accepted_s;
     stage.takes_s = std::max(0.0, ends - std::exchange(before, ends));
   }
   return stages;

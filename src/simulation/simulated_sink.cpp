@@ -148,7 +148,7 @@ void SimulatedFarm::verify_next(Run& run) {
       if (!fine) run.checks.taken_back(each.key);
       if (fine && chance(options_.faults.crash_at_job / 4)) return kill_sink(run);
       --run.verifying;
-      result_.last_accept = queue_.now();
+      result_.last_verified = queue_.now();
       sink_does(run, run.sink.core->checked(each, {fine ? "" : "the file is damaged"}, farm_now()));
       if (run.sink.life == life) verify_next(run);
     });

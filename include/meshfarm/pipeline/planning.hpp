@@ -59,7 +59,8 @@ struct PlannedFarm {
 };
 
 struct PlannedRun {
-  double farm_s = 0;        // from the first job given out to the last result accepted
+  double farm_s = 0;        // from the first job given out to the last result verified
+  double accepted_s = 0;    // to the last result accepted
   double ideal_s = 0;       // all work over all speed
   double work_s = 0;        // all work, on one worker of speed 1
   double storage_busy = 0;  // share of the time that the server's link is busy

@@ -118,6 +118,7 @@ struct SimulationResult {
   std::vector<SimulatedJob> jobs;  // in the order in which they were accepted
   SimulatedTime first_push{0};     // the first job went out
   SimulatedTime last_accept{0};    // the last result was accepted
+  SimulatedTime last_verified{0};  // the last of those that were accepted by a look; 0: none was
   SimulatedTime time{0};           // the end of the world
   std::uint64_t events = 0;
   std::uint64_t pushes = 0;  // jobs given out
