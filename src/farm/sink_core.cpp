@@ -42,9 +42,7 @@ SinkActions SinkCore::tick(FarmTime now) {
   if (phase_ == Phase::saying_complete && say_until_ < now) {
     leave(SinkLeaves::Why::complete, "no ventilator acknowledged the end");
   }
-  if (phase_ == Phase::saying_failed && say_until_ < now) {
-    leave_for_problem();
-  }
+  if (phase_ == Phase::saying_failed && say_until_ < now) leave_for_problem();
   return take();
 }
 
@@ -126,14 +124,11 @@ void SinkCore::take_result(const Result& result) {
     return;
   }
   const bool looks = output.file.size >= k_large_bytes && !found_damage_;
-  const Check::What what = looks ? Check::What::large : Check::What::result;
-  const Check check{result.key,
-                    output,
-                    what,
-                    result.worker,
-                    result.attempt,
-                    result.times,
-                    wanted_.at(result.key).kind};
+  Check check{result.key, output, looks ? Check::What::large : Check::What::result};
+  check.worker = result.worker;
+  check.attempt = result.attempt;
+  check.times = result.times;
+  check.kind = wanted_.at(result.key).kind;
   if (checking_.try_emplace(result.key, check).second) act(check);
 }
 
@@ -181,11 +176,8 @@ SinkActions SinkCore::checked(const Check& check, const JobFailure& problem, Far
   } else if (check.worker == WorkerId{}) {
     return fail({problem.reason, false});
   } else if (told_all_) {
-    say(Reject{member_.epoch(),
-               check.worker,
-               check.attempt,
-               check.key,
-               {clipped(problem.reason), problem.kind},
+    const JobFailure failure{clipped(problem.reason), problem.kind};
+    say(Reject{member_.epoch(), check.worker, check.attempt, check.key, failure,
                check.output.file});
   }
   tell_all();
