@@ -229,6 +229,34 @@ void CrossingGuard::merge() {
   }
 }
 
+bool CrossingGuard::moves(std::span<const std::uint32_t> vertices, std::span<const Vec3> places) {
+  Box box;
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    box.add(state_.positions[vertices[i]]);
+    box.add(places[i]);
+  }
+  touching_.clear();
+  star_.clear();
+  others_.clear();
+  ring_.clear();
+  fresh_.clear();
+  boxes_.find_touching(box, touching_);
+  for (const std::uint32_t slot : touching_) {
+    TriangleCorners corners{};
+    std::size_t found = 0;
+    for (const std::uint32_t v : triangles_[slot]) {
+      const auto place = std::find(vertices.begin(), vertices.end(), v);
+      if (place == vertices.end()) break;
+      corners[found++] = places[static_cast<std::size_t>(place - vertices.begin())];
+    }
+    (found == 3 ? star_ : others_).push_back(slot);
+    if (found == 3) fresh_.emplace_back(corners);
+  }
+  if (count(fresh_, 1) > 0 && count(fresh_, SIZE_MAX) > count_before()) return false;
+  for (std::size_t i = 0; i < star_.size(); ++i) boxes_.set(star_[i], fresh_[i].box);
+  return true;
+}
+
 void CrossingGuard::split(std::uint32_t vertex, std::uint32_t first_copy) {
   const auto copies = static_cast<std::uint32_t>(state_.positions.size());
   if (first_copy == copies) return;

@@ -39,6 +39,8 @@ class CrossingGuard {
   bool crosses(const Merge& merge);
   /// Before the merge that was judged last is done.
   void merge();
+  /// Moves all corners of a piece, but not where more pairs of triangles would cross than before.
+  bool moves(std::span<const std::uint32_t> vertices, std::span<const Vec3> places);
   /// Some of the vertex's triangles are now at copies of it, the latest vertices.
   void split(std::uint32_t vertex, std::uint32_t first_copy);
 

@@ -73,6 +73,7 @@ struct OrderedEnd::Trial {
         appearances(mesh.mesh().appearances),
         columns(mesh.mesh().columns),
         flags(mesh.flags().begin(), mesh.flags().end()),
+        pieces(mesh.pieces()),
         queue({positions, flags, adjacency, mesh.creases(), mesh.type(), mesh.seam_only(),
                topology == TopologyMode::simplify,
                topology == TopologyMode::automatic || topology == TopologyMode::keep_while_fair,
@@ -83,6 +84,8 @@ struct OrderedEnd::Trial {
     if (mesh.avoids_crossings()) {
       crossings.emplace();
       queue.set_guard(*crossings, mesh.mesh().triangles);
+      queue.set_pieces(pieces);
+      queue.restore_pieces();
     }
     if (bound == nullptr) return;
     guard.emplace(*bound);
@@ -93,6 +96,7 @@ struct OrderedEnd::Trial {
   std::vector<Appearance> appearances;
   TriangleColumns columns;
   std::vector<std::uint8_t> flags;
+  SmallPieces pieces;
   Adjacency adjacency;
   EdgeRanking ranking;
   CollapseQueue queue;
@@ -118,6 +122,7 @@ std::optional<double> OrderedEnd::reduce(const SimplifyGoal& goal,
       trial_ = std::move(other);
     }
   }
+  trial_->queue.restore_pieces();
   mesh_.take(trial_->queue);
   if (is_held()) return HUGE_VAL;
   if (goes_on && mesh_.triangles() > goal.triangles + 1) return goal.max_cost;

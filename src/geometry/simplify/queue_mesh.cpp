@@ -12,6 +12,9 @@
 namespace meshfarm {
 namespace {
 
+// Four triangles are made no smaller than this to fit in.
+constexpr double k_smallest_share = 0.1;
+
 /// What a triangle has, from this corner on.
 void append_turned(const TriangleColumnsView& from, CornerId id, TriangleColumns& to) {
   to.append(from, id / 3);
@@ -38,6 +41,9 @@ void CollapseQueue::tidy(std::uint32_t merged) {
   tidied_.erase(std::unique(tidied_.begin(), tidied_.end()), tidied_.end());
   const std::size_t before = tidied_.size();
   for (std::size_t i = 0; i < before; ++i) tidy_star(tidied_[i]);
+  if (pieces_ != nullptr && tidied_.size() > before) {
+    pieces_->find_at(tidied_, mesh_.adjacency, mesh_.positions, mesh_.flags);
+  }
   for (const std::uint32_t v : tidied_) stale_[v] = 1;
   for (const std::uint32_t v : tidied_) {
     if (v != merged) look_again(v);
@@ -103,8 +109,54 @@ std::uint32_t CollapseQueue::add_copy(std::uint32_t vertex) {
   general_.move_to(state());
   if (guard_ != nullptr) guard_->move_to(state());
   if (crossings_ != nullptr) crossings_->move_to(state());
+  if (pieces_ != nullptr) pieces_->add_vertex();
   tidied_.push_back(copy);
   return copy;
+}
+
+/// Four triangles that would cross others become smaller instead: they face the same way then.
+bool CollapseQueue::move(const SmallPieces::Places& places) {
+  const std::size_t size = places.vertices.size();
+  const auto is_there = [&](std::size_t i) {
+    return mesh_.positions[places.vertices[i]] == places.positions[i];
+  };
+  std::size_t there = 0;
+  while (there < size && is_there(there)) ++there;
+  if (there == size) return false;
+  std::vector<Vec3> to = places.positions;
+  bool moves = crossings_->moves(places.vertices, to);
+  for (double share = 0.5; !moves && size == 4 && share > k_smallest_share; share *= 0.5) {
+    const Vec3 middle =
+        (places.positions[0] + places.positions[1] + places.positions[2] + places.positions[3]) *
+        0.25;
+    for (std::size_t i = 0; i < size; ++i) {
+      to[i] = rounded(middle + (places.positions[i] - middle) * share, mesh_.type);
+    }
+    moves = crossings_->moves(places.vertices, to);
+  }
+  if (!moves) return false;
+  for (std::size_t i = 0; i < size; ++i) {
+    const std::uint32_t v = places.vertices[i];
+    mesh_.positions[v] = to[i];
+    stale_[v] = 1;
+    refused_[v] = 1;  // is looked at again
+  }
+  return true;
+}
+
+void CollapseQueue::restore_pieces() {
+  if (pieces_ == nullptr || pieces_->empty()) return;
+  std::vector<Triangle> triangles;
+  for (std::uint32_t v = 0; v < target_.size(); ++v) {
+    if (!pieces_->has(v)) continue;
+    for (const auto& [next, prev] : mesh_.adjacency.at(v)) {
+      if (v < next && v < prev) triangles.push_back({v, next, prev});
+    }
+  }
+  for (const auto& places : pieces_->restored(triangles, mesh_.positions, mesh_.type)) {
+    if (!move(places)) continue;
+    for (const std::uint32_t v : places.vertices) look_again(v);
+  }
 }
 
 void CollapseQueue::copy_to(Mesh& mesh, std::vector<std::uint8_t>& flags,

@@ -55,6 +55,7 @@ void Reduction::reduce(const SimplifyGoal& goal, const Progress& progress) {
   const bool is_told = came_to == RankedPasses::End::told && bound_ == nullptr;
   if (came_to == RankedPasses::End::exhausted && is_healthy(before, goal)) {
     exhausted_cost_ = goal.max_cost;
+    mesh_.restore_pieces();
   } else if (!is_told && mesh_.is_above(goal.triangles)) {
     if (const auto cost = end_.reduce(goal, progress)) exhausted_cost_ = *cost;
   }

@@ -12,6 +12,7 @@
 
 #include "geometry/simplify/fans.hpp"
 #include "geometry/simplify/orient.hpp"
+#include "geometry/simplify/piece_sets.hpp"
 
 namespace meshfarm {
 namespace {
@@ -218,6 +219,12 @@ bool separate_closed_fans(Mesh& mesh, std::span<const std::uint8_t> flags,
   return true;
 }
 
+/// Where the topology gives way small pieces simplify better by themselves.
+bool separates_pieces(const SimplifyOptions& options) {
+  return options.lines.crossings == CrossingMode::avoid && options.seam.empty() &&
+         options.bound == nullptr && options.lines.topology != TopologyMode::keep;
+}
+
 }  // namespace
 
 void check_input(const Mesh& mesh, const SimplifyOptions& options) {
@@ -273,6 +280,10 @@ Surface clean_surface(Mesh& mesh, const SimplifyOptions& options, Adjacency& adj
   }
   // With a seam pass vertices are what the caller's flags are for.
   if (options.seam.empty() && separate_closed_fans(mesh, surface.flags, adjacency)) again();
+  if (separates_pieces(options) && separate_small_pieces(mesh, surface.flags)) {
+    again();
+    if (separate_closed_fans(mesh, surface.flags, adjacency)) again();
+  }
   return surface;
 }
 

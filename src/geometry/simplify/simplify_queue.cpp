@@ -24,6 +24,10 @@ constexpr double k_far_more = 1.3;
 // their shape.
 constexpr double k_loss_of_crossing = 64;
 
+// Of what it would cost otherwise: what pinching has left over faces the wrong way more often than
+// not. With a 64th fewer triangles do, but a skull has 7 % more error.
+constexpr double k_cost_of_left_over = 0.125;
+
 constexpr CostKey k_greatest = k_any_cost - 1;
 constexpr CostKey k_least_step = 4U << 20;  // a factor of 16
 
@@ -205,7 +209,10 @@ CollapseQueue::Stop CollapseQueue::run(const SimplifyGoal& goal, const Progress&
     const std::uint32_t a = queued.a();
     const std::uint32_t b = queued.b;
     if (is_gone(a) || is_gone(b) || queued.stamp != stamp_of(a, b)) continue;
-    const Collapse collapse = judge(a, b, excess);
+    Collapse collapse = judge(a, b, excess);
+    if (pieces_ != nullptr && collapse.triangles == 4 && pieces_->is_left_over(a)) {
+      collapse.cost *= k_cost_of_left_over;
+    }
     if (collapse.triangles == 0) {
       refused_[a] = refused_[b] = 1;
     } else if (collapse.cost > most_cost_) {
@@ -308,6 +315,9 @@ void CollapseQueue::merge(std::uint32_t a, std::uint32_t b, const Collapse& coll
   ++collapses_;
   if (by_general_) tidy(a);
   list_ring(a);
+  if (pieces_ != nullptr) {
+    if (const auto four = pieces_->tetrahedron_at(a, mesh_.adjacency, mesh_.type)) move(*four);
+  }
   if (mesh_.adjacency.has_uvs()) update_lines(a);
   ranking_.refresh(a);
   for (const std::uint32_t v : ring_) stale_[v] = 1;

@@ -20,6 +20,7 @@
 #include "geometry/simplify/fans.hpp"
 #include "geometry/simplify/simplify_lines.hpp"
 #include "geometry/simplify/simplify_rank.hpp"
+#include "geometry/simplify/small_pieces.hpp"
 
 namespace meshfarm {
 
@@ -70,11 +71,15 @@ class CollapseQueue {
   /// Then: what else refuses collapses. `mesh` is what the queue begins with.
   void set_guard(CollapseGuard& guard, const Mesh& mesh);
   void set_guard(CrossingGuard& guard, std::span<const Triangle> triangles);
+  /// What four triangles that are left of a piece become like. Needs the guard of crossings.
+  void set_pieces(SmallPieces& pieces) { pieces_ = &pieces; }
 
   /// Collapses until the goal is met or nothing that it allows is left. May be called again. False
   /// if progress said stop.
   bool reduce(const SimplifyGoal& goal, const Progress& progress);
 
+  /// Gives the pieces of few triangles their shape again.
+  void restore_pieces();
   /// The mesh as it is now, with the vertices in their order, and their flags.
   void copy_to(Mesh& mesh, std::vector<std::uint8_t>& flags, std::uint32_t locked) const;
 
@@ -113,6 +118,7 @@ class CollapseQueue {
   bool must_not_cross(const QueuedEdge& queued, const Collapse& collapse);
   bool is_guarded(std::uint32_t a, std::uint32_t b, const Collapse& collapse);
   void merge(std::uint32_t a, std::uint32_t b, const Collapse& collapse);
+  bool move(const SmallPieces::Places& places);
   void keep(const SimplifyGoal& goal);
   void update_lines(std::uint32_t merged);
   void tidy(std::uint32_t merged);
@@ -129,6 +135,7 @@ class CollapseQueue {
   EdgeRanking& ranking_;
   CollapseGuard* guard_ = nullptr;
   CrossingGuard* crossings_ = nullptr;
+  SmallPieces* pieces_ = nullptr;
   std::vector<std::uint32_t> target_;  // the vertex that a vertex has become
   std::vector<std::uint8_t> refused_;  // an edge at the vertex was refused since it last changed
   // How often the edges at a vertex were ranked anew. Only increases, so that an entry is out of

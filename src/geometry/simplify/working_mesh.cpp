@@ -48,6 +48,7 @@ WorkingMesh::WorkingMesh(Mesh mesh, const SimplifyOptions& options)
   flags_ = std::move(surface.flags);
   creases_.find(mesh_, adjacency_, flags_);
   drop_unused_vertices();
+  if (avoids_crossings_ && !seam_only_ && options.bound == nullptr) pieces_.find(mesh_, flags_);
 }
 
 std::uint64_t WorkingMesh::free_triangles() const {
@@ -135,6 +136,7 @@ void WorkingMesh::end_pass(std::uint64_t removed, double cost) {
 /// are moved: a branch on which ones stay would be mispredicted half of the time.
 void WorkingMesh::compact() {
   compact_appearances();
+  pieces_.compact(target_);
   std::uint32_t kept = 0;
   for (std::uint32_t v = 0; v < target_.size(); ++v) {
     // A vertex merges into a smaller one, whose new number is known by now.
@@ -204,8 +206,15 @@ void WorkingMesh::drop_unused_vertices() {
   for (Triangle& t : mesh_.triangles) t = {target_[t[0]], target_[t[1]], target_[t[2]]};
 }
 
+void WorkingMesh::restore_pieces() {
+  for (const auto& [vertices, places] : pieces_.restored(mesh_.triangles, mesh_.positions, type_)) {
+    for (std::size_t i = 0; i < vertices.size(); ++i) mesh_.positions[vertices[i]] = places[i];
+  }
+}
+
 void WorkingMesh::take(const CollapseQueue& queue) {
   queue.copy_to(mesh_, flags_, locked_);
+  pieces_.clear();
   adjacency_is_current_ = false;
   max_cost_ = std::max(max_cost_, queue.max_cost());
   pass_cost_ = queue.last_cost();

@@ -13,6 +13,7 @@
 #include "geometry/simplify/collapse.hpp"
 #include "geometry/simplify/simplify_clean.hpp"
 #include "geometry/simplify/simplify_lines.hpp"
+#include "geometry/simplify/small_pieces.hpp"
 
 namespace meshfarm {
 
@@ -36,6 +37,10 @@ class WorkingMesh {
   double uv_scale() const { return uv_scale_; }
   bool seam_only() const { return seam_only_; }
   bool avoids_crossings() const { return avoids_crossings_; }
+  /// Where crossings are avoided, without a bound and a seam, until the queue begins.
+  const SmallPieces& pieces() const { return pieces_; }
+  /// Once the passes have ended.
+  void restore_pieces();
   const Dropped& dropped() const { return dropped_; }
   /// Those that no locked vertex has.
   std::uint64_t free_triangles() const;
@@ -90,6 +95,7 @@ class WorkingMesh {
   Dropped dropped_;
   std::vector<std::uint8_t> flags_;
   Adjacency adjacency_;
+  SmallPieces pieces_;
   bool adjacency_is_current_ = false;
   std::vector<std::uint32_t> target_;  // the vertex that a vertex becomes in this pass
   std::vector<std::uint8_t> touched_;
