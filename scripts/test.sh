@@ -21,7 +21,7 @@ build_options=(-DMESHFARM_TESTS=ON)
 if [ "$all" = no ]; then
   # Sources of a layer compiled together, and optimised a little less: that takes half of the time.
   release_build=$root/build-test
-  build_options+=(-DMESHFARM_UNITY=ON "-DCMAKE_CXX_FLAGS_RELEASE=-O2 -DNDEBUG")
+  build_options+=(-DMESHFARM_UNITY=ON "-DCMAKE_CXX_FLAGS_RELEASE=-O1 -DNDEBUG")
 else
   # Each by itself: a missing include is noticed.
   release_build=$root/build
