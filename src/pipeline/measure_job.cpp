@@ -268,8 +268,11 @@ class PieceMeter {
     PointMeter to_own(own.points, {spacing, usual(spacing), known});
     while (to_own.begin_pass()) show(input, to_own);
     take_found(own, to_own.distances(), HUGE_VAL);
-    PointMeter to_near(near.points, {spacing, reach, known});
+    // Where a part was left out, the reach is long, and a first pass that went as far slow.
+    const double first_reach = std::min(reach, 2 * spacing_of(meshes_.front()) + spacing);
+    PointMeter to_near(near.points, {spacing, first_reach, known});
     if (to_near.begin_pass()) show(input, to_near);
+    if (reach > first_reach && to_near.begin_pass()) show(input, to_near);
     take_found(near, to_near.distances(), reach);
     std::vector<Vec3> vertices;
     for (const Mesh& part : input.parts) add_vertices(part, vertices);
