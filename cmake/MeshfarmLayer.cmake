@@ -18,31 +18,27 @@ function(meshfarm_compile_options target)
   endif()
 endfunction()
 
-# Flags of a test program. Most of its time goes into compiling it, so its own code is not optimised;
-# a little where it links with layers (UNIT): templates of theirs may then be its own. By clang for
-# sanitizers even that takes three times as long. OWN_MAIN: its sources have the main function.
+# Flags of a test program. Most of its time goes into compiling it, so its own code is not optimised.
+# OWN_MAIN: its sources have the main function.
 function(meshfarm_test_options target)
-  cmake_parse_arguments(ARG "UNIT;OWN_MAIN" "" "" ${ARGN})
+  cmake_parse_arguments(ARG "OWN_MAIN" "" "" ${ARGN})
   if(NOT TARGET meshfarm_doctest_main)
     add_library(meshfarm_doctest_main OBJECT ${PROJECT_SOURCE_DIR}/tests/support/doctest_main.cpp)
     target_include_directories(meshfarm_doctest_main PRIVATE ${PROJECT_SOURCE_DIR}/tests)
     meshfarm_compile_options(meshfarm_doctest_main)
+    add_library(meshfarm_test_meshes STATIC ${PROJECT_SOURCE_DIR}/tests/support/meshes.cpp)
+    target_include_directories(meshfarm_test_meshes PRIVATE ${PROJECT_SOURCE_DIR}/include)
+    meshfarm_compile_options(meshfarm_test_meshes)
   endif()
+  target_link_libraries(${target} PRIVATE meshfarm_test_meshes)
   if(NOT ARG_OWN_MAIN)
     target_sources(${target} PRIVATE $<TARGET_OBJECTS:meshfarm_doctest_main>)
   endif()
   target_include_directories(${target} PRIVATE ${PROJECT_SOURCE_DIR}/tests)
   meshfarm_compile_options(${target})
-  set(kind tests)
-  set(optimisation -O0)
-  if(ARG_UNIT AND NOT MESHFARM_SANITIZE)
-    set(kind unit_tests)
-    set(optimisation $<$<CONFIG:Release>:-O1>)
-  endif()
-  set(flags ${optimisation} -DDOCTEST_CONFIG_SUPER_FAST_ASSERTS
-            -DDOCTEST_CONFIG_NO_TRY_CATCH_IN_ASSERTS)
+  set(flags -O0 -DDOCTEST_CONFIG_SUPER_FAST_ASSERTS -DDOCTEST_CONFIG_NO_TRY_CATCH_IN_ASSERTS)
   target_compile_options(${target} PRIVATE ${flags})
-  meshfarm_precompile(${target} ${kind} "${flags}" <doctest/doctest.h>)
+  meshfarm_precompile(${target} tests "${flags}" <doctest/doctest.h>)
 endfunction()
 
 # Compiles sources several together. Then a local name may be one of another source's unnamed
@@ -124,8 +120,15 @@ function(meshfarm_layer name)
     target_link_libraries(test_${name} PRIVATE ${linked_by_tests} Threads::Threads)
     if(ARG_MODULE)
       meshfarm_loads(test_${name} ${name})
+    else()
+      # The linker takes an inline function from the first file that has it: here from a layer, where
+      # it is optimised, and not from a test.
+      list(TRANSFORM uses REPLACE ".+" "$<TARGET_FILE:\\0>" OUTPUT_VARIABLE first)
+      list(JOIN first , first)
+      target_link_options(test_${name} PRIVATE
+        "LINKER:--whole-archive,$<TARGET_FILE:meshfarm_${name}>,${first},--no-whole-archive")
     endif()
-    meshfarm_test_options(test_${name} UNIT)
+    meshfarm_test_options(test_${name})
     meshfarm_compile_together(test_${name} 24)
     add_test(NAME unit.${name} COMMAND test_${name})
     set_tests_properties(unit.${name} PROPERTIES TIMEOUT 900 COST 300 LABELS unit)

@@ -82,6 +82,12 @@ inline void check_margins(const Atlas& atlas, std::uint32_t side) {
     const std::uint32_t owner = owners[std::size_t{y} * side + x];
     return owner == k_no_chart ? k_no_chart : atlas.chart_of[owner];
   };
+  // What is near to a texel among its own is nearer to one of those.
+  const auto is_inner = [&](std::uint32_t x, std::uint32_t y, std::uint32_t chart) {
+    return x > 0 && y > 0 && x + 1 < side && y + 1 < side && chart_at(x - 1, y) == chart &&
+           chart_at(x + 1, y) == chart && chart_at(x, y - 1) == chart &&
+           chart_at(x, y + 1) == chart;
+  };
   const std::uint32_t margin = atlas.margin_texels;
   std::size_t near = 0, outside = 0;
   for (std::uint32_t y = 0; y < side; ++y) {
@@ -89,6 +95,7 @@ inline void check_margins(const Atlas& atlas, std::uint32_t side) {
       const std::uint32_t here = chart_at(x, y);
       if (here == k_no_chart) continue;
       if (std::min({x, y, side - 1 - x, side - 1 - y}) < margin) ++outside;
+      if (is_inner(x, y, here)) continue;
       for (std::uint32_t j = y; j < std::min(side, y + 2 * margin); ++j) {
         const std::uint32_t from = x - std::min(x, 2 * margin - 1);
         for (std::uint32_t i = from; i < std::min(side, x + 2 * margin); ++i) {
