@@ -32,10 +32,13 @@ inline std::string read_text(const std::filesystem::path& path) {
 
 /// Asks until `done` says yes, at most `seconds`. Returns whether it did.
 inline bool wait_until(const std::function<bool()>& done, double seconds = 60) {
-  const auto end = std::chrono::steady_clock::now() + std::chrono::duration<double>(seconds);
+  using namespace std::chrono;
+  const auto begin = steady_clock::now();
   while (!done()) {
-    if (std::chrono::steady_clock::now() > end) return false;
-    std::this_thread::sleep_for(std::chrono::milliseconds(2));
+    const auto waited = steady_clock::now() - begin;
+    if (waited > duration<double>(seconds)) return false;
+    // What has taken long need not be noticed at once, and looking takes time.
+    std::this_thread::sleep_for(std::clamp<nanoseconds>(waited / 50, 2ms, 100ms));
   }
   return true;
 }
