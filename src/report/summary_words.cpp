@@ -106,7 +106,7 @@ Json to_json(const MeasuredError& error, double diagonal) {
 
 std::string text_of(const NormalDeviation& normals) {
   return "rms " + number(normals.rms, "%.3g") + "  95 % " + number(normals.p95, "%.3g") +
-         " degrees, more than 90 on " + number(100 * normals.over_90, "%.3g") + " % of the area";
+         " degrees, over 90 on " + number(100 * normals.over_90, "%.2g") + " % of the area";
 }
 
 std::string dumped(const Json& json) {
