@@ -53,7 +53,7 @@ endfunction()
 # The headers that most sources include are compiled once for all targets of a kind (layers, tests),
 # whose flags must be the same: those of meshfarm_compile_options() and FLAGS.
 function(meshfarm_precompile target kind flags)
-  if(NOT MESHFARM_UNITY)
+  if(MESHFARM_UNITY STREQUAL "OFF")
     return()
   endif()
   set(headers meshfarm_headers_of_${kind})
@@ -86,11 +86,11 @@ endfunction()
 # One folder = one layer = one static library meshfarm_<name> = one unit-test program test_<name>.
 # Most of the time of a compiler goes into the headers. No two sources of a layer define the same name,
 # so that they can be compiled together (MESHFARM_UNITY), as unit tests always are. What g++ makes of
-# them then is 3 % slower.
+# them then is 3 % slower. TOGETHER: the layer computes little, so that this does not matter.
 # MODULE: the program loads it when it needs it (meshfarm_loads()). It sees only the headers of what it
 # uses.
 function(meshfarm_layer name)
-  cmake_parse_arguments(ARG "MODULE" "" "USES;PACKAGES" ${ARGN})
+  cmake_parse_arguments(ARG "MODULE;TOGETHER" "" "USES;PACKAGES" ${ARGN})
   file(GLOB sources CONFIGURE_DEPENDS src/${name}/*.cpp src/${name}/*/*.cpp)
   list(TRANSFORM ARG_USES PREPEND meshfarm_ OUTPUT_VARIABLE uses)
   if(ARG_MODULE)
@@ -108,7 +108,7 @@ function(meshfarm_layer name)
   target_include_directories(meshfarm_${name} PRIVATE ${PROJECT_SOURCE_DIR}/src)
   target_link_libraries(meshfarm_${name} PRIVATE ${ARG_PACKAGES} Threads::Threads)
   meshfarm_compile_options(meshfarm_${name})
-  if(MESHFARM_UNITY AND NOT ARG_MODULE)
+  if(NOT ARG_MODULE AND (MESHFARM_UNITY STREQUAL "ON" OR (MESHFARM_UNITY STREQUAL "AUTO" AND ARG_TOGETHER)))
     meshfarm_compile_together(meshfarm_${name} 24)
     meshfarm_precompile(meshfarm_${name} layers "")
   endif()

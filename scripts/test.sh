@@ -23,7 +23,7 @@ if [ "$all" = no ]; then
   release_build=$root/build-test
   build_options+=(-DMESHFARM_UNITY=ON "-DCMAKE_CXX_FLAGS_RELEASE=-O1 -DNDEBUG")
 else
-  # Each by itself: a missing include is noticed.
+  # As users build it.
   release_build=$root/build
   build_options+=(-DCMAKE_COMPILE_WARNING_AS_ERROR=ON)
 fi
