@@ -256,6 +256,7 @@ std::string encode_summary(const DividedPiece& piece) {
   out.put(piece.weight.before);
   out.put(piece.weight.first_step);
   put_list(out, piece.weight.counts);
+  out.put(static_cast<std::uint8_t>(piece.weight.has_open_border ? 1 : 0));
   return out.take();
 }
 
@@ -277,6 +278,7 @@ DividedPiece decode_divided_piece(std::string_view bytes, std::string_view what)
   piece.weight.before = in.get<std::uint64_t>();
   piece.weight.first_step = in.get<std::int32_t>();
   piece.weight.counts = get_list<std::uint64_t>(in);
+  piece.weight.has_open_border = in.get<std::uint8_t>() != 0;
   std::uint64_t before = piece.weight.before;
   for (const std::uint64_t count : piece.weight.counts) {
     if (count > before) in.fail("counts do not fall");

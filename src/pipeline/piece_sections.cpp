@@ -59,6 +59,7 @@ class Weighing {
   WeighedMesh run() {
     snapshot();
     made_.weight.before = simplifier_.triangles();
+    made_.weight.has_open_border = simplifier_.has_free_border();
     const std::int32_t first = parameters_.first_step >= 0 ? parameters_.first_step : find_step();
     made_.weight.first_step = first;
     climb(first);
@@ -286,8 +287,9 @@ std::uint64_t PieceWeight::at(std::int32_t step) const {
 }
 
 bool PieceWeight::can_be_odd() const {
-  return std::any_of(counts.begin(), counts.end(),
-                     [this](std::uint64_t count) { return (before - count) % 2 != 0; });
+  return has_open_border || std::any_of(counts.begin(), counts.end(), [this](std::uint64_t count) {
+           return (before - count) % 2 != 0;
+         });
 }
 
 WeighedMesh weigh(Mesh mesh, std::uint32_t locked, PositionType positions,

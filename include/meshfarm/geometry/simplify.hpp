@@ -141,6 +141,8 @@ class Simplifier {
   std::uint64_t triangles() const { return mesh().triangles.size(); }
   /// Triangles none of whose vertices is locked: what a part can still be asked to give.
   std::uint64_t free_triangles() const;
+  /// Whether it has an open border along which edges can be collapsed: one triangle at a time.
+  bool has_free_border() const;
   /// The greatest cost paid so far.
   double max_cost() const;
   /// The level that the mesh has reached: what the last pass might pay, or, where edges collapse

@@ -55,10 +55,11 @@ struct PieceWeight {
   std::uint64_t before = 0;  // at no cost
   std::int32_t first_step = 0;
   std::vector<std::uint64_t> counts;  // after each step, falling
+  bool has_open_border = false;       // along which edges can be collapsed
 
   /// Once all is collapsed that costs no more than the step.
   std::uint64_t at(std::int32_t step) const;
-  /// Whether it was seen to lose triangles one by one: at an open border.
+  /// Whether it can lose triangles one by one: at an open border, or as it was seen to.
   bool can_be_odd() const;
 };
 

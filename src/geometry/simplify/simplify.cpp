@@ -143,6 +143,9 @@ const Mesh& Simplifier::mesh() const {
 std::uint64_t Simplifier::free_triangles() const {
   return impl_->free_triangles();
 }
+bool Simplifier::has_free_border() const {
+  return !impl_->pairs && impl_->reduction->mesh().has_free_border();
+}
 double Simplifier::max_cost() const {
   return impl_->max_cost();
 }

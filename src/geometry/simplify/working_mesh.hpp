@@ -44,6 +44,7 @@ class WorkingMesh {
   const Dropped& dropped() const { return dropped_; }
   /// Those that no locked vertex has.
   std::uint64_t free_triangles() const;
+  bool has_free_border() const;
   /// Whether there are more triangles than that, and some edge may go: the last one too many goes
   /// at an open border only.
   bool is_above(std::uint64_t triangles) const;
@@ -76,7 +77,6 @@ class WorkingMesh {
   double pass_cost() const { return pass_cost_; }
 
  private:
-  bool has_free_border() const;
   void compact();
   void compact_appearances();
   void compact_columns();

@@ -31,6 +31,7 @@ TEST_CASE("a weight is known at every step") {
   CHECK(weight.at(60) == 100);
   CHECK_FALSE(weight.can_be_odd());
   CHECK(PieceWeight{1001, 5, {960}}.can_be_odd());
+  CHECK(PieceWeight{1000, 5, {960}, true}.can_be_odd());
 }
 
 TEST_CASE("quotas lie between two steps that are the same for all") {
