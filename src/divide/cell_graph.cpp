@@ -11,9 +11,9 @@
 
 #include <metis.h>
 
-#include <meshfarm/geometry/point_index.hpp>
 #include <meshfarm/util/errors.hpp>
-#include <meshfarm/util/parallel.hpp>
+
+#include "divide/cell_neighbours.hpp"
 
 namespace {
 
@@ -59,51 +59,36 @@ struct Graph {
   std::vector<idx_t> targets;
 };
 
-/// The k nearest of each cell, k places a cell, itself among them or not; what is not used is -1.
-std::vector<idx_t> nearest_cells(std::span<const Cell> cells, std::size_t k, unsigned threads) {
-  constexpr std::size_t k_chunk = 512;
-  std::vector<Vec3> means;
-  means.reserve(cells.size());
-  for (const Cell& cell : cells) means.push_back(cell.mean);
-  const PointIndex index(std::move(means));
-  std::vector<idx_t> nearest(cells.size() * k, -1);
-  parallel_for((cells.size() + k_chunk - 1) / k_chunk, threads, [&](std::uint64_t chunk) {
-    std::vector<std::uint32_t> found(k);
-    const std::size_t end = std::min<std::size_t>(cells.size(), (chunk + 1) * k_chunk);
-    for (std::size_t i = chunk * k_chunk; i < end; ++i) {
-      const std::size_t count = index.nearest(cells[i].mean, found);
-      for (std::size_t n = 0; n < count; ++n) nearest[i * k + n] = static_cast<idx_t>(found[n]);
-    }
-  });
-  return nearest;
-}
-
-/// Joins each cell to its nearest, both ways, each pair once; targets ascend.
+/// Joins each cell to its neighbours, both ways, each pair once.
 Graph graph_of(std::span<const Cell> cells, const CellGraphOptions& options) {
-  const std::size_t k = std::min<std::size_t>(options.neighbours + 1, cells.size());
-  const std::vector<idx_t> nearest = nearest_cells(cells, k, options.threads);
+  const std::size_t k = std::min<std::size_t>(options.neighbours, cells.size());
+  const std::vector<std::uint32_t> neighbours =
+      cell_neighbours(cells, options.grid_bits, k, options.threads);
+  const auto of = [&](std::size_t cell) { return std::span(neighbours).subspan(cell * k, k); };
+  // Those that are neighbours of each other are joined by the first of both.
+  std::vector<std::uint8_t> joins(neighbours.size(), 0);
   const auto for_pairs = [&](const auto& take) {
-    for (std::size_t i = 0; i < nearest.size(); ++i) {
-      const auto from = static_cast<idx_t>(i / k);
-      if (nearest[i] >= 0 && nearest[i] != from) take(from, nearest[i]);
+    for (std::size_t i = 0; i < neighbours.size(); ++i) {
+      if (joins[i] != 0) take(i / k, static_cast<std::size_t>(neighbours[i]));
     }
   };
-  std::vector<idx_t> end(cells.size() + 1, 0);
-  for_pairs([&](idx_t a, idx_t b) { ++end[a + 1], ++end[b + 1]; });
-  for (std::size_t i = 0; i < cells.size(); ++i) end[i + 1] += end[i];
-  std::vector<idx_t> targets(end.back());
-  std::vector<idx_t> at(end.begin(), end.end() - 1);
-  for_pairs([&](idx_t a, idx_t b) { targets[at[a]++] = b, targets[at[b]++] = a; });
-
-  Graph graph{{0}, {}};
-  graph.targets.reserve(targets.size());
-  for (std::size_t i = 0; i < cells.size(); ++i) {
-    const auto begin = targets.begin() + end[i];
-    std::sort(begin, targets.begin() + end[i + 1]);
-    graph.targets.insert(graph.targets.end(), begin,
-                         std::unique(begin, targets.begin() + end[i + 1]));
-    graph.first.push_back(static_cast<idx_t>(graph.targets.size()));
+  for (std::size_t i = 0; i < neighbours.size(); ++i) {
+    const auto from = static_cast<std::uint32_t>(i / k);
+    const std::uint32_t to = neighbours[i];
+    if (to == k_no_cell) continue;
+    const auto back = of(to);
+    joins[i] = to > from || std::find(back.begin(), back.end(), from) == back.end() ? 1 : 0;
   }
+  Graph graph;
+  graph.first.assign(cells.size() + 1, 0);
+  for_pairs([&](std::size_t a, std::size_t b) { ++graph.first[a + 1], ++graph.first[b + 1]; });
+  std::partial_sum(graph.first.begin(), graph.first.end(), graph.first.begin());
+  graph.targets.resize(graph.first.back());
+  std::vector<idx_t> at(graph.first.begin(), graph.first.end() - 1);
+  for_pairs([&](std::size_t a, std::size_t b) {
+    graph.targets[at[a]++] = static_cast<idx_t>(b);
+    graph.targets[at[b]++] = static_cast<idx_t>(a);
+  });
   return graph;
 }
 

@@ -16,13 +16,14 @@ std::string partitioner_name();
 
 struct CellGraphOptions {
   std::uint32_t parts = 1;
-  std::uint32_t neighbours = 8;  // k of the k nearest cells by mean position
-  unsigned threads = 0;          // 0: one a core. The result does not depend on it.
+  std::uint32_t neighbours = 8;     // of each cell (cell_neighbours.hpp)
+  std::vector<unsigned> grid_bits;  // of each grid of the keys; none: these are not looked at
+  unsigned threads = 0;             // 0: one a core. The result does not depend on it.
 };
 
 /// Returns the part of each cell. METIS (Karypis & Kumar 1998; Xiong et al. 2008, 3.1 step 2), with
 /// a fixed seed, divides a graph of the cells: nodes are weighted by their vertices, edges lead to
-/// the nearest cells. If a part gets too heavy, the cells are divided by recursive bisection along
+/// cells nearby. If a part gets too heavy, the cells are divided by recursive bisection along
 /// their longest side instead; then no part exceeds the mean by more than one cell. Parts are
 /// numbered from 0 without gaps, along a recursive bisection: a range of them lies together. There
 /// may be fewer than asked for, never more.

@@ -41,7 +41,9 @@ void CellMap::count(std::span<const Vec3> batch) {
 std::uint32_t CellMap::divide() {
   const std::span<const Cell> cells = cells_.cells();
   merges_ = std::any_of(cells.begin(), cells.end(), [](const Cell& cell) { return cell.is_one; });
-  part_of_cell_ = partition_cells(cells, {.parts = options_.parts, .threads = options_.threads});
+  part_of_cell_ = partition_cells(
+      cells,
+      {.parts = options_.parts, .grid_bits = cells_.grid_bits(), .threads = options_.threads});
   const auto last = std::max_element(part_of_cell_.begin(), part_of_cell_.end());
   return last == part_of_cell_.end() ? 0 : *last + 1;
 }

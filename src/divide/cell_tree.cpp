@@ -219,6 +219,13 @@ void CellTree::finish() {
   hash_all(slots);
 }
 
+std::vector<unsigned> CellTree::grid_bits() const {
+  std::vector<unsigned> bits;
+  bits.reserve(grids_.size());
+  for (const UniformGrid& grid : grids_) bits.push_back(grid.bits());
+  return bits;
+}
+
 std::uint32_t CellTree::number_of(Vec3 p) {
   const std::uint64_t key = key_of(0, p);
   if (key == last_key_) return last_number_;

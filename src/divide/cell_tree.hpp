@@ -64,6 +64,10 @@ class CellTree {
   /// Whether vertices at one point go to several cells, by their order.
   bool deals() const { return !dealt_.empty(); }
 
+  /// A key is the number of a grid, and below so many bits a cell's index in it.
+  static constexpr unsigned k_index_bits = 36;
+  std::vector<unsigned> grid_bits() const;
+
   /// After the last scan.
   std::span<const Cell> cells() const { return std::span(cells_).first(leaves_); }
   /// The number of the cell that holds a vertex that was added. To be asked once for each, in
@@ -71,7 +75,6 @@ class CellTree {
   std::uint32_t number_of(Vec3 p);
 
  private:
-  static constexpr unsigned k_index_bits = 36;
   static constexpr std::uint64_t k_no_key = std::numeric_limits<std::uint64_t>::max();
 
   std::uint64_t key_of(std::uint32_t grid, Vec3 p) const {
