@@ -229,23 +229,20 @@ JoinedBoundary join_boundary(const Stage& stage, const BundlesOfMesh& bundles,
                              std::span<const std::string> numbers) {
   std::vector<BoundaryNumbers> of_parts;
   for (const std::string& each : numbers) of_parts.push_back(decode_numbers(each));
-  std::vector<SeamTriangle> seams;
   std::uint64_t bytes = 0;
   for (const TriangleBundleRef& each : bundles.triangles) bytes += each.bundle.seams.size;
-  seams.reserve(bytes / sizeof(SeamTriangle));
+  SharedTriangles shared;
+  shared.triangles.reserve(bytes / sizeof(SeamTriangle));
   for (const TriangleBundleRef& each : bundles.triangles) {
     const SectionedFile file(stage, each.file);
-    const auto more = read_section<SeamTriangle>(file, each.bundle.seams);
-    seams.insert(seams.end(), more.begin(), more.end());
+    number_seams(read_section<SeamTriangle>(file, each.bundle.seams), {}, of_parts, shared);
   }
-  SharedTriangles shared = number_seams(seams, {}, of_parts);
   JoinedBoundary joined;
   joined.degenerate = shared.degenerate;
   joined.coincident = shared.coincident;
-  joined.duplicate = drop_duplicates(shared.triangles, shared.columns);
-  joined.triangles = shared.triangles.size();
   const auto parts = static_cast<std::uint32_t>(numbers.size());
-  sort_by_region(parts, shared.triangles, shared.columns);
+  joined.duplicate = order_by_region(parts, shared.triangles, shared.columns);
+  joined.triangles = shared.triangles.size();
   joined.encoded = encode_boundary(parts, shared.triangles, shared.columns);
   return joined;
 }

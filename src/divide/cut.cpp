@@ -141,10 +141,9 @@ class Cutter {
     manifest_.dropped_degenerate += shared.degenerate;
     manifest_.coincident_corners += shared.coincident;
     scheme_->order_boundary(shared);
-    manifest_.dropped_duplicate = drop_duplicates(shared.triangles, shared.columns);
-    manifest_.boundary_triangles = shared.triangles.size();
     const auto parts = static_cast<std::uint32_t>(manifest_.parts.size());
-    sort_by_region(parts, shared.triangles, shared.columns);
+    manifest_.dropped_duplicate = order_by_region(parts, shared.triangles, shared.columns);
+    manifest_.boundary_triangles = shared.triangles.size();
     const EncodedBoundary encoded = encode_boundary(parts, shared.triangles, shared.columns);
     manifest_.boundary = stage_.publish(BoundaryName{}, encoded.file);
     manifest_.boundary_index = encoded.index;

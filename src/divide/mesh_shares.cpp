@@ -213,11 +213,14 @@ Vec3 MeshShares::position_of(SharePlace vertex) const {
 }
 
 SharedTriangles MeshShares::boundary(std::span<const BoundaryNumbers> numbers) const {
-  return number_seams(boundary_, boundary_columns_, numbers);
+  SharedTriangles made;
+  made.triangles.reserve(boundary_.size());
+  number_seams(boundary_, boundary_columns_, numbers, made);
+  return made;
 }
 
-SharedTriangles number_seams(std::span<const SeamTriangle> seams, const TriangleColumns& columns,
-                             std::span<const BoundaryNumbers> numbers) {
+void number_seams(std::span<const SeamTriangle> seams, const TriangleColumns& columns,
+                  std::span<const BoundaryNumbers> numbers, SharedTriangles& made) {
   constexpr std::size_t k_looked_at = 4;
   // Neighbours in the file mostly have the same vertices, or the next.
   std::vector<std::size_t> last(numbers.size(), 0);
@@ -232,8 +235,6 @@ SharedTriangles number_seams(std::span<const SeamTriangle> seams, const Triangle
     if (at == places.size()) throw DataError("a boundary triangle of a vertex that is not there");
     return at;
   };
-  SharedTriangles made;
-  made.triangles.reserve(seams.size());
   for (std::size_t place = 0; place < seams.size(); ++place) {
     const SeamTriangle& t = seams[place];
     BoundaryTriangle corners;
@@ -252,7 +253,6 @@ SharedTriangles number_seams(std::span<const SeamTriangle> seams, const Triangle
       made.columns.append(columns, place);
     }
   }
-  return made;
 }
 
 }  // namespace meshfarm

@@ -38,9 +38,9 @@ struct SharedTriangles {
   std::uint64_t coincident = 0;  // with two corners at one point, left out or not
 };
 
-/// By final numbers, one entry of `numbers` a share; the order kept.
-SharedTriangles number_seams(std::span<const SeamTriangle> seams, const TriangleColumns& columns,
-                             std::span<const BoundaryNumbers> numbers);
+/// Appends triangles by final numbers, one entry of `numbers` a share; the order kept.
+void number_seams(std::span<const SeamTriangle> seams, const TriangleColumns& columns,
+                  std::span<const BoundaryNumbers> numbers, SharedTriangles& made);
 
 /// Divides a mesh while it is scanned, in bounded memory. The caller assigns each vertex to a
 /// share. A triangle goes to the share of its vertices, or to the boundary if they are in several.

@@ -114,6 +114,40 @@ std::uint64_t hash_of(const BoundaryTriangle& t) {
   return hash ^ hash >> 32;
 }
 
+/// Tells of triangles whether one with the same corners, in any order, was added before.
+class KnownTriangles {
+ public:
+  explicit KnownTriangles(std::span<const BoundaryTriangle> all) : all_(all) {
+    if (all.size() >= std::numeric_limits<std::uint32_t>::max()) {
+      throw DataError("2^32 boundary triangles or more");
+    }
+  }
+  /// None is known; at most so many will be added.
+  void begin(std::size_t most) { slots_.assign(std::bit_ceil(2 * most + 1), {}); }
+  /// Whether the triangle is new.
+  bool add(std::size_t place) {
+    const std::uint64_t hash = hash_of(all_[place]);
+    const auto tag = static_cast<std::uint32_t>(hash >> 32);
+    std::size_t at = hash & (slots_.size() - 1);
+    for (; slots_[at].place != 0; at = (at + 1) & (slots_.size() - 1)) {
+      if (slots_[at].hash == tag &&
+          sorted_corners(all_[slots_[at].place - 1]) == sorted_corners(all_[place])) {
+        return false;
+      }
+    }
+    slots_[at] = {tag, static_cast<std::uint32_t>(place + 1)};
+    return true;
+  }
+
+ private:
+  struct Slot {
+    std::uint32_t hash = 0;   // tells most others without a look at their corners
+    std::uint32_t place = 0;  // 1 + it
+  };
+  std::span<const BoundaryTriangle> all_;
+  std::vector<Slot> slots_;
+};
+
 /// Appends triangles with their columns.
 void get_triangles(ByteReader& in, std::uint64_t count, const ColumnSet& set,
                    std::vector<BoundaryTriangle>& triangles, TriangleColumns& columns) {
@@ -136,53 +170,44 @@ std::uint64_t drop_duplicates(std::vector<BoundaryTriangle>& triangles) {
 }
 
 std::uint64_t drop_duplicates(std::vector<BoundaryTriangle>& triangles, TriangleColumns& columns) {
-  // The first of those with the same corners stays, whatever the hashes are.
-  struct Known {
-    std::uint32_t hash = 0;   // tells most others without a look at their corners
-    std::uint32_t place = 0;  // 1 + it
-  };
-  if (triangles.size() >= std::numeric_limits<std::uint32_t>::max()) {
-    throw DataError("2^32 boundary triangles or more");
-  }
-  std::vector<Known> known(std::bit_ceil(2 * triangles.size() + 1));
-  std::vector<bool> duplicate(triangles.size(), false);
-  for (std::size_t i = 0; i < triangles.size(); ++i) {
-    const std::uint64_t hash = hash_of(triangles[i]);
-    const auto tag = static_cast<std::uint32_t>(hash >> 32);
-    const auto is_same = [&](const Known& other) {
-      return other.hash == tag &&
-             sorted_corners(triangles[other.place - 1]) == sorted_corners(triangles[i]);
-    };
-    std::size_t slot = hash & (known.size() - 1);
-    while (known[slot].place != 0 && !is_same(known[slot])) slot = (slot + 1) & (known.size() - 1);
-    duplicate[i] = known[slot].place != 0;
-    if (!duplicate[i]) known[slot] = {tag, static_cast<std::uint32_t>(i + 1)};
-  }
-  return keep_triangles(triangles, columns, [&](std::size_t i) { return !duplicate[i]; });
+  KnownTriangles known(triangles);
+  known.begin(triangles.size());
+  std::vector<bool> is_new(triangles.size(), false);
+  for (std::size_t i = 0; i < triangles.size(); ++i) is_new[i] = known.add(i);
+  return keep_triangles(triangles, columns, [&](std::size_t i) { return is_new[i]; });
 }
 
-void sort_by_region(std::uint32_t parts, std::vector<BoundaryTriangle>& triangles,
-                    TriangleColumns& columns) {
+std::uint64_t order_by_region(std::uint32_t parts, std::vector<BoundaryTriangle>& triangles,
+                              TriangleColumns& columns) {
   RegionOf region_of(parts);
   std::vector<std::uint32_t> region(triangles.size());
-  std::vector<std::size_t> next(std::size_t{Regions(parts).count()} + 1, 0);  // by region
+  std::vector<std::size_t> end(Regions(parts).count(), 0);  // by region
   for (std::size_t i = 0; i < triangles.size(); ++i) {
     region[i] = region_of(triangles[i]);
-    ++next[region[i] + 1];
+    ++end[region[i]];
   }
-  if (std::is_sorted(region.begin(), region.end())) return;
-  std::partial_sum(next.begin(), next.end(), next.begin());
-  std::vector<std::size_t> order(triangles.size());
-  for (std::size_t i = 0; i < triangles.size(); ++i) order[next[region[i]]++] = i;
-  std::vector<BoundaryTriangle> sorted;
-  TriangleColumns columns_sorted;
-  sorted.reserve(triangles.size());
-  for (const std::size_t place : order) {
-    sorted.push_back(triangles[place]);
-    columns_sorted.append(columns, place);
+  std::exclusive_scan(end.begin(), end.end(), end.begin(), std::size_t{0});
+  std::vector<std::uint32_t> order(triangles.size());
+  for (std::size_t i = 0; i < triangles.size(); ++i) {
+    order[end[region[i]]++] = static_cast<std::uint32_t>(i);
   }
-  triangles = std::move(sorted);
-  columns = std::move(columns_sorted);
+  // Copies are of one region: a table of its triangles stays in the processor's cache.
+  KnownTriangles known(triangles);
+  std::vector<BoundaryTriangle> ordered;
+  TriangleColumns columns_ordered;
+  ordered.reserve(triangles.size());
+  for (std::size_t first = 0, r = 0; r < end.size(); first = end[r++]) {
+    known.begin(end[r] - first);
+    for (std::size_t k = first; k < end[r]; ++k) {
+      if (!known.add(order[k])) continue;
+      ordered.push_back(triangles[order[k]]);
+      columns_ordered.append(columns, order[k]);
+    }
+  }
+  const std::uint64_t dropped = triangles.size() - ordered.size();
+  triangles = std::move(ordered);
+  columns = std::move(columns_ordered);
+  return dropped;
 }
 
 EncodedBoundary encode_boundary(std::uint32_t parts, const std::vector<BoundaryTriangle>& triangles,

@@ -139,12 +139,20 @@ JobOutput join_boundary_of_parts(const Job& job, const JobContext& context) {
   return publish_bytes(job, context, made.encoded.file, encode_summary(summary));
 }
 
+constexpr std::uint64_t k_usual_workers = 24;  // they end together, if as many parts are of each
+
+std::uint64_t as_many_of_each(std::uint64_t wanted) {
+  return (wanted + k_usual_workers - 1) / k_usual_workers * k_usual_workers;
+}
+
 /// Two dozen workers are done at about the same time where each has four parts or more. Smaller
 /// parts, or more of them, cost all: the partition is one job, and seams are most of small parts.
 std::uint32_t parts_for_cluster(std::uint64_t triangles) {
   constexpr std::uint64_t k_part = 300'000;
+  constexpr std::uint64_t k_least = 72;
   constexpr std::uint64_t k_most = 192;
-  return static_cast<std::uint32_t>(std::clamp<std::uint64_t>(triangles / k_part, 1, k_most));
+  const std::uint64_t wanted = std::clamp<std::uint64_t>(triangles / k_part, 1, k_most);
+  return static_cast<std::uint32_t>(wanted < k_least ? wanted : as_many_of_each(wanted));
 }
 
 std::optional<Cutting> plan_cutting(const std::filesystem::path& input,
@@ -154,11 +162,8 @@ std::optional<Cutting> plan_cutting(const std::filesystem::path& input,
   const auto blocks = [&](std::uint64_t records) {
     // Enough for all workers of a cluster, few enough that each is worth its messages and files.
     constexpr std::uint64_t k_records = 300'000;
-    constexpr std::uint64_t k_usual_workers = 24;  // they end together, if there are so many
     std::uint64_t wanted = records / k_records;
-    if (wanted > k_usual_workers) {
-      wanted = (wanted + k_usual_workers - 1) / k_usual_workers * k_usual_workers;
-    }
+    if (wanted > k_usual_workers) wanted = as_many_of_each(wanted);
     if (options.blocks != 0) wanted = options.blocks;
     return static_cast<std::uint32_t>(std::clamp<std::uint64_t>(wanted, 1, k_most_cut_blocks / 2));
   };

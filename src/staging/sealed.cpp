@@ -37,6 +37,7 @@ std::uint64_t read_head(ByteReader& in, FileKind kind, std::uint32_t version) {
 
 std::string seal(FileKind kind, std::uint32_t version, std::string_view payload) {
   ByteWriter out;
+  out.reserve(k_seal_head_bytes + payload.size() + sizeof(std::uint64_t));
   out.put(k_magic);
   out.put(kind);
   out.put(version);

@@ -31,9 +31,9 @@ std::uint64_t drop_duplicates(std::vector<BoundaryTriangle>& triangles, Triangle
 std::uint64_t drop_duplicates(std::vector<BoundaryTriangle>& triangles);
 
 /// Puts the triangles between so many parts in the order of their regions (regions.hpp), the order
-/// kept otherwise.
-void sort_by_region(std::uint32_t parts, std::vector<BoundaryTriangle>& triangles,
-                    TriangleColumns& columns);
+/// kept otherwise, and drops duplicates as drop_duplicates() does. Returns how many were removed.
+std::uint64_t order_by_region(std::uint32_t parts, std::vector<BoundaryTriangle>& triangles,
+                              TriangleColumns& columns);
 
 /// The side file, and where its index is.
 struct EncodedBoundary {
@@ -41,7 +41,7 @@ struct EncodedBoundary {
   FileSection index;
 };
 /// Every triangle whose corners lie in two or three of so many parts (Xiong et al. 2008, 3.1
-/// step 4), in the order of sort_by_region(), and their columns.
+/// step 4), in the order of order_by_region(), and their columns.
 EncodedBoundary encode_boundary(std::uint32_t parts, const std::vector<BoundaryTriangle>& triangles,
                                 const TriangleColumnsView& columns = {});
 std::vector<BoundaryTriangle> decode_boundary(std::string_view file, std::string_view what);

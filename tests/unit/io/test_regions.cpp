@@ -88,7 +88,7 @@ TEST_CASE("a region's boundary triangles are read without the others") {
   std::vector<Label> labels;
   Triangles triangles = all_pairs(parts, labels);
   TriangleColumns columns{labels, {}};
-  sort_by_region(parts, triangles, columns);
+  order_by_region(parts, triangles, columns);
   const TempFolder folder;
   const Stage stage = Stage::create(folder.path());
   const EncodedBoundary encoded = encode_boundary(parts, triangles, columns);
@@ -113,11 +113,28 @@ TEST_CASE("a region's boundary triangles are read without the others") {
   CHECK_THROWS_AS(encode_boundary(parts, triangles, columns), Error);
 }
 
+TEST_CASE("of boundary triangles with the same corners the first stays") {
+  const std::uint32_t parts = 11;
+  std::vector<Label> labels;
+  Triangles once = all_pairs(parts, labels);
+  TriangleColumns columns_once{labels, {}};
+  Triangles twice = once;
+  TriangleColumns columns_twice = columns_once;
+  for (const auto& [a, b, c] : once) {
+    twice.push_back({c, b, a});
+    columns_twice.labels.push_back(7);
+  }
+  CHECK(order_by_region(parts, once, columns_once) == 0);
+  CHECK(order_by_region(parts, twice, columns_twice) == once.size());
+  CHECK(twice == once);
+  CHECK(columns_twice.labels == columns_once.labels);
+}
+
 TEST_CASE("a damaged region is refused, and the others are read") {
   std::vector<Label> labels;
   Triangles triangles = all_pairs(4, labels);
   TriangleColumns none;
-  sort_by_region(4, triangles, none);
+  order_by_region(4, triangles, none);
   const TempFolder folder;
   const Stage stage = Stage::create(folder.path());
   const EncodedBoundary encoded = encode_boundary(4, triangles);
