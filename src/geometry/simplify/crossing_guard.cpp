@@ -132,18 +132,24 @@ bool CrossingGuard::vanishes(const Triangle& t) const {
   return is_listed(next, prev) && (end == merge_.b || is_listed(prev, next));
 }
 
+void CrossingGuard::begin_list() {
+  ++list_;
+  listed_.resize(state_.positions.size(), 0);
+}
+
 void CrossingGuard::list(const Merge& merge) {
   merge_ = merge;
   touching_.clear();
   star_.clear();
   others_.clear();
-  ring_.clear();
+  begin_list();
   boxes_.find_touching(box_round(merge), touching_);
   for (const std::uint32_t slot : touching_) {
     const Triangle& t = triangles_[slot];
     const bool is_star = has_corner(t, merge.a) || has_corner(t, merge.b);
     (is_star ? star_ : others_).push_back(slot);
-    if (is_star) ring_.insert(ring_.end(), t.begin(), t.end());
+    if (!is_star) continue;
+    for (const std::uint32_t v : t) listed_[v] = list_;
   }
 }
 
@@ -182,9 +188,8 @@ std::size_t CrossingGuard::count(const std::vector<CrossingTriangle>& star,
 /// Whether a triangle beside the star goes on the way that the star faces: then they do not cross.
 bool CrossingGuard::goes_on(const Triangle& t, Vec3 way) const {
   constexpr double k_cos_60_squared = 0.25;
-  const bool is_beside = std::any_of(t.begin(), t.end(), [&](std::uint32_t v) {
-    return std::find(ring_.begin(), ring_.end(), v) != ring_.end();
-  });
+  const bool is_beside =
+      std::any_of(t.begin(), t.end(), [&](std::uint32_t v) { return listed_[v] == list_; });
   if (!is_beside) return false;
   const Vec3 p = state_.positions[t[0]];
   return is_along(cross(state_.positions[t[1]] - p, state_.positions[t[2]] - p), way,
@@ -238,7 +243,7 @@ bool CrossingGuard::moves(std::span<const std::uint32_t> vertices, std::span<con
   touching_.clear();
   star_.clear();
   others_.clear();
-  ring_.clear();
+  begin_list();
   fresh_.clear();
   boxes_.find_touching(box, touching_);
   for (const std::uint32_t slot : touching_) {

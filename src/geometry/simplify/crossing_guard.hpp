@@ -50,6 +50,7 @@ class CrossingGuard {
   CrossingTriangle triangle_of(const Triangle& t) const;
   Box box_round(const Merge& merge) const;
   bool vanishes(const Triangle& t) const;
+  void begin_list();
   void list(const Merge& merge);
   bool goes_on(const Triangle& t, Vec3 way) const;
   std::size_t count_before() const;
@@ -67,7 +68,8 @@ class CrossingGuard {
   std::vector<std::uint32_t> touching_;
   std::vector<std::uint32_t> star_;    // slots of the triangles at its ends
   std::vector<std::uint32_t> others_;  // slots of those round about
-  std::vector<std::uint32_t> ring_;    // the corners of the star
+  std::vector<std::uint32_t> listed_;  // of each vertex, the last list_ whose star has it
+  std::uint32_t list_ = 0;
   std::vector<CrossingTriangle> fresh_;
 };
 

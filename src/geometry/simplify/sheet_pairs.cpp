@@ -4,9 +4,11 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <utility>
 
 #include "geometry/simplify/adjacency.hpp"
+#include "geometry/simplify/place_cells.hpp"
 #include "geometry/simplify/vertex_flags.hpp"
 #include "geometry/union_find.hpp"
 
@@ -24,8 +26,8 @@ constexpr std::size_t k_looked_at_first = 64;
 class SheetPairing {
  public:
   SheetPairing(const Mesh& mesh, std::span<const std::uint8_t> flags, double reach)
-      : mesh_(mesh), reach_squared_(reach * reach), number_(mesh.positions.size(), k_no_twin) {
-    find_normals();
+      : mesh_(mesh), number_(mesh.positions.size(), k_no_twin) {
+    const double area = find_normals();
     std::vector<Vec3> thin;
     for (std::uint32_t v = 0; v < flags.size(); ++v) {
       if ((flags[v] & k_thin) == 0 || !is_finite(mesh.positions[v])) continue;
@@ -33,7 +35,8 @@ class SheetPairing {
       vertices_.push_back(v);
       thin.push_back(mesh.positions[v]);
     }
-    index_.emplace(std::move(thin));
+    const auto vertices = static_cast<double>(std::max<std::size_t>(1, mesh.positions.size()));
+    places_.emplace(std::move(thin), reach, std::sqrt(area / vertices));
     adjacency_.build(mesh.triangles, mesh.positions.size());
   }
 
@@ -72,13 +75,18 @@ class SheetPairing {
  private:
   enum class Side : std::uint8_t { alone, leads, follows };
 
-  void find_normals() {
+  /// Returns the area.
+  double find_normals() {
+    double area = 0;
     normals_.resize(mesh_.positions.size());
     for (const auto& [a, b, c] : mesh_.triangles) {
       const Vec3 p = mesh_.positions[a];
       const Vec3 normal = cross(mesh_.positions[b] - p, mesh_.positions[c] - p);
       for (const std::uint32_t v : {a, b, c}) normals_[v] = normals_[v] + normal;
+      const double twice = length(normal);
+      if (std::isfinite(twice)) area += 0.5 * twice;
     }
+    return area;
   }
 
   bool do_face_apart(std::uint32_t a, std::uint32_t b) const {
@@ -91,14 +99,10 @@ class SheetPairing {
   /// The nearest vertex that faces the other way.
   std::uint32_t twin_of(std::uint32_t vertex) const {
     if (number_[vertex] == k_no_twin) return k_no_twin;
-    std::uint32_t twin = k_no_twin;
-    const double squared =
-        index_->squared_distance(mesh_.positions[vertex], [&](std::uint32_t point) {
-          if (!do_face_apart(vertex, vertices_[point])) return false;
-          twin = vertices_[point];
-          return true;
-        });
-    return squared <= reach_squared_ ? twin : k_no_twin;
+    const auto twin = places_->nearest(mesh_.positions[vertex], [&](std::uint32_t point) {
+      return do_face_apart(vertex, vertices_[point]);
+    });
+    return twin ? vertices_[*twin] : k_no_twin;
   }
 
   /// Whether the triangle is there with which the twins of another one's corners face back.
@@ -192,11 +196,10 @@ class SheetPairing {
   }
 
   const Mesh& mesh_;
-  double reach_squared_;
   std::vector<Vec3> normals_;
   std::vector<std::uint32_t> vertices_;  // that are thin
   std::vector<std::uint32_t> number_;    // in vertices_, later in the single mesh
-  std::optional<PointIndex> index_;      // of vertices_
+  std::optional<PlaceCells> places_;     // of vertices_
   Adjacency adjacency_;
   std::vector<std::uint32_t> twins_;  // of each vertex, or none
   std::vector<Side> sides_;           // of each triangle

@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <utility>
 #include <vector>
 
 #include "geometry/simplify/vertex_flags.hpp"
@@ -17,91 +18,148 @@ namespace {
 // points to. The largest is 0.577 at least.
 constexpr double k_points_there = 0.4;
 
-constexpr int k_cell_bits = 20;
+constexpr int k_cell_bits = 20;  // of a cell's place along an axis
 
-/// Cells of a grid, hashed, each with the ways that its triangles face: one of six bits for each
-/// direction of an axis.
+/// The opposite directions.
+std::uint8_t opposite(std::uint8_t ways) {
+  return static_cast<std::uint8_t>((ways & 0x15U) << 1 | (ways & 0x2AU) >> 1);
+}
+
+/// A brick of 4 x 4 x 4 cells and a layer of cells round it, which are other bricks'.
+constexpr std::size_t k_side = 6;
+using LayeredBrick = std::array<std::uint8_t, k_side * k_side * k_side>;
+
+/// Which cell of which of 27 bricks.
+struct CellOfRound {
+  std::uint8_t brick = 0;
+  std::uint8_t cell = 0;
+};
+constexpr std::size_t k_middle = 13;
+
+constexpr std::array<CellOfRound, std::tuple_size_v<LayeredBrick>> k_layered = [] {
+  std::array<CellOfRound, std::tuple_size_v<LayeredBrick>> layered{};
+  for (std::size_t i = 0; i < layered.size(); ++i) {
+    // Along each axis, from the first cell of the first brick.
+    const std::size_t x = i % k_side + 3, y = i / k_side % k_side + 3, z = i / k_side / k_side + 3;
+    layered[i] = {static_cast<std::uint8_t>(x / 4 + 3 * (y / 4) + 9 * (z / 4)),
+                  static_cast<std::uint8_t>(x % 4 + 4 * (y % 4) + 16 * (z % 4))};
+  }
+  return layered;
+}();
+
+/// Cells of a grid, each with the ways that its triangles face: one of six bits for each direction
+/// of an axis. Bricks of 4 x 4 x 4 cells, a line of the cache each, are hashed.
 class FacingCells {
  public:
+  /// Which cell of which brick.
+  struct Place {
+    std::uint32_t brick = 0;  // none
+    std::uint8_t cell = 0;
+  };
+
   FacingCells(Vec3 origin, double size) : origin_(origin), scale_(1 / size), table_(1024, 0) {
-    cells_.emplace_back();
+    bricks_.emplace_back();
+    keys_.push_back({});
   }
 
-  /// Returns the cell's number.
-  std::uint32_t add(Vec3 p, std::uint8_t ways) {
+  Place add(Vec3 p, std::uint8_t ways) {
     const Vec3 at = (p - origin_) * scale_;
-    const std::uint64_t key =
-        key_of({static_cast<std::int64_t>(at.x), static_cast<std::int64_t>(at.y),
-                static_cast<std::int64_t>(at.z)});
+    const auto x = static_cast<std::uint64_t>(at.x);
+    const auto y = static_cast<std::uint64_t>(at.y);
+    const auto z = static_cast<std::uint64_t>(at.z);
+    const std::uint64_t key = (x / 4 + 1) * k_x + (y / 4 + 1) * k_y + (z / 4 + 1) * k_z;
     // As a rule that of the triangle before.
-    if (cells_[last_].key != key) {
-      std::uint32_t& number = find(key);
-      if (number == 0) {
-        number = static_cast<std::uint32_t>(cells_.size());
-        cells_.push_back({key});
-      }
-      last_ = number;
-    }
-    const std::uint32_t number = last_;
-    cells_[number].ways |= ways;
-    if (2 * cells_.size() > table_.size()) grow();
-    return number;
+    if (keys_[last_].key != key) last_ = find_or_add(key);
+    const auto cell = static_cast<std::uint8_t>(x % 4 + 4 * (y % 4) + 16 * (z % 4));
+    bricks_[last_][cell] |= ways;
+    keys_[last_].ways |= ways;
+    return {last_, cell};
   }
 
-  /// Whether a triangle in the cell or in one beside it faces against one in the cell.
-  std::vector<std::uint8_t> opposed() {
-    std::vector<std::uint8_t> opposed(cells_.size(), 0);
-    for (std::size_t i = 1; i < cells_.size(); ++i) {
-      const std::uint64_t key = cells_[i].key;
-      const std::uint8_t against = opposite(cells_[i].ways);
-      if ((against & cells_[i].ways) != 0) opposed[i] = 1;
-      // Keys of neighbours: none is at the end of its axis. Of two beside each other one looks.
-      for (std::uint64_t k = 14; k < 27; ++k) {
+  /// Marks the cells where a triangle in the cell or in one beside it faces against one in the
+  /// cell.
+  void find_opposed() {
+    std::vector<std::uint64_t> opposed(bricks_.size(), 0);
+    std::array<std::uint32_t, 27> round{};
+    for (std::size_t i = 1; i < bricks_.size(); ++i) {
+      std::uint8_t ways = 0;
+      for (std::uint64_t k = 0; k < round.size(); ++k) {
+        // Keys of neighbours: none is at the end of its axis.
         const std::uint64_t beside =
-            key + (k % 3) * k_x + (k / 3 % 3) * k_y + (k / 9) * k_z - k_x - k_y - k_z;
-        const std::uint32_t other = find(beside);
-        if ((against & cells_[other].ways) == 0) continue;
-        opposed[i] = 1;
-        opposed[other] = 1;
+            keys_[i].key + (k % 3) * k_x + (k / 3 % 3) * k_y + (k / 9) * k_z - k_x - k_y - k_z;
+        round[k] = find(beside);
+        ways |= keys_[round[k]].ways;
       }
+      if ((opposite(keys_[i].ways) & ways) != 0) opposed[i] = opposed_of(i, round);
     }
-    return opposed;
+    opposed_ = std::move(opposed);
   }
+  bool is_opposed(Place place) const { return (opposed_[place.brick] >> place.cell & 1U) != 0; }
 
  private:
-  struct Cell {
+  using Brick = std::array<std::uint8_t, 64>;
+  struct Key {
     std::uint64_t key = 0;  // none
-    std::uint8_t ways = 0;
+    std::uint8_t ways = 0;  // of all cells
   };
   static constexpr std::uint64_t k_x = 1;
   static constexpr std::uint64_t k_y = std::uint64_t{1} << k_cell_bits;
   static constexpr std::uint64_t k_z = std::uint64_t{1} << (2 * k_cell_bits);
 
-  static std::uint64_t key_of(const std::array<std::int64_t, 3>& place) {
-    return static_cast<std::uint64_t>(place[0] + 1) * k_x +
-           static_cast<std::uint64_t>(place[1] + 1) * k_y +
-           static_cast<std::uint64_t>(place[2] + 1) * k_z;
+  /// A bit a cell of the brick that is in the middle of 27.
+  std::uint64_t opposed_of(std::size_t brick, const std::array<std::uint32_t, 27>& round) const {
+    LayeredBrick ways{};
+    for (std::size_t i = 0; i < ways.size(); ++i) {
+      const CellOfRound at = k_layered[i];
+      ways[i] = bricks_[round[at.brick]][at.cell];
+    }
+    // What is beside a cell along one axis after the other: ends are wrong in the outer layer only.
+    for (const std::size_t step : {std::size_t{1}, k_side, k_side * k_side}) {
+      LayeredBrick spread = ways;
+      for (std::size_t i = step; i + step < ways.size(); ++i) {
+        spread[i] = ways[i - step] | ways[i] | ways[i + step];
+      }
+      ways = spread;
+    }
+    std::uint64_t opposed = 0;
+    for (std::size_t i = 0; i < ways.size(); ++i) {
+      const CellOfRound at = k_layered[i];
+      if (at.brick != k_middle) continue;
+      const bool is = (opposite(bricks_[brick][at.cell]) & ways[i]) != 0;
+      opposed |= std::uint64_t{is} << at.cell;
+    }
+    return opposed;
   }
-  static std::uint8_t opposite(std::uint8_t ways) {
-    return static_cast<std::uint8_t>((ways & 0x15U) << 1 | (ways & 0x2AU) >> 1);
-  }
-  /// Where the number of the cell is or would be.
-  std::uint32_t& find(std::uint64_t key) {
+
+  std::size_t place_of(std::uint64_t key) const {
     std::size_t place = (key * 0x9e3779b97f4a7c15U >> 32) & (table_.size() - 1);
-    while (table_[place] != 0 && cells_[table_[place]].key != key) {
+    while (table_[place] != 0 && keys_[table_[place]].key != key) {
       place = (place + 1) & (table_.size() - 1);
     }
-    return table_[place];
+    return place;
+  }
+  std::uint32_t find(std::uint64_t key) const { return table_[place_of(key)]; }
+  std::uint32_t find_or_add(std::uint64_t key) {
+    const std::size_t place = place_of(key);
+    if (table_[place] != 0) return table_[place];
+    const auto number = static_cast<std::uint32_t>(bricks_.size());
+    table_[place] = number;
+    bricks_.emplace_back();
+    keys_.push_back({key});
+    if (2 * bricks_.size() > table_.size()) grow();
+    return number;
   }
   void grow() {
     table_.assign(2 * table_.size(), 0);
-    for (std::uint32_t i = 1; i < cells_.size(); ++i) find(cells_[i].key) = i;
+    for (std::uint32_t i = 1; i < keys_.size(); ++i) table_[place_of(keys_[i].key)] = i;
   }
 
   Vec3 origin_;
   double scale_;
-  std::vector<Cell> cells_;  // from 1 on
+  std::vector<Brick> bricks_;  // from 1 on
+  std::vector<Key> keys_;      // of these
   std::vector<std::uint32_t> table_;
+  std::vector<std::uint64_t> opposed_;  // of each brick, a bit a cell
   std::uint32_t last_ = 0;
 };
 
@@ -124,18 +182,18 @@ void flag_thin_walls(const Mesh& mesh, double reach, std::span<std::uint8_t> fla
   const double diagonal = box.diagonal();
   if (!(reach > 0 && diagonal > 0 && std::isfinite(diagonal))) return;
   FacingCells facing(box.lo, std::max(reach, diagonal / ((1 << k_cell_bits) - 4)));
-  std::vector<std::uint32_t> cell(mesh.triangles.size(), 0);
-  for (std::size_t i = 0; i < cell.size(); ++i) {
+  std::vector<FacingCells::Place> places(mesh.triangles.size());
+  for (std::size_t i = 0; i < places.size(); ++i) {
     const auto& [a, b, c] = mesh.triangles[i];
     const Vec3 p = mesh.positions[a], q = mesh.positions[b], r = mesh.positions[c];
     const Vec3 normal = cross(q - p, r - p);
     const double squared = squared_length(normal);
     if (!(squared > 0 && std::isfinite(squared))) continue;
-    cell[i] = facing.add((p + q + r) * (1.0 / 3), ways_of(normal));
+    places[i] = facing.add((p + q + r) * (1.0 / 3), ways_of(normal));
   }
-  const std::vector<std::uint8_t> opposed = facing.opposed();
-  for (std::size_t i = 0; i < cell.size(); ++i) {
-    if (opposed[cell[i]] == 0) continue;
+  facing.find_opposed();
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    if (!facing.is_opposed(places[i])) continue;
     for (const std::uint32_t v : mesh.triangles[i]) flags[v] |= k_thin;
   }
 }

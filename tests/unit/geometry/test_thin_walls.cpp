@@ -1,8 +1,11 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
 #include <algorithm>
+#include <array>
 #include <cstdint>
+#include <cstdlib>
 #include <limits>
+#include <random>
 #include <utility>
 #include <vector>
 
@@ -43,6 +46,44 @@ TEST_CASE("thin walls: sheets that face each other within reach") {
   CHECK(thin_vertices(wall, 0.9) == 0);
   CHECK(thin_vertices(two_sheets(2, false), 2) == 0);
   CHECK(thin_vertices(test::icosphere(4), 0.1) == 0);
+}
+
+TEST_CASE("thin walls: triangles that face against each other in cells beside each other") {
+  std::mt19937 random(5);
+  for (const int cells : {9, 40}) {
+    // The first corners span the box, so that cells begin at 0; each is as large as the reach.
+    const auto last = static_cast<double>(cells);
+    Mesh mesh;
+    mesh.positions = {{0, 0, 0}, {last, last, last}};
+    struct Place {
+      std::array<int, 3> cell;
+      bool is_up;
+    };
+    std::vector<Place> places;
+    for (std::uint32_t i = 0; i < 120; ++i) {
+      Place place{{}, random() % 2 == 0};
+      for (int& at : place.cell) at = static_cast<int>(random() % static_cast<unsigned>(cells));
+      const Vec3 p{place.cell[0] + 0.4, place.cell[1] + 0.4, place.cell[2] + 0.4};
+      const auto first = static_cast<std::uint32_t>(mesh.positions.size());
+      mesh.positions.insert(mesh.positions.end(), {p, p + Vec3{0.1, 0, 0}, p + Vec3{0, 0.1, 0}});
+      Triangle t{first, first + 1, first + 2};
+      if (!place.is_up) std::swap(t[1], t[2]);
+      mesh.triangles.push_back(t);
+      places.push_back(place);
+    }
+    std::vector<std::uint8_t> flags(mesh.positions.size(), 0);
+    flag_thin_walls(mesh, 1, flags);
+    for (std::size_t i = 0; i < places.size(); ++i) {
+      const bool is_opposed = std::any_of(places.begin(), places.end(), [&](const Place& other) {
+        bool is_beside = other.is_up != places[i].is_up;
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+          is_beside = is_beside && std::abs(other.cell[axis] - places[i].cell[axis]) <= 1;
+        }
+        return is_beside;
+      });
+      CHECK((flags[mesh.triangles[i][0]] == k_thin) == is_opposed);
+    }
+  }
 }
 
 TEST_CASE("thin walls: what is no surface has none") {

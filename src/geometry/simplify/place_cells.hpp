@@ -1,0 +1,128 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include <meshfarm/geometry/vec.hpp>
+
+namespace meshfarm {
+
+/// A hashed grid of points, to find what is near: quicker than a k-d tree where it is known how far
+/// to look, and where points lie no closer in one place than in another.
+class PlaceCells {
+ public:
+  /// Looks no farther than `reach`. `spacing`: about how far points are from their neighbours.
+  PlaceCells(std::vector<Vec3> points, double reach, double spacing)
+      : points_(std::move(points)), reach_(reach) {
+    Box box;
+    for (const Vec3& p : points_) box.add(p);
+    // Beside a cell are always others, and a place along an axis is a number of 20 bits.
+    const double least = box.diagonal() / static_cast<double>(k_axis - 4);
+    cell_ = std::max({std::min(reach, k_spacings * spacing), reach / k_most_rings, least});
+    if (!(cell_ > 0 && std::isfinite(cell_))) cell_ = 1;
+    origin_ = box.lo;
+    first_.assign(std::bit_ceil(std::max<std::size_t>(1024, points_.size())), k_none);
+    next_.resize(points_.size());
+    for (std::uint32_t i = 0; i < points_.size(); ++i) {
+      next_[i] = std::exchange(first_[hash_of(key_of(cell_of(points_[i])))], i);
+    }
+  }
+
+  /// The nearest point that counts, of those as near the first; none within reach: none.
+  template <class Counts>
+  std::optional<std::uint32_t> nearest(Vec3 from, const Counts& counts) const {
+    const Cell middle = cell_of(from);
+    const Vec3 within = from - corner_of(middle);
+    double best = reach_ * reach_;
+    std::optional<std::uint32_t> found;
+    const auto look_into = [&](const Cell& offset) {
+      if (squared_way(within, offset) > best) return;
+      const Cell cell{middle[0] + offset[0], middle[1] + offset[1], middle[2] + offset[2]};
+      for (std::uint32_t i = first_[hash_of(key_of(cell))]; i != k_none; i = next_[i]) {
+        const double squared = squared_length(points_[i] - from);
+        const bool is_nearer = squared < best || (squared <= best && (!found || i < *found));
+        if (!is_nearer || !counts(i)) continue;
+        best = squared;
+        found = i;
+      }
+    };
+    // What is in a ring of cells is no nearer than those within it are wide.
+    for (std::int64_t ring = 0;; ++ring) {
+      const double inner = static_cast<double>(ring - 1) * cell_;
+      if (ring > 0 && inner * inner > best) return found;
+      for_ring(ring, look_into);
+    }
+  }
+
+ private:
+  using Cell = std::array<std::int64_t, 3>;
+  static constexpr std::uint32_t k_none = UINT32_MAX;
+  static constexpr std::int64_t k_axis = std::int64_t{1} << 20;
+  static constexpr double k_spacings = 2;
+  static constexpr double k_most_rings = 16;
+
+  template <class Take>
+  static void for_ring(std::int64_t ring, const Take& take) {
+    for (std::int64_t z = -ring; z <= ring; ++z) {
+      for (std::int64_t y = -ring; y <= ring; ++y) {
+        const bool is_face = std::max(std::abs(y), std::abs(z)) == ring;
+        const std::int64_t step = is_face || ring == 0 ? 1 : 2 * ring;
+        for (std::int64_t x = -ring; x <= ring; x += step) {
+          take({x, y, z});
+        }
+      }
+    }
+  }
+  Cell cell_of(Vec3 p) const {
+    Cell cell{};
+    for (int axis = 0; axis < 3; ++axis) {
+      cell[static_cast<std::size_t>(axis)] =
+          static_cast<std::int64_t>(std::floor((p[axis] - origin_[axis]) / cell_));
+    }
+    return cell;
+  }
+  Vec3 corner_of(const Cell& cell) const {
+    return origin_ + Vec3{static_cast<double>(cell[0]), static_cast<double>(cell[1]),
+                          static_cast<double>(cell[2])} *
+                         cell_;
+  }
+  /// How far it is, squared, from a place in a cell to the cell that is so many cells away.
+  double squared_way(Vec3 within, const Cell& offset) const {
+    double squared = 0;
+    for (int axis = 0; axis < 3; ++axis) {
+      const std::int64_t cells = offset[static_cast<std::size_t>(axis)];
+      if (cells == 0) continue;
+      const double way = cells > 0 ? static_cast<double>(cells) * cell_ - within[axis]
+                                   : within[axis] - static_cast<double>(cells + 1) * cell_;
+      squared += way * way;
+    }
+    return squared;
+  }
+  /// Cells that are no neighbours may share one.
+  static std::uint64_t key_of(const Cell& cell) {
+    return static_cast<std::uint64_t>((cell[0] * k_axis + cell[1]) * k_axis + cell[2]);
+  }
+  std::size_t hash_of(std::uint64_t key) const {
+    return (key * 0x9e3779b97f4a7c15U >> 32) & (first_.size() - 1);
+  }
+
+  std::vector<Vec3> points_;
+  double reach_;
+  double cell_ = 1;
+  Vec3 origin_;
+  std::vector<std::uint32_t> first_;  // point of each hash, and from each point the next
+  std::vector<std::uint32_t> next_;
+};
+
+}  // namespace meshfarm
