@@ -22,8 +22,8 @@ NearCells::NearCells(std::span<const Vec3> positions, std::span<const Triangle> 
   }
   if (box_.empty()) return;
   const Vec3 sides = box_.hi - box_.lo;
-  size_ = std::max({sides.x, sides.y, sides.z}) / (k_cells - 1);
-  if (!(size_ > 0)) size_ = 1;
+  const double size = std::max({sides.x, sides.y, sides.z}) / (k_cells - 1);
+  per_unit_ = std::isnormal(size) ? 1 / size : 1;
   near_.assign(std::size_t{k_cells} * k_cells * k_cells, false);
   for (const Triangle& t : triangles) {
     const Box box = box_of(t);
@@ -37,9 +37,8 @@ NearCells::NearCells(std::span<const Vec3> positions, std::span<const Triangle> 
 NearCells::Cell NearCells::cell_of(Vec3 p) const {
   Cell cell{};
   for (int axis = 0; axis < 3; ++axis) {
-    const double at = (p[axis] - box_.lo[axis]) / size_;
-    cell[static_cast<std::size_t>(axis)] =
-        static_cast<int>(std::clamp(std::floor(at), 0.0, k_cells - 1.0));
+    const double at = (p[axis] - box_.lo[axis]) * per_unit_;
+    cell[static_cast<std::size_t>(axis)] = static_cast<int>(std::clamp(at, 0.0, k_cells - 1.0));
   }
   return cell;
 }

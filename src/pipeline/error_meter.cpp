@@ -125,9 +125,8 @@ void ErrorMeter::measure_samples(const DistanceMeter& meter, MeasuredError& meas
   measured.to_output_quantiles = DistanceQuantiles{values.quantile(0.95), values.quantile(0.99)};
 }
 
-double ErrorMeter::estimate_rms(const Mesh& result) const {
-  if (result.triangles.empty() || !(area_ > 0)) return 0;
-  const DistanceMeter to_result(result, threads_);
+double ErrorMeter::estimate_rms(const DistanceMeter& to_result) const {
+  if (!(area_ > 0)) return 0;
   const std::uint64_t step = step_for(surface_.size(), k_points_for_estimate);
   double sum = 0;
   for (const SurfaceSamples& part : samples_) {

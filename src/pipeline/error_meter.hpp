@@ -46,7 +46,7 @@ class ErrorMeter {
   MeasuredError measure(const Mesh& result,
                         const std::function<void(const TriangleIndex&)>& with_index = {});
   /// About the RMS from the input to the result, by few points: much cheaper.
-  double estimate_rms(const Mesh& result) const;
+  double estimate_rms(const DistanceMeter& to_result) const;
 
  private:
   struct ResultPoints {

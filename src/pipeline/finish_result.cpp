@@ -26,6 +26,7 @@
 #include "pipeline/bounded_finish.hpp"
 #include "pipeline/error_meter.hpp"
 #include "pipeline/knee.hpp"
+#include "pipeline/result_facing.hpp"
 
 namespace meshfarm {
 namespace {
@@ -199,7 +200,16 @@ class ResultFinish {
     summary_.topology_simplified =
         lines_.topology == TopologyMode::simplify || simplifier.simplifies_topology();
     summary_.why_not_exact = why_not_exact(before, simplifier.mesh());
-    return simplifier.mesh();
+    Mesh result = simplifier.mesh();
+    const bool may_mend = lines_.crossings == CrossingMode::avoid &&
+                          run_.finish != Finish::boundary && !simplifier.pairs_sheets();
+    if (may_mend) summary_.facing = mend(result);
+    return result;
+  }
+
+  FacingMended mend(Mesh& result) const {
+    tell("facing", 0, 0);
+    return mend_facing(result, *meter_, stage_, manifest_, options_.threads);
   }
 
   /// What is kept need not be compared. `kept` has the input's topology, if there is any.
@@ -290,7 +300,9 @@ class ResultFinish {
   /// An estimate, of one direction only, which may be the lesser: it tells what to measure.
   bool may_be_better(const Mesh& mesh, std::uint64_t triangles) const {
     constexpr double k_doubt = 2;
-    return is_past_knee(made(), {triangles, meter_->estimate_rms(mesh) / k_doubt});
+    if (mesh.triangles.empty()) return false;
+    const double rms = meter_->estimate_rms(DistanceMeter(mesh, options_.threads));
+    return is_past_knee(made(), {triangles, rms / k_doubt});
   }
 
   CountAndError made() const { return {summary_.triangles, summary_.error.greater().rms}; }

@@ -243,6 +243,8 @@ Json run_json(const RunSummary& s, const std::string& warning) {
       {"turned", s.turned},
       {"error", s.error.input_samples == 0 ? Json(nullptr) : to_json(s.error, m.box.diagonal())},
       {"surface", s.result ? to_json(*s.result) : Json(nullptr)},
+      {"facing_away",
+       s.facing ? Json{{"found", s.facing->found}, {"mended", s.facing->mended}} : Json(nullptr)},
       {"channels", channels_json(s)},
       {"labels", to_json(s.labels)},
       {"textures", textures_json(s)},
@@ -289,6 +291,10 @@ std::string run_text(const RunSummary& s, const std::string& warning) {
   }
   if (s.error.input_samples > 0) add_error(lines, s.error, s.max_error, m.box.diagonal());
   if (s.result) add_figures(lines, "surface", *s.result);
+  if (s.facing && s.facing->found > 0) {
+    lines.add("", grouped(s.facing->found) + " triangles faced away from the input, " +
+                      grouped(s.facing->mended) + " of them mended");
+  }
   if (s.max_error > 0) lines.add("bound", bound_text(s));
   add_channels(lines, s);
   if (!warning.empty()) lines.add("warning", warning);

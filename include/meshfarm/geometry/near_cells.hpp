@@ -29,7 +29,7 @@ class NearCells {
   static bool any_cell(Cell lo, Cell hi, const Take& take);
 
   Box box_;
-  double size_ = 1;  // of a cell
+  double per_unit_ = 1;  // cells
   std::vector<bool> near_;
 };
 

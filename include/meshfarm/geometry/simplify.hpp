@@ -152,6 +152,8 @@ class Simplifier {
   std::vector<Mesh> take_kept();
   /// Whether the topology was given up.
   bool simplifies_topology() const;
+  /// Whether sheets with the same triangles are simplified as one (CrossingMode::avoid).
+  bool pairs_sheets() const;
   /// Whether it stopped as TopologyMode::keep_while_fair says.
   bool is_held_by_topology() const;
   /// Whether more was refused to keep the topology than collapsed, of what was done in order.

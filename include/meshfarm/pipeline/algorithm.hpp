@@ -10,6 +10,6 @@ namespace meshfarm {
 /// input and options. It stands in the keys of jobs and runs and in every greeting, so that results
 /// of two versions never meet: older ones in a stage are done again, processes of another are
 /// refused.
-inline constexpr std::uint32_t k_algorithm_version = 11;
+inline constexpr std::uint32_t k_algorithm_version = 12;
 
 }  // namespace meshfarm

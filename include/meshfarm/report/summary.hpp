@@ -11,6 +11,7 @@
 
 #include <meshfarm/geometry/components.hpp>
 #include <meshfarm/geometry/distance.hpp>
+#include <meshfarm/geometry/facing_repair.hpp>
 #include <meshfarm/geometry/hausdorff.hpp>
 #include <meshfarm/geometry/surface_measures.hpp>
 #include <meshfarm/geometry/topology.hpp>
@@ -120,6 +121,7 @@ struct RunSummary {
   DroppedComponents dropped_components;  // and their triangles before the finish
   MeasuredError error;
   std::optional<SurfaceFigures> result;  // its own figures; nothing where it is in pieces
+  std::optional<FacingMended> facing;    // where that was looked at
   std::vector<ChannelError> channels;    // that were written
   std::optional<LabelMeaning> labels;    // that were written
   bool labels_too_fine = false;          // so they were dropped

@@ -3,6 +3,7 @@
 #include "geometry/simplify/box_tree.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <limits>
 
@@ -73,6 +74,13 @@ void BoxTree::set(std::uint32_t slot, const Box& box) {
   }
 }
 
+/// A bit for each lane that is set.
+unsigned BoxTree::lanes_of(Mask mask) {
+  const auto halves = std::bit_cast<std::array<std::uint64_t, 2>>(mask & Mask{1, 2, 4, 8});
+  const std::uint64_t bits = halves[0] | halves[1];
+  return static_cast<unsigned>((bits | bits >> 32) & 15);
+}
+
 void BoxTree::find_touching(const Box& box, std::vector<std::uint32_t>& slots) const {
   if (box.empty() || levels_[0].empty()) return;
   struct Place {
@@ -92,9 +100,9 @@ void BoxTree::find_touching(const Box& box, std::vector<std::uint32_t>& slots) c
       apart |= four.lo[axis] > around.hi[axis];
       apart |= four.hi[axis] < around.lo[axis];
     }
-    for (std::uint32_t lane = 0; lane < 4; ++lane) {
-      if (apart[lane] != 0) continue;
-      const std::uint32_t child = 4 * index + lane;
+    for (unsigned touching = lanes_of(apart) ^ 15U; touching != 0; touching &= touching - 1) {
+      const std::uint32_t child =
+          4 * index + static_cast<std::uint32_t>(std::countr_zero(touching));
       if (level == 0) {
         slots.push_back(child);
       } else {

@@ -43,6 +43,7 @@ class BoxTree {
   };
 
   Rounded rounded_outwards(const Box& box) const;
+  static unsigned lanes_of(Mask mask);
   static Rounded around(const Four& four);
   static void put(Four& four, std::size_t lane, const Rounded& box);
 

@@ -65,7 +65,7 @@ void PieceSets::for_edges(const Take& take) const {
 void PieceSets::join() {
   for (std::size_t i = 0; i < first_.size(); ++i) {
     for (const std::uint32_t v : mesh_.triangles[i]) {
-      if (!is_complex(v)) sets_.join(first_[i], v);
+      if (v != first_[i] && !is_complex(v)) sets_.join(first_[i], v);
     }
   }
   for_edges([&](std::span<const Edge> same) {

@@ -114,7 +114,6 @@ class SheetPairing {
 
   bool is_promising() const {
     const std::size_t triangles = mesh_.triangles.size();
-    if (2 * vertices_.size() < mesh_.positions.size()) return false;
     const std::size_t step = triangles / k_looked_at_first + 1;
     std::size_t looked_at = 0, found = 0;
     for (std::size_t i = 0; i < triangles; i += step, ++looked_at) {
@@ -210,6 +209,9 @@ class SheetPairing {
 
 std::optional<SheetPairs> SheetPairs::find(const Mesh& mesh, std::span<const std::uint8_t> flags,
                                            const Wall& wall) {
+  const auto thin = static_cast<std::size_t>(std::count_if(
+      flags.begin(), flags.end(), [](std::uint8_t each) { return (each & k_thin) != 0; }));
+  if (2 * thin < mesh.positions.size()) return std::nullopt;
   SheetPairing pairing(mesh, flags, wall.reach);
   SheetPairs pairs(wall);
   if (!pairing.run() || !pairing.write(pairs)) return std::nullopt;

@@ -161,6 +161,9 @@ std::vector<Mesh> Simplifier::take_kept() {
 bool Simplifier::simplifies_topology() const {
   return impl_->reduction->end().simplifies_topology();
 }
+bool Simplifier::pairs_sheets() const {
+  return impl_->pairs.has_value();
+}
 bool Simplifier::is_hampered_by_topology() const {
   return impl_->reduction->end().is_hampered();
 }

@@ -29,24 +29,6 @@ std::uint8_t opposite(std::uint8_t ways) {
 constexpr std::size_t k_side = 6;
 using LayeredBrick = std::array<std::uint8_t, k_side * k_side * k_side>;
 
-/// Which cell of which of 27 bricks.
-struct CellOfRound {
-  std::uint8_t brick = 0;
-  std::uint8_t cell = 0;
-};
-constexpr std::size_t k_middle = 13;
-
-constexpr std::array<CellOfRound, std::tuple_size_v<LayeredBrick>> k_layered = [] {
-  std::array<CellOfRound, std::tuple_size_v<LayeredBrick>> layered{};
-  for (std::size_t i = 0; i < layered.size(); ++i) {
-    // Along each axis, from the first cell of the first brick.
-    const std::size_t x = i % k_side + 3, y = i / k_side % k_side + 3, z = i / k_side / k_side + 3;
-    layered[i] = {static_cast<std::uint8_t>(x / 4 + 3 * (y / 4) + 9 * (z / 4)),
-                  static_cast<std::uint8_t>(x % 4 + 4 * (y % 4) + 16 * (z % 4))};
-  }
-  return layered;
-}();
-
 /// Cells of a grid, each with the ways that its triangles face: one of six bits for each direction
 /// of an axis. Bricks of 4 x 4 x 4 cells, a line of the cache each, are hashed.
 class FacingCells {
@@ -108,31 +90,46 @@ class FacingCells {
 
   /// A bit a cell of the brick that is in the middle of 27.
   std::uint64_t opposed_of(std::size_t brick, const std::array<std::uint32_t, 27>& round) const {
-    LayeredBrick ways{};
-    for (std::size_t i = 0; i < ways.size(); ++i) {
-      const CellOfRound at = k_layered[i];
-      ways[i] = bricks_[round[at.brick]][at.cell];
-    }
+    LayeredBrick ways = layered(round);
     // What is beside a cell along one axis after the other: ends are wrong in the outer layer only.
-    for (const std::size_t step : {std::size_t{1}, k_side, k_side * k_side}) {
-      LayeredBrick spread = ways;
-      for (std::size_t i = step; i + step < ways.size(); ++i) {
-        spread[i] = ways[i - step] | ways[i] | ways[i + step];
-      }
-      ways = spread;
-    }
+    spread<1>(ways);
+    spread<k_side>(ways);
+    spread<k_side * k_side>(ways);
+    const Brick& own = bricks_[brick];
     std::uint64_t opposed = 0;
-    for (std::size_t i = 0; i < ways.size(); ++i) {
-      const CellOfRound at = k_layered[i];
-      if (at.brick != k_middle) continue;
-      const bool is = (opposite(bricks_[brick][at.cell]) & ways[i]) != 0;
-      opposed |= std::uint64_t{is} << at.cell;
+    for (std::size_t cell = 0; cell < own.size(); ++cell) {
+      const std::size_t x = cell % 4 + 1, y = cell / 4 % 4 + 1, z = cell / 16 + 1;
+      const bool is = (opposite(own[cell]) & ways[x + k_side * (y + k_side * z)]) != 0;
+      opposed |= std::uint64_t{is} << cell;
     }
     return opposed;
   }
 
+  LayeredBrick layered(const std::array<std::uint32_t, 27>& round) const {
+    LayeredBrick ways{};
+    for (std::size_t row = 0; row < k_side * k_side; ++row) {
+      // From the first cell of the first brick, along each axis.
+      const std::size_t y = row % k_side + 3, z = row / k_side + 3;
+      const std::size_t brick = 3 * (y / 4) + 9 * (z / 4);
+      const std::size_t cell = 4 * (y % 4) + 16 * (z % 4);
+      const auto to = ways.begin() + static_cast<std::ptrdiff_t>(row * k_side);
+      to[0] = bricks_[round[brick]][cell + 3];
+      std::copy_n(&bricks_[round[brick + 1]][cell], 4, to + 1);
+      to[5] = bricks_[round[brick + 2]][cell];
+    }
+    return ways;
+  }
+  template <std::size_t step>
+  static void spread(LayeredBrick& ways) {
+    LayeredBrick spread = ways;
+    for (std::size_t i = step; i + step < ways.size(); ++i) {
+      spread[i] = ways[i - step] | ways[i] | ways[i + step];
+    }
+    ways = spread;
+  }
+
   std::size_t place_of(std::uint64_t key) const {
-    std::size_t place = (key * 0x9e3779b97f4a7c15U >> 32) & (table_.size() - 1);
+    std::size_t place = key * 0x9e3779b97f4a7c15U >> shift_;
     while (table_[place] != 0 && keys_[table_[place]].key != key) {
       place = (place + 1) & (table_.size() - 1);
     }
@@ -151,6 +148,7 @@ class FacingCells {
   }
   void grow() {
     table_.assign(2 * table_.size(), 0);
+    --shift_;
     for (std::uint32_t i = 1; i < keys_.size(); ++i) table_[place_of(keys_[i].key)] = i;
   }
 
@@ -159,6 +157,7 @@ class FacingCells {
   std::vector<Brick> bricks_;  // from 1 on
   std::vector<Key> keys_;      // of these
   std::vector<std::uint32_t> table_;
+  int shift_ = 54;                      // of hashes, to places in the table
   std::vector<std::uint64_t> opposed_;  // of each brick, a bit a cell
   std::uint32_t last_ = 0;
 };

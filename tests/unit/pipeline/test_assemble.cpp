@@ -4,10 +4,12 @@
 // The pipeline without its processes: cut, jobs, stitch and finish called in turn.
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include <doctest/doctest.h>
 
 #include <meshfarm/divide/cut.hpp>
+#include <meshfarm/geometry/distance.hpp>
 #include <meshfarm/geometry/hausdorff.hpp>
 #include <meshfarm/geometry/topology.hpp>
 #include <meshfarm/io/result_file.hpp>
@@ -101,6 +103,45 @@ TEST_CASE("crossings are counted where the result is small beside the input") {
   const SurfaceFigures many = crossings(20'000);
   CHECK_FALSE(many.crossing_triangles);
   CHECK(many.crossings_skipped.find("64th") != std::string::npos);
+}
+
+TEST_CASE("where crossings are avoided, triangles that face away from the input are mended") {
+  const test::TempFolder folder;
+  // A wall of two wavy sheets, thinner than what so few triangles can follow.
+  Mesh wall = test::grid(100, 100);
+  const Mesh sheet = wall;
+  const auto count = static_cast<std::uint32_t>(sheet.positions.size());
+  for (const Vec3& p : sheet.positions) {
+    wall.positions.push_back(
+        {p.x + 0.5, p.y + 0.5, 0.3 + 0.28 * std::sin(p.x * 2.9) * std::cos(p.y * 3.1)});
+  }
+  for (Triangle& t : wall.triangles) std::swap(t[1], t[2]);
+  for (const auto& [a, b, c] : sheet.triangles) {
+    wall.triangles.push_back({a + count, b + count, c + count});
+  }
+  const auto made = [&](CrossingMode crossings, const char* name) {
+    return simplify(wall, 3, {.triangles = 500, .lines = {.crossings = crossings}},
+                    folder.path() / name);
+  };
+  CHECK_FALSE(made(CrossingMode::allow, "allow").summary.facing);
+  const Made avoid = made(CrossingMode::avoid, "avoid");
+  CHECK(avoid.summary.triangles == 500);
+  REQUIRE(avoid.summary.facing);
+  const FacingMended facing = *avoid.summary.facing;
+  CHECK(facing.found > 10);
+  CHECK(2 * facing.mended > facing.found);
+  const DistanceMeter to_input(wall, 1);
+  std::uint64_t away = 0;
+  for (const auto& [a, b, c] : avoid.mesh.triangles) {
+    const Vec3 p = avoid.mesh.positions[a], q = avoid.mesh.positions[b];
+    const Vec3 r = avoid.mesh.positions[c];
+    const auto& [i, j, k] = wall.triangles[to_input.nearest_triangle((p + q + r) * (1.0 / 3))];
+    const Vec3 there =
+        cross(wall.positions[j] - wall.positions[i], wall.positions[k] - wall.positions[i]);
+    if (dot(cross(q - p, r - p), there) < 0) ++away;
+  }
+  CHECK(away <= facing.found - facing.mended + 3);
+  CHECK(render(avoid.summary, Format::text).find(" of them mended") != std::string::npos);
 }
 
 TEST_CASE("an odd count of a closed surface is one fewer, and the summary says why") {
