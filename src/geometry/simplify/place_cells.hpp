@@ -14,7 +14,7 @@
 #include <utility>
 #include <vector>
 
-#include <meshfarm/geometry/vec.hpp>
+#include <meshfarm/geometry/mesh.hpp>
 
 namespace meshfarm {
 

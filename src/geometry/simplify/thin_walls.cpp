@@ -119,11 +119,11 @@ class FacingCells {
     }
     return ways;
   }
-  template <std::size_t step>
+  template <std::size_t Step>
   static void spread(LayeredBrick& ways) {
     LayeredBrick spread = ways;
-    for (std::size_t i = step; i + step < ways.size(); ++i) {
-      spread[i] = ways[i - step] | ways[i] | ways[i + step];
+    for (std::size_t i = Step; i + Step < ways.size(); ++i) {
+      spread[i] = ways[i - Step] | ways[i] | ways[i + Step];
     }
     ways = spread;
   }
