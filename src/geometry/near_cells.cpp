@@ -48,10 +48,7 @@ bool NearCells::any_cell(Cell lo, Cell hi, const Take& take) {
   for (int z = lo[2]; z <= hi[2]; ++z) {
     for (int y = lo[1]; y <= hi[1]; ++y) {
       for (int x = lo[0]; x <= hi[0]; ++x) {
-        if (take((static_cast<std::size_t>(z) * k_cells + static_cast<std::size_t>(y)) * k_cells +
-                 static_cast<std::size_t>(x))) {
-          return true;
-        }
+        if (take(index_of(x, y, z))) return true;
       }
     }
   }
@@ -65,6 +62,38 @@ bool NearCells::touch(const Box& box) const {
   }
   return any_cell(cell_of(box.lo), cell_of(box.hi),
                   [&](std::size_t cell) { return bool{near_[cell]}; });
+}
+
+/// Most triangles lie in one cell.
+std::vector<std::uint32_t> NearCells::touching(std::span<const Vec3> positions,
+                                               std::span<const Triangle> triangles) const {
+  std::vector<std::uint32_t> touching;
+  if (near_.empty()) return touching;
+  // What is outside of the box has no cell.
+  constexpr std::uint32_t k_outside = UINT32_MAX;
+  std::vector<std::uint32_t> cells(positions.size(), k_outside);
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    const Vec3& p = positions[i];
+    const bool is_inside = p.x >= box_.lo.x && p.x <= box_.hi.x && p.y >= box_.lo.y &&
+                           p.y <= box_.hi.y && p.z >= box_.lo.z && p.z <= box_.hi.z;
+    if (!is_inside) continue;
+    const Cell cell = cell_of(p);
+    cells[i] = static_cast<std::uint32_t>(index_of(cell[0], cell[1], cell[2]));
+  }
+  for (std::uint32_t i = 0; i < triangles.size(); ++i) {
+    const auto& [a, b, c] = triangles[i];
+    const bool is_in_one = cells[a] == cells[b] && cells[a] == cells[c] && cells[a] != k_outside;
+    if (is_in_one ? bool{near_[cells[a]]} : touch_box_of(positions, triangles[i])) {
+      touching.push_back(i);
+    }
+  }
+  return touching;
+}
+
+bool NearCells::touch_box_of(std::span<const Vec3> positions, const Triangle& triangle) const {
+  Box box;
+  for (const std::uint32_t v : triangle) box.add(positions[v]);
+  return touch(box);
 }
 
 }  // namespace meshfarm

@@ -81,10 +81,8 @@ class FacingMender {
   }
 
   static void add_near(const SurfacePiece& piece, const NearCells& cells, Mesh& near) {
-    for (const Triangle& t : piece.triangles) {
-      Box box;
-      for (const std::uint32_t v : t) box.add(piece.positions[v]);
-      if (!cells.touch(box)) continue;
+    for (const std::uint32_t i : cells.touching(piece.positions, piece.triangles)) {
+      const Triangle& t = piece.triangles[i];
       const auto first = static_cast<std::uint32_t>(near.positions.size());
       for (const std::uint32_t v : t) near.positions.push_back(piece.positions[v]);
       near.triangles.push_back({first, first + 1, first + 2});

@@ -19,12 +19,20 @@ class NearCells {
   NearCells(std::span<const Vec3> positions, std::span<const Triangle> triangles, double distance);
   /// Whether the box has a cell in common with what is near: it may then still be a little farther.
   bool touch(const Box& box) const;
+  /// The triangles, by index, whose boxes do.
+  std::vector<std::uint32_t> touching(std::span<const Vec3> positions,
+                                      std::span<const Triangle> triangles) const;
 
  private:
   using Cell = std::array<int, 3>;
   static constexpr int k_cells = 256;  // on a side
 
+  bool touch_box_of(std::span<const Vec3> positions, const Triangle& triangle) const;
   Cell cell_of(Vec3 p) const;
+  static std::size_t index_of(int x, int y, int z) {
+    return (static_cast<std::size_t>(z) * k_cells + static_cast<std::size_t>(y)) * k_cells +
+           static_cast<std::size_t>(x);
+  }
   template <typename Take>
   static bool any_cell(Cell lo, Cell hi, const Take& take);
 

@@ -40,6 +40,13 @@ BoxTree::Rounded BoxTree::around(const Four& four) {
   return box;
 }
 
+bool BoxTree::has(const Four& four, std::size_t lane, const Rounded& box) {
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    if (four.lo[axis][lane] != box.lo[axis] || four.hi[axis][lane] != box.hi[axis]) return false;
+  }
+  return true;
+}
+
 void BoxTree::put(Four& four, std::size_t lane, const Rounded& box) {
   for (std::size_t axis = 0; axis < 3; ++axis) {
     four.lo[axis][lane] = box.lo[axis];
@@ -68,6 +75,8 @@ void BoxTree::set(std::uint32_t slot, const Box& box) {
   std::size_t at = slot;
   for (std::vector<Four>& level : levels_) {
     Four& four = level[at / 4];
+    // What is round it is then as it was, too.
+    if (&level != &levels_.front() && has(four, at % 4, now)) return;
     put(four, at % 4, now);
     now = around(four);
     at /= 4;

@@ -45,6 +45,7 @@ class BoxTree {
   Rounded rounded_outwards(const Box& box) const;
   static unsigned lanes_of(Mask mask);
   static Rounded around(const Four& four);
+  static bool has(const Four& four, std::size_t lane, const Rounded& box);
   static void put(Four& four, std::size_t lane, const Rounded& box);
 
   Frame frame_;

@@ -166,9 +166,9 @@ std::size_t CrossingGuard::count(const std::vector<CrossingTriangle>& star,
   }
   for (const std::uint32_t slot : others_) {
     const Triangle& t = triangles_[slot];
+    if (way && goes_on(t, *way)) continue;
     const Box around = box_of(t);
     if (!do_touch(around, box)) continue;
-    if (way && goes_on(t, *way)) continue;
     std::optional<CrossingTriangle> other;
     for (const CrossingTriangle& own : star) {
       if (!do_touch(own.box, around)) continue;

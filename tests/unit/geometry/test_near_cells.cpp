@@ -35,3 +35,22 @@ TEST_CASE("nothing is near no surface, and a point has its surroundings") {
   CHECK(NearCells(positions, triangles, 0).touch(box_at({5, 5, 5})));
   CHECK_FALSE(NearCells(positions, triangles, 1).touch(box_at({5, 5, 7})));
 }
+
+TEST_CASE("the triangles whose boxes touch what is near, small and large ones") {
+  const Mesh near_mesh = test::icosphere(2);
+  const NearCells near(near_mesh.positions, near_mesh.triangles, 0.05);
+  for (const int levels : {0, 2, 5}) {
+    Mesh mesh = test::icosphere(levels);
+    for (Vec3& p : mesh.positions) p = p * 0.8 + Vec3{0.3, 0, 0};
+    const std::vector<std::uint32_t> touching = near.touching(mesh.positions, mesh.triangles);
+    std::vector<std::uint32_t> expected;
+    for (std::uint32_t i = 0; i < mesh.triangles.size(); ++i) {
+      Box box;
+      for (const std::uint32_t v : mesh.triangles[i]) box.add(mesh.positions[v]);
+      if (near.touch(box)) expected.push_back(i);
+    }
+    CHECK(touching == expected);
+    CHECK_FALSE(touching.empty());
+  }
+  CHECK(NearCells({}, {}, 1).touching(near_mesh.positions, near_mesh.triangles).empty());
+}
