@@ -25,13 +25,11 @@ class PlaceCells {
   /// Looks no farther than `reach`. `spacing`: about how far points are from their neighbours.
   PlaceCells(std::vector<Vec3> points, double reach, double spacing)
       : points_(std::move(points)), reach_(reach) {
-    Box box;
-    for (const Vec3& p : points_) box.add(p);
+    for (const Vec3& p : points_) box_.add(p);
     // Beside a cell are always others, and a place along an axis is a number of 20 bits.
-    const double least = box.diagonal() / static_cast<double>(k_axis - 4);
+    const double least = box_.diagonal() / static_cast<double>(k_axis - 4);
     cell_ = std::max({std::min(reach, k_spacings * spacing), reach / k_most_rings, least});
     if (!(cell_ > 0 && std::isfinite(cell_))) cell_ = 1;
-    origin_ = box.lo;
     first_.assign(std::bit_ceil(std::max<std::size_t>(1024, points_.size())), k_none);
     next_.resize(points_.size());
     for (std::uint32_t i = 0; i < points_.size(); ++i) {
@@ -42,10 +40,12 @@ class PlaceCells {
   /// The nearest point that counts, of those as near the first; none within reach: none.
   template <class Counts>
   std::optional<std::uint32_t> nearest(Vec3 from, const Counts& counts) const {
-    const Cell middle = cell_of(from);
-    const Vec3 within = from - corner_of(middle);
     double best = reach_ * reach_;
     std::optional<std::uint32_t> found;
+    // From farther away a cell has no number. There is no place in the box of no points.
+    if (points_.empty() || squared_way_to_box(from) > best) return found;
+    const Cell middle = cell_of(from);
+    const Vec3 within = from - corner_of(middle);
     const auto look_into = [&](const Cell& offset) {
       if (squared_way(within, offset) > best) return;
       const Cell cell{middle[0] + offset[0], middle[1] + offset[1], middle[2] + offset[2]};
@@ -88,14 +88,22 @@ class PlaceCells {
     Cell cell{};
     for (int axis = 0; axis < 3; ++axis) {
       cell[static_cast<std::size_t>(axis)] =
-          static_cast<std::int64_t>(std::floor((p[axis] - origin_[axis]) / cell_));
+          static_cast<std::int64_t>(std::floor((p[axis] - box_.lo[axis]) / cell_));
     }
     return cell;
   }
   Vec3 corner_of(const Cell& cell) const {
-    return origin_ + Vec3{static_cast<double>(cell[0]), static_cast<double>(cell[1]),
+    return box_.lo + Vec3{static_cast<double>(cell[0]), static_cast<double>(cell[1]),
                           static_cast<double>(cell[2])} *
                          cell_;
+  }
+  double squared_way_to_box(Vec3 from) const {
+    double squared = 0;
+    for (int axis = 0; axis < 3; ++axis) {
+      const double way = std::max({box_.lo[axis] - from[axis], from[axis] - box_.hi[axis], 0.0});
+      squared += way * way;
+    }
+    return squared;
   }
   /// How far it is, squared, from a place in a cell to the cell that is so many cells away.
   double squared_way(Vec3 within, const Cell& offset) const {
@@ -120,7 +128,7 @@ class PlaceCells {
   std::vector<Vec3> points_;
   double reach_;
   double cell_ = 1;
-  Vec3 origin_;
+  Box box_;
   std::vector<std::uint32_t> first_;  // point of each hash, and from each point the next
   std::vector<std::uint32_t> next_;
 };

@@ -37,4 +37,5 @@ TEST_CASE("place cells: the nearest that counts, no farther than asked for") {
     }
   }
   CHECK_FALSE(PlaceCells({}, 1, 0.1).nearest({}, is_odd));
+  CHECK_FALSE(PlaceCells(points, 1, 1e-9).nearest({1e300, 0, 0}, is_odd));
 }
