@@ -53,7 +53,7 @@ ReadPatience journal_patience(ReadPatience patience) {
 
 using WhenComplete = std::function<void(std::span<const AcceptedJob>)>;
 
-/// The sockets and the disk thread round a SinkCore, which decides everything.
+/// The sockets and the threads round a SinkCore, which decides everything.
 class SinkLoop {
  public:
   SinkLoop(const Stage& stage, const JobSource& source, const SinkOptions& options,
@@ -93,8 +93,8 @@ class SinkLoop {
       turn();
     }
     tell_of_strangers(gate_.refused(), garbage_);
-    if (told_problem_ && left_->why != SinkLeaves::Why::incomplete) {
-      std::rethrow_exception(told_problem_);
+    for (const std::exception_ptr& problem : {told_problem_of_job_, told_problem_}) {
+      if (problem && left_->why != SinkLeaves::Why::incomplete) std::rethrow_exception(problem);
     }
     switch (left_->why) {
       case SinkLeaves::Why::complete:
@@ -120,16 +120,19 @@ class SinkLoop {
   void turn() {
     std::vector<zmq::pollitem_t> items = {{nullptr, disk_.fd(), ZMQ_POLLIN, 0},
                                           {nullptr, verifier_.fd(), ZMQ_POLLIN, 0},
+                                          {nullptr, own_jobs_.fd(), ZMQ_POLLIN, 0},
                                           {results_.handle(), 0, ZMQ_POLLIN, 0}};
     if (link_.socket() != nullptr) items.push_back({link_.socket()->handle(), 0, ZMQ_POLLIN, 0});
     wait_for(items, core_.pause(farm_clock()));
     const FarmTime now = farm_clock();
     const bool disk_finished = disk_.take_finished();
     const bool verifier_finished = verifier_.take_finished();
+    const bool own_job_finished = own_jobs_.take_finished();
     // What a stop ended early says nothing about the results that were looked at.
     if (stopped()) return;
     if (disk_finished) disk_answers(now);
     if (verifier_finished) verifier_answers(now);
+    if (own_job_finished) own_job_answers(now);
     for (int count = 0; link_.socket() != nullptr && count < k_messages_per_turn; ++count) {
       const auto received = receive(*link_.socket());
       if (!received) break;
@@ -147,6 +150,7 @@ class SinkLoop {
     perform(core_.tick(now));
     use_disk();
     use_verifier();
+    use_own_jobs();
   }
 
   void perform(const SinkActions& actions) {
@@ -172,12 +176,6 @@ class SinkLoop {
     if (!to_check_.empty()) {
       batch_ = next_of(to_check_, k_checks_per_batch);
       disk_.start([this] { check_batch(); });
-    } else if (!to_do_.empty()) {
-      doing_ = std::move(to_do_.front());
-      to_do_.pop_front();
-      accepted_ = core_.graph().outputs();
-      problem_ = nullptr;
-      disk_.start([this] { do_here(); });
     } else if (std::exchange(make_output_, false)) {
       making_output_ = true;
       problem_ = nullptr;
@@ -192,6 +190,15 @@ class SinkLoop {
     verifier_.start([this] {
       checker_.check_all(verified_, verifying_patience_, verifying_patience_, k_verifiers);
     });
+  }
+
+  /// While results of others are checked.
+  void use_own_jobs() {
+    if (!own_jobs_.idle() || left_ || to_do_.empty()) return;
+    doing_ = std::move(to_do_.front());
+    to_do_.pop_front();
+    accepted_ = core_.graph().outputs();
+    own_jobs_.start([this] { do_here(); });
   }
 
   static std::vector<CheckedResult> next_of(std::deque<Check>& waiting, std::size_t most) {
@@ -218,12 +225,6 @@ class SinkLoop {
       perform(core_.completed(problem, now));
       return tell_of_room(problem.text);
     }
-    if (doing_) {
-      const SinkProblem problem = problem_ ? what(problem_) : SinkProblem{};
-      const DoHere done = *std::exchange(doing_, std::nullopt);
-      perform(core_.did(done, std::exchange(made_, {}), problem, now));
-      return tell_of_room(problem.text);
-    }
     if (problem_) return perform(core_.fail({what_is_kept(problem_), true}));
     std::string no_room;
     for (const CheckedResult& each : std::exchange(batch_, {})) {
@@ -235,6 +236,14 @@ class SinkLoop {
       perform(core_.checked(each.check, each.problem, now));
     }
     tell_of_room(no_room);
+  }
+
+  void own_job_answers(FarmTime now) {
+    told_problem_of_job_ = std::exchange(problem_of_job_, nullptr);
+    const SinkProblem problem = told_problem_of_job_ ? what(told_problem_of_job_) : SinkProblem{};
+    const DoHere done = *std::exchange(doing_, std::nullopt);
+    perform(core_.did(done, std::exchange(made_, {}), problem, now));
+    tell_of_room(problem.text);
   }
 
   /// Once when the waiting begins, and once when it ends.
@@ -264,7 +273,7 @@ class SinkLoop {
     }
   }
 
-  /// On the disk thread, as is all below.
+  /// On the disk thread.
   void check_batch() {
     // They are waited for together.
     ReadPatience patience = patience_;
@@ -311,6 +320,7 @@ class SinkLoop {
     }
   }
 
+  /// On the thread of own jobs.
   void do_here() {
     try {
       const auto goes_on = [this](std::uint64_t) {
@@ -324,10 +334,11 @@ class SinkLoop {
       doing_->times.compute_ms = static_cast<std::uint32_t>((farm_clock() - begin).count());
       doing_->times.cpu_us = 1 + thread_cpu_us() - cpu_before_us;
     } catch (...) {
-      problem_ = std::current_exception();
+      problem_of_job_ = std::current_exception();
     }
   }
 
+  /// On the disk thread, once there are no own jobs left.
   void make_output() {
     try {
       complete_(core_.graph().outputs());
@@ -361,18 +372,22 @@ class SinkLoop {
   bool making_output_ = false;
   std::optional<SinkLeaves> left_;
   std::exception_ptr told_problem_;  // as the disk thread left it when it was last idle
+  std::exception_ptr told_problem_of_job_;
   // The disk thread's while it works:
   std::vector<CheckedResult> batch_;
+  std::optional<JournalWriter> journal_;
+  std::exception_ptr problem_;
+  // The thread of own jobs':
   std::optional<DoHere> doing_;
   std::vector<AcceptedJob> accepted_;  // before it
   JobOutput made_;
-  std::optional<JournalWriter> journal_;
-  std::exception_ptr problem_;
+  std::exception_ptr problem_of_job_;
   // The verifier's while it works:
   std::vector<CheckedResult> verified_;
   // The last members, so that their threads end first.
   TaskThread disk_;
   TaskThread verifier_;
+  TaskThread own_jobs_;
 };
 
 }  // namespace

@@ -38,6 +38,39 @@ TEST_CASE("an accepted output that the source cannot read any more is set aside 
   CHECK(count == 1);
 }
 
+TEST_CASE("results are accepted while the sink does a job of its own, however often that fails") {
+  Farm farm;
+  set_log("test", LogLevel::off);
+  const JobSource source = [] {
+    std::vector<Job> jobs = make_jobs(6);
+    jobs.back().by_sink = true;
+    return in_stages({jobs})();
+  };
+  std::atomic<std::uint64_t> done{0};
+  Part ventilator(farm.ventilator(source, [&](const FarmProgress& p) { done = p.jobs_done; }));
+  Part worker(farm.worker());
+  int tries = 0;
+  std::size_t outputs = 0;
+  Part sink([&](const std::atomic<bool>& stop) {
+    SinkOptions options;
+    options.run = farm.run;
+    options.stop = &stop;
+    options.do_here = [&](const Job& job, const JobContext& context, std::span<const AcceptedJob>) {
+      if (++tries < 3) throw IoError("cannot write", "out.ply", ENOSPC);
+      wait_until([&] { return done == 5; });
+      return do_trivial_job(job, context);
+    };
+    run_sink(farm.stage, source, options,
+             [&](std::span<const AcceptedJob> accepted) { outputs = accepted.size(); });
+  });
+  sink.join();
+  ventilator.join();
+  worker.join();
+  set_log("test", LogLevel::info);
+  CHECK(tries == 3);
+  CHECK(outputs == 6);
+}
+
 TEST_CASE("an output that there is no room for is made when there is") {
   Farm farm;
   set_log("test", LogLevel::off);
