@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
@@ -12,6 +13,7 @@
 #include <meshfarm/pipeline/assemble.hpp>
 #include <meshfarm/pipeline/bake_job.hpp>
 #include <meshfarm/pipeline/cut_job.hpp>
+#include <meshfarm/pipeline/piece_jobs.hpp>
 #include <meshfarm/pipeline/run_graph.hpp>
 #include <meshfarm/util/errors.hpp>
 #include <meshfarm/util/stopwatch.hpp>
@@ -19,6 +21,7 @@
 #include "pipeline/bake_stage.hpp"
 #include "pipeline/channel_values.hpp"
 #include "pipeline/finish_result.hpp"
+#include "pipeline/pieces_error.hpp"
 #include "pipeline/pieces_output.hpp"
 #include "pipeline/result_textures.hpp"
 #include "pipeline/texture_bake.hpp"
@@ -54,6 +57,7 @@ class Assembler::Impl {
   JobOutput do_job(const Job& job, const JobContext& context,
                    std::span<const AcceptedJob> accepted) {
     if (job.kind == k_join_kind) return join_boundary_of_parts(job, context);
+    if (job.kind == k_write_kind) return write_before_end(job, context, accepted);
     if (job.kind != k_finish_kind) throw DataError("a sink does no " + job.kind + " jobs");
     finish(take(accepted));
     tell("new texture", 0, 0);
@@ -119,8 +123,20 @@ class Assembler::Impl {
     finished_->summary.finish_seconds += watch.lap();
   }
 
+  JobOutput write_before_end(const Job& job, const JobContext& context,
+                             std::span<const AcceptedJob> accepted) {
+    take(accepted);
+    if (!state_.finished) throw Error("a mesh is to be written before all of it is finished");
+    written_ = write(*state_.finished);
+    return publish_counts(*state_.finished, job, context);
+  }
+
+  std::unique_ptr<MeshSink> write(const FinishedPieces& result) const {
+    return write_pieces(stage_, manifest_, result, options_.output, [this] { check_stop(); });
+  }
+
   /// What was too large to be finished here is written as it is read, but for what is fitted to the
-  /// whole.
+  /// whole. If another sink did so, this one does it again.
   RunSummary complete_in_pieces(const FinishedPieces& result) {
     Stopwatch watch;
     RunSummary summary = summary_of_pieces(result);
@@ -128,12 +144,12 @@ class Assembler::Impl {
     summary.error = error_of_pieces(stage_, manifest_, result, options_.threads, summary.pieces);
     summary.measure_seconds = watch.lap();
     tell("write", 0, 0);
-    const auto stop = [this] { check_stop(); };
     if (has_attributes(manifest_)) {
-      Mesh mesh = mesh_of_pieces(stage_, result, stop);
+      Mesh mesh = mesh_of_pieces(stage_, result, [this] { check_stop(); });
       write(mesh, nullptr, summary);
     } else {
-      write_pieces(stage_, manifest_, result, options_.output, stop);
+      const auto written = written_ ? std::exchange(written_, nullptr) : write(result);
+      written->commit();
     }
     summary.write_seconds = watch.lap();
     return summary;
@@ -228,6 +244,7 @@ class Assembler::Impl {
   AssembleOptions options_;
   std::optional<FinishedResult> finished_;
   std::optional<TextureLayout> layout_;  // of a new texture
+  std::unique_ptr<MeshSink> written_;    // of what was finished in pieces; not committed
 };
 
 Assembler::Assembler(const Stage& stage, const Manifest& manifest, const RunOptions& run,

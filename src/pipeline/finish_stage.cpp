@@ -11,6 +11,7 @@
 #include <meshfarm/pipeline/simplify_job.hpp>
 
 #include "pipeline/error_meter.hpp"
+#include "pipeline/pieces_output.hpp"
 #include "pipeline/quotas.hpp"
 #include "pipeline/run_stages.hpp"
 
@@ -215,10 +216,17 @@ void FinishStage::measure(JobGraph& graph) {
     }
     end.push_back(jobs.size());
   }
+  done_(graph, made_, {});
+  JobNeeds needs = {jobs_of(RunStage::measure, 0, end.back())};
   for (std::size_t j = 0; j < jobs.size(); ++j) {
     graph.add(job_name(RunStage::measure, j), std::move(jobs[j]));
   }
-  graph.then({jobs_of(RunStage::measure, 0, end.back())}, [this, end](JobGraph& so_far) {
+  // What is fitted to the whole comes later.
+  if (!has_attributes(manifest_)) {
+    needs.push_back(just(job_name(RunStage::write, 0)));
+    graph.add(job_name(RunStage::write, 0), write_job(made_));
+  }
+  graph.then(needs, [this, end](JobGraph& so_far) {
     for (std::size_t i = 0, j = 0; i < made_.pieces.size(); ++i) {
       for (; j < end[i]; ++j) take_measured(so_far, made_.pieces[i], j);
     }

@@ -41,7 +41,8 @@ struct FinishGoal {
 /// its quota under the one threshold that their weights tell, and measured where it is.
 class FinishStage {
  public:
-  /// Called at the end; or once it is clear that the sink has to finish, with the reason.
+  /// Called once the pieces are finished, and again when they are measured; or once it is clear
+  /// that the sink has to finish, with the reason.
   using Done = std::function<void(JobGraph&, std::optional<FinishedPieces>, std::string why_here)>;
 
   /// Both must outlive this.

@@ -87,7 +87,7 @@ void check_output(std::string_view kind, const JobOutput& output) {
     decode_finished_piece(output.summary, what);
   } else if (kind == k_measure_kind) {
     decode_piece_error(output.summary, what);
-  } else if (kind == k_bake_kind) {
+  } else if (kind == k_bake_kind || kind == k_write_kind) {
     if (!output.summary.empty()) throw DataError(what + ": there should be none");
   } else if (!check_output_of_cut(kind, output, what)) {
     decode_summary(output.summary, what);

@@ -11,6 +11,7 @@
 //   measure    = version u8 | first part u32 | end part u32 | triangles u64 | share u32 |
 //                shares u32 | box | 4 refs | seams u32 x (ref | ref) | points u32 x ref |
 //                input step u64 | builds u8 | if it does: bundles (bundle_list.hpp)
+//   write      = version u8 | pieces u64
 //   ref        = file | section;  box = 6 x f64
 //   divided    = 5 sections | gap triangles u64 | strip triangles u64 | shared u64 | box |
 //                rungs u32 x u64 | dropped degenerate u64 | duplicate u64 | turned u64 |
@@ -178,6 +179,13 @@ ReduceParameters decode_reduce_parameters(std::string_view bytes) {
   parameters.lines = get_lines(in);
   in.expect_end();
   return parameters;
+}
+
+std::string encode_parameters(const WriteParameters& parameters) {
+  ByteWriter out;
+  begin_parameters(out);
+  out.put(parameters.pieces);
+  return out.take();
 }
 
 std::string encode_parameters(const MeasureParameters& parameters) {

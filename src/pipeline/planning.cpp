@@ -333,15 +333,19 @@ std::vector<PlannedStage> simulate_stages(std::span<const PlannedJob> jobs,
   double before = 0;
   for (std::size_t first = 0, end = 0; first < jobs.size(); first = end) {
     PlannedStage& stage = stages.emplace_back();
-    stage.name = jobs[first].stage;
+    std::map<std::string, double> work;  // of those that are done side by side
     double bytes = 0;
     for (; end < jobs.size() && jobs[end].depth == jobs[first].depth; ++end) {
       const PlannedJob& job = jobs[end];
+      work[job.stage] += job.compute_s;
       ++stage.jobs;
       stage.ideal_s += job.compute_s / speed;
       stage.longest_s = std::max(stage.longest_s, job.compute_s);
       bytes += static_cast<double>(job.read_bytes + job.written_bytes);
     }
+    stage.name = std::max_element(work.begin(), work.end(), [](const auto& a, const auto& b) {
+                   return a.second < b.second;
+                 })->first;
     stage.storage_s = bytes / farm.server_bytes_per_s;
     const double ends = simulate_run(jobs.first(end), farm).accepted_s;
     stage.takes_s = std::max(0.0, ends - std::exchange(before, ends));

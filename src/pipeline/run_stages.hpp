@@ -26,6 +26,7 @@ enum class RunStage : std::uint32_t {
   seam,
   reduce,
   measure,
+  write,
   finish,
   tile,
   bake
@@ -35,7 +36,7 @@ enum class RunStage : std::uint32_t {
 inline JobGraph empty_graph(std::uint32_t algorithm) {
   return JobGraph({"survey", "count", "partition", "vertices", "triangles", "sort", "sample",
                    "climb", "join", "sweep", "compose", "components", "split", "seam", "reduce",
-                   "measure", "finish", "tile", "bake"},
+                   "measure", "write", "finish", "tile", "bake"},
                   algorithm);
 }
 

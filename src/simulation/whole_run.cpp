@@ -26,7 +26,8 @@ enum StageOfWholeRun : std::uint32_t {
   k_split,
   k_seam,
   k_reduce,
-  k_measure
+  k_measure,
+  k_write
 };
 
 constexpr std::uint32_t k_rounds_of_count = 2;
@@ -202,6 +203,9 @@ class WholeRun {
                                      {k_reduce, reduced_[parts_]},
                                      {k_triangles, p % blocks_}}));
     }
+    Job write = job(graph, "write", 0, {{k_reduce, reduced_[parts_]}});
+    write.by_sink = true;
+    graph.add({k_write, 0}, std::move(write));
   }
 
   const std::string target_;
@@ -218,7 +222,7 @@ JobSource whole_run(std::uint64_t jobs, const std::string& target) {
   return [jobs, target] {
     const auto run = std::make_shared<WholeRun>(jobs, target);
     JobGraph graph({"survey", "count", "partition", "vertices", "triangles", "climb", "join",
-                    "split", "seam", "reduce", "measure"});
+                    "split", "seam", "reduce", "measure", "write"});
     run->begin(graph);
     graph.keep(run);
     return graph;

@@ -22,14 +22,15 @@ namespace meshfarm {
 // does on the seam's other side ("seam"). So the seams lie inside of new pieces, and what is held
 // now lies where nothing was held before. The surroundings of all seams are one piece or several
 // groups: where groups meet, a few vertices stay held. Each new piece is simplified to its quota of
-// the triangles ("reduce"), and measured ("measure"). Small components are looked for before that
-// ("components").
+// the triangles ("reduce"), and measured ("measure"), while the sink writes the result ("write").
+// Small components are looked for before that ("components").
 
 inline constexpr std::string_view k_components_kind = "components";
 inline constexpr std::string_view k_split_kind = "split";
 inline constexpr std::string_view k_seam_kind = "seam";
 inline constexpr std::string_view k_reduce_kind = "reduce";
 inline constexpr std::string_view k_measure_kind = "measure";
+inline constexpr std::string_view k_write_kind = "write";
 
 /// A section of a staged file.
 struct SectionRef {
@@ -219,6 +220,12 @@ std::string encode_points(const MeasuredPoints& points);
 MeasuredPoints decode_measured_points(std::string_view bytes, std::string_view what);
 std::string encode_summary(const PieceError& error);
 PieceError decode_piece_error(std::string_view bytes, std::string_view what);
+
+/// Parameters of the job by which the sink writes the result: what that depends on.
+struct WriteParameters {
+  std::uint64_t pieces = 0;  // checksum of their files
+};
+std::string encode_parameters(const WriteParameters& parameters);
 
 JobOutput find_small_components(const Job& job, const JobContext& context);
 JobOutput split_piece(const Job& job, const JobContext& context);

@@ -72,7 +72,7 @@ PlannedRun simulate_run(std::span<const PlannedJob> jobs, const PlannedFarm& far
 
 /// Jobs of one depth, on some farm.
 struct PlannedStage {
-  std::string name;
+  std::string name;  // of those with most work
   std::uint64_t jobs = 0;
   double takes_s = 0;    // from the end of those before it to its own
   double ideal_s = 0;    // its work over all speed
