@@ -38,7 +38,7 @@ TEST_CASE("an accepted output that the source cannot read any more is set aside 
   CHECK(count == 1);
 }
 
-TEST_CASE("results are accepted while the sink does a job of its own, however often that fails") {
+TEST_CASE("results are accepted while the sink does a job of its own, which may be done again") {
   Farm farm;
   set_log("test", LogLevel::off);
   const JobSource source = [] {
@@ -56,8 +56,8 @@ TEST_CASE("results are accepted while the sink does a job of its own, however of
     options.run = farm.run;
     options.stop = &stop;
     options.do_here = [&](const Job& job, const JobContext& context, std::span<const AcceptedJob>) {
-      if (++tries < 3) throw IoError("cannot write", "out.ply", ENOSPC);
       wait_until([&] { return done == 5; });
+      if (++tries < 2) throw IoError("cannot write", "out.ply", ENOSPC);
       return do_trivial_job(job, context);
     };
     run_sink(farm.stage, source, options,
@@ -67,7 +67,7 @@ TEST_CASE("results are accepted while the sink does a job of its own, however of
   ventilator.join();
   worker.join();
   set_log("test", LogLevel::info);
-  CHECK(tries == 3);
+  CHECK(tries == 2);
   CHECK(outputs == 6);
 }
 
