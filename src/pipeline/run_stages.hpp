@@ -34,9 +34,9 @@ enum class RunStage : std::uint32_t {
 
 /// Their names, in that order.
 inline JobGraph empty_graph(std::uint32_t algorithm) {
-  return JobGraph({"survey", "count", "partition", "vertices", "triangles", "sort", "sample",
-                   "climb", "join", "sweep", "compose", "components", "split", "seam", "reduce",
-                   "measure", "write", "finish", "tile", "bake"},
+  return JobGraph({"survey", "count",   "partition", "vertices", "triangles",  "sort",  "sample",
+                   "climb",  "join",    "sweep",     "compose",  "components", "split", "seam",
+                   "reduce", "measure", "write",     "finish",   "tile",       "bake"},
                   algorithm);
 }
 
