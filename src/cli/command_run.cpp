@@ -5,6 +5,7 @@
 
 #include <meshfarm/io/manifest.hpp>
 #include <meshfarm/pipeline/run_options.hpp>
+#include <meshfarm/staging/atomic_file.hpp>
 #include <meshfarm/staging/claim.hpp>
 #include <meshfarm/staging/stage.hpp>
 #include <meshfarm/util/checksum.hpp>
@@ -78,6 +79,7 @@ class RunCommand : public Command {
     check_writable(output_);
     if (!report_.empty()) check_place(report_);
     const Claim claim(claim_of(output_), output_ + ": is being made");
+    remove_unfinished(output_);
     const int code = run_local_farm(
         {stage_, output_, output_words_, target_, network_, schedule_, when_full_, talk_, workers_},
         stop);

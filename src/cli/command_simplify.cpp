@@ -4,6 +4,7 @@
 #include <string>
 #include <string_view>
 
+#include <meshfarm/staging/atomic_file.hpp>
 #include <meshfarm/staging/claim.hpp>
 #include <meshfarm/staging/stage.hpp>
 #include <meshfarm/util/errors.hpp>
@@ -72,6 +73,7 @@ class SimplifyCommand : public Command {
     check_writable(output_);
     if (!report_.empty()) check_place(report_);
     const Claim claim(claim_of(output_), output_ + ": is being made");
+    remove_unfinished(output_);
     cut_to_stage({input_, stage_, cut_, talk_, stop,
                   [this](std::uint64_t triangles) { return farm_pays(triangles); }});
     const int code = run_local_farm(

@@ -26,14 +26,46 @@ const std::string& process_token() {
   return token;
 }
 
+constexpr std::string_view k_ending = ".tmp";
+
+std::string beginning_of(const std::filesystem::path& final_path) {
+  return "." + final_path.filename().string() + ".";
+}
+
 std::filesystem::path temporary_name(const std::filesystem::path& final_path,
                                      std::string_view unique) {
-  std::string name = "." + final_path.filename().string() + ".";
+  std::string name = beginning_of(final_path);
   name += unique.empty() ? process_token() : std::string(unique);
-  return final_path.parent_path() / (name + ".tmp");
+  return final_path.parent_path() / name.append(k_ending);
+}
+
+/// As process_token() makes them: a number, and 16 hexadecimal digits.
+bool is_token(std::string_view token) {
+  constexpr std::string_view k_digits = "0123456789";
+  const std::size_t dash = token.find_first_not_of(k_digits);
+  return dash != 0 && dash != std::string_view::npos && token[dash] == '-' &&
+         token.size() - dash == 1 + 2 * sizeof(std::uint64_t) &&
+         token.find_first_not_of("0123456789abcdef", dash + 1) == std::string_view::npos;
 }
 
 }  // namespace
+
+void remove_unfinished(const std::filesystem::path& final_path) {
+  const std::string beginning = beginning_of(final_path);
+  const std::filesystem::path folder = final_path.parent_path();
+  std::error_code ignored;
+  for (std::filesystem::directory_iterator entry(folder.empty() ? "." : folder, ignored), end;
+       !ignored && entry != end; entry.increment(ignored)) {
+    const std::string found = entry->path().filename().string();
+    const std::string_view name = found;
+    if (!name.starts_with(beginning) || !name.ends_with(k_ending)) continue;
+    const std::size_t around = beginning.size() + k_ending.size();
+    if (name.size() <= around) continue;
+    if (is_token(name.substr(beginning.size(), name.size() - around))) {
+      std::filesystem::remove(entry->path(), ignored);
+    }
+  }
+}
 
 void rename_checked(const std::filesystem::path& from, const std::filesystem::path& to,
                     std::uint64_t size_bytes) {

@@ -12,8 +12,7 @@
 namespace meshfarm {
 
 /// A file that others see only whole: a temporary name in the same folder -> write -> fsync ->
-/// close
-/// -> rename, each step checked (a full NFS disk shows only at fsync or close). Only commit()
+/// close -> rename, each step checked (a full NFS disk shows only at fsync or close). Only commit()
 /// publishes; the destructor removes what was not published.
 class AtomicFile {
  public:
@@ -50,6 +49,10 @@ class AtomicFile {
   std::string buffer_;
   std::uint64_t flushed_ = 0;
 };
+
+/// Removes the temporary files of writers without a `unique` name that were killed while they wrote
+/// this file. Nobody may be writing it. Errors are of no account.
+void remove_unfinished(const std::filesystem::path& final_path);
 
 /// Renames; where the answer is ENOENT although it was done (NFS server restart), looks at the
 /// target before calling it a failure. Throws IoError.

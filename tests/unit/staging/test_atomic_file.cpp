@@ -1,6 +1,9 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
 #include <filesystem>
+#include <fstream>
+#include <string>
+#include <vector>
 
 #include <doctest/doctest.h>
 #include <unistd.h>
@@ -101,6 +104,31 @@ TEST_CASE("a rename that answers ENOENT though it was done is no failure") {
 TEST_CASE("a folder that is not there is an error that names the file") {
   const test::TempFolder folder;
   CHECK_THROWS_AS(AtomicFile(folder.path() / "absent" / "file"), IoError);
+}
+
+TEST_CASE("what killed writers left of a file is removed, and nothing else") {
+  const test::TempFolder folder;
+  const auto put = [&](const std::string& name) { std::ofstream(folder.path() / name) << 'x'; };
+  const std::vector<std::string> left = {".a.ply.17-0123456789abcdef.tmp",
+                                         ".a.ply.4294967-ffffffffffffffff.tmp"};
+  const std::vector<std::string> others = {"a.ply",
+                                           ".a.ply.tmp",
+                                           ".a.ply.17.tmp",
+                                           ".a.ply.-0123456789abcdef.tmp",
+                                           ".a.ply.17-0123456789abcde.tmp",
+                                           ".a.ply.17-0123456789abcdeg.tmp",
+                                           ".a.ply.17-0123456789abcdef.part",
+                                           ".b.ply.17-0123456789abcdef.tmp",
+                                           ".a.ply.b.17-0123456789abcdef.tmp"};
+  for (const std::string& name : left) put(name);
+  for (const std::string& name : others) put(name);
+  AtomicFile unfinished(folder.path() / "a.ply");
+  remove_unfinished(folder.path() / "a.ply");
+  for (const std::string& name : left) CHECK_FALSE(std::filesystem::exists(folder.path() / name));
+  for (const std::string& name : others) CHECK(std::filesystem::exists(folder.path() / name));
+  const auto entries = std::filesystem::directory_iterator(folder.path());
+  CHECK(static_cast<std::size_t>(std::distance(begin(entries), end(entries))) == others.size());
+  CHECK_NOTHROW(remove_unfinished(folder.path() / "absent" / "a.ply"));
 }
 
 TEST_CASE("the first of two has the name, the second is told so") {
