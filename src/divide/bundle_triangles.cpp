@@ -10,67 +10,88 @@
 namespace meshfarm {
 namespace {
 
-/// Finds where the corners of a block of triangles lie: the block's triangles are looked through
-/// once for each block of vertices that they touch, which are few where the file has locality.
+/// A slice has at least so many triangles.
+constexpr std::uint64_t k_least_slice = std::uint64_t{1} << 16;
+
+/// Finds where the corners of triangles lie. They are asked for first, and answered together, so
+/// that each block of vertices that they touch is read once.
 class CornerJoin {
  public:
   CornerJoin(const Stage& stage, std::span<const VertexBundleRef> bundles, std::uint32_t parts,
              std::uint64_t vertices)
-      : bundles_(bundles), vertices_(vertices), places_(stage, bundles, parts) {}
+      : bundles_(bundles),
+        vertices_(vertices),
+        places_(stage, bundles, parts),
+        touched_(bundles.size(), false) {}
 
-  std::vector<SeamTriangle> find(std::span<const WideTriangle> triangles) const {
-    std::vector<bool> touched(bundles_.size(), false);
-    const std::uint64_t size =
-        std::max<std::uint64_t>(1, block_of(vertices_, bundles_.size(), 0).count);
-    std::uint64_t last = UINT64_MAX;
-    for (const WideTriangle& t : triangles) {
-      for (const std::uint64_t v : t) {
-        if (std::exchange(last, v / size) != v / size) touched[v / size] = true;
-      }
+  /// Stands for the corner until it is answered.
+  SharePlace ask(std::uint64_t vertex) {
+    if (vertex - asked_.first >= asked_.count) touch(vertex);
+    return {k_unanswered | asked_block_, static_cast<std::uint32_t>(vertex - asked_.first)};
+  }
+
+  /// To find the places of the vertices of all blocks that were touched costs less than to look up
+  /// so many triangles. Few are enough where the file has locality, none are where it has not.
+  std::uint64_t worth_answering() const { return std::max(k_least_slice, touched_vertices_ / 2); }
+
+  void answer(std::span<SeamTriangle> triangles) {
+    for (std::uint32_t block = 0; block < touched_.size(); ++block) {
+      if (touched_[block]) answer(block, triangles);
     }
-    std::vector<SeamTriangle> found(triangles.size());
-    for (std::size_t block = 0; block < touched.size(); ++block) {
-      if (touched[block]) answer(block, triangles, found);
-    }
-    return found;
+    touched_.assign(touched_.size(), false);
+    touched_vertices_ = 0;
+    asked_ = {};
   }
 
  private:
-  void answer(std::size_t block, std::span<const WideTriangle> triangles,
-              std::vector<SeamTriangle>& found) const {
-    const std::vector<SharePlace> places = places_of(block);
-    const std::uint64_t first = block_of(vertices_, bundles_.size(), block).first;
-    for (std::size_t i = 0; i < triangles.size(); ++i) {
-      for (std::size_t corner = 0; corner < 3; ++corner) {
-        const std::uint64_t at = triangles[i][corner] - first;  // wraps round below the first
-        if (at < places.size()) found[i][corner] = places[at];
+  static constexpr std::uint32_t k_unanswered = std::uint32_t{1} << 31;
+
+  void touch(std::uint64_t vertex) {
+    const std::uint64_t size = block_of(vertices_, bundles_.size(), 0).count;
+    asked_block_ = static_cast<std::uint32_t>(vertex / size);
+    asked_ = block_of(vertices_, bundles_.size(), asked_block_);
+    if (touched_.at(asked_block_)) return;
+    touched_[asked_block_] = true;
+    touched_vertices_ += asked_.count;
+  }
+
+  void answer(std::uint32_t block, std::span<SeamTriangle> triangles) {
+    if (std::exchange(known_block_, block) != block) find_places(block);
+    for (SeamTriangle& t : triangles) {
+      for (SharePlace& corner : t) {
+        if (corner.share == (k_unanswered | block)) corner = known_[corner.place];
       }
     }
   }
 
-  std::vector<SharePlace> places_of(std::size_t block) const {
+  void find_places(std::uint32_t block) {
     const auto runs = read_section<PlaceRun>(places_.file(block), bundles_[block].bundle.runs);
-    std::vector<SharePlace> places;
     const std::uint64_t count = block_of(vertices_, bundles_.size(), block).count;
-    places.reserve(count);
+    known_.clear();
+    known_.reserve(count);
     for (const PlaceRun& run : runs) {
-      if (run.count > count - places.size()) break;
+      if (run.count > count - known_.size()) break;
       if (run.part == MeshShares::k_no_share) {
-        places.insert(places.end(), run.count, SharePlace{run.part, 0});
+        known_.insert(known_.end(), run.count, SharePlace{run.part, 0});
         continue;
       }
       const std::uint32_t base = places_.first(block, run.part) + run.place;
-      for (std::uint32_t i = 0; i < run.count; ++i) places.push_back({run.part, base + i});
+      for (std::uint32_t i = 0; i < run.count; ++i) known_.push_back({run.part, base + i});
     }
-    if (places.size() != count) {
+    if (known_.size() != count) {
       throw DataError(bundles_[block].file.name + ": is of other vertices: the input was changed");
     }
-    return places;
   }
 
   std::span<const VertexBundleRef> bundles_;
   std::uint64_t vertices_;
   BlockPlaces places_;
+  std::vector<bool> touched_;  // blocks, by what was asked
+  std::uint64_t touched_vertices_ = 0;
+  BlockRange asked_{};  // the vertices of the block that was asked for last
+  std::uint32_t asked_block_ = 0;
+  std::vector<SharePlace> known_;  // of the vertices of a block
+  std::uint32_t known_block_ = UINT32_MAX;
 };
 
 /// As MeshShares::add_triangles() has it.
@@ -141,17 +162,20 @@ TriangleBundle scatter_triangles(const Stage& stage, std::span<const VertexBundl
                                  std::uint32_t parts, const MeshBlocks& mesh,
                                  const BlockRange& triangles, const WriteBytes& write) {
   if (triangles.count > 0xfffffffe) throw DataError("a block of 2^32 triangles or more");
-  std::vector<WideTriangle> corners;
-  corners.reserve(triangles.count);
-  mesh.scan_triangles(triangles, [&](std::span<const WideTriangle> batch) {
-    corners.insert(corners.end(), batch.begin(), batch.end());
-  });
-  std::vector<SeamTriangle> found =
-      CornerJoin(stage, bundles, parts, mesh.vertices()).find(corners);
-  corners = {};
+  CornerJoin join(stage, bundles, parts, mesh.vertices());
   TriangleScatter scatter(parts);
-  for (const SeamTriangle& t : found) scatter.add(t);
-  found = {};
+  std::vector<SeamTriangle> slice;
+  slice.reserve(triangles.count);
+  const auto scatter_slice = [&] {
+    join.answer(slice);
+    for (const SeamTriangle& t : slice) scatter.add(t);
+    slice.clear();
+  };
+  mesh.scan_triangles(triangles, [&](std::span<const WideTriangle> batch) {
+    for (const auto& [a, b, c] : batch) slice.push_back({join.ask(a), join.ask(b), join.ask(c)});
+    if (slice.size() >= join.worth_answering()) scatter_slice();
+  });
+  scatter_slice();
   return scatter.write(write);
 }
 

@@ -41,7 +41,7 @@ struct MemoryOfCut {
     count = k_cell_bytes_in_memory * cells;
     partition = k_cell_bytes_of_graph * cells;
     scatter_vertices = count + 60 * vertices;
-    scatter_triangles = 80 * triangles + 16 * vertices;
+    scatter_triangles = 60 * triangles + 16 * vertices;
   }
   std::uint64_t count = 0;
   std::uint64_t partition = 0;

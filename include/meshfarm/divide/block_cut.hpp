@@ -54,8 +54,9 @@ using WriteBytes = std::function<void(std::string_view)>;
 /// `partition`: of partition_blocks().
 VertexBundle scatter_vertices(std::string_view partition, const MeshBlocks& mesh,
                               const BlockRange& vertices, const WriteBytes& write);
-/// `bundles`: of all blocks of vertices. Each is read in order, once, as far as the triangles go.
-/// Memory: 56 bytes a triangle, and 8 bytes a vertex of one block.
+/// `bundles`: of all blocks of vertices. Those that a slice of the triangles touches are read once
+/// for it; a slice is the larger the more they are. Memory: what is written, 8 bytes a vertex of
+/// one block, and 12 bytes a vertex of those touched, but no more than 24 bytes a triangle.
 TriangleBundle scatter_triangles(const Stage& stage, std::span<const VertexBundleRef> bundles,
                                  std::uint32_t parts, const MeshBlocks& mesh,
                                  const BlockRange& triangles, const WriteBytes& write);
