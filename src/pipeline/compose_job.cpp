@@ -46,9 +46,10 @@ class Composer {
     sample_seams(stitched);
     if (parameters_.keeps_between) append_surface_of(last_triangles(stitched));
     const auto locked = static_cast<std::uint32_t>(stitched.open.size());
-    Simplifier simplifier(
-        open_first(std::move(stitched)),
-        {.locked_vertices = locked, .positions = positions_, .lines = parameters_.lines});
+    Simplifier simplifier(open_first(std::move(stitched)), {.locked_vertices = locked,
+                                                            .positions = positions_,
+                                                            .lines = parameters_.lines,
+                                                            .was_simplified = true});
     simplify(simplifier);
     return write(simplifier, locked);
   }

@@ -164,7 +164,8 @@ class ResultFinish {
   /// To so many triangles, or as few as there may be.
   Simplifier reduced(StitchedMesh stitched, std::uint64_t target) const {
     const std::uint64_t before = stitched.mesh.triangles.size();
-    SimplifyOptions options{.positions = manifest_.positions, .lines = lines_};
+    SimplifyOptions options{
+        .positions = manifest_.positions, .lines = lines_, .was_simplified = true};
     if (run_.finish == Finish::boundary) {
       options.seam = std::move(stitched.seam);
       options.lines.topology = TopologyMode::keep;

@@ -51,8 +51,10 @@ class Weighing {
         parameters_(parameters),
         context_(context),
         before_(mesh.triangles.size()),
-        simplifier_(std::move(mesh),
-                    {.locked_vertices = locked, .positions = positions, .lines = parameters.lines}),
+        simplifier_(std::move(mesh), {.locked_vertices = locked,
+                                      .positions = positions,
+                                      .lines = parameters.lines,
+                                      .was_simplified = true}),
         ladder_(vertices_of(simplifier_.mesh(), locked, positions),
                 [this](std::string_view bytes) { made_.ladder += bytes; }) {}
 

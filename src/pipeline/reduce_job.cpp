@@ -54,9 +54,10 @@ JobOutput reduce_piece(const Job& job, const JobContext& context) {
   ResultMesh piece = read_input(job.inputs[0], parameters, context);
   const std::uint32_t locked = piece.boundary_vertices;
   const std::uint64_t before = piece.mesh.triangles.size();
-  Simplifier simplifier(
-      std::move(piece.mesh),
-      {.locked_vertices = locked, .positions = piece.positions, .lines = parameters.lines});
+  Simplifier simplifier(std::move(piece.mesh), {.locked_vertices = locked,
+                                                .positions = piece.positions,
+                                                .lines = parameters.lines,
+                                                .was_simplified = true});
   bool given_up = false;
   simplifier.reduce({.triangles = parameters.triangles}, [&](std::uint64_t left) {
     given_up = !context.progress(before - std::min(left, before));

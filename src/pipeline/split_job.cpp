@@ -146,7 +146,8 @@ void approach(const SplitParameters& parameters, const JobContext& context, Resu
   const std::uint64_t before = piece.mesh.triangles.size();
   Simplifier simplifier(std::move(piece.mesh), {.locked_vertices = piece.boundary_vertices,
                                                 .positions = piece.positions,
-                                                .lines = parameters.weigh.lines});
+                                                .lines = parameters.weigh.lines,
+                                                .was_simplified = true});
   bool given_up = false;
   simplifier.reduce({.max_cost = step_cost(parameters.step, parameters.weigh.cost_unit)},
                     [&](std::uint64_t left) {

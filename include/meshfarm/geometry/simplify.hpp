@@ -86,6 +86,9 @@ struct SimplifyOptions {
   /// (the seam-only pass of Xiong et al. 2008, 3.3). A vertex merged from a flagged one is flagged.
   std::vector<std::uint8_t> seam;
   LineOptions lines;
+  /// The mesh, or most of it, comes from a simplifier: far from the goal, too, edges are taken by
+  /// their cost, as nearest neighbours are not worth merging any more.
+  bool was_simplified = false;
   /// Where not null: collapses that would take the surface farther from this one than it allows are
   /// refused. It must outlive the simplifier.
   const SurfaceBound* bound = nullptr;

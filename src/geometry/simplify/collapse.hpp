@@ -82,6 +82,8 @@ class CollapseJudge {
   std::span<const CornerId> ids_of(std::uint32_t vertex, std::span<CornerId> buffer) const;
   void add_lines(const Ring& ring, std::uint32_t vertex, Vec3 end, std::uint32_t without);
   Vec3 line_position(std::uint32_t a, std::uint32_t b) const;
+  Collapse or_at_end(const Collapse& best, std::uint32_t a, std::uint32_t b, std::uint32_t shared);
+  bool is_all_of_piece(std::uint32_t a, std::uint32_t b) const;
   Collapse at_position(Vec3 position, std::uint32_t shared, double max_cost, Turn turn);
   template <typename Candidate, typename Take>
   void for_creases_of(const Ring& ring, std::uint32_t vertex, Vec3 at,

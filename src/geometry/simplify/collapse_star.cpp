@@ -8,6 +8,7 @@ namespace meshfarm {
 namespace {
 
 constexpr double k_cos_60_squared = 0.25;
+constexpr double k_cos_85_squared = 0.0076;
 // Of the angle at the new vertex: near 0 and near 180 degrees alike are as good as no area.
 constexpr double k_least_sine_squared = 1e-6;
 // What is so thin already may become four times as thin, down to this.
@@ -29,7 +30,7 @@ void CollapseStar::sum_planes(EdgeQuadric& quadric) const {
 
 /// A sliver of the input may stay one, or nothing round it could ever collapse. A needle whose tip
 /// is at x, and that stands straight on its short side, has a normal as good as any.
-bool CollapseStar::is_acceptable(const Two& two, int lane, Vec3 x) const {
+bool CollapseStar::is_acceptable(const Two& two, int lane, Vec3 x, double cos_squared) const {
   const auto at = [&](const Vec3Pair& a) { return Vec3{a.x[lane], a.y[lane], a.z[lane]}; };
   const Vec3 p = at(two.p);
   const Vec3 q = at(two.q);
@@ -39,7 +40,7 @@ bool CollapseStar::is_acceptable(const Two& two, int lane, Vec3 x) const {
   const double size = squared_length(normal);
   const double old_size = squared_length(old_normal);
   const double turn = meshfarm::dot(normal, old_normal);
-  const bool turned = !(turn > 0 && turn * turn >= k_cos_60_squared * size * old_size);
+  const bool turned = !(turn > 0 && turn * turn >= cos_squared * size * old_size);
   if (turned && old_size > 0) return false;
   const double scale = squared_length(p - x) * squared_length(q - x);
   if (size > k_least_sine_squared * scale) return true;
@@ -78,6 +79,7 @@ bool CollapseStar::is_folded(std::uint32_t first, std::uint32_t kept, Vec3 x,
 
 std::optional<double> CollapseStar::lost_area_from(std::uint32_t first, std::uint32_t kept, Vec3 x,
                                                    const TurnLimits& limits) const {
+  const double cos_squared = limits.turn == Turn::far ? k_cos_85_squared : k_cos_60_squared;
   Pair twice_lost = sums_.twice_area;
   Mask steep{};
   Mask turning{};
@@ -98,12 +100,12 @@ std::optional<double> CollapseStar::lost_area_from(std::uint32_t first, std::uin
     const Pair sizes = size * two.squared_size;
     steep |= turned * turned < k_cos_30_squared * sizes;
     turning |= turned * turned < limits.cos_squared * sizes;
-    const Mask good = (turned > 0) & (turned * turned >= k_cos_60_squared * sizes) &
+    const Mask good = (turned > 0) & (turned * turned >= cos_squared * sizes) &
                       (size > k_least_sine_squared * (squared_p * squared_q));
     if ((good[0] & good[1]) == 0) {
-      if (good[0] == 0 && !is_acceptable(two, 0, x)) return {};
+      if (good[0] == 0 && !is_acceptable(two, 0, x, cos_squared)) return {};
       // Beyond the last one is none; p == q makes it neither good nor an area.
-      if (good[1] == 0 && i + 1 < kept && !is_acceptable(two, 1, x)) return {};
+      if (good[1] == 0 && i + 1 < kept && !is_acceptable(two, 1, x, cos_squared)) return {};
     }
     Pair length;
     root(size, length);

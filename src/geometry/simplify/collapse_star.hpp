@@ -14,8 +14,8 @@
 
 namespace meshfarm {
 
-/// How far a collapse may turn a triangle: by 60 degrees or by 30.
-enum class Turn : std::uint8_t { wide, narrow };
+/// How far a collapse may turn a triangle: by 60 degrees, by 30, or by 85.
+enum class Turn : std::uint8_t { wide, narrow, far };
 
 /// The triangles round one edge, relative to its middle, two at a time in vector registers. The
 /// types are those of GNU C++, which clang has too: loops over two are vectorised by neither.
@@ -95,7 +95,7 @@ class CollapseStar {
   static void root(const Pair& a, Pair& result) { result = Pair{std::sqrt(a[0]), std::sqrt(a[1])}; }
   void add_planes(const Two& two);
   bool is_folded(std::uint32_t first, std::uint32_t kept, Vec3 x, double cos_squared) const;
-  bool is_acceptable(const Two& two, int lane, Vec3 x) const;
+  bool is_acceptable(const Two& two, int lane, Vec3 x, double cos_squared) const;
 
   Vec3 middle_;
   Vec3 half_;

@@ -70,6 +70,7 @@ RankedPasses::End RankedPasses::reduce(const SimplifyGoal& goal,
     all_collapses_ += collapses_;
     all_refused_for_topology_ += refused_for_topology_;
     if (progress && !progress(mesh_.triangles())) return End::told;
+    if (!mesh_.is_above(goal.triangles)) break;  // however little there was to do
     // What is cheap is refused: what is dear is not to be taken for it.
     if (refused_for_topology_ > collapses_) return End::dead_end;
     if (static_cast<double>(refused_for_bound_) > k_bounded * static_cast<double>(collapses_)) {

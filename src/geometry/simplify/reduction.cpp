@@ -32,6 +32,7 @@ Reduction::Reduction(Mesh input, const SimplifyOptions& options)
     : mesh_(std::move(input), options),
       topology_(chosen_topology(options)),
       bound_(options.bound),
+      may_be_rough_(!mesh_.seam_only() && bound_ == nullptr && !options.was_simplified),
       passes_(mesh_, bound_),
       end_(mesh_, topology_, bound_) {}
 
@@ -63,11 +64,10 @@ void Reduction::reduce(const SimplifyGoal& goal, const Progress& progress) {
 
 /// False if progress says stop.
 bool Reduction::reduce_roughly(const SimplifyGoal& goal, const Progress& progress) {
-  while (!mesh_.seam_only() && bound_ == nullptr && mesh_.is_above(goal.triangles) &&
-         RoughPass::is_worth_it(mesh_, goal)) {
+  while (may_be_rough_ && mesh_.is_above(goal.triangles) && RoughPass::is_worth_it(mesh_, goal)) {
     const auto before = static_cast<double>(mesh_.triangles());
     const std::uint64_t removed = RoughPass(mesh_).run(goal);
-    if (removed == 0) break;
+    may_be_rough_ = removed > 0;
     if (progress && !progress(mesh_.triangles())) return false;
     if (static_cast<double>(removed) < k_least_rough * before) break;
   }

@@ -39,6 +39,7 @@ class Reduction {
   WorkingMesh mesh_;
   TopologyMode topology_;
   const SurfaceBound* bound_;
+  bool may_be_rough_;  // until a rough pass has done nothing
   RankedPasses passes_;
   OrderedEnd end_;
   double thickness_ = -1;       // of thin walls, when they are flagged

@@ -25,7 +25,7 @@ class RoughPartners {
 
   /// The cost that the cheapest `share` (0 to 1) of the vertices would pay to merge with their
   /// partners, but no more than `most`, estimated from a sample; nothing if too few could for it,
-  /// or if edges that are not the shortest cost far less: along steep folds they go for nothing.
+  /// or if edges that are not the shortest cost far less: along tubes and steep folds.
   std::optional<double> estimate_limit(CollapseJudge& judge, double share, double most) const;
 
  private:

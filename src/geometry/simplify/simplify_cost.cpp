@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cfloat>
+#include <cmath>
 
 namespace meshfarm {
 namespace {
@@ -82,7 +83,10 @@ void EdgeCosts::solve() {
     const float y2 = bz - l2 * bx - l3 * y1;
     const float saved = bx * bx * inverse0 + y1 * y1 * inverse1 + y2 * y2 * inverse2;
     trace_[i] = trace;
-    cost_[i] = (ax * hx + ay * hy + az * hz) * scale - saved;
+    // Or that of one of the ends, where the ridge counts nothing.
+    const float sum = (ax * hx + ay * hy + az * hz) * scale;
+    const float difference = std::abs(bx * hx + by * hy + bz * hz);
+    cost_[i] = std::min(sum - saved, 2 * (sum - difference));
     squared_[i] = hx * hx + hy * hy + hz * hz;
   }
 }

@@ -48,7 +48,7 @@ struct FloatQuadric {
 };
 
 struct EdgeCost {
-  double least;    // of any position, but for the ridge; 0 where it drowns in rounding
+  double least;    // of any position, by the ridge or of an end; 0 where it drowns in rounding
   double ranking;  // orders edges: where planes cost nothing, the short ones come first
 };
 

@@ -31,9 +31,13 @@ constexpr double k_cost_of_left_over = 0.125;
 constexpr CostKey k_greatest = k_any_cost - 1;
 constexpr CostKey k_least_step = 4U << 20;  // a factor of 16
 
-// From so many refusals to keep the topology on, a collapse, all that is left is dear. A surface of
-// many handles whose result was still good had 1.6.
+// From so many refusals to keep the topology on, a collapse, all that is left is dear. Only those
+// of edges that are cheaper than what has collapsed count: on a thin tube all edges round it are
+// refused whenever one along it collapses. A surface of many handles whose result was still good
+// had 1.6.
 constexpr std::uint64_t k_hopeless = 4;
+// And all edges are looked at twice, after each ranking, before that is said.
+constexpr std::uint64_t k_edges_of_triangle = 3;
 
 bool is_later(const QueuedEdge& x, const QueuedEdge& y) {
   return x.is_later(y);
@@ -70,7 +74,7 @@ void CollapseQueue::rank(double share) {
   heap_.clear();
   first_.clear();
   next_first_ = 0;
-  kept_before_ = kept_topology_;
+  blocked_before_ = blocked_;
   collapses_before_ = collapses_;
   const auto vertices = static_cast<std::uint32_t>(target_.size());
   for (const RankedEdge& e : ranking_.cheapest(0, vertices, {limit_, most_cost_})) {
@@ -209,7 +213,9 @@ CollapseQueue::Stop CollapseQueue::run(const SimplifyGoal& goal, const Progress&
     const std::uint32_t a = queued.a();
     const std::uint32_t b = queued.b;
     if (is_gone(a) || is_gone(b) || queued.stamp != stamp_of(a, b)) continue;
+    const std::uint64_t kept_before = kept_topology_;
     Collapse collapse = judge(a, b, excess);
+    if (cost_of(queued.key()) < max_cost_) blocked_ += kept_topology_ - kept_before;
     if (pieces_ != nullptr && collapse.triangles == 4 && pieces_->is_left_over(a)) {
       collapse.cost *= k_cost_of_left_over;
     }
@@ -229,9 +235,9 @@ CollapseQueue::Stop CollapseQueue::run(const SimplifyGoal& goal, const Progress&
 }
 
 bool CollapseQueue::is_hopeless() const {
-  const std::uint64_t refused = kept_topology_ - kept_before_;
+  const std::uint64_t blocked = blocked_ - blocked_before_;
   const std::uint64_t done = collapses_ - collapses_before_;
-  return mesh_.stops_when_held && refused > k_hopeless * done + triangles_;
+  return mesh_.stops_when_held && blocked > k_hopeless * done + k_edges_of_triangle * triangles_;
 }
 
 /// Whether it costs more than it was ranked by, and more than the next.

@@ -157,7 +157,7 @@ class CollapseQueue {
   std::vector<Mesh> kept_;
   std::size_t next_kept_ = 0;  // of the goal's counts
   // As they were at the last ranking.
-  std::uint64_t kept_before_ = 0;
+  std::uint64_t blocked_before_ = 0;
   std::uint64_t collapses_before_ = 0;
   double max_cost_ = 0;
   double last_cost_ = 0;
@@ -165,8 +165,9 @@ class CollapseQueue {
   double dearest_ = 0;
   std::uint64_t collapses_ = 0;
   std::uint64_t kept_topology_ = 0;
-  CostKey limit_ = 0;        // dearer edges wait for the next ranking
-  bool by_general_ = false;  // the general judge judged the last
+  std::uint64_t blocked_ = 0;  // of these: cheaper than what has collapsed
+  CostKey limit_ = 0;          // dearer edges wait for the next ranking
+  bool by_general_ = false;    // the general judge judged the last
   bool held_ = false;
 };
 

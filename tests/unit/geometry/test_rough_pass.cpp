@@ -86,6 +86,35 @@ TEST_CASE("the limit of a rough pass grows with its share") {
   CHECK(!limit(0.5).has_value());
 }
 
+TEST_CASE("a surface that wants long triangles gets no rough pass") {
+  const auto has_limit = [](const Mesh& mesh) {
+    RoughBench bench(mesh);
+    CollapseJudge judge(bench.state());
+    return bench.partners().estimate_limit(judge, 0.97, HUGE_VAL).has_value();
+  };
+  CHECK(has_limit(sphere(6)));
+  CHECK(has_limit(wide_torus(200, 100)));
+  CHECK_FALSE(has_limit(ring_of_tube(1000, 40, 0.04)));
+}
+
+TEST_CASE("thin tubes keep their shape however far the goal is") {
+  const Mesh mesh = ring_of_tube(3000, 24, 0.02);
+  Simplifier simplifier(mesh, {});
+  simplifier.reduce({.triangles = mesh.triangles.size() / 50});
+  CHECK(measure_distance(mesh, simplifier.mesh(), {.samples = 50'000}).rms < 4e-4);
+}
+
+TEST_CASE("what was simplified before gets no rough pass") {
+  const Mesh mesh = sphere(6);
+  const std::uint64_t goal = 700;
+  Simplifier ranked(mesh, {.was_simplified = true});
+  Simplifier rough(mesh, {});
+  ranked.reduce({.triangles = goal});
+  rough.reduce({.triangles = goal});
+  CHECK(ranked.triangles() == goal);
+  CHECK_FALSE(same_bytes(ranked.mesh(), rough.mesh()));
+}
+
 TEST_CASE("rough passes leave the detail of a flat sheet alone") {
   const Mesh mesh = sheet_with_detail();
   Simplifier simplifier(mesh, {});

@@ -6,6 +6,7 @@
 #include <meshfarm/geometry/topology.hpp>
 
 #include "support/meshes.hpp"
+#include "test_simplify_meshes.hpp"
 
 using namespace meshfarm;
 
@@ -64,6 +65,33 @@ TEST_CASE("a cost that leaves little to do is no reason to go on in order") {
   smooth.reduce({.triangles = 1000});  // the last of it in order
   CHECK(smooth.triangles() == 1000);
   CHECK(smooth.is_slowed_by_topology());
+}
+
+TEST_CASE("a goal that is met by one triangle at the border leaves more to do") {
+  const Mesh mesh = simplify_test::wavy_grid(120, 120);
+  for (std::uint64_t goal = 3000; goal < 3008; ++goal) {
+    CAPTURE(goal);
+    Simplifier simplifier(mesh, {});
+    simplifier.reduce({.triangles = goal, .last_triangles = 500});
+    CHECK(simplifier.triangles() == goal);
+    simplifier.reduce({.triangles = 500});
+    CHECK(simplifier.triangles() == 500);
+  }
+}
+
+TEST_CASE("edges round thin tubes that are refused are no reason to stop") {
+  Mesh rings;
+  constexpr int k_rings = 40;
+  for (int i = 0; i < k_rings; ++i) {
+    Mesh ring = simplify_test::ring_of_tube(200, 10, 0.05);
+    simplify_test::append(rings, ring, {0, 0, 1.0 * i});
+  }
+  Simplifier simplifier(rings, {.lines = {.topology = TopologyMode::keep_while_fair}});
+  simplifier.reduce({.triangles = 72 * k_rings});
+  CHECK(simplifier.triangles() == 72 * k_rings);
+  CHECK_FALSE(simplifier.is_held_by_topology());
+  CHECK(measure_topology(simplifier.mesh()).components == k_rings);
+  CHECK(measure_topology(simplifier.mesh()).euler == 0);
 }
 
 TEST_CASE("it is told where the topology refuses much") {

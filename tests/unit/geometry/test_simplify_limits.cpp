@@ -25,6 +25,28 @@ double farthest_from_unit_sphere(const Mesh& mesh, Vec3 centre) {
   return farthest;
 }
 
+/// A closed cylinder along z, of the radius 0.04 and the height 1.2.
+Mesh pin(std::uint32_t sides, std::uint32_t rings) {
+  Mesh mesh = grid(sides, rings, [](double, double) { return 0.0; });
+  for (Vec3& p : mesh.positions) {
+    const double turn = 2 * std::numbers::pi * p.x;
+    p = {0.04 * std::cos(turn), 0.04 * std::sin(turn), 1.2 * p.y};
+  }
+  const std::uint32_t row = sides + 1;
+  for (Triangle& t : mesh.triangles) {
+    for (std::uint32_t& v : t) v = v % row == sides ? v - sides : v;
+  }
+  const auto bottom = static_cast<std::uint32_t>(mesh.positions.size());
+  mesh.positions.push_back({0, 0, 0});
+  mesh.positions.push_back({0, 0, 1.2});
+  for (std::uint32_t i = 0; i < sides; ++i) {
+    const std::uint32_t next = (i + 1) % sides;
+    mesh.triangles.push_back({bottom, next, i});
+    mesh.triangles.push_back({bottom + 1, rings * row + i, rings * row + next});
+  }
+  return mesh;
+}
+
 }  // namespace
 
 TEST_CASE("no collapse costs more than max_cost") {
@@ -238,4 +260,31 @@ TEST_CASE("steep folds stay while edges along them go for nothing") {
     CHECK(measure_distance(mesh, made, {.samples = 20'000}).max < 1e-6);
     CHECK(measure_distance(made, mesh, {.samples = 20'000}).max < 1e-6);
   }
+}
+
+TEST_CASE("thin pins can become tetrahedra, and none of them goes before") {
+  // A prism of three sides has eight triangles: to have fewer, two of its sides turn by 60 degrees.
+  constexpr std::uint32_t k_pins = 60;
+  Mesh pins;
+  for (std::uint32_t i = 0; i < k_pins; ++i) append(pins, pin(16, 20), {0.5 * i, 0, 0});
+  Simplifier simplifier(pins, {});
+  simplifier.reduce({.triangles = 4 * k_pins});
+  CHECK(simplifier.triangles() == 4 * k_pins);
+  CHECK(check(simplifier.mesh()).components == k_pins);
+  CHECK(is_clean(simplifier.mesh()));
+}
+
+TEST_CASE("straight edges go before what is round, however long they are") {
+  constexpr std::uint32_t k_sides = 30;
+  Mesh pins;
+  for (std::uint32_t i = 0; i < 20; ++i) append(pins, pin(k_sides, 40), {0.5 * i, 0, 0});
+  for (Vec3& p : pins.positions) {  // in no direction of an axis, as floats
+    const Vec3 turned{0.6 * p.x + 0.8 * p.y, 0.48 * p.y - 0.64 * p.x + 0.6 * p.z,
+                      0.36 * p.y - 0.48 * p.x - 0.8 * p.z};
+    p = rounded(turned, PositionType::float32);
+  }
+  Simplifier simplifier(pins, {.positions = PositionType::float32});
+  constexpr std::uint64_t k_exact = 2 * k_sides + 2 * (k_sides - 2);
+  simplifier.reduce({.triangles = 20 * (k_exact + k_exact / 5)});
+  CHECK(measure_distance(pins, simplifier.mesh(), {.samples = 50'000}).rms < 1e-4);
 }

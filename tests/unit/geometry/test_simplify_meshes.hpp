@@ -51,16 +51,16 @@ inline Mesh wavy_grid(std::uint32_t columns, std::uint32_t rows) {
               [](double x, double y) { return 0.05 * std::sin(9 * x) * std::cos(7 * y + x); });
 }
 
-/// Radii 2 and 1.
-inline Mesh wide_torus(std::uint32_t around, std::uint32_t across) {
+/// A torus of the outer radius 2 + `thickness`.
+inline Mesh ring_of_tube(std::uint32_t around, std::uint32_t across, double thickness) {
   Mesh mesh;
   const double turn = 2 * std::numbers::pi;
   for (std::uint32_t i = 0; i < around; ++i) {
     for (std::uint32_t j = 0; j < across; ++j) {
       const double u = turn * i / around;
       const double v = turn * j / across;
-      const double r = 2 + std::cos(v);
-      mesh.positions.push_back({r * std::cos(u), r * std::sin(u), std::sin(v)});
+      const double r = 2 + thickness * std::cos(v);
+      mesh.positions.push_back({r * std::cos(u), r * std::sin(u), thickness * std::sin(v)});
       const std::uint32_t i1 = (i + 1) % around;
       const std::uint32_t j1 = (j + 1) % across;
       const std::uint32_t a = i * across + j;
@@ -72,6 +72,11 @@ inline Mesh wide_torus(std::uint32_t around, std::uint32_t across) {
     }
   }
   return mesh;
+}
+
+/// Radii 2 and 1.
+inline Mesh wide_torus(std::uint32_t around, std::uint32_t across) {
+  return ring_of_tube(around, across, 1);
 }
 
 /// Quarters the triangles `times` times; `place` moves the new vertices.
