@@ -104,6 +104,11 @@ void Scheduler::did(WorkerId id, JobKey key, std::uint32_t compute_ms, FarmTime 
                                [&](const Held& each) { return each.key == key; });
   if (at == member.held.end() || at->cost == 0) return;
   const double since = at->since ? seconds(now - *at->since) : 0;
+  if (at->since) {
+    Pace& pace = paces_[at->kind];
+    pace.took += since;
+    pace.thought += static_cast<double>(at->cost) / member.speed;
+  }
   const double took = compute_ms != 0 ? compute_ms / 1000.0 : since;
   if (took <= 0) return;
   const auto cost = static_cast<double>(at->cost);
@@ -316,7 +321,8 @@ Scheduler::Pick Scheduler::hand(WorkerId id, IssuedJob job, FarmTime now) {
   Member& member = crew_.at(id);
   assert(member.room > 0);
   --member.room;
-  member.held.push_back({job.key, job.attempt, job.job.cost, job.job.memory, std::nullopt});
+  member.held.push_back(
+      {job.key, job.attempt, job.job.cost, job.job.memory, job.job.kind, std::nullopt});
   pool_holds(member, job.job.memory);
   member.cost_held += static_cast<double>(job.job.cost);
   holders_[job.key].push_back(id);

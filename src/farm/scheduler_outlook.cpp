@@ -24,13 +24,18 @@ constexpr double k_least_gain_share = 0.1;
 /// An attempt that takes longer than estimated is held to take on as long as it is late, times
 /// this: at one and a half times its estimate a second attempt pays.
 constexpr double k_lateness = 2;
+/// So many jobs of a kind that are in work tell how long they take before one is done. But no
+/// longer than so many seconds more than was thought: what holds all of them up may be their hosts.
+constexpr std::size_t k_enough_in_work = 3;
+constexpr double k_patience = 10;
 /// No job is left to a worker that is faster by less than this.
 constexpr double k_about_the_fastest = 0.75;
 
 }  // namespace
 
-double Scheduler::seconds_left(const Member& member, const Held& held, FarmTime now) const {
-  const double whole = static_cast<double>(held.cost) / member.speed;
+double Scheduler::seconds_left(const Member& member, const Held& held, FarmTime now,
+                               double times) const {
+  const double whole = times * static_cast<double>(held.cost) / member.speed;
   if (!held.since) return whole;
   const double late = seconds(now - *held.since) - whole;
   return late <= 0 ? -late : k_lateness * late;
@@ -91,17 +96,47 @@ std::uint64_t Scheduler::greatest_cost(const Member& member, FarmTime now) const
                         : static_cast<std::uint64_t>(cost);
 }
 
+/// By kind, how many times longer its jobs take than was thought; at least 1. As long as none is
+/// done, half of those in work take at least as long as they have by now.
+std::map<std::string, double> Scheduler::times_longer(FarmTime now) const {
+  std::map<std::string, std::vector<double>> in_work;
+  for (const auto& [id, member] : crew_) {
+    for (const Held& held : member.held) {
+      if (!held.since || held.cost == 0) continue;
+      const double thought = static_cast<double>(held.cost) / member.speed;
+      const double age = std::min(seconds(now - *held.since), thought + k_patience);
+      in_work[held.kind].push_back(age / thought);
+    }
+  }
+  std::map<std::string, double> times;
+  for (auto& [kind, ages] : in_work) {
+    double& of_kind = times[kind] = 1;
+    if (const auto done = paces_.find(kind); done != paces_.end()) {
+      of_kind = std::max(of_kind, done->second.took / done->second.thought);
+    } else if (ages.size() >= k_enough_in_work) {
+      const auto middle = ages.begin() + static_cast<std::ptrdiff_t>(ages.size() / 2);
+      std::nth_element(ages.begin(), middle, ages.end());
+      of_kind = std::max(of_kind, *middle);
+    }
+  }
+  return times;
+}
+
 /// Jobs with a single attempt, those first that will be done last.
 std::vector<Scheduler::Late> Scheduler::late_jobs(const Plan& plan, FarmTime now) const {
+  const std::map<std::string, double> times_of = times_longer(now);
   std::vector<Late> late;
   for (const auto& [id, member] : crew_) {
     double before = 0;
     for (const Held& held : member.held) {
-      const double left = before + seconds_left(member, held, now);
-      if (!held.since) before += static_cast<double>(held.cost) / member.speed / member.threads;
+      const auto found = times_of.find(held.kind);
+      const double times = found == times_of.end() ? 1 : found->second;
+      const double whole = times * static_cast<double>(held.cost) / member.speed;
+      const double left = before + seconds_left(member, held, now, times);
+      if (!held.since) before += whole / member.threads;
       const bool single = holders_.at(held.key).size() == 1;
       const bool open = plan.state(held.key) == JobState::running;
-      if (single && open && !suspects_.contains(held.key)) late.push_back({left, &held});
+      if (single && open && !suspects_.contains(held.key)) late.push_back({left, &held, times});
     }
   }
   std::stable_sort(late.begin(), late.end(),
@@ -126,7 +161,8 @@ std::vector<Scheduler::Pick> Scheduler::second_attempts(Plan& plan, FarmTime now
     if (!open(member)) continue;
     bool any_gains = false;
     const auto taken = std::find_if(late.begin(), late.end(), [&](const Late& each) {
-      const double gain = each.left - static_cast<double>(each.held->cost) / member.speed;
+      const double anew = each.times * static_cast<double>(each.held->cost) / member.speed;
+      const double gain = each.left - anew;
       const bool gains = gain >= std::max(k_least_gain, k_least_gain_share * each.left);
       any_gains = any_gains || gains;
       return gains && fits(member, each.held->memory) &&

@@ -25,7 +25,8 @@ namespace meshfarm {
 /// Buffers are filled so that all would drain at the same time (the paper, 3.2.2), and shrink with
 /// the work that is left. Near the end a worker is given a job only if it will have done it about
 /// when all is done; and whoever has nothing to do makes a second attempt at what would take
-/// another longer.
+/// another longer. Where all jobs of a kind take longer than was thought, as the storage is busy,
+/// that would only make it busier: a second attempt is thought to take as long as the others do.
 class Scheduler {
  public:
   struct Held {
@@ -33,6 +34,7 @@ class Scheduler {
     std::uint32_t attempt = 0;
     std::uint64_t cost = 0;
     std::uint64_t memory = 0;
+    std::string kind;
     std::optional<FarmTime> since;  // when it was its turn, as far as we know
   };
   struct Pick {
@@ -123,6 +125,12 @@ class Scheduler {
   struct Late {
     double left = 0;  // seconds
     const Held* held = nullptr;
+    double times = 1;  // so much longer do jobs of its kind take than was thought
+  };
+  /// What the jobs of a kind took that are done, in seconds, and what was thought.
+  struct Pace {
+    double took = 0;
+    double thought = 0;
   };
   /// How the rest of the run looks from `now`: times in seconds from then on.
   struct Outlook {
@@ -142,6 +150,7 @@ class Scheduler {
   void leave_pool(Member& member);
   bool good(const Host& host) const;
   void end_bans(FarmTime now);
+  std::map<std::string, double> times_longer(FarmTime now) const;
   std::vector<Late> late_jobs(const Plan& plan, FarmTime now) const;
   bool elsewhere(const std::vector<std::string>& hosts, std::uint64_t memory = 0) const;
   bool may_on_host(const Member& member, JobKey key, std::uint64_t memory) const;
@@ -154,7 +163,8 @@ class Scheduler {
   bool open(const Member& member) const;
   void begin_turns(Member& member, FarmTime now);
   double estimated_speed(const Member& member) const;
-  double seconds_left(const Member& member, const Held& held, FarmTime now) const;
+  double seconds_left(const Member& member, const Held& held, FarmTime now,
+                      double times = 1) const;
   double seconds_held(const Member& member, FarmTime now) const;
   const Outlook& outlook(const Plan& plan, FarmTime now);
   std::uint64_t greatest_cost(const Member& member, FarmTime now) const;
@@ -180,6 +190,7 @@ class Scheduler {
   double cost_done_ = 0;
   double benchmark_cost_done_ = 0;
   double jobs_done_ = 0;
+  std::map<std::string, Pace> paces_;  // by kind
   // A fixed schedule: who shall get what.
   std::map<WorkerId, std::deque<JobKey>> sets_;
   std::unordered_map<JobKey, WorkerId, JobKeyHash> dealt_;  // what the sets hold

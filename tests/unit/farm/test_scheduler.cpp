@@ -265,6 +265,33 @@ TEST_CASE("a straggler is overtaken once it is half as late again as it should b
   CHECK(desk.second_attempts() == "long@2 ");
 }
 
+TEST_CASE("where all jobs of a kind take longer, a second attempt would, too") {
+  std::vector<Job> jobs;
+  for (const char* name : {"a", "b", "c", "d"}) jobs.push_back(make_job(name, 1'000'000));
+  ScheduleDesk desk(jobs);
+  for (std::uint32_t id = 1; id <= 5; ++id) {
+    desk.join(id, "host " + std::to_string(id), {1'000'000, 0, 1}, 1);
+  }
+  CHECK(desk.hand_out() == "a@1 b@2 c@3 d@4 ");
+  desk.now = FarmTime(5'000);
+  CHECK(desk.second_attempts().empty());
+  SUBCASE("but not what takes longer than the others did") {
+    for (const char* name : {"a", "b", "c"}) {
+      desk.done(static_cast<std::uint32_t>(name[0] - 'a' + 1), name);
+    }
+    desk.now = FarmTime(6'000);
+    CHECK(desk.second_attempts().empty());
+    desk.now = FarmTime(9'000);
+    CHECK(desk.second_attempts() == "d@5 ");
+  }
+  SUBCASE("nor is that believed for long") {
+    desk.now = FarmTime(12'000);
+    CHECK(desk.second_attempts().empty());
+    desk.now = FarmTime(18'000);
+    CHECK(desk.second_attempts() == "a@5 ");
+  }
+}
+
 TEST_CASE("a job that failed on a host is tried on another") {
   ScheduleDesk desk({make_job("job")});
   desk.join(1, "a", {}, 1);
