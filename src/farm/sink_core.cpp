@@ -129,24 +129,8 @@ void SinkCore::take_result(const Result& result) {
   check.attempt = result.attempt;
   check.times = result.times;
   check.kind = wanted_.at(result.key).kind;
+  check.left_to_readers = wanted_.at(result.key).left_to_readers;
   if (checking_.try_emplace(result.key, check).second) act(check);
-}
-
-/// Nothing as long as it is not known whose fault it is. A worker may be the first to see that a
-/// result is damaged: then no host is to blame, and to try again before that is made again is in
-/// vain.
-std::optional<JobFailure> SinkCore::failure_to_tell(const Result& result,
-                                                    const JobFailure& failure) {
-  if (!told_all_) return std::nullopt;
-  const bool damaged = failure.kind == FailureKind::damaged_input;
-  if (!damaged || !wanted_.at(result.key).needs_others) return failure;
-  const std::pair attempt(result.key, result.attempt);
-  if (unverified() > 0) {
-    held_.insert(attempt);
-    return std::nullopt;
-  }
-  if (!found_damage_ || !held_.contains(attempt)) return failure;
-  return JobFailure{failure.reason, FailureKind::unread};
 }
 
 SinkActions SinkCore::checked(const Check& check, const JobFailure& problem, FarmTime now) {
@@ -184,63 +168,18 @@ SinkActions SinkCore::checked(const Check& check, const JobFailure& problem, Far
   return take();
 }
 
-void SinkCore::take_in(const Check& check) {
-  if (check.what == Check::What::known) {
-    known_.looked_at(check.key);
-  } else if (check.what == Check::What::large) {
-    known_.add_looked_at(check.key, check.output);
-  }
-  if (check.what != Check::What::result) {
-    act(Check{check.key, check.output, Check::What::accepted, {}, 0, {}, check.kind});
-  }
-  if (graph_.waits_for(check.key)) return want(accept(check));
-  // The graph was begun again meanwhile, and has not come as far as this job.
-  known_.add(check.key, check.output);
-}
-
-/// What was accepted by a look at its size has been read.
-void SinkCore::verified(const Check& check, const JobFailure& problem) {
-  if (problem.reason.empty()) {
-    known_.verified(check.key);
-  } else {
-    known_.forget(check.key);
-    if (graph_.accepted(check.key) != nullptr) damaged_.insert(check.key);
-    found_damage_ = true;
-  }
-  if (unverified() > 0) return;
-  if (!found_damage_) held_.clear();
-  if (told_all_) say_where_it_stands();
-  look_for_end();
-}
-
-/// As a new sink would that knows all but what is damaged.
-void SinkCore::begin_again(FarmTime now) {
-  for (const JobKey key : accepted_) {
-    if (!damaged_.contains(key)) known_.add(key, *graph_.accepted(key));
-  }
-  damaged_.clear();
-  accepted_.clear();
-  wanted_.clear();
-  own_.clear();
-  waiting_.clear();
-  graph_ = source_();
-  if (told_all_) on(member_.on_message(Stop{StopReason::leaving}, now), now);
-  want(graph_.begin());
-  tell_all();
-}
-
 /// Jobs that are possible now; what a journal knows of them is looked at at once.
 void SinkCore::want(std::vector<WantedJob> jobs) {
   for (std::size_t i = 0; i < jobs.size(); ++i) {
     const auto [key, job, name] = std::move(jobs[i]);
-    wanted_[key] = {job.kind, !graph_.needs(name).empty()};
+    wanted_[key] = {job.kind, !graph_.needs(name).empty(), job.left_to_readers};
     if (job.by_sink) own_[key] = job;
     const JobOutput* known = known_.find(key);
     if (known == nullptr) {
       if (job.by_sink) do_here({key, job});
       continue;
     }
-    const Check check{key, *known, Check::What::known, {}, 0, {}, job.kind};
+    const Check check{key, *known, Check::What::known, {}, 0, {}, job.kind, job.left_to_readers};
     if (known_.is_trusted(key)) {
       for (WantedJob& each : accept(check)) jobs.push_back(std::move(each));
     } else if (checking_.try_emplace(key, check).second) {

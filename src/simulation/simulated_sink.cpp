@@ -203,21 +203,23 @@ void SimulatedFarm::sink_act(Run& run, const DoHere& each) {
 }
 
 void SimulatedFarm::sink_act(Run& run, MakeOutput&) {
-  queue_.in(up_to(std::chrono::milliseconds(faulty() ? 5000 : 1)), [this, &run,
-                                                                    life = run.sink.life] {
-    when_awake(run.sink, life, [this, &run] {
-      if (folder_.full()) {
-        return sink_does(run,
-                         run.sink.core->completed({"no space left on device", true}, farm_now()));
-      }
-      const auto made = run.sink.core->graph().outputs();
-      for (const AcceptedJob& each : made) {
-        run.checks.that(folder_.has_whole(each.output.file.name), "an accepted file is not there");
-      }
-      run.outputs.assign(made.begin(), made.end());
-      sink_does(run, run.sink.core->completed({}, farm_now()));
-    });
-  });
+  queue_.in(up_to(std::chrono::milliseconds(faulty() ? 5000 : 1)),
+            [this, &run, life = run.sink.life] {
+              when_awake(run.sink, life, [this, &run] {
+                if (folder_.full()) {
+                  return sink_does(
+                      run, run.sink.core->completed({"no space left on device", true}, farm_now()));
+                }
+                const auto made = run.sink.core->graph().outputs();
+                for (const AcceptedJob& each : made) {
+                  const bool fine = run.sink.core->leaves_to_readers(each.key) ||
+                                    folder_.has_whole(each.output.file.name);
+                  run.checks.that(fine, "an accepted file is not there");
+                }
+                run.outputs.assign(made.begin(), made.end());
+                sink_does(run, run.sink.core->completed({}, farm_now()));
+              });
+            });
 }
 
 void SimulatedFarm::sink_act(Run& run, SinkLeaves& each) {

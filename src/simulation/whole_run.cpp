@@ -99,6 +99,7 @@ class WholeRun {
     for (std::uint32_t b = 0; b < blocks_; ++b) {
       Job each = made_up_job("job " + std::to_string(b));
       each.inputs = {graph.output({k_partition, k_rounds_of_count - 1}).file};
+      each.left_to_readers = true;
       graph.add({k_vertices, b}, std::move(each));
     }
     graph.then({all_of(k_vertices, blocks_)}, [this](JobGraph& so_far) {
@@ -109,8 +110,9 @@ class WholeRun {
 
   void scatter_triangles(JobGraph& graph) {
     for (std::uint32_t b = 0; b < blocks_; ++b) {
-      graph.add({k_triangles, b},
-                job(graph, "triangles", b, {{k_vertices, b}, {k_vertices, (b + 1) % blocks_}}));
+      Job each = job(graph, "triangles", b, {{k_vertices, b}, {k_vertices, (b + 1) % blocks_}});
+      each.left_to_readers = true;
+      graph.add({k_triangles, b}, std::move(each));
     }
     graph.then({all_of(k_triangles, blocks_)}, [this](JobGraph& so_far) {
       know(so_far, all_of(k_triangles, blocks_));

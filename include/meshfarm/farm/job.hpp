@@ -33,6 +33,9 @@ struct Job {
   std::uint32_t algorithm = 0;
   /// The sink does it, not a worker: what needs much that was accepted before in one place.
   bool by_sink = false;
+  /// What it makes is for workers alone, who check all that they read of it: the sink does not read
+  /// it while nothing is found damaged. No part of what the job is.
+  bool left_to_readers = false;
   /// Estimated work of the longest chain of jobs that can only follow this one, in triangles: what
   /// leads to much is begun first. No part of what the job is.
   std::uint64_t after = 0;

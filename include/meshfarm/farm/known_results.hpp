@@ -16,7 +16,8 @@ namespace meshfarm {
 /// long.
 class KnownResults {
  public:
-  enum class Trust : std::uint8_t { journal, looked_at, verified };
+  /// left: looked at, and to be checked by those who read it.
+  enum class Trust : std::uint8_t { journal, looked_at, left, verified };
 
   explicit KnownResults(std::map<JobKey, JobOutput>&& journal) {
     for (auto& [key, output] : journal) results_[key] = {std::move(output), Trust::journal};
@@ -32,15 +33,14 @@ class KnownResults {
     const auto found = results_.find(key);
     return found != results_.end() && found->second.trust != Trust::journal;
   }
-  /// How many are trusted by a look alone.
+  /// How many are trusted by a look alone, and are to be verified.
   std::uint64_t unverified() const { return unverified_; }
 
-  void looked_at(JobKey key) { set(results_.at(key), Trust::looked_at); }
-  /// One that came just now.
-  void add_looked_at(JobKey key, const JobOutput& output) {
+  /// One of a journal, or that came just now; it is left, or to be verified.
+  void looked_at(JobKey key, const JobOutput& output, bool left) {
     Known& known = results_[key];
     known.output = output;
-    set(known, Trust::looked_at);
+    set(known, left ? Trust::left : Trust::looked_at);
   }
   void verified(JobKey key) { set(results_.at(key), Trust::verified); }
   /// One that this sink verified. What is known of the job already stays.

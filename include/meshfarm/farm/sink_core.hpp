@@ -35,7 +35,8 @@ struct Check {
   WorkerId worker = {};       // of a result; 0: the sink made it
   std::uint32_t attempt = 0;  // of a worker's result
   JobTimes times = {};
-  std::string kind = {};  // of the job
+  std::string kind = {};         // of the job
+  bool left_to_readers = false;  // as the job has it
 };
 /// Do a job that the sink does itself; answered by did().
 struct DoHere {
@@ -66,7 +67,8 @@ using SinkActions = std::vector<SinkAction>;
 /// the output nor a job of the sink is made before, and what is damaged is taken back. For that the
 /// sink begins its graph again, without it, and greets the ventilator as a new sink would that has
 /// the others: the job is made again, and what was made from it before stays. From then on all
-/// that comes is verified first, so that who damages results is found out.
+/// that comes is verified first, so that who damages results is found out. What is left to its
+/// readers (Job::left_to_readers) is read only once one of them, or the sink, found damage.
 class SinkCore {
  public:
   /// `journal`: what earlier sinks accepted.
@@ -99,6 +101,8 @@ class SinkCore {
   const JobGraph& graph() const { return graph_; }
   /// How many of the accepted are to be verified yet, or to be taken back.
   std::uint64_t unverified() const { return known_.unverified() + damaged_.size(); }
+  /// Whether it is accepted by a look, and nobody but its readers will tell if it is damaged.
+  bool leaves_to_readers(JobKey key) const { return left_.contains(key); }
   /// How long to wait for messages before tick() is called again, at most.
   FarmTime pause(FarmTime now) const { return member_.pause(now); }
   /// Of the ventilator that was joined last.
@@ -113,6 +117,7 @@ class SinkCore {
   void take_result(const Result& result);
   std::optional<JobFailure> failure_to_tell(const Result& result, const JobFailure& failure);
   void take_in(const Check& check);
+  void read_what_was_left();
   void verified(const Check& check, const JobFailure& problem);
   void begin_again(FarmTime now);
   void want(std::vector<WantedJob> jobs);
@@ -139,6 +144,7 @@ class SinkCore {
   struct Wanted {
     std::string kind;
     bool needs_others = false;
+    bool left_to_readers = false;
   };
 
   JobSource source_;
@@ -156,6 +162,7 @@ class SinkCore {
   std::map<JobKey, Check> checking_;
   std::uint64_t looking_ = 0;     // how many of those a journal knows
   std::vector<JobKey> accepted_;  // in the order of acceptance
+  std::map<JobKey, Check> left_;  // of these, what is read only if something is damaged
   std::set<JobKey> damaged_;      // of these, what is to be taken back
   bool found_damage_ = false;
   /// Attempts that read a damaged input while not all was verified.

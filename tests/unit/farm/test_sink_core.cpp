@@ -6,90 +6,10 @@
 
 #include <doctest/doctest.h>
 
-#include <meshfarm/farm/sink_core.hpp>
-
-#include "support/jobs.hpp"
+#include "sink_bench.hpp"
 
 namespace meshfarm::test {
 namespace {
-
-template <class A>
-std::vector<A> only(const SinkActions& actions) {
-  std::vector<A> found;
-  for (const SinkAction& action : actions) {
-    if (const auto* each = std::get_if<A>(&action)) found.push_back(*each);
-  }
-  return found;
-}
-
-/// What the sink says of type M.
-template <class M>
-std::vector<M> said(const SinkActions& actions) {
-  std::vector<M> found;
-  for (const Say& say : only<Say>(actions)) {
-    if (const auto* each = std::get_if<M>(&say.message)) found.push_back(*each);
-  }
-  return found;
-}
-
-JobKey key(const std::string& name) {
-  return key_of(make_job(name));
-}
-
-JobOutput output_of(JobKey of, std::uint32_t attempt = 1, std::uint64_t incarnation = 5) {
-  return {{to_string(ResultName{of.value, attempt, incarnation}), 1, 1}, "made"};
-}
-
-/// A sink with a clock, of a run of jobs "job 0", "job 1"...
-struct SinkBench {
-  explicit SinkBench(std::size_t jobs, std::map<JobKey, JobOutput> journal = {},
-                     WhenFull when_full = WhenFull::wait)
-      : SinkBench(one_stage(jobs), std::move(journal), when_full) {}
-  explicit SinkBench(JobSource source, std::map<JobKey, JobOutput> journal = {},
-                     WhenFull when_full = WhenFull::wait)
-      : core({Role::sink, 7, 99, 1, "h", "results", FarmTime(10'000)}, std::move(source),
-             std::move(journal), when_full) {}
-
-  SinkActions join(std::uint32_t epoch) {
-    SinkActions all = core.tick(now);
-    const Endpoint there{epoch, 7, "tcp://v", "h", 1};
-    const SinkActions dialled = core.found({&there, 1}, now);
-    CHECK(only<Dial>(dialled).size() == 1);
-    CHECK(said<Hello>(dialled).size() == 1);
-    for (SinkAction& each : core.on_control(Welcome{{}, epoch, 7, "", "", 1000}, now)) {
-      all.push_back(std::move(each));
-    }
-    return all;
-  }
-  SinkActions result(JobKey of, std::uint32_t epoch = 1, std::uint32_t attempt = 1) {
-    return core.on_result(
-        Result{7, epoch, {3}, 5, attempt, of, output_of(of, attempt), {1, 2, 3, 4}});
-  }
-  /// The result comes, and its file is found whole.
-  SinkActions accept(JobKey of) {
-    const auto checks = only<Check>(result(of));
-    REQUIRE(checks.size() == 1);
-    return core.checked(checks[0], {}, now);
-  }
-  /// Files that journals know are there, of their sizes.
-  SinkActions look_at_all(const SinkActions& actions) {
-    return answer(actions, Check::What::known);
-  }
-  /// Files that were looked at are whole.
-  SinkActions verify(const SinkActions& actions) { return answer(actions, Check::What::accepted); }
-  SinkActions answer(const SinkActions& actions, Check::What what) {
-    SinkActions all;
-    for (const Check& each : only<Check>(actions)) {
-      if (each.what != what) continue;
-      for (SinkAction& action : core.checked(each, {}, now)) all.push_back(std::move(action));
-    }
-    return all;
-  }
-  SinkActions silence(FarmTime duration) { return core.tick(now += duration); }
-
-  SinkCore core;
-  FarmTime now{0};
-};
 
 TEST_CASE("a result is told only after its file is found whole and journalled") {
   SinkBench bench(2);
@@ -132,7 +52,7 @@ TEST_CASE("what is not ours is dropped and counted") {
   SinkBench bench(1);
   bench.join(2);
   const JobKey job = key("job 0");
-  const JobOutput good = output_of(job);
+  const JobOutput good = result_of(job);
   CHECK(bench.core.on_result(Result{8, 2, {3}, 5, 1, job, good, {}}).empty());  // another run
   CHECK(bench.core.on_result(Result{7, 1, {3}, 5, 1, job, good, {}}).empty());  // an old epoch
   CHECK(bench.core.on_result(Result{7, 2, {3}, 5, 1, {1}, good, {}}).empty());  // not wanted
@@ -146,7 +66,7 @@ TEST_CASE("what is not ours is dropped and counted") {
 TEST_CASE("what a journal knows is looked at, and told to each ventilator before Ready") {
   const JobKey known = key("job 0");
   const JobKey gone = key("job 1");
-  SinkBench bench(3, {{known, output_of(known)}, {gone, output_of(gone)}, {{1}, output_of({1})}});
+  SinkBench bench(3, {{known, result_of(known)}, {gone, result_of(gone)}, {{1}, result_of({1})}});
   const auto checks = only<Check>(bench.join(1));
   REQUIRE(checks.size() == 2);  // what no job is for is left alone
   CHECK(checks[0].what == Check::What::known);
@@ -287,13 +207,6 @@ TEST_CASE("a sink that shall not wait for room ends the run") {
   }
 }
 
-/// A job of a worker, and then one of the sink.
-JobSource then_own() {
-  Job own = make_job("own");
-  own.by_sink = true;
-  return in_stages({{make_job("job 0")}, {own}});
-}
-
 TEST_CASE("a job of the sink is done there, verified, journalled and told as others are") {
   SinkBench bench(then_own());
   bench.join(1);
@@ -301,7 +214,7 @@ TEST_CASE("a job of the sink is done there, verified, journalled and told as oth
   REQUIRE(to_do.size() == 1);
   CHECK(to_do[0].key == key("own"));
   CHECK(to_do[0].job.by_sink);
-  const SinkActions done = bench.core.did(to_do[0], output_of(key("own")), {}, bench.now);
+  const SinkActions done = bench.core.did(to_do[0], result_of(key("own")), {}, bench.now);
   CHECK(said<Accept>(done).empty());
   const auto checks = only<Check>(done);
   REQUIRE(checks.size() == 1);
@@ -318,7 +231,7 @@ TEST_CASE("a job of the sink is done there, verified, journalled and told as oth
 
 TEST_CASE("what a journal knows of a job of the sink is used, or done again if it is damaged") {
   for (const bool is_whole : {true, false}) {
-    SinkBench bench(then_own(), {{key("own"), output_of(key("own"))}});
+    SinkBench bench(then_own(), {{key("own"), result_of(key("own"))}});
     bench.join(1);
     const SinkActions next = bench.accept(key("job 0"));
     CHECK(only<DoHere>(next).empty());
@@ -332,182 +245,6 @@ TEST_CASE("what a journal knows of a job of the sink is used, or done again if i
     if (!is_whole) continue;
     CHECK(only<MakeOutput>(bench.verify(then)).size() == 1);
   }
-}
-
-// --- what is accepted by a look, and verified while the farm works
-
-std::map<JobKey, JobOutput> journal_of(const std::vector<std::string>& names) {
-  std::map<JobKey, JobOutput> journal;
-  for (const std::string& name : names) journal[key(name)] = output_of(key(name));
-  return journal;
-}
-
-/// Two jobs of workers, one that needs them, and one that needs that.
-JobSource chain() {
-  return in_stages({{make_job("job 0"), make_job("job 1")}, {make_job("then")}, {make_job("end")}});
-}
-
-TEST_CASE("the run is not over before all is verified") {
-  SinkBench bench(2, journal_of({"job 0", "job 1"}));
-  const SinkActions looked = bench.look_at_all(bench.join(1));
-  const auto reads = only<Check>(looked);
-  REQUIRE(reads.size() == 2);
-  CHECK(reads[0].what == Check::What::accepted);
-  CHECK(said<Ready>(looked).at(0).accepted == 2);
-  CHECK(said<Ready>(looked).at(0).unverified == 2);
-  CHECK(only<MakeOutput>(looked).empty());
-  CHECK(said<Ready>(bench.silence(FarmTime(1000))).at(0).unverified == 2);
-  CHECK(bench.core.checked(reads[1], {}, bench.now).empty());
-  const SinkActions all = bench.core.checked(reads[0], {}, bench.now);
-  CHECK(said<Ready>(all).at(0).unverified == 0);
-  CHECK(only<MakeOutput>(all).size() == 1);
-}
-
-TEST_CASE("a job of the sink waits until all is verified") {
-  SinkBench bench(then_own(), journal_of({"job 0"}));
-  const SinkActions looked = bench.look_at_all(bench.join(1));
-  CHECK(only<DoHere>(looked).empty());
-  CHECK(only<DoHere>(bench.verify(looked)).size() == 1);
-}
-
-TEST_CASE("what is damaged is taken back, as by a new sink that has the others") {
-  SinkBench bench(chain(), journal_of({"job 0", "job 1", "then"}));
-  SinkActions looked = bench.look_at_all(bench.join(1));
-  for (SinkAction& each : bench.look_at_all(looked)) looked.push_back(std::move(each));
-  const auto reads = only<Check>(looked);
-  CHECK(bench.core.graph().jobs_accepted() == 3);
-  bench.accept(key("end"));
-  for (const Check& each : reads) {
-    if (each.what != Check::What::accepted) continue;
-    const bool damaged = each.key == key("job 1");
-    CHECK(only<MakeOutput>(bench.core.checked(each, {damaged ? "it is damaged" : ""}, bench.now))
-              .empty());
-  }
-  const SinkActions again = bench.core.tick(bench.now);
-  CHECK(only<HangUp>(again).size() == 1);
-  CHECK(only<Check>(again).empty());  // the others are known to be whole
-  CHECK(only<DoHere>(again).empty());
-  const SinkActions told = bench.join(1);
-  CHECK(said<Accept>(told).size() == 1);
-  CHECK(said<Accept>(told).at(0).key == key("job 0"));
-  CHECK(said<Ready>(told).at(0).accepted == 1);
-  CHECK(said<Ready>(told).at(0).unverified == 0);
-  // It is made again: what was made from it stays as it is, from the journal or not.
-  const auto checks = only<Check>(bench.result(key("job 1"), 1, 2));
-  REQUIRE(checks.size() == 1);
-  const SinkActions rest = bench.core.checked(checks[0], {}, bench.now);
-  CHECK(said<Accept>(rest).size() == 3);
-  CHECK(said<Accept>(rest).at(0).output.file.name == checks[0].output.file.name);
-  CHECK(only<MakeOutput>(rest).size() == 1);
-}
-
-TEST_CASE("a result that comes while what it needs is taken back is not lost") {
-  SinkBench bench(chain(), journal_of({"job 0", "job 1"}));
-  const auto reads = only<Check>(bench.look_at_all(bench.join(1)));
-  REQUIRE(reads.size() == 2);
-  const auto checks = only<Check>(bench.result(key("then")));
-  REQUIRE(checks.size() == 1);
-  bench.core.checked(reads[0], {"it is damaged"}, bench.now);
-  bench.core.checked(reads[1], {}, bench.now);
-  bench.core.tick(bench.now);
-  bench.join(1);
-  CHECK(bench.result(key("then")).empty());  // not wanted yet
-  CHECK(said<Accept>(bench.core.checked(checks[0], {}, bench.now)).empty());
-  CHECK(said<Accept>(bench.accept(reads[0].key)).size() == 2);
-  CHECK(bench.core.graph().accepted(key("then")) != nullptr);
-}
-
-// --- what is large is accepted by a look, too
-
-JobOutput large(JobOutput output) {
-  output.file.size = std::uint64_t{1} << 20;
-  return output;
-}
-
-/// Its file is there, of its size. Returns what is to be read then.
-Check accept_large(SinkBench& bench, JobKey of) {
-  const auto looks = only<Check>(
-      bench.core.on_result(Result{7, 1, {3}, 5, 1, of, large(output_of(of)), {1, 2, 3, 4}}));
-  REQUIRE(looks.size() == 1);
-  CHECK(looks[0].what == Check::What::large);
-  const SinkActions told = bench.core.checked(looks[0], {}, bench.now);
-  REQUIRE(said<Accept>(told).size() == 1);
-  CHECK(said<Accept>(told)[0].worker == WorkerId{3});
-  CHECK(said<Accept>(told)[0].times.compute_ms == 3);
-  CHECK(said<Accept>(told)[0].unverified > 0);
-  CHECK(only<MakeOutput>(told).empty());
-  const auto reads = only<Check>(told);
-  REQUIRE(reads.size() == 1);
-  CHECK(reads[0].what == Check::What::accepted);
-  return reads[0];
-}
-
-TEST_CASE("a large result is told after a look, and the run is over once it is verified") {
-  SinkBench bench(1);
-  bench.join(1);
-  const Check read = accept_large(bench, key("job 0"));
-  CHECK(bench.core.unverified() == 1);
-  CHECK(only<MakeOutput>(bench.core.checked(read, {}, bench.now)).size() == 1);
-}
-
-TEST_CASE("a large result that is not there is rejected") {
-  SinkBench bench(1);
-  bench.join(1);
-  const auto looks = only<Check>(bench.core.on_result(
-      Result{7, 1, {3}, 5, 1, key("job 0"), large(output_of(key("job 0"))), {}}));
-  const SinkActions told = bench.core.checked(looks.at(0), {"cut short"}, bench.now);
-  CHECK(said<Reject>(told).size() == 1);
-  CHECK(bench.core.unverified() == 0);
-}
-
-TEST_CASE("a large result that is damaged is taken back, and what comes then is verified first") {
-  SinkBench bench(chain());
-  bench.join(1);
-  bench.accept(key("job 0"));
-  const Check read = accept_large(bench, key("job 1"));
-  CHECK(said<Accept>(bench.accept(key("then"))).size() == 1);
-  bench.core.checked(read, {"it is damaged"}, bench.now);
-  CHECK(only<HangUp>(bench.core.tick(bench.now)).size() == 1);
-  CHECK(said<Ready>(bench.join(1)).at(0).accepted == 1);
-  const auto checks = only<Check>(bench.core.on_result(
-      Result{7, 1, {3}, 5, 2, key("job 1"), large(output_of(key("job 1"), 2)), {}}));
-  REQUIRE(checks.size() == 1);
-  CHECK(checks[0].what == Check::What::result);
-  CHECK(said<Accept>(bench.core.checked(checks[0], {}, bench.now)).size() == 2);
-  CHECK(bench.core.unverified() == 0);
-}
-
-TEST_CASE("a worker that reads a damaged result first costs its host nothing") {
-  SinkBench bench(chain(), journal_of({"job 0", "job 1"}));
-  const auto reads = only<Check>(bench.look_at_all(bench.join(1)));
-  REQUIRE(reads.size() == 2);
-  const JobFailure failure{"damaged", FailureKind::damaged_input};
-  const Message failed = Result{7, 1, {3}, 5, 1, key("then"), failure, {}};
-  CHECK(bench.core.on_result(failed).empty());  // the worker says it again
-  bool damaged = false;
-  SUBCASE("its host reads what is whole") {}
-  SUBCASE("it is damaged") {
-    damaged = true;
-  }
-  bench.core.checked(reads[0], {damaged ? "damaged" : ""}, bench.now);
-  bench.core.checked(reads[1], {}, bench.now);
-  bench.core.tick(bench.now);
-  if (damaged) {
-    bench.join(1);
-    CHECK(bench.core.on_result(failed).empty());  // not wanted now
-    bench.accept(reads[0].key);
-  }
-  const auto told = said<Reject>(bench.core.on_result(failed));
-  REQUIRE(told.size() == 1);
-  CHECK(told[0].failure.kind == (damaged ? FailureKind::unread : FailureKind::damaged_input));
-}
-
-TEST_CASE("an input that is no result may be damaged: nobody waits to say so") {
-  SinkBench bench(chain(), journal_of({"job 0"}));
-  bench.look_at_all(bench.join(1));
-  const JobFailure failure{"damaged", FailureKind::damaged_input};
-  const Message failed = Result{7, 1, {3}, 5, 1, key("job 1"), failure, {}};
-  CHECK(said<Reject>(bench.core.on_result(failed)).size() == 1);
 }
 
 TEST_CASE("a job of the sink that fails ends the run, one without room is done again") {
