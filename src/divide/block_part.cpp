@@ -225,25 +225,34 @@ Mesh surface_from_blocks(const Stage& stage, const BundlesOfMesh& bundles, std::
   return build_part(share.take(), Weld::off).part.mesh;
 }
 
-JoinedBoundary join_boundary(const Stage& stage, const BundlesOfMesh& bundles,
-                             std::span<const std::string> numbers) {
-  std::vector<BoundaryNumbers> of_parts;
-  for (const std::string& each : numbers) of_parts.push_back(decode_numbers(each));
-  std::uint64_t bytes = 0;
-  for (const TriangleBundleRef& each : bundles.triangles) bytes += each.bundle.seams.size;
-  SharedTriangles shared;
-  shared.triangles.reserve(bytes / sizeof(SeamTriangle));
+JoinedBoundary join_boundary(const Stage& stage, const BundlesOfMesh& bundles, std::uint32_t group,
+                             const std::function<std::string(std::uint32_t part)>& numbers_of) {
+  std::vector<SeamTriangle> seams;
   for (const TriangleBundleRef& each : bundles.triangles) {
     const SectionedFile file(stage, each.file);
-    number_seams(read_section<SeamTriangle>(file, each.bundle.seams), {}, of_parts, shared);
+    const auto groups = read_section<FileSection>(file, each.bundle.seams);
+    if (group >= groups.size()) throw DataError(each.file.name + ": has other groups of regions");
+    const auto some = read_section<SeamTriangle>(file, groups[group]);
+    seams.insert(seams.end(), some.begin(), some.end());
   }
+  std::vector<BoundaryNumbers> of_parts(bundles.parts);
+  std::vector<std::uint8_t> is_known(bundles.parts, 0);
+  for (const SeamTriangle& t : seams) {
+    for (const SharePlace& corner : t) {
+      if (corner.share >= bundles.parts) throw DataError("a boundary triangle of no part");
+      if (std::exchange(is_known[corner.share], 1) != 0) continue;
+      of_parts[corner.share] = decode_numbers(numbers_of(corner.share));
+    }
+  }
+  SharedTriangles shared;
+  shared.triangles.reserve(seams.size());
+  number_seams(seams, {}, of_parts, shared);
   JoinedBoundary joined;
   joined.degenerate = shared.degenerate;
   joined.coincident = shared.coincident;
-  const auto parts = static_cast<std::uint32_t>(numbers.size());
-  joined.duplicate = order_by_region(parts, shared.triangles, shared.columns);
+  joined.duplicate = order_by_region(bundles.parts, shared.triangles, shared.columns);
   joined.triangles = shared.triangles.size();
-  joined.encoded = encode_boundary(parts, shared.triangles, shared.columns);
+  joined.encoded = encode_boundary(bundles.parts, shared.triangles, shared.columns);
   return joined;
 }
 

@@ -8,7 +8,8 @@
 //              crowds    = CrowdVertex[]
 //   triangles: directory = BundleEntry[] of the triangles inside parts, ascending by part: packed
 //              (io/packed_triangles.hpp) | of those at the part's seams: SeamTriangle[]
-//              seams     = SeamTriangle[], in file order
+//              seams     = FileSection[], one a group of regions (block_cut.hpp): the triangles
+//              between parts that are of its regions, as SeamTriangle[], in file order
 #pragma once
 
 #include <cstdint>

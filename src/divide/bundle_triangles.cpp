@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include <meshfarm/io/regions.hpp>
 #include <meshfarm/util/errors.hpp>
 
 #include "divide/bundle_file.hpp"
@@ -97,7 +98,8 @@ class CornerJoin {
 /// As MeshShares::add_triangles() has it.
 class TriangleScatter {
  public:
-  explicit TriangleScatter(std::uint32_t parts) : parts_(parts) {}
+  explicit TriangleScatter(std::uint32_t parts)
+      : parts_(parts), groups_(parts), seams_(groups_.count()) {}
 
   void add(const SeamTriangle& t) {
     const auto& [a, b, c] = t;
@@ -125,7 +127,11 @@ class TriangleScatter {
                            sections.add(bytes_of(std::exchange(of.seams, {})))});
     }
     bundle_.directory = sections.add(bytes_of(directory));
-    bundle_.seams = sections.add(bytes_of(seams_));
+    std::vector<FileSection> seams;
+    for (std::vector<SeamTriangle>& of_group : seams_) {
+      seams.push_back(sections.add(bytes_of(std::exchange(of_group, {}))));
+    }
+    bundle_.seams = sections.add(bytes_of(seams));
     return bundle_;
   }
 
@@ -144,7 +150,8 @@ class TriangleScatter {
 
   /// To each of its parts, once.
   void add_seam(const SeamTriangle& t) {
-    seams_.push_back(t);
+    ++bundle_.seam_triangles;
+    seams_[groups_.of(t[0].share, t[1].share, t[2].share)].push_back(t);
     for (std::size_t i = 0; i < 3; ++i) {
       const bool seen = (i > 0 && t[i].share == t[0].share) || (i > 1 && t[i].share == t[1].share);
       if (!seen) parts_[t[i].share].seams.push_back(t);
@@ -152,7 +159,8 @@ class TriangleScatter {
   }
 
   std::vector<OfPart> parts_;
-  std::vector<SeamTriangle> seams_;
+  RegionGroups groups_;
+  std::vector<std::vector<SeamTriangle>> seams_;  // by group
   TriangleBundle bundle_;
 };
 

@@ -145,8 +145,7 @@ class Cutter {
     manifest_.dropped_duplicate = order_by_region(parts, shared.triangles, shared.columns);
     manifest_.boundary_triangles = shared.triangles.size();
     const EncodedBoundary encoded = encode_boundary(parts, shared.triangles, shared.columns);
-    manifest_.boundary = stage_.publish(BoundaryName{}, encoded.file);
-    manifest_.boundary_index = encoded.index;
+    manifest_.boundary = {{stage_.publish(BoundaryName{}, encoded.file), encoded.index, 0}};
   }
 
   /// What the input has beside its surface.

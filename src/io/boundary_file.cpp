@@ -291,32 +291,62 @@ void scan_boundary(const Fill& fill, std::string_view what,
   fill({reinterpret_cast<char*>(&sum), sizeof sum});
 }
 
-BoundaryRegions::BoundaryRegions(const Stage& stage, const FileRef& file, const FileSection& index)
-    : file_(stage, file), what_(file.name) {
-  const std::string bytes = file_.read(index);
-  ByteReader in(bytes, what_);
+std::vector<BoundaryTriangle> read_boundary(const Stage& stage, const BoundaryFiles& files,
+                                            TriangleColumns& columns) {
+  columns.clear();
+  std::vector<BoundaryTriangle> all;
+  for (const BoundaryFile& each : files) {
+    TriangleColumns columns_of_more;
+    const auto more = decode_boundary(stage.read(each.file), each.file.name, columns_of_more);
+    all.insert(all.end(), more.begin(), more.end());
+    columns.append(columns_of_more);
+  }
+  return all;
+}
+
+std::vector<BoundaryTriangle> read_boundary(const Stage& stage, const BoundaryFiles& files) {
+  TriangleColumns columns;
+  return read_boundary(stage, files, columns);
+}
+
+BoundaryRegions::BoundaryRegions(const Stage& stage, BoundaryFiles files, std::uint32_t parts)
+    : stage_(stage), files_(std::move(files)), parts_(parts), open_(files_.size()) {
+  if (files_.empty()) throw DataError("there is no boundary file");
+}
+
+BoundaryRegions::Open BoundaryRegions::open(const BoundaryFile& from) const {
+  Open made{SectionedFile(stage_, from.file), {}, {}};
+  const std::string bytes = made.file.read(from.index);
+  ByteReader in(bytes, from.file.name);
   const Head head = get_head(in);
   const auto entries = in.get_array<RegionEntry>(head.regions());
   in.expect_end();
-  check_entries(head, entries, what_);
-  parts_ = head.parts;
-  columns_ = head.column_set();
-  std::uint64_t offset = index.offset + index.size;
+  check_entries(head, entries, from.file.name);
+  if (head.parts != parts_) in.fail("is not of " + std::to_string(parts_) + " parts");
+  made.columns = head.column_set();
+  std::uint64_t offset = from.index.offset + from.index.size;
   for (const RegionEntry& entry : entries) {
-    if (entry.triangles > file.size / head.triangle_bytes()) in.fail("too many triangles");
-    sections_.push_back({offset, entry.triangles * head.triangle_bytes(), entry.hash});
-    offset += sections_.back().size;
+    if (entry.triangles > from.file.size / head.triangle_bytes()) in.fail("too many triangles");
+    made.sections.push_back({offset, entry.triangles * head.triangle_bytes(), entry.hash});
+    offset += made.sections.back().size;
   }
+  return made;
 }
 
 void BoundaryRegions::read(std::uint32_t region, std::vector<BoundaryTriangle>& triangles,
-                           TriangleColumns& columns) const {
-  const FileSection& section = sections_.at(region);
+                           TriangleColumns& columns) {
+  const auto next = std::upper_bound(
+      files_.begin() + 1, files_.end(), region,
+      [](std::uint32_t wanted, const BoundaryFile& each) { return wanted < each.first_region; });
+  const auto number = static_cast<std::size_t>(next - files_.begin()) - 1;
+  std::optional<Open>& from = open_[number];
+  if (!from) from = open(files_[number]);
+  const FileSection& section = from->sections.at(region);
   if (section.size == 0) return;
-  const std::string bytes = file_.read(section);
-  ByteReader in(bytes, what_);
-  const std::uint64_t each = sizeof(BoundaryTriangle) + columns_.bytes();
-  get_triangles(in, section.size / each, columns_, triangles, columns);
+  const std::string bytes = from->file.read(section);
+  ByteReader in(bytes, files_[number].file.name);
+  const std::uint64_t each = sizeof(BoundaryTriangle) + from->columns.bytes();
+  get_triangles(in, section.size / each, from->columns, triangles, columns);
 }
 
 }  // namespace meshfarm

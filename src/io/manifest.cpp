@@ -272,8 +272,9 @@ std::string encode_manifest(const Manifest& m) {
   for (const std::string& name : m.skipped) out.put_string(name);
   out.put(m.cut_seconds);
   out.put(m.boundary_triangles);
-  put_file(out, m.boundary);
-  out.put(m.boundary_index);
+  const BoundaryFile boundary = m.boundary.empty() ? BoundaryFile{} : m.boundary.front();
+  put_file(out, boundary.file);
+  out.put(boundary.index);
   out.put(static_cast<std::uint8_t>(m.sorting ? 1 : 0));
   if (m.sorting) put(out, *m.sorting);
   out.put(static_cast<std::uint8_t>(m.cutting ? 1 : 0));
@@ -308,15 +309,19 @@ Manifest decode_manifest(std::string_view file, std::string_view what) {
   for (std::uint32_t i = 0; i < skipped; ++i) m.skipped.push_back(in.get_string());
   m.cut_seconds = in.get<double>();
   m.boundary_triangles = in.get<std::uint64_t>();
-  m.boundary = get_file(in);
-  m.boundary_index = in.get<FileSection>();
+  BoundaryFile boundary;
+  boundary.file = get_file(in);
+  boundary.index = in.get<FileSection>();
   const auto unsorted = in.get<std::uint8_t>();
   if (unsorted > (m.scheme == Scheme::stream ? 1 : 0)) in.fail("parts are not to be sorted");
   if (unsorted == 1) m.sorting = get_sorting(in);
   const auto uncut = in.get<std::uint8_t>();
   if (uncut > (m.scheme == Scheme::cut ? 1 : 0)) in.fail("streams are not to be cut");
   if (uncut == 1) m.cutting = get_cutting(in);
-  if (!m.cutting) check_name<BoundaryName>(in, m.boundary);
+  if (!m.cutting) {
+    check_name<BoundaryName>(in, boundary.file);
+    m.boundary = {boundary};
+  }
   m.parts = get_parts(in);
   if (m.cutting && !m.parts.empty()) in.fail("parts that are to be cut");
   for (const PartEntry& part : m.parts) {

@@ -7,6 +7,10 @@
 namespace meshfarm {
 namespace {
 
+/// A job for fewer regions would mostly open files.
+constexpr std::uint32_t k_least_regions = 4;
+constexpr std::uint32_t k_most_groups = 24;
+
 std::uint32_t middle_of(const PartRange& region) {
   return region.first + (region.end - region.first) / 2;
 }
@@ -44,6 +48,20 @@ std::vector<std::uint32_t> Regions::touched_by(const std::vector<PartRange>& pie
   std::vector<std::uint32_t> found;
   if (!pieces.empty()) add_touched({0, parts_}, pieces, found);
   return found;
+}
+
+RegionGroups::RegionGroups(std::uint32_t parts)
+    : regions_(parts), count_(std::clamp(regions_.count() / k_least_regions, 1U, k_most_groups)) {}
+
+std::uint32_t RegionGroups::first_region(std::uint32_t group) const {
+  return static_cast<std::uint32_t>((std::uint64_t{group} * regions_.count() + count_ - 1) /
+                                    count_);
+}
+
+std::uint32_t RegionGroups::of(std::uint32_t a, std::uint32_t b, std::uint32_t c) const {
+  const auto [least, greatest] = std::minmax({a, b, c});
+  return static_cast<std::uint32_t>(std::uint64_t{regions_.of(least, greatest)} * count_ /
+                                    regions_.count());
 }
 
 }  // namespace meshfarm

@@ -29,6 +29,7 @@ VertexBundle get_vertex_bundle(ByteReader& in) {
 void put_bundle(ByteWriter& out, const TriangleBundle& bundle) {
   out.put(bundle.directory);
   out.put(bundle.seams);
+  out.put(bundle.seam_triangles);
   out.put(bundle.dropped);
   out.put(bundle.points_left_out);
 }
@@ -37,6 +38,7 @@ TriangleBundle get_triangle_bundle(ByteReader& in) {
   TriangleBundle bundle;
   bundle.directory = in.get<FileSection>();
   bundle.seams = in.get<FileSection>();
+  bundle.seam_triangles = in.get<std::uint64_t>();
   bundle.dropped = in.get<std::uint64_t>();
   bundle.points_left_out = in.get<std::uint64_t>();
   return bundle;

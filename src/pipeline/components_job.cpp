@@ -4,7 +4,7 @@
 // Components that are left out may span pieces: what a piece tells of those that do is which of its
 // boundary vertices they connect, and their boxes. So one piece is in memory at a time.
 //
-// Parameters, version 1, and summary, little endian:
+// Parameters, version 2 (version 1 had one boundary file), and summary, little endian:
 //   components = version u8 | pieces u32 x (parts u32 | rung u32 | file) | all parts u32 |
 //                boundary | diagonal f64
 //   small      = pieces u32 x section | components u64 | triangles u64
@@ -29,7 +29,7 @@
 namespace meshfarm {
 namespace {
 
-constexpr std::uint8_t k_components_version = 1;
+constexpr std::uint8_t k_components_version = 2;
 
 struct ComponentSize {
   Box box;
@@ -142,7 +142,7 @@ std::string encode_parameters(const ComponentsParameters& parameters) {
     put_file(out, piece.file);
   }
   out.put(parameters.all_parts);
-  put_file(out, parameters.boundary);
+  put_boundary(out, parameters.boundary);
   out.put(parameters.diagonal);
   return out.take();
 }
@@ -165,7 +165,7 @@ ComponentsParameters decode_components_parameters(std::string_view bytes) {
   }
   parameters.all_parts = in.get<std::uint32_t>();
   if (parts != parameters.all_parts) in.fail("impossible parts");
-  parameters.boundary = get_file(in);
+  parameters.boundary = get_boundary(in);
   parameters.diagonal = in.get<double>();
   if (!(parameters.diagonal > 0)) in.fail("impossible diagonal");
   in.expect_end();
@@ -199,8 +199,7 @@ JobOutput find_small_components(const Job& job, const JobContext& context) {
     finder.add(std::move(piece), each.parts);
     if (!context.progress(triangles)) throw IncompleteError("the job was given up");
   }
-  const auto dropped = finder.finish(
-      decode_boundary(context.stage.read(parameters.boundary), parameters.boundary.name));
+  const auto dropped = finder.finish(read_boundary(context.stage, parameters.boundary));
   std::string file;
   SectionWriter sections([&](std::string_view bytes) { file += bytes; });
   SmallComponents made;

@@ -41,7 +41,7 @@ Job components_job(const Manifest& manifest, const RunOptions& options,
   parameters.boundary = manifest.boundary;
   parameters.diagonal = options.drop_components.in(manifest.box);
   job.parameters = encode_parameters(parameters);
-  job.memory = k_finder_process_bytes + most + k_boundary_copies * manifest.boundary.size;
+  job.memory = k_finder_process_bytes + most + k_boundary_copies * bytes_of(manifest.boundary);
   return job;
 }
 

@@ -20,11 +20,11 @@
 namespace meshfarm {
 namespace {
 
-// Version 5: first part u32 | all parts u32 | inputs u32 x (parts u32 | rung u32) |
-// boundary (name | size u64 | hash u64) | its index (offset u64 | size u64 | hash u64) | level i32
-// | greatest cost f64 | floor u64 | samples a triangle f64 | keeps between u8 |
-// lines (run_options.hpp). Version 4 kept nothing.
-constexpr std::uint8_t k_compose_version = 5;
+// Version 6: first part u32 | all parts u32 | inputs u32 x (parts u32 | rung u32) |
+// boundary (io/boundary_ref.hpp) | level i32 | greatest cost f64 | floor u64 |
+// samples a triangle f64 | keeps between u8 | lines (run_options.hpp). Version 4 kept nothing,
+// version 5 had one boundary file.
+constexpr std::uint8_t k_compose_version = 6;
 constexpr double k_max_samples_per_triangle = 1000;
 
 class Composer {
@@ -81,13 +81,9 @@ class Composer {
       const std::uint32_t first = std::exchange(end, end + input.parts);
       pieces.push_back({first, end});
     }
-    const BoundaryRegions regions(context_.stage, parameters_.boundary, parameters_.boundary_index);
-    if (regions.parts() != parameters_.all_parts) {
-      throw DataError(parameters_.boundary.name + ": is not of " +
-                      std::to_string(parameters_.all_parts) + " parts");
-    }
+    BoundaryRegions regions(context_.stage, parameters_.boundary, parameters_.all_parts);
     Seams seams;
-    for (const std::uint32_t region : Regions(regions.parts()).touched_by(pieces)) {
+    for (const std::uint32_t region : Regions(parameters_.all_parts).touched_by(pieces)) {
       regions.read(region, seams.triangles, seams.columns);
     }
     const auto is_ours = [&](const BoundaryCorner& corner) {
@@ -180,8 +176,7 @@ std::string encode_parameters(const ComposeParameters& parameters) {
     out.put(input.parts);
     out.put(input.rung);
   }
-  put_file(out, parameters.boundary);
-  out.put(parameters.boundary_index);
+  put_boundary(out, parameters.boundary);
   out.put(parameters.level);
   out.put(parameters.max_cost);
   out.put(parameters.floor);
@@ -207,8 +202,7 @@ ComposeParameters decode_compose_parameters(std::string_view bytes) {
     if (input.parts == 0 || end > parameters.all_parts) in.fail("impossible parts");
     parameters.inputs.push_back(input);
   }
-  parameters.boundary = get_file(in);
-  parameters.boundary_index = in.get<FileSection>();
+  parameters.boundary = get_boundary(in);
   parameters.level = in.get<std::int32_t>();
   parameters.max_cost = in.get<double>();
   parameters.floor = in.get<std::uint64_t>();

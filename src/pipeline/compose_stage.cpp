@@ -168,7 +168,6 @@ Job ComposeStage::job_of(const Level& level, std::size_t first, std::size_t end)
   for (std::size_t i = 0; i < first; ++i) parameters.first_part += level.parts[i].chosen.parts;
   parameters.all_parts = static_cast<std::uint32_t>(manifest_.parts.size());
   parameters.boundary = manifest_.boundary;
-  parameters.boundary_index = manifest_.boundary_index;
   parameters.level = goal_.level;
   parameters.max_cost = goal_.max_cost;
   parameters.samples_per_triangle =

@@ -80,6 +80,11 @@ std::string cells_of(const CutJobParameters& parameters, const Job& job,
 
 }  // namespace
 
+bool is_left_to_readers(std::string_view kind) {
+  return kind == k_count_kind || kind == k_partition_kind || kind == k_vertices_kind ||
+         kind == k_triangles_kind;
+}
+
 JobOutput survey_vertices_of_block(const Job& job, const JobContext& context) {
   const CutJobParameters parameters = decode_cut_parameters(job.parameters);
   const auto mesh = open_input(parameters.cutting);
@@ -129,11 +134,11 @@ JobOutput scatter_triangles_of_block(const Job& job, const JobContext& context) 
 
 JobOutput join_boundary_of_parts(const Job& job, const JobContext& context) {
   const JoinParameters parameters = decode_join_parameters(job.parameters);
-  std::vector<std::string> numbers;
-  for (const PartNumbers& each : parameters.numbers) {
-    numbers.push_back(SectionedFile(context.stage, each.file).read(each.section));
-  }
-  const JoinedBoundary made = join_boundary(context.stage, parameters.bundles, numbers);
+  const JoinedBoundary made =
+      join_boundary(context.stage, parameters.bundles, parameters.group, [&](std::uint32_t part) {
+        const PartNumbers& numbers = parameters.numbers.at(part);
+        return SectionedFile(context.stage, numbers.file).read(numbers.section);
+      });
   const JoinSummary summary{made.encoded.index, made.triangles, made.degenerate, made.coincident,
                             made.duplicate};
   return publish_bytes(job, context, made.encoded.file, encode_summary(summary));

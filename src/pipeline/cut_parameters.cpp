@@ -1,9 +1,10 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
 //
-// Of the jobs of a cut; version 2 (in version 1 a partition told all of each cell):
+// Of the jobs of a cut; version 3 (version 2 had one join, version 1 told all of each cell):
 // parameters: version u8 | cutting (io/manifest.hpp) | block u32 | round u32 | box 6 x f64 |
-// bundles (bundle_list.hpp) join parameters: version u8 | bundles | parts u32 x (file | section)
+// bundles (bundle_list.hpp)
+// join parameters: version u8 | group u32 | bundles | parts u32 x (file | section)
 // survey: box 6 x f64 | not finite u64
 // partition: counts again u8 | parts u32
 // join summary: index section | triangles u64 | degenerate u64 | coincident u64 | duplicate u64
@@ -18,7 +19,7 @@
 namespace meshfarm {
 namespace {
 
-constexpr std::uint8_t k_cut_job_version = 2;
+constexpr std::uint8_t k_cut_job_version = 3;
 
 void expect_cut_version(ByteReader& in) {
   if (in.get<std::uint8_t>() != k_cut_job_version) in.fail("made by another version of meshfarm");
@@ -98,6 +99,7 @@ PartitionSummary decode_partition_summary(std::string_view summary, std::string_
 std::string encode_parameters(const JoinParameters& parameters) {
   ByteWriter out;
   out.put(k_cut_job_version);
+  out.put(parameters.group);
   put_bundles(out, parameters.bundles);
   out.put(static_cast<std::uint32_t>(parameters.numbers.size()));
   for (const PartNumbers& each : parameters.numbers) {
@@ -111,6 +113,7 @@ JoinParameters decode_join_parameters(std::string_view bytes) {
   ByteReader in(bytes, "parameters of a join");
   expect_cut_version(in);
   JoinParameters parameters;
+  parameters.group = in.get<std::uint32_t>();
   parameters.bundles = get_bundles(in);
   const auto parts = in.get<std::uint32_t>();
   for (std::uint32_t i = 0; i < parts; ++i) {

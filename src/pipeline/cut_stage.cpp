@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <utility>
 
+#include <meshfarm/farm/protocol.hpp>
+#include <meshfarm/io/regions.hpp>
 #include <meshfarm/pipeline/cut_job.hpp>
 #include <meshfarm/util/errors.hpp>
 
@@ -20,11 +22,17 @@ constexpr std::uint64_t k_surveyed = 30;
 constexpr std::uint64_t k_counted = 15;
 constexpr std::uint64_t k_scattered_vertices = 9;
 constexpr std::uint64_t k_scattered_triangles = 8;
+constexpr std::uint64_t k_joined = 4;
 constexpr std::uint64_t k_partitioned = 2;  // times the work, a cell
 
 constexpr std::uint64_t k_cut_process_bytes = std::uint64_t{16} << 20;
 constexpr std::uint64_t k_cell_bytes_in_memory = 300;   // in a tree, and as it is written
 constexpr std::uint64_t k_cell_bytes_of_graph = 1'000;  // while it is partitioned
+constexpr std::uint64_t k_seam_triangle_bytes = 24;     // in bundles
+constexpr std::uint64_t k_joined_triangle_bytes = 150;  // while they are joined
+/// A message names the results of so many parts at most. Where there are more, the sink joins the
+/// boundary, which it reads of the bundles then.
+constexpr std::uint32_t k_most_parts_named = 2'500;
 constexpr std::uint64_t k_most_cells = std::uint64_t{1} << 20;
 constexpr std::uint64_t k_cells_a_part = 1024;
 
@@ -83,6 +91,7 @@ Job CutStage::job_of(std::string_view kind, std::uint64_t cost, std::uint64_t me
   job.kind = kind;
   job.cost = 1 + cost;
   job.memory = k_cut_process_bytes + memory;
+  job.left_to_readers = is_left_to_readers(kind) && cutting_.parts <= k_most_parts_named;
   return job;
 }
 
@@ -200,21 +209,32 @@ void CutStage::take_triangles(const JobGraph& graph) {
 void CutStage::join(JobGraph& graph, const PartResults& results, JobGraph::Step then) {
   if (!cuts_ || std::exchange(joined_, true)) return then(graph);
   take_ladders(results);
-  JoinParameters parameters{bundles_, {}};
+  JoinParameters parameters;
+  parameters.bundles.positions = bundles_.positions;
+  parameters.bundles.parts = bundles_.parts;
+  parameters.bundles.triangles = bundles_.triangles;
+  std::uint64_t read = 0;
+  std::uint64_t triangles = 0;
   for (std::size_t p = 0; p < results.files.size(); ++p) {
     parameters.numbers.push_back({results.files[p], results.summaries[p].built.value().beside});
+    read += parameters.numbers.back().section.size;
   }
-  Job job = job_of(k_join_kind, 0, 0);
-  for (const PartNumbers& each : parameters.numbers) job.reads += each.section.size;
-  for (const TriangleBundleRef& each : bundles_.triangles) job.reads += each.bundle.seams.size;
-  job.parameters = encode_parameters(parameters);
-  job.by_sink = true;
-  const JobName name = job_name(RunStage::join, 0);
-  graph.add(name, std::move(job));
-  graph.then({just(name)}, [this, name, then = std::move(then)](JobGraph& so_far) {
-    take_boundary(so_far.output(name));
-    then(so_far);
-  });
+  for (const TriangleBundleRef& each : bundles_.triangles) triangles += each.bundle.seam_triangles;
+  read += k_seam_triangle_bytes * triangles;
+  const std::uint32_t groups = RegionGroups(bundles_.parts).count();
+  for (parameters.group = 0; parameters.group < groups; ++parameters.group) {
+    Job job = job_of(k_join_kind, triangles / groups / k_joined,
+                     k_joined_triangle_bytes * triangles / groups);
+    job.reads = read / groups;
+    job.parameters = encode_parameters(parameters);
+    job.by_sink = cutting_.parts > k_most_parts_named;
+    graph.add(job_name(RunStage::join, parameters.group), std::move(job));
+  }
+  graph.then({jobs_of(RunStage::join, 0, groups)},
+             [this, groups, then = std::move(then)](JobGraph& so_far) {
+               for (std::uint32_t group = 0; group < groups; ++group) take_boundary(so_far, group);
+               then(so_far);
+             });
 }
 
 void CutStage::take_ladders(const PartResults& results) {
@@ -231,14 +251,15 @@ void CutStage::take_ladders(const PartResults& results) {
   }
 }
 
-void CutStage::take_boundary(const JobOutput& joined) {
+void CutStage::take_boundary(const JobGraph& graph, std::uint32_t group) {
+  const JobOutput& joined = graph.output(job_name(RunStage::join, group));
   const JoinSummary summary = decode_join_summary(joined.summary, what_of(joined));
-  manifest_.boundary = joined.file;
-  manifest_.boundary_index = summary.index;
-  manifest_.boundary_triangles = summary.triangles;
+  manifest_.boundary.push_back(
+      {joined.file, summary.index, RegionGroups(bundles_.parts).first_region(group)});
+  manifest_.boundary_triangles += summary.triangles;
   manifest_.dropped_degenerate += summary.degenerate;
   manifest_.coincident_corners += summary.coincident;
-  manifest_.dropped_duplicate = summary.duplicate;
+  manifest_.dropped_duplicate += summary.duplicate;
 }
 
 std::uint64_t memory_of_cut(const Manifest& manifest) {

@@ -35,7 +35,7 @@ class CutStage {
   void take_vertices(const JobGraph& graph);
   void take_triangles(const JobGraph& graph);
   void take_ladders(const PartResults& results);
-  void take_boundary(const JobOutput& joined);
+  void take_boundary(const JobGraph& graph, std::uint32_t group);
   Job job_of(std::string_view kind, std::uint64_t cost, std::uint64_t memory) const;
   std::uint64_t bytes_of_vertices() const;
   std::uint64_t vertices_of_block() const;

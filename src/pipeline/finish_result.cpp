@@ -115,8 +115,7 @@ class ResultFinish {
       tell("stitch", static_cast<double>(p) / static_cast<double>(chosen.size()), 0);
     }
     TriangleColumns columns;
-    const auto boundary =
-        decode_boundary(stage_.read(manifest_.boundary), manifest_.boundary.name, columns);
+    const auto boundary = read_boundary(stage_, manifest_.boundary, columns);
     columns.keep(lines_.columns);
     StitchedMesh stitched = stitcher.finish(boundary, columns);
     samples.push_back(samples_of_boundary(stitched.mesh, stitched.boundary_triangles));

@@ -282,7 +282,6 @@ Job FinishStage::seam_job(std::uint32_t group, std::uint32_t groups) const {
   }
   parameters.all_parts = static_cast<std::uint32_t>(manifest_.parts.size());
   parameters.boundary = manifest_.boundary;
-  parameters.boundary_index = manifest_.boundary_index;
   parameters.samples_per_triangle =
       std::min(1.0, static_cast<double>(samples_for(manifest_, options_, manifest_.triangles())) /
                         static_cast<double>(std::max<std::uint64_t>(1, manifest_.triangles())));
@@ -294,7 +293,7 @@ Job FinishStage::seam_job(std::uint32_t group, std::uint32_t groups) const {
   const std::uint64_t pieces = made_.pieces.size();
   const std::uint64_t near = std::min(pieces, pieces / groups + 1 + k_pieces_round_group);
   job.memory =
-      k_piece_process_bytes + (manifest_.boundary.size + k_piece_triangle_bytes * triangles +
+      k_piece_process_bytes + (bytes_of(manifest_.boundary) + k_piece_triangle_bytes * triangles +
                                memory_of_channels(weigh_.lines, triangles)) *
                                   near / pieces;
   return job;

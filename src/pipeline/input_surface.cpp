@@ -154,22 +154,21 @@ void InputSurface::show_between(const Wants& wants, const Show& show) const {
     }
     some = {};
   };
-  StagedReader bytes(stage_, manifest_.boundary);
-  const auto fill = [&](std::span<char> buffer) { bytes.fill(buffer); };
-  scan_boundary(
-      fill, manifest_.boundary.name,
-      [&](std::span<const BoundaryTriangle> triangles, const TriangleColumnsView& columns) {
-        for (std::size_t i = 0; i < triangles.size(); ++i) {
-          const auto first = static_cast<std::uint32_t>(some.positions.size());
-          for (const BoundaryCorner& each : triangles[i]) {
-            some.positions.push_back(corner(each));
-          }
-          some.columns.append(columns, i);
-          some.triangles.push_back({first, first + 1, first + 2});
-          if (some.triangles.size() == k_between_at_once) flush();
-        }
-      });
-  bytes.expect_end();
+  const auto add = [&](std::span<const BoundaryTriangle> triangles,
+                       const TriangleColumnsView& columns) {
+    for (std::size_t i = 0; i < triangles.size(); ++i) {
+      const auto first = static_cast<std::uint32_t>(some.positions.size());
+      for (const BoundaryCorner& each : triangles[i]) some.positions.push_back(corner(each));
+      some.columns.append(columns, i);
+      some.triangles.push_back({first, first + 1, first + 2});
+      if (some.triangles.size() == k_between_at_once) flush();
+    }
+  };
+  for (const BoundaryFile& each : manifest_.boundary) {
+    StagedReader bytes(stage_, each.file);
+    scan_boundary([&](std::span<char> buffer) { bytes.fill(buffer); }, each.file.name, add);
+    bytes.expect_end();
+  }
   flush();
 }
 

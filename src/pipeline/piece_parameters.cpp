@@ -1,11 +1,11 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
 //
-// Parameters and summaries of the jobs of a farmed finish, version 4, little endian:
+// Parameters and summaries of the jobs of a farmed finish, version 5, little endian:
 //   weigh      = cost unit f64 | first step i32 | last share f64 | kept share f64 | lines
 //   split      = version u8 | piece u32 | rung u32 | step i32 | is composed u8 | ref | weigh
 //   seam       = version u8 | strips u32 x (parts u32 | ref) | group u32 | groups u32 |
-//                all parts u32 | boundary | its index, a section | samples a triangle f64 | weigh
+//                all parts u32 | boundary (io/boundary_ref.hpp) | samples a triangle f64 | weigh
 //   reduce     = version u8 | section | rung u32 | triangles u64 | points u64 | vertices u64 |
 //                lines
 //   measure    = version u8 | first part u32 | end part u32 | triangles u64 | share u32 |
@@ -23,7 +23,7 @@
 //
 // In version 1 parts were always kept, and a piece was measured by one job. In version 2 the
 // surroundings of the seams were one piece. In version 3 triangles of gaps had no columns, and no
-// components were left out.
+// components were left out. In version 4 there was one boundary file.
 #include <cmath>
 
 #include <meshfarm/pipeline/piece_jobs.hpp>
@@ -36,7 +36,7 @@
 namespace meshfarm {
 namespace {
 
-constexpr std::uint8_t k_piece_version = 4;
+constexpr std::uint8_t k_piece_version = 5;
 constexpr double k_most_piece_samples = 1000;  // a triangle
 
 void begin_parameters(ByteWriter& out) {
@@ -118,8 +118,7 @@ std::string encode_parameters(const SeamParameters& parameters) {
   out.put(parameters.group);
   out.put(parameters.groups);
   out.put(parameters.all_parts);
-  put_file(out, parameters.boundary);
-  out.put(parameters.boundary_index);
+  put_boundary(out, parameters.boundary);
   out.put(parameters.samples_per_triangle);
   put_weigh(out, parameters.weigh);
   return out.take();
@@ -145,8 +144,7 @@ SeamParameters decode_seam_parameters(std::string_view bytes) {
   if (parts != parameters.all_parts || parameters.group >= parameters.groups) {
     in.fail("impossible parts");
   }
-  parameters.boundary = get_file(in);
-  parameters.boundary_index = in.get<FileSection>();
+  parameters.boundary = get_boundary(in);
   parameters.samples_per_triangle = in.get<double>();
   const double samples = parameters.samples_per_triangle;
   if (!(samples >= 0 && samples <= k_most_piece_samples)) in.fail("too many samples");

@@ -11,6 +11,7 @@
 #include <utility>
 
 #include <meshfarm/farm/job_graph.hpp>
+#include <meshfarm/pipeline/cut_job.hpp>
 #include <meshfarm/pipeline/planning.hpp>
 #include <meshfarm/simulation/simulation.hpp>
 #include <meshfarm/util/errors.hpp>
@@ -101,6 +102,7 @@ JobSource source_of(std::span<const PlannedJob> jobs) {
       job.parameters = std::to_string(place);
       job.cost = jobs[place].triangles;
       job.after = after[place];
+      job.left_to_readers = jobs[place].left_to_readers;
       graph.add({0, place}, std::move(job));
     }
   };
@@ -160,9 +162,15 @@ class TracedJobs {
   void add(const TraceDone& done, double seconds) {
     const std::uint32_t depth = done.stage.empty() ? done.round : depth_of(done.needs);
     places_[done.stage][done.index] = jobs_.size();
-    jobs_.push_back(
-        {{depth, done.triangles, done.read_bytes, done.written_bytes, seconds, {}, done.stage},
-         &done});
+    jobs_.push_back({{depth,
+                      done.triangles,
+                      done.read_bytes,
+                      done.written_bytes,
+                      seconds,
+                      {},
+                      done.stage,
+                      is_left_to_readers(done.kind)},
+                     &done});
   }
 
   std::vector<PlannedJob> sorted() {

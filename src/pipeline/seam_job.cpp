@@ -31,10 +31,8 @@ constexpr std::uint32_t k_no_group = UINT32_MAX;
 class SeamTriangles {
  public:
   explicit SeamTriangles(const SeamParameters& parameters, const JobContext& context)
-      : regions_(context.stage, parameters.boundary, parameters.boundary_index) {
-    if (regions_.parts() != parameters.all_parts) {
-      throw DataError(parameters.boundary.name + ": is of other parts");
-    }
+      : all_parts_(parameters.all_parts),
+        regions_(context.stage, parameters.boundary, parameters.all_parts) {
     for (std::uint32_t piece = 0; piece < parameters.strips.size(); ++piece) {
       const auto first = static_cast<std::uint32_t>(piece_of_part_.size());
       piece_of_part_.insert(piece_of_part_.end(), parameters.strips[piece].parts, piece);
@@ -51,11 +49,11 @@ class SeamTriangles {
     std::vector<BoundaryTriangle> triangles;
     TriangleColumns columns;
   };
-  Some at(const std::vector<std::uint8_t>& pieces) const {
+  Some at(const std::vector<std::uint8_t>& pieces) {
     std::set<std::uint32_t> touched;
     for (std::size_t piece = 0; piece < pieces.size(); ++piece) {
       if (pieces[piece] == 0) continue;
-      const std::vector<std::uint32_t> more = Regions(regions_.parts()).touched_by({parts_[piece]});
+      const std::vector<std::uint32_t> more = Regions(all_parts_).touched_by({parts_[piece]});
       touched.insert(more.begin(), more.end());
     }
     Some some;
@@ -69,7 +67,7 @@ class SeamTriangles {
   }
 
   /// The pieces, and those that share a boundary triangle with one of them.
-  std::vector<std::uint8_t> with_neighbours(std::vector<std::uint8_t> pieces) const {
+  std::vector<std::uint8_t> with_neighbours(std::vector<std::uint8_t> pieces) {
     for (const BoundaryTriangle& t : at(pieces).triangles) {
       for (const BoundaryCorner& corner : t) pieces[piece_of(corner)] = 1;
     }
@@ -77,6 +75,7 @@ class SeamTriangles {
   }
 
  private:
+  std::uint32_t all_parts_;
   BoundaryRegions regions_;
   std::vector<std::uint32_t> piece_of_part_;
   std::vector<PartRange> parts_;  // of each piece
@@ -88,7 +87,7 @@ class JoinedStrips {
  public:
   JoinedStrips(const SeamParameters& parameters, const JobContext& context)
       : parameters_(parameters) {
-    const SeamTriangles seams(parameters, context);
+    SeamTriangles seams(parameters, context);
     std::vector<std::uint8_t> own(parameters.strips.size(), 0);
     for (std::size_t i = 0; i < own.size(); ++i) own[i] = group_of(i) == parameters.group ? 1 : 0;
     const std::vector<std::uint8_t> inner = seams.with_neighbours(std::move(own));

@@ -133,7 +133,7 @@ Manifest manifest() {
   made.skipped = {"face.flags"};
   made.cut_seconds = 0.5;
   made.boundary_triangles = 17;
-  made.boundary = {"boundary", 18, 19};
+  made.boundary = {{{"boundary", 18, 19}, {}, 0}};
   made.parts = {{{"parts/000000.part", 20, 21}, 22, 23, 4}};
   return made;
 }

@@ -27,7 +27,8 @@ namespace meshfarm {
 //   partition   all counts: what part each cell is of, or finer cells to count once more
 //   scatter     a block of vertices, then a block of triangles: a bundle each, a section a part
 //   build       a part, of its sections
-//   join        the boundary, of what all parts tell of their boundary vertices
+//   join        a group of regions (regions.hpp): its boundary, of what parts tell of their boundary
+//               vertices
 
 struct BlockSurvey {
   Box box;
@@ -82,9 +83,10 @@ struct JoinedBoundary {
   std::uint64_t coincident = 0;  // with two corners at one point, dropped or not
   std::uint64_t duplicate = 0;   // that were dropped
 };
-/// `numbers`: of all parts, in order.
-JoinedBoundary join_boundary(const Stage& stage, const BundlesOfMesh& bundles,
-                             std::span<const std::string> numbers);
+/// The boundary in a group of regions; those of all groups are what one cut would have made.
+/// `numbers_of` is asked once for each part that has a corner there.
+JoinedBoundary join_boundary(const Stage& stage, const BundlesOfMesh& bundles, std::uint32_t group,
+                             const std::function<std::string(std::uint32_t part)>& numbers_of);
 
 /// What cut_mesh() tells of these parts.
 std::string partitioner_of_blocks();

@@ -5,12 +5,14 @@
 #include <array>
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include <meshfarm/geometry/mesh.hpp>
+#include <meshfarm/io/boundary_ref.hpp>
 #include <meshfarm/io/fill.hpp>
 #include <meshfarm/staging/sections.hpp>
 #include <meshfarm/staging/stage.hpp>
@@ -54,23 +56,33 @@ void scan_boundary(
     const Fill& fill, std::string_view what,
     const std::function<void(std::span<const BoundaryTriangle>, const TriangleColumnsView&)>& show);
 
-/// Reads the triangles of some regions without reading the others.
+/// All triangles of the files, with the columns that these have.
+std::vector<BoundaryTriangle> read_boundary(const Stage& stage, const BoundaryFiles& files,
+                                            TriangleColumns& columns);
+std::vector<BoundaryTriangle> read_boundary(const Stage& stage, const BoundaryFiles& files);
+
+/// Reads the triangles of some regions without reading the others. A file is opened when a region
+/// of it is asked for.
 class BoundaryRegions {
  public:
-  /// Throws as SectionedFile does, and DataError for an index that is none.
-  BoundaryRegions(const Stage& stage, const FileRef& file, const FileSection& index);
-  /// Of how many parts.
-  std::uint32_t parts() const { return parts_; }
-  /// Appends the triangles of a region, with their columns.
+  BoundaryRegions(const Stage& stage, BoundaryFiles files, std::uint32_t parts);
+  /// Appends the triangles of a region, with their columns. Throws as SectionedFile does, and
+  /// DataError for an index that is none, or is of other parts.
   void read(std::uint32_t region, std::vector<BoundaryTriangle>& triangles,
-            TriangleColumns& columns) const;
+            TriangleColumns& columns);
 
  private:
-  SectionedFile file_;
-  std::string what_;
-  std::uint32_t parts_ = 0;
-  ColumnSet columns_;
-  std::vector<FileSection> sections_;  // by region
+  struct Open {
+    SectionedFile file;
+    ColumnSet columns;
+    std::vector<FileSection> sections;  // by region
+  };
+  Open open(const BoundaryFile& file) const;
+
+  const Stage& stage_;
+  BoundaryFiles files_;
+  std::uint32_t parts_;
+  std::vector<std::optional<Open>> open_;  // by file
 };
 
 }  // namespace meshfarm

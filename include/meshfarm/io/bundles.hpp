@@ -30,7 +30,8 @@ struct VertexBundleRef {
 /// What is known of a bundle of triangles.
 struct TriangleBundle {
   FileSection directory;
-  FileSection seams;                  // all triangles between parts
+  FileSection seams;                  // where those between parts are, by groups of regions
+  std::uint64_t seam_triangles = 0;   // these are so many
   std::uint64_t dropped = 0;          // those that use a vertex without a position
   std::uint64_t points_left_out = 0;  // those whose corners are all one vertex
 };

@@ -12,6 +12,7 @@
 #include <meshfarm/geometry/mesh.hpp>
 #include <meshfarm/geometry/sweep_order.hpp>
 #include <meshfarm/geometry/uv_facts.hpp>
+#include <meshfarm/io/boundary_ref.hpp>
 #include <meshfarm/io/bundles.hpp>
 #include <meshfarm/io/channel_file.hpp>
 #include <meshfarm/io/labels.hpp>
@@ -88,8 +89,7 @@ struct Manifest {
   std::vector<std::string> skipped;      // properties and elements that were not kept
   double cut_seconds = 0;
   std::uint64_t boundary_triangles = 0;
-  FileRef boundary;
-  FileSection boundary_index;  // of that file
+  BoundaryFiles boundary;  // a cut makes one file; jobs may make more, which are not staged
   /// Set if the parts are slabs that a run has to sort into streams first. What is known only of a
   /// sorted stream is then missing: coincident vertices, dropped triangles and samples. Counts of
   /// triangles and vertices are those of the input.

@@ -34,4 +34,19 @@ class Regions {
   std::uint32_t parts_;
 };
 
+/// Regions that follow each other, in groups of about as many: what one job joins.
+class RegionGroups {
+ public:
+  explicit RegionGroups(std::uint32_t parts);
+  /// From 1 to 24.
+  std::uint32_t count() const { return count_; }
+  std::uint32_t first_region(std::uint32_t group) const;
+  /// That of a triangle between three parts, two of which may be the same.
+  std::uint32_t of(std::uint32_t a, std::uint32_t b, std::uint32_t c) const;
+
+ private:
+  Regions regions_;
+  std::uint32_t count_;
+};
+
 }  // namespace meshfarm

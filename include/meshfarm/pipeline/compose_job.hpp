@@ -25,8 +25,7 @@ struct ComposeParameters {
   std::uint32_t first_part = 0;
   std::uint32_t all_parts = 0;       // of the stage
   std::vector<ComposeInput> inputs;  // as many as the job has, in the order of the parts
-  FileRef boundary;                  // the side file: no input, as it is not to be read whole
-  FileSection boundary_index;
+  BoundaryFiles boundary;            // no inputs, as they are not to be read whole
   std::int32_t level = 0;           // of the one rung that is made
   double max_cost = 0;              // what the level costs
   std::uint64_t floor = 0;          // triangles that are to be left

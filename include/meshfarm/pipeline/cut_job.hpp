@@ -25,6 +25,9 @@ inline constexpr std::string_view k_vertices_kind = "scatter-vertices";
 inline constexpr std::string_view k_triangles_kind = "scatter-triangles";
 inline constexpr std::string_view k_join_kind = "join";
 
+/// Bundles, and what leads to them: workers alone read them, each section with its checksum.
+bool is_left_to_readers(std::string_view kind);
+
 /// Parameters of all but the join. A job reads what else it needs of the stage's manifest.
 struct CutJobParameters {
   Cutting cutting;
@@ -51,9 +54,10 @@ struct PartNumbers {
   FileRef file;
   FileSection section;
 };
-/// Parameters of the join, which the sink does.
+/// Parameters of a join.
 struct JoinParameters {
-  BundlesOfMesh bundles;
+  std::uint32_t group = 0;  // of regions
+  BundlesOfMesh bundles;    // of triangles
   std::vector<PartNumbers> numbers;  // of all parts
 };
 std::string encode_parameters(const JoinParameters& parameters);

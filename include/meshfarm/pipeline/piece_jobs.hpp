@@ -105,7 +105,7 @@ struct ComponentsParameters {
   };
   std::vector<Piece> pieces;  // in order
   std::uint32_t all_parts = 0;
-  FileRef boundary;
+  BoundaryFiles boundary;
   double diagonal = 0;  // smaller ones are left out
 };
 std::string encode_parameters(const ComponentsParameters& parameters);
@@ -142,8 +142,7 @@ struct SeamParameters {
   std::uint32_t group = 0;
   std::uint32_t groups = 1;
   std::uint32_t all_parts = 0;
-  FileRef boundary;
-  FileSection boundary_index;
+  BoundaryFiles boundary;
   double samples_per_triangle = 0;
   WeighParameters weigh;
 };

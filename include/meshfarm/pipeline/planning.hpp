@@ -27,6 +27,7 @@ struct PlannedJob {
   double compute_s = 0;
   std::vector<Range> needs = {};  // if none are given: all jobs of less depth
   std::string stage = {};
+  bool left_to_readers = false;  // Job::left_to_readers
 };
 
 /// The jobs of a trace, sorted by depth. Speed 1 is that of the trace's worker that did most work

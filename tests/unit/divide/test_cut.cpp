@@ -44,7 +44,7 @@ CutMesh cut(Mesh mesh, const CutOptions& options, const std::filesystem::path& f
     made.parts.push_back(decode_part(stage.read(entry.file), "part"));
   }
   made.boundary =
-      decode_boundary(stage.read(made.manifest.boundary), "boundary", made.boundary_columns);
+      read_boundary(stage, made.manifest.boundary, made.boundary_columns);
   return made;
 }
 

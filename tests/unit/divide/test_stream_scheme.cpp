@@ -47,7 +47,7 @@ Generated generate(Mesh mesh, CutOptions options, const std::filesystem::path& f
     StreamReader reader(fill_from(made.files.back(), "stream"), "stream");
     made.streams.push_back(read_stream(reader));
   }
-  made.boundary = decode_boundary(stage.read(made.manifest.boundary), "boundary");
+  made.boundary = read_boundary(stage, made.manifest.boundary);
   return made;
 }
 
@@ -93,7 +93,7 @@ TEST_CASE("columns go with their triangles, whatever their order, sorted here or
   CHECK(made.files == other.files);
   const Stage stage = Stage::open(folder / "made");
   TriangleColumns columns;
-  const auto boundary = decode_boundary(stage.read(made.manifest.boundary), "boundary", columns);
+  const auto boundary = read_boundary(stage, made.manifest.boundary, columns);
   REQUIRE(columns.labels.size() == boundary.size());
   const auto at = [&](const BoundaryCorner& corner) {
     return made.streams[corner.part].mesh.positions[corner.local];
@@ -303,7 +303,7 @@ TEST_CASE(
   REQUIRE(slabs.sorting.has_value());
   CHECK(slabs.samples.empty());
   CHECK(slabs.triangles() == mesh.triangles.size());
-  CHECK(decode_boundary(stage.read(slabs.boundary), "boundary") == sorted.boundary);
+  CHECK(read_boundary(stage, slabs.boundary) == sorted.boundary);
   std::uint64_t vertices = 0;
   for (std::size_t s = 0; s < 3; ++s) {
     const PartEntry& entry = slabs.parts[s];
@@ -408,7 +408,7 @@ TEST_CASE("slabs tell what stays apart at their seams to whoever sorts them") {
       CHECK(sorted.boundary_vertices == slabs.parts[s].boundary_vertices);
     }
     CHECK(some_stay_apart);
-    CHECK(decode_boundary(stage.read(slabs.boundary), "boundary") == here.boundary);
+    CHECK(read_boundary(stage, slabs.boundary) == here.boundary);
   }
 }
 

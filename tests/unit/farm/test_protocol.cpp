@@ -145,9 +145,9 @@ TEST_CASE("who speaks another version is told so in a frame of that version") {
 }
 
 TEST_CASE("numbers on the wire never change") {
-  CHECK(encode(Stop{StopReason::leaving}) == std::string("MFMS\7\0\x12\0\2", 9));
+  CHECK(encode(Stop{StopReason::leaving}) == std::string("MFMS\10\0\x12\0\2", 9));
   CHECK(encode(Credit{1, {2}, 3}) ==
-        std::string("MFMS\7\0\6\0\1\0\0\0\2\0\0\0\3\0\0\0\0\0\0\0", 24));
+        std::string("MFMS\10\0\6\0\1\0\0\0\2\0\0\0\3\0\0\0\0\0\0\0", 24));
 }
 
 TEST_CASE("what is too long for a message is refused by the sender") {
@@ -156,7 +156,7 @@ TEST_CASE("what is too long for a message is refused by the sender") {
   job.parameters += 'p';
   CHECK_THROWS_AS(encode(Assignment{1, 1, 1, 1, job}), DataError);
   job.parameters.clear();
-  job.inputs.assign(4000, FileRef{"parts/000001.part", 1, 2});
+  job.inputs.assign(4000, FileRef{std::string(150, 'p'), 1, 2});
   CHECK_THROWS_AS(encode(Assignment{1, 1, 1, 1, job}), DataError);
   CHECK_THROWS_AS(encode(Refused{Refusal::full, std::string(k_max_text_bytes + 1, 'x')}),
                   DataError);

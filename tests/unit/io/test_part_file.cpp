@@ -39,7 +39,7 @@ Manifest sample_manifest() {
   m.skipped = {"vertex.red", "face.flags"};
   m.cut_seconds = 1.5;
   m.boundary_triangles = 11;
-  m.boundary = {"boundary", 100, 42};
+  m.boundary = {{{"boundary", 100, 42}, {24, 32, 44}, 0}};
   m.parts = {{{"parts/000000.part", 200, 43}, 12, 20, 3},
              {{"parts/000001.part", 300, 44}, 5, 6, 5}};
   return m;

@@ -93,8 +93,7 @@ TEST_CASE("a region's boundary triangles are read without the others") {
   const Stage stage = Stage::create(folder.path());
   const EncodedBoundary encoded = encode_boundary(parts, triangles, columns);
   const FileRef file = stage.publish(BoundaryName{}, encoded.file);
-  const BoundaryRegions reader(stage, file, encoded.index);
-  CHECK(reader.parts() == parts);
+  BoundaryRegions reader(stage, {{file, encoded.index, 0}}, parts);
   const Regions regions(parts);
   Triangles all;
   TriangleColumns all_columns;
@@ -141,17 +140,79 @@ TEST_CASE("a damaged region is refused, and the others are read") {
   std::string bytes = encoded.file;
   bytes[bytes.size() - 12] ^= 1;  // before the checksum of the whole
   const FileRef file = stage.publish(BoundaryName{}, bytes);
-  const BoundaryRegions reader(stage, file, encoded.index);
+  BoundaryRegions reader(stage, {{file, encoded.index, 0}}, 4);
   Triangles read;
   reader.read(0, read, none);
   CHECK(read.size() == 1);
   CHECK_THROWS_AS(reader.read(2, read, none), DataError);
-  FileSection other = encoded.index;
-  other.size -= 16;
-  CHECK_THROWS_AS(BoundaryRegions(stage, file, other), DataError);
-  other = encoded.index;
-  other.offset = file.size;
-  CHECK_THROWS_AS(BoundaryRegions(stage, file, other), DataError);
+  const auto refuses = [&](const FileSection& index, std::uint32_t parts) {
+    BoundaryRegions other(stage, {{file, index, 0}}, parts);
+    CHECK_THROWS_AS(other.read(0, read, none), DataError);
+  };
+  refuses(encoded.index, 5);
+  FileSection index = encoded.index;
+  index.size -= 16;
+  refuses(index, 4);
+  index = encoded.index;
+  index.offset = file.size;
+  refuses(index, 4);
+  CHECK_THROWS_AS(BoundaryRegions(stage, {}, 4), DataError);
+}
+
+TEST_CASE("a boundary in several files is read as one") {
+  for (const std::uint32_t parts : {1U, 2U, 9U, 40U, 200U}) {
+    CAPTURE(parts);
+    std::vector<Label> labels;
+    Triangles triangles = all_pairs(parts, labels);
+    TriangleColumns columns{labels, {}};
+    order_by_region(parts, triangles, columns);
+    const TempFolder folder;
+    const Stage stage = Stage::create(folder.path());
+    const RegionGroups groups(parts);
+    BoundaryFiles files;
+    for (std::uint32_t group = 0; group < groups.count(); ++group) {
+      Triangles some;
+      TriangleColumns some_columns;
+      for (std::size_t i = 0; i < triangles.size(); ++i) {
+        const BoundaryTriangle& t = triangles[i];
+        if (groups.of(t[0].part, t[1].part, t[2].part) != group) continue;
+        some.push_back(t);
+        some_columns.append(columns, i);
+      }
+      const EncodedBoundary encoded = encode_boundary(parts, some, some_columns);
+      files.push_back({stage.publish(ResultName{group, 1, 1}, encoded.file), encoded.index,
+                       groups.first_region(group)});
+    }
+    TriangleColumns read_columns;
+    CHECK(read_boundary(stage, files, read_columns) == triangles);
+    CHECK(read_columns.labels == columns.labels);
+    BoundaryRegions reader(stage, files, parts);
+    Triangles read;
+    read_columns.clear();
+    for (std::uint32_t region = 0; region < Regions(parts).count(); ++region) {
+      reader.read(region, read, read_columns);
+    }
+    CHECK(read == triangles);
+    CHECK(read_columns.labels == columns.labels);
+    ByteWriter out;
+    put_boundary(out, files);
+    ByteReader in(out.bytes(), "boundary");
+    const BoundaryFiles back = get_boundary(in);
+    CHECK(bytes_of(back) == bytes_of(files));
+    CHECK(back.back().first_region == files.back().first_region);
+  }
+}
+
+TEST_CASE("boundary files in another order, or none, are refused") {
+  const auto refused = [](const BoundaryFiles& files) {
+    ByteWriter out;
+    put_boundary(out, files);
+    ByteReader in(out.bytes(), "boundary");
+    CHECK_THROWS_AS(get_boundary(in), DataError);
+  };
+  refused({});
+  refused({{{"boundary", 1, 2}, {}, 1}});
+  refused({{{"boundary", 1, 2}, {}, 0}, {{"boundary", 1, 2}, {}, 4}, {{"boundary", 1, 2}, {}, 3}});
 }
 
 }  // namespace

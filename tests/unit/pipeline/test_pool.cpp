@@ -23,7 +23,7 @@ Stage stage_of(const fs::path& folder, std::uint64_t triangles) {
   manifest.parts.resize(1);
   manifest.parts[0].triangles = triangles;
   manifest.parts[0].file.name = to_string(PartName{1});
-  manifest.boundary.name = to_string(BoundaryName{});
+  manifest.boundary.emplace_back().file.name = to_string(BoundaryName{});
   stage.publish(ManifestName{}, encode_manifest(manifest));
   return stage;
 }

@@ -146,7 +146,7 @@ TEST_CASE("the farm sorts slabs to the bytes that the cut makes by itself") {
     CHECK_FALSE(state.manifest.sorting.has_value());
     check_same(state.manifest.parts, here.manifest.parts);
     check_same(state.manifest.samples, here.manifest.samples);
-    CHECK(same_content(state.manifest.boundary, here.manifest.boundary));
+    CHECK(same_content(state.manifest.boundary[0].file, here.manifest.boundary[0].file));
     CHECK(state.manifest.boundary_triangles == here.manifest.boundary_triangles);
     CHECK(state.manifest.coincident_vertices == here.manifest.coincident_vertices);
     CHECK(state.manifest.dropped_degenerate == here.manifest.dropped_degenerate);
@@ -205,7 +205,7 @@ TEST_CASE("a sort job that makes no sense is refused, and so is what it cannot h
   }
   for (const std::string_view kind : {k_sort_kind, k_sample_kind}) {
     CHECK_THROWS_AS(do_job({std::string(kind), {}, bytes, 0, 0}, context), DataError);
-    CHECK_THROWS_AS(do_job({std::string(kind), {farm.manifest.boundary}, bytes, 0, 0}, context),
+    CHECK_THROWS_AS(do_job({std::string(kind), {farm.manifest.boundary[0].file}, bytes, 0, 0}, context),
                     BadInputError);
   }
   const std::string summary = encode_summary(SortSummary{9, 8, 7, 6, 5, 4});

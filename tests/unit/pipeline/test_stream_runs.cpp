@@ -238,8 +238,7 @@ TEST_CASE("a compose job that makes no sense is refused, one whose side file is 
   const JobContext context{stage, 1, 7, [](std::uint64_t) { return true; }};
   ComposeParameters parameters{.all_parts = 3,
                                .inputs = {{}, {}},
-                               .boundary = manifest.boundary,
-                               .boundary_index = manifest.boundary_index};
+                               .boundary = manifest.boundary};
   const std::string bytes = encode_parameters(parameters);
   CHECK(decode_compose_parameters(bytes).inputs.size() == 2);
   CHECK_THROWS_AS(decode_compose_parameters(bytes + "x"), DataError);
@@ -263,7 +262,7 @@ TEST_CASE("a compose job that makes no sense is refused, one whose side file is 
   }
   CHECK_NOTHROW(do_job(job, context));
   std::fstream file(stage.path(BoundaryName{}), std::ios::in | std::ios::out | std::ios::binary);
-  file.seekp(static_cast<std::streamoff>(manifest.boundary.size / 2));
+  file.seekp(static_cast<std::streamoff>(manifest.boundary[0].file.size / 2));
   file.put('\x55');
   file.close();
   CHECK_THROWS_AS(do_job(job, context), DataError);
