@@ -236,9 +236,7 @@ TEST_CASE("a compose job that makes no sense is refused, one whose side file is 
   const Stage stage = Stage::create(folder.path());
   const Manifest manifest = cut_mesh(source, stage, {.scheme = Scheme::stream, .parts = 3});
   const JobContext context{stage, 1, 7, [](std::uint64_t) { return true; }};
-  ComposeParameters parameters{.all_parts = 3,
-                               .inputs = {{}, {}},
-                               .boundary = manifest.boundary};
+  ComposeParameters parameters{.all_parts = 3, .inputs = {{}, {}}, .boundary = manifest.boundary};
   const std::string bytes = encode_parameters(parameters);
   CHECK(decode_compose_parameters(bytes).inputs.size() == 2);
   CHECK_THROWS_AS(decode_compose_parameters(bytes + "x"), DataError);
