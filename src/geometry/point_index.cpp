@@ -51,6 +51,7 @@ class PointIndex::Tree {
  public:
   explicit Tree(std::vector<Vec3> points) : cloud_{std::move(points)}, index_(3, cloud_) {}
   const auto& index() const { return index_; }
+  std::span<const Vec3> points() const { return cloud_.points; }
 
  private:
   PointCloud cloud_;
@@ -64,6 +65,10 @@ PointIndex::PointIndex(std::vector<Vec3> points)
 PointIndex::~PointIndex() = default;
 PointIndex::PointIndex(PointIndex&&) noexcept = default;
 PointIndex& PointIndex::operator=(PointIndex&&) noexcept = default;
+
+std::span<const Vec3> PointIndex::points() const {
+  return tree_->points();
+}
 
 std::size_t PointIndex::nearest(Vec3 from, std::span<std::uint32_t> found) const {
   std::vector<double> squared(found.size());

@@ -20,6 +20,8 @@ class PointIndex {
   PointIndex(PointIndex&&) noexcept;
   PointIndex& operator=(PointIndex&&) noexcept;
 
+  std::span<const Vec3> points() const;
+
   /// Writes the indices of the nearest points to `found`, nearest first, and returns how many there
   /// are: as many as it has room for, or all.
   std::size_t nearest(Vec3 from, std::span<std::uint32_t> found) const;

@@ -32,9 +32,11 @@ class Surroundings {
 
  private:
   void list_vertices(const ShrinkingMesh& mesh);
+  void drop_what_is_gone(const ShrinkingMesh& mesh);
 
   std::vector<std::uint32_t> vertices_;  // of the points
   std::optional<PointIndex> index_;
+  std::uint64_t passed_over_ = 0;  // points of pieces that are gone, since the index was made
 };
 
 }  // namespace meshfarm

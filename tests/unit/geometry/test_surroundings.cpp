@@ -1,0 +1,85 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <random>
+#include <vector>
+
+#include <doctest/doctest.h>
+
+#include <meshfarm/geometry/mesh.hpp>
+
+#include "geometry/simplify/surroundings.hpp"
+
+namespace meshfarm::test {
+namespace {
+
+/// Triangles that share nothing, here and there.
+Mesh lonely_triangles(std::uint32_t count) {
+  std::mt19937 random(5);
+  std::uniform_real_distribution<double> anywhere(0, 10);
+  Mesh mesh;
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const Vec3 at{anywhere(random), anywhere(random), anywhere(random)};
+    const std::uint32_t v = 3 * i;
+    mesh.positions.insert(mesh.positions.end(), {at, at + Vec3{0.1, 0, 0}, at + Vec3{0, 0.1, 0}});
+    mesh.triangles.push_back({v, v + 1, v + 2});
+  }
+  return mesh;
+}
+
+double nearest_other(const Mesh& mesh, std::uint32_t piece) {
+  double least = HUGE_VAL;
+  for (const Triangle& t : mesh.triangles) {
+    if (t[0] == 3 * piece) continue;
+    for (const std::uint32_t v : t) {
+      least = std::min(least, squared_length(mesh.positions[v] - mesh.positions[3 * piece]));
+    }
+  }
+  return least;
+}
+
+TEST_CASE("the nearest that is left is found, however many pieces are gone") {
+  Mesh mesh = lonely_triangles(400);
+  std::vector<std::uint32_t> target(mesh.positions.size());
+  std::iota(target.begin(), target.end(), 0U);
+  Surroundings surroundings;
+  Adjacency adjacency;
+  while (!mesh.triangles.empty()) {
+    adjacency.build(mesh.triangles, mesh.positions.size(), mesh.columns);
+    for (const Triangle& t : mesh.triangles) {
+      const std::vector<std::uint32_t> without(t.begin(), t.end());
+      const double found = surroundings.squared_distance({mesh.positions, target, &adjacency},
+                                                         mesh.positions[t[0]], without);
+      CHECK(found == nearest_other(mesh, t[0] / 3));
+    }
+    mesh.triangles.resize(2 * mesh.triangles.size() / 3);
+  }
+}
+
+TEST_CASE("what a vertex has become stands where the vertex was") {
+  const Mesh mesh = lonely_triangles(3);
+  std::vector<std::uint32_t> target(mesh.positions.size());
+  std::iota(target.begin(), target.end(), 0U);
+  Adjacency adjacency;
+  adjacency.build(mesh.triangles, mesh.positions.size(), mesh.columns);
+  Surroundings surroundings;
+  const std::vector<std::uint32_t> without = {0, 1, 2};
+  const auto found = [&] {
+    return surroundings.squared_distance({mesh.positions, target, &adjacency}, mesh.positions[5],
+                                         without);
+  };
+  CHECK(found() == 0);
+  target[5] = 3;
+  CHECK(found() == 0);
+  // Its piece is gone: the same is found however often it is asked for.
+  const std::vector<Triangle> left = {mesh.triangles[0], mesh.triangles[2]};
+  adjacency.build(left, mesh.positions.size(), mesh.columns);
+  const double gone = found();
+  CHECK(gone > 0);
+  for (int i = 0; i < 1000; ++i) CHECK(found() == gone);
+}
+
+}  // namespace
+}  // namespace meshfarm::test
