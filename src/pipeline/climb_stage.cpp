@@ -20,6 +20,9 @@ constexpr double k_more_headroom = 8;
 constexpr double k_fair_share = 0.1;
 constexpr double k_fair_excess = 2;
 
+/// So many triangles are compared with the result, to tell which pieces and handles went.
+constexpr double k_most_compared = 4e6;
+
 /// Which may turn out not to be fair.
 TopologyMode first_topology(const RunOptions& options, bool by_error) {
   if (options.lines.topology != TopologyMode::automatic) return options.lines.topology;
@@ -116,13 +119,17 @@ bool ClimbStage::is_unfair() const {
   return held > k_fair_share * all || (any && all > k_fair_excess * jobs_.wanted());
 }
 
-/// A sample of a stream tells nothing.
+/// A sample of a stream tells nothing, and what is far larger than the result is not worth the
+/// memory: the sink would hold all of it to tell what went.
 void ClimbStage::keep_coarsest() {
+  double triangles = 0;
   for (std::uint32_t p = 0; p < results_.summaries.size(); ++p) {
     if (jobs_.is_sampled(p)) return kept_.clear();
-    const auto last = static_cast<std::uint32_t>(results_.summaries[p].rungs.size() - 1);
-    kept_.push_back({results_.files[p], last});
+    const std::vector<Rung>& rungs = results_.summaries[p].rungs;
+    kept_.push_back({results_.files[p], static_cast<std::uint32_t>(rungs.size() - 1)});
+    triangles += static_cast<double>(rungs.back().triangles);
   }
+  if (triangles > std::max(k_most_compared, jobs_.wanted())) kept_.clear();
 }
 
 }  // namespace meshfarm
