@@ -27,7 +27,8 @@ namespace meshfarm {
 //   partition   all counts: what part each cell is of, or finer cells to count once more
 //   scatter     a block of vertices, then a block of triangles: a bundle each, a section a part
 //   build       a part, of its sections
-//   join        a group of regions (regions.hpp): its boundary, of what parts tell of their boundary
+//   join        a group of regions (regions.hpp): its boundary, of what parts tell of their
+//   boundary
 //               vertices
 
 struct BlockSurvey {

@@ -163,8 +163,7 @@ class Scheduler {
   bool open(const Member& member) const;
   void begin_turns(Member& member, FarmTime now);
   double estimated_speed(const Member& member) const;
-  double seconds_left(const Member& member, const Held& held, FarmTime now,
-                      double times = 1) const;
+  double seconds_left(const Member& member, const Held& held, FarmTime now, double times = 1) const;
   double seconds_held(const Member& member, FarmTime now) const;
   const Outlook& outlook(const Plan& plan, FarmTime now);
   std::uint64_t greatest_cost(const Member& member, FarmTime now) const;

@@ -26,11 +26,11 @@ struct ComposeParameters {
   std::uint32_t all_parts = 0;       // of the stage
   std::vector<ComposeInput> inputs;  // as many as the job has, in the order of the parts
   BoundaryFiles boundary;            // no inputs, as they are not to be read whole
-  std::int32_t level = 0;           // of the one rung that is made
-  double max_cost = 0;              // what the level costs
-  std::uint64_t floor = 0;          // triangles that are to be left
-  double samples_per_triangle = 0;  // of the seams, to measure the final error by
-  bool keeps_between = false;       // the input's triangles between the parts, to measure to them
+  std::int32_t level = 0;            // of the one rung that is made
+  double max_cost = 0;               // what the level costs
+  std::uint64_t floor = 0;           // triangles that are to be left
+  double samples_per_triangle = 0;   // of the seams, to measure the final error by
+  bool keeps_between = false;        // the input's triangles between the parts, to measure to them
   LineOptions lines;
 };
 

@@ -56,8 +56,8 @@ struct PartNumbers {
 };
 /// Parameters of a join.
 struct JoinParameters {
-  std::uint32_t group = 0;  // of regions
-  BundlesOfMesh bundles;    // of triangles
+  std::uint32_t group = 0;           // of regions
+  BundlesOfMesh bundles;             // of triangles
   std::vector<PartNumbers> numbers;  // of all parts
 };
 std::string encode_parameters(const JoinParameters& parameters);

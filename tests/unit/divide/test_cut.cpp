@@ -43,8 +43,7 @@ CutMesh cut(Mesh mesh, const CutOptions& options, const std::filesystem::path& f
   for (const PartEntry& entry : made.manifest.parts) {
     made.parts.push_back(decode_part(stage.read(entry.file), "part"));
   }
-  made.boundary =
-      read_boundary(stage, made.manifest.boundary, made.boundary_columns);
+  made.boundary = read_boundary(stage, made.manifest.boundary, made.boundary_columns);
   return made;
 }
 

@@ -205,8 +205,9 @@ TEST_CASE("a sort job that makes no sense is refused, and so is what it cannot h
   }
   for (const std::string_view kind : {k_sort_kind, k_sample_kind}) {
     CHECK_THROWS_AS(do_job({std::string(kind), {}, bytes, 0, 0}, context), DataError);
-    CHECK_THROWS_AS(do_job({std::string(kind), {farm.manifest.boundary[0].file}, bytes, 0, 0}, context),
-                    BadInputError);
+    CHECK_THROWS_AS(
+        do_job({std::string(kind), {farm.manifest.boundary[0].file}, bytes, 0, 0}, context),
+        BadInputError);
   }
   const std::string summary = encode_summary(SortSummary{9, 8, 7, 6, 5, 4});
   CHECK(decode_sort_summary(summary, "s").dropped_degenerate == 5);
