@@ -77,7 +77,7 @@ class BoundaryRegions {
     ColumnSet columns;
     std::vector<FileSection> sections;  // by region
   };
-  Open open(const BoundaryFile& file) const;
+  Open open(const BoundaryFile& from) const;
 
   const Stage& stage_;
   BoundaryFiles files_;
