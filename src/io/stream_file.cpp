@@ -353,4 +353,10 @@ Part read_stream(StreamReader& reader) {
   return part;
 }
 
+Part decode_part_or_stream(std::string_view file, const std::string& what) {
+  if (!is_stream(file)) return decode_part(file, what);
+  StreamReader reader(fill_from(file, what), what);
+  return read_stream(reader);
+}
+
 }  // namespace meshfarm

@@ -47,6 +47,12 @@ std::uint64_t free_triangles_at(const ResultSummary& part, std::int32_t level) {
   return static_cast<std::uint64_t>(left);
 }
 
+std::uint64_t free_triangles_at(std::span<const ResultSummary> parts, std::int32_t level) {
+  std::uint64_t free = 0;
+  for (const ResultSummary& part : parts) free += free_triangles_at(part, level);
+  return free;
+}
+
 std::int32_t common_level(std::span<const ResultSummary> parts, std::uint64_t wanted) {
   std::int32_t lowest = std::numeric_limits<std::int32_t>::max();
   std::int32_t highest = std::numeric_limits<std::int32_t>::min();
@@ -55,9 +61,7 @@ std::int32_t common_level(std::span<const ResultSummary> parts, std::uint64_t wa
     highest = std::max(highest, part.rungs.back().level);
   }
   for (std::int32_t level = highest; level > lowest; --level) {
-    std::uint64_t free = 0;
-    for (const ResultSummary& part : parts) free += free_triangles_at(part, level);
-    if (free >= wanted) return level;
+    if (free_triangles_at(parts, level) >= wanted) return level;
   }
   return lowest;
 }

@@ -84,8 +84,10 @@ std::uint64_t ComposeStage::most_triangles(std::uint64_t all_triangles) const {
   if (goal_.for_pieces) {
     const double seams = static_cast<double>(manifest_.boundary_triangles) /
                          static_cast<double>(std::max<std::uint64_t>(1, manifest_.triangles()));
-    const std::uint64_t least = std::clamp(static_cast<std::uint64_t>(k_least_by_seams * seams),
-                                           k_least_piece, k_least_with_long_seams);
+    const std::uint64_t by_seams = std::clamp(static_cast<std::uint64_t>(k_least_by_seams * seams),
+                                              k_least_piece, k_least_with_long_seams);
+    const std::uint64_t least =
+        manifest_.scheme == Scheme::stream ? k_least_with_long_seams : by_seams;
     return std::max(std::clamp(all_triangles / k_pieces_of_all, least, k_usual_piece),
                     2 * all_triangles / k_most_pieces);
   }

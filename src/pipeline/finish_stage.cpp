@@ -29,6 +29,10 @@ constexpr std::size_t k_most_rounds = 4;
 constexpr std::size_t k_most_turns = 2;
 /// Where nothing was collapsed before, what is wanted may be so many times farther.
 constexpr double k_from_the_start = 8;
+/// Samples of streams tell counts within a few per cent. So many steps have about so many times
+/// fewer triangles.
+constexpr std::int32_t k_steps_back = 2;
+constexpr double k_from_a_step_before = 1.3;
 constexpr std::int32_t k_steps_before_end = 2;
 constexpr std::int32_t k_steps_for_turn = 2;
 
@@ -141,12 +145,8 @@ void FinishStage::weigh(JobGraph& graph) {
     all += each.divided.weight.before;
     gaps += each.divided.gap_triangles;
   }
-  // The ladders tell of what was left out, too: all began too far.
-  if (all + gaps < made_.target && step_ >= 0 && made_.dropped_components.components > 0 &&
-      turns_ < k_most_turns) {
-    step_ = weigh_.first_step = -1;
-    weigh_.last_share /= k_from_the_start;
-    weigh_.kept_share /= k_from_the_start;
+  if (all + gaps < made_.target && step_ >= 0 && turns_ < k_most_turns) {
+    step_back();
     return divide(graph);
   }
   if (gaps > made_.target || all + gaps < made_.target) {
@@ -162,6 +162,16 @@ void FinishStage::weigh(JobGraph& graph) {
     return divide(graph);
   }
   reduce(graph, share_out_triangles(weights_, made_.target - gaps));
+}
+
+/// All began too far: the ladders tell of what was left out, too, or only of samples.
+void FinishStage::step_back() {
+  const bool is_unknown = made_.dropped_components.components > 0;
+  const double times = is_unknown ? k_from_the_start : k_from_a_step_before;
+  step_ = is_unknown ? -1 : std::max(-1, step_ - k_steps_back);
+  weigh_.first_step = step_;
+  weigh_.last_share /= times;
+  weigh_.kept_share /= times;
 }
 
 /// Those whose quota is new.
@@ -365,6 +375,7 @@ Job FinishStage::measure_job(std::size_t number, const std::vector<PartRange>& r
     read += entry.file.size;
     part += manifest_.bundles ? k_built_triangle_bytes * entry.triangles
                               : entry.file.size + 60 * entry.triangles;
+    if (!manifest_.bundles) parameters.parts.push_back(entry.file);
   }
   Job job;
   job.kind = k_measure_kind;

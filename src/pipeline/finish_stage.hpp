@@ -65,6 +65,7 @@ class FinishStage {
   void take_divided(const JobGraph& graph, std::size_t piece, const JobName& name);
   void join_seams(JobGraph& graph);
   void weigh(JobGraph& graph);
+  void step_back();
   void reduce(JobGraph& graph, const std::vector<std::uint64_t>& quotas);
   void look_at_count(JobGraph& graph);
   void measure(JobGraph& graph);

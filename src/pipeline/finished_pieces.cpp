@@ -30,7 +30,6 @@ std::string why_not_farmed(const Manifest& manifest, const RunOptions& options) 
   if (options.error.value > 0) return "a bound on the error is kept across the seams at once";
   if (options.finish == Finish::boundary) return "only edges at seams are to change";
   if (options.allocation == Allocation::uniform) return "the parts have no common threshold";
-  if (manifest.scheme == Scheme::stream || manifest.sorting) return "the parts are streams";
   if (bakes_texture(manifest, options)) return "a new texture is laid out on the whole result";
   return {};
 }

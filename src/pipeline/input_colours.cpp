@@ -40,12 +40,6 @@ Box box_of(std::span<const Vec3> points) {
   return box;
 }
 
-Part read_part(const std::string& bytes, const std::string& name) {
-  if (!is_stream(bytes)) return decode_part(bytes, name);
-  StreamReader reader(fill_from(bytes, name), name);
-  return read_stream(reader);
-}
-
 }  // namespace
 
 InputColours::InputColours(const Input& input, const ColumnSet& columns, std::uint64_t memory_bytes)
@@ -62,7 +56,7 @@ Mesh InputColours::read(std::size_t number) const {
   const std::string bytes =
       is_part ? input_.stage.read(parts[number].file)
               : input_.file.read(input_.scene.seams[number - parts.size()].section);
-  Part part = read_part(bytes, name);
+  Part part = decode_part_or_stream(bytes, name);
   const std::uint32_t boundary = is_part ? parts[number].boundary_vertices : 0;
   if (part.boundary_vertices != boundary ||
       !TriangleColumnsView(part.mesh.columns).fits(columns_, part.mesh.triangles.size())) {

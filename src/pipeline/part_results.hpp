@@ -22,9 +22,7 @@ struct PartResults {
     files[part] = output.file;
   }
   std::uint64_t free_triangles(std::int32_t at_level) const {
-    std::uint64_t sum = 0;
-    for (const ResultSummary& each : summaries) sum += free_triangles_at(each, at_level);
-    return sum;
+    return free_triangles_at(summaries, at_level);
   }
 
   std::vector<JobName> made_by;  // the last job that is accepted

@@ -16,7 +16,7 @@ struct PieceInput {
   Mesh between;             // what lies between the parts of the whole piece, if it is this job's
   Box box;                  // of all
 };
-/// Throws as reading does, and DataError if there are no such parts.
+/// Throws as reading does.
 PieceInput read_piece_input(const Stage& stage, const MeasureParameters& parameters);
 
 }  // namespace meshfarm

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
 //
-// Parameters and summaries of the jobs of a farmed finish, version 5, little endian:
+// Parameters and summaries of the jobs of a farmed finish, version 6, little endian:
 //   weigh      = cost unit f64 | first step i32 | last share f64 | kept share f64 | lines
 //   split      = version u8 | piece u32 | rung u32 | step i32 | is composed u8 | ref | weigh
 //   seam       = version u8 | strips u32 x (parts u32 | ref) | group u32 | groups u32 |
@@ -10,7 +10,8 @@
 //                lines
 //   measure    = version u8 | first part u32 | end part u32 | triangles u64 | share u32 |
 //                shares u32 | box | 4 refs | seams u32 x (ref | ref) | points u32 x ref |
-//                input step u64 | builds u8 | if it does: bundles (bundle_list.hpp)
+//                input step u64 | builds u8 | if it does: bundles (bundle_list.hpp), else of each
+//                part a file
 //   write      = version u8 | pieces u64
 //   ref        = file | section;  box = 6 x f64
 //   divided    = 5 sections | gap triangles u64 | strip triangles u64 | shared u64 | box |
@@ -23,7 +24,8 @@
 //
 // In version 1 parts were always kept, and a piece was measured by one job. In version 2 the
 // surroundings of the seams were one piece. In version 3 triangles of gaps had no columns, and no
-// components were left out. In version 4 there was one boundary file.
+// components were left out. In version 4 there was one boundary file. In version 5
+// measure jobs looked the parts up in the manifest.
 #include <cmath>
 
 #include <meshfarm/pipeline/piece_jobs.hpp>
@@ -36,7 +38,7 @@
 namespace meshfarm {
 namespace {
 
-constexpr std::uint8_t k_piece_version = 5;
+constexpr std::uint8_t k_piece_version = 6;
 constexpr double k_most_piece_samples = 1000;  // a triangle
 
 void begin_parameters(ByteWriter& out) {
@@ -208,7 +210,11 @@ std::string encode_parameters(const MeasureParameters& parameters) {
   for (const SectionRef& ref : parameters.points) put_ref(out, ref);
   out.put(parameters.input_step);
   out.put(static_cast<std::uint8_t>(parameters.bundles ? 1 : 0));
-  if (parameters.bundles) put_bundles(out, *parameters.bundles);
+  if (parameters.bundles) {
+    put_bundles(out, *parameters.bundles);
+  } else {
+    for (const FileRef& part : parameters.parts) put_file(out, part);
+  }
   return out.take();
 }
 
@@ -240,7 +246,14 @@ MeasureParameters decode_measure_parameters(std::string_view bytes) {
   }
   const auto builds = in.get<std::uint8_t>();
   if (builds > 1) in.fail("impossible parts");
-  if (builds == 1) parameters.bundles = get_bundles(in);
+  if (builds == 1) {
+    parameters.bundles = get_bundles(in);
+    if (parameters.end_part > parameters.bundles->parts) in.fail("no such parts");
+  } else {
+    for (std::uint32_t p = parameters.first_part; p < parameters.end_part; ++p) {
+      parameters.parts.push_back(get_file(in));
+    }
+  }
   in.expect_end();
   return parameters;
 }

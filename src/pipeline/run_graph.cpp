@@ -80,7 +80,9 @@ class Run {
 
   void choose_level(JobGraph& graph) {
     const Parts again = climbs().choose_level();
-    again.empty() ? sweep(graph) : climb(graph, again);
+    if (!again.empty()) return climb(graph, again);
+    ladders_ = results().summaries;
+    sweep(graph);
   }
 
   void sweep(JobGraph& graph) {
@@ -168,14 +170,18 @@ class Run {
                      });
   }
 
-  /// By the ladders, between whose levels counts are taken to fall evenly.
+  /// By the ladders, between whose levels counts are taken to fall evenly. Those of samples of
+  /// streams are corrected by what the sweeps made of these.
   FinishGoal finish_goal(TopologyMode topology) const {
     const double wanted =
         k_before_finish * static_cast<double>(target_triangles(manifest(), options_));
-    const auto at = [this](std::int32_t level) {
-      return static_cast<double>(results().free_triangles(level));
-    };
     std::int32_t level = std::max(0, results().level);
+    const auto told = static_cast<double>(free_triangles_at(ladders_, level));
+    const auto made = static_cast<double>(results().free_triangles(level));
+    const double times = told > 0 ? made / told : 1;
+    const auto at = [this, times](std::int32_t tried) {
+      return times * static_cast<double>(free_triangles_at(ladders_, tried));
+    };
     for (std::int32_t tried = 0; tried < k_most_levels && at(level + 1) > wanted; ++tried) ++level;
     const double before = at(level);
     const double after = at(level + 1);
@@ -264,6 +270,7 @@ class Run {
   SortStage sorting_{state_.manifest};
   std::optional<Simplifying> simplifying_;
   std::size_t parts_done_ = 0;
+  std::vector<ResultSummary> ladders_;  // by which the level was chosen, by part
   ComposeStage composing_{state_.manifest, options_};
   FinishStage finishing_{state_.manifest, options_};
   BakeStage baking_{state_.manifest, options_, state_.baked};

@@ -141,9 +141,7 @@ class LadderBuilder {
 Part read_part(const JobContext& context, const FileRef& input) {
   const std::string file = context.read(input);
   try {
-    if (!is_stream(file)) return decode_part(file, input.name);
-    StreamReader reader(fill_from(file, input.name), input.name);
-    return read_stream(reader);
+    return decode_part_or_stream(file, input.name);
   } catch (const DataError& error) {
     throw BadInputError(error.what());
   }

@@ -98,5 +98,7 @@ bool is_stream(std::string_view start);
 StreamMesh read_stream_mesh(StreamReader& reader);
 /// Reads the whole stream into memory as a part, its boundary vertices first.
 Part read_stream(StreamReader& reader);
+/// A whole staged file that is a part, or a stream as one. Throws DataError as their readers do.
+Part decode_part_or_stream(std::string_view file, const std::string& what);
 
 }  // namespace meshfarm

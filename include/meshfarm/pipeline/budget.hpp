@@ -58,6 +58,8 @@ std::uint32_t rung_at(std::span<const Rung> ladder, std::int32_t level);
 /// Free triangles of a part at a level. Where its ladder ends but goes on, so many as a smooth
 /// surface would have.
 std::uint64_t free_triangles_at(const ResultSummary& part, std::int32_t level);
+/// Of all parts together.
+std::uint64_t free_triangles_at(std::span<const ResultSummary> parts, std::int32_t level);
 
 /// The coarsest level at which the parts together still hold `wanted` free triangles; the finest
 /// there is if none does.

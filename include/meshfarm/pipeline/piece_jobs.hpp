@@ -182,6 +182,7 @@ struct SeamSurface {
 struct MeasureParameters {
   std::uint32_t first_part = 0;  // of the input, that the job measures to
   std::uint32_t end_part = 0;
+  std::vector<FileRef> parts;   // these, or streams, if they are kept
   std::uint64_t triangles = 0;  // of the input in the whole piece; 0: a group of the surroundings
   std::optional<BundlesOfMesh> bundles;  // what parts are built of, if they are not kept
   std::uint32_t share = 0;               // of the samples, that the job takes

@@ -34,10 +34,11 @@ namespace {
 /// A stage, and runs on it.
 class FinishBench {
  public:
-  FinishBench(const Mesh& mesh, std::uint32_t parts)
+  FinishBench(const Mesh& mesh, std::uint32_t parts) : FinishBench(mesh, {.parts = parts}) {}
+  FinishBench(const Mesh& mesh, const CutOptions& options)
       : stage_(Stage::create(folder_.path() / "stage")) {
     test::MemorySource source(mesh);
-    manifest_ = cut_mesh(source, stage_, {.parts = parts});
+    manifest_ = cut_mesh(source, stage_, options);
   }
 
   static RunOptions farmed(std::uint64_t triangles) {
@@ -148,6 +149,46 @@ TEST_CASE("pieces make a closed surface of the count, as good as the sink's") {
   REQUIRE(made.pieces.size() == 7);
   CHECK(made.pieces.front().first_part == 0);
   CHECK(made.pieces.back().parts == 0);
+}
+
+TEST_CASE("pieces are made of streams, swept or climbed, sorted before or by jobs") {
+  const Mesh torus = test::torus(240, 160);
+  std::string bytes;
+  for (const SortAt sort : {SortAt::here, SortAt::farm}) {
+    for (const std::uint64_t window : {3'000, 100'000}) {
+      CAPTURE(window);
+      FinishBench bench(
+          torus, {.scheme = Scheme::stream, .parts = 6, .sort = sort, .window_triangles = window});
+      const RunSummary made = bench.run(FinishBench::farmed(16'000), "farm.ply");
+      CHECK(bench.kinds()["sort"] == (sort == SortAt::farm ? 6 : 0));
+      CHECK(bench.kinds()["sweep"] == (window == 3'000 ? 6 : 0));
+      CHECK(bench.kinds()["split"] >= 6);
+      CHECK(bench.kinds()["measure"] == 7);
+      CHECK(made.finished_in_pieces == 7);
+      CHECK(made.triangles == 16'000);
+      const Mesh mesh = bench.mesh("farm.ply");
+      const Topology t = measure_topology(mesh);
+      check_clean(t);
+      CHECK(t.triangles == 16'000);
+      CHECK(t.euler == 0);
+      CHECK(t.border_edges == 0);
+      RunOptions options = FinishBench::farmed(16'000);
+      options.finish_place = FinishPlace::here;
+      const RunSummary here = bench.run(options, "here.ply");
+      CHECK(here.finished_in_pieces == 0);
+      CHECK(made.error.greater().rms < 1.1 * here.error.greater().rms);
+      const DistanceOptions many{.samples = 100'000, .threads = 1};
+      CHECK(made.error.to_output.rms ==
+            doctest::Approx(measure_distance(torus, mesh, many).rms).epsilon(0.03));
+      CHECK(made.error.to_input.rms ==
+            doctest::Approx(measure_distance(mesh, torus, many).rms).epsilon(0.03));
+      bench.run(FinishBench::farmed(16'000), "again.ply", true);
+      CHECK(read_file(bench.path("again.ply")) == read_file(bench.path("farm.ply")));
+      if (window != 3'000) continue;
+      if (bytes.empty()) bytes = read_file(bench.path("farm.ply"));
+      CHECK(read_file(bench.path("farm.ply")) == bytes);
+    }
+  }
 }
 
 TEST_CASE("bytes and figures do not depend on the order of jobs, nor on who does them") {
