@@ -145,7 +145,7 @@ void FinishStage::weigh(JobGraph& graph) {
     all += each.divided.weight.before;
     gaps += each.divided.gap_triangles;
   }
-  if (all + gaps < made_.target && step_ >= 0 && turns_ < k_most_turns) {
+  if (all + gaps < made_.target && step_ >= 0 && turns_ <= k_most_turns) {
     step_back();
     return divide(graph);
   }
@@ -164,9 +164,10 @@ void FinishStage::weigh(JobGraph& graph) {
   reduce(graph, share_out_triangles(weights_, made_.target - gaps));
 }
 
-/// All began too far: the ladders tell of what was left out, too, or only of samples.
+/// All began too far: the ladders tell of what was left out, too, or only of samples. Where that is
+/// not mended by a little, nothing is simplified before the pieces are divided.
 void FinishStage::step_back() {
-  const bool is_unknown = made_.dropped_components.components > 0;
+  const bool is_unknown = made_.dropped_components.components > 0 || turns_ > 1;
   const double times = is_unknown ? k_from_the_start : k_from_a_step_before;
   step_ = is_unknown ? -1 : std::max(-1, step_ - k_steps_back);
   weigh_.first_step = step_;

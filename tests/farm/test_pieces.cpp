@@ -13,6 +13,7 @@
 #include <meshfarm/geometry/vertices.hpp>
 #include <meshfarm/io/mesh_format.hpp>
 #include <meshfarm/io/mesh_source.hpp>
+#include <meshfarm/util/file.hpp>
 
 #include "support/farm_bench.hpp"
 #include "support/meshes.hpp"
@@ -80,6 +81,27 @@ TEST_CASE("1 and 5 workers finish pieces to the same bytes and figures") {
     CHECK(error == figures);
     CHECK(ran.out.find("\"by\": \"farm\"") != std::string::npos);
   }
+}
+
+TEST_CASE("1 and 5 workers finish streams in pieces to the same bytes") {
+  std::string expected;
+  for (const char* workers : {"1", "5"}) {
+    CAPTURE(workers);
+    const std::string output = bench().path(std::string("s") + workers + ".ply");
+    const Ran ran = bench().meshfarm(PiecesBench::with_target(
+        {"simplify", bench().mesh(), "-o", output, "--scheme", "stream", "--parts", "8", "--window",
+         "4000", "--workers", workers, "--json"}));
+    CHECK(ran.code == 0);
+    CHECK(ran.out.find("\"by\": \"farm\"") != std::string::npos);
+    const std::string bytes = meshfarm::read_file(output);
+    if (expected.empty()) expected = bytes;
+    CHECK(bytes == expected);
+  }
+  const meshfarm::Topology t =
+      meshfarm::measure_topology(meshfarm::read_mesh(*meshfarm::open_mesh(bench().path("s5.ply"))));
+  CHECK(t.triangles == 20'000);
+  CHECK(t.border_edges + t.nonmanifold_edges + t.duplicate == 0);
+  CHECK(t.euler == 0);
 }
 
 TEST_CASE("pieces of an input that jobs have cut: the same bytes and figures") {

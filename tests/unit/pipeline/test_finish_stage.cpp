@@ -92,6 +92,11 @@ void check_clean(const Topology& t) {
   CHECK(t.degenerate + t.zero_area + t.duplicate == 0);
 }
 
+/// So many parts, or streams that are swept.
+std::vector<CutOptions> both_schemes(std::uint32_t parts) {
+  return {{.parts = parts}, {.scheme = Scheme::stream, .parts = parts, .window_triangles = 1'500}};
+}
+
 Mesh waves(std::uint32_t side) {
   Mesh mesh = test::grid(side, side);
   for (Vec3& p : mesh.positions) p.z = 2 * std::sin(p.x * 0.11) * std::cos(p.y * 0.07);
@@ -265,20 +270,22 @@ TEST_CASE("every format is written from pieces") {
 }
 
 TEST_CASE("open borders and creases across pieces stay where they are to") {
-  FinishBench bench(waves(60), 4);
-  RunOptions options = FinishBench::farmed(2'000);
-  options.lines.preserve_border = true;
-  CHECK(bench.run(options, "border.ply").triangles == 2'000);
-  CHECK(measure_topology(bench.mesh("border.ply")).border_edges == 4 * 60);
+  for (const CutOptions& cut : both_schemes(4)) {
+    FinishBench bench(waves(60), cut);
+    RunOptions options = FinishBench::farmed(2'000);
+    options.lines.preserve_border = true;
+    const RunSummary made = bench.run(options, "border.ply");
+    CHECK(made.triangles == 2'000);
+    CHECK(made.finished_in_pieces == 5);
+    CHECK(measure_topology(bench.mesh("border.ply")).border_edges == 4 * 60);
+  }
 
   Mesh roof = test::grid(80, 80);  // its ridge crosses all parts
   for (Vec3& p : roof.positions) {
     const double away = std::abs(p.x - 40);
     p.z = 30 - away + 0.01 * std::min(away, 2.0) * std::sin(p.y * 0.9 + p.x);
   }
-  FinishBench ridge(roof, 5);
-  const auto lying_across = [&](const std::string& name) {
-    const Mesh mesh = ridge.mesh(name);
+  const auto lying_across = [](const Mesh& mesh) {
     return std::count_if(mesh.triangles.begin(), mesh.triangles.end(), [&](const Triangle& t) {
       const auto x = [&](std::size_t k) { return mesh.positions[t[k]].x; };
       const double tolerance = 1e-3;
@@ -286,13 +293,17 @@ TEST_CASE("open borders and creases across pieces stay where they are to") {
              std::max({x(0), x(1), x(2)}) > 40 + tolerance;
     });
   };
-  options = FinishBench::farmed(1'500);
-  options.lines.crease_angle = 40;
-  CHECK(ridge.run(options, "roof.ply").triangles == 1'500);
-  CHECK(lying_across("roof.ply") == 0);
-  options.finish_place = FinishPlace::here;
-  CHECK(ridge.run(options, "here.ply").triangles == 1'500);
-  CHECK(lying_across("here.ply") == 0);
+  for (const CutOptions& cut : both_schemes(5)) {
+    FinishBench ridge(roof, cut);
+    RunOptions options = FinishBench::farmed(1'500);
+    options.lines.crease_angle = 40;
+    CHECK(ridge.run(options, "roof.ply").triangles == 1'500);
+    CHECK(ridge.kinds()["split"] >= 5);
+    CHECK(lying_across(ridge.mesh("roof.ply")) == 0);
+    options.finish_place = FinishPlace::here;
+    CHECK(ridge.run(options, "here.ply").triangles == 1'500);
+    CHECK(lying_across(ridge.mesh("here.ply")) == 0);
+  }
 }
 
 TEST_CASE("triangles keep their labels, whose lines cross pieces") {
@@ -302,20 +313,23 @@ TEST_CASE("triangles keep their labels, whose lines cross pieces") {
     for (const std::uint32_t v : t) y += mesh.positions[v].y / 3;
     mesh.columns.labels.push_back(y < 45 ? 3 : 5);
   }
-  FinishBench bench(mesh, 5);
-  const RunSummary made = bench.run(FinishBench::farmed(4'000), "farm.ply");
-  CHECK(bench.kinds()["write"] == 0);
-  CHECK(made.finished_in_pieces == 6);
-  CHECK(made.triangles == 4'000);
-  CHECK(made.labels->name == "region");
-  const Mesh result = bench.mesh("farm.ply");
-  REQUIRE(result.columns.labels.size() == 4'000);
-  for (std::size_t i = 0; i < result.triangles.size(); ++i) {
-    double y = 0;
-    for (const std::uint32_t v : result.triangles[i]) y += result.positions[v].y / 3;
-    if (std::abs(y - 45) > 0.01) CHECK(result.columns.labels[i] == (y < 45 ? 3U : 5U));
+  for (const CutOptions& cut : both_schemes(5)) {
+    FinishBench bench(mesh, cut);
+    const RunSummary made = bench.run(FinishBench::farmed(4'000), "farm.ply");
+    CHECK(bench.kinds()["write"] == 0);
+    CAPTURE(made.why_finished_here);
+    CHECK(made.finished_in_pieces == 6);
+    CHECK(made.triangles == 4'000);
+    CHECK(made.labels->name == "region");
+    const Mesh result = bench.mesh("farm.ply");
+    REQUIRE(result.columns.labels.size() == 4'000);
+    for (std::size_t i = 0; i < result.triangles.size(); ++i) {
+      double y = 0;
+      for (const std::uint32_t v : result.triangles[i]) y += result.positions[v].y / 3;
+      if (std::abs(y - 45) > 0.01) CHECK(result.columns.labels[i] == (y < 45 ? 3U : 5U));
+    }
+    check_clean(measure_topology(result));
   }
-  check_clean(measure_topology(result));
 }
 
 TEST_CASE("small components are left out whole, though they span pieces") {
@@ -330,25 +344,27 @@ TEST_CASE("small components are left out whole, though they span pieces") {
   for (int i = 0; i < 25; ++i) {
     add_ball({15.0 + 30 * (i % 5), 15.0 + 30 * (i / 5), 9}, i % 6 == 0 ? 5 : 3);
   }
-  FinishBench bench(mesh, 6);
-  RunOptions options = FinishBench::farmed(15'001);
-  options.drop_components = {12, false};  // of the smaller balls the diagonals are 10.4
-  const RunSummary made = bench.run(options, "farm.ply");
-  CHECK(bench.kinds()["components"] == 1);
-  CHECK(made.why_finished_here.empty());
-  CHECK(made.finished_in_pieces == 7);
-  CHECK(made.triangles == 15'001);
-  CHECK(made.dropped_components.components == 20);
-  const Topology t = measure_topology(bench.mesh("farm.ply"));
-  CHECK(t.components == 1 + 5);
-  CHECK(t.border_edges > 0);
-  CHECK(t.euler == 1 + 5 * 2);
-  bench.run(options, "again.ply", true);
-  CHECK(read_file(bench.path("farm.ply")) == read_file(bench.path("again.ply")));
-  options.finish_place = FinishPlace::here;
-  const RunSummary here = bench.run(options, "here.ply");
-  CHECK(here.dropped_components.components == 20);
-  CHECK(here.triangles == 15'001);
+  for (const CutOptions& cut : both_schemes(6)) {
+    FinishBench bench(mesh, cut);
+    RunOptions options = FinishBench::farmed(15'001);
+    options.drop_components = {12, false};  // of the smaller balls the diagonals are 10.4
+    const RunSummary made = bench.run(options, "farm.ply");
+    CHECK(bench.kinds()["components"] == 1);
+    CHECK(made.why_finished_here.empty());
+    CHECK(made.finished_in_pieces == 7);
+    CHECK(made.triangles == 15'001);
+    CHECK(made.dropped_components.components == 20);
+    const Topology t = measure_topology(bench.mesh("farm.ply"));
+    CHECK(t.components == 1 + 5);
+    CHECK(t.border_edges > 0);
+    CHECK(t.euler == 1 + 5 * 2);
+    bench.run(options, "again.ply", true);
+    CHECK(read_file(bench.path("farm.ply")) == read_file(bench.path("again.ply")));
+    options.finish_place = FinishPlace::here;
+    const RunSummary here = bench.run(options, "here.ply");
+    CHECK(here.dropped_components.components == 20);
+    CHECK(here.triangles == 15'001);
+  }
 }
 
 TEST_CASE("what pieces have no way for is the sink's, and it says why") {
