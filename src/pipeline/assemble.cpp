@@ -174,6 +174,7 @@ class Assembler::Impl {
       summary.turned += each.divided.turned;
       summary.stitched += each.divided.weight.before + each.divided.gap_triangles;
     }
+    summary.topology_simplified = result.simplifies_topology;
     summary.dropped_components = result.dropped_components;
     summary.triangles = result.triangles();
     summary.vertices = result.vertices();

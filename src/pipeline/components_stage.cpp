@@ -61,7 +61,7 @@ void FinishStage::find_components(JobGraph& graph) {
     }
     made_.dropped_components = found.dropped;
     for (const FileSection& each : found.pieces) small_components_.push_back({output.file, each});
-    divide(so_far);
+    begin_pieces(so_far);
   });
 }
 

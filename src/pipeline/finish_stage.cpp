@@ -76,19 +76,29 @@ void FinishStage::begin(JobGraph& graph, const FinishGoal& goal,
   if (parts.size() > k_most_pieces) {
     return done_(graph, std::nullopt, "there are more pieces than a job can name");
   }
-  step_ = goal.step;
-  weigh_.cost_unit = cost_unit(manifest_.box.diagonal());
-  weigh_.first_step = goal.step;
-  weigh_.last_share = std::min(1.0, k_last_of_share * goal.share);
-  weigh_.kept_share = std::min(1.0, k_kept_of_share * goal.share);
+  goal_ = goal;
   weigh_.lines = lines_of(manifest_, options_);
   weigh_.lines.topology = goal.topology;
   parts_ = parts;
-  options_.drop_components.in(manifest_.box) > 0 ? find_components(graph) : divide(graph);
+  options_.drop_components.in(manifest_.box) > 0 ? find_components(graph) : begin_pieces(graph);
+}
+
+void FinishStage::begin_pieces(JobGraph& graph) {
+  made_.simplifies_topology = weigh_.lines.topology == TopologyMode::simplify;
+  step_ = goal_.step;
+  weigh_.cost_unit = cost_unit(manifest_.box.diagonal());
+  weigh_.first_step = goal_.step;
+  weigh_.last_share = std::min(1.0, k_last_of_share * goal_.share);
+  weigh_.kept_share = std::min(1.0, k_kept_of_share * goal_.share);
+  quotas_.clear();
+  rounds_ = 0;
+  turns_ = 0;
+  divide(graph);
 }
 
 void FinishStage::divide(JobGraph& graph) {
-  const std::size_t base = turns_++ * parts_.size();
+  ++turns_;
+  const std::size_t base = std::exchange(split_jobs_, split_jobs_ + parts_.size());
   std::uint32_t first_part = 0;
   made_.pieces.clear();
   for (std::size_t i = 0; i < parts_.size(); ++i) {
@@ -178,7 +188,8 @@ void FinishStage::step_back() {
 /// Those whose quota is new.
 void FinishStage::reduce(JobGraph& graph, const std::vector<std::uint64_t>& quotas) {
   const std::size_t pieces = made_.pieces.size();
-  const std::size_t base = rounds_++ * pieces;
+  ++rounds_;
+  const std::size_t base = std::exchange(reduce_jobs_, reduce_jobs_ + pieces);
   std::vector<std::size_t> asked;
   JobNeeds needs;
   for (std::size_t i = 0; i < pieces; ++i) {
@@ -207,10 +218,12 @@ void FinishStage::look_at_count(JobGraph& graph) {
   const std::vector<std::uint64_t> quotas = rounds_ < k_most_rounds
                                                 ? share_out_again(weights_, quotas_, made)
                                                 : std::vector<std::uint64_t>();
-  if (quotas.empty()) {
-    return done_(graph, std::nullopt, "the pieces by themselves cannot be brought to the count");
+  if (!quotas.empty()) return reduce(graph, quotas);
+  if (goal_.may_simplify && weigh_.lines.topology == TopologyMode::keep) {
+    weigh_.lines.topology = TopologyMode::simplify;
+    return begin_pieces(graph);
   }
-  reduce(graph, quotas);
+  done_(graph, std::nullopt, "the pieces by themselves cannot be brought to the count");
 }
 
 /// As many jobs a piece as its input is worth.

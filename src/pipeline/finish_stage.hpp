@@ -35,6 +35,7 @@ struct FinishGoal {
   std::int32_t step = -1;  // to which all is collapsed first: a little more is left than is wanted
   double share = 1;        // of what is left then that the result has, about
   TopologyMode topology = TopologyMode::keep;
+  bool may_simplify = false;  // the topology, where the count is not met with it
 };
 
 /// The finish as jobs: pieces are divided again so that the seams lie inside, each is simplified to
@@ -61,6 +62,7 @@ class FinishStage {
                   std::uint32_t share) const;
   std::vector<PartRange> ranges_of(const PieceOfResult& piece) const;
   static void take_measured(const JobGraph& graph, PieceOfResult& piece, std::size_t job);
+  void begin_pieces(JobGraph& graph);
   void divide(JobGraph& graph);
   void take_divided(const JobGraph& graph, std::size_t piece, const JobName& name);
   void join_seams(JobGraph& graph);
@@ -76,14 +78,18 @@ class FinishStage {
   Done done_;
   std::vector<ComposedParts> parts_;
   std::vector<SectionRef> small_components_;  // of each piece; none if they are not to be left out
-  std::size_t turns_ = 0;
-  std::size_t seam_jobs_ = 0;  // of all turns
+  FinishGoal goal_;
+  std::size_t turns_ = 0;  // that pieces were divided
+  // Asked for so far.
+  std::size_t split_jobs_ = 0;
+  std::size_t seam_jobs_ = 0;
+  std::size_t reduce_jobs_ = 0;
   std::int32_t step_ = -1;
   WeighParameters weigh_;
   FinishedPieces made_;
   std::vector<PieceWeight> weights_;
   std::vector<std::uint64_t> quotas_;
-  std::size_t rounds_ = 0;
+  std::size_t rounds_ = 0;  // in which quotas were given out
 };
 
 }  // namespace meshfarm

@@ -159,10 +159,6 @@ class Run {
 
   /// In pieces; a result that cannot be made so is the sink's to make of what was chosen.
   void finish(JobGraph& graph, const ComposeGoal& goal, const std::vector<ComposedParts>& parts) {
-    if (goal.topology == TopologyMode::simplify) {
-      state_.why_finish_here = "the topology is given up where that is cheapest in the whole";
-      return;
-    }
     finishing_.begin(graph, finish_goal(goal.topology), parts,
                      [this](JobGraph&, std::optional<FinishedPieces> made, std::string why_here) {
                        state_.finished = std::move(made);
@@ -191,6 +187,7 @@ class Run {
         k_steps_a_level * level + static_cast<std::int32_t>(k_steps_a_level * std::min(1.0, way));
     goal.share = 1 / k_before_finish;
     goal.topology = topology;
+    goal.may_simplify = options_.lines.topology == TopologyMode::automatic;
     return goal;
   }
 

@@ -36,6 +36,7 @@ struct PieceOfResult {
 struct FinishedPieces {
   std::vector<PieceOfResult> pieces;
   std::uint64_t target = 0;
+  bool simplifies_topology = false;  // handles, holes or pieces might go
   DroppedComponents dropped_components;
 
   /// Others whose surface may be near the input of a piece; none for the surroundings.

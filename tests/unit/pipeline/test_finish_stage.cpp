@@ -367,6 +367,44 @@ TEST_CASE("small components are left out whole, though they span pieces") {
   }
 }
 
+TEST_CASE("handles and small pieces go in pieces, where the count is not met with them") {
+  Mesh mesh = waves(120);
+  const Mesh ring = test::torus(12, 8);
+  for (int i = 0; i < 36; ++i) {
+    const Vec3 centre = {10.0 + 20 * (i % 6), 10.0 + 20 * (i / 6), 12};
+    std::vector<Vec3> positions;
+    for (const Vec3& p : ring.positions) positions.push_back(centre + p * 0.5);
+    append_surface(positions, ring.triangles, mesh);
+  }
+  for (const CutOptions& cut : both_schemes(5)) {
+    FinishBench bench(mesh, cut);
+    const auto farmed = [&](std::uint64_t triangles, TopologyMode topology) {
+      RunOptions options = FinishBench::farmed(triangles);
+      options.lines.topology = topology;
+      return bench.run(options, "o.ply");
+    };
+    // A ring has 14 triangles at least.
+    RunSummary made = farmed(2'000, TopologyMode::automatic);
+    CHECK(made.finished_in_pieces == 6);
+    CHECK(made.triangles == 2'000);
+    CHECK_FALSE(made.topology_simplified);
+    CHECK(measure_topology(bench.mesh("o.ply")).components == 37);
+    for (const TopologyMode topology : {TopologyMode::automatic, TopologyMode::simplify}) {
+      made = farmed(300, topology);
+      CAPTURE(made.why_finished_here);
+      CHECK(made.finished_in_pieces == 6);
+      CHECK(made.triangles == 300);
+      CHECK(made.topology_simplified);
+      const Topology t = measure_topology(bench.mesh("o.ply"));
+      CHECK(t.nonmanifold_edges == 0);
+      CHECK(t.degenerate + t.zero_area + t.duplicate == 0);
+    }
+    made = farmed(300, TopologyMode::keep);
+    CHECK(made.finished_in_pieces == 0);
+    CHECK(made.triangles > 300);
+  }
+}
+
 TEST_CASE("what pieces have no way for is the sink's, and it says why") {
   FinishBench bench(waves(60), 4);
   RunOptions options = FinishBench::farmed(2'000);
@@ -386,9 +424,6 @@ TEST_CASE("what pieces have no way for is the sink's, and it says why") {
   expect_here();
   options = FinishBench::farmed(2'000);
   options.allocation = Allocation::uniform;
-  expect_here();
-  options = FinishBench::farmed(2'000);
-  options.lines.topology = TopologyMode::simplify;
   expect_here();
 }
 
