@@ -148,6 +148,7 @@ class ResultFinish {
         finish_to_bound(stage_, manifest_, std::move(stitched),
                         {.max_error = k_bound_share * summary_.max_error,
                          .certified_error = run_.certify ? summary_.max_error : 0,
+                         .positions = manifest_.positions,
                          .lines = lines_,
                          .threads = options_.threads,
                          .progress = [&](std::uint64_t left) {

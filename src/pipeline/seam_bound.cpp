@@ -1,0 +1,250 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+//
+// Why a proof holds where several groups of seams are changed at once. Each point of the input has
+// some point of what was there before within the bound. If that lies on a triangle that nobody
+// changes, it stays. Else the group that changes the triangle proves the point anew: by what it
+// made and by what nobody changes, but not by what another group may change. What it cannot prove
+// that way before it begins, it leaves to the others, and leaves as it is what is near.
+#include "pipeline/seam_bound.hpp"
+
+#include <algorithm>
+#include <array>
+#include <iterator>
+#include <numeric>
+#include <optional>
+#include <unordered_map>
+#include <utility>
+#include <vector>
+
+#include <meshfarm/geometry/hausdorff.hpp>
+#include <meshfarm/geometry/surface_bound.hpp>
+#include <meshfarm/geometry/triangle_index.hpp>
+#include <meshfarm/geometry/vertices.hpp>
+
+#include "pipeline/bound_proof.hpp"
+
+namespace meshfarm {
+namespace {
+
+/// In distances of the bound: what is farther from a surface matters to nothing that is made of it.
+constexpr double k_bound_reach = 2;
+/// So often what is not proven is left as it was, before all is.
+constexpr int k_proof_attempts = 4;
+
+bool may_change(const SeamMesh& seams, const Triangle& t) {
+  return *std::max_element(t.begin(), t.end()) >= seams.locked;
+}
+
+/// Those that are not flagged are locked, and those of no triangle go.
+void lock_others(std::vector<std::uint8_t> flags, SeamMesh& seams) {
+  std::vector<std::uint8_t> used(flags.size(), 0);
+  for (const auto& [a, b, c] : seams.mesh.triangles) used[a] = used[b] = used[c] = 1;
+  for (std::size_t v = seams.kept; v < flags.size(); ++v) {
+    if (used[v] == 0) flags[v] = 1;
+  }
+  seams.locked = put_last(seams.mesh, flags);
+}
+
+/// Those beside the first `locked`.
+std::vector<std::uint8_t> free_flags(const SeamMesh& seams) {
+  std::vector<std::uint8_t> flags(seams.mesh.positions.size(), 1);
+  std::fill_n(flags.begin(), seams.locked, std::uint8_t{0});
+  return flags;
+}
+
+/// A triangle by its places: vertices may be taken apart, or their numbers change.
+using Places = std::array<std::array<double, 3>, 3>;
+
+Places places_of(const Mesh& mesh, const Triangle& t) {
+  Places places{};
+  for (std::size_t i = 0; i < 3; ++i) {
+    const Vec3 p = mesh.positions[t[i]];
+    places[i] = {p.x, p.y, p.z};
+  }
+  std::sort(places.begin(), places.end());
+  return places;
+}
+
+/// Those that do not change, in an order of their own.
+std::vector<Places> fixed_places(const SeamMesh& seams) {
+  std::vector<Places> fixed;
+  for (const Triangle& t : seams.mesh.triangles) {
+    if (!may_change(seams, t) && !is_degenerate(t)) fixed.push_back(places_of(seams.mesh, t));
+  }
+  std::sort(fixed.begin(), fixed.end());
+  return fixed;
+}
+
+/// Whether none of them has gone. Tells which of the triangles are others.
+bool are_kept(const std::vector<Places>& fixed, const Mesh& mesh, std::vector<Triangle>& others) {
+  std::vector<std::uint8_t> is_there(fixed.size(), 0);
+  for (const Triangle& t : mesh.triangles) {
+    const auto [first, last] = std::equal_range(fixed.begin(), fixed.end(), places_of(mesh, t));
+    if (first == last) others.push_back(t);
+    std::fill(is_there.begin() + (first - fixed.begin()), is_there.begin() + (last - fixed.begin()),
+              std::uint8_t{1});
+  }
+  return std::find(is_there.begin(), is_there.end(), 0) == is_there.end();
+}
+
+/// Proves what was made round the seams. What is farther from them was proven before, part by part.
+class SeamProof {
+ public:
+  /// `input`: all of it that is near what may change.
+  SeamProof(Mesh input, const BoundedFinishOptions& options)
+      : input_(std::move(input)), options_(options) {
+    drop_coincident_corners(input_);
+    to_prove_ = input_.triangles;
+    if (!input_.triangles.empty()) index_.emplace(input_, options.threads);
+  }
+
+  /// What is near more of the input than can be proven without the unsure triangles stays.
+  void leave_to_others(SeamMesh& seams) {
+    if (seams.first_unsure == seams.end_unsure) return;
+    const std::vector<std::uint32_t> beyond = numbers_beyond(sure_part(seams, seams.mesh));
+    if (beyond.empty()) return;
+    std::vector<Triangle> unproven;
+    for (const std::uint32_t i : beyond) unproven.push_back(to_prove_[i]);
+    const NearCells near(input_.positions, unproven, k_bound_reach * options_.certified_error);
+    std::vector<std::uint8_t> flags = free_flags(seams);
+    for (const std::uint32_t i : near.touching(seams.mesh.positions, seams.mesh.triangles)) {
+      for (const std::uint32_t v : seams.mesh.triangles[i]) flags[v] = 0;
+    }
+    lock_others(std::move(flags), seams);
+    TriangleColumns none;
+    std::size_t next = 0;
+    keep_triangles(to_prove_, none, [&](std::size_t i) {
+      if (next == beyond.size() || beyond[next] != i) return true;
+      ++next;
+      return false;
+    });
+  }
+
+  /// What is not proven of a result: triangles of either surface.
+  Mesh find_unproven(const SeamMesh& before, const Mesh& result) const {
+    std::vector<Triangle> changed;
+    if (!index_ || result.triangles.empty() || !are_kept(fixed_places(before), result, changed)) {
+      return before.mesh;
+    }
+    Mesh unproven;
+    add(result.positions, changed,
+        find_beyond(result.positions, changed, *index_, options_.certified_error, options_.threads),
+        unproven);
+    const bool is_all_sure = before.first_unsure == before.end_unsure;
+    add(input_.positions, to_prove_,
+        is_all_sure ? numbers_beyond(result) : numbers_beyond(sure_part(before, result)), unproven);
+    return unproven;
+  }
+
+ private:
+  /// Locked vertices have the same numbers in the result.
+  static Mesh sure_part(const SeamMesh& seams, const Mesh& result) {
+    Mesh sure;
+    sure.positions = result.positions;
+    const auto is_unsure = [&](std::uint32_t v) {
+      return v >= seams.first_unsure && v < seams.end_unsure;
+    };
+    std::copy_if(result.triangles.begin(), result.triangles.end(),
+                 std::back_inserter(sure.triangles),
+                 [&](const Triangle& t) { return !std::all_of(t.begin(), t.end(), is_unsure); });
+    return sure;
+  }
+
+  /// Of the input, what is not proven to be near.
+  std::vector<std::uint32_t> numbers_beyond(const Mesh& surface) const {
+    if (!surface.triangles.empty()) {
+      return find_beyond(input_.positions, to_prove_, TriangleIndex(surface, options_.threads),
+                         options_.certified_error, options_.threads);
+    }
+    std::vector<std::uint32_t> all(to_prove_.size());
+    std::iota(all.begin(), all.end(), 0U);
+    return all;
+  }
+
+  static void add(std::span<const Vec3> positions, std::span<const Triangle> triangles,
+                  const std::vector<std::uint32_t>& numbers, Mesh& unproven) {
+    std::vector<Triangle> beyond;
+    for (const std::uint32_t i : numbers) beyond.push_back(triangles[i]);
+    if (!beyond.empty()) append_surface(positions, beyond, unproven);
+  }
+
+  Mesh input_;
+  std::vector<Triangle> to_prove_;  // of the input
+  std::optional<TriangleIndex> index_;
+  const BoundedFinishOptions& options_;
+};
+
+BoundedFinish simplified(SeamMesh seams, const SurfaceBound* bound,
+                         const BoundedFinishOptions& options) {
+  Simplifier simplifier(std::move(seams.mesh), {.locked_vertices = seams.locked,
+                                                .positions = options.positions,
+                                                .lines = options.lines,
+                                                .bound = bound});
+  if (bound != nullptr) {
+    simplifier.reduce({}, [&](std::uint64_t left) {
+      options.progress(left);
+      return true;
+    });
+  }
+  return {simplifier.mesh(), simplifier.dropped_degenerate(), simplifier.dropped_duplicate(),
+          simplifier.turned()};
+}
+
+/// Where the proof fails, what was there stays as it is; in the end all of it, which has a proof.
+BoundedFinish simplified_with_proof(SeamMesh seams, const SurfaceBound& bound,
+                                    const BoundedFinishOptions& options) {
+  SeamProof proof(bound.surface(), options);
+  proof.leave_to_others(seams);
+  for (int attempt = 0; attempt < k_proof_attempts; ++attempt) {
+    BoundedFinish finish = simplified(seams, &bound, options);
+    const Mesh unproven = proof.find_unproven(seams, finish.mesh);
+    if (unproven.triangles.empty()) return finish;
+    const NearCells near(unproven.positions, unproven.triangles,
+                         k_bound_reach * options.certified_error);
+    std::vector<std::uint8_t> flags(seams.mesh.positions.size(), 0);
+    for (std::uint32_t v = seams.locked; v < flags.size(); ++v) {
+      const Vec3 p = seams.mesh.positions[v];
+      flags[v] = near.touch({p, p}) ? 0 : 1;
+    }
+    lock_others(std::move(flags), seams);
+  }
+  lock_others(std::vector<std::uint8_t>(seams.mesh.positions.size(), 0), seams);
+  return simplified(std::move(seams), nullptr, options);
+}
+
+}  // namespace
+
+NearCells cells_round_changes(const SeamMesh& seams, const BoundedFinishOptions& options) {
+  std::vector<Triangle> changing;
+  const std::vector<Triangle>& all = seams.mesh.triangles;
+  std::copy_if(all.begin(), all.end(), std::back_inserter(changing),
+               [&](const Triangle& t) { return may_change(seams, t); });
+  return {seams.mesh.positions, changing, k_bound_reach * options.max_error};
+}
+
+void add_near(std::span<const Vec3> positions, std::span<const Triangle> triangles,
+              const NearCells& near, Mesh& mesh) {
+  std::unordered_map<std::uint32_t, std::uint32_t> number;
+  for (const Triangle& t : triangles) {
+    Box box;
+    for (const std::uint32_t v : t) box.add(positions[v]);
+    if (!near.touch(box)) continue;
+    Triangle& added = mesh.triangles.emplace_back();
+    for (std::size_t i = 0; i < 3; ++i) {
+      const auto [at, is_new] =
+          number.try_emplace(t[i], static_cast<std::uint32_t>(mesh.positions.size()));
+      if (is_new) mesh.positions.push_back(positions[t[i]]);
+      added[i] = at->second;
+    }
+  }
+}
+
+BoundedFinish simplify_seams(SeamMesh seams, Mesh input, const BoundedFinishOptions& options) {
+  if (input.triangles.empty()) return simplified(std::move(seams), nullptr, options);
+  const SurfaceBound bound(std::move(input), {options.max_error, options.threads, true});
+  return options.certified_error > 0 ? simplified_with_proof(std::move(seams), bound, options)
+                                     : simplified(std::move(seams), &bound, options);
+}
+
+}  // namespace meshfarm
