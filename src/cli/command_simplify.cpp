@@ -96,9 +96,6 @@ class SimplifyCommand : public Command {
     constexpr std::string_view k_not_kept =
         "the parts of the input, which --cut farm does not keep: use --cut here";
     if (!report_.empty()) throw UsageError("--report shows " + std::string(k_not_kept));
-    if (target_.run.error.value > 0) {
-      throw UsageError("--error looks at " + std::string(k_not_kept));
-    }
   }
 
   /// Measured: from about five million triangles on, the jobs of a cut take no more of the

@@ -43,8 +43,9 @@ void keep_round(const Mesh& mesh, const std::vector<Triangle>& lost,
 
 class PartSimplifier {
  public:
-  PartSimplifier(const SimplifyParameters& parameters, const JobContext& context)
-      : parameters_(parameters), context_(context) {}
+  PartSimplifier(const SimplifyParameters& parameters, const JobContext& context,
+                 std::string_view beside)
+      : parameters_(parameters), context_(context), beside_(beside) {}
 
   BoundedPart run(Part part) {
     samples_ = sample_surface(part.mesh, {.samples = parameters_.samples, .threads = 1});
@@ -108,7 +109,8 @@ class PartSimplifier {
   BoundedPart write(const Simplifier& simplifier) const {
     BoundedPart made;
     const Mesh& mesh = simplifier.mesh();
-    ResultWriter result(vertices_, [&](std::string_view bytes) { made.file += bytes; });
+    ResultWriter result(
+        vertices_, [&](std::string_view bytes) { made.file += bytes; }, beside_);
     const double farthest =
         mesh.triangles.empty() ? 0 : DistanceMeter(mesh, 1).measure(samples_.points).max;
     result.add_rung(level_reached(simplifier.pass_cost(), parameters_.cost_unit), mesh,
@@ -116,11 +118,13 @@ class PartSimplifier {
     result.finish(VertexView(mesh).part(0, vertices_.boundary), {&samples_, 1});
     made.summary = {result.rungs(), simplifier.dropped_degenerate(), simplifier.dropped_duplicate(),
                     false, simplifier.turned()};
+    made.beside = result.beside();
     return made;
   }
 
   const SimplifyParameters& parameters_;
   const JobContext& context_;
+  std::string_view beside_;
   SurfaceSamples samples_;
   ResultWriter::Vertices vertices_;
 };
@@ -128,8 +132,8 @@ class PartSimplifier {
 }  // namespace
 
 BoundedPart simplify_to_bound(Part part, const SimplifyParameters& parameters,
-                              const JobContext& context) {
-  return PartSimplifier(parameters, context).run(std::move(part));
+                              const JobContext& context, std::string_view beside) {
+  return PartSimplifier(parameters, context, beside).run(std::move(part));
 }
 
 }  // namespace meshfarm

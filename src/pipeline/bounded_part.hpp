@@ -3,6 +3,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 
 #include <meshfarm/farm/job.hpp>
 #include <meshfarm/io/part_file.hpp>
@@ -12,13 +13,15 @@
 namespace meshfarm {
 
 struct BoundedPart {
-  std::string file;  // a result of one rung
+  std::string file;    // a result of one rung
+  FileSection beside;  // where what was to be put beside its mesh is
   ResultSummary summary;
 };
 
 /// Simplifies a part as far as no distance between it and what it was is above
-/// SimplifyParameters::max_error, in either direction.
+/// SimplifyParameters::max_error, in either direction. `beside`: what the file is to have beside
+/// its mesh.
 BoundedPart simplify_to_bound(Part part, const SimplifyParameters& parameters,
-                              const JobContext& context);
+                              const JobContext& context, std::string_view beside = {});
 
 }  // namespace meshfarm

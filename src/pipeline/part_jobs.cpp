@@ -99,11 +99,16 @@ Job PartJobs::climb(std::uint32_t part, double headroom, TopologyMode topology) 
           entry.triangles,
           memory_of(entry, parameters.start_triangles) +
               memory_of_channels(parameters.lines, entry.triangles) +
-              (by_error() ? k_bound_bytes_per_triangle * entry.triangles : 0) +
-              (options_.certify ? k_proof_bytes_per_triangle * entry.triangles : 0)};
+              memory_of_bound(entry.triangles)};
   // Other sweeps need not wait for the stream's own.
   if (by_error() && is_sampled(part)) job.after = manifest_.parts[part].triangles;
   return job;
+}
+
+/// To keep a bound, and to prove it.
+std::uint64_t PartJobs::memory_of_bound(std::uint64_t triangles) const {
+  return (by_error() ? k_bound_bytes_per_triangle * triangles : 0) +
+         (options_.certify ? k_proof_bytes_per_triangle * triangles : 0);
 }
 
 /// How large the part is going to be is known on the average.
@@ -112,11 +117,12 @@ Job PartJobs::build_and_climb(std::uint32_t part, double headroom,
   const std::uint64_t parts = std::max<std::uint64_t>(1, manifest_.parts.size());
   const std::uint64_t average = manifest_.input_triangles / parts + 1;
   parameters.build = PartToBuild{*bundles_, part, share_rule(headroom)};
+  if (by_error()) set_error_bound(parameters, part);
   Job job{std::string(k_simplify_kind),
           {},
           encode_parameters(parameters),
           average + average / k_build_share,
-          memory_to_build(average)};
+          memory_to_build(average) + memory_of_bound(k_largest_part * average / 10)};
   for (const VertexBundleRef& each : bundles_->vertices) job.reads += each.file.size / parts;
   for (const TriangleBundleRef& each : bundles_->triangles) job.reads += each.file.size / parts;
   return job;

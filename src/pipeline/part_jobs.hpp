@@ -49,6 +49,7 @@ class PartJobs {
   const PartEntry& climbed(std::uint32_t part) const;
   void set_error_bound(SimplifyParameters& parameters, std::uint32_t part) const;
   Job build_and_climb(std::uint32_t part, double headroom, SimplifyParameters parameters) const;
+  std::uint64_t memory_of_bound(std::uint64_t triangles) const;
   ShareRule share_rule(double headroom) const;
   double end_of_ladders() const;
 

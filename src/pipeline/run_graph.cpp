@@ -11,7 +11,6 @@
 
 #include <meshfarm/pipeline/algorithm.hpp>
 #include <meshfarm/pipeline/run_graph.hpp>
-#include <meshfarm/util/errors.hpp>
 
 #include "pipeline/bake_stage.hpp"
 #include "pipeline/climb_stage.hpp"
@@ -140,7 +139,9 @@ class Run {
     if (++parts_done_ < manifest().parts.size()) return;
     JobNeeds all;
     for (const JobName& job : results().made_by) all.push_back(just(job));
-    graph.then(all, [this](JobGraph& so_far) { compose(so_far); });
+    graph.then(all, [this](JobGraph& so_far) {
+      cutting_.join(so_far, results(), [this](JobGraph& joined) { compose(joined); });
+    });
   }
 
   /// Neighbours are joined by workers, where that is worth it.
@@ -285,11 +286,6 @@ std::pair<JobGraph, std::shared_ptr<const Run>> begin_run(const Manifest& manife
 }  // namespace
 
 JobSource make_job_source(const Manifest& manifest, const RunOptions& options) {
-  if (manifest.cutting && options.error.value > 0) {
-    throw UsageError(
-        "--error looks at the parts of the input, which a cut by the farm does not keep: "
-        "use --cut here");
-  }
   return [manifest, options] { return begin_run(manifest, options).first; };
 }
 

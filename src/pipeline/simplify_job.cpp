@@ -283,7 +283,9 @@ JobOutput simplify_part(const Job& job, const JobContext& context) {
   part.mesh.columns.keep(parameters.lines.columns);
   const ResultName name{key_of(job).value, context.attempt, context.incarnation};
   if (parameters.max_error > 0) {
-    const BoundedPart bounded = simplify_to_bound(std::move(part), parameters, context);
+    BoundedPart bounded = simplify_to_bound(std::move(part), parameters, context, at_hand.beside);
+    bounded.summary.built = at_hand.facts;
+    if (at_hand.facts) bounded.summary.built->beside = bounded.beside;
     return {context.publish(name, bounded.file), encode_summary(bounded.summary)};
   }
   LadderBuilder ladder(std::move(part), parameters, context, at_hand.beside);
