@@ -108,19 +108,21 @@ class Assembler::Impl {
     finished_ = finish_result(stage_, manifest_, run_, chosen, options);
     finished_->summary.output = options_.output.string();
     // Or it was to be by itself, and could not.
-    if (run_.finish_place == FinishPlace::farm || why_finish_here(manifest_, run_).empty()) {
+    if (run_.finish_place == FinishPlace::farm ||
+        (why_finish_here(manifest_, run_).empty() && state_.why_finish_here != k_sink_holds_it)) {
       finished_->summary.why_finished_here = state_.why_finish_here;
     }
-    if (run_.certify) {
-      finished_->summary.certified_error +=
-          rounding_of_file(options_.output, manifest_.positions, manifest_.box);
-    }
+    if (run_.certify) finished_->summary.certified_error += rounding_of_output();
     if (!bakes_texture(manifest_, run_)) return;
     Stopwatch watch;
     tell("charts", 0, 0);
     layout_ =
         lay_out_texture(stage_, manifest_, run_.texture_size, options_.threads, finished_->mesh);
     finished_->summary.finish_seconds += watch.lap();
+  }
+
+  double rounding_of_output() const {
+    return rounding_of_file(options_.output, manifest_.positions, manifest_.box);
   }
 
   JobOutput write_before_end(const Job& job, const JobContext& context,
@@ -160,6 +162,8 @@ class Assembler::Impl {
     summary.manifest = manifest_;
     summary.output = options_.output.string();
     summary.target = asked_triangles(manifest_, run_);
+    summary.max_error = run_.error.in(manifest_.box);
+    if (run_.certify) summary.certified_error = summary.max_error + rounding_of_output();
     summary.finished_in_pieces = result.pieces.size();
     summary.dropped_degenerate = manifest_.coincident_corners;
     summary.dropped_duplicate = manifest_.dropped_duplicate;
@@ -178,6 +182,7 @@ class Assembler::Impl {
     summary.dropped_components = result.dropped_components;
     summary.triangles = result.triangles();
     summary.vertices = result.vertices();
+    if (summary.max_error > 0) return summary;
     if (summary.triangles > summary.target) {
       summary.why_not_exact = "the charts of its textures are kept, and need about so many";
     }

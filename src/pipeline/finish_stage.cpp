@@ -36,23 +36,8 @@ constexpr double k_from_a_step_before = 1.3;
 constexpr std::int32_t k_steps_before_end = 2;
 constexpr std::int32_t k_steps_for_turn = 2;
 
-constexpr std::uint64_t k_piece_process_bytes = std::uint64_t{16} << 20;
-/// The mesh, what simplifies it, and the file that is written.
-constexpr std::uint64_t k_piece_triangle_bytes = 170;
-/// A part that is built for the occasion, and what it is built of.
-constexpr std::uint64_t k_built_triangle_bytes = 120;
-/// A seam job is for so many triangles round the seams, or more where there are jobs for two dozen
-/// workers, up to the second number. It also has those of so many pieces more.
-constexpr std::uint64_t k_seam_triangles = 24'000;
-constexpr std::uint64_t k_most_seam_triangles = 150'000;
-constexpr std::uint64_t k_usual_groups = 24;
-constexpr std::uint64_t k_pieces_round_group = 20;
-/// Measured: to join them takes the work of simplifying so many times as many, to split a piece so
-/// many times its triangles.
-constexpr std::uint64_t k_seam_work = 3;
+/// Measured: to split a piece takes the work of simplifying so many times its triangles.
 constexpr std::uint64_t k_split_work = 2;
-/// Of fewer pieces groups meet nearly everywhere: on foam in 7 pieces that is 2.5 % of the error.
-constexpr std::uint64_t k_least_pieces_for_groups = 12;
 /// Of the input, by one job, at least.
 constexpr std::uint64_t k_measured_at_once = 200'000;
 /// To read the result that is measured, and to arrange its points, is worth so many triangles.
@@ -80,6 +65,13 @@ void FinishStage::begin(JobGraph& graph, const FinishGoal& goal,
   weigh_.lines = lines_of(manifest_, options_);
   weigh_.lines.topology = goal.topology;
   parts_ = parts;
+  if (by_error()) {
+    std::uint64_t left = manifest_.boundary_triangles;
+    for (const ComposedParts& each : parts) left += each.triangles;
+    if (holds_well(options_, left)) return done_(graph, std::nullopt, k_sink_holds_it);
+    goal_.step = -1;
+    weigh_.is_weighed = false;
+  }
   options_.drop_components.in(manifest_.box) > 0 ? find_components(graph) : begin_pieces(graph);
 }
 
@@ -112,7 +104,8 @@ void FinishStage::divide(JobGraph& graph) {
     for (std::size_t i = 0; i < made_.pieces.size(); ++i) {
       take_divided(so_far, i, job_name(RunStage::split, base + i));
     }
-    made_.pieces.size() > 1 ? join_seams(so_far) : weigh(so_far);
+    if (made_.pieces.size() > 1) return join_seams(so_far);
+    by_error() ? keep_all(so_far) : weigh(so_far);
   });
 }
 
@@ -121,29 +114,6 @@ void FinishStage::take_divided(const JobGraph& graph, std::size_t piece, const J
   made_.pieces[piece].divided_file = output.file;
   made_.pieces[piece].divided =
       decode_divided_piece(output.summary, "summary of " + output.file.name);
-}
-
-void FinishStage::join_seams(JobGraph& graph) {
-  std::uint64_t triangles = manifest_.boundary_triangles;
-  for (const PieceOfResult& each : made_.pieces) triangles += each.divided.strip_triangles;
-  const std::uint64_t pieces = made_.pieces.size();
-  const std::uint64_t most =
-      pieces < k_least_pieces_for_groups
-          ? 1
-          : std::min(pieces, std::max(k_usual_groups, triangles / k_most_seam_triangles));
-  const auto groups =
-      static_cast<std::uint32_t>(std::clamp<std::uint64_t>(triangles / k_seam_triangles, 1, most));
-  const std::size_t first = std::exchange(seam_jobs_, seam_jobs_ + groups);
-  for (std::uint32_t group = 0; group < groups; ++group) {
-    graph.add(job_name(RunStage::seam, first + group), seam_job(group, groups));
-  }
-  graph.then({jobs_of(RunStage::seam, first, groups)}, [this, first, groups](JobGraph& so_far) {
-    for (std::uint32_t group = 0; group < groups; ++group) {
-      made_.pieces.emplace_back();
-      take_divided(so_far, made_.pieces.size() - 1, job_name(RunStage::seam, first + group));
-    }
-    weigh(so_far);
-  });
 }
 
 void FinishStage::weigh(JobGraph& graph) {
@@ -185,6 +155,11 @@ void FinishStage::step_back() {
   weigh_.kept_share /= times;
 }
 
+/// A bound has decided how much is left.
+void FinishStage::keep_all(JobGraph& graph) {
+  reduce(graph, std::vector<std::uint64_t>(made_.pieces.size(), k_keep_all));
+}
+
 /// Those whose quota is new.
 void FinishStage::reduce(JobGraph& graph, const std::vector<std::uint64_t>& quotas) {
   const std::size_t pieces = made_.pieces.size();
@@ -195,7 +170,7 @@ void FinishStage::reduce(JobGraph& graph, const std::vector<std::uint64_t>& quot
   for (std::size_t i = 0; i < pieces; ++i) {
     if (i < quotas_.size() && quotas_[i] == quotas[i]) continue;
     const JobName name = job_name(RunStage::reduce, base + i);
-    graph.add(name, reduce_job(i, quotas[i], made_.target));
+    graph.add(name, reduce_job(i, quotas[i]));
     asked.push_back(i);
     needs.push_back(just(name));
   }
@@ -212,7 +187,7 @@ void FinishStage::reduce(JobGraph& graph, const std::vector<std::uint64_t>& quot
 }
 
 void FinishStage::look_at_count(JobGraph& graph) {
-  if (made_.triangles() <= made_.target) return measure(graph);
+  if (by_error() || made_.triangles() <= made_.target) return measure(graph);
   std::vector<std::uint64_t> made;
   for (const PieceOfResult& each : made_.pieces) made.push_back(each.finished.triangles);
   const std::vector<std::uint64_t> quotas = rounds_ < k_most_rounds
@@ -295,38 +270,10 @@ Job FinishStage::split_job(const ComposedParts& parts, std::size_t number) const
   return job;
 }
 
-Job FinishStage::seam_job(std::uint32_t group, std::uint32_t groups) const {
-  SeamParameters parameters;
-  parameters.group = group;
-  parameters.groups = groups;
-  std::uint64_t triangles = manifest_.boundary_triangles;
-  for (const PieceOfResult& each : made_.pieces) {
-    parameters.strips.push_back({each.parts, {each.divided_file, each.divided.strip}});
-    triangles += each.divided.strip_triangles;
-  }
-  parameters.all_parts = static_cast<std::uint32_t>(manifest_.parts.size());
-  parameters.boundary = manifest_.boundary;
-  parameters.samples_per_triangle =
-      std::min(1.0, static_cast<double>(samples_for(manifest_, options_, manifest_.triangles())) /
-                        static_cast<double>(std::max<std::uint64_t>(1, manifest_.triangles())));
-  parameters.weigh = weigh_;
-  Job job;
-  job.kind = k_seam_kind;
-  job.parameters = encode_parameters(parameters);
-  job.cost = k_seam_work * triangles / groups + 1;
-  const std::uint64_t pieces = made_.pieces.size();
-  const std::uint64_t near = std::min(pieces, pieces / groups + 1 + k_pieces_round_group);
-  job.memory =
-      k_piece_process_bytes + (bytes_of(manifest_.boundary) + k_piece_triangle_bytes * triangles +
-                               memory_of_channels(weigh_.lines, triangles)) *
-                                  near / pieces;
-  return job;
-}
-
 /// From the rung that is nearest above.
-Job FinishStage::reduce_job(std::size_t piece, std::uint64_t quota, std::uint64_t all) const {
+Job FinishStage::reduce_job(std::size_t piece, std::uint64_t quota) const {
   const PieceOfResult& from = made_.pieces[piece];
-  const ErrorPoints points;
+  const ErrorPoints points = by_error() ? k_points_for_bound : ErrorPoints{};
   ReduceParameters parameters;
   parameters.mesh = from.divided.mesh;
   const std::vector<std::uint64_t>& rungs = from.divided.rungs;
@@ -334,8 +281,15 @@ Job FinishStage::reduce_job(std::size_t piece, std::uint64_t quota, std::uint64_
     ++parameters.rung;
   }
   parameters.triangles = quota;
-  parameters.points = share_of_points(points.by_area, quota, all);
-  parameters.vertices = share_of_points(points.vertices, quota, all);
+  std::uint64_t share = quota;
+  std::uint64_t all = made_.target;
+  if (quota == k_keep_all) {
+    share = rungs.front();
+    all = 0;
+    for (const PieceOfResult& each : made_.pieces) all += each.divided.rungs.front();
+  }
+  parameters.points = share_of_points(points.by_area, share, all);
+  parameters.vertices = share_of_points(points.vertices, share, all);
   parameters.lines = weigh_.lines;
   Job job;
   job.kind = k_reduce_kind;
@@ -350,7 +304,7 @@ Job FinishStage::reduce_job(std::size_t piece, std::uint64_t quota, std::uint64_
 Job FinishStage::measure_job(std::size_t number, const std::vector<PartRange>& ranges,
                              std::uint32_t share) const {
   const PieceOfResult& piece = made_.pieces[number];
-  const ErrorPoints points;
+  const ErrorPoints points = by_error() ? k_points_for_bound : ErrorPoints{};
   MeasureParameters parameters;
   parameters.first_part = ranges[share].first;
   parameters.end_part = ranges[share].end;

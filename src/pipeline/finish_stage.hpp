@@ -30,6 +30,12 @@ inline constexpr double k_least_by_seams = 1e7;
 inline constexpr std::uint64_t k_usual_piece = 262'144;
 inline constexpr std::uint64_t k_pieces_of_all = 32;
 
+inline constexpr std::uint64_t k_piece_process_bytes = std::uint64_t{16} << 20;
+/// The mesh, what simplifies it, and the file that is written.
+inline constexpr std::uint64_t k_piece_triangle_bytes = 170;
+/// A part that is built for the occasion, and what it is built of.
+inline constexpr std::uint64_t k_built_triangle_bytes = 120;
+
 /// Where all pieces begin.
 struct FinishGoal {
   std::int32_t step = -1;  // to which all is collapsed first: a little more is left than is wanted
@@ -57,7 +63,7 @@ class FinishStage {
   Job split_job(const ComposedParts& parts, std::size_t number) const;
   void find_components(JobGraph& graph);
   Job seam_job(std::uint32_t group, std::uint32_t groups) const;
-  Job reduce_job(std::size_t piece, std::uint64_t quota, std::uint64_t all) const;
+  Job reduce_job(std::size_t piece, std::uint64_t quota) const;
   Job measure_job(std::size_t number, const std::vector<PartRange>& ranges,
                   std::uint32_t share) const;
   std::vector<PartRange> ranges_of(const PieceOfResult& piece) const;
@@ -70,6 +76,12 @@ class FinishStage {
   void step_back();
   void reduce(JobGraph& graph, const std::vector<std::uint64_t>& quotas);
   void look_at_count(JobGraph& graph);
+  void keep_all(JobGraph& graph);
+  bool by_error() const { return options_.error.value > 0; }
+  std::uint32_t groups_of_seams() const;
+  std::uint64_t input_round_seams() const;
+  std::uint64_t memory_of_bound(std::uint32_t groups) const;
+  SeamParameters::Bound bound() const;
   void measure(JobGraph& graph);
   std::uint64_t bytes_of_bundles(std::uint64_t triangles) const;
 

@@ -27,7 +27,6 @@ bool touch(const Box& a, const Box& b) {
 }
 
 std::string why_not_farmed(const Manifest& manifest, const RunOptions& options) {
-  if (options.error.value > 0) return "a bound on the error is kept across the seams at once";
   if (options.finish == Finish::boundary) return "only edges at seams are to change";
   if (options.allocation == Allocation::uniform) return "the parts have no common threshold";
   if (bakes_texture(manifest, options)) return "a new texture is laid out on the whole result";
@@ -55,8 +54,13 @@ std::string why_finish_here(const Manifest& manifest, const RunOptions& options)
   std::string why = why_not_farmed(manifest, options);
   if (!why.empty() || options.finish_place == FinishPlace::farm) return why;
   const auto need = sink_need(manifest, options);
-  if (need && need->triangles > k_comfortable) return {};
-  return "the sink holds it well";
+  if ((need ? need->triangles : manifest.triangles()) > k_comfortable) return {};
+  return k_sink_holds_it;
+}
+
+bool holds_well(const RunOptions& options, std::uint64_t triangles) {
+  return options.error.value > 0 && options.finish_place == FinishPlace::automatic &&
+         triangles <= k_comfortable;
 }
 
 bool has_attributes(const Manifest& manifest) {

@@ -72,11 +72,25 @@ void InputSurface::show(const Wants& wants, const Show& show) {
   boundary_.resize(manifest_.parts.size());
   parallel_for(manifest_.parts.size(), threads_, [&](std::uint64_t p) {
     if (!is_first && !wants(boxes_[p])) return;
-    const auto part = static_cast<std::uint32_t>(p);
-    if (manifest_.sorting) return show_slab(part, show);
-    manifest_.scheme == Scheme::stream ? show_stream(part, show) : show_part(part, show);
+    show_one(static_cast<std::uint32_t>(p), show);
   });
   show_between(wants, show);
+}
+
+void InputSurface::show_parts(const Stage& stage, const Manifest& manifest,
+                              std::span<const std::uint32_t> parts, const Show& show) {
+  InputSurface some(stage, manifest, 1);
+  some.boxes_.resize(manifest.parts.size());
+  some.boundary_.resize(manifest.parts.size());
+  for (const std::uint32_t part : parts) {
+    if (part >= manifest.parts.size()) throw DataError("no such parts in the stage");
+    some.show_one(part, show);
+  }
+}
+
+void InputSurface::show_one(std::uint32_t part, const Show& show) {
+  if (manifest_.sorting) return show_slab(part, show);
+  manifest_.scheme == Scheme::stream ? show_stream(part, show) : show_part(part, show);
 }
 
 Part InputSurface::read_part(std::uint32_t p) const {

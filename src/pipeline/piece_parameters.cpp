@@ -2,10 +2,13 @@
 // SPDX-License-Identifier: MIT
 //
 // Parameters and summaries of the jobs of a farmed finish, version 6, little endian:
-//   weigh      = cost unit f64 | first step i32 | last share f64 | kept share f64 | lines
+//   weigh      = cost unit f64 | first step i32 | last share f64 | kept share f64 |
+//                is weighed u8 | lines
 //   split      = version u8 | piece u32 | rung u32 | step i32 | is composed u8 | ref | weigh
 //   seam       = version u8 | strips u32 x (parts u32 | ref) | group u32 | groups u32 |
-//                all parts u32 | boundary (io/boundary_ref.hpp) | samples a triangle f64 | weigh
+//                all parts u32 | boundary (io/boundary_ref.hpp) | samples a triangle f64 | weigh |
+//                bounded u8 | if it is: greatest error f64 | certified error f64 |
+//                strips x (mesh section | gap section) | builds u8 | if it does: bundles
 //   reduce     = version u8 | section | rung u32 | triangles u64 | points u64 | vertices u64 |
 //                lines
 //   measure    = version u8 | first part u32 | end part u32 | triangles u64 | share u32 |
@@ -24,8 +27,8 @@
 //
 // In version 1 parts were always kept, and a piece was measured by one job. In version 2 the
 // surroundings of the seams were one piece. In version 3 triangles of gaps had no columns, and no
-// components were left out. In version 4 there was one boundary file. In version 5
-// measure jobs looked the parts up in the manifest.
+// components were left out. In version 4 there was one boundary file. In version 5 there was no
+// bound on the error, and measure jobs looked the parts up in the manifest.
 #include <cmath>
 
 #include <meshfarm/pipeline/piece_jobs.hpp>
@@ -54,6 +57,7 @@ void put_weigh(ByteWriter& out, const WeighParameters& weigh) {
   out.put(weigh.first_step);
   out.put(weigh.last_share);
   out.put(weigh.kept_share);
+  out.put(static_cast<std::uint8_t>(weigh.is_weighed ? 1 : 0));
   put(out, weigh.lines);
 }
 
@@ -63,6 +67,7 @@ WeighParameters get_weigh(ByteReader& in) {
   weigh.first_step = in.get<std::int32_t>();
   weigh.last_share = in.get<double>();
   weigh.kept_share = in.get<double>();
+  weigh.is_weighed = in.get<std::uint8_t>() != 0;
   weigh.lines = get_lines(in);
   const auto is_share = [](double x) { return x >= 0 && x <= 1; };
   if (!(weigh.cost_unit > 0) || !is_share(weigh.last_share) || !is_share(weigh.kept_share)) {
@@ -79,6 +84,45 @@ void put_ref(ByteWriter& out, const SectionRef& ref) {
 SectionRef get_ref(ByteReader& in) {
   FileRef file = get_file(in);
   return {std::move(file), in.get<FileSection>()};
+}
+
+void put_if_built(ByteWriter& out, const std::optional<BundlesOfMesh>& bundles) {
+  out.put(static_cast<std::uint8_t>(bundles ? 1 : 0));
+  if (bundles) put_bundles(out, *bundles);
+}
+
+std::optional<BundlesOfMesh> get_if_built(ByteReader& in) {
+  const auto builds = in.get<std::uint8_t>();
+  if (builds > 1) in.fail("impossible parts");
+  if (builds == 0) return std::nullopt;
+  return get_bundles(in);
+}
+
+void put_bound(ByteWriter& out, const SeamParameters& parameters) {
+  out.put(static_cast<std::uint8_t>(parameters.bound ? 1 : 0));
+  if (!parameters.bound) return;
+  out.put(parameters.bound->max_error);
+  out.put(parameters.bound->certified_error);
+  for (const SeamParameters::Strip& strip : parameters.strips) {
+    out.put(strip.mesh);
+    out.put(strip.gap);
+  }
+  put_if_built(out, parameters.bound->bundles);
+}
+
+void get_bound(ByteReader& in, SeamParameters& parameters) {
+  const auto is_bounded = in.get<std::uint8_t>();
+  if (is_bounded > 1) in.fail("impossible bound");
+  if (is_bounded == 0) return;
+  SeamParameters::Bound& bound = parameters.bound.emplace();
+  bound.max_error = in.get<double>();
+  bound.certified_error = in.get<double>();
+  if (!(bound.max_error > 0 && bound.certified_error >= 0)) in.fail("impossible bound");
+  for (SeamParameters::Strip& strip : parameters.strips) {
+    strip.mesh = in.get<FileSection>();
+    strip.gap = in.get<FileSection>();
+  }
+  bound.bundles = get_if_built(in);
 }
 
 }  // namespace
@@ -123,6 +167,7 @@ std::string encode_parameters(const SeamParameters& parameters) {
   put_boundary(out, parameters.boundary);
   out.put(parameters.samples_per_triangle);
   put_weigh(out, parameters.weigh);
+  put_bound(out, parameters);
   return out.take();
 }
 
@@ -151,6 +196,7 @@ SeamParameters decode_seam_parameters(std::string_view bytes) {
   const double samples = parameters.samples_per_triangle;
   if (!(samples >= 0 && samples <= k_most_piece_samples)) in.fail("too many samples");
   parameters.weigh = get_weigh(in);
+  get_bound(in, parameters);
   in.expect_end();
   return parameters;
 }
@@ -209,12 +255,8 @@ std::string encode_parameters(const MeasureParameters& parameters) {
   out.put(static_cast<std::uint32_t>(parameters.points.size()));
   for (const SectionRef& ref : parameters.points) put_ref(out, ref);
   out.put(parameters.input_step);
-  out.put(static_cast<std::uint8_t>(parameters.bundles ? 1 : 0));
-  if (parameters.bundles) {
-    put_bundles(out, *parameters.bundles);
-  } else {
-    for (const FileRef& part : parameters.parts) put_file(out, part);
-  }
+  put_if_built(out, parameters.bundles);
+  for (const FileRef& part : parameters.parts) put_file(out, part);
   return out.take();
 }
 
@@ -244,10 +286,8 @@ MeasureParameters decode_measure_parameters(std::string_view bytes) {
       parameters.first_part > parameters.end_part || points == 0) {
     in.fail("impossible parts");
   }
-  const auto builds = in.get<std::uint8_t>();
-  if (builds > 1) in.fail("impossible parts");
-  if (builds == 1) {
-    parameters.bundles = get_bundles(in);
+  parameters.bundles = get_if_built(in);
+  if (parameters.bundles) {
     if (parameters.end_part > parameters.bundles->parts) in.fail("no such parts");
   } else {
     for (std::uint32_t p = parameters.first_part; p < parameters.end_part; ++p) {

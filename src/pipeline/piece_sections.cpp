@@ -62,9 +62,15 @@ class Weighing {
     snapshot();
     made_.weight.before = simplifier_.triangles();
     made_.weight.has_open_border = simplifier_.has_free_border();
+    if (!parameters_.is_weighed) return finished();
     const std::int32_t first = parameters_.first_step >= 0 ? parameters_.first_step : find_step();
     made_.weight.first_step = first;
     climb(first);
+    return finished();
+  }
+
+ private:
+  WeighedMesh finished() {
     ladder_.finish(VertexView(simplifier_.mesh()).part(0, locked_), {});
     made_.dropped_degenerate = simplifier_.dropped_degenerate();
     made_.dropped_duplicate = simplifier_.dropped_duplicate();
@@ -72,7 +78,6 @@ class Weighing {
     return std::move(made_);
   }
 
- private:
   std::int32_t find_step() {
     const std::uint64_t triangles = simplifier_.triangles();
     reduce({.triangles = triangles - triangles / k_first_share});

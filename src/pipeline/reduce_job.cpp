@@ -46,15 +46,9 @@ ResultMesh read_input(const FileRef& input, const ReduceParameters& parameters,
   return decode_result(std::string_view(file).substr(offset, size), parameters.rung, input.name);
 }
 
-}  // namespace
-
-JobOutput reduce_piece(const Job& job, const JobContext& context) {
-  const ReduceParameters parameters = decode_reduce_parameters(job.parameters);
-  if (job.inputs.size() != 1) throw DataError("a reduce job takes one piece");
-  ResultMesh piece = read_input(job.inputs[0], parameters, context);
-  const std::uint32_t locked = piece.boundary_vertices;
+Mesh reduced(ResultMesh piece, const ReduceParameters& parameters, const JobContext& context) {
   const std::uint64_t before = piece.mesh.triangles.size();
-  Simplifier simplifier(std::move(piece.mesh), {.locked_vertices = locked,
+  Simplifier simplifier(std::move(piece.mesh), {.locked_vertices = piece.boundary_vertices,
                                                 .positions = piece.positions,
                                                 .lines = parameters.lines,
                                                 .was_simplified = true});
@@ -64,11 +58,24 @@ JobOutput reduce_piece(const Job& job, const JobContext& context) {
     return !given_up;
   });
   if (given_up) throw IncompleteError("the job was given up");
-  const Mesh& mesh = simplifier.mesh();
+  return simplifier.mesh();
+}
+
+}  // namespace
+
+JobOutput reduce_piece(const Job& job, const JobContext& context) {
+  const ReduceParameters parameters = decode_reduce_parameters(job.parameters);
+  if (job.inputs.size() != 1) throw DataError("a reduce job takes one piece");
+  ResultMesh piece = read_input(job.inputs[0], parameters, context);
+  const std::uint32_t locked = piece.boundary_vertices;
+  const PositionType positions = piece.positions;
+  const Mesh mesh = parameters.triangles == k_keep_all
+                        ? std::move(piece.mesh)
+                        : reduced(std::move(piece), parameters, context);
   std::string file;
   SectionWriter sections([&](std::string_view bytes) { file += bytes; });
   FinishedPiece made;
-  made.mesh = sections.add(encode_piece(mesh, locked, piece.positions));
+  made.mesh = sections.add(encode_piece(mesh, locked, positions));
   made.points = sections.add(encode_list(points_of_piece(mesh, parameters, made)));
   made.vertices = mesh.positions.size();
   made.triangles = mesh.triangles.size();

@@ -12,12 +12,15 @@
 #include <meshfarm/util/errors.hpp>
 
 #include "pipeline/piece_sections.hpp"
+#include "pipeline/seam_bound.hpp"
 
 namespace meshfarm {
 namespace {
 
 /// So many triangles from a seam a piece is as simple as the rest of it.
 constexpr int k_strip_rings = 4;
+/// The corners of the last ring are held.
+constexpr int k_bounded_strip_rings = k_bounded_rings + 1;
 
 /// Where each vertex of a piece goes.
 struct Sides {
@@ -26,11 +29,11 @@ struct Sides {
 };
 
 /// Vertices of no triangle stay where they are: the simplifier drops them.
-Sides sides_of(const Mesh& mesh, std::uint32_t boundary) {
+Sides sides_of(const Mesh& mesh, std::uint32_t boundary, int rings) {
   Sides sides;
   sides.strip.assign(mesh.positions.size(), 0);
   std::fill_n(sides.strip.begin(), boundary, std::uint8_t{1});
-  for (int ring = 0; ring < k_strip_rings; ++ring) {
+  for (int ring = 0; ring < rings; ++ring) {
     const std::vector<std::uint8_t> before = sides.strip;
     for (const auto& [a, b, c] : mesh.triangles) {
       if ((before[a] | before[b] | before[c]) != 0) {
@@ -84,9 +87,9 @@ struct SplitMesh {
   PieceStrip strip;
 };
 
-SplitMesh split(const ResultMesh& piece, std::uint32_t piece_number) {
+SplitMesh split(const ResultMesh& piece, std::uint32_t piece_number, int rings) {
   const Mesh& mesh = piece.mesh;
-  const Sides sides = sides_of(mesh, piece.boundary_vertices);
+  const Sides sides = sides_of(mesh, piece.boundary_vertices, rings);
   Numbers inner(mesh.positions.size());
   inner.add([&](std::uint32_t v) { return sides.strip[v] == 0 && sides.shared[v] != 0; });
   SplitMesh made;
@@ -176,7 +179,8 @@ JobOutput split_piece(const Job& job, const JobContext& context) {
   for (const Vec3& v : piece.mesh.positions) made.box.add(v);
   std::vector<std::uint32_t> dropped = drop_components(parameters.small_components, context, piece);
   approach(parameters, context, piece, made);
-  SplitMesh halves = split(piece, parameters.piece);
+  SplitMesh halves = split(piece, parameters.piece,
+                           parameters.weigh.is_weighed ? k_strip_rings : k_bounded_strip_rings);
   halves.strip.dropped = std::move(dropped);
   PieceFile file;
   made.samples = file.add(encode_samples(piece.samples));

@@ -13,8 +13,12 @@
 namespace meshfarm {
 
 /// Why a run's finish is the sink's alone: the options that it has no way for, or that the sink
-/// does it well. Empty: its finish is made of jobs.
+/// does it well. Empty: its finish is made of jobs. Where a bound on the error decides how much is
+/// left, a large input may still turn out to be finished well by the sink.
 std::string why_finish_here(const Manifest& manifest, const RunOptions& options);
+/// Whether that may be, and so many triangles are left.
+bool holds_well(const RunOptions& options, std::uint64_t triangles);
+inline constexpr const char* k_sink_holds_it = "the sink holds it well";
 
 /// Whether there is more of the input than its shape.
 bool has_attributes(const Manifest& manifest);

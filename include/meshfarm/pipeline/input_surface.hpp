@@ -36,8 +36,13 @@ class InputSurface {
   /// several threads. At first, when no box is known, all parts are shown. The pieces of a part
   /// come in order.
   void show(const Wants& wants, const Show& show);
+  /// Shows all pieces of these parts, one part after the other. Throws DataError if there are no
+  /// such parts.
+  static void show_parts(const Stage& stage, const Manifest& manifest,
+                         std::span<const std::uint32_t> parts, const Show& show);
 
  private:
+  void show_one(std::uint32_t part, const Show& show);
   Part read_part(std::uint32_t part) const;
   void show_part(std::uint32_t part, const Show& show);
   void show_slab(std::uint32_t part, const Show& show);

@@ -48,6 +48,8 @@ struct WeighParameters {
   std::int32_t first_step = -1;  // -1: to be found
   double last_share = 0;         // where it ends
   double kept_share = 0;         // where the mesh is kept, to go on from there
+  /// Where false, as a bound on the error decides how far all goes: it stays as it is.
+  bool is_weighed = true;
   LineOptions lines;
 };
 
@@ -137,6 +139,14 @@ struct SeamParameters {
   struct Strip {
     std::uint32_t parts = 1;
     SectionRef ref;
+    FileSection mesh;  // what stays in the piece, and the gap, where there is a bound
+    FileSection gap;
+  };
+  /// On the error, where that decides how far the group is simplified.
+  struct Bound {
+    double max_error = 0;
+    double certified_error = 0;            // where above 0: it is proven of every point
+    std::optional<BundlesOfMesh> bundles;  // what parts are built of, if they are not kept
   };
   std::vector<Strip> strips;  // of the pieces, in order
   std::uint32_t group = 0;
@@ -144,17 +154,21 @@ struct SeamParameters {
   std::uint32_t all_parts = 0;
   BoundaryFiles boundary;
   double samples_per_triangle = 0;
+  std::optional<Bound> bound;
   WeighParameters weigh;
 };
 std::string encode_parameters(const SeamParameters& parameters);
 SeamParameters decode_seam_parameters(std::string_view bytes);
 
+/// Of a piece that is finished as it is.
+inline constexpr std::uint64_t k_keep_all = UINT64_MAX;
+
 struct ReduceParameters {
   FileSection mesh;  // of the one input
   std::uint32_t rung = 0;
-  std::uint64_t triangles = 0;
-  std::uint64_t points = 0;    // of the result, by area, to measure it by
-  std::uint64_t vertices = 0;  // and at most so many, and as many middles of sides
+  std::uint64_t triangles = 0;  // or k_keep_all
+  std::uint64_t points = 0;     // of the result, by area, to measure it by
+  std::uint64_t vertices = 0;   // and at most so many, and as many middles of sides
   LineOptions lines;
 };
 std::string encode_parameters(const ReduceParameters& parameters);
