@@ -83,6 +83,30 @@ TEST_CASE("a cut by the farm: of hundreds of parts, and of more than a message c
   }
 }
 
+TEST_CASE("a cut by the farm: parts are simplified to a bound on the error as if they were kept") {
+  const auto simplify = [&](const std::vector<std::string>& more) {
+    const std::string output = bench().path("bound.ply");
+    fs::remove(output);
+    std::vector<std::string> words = {"simplify", bench().mesh(), "-o",      output, "--error",
+                                      "0.2%",     "--certify",    "--parts", "12",   "--json"};
+    words.insert(words.end(), more.begin(), more.end());
+    const Ran ran = bench().meshfarm(words);
+    CHECK(ran.code == 0);
+    CHECK(ran.out.find("\"kind\": \"certified\"") != std::string::npos);
+    return meshfarm::test::read_text(output);
+  };
+  for (const char* finish : {"here", "farm"}) {
+    CAPTURE(finish);
+    const std::string here = simplify({"--cut", "here", "--finish", finish, "--workers", "2"});
+    CHECK(here.size() > 1000);
+    CHECK(here.size() < 300'000);
+    for (const char* workers : {"1", "5"}) {
+      CHECK(simplify({"--cut", "farm", "--finish", finish, "--workers", workers, "--blocks",
+                      "3"}) == here);
+    }
+  }
+}
+
 TEST_CASE("a cut by the farm: killed at every stage, a run goes on, and cuts only once") {
   const std::string stage = bench().planned();
   // In the survey, as cells are counted, vertices and triangles scattered, parts climbed, at the
@@ -175,12 +199,12 @@ TEST_CASE("a cut by the farm: what it cannot read or keep is one line, and no st
   REQUIRE(bench().meshfarm({"generate", "-o", off, "--triangles", "1000"}).code == 0);
   refused({"simplify", off, "-o", off + ".ply", "--ratio", "0.5", "--cut", "farm"},
           "cannot be cut by the farm: it is no plain binary PLY file of triangles");
-  const std::string bound = bench().path("bound.ply");
-  refused({"simplify", bench().mesh(), "-o", bound, "--error", "1%", "--cut", "farm"},
+  const std::string shown = bench().path("shown.ply");
+  refused({"simplify", bench().mesh(), "-o", shown, "--ratio", "0.5", "--cut", "farm", "--report",
+           shown + ".html"},
           "use --cut here");
-  CHECK_FALSE(fs::exists(bound + ".stage"));
+  CHECK_FALSE(fs::exists(shown + ".stage"));
   const std::string stage = bench().planned();
-  refused({"replay", stage, "-o", stage + ".ply", "--error", "0.01"}, "--cut here");
   const Ran status = bench().meshfarm({"status", stage});
   CHECK(status.code == 0);
   CHECK(status.out.find("none yet; the first is to cut") != std::string::npos);

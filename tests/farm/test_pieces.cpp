@@ -132,6 +132,66 @@ TEST_CASE("pieces of an input that jobs have cut: the same bytes and figures") {
   }
 }
 
+TEST_CASE("pieces keep a bound on the error: any workers, any cut, the same bytes and figures") {
+  const auto bounded = [&](const std::string& name, std::vector<std::string> more) {
+    std::vector<std::string> words = {"simplify", bench().mesh(), "-o",      bench().path(name),
+                                      "--error",  "0.05%",        "--parts", "8",
+                                      "--json"};
+    words.insert(words.end(), more.begin(), more.end());
+    const Ran ran = bench().meshfarm(words);
+    CHECK(ran.code == 0);
+    return ran.out;
+  };
+  const auto figures_of = [](const std::string& out) {
+    const std::size_t first = out.find("\"bound\"");
+    return out.substr(first, out.find("\"channels\"", first) - first);
+  };
+  using meshfarm::test::read_text;
+  const std::string farm = bounded("bound.ply", {"--finish", "farm", "--workers", "2"});
+  CHECK(farm.find("\"by\": \"farm\"") != std::string::npos);
+  const std::string expected = read_text(bench().path("bound.ply"));
+  CHECK(expected.size() > 1000);
+  const std::vector<std::vector<std::string>> others = {
+      {"--workers", "1"}, {"--workers", "5"}, {"--workers", "2", "--cut", "farm", "--blocks", "3"}};
+  for (std::vector<std::string> more : others) {
+    CAPTURE(more.size());
+    more.insert(more.end(), {"--finish", "farm"});
+    CHECK(figures_of(bounded("other.ply", more)) == figures_of(farm));
+    CHECK(read_text(bench().path("other.ply")) == expected);
+  }
+  bounded("sink.ply", {"--finish", "here"});
+  const auto triangles = [&](const char* name) {
+    return meshfarm::read_mesh(*meshfarm::open_mesh(bench().path(name))).triangles.size();
+  };
+  CHECK(100 * triangles("bound.ply") < 103 * triangles("sink.ply"));
+  CHECK(triangles("bound.ply") < 30'000);
+}
+
+TEST_CASE("killed while a bound is kept by jobs, a run goes on to the same bytes") {
+  const std::string stage = bench().planned();
+  const auto words = [&](const std::string& output) {
+    return std::vector<std::string>{"replay",  stage,       "-o",        output,
+                                    "--error", "0.05%",     "--certify", "--finish",
+                                    "farm",    "--workers", "2"};
+  };
+  REQUIRE(bench().meshfarm(words(stage + "-whole.ply")).code == 0);
+  const std::string again = bench().planned();
+  const auto on = [&](std::vector<std::string> of) {
+    of[1] = again;
+    return of;
+  };
+  for (const std::size_t results : {15U, 24U, 31U, 34U}) {
+    CAPTURE(results);
+    Process run = bench().start(on(words(again + ".ply")));
+    REQUIRE(wait_for_results(again, results));
+    run.signal(SIGKILL);
+    CHECK(run.wait() == -SIGKILL);
+  }
+  CHECK(bench().meshfarm(on(words(again + ".ply"))).code == 0);
+  CHECK(meshfarm::test::read_text(again + ".ply") ==
+        meshfarm::test::read_text(stage + "-whole.ply"));
+}
+
 TEST_CASE("killed at any stage, a run that cuts and finishes by jobs goes on") {
   const std::string stage = bench().planned();
   for (const std::size_t results : {3U, 10U, 20U, 29U, 36U}) {
