@@ -19,7 +19,7 @@
 namespace meshfarm {
 
 /// So many pieces a seam job can name.
-inline constexpr std::size_t k_most_pieces = 200;
+inline constexpr std::size_t k_most_pieces = 400;
 /// Parts are composed up to a 32nd of all triangles, so that many workers have a piece each, within
 /// these bounds: of smaller pieces much would lie round the seams, and larger ones are worth no
 /// process's memory. Where boundary triangles are many, so many times their share of the input is

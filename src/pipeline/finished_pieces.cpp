@@ -29,6 +29,9 @@ bool touch(const Box& a, const Box& b) {
 std::string why_not_farmed(const Manifest& manifest, const RunOptions& options) {
   if (options.finish == Finish::boundary) return "only edges at seams are to change";
   if (options.allocation == Allocation::uniform) return "the parts have no common threshold";
+  if (options.error.value > 0 && options.lines.topology == TopologyMode::simplify) {
+    return "under a bound the topology is given up in the whole";
+  }
   if (bakes_texture(manifest, options)) return "a new texture is laid out on the whole result";
   return {};
 }

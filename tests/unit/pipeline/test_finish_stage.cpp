@@ -444,8 +444,7 @@ TEST_CASE("what pieces have no way for is the sink's, and it says why") {
     CHECK(bench.run(here, "here.ply").why_finished_here.empty());
     CHECK(read_file(bench.path("farm.ply")) == read_file(bench.path("here.ply")));
   };
-  options = FinishBench::farmed(0);
-  options.error = {0.01, true};
+  options = FinishBench::bounded(0.01);
   options.lines.topology = TopologyMode::simplify;
   expect_here();
   options = FinishBench::farmed(2'000);
@@ -593,7 +592,7 @@ TEST_CASE("with a bound it is the sink that finishes what it holds well, or too 
   const RunSummary made = few.run(options, "few.ply");
   CHECK(made.finished_in_pieces == 0);
   CHECK(made.why_finished_here.empty());
-  FinishBench many(waves(120), 230);
+  FinishBench many(waves(120), 440);
   const RunSummary by_sink = many.run(FinishBench::bounded(0.002), "many.ply");
   CHECK(by_sink.finished_in_pieces == 0);
   CHECK(by_sink.why_finished_here == "there are more pieces than a job can name");
