@@ -39,6 +39,13 @@ JobKey key_of(const Job& job) {
   return {checksum(out.bytes())};
 }
 
+Extent extent_named(std::string_view what, std::uint64_t number, std::uint64_t bytes) {
+  ByteWriter out;
+  out.put_string(what);
+  out.put(number);
+  return {checksum(out.bytes()), bytes};
+}
+
 std::string JobContext::read(const FileRef& file) const {
   return storage != nullptr ? storage->read(file) : stage.read(file);
 }

@@ -10,6 +10,10 @@ namespace {
 
 /// So many jobs that will not do are looked at in a row before another order is tried.
 constexpr int k_tries = 256;
+/// And so many where it is only about which are at home.
+constexpr int k_tries_at_home = 32;
+/// It is preferred if its way is shorter than another's by no more than this part of its cost.
+constexpr std::uint64_t k_home_share = 4;
 constexpr std::uint64_t k_last = std::numeric_limits<std::uint64_t>::max();
 
 /// Of a job that is to be done.
@@ -30,6 +34,8 @@ void Plan::restart(const std::map<JobKey, JobOutput>& accepted) {
   wanted_.clear();
   ready_.clear();
   by_memory_.clear();
+  by_home_.clear();
+  by_extent_.clear();
   counts_ = {.retries = counts_.retries};
   graph_ = source_();
   started_ = true;
@@ -80,30 +86,70 @@ IssuedJob Plan::issue(JobKey key) {
 }
 
 const Plan::ReadyJob* Plan::choose(const JobChoice& choice) const {
-  const auto will_do = [&](const ReadyJob& job) {
-    return job.cost <= choice.max_cost && job.memory <= choice.max_memory &&
-           (!choice.may || choice.may(job.key));
-  };
+  const ReadyJob* best = longest_way(choice);
+  if (best == nullptr || choice.host == 0) return best;
+  const HostNumber home_of_best = home(best->extent);
+  if (home_of_best == choice.host) return best;
+  if (const ReadyJob* job = at_home(choice.host, *best, choice)) return job;
+  const ReadyJob* anybodys = home_of_best == 0 ? best : at_home(0, *best, choice);
+  return anybodys != nullptr ? anybodys : best;
+}
+
+/// Of those whose way is not much shorter than the best's.
+const Plan::ReadyJob* Plan::at_home(HostNumber host, const ReadyJob& best,
+                                    const JobChoice& choice) const {
+  const auto jobs = by_home_.find(host);
+  if (jobs == by_home_.end()) return nullptr;
+  auto at = jobs->second.lower_bound(best);
+  for (int tries = 0; at != jobs->second.end() && tries < k_tries_at_home; ++at, ++tries) {
+    if (best.path - at->path > best.cost / k_home_share) break;
+    if (will_do(*at, choice)) return &*at;
+  }
+  return nullptr;
+}
+
+bool Plan::will_do(const ReadyJob& job, const JobChoice& choice) {
+  return job.cost <= choice.max_cost && job.memory <= choice.max_memory &&
+         (!choice.may || choice.may(job.key));
+}
+
+const Plan::ReadyJob* Plan::longest_way(const JobChoice& choice) const {
   // From the longest way on; then from where no cost is too great any more; then by memory.
   const auto short_ways = ready_.lower_bound({choice.max_cost, 0});
   for (auto from = ready_.begin();; from = short_ways) {
     int tries = 0;
     for (auto at = from; at != ready_.end() && tries < k_tries; ++at, ++tries) {
-      if (will_do(*at)) return &*at;
+      if (will_do(*at, choice)) return &*at;
     }
     if (tries < k_tries) return nullptr;
     if (from == short_ways) break;
   }
   auto at = by_memory_.upper_bound({choice.max_memory, ReadyJob{0, k_last}});
   for (int tries = 0; at != by_memory_.begin() && tries < k_tries; ++tries) {
-    if (will_do((--at)->second)) return &at->second;
+    if (will_do((--at)->second, choice)) return &at->second;
   }
   return nullptr;
 }
 
 Plan::ReadyJob Plan::ready_job(JobKey key, const Entry& entry) {
   const Job& job = entry.job;
-  return {job.cost + job.after, entry.order, key, job.cost, job.memory};
+  return {job.cost + job.after, entry.order, key, job.cost, job.memory, job.extent.name};
+}
+
+HostNumber Plan::home(std::uint64_t extent) const {
+  const auto found = homes_.find(extent);
+  return found == homes_.end() ? 0 : found->second;
+}
+
+void Plan::set_home(std::uint64_t extent, HostNumber host) {
+  const HostNumber before = home(extent);
+  if (before == host) return;
+  homes_[extent] = host;
+  std::set<ReadyJob>& to = by_home_[host];
+  for (auto at = by_extent_.lower_bound({extent, JobKey{0}});
+       at != by_extent_.end() && at->first == extent; ++at) {
+    to.insert(by_home_.at(before).extract(ready_job(at->second, entries_.at(at->second))));
+  }
 }
 
 std::vector<JobKey> Plan::ready_jobs() const {
@@ -224,6 +270,8 @@ void Plan::add_ready(JobKey key, const Entry& entry) {
   const ReadyJob job = ready_job(key, entry);
   ready_.insert(job);
   if (job.memory != 0) by_memory_.insert({job.memory, job});
+  by_home_[home(job.extent)].insert(job);
+  if (job.extent != 0) by_extent_.insert({job.extent, key});
   counts_.cost_ready += job.cost;
 }
 
@@ -231,6 +279,8 @@ void Plan::remove_ready(JobKey key, const Entry& entry) {
   const ReadyJob job = ready_job(key, entry);
   ready_.erase(job);
   if (job.memory != 0) by_memory_.erase({job.memory, job});
+  by_home_.at(home(job.extent)).erase(job);
+  by_extent_.erase({job.extent, key});
   counts_.cost_ready -= job.cost;
 }
 

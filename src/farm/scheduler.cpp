@@ -34,6 +34,10 @@ void Scheduler::join(WorkerId id, const std::string& host, const Capacity& capac
   Member& member = crew_[id];
   member.host = &hosts_[host];
   member.host->name = host;
+  if (member.host->number == 0) {
+    host_of_number_.push_back(member.host);
+    member.host->number = static_cast<HostNumber>(host_of_number_.size());
+  }
   member.threads = std::clamp<std::uint32_t>(capacity.threads, 1, 4096);
   member.memory = capacity.memory;
   if (capacity.memory_pool != 0 && capacity.memory != 0) {
@@ -317,8 +321,17 @@ void Scheduler::begin_turns(Member& member, FarmTime now) {
   }
 }
 
-Scheduler::Pick Scheduler::hand(WorkerId id, IssuedJob job, FarmTime now) {
+/// The first host that reads it is its home as long as it has workers.
+void Scheduler::find_home(Plan& plan, std::uint64_t extent, const Host& host) const {
+  if (extent == 0) return;
+  const HostNumber before = plan.home(extent);
+  if (before != 0 && host_of_number_[before - 1]->workers > 0) return;
+  plan.set_home(extent, host.number);
+}
+
+Scheduler::Pick Scheduler::hand(Plan& plan, WorkerId id, IssuedJob job, FarmTime now) {
   Member& member = crew_.at(id);
+  find_home(plan, job.job.extent.name, *member.host);
   assert(member.room > 0);
   --member.room;
   member.held.push_back(
@@ -331,6 +344,19 @@ Scheduler::Pick Scheduler::hand(WorkerId id, IssuedJob job, FarmTime now) {
   return {id, std::move(job)};
 }
 
+/// Which jobs it may be given. Where all are on one host, none is preferred.
+JobChoice Scheduler::choice_for(const Member& member, const Plan& plan, FarmTime now) const {
+  JobChoice choice;
+  choice.max_cost = greatest_cost(member, now);
+  choice.max_memory = memory_now(member);
+  const bool all_welcome = suspects_.empty() && failed_on_.empty();
+  if (!all_welcome) {
+    choice.may = [&](JobKey key) { return may(member, key, plan.job(key).memory); };
+  }
+  if (member.host->workers < crew_.size()) choice.host = member.host->number;
+  return choice;
+}
+
 std::optional<Scheduler::Pick> Scheduler::next(Plan& plan, FarmTime now) {
   if (plan.counts().ready == 0 || crew_.empty()) return std::nullopt;
   end_bans(now);
@@ -341,14 +367,8 @@ std::optional<Scheduler::Pick> Scheduler::next(Plan& plan, FarmTime now) {
     const auto [load, id] = *willing_.begin();
     if (load >= k_second_rank + full) return std::nullopt;
     Member& member = crew_.at(id);
-    JobChoice choice;
-    choice.max_cost = greatest_cost(member, now);
-    choice.max_memory = memory_now(member);
-    const bool all_welcome = suspects_.empty() && failed_on_.empty();
-    if (!all_welcome) {
-      choice.may = [&](JobKey key) { return may(member, key, plan.job(key).memory); };
-    }
-    if (auto job = plan.issue(choice)) return hand(id, std::move(*job), now);
+    const JobChoice choice = choice_for(member, plan, now);
+    if (auto job = plan.issue(choice)) return hand(plan, id, std::move(*job), now);
     willing_.erase(willing_.begin());  // there is nothing for it before the next outlook
     member.rank.reset();
   }

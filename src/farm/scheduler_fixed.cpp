@@ -88,7 +88,7 @@ std::optional<Scheduler::Pick> Scheduler::next_fixed(Plan& plan, FarmTime now) {
   std::erase_if(undealt_, [&](JobKey key) { return plan.state(key) != JobState::ready; });
   if (plan.counts().ready > dealt_.size() + undealt_.size()) deal(plan);
   for (const auto& [load, id] : willing_) {
-    if (const auto key = next_of_set(id, plan)) return hand(id, plan.issue(*key), now);
+    if (const auto key = next_of_set(id, plan)) return hand(plan, id, plan.issue(*key), now);
   }
   return std::nullopt;
 }

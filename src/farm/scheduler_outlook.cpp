@@ -169,7 +169,7 @@ std::vector<Scheduler::Pick> Scheduler::second_attempts(Plan& plan, FarmTime now
              may(member, each.held->key, each.held->memory);
     });
     if (taken != late.end()) {
-      picks.push_back(hand(id, plan.issue(taken->held->key), now));
+      picks.push_back(hand(plan, id, plan.issue(taken->held->key), now));
       late.erase(taken);
     } else if (!any_gains) {
       break;  // nor does a slower worker

@@ -22,6 +22,15 @@ struct JobKey {
   friend auto operator<=>(const JobKey&, const JobKey&) = default;
 };
 
+/// Bytes that several jobs read: a block of the input, a part. A host that has read them need not
+/// fetch them again.
+struct Extent {
+  std::uint64_t name = 0;  // 0: none
+  std::uint64_t bytes = 0;
+};
+/// By what it is and its number.
+Extent extent_named(std::string_view what, std::uint64_t number, std::uint64_t bytes);
+
 /// A unit of work. To the farm `kind` and `parameters` are opaque.
 struct Job {
   std::string kind;             // "simplify"
@@ -42,6 +51,8 @@ struct Job {
   /// About so many bytes are read that are no inputs: sections of files, or of the mesh itself. No
   /// part of what the job is.
   std::uint64_t reads = 0;
+  /// What of all that it reads others read, too. No part of what the job is.
+  Extent extent = {};
 };
 
 JobKey key_of(const Job& job);

@@ -35,11 +35,15 @@ struct LostJob {
   bool resumable = false;  // only because workers were lost over it, or results not read
 };
 
+/// A host of the farm; 0: none.
+using HostNumber = std::uint32_t;
+
 /// Which of the ready jobs will do.
 struct JobChoice {
   std::uint64_t max_cost = std::numeric_limits<std::uint64_t>::max();
   std::uint64_t max_memory = std::numeric_limits<std::uint64_t>::max();
   std::function<bool(JobKey)> may = {};  // empty: any
+  HostNumber host = 0;                   // jobs at home there are preferred; 0: none are
 };
 
 /// What an attempt that failed says of its job. worker_lost: the worker was, and the job in work.
@@ -78,9 +82,15 @@ class Plan {
   /// The ready job with the longest way to the end, its own cost and what follows, among those that
   /// will do becomes running, under an attempt number of its own. (Where very many do not, the
   /// first whose way is no longer than the greatest cost, or one of the most memory that does.)
+  /// If it is at home on another host than the one that is asked for, a job of about the same
+  /// length that is at home there goes before it, or else one that is at home nowhere.
   std::optional<IssuedJob> issue(const JobChoice& choice = {});
   /// This job, which is ready; or one more attempt at it if it is running.
   IssuedJob issue(JobKey key);
+  /// From now on jobs that read the extent are at home on this host, which has read it.
+  void set_home(std::uint64_t extent, HostNumber host);
+  /// Which host has read an extent, as far as is known.
+  HostNumber home(std::uint64_t extent) const;
   /// An attempt that nobody makes any more (its worker left before it began). A running job is
   /// ready again after the last.
   void give_back(JobKey key);
@@ -140,14 +150,18 @@ class Plan {
     JobKey key = {};
     std::uint64_t cost = 0;
     std::uint64_t memory = 0;
+    std::uint64_t extent = 0;
     bool operator<(const ReadyJob& other) const;
   };
 
   void want(std::vector<WantedJob> jobs, const std::map<JobKey, JobOutput>& accepted);
   void add_ready(JobKey key, const Entry& entry);
   void remove_ready(JobKey key, const Entry& entry);
+  static bool will_do(const ReadyJob& job, const JobChoice& choice);
   static ReadyJob ready_job(JobKey key, const Entry& entry);
   const ReadyJob* choose(const JobChoice& choice) const;
+  const ReadyJob* longest_way(const JobChoice& choice) const;
+  const ReadyJob* at_home(HostNumber host, const ReadyJob& best, const JobChoice& choice) const;
   void move_to(JobKey key, Entry& entry, JobState state);
   std::uint64_t& count_of(JobState state);
   void count(const Entry& entry, JobState state);
@@ -162,6 +176,9 @@ class Plan {
   std::vector<JobKey> wanted_;                             // in the order asked for
   std::set<ReadyJob> ready_;
   std::set<std::pair<std::uint64_t, ReadyJob>> by_memory_;  // the ready jobs that say their need
+  std::unordered_map<HostNumber, std::set<ReadyJob>> by_home_;  // the ready jobs
+  std::set<std::pair<std::uint64_t, JobKey>> by_extent_;        // the ready jobs that have one
+  std::unordered_map<std::uint64_t, HostNumber> homes_;         // of extents
   PlanCounts counts_;
 };
 

@@ -27,6 +27,9 @@ namespace meshfarm {
 /// when all is done; and whoever has nothing to do makes a second attempt at what would take
 /// another longer. Where all jobs of a kind take longer than was thought, as the storage is busy,
 /// that would only make it busier: a second attempt is thought to take as long as the others do.
+///
+/// Among jobs of about the same length a worker is given those that read what its host has read,
+/// then those that read what no host has.
 class Scheduler {
  public:
   struct Held {
@@ -95,6 +98,7 @@ class Scheduler {
  private:
   struct Host {
     std::string name;
+    HostNumber number = 0;  // from 1 on
     std::uint32_t workers = 0;
     std::multiset<std::uint64_t> memories;  // of its workers
     std::uint32_t failures = 0;             // incidents in a row
@@ -167,7 +171,9 @@ class Scheduler {
   double seconds_held(const Member& member, FarmTime now) const;
   const Outlook& outlook(const Plan& plan, FarmTime now);
   std::uint64_t greatest_cost(const Member& member, FarmTime now) const;
-  Pick hand(WorkerId id, IssuedJob job, FarmTime now);
+  JobChoice choice_for(const Member& member, const Plan& plan, FarmTime now) const;
+  void find_home(Plan& plan, std::uint64_t extent, const Host& host) const;
+  Pick hand(Plan& plan, WorkerId id, IssuedJob job, FarmTime now);
   std::optional<Pick> next_fixed(Plan& plan, FarmTime now);
   void deal(const Plan& plan);
   void take_back(const Plan& plan);
@@ -176,6 +182,7 @@ class Scheduler {
   SchedulerOptions options_;
   std::map<WorkerId, Member> crew_;
   std::map<std::string, Host> hosts_;                            // entries stay
+  std::vector<const Host*> host_of_number_;                      // from 1 on
   std::map<std::pair<std::string, std::uint64_t>, Pool> pools_;  // by host and number; they stay
   std::set<std::pair<double, WorkerId>> willing_;  // those who read nothing ahead, then the others;
                                                    // the least laden first

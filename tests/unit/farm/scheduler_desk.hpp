@@ -19,7 +19,10 @@ inline JobOutput output_of(JobKey key) {
 /// A plan with a scheduler and short words.
 struct ScheduleDesk {
   explicit ScheduleDesk(std::vector<Job> jobs, const SchedulerOptions& options = {})
-      : plan(in_stages({std::move(jobs)}), 3), scheduler(options) {
+      : ScheduleDesk(std::vector<std::vector<Job>>{std::move(jobs)}, options) {}
+  explicit ScheduleDesk(const std::vector<std::vector<Job>>& stages,
+                        const SchedulerOptions& options = {})
+      : plan(in_stages(stages), 3), scheduler(options) {
     plan.restart({});
   }
   void join(std::uint32_t id, const std::string& host, const Capacity& capacity = {},

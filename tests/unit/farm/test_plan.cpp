@@ -59,6 +59,68 @@ TEST_CASE("a small job is found behind very many large ones") {
   CHECK_FALSE(plan.issue({.max_cost = 3}));
 }
 
+/// A job that reads an extent.
+Job reading(const std::string& name, std::uint64_t cost, std::uint64_t extent) {
+  Job job = make_job(name, cost);
+  job.extent = {extent, 1};
+  return job;
+}
+
+std::string order_for(Plan& plan, const JobChoice& choice) {
+  std::string order;
+  while (const auto issued = plan.issue(choice)) order += issued->job.parameters;
+  return order;
+}
+
+TEST_CASE("a host is given jobs at home there first, then those that are nowhere at home") {
+  Plan plan = started_plan(in_stages({{reading("a", 100, 1), make_job("b", 99), reading("c", 98, 2),
+                                       reading("d", 97, 3), reading("e", 96, 2)}}));
+  plan.set_home(1, 7);
+  plan.set_home(2, 8);
+  CHECK(plan.home(2) == 8);
+  CHECK(plan.home(3) == 0);
+  SUBCASE("the one") {
+    CHECK(order_for(plan, {.host = 8}) == "cebda");
+  }
+  SUBCASE("the other") {
+    CHECK(order_for(plan, {.host = 7}) == "abdce");
+  }
+  SUBCASE("who has nothing") {
+    CHECK(order_for(plan, {.host = 9}) == "bdace");
+  }
+  SUBCASE("nobody in particular") {
+    CHECK(order_for(plan, {}) == "abcde");
+  }
+  SUBCASE("an extent that moves") {
+    plan.set_home(2, 7);
+    CHECK(order_for(plan, {.host = 8}) == "bdace");
+  }
+  SUBCASE("after a restart") {
+    plan.restart({});
+    CHECK(order_for(plan, {.host = 8}) == "cebda");
+  }
+  SUBCASE("where some do not fit") {
+    CHECK(order_for(plan, {.max_cost = 97, .host = 8}) == "ed");
+  }
+}
+
+TEST_CASE("much longer jobs go before those at home") {
+  Plan plan =
+      started_plan(in_stages({{reading("a", 100, 2), reading("b", 70, 1), reading("c", 80, 1)}}));
+  plan.set_home(1, 7);
+  plan.set_home(2, 8);
+  CHECK(order_for(plan, {.host = 7}) == "cab");
+}
+
+TEST_CASE("what a job reads with others is no part of what it is") {
+  const Job job = reading("a", 1, 5);
+  CHECK(key_of(job) == key_of(make_job("a")));
+  CHECK(extent_named("part", 1, 5).bytes == 5);
+  CHECK(extent_named("part", 1, 5).name == extent_named("part", 1, 6).name);
+  CHECK(extent_named("part", 1, 5).name != extent_named("part", 2, 5).name);
+  CHECK(extent_named("part", 1, 5).name != extent_named("vertices", 1, 5).name);
+}
+
 /// A job that the sink does, and one more job.
 JobSource with_job_of_sink() {
   std::vector<Job> jobs = {make_job("theirs"), make_job("sink's")};

@@ -357,6 +357,69 @@ TEST_CASE("a host where three jobs in a row failed gets no more, as long as ther
   }
 }
 
+Job of_extent(const std::string& name, std::uint64_t extent) {
+  Job job = make_job(name, 100'000);
+  job.extent = {extent, 1};
+  return job;
+}
+
+/// Two stages that read the same.
+std::vector<std::vector<Job>> two_readings(std::uint32_t extents) {
+  std::vector<std::vector<Job>> stages(2);
+  for (std::uint32_t i = 0; i < extents; ++i) {
+    stages[0].push_back(of_extent("first" + std::to_string(i), 1 + i));
+    stages[1].push_back(of_extent("then" + std::to_string(extents - 1 - i), extents - i));
+  }
+  return stages;
+}
+
+TEST_CASE("what a host has read is read there again, by any of its workers") {
+  ScheduleDesk desk(two_readings(4));
+  for (const std::uint32_t id : {1, 2}) desk.join(id, "one", {1'000'000}, 1);
+  for (const std::uint32_t id : {3, 4}) desk.join(id, "other", {1'000'000}, 1);
+  CHECK(desk.hand_out() == "first0@1 first1@2 first2@3 first3@4 ");
+  for (std::uint32_t i = 0; i < 4; ++i) desk.done(i + 1, "first" + std::to_string(i));
+  for (const std::uint32_t id : {2, 4}) desk.scheduler.set_room({id}, 1);
+  CHECK(desk.hand_out() == "then1@2 then3@4 ");
+  desk.scheduler.set_room({1}, 1);
+  CHECK(desk.hand_out() == "then0@1 ");
+  desk.done(2, "then1");
+  desk.scheduler.set_room({2}, 1);  // it does not wait for the other host
+  CHECK(desk.hand_out() == "then2@2 ");
+}
+
+TEST_CASE("where a host has left, another is at home with what it had read") {
+  ScheduleDesk desk({{of_extent("first", 5)},
+                     {make_job("longer", 110'000), of_extent("then", 5), of_extent("last", 5)}});
+  desk.join(1, "one", {1'000'000}, 1);
+  desk.join(2, "other", {1'000'000}, 0);
+  CHECK(desk.hand_out() == "first@1 ");
+  desk.done(1, "first");
+  SUBCASE("it is there") {
+    desk.scheduler.set_room({1}, 1);
+    CHECK(desk.hand_out() == "then@1 ");
+  }
+  SUBCASE("another is there") {
+    desk.scheduler.set_room({2}, 1);
+    CHECK(desk.hand_out() == "longer@2 ");
+  }
+  SUBCASE("it left") {
+    desk.scheduler.leave({1});
+    desk.join(3, "third", {1'000'000}, 0);
+    desk.scheduler.set_room({2}, 1);
+    CHECK(desk.hand_out() == "longer@2 ");
+    desk.done(2, "longer");
+    desk.scheduler.set_room({2}, 1);
+    CHECK(desk.hand_out() == "then@2 ");
+    CHECK(desk.plan.home(5) == 2);
+  }
+  SUBCASE("it is the only one") {
+    desk.scheduler.leave({2});
+    desk.scheduler.set_room({1}, 1);
+    CHECK(desk.hand_out() == "longer@1 ");
+  }
+}
+
 TEST_CASE("one suspect at a time is given to a worker, beside other jobs") {
   ScheduleDesk desk({make_job("suspect", 9), make_job("other suspect", 8), make_job("job", 7)});
   desk.scheduler.suspect(key_of(make_job("suspect")));

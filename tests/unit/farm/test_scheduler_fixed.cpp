@@ -25,7 +25,7 @@ TEST_CASE("by a fixed schedule, too, the others go on once such a job's worker i
 }
 
 TEST_CASE("a fixed schedule goes on when another run has done what fits nobody here") {
-  ScheduleDesk desk({}, fixed_for(1));
+  ScheduleDesk desk(std::vector<Job>{}, fixed_for(1));
   const Job large = with_memory("large", 9, 1000);
   desk.plan = Plan(in_stages({{large}, {make_job("next")}}), 3);
   desk.plan.restart({});
