@@ -33,8 +33,8 @@ void SimulatedFarm::act(std::uint32_t index, Begin& each) {
       fail_job(worker, slot, "cannot open its part", FailureKind::no_input);
     });
   }
-  const SimulatedTime there =
-      std::max(folder_.transfer(worker.host, in_work.work.read_bytes) + delay, readable);
+  const SimulatedTime there = std::max(
+      folder_.read(worker.host, in_work.work.read_bytes, in_work.work.extent) + delay, readable);
   while_in_work(worker, each.slot, there, [this, &worker, slot = each.slot] {
     InWork& read = *worker.slots[slot];
     read.clock.read(farm_now());
@@ -111,7 +111,7 @@ void SimulatedFarm::compute(Worker& worker, std::uint32_t slot) {
   while_in_work(worker, slot, queue_.now() + takes, [this, &worker, slot] {
     InWork& computed = *worker.slots[slot];
     end_computing(worker, computed);
-    const SimulatedTime written = folder_.transfer(worker.host, computed.work.write_bytes);
+    const SimulatedTime written = folder_.write(worker.host, computed.work.write_bytes);
     while_in_work(worker, slot, written, [this, &worker, slot] { write(worker, slot); });
     open_gate(worker);
   });

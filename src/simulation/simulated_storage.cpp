@@ -28,6 +28,36 @@ SimulatedTime SimulatedFolder::transfer(std::uint32_t host, std::uint64_t bytes)
   return std::max({served, arrived, stalled_until_}) + storage_.delay;
 }
 
+SimulatedTime SimulatedFolder::read(std::uint32_t host, std::uint64_t bytes, const Extent& extent) {
+  HostCache& cache = caches_[host];
+  const std::uint64_t of_extent = extent.name == 0 ? 0 : std::min(bytes, extent.bytes);
+  const std::uint64_t had = std::min(cache.has(extent.name), of_extent);
+  if (had < of_extent) cache.keep({extent.name, of_extent}, storage_.cache_bytes);
+  cache.keep({0, bytes - of_extent}, storage_.cache_bytes);
+  return transfer(host, bytes - had);
+}
+
+SimulatedTime SimulatedFolder::write(std::uint32_t host, std::uint64_t bytes) {
+  caches_[host].keep({0, bytes}, storage_.cache_bytes);
+  return transfer(host, bytes);
+}
+
+std::uint64_t HostCache::has(std::uint64_t extent) const {
+  const auto found = by_name_.find(extent);
+  return found == by_name_.end() ? 0 : found->second;
+}
+
+void HostCache::keep(const Extent& bytes, std::uint64_t limit) {
+  if (bytes.bytes == 0) return;
+  kept_.push_back(bytes);
+  bytes_ += bytes.bytes;
+  if (bytes.name != 0) by_name_[bytes.name] = bytes.bytes;
+  for (; bytes_ > limit; kept_.pop_front()) {
+    bytes_ -= kept_.front().bytes;
+    by_name_.erase(kept_.front().name);
+  }
+}
+
 bool SimulatedFolder::publish(const std::string& name, Content content) {
   return files_.try_emplace(name, content).second;
 }

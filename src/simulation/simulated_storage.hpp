@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <deque>
 #include <string>
 #include <unordered_map>
 #include <vector>
@@ -16,6 +17,20 @@
 
 namespace meshfarm {
 
+/// What a host has in memory of extents: the last bytes that it read and wrote, up to a limit.
+class HostCache {
+ public:
+  /// How many bytes of the extent it has.
+  std::uint64_t has(std::uint64_t extent) const;
+  /// So many bytes pass, of an extent or of none.
+  void keep(const Extent& bytes, std::uint64_t limit);
+
+ private:
+  std::deque<Extent> kept_;  // the oldest first
+  std::uint64_t bytes_ = 0;
+  std::unordered_map<std::uint64_t, std::uint64_t> by_name_;
+};
+
 /// The shared folder: how long files take, and what its readers see.
 class SimulatedFolder {
  public:
@@ -26,10 +41,14 @@ class SimulatedFolder {
         dice_(dice),
         queue_(queue),
         host_free_(hosts),
+        caches_(hosts),
         sick_until_(hosts) {}
 
   /// When so many bytes, asked for now by that host, are there.
   SimulatedTime transfer(std::uint32_t host, std::uint64_t bytes);
+  /// The same of what a job reads, some of which the host may have; and of what it makes.
+  SimulatedTime read(std::uint32_t host, std::uint64_t bytes, const Extent& extent);
+  SimulatedTime write(std::uint32_t host, std::uint64_t bytes);
 
   /// A finished file gets its name. False if that name was taken: two writers shared it.
   enum class Content : std::uint8_t { whole, damaged, cut_short };
@@ -67,6 +86,7 @@ class SimulatedFolder {
   SimulatedTime server_free_{0};
   double server_busy_s_ = 0;
   std::vector<SimulatedTime> host_free_;
+  std::vector<HostCache> caches_;          // by host
   std::vector<SimulatedTime> sick_until_;  // by host
   SimulatedTime stalled_until_{0};
   SimulatedTime full_until_{0};

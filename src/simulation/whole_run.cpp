@@ -49,7 +49,7 @@ class WholeRun {
 
   void begin(JobGraph& graph) {
     for (std::uint32_t b = 0; b < blocks_; ++b) {
-      graph.add({k_survey, b}, made_up_job("survey " + std::to_string(b)));
+      graph.add({k_survey, b}, of_block(b, made_up_job("survey " + std::to_string(b))));
     }
     graph.then({all_of(k_survey, blocks_)}, [this](JobGraph& so_far) {
       know(so_far, all_of(k_survey, blocks_));
@@ -75,12 +75,21 @@ class WholeRun {
     return made;
   }
 
+  static Job of_block(std::uint32_t block, Job job) {
+    job.extent = extent_named("block", block, 1);
+    return job;
+  }
+  static Job of_part(std::uint32_t part, Job job) {
+    job.extent = extent_named("part", part, 1);
+    return job;
+  }
+
   void count(JobGraph& graph, std::uint32_t round) {
     const JobRange counted{k_count, round * blocks_, blocks_};
     for (std::uint32_t b = 0; b < blocks_; ++b) {
       std::vector<JobName> reads;
       if (round > 0) reads.push_back({k_partition, round - 1});
-      graph.add({k_count, counted.first + b}, job(graph, "count", b, reads));
+      graph.add({k_count, counted.first + b}, of_block(b, job(graph, "count", b, reads)));
     }
     graph.add({k_partition, round}, {counted}, [this, round, counted](JobGraph& so_far) {
       know(so_far, counted);
@@ -100,7 +109,7 @@ class WholeRun {
       Job each = made_up_job("job " + std::to_string(b));
       each.inputs = {graph.output({k_partition, k_rounds_of_count - 1}).file};
       each.left_to_readers = true;
-      graph.add({k_vertices, b}, std::move(each));
+      graph.add({k_vertices, b}, of_block(b, std::move(each)));
     }
     graph.then({all_of(k_vertices, blocks_)}, [this](JobGraph& so_far) {
       know(so_far, all_of(k_vertices, blocks_));
@@ -126,7 +135,7 @@ class WholeRun {
     climbed_.resize(parts_);
     for (std::uint32_t p = 0; p < parts_; ++p) {
       climbed_[p] = p;
-      graph.add({k_climb, p}, job(graph, "climb", p, bundles_of(p)));
+      graph.add({k_climb, p}, of_part(p, job(graph, "climb", p, bundles_of(p))));
     }
     graph.then({all_of(k_climb, parts_)}, [this](JobGraph& so_far) {
       know(so_far, all_of(k_climb, parts_));
@@ -134,7 +143,8 @@ class WholeRun {
       for (std::uint32_t p = 0; p < parts_; ++p) {
         if (!asks_again(so_far.output({k_climb, p}))) continue;
         climbed_[p] = parts_ + p;
-        so_far.add({k_climb, climbed_[p]}, job(so_far, "climb again", p, bundles_of(p)));
+        so_far.add({k_climb, climbed_[p]},
+                   of_part(p, job(so_far, "climb again", p, bundles_of(p))));
         again.push_back({k_climb, climbed_[p], 1});
       }
       so_far.then(again, [this](JobGraph& climbed) { join(climbed); });
@@ -199,11 +209,11 @@ class WholeRun {
 
   void measure(JobGraph& graph) {
     for (std::uint32_t p = 0; p <= parts_; ++p) {
-      graph.add({k_measure, p}, job(graph, "measure", p,
-                                    {{k_reduce, reduced_[p]},
-                                     {k_reduce, reduced_[(p + 1) % (parts_ + 1)]},
-                                     {k_reduce, reduced_[parts_]},
-                                     {k_triangles, p % blocks_}}));
+      graph.add({k_measure, p}, of_part(p, job(graph, "measure", p,
+                                               {{k_reduce, reduced_[p]},
+                                                {k_reduce, reduced_[(p + 1) % (parts_ + 1)]},
+                                                {k_reduce, reduced_[parts_]},
+                                                {k_triangles, p % blocks_}})));
     }
     Job write = job(graph, "write", 0, {{k_reduce, reduced_[parts_]}});
     write.by_sink = true;

@@ -39,6 +39,7 @@ struct SimulatedWork {
   double compute_s = 0;  // on a worker of speed 1
   std::uint64_t read_bytes = 0;
   std::uint64_t write_bytes = 0;
+  Extent extent = {};  // of the bytes read
 };
 
 struct SimulatedWorker {
@@ -63,11 +64,14 @@ struct SimulatedNetwork {
 };
 
 /// A file takes delay, then its bytes one after another over the server's link, which all hosts
-/// share, and over the host's own. 0: no limit.
+/// share, and over the host's own. 0: no limit. What a host has read of an extent it reads again
+/// without that, as long as it is among the last so many bytes that it read and wrote. (Real NFS
+/// clients keep what was read, but not what was written and renamed.)
 struct SimulatedStorage {
   SimulatedTime delay{2000};
   double server_bytes_per_s = 0;
   double host_bytes_per_s = 0;
+  std::uint64_t cache_bytes = 0;  // of each host
 };
 
 /// What the central processes take for each message and each result: the limit of a large farm.

@@ -8,6 +8,7 @@
 
 #include "simulation/faults_of_seed.hpp"
 #include "simulation/made_up_run.hpp"
+#include "simulation/simulated_storage.hpp"
 #include "simulation/simulation_checks.hpp"
 
 namespace meshfarm::test {
@@ -224,6 +225,23 @@ TEST_CASE("a thousand workers share ten thousand jobs") {
   const std::chrono::duration<double> took = std::chrono::steady_clock::now() - start;
   CHECK(problem_of(result, faults, expected_summaries(source)) == "");
   MESSAGE(result.events, " events in ", took.count(), " s");
+}
+
+TEST_CASE("a host keeps the last that it has read, as far as there is memory") {
+  HostCache cache;
+  cache.keep({1, 40}, 100);
+  cache.keep({2, 50}, 100);
+  CHECK(cache.has(1) == 40);
+  CHECK(cache.has(2) == 50);
+  CHECK(cache.has(0) == 0);
+  cache.keep({0, 20}, 100);  // what nobody else reads
+  CHECK(cache.has(1) == 0);
+  CHECK(cache.has(2) == 50);
+  cache.keep({3, 101}, 100);
+  CHECK(cache.has(2) == 0);
+  CHECK(cache.has(3) == 0);
+  cache.keep({4, 100}, 100);
+  CHECK(cache.has(4) == 100);
 }
 
 // --- the simulation would notice
