@@ -50,6 +50,8 @@ TraceLine line_of(const JobAccepted& e, double t) {
   line.memory = e.job.memory;
   line.read_bytes = e.job.reads;
   for (const FileRef& input : e.job.inputs) line.read_bytes += input.size;
+  line.extent = e.job.extent.name;
+  line.extent_bytes = e.job.extent.bytes;
   line.written_bytes = e.output_bytes;
   line.read_ms = e.times.read_ms;
   line.wait_ms = e.times.wait_ms;

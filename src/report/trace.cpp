@@ -63,6 +63,8 @@ Json to_json(const TraceDone& l) {
           {"triangles", l.triangles},
           {"memory", l.memory},
           {"read_bytes", l.read_bytes},
+          {"extent", to_hex(l.extent)},
+          {"extent_bytes", l.extent_bytes},
           {"written_bytes", l.written_bytes},
           {"read_ms", l.read_ms},
           {"wait_ms", l.wait_ms},
@@ -203,6 +205,8 @@ void read(const Json& json, TraceDone& l) {
   get(json, "triangles", l.triangles);
   get(json, "memory", l.memory);
   get(json, "read_bytes", l.read_bytes);
+  if (json.contains("extent")) get_key(json, "extent", l.extent);
+  get(json, "extent_bytes", l.extent_bytes);
   get(json, "written_bytes", l.written_bytes);
   get(json, "read_ms", l.read_ms);
   get(json, "wait_ms", l.wait_ms);

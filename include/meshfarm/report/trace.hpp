@@ -62,6 +62,8 @@ struct TraceDone {
   std::uint64_t triangles = 0;  // estimated work
   std::uint64_t memory = 0;
   std::uint64_t read_bytes = 0;
+  std::uint64_t extent = 0;        // the name of what others read, too; 0: none
+  std::uint64_t extent_bytes = 0;  // so many of those read
   std::uint64_t written_bytes = 0;
   std::uint32_t read_ms = 0;
   std::uint32_t wait_ms = 0;

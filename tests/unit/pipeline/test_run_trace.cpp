@@ -27,6 +27,7 @@ TEST_CASE("what a ventilator tells is in the stage's trace") {
   options.event(WorkerJoined{{1}, "host", 5, {1000, 2000, 4}}, FarmTime(500));
   Job job{"simplify", {{"parts/000001.part", 100, 0}, {"parts/000002.part", 11, 0}}, "", 7};
   job.memory = 9;
+  job.extent = {0xfedcba9876543210, 100};
   const JobPlace place{"climb", 6, {{"sort", 0, 12}}};
   options.event(JobAccepted{{1}, {42}, job, place, 33, {1, 2, 3, 4, 5}}, FarmTime(1500));
   options.event(AttemptFailed{{1}, {43}, "no luck"}, FarmTime(1600));
@@ -54,6 +55,8 @@ TEST_CASE("what a ventilator tells is in the stage's trace") {
   CHECK(done.needs.at(0).stage == "sort");
   CHECK(done.needs.at(0).count == 12);
   CHECK(done.read_bytes == 111);
+  CHECK(done.extent == 0xfedcba9876543210);
+  CHECK(done.extent_bytes == 100);
   CHECK(done.written_bytes == 33);
   CHECK(done.memory == 9);
   CHECK(done.cpu_us == 5);
