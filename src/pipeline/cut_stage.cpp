@@ -86,6 +86,11 @@ std::uint64_t CutStage::bytes_of_vertices() const {
   return std::min(all, cutting_.bytes) / cutting_.vertex_blocks;
 }
 
+void CutStage::reads_vertices(Job& job, std::uint32_t block) const {
+  job.reads = bytes_of_vertices();
+  job.extent = extent_named("vertices", block, job.reads);
+}
+
 Job CutStage::job_of(std::string_view kind, std::uint64_t cost, std::uint64_t memory) const {
   Job job;
   job.kind = kind;
@@ -98,7 +103,7 @@ Job CutStage::job_of(std::string_view kind, std::uint64_t cost, std::uint64_t me
 void CutStage::survey(JobGraph& graph) {
   for (std::uint32_t b = 0; b < cutting_.vertex_blocks; ++b) {
     Job job = job_of(k_survey_kind, vertices_of_block() / k_surveyed, 0);
-    job.reads = bytes_of_vertices();
+    reads_vertices(job, b);
     job.parameters = encode_parameters(CutJobParameters{cutting_, b, 0, {}, {}});
     graph.add(job_name(RunStage::survey, b), std::move(job));
   }
@@ -125,7 +130,7 @@ void CutStage::count(JobGraph& graph, std::uint32_t round) {
     Job job = job_of(k_count_kind, vertices_of_block() / k_counted,
                      MemoryOfCut(manifest_, cutting_).count);
     if (round > 0) job.inputs = {cells_};
-    job.reads = bytes_of_vertices();
+    reads_vertices(job, b);
     job.parameters = encode_parameters(
         CutJobParameters{cutting_, b, round, round == 0 ? manifest_.box : Box{}, {}});
     graph.add(job_name(RunStage::count, round * blocks + b), std::move(job));
@@ -158,7 +163,7 @@ void CutStage::scatter_vertices(JobGraph& graph) {
     Job job = job_of(k_vertices_kind, vertices_of_block() / k_scattered_vertices,
                      MemoryOfCut(manifest_, cutting_).scatter_vertices);
     job.inputs = {cells_};
-    job.reads = bytes_of_vertices();
+    reads_vertices(job, b);
     job.parameters = encode_parameters(CutJobParameters{cutting_, b, 0, {}, {}});
     graph.add(job_name(RunStage::vertices, b), std::move(job));
   }

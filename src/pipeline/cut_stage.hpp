@@ -38,6 +38,7 @@ class CutStage {
   void take_boundary(const JobGraph& graph, std::uint32_t group);
   Job job_of(std::string_view kind, std::uint64_t cost, std::uint64_t memory) const;
   std::uint64_t bytes_of_vertices() const;
+  void reads_vertices(Job& job, std::uint32_t block) const;
   std::uint64_t vertices_of_block() const;
   std::uint64_t triangles_of_block() const;
 

@@ -11,6 +11,7 @@
 #include <meshfarm/pipeline/simplify_job.hpp>
 
 #include "pipeline/error_meter.hpp"
+#include "pipeline/part_jobs.hpp"
 #include "pipeline/pieces_output.hpp"
 #include "pipeline/quotas.hpp"
 #include "pipeline/run_stages.hpp"
@@ -334,13 +335,15 @@ Job FinishStage::measure_job(std::size_t number, const std::vector<PartRange>& r
     parameters.points.push_back({each.finished_file, each.finished.points});
   }
   parameters.input_step = steps_of(manifest_.input_vertices, points.input_vertices);
-  std::uint64_t part = 0;  // all that the job has
+  std::uint64_t part = 0;   // all that the job has
+  std::uint64_t first = 0;  // bytes of the first part
   std::uint64_t read = 0;
   std::uint64_t triangles = 0;
   for (std::uint32_t p = parameters.first_part; p < parameters.end_part; ++p) {
     const PartEntry& entry = manifest_.parts[p];
     triangles += entry.triangles;
-    read += entry.file.size;
+    read += manifest_.bundles ? bytes_of_bundles(entry.triangles) : entry.file.size;
+    if (p == parameters.first_part) first = read;
     part += manifest_.bundles ? k_built_triangle_bytes * entry.triangles
                               : entry.file.size + 60 * entry.triangles;
     if (!manifest_.bundles) parameters.parts.push_back(entry.file);
@@ -348,7 +351,8 @@ Job FinishStage::measure_job(std::size_t number, const std::vector<PartRange>& r
   Job job;
   job.kind = k_measure_kind;
   job.parameters = encode_parameters(parameters);
-  job.reads = manifest_.bundles ? bytes_of_bundles(triangles) : read;
+  job.reads = read;
+  if (triangles > 0) job.extent = extent_of_part(parameters.first_part, first);
   // To build a part takes about as long as to measure to it.
   const std::uint64_t shown = triangles / (manifest_.bundles ? 4 : 8);
   job.cost = k_before_measuring + shown + result;

@@ -46,6 +46,10 @@ std::uint64_t memory_to_build(std::uint64_t average_triangles) {
   return memory_of(likely, likely.triangles);
 }
 
+Extent extent_of_part(std::uint32_t part, std::uint64_t bytes) {
+  return extent_named("part", part, bytes);
+}
+
 PartJobs::PartJobs(const Manifest& manifest, const RunOptions& options,
                    const BundlesOfMesh* bundles)
     : manifest_(manifest),
@@ -100,6 +104,7 @@ Job PartJobs::climb(std::uint32_t part, double headroom, TopologyMode topology) 
           memory_of(entry, parameters.start_triangles) +
               memory_of_channels(parameters.lines, entry.triangles) +
               memory_of_bound(entry.triangles)};
+  if (!is_sampled(part)) job.extent = extent_of_part(part, entry.file.size);
   // Other sweeps need not wait for the stream's own.
   if (by_error() && is_sampled(part)) job.after = manifest_.parts[part].triangles;
   return job;
@@ -125,6 +130,7 @@ Job PartJobs::build_and_climb(std::uint32_t part, double headroom,
           memory_to_build(average) + memory_of_bound(k_largest_part * average / 10)};
   for (const VertexBundleRef& each : bundles_->vertices) job.reads += each.file.size / parts;
   for (const TriangleBundleRef& each : bundles_->triangles) job.reads += each.file.size / parts;
+  job.extent = extent_of_part(part, job.reads);
   return job;
 }
 

@@ -17,6 +17,9 @@ constexpr double k_error_share = 0.5;
 /// What it takes to build a part, of which so many triangles are the average, and to climb it.
 std::uint64_t memory_to_build(std::uint64_t average_triangles);
 
+/// A part's file, or the sections that it is built of.
+Extent extent_of_part(std::uint32_t part, std::uint64_t bytes);
+
 /// Makes the jobs of single parts and streams, and knows what in them follows from the run's
 /// options alone.
 class PartJobs {

@@ -4,7 +4,10 @@
 // Runs that cut their input themselves end as runs on a stage that was cut.
 #include <algorithm>
 #include <fstream>
+#include <map>
 #include <random>
+#include <set>
+#include <utility>
 
 #include <doctest/doctest.h>
 
@@ -14,7 +17,9 @@
 #include <meshfarm/pipeline/assemble.hpp>
 #include <meshfarm/pipeline/cut_job.hpp>
 #include <meshfarm/pipeline/job_table.hpp>
+#include <meshfarm/pipeline/piece_jobs.hpp>
 #include <meshfarm/pipeline/run_graph.hpp>
+#include <meshfarm/pipeline/simplify_job.hpp>
 #include <meshfarm/util/errors.hpp>
 #include <meshfarm/util/file.hpp>
 
@@ -82,6 +87,22 @@ std::vector<AcceptedJob> do_all(const JobSource& source, const Stage& stage,
     }
   }
   return accepted;
+}
+
+std::vector<Job> jobs_of_workers(const StagedRun& staged, const RunOptions& run) {
+  const JobSource source = make_job_source(staged.manifest, run);
+  const JobContext context{staged.stage, 1, 7, [](std::uint64_t) { return true; }};
+  std::vector<AcceptedJob> accepted;
+  std::vector<Job> done;
+  for (bool any = true; std::exchange(any, false);) {
+    for (const Job& job : test::next_jobs(source, accepted)) {
+      if (job.by_sink) continue;
+      any = true;
+      accepted.push_back({key_of(job), do_job(job, context)});
+      done.push_back(job);
+    }
+  }
+  return done;
 }
 
 struct RunEnd {
@@ -157,6 +178,31 @@ TEST_CASE("what the jobs of a cut take is told before, and their messages are sh
     if (!job.by_sink) CHECK(job.parameters.size() < 48 * 1024);
   }
   CHECK(surveys == 64);
+}
+
+TEST_CASE("jobs that read the same block or part tell so") {
+  const test::TempFolder folder;
+  const auto file = folder.path() / "mesh.ply";
+  write_ply(file, test::torus(120, 60), PositionType::float32);
+  const StagedRun farm = plan_for_farm(file, folder.path() / "farm", 5);
+  RunOptions run{.ratio = 0.1};
+  run.finish_place = FinishPlace::farm;
+  run.composition = Composition::sink;
+  std::map<std::string, std::set<std::uint64_t>> extents;
+  std::map<std::string, std::size_t> jobs;
+  for (const Job& job : jobs_of_workers(farm, run)) {
+    if (job.extent.name == 0) continue;
+    extents[job.kind].insert(job.extent.name);
+    ++jobs[job.kind];
+    CHECK(job.extent.bytes <= job.reads);
+    CHECK(job.extent.bytes > 0);
+  }
+  CHECK(extents[std::string(k_survey_kind)].size() == 5);
+  CHECK(extents[std::string(k_count_kind)] == extents[std::string(k_survey_kind)]);
+  CHECK(extents[std::string(k_vertices_kind)] == extents[std::string(k_survey_kind)]);
+  CHECK(extents[std::string(k_simplify_kind)].size() == k_parts);
+  CHECK(extents[std::string(k_measure_kind)] == extents[std::string(k_simplify_kind)]);
+  CHECK(jobs[std::string(k_measure_kind)] == k_parts);
 }
 
 TEST_CASE("an input that was changed, or is not to be seen, may be another host's to read") {
