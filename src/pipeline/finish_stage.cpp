@@ -43,6 +43,8 @@ constexpr std::uint64_t k_split_work = 2;
 constexpr std::uint64_t k_measured_at_once = 200'000;
 /// To read the result that is measured, and to arrange its points, is worth so many triangles.
 constexpr std::uint64_t k_before_measuring = 20'000;
+/// And then so many triangles of it take the work of simplifying one.
+constexpr std::uint64_t k_measured_result = 3;
 
 std::uint64_t steps_of(std::uint64_t count, std::uint64_t most) {
   return std::max<std::uint64_t>(1, (count + most - 1) / most);
@@ -355,8 +357,8 @@ Job FinishStage::measure_job(std::size_t number, const std::vector<PartRange>& r
   if (triangles > 0) job.extent = extent_of_part(parameters.first_part, first);
   // To build a part takes about as long as to measure to it.
   const std::uint64_t shown = triangles / (manifest_.bundles ? 4 : 8);
-  job.cost = k_before_measuring + shown + result;
-  if (piece.parts == 0) job.cost += 2 * piece.divided.strip_triangles;
+  job.cost = k_before_measuring + shown + result / k_measured_result;
+  if (piece.parts == 0) job.cost += piece.divided.strip_triangles;
   job.memory = k_piece_process_bytes + part + 100 * result;
   return job;
 }
