@@ -85,6 +85,8 @@ void PlanWords::add(po::options_description& options) {
                         "Gbit/s of the shared folder's server");
   options.add_options()("link", po::value(&link)->default_value(link)->value_name("GBIT"),
                         "Gbit/s of each host");
+  options.add_options()("cache", po::value(&cache)->default_value(cache)->value_name("SIZE"),
+                        "memory in which a host keeps what it has read and written (0: none)");
   options.add_options()("delay",
                         po::value(&delay_ms)->default_value(delay_ms, "0.1")->value_name("MS"),
                         "of a message, in milliseconds");
@@ -111,6 +113,7 @@ void PlanWords::check() {
   like_.schedule = schedule == "static" ? Schedule::fixed : Schedule::dynamic;
   like_.server_bytes_per_s = number_in(storage, "--storage") * 1e9 / 8;
   like_.link_bytes_per_s = number_in(link, "--link") * 1e9 / 8;
+  like_.cache_bytes = static_cast<double>(parse_size(cache, "--cache"));
   like_.delay_s = delay_ms * 1e-3;
 }
 

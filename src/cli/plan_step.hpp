@@ -20,6 +20,7 @@ struct PlanWords {
   std::string schedule = "dynamic";
   std::string storage = "10";  // Gbit/s
   std::string link = "10";
+  std::string cache = "4G";
   double delay_ms = 0.1;
   double off = 0.2;
   std::uint64_t parts = 0;

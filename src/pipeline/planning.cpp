@@ -89,12 +89,12 @@ std::vector<std::uint64_t> work_after(std::span<const PlannedJob> jobs, const By
 }
 
 /// Jobs that are named by their place.
-JobSource source_of(std::span<const PlannedJob> jobs) {
+JobSource source_of(std::span<const PlannedJob> jobs, const PlannedFarm& farm) {
   const auto by_needs = std::make_shared<ByNeeds>();
   for (std::uint32_t i = 0; i < jobs.size(); ++i) {
     (*by_needs)[needs_of(jobs, jobs[i])].push_back(i);
   }
-  const auto add = [jobs, after = work_after(jobs, *by_needs)](
+  const auto add = [jobs, keeps = farm.cache_bytes > 0, after = work_after(jobs, *by_needs)](
                        JobGraph& graph, const std::vector<std::uint32_t>& places) {
     for (const std::uint32_t place : places) {
       Job job;
@@ -103,6 +103,7 @@ JobSource source_of(std::span<const PlannedJob> jobs) {
       job.cost = jobs[place].triangles;
       job.after = after[place];
       job.left_to_readers = jobs[place].left_to_readers;
+      if (keeps) job.extent = jobs[place].extent;
       graph.add({0, place}, std::move(job));
     }
   };
@@ -143,7 +144,8 @@ SimulationOptions options_of(std::span<const PlannedJob> jobs, const PlannedFarm
   options.limit = std::chrono::hours(24 * 365);
   options.heartbeat = FarmTime(1000);
   options.network = {simulated(farm.delay_s), simulated(farm.delay_s / 2)};
-  options.storage = {simulated(farm.file_s), farm.server_bytes_per_s, farm.link_bytes_per_s};
+  options.storage = {simulated(farm.file_s), farm.server_bytes_per_s, farm.link_bytes_per_s,
+                     static_cast<std::uint64_t>(farm.cache_bytes)};
   options.centre = {simulated(farm.message_s), simulated(farm.result_s), true};
   options.schedule.schedule = farm.schedule;
   options.triangles_per_s = triangles_per_s;
@@ -151,7 +153,7 @@ SimulationOptions options_of(std::span<const PlannedJob> jobs, const PlannedFarm
   options.schedule.expect_workers = static_cast<std::uint32_t>(options.workers.size());
   options.work = [jobs](const Job& job) {
     const PlannedJob& each = jobs[std::stoul(job.parameters)];
-    return SimulatedWork{each.compute_s, each.read_bytes, each.written_bytes};
+    return SimulatedWork{each.compute_s, each.read_bytes, each.written_bytes, each.extent};
   };
   return options;
 }
@@ -169,7 +171,8 @@ class TracedJobs {
                       seconds,
                       {},
                       done.stage,
-                      is_left_to_readers(done.kind)},
+                      is_left_to_readers(done.kind),
+                      {done.extent, done.extent_bytes}},
                      &done});
   }
 
@@ -306,6 +309,7 @@ std::vector<PlannedJob> drawn(std::span<const PlannedJob> jobs, std::uint64_t co
   for (std::uint64_t i = 0; i < count; ++i) {
     sample.push_back(from[draw.next() % from.size()]);
     sample.back().needs.clear();
+    sample.back().extent = {};
   }
   return sample;
 }
@@ -321,13 +325,14 @@ PlannedRun simulate_run(std::span<const PlannedJob> jobs, const PlannedFarm& far
   double speed = 0;
   for (const SimulatedWorker& worker : options.workers) speed += worker.speed;
   run.ideal_s = run.work_s / speed;
-  const SimulationResult result = simulate_farm(source_of(jobs), options);
+  const SimulationResult result = simulate_farm(source_of(jobs, farm), options);
   if (!result.ended || !result.broken.empty() || !result.failure.empty()) {
     throw Error("the simulated run did not come to its end: " + result.broken + result.failure);
   }
   run.accepted_s = seconds(result.last_accept - result.first_push);
   run.farm_s = seconds(std::max(result.last_accept, result.last_verified) - result.first_push);
-  run.storage_busy = run.farm_s > 0 ? std::min(1.0, result.server_busy_s / run.farm_s) : 0;
+  run.storage_s = result.server_busy_s;
+  run.storage_busy = run.farm_s > 0 ? std::min(1.0, run.storage_s / run.farm_s) : 0;
   return run;
 }
 
@@ -338,25 +343,24 @@ std::vector<PlannedStage> simulate_stages(std::span<const PlannedJob> jobs,
     speed += static_cast<double>(group.count) * group.speed;
   }
   std::vector<PlannedStage> stages;
-  double before = 0;
+  PlannedRun before;
   for (std::size_t first = 0, end = 0; first < jobs.size(); first = end) {
     PlannedStage& stage = stages.emplace_back();
     std::map<std::string, double> work;  // of those that are done side by side
-    double bytes = 0;
     for (; end < jobs.size() && jobs[end].depth == jobs[first].depth; ++end) {
       const PlannedJob& job = jobs[end];
       work[job.stage] += job.compute_s;
       ++stage.jobs;
       stage.ideal_s += job.compute_s / speed;
       stage.longest_s = std::max(stage.longest_s, job.compute_s);
-      bytes += static_cast<double>(job.read_bytes + job.written_bytes);
     }
     stage.name = std::max_element(work.begin(), work.end(), [](const auto& a, const auto& b) {
                    return a.second < b.second;
                  })->first;
-    stage.storage_s = bytes / farm.server_bytes_per_s;
-    const double ends = simulate_run(jobs.first(end), farm).accepted_s;
-    stage.takes_s = std::max(0.0, ends - std::exchange(before, ends));
+    const PlannedRun so_far = simulate_run(jobs.first(end), farm);
+    stage.storage_s = std::max(0.0, so_far.storage_s - before.storage_s);
+    stage.takes_s = std::max(0.0, so_far.accepted_s - before.accepted_s);
+    before = so_far;
   }
   return stages;
 }

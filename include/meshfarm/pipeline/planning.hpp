@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include <meshfarm/farm/job.hpp>
 #include <meshfarm/farm/schedule.hpp>
 #include <meshfarm/report/trace.hpp>
 
@@ -28,6 +29,7 @@ struct PlannedJob {
   std::vector<Range> needs = {};  // if none are given: all jobs of less depth
   std::string stage = {};
   bool left_to_readers = false;  // Job::left_to_readers
+  Extent extent = {};            // Job::extent
 };
 
 /// The jobs of a trace, sorted by depth. Speed 1 is that of the trace's worker that did most work
@@ -55,6 +57,7 @@ struct PlannedFarm {
   double file_s = 1e-3;     // of a file operation, besides its bytes
   double server_bytes_per_s = 1.25e9;  // of the NFS server, shared: 10 Gbit/s
   double link_bytes_per_s = 1.25e9;    // of each host
+  double cache_bytes = 4e9;            // in which each host keeps what it has read
   double message_s = 10e-6;            // of the ventilator, for each message
   double result_s = 100e-6;            // of the sink, for each result
 };
@@ -64,7 +67,8 @@ struct PlannedRun {
   double accepted_s = 0;    // to the last result accepted
   double ideal_s = 0;       // all work over all speed
   double work_s = 0;        // all work, on one worker of speed 1
-  double storage_busy = 0;  // share of the time that the server's link is busy
+  double storage_s = 0;     // that the server's link is busy
+  double storage_busy = 0;  // the same as a share of the time
 };
 
 /// Simulates the farm on virtual time, with the real processes' own logic. Throws Error if that
@@ -78,7 +82,7 @@ struct PlannedStage {
   double takes_s = 0;    // from the end of those before it to its own
   double ideal_s = 0;    // its work over all speed
   double longest_s = 0;  // of its jobs, on a worker of speed 1
-  double storage_s = 0;  // its bytes over the server's link
+  double storage_s = 0;  // what goes over the server's link
 };
 /// What takes how long, in order. Runs the simulation once a stage.
 std::vector<PlannedStage> simulate_stages(std::span<const PlannedJob> jobs,
