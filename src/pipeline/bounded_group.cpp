@@ -19,7 +19,7 @@ namespace meshfarm {
 namespace {
 
 /// As jobs before this one have cut it, if they have.
-Manifest read_manifest(const JobContext& context, const SeamParameters::Bound& bound) {
+Manifest read_manifest(const JobContext& context, const GroupBound& bound) {
   Manifest manifest = decode_manifest(context.stage.read(ManifestName{}), "the manifest");
   if (!bound.bundles) return manifest;
   manifest.cutting.reset();

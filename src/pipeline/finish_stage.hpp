@@ -81,7 +81,7 @@ class FinishStage {
   std::uint32_t groups_of_seams() const;
   std::uint64_t input_round_seams() const;
   std::uint64_t memory_of_bound(std::uint32_t groups) const;
-  SeamParameters::Bound bound() const;
+  GroupBound bound() const;
   void measure(JobGraph& graph);
   std::uint64_t bytes_of_bundles(std::uint64_t triangles) const;
 

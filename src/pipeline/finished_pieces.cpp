@@ -14,11 +14,22 @@ namespace {
 /// What the sink stitches in so few triangles it finishes sooner by itself.
 constexpr std::uint64_t k_comfortable = 20'000'000;
 
-/// Of their diagonals, round the boxes.
+/// Round the boxes: of their diagonals, and at most so many sides of the result's triangles. Of
+/// many slabs, which are long and thin, most would be near each other by their diagonals.
 constexpr double k_margin_of_boxes = 0.05;
+constexpr double k_margin_in_sides = 32;
 
-bool touch(const Box& a, const Box& b) {
-  const double margin = k_margin_of_boxes * (a.diagonal() + b.diagonal());
+double side_of_triangles(const FinishedPiece& piece) {
+  const auto triangles = static_cast<double>(std::max<std::uint64_t>(1, piece.triangles));
+  return std::sqrt(2 * piece.area / triangles);
+}
+
+bool touch(const PieceOfResult& one, const PieceOfResult& other) {
+  const Box& a = one.divided.box;
+  const Box& b = other.divided.box;
+  const double sides = side_of_triangles(one.finished) + side_of_triangles(other.finished);
+  const double margin =
+      std::min(k_margin_of_boxes * (a.diagonal() + b.diagonal()), k_margin_in_sides * sides);
   const auto meet = [margin](double a_lo, double a_hi, double b_lo, double b_hi) {
     return a_lo <= b_hi + margin && b_lo <= a_hi + margin;
   };
@@ -75,7 +86,7 @@ std::vector<std::size_t> FinishedPieces::near(std::size_t piece) const {
   if (pieces[piece].parts == 0) return near;
   for (std::size_t i = 0; i < pieces.size(); ++i) {
     if (i == piece) continue;
-    if (touch(pieces[i].divided.box, pieces[piece].divided.box)) near.push_back(i);
+    if (touch(pieces[i], pieces[piece])) near.push_back(i);
   }
   return near;
 }
@@ -84,7 +95,7 @@ std::vector<std::size_t> FinishedPieces::seams_near(std::size_t piece) const {
   std::vector<std::size_t> near;
   for (std::size_t i = 0; i < pieces.size(); ++i) {
     if (i == piece || pieces[i].parts > 0) continue;
-    if (touch(pieces[i].divided.box, pieces[piece].divided.box)) near.push_back(i);
+    if (touch(pieces[i], pieces[piece])) near.push_back(i);
   }
   return near;
 }

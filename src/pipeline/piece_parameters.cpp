@@ -114,7 +114,7 @@ void get_bound(ByteReader& in, SeamParameters& parameters) {
   const auto is_bounded = in.get<std::uint8_t>();
   if (is_bounded > 1) in.fail("impossible bound");
   if (is_bounded == 0) return;
-  SeamParameters::Bound& bound = parameters.bound.emplace();
+  GroupBound& bound = parameters.bound.emplace();
   bound.max_error = in.get<double>();
   bound.certified_error = in.get<double>();
   if (!(bound.max_error > 0 && bound.certified_error >= 0)) in.fail("impossible bound");

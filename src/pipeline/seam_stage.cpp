@@ -108,7 +108,7 @@ Job FinishStage::seam_job(std::uint32_t group, std::uint32_t groups) const {
   return job;
 }
 
-SeamParameters::Bound FinishStage::bound() const {
+GroupBound FinishStage::bound() const {
   const double error = options_.error.in(manifest_.box);
   return {k_bound_share * error, options_.certify ? error : 0, manifest_.bundles};
 }

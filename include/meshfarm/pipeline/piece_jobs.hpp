@@ -133,6 +133,13 @@ struct SplitParameters {
 std::string encode_parameters(const SplitParameters& parameters);
 SplitParameters decode_split_parameters(std::string_view bytes);
 
+/// Of a seam job whose group is simplified as far as a bound on the error allows.
+struct GroupBound {
+  double max_error = 0;
+  double certified_error = 0;            // where above 0: it is proven of every point
+  std::optional<BundlesOfMesh> bundles;  // what parts are built of, if they are not kept
+};
+
 /// Parameters of a seam job. It has no inputs, as none is to be read whole. A seam is of the group
 /// that the first of its pieces is of; groups are neighbouring pieces, about as many in each.
 struct SeamParameters {
@@ -142,19 +149,13 @@ struct SeamParameters {
     FileSection mesh;  // what stays in the piece, and the gap, where there is a bound
     FileSection gap;
   };
-  /// On the error, where that decides how far the group is simplified.
-  struct Bound {
-    double max_error = 0;
-    double certified_error = 0;            // where above 0: it is proven of every point
-    std::optional<BundlesOfMesh> bundles;  // what parts are built of, if they are not kept
-  };
   std::vector<Strip> strips;  // of the pieces, in order
   std::uint32_t group = 0;
   std::uint32_t groups = 1;
   std::uint32_t all_parts = 0;
   BoundaryFiles boundary;
   double samples_per_triangle = 0;
-  std::optional<Bound> bound;
+  std::optional<GroupBound> bound;
   WeighParameters weigh;
 };
 std::string encode_parameters(const SeamParameters& parameters);
