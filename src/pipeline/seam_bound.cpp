@@ -104,9 +104,8 @@ class SeamProof {
     if (seams.first_unsure == seams.end_unsure) return;
     const std::vector<std::uint32_t> beyond = numbers_beyond(sure_part(seams, seams.mesh));
     if (beyond.empty()) return;
-    std::vector<Triangle> unproven;
-    for (const std::uint32_t i : beyond) unproven.push_back(to_prove_[i]);
-    const NearCells near(input_.positions, unproven, k_bound_reach * options_.certified_error);
+    const NearCells near(input_.positions, picked(to_prove_, beyond),
+                         k_bound_reach * options_.certified_error);
     std::vector<std::uint8_t> flags = free_flags(seams);
     for (const std::uint32_t i : near.touching(seams.mesh.positions, seams.mesh.triangles)) {
       for (const std::uint32_t v : seams.mesh.triangles[i]) flags[v] = 0;
@@ -164,9 +163,15 @@ class SeamProof {
 
   static void add(std::span<const Vec3> positions, std::span<const Triangle> triangles,
                   const std::vector<std::uint32_t>& numbers, Mesh& unproven) {
-    std::vector<Triangle> beyond;
-    for (const std::uint32_t i : numbers) beyond.push_back(triangles[i]);
-    if (!beyond.empty()) append_surface(positions, beyond, unproven);
+    if (!numbers.empty()) append_surface(positions, picked(triangles, numbers), unproven);
+  }
+
+  static std::vector<Triangle> picked(std::span<const Triangle> triangles,
+                                      const std::vector<std::uint32_t>& numbers) {
+    std::vector<Triangle> picked;
+    picked.reserve(numbers.size());
+    for (const std::uint32_t i : numbers) picked.push_back(triangles[i]);
+    return picked;
   }
 
   Mesh input_;
