@@ -146,7 +146,7 @@ check full
 say "each of the first files takes 20 s to reach the disk"
 new_stage late
 # Counted by thread: both slots of a worker, and the sink's disk.
-launcher=(strace -D -f -qq -o /dev/null -e trace=fsync -e inject=fsync:delay_exit=20000000:when=2)
+launcher=(strace --seccomp-bpf -D -f -qq -o /dev/null -e trace=fsync -e inject=fsync:delay_exit=20000000:when=2)
 start late
 launcher=()
 finish 200
