@@ -168,8 +168,10 @@ void Dispatcher::on(const PeerId& peer, const Heartbeat& beat) {
   if (worker == nullptr) {
     return send(peer, Refused{Refusal::stranger, "not known here (any more); say hello"});
   }
-  const bool unreceived = beat.received < worker->sent;
-  if (unreceived && worker->pushed + k_silent_heartbeats * options_.heartbeat < now_) {
+  // This process may have stood still since it pushed, and reads what was said before.
+  worker->unreceived_beats = beat.received < worker->sent ? worker->unreceived_beats + 1 : 0;
+  if (worker->unreceived_beats > k_silent_heartbeats &&
+      worker->pushed + k_silent_heartbeats * options_.heartbeat < now_) {
     send(peer, Refused{Refusal::stranger, "the lane lost jobs; say hello for another"});
     return lose(beat.worker, "its lane lost jobs", {});
   }

@@ -331,6 +331,7 @@ void Dispatcher::issue() {
 void Dispatcher::push(Scheduler::Pick pick) {
   Worker& worker = workers_.at(pick.worker);
   worker.pushed = now_;
+  worker.unreceived_beats = 0;
   ++worker.sent;
   out_.push_back(PushJob{pick.worker, pick.job.key,
                          Assignment{options_.run, options_.epoch, worker.sent,

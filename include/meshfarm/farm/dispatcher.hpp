@@ -80,7 +80,8 @@ class Dispatcher {
     FarmTime pushed{0};
     std::uint64_t credit = 0;
     std::uint64_t sent = 0;
-    Heartbeat beat;  // the last
+    int unreceived_beats = 0;  // in a row, of jobs sent but not received
+    Heartbeat beat;            // the last
   };
   struct Sink {
     PeerId peer;

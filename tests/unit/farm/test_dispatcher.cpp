@@ -451,6 +451,32 @@ TEST_CASE("a process of another build is refused, and both versions are named") 
   CHECK(desk.dispatcher.progress().other_build.find("pc7") != std::string::npos);
 }
 
+TEST_CASE("a worker that does not receive what was sent is asked to join anew") {
+  Desk desk(one_stage(1));
+  desk.sink("s", 9);
+  desk.worker("a", 1);
+  CHECK(names(desk.credit("a", 1, 1)) == "job 0@1 ");
+  const Heartbeat without{k_epoch, {1}, 0, 0, 0};
+  SUBCASE("not because of what it said before, and is read late") {
+    desk.now += FarmTime(20'000);
+    for (int i = 0; i < 3; ++i) CHECK(said_to<Alive>("a", desk.say("a", without)).size() == 1);
+    CHECK(said_to<Alive>("a", desk.say("a", Heartbeat{k_epoch, {1}, 1, 1, 0})).size() == 1);
+    CHECK(said_to<Alive>("a", desk.say("a", without)).size() == 1);
+    CHECK(desk.dispatcher.plan().state(key(0)) == JobState::running);
+  }
+  SUBCASE("if it says so again and again") {
+    for (int i = 0; i < 3; ++i) {
+      desk.now += FarmTime(1000);
+      CHECK(said_to<Alive>("a", desk.say("a", without)).size() == 1);
+    }
+    desk.now += FarmTime(1000);
+    const Actions lost = desk.say("a", without);
+    REQUIRE(said_to<Refused>("a", lost).size() == 1);
+    CHECK(said_to<Refused>("a", lost)[0].why == Refusal::stranger);
+    CHECK(desk.dispatcher.plan().state(key(0)) == JobState::ready);
+  }
+}
+
 TEST_CASE("the words of another epoch or of a stranger are dropped") {
   Desk desk(one_stage(2));
   desk.sink("s", 9);
