@@ -148,6 +148,21 @@ TEST_CASE("more parts than cells, one part, no cells") {
   CHECK(partition_cells({}, {.parts = 3}).empty());
 }
 
+TEST_CASE("nearly as many parts as cells, and many of them, come out even") {
+  for (const auto& [side, parts] :
+       {std::pair(6, 33U), {7, 48U}, {12, 40U}, {96, 200U}, {96, 500U}}) {
+    CAPTURE(side);
+    CAPTURE(parts);
+    const CellTree tree = square_of_cells(side);
+    const auto part = partition_cells(tree.cells(), {.parts = parts});
+    CHECK(part == partition_cells(tree.cells(), {.parts = parts, .threads = 3}));
+    std::vector<std::uint32_t> sizes(parts, 0);
+    for (const std::uint32_t p : part) ++sizes.at(p);
+    const double even = 1.0 * side * side / parts;
+    CHECK(*std::max_element(sizes.begin(), sizes.end()) <= std::ceil(1.1 * even));
+  }
+}
+
 TEST_CASE("parts come out even where METIS leaves them uneven: cells of very different weights") {
   // Seven heavy cells and many light ones round them.
   std::vector<Cell> cells;

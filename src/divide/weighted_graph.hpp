@@ -1,0 +1,49 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace meshfarm {
+
+/// An undirected graph whose nodes have places in grids.
+struct WeightedGraph {
+  /// The edges of node i stand from first[i] on: each edge is there twice, once at each of its
+  /// ends.
+  std::vector<std::int32_t> first = {0};
+  std::vector<std::int32_t> targets;
+  std::vector<std::int32_t> edge_weights;
+  std::vector<std::int32_t> weights;  // of the nodes
+  std::vector<std::uint64_t> places;  // of the nodes: grid << 36 | z << 24 | y << 12 | x
+  bool is_paired = false;             // nodes are pairs of nodes of one place
+
+  std::size_t nodes() const { return weights.size(); }
+};
+
+struct Coarsening {
+  WeightedGraph graph;
+  std::vector<std::int32_t> node_of;  // for each node of the finer graph
+};
+
+/// A graph of about half as many nodes: each is two that were joined by an edge, or one. Each node
+/// in turn takes the heaviest edge that leads to a free one (heavy edge matching, Karypis & Kumar
+/// 1998); of several, one to the same 2 x 2 x 2 cells, so that nodes become compact. No pair is
+/// heavier than `heaviest`.
+Coarsening coarsened(const WeightedGraph& fine, std::int64_t heaviest);
+
+struct RefineOptions {
+  std::int32_t parts = 1;
+  std::int64_t heaviest = 0;  // that a part may become
+  int passes = 10;
+};
+
+/// Moves nodes at the borders of parts to a part beside them, as long as that makes the edges
+/// between parts lighter or, at the same weight, parts more even (greedy k-way refinement, Karypis
+/// & Kumar 1998). What is above the limit gives nodes away at any price.
+void refine_parts(const WeightedGraph& graph, std::span<std::int32_t> part,
+                  const RefineOptions& options);
+
+}  // namespace meshfarm
