@@ -8,7 +8,9 @@
 namespace meshfarm {
 
 /// Keeps freed memory in the process for later allocations: fresh pages are expensive (measured:
-/// half of the CPU time of a cut). Call once, before there are threads. Does nothing without glibc.
+/// half of the CPU time of a cut). The first 256 MB of the heap are in large pages, where the
+/// system grants them to whoever asks. Call once, before there are threads. Does nothing without
+/// glibc.
 void keep_freed_memory();
 
 /// The pool of all processes of a host that no control group limits.
