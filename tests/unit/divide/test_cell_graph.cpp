@@ -107,6 +107,7 @@ TEST_CASE("the version of METIS that parts depend on makes the parts that it alw
         "aaaaaaaaaaaaaaaa"
         "aaaaaaaaaaaaaaaa");
   CHECK(sum(text_of(12)) == 17307491491449845574U);
+  CHECK(sum(text_of(40)) == 7456562086348892966U);
 }
 
 TEST_CASE("parts are numbered along a recursive bisection: a half of them is one region") {
