@@ -36,17 +36,16 @@ void grow_heap_by_large_pages() {
   constexpr int k_usual_growth = 128 << 10;
   constexpr std::size_t k_more_than_is_left = 1 << 20;
   ::mallopt(M_TOP_PAD, k_growth);
-  void* const begin = std::malloc(k_more_than_is_left);
+  auto* const begin = static_cast<char*>(std::malloc(k_more_than_is_left));
   ::mallopt(M_TOP_PAD, k_usual_growth);
   const auto first = reinterpret_cast<std::uintptr_t>(begin);
   const auto end = reinterpret_cast<std::uintptr_t>(::sbrk(0));
-  // Another malloc than the C library's, or no room for so many addresses.
-  if (begin != nullptr && first < end && end - first >= k_growth &&
-      end - first < 2 * std::size_t{k_growth}) {
+  // Else it is another malloc than the C library's, or there are not so many addresses.
+  if (begin != nullptr && first < end && end - first >= k_growth && end - first < 2ULL * k_growth) {
     const auto page = static_cast<std::uintptr_t>(::sysconf(_SC_PAGESIZE));
-    const std::uintptr_t aligned = (first + page - 1) / page * page;
-    // Where there are none, nothing changes.
-    static_cast<void>(::madvise(reinterpret_cast<void*>(aligned), end - aligned, MADV_HUGEPAGE));
+    const std::uintptr_t skipped = (page - first % page) % page;
+    // Where there are no large pages, nothing changes.
+    static_cast<void>(::madvise(begin + skipped, end - first - skipped, MADV_HUGEPAGE));
   }
   std::free(begin);
 #endif
