@@ -60,7 +60,7 @@ void WorkerCore::beat(const WorkerPulse& pulse, FarmTime now) {
     // A job that was taken back may wait for storage as long as it likes.
     const bool waits = slot && slot->pulse.phase == JobPhase::storage && !slot->on_this_lane;
     const bool counts = slot && !waits && !pulse.slots.empty();
-    const FarmTime still = counts ? now - slot->moved : FarmTime(0);
+    const FarmTime still = counts ? slot->still(now) : FarmTime(0);
     if (still.count() <= beat.still_ms) continue;
     beat.still = slot->key;
     beat.still_ms = static_cast<std::uint32_t>(std::min<FarmTime::rep>(still.count(), UINT32_MAX));
@@ -77,9 +77,22 @@ void WorkerCore::feel(const WorkerPulse& pulse, FarmTime now) {
     const SlotPulse& felt = pulse.slots[i];
     SlotPulse& known = slots_[i]->pulse;
     const bool moved = felt.progress != known.progress || felt.phase != known.phase;
-    if (moved || felt.phase == JobPhase::waiting) slots_[i]->moved = now;
+    if (moved || felt.phase == JobPhase::waiting) {
+      slots_[i]->moved = now;
+      slots_[i]->moved_cpu_ms = felt.cpu_ms;
+    }
     known = felt;
   }
+}
+
+FarmTime WorkerCore::InWork::still(FarmTime now) const {
+  // What gets less than this of the time does not compute, but waits for something.
+  constexpr FarmTime::rep k_least_share = 1000;
+  const FarmTime all = now - moved;
+  const FarmTime computed(static_cast<FarmTime::rep>(pulse.cpu_ms - moved_cpu_ms));
+  const bool computes = pulse.phase == JobPhase::computing && pulse.cpu_ms > moved_cpu_ms &&
+                        computed * k_least_share > all;
+  return computes ? std::min(computed, all) : all;
 }
 
 WorkerActions WorkerCore::found(std::span<const Endpoint> endpoints, FarmTime now) {

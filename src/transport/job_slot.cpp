@@ -6,6 +6,8 @@
 #include <new>
 #include <utility>
 
+#include <pthread.h>
+
 #include <meshfarm/staging/staged_writer.hpp>
 #include <meshfarm/util/errors.hpp>
 
@@ -49,8 +51,10 @@ void JobSlot::give_up() {
 }
 
 SlotPulse JobSlot::pulse() const {
+  const clockid_t clock = cpu_clock_.load(std::memory_order_relaxed);
   return {progress_.load(std::memory_order_relaxed) + moved_.load(std::memory_order_relaxed),
-          phase_.load(std::memory_order_relaxed)};
+          phase_.load(std::memory_order_relaxed),
+          clock == k_no_clock ? 0 : thread_cpu_us(clock) / 1000};
 }
 
 /// On the slot's thread, as is all below. Whatever the job's function throws is the job's failure,
@@ -64,6 +68,9 @@ JobOutcome JobSlot::attempt(const Begin& begin) {
   clock_.computes(farm_clock());
   phase_ = JobPhase::computing;
   cpu_before_us_ = thread_cpu_us();
+  if (clockid_t clock = 0; ::pthread_getcpuclockid(::pthread_self(), &clock) == 0) {
+    cpu_clock_ = clock;
+  }
   JobOutcome outcome;
   try {
     outcome = compute(begin);

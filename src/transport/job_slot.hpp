@@ -4,6 +4,7 @@
 
 #include <atomic>
 #include <cstdint>
+#include <ctime>
 #include <functional>
 #include <map>
 #include <memory>
@@ -44,6 +45,7 @@ class JobSlot : private JobStorage {
 
  private:
   class OutputFile;
+  static constexpr clockid_t k_no_clock = CLOCK_REALTIME;  // of no thread
 
   JobOutcome attempt(const Begin& begin);
   JobOutcome compute(const Begin& begin);
@@ -68,6 +70,7 @@ class JobSlot : private JobStorage {
   std::atomic<std::uint64_t> moved_{0};  // bytes to and from the stage
   std::atomic<JobPhase> phase_{JobPhase::storage};
   std::atomic<bool> give_up_{false};
+  std::atomic<clockid_t> cpu_clock_{k_no_clock};  // of the thread, while it computes
   // The thread's own while it works:
   std::map<std::string, std::string> ahead_;  // bytes by name
   JobClock clock_;

@@ -257,9 +257,9 @@ FarmTime farm_clock() {
   return std::chrono::duration_cast<FarmTime>(std::chrono::steady_clock::now().time_since_epoch());
 }
 
-std::uint64_t thread_cpu_us() {
+std::uint64_t thread_cpu_us(clockid_t clock) {
   timespec used{};
-  if (::clock_gettime(CLOCK_THREAD_CPUTIME_ID, &used) != 0) return 0;
+  if (::clock_gettime(clock, &used) != 0) return 0;
   return static_cast<std::uint64_t>(used.tv_sec) * 1'000'000 +
          static_cast<std::uint64_t>(used.tv_nsec) / 1000;
 }

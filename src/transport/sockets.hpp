@@ -6,6 +6,7 @@
 
 #include <chrono>
 #include <cstdint>
+#include <ctime>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -68,7 +69,7 @@ bool send_frame(zmq::socket_t& router, std::string_view peer, std::string_view f
 /// Waits until one of the items has something or the time is up; a signal ends it early.
 void wait_for(std::vector<zmq::pollitem_t>& items, std::chrono::milliseconds timeout);
 FarmTime farm_clock();
-/// Processor time that this thread has used.
-std::uint64_t thread_cpu_us();
+/// Processor time that this thread has used, or the one that the clock is of.
+std::uint64_t thread_cpu_us(clockid_t clock = CLOCK_THREAD_CPUTIME_ID);
 
 }  // namespace meshfarm

@@ -36,6 +36,7 @@ enum class JobPhase : std::uint8_t { storage, waiting, computing };
 struct SlotPulse {
   std::uint64_t progress = 0;  // any count that grows as long as the job goes on
   JobPhase phase = JobPhase::computing;
+  std::uint64_t cpu_ms = 0;  // processor time of the slot's thread; 0: not known
 };
 /// Signs of life of the slots, those that have no job included.
 struct WorkerPulse {
@@ -78,7 +79,12 @@ class WorkerCore {
     bool on_this_lane = true;  // it counts against the lane's credit
     bool wanted = true;
     SlotPulse pulse = {};
-    FarmTime moved{0};  // when the pulse was last seen to change
+    FarmTime moved{0};               // when the pulse was last seen to change
+    std::uint64_t moved_cpu_ms = 0;  // ...and the processor time then
+
+    /// For how long it has stood still. A job that computes, on a host that is busy with something
+    /// else, is judged by the time that it got.
+    FarmTime still(FarmTime now) const;
   };
   struct Waiting {
     JobKey key;

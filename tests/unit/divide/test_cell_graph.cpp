@@ -150,8 +150,13 @@ TEST_CASE("more parts than cells, one part, no cells") {
 }
 
 TEST_CASE("nearly as many parts as cells, and many of them, come out even") {
-  for (const auto& [side, parts] :
-       {std::pair(6, 33U), {7, 48U}, {12, 40U}, {96, 200U}, {96, 500U}}) {
+  struct Case {
+    int side;
+    std::uint32_t parts;
+  };
+  for (const Case& each : {Case{6, 33}, Case{7, 48}, Case{12, 40}, Case{96, 200}, Case{96, 500}}) {
+    const int side = each.side;
+    const std::uint32_t parts = each.parts;
     CAPTURE(side);
     CAPTURE(parts);
     const CellTree tree = square_of_cells(side);

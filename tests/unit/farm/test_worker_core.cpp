@@ -363,5 +363,28 @@ TEST_CASE("a heartbeat tells of the job that stands still the longest") {
   CHECK(beat_in(bench.core.tick({{{5, computing}, {1, storage}}, 8}, bench.now)).still_ms == 0);
 }
 
+TEST_CASE("a job that gets little of a busy processor is judged by what it gets") {
+  WorkerBench bench(5, 1);
+  bench.join(1);
+  bench.job(1, "1");
+  const auto still = [&](const SlotPulse& pulse) {
+    bench.now += FarmTime(10'000);
+    bench.core.on_control(Alive{1, "sink"}, bench.now);
+    return beat_in(bench.core.tick({{pulse}, 8}, bench.now)).still_ms;
+  };
+  using enum JobPhase;
+  CHECK(still({1, computing, 500}) == 0);
+  CHECK(still({1, computing, 700}) == 200);
+  CHECK(still({1, computing, 20'000}) == 19'500);
+  CHECK(still({2, computing, 21'000}) == 0);
+  CHECK(still({2, computing, 40'000}) == 10'000);  // more than there was: of two clocks
+  // One that waits for a lock, and one that waits for the stage.
+  CHECK(still({3, computing, 40'000}) == 0);
+  CHECK(still({3, computing, 40'009}) == 10'000);
+  CHECK(still({3, storage, 50'000}) == 0);
+  CHECK(still({3, storage, 50'100}) == 10'000);
+  CHECK(still({3, storage}) == 20'000);
+}
+
 }  // namespace
 }  // namespace meshfarm::test
