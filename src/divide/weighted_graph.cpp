@@ -16,8 +16,8 @@ constexpr Node k_none = -1;
 /// The place in a grid of cells twice as long.
 std::uint64_t halved(std::uint64_t place) {
   constexpr std::uint64_t k_index = (std::uint64_t{1} << 36) - 1;
-  constexpr std::uint64_t k_halves =
-      0x7ff7ff7ff;  // what a bit falls out of is not the next number's
+  // Without the bits that came from the next number.
+  constexpr std::uint64_t k_halves = 0x7ff7ff7ff;
   return (place & ~k_index) | (((place & k_index) >> 1) & k_halves);
 }
 
@@ -70,14 +70,14 @@ class Matching {
   }
 
   void put_nodes(WeightedGraph& graph) const {
-    // A surface has four cells in eight: two rounds of pairs.
-    const std::vector<std::uint64_t>& places = fine_.is_paired ? blocks_ : fine_.places;
+    // A surface fills about four of eight cells, which become one node in two rounds.
+    const std::vector<std::uint64_t>& places = fine_.rounds % 2 == 1 ? blocks_ : fine_.places;
     for (const Pair& pair : pairs_) {
       const std::int32_t more = pair.other == k_none ? 0 : fine_.weights[pair.other];
       graph.weights.push_back(fine_.weights[pair.one] + more);
       graph.places.push_back(places[pair.one]);
     }
-    graph.is_paired = !fine_.is_paired;
+    graph.rounds = fine_.rounds + 1;
   }
 
   void put_edges(const std::vector<Node>& node_of, WeightedGraph& graph) const {
@@ -106,7 +106,7 @@ class Matching {
 
   const WeightedGraph& fine_;
   std::int64_t heaviest_;
-  std::vector<std::uint64_t> blocks_;  // of the nodes
+  std::vector<std::uint64_t> blocks_;  // places of the nodes among 2 x 2 x 2 cells
   std::vector<Pair> pairs_;
 };
 

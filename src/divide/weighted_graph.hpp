@@ -18,7 +18,7 @@ struct WeightedGraph {
   std::vector<std::int32_t> edge_weights;
   std::vector<std::int32_t> weights;  // of the nodes
   std::vector<std::uint64_t> places;  // of the nodes: grid << 36 | z << 24 | y << 12 | x
-  bool is_paired = false;             // nodes are pairs of nodes of one place
+  unsigned rounds = 0;  // of pairing: after two, places are those of 2 x 2 x 2 cells, and so on
 
   std::size_t nodes() const { return weights.size(); }
 };
