@@ -65,7 +65,7 @@ sanitized() {
 }
 
 beside_labs() {
-  renice -n 10 "$BASHPID" > /dev/null
+  renice -n 19 "$BASHPID" > /dev/null
   sanitized build-asan address,undefined --label-regex unit
 }
 

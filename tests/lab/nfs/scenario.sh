@@ -46,8 +46,10 @@ has_ended() { # PID
 new_stage() { # NAME
   cp -r "$cut_stage" "$ventilator_side/$1" || fail "no room for a stage"
 }
-# Starts the processes, by way of $launcher; sets run, workers.
+# Starts the processes, by way of $launcher; sets run, workers. With $heartbeat_ms ventilator and sink
+# are processes of their own.
 launcher=()
+heartbeat_ms=
 start() { # STAGE
   workers=()
   local side
@@ -55,8 +57,14 @@ start() { # STAGE
     "${launcher[@]}" "$meshfarm" worker "$side/$1" -q --threads 1 > "$logs/$1.worker.${side##*/}" 2>&1 &
     workers+=($!)
   done
-  "${launcher[@]}" "$meshfarm" run "$ventilator_side/$1" "${target[@]}" -o "$ventilator_side/$1.ply" \
-    --bind 127.0.0.1 -q > "$logs/$1.run" 2>&1 &
+  local collects=run binds=(--bind 127.0.0.1)
+  if [ -n "$heartbeat_ms" ]; then
+    "${launcher[@]}" "$meshfarm" ventilator "$ventilator_side/$1" "${target[@]}" "${binds[@]}" \
+      --heartbeat-ms "$heartbeat_ms" -q > "$logs/$1.ventilator" 2>&1 &
+    collects=sink
+  fi
+  "${launcher[@]}" "$meshfarm" $collects "$ventilator_side/$1" "${target[@]}" \
+    -o "$ventilator_side/$1.ply" "${binds[@]}" -q > "$logs/$1.run" 2>&1 &
   run=$!
 }
 # Waits for the end; sets code.
@@ -145,10 +153,13 @@ check full
 
 say "each of the first files takes 20 s to reach the disk"
 new_stage late
+# The host may be busy, but no thread may be silent for as long as a file takes.
+heartbeat_ms=5000
 # Counted by thread: both slots of a worker, and the sink's disk.
 launcher=(strace --seccomp-bpf -D -f -qq -o /dev/null -e trace=fsync -e inject=fsync:delay_exit=20000000:when=2)
 start late
 launcher=()
+heartbeat_ms=
 finish 200
 unharmed late
 check late
