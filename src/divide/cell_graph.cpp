@@ -63,7 +63,7 @@ std::uint64_t place_of(const Cell& cell, std::span<const unsigned> grid_bits) {
   const std::uint64_t last = (std::uint64_t{1} << bits) - 1;
   const std::uint64_t x = cell.key & last, y = cell.key >> bits & last,
                       z = cell.key >> (2 * bits) & last;
-  return grid << 36 | z << 24 | y << 12 | x;
+  return grid << CellTree::k_index_bits | z << 24 | y << 12 | x;
 }
 
 /// METIS adds all weights up in 32 bits: large ones are scaled down together.

@@ -70,7 +70,7 @@ class JobSlot : private JobStorage {
   std::atomic<std::uint64_t> moved_{0};  // bytes to and from the stage
   std::atomic<JobPhase> phase_{JobPhase::storage};
   std::atomic<bool> give_up_{false};
-  std::atomic<clockid_t> cpu_clock_{k_no_clock};  // of the thread, while it computes
+  std::atomic<clockid_t> cpu_clock_{k_no_clock};  // of the thread, once it has computed
   // The thread's own while it works:
   std::map<std::string, std::string> ahead_;  // bytes by name
   JobClock clock_;
