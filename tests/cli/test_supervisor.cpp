@@ -40,8 +40,9 @@ void append_to(const fs::path& path, char c) {
 ///   done, left, bad   exits with 0, 3, 1
 ///   killed            is ended by a signal
 ///   waits             until SIGTERM ends it, or for a minute
-///   soon              exits with 0 after half a second
-///   dies              is ended by a signal after half a second
+///   NAME:N            exits with 0 once the child of that name was started N times, or after a
+///                     minute
+///   dies              is ended by a signal two seconds after the first start of worker0
 std::vector<std::string> child(const std::string& name, const fs::path& starts,
                                const std::vector<std::string>& acts) {
   std::vector<std::string> words = {name, starts.string()};
@@ -49,15 +50,27 @@ std::vector<std::string> child(const std::string& name, const fs::path& starts,
   return words;
 }
 
-int act(const std::string& what) {
+void await_starts(const fs::path& starts, std::size_t count) {
+  const auto end = std::chrono::steady_clock::now() + std::chrono::minutes(1);
+  while (content_of(starts).size() < count && std::chrono::steady_clock::now() < end) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  }
+}
+
+int act(const std::string& what, const fs::path& folder) {
   if (what == "left") return 3;
   if (what == "bad") return 1;
   if (what == "killed") ::raise(SIGKILL);
   if (what == "waits") ::sleep(60);
-  if (what == "soon" || what == "dies") {
-    std::this_thread::sleep_for(std::chrono::milliseconds(500));
+  if (what == "dies") {
+    await_starts(folder / "worker0", 1);
+    ::sleep(2);
+    ::raise(SIGKILL);
   }
-  if (what == "dies") ::raise(SIGKILL);
+  const std::size_t colon = what.find(':');
+  if (colon != std::string::npos) {
+    await_starts(folder / what.substr(0, colon), std::stoul(what.substr(colon + 1)));
+  }
   return 0;
 }
 
@@ -65,7 +78,7 @@ int be_child(const std::vector<std::string>& words) {
   const fs::path starts = words.at(1);
   const std::size_t before = content_of(starts).size();
   append_to(starts, 's');
-  return act(words.at(std::min(2 + before, words.size() - 1)));
+  return act(words.at(std::min(2 + before, words.size() - 1)), starts.parent_path());
 }
 
 /// A run of these children.
@@ -93,19 +106,19 @@ using Clock = std::chrono::steady_clock;
 }  // namespace
 
 TEST_CASE("a run ends well when ventilator and sink have, and takes its workers along") {
-  Crew crew({"soon"}, {"soon"});
+  Crew crew({"worker0:1"}, {"worker1:1"});
   crew.add_worker({"waits"});
   crew.add_worker({"done"});
   const auto begin = Clock::now();
   CHECK(crew.supervisor.run() == 0);
-  CHECK(Clock::now() - begin < std::chrono::seconds(9));
+  CHECK(Clock::now() - begin < std::chrono::seconds(40));
   for (const char* name : {"ventilator", "sink", "worker0", "worker1"}) {
     CHECK(crew.starts_of(name) == 1);
   }
 }
 
 TEST_CASE("what a signal ends is started again") {
-  Crew crew({"killed", "killed", "soon"}, {"killed", "soon"});
+  Crew crew({"killed", "killed", "worker0:2"}, {"killed", "ventilator:3"});
   crew.add_worker({"killed", "waits"});
   CHECK(crew.supervisor.run() == 0);
   CHECK(crew.starts_of("ventilator") == 3);
@@ -114,7 +127,7 @@ TEST_CASE("what a signal ends is started again") {
 }
 
 TEST_CASE("workers that were done come back to a sink that is started again") {
-  Crew crew({"soon"}, {"dies", "soon"});
+  Crew crew({"sink:2"}, {"dies", "worker0:2"});
   crew.add_worker({"done", "waits"});
   crew.add_worker({"waits"});
   CHECK(crew.supervisor.run() == 0);
@@ -124,7 +137,7 @@ TEST_CASE("workers that were done come back to a sink that is started again") {
 }
 
 TEST_CASE("a worker that left before the end is started again, others that left are not") {
-  Crew crew({"soon"}, {"soon"});
+  Crew crew({"worker0:3"}, {"worker0:3"});
   crew.add_worker({"left", "left", "waits"});
   CHECK(crew.supervisor.run() == 0);
   CHECK(crew.starts_of("worker0") == 3);
@@ -136,7 +149,7 @@ TEST_CASE("a worker that left before the end is started again, others that left 
 }
 
 TEST_CASE("a run goes on as long as one worker does") {
-  Crew crew({"soon"}, {"soon"});
+  Crew crew({"worker1:1"}, {"worker0:1"});
   crew.add_worker({"bad"});
   crew.add_worker({"waits"});
   CHECK(crew.supervisor.run() == 0);
@@ -155,7 +168,7 @@ TEST_CASE("a sink that fails ends the run with its code") {
 }
 
 TEST_CASE("nobody needs a ventilator once the sink is done") {
-  Crew failing({"soon", "done"}, {"done"});
+  Crew failing({"worker0:1", "done"}, {"done"});
   failing.add_worker({"waits"});
   CHECK(failing.supervisor.run() == 0);
 
