@@ -59,10 +59,7 @@ namespace {
 std::uint64_t place_of(const Cell& cell, std::span<const unsigned> grid_bits) {
   const std::uint64_t grid = cell.key >> CellTree::k_index_bits;
   if (grid >= grid_bits.size()) return cell.key;
-  const unsigned bits = grid_bits[grid];
-  const std::uint64_t last = (std::uint64_t{1} << bits) - 1;
-  const std::uint64_t x = cell.key & last, y = cell.key >> bits & last,
-                      z = cell.key >> (2 * bits) & last;
+  const auto [x, y, z] = CellTree::places_of(cell.key, grid_bits[grid]);
   return grid << CellTree::k_index_bits | z << 24 | y << 12 | x;
 }
 

@@ -34,7 +34,7 @@ class CellsBeside {
     if (grid >= grid_bits_.size()) return;
     const unsigned bits = grid_bits_[grid];
     const std::uint64_t last = (std::uint64_t{1} << bits) - 1;
-    const std::uint64_t x = key & last, y = key >> bits & last, z = key >> (2 * bits) & last;
+    const auto [x, y, z] = CellTree::places_of(key, bits);
     std::size_t row = 0;
     for (std::uint64_t dz = 0; dz < 3; ++dz) {
       for (std::uint64_t dy = 0; dy < 3; ++dy, ++row) {

@@ -67,6 +67,11 @@ class CellTree {
   /// A key is the number of a grid, and below so many bits a cell's index in it.
   static constexpr unsigned k_index_bits = 36;
   std::vector<unsigned> grid_bits() const;
+  /// A cell's places along x, y and z in its grid, which has so many bits an axis.
+  static std::array<std::uint64_t, 3> places_of(std::uint64_t key, unsigned bits) {
+    const std::uint64_t last = (std::uint64_t{1} << bits) - 1;
+    return {key & last, key >> bits & last, key >> (2 * bits) & last};
+  }
 
   /// After the last scan.
   std::span<const Cell> cells() const { return std::span(cells_).first(leaves_); }
