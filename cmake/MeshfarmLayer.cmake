@@ -82,15 +82,26 @@ function(meshfarm_loads program name)
     BUILD_RPATH "$ORIGIN" INSTALL_RPATH "$ORIGIN/../${CMAKE_INSTALL_LIBDIR}/meshfarm")
 endfunction()
 
+# The longest tests are started first: a limit (TIMEOUT) is taken for the cost. Sanitizers make
+# programs several times slower.
+function(meshfarm_limit_test name limit)
+  set(seconds ${limit})
+  if(MESHFARM_SANITIZE)
+    math(EXPR seconds "${limit} * 4")
+  endif()
+  set_tests_properties(${name} PROPERTIES TIMEOUT ${seconds} COST ${limit})
+endfunction()
+
 # meshfarm_layer(io USES geometry PACKAGES Boost::iostreams)
 # One folder = one layer = one static library meshfarm_<name> = one unit-test program test_<name>.
 # Most of the time of a compiler goes into the headers. No two sources of a layer define the same name,
 # so that they can be compiled together (MESHFARM_UNITY), as unit tests always are. What g++ makes of
 # them then is 3 % slower. TOGETHER: the layer computes little, so that this does not matter.
+# TESTS_APART: a word; test cases that have it in their name are run beside the others.
 # MODULE: the program loads it when it needs it (meshfarm_loads()). It sees only the headers of what it
 # uses.
 function(meshfarm_layer name)
-  cmake_parse_arguments(ARG "MODULE;TOGETHER" "" "USES;PACKAGES" ${ARGN})
+  cmake_parse_arguments(ARG "MODULE;TOGETHER" "TESTS_APART" "USES;PACKAGES" ${ARGN})
   file(GLOB sources CONFIGURE_DEPENDS src/${name}/*.cpp src/${name}/*/*.cpp)
   list(TRANSFORM ARG_USES PREPEND meshfarm_ OUTPUT_VARIABLE uses)
   if(ARG_MODULE)
@@ -130,7 +141,18 @@ function(meshfarm_layer name)
     endif()
     meshfarm_test_options(test_${name})
     meshfarm_compile_together(test_${name} 24)
-    add_test(NAME unit.${name} COMMAND test_${name})
-    set_tests_properties(unit.${name} PROPERTIES TIMEOUT 1800 COST 300 LABELS unit)
+    set(names unit.${name})
+    if(ARG_TESTS_APART)
+      list(APPEND names unit.${name}.${ARG_TESTS_APART})
+      add_test(NAME unit.${name} COMMAND test_${name} --test-case-exclude=*${ARG_TESTS_APART}*)
+      add_test(NAME unit.${name}.${ARG_TESTS_APART}
+               COMMAND test_${name} --test-case=*${ARG_TESTS_APART}*)
+    else()
+      add_test(NAME unit.${name} COMMAND test_${name})
+    endif()
+    foreach(test ${names})
+      meshfarm_limit_test(${test} 900)
+      set_tests_properties(${test} PROPERTIES LABELS unit)
+    endforeach()
   endif()
 endfunction()
