@@ -4,6 +4,15 @@
 
 namespace meshfarm {
 
+std::string pack_triangles(std::span<const Triangle> triangles) {
+  constexpr std::size_t k_usual = 6;
+  std::string packed;
+  packed.reserve(triangles.size() * k_usual);
+  TrianglePacker packer;
+  for (const Triangle& t : triangles) packed += packer.pack(t);
+  return packed;
+}
+
 std::optional<std::vector<Triangle>> unpack_triangles(std::string_view packed) {
   std::array<std::uint16_t, 3> words{};
   std::vector<Triangle> triangles(packed.size() / sizeof words);  // escaped ones make it fewer

@@ -34,8 +34,7 @@ std::string encode_part(const Part& part) {
   out.put(static_cast<std::uint64_t>(part.mesh.triangles.size()));
   put_vertices(out, VertexView(part.mesh), format);
   put_columns(out, part.mesh.columns);
-  TrianglePacker packer;
-  for (const Triangle& t : part.mesh.triangles) out.put_array(std::span(packer.pack(t)));
+  out.put_array(std::span(std::string_view(pack_triangles(part.mesh.triangles))));
   return seal(k_part_kind, k_part_version, out.bytes());
 }
 

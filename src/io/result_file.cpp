@@ -7,7 +7,8 @@
 //   head    = "MFRM" | "RSLT" | version u32 | byte order u32 0x01020304 | vertex format u8 |
 //             boundary vertices u32 | beside u64 | so many bytes that are no part of the mesh
 //   rung    = blocks | 2 u8
-//   block   = 1 u8 | vertices u32 | triangles u32 | vertices | triangles x 3 x u32 | columns
+//   block   = 1 u8 | vertices u32 | triangles u32 | bytes of packed triangles u32 | vertices |
+//             columns | packed triangles (packed_triangles.hpp)
 //   tail    = the boundary vertices | sets u32 | sets x samples |
 //             rungs u32 | rungs x (level i32 | vertices u64 | triangles u64 | free triangles u64 |
 //             error f64)
@@ -16,8 +17,9 @@
 // Columns are labels, u32 a triangle, then texture coordinates, 6 x f32 a triangle, if it says so.
 // A rung's vertices are the boundary vertices, then those of its blocks. Of a block's vertices
 // there are at most 65536, and as many triangles.
-//   Version 4. Version 1 was sealed, with the counts in front and one set of samples; version 2 had
-//   nothing beside; in version 3 the summary did not say whether a ladder goes on.
+//   Version 5. Version 1 was sealed, with the counts in front and one set of samples; version 2 had
+//   nothing beside; in version 3 the summary did not say whether a ladder goes on; in version 4
+//   triangles were not packed.
 // The summary that travels with the message:
 //   dropped degenerate u64 | dropped duplicate u64 | held by topology u8 | goes on u8 |
 //   turned u64 | rungs u32 | rungs as above | of a part that was built by the same job: vertices
@@ -32,6 +34,7 @@
 #include <utility>
 
 #include <meshfarm/geometry/vertices.hpp>
+#include <meshfarm/io/packed_triangles.hpp>
 #include <meshfarm/io/result_file.hpp>
 #include <meshfarm/staging/sealed.hpp>
 #include <meshfarm/util/bytes.hpp>
@@ -44,7 +47,7 @@ namespace {
 
 constexpr FileKind k_result_magic = {'M', 'F', 'R', 'M'};
 constexpr FileKind k_result_kind = {'R', 'S', 'L', 'T'};
-constexpr std::uint32_t k_result_version = 4;
+constexpr std::uint32_t k_result_version = 5;
 constexpr std::uint32_t k_result_byte_order = 0x01020304;
 constexpr std::uint32_t k_max_rungs = 256;
 constexpr std::uint32_t k_most_in_result_block = 65536;
@@ -151,19 +154,22 @@ class ResultReader {
   void read_block(bool is_wanted) {
     const auto vertices = get<std::uint32_t>();
     const auto triangles = get<std::uint32_t>();
-    if (vertices > k_most_in_result_block || triangles > k_most_in_result_block)
+    const auto packed = get<std::uint32_t>();
+    if (vertices > k_most_in_result_block || triangles > k_most_in_result_block ||
+        packed > triangles * k_most_packed) {
       fail("impossible counts");
+    }
     counts_.vertices += vertices;
     counts_.triangles += triangles;
-    bytes_.resize(vertices * format_.bytes() +
-                  triangles * (sizeof(Triangle) + format_.columns.bytes()));
+    bytes_.resize(vertices * format_.bytes() + triangles * format_.columns.bytes() + packed);
     take();
     if (!is_wanted) return;
     ByteReader in(bytes_, what_);
     get_vertices(in, vertices, format_, inner_.positions, inner_.appearances);
-    const auto corners = in.get_array<Triangle>(triangles);
-    result_.mesh.triangles.insert(result_.mesh.triangles.end(), corners.begin(), corners.end());
     get_columns(in, triangles, format_.columns, result_.mesh.columns);
+    const auto unpacked = unpack_triangles(in.take(packed));
+    if (!unpacked || unpacked->size() != triangles) fail("other triangles than promised");
+    result_.mesh.triangles.insert(result_.mesh.triangles.end(), unpacked->begin(), unpacked->end());
   }
 
   std::vector<Vec3> read_points(std::uint32_t count) {
@@ -322,13 +328,15 @@ void ResultWriter::add(VertexView vertices, std::span<const Triangle> triangles,
   for (std::size_t done = 0; vertices.size() > 0 || !triangles.empty();) {
     const std::size_t points = std::min<std::size_t>(vertices.size(), k_most_in_result_block);
     const std::size_t corners = std::min<std::size_t>(triangles.size(), k_most_in_result_block);
+    const std::string packed = pack_triangles(triangles.first(corners));
     ByteWriter out;
     out.put(k_block);
     out.put(static_cast<std::uint32_t>(points));
     out.put(static_cast<std::uint32_t>(corners));
+    out.put(static_cast<std::uint32_t>(packed.size()));
     put_vertices(out, vertices.part(0, points), {vertices_.positions, vertices_.appearances});
-    out.put_array(triangles.first(corners));
     put_columns(out, columns.part(done, corners));
+    out.put_array(std::span(std::string_view(packed)));
     done += corners;
     put(out.bytes());
     vertices = vertices.part(points);

@@ -58,8 +58,7 @@ std::string encode_slab(const MeshShare& slab) {
   out.put_array(std::span<const std::uint32_t>(slab.boundary));
   out.put_array(std::span<const ApartVertex>(slab.apart));
   put_columns(out, slab.columns);
-  TrianglePacker packer;
-  for (const Triangle& t : slab.triangles) out.put_array(std::span(packer.pack(t)));
+  out.put_array(std::span(std::string_view(pack_triangles(slab.triangles))));
   return seal(k_slab_kind, k_slab_version, out.bytes());
 }
 

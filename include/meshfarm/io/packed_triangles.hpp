@@ -9,9 +9,12 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <cstring>
 #include <optional>
+#include <span>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -20,6 +23,8 @@
 namespace meshfarm {
 
 inline constexpr std::uint16_t k_triangle_escape = 0x8000;
+/// Most bytes that a triangle can take.
+inline constexpr std::size_t k_most_packed = 14;
 
 class TrianglePacker {
  public:
@@ -47,6 +52,7 @@ class TrianglePacker {
   std::array<std::uint16_t, 7> words_{};
 };
 
+std::string pack_triangles(std::span<const Triangle> triangles);
 /// All triangles of the bytes, none if these end inside of one. The corners may be anything.
 std::optional<std::vector<Triangle>> unpack_triangles(std::string_view packed);
 

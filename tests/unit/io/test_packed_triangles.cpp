@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include <random>
 #include <string>
+#include <vector>
 
 #include <doctest/doctest.h>
 
@@ -11,21 +12,10 @@
 
 using namespace meshfarm;
 
-namespace {
-
-std::string packed(const std::vector<Triangle>& triangles) {
-  TrianglePacker packer;
-  std::string bytes;
-  for (const Triangle& t : triangles) bytes += packer.pack(t);
-  return bytes;
-}
-
-}  // namespace
-
 TEST_CASE("triangles come back, near ones in half the bytes") {
   const std::vector<Triangle> near = test::torus(100, 50).triangles;
-  CHECK(packed(near).size() == near.size() * 6);
-  CHECK(unpack_triangles(packed(near)).value() == near);
+  CHECK(pack_triangles(near).size() == near.size() * 6);
+  CHECK(unpack_triangles(pack_triangles(near)).value() == near);
   CHECK(unpack_triangles("").value().empty());
 }
 
@@ -44,11 +34,12 @@ TEST_CASE("corners as far apart as may be come back") {
     const auto any = [&] { return static_cast<std::uint32_t>(random() >> (random() % 32)); };
     far.push_back({any(), any(), any()});
   }
-  CHECK(unpack_triangles(packed(far)).value() == far);
+  CHECK(unpack_triangles(pack_triangles(far)).value() == far);
 }
 
 TEST_CASE("bytes that end inside of a triangle are refused") {
-  const std::string bytes = packed({{1, 2, 3}, {1'000'000, 2, 3}, {1'000'000, 1'000'001, 999'999}});
+  const std::string bytes = pack_triangles(
+      std::vector<Triangle>{{1, 2, 3}, {1'000'000, 2, 3}, {1'000'000, 1'000'001, 999'999}});
   REQUIRE(bytes.size() == 6 + 14 + 6);
   for (std::size_t size = 0; size < bytes.size(); ++size) {
     CAPTURE(size);
