@@ -152,7 +152,7 @@ TEST_CASE("pieces keep a bound on the error: any workers, any cut, the same byte
   const std::string expected = read_text(bench().path("bound.ply"));
   CHECK(expected.size() > 1000);
   const std::vector<std::vector<std::string>> others = {
-      {"--workers", "1"}, {"--workers", "5", "--cut", "farm", "--blocks", "3"}};
+      {"--workers", "1"}, {"--workers", "5"}, {"--workers", "2", "--cut", "farm", "--blocks", "3"}};
   for (std::vector<std::string> more : others) {
     CAPTURE(more.size());
     more.insert(more.end(), {"--finish", "farm"});
