@@ -24,6 +24,9 @@ constexpr double k_least_gain_share = 0.1;
 /// An attempt that takes longer than estimated is held to take on as long as it is late, times
 /// this: at one and a half times its estimate a second attempt pays.
 constexpr double k_lateness = 2;
+/// Workers of one host are equally fast, and a second attempt there takes from what the first one
+/// has: only an attempt that is late by so many seconds may be stuck.
+constexpr double k_late_on_host = 10;
 /// So many jobs of a kind that are in work tell how long they take before one is done. But no
 /// longer than so many seconds more than was thought: what holds all of them up may be their hosts.
 constexpr std::size_t k_enough_in_work = 3;
@@ -136,7 +139,10 @@ std::vector<Scheduler::Late> Scheduler::late_jobs(const Plan& plan, FarmTime now
       if (!held.since) before += whole / member.threads;
       const bool single = holders_.at(held.key).size() == 1;
       const bool open = plan.state(held.key) == JobState::running;
-      if (single && open && !suspects_.contains(held.key)) late.push_back({left, &held, times});
+      const double beyond = held.since ? seconds(now - *held.since) - whole : 0;
+      if (single && open && !suspects_.contains(held.key)) {
+        late.push_back({left, &held, times, member.host, beyond});
+      }
     }
   }
   std::stable_sort(late.begin(), late.end(),
@@ -164,8 +170,9 @@ std::vector<Scheduler::Pick> Scheduler::second_attempts(Plan& plan, FarmTime now
       const double anew = each.times * static_cast<double>(each.held->cost) / member.speed;
       const double gain = each.left - anew;
       const bool gains = gain >= std::max(k_least_gain, k_least_gain_share * each.left);
+      const bool may_gain_here = each.host != member.host || each.beyond >= k_late_on_host;
       any_gains = any_gains || gains;
-      return gains && fits(member, each.held->memory) &&
+      return gains && may_gain_here && fits(member, each.held->memory) &&
              may(member, each.held->key, each.held->memory);
     });
     if (taken != late.end()) {

@@ -129,7 +129,9 @@ class Scheduler {
   struct Late {
     double left = 0;  // seconds
     const Held* held = nullptr;
-    double times = 1;  // so much longer do jobs of its kind take than was thought
+    double times = 1;            // so much longer do jobs of its kind take than was thought
+    const Host* host = nullptr;  // of its holder
+    double beyond = 0;           // seconds that it has taken longer than that
   };
   /// What the jobs of a kind took that are done, in seconds, and what was thought.
   struct Pace {

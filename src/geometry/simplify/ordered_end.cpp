@@ -120,10 +120,12 @@ std::optional<double> OrderedEnd::reduce(const SimplifyGoal& goal,
     goes_on = other->queue.reduce(goal, progress);
     if (is_unfair(trial_->queue.paid() - paid_before, other->queue, goal)) {
       trial_ = std::move(other);
+      taken_ = UINT64_MAX;
     }
   }
   trial_->queue.restore_pieces();
-  mesh_.take(trial_->queue);
+  if (trial_->queue.collapses() != taken_ || mesh_.avoids_crossings()) mesh_.take(trial_->queue);
+  taken_ = trial_->queue.collapses();
   if (is_held()) return HUGE_VAL;
   if (goes_on && mesh_.triangles() > goal.triangles + 1) return goal.max_cost;
   return std::nullopt;

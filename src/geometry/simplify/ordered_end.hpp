@@ -46,6 +46,7 @@ class OrderedEnd {
   TopologyMode topology_;
   const SurfaceBound* bound_;
   std::unique_ptr<Trial> trial_;
+  std::uint64_t taken_ = UINT64_MAX;       // collapses of the trial that the mesh knows of
   std::uint64_t decided_at_ = UINT64_MAX;  // triangles left when the topology was last thought of
 };
 

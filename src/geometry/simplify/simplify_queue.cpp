@@ -3,6 +3,7 @@
 #include "geometry/simplify/simplify_queue.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 #include <tuple>
 
@@ -16,6 +17,10 @@ constexpr std::uint64_t k_told_every = 4096;  // collapses
 // So many of the edges are ranked at a time, the cheapest; dearer ones are not kept in order. The
 // order of collapses depends on it only where an edge becomes cheaper that is not looked at.
 constexpr double k_ranked_share = 0.35;
+// From one cost to the next the order goes on, as long as so much is left of what was ranked.
+constexpr double k_as_ranked = 0.8;
+// A collapse of complex vertices removes more than two triangles, hardly ever more than these.
+constexpr std::uint64_t k_few_to_go = 16;
 // A mesh that was kept is dropped when it has so many times the triangles that are left.
 constexpr double k_far_more = 1.3;
 
@@ -64,20 +69,19 @@ void CollapseQueue::start(std::span<const Triangle> triangles) {
   general_.move_to(state());
 }
 
-/// The cheapest share of all edges, but those of a limit above the last one at least. What an edge
-/// ranks by may be more than the goal's cost where the edge itself costs nothing.
+/// The cheapest share of all edges, but those of a limit above the last one at least.
 void CollapseQueue::rank(double share) {
   for (std::uint32_t v = 0; v < target_.size(); ++v) refresh(v);
   const CostKey wanted = share < 1 ? ranking_.estimate_limit(share, HUGE_VAL) : k_greatest;
-  limit_ = std::max(wanted, limit_ + k_least_step);
-  if (limit_ >= std::min(key_of(most_cost_), k_greatest)) limit_ = k_greatest;
+  limit_ = std::min(std::max(wanted, limit_ + k_least_step), k_greatest);
   heap_.clear();
   first_.clear();
   next_first_ = 0;
   blocked_before_ = blocked_;
   collapses_before_ = collapses_;
+  ranked_at_ = triangles_;
   const auto vertices = static_cast<std::uint32_t>(target_.size());
-  for (const RankedEdge& e : ranking_.cheapest(0, vertices, {limit_, most_cost_})) {
+  for (const RankedEdge& e : ranking_.cheapest(0, vertices, {limit_, HUGE_VAL})) {
     first_.emplace_back(e, stamp_of(e.a, e.b));
   }
 }
@@ -164,12 +168,12 @@ bool CollapseQueue::must_not_cross(const QueuedEdge& queued, const Collapse& col
   if (!crossings_->crosses(planned(a, b, collapse))) return false;
   const double cost = collapse.cost * k_loss_of_crossing;
   // A bound on the error is no reason to go on at any cost.
-  if (guard_ != nullptr || cost > most_cost_) {
+  if (guard_ != nullptr) {
     refused_[a] = refused_[b] = 1;
     return true;
   }
   if (!must_wait(queued, cost)) return false;
-  push({a, b, key_of(cost)});
+  wait(queued, cost);
   return true;
 }
 
@@ -182,14 +186,19 @@ bool CollapseQueue::is_guarded(std::uint32_t a, std::uint32_t b, const Collapse&
 bool CollapseQueue::reduce(const SimplifyGoal& goal, const Progress& progress) {
   most_cost_ = goal.max_cost;
   double share = k_ranked_share;
-  limit_ = 0;
+  bool is_ranked = limit_ > 0 && std::isfinite(goal.max_cost) &&
+                   static_cast<double>(triangles_) > k_as_ranked * static_cast<double>(ranked_at_);
+  if (!is_ranked) limit_ = 0;
   while (triangles_ > goal.triangles) {
     const std::uint64_t before = triangles_;
-    rank(share);
+    if (!is_ranked) rank(share);
+    is_ranked = false;
     const Stop stop = run(goal, progress);
     held_ = held_ || stop == Stop::held;
+    // What was refused as it would have removed too many may do for the next goal.
+    if (triangles_ < goal.triangles + k_few_to_go) ranked_at_ = UINT64_MAX;
     if (stop != Stop::nothing_left) return stop != Stop::told;
-    if (limit_ >= k_greatest) return true;
+    if (limit_ >= std::min(key_of(most_cost_), k_greatest)) return true;
     // Dead ends: what is ranked is refused again and again.
     if ((before - triangles_) * 50 < before) share = 1;
   }
@@ -198,6 +207,7 @@ bool CollapseQueue::reduce(const SimplifyGoal& goal, const Progress& progress) {
 
 CollapseQueue::Stop CollapseQueue::run(const SimplifyGoal& goal, const Progress& progress) {
   std::uint64_t collapses = 0;
+  const CostKey dearest = key_of(goal.max_cost);
   std::optional<bool> any_border;  // asked once: one triangle too many goes at a border only
   while (triangles_ > goal.triangles) {
     // Something is to be left, whatever the goal.
@@ -207,7 +217,7 @@ CollapseQueue::Stop CollapseQueue::run(const SimplifyGoal& goal, const Progress&
     if (excess == 1 && !*any_border) return Stop::met;
     if (is_hopeless()) return Stop::held;
     const QueuedEdge* const first = next();
-    if (first == nullptr) return Stop::nothing_left;
+    if (first == nullptr || first->key() > dearest) return Stop::nothing_left;
     const QueuedEdge queued = *first;
     drop_next();
     const std::uint32_t a = queued.a();
@@ -221,10 +231,8 @@ CollapseQueue::Stop CollapseQueue::run(const SimplifyGoal& goal, const Progress&
     }
     if (collapse.triangles == 0) {
       refused_[a] = refused_[b] = 1;
-    } else if (collapse.cost > most_cost_) {
-      continue;  // dropped until something beside it changes
     } else if (must_wait(queued, collapse.cost)) {
-      push({a, b, key_of(collapse.cost)});
+      wait(queued, collapse.cost);
     } else if (!must_not_cross(queued, collapse) && !is_guarded(a, b, collapse)) {
       keep(goal);
       merge(a, b, collapse);
@@ -240,12 +248,19 @@ bool CollapseQueue::is_hopeless() const {
   return mesh_.stops_when_held && blocked > k_hopeless * done + k_edges_of_triangle * triangles_;
 }
 
-/// Whether it costs more than it was ranked by, and more than the next.
+/// Whether it costs more than the goal allows, or more than it was ranked by and the next.
 bool CollapseQueue::must_wait(const QueuedEdge& queued, double cost) const {
+  if (cost > most_cost_) return true;
   const CostKey exact = key_of(cost);
   if (exact <= queued.key()) return false;
   const QueuedEdge* const other = next();
   return exact > limit_ || (other != nullptr && other->key() < exact);
+}
+
+/// Comes again by its cost; not before the goal's is reached if it is dearer.
+void CollapseQueue::wait(const QueuedEdge& queued, double cost) {
+  const CostKey least = cost > most_cost_ ? key_of(most_cost_) + 1 : 0;
+  push({queued.a(), queued.b, std::max(key_of(cost), least)});
 }
 
 /// Before a collapse: so many triangles are not left any more.
@@ -353,7 +368,7 @@ void CollapseQueue::look_again(std::uint32_t vertex) {
   refused_[vertex] = 0;
   ++looks_[vertex];
   refresh(vertex);
-  ranking_.for_edges_at(vertex, most_cost_, [&](const RankedEdge& edge) { push(edge); });
+  ranking_.for_edges_at(vertex, HUGE_VAL, [&](const RankedEdge& edge) { push(edge); });
 }
 
 }  // namespace meshfarm

@@ -106,6 +106,7 @@ class CollapseQueue {
   Stop run(const SimplifyGoal& goal, const Progress& progress);
   bool is_hopeless() const;
   bool must_wait(const QueuedEdge& queued, double cost) const;
+  void wait(const QueuedEdge& queued, double cost);
   void refresh(std::uint32_t vertex);
   bool is_gone(std::uint32_t vertex) const { return target_[vertex] != vertex; }
   bool has_free_border() const;
@@ -143,6 +144,7 @@ class CollapseQueue {
   std::vector<std::uint32_t> looks_;
   std::vector<std::uint8_t> stale_;  // its quadric is that of a star that has changed
   double most_cost_ = 0;             // the goal's
+  std::uint64_t ranked_at_ = 0;      // triangles left when all edges were ranked
   std::vector<QueuedEdge> first_;    // as ranked at the start, cheapest first
   std::size_t next_first_ = 0;
   std::vector<QueuedEdge> heap_;  // those that came later

@@ -265,6 +265,24 @@ TEST_CASE("a straggler is overtaken once it is half as late again as it should b
   CHECK(desk.second_attempts() == "long@2 ");
 }
 
+TEST_CASE("a worker of the same host helps only where the first attempt may be stuck") {
+  ScheduleDesk desk({make_job("long", 1'000'000)});
+  desk.join(1, "host", {1'000'000, 0, 1});
+  desk.join(2, "host", {1'000'000, 0, 1});
+  CHECK(desk.hand_out() == "long@1 ");
+  desk.now = FarmTime(5'000);
+  CHECK(desk.second_attempts().empty());
+  SUBCASE("a slower one of another host need not wait for that") {
+    desk.join(3, "other", {900'000, 0, 1});
+    desk.now = FarmTime(6'000);
+    CHECK(desk.second_attempts() == "long@3 ");
+  }
+  SUBCASE("after ten seconds more than it should take") {
+    desk.now = FarmTime(11'200);
+    CHECK(desk.second_attempts() == "long@2 ");
+  }
+}
+
 TEST_CASE("where all jobs of a kind take longer, a second attempt would, too") {
   std::vector<Job> jobs;
   for (const char* name : {"a", "b", "c", "d"}) jobs.push_back(make_job(name, 1'000'000));
