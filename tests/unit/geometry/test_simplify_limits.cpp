@@ -108,6 +108,48 @@ TEST_CASE("max_cost is nearly exhausted by one call") {
   CHECK(a == doctest::Approx(b).epsilon(0.1));
 }
 
+TEST_CASE("one triangle too many, which cannot go, is no end of what a cost allows") {
+  Mesh mesh = sphere(4);
+  mesh.triangles.pop_back();  // a hole of three edges
+  Simplifier simplifier(mesh, {.lines = {.topology = TopologyMode::keep}});
+  simplifier.reduce({2000});
+  REQUIRE(simplifier.triangles() == 2001);
+  simplifier.reduce({0, 4 * simplifier.pass_cost()});
+  CHECK(simplifier.triangles() < 1500);
+  CHECK(is_clean(simplifier.mesh()));
+}
+
+TEST_CASE("costs that rise in small steps lead to about the same as one") {
+  Mesh noisy = sphere(6);
+  std::uint32_t random = 1;
+  for (Vec3& p : noisy.positions) {
+    random = random * 1664525 + 1013904223;
+    p = p * (1 + 0.01 * (random >> 8) / 0x1p24);
+  }
+  const auto error_of = [&](const Simplifier& simplifier) {
+    return DistanceMeter(simplifier.mesh(), 1)
+        .measure(sample_surface(noisy, {20'000, 1}).points)
+        .rms;
+  };
+  Simplifier steps(noisy, {});
+  steps.reduce({12'000});
+  const double first = steps.max_cost();
+  int still = 0;
+  for (double cost = first / 1024; cost < 64 * first; cost *= 1.3) {
+    const std::uint64_t before = steps.triangles();
+    steps.reduce({2000, cost});
+    if (steps.triangles() == before) ++still;
+    CHECK(steps.max_cost() <= std::max(first, cost) * 1.001);
+  }
+  CHECK(still > 10);  // below what was paid there is little to do
+  steps.reduce({2000});
+  Simplifier at_once(noisy, {});
+  at_once.reduce({2000});
+  CHECK(steps.triangles() == 2000);
+  CHECK(at_once.triangles() == 2000);
+  CHECK(error_of(steps) < 1.1 * error_of(at_once));
+}
+
 TEST_CASE("costs do not depend on where a part lies") {
   Simplifier here(wavy_grid(60, 60), {});
   here.reduce({1000});
