@@ -4,6 +4,7 @@
 #include <meshfarm/staging/staged_writer.hpp>
 #include <meshfarm/util/bytes.hpp>
 #include <meshfarm/util/checksum.hpp>
+#include <meshfarm/util/errors.hpp>
 
 namespace meshfarm {
 namespace {
@@ -39,6 +40,14 @@ JobKey key_of(const Job& job) {
   return {checksum(out.bytes())};
 }
 
+std::uint64_t input_bytes(const Job& job) {
+  std::uint64_t bytes = 0;
+  for (const InputSection& each : job.sections) bytes += each.section.size;
+  if (!job.sections.empty()) return bytes;
+  for (const FileRef& input : job.inputs) bytes += input.size;
+  return bytes;
+}
+
 Extent extent_named(std::string_view what, std::uint64_t number, std::uint64_t bytes) {
   ByteWriter out;
   out.put_string(what);
@@ -48,6 +57,15 @@ Extent extent_named(std::string_view what, std::uint64_t number, std::uint64_t b
 
 std::string JobContext::read(const FileRef& file) const {
   return storage != nullptr ? storage->read(file) : stage.read(file);
+}
+
+std::string JobContext::read_section(const Job& job, std::size_t section) const {
+  if (section >= job.sections.size())
+    throw DataError("a " + job.kind + " job without its sections");
+  const InputSection& wanted = job.sections[section];
+  const FileRef& file = job.inputs.at(wanted.input);
+  return storage != nullptr ? storage->read(file, wanted.section)
+                            : SectionedFile(stage, file).read(wanted.section);
 }
 
 FileRef JobContext::publish(const StagedName& name, std::string_view bytes) const {

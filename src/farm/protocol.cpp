@@ -31,6 +31,14 @@ template <Is<FileRef> M>
 auto fields(M& m) {
   return std::tie(m.name, m.size, m.hash);
 }
+template <Is<FileSection> M>
+auto fields(M& m) {
+  return std::tie(m.offset, m.size, m.hash);
+}
+template <Is<InputSection> M>
+auto fields(M& m) {
+  return std::tie(m.input, m.section);
+}
 template <Is<JobFailure> M>
 auto fields(M& m) {
   return std::tie(m.reason, m.kind);
@@ -155,6 +163,7 @@ class Encoder {
   void field(const Job& job) {
     field(job.kind);
     field(job.inputs);
+    field(job.sections);
     bytes(job.parameters, k_max_parameters_bytes, "parameters");
     field(job.cost);
     field(job.memory);
@@ -211,6 +220,10 @@ class Decoder {
   void field(Job& job) {
     field(job.kind);
     field(job.inputs);
+    field(job.sections);
+    for (const InputSection& each : job.sections) {
+      if (each.input >= job.inputs.size()) in_.fail("a section of no input");
+    }
     bytes(job.parameters, k_max_parameters_bytes);
     field(job.cost);
     field(job.memory);

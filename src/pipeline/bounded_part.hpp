@@ -13,8 +13,7 @@
 namespace meshfarm {
 
 struct BoundedPart {
-  std::string file;    // a result of one rung
-  FileSection beside;  // where what was to be put beside its mesh is
+  std::string file;  // a result of one rung
   ResultSummary summary;
 };
 

@@ -126,7 +126,9 @@ void ClimbStage::keep_coarsest() {
   for (std::uint32_t p = 0; p < results_.summaries.size(); ++p) {
     if (jobs_.is_sampled(p)) return kept_.clear();
     const std::vector<Rung>& rungs = results_.summaries[p].rungs;
-    kept_.push_back({results_.files[p], static_cast<std::uint32_t>(rungs.size() - 1)});
+    const auto last = static_cast<std::uint32_t>(rungs.size() - 1);
+    kept_.push_back(
+        {.file = results_.files[p], .rung = last, .place = place_of(results_.summaries[p], last)});
     triangles += static_cast<double>(rungs.back().triangles);
   }
   if (triangles > std::max(k_most_compared, jobs_.wanted())) kept_.clear();

@@ -4,9 +4,10 @@
 // Components that are left out may span pieces: what a piece tells of those that do is which of its
 // boundary vertices they connect, and their boxes. So one piece is in memory at a time.
 //
-// Parameters, version 2 (version 1 had one boundary file), and summary, little endian:
-//   components = version u8 | pieces u32 x (parts u32 | rung u32 | file) | all parts u32 |
-//                boundary | diagonal f64
+// Parameters, version 3 (version 1 had one boundary file, version 2 whole files), and summary,
+// little endian:
+//   components = version u8 | pieces u32 x (parts u32 | rung u32 | file | section | section) |
+//                all parts u32 | boundary | diagonal f64
 //   small      = pieces u32 x section | components u64 | triangles u64
 #include <algorithm>
 #include <span>
@@ -29,7 +30,7 @@
 namespace meshfarm {
 namespace {
 
-constexpr std::uint8_t k_components_version = 2;
+constexpr std::uint8_t k_components_version = 3;
 
 struct ComponentSize {
   Box box;
@@ -140,6 +141,8 @@ std::string encode_parameters(const ComponentsParameters& parameters) {
     out.put(piece.parts);
     out.put(piece.rung);
     put_file(out, piece.file);
+    out.put(piece.mesh);
+    out.put(piece.tail);
   }
   out.put(parameters.all_parts);
   put_boundary(out, parameters.boundary);
@@ -159,6 +162,8 @@ ComponentsParameters decode_components_parameters(std::string_view bytes) {
     piece.parts = in.get<std::uint32_t>();
     piece.rung = in.get<std::uint32_t>();
     piece.file = get_file(in);
+    piece.mesh = in.get<FileSection>();
+    piece.tail = in.get<FileSection>();
     parts += piece.parts;
     if (piece.parts == 0) in.fail("a piece of no parts");
     parameters.pieces.push_back(std::move(piece));
@@ -194,7 +199,9 @@ JobOutput find_small_components(const Job& job, const JobContext& context) {
   const ComponentsParameters parameters = decode_components_parameters(job.parameters);
   ComponentFinder finder(parameters);
   for (const ComponentsParameters::Piece& each : parameters.pieces) {
-    ResultMesh piece = decode_result(context.stage.read(each.file), each.rung, each.file.name);
+    const SectionedFile file(context.stage, each.file);
+    ResultMesh piece =
+        decode_rung(file.read(each.mesh), file.read(each.tail), each.rung, each.file.name);
     const std::size_t triangles = piece.mesh.triangles.size();
     finder.add(std::move(piece), each.parts);
     if (!context.progress(triangles)) throw IncompleteError("the job was given up");

@@ -31,11 +31,14 @@ Job components_job(const Manifest& manifest, const RunOptions& options,
   job.kind = k_components_kind;
   std::uint64_t most = 0;
   for (const ComposedParts& each : pieces) {
-    parameters.pieces.push_back({each.chosen.parts, each.chosen.rung, each.chosen.file});
-    most = std::max(most, each.chosen.file.size + k_finder_triangle_bytes * each.triangles +
+    const RungPlace& place = each.chosen.place;
+    const std::uint64_t bytes = place.rung.size + place.tail.size;
+    parameters.pieces.push_back(
+        {each.chosen.parts, each.chosen.rung, each.chosen.file, place.rung, place.tail});
+    most = std::max(most, bytes + k_finder_triangle_bytes * each.triangles +
                               memory_of_channels(lines_of(manifest, options), each.triangles));
     job.cost += each.triangles;
-    job.reads += each.chosen.file.size;
+    job.reads += bytes;
   }
   parameters.all_parts = static_cast<std::uint32_t>(manifest.parts.size());
   parameters.boundary = manifest.boundary;

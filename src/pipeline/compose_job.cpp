@@ -16,6 +16,7 @@
 #include <meshfarm/util/errors.hpp>
 
 #include "pipeline/piece_sections.hpp"
+#include "pipeline/rung_input.hpp"
 
 namespace meshfarm {
 namespace {
@@ -33,6 +34,7 @@ class Composer {
       : job_(job),
         context_(context),
         parameters_(decode_compose_parameters(job.parameters)),
+        rungs_(job, context),
         stitcher_(parameters_.all_parts, parameters_.first_part) {
     if (job.inputs.size() != parameters_.inputs.size()) {
       throw DataError("a compose job has other inputs than its parameters name");
@@ -56,13 +58,12 @@ class Composer {
 
  private:
   void add(std::size_t i) {
-    const std::string file = context_.read(job_.inputs[i]);
-    ResultMesh result = decode_result(file, parameters_.inputs[i].rung, job_.inputs[i].name);
+    ResultMesh result = rungs_.next(parameters_.inputs[i].rung);
     positions_ = result.positions;
     stitcher_.add(result, parameters_.inputs[i].parts);
     std::move(result.samples.begin(), result.samples.end(), std::back_inserter(samples_));
     if (!parameters_.keeps_between || parameters_.inputs[i].parts == 1) return;
-    append_surface_of(decode_surface(beside_of(file, job_.inputs[i].name), job_.inputs[i].name));
+    append_surface_of(decode_surface(rungs_.beside(), job_.inputs[i].name));
   }
 
   void append_surface_of(const Mesh& more) {
@@ -150,14 +151,22 @@ class Composer {
     result.add_rung(parameters_.level, mesh, simplifier.free_triangles());
     result.finish(VertexView(mesh).part(0, locked), samples_);
     const ResultName name{key_of(job_).value, context_.attempt, context_.incarnation};
-    const ResultSummary summary{result.rungs(), simplifier.dropped_degenerate(),
-                                simplifier.dropped_duplicate(), false, simplifier.turned()};
+    const ResultSummary summary{result.rungs(),
+                                simplifier.dropped_degenerate(),
+                                simplifier.dropped_duplicate(),
+                                false,
+                                simplifier.turned(),
+                                {},
+                                false,
+                                result.tail(),
+                                result.beside()};
     return {context_.publish(name, file), encode_summary(summary)};
   }
 
   const Job& job_;
   const JobContext& context_;
   ComposeParameters parameters_;
+  RungInputs rungs_;
   Stitcher stitcher_;
   PositionType positions_ = PositionType::float32;
   std::vector<SurfaceSamples> samples_;

@@ -11,6 +11,7 @@
 
 #include "pipeline/finish_stage.hpp"
 #include "pipeline/run_stages.hpp"
+#include "pipeline/rung_input.hpp"
 
 namespace meshfarm {
 namespace {
@@ -47,6 +48,7 @@ void take_output(ComposedParts& parts, const JobOutput& output) {
   const ResultSummary summary = decode_summary(output.summary, "summary of " + output.file.name);
   parts.chosen.file = output.file;
   parts.chosen.rung = 0;
+  parts.chosen.place = place_of(summary, 0);
   parts.chosen.dropped_degenerate += summary.dropped_degenerate;
   parts.chosen.dropped_duplicate += summary.dropped_duplicate;
   parts.chosen.turned += summary.turned;
@@ -187,10 +189,9 @@ Job ComposeStage::job_of(const Level& level, std::size_t first, std::size_t end)
     const ComposedParts& each = level.parts[i];
     parameters.inputs.push_back({each.chosen.parts, each.chosen.rung});
     composed += each.chosen.parts;
-    job.inputs.push_back(each.chosen.file);
+    bytes += add_rung_input(each.chosen, goal_.for_pieces && each.chosen.parts > 1, job);
     job.cost += each.triangles;
     weight += each.weight;
-    bytes += each.chosen.file.size;
   }
   parameters.floor = static_cast<std::uint64_t>(goal_.triangles * static_cast<double>(weight) /
                                                 static_cast<double>(weight_));

@@ -221,7 +221,7 @@ void CutStage::join(JobGraph& graph, const PartResults& results, JobGraph::Step 
   std::uint64_t read = 0;
   std::uint64_t triangles = 0;
   for (std::size_t p = 0; p < results.files.size(); ++p) {
-    parameters.numbers.push_back({results.files[p], results.summaries[p].built.value().beside});
+    parameters.numbers.push_back({results.files[p], results.summaries[p].beside});
     read += parameters.numbers.back().section.size;
   }
   for (const TriangleBundleRef& each : bundles_.triangles) triangles += each.bundle.seam_triangles;

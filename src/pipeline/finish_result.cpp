@@ -85,8 +85,9 @@ class ResultFinish {
   }
 
   ResultMesh read_part(const ChosenRung& chosen, std::size_t first_part) const {
-    const std::string file = stage_.read(chosen.file);
-    ResultMesh part = decode_result(file, chosen.rung, chosen.file.name);
+    const SectionedFile file(stage_, chosen.file);
+    ResultMesh part = decode_rung(file.read(chosen.place.rung), file.read(chosen.place.tail),
+                                  chosen.rung, chosen.file.name);
     // Of composed streams the stitcher knows.
     if (chosen.parts == 1 &&
         part.boundary_vertices != manifest_.parts[first_part].boundary_vertices) {

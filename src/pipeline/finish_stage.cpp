@@ -15,6 +15,7 @@
 #include "pipeline/pieces_output.hpp"
 #include "pipeline/quotas.hpp"
 #include "pipeline/run_stages.hpp"
+#include "pipeline/rung_input.hpp"
 
 namespace meshfarm {
 namespace {
@@ -262,13 +263,12 @@ std::vector<PartRange> FinishStage::ranges_of(const PieceOfResult& piece) const 
 Job FinishStage::split_job(const ComposedParts& parts, std::size_t number) const {
   Job job;
   job.kind = k_split_kind;
-  job.inputs = {parts.chosen.file};
+  const std::uint64_t bytes = add_rung_input(parts.chosen, parts.chosen.parts > 1, job);
   job.parameters = encode_parameters(SplitParameters{
       static_cast<std::uint32_t>(number), parts.chosen.rung, step_, parts.chosen.parts > 1,
       small_components_.empty() ? SectionRef{} : small_components_[number], weigh_});
   job.cost = k_split_work * parts.triangles;
-  job.memory = k_piece_process_bytes + parts.chosen.file.size +
-               k_piece_triangle_bytes * parts.triangles +
+  job.memory = k_piece_process_bytes + bytes + k_piece_triangle_bytes * parts.triangles +
                memory_of_channels(weigh_.lines, parts.triangles);
   return job;
 }
@@ -278,7 +278,6 @@ Job FinishStage::reduce_job(std::size_t piece, std::uint64_t quota) const {
   const PieceOfResult& from = made_.pieces[piece];
   const ErrorPoints points = by_error() ? k_points_for_bound : ErrorPoints{};
   ReduceParameters parameters;
-  parameters.mesh = from.divided.mesh;
   const std::vector<std::uint64_t>& rungs = from.divided.rungs;
   while (parameters.rung + 1 < rungs.size() && rungs[parameters.rung + 1] >= quota) {
     ++parameters.rung;
@@ -297,9 +296,10 @@ Job FinishStage::reduce_job(std::size_t piece, std::uint64_t quota) const {
   Job job;
   job.kind = k_reduce_kind;
   job.inputs = {from.divided_file};
+  job.sections = {{0, from.divided.mesh}};
   job.parameters = encode_parameters(parameters);
   job.cost = rungs[parameters.rung];
-  job.memory = k_piece_process_bytes + from.divided_file.size + k_piece_triangle_bytes * job.cost +
+  job.memory = k_piece_process_bytes + from.divided.mesh.size + k_piece_triangle_bytes * job.cost +
                memory_of_channels(weigh_.lines, job.cost);
   return job;
 }

@@ -9,8 +9,7 @@
 //                all parts u32 | boundary (io/boundary_ref.hpp) | samples a triangle f64 | weigh |
 //                bounded u8 | if it is: greatest error f64 | certified error f64 |
 //                strips x (mesh section | gap section) | builds u8 | if it does: bundles
-//   reduce     = version u8 | section | rung u32 | triangles u64 | points u64 | vertices u64 |
-//                lines
+//   reduce     = version u8 | rung u32 | triangles u64 | points u64 | vertices u64 | lines
 //   measure    = version u8 | first part u32 | end part u32 | triangles u64 | share u32 |
 //                shares u32 | box | 4 refs | seams u32 x (ref | ref) | points u32 x ref |
 //                input step u64 | builds u8 | if it does: bundles (bundle_list.hpp), else of each
@@ -28,7 +27,8 @@
 // In version 1 parts were always kept, and a piece was measured by one job. In version 2 the
 // surroundings of the seams were one piece. In version 3 triangles of gaps had no columns, and no
 // components were left out. In version 4 there was one boundary file. In version 5 there was no
-// bound on the error, and measure jobs looked the parts up in the manifest.
+// bound on the error, and measure jobs looked the parts up in the manifest. In version 6 a reduce
+// job read its input whole.
 #include <cmath>
 
 #include <meshfarm/pipeline/piece_jobs.hpp>
@@ -41,7 +41,7 @@
 namespace meshfarm {
 namespace {
 
-constexpr std::uint8_t k_piece_version = 6;
+constexpr std::uint8_t k_piece_version = 7;
 constexpr double k_most_piece_samples = 1000;  // a triangle
 
 void begin_parameters(ByteWriter& out) {
@@ -204,7 +204,6 @@ SeamParameters decode_seam_parameters(std::string_view bytes) {
 std::string encode_parameters(const ReduceParameters& parameters) {
   ByteWriter out;
   begin_parameters(out);
-  out.put(parameters.mesh);
   out.put(parameters.rung);
   out.put(parameters.triangles);
   out.put(parameters.points);
@@ -217,7 +216,6 @@ ReduceParameters decode_reduce_parameters(std::string_view bytes) {
   ByteReader in(bytes, "parameters of a reduce job");
   expect_piece_version(in);
   ReduceParameters parameters;
-  parameters.mesh = in.get<FileSection>();
   parameters.rung = in.get<std::uint32_t>();
   parameters.triangles = in.get<std::uint64_t>();
   parameters.points = in.get<std::uint64_t>();

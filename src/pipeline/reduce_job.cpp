@@ -35,17 +35,6 @@ std::vector<Vec3> points_of_piece(const Mesh& mesh, const ReduceParameters& para
   return std::move(samples.points);
 }
 
-/// The file has little else.
-ResultMesh read_input(const FileRef& input, const ReduceParameters& parameters,
-                      const JobContext& context) {
-  const std::string file = context.read(input);
-  const auto& [offset, size, hash] = parameters.mesh;
-  if (offset > file.size() || size > file.size() - offset) {
-    throw DataError(input.name + ": has no such piece");
-  }
-  return decode_result(std::string_view(file).substr(offset, size), parameters.rung, input.name);
-}
-
 Mesh reduced(ResultMesh piece, const ReduceParameters& parameters, const JobContext& context) {
   const std::uint64_t before = piece.mesh.triangles.size();
   Simplifier simplifier(std::move(piece.mesh), {.locked_vertices = piece.boundary_vertices,
@@ -66,7 +55,8 @@ Mesh reduced(ResultMesh piece, const ReduceParameters& parameters, const JobCont
 JobOutput reduce_piece(const Job& job, const JobContext& context) {
   const ReduceParameters parameters = decode_reduce_parameters(job.parameters);
   if (job.inputs.size() != 1) throw DataError("a reduce job takes one piece");
-  ResultMesh piece = read_input(job.inputs[0], parameters, context);
+  ResultMesh piece =
+      decode_result(context.read_section(job, 0), parameters.rung, job.inputs[0].name);
   const std::uint32_t locked = piece.boundary_vertices;
   const PositionType positions = piece.positions;
   const Mesh mesh = parameters.triangles == k_keep_all

@@ -200,7 +200,7 @@ class Run {
       const auto last = static_cast<std::uint32_t>(result.rungs.size() - 1);
       const std::uint32_t rung = jobs().by_error() ? last : rung_at(result.rungs, results().level);
       reached.push_back({{results().files[p], rung, 1, result.dropped_degenerate,
-                          result.dropped_duplicate, result.turned},
+                          result.dropped_duplicate, result.turned, place_of(result, rung)},
                          result.rungs[rung].triangles,
                          result.rungs[rung].free_triangles});
     }
@@ -227,7 +227,10 @@ class Run {
       const auto triangles = static_cast<double>(results().free_triangles(level));
       if (triangles < k_finer * static_cast<double>(before)) continue;
       for (std::size_t p = 0; p < results().files.size(); ++p) {
-        chosen.finer.push_back({results().files[p], rung_at(results().summaries[p].rungs, level)});
+        const ResultSummary& result = results().summaries[p];
+        const std::uint32_t rung = rung_at(result.rungs, level);
+        chosen.finer.push_back(
+            {.file = results().files[p], .rung = rung, .place = place_of(result, rung)});
       }
       chosen.times_finer = triangles / static_cast<double>(std::max<std::uint64_t>(1, before));
       return;

@@ -48,8 +48,7 @@ TraceLine line_of(const JobAccepted& e, double t) {
   }
   line.triangles = e.job.cost;
   line.memory = e.job.memory;
-  line.read_bytes = e.job.reads;
-  for (const FileRef& input : e.job.inputs) line.read_bytes += input.size;
+  line.read_bytes = e.job.reads + input_bytes(e.job);
   line.extent = e.job.extent.name;
   line.extent_bytes = e.job.extent.bytes;
   line.written_bytes = e.output_bytes;

@@ -61,7 +61,7 @@ class LadderBuilder {
     result_.finish(VertexView(simplifier_.mesh()).part(0, vertices_.boundary), {&samples_, 1});
     return std::move(file_);
   }
-  const FileSection& beside() const { return result_.beside(); }
+  /// Of the whole file.
   ResultSummary summary() const {
     return {result_.rungs(),
             simplifier_.dropped_degenerate(),
@@ -69,7 +69,9 @@ class LadderBuilder {
             simplifier_.is_hampered_by_topology(),
             simplifier_.turned(),
             {},
-            goes_on_};
+            goes_on_,
+            result_.tail(),
+            result_.beside()};
   }
 
  private:
@@ -179,13 +181,9 @@ PartAtHand part_at_hand(const Job& job, const JobContext& context, SimplifyParam
       build_from_blocks(context.stage, parameters.build->bundles, parameters.build->part);
   set_share(parameters, parameters.build->rule, built.shared_triangles, built.shared_boundary);
   const Mesh& mesh = built.part.mesh;
-  const BuiltFacts facts{mesh.positions.size(),
-                         mesh.triangles.size(),
-                         built.part.boundary_vertices,
-                         built.coincident_vertices,
-                         built.dropped_degenerate,
-                         built.coincident_corners,
-                         {}};
+  const BuiltFacts facts{mesh.positions.size(),        mesh.triangles.size(),
+                         built.part.boundary_vertices, built.coincident_vertices,
+                         built.dropped_degenerate,     built.coincident_corners};
   return {std::move(built.part), std::move(built.numbers), facts};
 }
 
@@ -285,7 +283,6 @@ JobOutput simplify_part(const Job& job, const JobContext& context) {
   if (parameters.max_error > 0) {
     BoundedPart bounded = simplify_to_bound(std::move(part), parameters, context, at_hand.beside);
     bounded.summary.built = at_hand.facts;
-    if (at_hand.facts) bounded.summary.built->beside = bounded.beside;
     return {context.publish(name, bounded.file), encode_summary(bounded.summary)};
   }
   LadderBuilder ladder(std::move(part), parameters, context, at_hand.beside);
@@ -293,7 +290,6 @@ JobOutput simplify_part(const Job& job, const JobContext& context) {
   const std::string file = ladder.take_file();
   ResultSummary summary = ladder.summary();
   summary.built = at_hand.facts;
-  if (summary.built) summary.built->beside = ladder.beside();
   return {context.publish(name, file), encode_summary(summary)};
 }
 

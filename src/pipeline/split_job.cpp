@@ -12,6 +12,7 @@
 #include <meshfarm/util/errors.hpp>
 
 #include "pipeline/piece_sections.hpp"
+#include "pipeline/rung_input.hpp"
 #include "pipeline/seam_bound.hpp"
 
 namespace meshfarm {
@@ -169,9 +170,8 @@ void approach(const SplitParameters& parameters, const JobContext& context, Resu
 JobOutput split_piece(const Job& job, const JobContext& context) {
   if (job.inputs.size() != 1) throw DataError("a split job takes one piece");
   const SplitParameters parameters = decode_split_parameters(job.parameters);
-  const FileRef& input = job.inputs[0];
-  const std::string composed = context.read(input);
-  ResultMesh piece = decode_result(composed, parameters.rung, input.name);
+  RungInputs inputs(job, context);
+  ResultMesh piece = inputs.next(parameters.rung);
   const LineOptions& lines = parameters.weigh.lines;
   if (!(lines.appearance_scale.length > 0)) piece.mesh.appearances = {};
   piece.mesh.columns.keep(lines.columns);
@@ -184,7 +184,7 @@ JobOutput split_piece(const Job& job, const JobContext& context) {
   halves.strip.dropped = std::move(dropped);
   PieceFile file;
   made.samples = file.add(encode_samples(piece.samples));
-  if (parameters.is_composed) made.between = file.add(beside_of(composed, input.name));
+  if (parameters.is_composed) made.between = file.add(inputs.beside());
   piece = {};
   made.strip_triangles = halves.strip.mesh.mesh.triangles.size();
   made.shared = halves.strip.shared.size();

@@ -35,8 +35,15 @@ class SweepToFile {
     input().size <= job_.memory ? sweep_in_memory() : sweep_bit_by_bit();
     result_->end_rung(parameters_.level, swept_.free_triangles, swept_.error);
     result_->finish(VertexView(swept_.boundary), {&swept_.samples, 1});
-    const ResultSummary summary{result_->rungs(), swept_.dropped_degenerate,
-                                swept_.dropped_duplicate, false, swept_.turned};
+    const ResultSummary summary{result_->rungs(),
+                                swept_.dropped_degenerate,
+                                swept_.dropped_duplicate,
+                                false,
+                                swept_.turned,
+                                {},
+                                false,
+                                result_->tail(),
+                                result_->beside()};
     swept_ = {};
     return {file_->commit(), encode_summary(summary)};
   }

@@ -118,13 +118,17 @@ JobOutcome JobSlot::checked(const Begin& begin, JobOutput output) const {
 
 /// What cannot be read now is read again by the job itself, which says why it cannot be.
 void JobSlot::read_ahead(const Job& job) {
-  std::uint64_t size = 0;
-  for (const FileRef& input : job.inputs) size += input.size;
-  if (size > job.memory) return;  // the job means to read it bit by bit
+  if (input_bytes(job) > job.memory) return;  // the job means to read it bit by bit
   try {
+    for (const InputSection& each : job.sections) {
+      if (give_up_) return;
+      const FileRef& input = job.inputs.at(each.input);
+      ahead_[{input.name, each.section.offset}] = from_stage(input, each.section);
+    }
+    if (!job.sections.empty()) return;
     for (const FileRef& input : job.inputs) {
       if (give_up_) return;
-      ahead_[input.name] = stage_.read(input, {.attempts = 1, .moved = on_moved()});
+      ahead_[{input.name, 0}] = stage_.read(input, {.attempts = 1, .moved = on_moved()});
     }
   } catch (const Error&) {
   } catch (const std::bad_alloc&) {
@@ -132,11 +136,26 @@ void JobSlot::read_ahead(const Job& job) {
 }
 
 std::string JobSlot::read(const FileRef& file) {
-  auto found = ahead_.extract(file.name);
+  auto found = ahead_.extract({file.name, 0});
   if (!found.empty()) return std::move(found.mapped());
   phase_ = JobPhase::storage;
   std::string bytes = stage_.read(file, {.moved = on_moved()});
   phase_ = JobPhase::computing;
+  return bytes;
+}
+
+std::string JobSlot::read(const FileRef& file, const FileSection& section) {
+  auto found = ahead_.extract({file.name, section.offset});
+  if (!found.empty()) return std::move(found.mapped());
+  phase_ = JobPhase::storage;
+  std::string bytes = from_stage(file, section);
+  phase_ = JobPhase::computing;
+  return bytes;
+}
+
+std::string JobSlot::from_stage(const FileRef& file, const FileSection& section) {
+  std::string bytes = SectionedFile(stage_, file).read(section);
+  moved(bytes.size());
   return bytes;
 }
 

@@ -9,6 +9,7 @@
 #include <map>
 #include <memory>
 #include <string>
+#include <utility>
 #include <variant>
 
 #include <meshfarm/farm/job.hpp>
@@ -59,6 +60,8 @@ class JobSlot : private JobStorage {
     return [this](std::uint64_t bytes) { moved(bytes + 1); };
   }
   std::string read(const FileRef& file) override;
+  std::string read(const FileRef& file, const FileSection& section) override;
+  std::string from_stage(const FileRef& file, const FileSection& section);
   FileRef publish(const StagedName& name, std::string_view bytes, std::string_view unique) override;
   std::unique_ptr<JobFile> create(const StagedName& name, std::string_view unique) override;
 
@@ -72,7 +75,8 @@ class JobSlot : private JobStorage {
   std::atomic<bool> give_up_{false};
   std::atomic<clockid_t> cpu_clock_{k_no_clock};  // of the thread, once it has computed
   // The thread's own while it works:
-  std::map<std::string, std::string> ahead_;  // bytes by name
+  /// Bytes by a file's name and where they begin.
+  std::map<std::pair<std::string, std::uint64_t>, std::string> ahead_;
   JobClock clock_;
   std::uint64_t cpu_before_us_ = 0;
   JobOutcome outcome_;

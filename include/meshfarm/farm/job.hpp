@@ -9,6 +9,7 @@
 #include <string_view>
 #include <vector>
 
+#include <meshfarm/staging/sections.hpp>
 #include <meshfarm/staging/stage.hpp>
 #include <meshfarm/util/errors.hpp>
 
@@ -31,6 +32,14 @@ struct Extent {
 /// By what it is and its number.
 Extent extent_named(std::string_view what, std::uint64_t number, std::uint64_t bytes);
 
+/// A part of one of a job's inputs.
+struct InputSection {
+  std::uint32_t input = 0;
+  FileSection section;
+
+  friend bool operator==(const InputSection&, const InputSection&) = default;
+};
+
 /// A unit of work. To the farm `kind` and `parameters` are opaque.
 struct Job {
   std::string kind;             // "simplify"
@@ -48,6 +57,9 @@ struct Job {
   /// Estimated work of the longest chain of jobs that can only follow this one, in triangles: what
   /// leads to much is begun first. No part of what the job is.
   std::uint64_t after = 0;
+  /// What is read of the inputs, in an order that the kind tells; none: each as a whole. No part of
+  /// what the job is.
+  std::vector<InputSection> sections = {};
   /// About so many bytes are read that are no inputs: sections of files, or of the mesh itself. No
   /// part of what the job is.
   std::uint64_t reads = 0;
@@ -56,6 +68,8 @@ struct Job {
 };
 
 JobKey key_of(const Job& job);
+/// What is read of the inputs.
+std::uint64_t input_bytes(const Job& job);
 
 /// What a job made: one staged file, and a few bytes about it that travel with the message.
 struct JobOutput {
@@ -78,6 +92,7 @@ class JobStorage {
  public:
   virtual ~JobStorage() = default;
   virtual std::string read(const FileRef& file) = 0;
+  virtual std::string read(const FileRef& file, const FileSection& section) = 0;
   virtual std::unique_ptr<JobFile> create(const StagedName& name, std::string_view unique) = 0;
   virtual FileRef publish(const StagedName& name, std::string_view bytes,
                           std::string_view unique) = 0;
@@ -94,6 +109,8 @@ struct JobContext {
 
   /// An input, as Stage::read; a worker may have read it ahead.
   std::string read(const FileRef& file) const;
+  /// One of Job::sections. Throws DataError if there are not so many.
+  std::string read_section(const Job& job, std::size_t section) const;
   /// The output, as Stage::publish. To be called when all is computed: from here on the worker may
   /// begin to compute the next job.
   FileRef publish(const StagedName& name, std::string_view bytes) const;

@@ -34,12 +34,12 @@
 
 namespace meshfarm {
 
-inline constexpr std::uint16_t k_protocol_version = 8;
+inline constexpr std::uint16_t k_protocol_version = 9;
 inline constexpr std::size_t k_max_frame_bytes = 524'288;
 inline constexpr std::size_t k_max_text_bytes = 1024;           // names, addresses, reasons
 inline constexpr std::size_t k_max_summary_bytes = 16'384;      // JobOutput::summary
 inline constexpr std::size_t k_max_parameters_bytes = 262'144;  // Job::parameters
-inline constexpr std::size_t k_max_list = 4096;                 // Job::inputs
+inline constexpr std::size_t k_max_list = 4096;                 // Job::inputs, Job::sections
 
 /// Time as the farm's state machines see it: since any fixed moment, never going back.
 using FarmTime = std::chrono::milliseconds;

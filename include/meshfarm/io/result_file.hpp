@@ -12,7 +12,6 @@
 
 #include <meshfarm/geometry/distance.hpp>
 #include <meshfarm/geometry/mesh.hpp>
-#include <meshfarm/io/fill.hpp>
 #include <meshfarm/io/part_file.hpp>
 #include <meshfarm/staging/sections.hpp>
 #include <meshfarm/util/checksum.hpp>
@@ -26,6 +25,7 @@ struct Rung {
   std::uint64_t triangles = 0;       // falling along the ladder
   std::uint64_t free_triangles = 0;  // those without a locked vertex
   double error = 0;                  // greatest distance from the samples, where it was measured
+  FileSection section = {};          // of its result
 };
 
 /// What is known of a part that was built and simplified by one job: what PartEntry tells, and what
@@ -37,7 +37,6 @@ struct BuiltFacts {
   std::uint64_t coincident_vertices = 0;
   std::uint64_t dropped_degenerate = 0;
   std::uint64_t coincident_corners = 0;
-  FileSection beside;  // of the result's file
 };
 
 /// What is known of a result without reading its file. Travels with the result message.
@@ -48,8 +47,20 @@ struct ResultSummary {
   bool held_by_topology = false;  // keeping it refused more than was collapsed
   std::uint64_t turned = 0;       // triangles that faced another way than most of their piece
   std::optional<BuiltFacts> built = {};
-  bool goes_on = false;  // the ladder ends where the next rung was not going to be wanted
+  bool goes_on = false;     // the ladder ends where the next rung was not going to be wanted
+  FileSection tail = {};    // of the file: what all rungs have in common
+  FileSection beside = {};  // of the file: what is no part of the mesh
 };
+
+/// What a reader of one rung needs, and what is beside it.
+struct RungPlace {
+  FileSection rung;
+  FileSection tail;
+  FileSection beside;
+};
+inline RungPlace place_of(const ResultSummary& summary, std::size_t rung) {
+  return {summary.rungs.at(rung).section, summary.tail, summary.beside};
+}
 
 std::string encode_summary(const ResultSummary& summary);
 ResultSummary decode_summary(std::string_view bytes, std::string_view what);
@@ -81,18 +92,22 @@ class ResultWriter {
   /// Samples: points of the part as it came, by which the error of the final mesh is measured.
   void finish(const VertexView& boundary, std::span<const SurfaceSamples> samples);
 
-  /// Where the bytes beside the mesh are.
+  /// Where the bytes beside the mesh are; once it is finished, where the tail is.
   const FileSection& beside() const { return beside_; }
+  const FileSection& tail() const { return tail_; }
   bool empty() const { return rungs_.empty(); }
   const std::vector<Rung>& rungs() const { return rungs_; }
 
  private:
   void put(std::string_view bytes);
+  FileSection end_section();
 
   Vertices vertices_;
   Write write_;
   FileSection beside_;
-  Rung rung_;  // the counts of what was added of the next rung
+  FileSection tail_;
+  FileSection section_;  // that is being written
+  Rung rung_;            // the counts of what was added of the next rung
   std::vector<Rung> rungs_;
   Checksum sum_;
 };
@@ -111,11 +126,11 @@ struct ResultMesh {
   std::vector<SurfaceSamples> samples;
 };
 
-/// Reads the rung with this index. Throws DataError naming `what`.
-ResultMesh read_result(const Fill& fill, std::size_t rung, std::string_view what);
-/// The same from a file's bytes, which must end where the result does.
+/// The rung with this index, of its section and the tail, whose checksums were compared. Throws
+/// DataError naming `what`, as all here do.
+ResultMesh decode_rung(std::string_view rung_bytes, std::string_view tail, std::size_t rung,
+                       std::string_view what);
+/// The same of a whole file, all of whose checksums are compared.
 ResultMesh decode_result(std::string_view file, std::size_t rung, std::string_view what);
-/// What a result that was decoded holds beside its mesh.
-std::string_view beside_of(std::string_view file, std::string_view what);
 
 }  // namespace meshfarm

@@ -26,6 +26,7 @@ struct ChosenRung {
   std::uint64_t dropped_degenerate = 0;  // in the part
   std::uint64_t dropped_duplicate = 0;
   std::uint64_t turned = 0;
+  RungPlace place = {};
 };
 
 /// What to stitch, in the order of the parts, and how to finish it.

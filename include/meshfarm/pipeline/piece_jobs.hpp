@@ -104,6 +104,8 @@ struct ComponentsParameters {
     std::uint32_t parts = 1;
     std::uint32_t rung = 0;
     FileRef file;
+    FileSection mesh;  // the rung
+    FileSection tail;
   };
   std::vector<Piece> pieces;  // in order
   std::uint32_t all_parts = 0;
@@ -164,8 +166,8 @@ SeamParameters decode_seam_parameters(std::string_view bytes);
 /// Of a piece that is finished as it is.
 inline constexpr std::uint64_t k_keep_all = UINT64_MAX;
 
+/// Of a job with one section of one input: DividedPiece::mesh.
 struct ReduceParameters {
-  FileSection mesh;  // of the one input
   std::uint32_t rung = 0;
   std::uint64_t triangles = 0;  // or k_keep_all
   std::uint64_t points = 0;     // of the result, by area, to measure it by

@@ -20,6 +20,8 @@ std::vector<Message> one_of_each() {
   output.file = {"results/00000000000000ff.a2.0000000000000001", 9, 10};
   output.summary = "summary";
   const JobFailure failure{"the disk is full", FailureKind::no_space};
+  Job job{"simplify", {part, part}, std::string("\0\1\2", 3), 77, 88, 99};
+  job.sections = {{1, {16, 100, 789}}};
   return {Hello{Role::sink, 1, 2, 3, "host", "tcp://h:1", {4, 5, 6, 7}, 8},
           Welcome{{4}, 5, 6, "tcp://h:2", "tcp://h:3", 1000, 7},
           Refused{Refusal::replaced, "why"},
@@ -27,7 +29,7 @@ std::vector<Message> one_of_each() {
           Alive{7, "tcp://h:5", 8},
           Credit{1, {2}, 1ULL << 40},
           Release{1, {2}},
-          Assignment{1, 2, 3, 4, {"simplify", {part, part}, std::string("\0\1\2", 3), 77, 88, 99}},
+          Assignment{1, 2, 3, 4, job},
           Result{1, 2, {3}, 4, 5, {6}, output, {7, 8, 9, 10, 11}},
           Result{1, 2, {3}, 4, 5, {6}, failure, {7, 8, 9, 10, 11}},
           Accept{1, {2}, {3}, output, {4, 5, 6, 7, 8}, 9},
@@ -77,6 +79,8 @@ TEST_CASE("fields come back in their own places") {
   CHECK(assignment.job.kind == "simplify");
   REQUIRE(assignment.job.inputs.size() == 2);
   CHECK(assignment.job.inputs[1] == FileRef{"parts/000001.part", 123, 456});
+  REQUIRE(assignment.job.sections.size() == 1);
+  CHECK(assignment.job.sections[0] == InputSection{1, {16, 100, 789}});
   CHECK(assignment.job.parameters == std::string("\0\1\2", 3));
   CHECK(assignment.job.cost == 77);
   CHECK(assignment.job.memory == 88);
@@ -85,6 +89,12 @@ TEST_CASE("fields come back in their own places") {
   const auto& failure = std::get<JobFailure>(std::get<Result>(failed).outcome);
   CHECK(failure.reason == "the disk is full");
   CHECK(failure.kind == FailureKind::no_space);
+}
+
+TEST_CASE("a section of an input that the job has not is refused") {
+  Assignment assignment = std::get<Assignment>(one_of_each()[7]);
+  assignment.job.sections[0].input = 2;
+  CHECK_THROWS_AS(decode(encode(assignment)), DataError);
 }
 
 TEST_CASE("a frame cut at any byte, or longer by one, is refused") {
@@ -145,9 +155,9 @@ TEST_CASE("who speaks another version is told so in a frame of that version") {
 }
 
 TEST_CASE("numbers on the wire never change") {
-  CHECK(encode(Stop{StopReason::leaving}) == std::string("MFMS\10\0\x12\0\2", 9));
+  CHECK(encode(Stop{StopReason::leaving}) == std::string("MFMS\11\0\x12\0\2", 9));
   CHECK(encode(Credit{1, {2}, 3}) ==
-        std::string("MFMS\10\0\6\0\1\0\0\0\2\0\0\0\3\0\0\0\0\0\0\0", 24));
+        std::string("MFMS\11\0\6\0\1\0\0\0\2\0\0\0\3\0\0\0\0\0\0\0", 24));
 }
 
 TEST_CASE("what is too long for a message is refused by the sender") {

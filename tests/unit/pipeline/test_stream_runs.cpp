@@ -21,6 +21,7 @@
 #include <meshfarm/pipeline/sweep_job.hpp>
 #include <meshfarm/util/errors.hpp>
 
+#include "pipeline/rung_input.hpp"
 #include "support/memory_source.hpp"
 #include "support/meshes.hpp"
 #include "support/next_jobs.hpp"
@@ -250,14 +251,17 @@ TEST_CASE("a compose job that makes no sense is refused, one whose side file is 
   Job job{std::string(k_compose_kind), {}, bytes, 0, 0};
   for (std::size_t i = 0; i < 2; ++i) {
     SimplifyParameters climb{.allocation = Allocation::uniform, .start_triangles = 9'000};
-    job.inputs.push_back(do_job({std::string(k_simplify_kind),
-                                 {manifest.parts[i].file},
-                                 encode_parameters(climb),
-                                 0,
-                                 0},
-                                context)
-                             .file);
+    const JobOutput made =
+        do_job({std::string(k_simplify_kind), {manifest.parts[i].file}, encode_parameters(climb)},
+               context);
+    const ResultSummary summary = decode_summary(made.summary, "s");
+    add_rung_input({.file = made.file, .place = place_of(summary, 0)}, false, job);
   }
+  CHECK(job.sections.size() == 4);
+  CHECK(input_bytes(job) < job.inputs[0].size + job.inputs[1].size);
+  Job without = job;
+  without.sections.pop_back();
+  CHECK_THROWS_WITH_AS(do_job(without, context), "a compose job without its sections", DataError);
   CHECK_NOTHROW(do_job(job, context));
   std::fstream file(stage.path(BoundaryName{}), std::ios::in | std::ios::out | std::ios::binary);
   file.seekp(static_cast<std::streamoff>(manifest.boundary[0].file.size / 2));
