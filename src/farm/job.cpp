@@ -65,7 +65,7 @@ std::string JobContext::read_section(const Job& job, std::size_t section) const 
   const InputSection& wanted = job.sections[section];
   const FileRef& file = job.inputs.at(wanted.input);
   return storage != nullptr ? storage->read(file, wanted.section)
-                            : SectionedFile(stage, file).read(wanted.section);
+                            : stage.read(file, wanted.section);
 }
 
 FileRef JobContext::publish(const StagedName& name, std::string_view bytes) const {

@@ -25,7 +25,7 @@ constexpr double k_least_gain_share = 0.1;
 /// this: at one and a half times its estimate a second attempt pays.
 constexpr double k_lateness = 2;
 /// Workers of one host are equally fast, and a second attempt there takes from what the first one
-/// has: only an attempt that is late by so many seconds may be stuck.
+/// has: of those that have begun, only one that is late by so many seconds may be stuck.
 constexpr double k_late_on_host = 10;
 /// So many jobs of a kind that are in work tell how long they take before one is done. But no
 /// longer than so many seconds more than was thought: what holds all of them up may be their hosts.
@@ -170,7 +170,8 @@ std::vector<Scheduler::Pick> Scheduler::second_attempts(Plan& plan, FarmTime now
       const double anew = each.times * static_cast<double>(each.held->cost) / member.speed;
       const double gain = each.left - anew;
       const bool gains = gain >= std::max(k_least_gain, k_least_gain_share * each.left);
-      const bool may_gain_here = each.host != member.host || each.beyond >= k_late_on_host;
+      const bool may_gain_here =
+          each.host != member.host || !each.held->since || each.beyond >= k_late_on_host;
       any_gains = any_gains || gains;
       return gains && may_gain_here && fits(member, each.held->memory) &&
              may(member, each.held->key, each.held->memory);

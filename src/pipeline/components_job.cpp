@@ -199,9 +199,9 @@ JobOutput find_small_components(const Job& job, const JobContext& context) {
   const ComponentsParameters parameters = decode_components_parameters(job.parameters);
   ComponentFinder finder(parameters);
   for (const ComponentsParameters::Piece& each : parameters.pieces) {
-    const SectionedFile file(context.stage, each.file);
     ResultMesh piece =
-        decode_rung(file.read(each.mesh), file.read(each.tail), each.rung, each.file.name);
+        decode_rung(context.stage.read(each.file, each.mesh),
+                    context.stage.read(each.file, each.tail), each.rung, each.file.name);
     const std::size_t triangles = piece.mesh.triangles.size();
     finder.add(std::move(piece), each.parts);
     if (!context.progress(triangles)) throw IncompleteError("the job was given up");

@@ -85,9 +85,9 @@ class ResultFinish {
   }
 
   ResultMesh read_part(const ChosenRung& chosen, std::size_t first_part) const {
-    const SectionedFile file(stage_, chosen.file);
-    ResultMesh part = decode_rung(file.read(chosen.place.rung), file.read(chosen.place.tail),
-                                  chosen.rung, chosen.file.name);
+    ResultMesh part =
+        decode_rung(stage_.read(chosen.file, chosen.place.rung),
+                    stage_.read(chosen.file, chosen.place.tail), chosen.rung, chosen.file.name);
     // Of composed streams the stitcher knows.
     if (chosen.parts == 1 &&
         part.boundary_vertices != manifest_.parts[first_part].boundary_vertices) {

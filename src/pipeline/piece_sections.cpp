@@ -256,7 +256,7 @@ Mesh decode_surface(std::string_view bytes, std::string_view what) {
 }
 
 std::string read_section(const JobContext& context, const SectionRef& ref) {
-  return SectionedFile(context.stage, ref.file).read(ref.section);
+  return context.stage.read(ref.file, ref.section);
 }
 
 std::string encode_piece(const Mesh& mesh, std::uint32_t locked, PositionType positions) {

@@ -58,19 +58,23 @@ void tell_moved(const ReadPatience& patience, std::uint64_t bytes) {
 }
 
 std::string read_once(const std::filesystem::path& root, const FileRef& file,
-                      const ReadPatience& patience) {
+                      const FileSection& section, const ReadPatience& patience) {
   const std::filesystem::path path = root / file.name;
   const Fd fd = open_once(root, file);
-  std::string bytes(file.size, '\0');
+  if (section.offset > file.size || section.size > file.size - section.offset) {
+    throw DataError(path.string() + ": has no section at byte " + std::to_string(section.offset));
+  }
+  std::string bytes(section.size, '\0');
   std::size_t done = 0;
   while (done < bytes.size()) {
     const std::size_t want = std::min(k_piece, bytes.size() - done);
-    const std::size_t got = read_up_to(fd.get(), {bytes.data() + done, want}, path);
+    const std::size_t got =
+        read_at(fd.get(), section.offset + done, {bytes.data() + done, want}, path);
     tell_moved(patience, got);
     done += got;
     if (got < want) break;
   }
-  if (done != file.size || checksum(bytes) != file.hash) {
+  if (done != section.size || checksum(bytes) != section.hash) {
     throw DataError(path.string() + ": damaged (its checksum is not the promised one)");
   }
   return bytes;
@@ -189,7 +193,13 @@ bool Stage::publish_new(const StagedName& name, std::string_view bytes,
 }
 
 std::string Stage::read(const FileRef& file, const ReadPatience& patience) const {
-  return patiently(*this, file, patience, [&] { return read_once(root_, file, patience); });
+  return read(file, {0, file.size, file.hash}, patience);
+}
+
+std::string Stage::read(const FileRef& file, const FileSection& section,
+                        const ReadPatience& patience) const {
+  return patiently(*this, file, patience,
+                   [&] { return read_once(root_, file, section, patience); });
 }
 
 void Stage::verify(const FileRef& file, const ReadPatience& patience) const {

@@ -123,12 +123,14 @@ void JobSlot::read_ahead(const Job& job) {
     for (const InputSection& each : job.sections) {
       if (give_up_) return;
       const FileRef& input = job.inputs.at(each.input);
-      ahead_[{input.name, each.section.offset}] = from_stage(input, each.section);
+      ahead_[{input.name, each.section.offset, each.section.size}] =
+          stage_.read(input, each.section, {.attempts = 1, .moved = on_moved()});
     }
     if (!job.sections.empty()) return;
     for (const FileRef& input : job.inputs) {
       if (give_up_) return;
-      ahead_[{input.name, 0}] = stage_.read(input, {.attempts = 1, .moved = on_moved()});
+      ahead_[{input.name, 0, input.size}] =
+          stage_.read(input, {.attempts = 1, .moved = on_moved()});
     }
   } catch (const Error&) {
   } catch (const std::bad_alloc&) {
@@ -136,26 +138,15 @@ void JobSlot::read_ahead(const Job& job) {
 }
 
 std::string JobSlot::read(const FileRef& file) {
-  auto found = ahead_.extract({file.name, 0});
-  if (!found.empty()) return std::move(found.mapped());
-  phase_ = JobPhase::storage;
-  std::string bytes = stage_.read(file, {.moved = on_moved()});
-  phase_ = JobPhase::computing;
-  return bytes;
+  return read(file, {0, file.size, file.hash});
 }
 
 std::string JobSlot::read(const FileRef& file, const FileSection& section) {
-  auto found = ahead_.extract({file.name, section.offset});
+  auto found = ahead_.extract({file.name, section.offset, section.size});
   if (!found.empty()) return std::move(found.mapped());
   phase_ = JobPhase::storage;
-  std::string bytes = from_stage(file, section);
+  std::string bytes = stage_.read(file, section, {.moved = on_moved()});
   phase_ = JobPhase::computing;
-  return bytes;
-}
-
-std::string JobSlot::from_stage(const FileRef& file, const FileSection& section) {
-  std::string bytes = SectionedFile(stage_, file).read(section);
-  moved(bytes.size());
   return bytes;
 }
 

@@ -9,7 +9,6 @@
 #include <map>
 #include <memory>
 #include <string>
-#include <utility>
 #include <variant>
 
 #include <meshfarm/farm/job.hpp>
@@ -61,7 +60,6 @@ class JobSlot : private JobStorage {
   }
   std::string read(const FileRef& file) override;
   std::string read(const FileRef& file, const FileSection& section) override;
-  std::string from_stage(const FileRef& file, const FileSection& section);
   FileRef publish(const StagedName& name, std::string_view bytes, std::string_view unique) override;
   std::unique_ptr<JobFile> create(const StagedName& name, std::string_view unique) override;
 
@@ -75,8 +73,14 @@ class JobSlot : private JobStorage {
   std::atomic<bool> give_up_{false};
   std::atomic<clockid_t> cpu_clock_{k_no_clock};  // of the thread, once it has computed
   // The thread's own while it works:
-  /// Bytes by a file's name and where they begin.
-  std::map<std::pair<std::string, std::uint64_t>, std::string> ahead_;
+  struct Place {
+    std::string file;
+    std::uint64_t offset = 0;
+    std::uint64_t size = 0;  // a section may be empty, and the next begins where it does
+
+    friend auto operator<=>(const Place&, const Place&) = default;
+  };
+  std::map<Place, std::string> ahead_;
   JobClock clock_;
   std::uint64_t cpu_before_us_ = 0;
   JobOutcome outcome_;

@@ -9,7 +9,6 @@
 #include <string_view>
 #include <vector>
 
-#include <meshfarm/staging/sections.hpp>
 #include <meshfarm/staging/stage.hpp>
 #include <meshfarm/util/errors.hpp>
 

@@ -7,22 +7,11 @@
 #include <functional>
 #include <string>
 #include <string_view>
-#include <type_traits>
 
 #include <meshfarm/staging/stage.hpp>
 #include <meshfarm/util/file.hpp>
 
 namespace meshfarm {
-
-/// A part of a staged file that can be read on its own.
-struct FileSection {
-  std::uint64_t offset = 0;
-  std::uint64_t size = 0;
-  std::uint64_t hash = 0;  // its checksum
-
-  friend bool operator==(const FileSection&, const FileSection&) = default;
-};
-static_assert(std::is_trivially_copyable_v<FileSection> && sizeof(FileSection) == 24);
 
 /// Writes sections one behind the other. Who reads them must be told where they are: the file does
 /// not say it.

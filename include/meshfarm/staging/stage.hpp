@@ -7,6 +7,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <type_traits>
 #include <vector>
 
 #include <meshfarm/staging/names.hpp>
@@ -22,6 +23,16 @@ struct FileRef {
   std::uint64_t hash = 0;
   friend bool operator==(const FileRef&, const FileRef&) = default;
 };
+
+/// A part of a staged file that can be read on its own.
+struct FileSection {
+  std::uint64_t offset = 0;
+  std::uint64_t size = 0;
+  std::uint64_t hash = 0;  // its checksum
+
+  friend bool operator==(const FileSection&, const FileSection&) = default;
+};
+static_assert(std::is_trivially_copyable_v<FileSection> && sizeof(FileSection) == 24);
 
 /// The shared folder of one dataset.
 class Stage {
@@ -50,7 +61,10 @@ class Stage {
   /// and size and checksum must match; stale NFS answers are tried again. Throws DataError,
   /// IoError.
   std::string read(const FileRef& file, const ReadPatience& patience = {}) const;
-  /// The same in bounded memory, for who wants to know only that the file is whole.
+  /// The same of one section, by its own checksum.
+  std::string read(const FileRef& file, const FileSection& section,
+                   const ReadPatience& patience = {}) const;
+  /// The whole file in bounded memory, for who wants to know only that the file is whole.
   void verify(const FileRef& file, const ReadPatience& patience = {}) const;
   /// Opens such a file for a reader that checks its bytes as they come; the size is checked here.
   Fd open_told(const FileRef& file, const ReadPatience& patience = {}) const;

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numeric>
 #include <tuple>
+#include <utility>
 
 #include "geometry/simplify/vertex_flags.hpp"
 
@@ -173,6 +174,8 @@ bool CollapseQueue::must_not_cross(const QueuedEdge& queued, const Collapse& col
     return true;
   }
   if (!must_wait(queued, cost)) return false;
+  // Until then it may come to cross nothing any more.
+  if (cost > most_cost_) refused_[a] = refused_[b] = 1;
   wait(queued, cost);
   return true;
 }
@@ -191,8 +194,8 @@ bool CollapseQueue::reduce(const SimplifyGoal& goal, const Progress& progress) {
   if (!is_ranked) limit_ = 0;
   while (triangles_ > goal.triangles) {
     const std::uint64_t before = triangles_;
-    if (!is_ranked) rank(share);
-    is_ranked = false;
+    const bool goes_on = std::exchange(is_ranked, false);
+    if (!goes_on) rank(share);
     const Stop stop = run(goal, progress);
     held_ = held_ || stop == Stop::held;
     // What was refused as it would have removed too many may do for the next goal.
@@ -200,7 +203,7 @@ bool CollapseQueue::reduce(const SimplifyGoal& goal, const Progress& progress) {
     if (stop != Stop::nothing_left) return stop != Stop::told;
     if (limit_ >= std::min(key_of(most_cost_), k_greatest)) return true;
     // Dead ends: what is ranked is refused again and again.
-    if ((before - triangles_) * 50 < before) share = 1;
+    if (!goes_on && (before - triangles_) * 50 < before) share = 1;
   }
   return true;
 }

@@ -74,8 +74,9 @@ class CollapseQueue {
   /// What four triangles that are left of a piece become like. Needs the guard of crossings.
   void set_pieces(SmallPieces& pieces) { pieces_ = &pieces; }
 
-  /// Collapses until the goal is met or nothing that it allows is left. May be called again. False
-  /// if progress said stop.
+  /// Collapses until the goal is met or nothing that ranks within it is left: what costs nothing
+  /// ranks by its length, a little above that. May be called again; the order goes on then, as long
+  /// as most of what was ranked is left. False if progress said stop.
   bool reduce(const SimplifyGoal& goal, const Progress& progress);
 
   /// Gives the pieces of few triangles their shape again.

@@ -9,6 +9,7 @@
 
 #include <meshfarm/staging/stage.hpp>
 #include <meshfarm/staging/staged_writer.hpp>
+#include <meshfarm/util/checksum.hpp>
 #include <meshfarm/util/errors.hpp>
 #include <meshfarm/util/file.hpp>
 
@@ -59,6 +60,31 @@ TEST_CASE("one flipped byte or a missing one is noticed by the reader") {
   std::ofstream(path) << "conten";
   CHECK_THROWS_WITH_AS(stage.read(file, k_no_patience),
                        (path.string() + ": 6 bytes where 7 were promised").c_str(), DataError);
+}
+
+TEST_CASE("a section of a file is read by its own checksum, and as patiently") {
+  const test::TempFolder folder;
+  const Stage stage = Stage::create(folder.path());
+  const FileRef file = stage.publish(PartName{0}, "head content tail");
+  const FileSection content{5, 7, checksum("content")};
+  CHECK(stage.read(file, content) == "content");
+  CHECK(stage.read(file, {17, 0, checksum("")}).empty());
+  const auto path = stage.path(PartName{0});
+  for (const FileSection beyond : {FileSection{5, 13, 0}, FileSection{18, 0, 0},
+                                   FileSection{UINT64_MAX, 2, 0}, FileSection{2, UINT64_MAX, 0}}) {
+    CHECK_THROWS_AS(stage.read(file, beyond, k_no_patience), UnreadDataError);
+  }
+  std::ofstream(path) << "HEAD content tail";  // others are not asked
+  CHECK(stage.read(file, content, k_no_patience) == "content");
+  std::ofstream(path) << "head contenT tail";
+  CHECK_THROWS_AS(stage.read(file, content, k_no_patience), UnreadDataError);
+  int looks = 0;
+  ReadPatience patience{.attempts = 10, .first_wait_ms = 1};
+  patience.moved = [&](std::uint64_t) {
+    if (++looks == 4) std::ofstream(path) << "head content tail";
+  };
+  CHECK(stage.read(file, content, patience) == "content");
+  CHECK(looks > 4);
 }
 
 TEST_CASE("a file that comes late is waited for") {
