@@ -54,7 +54,7 @@ constexpr std::uint32_t k_result_byte_order = 0x01020304;
 constexpr std::uint32_t k_max_rungs = 256;
 constexpr std::uint32_t k_most_in_result_block = 65536;
 constexpr std::uint32_t k_max_sets = 1 << 20;
-constexpr std::size_t k_head_bytes = 2 * sizeof(FileKind) + 2 * sizeof(std::uint32_t);
+constexpr std::size_t k_result_head_bytes = 2 * sizeof(FileKind) + 2 * sizeof(std::uint32_t);
 
 void put_rungs(ByteWriter& out, const std::vector<Rung>& rungs) {
   out.put(static_cast<std::uint32_t>(rungs.size()));
@@ -90,7 +90,7 @@ std::vector<Rung> get_rungs(ByteReader& in) {
   return rungs;
 }
 
-std::string head() {
+std::string result_head() {
   ByteWriter out;
   out.put(k_result_magic);
   out.put(k_result_kind);
@@ -99,14 +99,14 @@ std::string head() {
   return out.take();
 }
 
-void check_head(ByteReader in) {
+void check_result_head(ByteReader in) {
   if (in.get<FileKind>() != k_result_magic) in.fail("not a meshfarm file");
   if (in.get<FileKind>() != k_result_kind) in.fail("not a result");
   if (in.get<std::uint32_t>() != k_result_version) in.fail("a result of an unknown version");
   if (in.get<std::uint32_t>() != k_result_byte_order) in.fail("written with another byte order");
 }
 
-std::vector<Vec3> get_points(ByteReader& in, PositionType type) {
+std::vector<Vec3> get_result_points(ByteReader& in, PositionType type) {
   const auto count = in.get<std::uint32_t>();
   if (count > in.remaining() / (3 * static_cast<std::size_t>(type))) in.fail("too short");
   return get_positions(in, count, type);
@@ -120,7 +120,7 @@ struct ResultTail {
   std::vector<Rung> rungs;
 };
 
-ResultTail get_tail(std::string_view bytes, std::string_view what) {
+ResultTail get_result_tail(std::string_view bytes, std::string_view what) {
   ByteReader in(bytes, what);
   ResultTail tail;
   tail.format = get_vertex_format(in);
@@ -137,7 +137,7 @@ ResultTail get_tail(std::string_view bytes, std::string_view what) {
     SurfaceSamples samples;
     samples.area = in.get<double>();
     if (!std::isfinite(samples.area) || samples.area < 0) in.fail("impossible area");
-    samples.points = get_points(in, tail.format.positions);
+    samples.points = get_result_points(in, tail.format.positions);
     tail.common.samples.push_back(std::move(samples));
   }
   tail.beside = in.get<FileSection>();
@@ -190,12 +190,12 @@ ResultMesh with_rung(ResultTail tail, std::size_t rung, std::string_view bytes,
 class WholeResult {
  public:
   WholeResult(std::string_view file, std::string_view what) : file_(file), what_(what) {
-    check_head(ByteReader(file.substr(0, k_head_bytes), what));
-    if (file.size() < k_head_bytes + sizeof(FileSection)) fail("too short");
+    check_result_head(ByteReader(file.substr(0, k_result_head_bytes), what));
+    if (file.size() < k_result_head_bytes + sizeof(FileSection)) fail("too short");
     const std::size_t end = file.size() - sizeof(FileSection);
     const auto tail = ByteReader(file.substr(end), what).get<FileSection>();
-    tail_ = get_tail(bytes_of(tail), what);
-    std::uint64_t next = k_head_bytes;
+    tail_ = get_result_tail(bytes_of(tail), what);
+    std::uint64_t next = k_result_head_bytes;
     const auto expect = [&](const FileSection& section) {
       if (section.offset != next) fail("damaged (sections)");
       bytes_of(section);
@@ -288,7 +288,7 @@ ResultSummary decode_summary(std::string_view bytes, std::string_view what) {
 
 ResultWriter::ResultWriter(const Vertices& vertices, Write write, std::string_view beside)
     : vertices_(vertices), write_(std::move(write)) {
-  put(head());
+  put(result_head());
   end_section();
   put(beside);
   beside_ = end_section();
@@ -366,7 +366,7 @@ void ResultWriter::finish(const VertexView& boundary, std::span<const SurfaceSam
 
 ResultMesh decode_rung(std::string_view rung_bytes, std::string_view tail, std::size_t rung,
                        std::string_view what) {
-  return with_rung(get_tail(tail, what), rung, rung_bytes, what);
+  return with_rung(get_result_tail(tail, what), rung, rung_bytes, what);
 }
 
 ResultMesh decode_result(std::string_view file, std::size_t rung, std::string_view what) {
