@@ -142,11 +142,15 @@ new_stage full
 start full
 wait_for 60 has_results full 3 || fail "no results"
 fallocate -l 1G /srv/x/filler 2> /dev/null
-dd if=/dev/zero of=/srv/x/filler2 bs=64k 2> /dev/null
+# More than once: who finds no room removes what it has begun.
+for filler in 2 3 4; do
+  dd if=/dev/zero of=/srv/x/filler$filler bs=4k 2> /dev/null
+  sleep 1
+done
 wait_for 30 says full 'no room' || fail "the status says nothing of it"
 sleep 60
 has_ended "$run" && fail "the run does not wait for room"
-rm -f /srv/x/filler /srv/x/filler2
+rm -f /srv/x/filler*
 finish 150
 unharmed full
 check full
