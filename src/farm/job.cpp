@@ -60,8 +60,9 @@ std::string JobContext::read(const FileRef& file) const {
 }
 
 std::string JobContext::read_section(const Job& job, std::size_t section) const {
-  if (section >= job.sections.size())
+  if (section >= job.sections.size()) {
     throw DataError("a " + job.kind + " job without its sections");
+  }
   const InputSection& wanted = job.sections[section];
   const FileRef& file = job.inputs.at(wanted.input);
   return storage != nullptr ? storage->read(file, wanted.section)

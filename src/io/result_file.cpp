@@ -127,8 +127,9 @@ ResultTail get_result_tail(std::string_view bytes, std::string_view what) {
   tail.common.positions = tail.format.positions;
   const auto boundary = in.get<std::uint32_t>();
   tail.common.boundary_vertices = boundary;
-  if (boundary > in.remaining() / tail.format.bytes())
+  if (boundary > in.remaining() / tail.format.bytes()) {
     in.fail("too short for its boundary vertices");
+  }
   Mesh& mesh = tail.common.mesh;
   get_vertices(in, boundary, tail.format, mesh.positions, mesh.appearances);
   const auto sets = in.get<std::uint32_t>();
@@ -203,13 +204,13 @@ class WholeResult {
     };
     expect(tail_.beside);
     for (const Rung& rung : tail_.rungs) expect(rung.section);
-    expect(tail);
-    if (next != end) fail("bytes behind its end");
+    if (tail.offset != next || tail.size != end - next) fail("damaged (sections)");
   }
 
   ResultMesh take(std::size_t rung) {
     if (rung >= tail_.rungs.size()) fail("no such rung");
-    const std::string_view bytes = bytes_of(tail_.rungs[rung].section);
+    const FileSection& section = tail_.rungs[rung].section;
+    const std::string_view bytes = file_.substr(section.offset, section.size);
     return with_rung(std::move(tail_), rung, bytes, what_);
   }
 

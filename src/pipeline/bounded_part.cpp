@@ -116,15 +116,7 @@ class PartSimplifier {
     result.add_rung(level_reached(simplifier.pass_cost(), parameters_.cost_unit), mesh,
                     simplifier.free_triangles(), farthest);
     result.finish(VertexView(mesh).part(0, vertices_.boundary), {&samples_, 1});
-    made.summary = {result.rungs(),
-                    simplifier.dropped_degenerate(),
-                    simplifier.dropped_duplicate(),
-                    false,
-                    simplifier.turned(),
-                    {},
-                    false,
-                    result.tail(),
-                    result.beside()};
+    made.summary = result.summary_of(simplifier);
     return made;
   }
 

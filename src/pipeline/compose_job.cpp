@@ -151,15 +151,7 @@ class Composer {
     result.add_rung(parameters_.level, mesh, simplifier.free_triangles());
     result.finish(VertexView(mesh).part(0, locked), samples_);
     const ResultName name{key_of(job_).value, context_.attempt, context_.incarnation};
-    const ResultSummary summary{result.rungs(),
-                                simplifier.dropped_degenerate(),
-                                simplifier.dropped_duplicate(),
-                                false,
-                                simplifier.turned(),
-                                {},
-                                false,
-                                result.tail(),
-                                result.beside()};
+    const ResultSummary summary = result.summary_of(simplifier);
     return {context_.publish(name, file), encode_summary(summary)};
   }
 

@@ -2,8 +2,6 @@
 // SPDX-License-Identifier: MIT
 #include "pipeline/rung_input.hpp"
 
-#include <meshfarm/util/errors.hpp>
-
 namespace meshfarm {
 
 std::uint64_t add_rung_input(const ChosenRung& chosen, bool with_beside, Job& job) {

@@ -63,15 +63,10 @@ class LadderBuilder {
   }
   /// Of the whole file.
   ResultSummary summary() const {
-    return {result_.rungs(),
-            simplifier_.dropped_degenerate(),
-            simplifier_.dropped_duplicate(),
-            simplifier_.is_hampered_by_topology(),
-            simplifier_.turned(),
-            {},
-            goes_on_,
-            result_.tail(),
-            result_.beside()};
+    ResultSummary summary = result_.summary_of(simplifier_);
+    summary.held_by_topology = simplifier_.is_hampered_by_topology();
+    summary.goes_on = goes_on_;
+    return summary;
   }
 
  private:

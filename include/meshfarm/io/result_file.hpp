@@ -95,6 +95,15 @@ class ResultWriter {
   /// Where the bytes beside the mesh are; once it is finished, where the tail is.
   const FileSection& beside() const { return beside_; }
   const FileSection& tail() const { return tail_; }
+  /// Of the finished file, made by a Simplifier or what counts like one.
+  template <class Made>
+  ResultSummary summary_of(const Made& made) const {
+    ResultSummary summary{rungs_, made.dropped_degenerate(), made.dropped_duplicate()};
+    summary.turned = made.turned();
+    summary.tail = tail_;
+    summary.beside = beside_;
+    return summary;
+  }
   bool empty() const { return rungs_.empty(); }
   const std::vector<Rung>& rungs() const { return rungs_; }
 
