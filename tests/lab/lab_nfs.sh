@@ -15,12 +15,23 @@ trap 'rm -rf "$work"' EXIT
 
 make_stage 60000 24 "$work/stage"
 make_farmed_stage 8 "$work/farmed"
+# A kernel that stands still (98) says nothing about the program: it is booted once more.
+run_scenario() { # VERSION
+  local try code
+  for try in 1 2; do
+    echo "NFS $1: boot $try" >> "$work/log.$1"
+    code=0
+    "$lab_here/nfs/boot.sh" "$1" 700 "$lab_here/nfs/scenario.sh" "$MESHFARM" "$work/stage" \
+      "$work/expected.ply" "$work/mesh.ply" "$work/expected-farmed.ply" "${farmed[@]}" \
+      >> "$work/log.$1" 2>&1 || code=$?
+    [ $code -eq 98 ] || break
+  done
+  return $code
+}
 failed=
 pids=()
 for version in 3 4.2; do
-  "$lab_here/nfs/boot.sh" $version 900 "$lab_here/nfs/scenario.sh" "$MESHFARM" "$work/stage" \
-    "$work/expected.ply" "$work/mesh.ply" "$work/expected-farmed.ply" "${farmed[@]}" \
-    > "$work/log.$version" 2>&1 &
+  run_scenario $version &
   pids+=($!)
 done
 for i in 0 1; do wait "${pids[$i]}" || failed+=" $?"; done

@@ -14,6 +14,8 @@ mkdir -p /run/netns /run/rpcbind /run/sendsigs.omit.d /var/lib/nfs/{v4recovery,s
 touch /var/lib/nfs/etab /var/lib/nfs/rmtab
 # shellcheck disable=SC1090 # made by boot.sh
 . "$NFS_JOB"
+# Shows boot.sh that this kernel runs: a new file each time, as the host hears of the times of a new one.
+while touch "$NFS_PULSE.new" && mv "$NFS_PULSE.new" "$NFS_PULSE"; do sleep 5; done &
 
 hostname server
 ip link set lo up

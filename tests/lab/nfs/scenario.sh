@@ -35,6 +35,19 @@ wait_for() { # SECONDS COMMAND...
     sleep 0.2
   done
 }
+# A command that uses a file system, which nothing but the file system can keep from ending.
+within() { # SECONDS COMMAND...
+  local seconds=$1
+  shift
+  "$@" &
+  local command=$!
+  if ! wait_for "$seconds" has_ended $command; then
+    dmesg -n 7
+    echo w > /proc/sysrq-trigger
+    fail "does not end: $*"
+  fi
+  wait $command
+}
 # Asked of the server's own disk: a client of ours would remember the answers.
 has_results() { # STAGE COUNT
   [ "$(find "/srv/x/$1/results" -type f ! -name '.*' | wc -l)" -ge "$2" ]
@@ -44,7 +57,7 @@ has_ended() { # PID
 }
 
 new_stage() { # NAME
-  cp -r "$cut_stage" "$ventilator_side/$1" || fail "no room for a stage"
+  within 60 cp -r "$cut_stage" "$ventilator_side/$1" || fail "no room for a stage"
 }
 # Starts the processes, by way of $launcher; sets run, workers. With $heartbeat_ms ventilator and sink
 # are processes of their own.
@@ -85,9 +98,9 @@ check() { # STAGE
   fi
   [ "$code" -eq 0 ] || fail "the code of the run is $code"
   # By way of the other client.
-  cmp "$worker_side/$1.ply" "$expected" || fail "other bytes"
+  within 60 cmp "$worker_side/$1.ply" "$expected" || fail "other bytes"
   say "the same bytes"
-  rm -rf "${ventilator_side:?}/$1" "$ventilator_side/$1.ply"
+  within 60 rm -rf "${ventilator_side:?}/$1" "$ventilator_side/$1.ply"
 }
 # The run was done in one go, and by the workers that it began with.
 unharmed() { # STAGE
@@ -103,7 +116,16 @@ sys.exit(len(left) != 0)
 END
 }
 says() { # STAGE WORDS
-  "$meshfarm" status "$ventilator_side/$1" 2> /dev/null | grep -q "$2"
+  within 60 "$meshfarm" status "$ventilator_side/$1" > "$logs/$1.status" 2> /dev/null
+  grep -q "$2" "$logs/$1.status"
+}
+fill_disk() {
+  fallocate -l 1G /srv/x/filler 2> /dev/null
+  # More than once: who finds no room removes what it has begun.
+  for filler in 2 3 4; do
+    dd if=/dev/zero of=/srv/x/filler$filler bs=4k 2> /dev/null
+    sleep 1
+  done
 }
 slow_down() {
   tc qdisc add dev s1 root netem delay "$1"
@@ -141,16 +163,11 @@ say "the disk is full in the middle of a run"
 new_stage full
 start full
 wait_for 60 has_results full 3 || fail "no results"
-fallocate -l 1G /srv/x/filler 2> /dev/null
-# More than once: who finds no room removes what it has begun.
-for filler in 2 3 4; do
-  dd if=/dev/zero of=/srv/x/filler$filler bs=4k 2> /dev/null
-  sleep 1
-done
+within 60 fill_disk
 wait_for 30 says full 'no room' || fail "the status says nothing of it"
 sleep 60
 has_ended "$run" && fail "the run does not wait for room"
-rm -f /srv/x/filler*
+within 60 rm -f /srv/x/filler*
 finish 150
 unharmed full
 check full
