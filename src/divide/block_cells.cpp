@@ -32,10 +32,10 @@ std::string count_block(std::string_view cells, const MeshBlocks& mesh,
   return map.encode(CellTree::Which::counted);
 }
 
-Partition partition_blocks(std::string_view cells, std::span<const std::string> counted,
+Partition partition_blocks(std::string_view cells, std::size_t blocks, const CountedBlock& counted,
                            unsigned threads) {
   CellMap map = CellMap::decode(cells, threads);
-  for (const std::string& each : counted) map.join(CellMap::decode(each));
+  for (std::size_t b = 0; b < blocks; ++b) map.join(CellMap::decode(counted(b)));
   Partition partition;
   partition.counts_again = map.refine();
   if (!partition.counts_again) partition.parts = map.divide();

@@ -103,11 +103,9 @@ JobOutput count_vertices_of_block(const Job& job, const JobContext& context) {
 JobOutput partition_cells_of_blocks(const Job& job, const JobContext& context) {
   const CutJobParameters parameters = decode_cut_parameters(job.parameters);
   const std::size_t first = parameters.round == 0 ? 0 : 1;
-  std::vector<std::string> counted;
-  for (std::size_t i = first; i < job.inputs.size(); ++i) {
-    counted.push_back(context.read(job.inputs[i]));
-  }
-  const Partition made = partition_blocks(cells_of(parameters, job, context), counted, 1);
+  const Partition made = partition_blocks(
+      cells_of(parameters, job, context), job.inputs.size() - first,
+      [&](std::size_t block) { return context.read(job.inputs[first + block]); }, 1);
   return publish_bytes(job, context, made.bytes,
                        encode_summary(PartitionSummary{made.counts_again, made.parts}));
 }

@@ -47,8 +47,10 @@ struct Partition {
   bool counts_again = false;
   std::uint32_t parts = 0;  // once it is known
 };
-/// `counted`: of all blocks, in any order.
-Partition partition_blocks(std::string_view cells, std::span<const std::string> counted,
+/// What count_block() told of one of the blocks.
+using CountedBlock = std::function<std::string(std::size_t)>;
+/// `counted` is asked once for each block; their order does not matter.
+Partition partition_blocks(std::string_view cells, std::size_t blocks, const CountedBlock& counted,
                            unsigned threads);
 
 using WriteBytes = std::function<void(std::string_view)>;

@@ -93,7 +93,8 @@ class SteppedCut {
         counted.push_back(count_block(map_, *mesh_, vertices(b)));
       }
       std::shuffle(counted.begin(), counted.end(), random_);  // as jobs end in any order
-      Partition made = partition_blocks(map_, counted, 1);
+      Partition made = partition_blocks(
+          map_, blocks_, [&](std::size_t block) { return counted[block]; }, 1);
       map_ = std::move(made.bytes);
       again = made.counts_again;
       bundles_.parts = made.parts;
