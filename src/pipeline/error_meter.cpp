@@ -14,11 +14,11 @@
 namespace meshfarm {
 namespace {
 
-/// Nearly all points of a result are nearer than so many times the RMS.
-constexpr double k_usual = 4;
+/// Most points of a result are nearer than so many times the RMS.
+constexpr double k_usual = 2.5;
 /// Farther than this the first pass need not look: so many triangles are then near each point that
 /// the second is cheaper.
-constexpr double k_far_in_spacings = 4;
+constexpr double k_far_in_spacings = 2;
 /// A few per cent are all that an estimate may be wrong by.
 constexpr std::uint64_t k_points_for_estimate = 5'000;
 
