@@ -86,8 +86,15 @@ void Dispatcher::worker_joins(const PeerId& peer, const Hello& hello) {
     if (!worker.lane.empty()) welcome(known->second, worker);
     return;
   }
-  const auto before = by_incarnation_.find(hello.incarnation);
-  if (before != by_incarnation_.end()) lose(before->second, "joined again", {});
+  if (const auto before = by_incarnation_.find(hello.incarnation);
+      before != by_incarnation_.end()) {
+    Worker& worker = workers_.at(before->second);
+    if (worker.knows_of_lane()) {
+      lose(before->second, "joined again", {});  // what is on its way to it may be lost
+    } else {
+      return move_to(peer, before->second, worker);
+    }
+  }
   if (const auto charge = charges_.find(hello.incarnation); charge != charges_.end()) {
     plan_.forgive(charge->second.key, charge->second.reason);  // it lives: no job has killed it
     charges_.erase(charge);
@@ -106,6 +113,16 @@ void Dispatcher::worker_joins(const PeerId& peer, const Hello& hello) {
   scheduler_.join(id, hello.host, hello.capacity);
   tell(WorkerJoined{id, worker.host, worker.pid, worker.capacity});
   out_.push_back(OpenLane{id});
+}
+
+/// A worker that greets for long without an answer does so by another connection. It has not been
+/// given anything, so there is nothing to lose.
+void Dispatcher::move_to(const PeerId& peer, WorkerId id, Worker& worker) {
+  by_peer_.erase(worker.peer);
+  by_peer_[peer] = id;
+  worker.peer = peer;
+  hear(id, worker);
+  if (!worker.lane.empty()) welcome(id, worker);
 }
 
 Actions Dispatcher::lane_opened(WorkerId id, const std::string& address) {

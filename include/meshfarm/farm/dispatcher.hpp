@@ -82,6 +82,9 @@ class Dispatcher {
     std::uint64_t sent = 0;
     int unreceived_beats = 0;  // in a row, of jobs sent but not received
     Heartbeat beat;            // the last
+
+    /// Whether it has said anything that only a worker says that was welcomed.
+    bool knows_of_lane() const { return credit > 0 || beat.epoch != 0; }
   };
   struct Sink {
     PeerId peer;
@@ -136,6 +139,7 @@ class Dispatcher {
   void on(const PeerId& peer, const TriedRead& tried);
 
   void worker_joins(const PeerId& peer, const Hello& hello);
+  void move_to(const PeerId& peer, WorkerId id, Worker& worker);
   void sink_joins(const PeerId& peer, const Hello& hello);
   void welcome(WorkerId id, const Worker& worker);
   Worker* worker_at(const PeerId& peer, WorkerId id, std::uint32_t epoch);

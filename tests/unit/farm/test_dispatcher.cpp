@@ -357,6 +357,34 @@ TEST_CASE("a worker that joins again under another routing id has lost what it h
   CHECK(names(desk.credit("a2", 2, 1)) == "job 0@2 ");
 }
 
+TEST_CASE("a worker that was not answered yet and greets from elsewhere is the same one") {
+  Desk desk(one_stage(1));
+  desk.sink("s", 9);
+  const Hello hello{Role::worker, 0, 1, 1, "host", {}};
+  const auto greet_again = [&] {
+    const Actions again = desk.say("a2", hello);
+    CHECK(only<OpenLane>(again).empty());
+    CHECK(only<CloseLane>(again).empty());
+    return again;
+  };
+  SUBCASE("its lane is open") {
+    desk.worker("a", 1);
+    CHECK(said_to<Welcome>("a2", greet_again()).size() == 1);
+  }
+  SUBCASE("its lane is not open yet") {
+    desk.say("a", hello);
+    CHECK(said_to<Welcome>("a2", greet_again()).empty());
+    const Actions opened = desk.dispatcher.lane_opened({1}, "lane");
+    CHECK(said_to<Welcome>("a2", opened).size() == 1);
+    CHECK(said_to<Welcome>("a", opened).empty());
+  }
+  CHECK(names(desk.credit("a", 1, 1)).empty());
+  CHECK(names(desk.credit("a2", 1, 1)) == "job 0@1 ");
+  // Once it is in, it holds what it was given under the name that it has.
+  desk.say("a3", hello);
+  CHECK(desk.dispatcher.holding() == 0);
+}
+
 TEST_CASE("a lane that lost a job is noticed") {
   Desk desk(one_stage(1));
   desk.sink("s", 9);
