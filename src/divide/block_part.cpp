@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <map>
 #include <numeric>
+#include <optional>
 #include <utility>
 
 #include <meshfarm/util/byte_lists.hpp>
@@ -14,16 +15,6 @@
 
 namespace meshfarm {
 namespace {
-
-std::vector<Vec3> read_positions(const SectionedFile& file, const FileSection& section,
-                                 PositionType type) {
-  if (type == PositionType::float64) return read_section<Vec3>(file, section);
-  std::vector<Vec3> positions;
-  const auto floats = read_section<std::array<float, 3>>(file, section);
-  positions.reserve(floats.size());
-  for (const auto& p : floats) positions.push_back({p[0], p[1], p[2]});
-  return positions;
-}
 
 /// Puts together what the bundles hold of a part.
 class ShareOfBlocks {
@@ -62,12 +53,8 @@ class ShareOfBlocks {
     share_.positions.reserve(places_.count(part_));
     std::map<std::uint32_t, std::uint32_t> first_of_point;
     for (std::size_t block = 0; block < places_.blocks(); ++block) {
-      const BundleEntry& entry = places_.entry(block, part_);
-      if (entry.count == 0) continue;
-      const auto positions = read_positions(places_.file(block), entry.section, share_.type);
-      if (positions.size() != entry.count) {
-        throw DataError(bundles_.vertices[block].file.name + ": has other vertices than it says");
-      }
+      if (places_.count(block, part_) == 0) continue;
+      const auto positions = places_.positions(block, part_, share_.type);
       share_.positions.insert(share_.positions.end(), positions.begin(), positions.end());
       for (const CrowdVertex& each :
            read_section<CrowdVertex>(places_.file(block), bundles_.vertices[block].bundle.crowds)) {
@@ -81,6 +68,10 @@ class ShareOfBlocks {
 
   void gather_triangles() {
     for (const TriangleBundleRef& each : bundles_.triangles) {
+      if (each.bundle.parts &&
+          !std::binary_search(each.bundle.parts->begin(), each.bundle.parts->end(), part_)) {
+        continue;
+      }
       const SectionedFile file(stage_, each.file);
       for (const BundleEntry& entry : read_section<BundleEntry>(file, each.bundle.directory)) {
         if (entry.part != part_) continue;
@@ -123,17 +114,28 @@ class ShareOfBlocks {
 
   /// Of another part's vertex: asked for where surfaces touch at a seam.
   Vec3 position_of(SharePlace vertex) {
-    for (std::size_t block = 0; block < places_.blocks(); ++block) {
-      const std::uint32_t first = places_.first(block, vertex.share);
-      const BundleEntry& entry = places_.entry(block, vertex.share);
-      if (vertex.place < first || vertex.place - first >= entry.count) continue;
-      std::vector<Vec3>& positions = others_[{block, vertex.share}];
-      if (positions.empty()) {
-        positions = read_positions(places_.file(block), entry.section, share_.type);
+    BlockPlaces& places = places_of_all();
+    if (vertex.share >= places.parts()) throw DataError("a boundary triangle of no part");
+    for (std::size_t block = 0; block < places.blocks(); ++block) {
+      const std::uint32_t first = places.first(block, vertex.share);
+      if (vertex.place < first || vertex.place - first >= places.count(block, vertex.share)) {
+        continue;
       }
+      std::vector<Vec3>& positions = others_[{block, vertex.share}];
+      if (positions.empty()) positions = places.positions(block, vertex.share, share_.type);
       return positions.at(vertex.place - first);
     }
     throw DataError("a bundle has a triangle of a vertex that is not there");
+  }
+
+  /// Those that were told of are enough for this part only.
+  BlockPlaces& places_of_all() {
+    if (!places_of_all_) {
+      const TriangleBundleRef& any = bundles_.triangles.at(0);
+      all_vertices_ = decode_bundles(SectionedFile(stage_, any.file).read(any.bundle.vertices));
+      places_of_all_.emplace(stage_, all_vertices_, bundles_.parts);
+    }
+    return *places_of_all_;
   }
 
   const Stage& stage_;
@@ -144,6 +146,8 @@ class ShareOfBlocks {
   std::vector<SeamTriangle> outer_;
   std::map<std::uint32_t, std::uint32_t> same_;
   std::uint64_t points_left_out_ = 0;
+  std::vector<VertexBundleRef> all_vertices_;
+  std::optional<BlockPlaces> places_of_all_;
   std::map<std::pair<std::size_t, std::uint32_t>, std::vector<Vec3>> others_;
 };
 
@@ -229,6 +233,7 @@ JoinedBoundary join_boundary(const Stage& stage, const BundlesOfMesh& bundles, s
                              const std::function<std::string(std::uint32_t part)>& numbers_of) {
   std::vector<SeamTriangle> seams;
   for (const TriangleBundleRef& each : bundles.triangles) {
+    if ((each.bundle.groups >> group & 1) == 0) continue;
     const SectionedFile file(stage, each.file);
     const auto groups = read_section<FileSection>(file, each.bundle.seams);
     if (group >= groups.size()) throw DataError(each.file.name + ": has other groups of regions");

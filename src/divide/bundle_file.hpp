@@ -10,9 +10,11 @@
 //              (io/packed_triangles.hpp) | of those at the part's seams: SeamTriangle[]
 //              seams     = FileSection[], one a group of regions (block_cut.hpp): the triangles
 //              between parts that are of its regions, as SeamTriangle[], in file order
+//              vertices  = of each bundle of vertices in order: file | directory section
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -56,27 +58,37 @@ std::vector<T> read_section(const SectionedFile& file, const FileSection& sectio
 }
 
 /// Where each part's vertices of each block begin in the part, once those of all blocks are put one
-/// behind the other.
+/// behind the other. Bundles that tell what they have are opened when they are asked for.
 class BlockPlaces {
  public:
-  /// Throws DataError if a part gets 2^32 vertices.
+  /// Throws DataError if a part gets 2^32 vertices. `bundles` must outlive it.
   BlockPlaces(const Stage& stage, std::span<const VertexBundleRef> bundles, std::uint32_t parts);
   std::uint32_t first(std::size_t block, std::uint32_t part) const {
     return first_[block * parts_ + part];
   }
-  const BundleEntry& entry(std::size_t block, std::uint32_t part) const {
-    return entries_[block * parts_ + part];
-  }
+  /// How many vertices of the part the block has.
+  std::uint32_t count(std::size_t block, std::uint32_t part) const;
+  /// Of all blocks.
   std::uint32_t count(std::uint32_t part) const { return count_[part]; }
-  const SectionedFile& file(std::size_t block) const { return files_[block]; }
-  std::size_t blocks() const { return files_.size(); }
+  std::vector<Vec3> positions(std::size_t block, std::uint32_t part, PositionType type);
+  const SectionedFile& file(std::size_t block);
+  std::size_t blocks() const { return bundles_.size(); }
+  std::uint32_t parts() const { return parts_; }
 
  private:
+  const std::vector<BundleEntry>& directory(std::size_t block);
+
+  const Stage& stage_;
+  std::span<const VertexBundleRef> bundles_;
   std::uint32_t parts_;
-  std::vector<SectionedFile> files_;
-  std::vector<BundleEntry> entries_;  // blocks x parts
-  std::vector<std::uint32_t> first_;  // the same
+  std::vector<std::optional<SectionedFile>> files_;            // that were opened
+  std::vector<std::optional<std::vector<BundleEntry>>> read_;  // directories
+  std::vector<std::uint32_t> first_;                           // blocks x parts
   std::vector<std::uint32_t> count_;
 };
+
+/// What a bundle of triangles has in `vertices`.
+std::string encode_bundles(std::span<const VertexBundleRef> bundles);
+std::vector<VertexBundleRef> decode_bundles(std::string_view bytes);
 
 }  // namespace meshfarm

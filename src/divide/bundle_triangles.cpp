@@ -76,6 +76,7 @@ class CornerJoin {
         known_.insert(known_.end(), run.count, SharePlace{run.part, 0});
         continue;
       }
+      if (run.part >= places_.parts()) throw DataError("a vertex of no part");
       const std::uint32_t base = places_.first(block, run.part) + run.place;
       for (std::uint32_t i = 0; i < run.count; ++i) known_.push_back({run.part, base + i});
     }
@@ -117,21 +118,26 @@ class TriangleScatter {
     }
   }
 
-  TriangleBundle write(const WriteBytes& write) {
+  TriangleBundle write(std::span<const VertexBundleRef> vertices, const WriteBytes& write) {
     SectionWriter sections(write);
     std::vector<BundleEntry> directory;
+    bundle_.parts.emplace();
     for (std::uint32_t part = 0; part < parts_.size(); ++part) {
       OfPart& of = parts_[part];
       if (of.count == 0 && of.seams.empty()) continue;
+      bundle_.parts->push_back(part);
       directory.push_back({part, of.count, sections.add(std::exchange(of.triangles, {})),
                            sections.add(bytes_of(std::exchange(of.seams, {})))});
     }
     bundle_.directory = sections.add(bytes_of(directory));
     std::vector<FileSection> seams;
-    for (std::vector<SeamTriangle>& of_group : seams_) {
+    for (std::size_t group = 0; group < seams_.size(); ++group) {
+      std::vector<SeamTriangle>& of_group = seams_[group];
+      if (!of_group.empty()) bundle_.groups |= 1U << group;
       seams.push_back(sections.add(bytes_of(std::exchange(of_group, {}))));
     }
     bundle_.seams = sections.add(bytes_of(seams));
+    bundle_.vertices = sections.add(encode_bundles(vertices));
     return bundle_;
   }
 
@@ -184,7 +190,7 @@ TriangleBundle scatter_triangles(const Stage& stage, std::span<const VertexBundl
     if (slice.size() >= join.worth_answering()) scatter_slice();
   });
   scatter_slice();
-  return scatter.write(write);
+  return scatter.write(bundles, write);
 }
 
 }  // namespace meshfarm

@@ -35,8 +35,10 @@ class VertexScatter {
   VertexBundle write(const WriteBytes& write) {
     SectionWriter sections(write);
     std::vector<BundleEntry> directory;
+    bundle_.parts.emplace();
     for (std::uint32_t part = 0; part < parts_.size(); ++part) {
       if (parts_[part].count == 0) continue;
+      bundle_.parts->push_back({part, parts_[part].count});
       directory.push_back(BundleEntry::none(part));
       directory.back().count = parts_[part].count;
       directory.back().section = sections.add(std::exchange(parts_[part].positions, {}).bytes());
@@ -108,30 +110,6 @@ VertexBundle scatter_vertices(std::string_view partition, const MeshBlocks& mesh
   VertexScatter scatter(partition, mesh.positions());
   mesh.scan_vertices(vertices, [&](std::span<const Vec3> batch) { scatter.add(batch); });
   return scatter.write(write);
-}
-
-BlockPlaces::BlockPlaces(const Stage& stage, std::span<const VertexBundleRef> bundles,
-                         std::uint32_t parts)
-    : parts_(parts),
-      entries_(bundles.size() * parts),
-      first_(bundles.size() * parts, 0),
-      count_(parts, 0) {
-  for (std::size_t block = 0; block < bundles.size(); ++block) {
-    files_.emplace_back(stage, bundles[block].file);
-    const auto entries = read_section<BundleEntry>(files_.back(), bundles[block].bundle.directory);
-    for (const BundleEntry& entry : entries) {
-      if (entry.part >= parts) throw DataError(bundles[block].file.name + ": of other parts");
-      entries_[block * parts + entry.part] = entry;
-    }
-    for (std::uint32_t part = 0; part < parts; ++part) {
-      first_[block * parts + part] = count_[part];
-      const std::uint32_t more = entries_[block * parts + part].count;
-      if (more > 0xfffffffe - count_[part]) {
-        throw DataError("a part would have 2^32 vertices or more; ask for more --parts");
-      }
-      count_[part] += more;
-    }
-  }
 }
 
 }  // namespace meshfarm

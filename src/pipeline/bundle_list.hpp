@@ -3,9 +3,12 @@
 //
 // Bundles as they stand in parameters of jobs:
 //   bundles  = position type u8 | parts u32 | vertices u32 x (file | directory section | runs
-//              section | crowds section | merged u64) | triangles u32 x (file | directory section |
-//              seams section | dropped u64 | points left out u64)
-// A summary has what follows the file.
+//              section | crowds section | merged u64 | of parts) | triangles u32 x (file |
+//              directory section | seams section | seam triangles u64 | dropped u64 | points left
+//              out u64 | vertices section | groups u32 | of parts)
+//   of parts = told u8 | if told: u32 x (part u32, of vertices: | count u32)
+// A summary has what follows the file. What is of which part is left out where it takes too much
+// room: of some bundle in a summary, of all in parameters.
 #pragma once
 
 #include <string>

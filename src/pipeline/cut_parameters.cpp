@@ -1,7 +1,8 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
 //
-// Of the jobs of a cut; version 3 (version 2 had one join, version 1 told all of each cell):
+// Of the jobs of a cut; version 4 (bundles of version 3 did not tell what they have, version 2 had
+// one join, version 1 told all of each cell):
 // parameters: version u8 | cutting (io/manifest.hpp) | block u32 | round u32 | box 6 x f64 |
 // bundles (bundle_list.hpp)
 // join parameters: version u8 | group u32 | bundles | parts u32 x (file | section)
@@ -19,7 +20,7 @@
 namespace meshfarm {
 namespace {
 
-constexpr std::uint8_t k_cut_job_version = 3;
+constexpr std::uint8_t k_cut_job_version = 4;
 
 void expect_cut_version(ByteReader& in) {
   if (in.get<std::uint8_t>() != k_cut_job_version) in.fail("made by another version of meshfarm");

@@ -215,9 +215,6 @@ void CutStage::join(JobGraph& graph, const PartResults& results, JobGraph::Step 
   if (!cuts_ || std::exchange(joined_, true)) return then(graph);
   take_ladders(results);
   JoinParameters parameters;
-  parameters.bundles.positions = bundles_.positions;
-  parameters.bundles.parts = bundles_.parts;
-  parameters.bundles.triangles = bundles_.triangles;
   std::uint64_t read = 0;
   std::uint64_t triangles = 0;
   for (std::size_t p = 0; p < results.files.size(); ++p) {
@@ -228,6 +225,7 @@ void CutStage::join(JobGraph& graph, const PartResults& results, JobGraph::Step 
   read += k_seam_triangle_bytes * triangles;
   const std::uint32_t groups = RegionGroups(bundles_.parts).count();
   for (parameters.group = 0; parameters.group < groups; ++parameters.group) {
+    parameters.bundles = bundles_of_group(bundles_, parameters.group);
     Job job = job_of(k_join_kind, triangles / groups / k_joined,
                      k_joined_triangle_bytes * triangles / groups);
     job.reads = read / groups;

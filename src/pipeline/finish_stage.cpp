@@ -316,7 +316,7 @@ Job FinishStage::measure_job(std::size_t number, const std::vector<PartRange>& r
   for (std::uint32_t p = piece.first_part; p < piece.first_part + piece.parts; ++p) {
     parameters.triangles += manifest_.parts[p].triangles;
   }
-  parameters.bundles = manifest_.bundles;
+  if (manifest_.bundles) parameters.bundles = bundles_of_parts(*manifest_.bundles, ranges[share]);
   parameters.box = piece.divided.box;
   parameters.mesh = {piece.finished_file, piece.finished.mesh};
   parameters.samples = {piece.divided_file, piece.divided.samples};

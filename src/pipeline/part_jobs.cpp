@@ -121,7 +121,8 @@ Job PartJobs::build_and_climb(std::uint32_t part, double headroom,
                               SimplifyParameters parameters) const {
   const std::uint64_t parts = std::max<std::uint64_t>(1, manifest_.parts.size());
   const std::uint64_t average = manifest_.input_triangles / parts + 1;
-  parameters.build = PartToBuild{*bundles_, part, share_rule(headroom)};
+  parameters.build =
+      PartToBuild{bundles_of_parts(*bundles_, {part, part + 1}), part, share_rule(headroom)};
   if (by_error()) set_error_bound(parameters, part);
   Job job{std::string(k_simplify_kind),
           {},

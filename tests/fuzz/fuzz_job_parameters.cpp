@@ -8,6 +8,8 @@
 #include <meshfarm/pipeline/sweep_job.hpp>
 #include <meshfarm/util/errors.hpp>
 
+#include "pipeline/bundle_list.hpp"
+
 namespace {
 
 template <class Decode>
@@ -34,6 +36,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   try_to([](std::string_view summary) { decode_survey(summary, "summary"); }, bytes);
   try_to([](std::string_view summary) { decode_partition_summary(summary, "summary"); }, bytes);
   try_to([](std::string_view summary) { decode_join_summary(summary, "summary"); }, bytes);
+  try_to([](std::string_view summary) { decode_vertex_bundle(summary, "summary"); }, bytes);
+  try_to([](std::string_view summary) { decode_triangle_bundle(summary, "summary"); }, bytes);
   try_to([](std::string_view summary) { decode_finish_summary(summary, "summary"); }, bytes);
   try_to([](std::string_view summary) { decode_tile_summary(summary, "summary"); }, bytes);
   try_to([](std::string_view summary) { decode_sort_summary(summary, "summary"); }, bytes);

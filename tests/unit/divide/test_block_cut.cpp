@@ -23,11 +23,14 @@ using namespace meshfarm;
 
 namespace {
 
+/// Whether bundles tell what they have, so that jobs are told only of those that they need.
+enum class Bundles { tell, do_not_tell };
+
 /// The cut of a file by steps, as jobs do them.
 class SteppedCut {
  public:
   SteppedCut(const std::filesystem::path& file, std::uint32_t parts, std::size_t blocks,
-             const Stage& stage)
+             const Stage& stage, Bundles telling = Bundles::tell)
       : mesh_(open_blocks(file)), blocks_(blocks), stage_(stage) {
     REQUIRE(mesh_ != nullptr);
     bundles_.positions = mesh_->positions();
@@ -37,6 +40,7 @@ class SteppedCut {
       const FileRef ref = publish([&](const WriteBytes& write) {
         made = scatter_vertices(map_, *mesh_, vertices(b), write);
       });
+      if (telling == Bundles::do_not_tell) made.parts.reset();
       bundles_.vertices.push_back({ref, made});
     }
     for (std::size_t b = 0; b < blocks_; ++b) {
@@ -45,19 +49,23 @@ class SteppedCut {
         made = scatter_triangles(stage_, bundles_.vertices, bundles_.parts, *mesh_,
                                  block_of(mesh_->triangles(), blocks_, b), write);
       });
+      if (telling == Bundles::do_not_tell) made.parts.reset();
       dropped += made.dropped;
       points_left_out += made.points_left_out;
       bundles_.triangles.push_back({ref, made});
     }
     std::vector<std::string> numbers;
     for (std::uint32_t p = 0; p < bundles_.parts; ++p) {
-      parts_made.push_back(build_from_blocks(stage_, bundles_, p));
+      const BundlesOfMesh needed = bundles_of_parts(bundles_, {p, p + 1});
+      named += needed.vertices.size() + needed.triangles.size();
+      parts_made.push_back(build_from_blocks(stage_, needed, p));
       numbers.push_back(parts_made.back().numbers);
     }
     const RegionGroups groups(bundles_.parts);
     for (std::uint32_t group = 0; group < groups.count(); ++group) {
-      const JoinedBoundary made = join_boundary(
-          stage_, bundles_, group, [&](std::uint32_t part) { return numbers.at(part); });
+      const JoinedBoundary made =
+          join_boundary(stage_, bundles_of_group(bundles_, group), group,
+                        [&](std::uint32_t part) { return numbers.at(part); });
       const FileRef ref = publish([&](const WriteBytes& write) { write(made.encoded.file); });
       boundary.push_back({ref, made.encoded.index, groups.first_region(group)});
       joined.triangles += made.triangles;
@@ -73,6 +81,7 @@ class SteppedCut {
   std::uint64_t dropped = 0;
   std::uint64_t points_left_out = 0;
   int rounds = 0;
+  std::uint64_t named = 0;  // bundles, for all parts
 
  private:
   BlockRange vertices(std::size_t block) const {
@@ -120,7 +129,8 @@ class SteppedCut {
 
 /// Both cuts of a mesh, part by part.
 int check_same_cut(const Mesh& mesh, std::uint32_t parts, std::size_t blocks,
-                   PositionType positions = PositionType::float32) {
+                   PositionType positions = PositionType::float32,
+                   Bundles telling = Bundles::tell) {
   CAPTURE(blocks);
   const test::TempFolder folder;
   const auto file = folder.path() / "mesh.ply";
@@ -130,7 +140,7 @@ int check_same_cut(const Mesh& mesh, std::uint32_t parts, std::size_t blocks,
   CutOptions options;
   options.parts = parts;
   const Manifest manifest = cut_mesh(*source, stage, options);
-  const SteppedCut cut(file, parts, blocks, stage);
+  const SteppedCut cut(file, parts, blocks, stage, telling);
   REQUIRE(cut.parts_made.size() == manifest.parts.size());
   WeldCounts sum;
   for (std::size_t p = 0; p < manifest.parts.size(); ++p) {
@@ -195,6 +205,25 @@ TEST_CASE("a cut by blocks takes vertices and triangles in any order") {
 TEST_CASE("a cut by blocks welds as the cut does") {
   check_same_cut(torn_apart(test::torus(30, 20)), 4, 3);
   check_same_cut(out_of_order(torn_apart(test::torus(30, 20))), 4, 11);
+}
+
+TEST_CASE("a cut by blocks is the same where bundles do not tell what they have") {
+  for (const Mesh& mesh : {test::torus(60, 40), torn_apart(test::torus(30, 20))}) {
+    check_same_cut(mesh, 6, 5, PositionType::float32, Bundles::do_not_tell);
+  }
+}
+
+TEST_CASE("a part is told of those bundles only that have something of it") {
+  const test::TempFolder folder;
+  const auto file = folder.path() / "mesh.ply";
+  write_ply(file, test::torus(240, 80), PositionType::float32);  // ring by ring
+  const Stage stage = Stage::create(folder.path() / "stage");
+  constexpr std::uint64_t k_blocks = 24;
+  const SteppedCut cut(file, 16, k_blocks, stage);
+  CHECK(cut.named < 16 * 2 * k_blocks / 3);
+  const Stage other = Stage::create(folder.path() / "other");
+  const SteppedCut untold(file, 16, k_blocks, other, Bundles::do_not_tell);
+  CHECK(untold.named == 16 * 2 * k_blocks);
 }
 
 TEST_CASE("a cut by blocks counts again where vertices are not spread evenly") {
