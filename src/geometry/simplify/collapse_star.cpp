@@ -55,24 +55,33 @@ bool CollapseStar::is_acceptable(const Two& two, int lane, Vec3 x, double cos_sq
 
 /// The normal of a sliver may turn by 60 degrees again and again and so fold over in the end. One
 /// that turns much must still face the way of its new neighbours, each counted by its area.
+/// Whether a triangle that has turned faces against all together, as it did not before. At the tip
+/// of a thin pin some always do.
 bool CollapseStar::is_folded(std::uint32_t first, std::uint32_t kept, Vec3 x,
                              double cos_squared) const {
-  const Vec3Pair to = from(x);
-  Vec3Pair sum{};
-  for (std::uint32_t i = 0; i < kept; i += 2) {
-    const Vec3Pair normal =
-        cross(minus(pairs_[first + i / 2].p, to), minus(pairs_[first + i / 2].q, to));
-    sum = {sum.x + normal.x, sum.y + normal.y, sum.z + normal.z};
+  const auto at = [&](const Vec3Pair& a, std::uint32_t i) {
+    return Vec3{a.x[i % 2], a.y[i % 2], a.z[i % 2]};
+  };
+  const auto normal_at = [&](std::uint32_t i) {
+    const Two& two = pairs_[first + i / 2];
+    return meshfarm::cross(at(two.p, i) - x, at(two.q, i) - x);
+  };
+  Vec3 all{};
+  Vec3 old_all{};
+  for (std::uint32_t i = 0; i < kept; ++i) {
+    all = all + normal_at(i);
+    old_all = old_all + at(pairs_[first + i / 2].normal, i);
   }
-  const Vec3 all{sum.x[0] + sum.x[1], sum.y[0] + sum.y[1], sum.z[0] + sum.z[1]};
   for (std::uint32_t i = 0; i < kept; ++i) {
     const Two& two = pairs_[first + i / 2];
-    const auto at = [&](const Vec3Pair& a) { return Vec3{a.x[i % 2], a.y[i % 2], a.z[i % 2]}; };
-    const Vec3 normal = meshfarm::cross(at(two.p) - x, at(two.q) - x);
-    const Vec3 old_normal = at(two.normal);
+    const Vec3 normal = normal_at(i);
+    const Vec3 old_normal = at(two.normal, i);
     const double turn = meshfarm::dot(normal, old_normal);
     const double sizes = squared_length(normal) * two.squared_size[i % 2];
-    if (turn * turn < cos_squared * sizes && meshfarm::dot(normal, all) <= 0) return true;
+    if (turn * turn < cos_squared * sizes && meshfarm::dot(normal, all) <= 0 &&
+        meshfarm::dot(old_normal, old_all) > 0) {
+      return true;
+    }
   }
   return false;
 }

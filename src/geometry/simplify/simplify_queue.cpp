@@ -22,6 +22,11 @@ constexpr double k_ranked_share = 0.35;
 constexpr double k_as_ranked = 0.8;
 // A collapse of complex vertices removes more than two triangles, hardly ever more than these.
 constexpr std::uint64_t k_few_to_go = 16;
+constexpr std::uint64_t k_usual_loss = 2;
+// A collapse that leaves fewer triangles than the goal costs so many times as much. Were none
+// taken, a board with pieces of four triangles gave up two of its corners for the last two
+// triangles.
+constexpr double k_loss_of_fewer = 4;
 // A mesh that was kept is dropped when it has so many times the triangles that are left.
 constexpr double k_far_more = 1.3;
 
@@ -44,6 +49,14 @@ constexpr CostKey k_least_step = 4U << 20;  // a factor of 16
 constexpr std::uint64_t k_hopeless = 4;
 // And all edges are looked at twice, after each ranking, before that is said.
 constexpr std::uint64_t k_edges_of_triangle = 3;
+
+/// Triangles that a collapse may remove. What removes a piece may leave 0.1 % fewer than the goal,
+/// one fewer than a small goal.
+std::uint64_t most_at_once(std::uint64_t excess, std::uint64_t goal) {
+  constexpr std::uint64_t k_tiny = 50;
+  if (excess < k_usual_loss || excess >= k_few_to_go || goal < k_tiny) return excess;
+  return excess + std::max<std::uint64_t>(1, goal / 1000);
+}
 
 bool is_later(const QueuedEdge& x, const QueuedEdge& y) {
   return x.is_later(y);
@@ -227,15 +240,16 @@ CollapseQueue::Stop CollapseQueue::run(const SimplifyGoal& goal, const Progress&
     const std::uint32_t b = queued.b;
     if (is_gone(a) || is_gone(b) || queued.stamp != stamp_of(a, b)) continue;
     const std::uint64_t kept_before = kept_topology_;
-    Collapse collapse = judge(a, b, excess);
+    Collapse collapse = judge(a, b, most_at_once(excess, goal.triangles));
     if (cost_of(queued.key()) < max_cost_) blocked_ += kept_topology_ - kept_before;
     if (pieces_ != nullptr && collapse.triangles == 4 && pieces_->is_left_over(a)) {
       collapse.cost *= k_cost_of_left_over;
     }
+    const double cost = collapse.cost * (collapse.triangles > excess ? k_loss_of_fewer : 1);
     if (collapse.triangles == 0) {
       refused_[a] = refused_[b] = 1;
-    } else if (must_wait(queued, collapse.cost)) {
-      wait(queued, collapse.cost);
+    } else if (must_wait(queued, cost)) {
+      wait(queued, cost);
     } else if (!must_not_cross(queued, collapse) && !is_guarded(a, b, collapse)) {
       keep(goal);
       merge(a, b, collapse);

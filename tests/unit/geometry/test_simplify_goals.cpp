@@ -1,5 +1,8 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
+#include <algorithm>
+#include <vector>
+
 #include <doctest/doctest.h>
 
 #include <meshfarm/geometry/simplify.hpp>
@@ -105,4 +108,41 @@ TEST_CASE("it is told where the topology refuses much") {
   CHECK_FALSE(simplifier.is_slowed_by_topology());
   simplifier.reduce({.triangles = 9000, .last_triangles = 100});
   CHECK(simplifier.is_slowed_by_topology());
+}
+
+namespace {
+
+/// 10 x 10 x 1, of twelve triangles.
+Mesh slab() {
+  Mesh mesh;
+  for (std::uint32_t i = 0; i < 8; ++i) {
+    mesh.positions.push_back({i & 1 ? 10.0 : 0.0, i & 2 ? 10.0 : 0.0, i & 4 ? 1.0 : 0.0});
+  }
+  mesh.triangles = {{0, 2, 3}, {0, 3, 1}, {4, 5, 7}, {4, 7, 6}, {0, 1, 5}, {0, 5, 4},
+                    {2, 6, 7}, {2, 7, 3}, {0, 4, 6}, {0, 6, 2}, {1, 3, 7}, {1, 7, 5}};
+  return mesh;
+}
+
+}  // namespace
+
+TEST_CASE("a large piece does not give up a corner for the last two triangles") {
+  constexpr std::uint32_t k_specks = 20;
+  Mesh mesh = slab();
+  for (std::uint32_t i = 0; i < k_specks; ++i) {
+    Mesh speck = test::tetrahedron();
+    for (Vec3& p : speck.positions) p = p * (0.1 + 0.001 * i);
+    simplify_test::append(mesh, speck, {0.4 + 0.45 * i, 5, 1.5});
+  }
+  const std::uint64_t all = mesh.triangles.size();
+  for (const std::uint64_t fewer : {3U, 4U}) {
+    CAPTURE(fewer);
+    Simplifier simplifier(mesh, {.lines = {.topology = TopologyMode::simplify}});
+    simplifier.reduce({.triangles = all - fewer});
+    CHECK(simplifier.triangles() == all - 4);
+    CHECK(measure_topology(simplifier.mesh()).components == k_specks);
+    const std::vector<Vec3>& points = simplifier.mesh().positions;
+    CHECK(std::count_if(points.begin(), points.end(), [](Vec3 p) {
+            return (p.x == 0 || p.x == 10) && (p.y == 0 || p.y == 10);
+          }) == 8);
+  }
 }

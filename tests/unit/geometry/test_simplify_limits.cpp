@@ -316,6 +316,23 @@ TEST_CASE("thin pins can become tetrahedra, and none of them goes before") {
   CHECK(is_clean(simplifier.mesh()));
 }
 
+TEST_CASE("a pin whose ends are twisted gives up an end, not its length") {
+  // At its tip half of the triangles face against the others.
+  const Mesh pin{
+      {{-0.30, -0.29, 0.0},
+       {-0.27, 0.09, 9.0},
+       {-0.15, 0.17, 0.0},
+       {0.08, -0.58, 9.1},
+       {0.26, 0.07, 9.0},
+       {0.29, -0.28, -0.1}},
+      {{2, 0, 1}, {2, 4, 5}, {2, 1, 4}, {2, 5, 0}, {1, 0, 3}, {1, 3, 4}, {0, 5, 3}, {3, 5, 4}}};
+  REQUIRE(check(pin).euler == 2);
+  Simplifier simplifier(pin, {});
+  simplifier.reduce({.triangles = 6});
+  CHECK(simplifier.triangles() == 6);
+  for (const Vec3& p : simplifier.mesh().positions) CHECK(std::abs(p.z - 4.5) > 4.2);
+}
+
 TEST_CASE("straight edges go before what is round, however long they are") {
   constexpr std::uint32_t k_sides = 30;
   Mesh pins;
