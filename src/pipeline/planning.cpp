@@ -253,6 +253,23 @@ class TracedJobs {
   std::map<Words, Needs> ranges_;
 };
 
+/// The jobs, which are sorted by it, of the depth with the most work.
+PlannedJob::Range heaviest_depth(std::span<const PlannedJob> jobs) {
+  PlannedJob::Range heaviest;
+  double most = -1;
+  for (std::size_t first = 0; first < jobs.size();) {
+    std::size_t end = first;
+    double work = 0;
+    for (; end < jobs.size() && jobs[end].depth == jobs[first].depth; ++end) {
+      work += jobs[end].compute_s;
+    }
+    if (work > most) heaviest = {first, end};
+    most = std::max(most, work);
+    first = end;
+  }
+  return heaviest;
+}
+
 }  // namespace
 
 std::vector<PlannedJob> planned_jobs(const Trace& trace) {
@@ -277,33 +294,43 @@ std::vector<PlannedJob> planned_jobs(const Trace& trace) {
 }
 
 std::vector<PlannedJob> as_parts(std::span<const PlannedJob> jobs, std::uint64_t count) {
-  const double share = static_cast<double>(jobs.size()) / static_cast<double>(count);
+  const PlannedJob::Range heaviest = heaviest_depth(jobs);
+  const std::size_t old_count = heaviest.end - heaviest.first;
+  const double share = static_cast<double>(old_count) / static_cast<double>(count);
   const auto of = [&](std::uint64_t value) {
     return static_cast<std::uint64_t>(static_cast<double>(value) * share);
   };
+  // What was needed of the old ones is needed of the new ones that have the same work.
+  const auto place_of = [&](std::size_t place, std::size_t rounding) {
+    if (place <= heaviest.first) return place;
+    if (place >= heaviest.end) return place + count - old_count;
+    return heaviest.first + ((place - heaviest.first) * count + rounding) / old_count;
+  };
+  const auto moved = [&](PlannedJob job) {
+    for (PlannedJob::Range& range : job.needs) {
+      range = {place_of(range.first, 0), place_of(range.end, old_count - 1)};
+    }
+    return job;
+  };
   std::vector<PlannedJob> parts;
+  for (std::size_t i = 0; i < heaviest.first; ++i) parts.push_back(jobs[i]);
   for (std::uint64_t i = 0; i < count; ++i) {
-    const PlannedJob& like = jobs[static_cast<std::size_t>(static_cast<double>(i) * share)];
-    parts.push_back({like.depth,
-                     of(like.triangles),
-                     of(like.read_bytes),
-                     of(like.written_bytes),
-                     like.compute_s * share,
-                     {},
-                     like.stage});
+    const auto like = heaviest.first + static_cast<std::size_t>(static_cast<double>(i) * share);
+    PlannedJob& part = parts.emplace_back(jobs[like]);
+    part.triangles = of(part.triangles);
+    part.read_bytes = of(part.read_bytes);
+    part.written_bytes = of(part.written_bytes);
+    part.compute_s *= share;
+    part.extent = {};
   }
+  for (std::size_t i = heaviest.end; i < jobs.size(); ++i) parts.push_back(moved(jobs[i]));
   return parts;
 }
 
 std::vector<PlannedJob> drawn(std::span<const PlannedJob> jobs, std::uint64_t count,
                               std::uint64_t seed) {
-  std::map<std::uint32_t, double> work;
-  for (const PlannedJob& job : jobs) work[job.depth] += job.compute_s;
-  const auto heaviest = std::max_element(
-      work.begin(), work.end(), [](const auto& a, const auto& b) { return a.second < b.second; });
-  std::vector<PlannedJob> from;
-  std::copy_if(jobs.begin(), jobs.end(), std::back_inserter(from),
-               [&](const PlannedJob& job) { return job.depth == heaviest->first; });
+  const PlannedJob::Range heaviest = heaviest_depth(jobs);
+  const auto from = jobs.subspan(heaviest.first, heaviest.end - heaviest.first);
   Draw draw(seed);
   std::vector<PlannedJob> sample;
   for (std::uint64_t i = 0; i < count; ++i) {

@@ -35,7 +35,8 @@ struct PlannedJob {
 /// The jobs of a trace, sorted by depth. Speed 1 is that of the trace's worker that did most work
 /// in the time it computed. A job that was traced twice (an epoch before did it, too) counts once.
 std::vector<PlannedJob> planned_jobs(const Trace& trace);
-/// The same work, cut into so many jobs instead.
+/// The same, where the jobs of the depth with the most work, those that simplify parts, are so many
+/// instead.
 std::vector<PlannedJob> as_parts(std::span<const PlannedJob> jobs, std::uint64_t count);
 /// So many of at least one job, drawn at random from the depth with the most work: of streams the
 /// sweep, not the samples before it (the paper, 3.4.2).

@@ -136,6 +136,23 @@ TEST_CASE("the same work in more parts, and a draw from it") {
   CHECK(parts.size() == 400);
   CHECK(work(parts) == doctest::Approx(work(jobs)));
   CHECK(parts[0].triangles == jobs[0].triangles / 4);
+
+  // Of a whole run only the parts: what is before and after stays.
+  std::vector<PlannedJob> run = jobs_of(103);
+  for (std::size_t i = 0; i < run.size(); ++i) {
+    run[i].depth = i < 2 ? 0 : i < 102 ? 1 : 2;
+    if (i < 2) run[i].compute_s /= 1000;
+  }
+  run[2].needs = {{0, 2}};
+  run[102].needs = {{0, 1}, {3, 102}};
+  const auto more = as_parts(run, 200);
+  REQUIRE(more.size() == 203);
+  CHECK(work(more) == doctest::Approx(work(run)));
+  CHECK(more[1].compute_s == run[1].compute_s);
+  CHECK(more[2].needs == run[2].needs);
+  CHECK(more[202].compute_s == run[102].compute_s);
+  CHECK(more[202].needs == std::vector<PlannedJob::Range>{{0, 1}, {4, 202}});
+
   const auto sample = drawn(jobs, 1000, 1);
   CHECK(sample.size() == 1000);
   CHECK(work(sample) == doctest::Approx(10 * work(jobs)).epsilon(0.02));
