@@ -154,14 +154,14 @@ std::string encode_summary(const TriangleBundle& bundle) {
 
 VertexBundle decode_vertex_bundle(std::string_view summary, std::string_view what) {
   ByteReader in(summary, what);
-  const VertexBundle bundle = get_vertex_bundle(in);
+  VertexBundle bundle = get_vertex_bundle(in);
   in.expect_end();
   return bundle;
 }
 
 TriangleBundle decode_triangle_bundle(std::string_view summary, std::string_view what) {
   ByteReader in(summary, what);
-  const TriangleBundle bundle = get_triangle_bundle(in);
+  TriangleBundle bundle = get_triangle_bundle(in);
   in.expect_end();
   return bundle;
 }
