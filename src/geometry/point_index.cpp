@@ -1,5 +1,6 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <utility>
@@ -25,20 +26,20 @@ struct PointCloud {
 };
 
 /// What a search has found so far, as nanoflann asks for it: the nearest that counts.
-class NearestThatCounts {
+class LeastValue {
  public:
-  explicit NearestThatCounts(const std::function<bool(std::uint32_t)>& counts) : counts_(counts) {}
+  explicit LeastValue(const std::function<double(std::uint32_t)>& value) : value_(value) {}
   bool addPoint(double squared, std::uint32_t point) {  // NOLINT(readability-identifier-naming)
-    if (squared < squared_ && counts_(point)) squared_ = squared;
+    if (squared < least_) least_ = std::min(least_, value_(point));
     return true;
   }
-  double worstDist() const { return squared_; }  // NOLINT(readability-identifier-naming)
+  double worstDist() const { return least_; }  // NOLINT(readability-identifier-naming)
   bool full() const { return true; }
   std::size_t size() const { return 1; }
 
  private:
-  const std::function<bool(std::uint32_t)>& counts_;
-  double squared_ = HUGE_VAL;
+  const std::function<double(std::uint32_t)>& value_;
+  double least_ = HUGE_VAL;
 };
 
 std::array<double, 3> array_of(Vec3 p) {
@@ -76,11 +77,10 @@ std::size_t PointIndex::nearest(Vec3 from, std::span<std::uint32_t> found) const
                                   squared.data());
 }
 
-double PointIndex::squared_distance(Vec3 from,
-                                    const std::function<bool(std::uint32_t)>& counts) const {
-  NearestThatCounts nearest(counts);
-  tree_->index().findNeighbors(nearest, array_of(from).data(), nanoflann::SearchParams());
-  return nearest.worstDist();
+double PointIndex::least(Vec3 from, const std::function<double(std::uint32_t)>& value) const {
+  LeastValue least(value);
+  tree_->index().findNeighbors(least, array_of(from).data(), nanoflann::SearchParams());
+  return least.worstDist();
 }
 
 }  // namespace meshfarm

@@ -26,8 +26,9 @@ class PointIndex {
   /// are: as many as it has room for, or all.
   std::size_t nearest(Vec3 from, std::span<std::uint32_t> found) const;
 
-  /// The squared distance of the nearest point that counts; infinite if none does.
-  double squared_distance(Vec3 from, const std::function<bool(std::uint32_t point)>& counts) const;
+  /// The least of what `value` tells of the points, nearest first, that are nearer by their squared
+  /// distance than the least so far; infinite if there are none.
+  double least(Vec3 from, const std::function<double(std::uint32_t point)>& value) const;
 
  private:
   class Tree;

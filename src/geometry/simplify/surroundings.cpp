@@ -3,7 +3,10 @@
 #include "geometry/simplify/surroundings.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
+
+#include "geometry/bvh.hpp"
 
 namespace meshfarm {
 
@@ -23,11 +26,21 @@ double Surroundings::squared_distance(const ShrinkingMesh& mesh, Vec3 from,
                                       std::span<const std::uint32_t> without) {
   if (!index_) list_vertices(mesh);
   if (passed_over_ > k_worth_an_index * vertices_.size()) drop_what_is_gone(mesh);
-  return index_->squared_distance(from, [&](std::uint32_t point) {
+  const auto is_without = [&](std::uint32_t v) {
+    return std::binary_search(without.begin(), without.end(), v);
+  };
+  return index_->least(from, [&](std::uint32_t point) {
     const std::uint32_t v = vertex_now(mesh, vertices_[point]);
-    const bool is_left = mesh.adjacency->count(v) > 0;
-    passed_over_ += is_left ? 0 : 1;
-    return is_left && !std::binary_search(without.begin(), without.end(), v);
+    passed_over_ += mesh.adjacency->count(v) > 0 ? 0 : 1;
+    double least = HUGE_VAL;
+    if (is_without(v)) return least;
+    for (const Corner& c : mesh.adjacency->at(v)) {
+      if (is_without(c.next) || is_without(c.prev)) continue;
+      least = std::min(least,
+                       meshfarm::squared_distance(from, mesh.positions[v], mesh.positions[c.next],
+                                                  mesh.positions[c.prev]));
+    }
+    return least;
   });
 }
 
@@ -53,7 +66,50 @@ void Surroundings::list_vertices(const ShrinkingMesh& mesh) {
     points.push_back(mesh.positions[v]);
     vertices_.push_back(v);
   }
+  add_points_inside(mesh, points);
   index_.emplace(std::move(points));
+}
+
+/// Of triangles so large that their corners do not tell where they are. Each stands for the nearest
+/// corner.
+void Surroundings::add_points_inside(const ShrinkingMesh& mesh, std::vector<Vec3>& points) {
+  constexpr std::size_t k_least_points = 30'000;
+  const std::size_t corners = vertices_.size();
+  const auto for_triangles = [&](const auto& visit) {
+    for (std::size_t i = 0; i < corners; ++i) {
+      const std::uint32_t v = vertices_[i];
+      for (const Corner& c : mesh.adjacency->at(v)) {
+        if (v > c.next || v > c.prev) continue;  // once a triangle
+        const Vec3 at = mesh.positions[v];
+        const Vec3 p = mesh.positions[c.next] - at;
+        const Vec3 q = mesh.positions[c.prev] - at;
+        visit(Triangle{v, c.next, c.prev}, 0.5 * length(cross(p, q)));
+      }
+    }
+  };
+  double area = 0;
+  for_triangles([&](const Triangle&, double of_one) { area += of_one; });
+  const double of_point = area / static_cast<double>(std::max(corners, k_least_points));
+  if (!(of_point > 0) || !std::isfinite(area)) return;
+  for_triangles([&](const Triangle& t, double of_one) {
+    const auto& [a, b, c] = t;
+    const auto count = static_cast<std::uint64_t>(of_one / of_point);
+    for (std::uint64_t i = 0; i < count; ++i) {
+      // Spread evenly: https://extremelearning.com.au, the R2 sequence, folded into the triangle.
+      const auto number = static_cast<double>(i + 1);
+      double x = number * 0.7548776662466927;
+      double y = number * 0.5698402909980532;
+      x -= std::floor(x);
+      y -= std::floor(y);
+      if (x + y > 1) {
+        x = 1 - x;
+        y = 1 - y;
+      }
+      const double z = 1 - x - y;
+      points.push_back(mesh.positions[a] * z + mesh.positions[b] * x + mesh.positions[c] * y);
+      vertices_.push_back(z >= std::max(x, y) ? a : x >= y ? b : c);
+    }
+  });
 }
 
 }  // namespace meshfarm

@@ -25,13 +25,15 @@ struct ShrinkingMesh {
 /// surface, where they were when it was first asked.
 class Surroundings {
  public:
-  /// The squared distance of the nearest vertex that is left and not one of `without` (ascending);
-  /// infinite if there is none.
+  /// The squared distance of the nearest triangle that is left and has no corner of `without`
+  /// (ascending), as far as corners and points inside of large triangles tell; infinite if there is
+  /// none.
   double squared_distance(const ShrinkingMesh& mesh, Vec3 from,
                           std::span<const std::uint32_t> without);
 
  private:
   void list_vertices(const ShrinkingMesh& mesh);
+  void add_points_inside(const ShrinkingMesh& mesh, std::vector<Vec3>& points);
   void drop_what_is_gone(const ShrinkingMesh& mesh);
 
   std::vector<std::uint32_t> vertices_;  // of the points

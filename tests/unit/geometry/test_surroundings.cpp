@@ -10,6 +10,7 @@
 
 #include <meshfarm/geometry/mesh.hpp>
 
+#include "geometry/bvh.hpp"
 #include "geometry/simplify/surroundings.hpp"
 
 namespace meshfarm::test {
@@ -33,9 +34,9 @@ double nearest_other(const Mesh& mesh, std::uint32_t piece) {
   double least = HUGE_VAL;
   for (const Triangle& t : mesh.triangles) {
     if (t[0] == 3 * piece) continue;
-    for (const std::uint32_t v : t) {
-      least = std::min(least, squared_length(mesh.positions[v] - mesh.positions[3 * piece]));
-    }
+    const auto& [a, b, c] = t;
+    least = std::min(least, squared_distance(mesh.positions[3 * piece], mesh.positions[a],
+                                             mesh.positions[b], mesh.positions[c]));
   }
   return least;
 }
@@ -52,10 +53,31 @@ TEST_CASE("the nearest that is left is found, however many pieces are gone") {
       const std::vector<std::uint32_t> without(t.begin(), t.end());
       const double found = surroundings.squared_distance({mesh.positions, target, &adjacency},
                                                          mesh.positions[t[0]], without);
-      CHECK(found == nearest_other(mesh, t[0] / 3));
+      CHECK(found == doctest::Approx(nearest_other(mesh, t[0] / 3)).epsilon(1e-12));
     }
     mesh.triangles.resize(2 * mesh.triangles.size() / 3);
   }
+}
+
+TEST_CASE("a large triangle is near wherever it is, until it is gone") {
+  Mesh mesh = lonely_triangles(50);  // within 10 of the origin
+  mesh.positions.insert(mesh.positions.end(), {{20, 20, 0}, {120, 20, 0}, {20, 120, 0}});
+  mesh.triangles.push_back({150, 151, 152});
+  std::vector<std::uint32_t> target(mesh.positions.size());
+  std::iota(target.begin(), target.end(), 0U);
+  Adjacency adjacency;
+  adjacency.build(mesh.triangles, mesh.positions.size(), mesh.columns);
+  Surroundings surroundings;
+  const auto found = [&](Vec3 from, const std::vector<std::uint32_t>& without) {
+    return surroundings.squared_distance({mesh.positions, target, &adjacency}, from, without);
+  };
+  for (const double x : {25.0, 40.0, 50.0}) {
+    CHECK(found({x, 30, 0.5}, {}) == doctest::Approx(0.25));
+    CHECK(found({x, 30, 0.5}, {150, 151, 152}) > 100);
+  }
+  mesh.triangles.pop_back();
+  adjacency.build(mesh.triangles, mesh.positions.size(), mesh.columns);
+  CHECK(found({40, 40, 0.5}, {}) > 100);
 }
 
 TEST_CASE("what a vertex has become stands where the vertex was") {
