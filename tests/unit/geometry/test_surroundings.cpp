@@ -53,7 +53,8 @@ TEST_CASE("the nearest that is left is found, however many pieces are gone") {
       const std::vector<std::uint32_t> without(t.begin(), t.end());
       const double found = surroundings.squared_distance({mesh.positions, target, &adjacency},
                                                          mesh.positions[t[0]], without);
-      CHECK(found == doctest::Approx(nearest_other(mesh, t[0] / 3)).epsilon(1e-12));
+      const double wanted = nearest_other(mesh, t[0] / 3);
+      CHECK((found == wanted || found == doctest::Approx(wanted).epsilon(1e-12)));
     }
     mesh.triangles.resize(2 * mesh.triangles.size() / 3);
   }
