@@ -187,7 +187,9 @@ class Assembler::Impl {
       summary.why_not_exact = "the charts of its textures are kept, and need about so many";
     }
     if (summary.triangles < summary.target) {
-      summary.why_not_exact = "where no open border is left, triangles go in pairs";
+      summary.why_not_exact = summary.triangles + 1 < summary.target
+                                  ? "pieces of a few triangles go as a whole"
+                                  : "where no open border is left, triangles go in pairs";
     }
     return summary;
   }

@@ -317,6 +317,7 @@ class ResultFinish {
     }
     if (summary_.target > before) return why_no_more();
     const Topology topology = measure_topology(result);
+    if (after + 1 < summary_.target) return "pieces of a few triangles go as a whole";
     if (after < summary_.target) {
       return topology.border_edges == 0 ? "where no open border is left, triangles go in pairs"
                                         : "where no border may change, triangles go in pairs";
