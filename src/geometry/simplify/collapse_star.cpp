@@ -13,6 +13,10 @@ constexpr double k_cos_85_squared = 0.0076;
 constexpr double k_least_sine_squared = 1e-6;
 // What is so thin already may become four times as thin, down to this.
 constexpr double k_least_of_slivers = 1e-12;
+// Of the sum of the areas that normals add up to: where it is less, a pin or a thin tube faces all
+// ways. Without a limit nearly twice as many triangles of a dragon cross; with 0.3 or 0.15 wires
+// have 10 % more error.
+constexpr double k_all_ways = 0.5;
 constexpr double k_thinner_squared = 1.0 / 16;
 
 }  // namespace
@@ -55,8 +59,8 @@ bool CollapseStar::is_acceptable(const Two& two, int lane, Vec3 x, double cos_sq
 
 /// The normal of a sliver may turn by 60 degrees again and again and so fold over in the end. One
 /// that turns much must still face the way of its new neighbours, each counted by its area.
-/// Whether a triangle that has turned faces against all together, as it did not before. At the tip
-/// of a thin pin some always do.
+/// Whether a triangle that has turned faces against all together. At the tip of a thin pin some
+/// always do: there it counts if it did not before.
 bool CollapseStar::is_folded(std::uint32_t first, std::uint32_t kept, Vec3 x,
                              double cos_squared) const {
   const auto at = [&](const Vec3Pair& a, std::uint32_t i) {
@@ -68,20 +72,22 @@ bool CollapseStar::is_folded(std::uint32_t first, std::uint32_t kept, Vec3 x,
   };
   Vec3 all{};
   Vec3 old_all{};
+  double old_size = 0;
   for (std::uint32_t i = 0; i < kept; ++i) {
     all = all + normal_at(i);
-    old_all = old_all + at(pairs_[first + i / 2].normal, i);
+    const Vec3 old_normal = at(pairs_[first + i / 2].normal, i);
+    old_all = old_all + old_normal;
+    old_size += length(old_normal);
   }
+  const bool faces_all_ways = length(old_all) < k_all_ways * old_size;
   for (std::uint32_t i = 0; i < kept; ++i) {
     const Two& two = pairs_[first + i / 2];
     const Vec3 normal = normal_at(i);
     const Vec3 old_normal = at(two.normal, i);
     const double turn = meshfarm::dot(normal, old_normal);
     const double sizes = squared_length(normal) * two.squared_size[i % 2];
-    if (turn * turn < cos_squared * sizes && meshfarm::dot(normal, all) <= 0 &&
-        meshfarm::dot(old_normal, old_all) > 0) {
-      return true;
-    }
+    if (turn * turn >= cos_squared * sizes || meshfarm::dot(normal, all) > 0) continue;
+    if (!faces_all_ways || meshfarm::dot(old_normal, old_all) > 0) return true;
   }
   return false;
 }
