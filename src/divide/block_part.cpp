@@ -233,7 +233,6 @@ JoinedBoundary join_boundary(const Stage& stage, const BundlesOfMesh& bundles, s
                              const std::function<std::string(std::uint32_t part)>& numbers_of) {
   std::vector<SeamTriangle> seams;
   for (const TriangleBundleRef& each : bundles.triangles) {
-    if ((each.bundle.groups >> group & 1) == 0) continue;
     const SectionedFile file(stage, each.file);
     const auto groups = read_section<FileSection>(file, each.bundle.seams);
     if (group >= groups.size()) throw DataError(each.file.name + ": has other groups of regions");

@@ -76,7 +76,9 @@ class CornerJoin {
         known_.insert(known_.end(), run.count, SharePlace{run.part, 0});
         continue;
       }
-      if (run.part >= places_.parts()) throw DataError("a vertex of no part");
+      if (run.part >= places_.parts()) {
+        throw DataError(bundles_[block].file.name + ": has a vertex of no part");
+      }
       const std::uint32_t base = places_.first(block, run.part) + run.place;
       for (std::uint32_t i = 0; i < run.count; ++i) known_.push_back({run.part, base + i});
     }

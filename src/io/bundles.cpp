@@ -7,14 +7,6 @@
 namespace meshfarm {
 namespace {
 
-std::uint32_t part_of(std::uint32_t part) {
-  return part;
-}
-
-std::uint32_t part_of(const VertexBundle::OfPart& of) {
-  return of.part;
-}
-
 template <class T>
 bool may_have_some(const std::optional<std::vector<T>>& told, PartRange parts) {
   if (!told) return true;

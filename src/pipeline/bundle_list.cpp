@@ -28,14 +28,6 @@ void put_told(ByteWriter& out, const std::optional<std::vector<T>>& parts, bool 
   if (told) put_list(out, *parts);
 }
 
-std::uint32_t part_of(std::uint32_t part) {
-  return part;
-}
-
-std::uint32_t part_of(const VertexBundle::OfPart& of) {
-  return of.part;
-}
-
 template <class T>
 std::optional<std::vector<T>> get_told(ByteReader& in) {
   const auto told = in.get<std::uint8_t>();

@@ -61,6 +61,14 @@ struct BundlesOfMesh {
   std::vector<TriangleBundleRef> triangles;
 };
 
+/// Of an entry of what a bundle tells that it has.
+inline std::uint32_t part_of(std::uint32_t part) {
+  return part;
+}
+inline std::uint32_t part_of(const VertexBundle::OfPart& of) {
+  return of.part;
+}
+
 /// Those bundles that have something of these parts, or may have; they do not tell what.
 BundlesOfMesh bundles_of_parts(const BundlesOfMesh& all, PartRange parts);
 /// Those bundles of triangles that have some between parts in this group of regions.

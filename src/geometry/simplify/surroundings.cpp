@@ -80,9 +80,8 @@ void Surroundings::add_points_inside(const ShrinkingMesh& mesh, std::vector<Vec3
       const std::uint32_t v = vertices_[i];
       for (const Corner& c : mesh.adjacency->at(v)) {
         if (v > c.next || v > c.prev) continue;  // once a triangle
-        const Vec3 at = mesh.positions[v];
-        const Vec3 p = mesh.positions[c.next] - at;
-        const Vec3 q = mesh.positions[c.prev] - at;
+        const Vec3 p = mesh.positions[c.next] - mesh.positions[v];
+        const Vec3 q = mesh.positions[c.prev] - mesh.positions[v];
         visit(Triangle{v, c.next, c.prev}, 0.5 * length(cross(p, q)));
       }
     }
