@@ -8,6 +8,7 @@
 
 #include "geometry/bvh_query.hpp"
 #include "geometry/distance_across.hpp"
+#include "geometry/searching_point.hpp"
 
 namespace meshfarm {
 
@@ -15,33 +16,38 @@ double squared_distance(Vec3 p, Vec3 a, Vec3 b, Vec3 c) {
   return distance_across(p, a, b, c).squared;
 }
 
-void Bvh::visit_leaf(Query& query, std::uint32_t first, std::uint32_t count) const {
-  for (std::uint32_t i = first; i < first + count; ++i) {
-    const Triangle& t = mesh_.triangles[order_[i]];
-    query.offer(squared_distance(query.p, mesh_.positions[t[0]], mesh_.positions[t[1]],
-                                 mesh_.positions[t[2]]),
-                order_[i]);
-  }
+double Bvh::squared_to(Vec3 p, std::uint32_t triangle) const {
+  const auto& [a, b, c] = triangles_[triangle];
+  return squared_distance(p, positions_[a], positions_[b], positions_[c]);
 }
 
 Bvh::Nearest Bvh::nearest(Vec3 p, std::uint32_t guess, double enough) const {
   Query query(p, to_frame(p), scale_);
-  const Triangle& t = mesh_.triangles[guess];
-  query.offer(
-      squared_distance(p, mesh_.positions[t[0]], mesh_.positions[t[1]], mesh_.positions[t[2]]),
-      guess);
-  search(query, enough);
+  query.offer(squared_to(p, guess), guess);
+  search(query, enough, [&](std::uint32_t triangle) { return squared_to(p, triangle); });
   return query.best;
 }
 
 Bvh::Nearest Bvh::any_within(Vec3 p, double squared) const {
   Query query(p, to_frame(p), scale_);
   query.limit = query.limit_of(squared);
-  search(query, squared);
+  search(query, squared, [&](std::uint32_t triangle) { return squared_to(p, triangle); });
   return query.best.squared <= squared ? query.best : Nearest{};
 }
 
-void Bvh::search(Query& query, double enough) const {
+double Bvh::least_below(Vec3 p, double squared) const {
+  Query query(p, to_frame(p), scale_);
+  query.best.squared = squared;
+  query.limit = query.limit_of(squared);
+  search(query, 0, [&](std::uint32_t triangle) {
+    const auto& [a, b, c] = triangles_[triangle];
+    return OfferedTriangle(positions_[a], positions_[b], positions_[c]).squared_from(p);
+  });
+  return query.best.squared;
+}
+
+template <class Distance>
+void Bvh::search(Query& query, double enough, const Distance& distance) const {
   const float most = query.limit;
   BvhStack stack;
   std::size_t size = 0;
@@ -50,7 +56,10 @@ void Bvh::search(Query& query, double enough) const {
     const BvhEntry top = stack[--size];
     if (top.bound >= query.limit) continue;
     if (top.count > 0) {
-      visit_leaf(query, top.child, top.count);
+      for (std::uint32_t i = top.child; i < top.child + top.count; ++i) {
+        query.offer(distance(order_[i]), order_[i]);
+        if (query.best.squared <= enough) break;
+      }
       query.limit = std::min(query.limit, most);
       continue;
     }

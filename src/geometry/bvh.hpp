@@ -20,7 +20,8 @@ double squared_distance(Vec3 p, Vec3 a, Vec3 b, Vec3 c);
 
 /// A bounding volume hierarchy over the triangles of a mesh, four children a node, split along the
 /// Morton order of the triangles' centres (Lauterbach et al. 2009). Up to 20 bytes a triangle, 40
-/// while it is built. The mesh must outlive it and have finite coordinates.
+/// while it is built. The mesh, or its positions and triangles, must outlive it and have finite
+/// coordinates.
 class Bvh {
  public:
   struct Nearest {
@@ -29,11 +30,15 @@ class Bvh {
   };
 
   Bvh(const Mesh& mesh, unsigned threads);
+  Bvh(std::span<const Vec3> positions, std::span<const Triangle> triangles, unsigned threads);
   /// The triangle nearest to `p`, or some triangle whose squared distance is at most `enough`. A
   /// good `guess` saves time.
   Nearest nearest(Vec3 p, std::uint32_t guess, double enough = 0) const;
   /// Some triangle whose squared distance is at most `squared`; infinite if there is none.
   Nearest any_within(Vec3 p, double squared) const;
+  /// The least squared distance as SearchingPoint counts it, if it is less than `squared`; else
+  /// that.
+  double least_below(Vec3 p, double squared) const;
   /// The nearest of the triangles whose normals are within 90 degrees of `normal`, if one is nearer
   /// than the root of `most_squared`; else its squared distance is infinite.
   Nearest nearest_facing(Vec3 p, Vec3 normal, std::uint32_t guess, double most_squared) const;
@@ -77,11 +82,14 @@ class Bvh {
   void set_inner_boxes(Node& node) const;
   /// Nearest first, until what was found is near enough. What is farther than the query's limit at
   /// the begin is never looked at.
-  void search(Query& query, double enough) const;
-  void visit_leaf(Query& query, std::uint32_t first, std::uint32_t count) const;
+  /// `distance(triangle)`: what counts of one, squared.
+  template <class Distance>
+  void search(Query& query, double enough, const Distance& distance) const;
+  double squared_to(Vec3 p, std::uint32_t triangle) const;
   static Leaf leaf_of(const Node& node, std::size_t k);
 
-  const Mesh& mesh_;
+  std::span<const Vec3> positions_;
+  std::span<const Triangle> triangles_;
   Vec3 center_;
   double scale_ = 1;  // a power of two
   std::vector<std::uint32_t> order_;

@@ -65,16 +65,19 @@ Split split_in_four(std::span<const MortonItem> items, Range range) {
 
 }  // namespace
 
-Bvh::Bvh(const Mesh& mesh, unsigned threads) : mesh_(mesh) {
-  assert(!mesh.triangles.empty());
+Bvh::Bvh(const Mesh& mesh, unsigned threads) : Bvh(mesh.positions, mesh.triangles, threads) {}
+
+Bvh::Bvh(std::span<const Vec3> positions, std::span<const Triangle> triangles, unsigned threads)
+    : positions_(positions), triangles_(triangles) {
+  assert(!triangles.empty());
   set_frame();
   make_nodes(threads);
 }
 
 void Bvh::set_frame() {
   Box box;
-  for (const Triangle& t : mesh_.triangles) {
-    for (const std::uint32_t v : t) box.add(mesh_.positions[v]);
+  for (const Triangle& t : triangles_) {
+    for (const std::uint32_t v : t) box.add(positions_[v]);
   }
   center_ = box.lo * 0.5 + box.hi * 0.5;
   const Vec3 size = box.hi - box.lo;
@@ -98,13 +101,13 @@ void Bvh::make_nodes(unsigned threads) {
 }
 
 std::vector<MortonItem> Bvh::sorted_items(unsigned threads) const {
-  std::vector<MortonItem> items(mesh_.triangles.size());
+  std::vector<MortonItem> items(triangles_.size());
   parallel_for((items.size() + k_chunk - 1) / k_chunk, threads, [&](std::uint64_t chunk) {
     const std::size_t end = std::min<std::size_t>(items.size(), (chunk + 1) * k_chunk);
     for (std::size_t i = chunk * k_chunk; i < end; ++i) {
-      const Triangle& t = mesh_.triangles[i];
-      const Vec3 sum = to_frame(mesh_.positions[t[0]]) + to_frame(mesh_.positions[t[1]]) +
-                       to_frame(mesh_.positions[t[2]]);
+      const Triangle& t = triangles_[i];
+      const Vec3 sum =
+          to_frame(positions_[t[0]]) + to_frame(positions_[t[1]]) + to_frame(positions_[t[2]]);
       items[i] = {morton_code(sum * (1.0 / 3)), static_cast<std::uint32_t>(i)};
     }
   });
@@ -141,8 +144,8 @@ void Bvh::set_leaf_boxes(Node& node) const {
   for (std::size_t k = 0; k < 4; ++k) {
     Box box;
     for (std::uint32_t i = 0; i < node.count[k]; ++i) {
-      for (const std::uint32_t v : mesh_.triangles[order_[node.child[k] + i]]) {
-        box.add(to_frame(mesh_.positions[v]));
+      for (const std::uint32_t v : triangles_[order_[node.child[k] + i]]) {
+        box.add(to_frame(positions_[v]));
       }
     }
     for (int axis = 0; axis < 3; ++axis) {

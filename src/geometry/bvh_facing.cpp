@@ -11,8 +11,8 @@ Bvh::Nearest Bvh::nearest_facing(Vec3 p, Vec3 normal, std::uint32_t guess,
   Query query(p, to_frame(p), scale_);
   query.limit = query.limit_of(most_squared);
   const auto offer = [&](std::uint32_t triangle) {
-    const auto [first, second, third] = mesh_.triangles[triangle];
-    const Vec3 a = mesh_.positions[first], b = mesh_.positions[second], c = mesh_.positions[third];
+    const auto [first, second, third] = triangles_[triangle];
+    const Vec3 a = positions_[first], b = positions_[second], c = positions_[third];
     if (!(dot(cross(b - a, c - a), normal) > 0)) return;
     const double squared = squared_distance(p, a, b, c);
     if (squared < most_squared) query.offer(squared, triangle);
@@ -43,8 +43,8 @@ Vec3 Bvh::most_similar_normal(Vec3 p, Vec3 normal, double squared) const {
   Vec3 best{};
   double best_cosine = -2;
   const auto look_at = [&](std::uint32_t triangle) {
-    const auto [first, second, third] = mesh_.triangles[triangle];
-    const Vec3 a = mesh_.positions[first], b = mesh_.positions[second], c = mesh_.positions[third];
+    const auto [first, second, third] = triangles_[triangle];
+    const Vec3 a = positions_[first], b = positions_[second], c = positions_[third];
     if (squared_distance(p, a, b, c) > most_squared) return;
     const Vec3 found = cross(b - a, c - a);
     const double all = length(found);

@@ -10,6 +10,8 @@ namespace {
 
 constexpr std::size_t k_least = 1024;
 constexpr std::size_t k_bits_an_entry = 16;
+// Points that share a cell with one of them, on the average.
+constexpr double k_crowd = 2;
 
 }  // namespace
 
@@ -17,6 +19,7 @@ PointGrid::PointGrid(std::span<SearchingPoint> points, double reach, double cell
     : points_(points) {
   set_cells(reach, cell);
   add_entries(reach);
+  is_crowded_ = find_crowds();
 }
 
 /// A point looks into at most eight cells, and there are not too many of them for a key.
@@ -58,6 +61,15 @@ void PointGrid::add_entries(double reach) {
   for (const Entry& entry : unsorted) {
     entries_[next[hash_of(entry.cell) >> bucket_shift_]++] = entry;
   }
+}
+
+bool PointGrid::find_crowds() const {
+  double sum = 0;
+  for (std::size_t bucket = 0; bucket + 1 < first_.size(); ++bucket) {
+    const double here = first_[bucket + 1] - first_[bucket];
+    sum += here * here;
+  }
+  return sum > k_crowd * static_cast<double>(entries_.size());
 }
 
 void PointGrid::offer(const OfferedTriangle& triangle) {

@@ -35,6 +35,8 @@ class PointGrid {
     if (((a | b | c) & k_hit) != 0) return Reach::some;
     return cells.find([&](std::uint64_t cell) { return has(cell); }) ? Reach::some : Reach::none;
   }
+  /// Whether a triangle meets so many points that it is cheaper for each point to look for it.
+  bool is_crowded() const { return is_crowded_; }
   /// Offers a triangle of not too many cells to the points that look into them.
   void offer(const OfferedTriangle& triangle);
 
@@ -100,7 +102,10 @@ class PointGrid {
   void set_cells(double reach, double cell);
   void add_entries(double reach);
 
+  bool find_crowds() const;
+
   std::span<SearchingPoint> points_;
+  bool is_crowded_ = false;
   Vec3 origin_;
   double per_unit_ = 1;
   int bits_shift_ = 0;

@@ -17,6 +17,8 @@ namespace {
 
 /// So many triangles are first looked at by their common box where no grid helps.
 constexpr std::size_t k_run = 32;
+/// So many are worth a hierarchy.
+constexpr std::size_t k_many = 256;
 /// The farthest place to look at is a little beyond what is known, so that it is found again.
 constexpr double k_a_little_more = 1 + 0x1p-20;
 /// Of the distance between vertices: to look a little farther costs nothing, nor do larger cells.
@@ -73,6 +75,8 @@ class PointMeter::Impl {
 
   void show(std::span<const Vec3> positions, std::span<const Triangle> triangles) {
     if (!grid_) return show_to_tree(positions, triangles);
+    if (grid_->is_crowded() && triangles.size() >= k_many)
+      return show_at_once(positions, triangles);
     // Of few triangles it is cheaper not to look at each vertex.
     if (positions.size() > 2 * triangles.size()) {
       for (const auto& [a, b, c] : triangles) {
@@ -81,9 +85,7 @@ class PointMeter::Impl {
       }
       return;
     }
-    std::vector<std::uint64_t> keys;
-    keys.reserve(positions.size());
-    for (const Vec3& p : positions) keys.push_back(grid_->key_of(p));
+    const std::vector<std::uint64_t> keys = keys_of(positions);
     for (const auto& [a, b, c] : triangles) {
       offer(positions[a], positions[b], positions[c], keys[a], keys[b], keys[c]);
     }
@@ -116,6 +118,26 @@ class PointMeter::Impl {
       points_[i].squared = nearest.squared * k_a_little_more;
     }
     return searching;
+  }
+
+  std::vector<std::uint64_t> keys_of(std::span<const Vec3> positions) const {
+    std::vector<std::uint64_t> keys;
+    keys.reserve(positions.size());
+    for (const Vec3& p : positions) keys.push_back(grid_->key_of(p));
+    return keys;
+  }
+
+  /// Those that are near some point, in a hierarchy of their own.
+  void show_at_once(std::span<const Vec3> positions, std::span<const Triangle> triangles) {
+    const std::vector<std::uint64_t> keys = keys_of(positions);
+    std::vector<Triangle> near;
+    Box box;
+    for (const Triangle& t : triangles) {
+      if (grid_->reach_of(keys[t[0]], keys[t[1]], keys[t[2]]) == PointGrid::Reach::none) continue;
+      near.push_back(t);
+      for (const std::uint32_t v : t) box.add(positions[v]);
+    }
+    if (!near.empty()) tree_->offer(Bvh(positions, near, 1), box);
   }
 
   void offer(Vec3 a, Vec3 b, Vec3 c, std::uint64_t key_a, std::uint64_t key_b,

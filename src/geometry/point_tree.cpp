@@ -101,4 +101,13 @@ void PointTree::offer(const OfferedTriangle& triangle) {
   });
 }
 
+void PointTree::offer(const Bvh& triangles, const Box& box) {
+  visit(box, [&](SearchingPoint& point) {
+    const double known = point.known();
+    if (squared_gap(box, point.place) < known)
+      point.take(triangles.least_below(point.place, known));
+    return false;
+  });
+}
+
 }  // namespace meshfarm

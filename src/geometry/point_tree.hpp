@@ -21,6 +21,8 @@ class PointTree {
   bool wants(const Box& box) const;
   /// Offers the triangle to all points that it may be the nearest to.
   void offer(const OfferedTriangle& triangle);
+  /// Offers many triangles, in this box, at once.
+  void offer(const Bvh& triangles, const Box& box);
 
  private:
   struct Node {

@@ -48,6 +48,13 @@ struct OfferedTriangle {
     box.add(b);
     box.add(c);
   }
+
+  /// Never below the gap to the box, by which triangles are passed over: so the least of several
+  /// does not depend on their order.
+  double squared_from(Vec3 p) const { return squared_from(p, squared_gap(box, p)); }
+  double squared_from(Vec3 p, double gap) const {
+    return std::max(gap, squared_distance(p, a, b, c));
+  }
 };
 
 /// A point and the squared distance of the nearest triangle that it was offered. Several threads
@@ -58,14 +65,14 @@ struct SearchingPoint {
 
   double known() const { return squared.load(std::memory_order_relaxed); }
 
-  /// What counts is never below the gap to the triangle's box, by which triangles are passed over:
-  /// so the outcome does not depend on the order of the offers.
   void offer(const OfferedTriangle& t) {
-    double now = known();
+    const double now = known();
     if (now <= 0) return;
     const double gap = squared_gap(t.box, place);
-    if (gap >= now) return;
-    const double found = std::max(gap, squared_distance(place, t.a, t.b, t.c));
+    if (gap < now) take(t.squared_from(place, gap));
+  }
+  void take(double found) {
+    double now = known();
     while (found < now && !squared.compare_exchange_weak(now, found, std::memory_order_relaxed)) {
     }
   }

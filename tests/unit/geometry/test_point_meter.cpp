@@ -118,6 +118,18 @@ TEST_CASE("no distance depends on hints, pieces or threads") {
   CHECK(metered(points, mesh, {0.03, 0.05, {}}, 10, 3).distances == expected);
 }
 
+TEST_CASE("where points crowd, each looks for its triangle: the same distances") {
+  const Mesh mesh = metered_soup(3'000, 3);
+  const std::vector<Vec3> points = scattered(4'000, 4);
+  const std::vector<double> expected = metered(points, mesh, {0.001, 0.002, {}}).distances;
+  for (const double reach : {0.2, 1.0, 10.0}) {
+    CAPTURE(reach);
+    CHECK(metered(points, mesh, {0.03, reach, {}}, 3'000).distances == expected);
+    CHECK(metered(points, mesh, {0.03, reach, {}}, 700, 3).distances == expected);
+    CHECK(metered(points, mesh, {0.03, reach, {}}, 7).distances == expected);
+  }
+}
+
 TEST_CASE("the last pass asks only for what is near the points that found nothing") {
   const Mesh mesh = test::grid(100, 100);
   std::vector<Vec3> points;
