@@ -101,6 +101,12 @@ std::vector<std::uint64_t> share_out_again(std::span<const PieceWeight> pieces,
     again[i] -= taken;
     excess -= std::min(excess, taken);
   }
+  // Where an open border can't change, the last triangle goes with another one.
+  for (std::size_t i = 0; i < made.size() && excess > 0; ++i) {
+    if (made[i] != quotas[i] + 1 || quotas[i] == 0) continue;
+    --again[i];
+    --excess;
+  }
   return excess == 0 ? again : std::vector<std::uint64_t>();
 }
 

@@ -23,7 +23,8 @@ std::vector<std::uint64_t> share_out_triangles(std::span<const PieceWeight> piec
                                                std::uint64_t target);
 
 /// The same once more, where pieces did not come down to their quotas: what they have too many is
-/// taken from those that did. Empty if none can.
+/// taken from those that did, or, of one that has one too many, the last two at once. Empty if none
+/// can.
 std::vector<std::uint64_t> share_out_again(std::span<const PieceWeight> pieces,
                                            std::span<const std::uint64_t> quotas,
                                            std::span<const std::uint64_t> made);

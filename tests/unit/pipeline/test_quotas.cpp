@@ -78,6 +78,15 @@ TEST_CASE("what one piece cannot give others do") {
   CHECK(share_out_again(pieces, quotas, {{400, 2800, 960}}).empty());
 }
 
+TEST_CASE("where no border can change, a piece gives its last two triangles at once") {
+  const std::vector<PieceWeight> piece = {three_weights().front()};
+  const std::vector<std::uint64_t> again = share_out_again(piece, {{401}}, {{402}});
+  REQUIRE(again.size() == 1);
+  CHECK(again[0] == 400);
+  CHECK(share_out_again(piece, again, {{402}}).empty());
+  CHECK(share_out_again(piece, {{0}}, {{1}}).empty());
+}
+
 TEST_CASE("no pieces, and more than there is") {
   CHECK(share_out_triangles({}, 10).empty());
   CHECK(sum_of_all(share_out_triangles(three_weights(), 5000)) == 3001);
