@@ -148,7 +148,7 @@ void ErrorMeter::show_input(PointMeter& to_input,
                   if (!is_first) return;
                   if (!facing_) normals_.add(piece);
                   vertices(thinned(piece.fresh, step));
-                  if (step == 1) {
+                  if (manifest_.input_vertices <= points_.input_sides) {
                     vertices(middles_of_longest_sides(piece.positions, piece.triangles));
                   }
                 });

@@ -22,13 +22,15 @@ Distance distance_of(std::span<const double> distances);
 
 /// How many points are looked at for the maximum: all that the sum of squares needs and more.
 struct ErrorPoints {
-  std::uint64_t by_area = 20'000;         // of the result
-  std::uint64_t vertices = 10'000;        // of the result, at most, and as many middles of sides
-  std::uint64_t input_vertices = 30'000;  // at most
+  std::uint64_t by_area = 20'000;            // of the result
+  std::uint64_t vertices = 10'000;           // of the result, at most, and as many middles of sides
+  std::uint64_t input_vertices = 1'000'000;  // at most
+  std::uint64_t input_sides =
+      30'000;  // the middles of sides count where there are no more vertices
 };
 
 /// For a bound on the error, which is one on the maximum.
-inline constexpr ErrorPoints k_points_for_bound{200'000, 400'000, 2'000'000};
+inline constexpr ErrorPoints k_points_for_bound{200'000, 400'000, 4'000'000, 2'000'000};
 
 /// Measures how far a result is from the input, in both directions.
 ///

@@ -337,6 +337,7 @@ Job FinishStage::measure_job(std::size_t number, const std::vector<PartRange>& r
     parameters.points.push_back({each.finished_file, each.finished.points});
   }
   parameters.input_step = steps_of(manifest_.input_vertices, points.input_vertices);
+  parameters.with_sides = manifest_.input_vertices <= points.input_sides;
   std::uint64_t part = 0;   // all that the job has
   std::uint64_t first = 0;  // bytes of the first part
   std::uint64_t read = 0;

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <span>
 #include <utility>
 #include <vector>
@@ -40,9 +41,6 @@ void append_every(std::span<const Vec3> points, std::uint64_t step, std::vector<
   for (std::uint64_t i = 0; i < points.size(); i += step) to.push_back(points[i]);
 }
 
-/// So many of a surface's vertices bound the distances to it.
-constexpr std::size_t k_known_points = 1000;
-
 double squared_distance(const Vec3& p, const Box& box) {
   const auto beyond = [](double x, double lo, double hi) {
     return std::max({lo - x, x - hi, 0.0});
@@ -52,61 +50,12 @@ double squared_distance(const Vec3& p, const Box& box) {
   return dot(d, d);
 }
 
-/// Of a surface that is in memory.
-std::vector<double> distances_to_all(const std::vector<const Mesh*>& surface,
-                                     const std::vector<Vec3>& points, double spacing) {
-  std::vector<Vec3> some;
-  for (const Mesh* mesh : surface) {
-    append_every(mesh->positions, mesh->positions.size() / k_known_points + 1, some);
+void append(const Mesh& more, Mesh& to) {
+  const auto first = static_cast<std::uint32_t>(to.positions.size());
+  to.positions.insert(to.positions.end(), more.positions.begin(), more.positions.end());
+  for (const auto& [a, b, c] : more.triangles) {
+    to.triangles.push_back({first + a, first + b, first + c});
   }
-  if (some.empty() || points.empty()) return {};
-  PointMeter meter(points, {spacing, spacing / 2, some});
-  while (meter.begin_pass()) {
-    for (const Mesh* mesh : surface) meter.show(mesh->positions, mesh->triangles);
-  }
-  return meter.distances();
-}
-
-/// Triangles with a corner within so much of the box, or with their box round some of it.
-Mesh part_within(const Mesh& mesh, Box box, double margin) {
-  const Vec3 far = {margin, margin, margin};
-  box.lo = box.lo - far;
-  box.hi = box.hi + far;
-  Mesh part;
-  for (const auto& [a, b, c] : mesh.triangles) {
-    Box of;
-    for (const std::uint32_t v : {a, b, c}) of.add(mesh.positions[v]);
-    const bool is_apart = of.lo.x > box.hi.x || of.hi.x < box.lo.x || of.lo.y > box.hi.y ||
-                          of.hi.y < box.lo.y || of.lo.z > box.hi.z || of.hi.z < box.lo.z;
-    if (is_apart) continue;
-    const auto first = static_cast<std::uint32_t>(part.positions.size());
-    for (const std::uint32_t v : {a, b, c}) part.positions.push_back(mesh.positions[v]);
-    part.triangles.push_back({first, first + 1, first + 2});
-  }
-  return part;
-}
-
-/// The same, where most of the surface is far from the points: what is farther than the margin is
-/// nearest to none of them if all are nearer to the rest.
-std::vector<double> distances_to(const std::vector<const Mesh*>& surface,
-                                 const std::vector<Vec3>& points) {
-  constexpr double k_margin_in_spacings = 3;
-  double spacing = 0;
-  for (const Mesh* mesh : surface) spacing = std::max(spacing, spacing_of(*mesh));
-  Box box;
-  for (const Vec3& p : points) box.add(p);
-  const double margin = k_margin_in_spacings * spacing;
-  std::vector<Mesh> within;
-  std::vector<const Mesh*> near;
-  within.reserve(surface.size());
-  near.reserve(surface.size());
-  for (const Mesh* mesh : surface) within.push_back(part_within(*mesh, box, margin));
-  for (const Mesh& mesh : within) near.push_back(&mesh);
-  std::vector<double> distances = distances_to_all(near, points, spacing);
-  const bool is_near =
-      std::all_of(distances.begin(), distances.end(), [margin](double d) { return d <= margin; });
-  if (is_near && distances.size() == points.size()) return distances;
-  return distances_to_all(surface, points, spacing);
 }
 
 /// Some of the points of several pieces, and where they stand.
@@ -167,10 +116,10 @@ class PieceMeter {
  public:
   PieceMeter(const MeasureParameters& parameters, const JobContext& context)
       : parameters_(parameters), context_(context) {
-    meshes_.reserve(1 + parameters.seams.size());
-    meshes_.push_back(read_mesh({parameters.mesh, parameters.gap}));
-    for (const SeamSurface& each : parameters.seams) meshes_.push_back(read_mesh(each));
-    for (const Mesh& each : meshes_) surface_.push_back(&each);
+    surface_ = read_mesh({parameters.mesh, parameters.gap});
+    triangle_size_ = spacing_of(surface_);
+    for (const SeamSurface& each : parameters.seams) append(read_mesh(each), surface_);
+    if (!surface_.triangles.empty()) to_surface_.emplace(surface_, 1);
   }
 
   PieceError run() {
@@ -222,13 +171,18 @@ class PieceMeter {
       }
       counts.push_back(points.size() - before);
     }
-    const std::vector<double> distances = distances_to(surface_, points);
-    if (distances.empty()) return;
+    if (!to_surface_) return;
+    std::vector<DistanceMeter::Points> sets;
     std::size_t first = 0;
+    for (const std::size_t count : counts) {
+      sets.push_back(std::span(points).subspan(first, count));
+      first += count;
+    }
+    points_.to_output.resize(points.size());
+    const std::vector<Distance> distances = to_surface_->measure_each(sets, points_.to_output);
     for (std::size_t set = 0; set < samples.size(); ++set) {
       if (counts[set] == 0) continue;
-      const Distance d = distance_of(std::span(distances).subspan(first, counts[set]));
-      first += counts[set];
+      const Distance& d = distances[set];
       const double of_point = samples[set].area / static_cast<double>(samples[set].points.size());
       points_.areas.insert(points_.areas.end(), counts[set], of_point);
       const double area = of_point * static_cast<double>(counts[set]);
@@ -238,7 +192,6 @@ class PieceMeter {
       error_.to_output.max = std::max(error_.to_output.max, d.max);
     }
     error_.input_samples = points.size();
-    points_.to_output = distances;
     if (!(error_.input_area > 0)) return;
     error_.to_output.rms = std::sqrt(error_.to_output.rms / error_.input_area);
     error_.to_output.mean /= error_.input_area;
@@ -260,7 +213,7 @@ class PieceMeter {
     const auto triangles = static_cast<double>(parameters_.triangles);
     const double spacing = std::sqrt(2 * area_ / triangles);
     // Hardly a point is as far as triangles of the result are long.
-    const double reach = std::max({2 * error_.to_output.max, spacing, spacing_of(meshes_.front())});
+    const double reach = std::max({2 * error_.to_output.max, spacing, triangle_size_});
     const SomePoints near = points_near(points, input.box, reach);
     const SomePoints own = points_that_want(points, input.box, {spacing, usual(spacing), known});
     for (const std::vector<Vec3>& each : points)
@@ -269,16 +222,25 @@ class PieceMeter {
     while (to_own.begin_pass()) show(input, to_own);
     take_found(own, to_own.distances(), HUGE_VAL);
     // Where a part was left out, the reach is long, and a first pass that went as far slow.
-    const double first_reach = std::min(reach, 2 * spacing_of(meshes_.front()) + spacing);
+    const double first_reach = std::min(reach, 2 * triangle_size_ + spacing);
     PointMeter to_near(near.points, {spacing, first_reach, known});
     if (to_near.begin_pass()) show(input, to_near);
     if (reach > first_reach && to_near.begin_pass()) show(input, to_near);
     take_found(near, to_near.distances(), reach);
-    std::vector<Vec3> vertices;
-    for (const Mesh& part : input.parts) add_vertices(part, vertices);
-    for (const double d : distances_to(surface_, vertices)) {
-      error_.to_output.max = std::max(error_.to_output.max, d);
+    if (to_surface_) error_.to_output.max = farthest_of(input.parts);
+  }
+
+  double farthest_of(const std::vector<Mesh>& parts) const {
+    double farthest = error_.to_output.max;
+    for (const Mesh& part : parts) {
+      std::vector<Vec3> points;
+      append_every(part.positions, parameters_.input_step, points);
+      if (parameters_.with_sides) {
+        append_every(middles_of_longest_sides(part.positions, part.triangles), 1, points);
+      }
+      farthest = to_surface_->farthest(points, farthest);
     }
+    return farthest;
   }
 
   void show(const PieceInput& input, PointMeter& meter) const {
@@ -297,19 +259,15 @@ class PieceMeter {
     }
   }
 
-  void add_vertices(const Mesh& part, std::vector<Vec3>& vertices) const {
-    append_every(part.positions, parameters_.input_step, vertices);
-    if (parameters_.input_step > 1) return;
-    append_every(middles_of_longest_sides(part.positions, part.triangles), 1, vertices);
-  }
-
   /// The input's triangles between pieces are in memory.
   void measure_to_seams() {
     const std::vector<Vec3> points = read_points().front();
     const Mesh between =
         decode_surface(read_section(context_, parameters_.between), parameters_.between.file.name);
-    points_.to_input.push_back(distances_to({&between}, points));
-    points_.to_input.front().resize(points.size(), HUGE_VAL);
+    std::vector<double>& to_input = points_.to_input.emplace_back(points.size(), HUGE_VAL);
+    if (between.triangles.empty()) return;
+    const DistanceMeter::Points all = points;
+    DistanceMeter(between, 1).measure_each({&all, 1}, to_input);
   }
 
   /// The distance to the nearest of these is no less than that to the input's surface.
@@ -324,8 +282,9 @@ class PieceMeter {
 
   const MeasureParameters& parameters_;
   const JobContext& context_;
-  std::vector<Mesh> meshes_;          // the piece's first
-  std::vector<const Mesh*> surface_;  // of the result: these
+  Mesh surface_;              // the piece of the result, and the seams near it
+  double triangle_size_ = 0;  // of the piece, by the sides of its triangles
+  std::optional<DistanceMeter> to_surface_;
   PieceError error_;
   double area_ = 0;  // of the piece's input
   MeasuredPoints points_;

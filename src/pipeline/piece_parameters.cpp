@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
 //
-// Parameters and summaries of the jobs of a farmed finish, version 6, little endian:
+// Parameters and summaries of the jobs of a farmed finish, version 8, little endian:
 //   weigh      = cost unit f64 | first step i32 | last share f64 | kept share f64 |
 //                is weighed u8 | lines
 //   split      = version u8 | piece u32 | rung u32 | step i32 | is composed u8 | ref | weigh
@@ -12,8 +12,8 @@
 //   reduce     = version u8 | rung u32 | triangles u64 | points u64 | vertices u64 | lines
 //   measure    = version u8 | first part u32 | end part u32 | triangles u64 | share u32 |
 //                shares u32 | box | 4 refs | seams u32 x (ref | ref) | points u32 x ref |
-//                input step u64 | builds u8 | if it does: bundles (bundle_list.hpp), else of each
-//                part a file
+//                input step u64 | with sides u8 | builds u8 | if it does: bundles
+//                (bundle_list.hpp), else of each part a file
 //   write      = version u8 | pieces u64
 //   ref        = file | section;  box = 6 x f64
 //   divided    = 5 sections | gap triangles u64 | strip triangles u64 | shared u64 | box |
@@ -28,7 +28,7 @@
 // surroundings of the seams were one piece. In version 3 triangles of gaps had no columns, and no
 // components were left out. In version 4 there was one boundary file. In version 5 there was no
 // bound on the error, and measure jobs looked the parts up in the manifest. In version 6 a reduce
-// job read its input whole.
+// job read its input whole. In version 7 sides went with an input step of 1.
 #include <cmath>
 
 #include <meshfarm/pipeline/piece_jobs.hpp>
@@ -41,7 +41,7 @@
 namespace meshfarm {
 namespace {
 
-constexpr std::uint8_t k_piece_version = 7;
+constexpr std::uint8_t k_piece_version = 8;
 constexpr double k_most_piece_samples = 1000;  // a triangle
 
 void begin_parameters(ByteWriter& out) {
@@ -253,6 +253,7 @@ std::string encode_parameters(const MeasureParameters& parameters) {
   out.put(static_cast<std::uint32_t>(parameters.points.size()));
   for (const SectionRef& ref : parameters.points) put_ref(out, ref);
   out.put(parameters.input_step);
+  out.put(static_cast<std::uint8_t>(parameters.with_sides ? 1 : 0));
   put_if_built(out, parameters.bundles);
   for (const FileRef& part : parameters.parts) put_file(out, part);
   return out.take();
@@ -280,7 +281,9 @@ MeasureParameters decode_measure_parameters(std::string_view bytes) {
   const auto points = in.get<std::uint32_t>();
   for (std::uint32_t i = 0; i < points; ++i) parameters.points.push_back(get_ref(in));
   parameters.input_step = in.get<std::uint64_t>();
-  if (parameters.share >= parameters.shares || parameters.input_step == 0 ||
+  const auto with_sides = in.get<std::uint8_t>();
+  parameters.with_sides = with_sides != 0;
+  if (with_sides > 1 || parameters.share >= parameters.shares || parameters.input_step == 0 ||
       parameters.first_part > parameters.end_part || points == 0) {
     in.fail("impossible parts");
   }

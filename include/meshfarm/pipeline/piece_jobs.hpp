@@ -212,6 +212,7 @@ struct MeasureParameters {
   std::vector<SeamSurface> seams;  // those near the piece, or other groups near the group
   std::vector<SectionRef> points;  // of the result: the piece's own, then those of pieces near it
   std::uint64_t input_step = 1;    // every so-manieth vertex of the input is looked at
+  bool with_sides = false;         // and the middles of its triangles' longest sides
 };
 std::string encode_parameters(const MeasureParameters& parameters);
 MeasureParameters decode_measure_parameters(std::string_view bytes);

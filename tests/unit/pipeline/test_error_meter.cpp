@@ -77,6 +77,15 @@ TEST_CASE("a vertex of the input that the result lost is told") {
   }
 }
 
+TEST_CASE("so is one of many") {
+  const Mesh sheet = test::grid(300, 300);
+  for (const std::size_t lost : {45'189U, 45'190U, 45'191U}) {
+    Mesh spiked = sheet;
+    spiked.positions[lost].z = 30;
+    CHECK(measure(spiked, sheet, Scheme::cut).to_output.max == doctest::Approx(30));
+  }
+}
+
 TEST_CASE("the same figures from any number of threads") {
   const Mesh fine = test::torus(120, 60);
   const Mesh coarse = test::torus(30, 15);
