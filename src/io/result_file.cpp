@@ -27,7 +27,8 @@
 //   dropped degenerate u64 | dropped duplicate u64 | held by topology u8 | goes on u8 |
 //   turned u64 | rungs as above | where the tail is | where what is beside is | of a part that was
 //   built by the same job: vertices u64 | triangles u64 | boundary vertices u32 |
-//   coincident vertices u64 | dropped degenerate u64 | coincident corners u64
+//   shared triangles u64 | shared boundary u32 | coincident vertices u64 | dropped degenerate u64 |
+//   coincident corners u64
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -238,6 +239,8 @@ BuiltFacts get_built(ByteReader& in) {
   built.triangles = in.get<std::uint64_t>();
   built.boundary_vertices = in.get<std::uint32_t>();
   if (built.boundary_vertices > built.vertices) in.fail("more boundary vertices than vertices");
+  built.shared_triangles = in.get<std::uint64_t>();
+  built.shared_boundary = in.get<std::uint32_t>();
   built.coincident_vertices = in.get<std::uint64_t>();
   built.dropped_degenerate = in.get<std::uint64_t>();
   built.coincident_corners = in.get<std::uint64_t>();
@@ -261,6 +264,8 @@ std::string encode_summary(const ResultSummary& summary) {
     out.put(built.vertices);
     out.put(built.triangles);
     out.put(built.boundary_vertices);
+    out.put(built.shared_triangles);
+    out.put(built.shared_boundary);
     out.put(built.coincident_vertices);
     out.put(built.dropped_degenerate);
     out.put(built.coincident_corners);

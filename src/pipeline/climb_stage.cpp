@@ -10,9 +10,6 @@
 namespace meshfarm {
 namespace {
 
-/// A ladder begins at this many times the part's even share, so that a part of much detail can keep
-/// more than its share; a part that deserves still more is asked for again.
-constexpr double k_first_headroom = 4;
 constexpr double k_more_headroom = 8;
 
 /// Parts that their topology holds back are to have no more of all triangles than this at the level
@@ -31,6 +28,14 @@ TopologyMode first_topology(const RunOptions& options, bool by_error) {
                                                      : TopologyMode::automatic;
 }
 
+/// What a first job found of the part that a second has only seen a rung of.
+void add_to(const ResultSummary& before, ResultSummary& summary) {
+  summary.dropped_degenerate += before.dropped_degenerate;
+  summary.dropped_duplicate += before.dropped_duplicate;
+  summary.turned += before.turned;
+  summary.built = before.built;
+}
+
 }  // namespace
 
 ClimbStage::ClimbStage(const Manifest& manifest, const RunOptions& options, const PartJobs& jobs,
@@ -41,27 +46,37 @@ ClimbStage::ClimbStage(const Manifest& manifest, const RunOptions& options, cons
       results_(results),
       needs_(std::move(needs)),
       headroom_(manifest.parts.size(), k_first_headroom),
-      asked_(manifest.parts.size()) {
+      asked_(manifest.parts.size()),
+      goes_on_(manifest.parts.size(), 0) {
   results_.topology = first_topology(options, jobs.by_error());
 }
 
 JobNeeds ClimbStage::ask(JobGraph& graph, const std::vector<std::uint32_t>& parts) {
   JobNeeds asked;
   for (const std::uint32_t part : parts) {
+    const JobNeeds needs = goes_on_[part] != 0 ? JobNeeds{just(asked_[part])} : needs_(part);
     asked_[part] = job_name(RunStage::climb, jobs_asked_++);
-    const auto make = [this, part](JobGraph&) {
-      return jobs_.climb(part, headroom_[part], results_.topology);
-    };
-    graph.add(asked_[part], needs_(part), make);
+    const auto make = [this, part](JobGraph&) { return climb(part); };
+    graph.add(asked_[part], needs, make);
     asked.push_back(just(asked_[part]));
   }
   return asked;
 }
 
+Job ClimbStage::climb(std::uint32_t part) const {
+  if (goes_on_[part] == 0) return jobs_.climb(part, headroom_[part], results_.topology);
+  const ResultSummary& before = results_.summaries[part];
+  const Rung& rung = before.rungs.front();
+  return jobs_.climb_on(part, {.file = results_.files[part], .place = place_of(before, 0)},
+                        rung.level, rung.triangles, results_.topology);
+}
+
 void ClimbStage::take(const JobGraph& graph, const std::vector<std::uint32_t>& parts) {
   for (const std::uint32_t part : parts) {
     if (results_.files[part].name.empty()) climbed_.push_back(part);
+    const ResultSummary before = std::exchange(results_.summaries[part], {});
     results_.take(part, graph, asked_[part]);
+    if (std::exchange(goes_on_[part], 0) != 0) add_to(before, results_.summaries[part]);
     if (jobs_.is_sampled(part)) stand_for_stream(part);
   }
 }
@@ -86,6 +101,7 @@ std::vector<std::uint32_t> ClimbStage::choose_level() {
     keep_coarsest();
     results_.topology = TopologyMode::simplify;
     headroom_.assign(headroom_.size(), k_first_headroom);
+    goes_on_.assign(goes_on_.size(), 1);
     return climbed_;
   }
   std::vector<std::uint32_t> again;

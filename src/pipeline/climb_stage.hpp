@@ -33,6 +33,7 @@ class ClimbStage {
   const std::vector<ChosenRung>& kept() const { return kept_; }
 
  private:
+  Job climb(std::uint32_t part) const;
   void stand_for_stream(std::uint32_t part);
   bool is_unfair() const;
   void keep_coarsest();
@@ -43,7 +44,8 @@ class ClimbStage {
   PartResults& results_;
   std::function<JobNeeds(std::uint32_t)> needs_;
   std::vector<double> headroom_;
-  std::vector<JobName> asked_;  // the last job that was asked for, by part
+  std::vector<JobName> asked_;         // the last job that was asked for, by part
+  std::vector<std::uint8_t> goes_on_;  // from the first rung that it has, by part
   std::uint32_t jobs_asked_ = 0;
   std::vector<std::uint32_t> climbed_;  // parts that have a ladder
   std::vector<ChosenRung> kept_;

@@ -248,6 +248,8 @@ void CutStage::take_ladders(const PartResults& results) {
     part.vertices = built->vertices;
     part.triangles = built->triangles;
     part.boundary_vertices = built->boundary_vertices;
+    part.shared_triangles = built->shared_triangles;
+    part.shared_boundary = built->shared_boundary;
     manifest_.coincident_vertices += built->coincident_vertices;
     manifest_.dropped_degenerate += built->dropped_degenerate;
     manifest_.coincident_corners += built->coincident_corners;

@@ -8,6 +8,8 @@
 #include <meshfarm/pipeline/finished_pieces.hpp>
 #include <meshfarm/pipeline/sweep_job.hpp>
 
+#include "pipeline/rung_input.hpp"
+
 namespace meshfarm {
 namespace {
 
@@ -29,6 +31,12 @@ std::uint64_t memory_of(const PartEntry& part, std::uint64_t first_rung) {
   constexpr std::uint64_t k_process = std::uint64_t{16} << 20;
   const std::uint64_t ladder = 60 * std::min(part.triangles, first_rung);
   return k_process + part.file.size + 110 * part.triangles + ladder;
+}
+
+/// The same from a rung of so many bytes.
+std::uint64_t memory_of_rung(std::uint64_t bytes, std::uint64_t triangles) {
+  constexpr std::uint64_t k_process = std::uint64_t{16} << 20;
+  return k_process + bytes + 170 * triangles;
 }
 
 /// The window as it comes and as it is simplified, and what was sent on from it.
@@ -82,20 +90,10 @@ const PartEntry& PartJobs::climbed(std::uint32_t part) const {
 }
 
 Job PartJobs::climb(std::uint32_t part, double headroom, TopologyMode topology) const {
-  SimplifyParameters parameters;
-  parameters.allocation = options_.allocation;
-  parameters.cost_unit = cost_unit(manifest_.box.diagonal());
-  parameters.lines = lines_of(manifest_, options_);
-  parameters.lines.topology = topology;
+  SimplifyParameters parameters = parameters_of(topology);
   if (bundles_ != nullptr) return build_and_climb(part, headroom, std::move(parameters));
   const PartEntry& entry = climbed(part);
-  if (manifest_.scheme == Scheme::cut) {
-    set_share(parameters, share_rule(headroom), entry.shared_triangles, entry.shared_boundary);
-  } else {
-    const ShareRule rule{ratio(), headroom, end_of_ladders(), manifest_.triangles(),
-                         all_samples(options_)};
-    set_share(parameters, rule, entry.triangles, entry.boundary_vertices);
-  }
+  set_share_of(parameters, part, headroom);
   if (by_error()) set_error_bound(parameters, part);
   Job job{std::string(k_simplify_kind),
           {entry.file},
@@ -108,6 +106,41 @@ Job PartJobs::climb(std::uint32_t part, double headroom, TopologyMode topology) 
   // Other sweeps need not wait for the stream's own.
   if (by_error() && is_sampled(part)) job.after = manifest_.parts[part].triangles;
   return job;
+}
+
+Job PartJobs::climb_on(std::uint32_t part, const ChosenRung& rung, std::int32_t level,
+                       std::uint64_t triangles, TopologyMode topology) const {
+  SimplifyParameters parameters = parameters_of(topology);
+  set_share_of(parameters, part, k_first_headroom);
+  parameters.from_level = level;
+  Job job;
+  job.kind = k_simplify_kind;
+  const std::uint64_t bytes = add_rung_input(rung, true, job);
+  job.parameters = encode_parameters(parameters);
+  job.cost = triangles;
+  job.memory = memory_of_rung(bytes, triangles) + memory_of_channels(parameters.lines, triangles);
+  return job;
+}
+
+SimplifyParameters PartJobs::parameters_of(TopologyMode topology) const {
+  SimplifyParameters parameters;
+  parameters.allocation = options_.allocation;
+  parameters.cost_unit = cost_unit(manifest_.box.diagonal());
+  parameters.lines = lines_of(manifest_, options_);
+  parameters.lines.topology = topology;
+  return parameters;
+}
+
+void PartJobs::set_share_of(SimplifyParameters& parameters, std::uint32_t part,
+                            double headroom) const {
+  const PartEntry& entry = climbed(part);
+  if (manifest_.scheme == Scheme::cut) {
+    set_share(parameters, share_rule(headroom), entry.shared_triangles, entry.shared_boundary);
+    return;
+  }
+  const ShareRule rule{ratio(), headroom, end_of_ladders(), manifest_.triangles(),
+                       all_samples(options_)};
+  set_share(parameters, rule, entry.triangles, entry.boundary_vertices);
 }
 
 /// To keep a bound, and to prove it.

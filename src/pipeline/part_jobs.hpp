@@ -6,6 +6,7 @@
 
 #include <meshfarm/farm/job.hpp>
 #include <meshfarm/io/manifest.hpp>
+#include <meshfarm/pipeline/budget.hpp>
 #include <meshfarm/pipeline/run_options.hpp>
 #include <meshfarm/pipeline/simplify_job.hpp>
 
@@ -13,6 +14,10 @@ namespace meshfarm {
 
 /// Of a bound on the error, streams that are swept by cost may take up this share.
 constexpr double k_error_share = 0.5;
+
+/// A ladder begins at this many times the part's even share, so that a part of much detail can keep
+/// more than its share; a part that deserves still more is asked for again.
+constexpr double k_first_headroom = 4;
 
 /// What it takes to build a part, of which so many triangles are the average, and to climb it.
 std::uint64_t memory_to_build(std::uint64_t average_triangles);
@@ -43,6 +48,9 @@ class PartJobs {
   /// Climbs the ladder of a part, or of a sample of a long stream, from so many times its even
   /// share.
   Job climb(std::uint32_t part, double headroom, TopologyMode topology) const;
+  /// The same from the first rung of a ladder that it has.
+  Job climb_on(std::uint32_t part, const ChosenRung& rung, std::int32_t level,
+               std::uint64_t triangles, TopologyMode topology) const;
   /// Sweeps a long stream, to a level.
   Job sweep(std::uint32_t part, std::int32_t level, TopologyMode topology) const;
   /// What a collapse may cost in a sweep to this level; below 0 if none is to be made.
@@ -50,6 +58,8 @@ class PartJobs {
 
  private:
   const PartEntry& climbed(std::uint32_t part) const;
+  SimplifyParameters parameters_of(TopologyMode topology) const;
+  void set_share_of(SimplifyParameters& parameters, std::uint32_t part, double headroom) const;
   void set_error_bound(SimplifyParameters& parameters, std::uint32_t part) const;
   Job build_and_climb(std::uint32_t part, double headroom, SimplifyParameters parameters) const;
   std::uint64_t memory_of_bound(std::uint64_t triangles) const;

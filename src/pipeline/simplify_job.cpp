@@ -16,34 +16,40 @@
 
 #include "pipeline/bounded_part.hpp"
 #include "pipeline/bundle_list.hpp"
+#include "pipeline/rung_input.hpp"
 
 namespace meshfarm {
 namespace {
 
-// Version 8: allocation u8 | start u64 | even share u64 | end u64 | samples u64 | cost unit f64 |
-// greatest error f64 | certified error f64 | lines (run_options.hpp) | builds u8 | if it does:
-// part u32 | ratio f64 | headroom f64 | end f64 | all triangles u64 | all samples u64 | bundles
-// (bundle_list.hpp).
+// Version 9: allocation u8 | start u64 | even share u64 | end u64 | samples u64 | cost unit f64 |
+// greatest error f64 | certified error f64 | lines (run_options.hpp) | source u8 | where it
+// is built: part u32 | ratio f64 | headroom f64 | end f64 | all triangles u64 | all samples u64 |
+// bundles (bundle_list.hpp) | where it is a rung: level i32.
 // Version 4 knew no appearances and labels, version 5 nothing to build, version 6 no certified
-// error, version 7 no end.
-constexpr std::uint8_t k_climb_version = 8;
+// error, version 7 no end, version 8
+// no rung.
+constexpr std::uint8_t k_climb_version = 9;
 constexpr std::uint64_t k_most_climb_samples = 100'000'000;
 constexpr std::int32_t k_top_level = 52;
 constexpr double k_mostly_free = 0.8;  // of triangles
 
+enum class PartSource : std::uint8_t { file, bundles, rung };
+
 /// Climbs the levels and keeps a snapshot wherever the mesh changed.
 class LadderBuilder {
  public:
-  LadderBuilder(Part part, const SimplifyParameters& parameters, const JobContext& context,
+  LadderBuilder(Part part, std::vector<SurfaceSamples> samples,
+                const SimplifyParameters& parameters, const JobContext& context,
                 std::string_view beside)
-      : samples_(sample_surface(part.mesh, {.samples = parameters.samples, .threads = 1})),
+      : samples_(std::move(samples)),
         parameters_(parameters),
         context_(context),
         input_triangles_(part.mesh.triangles.size()),
         vertices_(vertices_of(part)),
         simplifier_(std::move(part.mesh), {.locked_vertices = part.boundary_vertices,
                                            .positions = part.positions,
-                                           .lines = parameters.lines}),
+                                           .lines = parameters.lines,
+                                           .was_simplified = parameters.from_level.has_value()}),
         result_(
             vertices_, [this](std::string_view bytes) { file_ += bytes; }, beside) {}
 
@@ -58,7 +64,7 @@ class LadderBuilder {
 
   /// The whole file; the last that is asked of it.
   std::string take_file() {
-    result_.finish(VertexView(simplifier_.mesh()).part(0, vertices_.boundary), {&samples_, 1});
+    result_.finish(VertexView(simplifier_.mesh()).part(0, vertices_.boundary), samples_);
     return std::move(file_);
   }
   /// Of the whole file.
@@ -73,17 +79,29 @@ class LadderBuilder {
   /// Makes the first rung and returns the level that the mesh has reached with it.
   std::int32_t start() {
     if (parameters_.start_triangles < simplifier_.triangles()) {
-      reduce({.triangles = parameters_.start_triangles,
-              .last_triangles = parameters_.share_triangles});
-      const std::int32_t level = level_of(simplifier_.pass_cost(), parameters_.cost_unit);
+      SimplifyGoal goal{.triangles = parameters_.start_triangles,
+                        .last_triangles = parameters_.share_triangles,
+                        .in_passes = may_give_up_topology()};
+      reduce(goal);
+      const std::int32_t level = reached();
       snapshot(level - 1);  // what costs that much is done in part only
-      return level;
+      if (!goal.in_passes || simplifier_.triangles() <= goal.triangles) return level;
+      goal.in_passes = false;
+      reduce(goal);
+      return std::max(level, reached());
     }
-    snapshot(k_input_level);
+    const std::int32_t first = parameters_.from_level.value_or(k_input_level);
+    snapshot(first);
+    if (first != k_input_level) return first + 1;
     // A first step by count finds the level to begin at; below it there is little to collapse.
     reduce({.triangles = simplifier_.triangles() - simplifier_.triangles() / 10});
-    return level_of(simplifier_.pass_cost(), parameters_.cost_unit);
+    return reached();
   }
+
+  bool may_give_up_topology() const {
+    return parameters_.lines.topology == TopologyMode::keep_while_fair;
+  }
+  std::int32_t reached() const { return level_of(simplifier_.pass_cost(), parameters_.cost_unit); }
 
   void climb(std::int32_t level) {
     const std::uint64_t floor = parameters_.share_triangles / k_shares_per_floor;
@@ -122,7 +140,7 @@ class LadderBuilder {
     result_.add_rung(level, simplifier_.mesh(), simplifier_.free_triangles());
   }
 
-  SurfaceSamples samples_;  // made before the part is simplified
+  std::vector<SurfaceSamples> samples_;  // of the part as it came
   const SimplifyParameters& parameters_;
   const JobContext& context_;
   std::uint64_t input_triangles_;
@@ -160,26 +178,42 @@ PartToBuild get_part_to_build(ByteReader& in) {
   return build;
 }
 
-/// A part of the stage, or one that is built here, with what is told of it then.
+/// A part of the stage, a rung of it, or one that is built here, with what is told of it then.
 struct PartAtHand {
   Part part;
+  std::vector<SurfaceSamples> samples;
   std::string beside;
   std::optional<BuiltFacts> facts;
 };
 
+PartAtHand part_of_rung(const Job& job, const JobContext& context) {
+  if (job.inputs.size() != 1) throw DataError("a simplify job takes one rung");
+  RungInputs rungs(job, context);
+  ResultMesh rung = rungs.next(0);
+  PartAtHand at_hand;
+  at_hand.part.mesh = std::move(rung.mesh);
+  at_hand.part.boundary_vertices = rung.boundary_vertices;
+  at_hand.part.positions = rung.positions;
+  at_hand.samples = std::move(rung.samples);
+  at_hand.beside = rungs.beside();
+  return at_hand;
+}
+
 PartAtHand part_at_hand(const Job& job, const JobContext& context, SimplifyParameters& parameters) {
+  if (parameters.from_level) return part_of_rung(job, context);
   if (!parameters.build) {
     if (job.inputs.size() != 1) throw DataError("a simplify job takes one part");
-    return {read_part(context, job.inputs[0]), {}, {}};
+    return {read_part(context, job.inputs[0]), {}, {}, {}};
   }
   PartOfBlocks built =
       build_from_blocks(context.stage, parameters.build->bundles, parameters.build->part);
   set_share(parameters, parameters.build->rule, built.shared_triangles, built.shared_boundary);
   const Mesh& mesh = built.part.mesh;
   const BuiltFacts facts{mesh.positions.size(),        mesh.triangles.size(),
-                         built.part.boundary_vertices, built.coincident_vertices,
+                         built.part.boundary_vertices, built.shared_triangles,
+                         built.shared_boundary,        built.coincident_vertices,
                          built.dropped_degenerate,     built.coincident_corners};
-  return {std::move(built.part), std::move(built.numbers), facts};
+  return {std::move(built.part), {}, std::move(built.numbers), facts};
 }
 
 }  // namespace
@@ -196,7 +230,10 @@ std::string encode_parameters(const SimplifyParameters& parameters) {
   out.put(parameters.max_error);
   out.put(parameters.certified_error);
   put(out, parameters.lines);
-  out.put(static_cast<std::uint8_t>(parameters.build ? 1 : 0));
+  out.put(parameters.build        ? PartSource::bundles
+          : parameters.from_level ? PartSource::rung
+                                  : PartSource::file);
+  if (parameters.from_level) out.put(*parameters.from_level);
   if (!parameters.build) return out.take();
   out.put(parameters.build->part);
   out.put(parameters.build->rule.ratio);
@@ -223,9 +260,10 @@ SimplifyParameters decode_parameters(std::string_view bytes) {
   parameters.max_error = in.get<double>();
   parameters.certified_error = in.get<double>();
   parameters.lines = get_lines(in);
-  const auto builds = in.get<std::uint8_t>();
-  if (builds > 1) in.fail("impossible part");
-  if (builds == 1) parameters.build = get_part_to_build(in);
+  const auto source = in.get<PartSource>();
+  if (source > PartSource::rung) in.fail("impossible part");
+  if (source == PartSource::rung) parameters.from_level = in.get<std::int32_t>();
+  if (source == PartSource::bundles) parameters.build = get_part_to_build(in);
   in.expect_end();
   return parameters;
 }
@@ -280,7 +318,11 @@ JobOutput simplify_part(const Job& job, const JobContext& context) {
     bounded.summary.built = at_hand.facts;
     return {context.publish(name, bounded.file), encode_summary(bounded.summary)};
   }
-  LadderBuilder ladder(std::move(part), parameters, context, at_hand.beside);
+  std::vector<SurfaceSamples>& samples = at_hand.samples;
+  if (!parameters.from_level) {
+    samples.push_back(sample_surface(part.mesh, {.samples = parameters.samples, .threads = 1}));
+  }
+  LadderBuilder ladder(std::move(part), std::move(samples), parameters, context, at_hand.beside);
   ladder.build();
   const std::string file = ladder.take_file();
   ResultSummary summary = ladder.summary();

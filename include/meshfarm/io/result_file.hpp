@@ -34,6 +34,8 @@ struct BuiltFacts {
   std::uint64_t vertices = 0;
   std::uint64_t triangles = 0;
   std::uint32_t boundary_vertices = 0;
+  std::uint64_t shared_triangles = 0;  // as in PartEntry
+  std::uint32_t shared_boundary = 0;
   std::uint64_t coincident_vertices = 0;
   std::uint64_t dropped_degenerate = 0;
   std::uint64_t coincident_corners = 0;

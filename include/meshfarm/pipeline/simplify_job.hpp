@@ -46,6 +46,8 @@ struct SimplifyParameters {
   double certified_error = 0;
   LineOptions lines;
   std::optional<PartToBuild> build;  // the job has no input then, and finds its share by the rule
+  /// Where set: the input is the first rung of a ladder of the part, and this its level.
+  std::optional<std::int32_t> from_level;
 };
 
 /// Sets first rung, share, last rung and samples of a part.
@@ -73,7 +75,8 @@ inline constexpr std::uint64_t k_shares_per_floor = 2;  // half
 /// Simplifies one part or stream (the job's input, or one that it builds) to a ladder, or with
 /// Allocation::uniform to one rung. Where hardly anything is refused to keep the topology, the
 /// ladder ends once there is little enough; else, as it may then have to be given up, it goes down
-/// to half of the even share.
+/// to half of the even share. Where it may have to be given up, the first rung is made before edges
+/// collapse strictly in order, which is when much may be refused: another job can begin there.
 JobOutput simplify_part(const Job& job, const JobContext& context);
 
 }  // namespace meshfarm

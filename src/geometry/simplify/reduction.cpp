@@ -57,6 +57,8 @@ void Reduction::reduce(const SimplifyGoal& goal, const Progress& progress) {
   if (came_to == RankedPasses::End::exhausted && is_healthy(before, goal)) {
     exhausted_cost_ = goal.max_cost;
     mesh_.restore_pieces();
+  } else if (goal.in_passes && !end_.has_begun()) {
+    mesh_.restore_pieces();
   } else if (!is_told && mesh_.is_above(goal.triangles)) {
     if (const auto cost = end_.reduce(goal, progress)) exhausted_cost_ = *cost;
   }

@@ -88,7 +88,10 @@ struct Simplifier::Impl {
         return static_cast<std::uint64_t>(static_cast<double>(count) * static_cast<double>(before) /
                                           static_cast<double>(all));
       };
-      SimplifyGoal of_single{before - excess / 2, goal.max_cost, share_of(goal.last_triangles), {}};
+      SimplifyGoal of_single{.triangles = before - excess / 2,
+                             .max_cost = goal.max_cost,
+                             .last_triangles = share_of(goal.last_triangles),
+                             .in_passes = goal.in_passes};
       for (const std::uint64_t count : goal.keep_at) of_single.keep_at.push_back(share_of(count));
       reduction->reduce(of_single, [&](std::uint64_t left) {
         goes_on = !progress || progress(all - std::min(all, 2 * (before - left)));
@@ -124,7 +127,7 @@ struct Simplifier::Impl {
   Dropped dropped;
   double paid = 0;  // before the reduction
   std::optional<SheetPairs> pairs;
-  SimplifyGoal asked{.triangles = UINT64_MAX, .max_cost = -1, .last_triangles = 0, .keep_at = {}};
+  SimplifyGoal asked{.triangles = UINT64_MAX, .max_cost = -1};
   mutable std::optional<Mesh> both;
 };
 

@@ -273,11 +273,13 @@ TEST_CASE("a result holds bytes beside its mesh, and its summary tells where") {
   CHECK_THROWS_AS(decode_result(file, 0, "result"), DataError);
   ResultSummary summary{writer.rungs()};
   CHECK_FALSE(decode_summary(encode_summary(summary), "s").built.has_value());
-  summary.built = BuiltFacts{10, 11, 2, 3, 4, 5};
+  summary.built = BuiltFacts{10, 11, 2, 12, 3, 4, 5, 6};
   const auto back = decode_summary(encode_summary(summary), "s").built;
   REQUIRE(back.has_value());
   CHECK(back->boundary_vertices == 2);
-  CHECK(back->coincident_corners == 5);
+  CHECK(back->shared_triangles == 12);
+  CHECK(back->shared_boundary == 3);
+  CHECK(back->coincident_corners == 6);
   summary.built->boundary_vertices = 12;
   CHECK_THROWS_AS(decode_summary(encode_summary(summary), "s"), DataError);
 }

@@ -36,7 +36,7 @@ Manifest manifest_of(std::uint32_t parts, std::uint64_t triangles_each) {
 
 AcceptedJob accepted(const Job& job, std::vector<Rung> rungs) {
   return {key_of(job),
-          {{to_string(ResultName{key_of(job).value, 1, 1}), 1, 1},
+          {{to_string(ResultName{key_of(job).value, 1, 1}), 1, key_of(job).value},
            encode_summary({std::move(rungs), 0, 0})}};
 }
 
@@ -201,7 +201,10 @@ TEST_CASE("where others would pay for the topology, all are asked for again with
   REQUIRE(again.size() == 2);
   for (std::size_t p = 0; p < 2; ++p) {
     CHECK(topology_of(again[p]) == TopologyMode::simplify);
-    CHECK(again[p].inputs == jobs[p].inputs);
+    // From where its first job had begun to refuse anything.
+    CHECK(again[p].inputs == std::vector{done[p].output.file});
+    CHECK(again[p].sections.size() == 3);
+    CHECK(decode_parameters(again[p].parameters).from_level == 10);
     CHECK(decode_parameters(again[p].parameters).start_triangles ==
           decode_parameters(jobs[p].parameters).start_triangles);
     CHECK(key_of(again[p]) != key_of(jobs[p]));
@@ -212,6 +215,7 @@ TEST_CASE("where others would pay for the topology, all are asked for again with
   const std::vector<Job> finer = source(done);
   REQUIRE(finer.size() == 1);
   CHECK(finer[0].inputs == jobs[1].inputs);
+  CHECK_FALSE(decode_parameters(finer[0].parameters).from_level);
   CHECK(topology_of(finer[0]) == TopologyMode::simplify);
   done.push_back(accepted(finer[0], {rung(6, 40'000), rung(20, 3000)}));
   CHECK(source(done).empty());
@@ -458,7 +462,7 @@ TEST_CASE("parameters come back; damaged ones are refused") {
     CHECK_THROWS_AS(decode_parameters(std::string_view(bytes).substr(0, i)), DataError);
   }
   CHECK_THROWS_AS(decode_parameters(bytes + "x"), DataError);
-  CHECK_THROWS_AS(decode_parameters("\x09" + bytes.substr(1)), DataError);
+  CHECK_THROWS_AS(decode_parameters("\x0a" + bytes.substr(1)), DataError);
   // The topology stands last but for the two numbers of appearances, what is said of labels, and
   // that there is nothing to build.
   std::string other = bytes;
@@ -473,4 +477,16 @@ TEST_CASE("parameters come back; damaged ones are refused") {
   other = bytes;
   other[bytes.size() - 3] = static_cast<char>(0xff);
   CHECK_THROWS_AS(decode_parameters(other), DataError);
+}
+
+TEST_CASE("parameters of a job that begins at a rung come back; damaged ones are refused") {
+  SimplifyParameters p;
+  p.from_level = -7;
+  const std::string bytes = encode_parameters(p);
+  CHECK(decode_parameters(bytes).from_level == -7);
+  CHECK_FALSE(decode_parameters(bytes).build);
+  for (std::size_t i = 0; i < bytes.size(); ++i) {
+    CHECK_THROWS_AS(decode_parameters(std::string_view(bytes).substr(0, i)), DataError);
+  }
+  CHECK_THROWS_AS(decode_parameters(bytes + "x"), DataError);
 }

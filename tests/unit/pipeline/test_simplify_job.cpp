@@ -1,0 +1,126 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#include <string>
+#include <vector>
+
+#include <doctest/doctest.h>
+
+#include <meshfarm/geometry/topology.hpp>
+#include <meshfarm/io/part_file.hpp>
+#include <meshfarm/io/result_file.hpp>
+#include <meshfarm/pipeline/simplify_job.hpp>
+#include <meshfarm/staging/stage.hpp>
+#include <meshfarm/util/errors.hpp>
+
+#include "pipeline/rung_input.hpp"
+#include "support/meshes.hpp"
+#include "support/temp_folder.hpp"
+
+using namespace meshfarm;
+
+namespace {
+
+constexpr std::uint32_t k_boundary = 12;
+
+/// So many spheres in a row, and more of them than the goals leave triangles for.
+Part part_of_spheres(int count) {
+  Part part;
+  for (int i = 0; i < count; ++i) {
+    Mesh sphere = test::icosphere(2);
+    for (Vec3& p : sphere.positions) p = p * (1 + 0.02 * i) + Vec3{4.0 * i, 0, 0};
+    test::append(part.mesh, sphere);
+  }
+  part.boundary_vertices = k_boundary;
+  part.positions = PositionType::float32;
+  for (Vec3& p : part.mesh.positions) p = rounded(p, part.positions);
+  return part;
+}
+
+SimplifyParameters parameters_of(TopologyMode topology) {
+  SimplifyParameters parameters;
+  parameters.start_triangles = 400;
+  parameters.share_triangles = 100;
+  parameters.samples = 500;
+  parameters.cost_unit = cost_unit(100);
+  parameters.lines.topology = topology;
+  return parameters;
+}
+
+struct ClimbedPart {
+  FileRef file;
+  ResultSummary summary;
+
+  explicit ClimbedPart(const JobOutput& output)
+      : file(output.file), summary(decode_summary(output.summary, "summary")) {}
+  const Rung& first() const { return summary.rungs.front(); }
+  const Rung& last() const { return summary.rungs.back(); }
+};
+
+class ClimbBench {
+ public:
+  explicit ClimbBench(const Part& part) : stage_(Stage::create(folder_.path())) {
+    part_ = stage_.publish(PartName{0}, encode_part(part));
+  }
+
+  ClimbedPart climb(TopologyMode topology) const {
+    return do_job(
+        {std::string(k_simplify_kind), {part_}, encode_parameters(parameters_of(topology))});
+  }
+  ClimbedPart climb_on(const ClimbedPart& from, TopologyMode topology) const {
+    SimplifyParameters parameters = parameters_of(topology);
+    parameters.from_level = from.first().level;
+    Job job;
+    job.kind = k_simplify_kind;
+    add_rung_input({.file = from.file, .place = place_of(from.summary, 0)}, true, job);
+    job.parameters = encode_parameters(parameters);
+    return do_job(job);
+  }
+  ResultMesh mesh_of(const ClimbedPart& done, std::size_t rung) const {
+    return decode_result(stage_.read(done.file), rung, "result");
+  }
+
+ private:
+  ClimbedPart do_job(const Job& job) const {
+    return ClimbedPart(simplify_part(job, {stage_, 1, 7, [](std::uint64_t) { return true; }}));
+  }
+
+  test::TempFolder folder_;
+  Stage stage_;
+  FileRef part_;
+};
+
+}  // namespace
+
+TEST_CASE("a ladder that may have to give up its topology begins where nothing was refused") {
+  const ClimbBench bench(part_of_spheres(60));
+  const ClimbedPart kept = bench.climb(TopologyMode::keep_while_fair);
+  const ClimbedPart simplified = bench.climb(TopologyMode::simplify);
+  CHECK(kept.summary.held_by_topology);
+  // 60 pieces of four triangles are the least there can be.
+  CHECK(kept.last().triangles >= 240);
+  CHECK(simplified.last().triangles < 100);
+  CHECK(measure_topology(bench.mesh_of(kept, 0).mesh).components == 60);
+  // From there on another job goes as far as from the part itself.
+  const ClimbedPart on = bench.climb_on(kept, TopologyMode::simplify);
+  CHECK(on.first().triangles <= kept.first().triangles);
+  CHECK(on.last().triangles <= simplified.last().triangles + 4);
+  for (std::size_t i = 1; i < on.summary.rungs.size(); ++i) {
+    CHECK(on.summary.rungs[i].level > on.summary.rungs[i - 1].level);
+  }
+}
+
+TEST_CASE("what begins at a rung has the part's boundary vertices and points") {
+  const ClimbBench bench(part_of_spheres(60));
+  const ClimbedPart kept = bench.climb(TopologyMode::keep_while_fair);
+  const ClimbedPart on = bench.climb_on(kept, TopologyMode::simplify);
+  const ResultMesh from = bench.mesh_of(kept, 0);
+  const ResultMesh to = bench.mesh_of(on, on.summary.rungs.size() - 1);
+  CHECK(to.boundary_vertices == k_boundary);
+  for (std::uint32_t v = 0; v < k_boundary; ++v) {
+    CHECK(to.mesh.positions[v] == from.mesh.positions[v]);
+  }
+  REQUIRE(to.samples.size() == 1);
+  CHECK(to.samples[0].area == from.samples[0].area);
+  CHECK(to.samples[0].points == from.samples[0].points);
+  CHECK_THROWS_AS(bench.mesh_of(on, on.summary.rungs.size()), DataError);
+}
