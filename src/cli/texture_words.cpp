@@ -64,6 +64,10 @@ void tell_textures(const Manifest& manifest, const RunOptions& run) {
   if (made == TextureMode::keep && floor > target && !(run.error.value > 0)) {
     log_warning(manifest.input + ": " + needed + ", " + std::to_string(target) +
                 " are asked for; with --uv bake that number is met");
+  } else if (made == TextureMode::drop && chooses_uvs(run.channels) &&
+             run.textures != TextureMode::drop) {
+    log_warning(manifest.input + ": its texture coordinates are left out: " + needed +
+                ", and it has no pictures to make a new one of");
   } else if (made == TextureMode::bake && run.textures == TextureMode::automatic) {
     log_info(manifest.input + ": a new texture is made: " + needed);
   }

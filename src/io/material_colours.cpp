@@ -121,6 +121,7 @@ class MaterialColours::Impl {
   }
 
   Linear at(Label label, Uv uv, double texels) const {
+    if (label >= materials_.size()) return {1, 1, 1};
     const Material& material = materials_[label];
     const PictureLevels* const picture = picture_at(label);
     Linear colour{1, 1, 1};
@@ -160,7 +161,7 @@ class MaterialColours::Impl {
   }
 
   const PictureLevels* picture_at(Label label) const {
-    const std::size_t picture = picture_of_[label];
+    const std::size_t picture = label < picture_of_.size() ? picture_of_[label] : SIZE_MAX;
     return picture < pictures_.size() ? pictures_[picture].get() : nullptr;
   }
 

@@ -40,7 +40,7 @@ std::uint64_t memory_of_bake(const Manifest& manifest) {
 }
 
 bool bakes_texture(const Manifest& manifest, const RunOptions& options) {
-  return manifest.uvs && manifest.labels && chosen_textures(manifest, options) == TextureMode::bake;
+  return chosen_textures(manifest, options) == TextureMode::bake;
 }
 
 void BakeStage::begin(JobGraph& graph, const ChosenRungs& chosen) {

@@ -25,6 +25,16 @@ bool has_pictures(const LabelMeaning& labels) {
                      [](const Material& material) { return !material.maps.empty(); });
 }
 
+/// Whether there is something that a new picture could show.
+bool has_colour_pictures(const Manifest& manifest) {
+  if (!manifest.labels) return false;
+  const std::vector<Material>& materials = manifest.labels->materials;
+  return std::any_of(materials.begin(), materials.end(), [](const Material& material) {
+    return std::any_of(material.maps.begin(), material.maps.end(),
+                       [](const MaterialMap& map) { return map.use == MapUse::colour; });
+  });
+}
+
 constexpr std::uint8_t k_border = 1;     // is preserved
 constexpr std::uint8_t k_crossings = 2;  // are avoided
 
@@ -89,10 +99,14 @@ std::uint64_t texture_floor(const Manifest& manifest) {
 
 TextureMode chosen_textures(const Manifest& manifest, const RunOptions& options) {
   if (!manifest.uvs || !chooses_uvs(options.channels)) return TextureMode::drop;
-  if (options.textures != TextureMode::automatic) return options.textures;
-  const bool is_met =
-      options.error.value > 0 || texture_floor(manifest) <= asked_triangles(manifest, options);
-  return is_met ? TextureMode::keep : TextureMode::bake;
+  TextureMode chosen = options.textures;
+  if (chosen == TextureMode::automatic) {
+    const bool is_met =
+        options.error.value > 0 || texture_floor(manifest) <= asked_triangles(manifest, options);
+    chosen = is_met ? TextureMode::keep : TextureMode::bake;
+  }
+  const bool bakes_nothing = chosen == TextureMode::bake && !has_colour_pictures(manifest);
+  return bakes_nothing ? TextureMode::drop : chosen;
 }
 
 LineOptions lines_of(const Manifest& manifest, const RunOptions& options) {

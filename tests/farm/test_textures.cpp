@@ -171,3 +171,34 @@ TEST_CASE("a stage that was cut with textures is not one without") {
   CHECK(other.code == 1);
   CHECK(has(other.err, "other options"));
 }
+
+TEST_CASE("texture coordinates without a picture go where their charts cannot be kept") {
+  Model model;
+  constexpr int k_side = 40;
+  std::ofstream ply(model.path("m.ply"));
+  ply << "ply\nformat ascii 1.0\nelement vertex " << k_side * k_side
+      << "\nproperty float x\nproperty float y\nproperty float z\nelement face "
+      << (k_side - 1) * (k_side - 1)
+      << "\nproperty list uchar int vertex_indices\nproperty list uchar float texcoord\n"
+         "property uchar material_index\nend_header\n";
+  for (int i = 0; i < k_side * k_side; ++i) {
+    ply << i % k_side << " " << i / k_side << " " << 0.1 * (i * i % 11) << "\n";
+  }
+  // Each square is a chart of its own.
+  for (int y = 1; y < k_side; ++y) {
+    for (int x = 1; x < k_side; ++x) {
+      const int a = y * k_side + x;
+      ply << "4 " << a - k_side - 1 << " " << a - k_side << " " << a << " " << a - 1
+          << " 8 0 0 0.5 0 0.5 0.5 0 0.5 " << x * 3 / k_side << "\n";
+    }
+  }
+  ply.close();
+  for (const std::string uv : {"auto", "bake"}) {
+    const Ran ran = model.run({"simplify", model.path("m.ply"), "-o", model.path(uv + ".ply"),
+                               "--ratio", "0.1", "--workers", "1", "--uv", uv});
+    CHECK(ran.code == 0);
+    CHECK(has(ran.err, "it has no pictures to make a new one of"));
+    CHECK(has(ran.out, "textures         not kept"));
+    CHECK(has(ran.out, "labels           material_index: numbers"));
+  }
+}

@@ -105,3 +105,24 @@ TEST_CASE("textures are kept where the number of triangles allows it, else baked
   manifest.uvs = false;
   CHECK(made({.ratio = 0.5}) == TextureMode::drop);
 }
+
+TEST_CASE("where there are no pictures of colours, no new one is made") {
+  Manifest manifest;
+  manifest.input_triangles = 10'000;
+  manifest.uvs = true;
+  manifest.uv_floor = 1'000;
+  const auto made = [&](RunOptions run) { return chosen_textures(manifest, run); };
+  const auto check_none = [&] {
+    CHECK(made({.ratio = 0.5}) == TextureMode::keep);
+    CHECK(made({.ratio = 0.01}) == TextureMode::drop);
+    CHECK(made({.ratio = 0.5, .textures = TextureMode::bake}) == TextureMode::drop);
+  };
+  check_none();
+  manifest.labels = LabelMeaning{"material_index", {}};
+  check_none();
+  CHECK(chosen_labels(manifest, {.ratio = 0.01}));
+  Material material{.name = "skin"};
+  material.maps = {{MapUse::normal, 0}};
+  manifest.labels = LabelMeaning{"material", {material}};
+  check_none();
+}
