@@ -49,7 +49,8 @@ class LadderBuilder {
         simplifier_(std::move(part.mesh), {.locked_vertices = part.boundary_vertices,
                                            .positions = part.positions,
                                            .lines = parameters.lines,
-                                           .was_simplified = parameters.from_level.has_value()}),
+                                           .was_simplified = parameters.from_level.has_value(),
+                                           .in_order = begins_in_order()}),
         result_(
             vertices_, [this](std::string_view bytes) { file_ += bytes; }, beside) {}
 
@@ -98,6 +99,10 @@ class LadderBuilder {
     return reached();
   }
 
+  /// Where the rung is finer than what was asked for: there the passes had come to their end.
+  bool begins_in_order() const {
+    return parameters_.from_level && input_triangles_ > parameters_.start_triangles;
+  }
   bool may_give_up_topology() const {
     return parameters_.lines.topology == TopologyMode::keep_while_fair;
   }

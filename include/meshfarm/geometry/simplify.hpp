@@ -89,6 +89,8 @@ struct SimplifyOptions {
   /// The mesh, or most of it, comes from a simplifier: far from the goal, too, edges are taken by
   /// their cost, as nearest neighbours are not worth merging any more.
   bool was_simplified = false;
+  /// Edges collapse strictly in order from the start, as if passes had come to their end.
+  bool in_order = false;
   /// Where not null: collapses that would take the surface farther from this one than it allows are
   /// refused. It must outlive the simplifier.
   const SurfaceBound* bound = nullptr;
@@ -108,7 +110,7 @@ struct SimplifyGoal {
   /// About how many triangles will be left when all goals that follow are met; 0: none follows.
   /// The farther the end, the less care a collapse needs.
   std::uint64_t last_triangles = 0;
-  /// Stop where edges would begin to collapse strictly in order.
+  /// Stop where edges would begin to collapse strictly in order; the next goal begins with that.
   bool in_passes = false;
   /// Falling counts: the mesh is kept as it was when no more than so many triangles were left, if
   /// edges collapsed strictly in order by then, and dropped again when those left are far fewer. No

@@ -202,16 +202,29 @@ void GeneralJudge::add_lines(const End& end, const End& other, Vec3 at) {
   quadric_.add(planes, at);
 }
 
+/// To one of the ends.
+bool GeneralJudge::may_go_to(Vec3 x) const {
+  return star_.lost_area_from(0, staying_, x, {.turn = Turn::wide}).has_value();
+}
+
 Collapse GeneralJudge::at_position(Vec3 position, Turn turn) const {
   const Vec3 x = position - middle_;
   const std::optional<double> lost = star_.lost_area_from(0, staying_, x, {.turn = turn});
   if (!lost) return {};
   const double lost_cost = quadric_.cost_of_lost_area(*lost);
-  const double planes = quadric_.cost(x);
+  const double planes = std::max(quadric_.cost(x), cost_of_past(x));
   Collapse collapse{removed_, position, 0, false};
   collapse.cost = std::max(planes, changes_ ? lost_cost * k_loss_of_change : lost_cost);
   collapse.certain = std::max(planes, lost_cost);
   return collapse;
+}
+
+/// Where sheets meet everywhere, what is outermost has fewest triangles, and would always be the
+/// cheapest to draw back: by a little each time, as far as what is left now can tell.
+double GeneralJudge::cost_of_past(Vec3 x) const {
+  if (state_.past.empty()) return 0;
+  return quadric_.cost_of_past(state_.past[a_.vertex].cost(x + half_) +
+                               state_.past[b_.vertex].cost(x - half_));
 }
 
 /// The vertices that are used no more if nothing is left at the two ends.
@@ -271,6 +284,8 @@ GeneralCollapse GeneralJudge::judge(std::uint32_t a, std::uint32_t b,
     return result;
   }
   add_star(half_);
+  // Of most that are refused this is why, and what planes cost along singular edges takes longer.
+  if (a_.rank == 2 && b_.rank == 2 && !may_go_to(half_ * -1.0) && !may_go_to(half_)) return result;
   add_lines(a_, b_, half_ * -1.0);
   add_lines(b_, a_, half_);
   result.collapse = state_.has_uvs() ? best_with_uvs() : best_of_positions();
@@ -286,8 +301,9 @@ Collapse GeneralJudge::best_of_positions() {
     if (best.triangles > 0) return best;
   }
   const bool a_first = quadric_.cost(half_ * -1.0) <= quadric_.cost(half_);
-  const Collapse first = at_position(a_first ? at_a : at_b, Turn::narrow);
-  return first.triangles > 0 ? first : at_position(a_first ? at_b : at_a, Turn::narrow);
+  const Turn turn = a_.rank < 2 ? Turn::narrow : Turn::wide;
+  const Collapse first = at_position(a_first ? at_a : at_b, turn);
+  return first.triangles > 0 ? first : at_position(a_first ? at_b : at_a, turn);
 }
 
 /// Only at the ends, wherever they are: what is rare may be less good.

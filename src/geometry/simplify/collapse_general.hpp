@@ -68,7 +68,9 @@ class GeneralJudge {
   void add_lines(const End& end, const End& other, Vec3 at);
   Collapse best_of_positions();
   Collapse best_with_uvs();
+  bool may_go_to(Vec3 x) const;
   Collapse at_position(Vec3 position, Turn turn) const;
+  double cost_of_past(Vec3 x) const;
   Collapse removal();
   void list_removed();
 

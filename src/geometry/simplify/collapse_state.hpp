@@ -9,6 +9,7 @@
 
 #include "geometry/simplify/adjacency.hpp"
 #include "geometry/simplify/appearance_star.hpp"
+#include "geometry/simplify/quadric.hpp"
 #include "geometry/simplify/simplify_lines.hpp"
 
 namespace meshfarm {
@@ -24,6 +25,7 @@ struct CollapseState {
   std::span<Appearance> appearances;    // empty where they do not count
   AppearanceScale appearance_scale;
   double uv_scale = 0;  // LineOptions::uv_scale
+  std::span<const PastPlanes> past = {};  // of vertices that are k_complex; empty: of none
 
   /// Those of a triangle's corners, from the one at the vertex on.
   AppearanceStar::Values values_at(std::uint32_t vertex, const Corner& c) const {

@@ -75,6 +75,23 @@ inline void add_line_plane(Quadric& quadric, Vec3 triangle_normal, Vec3 edge, do
     quadric.add(n, weight * k_weight * squared_length(edge) / scale);
 }
 
+/// The planes that the stars of some vertices had, about the place of the one that they became: x
+/// costs x'Ax - 2 b'x + c (Garland & Heckbert 1997).
+struct PastPlanes {
+  Quadric a;
+  Vec3 b;
+  double c = 0;
+
+  double cost(Vec3 x) const { return dot(a * x - b * 2.0, x) + c; }
+  /// About the point x.
+  PastPlanes about(Vec3 x) const {
+    return {a, b - a * x, cost(x)};
+  }
+  friend PastPlanes operator+(const PastPlanes& p, const PastPlanes& q) {
+    return {p.a + q.a, p.b + q.b, p.c + q.c};
+  }
+};
+
 /// The planes round an edge, about its middle: x costs x'Ax - 2 b'x + c.
 struct EdgeQuadric {
   Quadric a;
@@ -127,6 +144,8 @@ struct EdgeQuadric {
 
   /// The sum of weight x squared distance; differences of rounding count as none.
   double cost(Vec3 x) const { return unless_noise(dot(a * x - b * 2.0, x) + c); }
+  /// What other planes cost; as of these no noise.
+  double cost_of_past(double cost) const { return unless_noise(cost); }
 
   /// Planes are endless and do not see a thin spike or tube draw back: only its tiny tip moves away
   /// from its planes. The area that is lost tells. Nor do they see the rim of a wall without

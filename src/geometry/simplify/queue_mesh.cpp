@@ -101,6 +101,7 @@ std::uint32_t CollapseQueue::add_copy(std::uint32_t vertex) {
     mesh_.appearances.push_back(appearance);
   }
   target_.push_back(copy);
+  if (!past_.empty()) past_.emplace_back();
   refused_.push_back(0);
   looks_.push_back(0);
   stale_.push_back(1);

@@ -33,6 +33,7 @@ Reduction::Reduction(Mesh input, const SimplifyOptions& options)
       topology_(chosen_topology(options)),
       bound_(options.bound),
       may_be_rough_(!mesh_.seam_only() && bound_ == nullptr && !options.was_simplified),
+      in_order_(options.in_order),
       passes_(mesh_, bound_),
       end_(mesh_, topology_, bound_) {}
 
@@ -49,7 +50,7 @@ void Reduction::reduce(const SimplifyGoal& goal, const Progress& progress) {
   const std::uint64_t before = mesh_.triangles();
   auto came_to = RankedPasses::End::near;
   const bool is_used_up = bound_ != nullptr && bound_->options().is_used_up;
-  if (!end_.has_begun() && !is_used_up) {
+  if (!end_.has_begun() && !in_order_ && !is_used_up) {
     const bool goes_on = reduce_roughly(goal, progress);
     came_to = goes_on ? passes_.reduce(goal, progress) : RankedPasses::End::told;
   }
@@ -58,6 +59,7 @@ void Reduction::reduce(const SimplifyGoal& goal, const Progress& progress) {
     exhausted_cost_ = goal.max_cost;
     mesh_.restore_pieces();
   } else if (goal.in_passes && !end_.has_begun()) {
+    in_order_ = came_to != RankedPasses::End::told;
     mesh_.restore_pieces();
   } else if (!is_told && mesh_.is_above(goal.triangles)) {
     if (const auto cost = end_.reduce(goal, progress)) exhausted_cost_ = *cost;

@@ -83,11 +83,28 @@ void CollapseQueue::start(std::span<const Triangle> triangles) {
   looks_.assign(vertices, 0);
   stale_.assign(vertices, 0);
   heap_.clear();
+  remember_planes();
   ranking_.begin_pass({mesh_.positions, triangles, mesh_.flags, &mesh_.adjacency,
                        &mesh_.creases.test(), mesh_.seam_only, true, mesh_.any_topology, true,
                        mesh_.appearances, mesh_.appearance_scale, mesh_.uv_scale});
   judge_.move_to(state());
   general_.move_to(state());
+}
+
+/// Those of complex vertices, if there are any.
+void CollapseQueue::remember_planes() {
+  constexpr double k_of_corner = 1.0;
+  past_.clear();
+  for (std::uint32_t v = 0; v < target_.size(); ++v) {
+    if ((mesh_.flags[v] & k_complex) == 0) continue;
+    past_.resize(target_.size());
+    for (const Corner& c : mesh_.adjacency.at(v)) {
+      const Vec3 at = mesh_.positions[v];
+      const Vec3 normal = cross(mesh_.positions[c.next] - at, mesh_.positions[c.prev] - at);
+      const double twice_area = length(normal);
+      if (twice_area > 0) past_[v].a.add(normal, 0.5 * k_of_corner / twice_area);
+    }
+  }
 }
 
 /// The cheapest share of all edges, but those of a limit above the last one at least.
@@ -144,7 +161,7 @@ void CollapseQueue::drop_next() {
 CollapseState CollapseQueue::state() {
   return {mesh_.positions, mesh_.flags,           target_,           &mesh_.adjacency,
           mesh_.type,      &mesh_.creases.test(), mesh_.appearances, mesh_.appearance_scale,
-          mesh_.uv_scale};
+          mesh_.uv_scale,  past_};
 }
 
 Collapse CollapseQueue::judge(std::uint32_t a, std::uint32_t b, std::uint64_t most_triangles) {
@@ -345,6 +362,10 @@ void CollapseQueue::merge(std::uint32_t a, std::uint32_t b, const Collapse& coll
   if (mesh_.adjacency.has_uvs()) {
     merge_wedges(columns.wedges, mesh_.adjacency.fan_at(a).ids, mesh_.adjacency.fan_at(b).ids,
                  mesh_.columns.uvs);
+  }
+  if (!past_.empty()) {
+    past_[a] = past_[a].about(collapse.position - mesh_.positions[a]) +
+               past_[b].about(collapse.position - mesh_.positions[b]);
   }
   join_stars(a, b);
   target_[b] = a;

@@ -103,6 +103,7 @@ class CollapseQueue {
  private:
   enum class Stop : std::uint8_t { met, nothing_left, held, told };
 
+  void remember_planes();
   void rank(double share);
   Stop run(const SimplifyGoal& goal, const Progress& progress);
   bool is_hopeless() const;
@@ -139,6 +140,7 @@ class CollapseQueue {
   CrossingGuard* crossings_ = nullptr;
   SmallPieces* pieces_ = nullptr;
   std::vector<std::uint32_t> target_;  // the vertex that a vertex has become
+  std::vector<PastPlanes> past_;       // CollapseState::past
   std::vector<std::uint8_t> refused_;  // an edge at the vertex was refused since it last changed
   // How often the edges at a vertex were ranked anew. Only increases, so that an entry is out of
   // date if the sum of its ends' has changed.

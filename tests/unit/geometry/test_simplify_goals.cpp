@@ -5,6 +5,7 @@
 
 #include <doctest/doctest.h>
 
+#include <meshfarm/geometry/distance.hpp>
 #include <meshfarm/geometry/simplify.hpp>
 #include <meshfarm/geometry/topology.hpp>
 
@@ -144,5 +145,46 @@ TEST_CASE("a large piece does not give up a corner for the last two triangles") 
     CHECK(std::count_if(points.begin(), points.end(), [](Vec3 p) {
             return (p.x == 0 || p.x == 10) && (p.y == 0 || p.y == 10);
           }) == 8);
+  }
+}
+
+namespace {
+
+/// A cube of so many cells a side, with all walls between them.
+Mesh cells(std::uint32_t side) {
+  Mesh mesh;
+  const std::uint32_t row = side + 1;
+  for (std::uint32_t i = 0; i < row * row * row; ++i) {
+    mesh.positions.push_back({1.0 * (i % row), 1.0 * (i / row % row), 1.0 * (i / (row * row))});
+  }
+  const std::array<std::uint32_t, 3> steps = {1, row, row * row};
+  for (std::uint32_t v = 0; v < mesh.positions.size(); ++v) {
+    for (int axis = 0; axis < 3; ++axis) {
+      const int other = (axis + 1) % 3;
+      if (mesh.positions[v][axis] == side || mesh.positions[v][other] == side) continue;
+      const std::uint32_t a = v + steps[static_cast<std::size_t>(axis)];
+      const std::uint32_t b = v + steps[static_cast<std::size_t>(other)];
+      mesh.triangles.push_back({v, a, a + b - v});
+      mesh.triangles.push_back({v, a + b - v, b});
+    }
+  }
+  return mesh;
+}
+
+}  // namespace
+
+TEST_CASE("a block of cells is not drawn back from its sides until little of it is left") {
+  const Mesh block = cells(8);
+  for (const double ratio : {0.5, 0.2}) {
+    CAPTURE(ratio);
+    const auto goal =
+        static_cast<std::uint64_t>(ratio * static_cast<double>(block.triangles.size()));
+    Simplifier simplifier(block, {.lines = {.topology = TopologyMode::simplify}});
+    simplifier.reduce({.triangles = goal});
+    CHECK(simplifier.triangles() <= goal + 1);
+    CHECK(simplifier.triangles() + goal / 1000 + 1 >= goal);
+    const Distance lost = measure_distance(block, simplifier.mesh(), {.samples = 20'000});
+    CHECK(lost.rms < 0.7);
+    CHECK(lost.max < 3.5);
   }
 }
