@@ -175,7 +175,7 @@ class PieceMeter {
     std::vector<DistanceMeter::Points> sets;
     std::size_t first = 0;
     for (const std::size_t count : counts) {
-      sets.push_back(std::span(points).subspan(first, count));
+      sets.emplace_back(std::span(points).subspan(first, count));
       first += count;
     }
     points_.to_output.resize(points.size());

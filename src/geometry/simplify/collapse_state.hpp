@@ -24,7 +24,7 @@ struct CollapseState {
   const CreaseTest* creases = nullptr;  // where vertices are flagged as on creases
   std::span<Appearance> appearances;    // empty where they do not count
   AppearanceScale appearance_scale;
-  double uv_scale = 0;  // LineOptions::uv_scale
+  double uv_scale = 0;                    // LineOptions::uv_scale
   std::span<const PastPlanes> past = {};  // of vertices that are k_complex; empty: of none
 
   /// Those of a triangle's corners, from the one at the vertex on.

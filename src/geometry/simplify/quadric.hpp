@@ -84,9 +84,7 @@ struct PastPlanes {
 
   double cost(Vec3 x) const { return dot(a * x - b * 2.0, x) + c; }
   /// About the point x.
-  PastPlanes about(Vec3 x) const {
-    return {a, b - a * x, cost(x)};
-  }
+  PastPlanes about(Vec3 x) const { return {a, b - a * x, cost(x)}; }
   friend PastPlanes operator+(const PastPlanes& p, const PastPlanes& q) {
     return {p.a + q.a, p.b + q.b, p.c + q.c};
   }

@@ -159,9 +159,11 @@ void CollapseQueue::drop_next() {
 }
 
 CollapseState CollapseQueue::state() {
-  return {mesh_.positions, mesh_.flags,           target_,           &mesh_.adjacency,
-          mesh_.type,      &mesh_.creases.test(), mesh_.appearances, mesh_.appearance_scale,
-          mesh_.uv_scale,  past_};
+  return {mesh_.positions,   mesh_.flags,
+          target_,           &mesh_.adjacency,
+          mesh_.type,        &mesh_.creases.test(),
+          mesh_.appearances, mesh_.appearance_scale,
+          mesh_.uv_scale,    past_};
 }
 
 Collapse CollapseQueue::judge(std::uint32_t a, std::uint32_t b, std::uint64_t most_triangles) {
