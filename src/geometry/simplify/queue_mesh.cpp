@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
 //
-// What the queue does to keep its mesh tidy, and how it hands it out.
+// What the queue knows of its mesh, does to keep it tidy, and how it hands it out.
 #include <algorithm>
 
 #include <meshfarm/geometry/vertices.hpp>
@@ -24,6 +24,29 @@ void append_turned(const TriangleColumnsView& from, CornerId id, TriangleColumns
 }
 
 }  // namespace
+
+bool CollapseQueue::has_free_border() const {
+  for (std::uint32_t v = 0; v < target_.size(); ++v) {
+    if ((mesh_.flags[v] & (k_border | k_fixed)) == k_border && !is_gone(v)) return true;
+  }
+  return false;
+}
+
+/// Those of complex vertices, if there are any.
+void CollapseQueue::remember_planes() {
+  constexpr double k_of_corner = 1.0;
+  past_.clear();
+  for (std::uint32_t v = 0; v < target_.size(); ++v) {
+    if ((mesh_.flags[v] & k_complex) == 0) continue;
+    past_.resize(target_.size());
+    for (const Corner& c : mesh_.adjacency.at(v)) {
+      const Vec3 at = mesh_.positions[v];
+      const Vec3 normal = cross(mesh_.positions[c.next] - at, mesh_.positions[c.prev] - at);
+      const double twice_area = length(normal);
+      if (twice_area > 0) past_[v].a.add(normal, 0.5 * k_of_corner / twice_area);
+    }
+  }
+}
 
 /// After a collapse that may have left fans other than before: drops triangles that have become
 /// equal, and takes vertices apart that hold several fans.

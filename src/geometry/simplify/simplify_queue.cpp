@@ -91,22 +91,6 @@ void CollapseQueue::start(std::span<const Triangle> triangles) {
   general_.move_to(state());
 }
 
-/// Those of complex vertices, if there are any.
-void CollapseQueue::remember_planes() {
-  constexpr double k_of_corner = 1.0;
-  past_.clear();
-  for (std::uint32_t v = 0; v < target_.size(); ++v) {
-    if ((mesh_.flags[v] & k_complex) == 0) continue;
-    past_.resize(target_.size());
-    for (const Corner& c : mesh_.adjacency.at(v)) {
-      const Vec3 at = mesh_.positions[v];
-      const Vec3 normal = cross(mesh_.positions[c.next] - at, mesh_.positions[c.prev] - at);
-      const double twice_area = length(normal);
-      if (twice_area > 0) past_[v].a.add(normal, 0.5 * k_of_corner / twice_area);
-    }
-  }
-}
-
 /// The cheapest share of all edges, but those of a limit above the last one at least.
 void CollapseQueue::rank(double share) {
   for (std::uint32_t v = 0; v < target_.size(); ++v) refresh(v);
@@ -128,13 +112,6 @@ void CollapseQueue::refresh(std::uint32_t vertex) {
   if (stale_[vertex] == 0) return;
   ranking_.refresh(vertex);
   stale_[vertex] = 0;
-}
-
-bool CollapseQueue::has_free_border() const {
-  for (std::uint32_t v = 0; v < target_.size(); ++v) {
-    if ((mesh_.flags[v] & (k_border | k_fixed)) == k_border && !is_gone(v)) return true;
-  }
-  return false;
 }
 
 void CollapseQueue::push(const RankedEdge& edge) {

@@ -35,7 +35,9 @@ TEST_CASE("the sink needs about what was measured") {
 TEST_CASE("the sink needs more for a large picture that it puts together") {
   Manifest manifest = manifest_with(1'000'000);
   manifest.uvs = true;
-  manifest.labels = {"material", {{.name = "skin"}}};
+  Material skin{.name = "skin"};
+  skin.maps = {{MapUse::colour, 0}};
+  manifest.labels = LabelMeaning{"material", {skin}};
   const auto bytes = [&](TextureMode textures, std::uint32_t side) {
     return sink_need(manifest, {.ratio = 0.01, .textures = textures, .texture_size = side})->bytes;
   };
