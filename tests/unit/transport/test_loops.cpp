@@ -207,7 +207,7 @@ TEST_CASE("a job that hangs is taken from its worker, which is told to end its p
   std::string why;
   const JobFunction hangs = [&](const Job&, const JobContext&) -> JobOutput {
     begun = true;
-    while (!ended) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    while (!ended) std::this_thread::sleep_for(std::chrono::milliseconds(50));
     throw IncompleteError("the test lets it go");
   };
   std::vector<std::string> summaries;
