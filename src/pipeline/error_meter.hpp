@@ -25,8 +25,7 @@ struct ErrorPoints {
   std::uint64_t by_area = 20'000;            // of the result
   std::uint64_t vertices = 10'000;           // of the result, at most, and as many middles of sides
   std::uint64_t input_vertices = 1'000'000;  // at most
-  std::uint64_t input_sides =
-      30'000;  // the middles of sides count where there are no more vertices
+  std::uint64_t input_sides = 30'000;        // middles count too if there are no more vertices
 };
 
 /// For a bound on the error, which is one on the maximum.

@@ -123,7 +123,8 @@ struct SimplifyGoal {
 /// without a heap, near it strictly in order of their cost.
 ///
 /// Needs about 50 bytes a triangle beside the mesh, 70 if the goal is near the input's count; where
-/// crossings are avoided 80 more in thin walls and near the goal, and as much in sheets with twins.
+/// more than two sheets meet anywhere 40 more near the goal; where crossings are avoided 80 more in
+/// thin walls and near the goal, and as much in sheets with twins.
 ///
 /// The input may be dirty: degenerate and duplicate triangles are dropped and counted; vertices on
 /// non-manifold edges merge along these. No triangle flips, none becomes degenerate.
