@@ -267,7 +267,12 @@ SimplifyParameters decode_parameters(std::string_view bytes) {
   parameters.lines = get_lines(in);
   const auto source = in.get<PartSource>();
   if (source > PartSource::rung) in.fail("impossible part");
-  if (source == PartSource::rung) parameters.from_level = in.get<std::int32_t>();
+  if (source == PartSource::rung) {
+    parameters.from_level = in.get<std::int32_t>();
+    if (*parameters.from_level < k_input_level || *parameters.from_level > k_top_level) {
+      in.fail("impossible level");
+    }
+  }
   if (source == PartSource::bundles) parameters.build = get_part_to_build(in);
   in.expect_end();
   return parameters;

@@ -1,5 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
+#include <cstdint>
+
 #include <doctest/doctest.h>
 
 #include <meshfarm/pipeline/budget.hpp>
@@ -481,10 +483,14 @@ TEST_CASE("parameters come back; damaged ones are refused") {
 
 TEST_CASE("parameters of a job that begins at a rung come back; damaged ones are refused") {
   SimplifyParameters p;
-  p.from_level = -7;
+  p.from_level = 7;
   const std::string bytes = encode_parameters(p);
-  CHECK(decode_parameters(bytes).from_level == -7);
+  CHECK(decode_parameters(bytes).from_level == 7);
   CHECK_FALSE(decode_parameters(bytes).build);
+  for (const std::int32_t level : {-2, 53, INT32_MAX}) {
+    p.from_level = level;
+    CHECK_THROWS_AS(decode_parameters(encode_parameters(p)), DataError);
+  }
   for (std::size_t i = 0; i < bytes.size(); ++i) {
     CHECK_THROWS_AS(decode_parameters(std::string_view(bytes).substr(0, i)), DataError);
   }
