@@ -110,7 +110,8 @@ struct SimplifyGoal {
   /// About how many triangles will be left when all goals that follow are met; 0: none follows.
   /// The farther the end, the less care a collapse needs.
   std::uint64_t last_triangles = 0;
-  /// Stop where edges would begin to collapse strictly in order; the next goal begins with that.
+  /// Stop where edges would begin to collapse strictly in order. If that is before the goal, the
+  /// next one begins with it.
   bool in_passes = false;
   /// Falling counts: the mesh is kept as it was when no more than so many triangles were left, if
   /// edges collapsed strictly in order by then, and dropped again when those left are far fewer. No

@@ -59,7 +59,7 @@ void Reduction::reduce(const SimplifyGoal& goal, const Progress& progress) {
     exhausted_cost_ = goal.max_cost;
     mesh_.restore_pieces();
   } else if (goal.in_passes && !end_.has_begun()) {
-    in_order_ = came_to != RankedPasses::End::told;
+    in_order_ = came_to != RankedPasses::End::told && mesh_.is_above(goal.triangles);
     mesh_.restore_pieces();
   } else if (!is_told && mesh_.is_above(goal.triangles)) {
     if (const auto cost = end_.reduce(goal, progress)) exhausted_cost_ = *cost;

@@ -98,6 +98,18 @@ TEST_CASE("edges round thin tubes that are refused are no reason to stop") {
   CHECK(measure_topology(simplifier.mesh()).euler == 0);
 }
 
+TEST_CASE("a goal for passes that is met changes nothing") {
+  Mesh torus = test::torus(120, 80);
+  Simplifier plain(torus, {.lines = {.topology = TopologyMode::keep_while_fair}});
+  Simplifier stopped(torus, {.lines = {.topology = TopologyMode::keep_while_fair}});
+  plain.reduce({.triangles = 4'000, .last_triangles = 200});
+  stopped.reduce({.triangles = 4'000, .last_triangles = 200, .in_passes = true});
+  CHECK(stopped.triangles() <= 4'000);
+  for (Simplifier* each : {&plain, &stopped}) each->reduce({.triangles = 500});
+  CHECK(plain.mesh().positions == stopped.mesh().positions);
+  CHECK(plain.mesh().triangles == stopped.mesh().triangles);
+}
+
 TEST_CASE("it is told where the topology refuses much") {
   Mesh specks;
   for (int i = 0; i < 2000; ++i) {
