@@ -81,8 +81,7 @@ class Bvh {
   void set_leaf_boxes(Node& node) const;
   void set_inner_boxes(Node& node) const;
   /// Nearest first, until what was found is near enough. What is farther than the query's limit at
-  /// the begin is never looked at.
-  /// `distance(triangle)`: what counts of one, squared.
+  /// the begin is never looked at. `distance(triangle)`: what counts of one, squared.
   template <class Distance>
   void search(Query& query, double enough, const Distance& distance) const;
   double squared_to(Vec3 p, std::uint32_t triangle) const;

@@ -9,6 +9,7 @@
 
 #include <meshfarm/geometry/distance.hpp>
 #include <meshfarm/geometry/point_meter.hpp>
+#include <meshfarm/geometry/vertices.hpp>
 #include <meshfarm/pipeline/piece_jobs.hpp>
 #include <meshfarm/util/byte_lists.hpp>
 #include <meshfarm/util/errors.hpp>
@@ -48,14 +49,6 @@ double squared_distance(const Vec3& p, const Box& box) {
   const Vec3 d = {beyond(p.x, box.lo.x, box.hi.x), beyond(p.y, box.lo.y, box.hi.y),
                   beyond(p.z, box.lo.z, box.hi.z)};
   return dot(d, d);
-}
-
-void append(const Mesh& more, Mesh& to) {
-  const auto first = static_cast<std::uint32_t>(to.positions.size());
-  to.positions.insert(to.positions.end(), more.positions.begin(), more.positions.end());
-  for (const auto& [a, b, c] : more.triangles) {
-    to.triangles.push_back({first + a, first + b, first + c});
-  }
 }
 
 /// Some of the points of several pieces, and where they stand.
@@ -118,7 +111,10 @@ class PieceMeter {
       : parameters_(parameters), context_(context) {
     surface_ = read_mesh({parameters.mesh, parameters.gap});
     triangle_size_ = spacing_of(surface_);
-    for (const SeamSurface& each : parameters.seams) append(read_mesh(each), surface_);
+    for (const SeamSurface& each : parameters.seams) {
+      const Mesh seam = read_mesh(each);
+      append_surface(seam.positions, seam.triangles, surface_);
+    }
     if (!surface_.triangles.empty()) to_surface_.emplace(surface_, 1);
   }
 

@@ -22,12 +22,11 @@ namespace meshfarm {
 namespace {
 
 // Version 9: allocation u8 | start u64 | even share u64 | end u64 | samples u64 | cost unit f64 |
-// greatest error f64 | certified error f64 | lines (run_options.hpp) | source u8 | where it
-// is built: part u32 | ratio f64 | headroom f64 | end f64 | all triangles u64 | all samples u64 |
-// bundles (bundle_list.hpp) | where it is a rung: level i32.
+// greatest error f64 | certified error f64 | lines (run_options.hpp) | source u8 | of a rung: level
+// i32 | of what is built: part u32 | ratio f64 | headroom f64 | end f64 | all triangles u64 | all
+// samples u64 | bundles (bundle_list.hpp).
 // Version 4 knew no appearances and labels, version 5 nothing to build, version 6 no certified
-// error, version 7 no end, version 8
-// no rung.
+// error, version 7 no end, version 8 no rung.
 constexpr std::uint8_t k_climb_version = 9;
 constexpr std::uint64_t k_most_climb_samples = 100'000'000;
 constexpr std::int32_t k_top_level = 52;

@@ -223,7 +223,7 @@ Collapse GeneralJudge::at_position(Vec3 position, Turn turn) const {
 /// cheapest to draw back: by a little each time, as far as what is left now can tell.
 double GeneralJudge::cost_of_past(Vec3 x) const {
   if (state_.past.empty()) return 0;
-  return quadric_.cost_of_past(state_.past[a_.vertex].cost(x + half_) +
+  return quadric_.unless_noise(state_.past[a_.vertex].cost(x + half_) +
                                state_.past[b_.vertex].cost(x - half_));
 }
 

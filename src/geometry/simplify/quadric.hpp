@@ -142,8 +142,10 @@ struct EdgeQuadric {
 
   /// The sum of weight x squared distance; differences of rounding count as none.
   double cost(Vec3 x) const { return unless_noise(dot(a * x - b * 2.0, x) + c); }
-  /// What other planes cost; as of these no noise.
-  double cost_of_past(double cost) const { return unless_noise(cost); }
+  /// A cost that is no more than differences of rounding is none.
+  double unless_noise(double value) const {
+    return value > 1e-14 * a.trace() * squared_length ? value : 0.0;
+  }
 
   /// Planes are endless and do not see a thin spike or tube draw back: only its tiny tip moves away
   /// from its planes. The area that is lost tells. Nor do they see the rim of a wall without
@@ -158,9 +160,6 @@ struct EdgeQuadric {
 
  private:
   double ridge() const { return 1e-5 * a.trace(); }
-  double unless_noise(double value) const {
-    return value > 1e-14 * a.trace() * squared_length ? value : 0.0;
-  }
 };
 
 }  // namespace meshfarm

@@ -34,7 +34,6 @@ bool CollapseQueue::has_free_border() const {
 
 /// Those of complex vertices, if there are any.
 void CollapseQueue::remember_planes() {
-  constexpr double k_of_corner = 1.0;
   past_.clear();
   for (std::uint32_t v = 0; v < target_.size(); ++v) {
     if ((mesh_.flags[v] & k_complex) == 0) continue;
@@ -43,7 +42,7 @@ void CollapseQueue::remember_planes() {
       const Vec3 at = mesh_.positions[v];
       const Vec3 normal = cross(mesh_.positions[c.next] - at, mesh_.positions[c.prev] - at);
       const double twice_area = length(normal);
-      if (twice_area > 0) past_[v].a.add(normal, 0.5 * k_of_corner / twice_area);
+      if (twice_area > 0) past_[v].a.add(normal, 0.5 / twice_area);
     }
   }
 }
