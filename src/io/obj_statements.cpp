@@ -179,8 +179,10 @@ bool is_obj_file(const InputFile& file) {
   const std::string_view start = stream->window(ByteStream::k_max_window_bytes);
   if (!is_text(start)) return false;
   TextScanner scanner(start, line_end_of(start));
-  if (!scanner.next_value()) return has_extension(file, ".obj");
-  return is_obj_statement(scanner.word()) && scanner.has_value();
+  const bool is_named_so = has_extension(file, ".obj");
+  if (!scanner.next_value()) return is_named_so;
+  // A group of no name is a line of one letter: too little to tell without the file's name.
+  return is_obj_statement(scanner.word()) && (scanner.has_value() || is_named_so);
 }
 
 }  // namespace meshfarm

@@ -198,6 +198,15 @@ TEST_CASE("an OBJ statement may be longer than a block") {
   CHECK(mesh.triangles == std::vector<Triangle>{{0, 1, 2}, {0, 2, 3}});
 }
 
+TEST_CASE("a named OBJ may begin with a group of no name") {
+  const TempFolder folder;
+  const std::string text = "# by hand\n\ng\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+  write_file(folder / "m.obj", text);
+  CHECK(read_path(folder / "m.obj").mesh.triangles.size() == 1);
+  write_file(folder / "m", text);
+  CHECK_THROWS_AS(read_path(folder / "m"), DataError);
+}
+
 TEST_CASE("a named OBJ may be empty") {
   const TempFolder folder;
   write_file(folder / "m.obj", "# nothing\n");
