@@ -44,6 +44,7 @@ struct TargetOptions {
   std::string uv = "auto";
   std::string normals = "blend";
   std::string weight;
+  std::string ratio;
   std::string error;
   std::string drop_components;
   std::string allocation = "threshold";

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include <charconv>
 #include <cmath>
+#include <optional>
 
 #include <meshfarm/util/errors.hpp>
 
@@ -16,18 +17,41 @@ namespace {
 constexpr std::string_view k_here = "here";
 constexpr std::string_view k_boundary = "boundary";
 
+/// Of a whole, as in "0.5%", or as it is.
+struct Number {
+  double value = 0;
+  bool is_percent = false;
+};
+
+/// Nothing if the text is no number, or one below 0.
+std::optional<Number> parse_number(const std::string& text) {
+  Number number;
+  number.is_percent = text.ends_with('%');
+  const char* last = text.data() + text.size() - (number.is_percent ? 1 : 0);
+  const auto [end, error] = std::from_chars(text.data(), last, number.value);
+  if (error != std::errc{} || end != last || !(number.value >= 0) || !std::isfinite(number.value)) {
+    return std::nullopt;
+  }
+  if (number.is_percent) number.value /= 100;
+  return number;
+}
+
 /// "0.5%": of the diagonal; "2.5": in the mesh's unit.
 Length parse_length(const std::string& text, std::string_view option) {
-  Length length;
-  length.of_diagonal = text.ends_with('%');
-  const char* last = text.data() + text.size() - (length.of_diagonal ? 1 : 0);
-  const auto [end, error] = std::from_chars(text.data(), last, length.value);
-  if (error != std::errc{} || end != last || !(length.value >= 0) || !std::isfinite(length.value)) {
+  const std::optional<Number> number = parse_number(text);
+  if (!number) {
     throw UsageError(std::string(option) +
                      " takes a length in the mesh's unit, or a share of the diagonal as in 0.5%");
   }
-  if (length.of_diagonal) length.value /= 100;
-  return length;
+  return {number->value, number->is_percent};
+}
+
+double parse_ratio(const std::string& text) {
+  const std::optional<Number> number = parse_number(text);
+  if (!number || !(number->value > 0 && number->value <= 1)) {
+    throw UsageError("--ratio takes a share above 0 and not above 1, as in 0.01 or 1%");
+  }
+  return number->value;
 }
 
 /// Pieces that are left out are far from all that stays.
@@ -43,8 +67,8 @@ void check_certify(const RunOptions& run) {
 }  // namespace
 
 void TargetOptions::add(po::options_description& options) {
-  options.add_options()("ratio", po::value(&run.ratio)->value_name("R"),
-                        "share of the input's triangles to keep, for example 0.01")(
+  options.add_options()("ratio", po::value(&ratio)->value_name("R"),
+                        "share of the input's triangles to keep, for example 0.01 or 1%")(
       "triangles", po::value(&run.triangles)->value_name("N"), "number of triangles to keep")(
       "error", po::value(&error)->value_name("LENGTH"),
       "keep as few triangles as stay within this distance of the input, measured at sampled "
@@ -103,11 +127,9 @@ void TargetOptions::add_attributes(po::options_description& options) {
 
 void TargetOptions::check() {
   const int given =
-      (run.ratio != 0 ? 1 : 0) + (run.triangles != 0 ? 1 : 0) + (error.empty() ? 0 : 1);
+      (ratio.empty() ? 0 : 1) + (run.triangles != 0 ? 1 : 0) + (error.empty() ? 0 : 1);
   if (given != 1) throw UsageError("give one of --ratio, --triangles and --error, above 0");
-  if (run.ratio != 0 && !(run.ratio > 0 && run.ratio <= 1)) {
-    throw UsageError("--ratio must be above 0 and not above 1");
-  }
+  if (!ratio.empty()) run.ratio = parse_ratio(ratio);
   if (!error.empty()) {
     run.error = parse_length(error, "--error");
     if (!(run.error.value > 0)) throw UsageError("--error must be above 0");

@@ -78,10 +78,14 @@ TEST_CASE("a target is one of a ratio, a count and an error") {
   CHECK(target_of({"--ratio", "0.25"}).run.ratio == 0.25);
   CHECK(target_of({"--triangles", "12"}).run.triangles == 12);
   CHECK(target_of({"--ratio", "1"}).run.ratio == 1);
+  CHECK(target_of({"--ratio", "12.5%"}).run.ratio == 0.125);
   const Words wrong[] = {{},
                          {"--ratio", "0.1", "--triangles", "5"},
                          {"--ratio", "0.1", "--error", "1"},
                          {"--ratio", "1.01"},
+                         {"--ratio", "101%"},
+                         {"--ratio", "0%"},
+                         {"--ratio", "%"},
                          {"--ratio", "-0.1"},
                          {"--ratio", "nan"},
                          {"--error", "0"},
