@@ -65,10 +65,6 @@ std::uint64_t most_at_once(std::uint64_t excess, std::uint64_t goal) {
   return is_near ? excess + most_fewer(goal) : excess;
 }
 
-bool is_later(const QueuedEdge& x, const QueuedEdge& y) {
-  return x.is_later(y);
-}
-
 }  // namespace
 
 CollapseQueue::CollapseQueue(const QueuedMesh& mesh, EdgeRanking& ranking)
@@ -116,23 +112,22 @@ void CollapseQueue::refresh(std::uint32_t vertex) {
 
 void CollapseQueue::push(const RankedEdge& edge) {
   if (edge.key > limit_) return;
-  heap_.emplace_back(edge, stamp_of(edge.a, edge.b));
-  std::push_heap(heap_.begin(), heap_.end(), is_later);
+  heap_.emplace(edge, stamp_of(edge.a, edge.b));
 }
 
 const QueuedEdge* CollapseQueue::next() const {
   const bool ranked = next_first_ < first_.size();
   if (heap_.empty()) return ranked ? &first_[next_first_] : nullptr;
-  return ranked && !first_[next_first_].is_later(heap_[0]) ? &first_[next_first_] : heap_.data();
+  const QueuedEdge& top = heap_.top();
+  return ranked && !first_[next_first_].is_later(top) ? &first_[next_first_] : &top;
 }
 
 void CollapseQueue::drop_next() {
-  if (next() != heap_.data()) {
+  if (heap_.empty() || next() != &heap_.top()) {
     ++next_first_;
     return;
   }
-  std::pop_heap(heap_.begin(), heap_.end(), is_later);
-  heap_.pop_back();
+  heap_.pop();
 }
 
 CollapseState CollapseQueue::state() {

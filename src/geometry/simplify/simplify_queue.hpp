@@ -9,6 +9,8 @@
 #include <utility>
 #include <vector>
 
+#include <boost/heap/d_ary_heap.hpp>
+
 #include <meshfarm/geometry/mesh.hpp>
 #include <meshfarm/geometry/simplify.hpp>
 
@@ -39,6 +41,14 @@ struct QueuedEdge {
     return order != other.order ? order > other.order : b > other.b;
   }
 };
+
+struct IsLater {
+  bool operator()(const QueuedEdge& x, const QueuedEdge& y) const { return x.is_later(y); }
+};
+/// The cheapest on top. Most entries have been replaced by others before their turn, and what is
+/// taken off goes down a heap of two children twice as far.
+using QueuedEdges =
+    boost::heap::d_ary_heap<QueuedEdge, boost::heap::arity<4>, boost::heap::compare<IsLater>>;
 
 /// A mesh that a queue of edges works on; the queue changes all of it.
 struct QueuedMesh {
@@ -150,7 +160,7 @@ class CollapseQueue {
   std::uint64_t ranked_at_ = 0;      // triangles left when all edges were ranked
   std::vector<QueuedEdge> first_;    // as ranked at the start, cheapest first
   std::size_t next_first_ = 0;
-  std::vector<QueuedEdge> heap_;  // those that came later
+  QueuedEdges heap_;  // those that came later
   CollapseJudge judge_;
   GeneralJudge general_;
   FanSplitter splitter_;
