@@ -157,6 +157,10 @@ struct EdgeQuadric {
     constexpr double k_of_gained = 0.2;
     return unless_noise((area > 0 ? k_of_lost : -k_of_gained) * area * squared_length);
   }
+  /// How much of that cost is not charged, where planes cost `planes`: a surface that bends evenly
+  /// loses area wherever it is simplified, and what that costs its planes tell. Charged in full,
+  /// CAD and bodies have 5 % more error. Twice as much of it spared costs thin bridges 5 %.
+  static double area_cost_of_bends(double planes) { return 2.4 * planes; }
 
  private:
   double ridge() const { return 1e-5 * a.trace(); }
