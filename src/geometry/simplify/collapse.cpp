@@ -21,10 +21,6 @@ constexpr double k_next_to_nothing = 0.01;
 // Of triangles round an edge.
 constexpr std::uint32_t k_few_pairs = 3;
 
-// What turns a triangle by more than 60 degrees costs so many times as much. With 1 a CAD town has
-// 4.7 times the error at 0.3 %, with 8 plates keep more of their small holes.
-constexpr double k_loss_of_far_turn = 4;
-
 // The neighbour of an open ring that no triangle begins at.
 template <typename Ring>
 std::uint32_t last_neighbour(const Ring& ring) {

@@ -3,6 +3,7 @@
 #include "geometry/simplify/collapse_general.hpp"
 
 #include <algorithm>
+#include <array>
 #include <iterator>
 
 #include "geometry/simplify/vertex_flags.hpp"
@@ -301,9 +302,25 @@ Collapse GeneralJudge::best_of_positions() {
     if (best.triangles > 0) return best;
   }
   const bool a_first = quadric_.cost(half_ * -1.0) <= quadric_.cost(half_);
+  const std::array<Vec3, 2> ends = {a_first ? at_a : at_b, a_first ? at_b : at_a};
   const Turn turn = a_.rank < 2 ? Turn::narrow : Turn::wide;
-  const Collapse first = at_position(a_first ? at_a : at_b, turn);
-  return first.triangles > 0 ? first : at_position(a_first ? at_b : at_a, turn);
+  for (const Vec3& end : ends) {
+    const Collapse there = at_position(end, turn);
+    if (there.triangles > 0) return there;
+  }
+  return turned_far(ends);
+}
+
+/// As CollapseJudge does, where every place turns a triangle by more than 60 degrees.
+Collapse GeneralJudge::turned_far(std::span<const Vec3, 2> ends) const {
+  Collapse far;
+  if (a_.rank < 2) far = at_position(rounded(middle_ + quadric_.best(), state_.type), Turn::far);
+  for (std::size_t i = 0; i < ends.size() && far.triangles == 0; ++i) {
+    far = at_position(ends[i], Turn::far);
+  }
+  far.cost *= k_loss_of_far_turn;
+  far.certain *= k_loss_of_far_turn;
+  return far;
 }
 
 /// Only at the ends, wherever they are: what is rare may be less good.
