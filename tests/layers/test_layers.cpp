@@ -31,6 +31,7 @@ struct Package {
 constexpr std::array k_packages{
     Package{"Boost::iostreams", "boost/iostreams/"},
     Package{"Boost::program_options", "boost/program_options"},
+    Package{"Boost::headers", "boost/heap/"},
     Package{"Boost", "boost/"},
     Package{"METIS::METIS", "metis.h"},
     Package{"nanoflann::nanoflann", "nanoflann.hpp"},
