@@ -364,7 +364,7 @@ Collapse CollapseJudge::at_position(Vec3 position, std::uint32_t shared, double 
   if (!(cost <= max_cost)) return {};
   const std::optional<double> lost = star_.lost_area(kept_, x, turn);
   if (!lost) return {};
-  cost = std::max(cost, quadric_.cost_of_lost_area(*lost) - quadric_.area_cost_of_bends(cost));
+  cost = std::max(cost, quadric_.cost_of_lost_area(*lost) - EdgeQuadric::area_cost_of_bends(cost));
   if (!(cost <= max_cost)) return {};
   if (blends_uvs_ && !wedges_.place(x)) return {};
   return {shared, position, cost, false};
