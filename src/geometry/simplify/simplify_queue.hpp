@@ -42,6 +42,7 @@ struct QueuedEdge {
   }
 };
 
+/// For a heap, which has the greatest on top: of two the one that comes later is less.
 struct IsLater {
   bool operator()(const QueuedEdge& x, const QueuedEdge& y) const { return x.is_later(y); }
 };
