@@ -50,7 +50,7 @@ namespace {
 
 constexpr FileKind k_result_magic = {'M', 'F', 'R', 'M'};
 constexpr FileKind k_result_kind = {'R', 'S', 'L', 'T'};
-constexpr std::uint32_t k_result_version = 6;
+constexpr std::uint32_t k_result_version = 7;
 constexpr std::uint32_t k_result_byte_order = 0x01020304;
 constexpr std::uint32_t k_max_rungs = 256;
 constexpr std::uint32_t k_most_in_result_block = 65536;
@@ -66,6 +66,7 @@ void put_rungs(ByteWriter& out, const std::vector<Rung>& rungs) {
     out.put(rung.free_triangles);
     out.put(rung.error);
     out.put(rung.section);
+    out.put(rung.refused);
   }
 }
 
@@ -81,6 +82,7 @@ std::vector<Rung> get_rungs(ByteReader& in) {
     rung.free_triangles = in.get<std::uint64_t>();
     rung.error = in.get<double>();
     rung.section = in.get<FileSection>();
+    rung.refused = in.get<std::uint64_t>();
     if (!std::isfinite(rung.error) || rung.error < 0) in.fail("impossible error");
     if (rung.free_triangles > rung.triangles) in.fail("more free triangles than triangles");
     if (i > 0 && (rung.level <= rungs.back().level || rung.triangles > rungs.back().triangles)) {
@@ -338,16 +340,17 @@ void ResultWriter::add(VertexView vertices, std::span<const Triangle> triangles,
   }
 }
 
-void ResultWriter::end_rung(std::int32_t level, std::uint64_t free_triangles, double error) {
+void ResultWriter::end_rung(std::int32_t level, std::uint64_t free_triangles, double error,
+                            std::uint64_t refused) {
   rungs_.push_back({level, vertices_.boundary + rung_.vertices, rung_.triangles, free_triangles,
-                    error, end_section()});
+                    error, end_section(), refused});
   rung_ = {};
 }
 
 void ResultWriter::add_rung(std::int32_t level, const Mesh& mesh, std::uint64_t free_triangles,
-                            double error) {
+                            double error, std::uint64_t refused) {
   add(VertexView(mesh).part(vertices_.boundary), mesh.triangles, mesh.columns);
-  end_rung(level, free_triangles, error);
+  end_rung(level, free_triangles, error, refused);
 }
 
 void ResultWriter::finish(const VertexView& boundary, std::span<const SurfaceSamples> samples) {

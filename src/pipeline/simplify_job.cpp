@@ -120,12 +120,14 @@ class LadderBuilder {
     }
   }
 
-  /// Whether the next rung would have less than what is wanted, and nothing is in doubt: it is not
-  /// made, and nor are those after it. Where much is locked counts fall anyhow.
+  /// Whether the next rung would have less than what is wanted: it is not made, and nor are those
+  /// after it. Where much is locked counts fall anyhow. Where the topology is kept at any cost some
+  /// parts may have to make up for others.
   bool is_enough(std::uint64_t floor) const {
     const std::uint64_t left = simplifier_.triangles();
+    const bool may_be_stuck = parameters_.lines.topology == TopologyMode::keep;
     return left > floor && left <= parameters_.end_triangles &&
-           !simplifier_.is_slowed_by_topology() &&
+           !(may_be_stuck && simplifier_.is_slowed_by_topology()) &&
            static_cast<double>(simplifier_.free_triangles()) >
                k_mostly_free * static_cast<double>(left);
   }
@@ -141,7 +143,8 @@ class LadderBuilder {
 
   /// Keeps the mesh as it is as a rung.
   void snapshot(std::int32_t level) {
-    result_.add_rung(level, simplifier_.mesh(), simplifier_.free_triangles());
+    result_.add_rung(level, simplifier_.mesh(), simplifier_.free_triangles(), 0,
+                     simplifier_.refused_by_topology());
   }
 
   std::vector<SurfaceSamples> samples_;  // of the part as it came

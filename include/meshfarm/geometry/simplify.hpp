@@ -165,7 +165,10 @@ class Simplifier {
   bool pairs_sheets() const;
   /// Whether it stopped as TopologyMode::keep_while_fair says.
   bool is_held_by_topology() const;
-  /// Whether more was refused to keep the topology than collapsed, of what was done in order.
+  /// How often an edge was refused to keep the topology, of what was done in order. One may be
+  /// again and again.
+  std::uint64_t refused_by_topology() const;
+  /// Whether that is more than what collapsed.
   bool is_hampered_by_topology() const;
   /// Whether of what the last reduce() tried one edge in a hundred or more was refused to keep the
   /// topology, or edges collapse in order by now, of which is_hampered_by_topology() tells.

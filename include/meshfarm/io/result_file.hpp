@@ -26,6 +26,7 @@ struct Rung {
   std::uint64_t free_triangles = 0;  // those without a locked vertex
   double error = 0;                  // greatest distance from the samples, where it was measured
   FileSection section = {};          // of its result
+  std::uint64_t refused = 0;         // Simplifier::refused_by_topology(), up to here
 };
 
 /// What is known of a part that was built and simplified by one job: what PartEntry tells, and what
@@ -87,10 +88,11 @@ class ResultWriter {
   /// of the rung's vertices, those to come included; with the columns that the mesh has.
   void add(VertexView vertices, std::span<const Triangle> triangles,
            const TriangleColumnsView& columns = {});
-  void end_rung(std::int32_t level, std::uint64_t free_triangles, double error = 0);
+  void end_rung(std::int32_t level, std::uint64_t free_triangles, double error = 0,
+                std::uint64_t refused = 0);
   /// A whole rung: the mesh's first vertices are the boundary vertices.
   void add_rung(std::int32_t level, const Mesh& mesh, std::uint64_t free_triangles,
-                double error = 0);
+                double error = 0, std::uint64_t refused = 0);
   /// Samples: points of the part as it came, by which the error of the final mesh is measured.
   void finish(const VertexView& boundary, std::span<const SurfaceSamples> samples);
 

@@ -3,7 +3,10 @@
 #include "geometry/simplify/ordered_end.hpp"
 
 #include <algorithm>
+#include <atomic>
+#include <chrono>
 #include <cmath>
+#include <future>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -26,8 +29,9 @@ constexpr double k_fair_distance = 1.2;
 constexpr std::uint64_t k_fair_samples = 10'000;
 // Once it is found fair, it is thought of again when so much of the triangles is left.
 constexpr double k_decided = 0.8;
-// With fewer refusals a collapse it is not even tried.
-constexpr double k_costly = 0.25;
+// With fewer refusals a collapse it is not even tried: to keep the topology cost 1.0 to 1.2 times as
+// much then.
+constexpr double k_costly = 0.75;
 // With a bound, so much must be gained at least.
 constexpr double k_worth = 0.8;
 
@@ -104,6 +108,33 @@ struct OrderedEnd::Trial {
   std::optional<CrossingGuard> crossings;
 };
 
+/// What the same goal takes without keeping the topology, found beside the caller's own work.
+struct OrderedEnd::Rival {
+  /// All must outlive it; none may change.
+  Rival(const WorkingMesh& mesh, const SurfaceBound* bound, const SimplifyGoal& goal)
+      : done(std::async(std::launch::async, [this, &mesh, bound, &goal] {
+          trial = std::make_unique<Trial>(mesh, TopologyMode::simplify, bound);
+          trial->queue.reduce(goal, [this](std::uint64_t) { return !stop; });
+        })) {}
+  ~Rival() { stop = true; }
+  Rival(const Rival&) = delete;
+  Rival& operator=(const Rival&) = delete;
+
+  /// Null if progress said stop.
+  std::unique_ptr<Trial> take(const std::function<bool()>& progress) {
+    constexpr std::chrono::milliseconds k_told_every(100);
+    while (done.wait_for(k_told_every) != std::future_status::ready) {
+      if (!progress()) return nullptr;
+    }
+    done.get();
+    return std::move(trial);
+  }
+
+  std::atomic<bool> stop = false;
+  std::unique_ptr<Trial> trial;
+  std::future<void> done;  // the last one: its end is waited for before the others go
+};
+
 OrderedEnd::OrderedEnd(WorkingMesh& mesh, TopologyMode topology, const SurfaceBound* bound)
     : mesh_(mesh), topology_(topology), bound_(bound) {}
 OrderedEnd::~OrderedEnd() = default;
@@ -113,16 +144,26 @@ std::optional<double> OrderedEnd::reduce(const SimplifyGoal& goal,
                                          const std::function<bool(std::uint64_t)>& progress) {
   if (!has_begun()) trial_ = std::make_unique<Trial>(mesh_, topology_, bound_);
   const double paid_before = trial_->queue.paid();
-  bool goes_on = trial_->queue.reduce(goal, progress);
-  if (goes_on && topology_ == TopologyMode::automatic && !simplifies_topology() &&
-      must_decide(goal) && is_costly_to_keep(goal)) {
-    auto other = std::make_unique<Trial>(mesh_, TopologyMode::simplify, bound_);
-    goes_on = other->queue.reduce(goal, progress);
-    if (is_unfair(trial_->queue.paid() - paid_before, other->queue, goal)) {
+  const bool may_give_up = topology_ == TopologyMode::automatic && !simplifies_topology();
+  std::unique_ptr<Rival> rival;
+  const auto tell = [&](std::uint64_t left) { return !progress || progress(left); };
+  bool goes_on = trial_->queue.reduce(goal, [&](std::uint64_t left) {
+    // Else it would have to be done afterwards, alone.
+    if (may_give_up && rival == nullptr && bound_ == nullptr && refuses_much()) {
+      rival = std::make_unique<Rival>(mesh_, bound_, goal);
+    }
+    return tell(left);
+  });
+  if (goes_on && may_give_up && must_decide(goal) && is_costly_to_keep(goal)) {
+    if (rival == nullptr) rival = std::make_unique<Rival>(mesh_, bound_, goal);
+    std::unique_ptr<Trial> other = rival->take([&] { return tell(trial_->queue.triangles()); });
+    goes_on = other != nullptr;
+    if (goes_on && is_unfair(trial_->queue.paid() - paid_before, other->queue, goal)) {
       trial_ = std::move(other);
       taken_ = UINT64_MAX;
     }
   }
+  rival.reset();
   trial_->queue.restore_pieces();
   if (trial_->queue.collapses() != taken_ || mesh_.avoids_crossings()) mesh_.take(trial_->queue);
   taken_ = trial_->queue.collapses();
@@ -143,8 +184,12 @@ bool OrderedEnd::is_held() const {
   return has_begun() && trial_->queue.is_held();
 }
 
+std::uint64_t OrderedEnd::refused_by_topology() const {
+  return has_begun() ? trial_->queue.kept_topology() : 0;
+}
+
 bool OrderedEnd::is_hampered() const {
-  return has_begun() && trial_->queue.kept_topology() > trial_->queue.collapses();
+  return has_begun() && refused_by_topology() > trial_->queue.collapses();
 }
 
 /// Not again for a few collapses more: one that is dear would decide for all.
@@ -164,8 +209,12 @@ bool OrderedEnd::is_costly_to_keep(const SimplifyGoal& goal) const {
   if (bound_ == nullptr && std::isinf(goal.max_cost) && queue.triangles() > goal.triangles + 1) {
     return true;
   }
-  return queue.is_held() || static_cast<double>(queue.kept_topology()) >
-                                k_costly * static_cast<double>(queue.collapses());
+  return queue.is_held() || refuses_much();
+}
+
+bool OrderedEnd::refuses_much() const {
+  return static_cast<double>(refused_by_topology()) >
+         k_costly * static_cast<double>(trial_->queue.collapses());
 }
 
 /// Whether to keep the topology costs much more than to simplify it.

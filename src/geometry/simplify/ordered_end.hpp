@@ -33,12 +33,15 @@ class OrderedEnd {
   std::vector<Mesh> take_kept();
   bool simplifies_topology() const;
   bool is_held() const;
+  std::uint64_t refused_by_topology() const;
   bool is_hampered() const;
 
  private:
   struct Trial;
+  struct Rival;
 
   bool must_decide(const SimplifyGoal& goal);
+  bool refuses_much() const;
   bool is_costly_to_keep(const SimplifyGoal& goal) const;
   bool is_unfair(double paid, const CollapseQueue& other, const SimplifyGoal& goal) const;
 

@@ -170,6 +170,9 @@ bool Simplifier::pairs_sheets() const {
 bool Simplifier::is_hampered_by_topology() const {
   return impl_->reduction->end().is_hampered();
 }
+std::uint64_t Simplifier::refused_by_topology() const {
+  return impl_->reduction->end().refused_by_topology();
+}
 bool Simplifier::is_held_by_topology() const {
   return impl_->reduction->end().is_held();
 }

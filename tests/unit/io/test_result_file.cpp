@@ -179,8 +179,8 @@ TEST_CASE("a rung may be empty") {
 }
 
 TEST_CASE("a summary comes back; a damaged one is refused") {
-  const std::vector<Rung> rungs = {{3, 5, 10, 8, 0.5, {16, 100, 1}},
-                                   {4, 3, 6, 2, 0.75, {116, 50, 2}}};
+  const std::vector<Rung> rungs = {{3, 5, 10, 8, 0.5, {16, 100, 1}, 0},
+                                   {4, 3, 6, 2, 0.75, {116, 50, 2}, 12}};
   for (const bool held : {false, true}) {
     const std::string bytes =
         encode_summary({rungs, 7, 9, held, 11, {}, !held, {166, 9, 3}, {16, 0, 4}});
@@ -193,6 +193,8 @@ TEST_CASE("a summary comes back; a damaged one is refused") {
     REQUIRE(back.rungs.size() == 2);
     CHECK(back.rungs[1].level == 4);
     CHECK(back.rungs[1].free_triangles == 2);
+    CHECK(back.rungs[0].refused == 0);
+    CHECK(back.rungs[1].refused == 12);
     CHECK(place_of(back, 1).rung == FileSection{116, 50, 2});
     CHECK(place_of(back, 1).tail == FileSection{166, 9, 3});
     CHECK(place_of(back, 1).beside == FileSection{16, 0, 4});

@@ -263,6 +263,25 @@ TEST_CASE("parts whose topology leaves more than the target are asked for again 
   CHECK(source(beside(1501)).size() == 2);
 }
 
+TEST_CASE("parts that are refused too much are asked for again without their topology") {
+  const Manifest manifest = manifest_of(2, 100'000);
+  const RunOptions options{.ratio = 0.01};
+  const auto source = next_of(manifest, options);
+  const std::vector<Job> jobs = source({});
+  const auto refused = [&](std::uint64_t triangles, std::uint64_t at_first, std::uint64_t at_last) {
+    std::vector<Rung> ladder = {rung(10, triangles), rung(11, 1000)};
+    ladder[0].refused = at_first;
+    ladder[1].refused = at_last;
+    return std::vector{accepted(jobs[0], ladder), accepted(jobs[1], ladder)};
+  };
+  // As many as are wanted: 1.1 a triangle. What comes later is not asked about.
+  CHECK(source(refused(2000, 2100, 9000)).empty());
+  CHECK(source(refused(2000, 2300, 9000)).size() == 2);
+  // With 1.5 times as many a fifth of that a triangle tells as much.
+  CHECK(source(refused(3000, 600, 9000)).empty());
+  CHECK(source(refused(3000, 700, 9000)).size() == 2);
+}
+
 TEST_CASE("who says what becomes of the topology is asked once") {
   const Manifest manifest = manifest_of(2, 100'000);
   for (const TopologyMode mode : {TopologyMode::keep, TopologyMode::simplify}) {

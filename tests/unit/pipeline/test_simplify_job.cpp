@@ -62,9 +62,10 @@ class ClimbBench {
     part_ = stage_.publish(PartName{0}, encode_part(part));
   }
 
-  ClimbedPart climb(TopologyMode topology) const {
-    return do_job(
-        {std::string(k_simplify_kind), {part_}, encode_parameters(parameters_of(topology))});
+  ClimbedPart climb(TopologyMode topology, std::uint64_t end_triangles = 0) const {
+    SimplifyParameters parameters = parameters_of(topology);
+    parameters.end_triangles = end_triangles;
+    return do_job({std::string(k_simplify_kind), {part_}, encode_parameters(parameters)});
   }
   ClimbedPart climb_on(const ClimbedPart& from, TopologyMode topology) const {
     SimplifyParameters parameters = parameters_of(topology);
@@ -107,6 +108,24 @@ TEST_CASE("a ladder that may have to give up its topology begins where nothing w
   for (std::size_t i = 1; i < on.summary.rungs.size(); ++i) {
     CHECK(on.summary.rungs[i].level > on.summary.rungs[i - 1].level);
   }
+}
+
+TEST_CASE("a ladder ends with what is wanted, unless its topology is kept at any cost") {
+  const ClimbBench bench(part_of_spheres(60));
+  constexpr std::uint64_t k_end = 390;
+  for (const TopologyMode mode : {TopologyMode::keep_while_fair, TopologyMode::simplify}) {
+    const ClimbedPart climbed = bench.climb(mode, k_end);
+    CHECK(climbed.summary.goes_on);
+    REQUIRE(climbed.summary.rungs.size() >= 2);
+    CHECK(climbed.last().triangles <= k_end);
+    CHECK(climbed.summary.rungs[climbed.summary.rungs.size() - 2].triangles > k_end);
+  }
+  const ClimbedPart kept = bench.climb(TopologyMode::keep, k_end);
+  CHECK_FALSE(kept.summary.goes_on);
+  CHECK(kept.last().triangles < 300);
+  // A ladder tells how much was refused for that by each of its rungs.
+  CHECK(kept.last().refused > kept.first().refused);
+  CHECK(bench.climb(TopologyMode::simplify).last().refused == 0);
 }
 
 TEST_CASE("what begins at a rung has the part's boundary vertices and points") {
