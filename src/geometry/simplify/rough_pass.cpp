@@ -21,6 +21,10 @@ constexpr std::uint32_t k_least_vertices = 8192;
 
 // A rough pass spares as many of the costliest vertices as the goal leaves, but at least these.
 constexpr double k_most_rough = 0.97;
+// No vertex merges that costs more than so many times as much as half of those that do. A model of
+// 8 boxes and 260 finely tessellated pieces, whose vertices are all but 3 in a hundred, lost the
+// boxes' shape first.
+constexpr double k_most_above_half = 65'536;
 // And it keeps this far below the goal's own limit, near which the order matters.
 constexpr double k_rough_margin = 8;
 
@@ -144,7 +148,8 @@ std::optional<double> RoughPartners::estimate_limit(CollapseJudge& judge, double
   if (costs.size() < k_least_rough_sample) return {};
   const auto can = std::count_if(costs.begin(), costs.end(), [&](double c) { return c <= most; });
   if (static_cast<double>(can) < k_least_rough_share * static_cast<double>(costs.size())) return {};
-  const double limit = std::min(most, cost_at(costs, share));
+  const double limit =
+      std::min({most, cost_at(costs, share), k_most_above_half * cost_at(costs, share / 2)});
   if (!are_shortest_good(compared, limit)) return {};
   return limit;
 }
