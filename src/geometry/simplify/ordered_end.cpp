@@ -29,8 +29,8 @@ constexpr double k_fair_distance = 1.2;
 constexpr std::uint64_t k_fair_samples = 10'000;
 // Once it is found fair, it is thought of again when so much of the triangles is left.
 constexpr double k_decided = 0.8;
-// With fewer refusals a collapse it is not even tried: to keep the topology cost 1.0 to 1.2 times as
-// much then.
+// With fewer refusals a collapse it is not even tried: to keep the topology cost 1.0 to 1.2 times
+// as much then.
 constexpr double k_costly = 0.75;
 // With a bound, so much must be gained at least.
 constexpr double k_worth = 0.8;

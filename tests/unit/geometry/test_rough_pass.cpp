@@ -71,19 +71,45 @@ TEST_CASE("a rough pass takes border vertices along the border or from inside") 
 }
 
 TEST_CASE("the limit of a rough pass grows with its share") {
-  RoughBench bench(sheet_with_detail());
+  RoughBench bench(wavy_grid(160, 160));
   CollapseJudge judge(bench.state());
   const auto limit = [&](double share, double most = HUGE_VAL) {
     return bench.partners().estimate_limit(judge, share, most);
   };
-  CHECK(limit(0.5) == 0);
+  REQUIRE(limit(0.5).has_value());
   REQUIRE(limit(0.995).has_value());
-  CHECK(*limit(0.995) > 0);
+  CHECK(*limit(0.5) > 0);
+  CHECK(*limit(0.995) > *limit(0.5));
   CHECK(*limit(1) > *limit(0.995));
   CHECK(limit(1, *limit(0.995)) == limit(0.995));
   CHECK(!limit(1, -1).has_value());
   std::fill(bench.touched.begin(), bench.touched.end(), std::uint8_t{1});
   CHECK(!limit(0.5).has_value());
+}
+
+TEST_CASE("a rough pass takes nothing that is far dearer than half of what it takes") {
+  // Where more than half is flat, only what is flat.
+  RoughBench sheet(sheet_with_detail());
+  CollapseJudge judge(sheet.state());
+  for (const double share : {0.5, 0.97, 0.995, 1.0}) {
+    CHECK(sheet.partners().estimate_limit(judge, share, HUGE_VAL) == 0);
+  }
+  // One in thirteen vertices is of a sphere far larger than the first.
+  Mesh mesh = sphere(6);
+  for (Vec3& p : mesh.positions) p = p * 0.01;
+  const Mesh large = sphere(2);
+  constexpr std::uint64_t k_large = 20;
+  for (std::uint64_t i = 0; i < k_large; ++i) {
+    append(mesh, large, {3.0 * static_cast<double>(i + 1), 0, 0});
+  }
+  const std::uint64_t of_large = k_large * large.triangles.size();
+  Simplifier simplifier(mesh, {});
+  simplifier.reduce({.triangles = of_large + 400});
+  const Mesh& result = simplifier.mesh();
+  CHECK(result.triangles.size() == of_large + 400);
+  const auto is_large = [&](const Triangle& t) { return result.positions[t[0]].x > 1; };
+  const auto kept = std::count_if(result.triangles.begin(), result.triangles.end(), is_large);
+  CHECK(static_cast<std::uint64_t>(kept) == of_large);
 }
 
 TEST_CASE("a surface that wants long triangles gets no rough pass") {
