@@ -21,7 +21,11 @@ constexpr double k_fair_excess = 2;
 /// the level that is chosen tells: refusals a triangle rise with about the fourth power of what has
 /// gone. Where keeping the topology turned out to cost more than is fair, it was 1.2 to 5 in six of
 /// seven cases, where it did not up to 0.9.
+/// Not asked of fewer triangles than this: the finish finds out as fast there, and of the last
+/// hundred triangles of a body nearly all collapses were refused, though to keep its limbs was
+/// best.
 constexpr double k_fair_refused = 1.1;
+constexpr double k_least_foreseen = 20'000;
 constexpr double k_power_of_refused = 4;
 
 /// So many triangles are compared with the result, to tell which pieces and handles went.
@@ -142,9 +146,8 @@ bool ClimbStage::is_unfair() const {
     if (!result.goes_on && last.level < results_.level) held += left;
   }
   const auto all = static_cast<double>(results_.free_triangles(results_.level));
-  if (refused * std::pow(all / jobs_.wanted(), k_power_of_refused) > k_fair_refused * all) {
-    return true;
-  }
+  const double foreseen = refused * std::pow(all / jobs_.wanted(), k_power_of_refused);
+  if (jobs_.wanted() >= k_least_foreseen && foreseen > k_fair_refused * all) return true;
   if (any && least > static_cast<double>(jobs_.target())) return true;
   return held > k_fair_share * all || (any && all > k_fair_excess * jobs_.wanted());
 }

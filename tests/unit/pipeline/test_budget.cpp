@@ -265,21 +265,25 @@ TEST_CASE("parts whose topology leaves more than the target are asked for again 
 
 TEST_CASE("parts that are refused too much are asked for again without their topology") {
   const Manifest manifest = manifest_of(2, 100'000);
-  const RunOptions options{.ratio = 0.01};
-  const auto source = next_of(manifest, options);
-  const std::vector<Job> jobs = source({});
-  const auto refused = [&](std::uint64_t triangles, std::uint64_t at_first, std::uint64_t at_last) {
-    std::vector<Rung> ladder = {rung(10, triangles), rung(11, 1000)};
-    ladder[0].refused = at_first;
-    ladder[1].refused = at_last;
-    return std::vector{accepted(jobs[0], ladder), accepted(jobs[1], ladder)};
+  const auto asked_again = [&](double ratio, std::vector<Rung> ladder) {
+    const auto source = next_of(manifest, {.ratio = ratio});
+    const std::vector<Job> jobs = source({});
+    return !source(std::vector{accepted(jobs[0], ladder), accepted(jobs[1], ladder)}).empty();
   };
-  // As many as are wanted: 1.1 a triangle. What comes later is not asked about.
-  CHECK(source(refused(2000, 2100, 9000)).empty());
-  CHECK(source(refused(2000, 2300, 9000)).size() == 2);
+  const auto refused = [](std::uint64_t triangles, std::uint64_t at_first) {
+    std::vector<Rung> ladder = {rung(10, triangles), rung(11, triangles / 4)};
+    ladder[0].refused = at_first;
+    ladder[1].refused = 4 * triangles;  // what comes later is not asked about
+    return ladder;
+  };
+  // 40,000 are wanted before the finish. As many as that: 1.1 a triangle.
+  CHECK_FALSE(asked_again(0.1, refused(20'000, 21'000)));
+  CHECK(asked_again(0.1, refused(20'000, 23'000)));
   // With 1.5 times as many a fifth of that a triangle tells as much.
-  CHECK(source(refused(3000, 600, 9000)).empty());
-  CHECK(source(refused(3000, 700, 9000)).size() == 2);
+  CHECK_FALSE(asked_again(0.1, refused(30'000, 6'000)));
+  CHECK(asked_again(0.1, refused(30'000, 7'000)));
+  // Of few the finish finds out.
+  CHECK_FALSE(asked_again(0.01, refused(2000, 9000)));
 }
 
 TEST_CASE("who says what becomes of the topology is asked once") {
