@@ -30,6 +30,9 @@ struct CornerFan {
   bool differ(std::size_t i, std::size_t k) const {
     return columns != nullptr && are_apart(*columns, ids[i], ids[k]);
   }
+  bool labels_differ(std::size_t i, std::size_t k) const {
+    return columns != nullptr && are_of_two_labels(*columns, ids[i], ids[k]);
+  }
 };
 
 /// The corners at each vertex in one flat array (compressed sparse rows), in triangle order.

@@ -187,11 +187,11 @@ void CollapseJudge::add_lines(const Ring& ring, std::uint32_t vertex, Vec3 end,
   const auto is_other_on_crease = [&](std::uint32_t neighbour) {
     return neighbour != without && (state_.flags[neighbour] & k_crease) != 0;
   };
-  const double weight = crease_weight(state_.adjacency->has_labels());
-  for_creases_of(ring, vertex, at, is_other_on_crease, [&](const Corner& one, const Corner& other) {
-    add(one, one.prev, weight);
-    add(other, one.prev, weight);
-  });
+  for_creases_of(ring, vertex, at, is_other_on_crease,
+                 [&](const Corner& one, const Corner& other, bool is_between_labels) {
+                   add(one, one.prev, crease_weight(is_between_labels));
+                   add(other, one.prev, crease_weight(is_between_labels));
+                 });
   quadric_.add(planes, end);
 }
 
@@ -204,7 +204,7 @@ std::uint32_t CollapseJudge::next_on_line(const Ring& ring, std::uint32_t vertex
     return neighbour != without && (state_.flags[neighbour] & k_crease) != 0;
   };
   for_creases_of(ring, vertex, state_.positions[vertex], is_other_on_crease,
-                 [&](const Corner& one, const Corner&) {
+                 [&](const Corner& one, const Corner&, bool) {
                    found = one.prev;
                    ++count;
                  });

@@ -32,13 +32,15 @@ inline bool is_same(const Uv& a, const Uv& b) {
   return std::bit_cast<std::uint64_t>(a) == std::bit_cast<std::uint64_t>(b);
 }
 
-/// Whether an edge is a line between labels, or a seam of texture coordinates. `ends` is the corner
-/// at one of its ends of the triangle that ends at the edge, `begins` that of the one that begins
-/// there.
+/// Whether an edge is a line between labels. `ends` is the corner at one of its ends of the
+/// triangle that ends at the edge, `begins` that of the one that begins there.
+inline bool are_of_two_labels(const TriangleColumnsView& columns, CornerId ends, CornerId begins) {
+  return !columns.labels.empty() && columns.labels[ends / 3] != columns.labels[begins / 3];
+}
+
+/// Whether it is that, or a seam of texture coordinates.
 inline bool are_apart(const TriangleColumnsView& columns, CornerId ends, CornerId begins) {
-  if (!columns.labels.empty() && columns.labels[ends / 3] != columns.labels[begins / 3]) {
-    return true;
-  }
+  if (are_of_two_labels(columns, ends, begins)) return true;
   if (columns.uvs.empty()) return false;
   return !is_same(uv_of(columns.uvs, ends), uv_of(columns.uvs, begins)) ||
          !is_same(uv_of(columns.uvs, prev_corner(ends)), uv_of(columns.uvs, next_corner(begins)));

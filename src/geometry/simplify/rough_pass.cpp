@@ -121,7 +121,7 @@ std::uint32_t RoughPartners::of(std::uint32_t vertex) const {
     const auto is_on_crease = [&](std::uint32_t end) { return (state.flags[end] & k_crease) != 0; };
     for_crease_edges(state.adjacency->fan_at(vertex), at, state.positions, *state.creases,
                      is_on_crease,
-                     [&](const Corner& one, const Corner&) { consider(one.prev, barred); });
+                     [&](const Corner& one, const Corner&, bool) { consider(one.prev, barred); });
   }
   return nearest;
 }

@@ -46,7 +46,7 @@ void CreaseLines::find(const Mesh& mesh, const Adjacency& adjacency,
     // Of an edge between two vertices each end sees it; one of them is enough.
     const auto is_greater = [v](std::uint32_t end) { return end > v; };
     for_crease_edges(adjacency.fan_at(v), mesh.positions[v], mesh.positions, sharp_, is_greater,
-                     [&](const Corner& one, const Corner&) {
+                     [&](const Corner& one, const Corner&, bool) {
                        flags[v] |= k_crease;
                        flags[one.prev] |= k_crease;
                      });
@@ -69,7 +69,7 @@ std::uint8_t CreaseLines::updated(std::uint32_t vertex, std::span<const Vec3> po
   const auto is_on_crease = [&](std::uint32_t end) { return (flags[end] & k_crease) != 0; };
   int creases = 0;
   for_crease_edges(adjacency.fan_at(vertex), positions[vertex], positions, still_sharp_,
-                   is_on_crease, [&](const Corner&, const Corner&) { ++creases; });
+                   is_on_crease, [&](const Corner&, const Corner&, bool) { ++creases; });
   auto now = static_cast<std::uint8_t>(flags[vertex] & ~(k_crease | k_corner));
   if (creases == 0) return now;
   now |= k_crease;

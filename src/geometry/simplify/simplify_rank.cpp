@@ -137,10 +137,9 @@ void EdgeRanking::add_line_planes(std::uint32_t vertex) {
   if ((flags & k_border) != 0) {
     for_border_edges(fan, [&](const Corner& c, std::uint32_t end) { add(c, end, 1); });
   }
-  const double weight = crease_weight(input_.adjacency->has_labels());
-  for_creases_at(vertex, [&](const Corner& one, const Corner& other) {
-    add(one, one.prev, weight);
-    add(other, one.prev, weight);
+  for_creases_at(vertex, [&](const Corner& one, const Corner& other, bool is_between_labels) {
+    add(one, one.prev, crease_weight(is_between_labels));
+    add(other, one.prev, crease_weight(is_between_labels));
   });
   quadrics_[vertex].add(FloatQuadric(planes));
 }
@@ -213,7 +212,8 @@ void EdgeRanking::list_edges_at(std::uint32_t vertex, std::uint32_t least) {
     if ((flags & k_border) != 0) {
       for_border_edges(fan, [&](const Corner&, std::uint32_t end) { consider(end, barred); });
     }
-    for_creases_at(vertex, [&](const Corner& one, const Corner&) { consider(one.prev, barred); });
+    for_creases_at(vertex,
+                   [&](const Corner& one, const Corner&, bool) { consider(one.prev, barred); });
   }
   listed_count_ = static_cast<std::size_t>(end_of_list - listed_.data());
 }
