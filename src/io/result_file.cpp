@@ -24,7 +24,7 @@
 //   nothing beside; in version 3 the summary did not say whether a ladder goes on; in version 4
 //   triangles were not packed; version 5 had one checksum for all, at its end.
 // The summary that travels with the message:
-//   dropped degenerate u64 | dropped duplicate u64 | held by topology u8 | goes on u8 |
+//   dropped degenerate u64 | dropped duplicate u64 | held by topology u8 | end of the ladder u8 |
 //   turned u64 | rungs as above | where the tail is | where what is beside is | of a part that was
 //   built by the same job: vertices u64 | triangles u64 | boundary vertices u32 |
 //   shared triangles u64 | shared boundary u32 | coincident vertices u64 | dropped degenerate u64 |
@@ -256,7 +256,7 @@ std::string encode_summary(const ResultSummary& summary) {
   out.put(summary.dropped_degenerate);
   out.put(summary.dropped_duplicate);
   out.put(static_cast<std::uint8_t>(summary.held_by_topology ? 1 : 0));
-  out.put(static_cast<std::uint8_t>(summary.goes_on ? 1 : 0));
+  out.put(summary.end);
   out.put(summary.turned);
   put_rungs(out, summary.rungs);
   out.put(summary.tail);
@@ -281,10 +281,9 @@ ResultSummary decode_summary(std::string_view bytes, std::string_view what) {
   summary.dropped_degenerate = in.get<std::uint64_t>();
   summary.dropped_duplicate = in.get<std::uint64_t>();
   const auto held = in.get<std::uint8_t>();
-  const auto goes_on = in.get<std::uint8_t>();
-  if (held > 1 || goes_on > 1) in.fail("impossible summary");
+  summary.end = in.get<LadderEnd>();
+  if (held > 1 || summary.end > LadderEnd::refusals) in.fail("impossible summary");
   summary.held_by_topology = held == 1;
-  summary.goes_on = goes_on == 1;
   summary.turned = in.get<std::uint64_t>();
   summary.rungs = get_rungs(in);
   summary.tail = in.get<FileSection>();

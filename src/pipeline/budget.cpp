@@ -33,6 +33,11 @@ std::uint64_t all_samples(const RunOptions& options) {
   return options.error.value > 0 ? k_bound_samples : k_error_samples;
 }
 
+double refused_by(const Rung& rung, double free_triangles) {
+  const double times = static_cast<double>(rung.free_triangles) / std::max(1.0, free_triangles);
+  return static_cast<double>(rung.refused) * times * times * times * times;
+}
+
 std::uint32_t rung_at(std::span<const Rung> ladder, std::int32_t level) {
   std::uint32_t rung = 0;
   while (rung + 1 < ladder.size() && ladder[rung + 1].level <= level) ++rung;
@@ -41,7 +46,7 @@ std::uint32_t rung_at(std::span<const Rung> ladder, std::int32_t level) {
 
 std::uint64_t free_triangles_at(const ResultSummary& part, std::int32_t level) {
   const Rung& rung = part.rungs[rung_at(part.rungs, level)];
-  if (!part.goes_on || level <= part.rungs.back().level) return rung.free_triangles;
+  if (!part.goes_on() || level <= part.rungs.back().level) return rung.free_triangles;
   auto left = static_cast<double>(rung.free_triangles);
   for (std::int32_t below = rung.level; below < level; ++below) left /= k_level_step;
   return static_cast<std::uint64_t>(left);

@@ -3,8 +3,9 @@
 #include "pipeline/climb_stage.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <utility>
+
+#include <meshfarm/pipeline/budget.hpp>
 
 #include "pipeline/run_stages.hpp"
 
@@ -18,15 +19,9 @@ constexpr double k_more_headroom = 8;
 constexpr double k_fair_share = 0.1;
 constexpr double k_fair_excess = 2;
 /// And so many collapses a triangle are to be refused at most by when the count is met, as far as
-/// the level that is chosen tells: refusals a triangle rise with about the fourth power of what has
-/// gone. Where keeping the topology turned out to cost more than is fair, it was 1.2 to 5 in six of
-/// seven cases, where it did not up to 0.9.
-/// Not asked of fewer triangles than this: the finish finds out as fast there, and of the last
-/// hundred triangles of a body nearly all collapses were refused, though to keep its limbs was
-/// best.
+/// the level that is chosen tells. Where keeping the topology turned out to cost more than is fair,
+/// it was 1.2 to 5 in six of seven cases, where it did not up to 0.9.
 constexpr double k_fair_refused = 1.1;
-constexpr double k_least_foreseen = 20'000;
-constexpr double k_power_of_refused = 4;
 
 /// So many triangles are compared with the result, to tell which pieces and handles went.
 constexpr double k_most_compared = 4e6;
@@ -131,6 +126,7 @@ std::vector<std::uint32_t> ClimbStage::choose_level() {
 /// whether most of what they tried is refused. What is kept at too high a cost before that the
 /// finish finds out.
 bool ClimbStage::is_unfair() const {
+  const auto all = static_cast<double>(results_.free_triangles(results_.level));
   double held = 0;
   double least = 0;
   double refused = 0;
@@ -139,17 +135,27 @@ bool ClimbStage::is_unfair() const {
     const ResultSummary& result = results_.summaries[p];
     const Rung& last = result.rungs.back();
     const auto left = static_cast<double>(last.free_triangles);
-    least += result.goes_on ? std::min(left, jobs_.least_of(p)) : left;
-    refused += static_cast<double>(result.rungs[rung_at(result.rungs, results_.level)].refused);
+    least += result.goes_on() ? std::min(left, jobs_.least_of(p)) : left;
+    refused += refused_in(p, all);
     if (!result.held_by_topology) continue;
     any = true;
-    if (!result.goes_on && last.level < results_.level) held += left;
+    if (!result.goes_on() && last.level < results_.level) held += left;
   }
-  const auto all = static_cast<double>(results_.free_triangles(results_.level));
-  const double foreseen = refused * std::pow(all / jobs_.wanted(), k_power_of_refused);
-  if (jobs_.wanted() >= k_least_foreseen && foreseen > k_fair_refused * all) return true;
+  if (jobs_.foresees() && refused > k_fair_refused * all) return true;
   if (any && least > static_cast<double>(jobs_.target())) return true;
   return held > k_fair_share * all || (any && all > k_fair_excess * jobs_.wanted());
+}
+
+/// By when all parts together, which have `all` free triangles at the common level, have what is
+/// wanted.
+double ClimbStage::refused_in(std::uint32_t part, double all) const {
+  const ResultSummary& result = results_.summaries[part];
+  const Rung& rung = result.rungs[rung_at(result.rungs, results_.level)];
+  // What is below the end of other ladders is too little to tell from.
+  const std::uint64_t left = result.end == LadderEnd::refusals
+                                 ? free_triangles_at(result, results_.level)
+                                 : rung.free_triangles;
+  return refused_by(rung, static_cast<double>(left) * jobs_.wanted() / all);
 }
 
 /// A sample of a stream tells nothing, and what is far larger than the result is not worth the

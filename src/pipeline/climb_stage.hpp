@@ -36,6 +36,7 @@ class ClimbStage {
   Job climb(std::uint32_t part) const;
   void stand_for_stream(std::uint32_t part);
   bool is_unfair() const;
+  double refused_in(std::uint32_t part, double all) const;
   void keep_coarsest();
 
   const Manifest& manifest_;

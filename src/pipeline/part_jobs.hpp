@@ -38,6 +38,8 @@ class PartJobs {
   double ratio() const;
   /// What the parts are to keep together for the finish to choose from.
   double wanted() const;
+  /// Whether it is worth to foresee that the topology is given up.
+  bool foresees() const;
   bool by_error() const { return options_.error.value > 0; }
   /// Whether levels are to be found: the same ratio everywhere needs none.
   bool climbs_samples() const { return by_error() || options_.allocation == Allocation::threshold; }

@@ -21,16 +21,20 @@
 namespace meshfarm {
 namespace {
 
-// Version 9: allocation u8 | start u64 | even share u64 | end u64 | samples u64 | cost unit f64 |
-// greatest error f64 | certified error f64 | lines (run_options.hpp) | source u8 | of a rung: level
-// i32 | of what is built: part u32 | ratio f64 | headroom f64 | end f64 | all triangles u64 | all
-// samples u64 | bundles (bundle_list.hpp).
-// Version 4 knew no appearances and labels, version 5 nothing to build, version 6 no certified
-// error, version 7 no end, version 8 no rung.
-constexpr std::uint8_t k_climb_version = 9;
+// Version 10: allocation u8 | start u64 | even share u64 | end u64 | foreseen u64 | samples u64 |
+// cost unit f64 | greatest error f64 | certified error f64 | lines (run_options.hpp) | source u8 |
+// of a rung: level i32 | of what is built: part u32 | ratio f64 | headroom f64 | end f64 | foresees
+// u8 | all triangles u64 | all samples u64 | bundles (bundle_list.hpp). Version 4 knew no
+// appearances and labels, version 5 nothing to build, version 6 no certified error, version 7 no
+// end, version 8 no rung, version 9 foresaw nothing.
+constexpr std::uint8_t k_climb_version = 10;
 constexpr std::uint64_t k_most_climb_samples = 100'000'000;
 constexpr std::int32_t k_top_level = 52;
-constexpr double k_mostly_free = 0.8;  // of triangles
+constexpr double k_mostly_free = 0.5;  // of triangles
+
+/// A ladder ends where so many collapses a triangle are going to be refused: some times what is
+/// fair, as it is foreseen from further away than the sink does.
+constexpr double k_most_refused = 4;
 
 enum class PartSource : std::uint8_t { file, bundles, rung };
 
@@ -71,7 +75,7 @@ class LadderBuilder {
   ResultSummary summary() const {
     ResultSummary summary = result_.summary_of(simplifier_);
     summary.held_by_topology = simplifier_.is_hampered_by_topology();
-    summary.goes_on = goes_on_;
+    summary.end = end_;
     return summary;
   }
 
@@ -115,9 +119,19 @@ class LadderBuilder {
       reduce({.triangles = floor, .max_cost = level_cost(level, parameters_.cost_unit)});
       if (simplifier_.is_held_by_topology()) return;
       if (simplifier_.triangles() < result_.rungs().back().triangles) snapshot(level);
-      goes_on_ = is_enough(floor);
-      if (goes_on_) return;
+      if (is_enough(floor)) end_ = LadderEnd::enough;
+      if (is_refused_too_much()) end_ = LadderEnd::refusals;
+      if (end_ != LadderEnd::floor) return;
     }
+  }
+
+  bool is_refused_too_much() const {
+    if (!may_give_up_topology() || parameters_.foreseen_triangles == 0) return false;
+    const auto wanted = static_cast<double>(parameters_.foreseen_triangles);
+    const Rung rung{.free_triangles = simplifier_.free_triangles(),
+                    .refused = simplifier_.refused_by_topology()};
+    return static_cast<double>(rung.free_triangles) > wanted &&
+           refused_by(rung, wanted) > k_most_refused * wanted;
   }
 
   /// Whether the next rung would have less than what is wanted: it is not made, and nor are those
@@ -155,7 +169,7 @@ class LadderBuilder {
   Simplifier simplifier_;
   std::string file_;
   ResultWriter result_;
-  bool goes_on_ = false;
+  LadderEnd end_ = LadderEnd::floor;
 };
 
 /// A part, or a stream as one. What is not whole may be read whole by the next attempt; what is
@@ -175,6 +189,9 @@ PartToBuild get_part_to_build(ByteReader& in) {
   build.rule.ratio = in.get<double>();
   build.rule.headroom = in.get<double>();
   build.rule.end = in.get<double>();
+  const auto foresees = in.get<std::uint8_t>();
+  if (foresees > 1) in.fail("impossible share");
+  build.rule.foresees = foresees == 1;
   build.rule.all_triangles = in.get<std::uint64_t>();
   build.rule.all_samples = in.get<std::uint64_t>();
   if (!(build.rule.ratio > 0 && build.rule.ratio <= 1) || !(build.rule.headroom > 0) ||
@@ -232,6 +249,7 @@ std::string encode_parameters(const SimplifyParameters& parameters) {
   out.put(parameters.start_triangles);
   out.put(parameters.share_triangles);
   out.put(parameters.end_triangles);
+  out.put(parameters.foreseen_triangles);
   out.put(parameters.samples);
   out.put(parameters.cost_unit);
   out.put(parameters.max_error);
@@ -246,6 +264,7 @@ std::string encode_parameters(const SimplifyParameters& parameters) {
   out.put(parameters.build->rule.ratio);
   out.put(parameters.build->rule.headroom);
   out.put(parameters.build->rule.end);
+  out.put(static_cast<std::uint8_t>(parameters.build->rule.foresees ? 1 : 0));
   out.put(parameters.build->rule.all_triangles);
   out.put(parameters.build->rule.all_samples);
   put_bundles(out, parameters.build->bundles);
@@ -261,6 +280,7 @@ SimplifyParameters decode_parameters(std::string_view bytes) {
   parameters.start_triangles = in.get<std::uint64_t>();
   parameters.share_triangles = in.get<std::uint64_t>();
   parameters.end_triangles = in.get<std::uint64_t>();
+  parameters.foreseen_triangles = in.get<std::uint64_t>();
   parameters.samples = in.get<std::uint64_t>();
   if (parameters.samples > k_most_climb_samples) in.fail("too many samples");
   parameters.cost_unit = in.get<double>();
@@ -298,6 +318,7 @@ void set_share(SimplifyParameters& parameters, const ShareRule& rule,
   parameters.share_triangles = static_cast<std::uint64_t>(share);
   parameters.start_triangles = static_cast<std::uint64_t>(start);
   parameters.end_triangles = static_cast<std::uint64_t>(end);
+  parameters.foreseen_triangles = rule.foresees ? static_cast<std::uint64_t>(kept) : 0;
   const auto all = static_cast<double>(std::max<std::uint64_t>(1, rule.all_triangles));
   parameters.samples = static_cast<std::uint64_t>(
       std::ceil(triangles / all * static_cast<double>(rule.all_samples)));

@@ -41,7 +41,7 @@ class SweepToFile {
                                 false,
                                 swept_.turned,
                                 {},
-                                false,
+                                LadderEnd::floor,
                                 result_->tail(),
                                 result_->beside()};
     swept_ = {};

@@ -104,7 +104,7 @@ std::string result_bytes() {
   writer.add_rung(5, mesh, 10, 0.5);
   const std::vector<SurfaceSamples> samples = {{2.5, {{1, 2, 3}, {4, 5, 6}}}};
   writer.finish(std::span(mesh.positions).first(2), samples);
-  const ResultSummary summary{writer.rungs(), 4, 5, true, 0, {}, false, writer.tail(),
+  const ResultSummary summary{writer.rungs(), 4, 5, true, 0, {}, LadderEnd::floor, writer.tail(),
                               writer.beside()};
   return file + encode_summary(summary);
 }

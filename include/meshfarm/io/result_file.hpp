@@ -42,6 +42,13 @@ struct BuiltFacts {
   std::uint64_t coincident_corners = 0;
 };
 
+/// Why a ladder has no more rungs.
+enum class LadderEnd : std::uint8_t {
+  floor,    // it has come to the least that is left of any part, or nothing more collapses
+  enough,   // the next rung was not going to be wanted
+  refusals  // so much is refused to keep the topology that it cannot be kept as far as is wanted
+};
+
 /// What is known of a result without reading its file. Travels with the result message.
 struct ResultSummary {
   std::vector<Rung> rungs;
@@ -50,9 +57,12 @@ struct ResultSummary {
   bool held_by_topology = false;  // keeping it refused more than was collapsed
   std::uint64_t turned = 0;       // triangles that faced another way than most of their piece
   std::optional<BuiltFacts> built = {};
-  bool goes_on = false;     // the ladder ends where the next rung was not going to be wanted
+  LadderEnd end = LadderEnd::floor;
   FileSection tail = {};    // of the file: what all rungs have in common
   FileSection beside = {};  // of the file: what is no part of the mesh
+
+  /// Whether more would have collapsed.
+  bool goes_on() const { return end != LadderEnd::floor; }
 };
 
 /// What a reader of one rung needs, and what is beside it.

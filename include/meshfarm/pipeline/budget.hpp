@@ -53,6 +53,10 @@ std::uint64_t samples_for(const Manifest& manifest, const RunOptions& options,
 /// Of the whole surface.
 std::uint64_t all_samples(const RunOptions& options);
 
+/// How many collapses are refused to keep the topology by when so many free triangles are left, as
+/// far as a rung tells: refusals a triangle rise with about the fourth power of what has gone.
+double refused_by(const Rung& rung, double free_triangles);
+
 /// Of one ladder: the coarsest rung that is not above `level`, else its first.
 std::uint32_t rung_at(std::span<const Rung> ladder, std::int32_t level);
 

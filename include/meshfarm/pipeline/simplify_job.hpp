@@ -18,9 +18,10 @@ inline constexpr std::string_view k_simplify_kind = "simplify";
 /// How a part's share of the target is found, by what was shared out to it: known to whoever builds
 /// the part, whether that is the cut or the job itself.
 struct ShareRule {
-  double ratio = 1;     // of all triangles, those that are wanted
-  double headroom = 1;  // a ladder begins at so many times the share
-  double end = 1;       // and may end at so many times what is kept for the finish
+  double ratio = 1;       // of all triangles, those that are wanted
+  double headroom = 1;    // a ladder begins at so many times the share
+  double end = 1;         // and may end at so many times what is kept for the finish
+  bool foresees = false;  // and where SimplifyParameters::foreseen_triangles tells
   std::uint64_t all_triangles = 0;
   std::uint64_t all_samples = 0;  // points of the whole surface
 };
@@ -38,9 +39,12 @@ struct SimplifyParameters {
   std::uint64_t start_triangles = 0;  // the first rung: at most this many triangles
   std::uint64_t share_triangles = 0;  // the part's even share of the target
   std::uint64_t end_triangles = 0;    // the first rung with no more may be the last
-  std::uint64_t samples = 0;          // points of the part to measure the final error by
-  double cost_unit = 0;               // cost of level 0
-  double max_error = 0;               // where above 0: one rung, as far as this distance is kept
+  /// What is wanted of the part. Where it is foreseen that too many collapses are refused by then
+  /// to keep the topology, the ladder ends; 0: that is not asked.
+  std::uint64_t foreseen_triangles = 0;
+  std::uint64_t samples = 0;  // points of the part to measure the final error by
+  double cost_unit = 0;       // cost of level 0
+  double max_error = 0;       // where above 0: one rung, as far as this distance is kept
   /// Where above 0: that no distance is greater than this is proven of every point. At least
   /// max_error.
   double certified_error = 0;
@@ -73,10 +77,11 @@ double cost_unit(double diagonal);
 inline constexpr std::uint64_t k_shares_per_floor = 2;  // half
 
 /// Simplifies one part or stream (the job's input, or one that it builds) to a ladder, or with
-/// Allocation::uniform to one rung. Where hardly anything is refused to keep the topology, the
-/// ladder ends once there is little enough; else, as it may then have to be given up, it goes down
-/// to half of the even share. Where it may have to be given up, the first rung is made before edges
-/// collapse strictly in order, which is when much may be refused: another job can begin there.
+/// Allocation::uniform to one rung. The ladder ends once there is little enough, or where it is
+/// foreseen that the topology is given up; with a topology that is kept at any cost it goes down to
+/// half of the even share where much is refused. Where it may have to be given up, the first rung
+/// is made before edges collapse strictly in order, which is when much may be refused: another job
+/// can begin there.
 JobOutput simplify_part(const Job& job, const JobContext& context);
 
 }  // namespace meshfarm

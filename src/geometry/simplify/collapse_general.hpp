@@ -28,6 +28,8 @@ class GeneralJudge {
   /// Target must be the identity: the adjacency is kept up to date.
   explicit GeneralJudge(const CollapseState& state) : state_(state) {}
   void move_to(const CollapseState& state) { state_ = state; }
+  /// To be told of each collapse.
+  void merge() { surroundings_.change(); }
 
   /// Neither end may be fixed.
   GeneralCollapse judge(std::uint32_t a, std::uint32_t b, std::uint64_t most_triangles);

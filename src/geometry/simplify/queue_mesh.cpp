@@ -104,6 +104,41 @@ void CollapseQueue::tidy_star(std::uint32_t vertex) {
   if (crossings_ != nullptr) crossings_->split(vertex, first_copy);
 }
 
+void CollapseQueue::list_ring(std::uint32_t vertex) {
+  ring_.clear();
+  for (const Corner& c : mesh_.adjacency.at(vertex)) {
+    ring_.push_back(c.next);
+    ring_.push_back(c.prev);
+  }
+  std::sort(ring_.begin(), ring_.end());
+  ring_.erase(std::unique(ring_.begin(), ring_.end()), ring_.end());
+}
+
+/// Makes the triangles of b ones of a; those that have both go.
+void CollapseQueue::join_stars(std::uint32_t a, std::uint32_t b) {
+  list_ring(b);
+  for (const std::uint32_t v : ring_) {
+    if (v != a) mesh_.adjacency.replace(v, b, a);
+  }
+  joined_.clear();
+  joined_ids_.clear();
+  for (const std::uint32_t end : {a, b}) {
+    const std::uint32_t other = end == a ? b : a;
+    const CornerFan fan = mesh_.adjacency.fan_at(end);
+    for (std::size_t i = 0; i < fan.corners.size(); ++i) {
+      const Corner& c = fan.corners[i];
+      if (c.next != other && c.prev != other) join(fan, i);
+    }
+  }
+  mesh_.adjacency.assign(b, {});
+  mesh_.adjacency.assign(a, {joined_, joined_ids_});
+}
+
+void CollapseQueue::join(const CornerFan& fan, std::size_t place) {
+  joined_.push_back(fan.corners[place]);
+  if (!fan.ids.empty()) joined_ids_.push_back(fan.ids[place]);
+}
+
 void CollapseQueue::classify(std::uint32_t vertex) {
   splitter_.split(mesh_.adjacency.at(vertex));
   std::uint8_t& flags = mesh_.flags[vertex];

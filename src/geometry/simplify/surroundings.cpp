@@ -15,6 +15,9 @@ namespace {
 /// To make the index anew takes about as long as to pass over so many points for each that it has.
 constexpr std::uint64_t k_worth_an_index = 8;
 
+/// What was found of a piece stands until one in so many of the vertices that are left has gone.
+constexpr std::uint64_t k_vertices_a_change = 1000;
+
 std::uint32_t vertex_now(const ShrinkingMesh& mesh, std::uint32_t v) {
   while (mesh.target[v] != v) v = mesh.target[v];
   return v;
@@ -25,6 +28,25 @@ std::uint32_t vertex_now(const ShrinkingMesh& mesh, std::uint32_t v) {
 double Surroundings::squared_distance(const ShrinkingMesh& mesh, Vec3 from,
                                       std::span<const std::uint32_t> without) {
   if (!index_) list_vertices(mesh);
+  if (without.empty()) return search(mesh, from, without);
+  const auto [entry, is_new] = found_.try_emplace(without.front());
+  Found& found = entry->second;
+  if (is_new || !is_up_to_date(found, from)) {
+    found = {from, search(mesh, from, without), changes_};
+  }
+  return found.squared;
+}
+
+/// The same piece, as it is now: its edges tell its middle by sums in another order.
+bool Surroundings::is_up_to_date(const Found& found, Vec3 from) const {
+  constexpr double k_same = 1e-12;  // of the squared distance
+  const std::uint64_t left = corners_ - std::min(corners_, changes_);
+  return changes_ - found.at <= left / k_vertices_a_change &&
+         squared_length(found.from - from) <= k_same * found.squared;
+}
+
+double Surroundings::search(const ShrinkingMesh& mesh, Vec3 from,
+                            std::span<const std::uint32_t> without) {
   if (passed_over_ > k_worth_an_index * vertices_.size()) drop_what_is_gone(mesh);
   const auto is_without = [&](std::uint32_t v) {
     return std::binary_search(without.begin(), without.end(), v);
@@ -66,6 +88,7 @@ void Surroundings::list_vertices(const ShrinkingMesh& mesh) {
     points.push_back(mesh.positions[v]);
     vertices_.push_back(v);
   }
+  corners_ = vertices_.size();
   add_points_inside(mesh, points);
   index_.emplace(std::move(points));
 }

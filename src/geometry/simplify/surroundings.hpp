@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <unordered_map>
 #include <vector>
 
 #include <meshfarm/geometry/point_index.hpp>
@@ -25,6 +26,8 @@ struct ShrinkingMesh {
 /// surface, where they were when it was first asked.
 class Surroundings {
  public:
+  /// To be told of each change of the mesh: what was found of a piece stands for a few of them.
+  void change() { ++changes_; }
   /// The squared distance of the nearest triangle that is left and has no corner of `without`
   /// (ascending), as far as corners and points inside of large triangles tell; infinite if there is
   /// none.
@@ -32,6 +35,15 @@ class Surroundings {
                           std::span<const std::uint32_t> without);
 
  private:
+  /// What was found of a piece: by one of its edges for all of them.
+  struct Found {
+    Vec3 from;
+    double squared = 0;
+    std::uint64_t at = 0;  // changes_
+  };
+
+  bool is_up_to_date(const Found& found, Vec3 from) const;
+  double search(const ShrinkingMesh& mesh, Vec3 from, std::span<const std::uint32_t> without);
   void list_vertices(const ShrinkingMesh& mesh);
   void add_points_inside(const ShrinkingMesh& mesh, std::vector<Vec3>& points);
   void drop_what_is_gone(const ShrinkingMesh& mesh);
@@ -39,6 +51,9 @@ class Surroundings {
   std::vector<std::uint32_t> vertices_;  // of the points
   std::optional<PointIndex> index_;
   std::uint64_t passed_over_ = 0;  // points of pieces that are gone, since the index was made
+  std::uint64_t corners_ = 0;      // vertices of the mesh, when it was first asked
+  std::uint64_t changes_ = 0;
+  std::unordered_map<std::uint32_t, Found> found_;  // by the lowest vertex of a piece
 };
 
 }  // namespace meshfarm

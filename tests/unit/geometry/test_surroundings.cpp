@@ -56,7 +56,9 @@ TEST_CASE("the nearest that is left is found, however many pieces are gone") {
       const double wanted = nearest_other(mesh, t[0] / 3);
       CHECK((found == wanted || found == doctest::Approx(wanted).epsilon(1e-12)));
     }
-    mesh.triangles.resize(2 * mesh.triangles.size() / 3);
+    const std::size_t left = 2 * mesh.triangles.size() / 3;
+    for (std::size_t gone = left; gone < mesh.triangles.size(); ++gone) surroundings.change();
+    mesh.triangles.resize(left);
   }
 }
 
@@ -99,9 +101,41 @@ TEST_CASE("what a vertex has become stands where the vertex was") {
   // Its piece is gone: the same is found however often it is asked for.
   const std::vector<Triangle> left = {mesh.triangles[0], mesh.triangles[2]};
   adjacency.build(left, mesh.positions.size(), mesh.columns);
+  surroundings.change();
   const double gone = found();
   CHECK(gone > 0);
   for (int i = 0; i < 1000; ++i) CHECK(found() == gone);
+}
+
+TEST_CASE("what was found of a piece stands for a few changes, as long as it stays as it is") {
+  constexpr std::uint32_t k_few = 2;  // of 2,400 vertices
+  const Mesh mesh = lonely_triangles(800);
+  std::vector<std::uint32_t> target(mesh.positions.size());
+  std::iota(target.begin(), target.end(), 0U);
+  Adjacency adjacency;
+  adjacency.build(mesh.triangles, mesh.positions.size(), mesh.columns);
+  Surroundings surroundings;
+  const Vec3 middle = mesh.positions[0];
+  const auto found_from = [&](Vec3 from) {
+    const std::vector<std::uint32_t> without = {0, 1, 2};
+    return surroundings.squared_distance({mesh.positions, target, &adjacency}, from, without);
+  };
+  const double first = found_from(middle);
+  // All others but the last are gone.
+  const std::vector<Triangle> left = {mesh.triangles.front(), mesh.triangles.back()};
+  adjacency.build(left, mesh.positions.size(), mesh.columns);
+  for (std::uint32_t i = 0; i < k_few; ++i) {
+    surroundings.change();
+    CHECK(found_from(middle) == first);
+    CHECK(found_from(middle * (1 + 1e-15)) == first);  // summed up in another order
+  }
+  SUBCASE("after more it is looked for again") {
+    surroundings.change();
+    CHECK(found_from(middle) > first);
+  }
+  SUBCASE("and where the piece has moved") {
+    CHECK(found_from(middle + Vec3{0.01, 0, 0}) > 2 * first);
+  }
 }
 
 }  // namespace

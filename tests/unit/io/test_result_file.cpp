@@ -181,12 +181,13 @@ TEST_CASE("a rung may be empty") {
 TEST_CASE("a summary comes back; a damaged one is refused") {
   const std::vector<Rung> rungs = {{3, 5, 10, 8, 0.5, {16, 100, 1}, 0},
                                    {4, 3, 6, 2, 0.75, {116, 50, 2}, 12}};
-  for (const bool held : {false, true}) {
+  for (const LadderEnd end : {LadderEnd::floor, LadderEnd::enough, LadderEnd::refusals}) {
+    const bool held = end == LadderEnd::refusals;
     const std::string bytes =
-        encode_summary({rungs, 7, 9, held, 11, {}, !held, {166, 9, 3}, {16, 0, 4}});
+        encode_summary({rungs, 7, 9, held, 11, {}, end, {166, 9, 3}, {16, 0, 4}});
     const ResultSummary back = decode_summary(bytes, "s");
     CHECK(back.held_by_topology == held);
-    CHECK(back.goes_on == !held);
+    CHECK(back.end == end);
     CHECK(back.dropped_degenerate == 7);
     CHECK(back.dropped_duplicate == 9);
     CHECK(back.turned == 11);
@@ -207,7 +208,7 @@ TEST_CASE("a summary comes back; a damaged one is refused") {
   impossible[16] = 2;  // held: after two counts
   CHECK_THROWS_AS(decode_summary(impossible, "s"), DataError);
   impossible[16] = 1;
-  impossible[17] = 2;  // goes on
+  impossible[17] = 3;  // why the ladder ends
   CHECK_THROWS_AS(decode_summary(impossible, "s"), DataError);
 }
 

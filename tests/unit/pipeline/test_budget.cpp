@@ -91,7 +91,7 @@ TEST_CASE("the common level is the coarsest that leaves enough") {
 TEST_CASE("a ladder that goes on is taken to fall as that of a smooth surface") {
   ResultSummary part{{rung(1, 320), rung(3, 160)}};
   CHECK(free_triangles_at(part, 9) == 160);
-  part.goes_on = true;
+  part.end = LadderEnd::enough;
   CHECK(free_triangles_at(part, 0) == 320);
   CHECK(free_triangles_at(part, 2) == 320);
   CHECK(free_triangles_at(part, 3) == 160);
@@ -254,7 +254,7 @@ TEST_CASE("parts whose topology leaves more than the target are asked for again 
   // One that goes on would have left half of its share.
   const auto beside = [&](std::uint64_t triangles) {
     ResultSummary other{{rung(10, 2500)}};
-    other.goes_on = true;
+    other.end = LadderEnd::enough;
     AcceptedJob going = accepted(jobs[1], {});
     going.output.summary = encode_summary(other);
     return std::vector{accepted_held(jobs[0], {rung(10, 2500), rung(14, triangles)}), going};
@@ -284,6 +284,21 @@ TEST_CASE("parts that are refused too much are asked for again without their top
   CHECK(asked_again(0.1, refused(30'000, 7'000)));
   // Of few the finish finds out.
   CHECK_FALSE(asked_again(0.01, refused(2000, 9000)));
+  // A ladder that ended for it is taken to fall as others do: to 13,700 here, a third.
+  const auto source = next_of(manifest, {.ratio = 0.1});
+  const std::vector<Job> jobs = source({});
+  const auto asked_beside = [&](std::uint64_t refused_of_one) {
+    Rung first = rung(10, 40'000);
+    first.refused = refused_of_one;
+    ResultSummary ended{{first}};
+    ended.end = LadderEnd::refusals;
+    AcceptedJob one = accepted(jobs[0], {});
+    one.output.summary = encode_summary(ended);
+    const std::vector<Rung> other = {rung(10, 60'000), rung(12, 30'000)};
+    return !source(std::vector{one, accepted(jobs[1], other)}).empty();
+  };
+  CHECK_FALSE(asked_beside(600));
+  CHECK(asked_beside(800));
 }
 
 TEST_CASE("who says what becomes of the topology is asked once") {
@@ -462,6 +477,7 @@ TEST_CASE("parameters come back; damaged ones are refused") {
       12,
       3,
       5,
+      9,
       77,
       0.25,
       0.5,
@@ -472,6 +488,7 @@ TEST_CASE("parameters come back; damaged ones are refused") {
   CHECK(back.allocation == Allocation::uniform);
   CHECK(back.start_triangles == 12);
   CHECK(back.end_triangles == 5);
+  CHECK(back.foreseen_triangles == 9);
   CHECK(back.samples == 77);
   CHECK(back.cost_unit == 0.25);
   CHECK(back.max_error == 0.5);
@@ -487,7 +504,7 @@ TEST_CASE("parameters come back; damaged ones are refused") {
     CHECK_THROWS_AS(decode_parameters(std::string_view(bytes).substr(0, i)), DataError);
   }
   CHECK_THROWS_AS(decode_parameters(bytes + "x"), DataError);
-  CHECK_THROWS_AS(decode_parameters("\x0a" + bytes.substr(1)), DataError);
+  CHECK_THROWS_AS(decode_parameters("\x0b" + bytes.substr(1)), DataError);
   // The topology stands last but for the two numbers of appearances, what is said of labels, and
   // that there is nothing to build.
   std::string other = bytes;

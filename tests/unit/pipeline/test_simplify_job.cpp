@@ -8,6 +8,7 @@
 #include <meshfarm/geometry/topology.hpp>
 #include <meshfarm/io/part_file.hpp>
 #include <meshfarm/io/result_file.hpp>
+#include <meshfarm/pipeline/budget.hpp>
 #include <meshfarm/pipeline/simplify_job.hpp>
 #include <meshfarm/staging/stage.hpp>
 #include <meshfarm/util/errors.hpp>
@@ -62,9 +63,11 @@ class ClimbBench {
     part_ = stage_.publish(PartName{0}, encode_part(part));
   }
 
-  ClimbedPart climb(TopologyMode topology, std::uint64_t end_triangles = 0) const {
+  ClimbedPart climb(TopologyMode topology, std::uint64_t end_triangles = 0,
+                    std::uint64_t foreseen_triangles = 0) const {
     SimplifyParameters parameters = parameters_of(topology);
     parameters.end_triangles = end_triangles;
+    parameters.foreseen_triangles = foreseen_triangles;
     return do_job({std::string(k_simplify_kind), {part_}, encode_parameters(parameters)});
   }
   ClimbedPart climb_on(const ClimbedPart& from, TopologyMode topology) const {
@@ -115,17 +118,35 @@ TEST_CASE("a ladder ends with what is wanted, unless its topology is kept at any
   constexpr std::uint64_t k_end = 390;
   for (const TopologyMode mode : {TopologyMode::keep_while_fair, TopologyMode::simplify}) {
     const ClimbedPart climbed = bench.climb(mode, k_end);
-    CHECK(climbed.summary.goes_on);
+    CHECK(climbed.summary.end == LadderEnd::enough);
     REQUIRE(climbed.summary.rungs.size() >= 2);
     CHECK(climbed.last().triangles <= k_end);
     CHECK(climbed.summary.rungs[climbed.summary.rungs.size() - 2].triangles > k_end);
   }
   const ClimbedPart kept = bench.climb(TopologyMode::keep, k_end);
-  CHECK_FALSE(kept.summary.goes_on);
+  CHECK_FALSE(kept.summary.goes_on());
   CHECK(kept.last().triangles < 300);
   // A ladder tells how much was refused for that by each of its rungs.
   CHECK(kept.last().refused > kept.first().refused);
   CHECK(bench.climb(TopologyMode::simplify).last().refused == 0);
+}
+
+TEST_CASE("a ladder ends where too much is going to be refused, if that is foreseen") {
+  const ClimbBench bench(part_of_spheres(60));
+  constexpr std::uint64_t k_wanted = 250;
+  const ClimbedPart whole = bench.climb(TopologyMode::keep_while_fair);
+  const ClimbedPart early = bench.climb(TopologyMode::keep_while_fair, 0, k_wanted);
+  CHECK(early.summary.end == LadderEnd::refusals);
+  CHECK(early.last().triangles > whole.last().triangles);
+  CHECK(refused_by(early.last(), k_wanted) > 4 * k_wanted);
+  // It is the first such rung.
+  REQUIRE(early.summary.rungs.size() >= 2);
+  const Rung& before = early.summary.rungs[early.summary.rungs.size() - 2];
+  CHECK(refused_by(before, k_wanted) <= 4 * k_wanted);
+  // As much as it has is no reason, and what is given up anyhow is not asked about.
+  CHECK(bench.climb(TopologyMode::keep_while_fair, 0, 100'000).summary.end == LadderEnd::floor);
+  CHECK(bench.climb(TopologyMode::simplify, 0, k_wanted).summary.end == LadderEnd::floor);
+  CHECK(bench.climb(TopologyMode::keep, 0, k_wanted).summary.end == LadderEnd::floor);
 }
 
 TEST_CASE("what begins at a rung has the part's boundary vertices and points") {
