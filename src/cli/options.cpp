@@ -51,8 +51,8 @@ void CutWords::add(po::options_description& options) {
       "a binary PLY file of triangles that all hosts see; auto: farm, if simplify keeps no parts, "
       "the mesh is large, and there are workers enough")(
       "blocks", po::value(&blocks)->value_name("N"),
-      "with --cut farm: blocks of vertices, and of triangles, up to 72 (default: of about 300,000 "
-      "each); the parts do not depend on it")(
+      "with --cut farm: blocks of vertices, and of triangles, up to 144 (default: of about "
+      "300,000 each); the parts do not depend on it")(
       "sort", po::value(&sort)->default_value(sort)->value_name("here|farm"),
       "with --scheme stream: here: sort the slabs on this host; farm: the first jobs of a run sort "
       "them, on all hosts")(
@@ -92,7 +92,7 @@ void CutWords::check() {
   if (where != "here" && where != "farm" && where != "auto") {
     throw UsageError("--cut is 'here', 'farm' or 'auto', not '" + where + "'");
   }
-  if (blocks > k_most_cut_blocks / 2) throw UsageError("--blocks: from 1 to 72");
+  if (blocks > k_most_cut_blocks / 2) throw UsageError("--blocks: from 1 to 144");
   if (where == "farm" && scheme_word != "cut") {
     throw UsageError(
         "--cut farm goes with --scheme cut; with --scheme stream there is --sort farm");

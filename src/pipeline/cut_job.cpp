@@ -153,7 +153,7 @@ std::uint64_t as_many_of_each(std::uint64_t wanted) {
 std::uint32_t parts_for_cluster(std::uint64_t triangles) {
   constexpr std::uint64_t k_part = 300'000;
   constexpr std::uint64_t k_least = 72;
-  constexpr std::uint64_t k_most = 192;
+  constexpr std::uint64_t k_most = 240;
   const std::uint64_t wanted = std::clamp<std::uint64_t>(triangles / k_part, 1, k_most);
   return static_cast<std::uint32_t>(wanted < k_least ? wanted : as_many_of_each(wanted));
 }

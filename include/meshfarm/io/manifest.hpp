@@ -40,7 +40,7 @@ struct PartEntry {
 };
 
 /// So that a message has room for the names of all.
-inline constexpr std::uint32_t k_most_cut_blocks = 144;
+inline constexpr std::uint32_t k_most_cut_blocks = 288;
 
 /// A cut that the first jobs of a run do, over blocks of the input's records.
 struct Cutting {

@@ -63,10 +63,10 @@ TEST_CASE("bundles come back as they were, with what they have") {
 }
 
 TEST_CASE("what bundles have is left out where there is no room for it") {
-  const BundlesOfMesh many = again(make_bundles(72, 1'500));
-  REQUIRE(many.vertices.size() == 72);
+  const BundlesOfMesh many = again(make_bundles(144, 1'500));
+  REQUIRE(many.vertices.size() == 144);
   CHECK_FALSE(many.vertices[0].bundle.parts);
-  CHECK_FALSE(many.triangles[71].bundle.parts);
+  CHECK_FALSE(many.triangles[143].bundle.parts);
 
   const VertexBundle large = make_bundles(1, 5'000).vertices[0].bundle;
   const std::string summary = encode_summary(large);
