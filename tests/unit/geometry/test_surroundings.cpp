@@ -30,6 +30,28 @@ Mesh lonely_triangles(std::uint32_t count) {
   return mesh;
 }
 
+/// So many of them, none merged yet.
+struct LonelyPieces {
+  explicit LonelyPieces(std::uint32_t count)
+      : mesh(lonely_triangles(count)), target(mesh.positions.size()) {
+    std::iota(target.begin(), target.end(), 0U);
+    keep(mesh.triangles);
+  }
+  void keep(const std::vector<Triangle>& left) {
+    adjacency.build(left, mesh.positions.size(), mesh.columns);
+  }
+  /// From the first piece.
+  double found_from(Vec3 from) {
+    const std::vector<std::uint32_t> without = {0, 1, 2};
+    return surroundings.squared_distance({mesh.positions, target, &adjacency}, from, without);
+  }
+
+  Mesh mesh;
+  std::vector<std::uint32_t> target;
+  Adjacency adjacency;
+  Surroundings surroundings;
+};
+
 double nearest_other(const Mesh& mesh, std::uint32_t piece) {
   double least = HUGE_VAL;
   for (const Triangle& t : mesh.triangles) {
@@ -84,24 +106,14 @@ TEST_CASE("a large triangle is near wherever it is, until it is gone") {
 }
 
 TEST_CASE("what a vertex has become stands where the vertex was") {
-  const Mesh mesh = lonely_triangles(3);
-  std::vector<std::uint32_t> target(mesh.positions.size());
-  std::iota(target.begin(), target.end(), 0U);
-  Adjacency adjacency;
-  adjacency.build(mesh.triangles, mesh.positions.size(), mesh.columns);
-  Surroundings surroundings;
-  const std::vector<std::uint32_t> without = {0, 1, 2};
-  const auto found = [&] {
-    return surroundings.squared_distance({mesh.positions, target, &adjacency}, mesh.positions[5],
-                                         without);
-  };
+  LonelyPieces pieces(3);
+  const auto found = [&] { return pieces.found_from(pieces.mesh.positions[5]); };
   CHECK(found() == 0);
-  target[5] = 3;
+  pieces.target[5] = 3;
   CHECK(found() == 0);
   // Its piece is gone: the same is found however often it is asked for.
-  const std::vector<Triangle> left = {mesh.triangles[0], mesh.triangles[2]};
-  adjacency.build(left, mesh.positions.size(), mesh.columns);
-  surroundings.change();
+  pieces.keep({pieces.mesh.triangles[0], pieces.mesh.triangles[2]});
+  pieces.surroundings.change();
   const double gone = found();
   CHECK(gone > 0);
   for (int i = 0; i < 1000; ++i) CHECK(found() == gone);
@@ -109,32 +121,22 @@ TEST_CASE("what a vertex has become stands where the vertex was") {
 
 TEST_CASE("what was found of a piece stands for a few changes, as long as it stays as it is") {
   constexpr std::uint32_t k_few = 2;  // of 2,400 vertices
-  const Mesh mesh = lonely_triangles(800);
-  std::vector<std::uint32_t> target(mesh.positions.size());
-  std::iota(target.begin(), target.end(), 0U);
-  Adjacency adjacency;
-  adjacency.build(mesh.triangles, mesh.positions.size(), mesh.columns);
-  Surroundings surroundings;
-  const Vec3 middle = mesh.positions[0];
-  const auto found_from = [&](Vec3 from) {
-    const std::vector<std::uint32_t> without = {0, 1, 2};
-    return surroundings.squared_distance({mesh.positions, target, &adjacency}, from, without);
-  };
-  const double first = found_from(middle);
+  LonelyPieces pieces(800);
+  const Vec3 middle = pieces.mesh.positions[0];
+  const double first = pieces.found_from(middle);
   // All others but the last are gone.
-  const std::vector<Triangle> left = {mesh.triangles.front(), mesh.triangles.back()};
-  adjacency.build(left, mesh.positions.size(), mesh.columns);
+  pieces.keep({pieces.mesh.triangles.front(), pieces.mesh.triangles.back()});
   for (std::uint32_t i = 0; i < k_few; ++i) {
-    surroundings.change();
-    CHECK(found_from(middle) == first);
-    CHECK(found_from(middle * (1 + 1e-15)) == first);  // summed up in another order
+    pieces.surroundings.change();
+    CHECK(pieces.found_from(middle) == first);
+    CHECK(pieces.found_from(middle * (1 + 1e-15)) == first);  // summed up in another order
   }
   SUBCASE("after more it is looked for again") {
-    surroundings.change();
-    CHECK(found_from(middle) > first);
+    pieces.surroundings.change();
+    CHECK(pieces.found_from(middle) > first);
   }
   SUBCASE("and where the piece has moved") {
-    CHECK(found_from(middle + Vec3{0.01, 0, 0}) > 2 * first);
+    CHECK(pieces.found_from(middle + Vec3{0.01, 0, 0}) > 2 * first);
   }
 }
 
