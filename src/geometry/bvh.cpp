@@ -21,6 +21,17 @@ double Bvh::squared_to(Vec3 p, std::uint32_t triangle) const {
   return squared_distance(p, positions_[a], positions_[b], positions_[c]);
 }
 
+std::vector<std::uint32_t> Bvh::search_order(std::span<const Vec3> points) const {
+  std::vector<MortonItem> items(points.size());
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    items[i] = {morton_code(to_frame(points[i])), static_cast<std::uint32_t>(i)};
+  }
+  sort_by_code(items);
+  std::vector<std::uint32_t> order(items.size());
+  for (std::size_t i = 0; i < items.size(); ++i) order[i] = items[i].number;
+  return order;
+}
+
 Bvh::Nearest Bvh::nearest(Vec3 p, std::uint32_t guess, double enough) const {
   Query query(p, to_frame(p), scale_);
   query.offer(squared_to(p, guess), guess);

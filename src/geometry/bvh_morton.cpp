@@ -39,6 +39,11 @@ std::uint64_t morton_code(Vec3 p) {
 }
 
 void sort_by_code(std::vector<MortonItem>& items) {
+  if (items.size() < k_values) {
+    std::stable_sort(items.begin(), items.end(),
+                     [](const MortonItem& a, const MortonItem& b) { return a.code < b.code; });
+    return;
+  }
   std::vector<std::array<std::size_t, k_values>> places(k_digits);
   for (const MortonItem& item : items) {
     for (int d = 0; d < k_digits; ++d) ++places[static_cast<std::size_t>(d)][digit(item, d)];

@@ -11,7 +11,7 @@ namespace meshfarm {
 
 struct MortonItem {
   std::uint64_t code = 0;
-  std::uint32_t triangle = 0;
+  std::uint32_t number = 0;  // of what lies there
 };
 
 /// The place of `p`, each coordinate in [-1/2, 1/2], along the Z-shaped curve: 21 bits an axis,

@@ -21,7 +21,7 @@ std::vector<std::uint32_t> along_a_curve(const Mesh& mesh) {
   sort_by_code(items);
   std::vector<std::uint32_t> order;
   order.reserve(items.size());
-  for (const MortonItem& item : items) order.push_back(item.triangle);
+  for (const MortonItem& item : items) order.push_back(item.number);
   return order;
 }
 

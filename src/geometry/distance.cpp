@@ -14,19 +14,16 @@
 namespace meshfarm {
 namespace {
 
-/// Measures one chunk of so many samples, which `point(n)` gives; `take(n, distance)` is told each.
-template <class Point, class Take>
-DistanceSums measure_chunk(const Bvh& bvh, std::uint64_t count, std::uint64_t chunk, Point point,
-                           const Take& take) {
+/// Measures one chunk of so many samples.
+DistanceSums measure_chunk(const Bvh& bvh, std::uint64_t count, std::uint64_t chunk,
+                           AreaSampler sampler) {
   const std::uint64_t end = std::min(count, (chunk + 1) * k_samples_a_chunk);
   DistanceSums sums;
   std::uint32_t guess = 0;
   for (std::uint64_t n = chunk * k_samples_a_chunk; n < end; ++n) {
-    const Bvh::Nearest nearest = bvh.nearest(point(n), guess);
+    const Bvh::Nearest nearest = bvh.nearest(sampler.sample(n), guess);
     guess = nearest.triangle;
-    const double distance = std::sqrt(nearest.squared);
-    sums.add({nearest.squared, distance, nearest.squared});
-    take(n, distance);
+    sums.add({nearest.squared, std::sqrt(nearest.squared), nearest.squared});
   }
   return sums;
 }
@@ -42,10 +39,7 @@ Distance measure_distance(const Mesh& from, const Mesh& to, const DistanceOption
   const AreaSampler sampler(from, before, options.samples);
   std::vector<DistanceSums> chunks(chunks_of(options.samples));
   parallel_for(chunks.size(), options.threads, [&](std::uint64_t chunk) {
-    chunks[chunk] = measure_chunk(
-        bvh, options.samples, chunk,
-        [own = sampler](std::uint64_t n) mutable { return own.sample(n); },
-        [](std::uint64_t, double) {});
+    chunks[chunk] = measure_chunk(bvh, options.samples, chunk, sampler);
   });
   DistanceSums all;
   for (const DistanceSums& chunk : chunks) all.add(chunk);
@@ -69,28 +63,32 @@ class DistanceMeter::Impl {
 
   std::vector<Distance> measure_each(std::span<const Points> sets,
                                      std::span<double> of_points) const {
-    std::vector<ChunkOfSet> chunks;
     std::vector<std::size_t> first = {0};  // point of each set, among all
     for (const Points& set : sets) first.push_back(first.back() + set.size());
+    std::vector<double> squared(first.back());
+    const auto squared_of = [&](std::size_t set) {
+      return std::span(squared).subspan(first[set], sets[set].size());
+    };
+    std::vector<std::vector<std::uint32_t>> orders(sets.size());
+    parallel_for(sets.size(), threads_,
+                 [&](std::uint64_t set) { orders[set] = bvh().search_order(sets[set]); });
+    struct Run {
+      std::size_t set = 0;
+      std::span<const std::uint32_t> points;
+    };
+    std::vector<Run> runs;
     for (std::size_t set = 0; set < sets.size(); ++set) {
-      const std::uint64_t count = chunks_of(sets[set].size());
-      for (std::uint64_t chunk = 0; chunk < count; ++chunk) chunks.push_back({set, chunk, {}});
+      const std::span<const std::uint32_t> order = orders[set];
+      for (std::size_t begin = 0; begin < order.size(); begin += k_run) {
+        runs.push_back({set, order.subspan(begin, std::min(k_run, order.size() - begin))});
+      }
     }
-    parallel_for(chunks.size(), threads_, [&](std::uint64_t i) {
-      const std::size_t set = chunks[i].set;
-      const Points points = sets[set];
-      chunks[i].sums = measure_chunk(
-          index_.bvh(), points.size(), chunks[i].chunk, [&](std::uint64_t n) { return points[n]; },
-          [&](std::uint64_t n, double distance) {
-            if (!of_points.empty()) of_points[first[set] + n] = distance;
-          });
+    parallel_for(runs.size(), threads_, [&](std::uint64_t i) {
+      search(sets[runs[i].set], runs[i].points, squared_of(runs[i].set));
     });
-    std::vector<DistanceSums> sums(sets.size());
-    for (const ChunkOfSet& each : chunks) sums[each.set].add(each.sums);
     std::vector<Distance> distances;
-    for (std::size_t set = 0; set < sets.size(); ++set) {
-      distances.push_back(sums[set].over(sets[set].size()));
-    }
+    for (std::size_t set = 0; set < sets.size(); ++set) distances.push_back(sum(squared_of(set)));
+    for (std::size_t i = 0; i < of_points.size(); ++i) of_points[i] = std::sqrt(squared[i]);
     return distances;
   }
 
@@ -98,8 +96,8 @@ class DistanceMeter::Impl {
     const double enough = least * least;
     double farthest = enough;
     std::uint32_t guess = 0;
-    for (const Vec3& p : points) {
-      const Bvh::Nearest nearest = index_.bvh().nearest(p, guess, enough);
+    for (const std::uint32_t point : bvh().search_order(points)) {
+      const Bvh::Nearest nearest = bvh().nearest(points[point], guess, farthest);
       guess = nearest.triangle;
       farthest = std::max(farthest, nearest.squared);
     }
@@ -112,11 +110,32 @@ class DistanceMeter::Impl {
   const TriangleIndex& index() const { return index_; }
 
  private:
-  struct ChunkOfSet {
-    std::size_t set = 0;
-    std::uint64_t chunk = 0;
+  static constexpr std::size_t k_run = 1024;  // points that one thread searches at a time
+
+  const Bvh& bvh() const { return index_.bvh(); }
+
+  void search(Points points, std::span<const std::uint32_t> order,
+              std::span<double> squared) const {
+    std::uint32_t guess = 0;
+    for (const std::uint32_t point : order) {
+      const Bvh::Nearest nearest = bvh().nearest(points[point], guess);
+      guess = nearest.triangle;
+      squared[point] = nearest.squared;
+    }
+  }
+
+  static Distance sum(std::span<const double> squared) {
     DistanceSums sums;
-  };
+    for (std::size_t begin = 0; begin < squared.size(); begin += k_samples_a_chunk) {
+      DistanceSums chunk;
+      const std::size_t end = std::min<std::size_t>(squared.size(), begin + k_samples_a_chunk);
+      for (std::size_t i = begin; i < end; ++i) {
+        chunk.add({squared[i], std::sqrt(squared[i]), squared[i]});
+      }
+      sums.add(chunk);
+    }
+    return sums.over(squared.size());
+  }
 
   TriangleIndex index_;
   unsigned threads_;

@@ -52,7 +52,7 @@ void ChangingMesh::build_boxes() {
   triangle_in_.resize(items.size());
   std::vector<Box> boxes(items.size());
   for (std::uint32_t slot = 0; slot < items.size(); ++slot) {
-    const std::uint32_t triangle = items[slot].triangle;
+    const std::uint32_t triangle = items[slot].number;
     triangle_in_[slot] = triangle;
     slot_of_[triangle] = slot;
     for (const Vec3& p : corners_of(triangle)) boxes[slot].add(p);

@@ -90,14 +90,14 @@ void CrossingGuard::start(const CollapseState& state, std::span<const Triangle> 
   std::vector<MortonItem> items(triangles.size());
   for (std::size_t i = 0; i < items.size(); ++i) {
     const Vec3 corner = state.positions[triangles[i][0]];
-    items[i].triangle = static_cast<std::uint32_t>(i);
+    items[i].number = static_cast<std::uint32_t>(i);
     if (is_finite(corner)) items[i].code = morton_code((corner - frame.center) * frame.scale);
   }
   sort_by_code(items);
   triangles_.resize(items.size());
   std::vector<Box> boxes(items.size());
   for (std::size_t i = 0; i < items.size(); ++i) {
-    triangles_[i] = triangles[items[i].triangle];
+    triangles_[i] = triangles[items[i].number];
     boxes[i] = box_of(triangles_[i]);
   }
   boxes_.build(frame, boxes);
