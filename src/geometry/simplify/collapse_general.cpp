@@ -217,6 +217,8 @@ Collapse GeneralJudge::at_position(Vec3 position, Turn turn) const {
   Collapse collapse{removed_, position, 0, false};
   collapse.cost = std::max(planes, changes_ ? lost_cost * k_loss_of_change : lost_cost);
   collapse.certain = std::max(planes, lost_cost);
+  collapse.cost += cost_of_tips_;
+  collapse.certain += cost_of_tips_;
   return collapse;
 }
 
@@ -226,6 +228,56 @@ double GeneralJudge::cost_of_past(Vec3 x) const {
   if (state_.past.empty()) return 0;
   return quadric_.unless_noise(state_.past[a_.vertex].cost(x + half_) +
                                state_.past[b_.vertex].cost(x - half_));
+}
+
+/// Whether no triangle is left at a neighbour of the two ends.
+bool GeneralJudge::is_lost(std::uint32_t vertex) const {
+  const auto fan = state_.adjacency->at(vertex);
+  return std::all_of(fan.begin(), fan.end(), [&](const Corner& c) {
+    const bool at_a = has(c, a_.vertex);
+    const bool at_b = has(c, b_.vertex);
+    if (at_a == at_b) return at_a;  // shared, or not at the ends
+    const std::uint32_t end = at_a ? a_.vertex : b_.vertex;
+    const std::uint32_t third = c.next == end ? c.prev : c.next;
+    return std::any_of(kept_.begin() + staying_, kept_.end(), [&](const Kept& k) {
+      return k.at_b == at_b && has(k.corner, vertex) && has(k.corner, third);
+    });
+  });
+}
+
+/// What stands out from the rest and goes with the triangles that vanish or are shared: the planes
+/// tell only how far the ends move.
+double GeneralJudge::cost_of_tips() {
+  tips_.clear();
+  const auto list = [&](std::uint32_t vertex) {
+    if (is_lost(vertex)) tips_.push_back(vertex);
+  };
+  for (const Corner& c : shared_) list(c.next == b_.vertex ? c.prev : c.next);
+  for (const auto& [next, prev] : vanishing_) {
+    list(next);
+    list(prev);
+  }
+  if (tips_.empty()) return 0;
+  std::sort(tips_.begin(), tips_.end());
+  tips_.erase(std::unique(tips_.begin(), tips_.end()), tips_.end());
+  LostArea lost;
+  const auto add = [&](std::uint32_t end, const Corner& c) {
+    if (!contains(tips_, c.next) && !contains(tips_, c.prev)) return;
+    lost.add(state_.positions[end], state_.positions[c.next], state_.positions[c.prev]);
+  };
+  for (const Corner& c : shared_) add(a_.vertex, c);
+  for (std::size_t i = staying_; i < kept_.size(); ++i) {
+    add((kept_[i].at_b ? b_ : a_).vertex, kept_[i].corner);
+  }
+  return cost_of_lost(lost, tips_);
+}
+
+/// `vertices`, ascending, are used no more.
+double GeneralJudge::cost_of_lost(const LostArea& lost, std::span<const std::uint32_t> vertices) {
+  if (lost.twice_area == 0) return 0;
+  const double squared = surroundings_.squared_distance(
+      {state_.positions, state_.target, state_.adjacency}, lost.middle(), vertices);
+  return k_loss_of_piece * 0.5 * lost.twice_area * squared;
 }
 
 /// The vertices that are used no more if nothing is left at the two ends.
@@ -246,21 +298,13 @@ void GeneralJudge::list_removed() {
 /// All triangles at both ends go: a piece, or what stands out from one.
 Collapse GeneralJudge::removal() {
   list_removed();
-  Vec3 sum;
-  double area = 0;
-  const auto add = [&](Vec3 end, const Corner& c) {
-    const Vec3 p = state_.positions[c.next];
-    const Vec3 q = state_.positions[c.prev];
-    const double twice_area = length(cross(p - end, q - end));
-    area += 0.5 * twice_area;
-    sum = sum + (end + p + q) * (0.5 * twice_area / 3);
+  LostArea lost;
+  const auto add = [&](std::uint32_t end, const Corner& c) {
+    lost.add(state_.positions[end], state_.positions[c.next], state_.positions[c.prev]);
   };
-  for (const Corner& c : shared_) add(state_.positions[a_.vertex], c);
-  for (const Kept& k : kept_) add(state_.positions[(k.at_b ? b_ : a_).vertex], k.corner);
-  if (area == 0) return {removed_, middle_, 0, false};
-  const double squared = surroundings_.squared_distance(
-      {state_.positions, state_.target, state_.adjacency}, sum * (1 / area), removed_vertices_);
-  return {removed_, middle_, k_loss_of_piece * area * squared, false};
+  for (const Corner& c : shared_) add(a_.vertex, c);
+  for (const Kept& k : kept_) add((k.at_b ? b_ : a_).vertex, k.corner);
+  return {removed_, middle_, cost_of_lost(lost, removed_vertices_), false};
 }
 
 GeneralCollapse GeneralJudge::judge(std::uint32_t a, std::uint32_t b,
@@ -289,8 +333,15 @@ GeneralCollapse GeneralJudge::judge(std::uint32_t a, std::uint32_t b,
   if (a_.rank == 2 && b_.rank == 2 && !may_go_to(half_ * -1.0) && !may_go_to(half_)) return result;
   add_lines(a_, b_, half_ * -1.0);
   add_lines(b_, a_, half_);
+  cost_of_tips_ = cost_of_tips();
   result.collapse = state_.has_uvs() ? best_with_uvs() : best_of_positions();
   return result;
+}
+
+Collapse GeneralJudge::at_best(Turn turn) const {
+  const Vec3 x = quadric_.best();
+  if (!quadric_.is_near(x)) return {};
+  return at_position(rounded(middle_ + x, state_.type), turn);
 }
 
 Collapse GeneralJudge::best_of_positions() {
@@ -298,7 +349,7 @@ Collapse GeneralJudge::best_of_positions() {
   const Vec3 at_b = state_.positions[b_.vertex];
   if (a_.rank != b_.rank) return at_position(a_.rank > b_.rank ? at_a : at_b, Turn::wide);
   if (a_.rank < 2) {
-    const Collapse best = at_position(rounded(middle_ + quadric_.best(), state_.type), Turn::wide);
+    const Collapse best = at_best(Turn::wide);
     if (best.triangles > 0) return best;
   }
   const bool a_first = quadric_.cost(half_ * -1.0) <= quadric_.cost(half_);
@@ -314,7 +365,7 @@ Collapse GeneralJudge::best_of_positions() {
 /// As CollapseJudge does, where every place turns a triangle by more than 60 degrees.
 Collapse GeneralJudge::turned_far(std::span<const Vec3, 2> ends) const {
   Collapse far;
-  if (a_.rank < 2) far = at_position(rounded(middle_ + quadric_.best(), state_.type), Turn::far);
+  if (a_.rank < 2) far = at_best(Turn::far);
   for (std::size_t i = 0; i < ends.size() && far.triangles == 0; ++i) {
     far = at_position(ends[i], Turn::far);
   }

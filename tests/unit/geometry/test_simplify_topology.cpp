@@ -310,6 +310,26 @@ TEST_CASE("topology: of two specks that of which the rest is near goes first") {
   }
 }
 
+TEST_CASE("topology: needles that stand out far are left") {
+  Mesh mesh = sphere(4);
+  const auto add_needle = [&](std::size_t triangle, double height) {
+    const auto [a, b, c] = mesh.triangles[triangle];
+    const Vec3 foot = (mesh.positions[a] + mesh.positions[b] + mesh.positions[c]) * (1.0 / 3);
+    const auto tip = static_cast<std::uint32_t>(mesh.positions.size());
+    mesh.positions.push_back(foot * (1 + height));
+    mesh.triangles[triangle] = {a, b, tip};
+    mesh.triangles.push_back({b, c, tip});
+    mesh.triangles.push_back({c, a, tip});
+  };
+  for (std::size_t i = 0; i < 8; ++i) add_needle(150 * i, i % 2 == 0 ? 1.0 : 0.001);
+  REQUIRE(check(mesh).euler == 2);
+  const Simplifier result = reduced_topology(mesh, 80, TopologyMode::simplify);
+  CHECK(result.triangles() == 80);
+  CHECK(is_clean(result.mesh()));
+  const std::vector<Vec3>& left = result.mesh().positions;
+  CHECK(std::count_if(left.begin(), left.end(), [](Vec3 v) { return length(v) > 1.9; }) == 4);
+}
+
 TEST_CASE("what is flat goes before what is nearly flat") {
   const Mesh mesh = grid(100, 100, [](double x, double y) {
     return x < 0.5 ? 0.0 : 1e-6 * std::sin(300 * x) * std::sin(300 * y);
