@@ -63,31 +63,15 @@ class DistanceMeter::Impl {
 
   std::vector<Distance> measure_each(std::span<const Points> sets,
                                      std::span<double> of_points) const {
-    std::vector<std::size_t> first = {0};  // point of each set, among all
-    for (const Points& set : sets) first.push_back(first.back() + set.size());
-    std::vector<double> squared(first.back());
-    const auto squared_of = [&](std::size_t set) {
-      return std::span(squared).subspan(first[set], sets[set].size());
-    };
-    std::vector<std::vector<std::uint32_t>> orders(sets.size());
-    parallel_for(sets.size(), threads_,
-                 [&](std::uint64_t set) { orders[set] = bvh().search_order(sets[set]); });
-    struct Run {
-      std::size_t set = 0;
-      std::span<const std::uint32_t> points;
-    };
-    std::vector<Run> runs;
-    for (std::size_t set = 0; set < sets.size(); ++set) {
-      const std::span<const std::uint32_t> order = orders[set];
-      for (std::size_t begin = 0; begin < order.size(); begin += k_run) {
-        runs.push_back({set, order.subspan(begin, std::min(k_run, order.size() - begin))});
-      }
-    }
-    parallel_for(runs.size(), threads_, [&](std::uint64_t i) {
-      search(sets[runs[i].set], runs[i].points, squared_of(runs[i].set));
-    });
+    std::vector<Vec3> all;
+    for (const Points& set : sets) all.insert(all.end(), set.begin(), set.end());
+    const std::vector<double> squared = squared_distances(all);
     std::vector<Distance> distances;
-    for (std::size_t set = 0; set < sets.size(); ++set) distances.push_back(sum(squared_of(set)));
+    std::size_t first = 0;
+    for (const Points& set : sets) {
+      distances.push_back(sum(std::span(squared).subspan(first, set.size())));
+      first += set.size();
+    }
     for (std::size_t i = 0; i < of_points.size(); ++i) of_points[i] = std::sqrt(squared[i]);
     return distances;
   }
@@ -110,18 +94,22 @@ class DistanceMeter::Impl {
   const TriangleIndex& index() const { return index_; }
 
  private:
-  static constexpr std::size_t k_run = 1024;  // points that one thread searches at a time
-
   const Bvh& bvh() const { return index_.bvh(); }
 
-  void search(Points points, std::span<const std::uint32_t> order,
-              std::span<double> squared) const {
-    std::uint32_t guess = 0;
-    for (const std::uint32_t point : order) {
-      const Bvh::Nearest nearest = bvh().nearest(points[point], guess);
-      guess = nearest.triangle;
-      squared[point] = nearest.squared;
-    }
+  std::vector<double> squared_distances(Points points) const {
+    constexpr std::size_t k_run = 1024;
+    std::vector<double> squared(points.size());
+    const std::vector<std::uint32_t> order = bvh().search_order(points);
+    parallel_for((order.size() + k_run - 1) / k_run, threads_, [&](std::uint64_t run) {
+      std::uint32_t guess = 0;
+      const std::size_t end = std::min(order.size(), (run + 1) * k_run);
+      for (std::size_t i = run * k_run; i < end; ++i) {
+        const Bvh::Nearest nearest = bvh().nearest(points[order[i]], guess);
+        guess = nearest.triangle;
+        squared[order[i]] = nearest.squared;
+      }
+    });
+    return squared;
   }
 
   static Distance sum(std::span<const double> squared) {

@@ -253,5 +253,10 @@ TEST_CASE("samples and a meter measure what measure_distance does") {
   meter.measure_each(sets, of_points);
   CHECK(*std::max_element(of_points.begin(), of_points.begin() + 10) == each[0].max);
   CHECK(std::equal(of_points.begin(), of_points.begin() + 5000, of_points.begin() + 5000));
+  for (std::size_t i = 0; i < 5000; i += 100) {
+    CHECK(of_points[i] == meter.measure(all.subspan(i, 1)).max);
+    CHECK(meter.farthest(all.subspan(i, 100), 0) ==
+          *std::max_element(&of_points[i], &of_points[i] + 100));
+  }
   CHECK(sample_surface({}, {.samples = 10}).points.empty());
 }
