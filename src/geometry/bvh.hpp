@@ -31,8 +31,8 @@ class Bvh {
 
   Bvh(const Mesh& mesh, unsigned threads);
   Bvh(std::span<const Vec3> positions, std::span<const Triangle> triangles, unsigned threads);
-  /// Numbers of the points, so that those that follow each other are near each other: what one
-  /// finds is then a good guess for the next.
+  /// The numbers of the points, which must be finite, along a curve (bvh_morton.hpp): what one
+  /// finds is a good guess for the next.
   std::vector<std::uint32_t> search_order(std::span<const Vec3> points) const;
   /// The triangle nearest to `p`, or some triangle whose squared distance is at most `enough`. A
   /// good `guess` saves time.

@@ -39,7 +39,7 @@ std::uint64_t morton_code(Vec3 p) {
 }
 
 void sort_by_code(std::vector<MortonItem>& items) {
-  if (items.size() < k_values) {
+  if (items.size() < k_values) {  // to clear and add up the counts would take longer
     std::stable_sort(items.begin(), items.end(),
                      [](const MortonItem& a, const MortonItem& b) { return a.code < b.code; });
     return;

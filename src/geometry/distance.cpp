@@ -88,9 +88,7 @@ class DistanceMeter::Impl {
     return farthest > enough ? std::sqrt(farthest) : least;
   }
 
-  std::uint32_t nearest_triangle(Vec3 point) const {
-    return index_.bvh().nearest(point, 0).triangle;
-  }
+  std::uint32_t nearest_triangle(Vec3 point) const { return bvh().nearest(point, 0).triangle; }
   const TriangleIndex& index() const { return index_; }
 
  private:

@@ -6,6 +6,7 @@
 #include <array>
 #include <iterator>
 
+#include "geometry/bvh.hpp"
 #include "geometry/simplify/vertex_flags.hpp"
 
 namespace meshfarm {
@@ -217,9 +218,13 @@ Collapse GeneralJudge::at_position(Vec3 position, Turn turn) const {
   Collapse collapse{removed_, position, 0, false};
   collapse.cost = std::max(planes, changes_ ? lost_cost * k_loss_of_change : lost_cost);
   collapse.certain = std::max(planes, lost_cost);
-  collapse.cost += cost_of_tips_;
-  collapse.certain += cost_of_tips_;
   return collapse;
+}
+
+Collapse GeneralJudge::at_best(Turn turn) const {
+  const Vec3 x = quadric_.best();
+  if (!quadric_.is_near(x)) return {};
+  return at_position(rounded(middle_ + x, state_.type), turn);
 }
 
 /// Where sheets meet everywhere, what is outermost has fewest triangles, and would always be the
@@ -230,81 +235,77 @@ double GeneralJudge::cost_of_past(Vec3 x) const {
                                state_.past[b_.vertex].cost(x - half_));
 }
 
-/// Whether no triangle is left at a neighbour of the two ends.
+/// Whether each triangle at a neighbour of the two ends goes.
 bool GeneralJudge::is_lost(std::uint32_t vertex) const {
-  const auto fan = state_.adjacency->at(vertex);
-  return std::all_of(fan.begin(), fan.end(), [&](const Corner& c) {
-    const bool at_a = has(c, a_.vertex);
-    const bool at_b = has(c, b_.vertex);
-    if (at_a == at_b) return at_a;  // shared, or not at the ends
-    const std::uint32_t end = at_a ? a_.vertex : b_.vertex;
-    const std::uint32_t third = c.next == end ? c.prev : c.next;
-    return std::any_of(kept_.begin() + staying_, kept_.end(), [&](const Kept& k) {
-      return k.at_b == at_b && has(k.corner, vertex) && has(k.corner, third);
-    });
-  });
+  std::ptrdiff_t gone = std::count_if(shared_.begin(), shared_.end(),
+                                      [&](const Corner& c) { return has(c, vertex); });
+  gone += std::count_if(kept_.begin() + staying_, kept_.end(),
+                        [&](const Kept& k) { return has(k.corner, vertex); });
+  return gone == static_cast<std::ptrdiff_t>(state_.adjacency->count(vertex));
 }
 
-/// What stands out from the rest and goes with the triangles that vanish or are shared: the planes
-/// tell only how far the ends move.
-double GeneralJudge::cost_of_tips() {
-  tips_.clear();
+/// The vertices that no triangle is left at.
+void GeneralJudge::list_lost() {
+  lost_.clear();
+  if (staying_ == 0) lost_.assign({a_.vertex, b_.vertex});
   const auto list = [&](std::uint32_t vertex) {
-    if (is_lost(vertex)) tips_.push_back(vertex);
+    if (is_lost(vertex)) lost_.push_back(vertex);
   };
   for (const Corner& c : shared_) list(c.next == b_.vertex ? c.prev : c.next);
   for (const auto& [next, prev] : vanishing_) {
     list(next);
     list(prev);
   }
-  if (tips_.empty()) return 0;
-  std::sort(tips_.begin(), tips_.end());
-  tips_.erase(std::unique(tips_.begin(), tips_.end()), tips_.end());
-  LostArea lost;
+  std::sort(lost_.begin(), lost_.end());
+  lost_.erase(std::unique(lost_.begin(), lost_.end()), lost_.end());
+}
+
+/// Of what goes with these vertices, by how far it is from the rest. Where two triangles close upon
+/// each other, what lies between them is covered from then on.
+double GeneralJudge::cost_of_lost() {
+  Vec3 sum;
+  double area = 0;
   const auto add = [&](std::uint32_t end, const Corner& c) {
-    if (!contains(tips_, c.next) && !contains(tips_, c.prev)) return;
-    lost.add(state_.positions[end], state_.positions[c.next], state_.positions[c.prev]);
+    if (!contains(lost_, end) && !contains(lost_, c.next) && !contains(lost_, c.prev)) return;
+    const Vec3 at = state_.positions[end];
+    const Vec3 p = state_.positions[c.next];
+    const Vec3 q = state_.positions[c.prev];
+    const double twice_area = length(cross(p - at, q - at));
+    area += 0.5 * twice_area;
+    sum = sum + (at + p + q) * (0.5 * twice_area / 3);
   };
   for (const Corner& c : shared_) add(a_.vertex, c);
   for (std::size_t i = staying_; i < kept_.size(); ++i) {
     add((kept_[i].at_b ? b_ : a_).vertex, kept_[i].corner);
   }
-  return cost_of_lost(lost, tips_);
-}
-
-/// `vertices`, ascending, are used no more.
-double GeneralJudge::cost_of_lost(const LostArea& lost, std::span<const std::uint32_t> vertices) {
-  if (lost.twice_area == 0) return 0;
-  const double squared = surroundings_.squared_distance(
-      {state_.positions, state_.target, state_.adjacency}, lost.middle(), vertices);
-  return k_loss_of_piece * 0.5 * lost.twice_area * squared;
-}
-
-/// The vertices that are used no more if nothing is left at the two ends.
-void GeneralJudge::list_removed() {
-  removed_vertices_.assign({a_.vertex, b_.vertex});
-  for (const End* end : {&a_, &b_}) {
-    for (const std::uint32_t v : end->neighbours) {
-      const auto fan = state_.adjacency->at(v);
-      const auto is_left = [&](const Corner& c) {
-        return !has(c, a_.vertex) && !has(c, b_.vertex);
-      };
-      if (std::none_of(fan.begin(), fan.end(), is_left)) removed_vertices_.push_back(v);
-    }
+  if (area == 0) return 0;
+  const Vec3 middle = sum * (1 / area);
+  double squared = surroundings_.squared_distance(
+      {state_.positions, state_.target, state_.adjacency}, middle, lost_);
+  for (const auto& [next, prev] : vanishing_) {
+    if (staying_ == 0 || contains(lost_, next) == contains(lost_, prev)) continue;
+    const std::uint32_t left = contains(lost_, next) ? prev : next;
+    squared =
+        std::min(squared, squared_distance(middle, state_.positions[a_.vertex],
+                                           state_.positions[b_.vertex], state_.positions[left]));
   }
-  std::sort(removed_vertices_.begin(), removed_vertices_.end());
+  return k_loss_of_piece * area * squared;
+}
+
+/// What needles and fins cost that go with the edge at their foot: planes tell only how far that
+/// moves.
+void GeneralJudge::add_cost_of_tips(Collapse& collapse) {
+  list_lost();
+  if (lost_.empty()) return;
+  const double cost = cost_of_lost();
+  collapse.cost += cost;
+  collapse.certain += cost;
 }
 
 /// All triangles at both ends go: a piece, or what stands out from one.
 Collapse GeneralJudge::removal() {
-  list_removed();
-  LostArea lost;
-  const auto add = [&](std::uint32_t end, const Corner& c) {
-    lost.add(state_.positions[end], state_.positions[c.next], state_.positions[c.prev]);
-  };
-  for (const Corner& c : shared_) add(a_.vertex, c);
-  for (const Kept& k : kept_) add((k.at_b ? b_ : a_).vertex, k.corner);
-  return {removed_, middle_, cost_of_lost(lost, removed_vertices_), false};
+  list_lost();
+  return {removed_, middle_, cost_of_lost(), false};
 }
 
 GeneralCollapse GeneralJudge::judge(std::uint32_t a, std::uint32_t b,
@@ -333,15 +334,9 @@ GeneralCollapse GeneralJudge::judge(std::uint32_t a, std::uint32_t b,
   if (a_.rank == 2 && b_.rank == 2 && !may_go_to(half_ * -1.0) && !may_go_to(half_)) return result;
   add_lines(a_, b_, half_ * -1.0);
   add_lines(b_, a_, half_);
-  cost_of_tips_ = cost_of_tips();
   result.collapse = state_.has_uvs() ? best_with_uvs() : best_of_positions();
+  if (result.collapse.triangles > 0) add_cost_of_tips(result.collapse);
   return result;
-}
-
-Collapse GeneralJudge::at_best(Turn turn) const {
-  const Vec3 x = quadric_.best();
-  if (!quadric_.is_near(x)) return {};
-  return at_position(rounded(middle_ + x, state_.type), turn);
 }
 
 Collapse GeneralJudge::best_of_positions() {

@@ -59,19 +59,6 @@ class GeneralJudge {
     bool vanishes = false;
   };
 
-  /// Triangles that nothing takes the place of.
-  struct LostArea {
-    Vec3 sum;  // of the middles, weighted
-    double twice_area = 0;
-
-    void add(Vec3 a, Vec3 b, Vec3 c) {
-      const double twice = length(cross(b - a, c - a));
-      twice_area += twice;
-      sum = sum + (a + b + c) * (twice / 3);
-    }
-    Vec3 middle() const { return sum * (1 / twice_area); }
-  };
-
   void list_end(std::uint32_t vertex, End& end);
   void list_triangles();
   void find_vanishing();
@@ -89,10 +76,10 @@ class GeneralJudge {
   Collapse at_best(Turn turn) const;
   double cost_of_past(Vec3 x) const;
   bool is_lost(std::uint32_t vertex) const;
-  double cost_of_tips();
-  double cost_of_lost(const LostArea& lost, std::span<const std::uint32_t> vertices);
+  void list_lost();
+  double cost_of_lost();
+  void add_cost_of_tips(Collapse& collapse);
   Collapse removal();
-  void list_removed();
 
   CollapseState state_;
   End a_;
@@ -108,10 +95,8 @@ class GeneralJudge {
   std::uint32_t removed_ = 0;
   std::uint32_t staying_ = 0;
   Vec3 middle_;
-  Vec3 half_;                                    // from there to b
-  std::vector<std::uint32_t> removed_vertices_;  // ascending
-  std::vector<std::uint32_t> tips_;              // ascending
-  double cost_of_tips_ = 0;
+  Vec3 half_;                        // from there to b
+  std::vector<std::uint32_t> lost_;  // ascending
   Surroundings surroundings_;
   CollapseStar star_;
   EdgeQuadric quadric_;

@@ -31,17 +31,17 @@ double Surroundings::squared_distance(const ShrinkingMesh& mesh, Vec3 from,
   if (without.empty()) return search(mesh, from, without);
   const auto [entry, is_new] = found_.try_emplace(without.front());
   Found& found = entry->second;
-  if (is_new || !is_up_to_date(found, from)) {
-    found = {from, search(mesh, from, without), changes_};
+  if (is_new || !is_up_to_date(found, from, without.size())) {
+    found = {from, search(mesh, from, without), without.size(), changes_};
   }
   return found.squared;
 }
 
 /// The same piece, as it is now: its edges tell its middle by sums in another order.
-bool Surroundings::is_up_to_date(const Found& found, Vec3 from) const {
+bool Surroundings::is_up_to_date(const Found& found, Vec3 from, std::size_t vertices) const {
   constexpr double k_same = 1e-12;  // of the squared distance
   const std::uint64_t left = corners_ - std::min(corners_, changes_);
-  return changes_ - found.at <= left / k_vertices_a_change &&
+  return found.vertices == vertices && changes_ - found.at <= left / k_vertices_a_change &&
          squared_length(found.from - from) <= k_same * found.squared;
 }
 

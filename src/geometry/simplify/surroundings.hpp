@@ -22,8 +22,8 @@ struct ShrinkingMesh {
   const Adjacency* adjacency = nullptr;
 };
 
-/// Tells how far a piece is from the rest of a mesh: what is lost with it. Vertices stand for the
-/// surface, where they were when it was first asked.
+/// Tells how far a piece, or its tip, is from the rest of a mesh: what is lost with it. Vertices
+/// stand for the surface, where they were when it was first asked.
 class Surroundings {
  public:
   /// To be told of each change of the mesh: what was found of a piece stands for a few of them.
@@ -39,10 +39,11 @@ class Surroundings {
   struct Found {
     Vec3 from;
     double squared = 0;
-    std::uint64_t at = 0;  // changes_
+    std::size_t vertices = 0;  // of the piece: its tip may have the same lowest one
+    std::uint64_t at = 0;      // changes_
   };
 
-  bool is_up_to_date(const Found& found, Vec3 from) const;
+  bool is_up_to_date(const Found& found, Vec3 from, std::size_t vertices) const;
   double search(const ShrinkingMesh& mesh, Vec3 from, std::span<const std::uint32_t> without);
   void list_vertices(const ShrinkingMesh& mesh);
   void add_points_inside(const ShrinkingMesh& mesh, std::vector<Vec3>& points);

@@ -63,6 +63,23 @@ double nearest_other(const Mesh& mesh, std::uint32_t piece) {
   return least;
 }
 
+TEST_CASE("what is found of a piece is not taken for its tip") {
+  Mesh mesh;
+  mesh.positions = {{0, 0, 3}, {0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+  mesh.triangles = {{0, 1, 2}, {1, 3, 2}};
+  std::vector<std::uint32_t> target(4);
+  std::iota(target.begin(), target.end(), 0U);
+  Adjacency adjacency;
+  adjacency.build(mesh.triangles, 4, mesh.columns);
+  Surroundings surroundings;
+  const auto found = [&](const std::vector<std::uint32_t>& without) {
+    return surroundings.squared_distance({mesh.positions, target, &adjacency}, {0, 0, 2}, without);
+  };
+  CHECK(std::isinf(found({0, 1, 2, 3})));
+  CHECK(found({0}) == doctest::Approx(4));
+  CHECK(std::isinf(found({0, 1, 2, 3})));
+}
+
 TEST_CASE("the nearest that is left is found, however many pieces are gone") {
   Mesh mesh = lonely_triangles(400);
   std::vector<std::uint32_t> target(mesh.positions.size());
