@@ -27,9 +27,7 @@ std::vector<std::uint32_t> Bvh::search_order(std::span<const Vec3> points) const
     items[i] = {morton_code(to_frame(points[i])), static_cast<std::uint32_t>(i)};
   }
   sort_by_code(items);
-  std::vector<std::uint32_t> order(items.size());
-  for (std::size_t i = 0; i < items.size(); ++i) order[i] = items[i].number;
-  return order;
+  return numbers_of(items);
 }
 
 Bvh::Nearest Bvh::nearest(Vec3 p, std::uint32_t guess, double enough) const {

@@ -89,8 +89,7 @@ void Bvh::make_nodes(unsigned threads) {
   {
     const std::vector<MortonItem> items = sorted_items(threads);
     split_into_nodes(items);
-    order_.resize(items.size());
-    for (std::size_t i = 0; i < items.size(); ++i) order_[i] = items[i].number;
+    order_ = numbers_of(items);
   }
   parallel_for((nodes_.size() + k_chunk - 1) / k_chunk, threads, [&](std::uint64_t chunk) {
     const std::size_t end = std::min<std::size_t>(nodes_.size(), (chunk + 1) * k_chunk);

@@ -59,4 +59,11 @@ void sort_by_code(std::vector<MortonItem>& items) {
   }
 }
 
+std::vector<std::uint32_t> numbers_of(std::span<const MortonItem> items) {
+  std::vector<std::uint32_t> numbers;
+  numbers.reserve(items.size());
+  for (const MortonItem& item : items) numbers.push_back(item.number);
+  return numbers;
+}
+
 }  // namespace meshfarm

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include <meshfarm/geometry/vec.hpp>
@@ -20,5 +21,7 @@ std::uint64_t morton_code(Vec3 p);
 
 /// Sorts by code; equal codes keep their order. Needs the same memory again.
 void sort_by_code(std::vector<MortonItem>& items);
+
+std::vector<std::uint32_t> numbers_of(std::span<const MortonItem> items);
 
 }  // namespace meshfarm

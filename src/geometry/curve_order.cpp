@@ -19,10 +19,7 @@ std::vector<std::uint32_t> along_a_curve(const Mesh& mesh) {
     items[t] = {morton_code((middle - center) * scale), static_cast<std::uint32_t>(t)};
   }
   sort_by_code(items);
-  std::vector<std::uint32_t> order;
-  order.reserve(items.size());
-  for (const MortonItem& item : items) order.push_back(item.number);
-  return order;
+  return numbers_of(items);
 }
 
 }  // namespace meshfarm

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 
 #include <meshfarm/geometry/distance.hpp>
@@ -65,6 +66,7 @@ class DistanceMeter::Impl {
                                      std::span<double> of_points) const {
     std::vector<Vec3> all;
     for (const Points& set : sets) all.insert(all.end(), set.begin(), set.end());
+    assert(of_points.empty() || of_points.size() == all.size());
     const std::vector<double> squared = squared_distances(all);
     std::vector<Distance> distances;
     std::size_t first = 0;

@@ -31,7 +31,7 @@ PointTree::PointTree(std::span<SearchingPoint> points, std::span<const std::uint
     items.push_back({morton_code((points[i].place - center) * scale), i});
   }
   sort_by_code(items);
-  for (const MortonItem& item : items) order_.push_back(item.number);
+  order_ = numbers_of(items);
   add_levels();
 }
 

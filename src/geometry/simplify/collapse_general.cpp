@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <iterator>
 
 #include "geometry/bvh.hpp"
@@ -260,9 +261,24 @@ void GeneralJudge::list_lost() {
   lost_.erase(std::unique(lost_.begin(), lost_.end()), lost_.end());
 }
 
-/// Of what goes with these vertices, by how far it is from the rest. Where two triangles close upon
-/// each other, what lies between them is covered from then on.
+/// The squared distance of what will cover the foot of a needle or fin, where two of its triangles
+/// close upon each other; infinite if nothing will.
+double GeneralJudge::squared_to_cover(Vec3 from) const {
+  double squared = HUGE_VAL;
+  if (staying_ == 0) return squared;
+  for (const auto& [next, prev] : vanishing_) {
+    if (contains(lost_, next) == contains(lost_, prev)) continue;
+    const std::uint32_t left = contains(lost_, next) ? prev : next;
+    squared =
+        std::min(squared, squared_distance(from, state_.positions[a_.vertex],
+                                           state_.positions[b_.vertex], state_.positions[left]));
+  }
+  return squared;
+}
+
+/// Of what goes with these vertices, by how far it is from the rest.
 double GeneralJudge::cost_of_lost() {
+  if (!any_topology_ || lost_.empty()) return 0;
   Vec3 sum;
   double area = 0;
   const auto add = [&](std::uint32_t end, const Corner& c) {
@@ -280,23 +296,15 @@ double GeneralJudge::cost_of_lost() {
   }
   if (area == 0) return 0;
   const Vec3 middle = sum * (1 / area);
-  double squared = surroundings_.squared_distance(
+  const double squared = surroundings_.squared_distance(
       {state_.positions, state_.target, state_.adjacency}, middle, lost_);
-  for (const auto& [next, prev] : vanishing_) {
-    if (staying_ == 0 || contains(lost_, next) == contains(lost_, prev)) continue;
-    const std::uint32_t left = contains(lost_, next) ? prev : next;
-    squared =
-        std::min(squared, squared_distance(middle, state_.positions[a_.vertex],
-                                           state_.positions[b_.vertex], state_.positions[left]));
-  }
-  return k_loss_of_piece * area * squared;
+  return k_loss_of_piece * area * std::min(squared, squared_to_cover(middle));
 }
 
 /// What needles and fins cost that go with the edge at their foot: planes tell only how far that
 /// moves.
 void GeneralJudge::add_cost_of_tips(Collapse& collapse) {
   list_lost();
-  if (lost_.empty()) return;
   const double cost = cost_of_lost();
   collapse.cost += cost;
   collapse.certain += cost;
@@ -335,7 +343,7 @@ GeneralCollapse GeneralJudge::judge(std::uint32_t a, std::uint32_t b,
   add_lines(a_, b_, half_ * -1.0);
   add_lines(b_, a_, half_);
   result.collapse = state_.has_uvs() ? best_with_uvs() : best_of_positions();
-  if (result.collapse.triangles > 0) add_cost_of_tips(result.collapse);
+  if (changes_ && result.collapse.triangles > 0) add_cost_of_tips(result.collapse);
   return result;
 }
 

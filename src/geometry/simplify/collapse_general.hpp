@@ -26,7 +26,9 @@ struct GeneralCollapse {
 class GeneralJudge {
  public:
   /// Target must be the identity: the adjacency is kept up to date.
-  explicit GeneralJudge(const CollapseState& state) : state_(state) {}
+  /// Without `any_topology` what changes the topology will be refused: its cost need not be right.
+  GeneralJudge(const CollapseState& state, bool any_topology)
+      : state_(state), any_topology_(any_topology) {}
   void move_to(const CollapseState& state) { state_ = state; }
   /// To be told of each collapse.
   void merge() { surroundings_.change(); }
@@ -77,11 +79,13 @@ class GeneralJudge {
   double cost_of_past(Vec3 x) const;
   bool is_lost(std::uint32_t vertex) const;
   void list_lost();
+  double squared_to_cover(Vec3 from) const;
   double cost_of_lost();
   void add_cost_of_tips(Collapse& collapse);
   Collapse removal();
 
   CollapseState state_;
+  bool any_topology_;
   End a_;
   End b_;
   std::vector<Corner> shared_;  // as corners of a

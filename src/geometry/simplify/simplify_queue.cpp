@@ -68,7 +68,7 @@ std::uint64_t most_at_once(std::uint64_t excess, std::uint64_t goal) {
 }  // namespace
 
 CollapseQueue::CollapseQueue(const QueuedMesh& mesh, EdgeRanking& ranking)
-    : mesh_(mesh), ranking_(ranking), judge_(state()), general_(state()) {}
+    : mesh_(mesh), ranking_(ranking), judge_(state()), general_(state(), mesh.any_topology) {}
 
 void CollapseQueue::start(std::span<const Triangle> triangles) {
   const auto vertices = static_cast<std::uint32_t>(mesh_.positions.size());
