@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
 #include <algorithm>
+#include <cctype>
 #include <cstdio>
 #include <fstream>
 #include <iostream>
@@ -80,6 +81,20 @@ void read_config(const std::string& path, const po::options_description& options
   po::store(parsed, values);
 }
 
+/// Names what --help shows: an option, or a place in the synopsis, which is its option in capitals.
+UsageError missing(const po::required_option& error, const DescribedCommand& described) {
+  std::string name = error.get_option_name();
+  const std::string plain = name.substr(name.find_first_not_of('-'));
+  if (described.options.find(plain, false).description().empty()) {
+    name = plain;
+    std::transform(name.begin(), name.end(), name.begin(),
+                   [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
+  }
+  const Command& command = *described.command;
+  return UsageError(name + " is missing: meshfarm " + std::string(command.name()) + " " +
+                    std::string(command.synopsis()));
+}
+
 int run_command(std::unique_ptr<Command> named, const std::vector<std::string>& words) {
   const DescribedCommand described(std::move(named));
   Command& command = *described.command;
@@ -96,7 +111,11 @@ int run_command(std::unique_ptr<Command> named, const std::vector<std::string>& 
   if (values.count("config") != 0) {
     read_config(values["config"].as<std::string>(), options, values);
   }
-  po::notify(values);
+  try {
+    po::notify(values);
+  } catch (const po::required_option& error) {
+    throw missing(error, described);
+  }
   command.check();
   if (command.keeps_freed_memory()) keep_freed_memory();
   return command.run();

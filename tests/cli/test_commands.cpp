@@ -225,6 +225,16 @@ TEST_CASE("wrong usage is one line and exit 2") {
   CHECK_FALSE(fs::exists(shell.path("o.ply")));
 }
 
+TEST_CASE("what is missing is named as help names it") {
+  Shell shell;
+  const auto says = [&](const std::vector<std::string>& words, const std::string& missing) {
+    return has(shell(words).err, missing + " is missing: meshfarm " + words[0] + " ");
+  };
+  CHECK(says({"compare"}, "A"));
+  CHECK(says({"compare", "a.ply"}, "B"));
+  CHECK(says({"cut", "a.ply"}, "--stage"));
+}
+
 TEST_CASE("what cannot be read or written is one line and exit 1") {
   Shell shell;
   const std::string cube = shell.cube();
