@@ -36,7 +36,8 @@ struct TalkOptions {
   ProgressStyle progress() const;
 };
 
-/// --ratio, --triangles, --error, --certify, --allocation, --finish, --composition, --topology,
+/// --ratio, --triangles, --error, --certify, --allocation, --finish, --composition, --fit,
+/// --topology,
 /// --crossings, --preserve-border, --crease-angle, --drop-components, --weight, --normals.
 struct TargetOptions {
   RunOptions run;
@@ -50,6 +51,7 @@ struct TargetOptions {
   std::string allocation = "threshold";
   std::string finish = "auto";
   std::string composition = "auto";
+  std::string fit = "auto";
   std::string topology = "auto";
   std::string crossings = "allow";
 

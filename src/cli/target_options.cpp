@@ -88,6 +88,10 @@ void TargetOptions::add(po::options_description& options) {
       po::value(&composition)->default_value(composition)->value_name("auto|tree|sink"),
       "how simplified parts are joined: tree: neighbours by jobs, a few at once; sink: all at once "
       "by the sink; auto: tree if there are many more triangles than wanted")(
+      "fit", po::value(&fit)->default_value(fit)->value_name("auto|on|off"),
+      "at the end, move the vertices to where the surface is nearer to the input, by points of it: "
+      "auto: where that takes little of the time; not with --error, --crossings avoid or --finish "
+      "boundary")(
       "topology", po::value(&topology)->default_value(topology)->value_name("auto|keep|simplify"),
       "handles, holes and pieces: keep: never close or remove any; simplify: do so where it costs "
       "least; auto: keep them as long as the target can be met at a fair error; with "
@@ -152,6 +156,9 @@ void TargetOptions::check_joining() {
                                           {"farm", FinishPlace::farm},
                                           {k_boundary, FinishPlace::here}});
   run.finish = finish == k_boundary ? Finish::boundary : Finish::global;
+  run.fit = chosen<VertexFit>(
+      "--fit", fit,
+      {{"auto", VertexFit::automatic}, {"on", VertexFit::on}, {"off", VertexFit::off}});
   run.composition = chosen<Composition>(
       "--composition", composition,
       {{"auto", Composition::automatic}, {"tree", Composition::tree}, {"sink", Composition::sink}});
@@ -192,6 +199,7 @@ std::vector<std::string> TargetOptions::words() const {
   std::vector<std::string> words = {"--allocation", allocation,      "--finish",
                                     finish,         "--composition", composition};
   words.insert(words.end(), {"--topology", topology});
+  if (fit != "auto") words.insert(words.end(), {"--fit", fit});
   if (crossings != "allow") words.insert(words.end(), {"--crossings", crossings});
   if (run.lines.preserve_border) words.emplace_back("--preserve-border");
   if (run.lines.crease_angle > 0) {

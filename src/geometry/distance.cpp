@@ -91,14 +91,30 @@ class DistanceMeter::Impl {
   }
 
   std::uint32_t nearest_triangle(Vec3 point) const { return bvh().nearest(point, 0).triangle; }
+
+  std::vector<std::uint32_t> nearest_triangles(Points points) const {
+    std::vector<std::uint32_t> triangles(points.size());
+    find_nearest(points,
+                 [&](std::size_t i, const Bvh::Nearest& found) { triangles[i] = found.triangle; });
+    return triangles;
+  }
+
   const TriangleIndex& index() const { return index_; }
 
  private:
   const Bvh& bvh() const { return index_.bvh(); }
 
   std::vector<double> squared_distances(Points points) const {
-    constexpr std::size_t k_run = 1024;
     std::vector<double> squared(points.size());
+    find_nearest(points,
+                 [&](std::size_t i, const Bvh::Nearest& found) { squared[i] = found.squared; });
+    return squared;
+  }
+
+  /// From several threads.
+  template <class Found>
+  void find_nearest(Points points, const Found& found) const {
+    constexpr std::size_t k_run = 1024;
     const std::vector<std::uint32_t> order = bvh().search_order(points);
     parallel_for((order.size() + k_run - 1) / k_run, threads_, [&](std::uint64_t run) {
       std::uint32_t guess = 0;
@@ -106,10 +122,9 @@ class DistanceMeter::Impl {
       for (std::size_t i = run * k_run; i < end; ++i) {
         const Bvh::Nearest nearest = bvh().nearest(points[order[i]], guess);
         guess = nearest.triangle;
-        squared[order[i]] = nearest.squared;
+        found(order[i], nearest);
       }
     });
-    return squared;
   }
 
   static Distance sum(std::span<const double> squared) {
@@ -144,6 +159,10 @@ double DistanceMeter::farthest(Points points, double least) const {
 
 std::uint32_t DistanceMeter::nearest_triangle(Vec3 point) const {
   return impl_->nearest_triangle(point);
+}
+
+std::vector<std::uint32_t> DistanceMeter::nearest_triangles(Points points) const {
+  return impl_->nearest_triangles(points);
 }
 
 const TriangleIndex& DistanceMeter::index() const {

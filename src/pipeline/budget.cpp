@@ -16,6 +16,17 @@ constexpr std::uint64_t k_error_samples = 100'000;
 /// A bound is on the greatest distance, which more points find more of, vertices most.
 constexpr std::uint64_t k_bound_samples = 200'000;
 
+/// Points a triangle of the result, to fit its vertices: with fewer it hardly comes nearer, and
+/// more are of no use.
+constexpr std::uint64_t k_least_fit_points = 4;
+constexpr std::uint64_t k_enough_fit_points = 20;
+/// More than the least only up to so many.
+constexpr std::uint64_t k_plenty_of_fit_points = 300'000;
+/// About half a second of processor time.
+constexpr std::uint64_t k_most_automatic_fit_points = 500'000;
+/// They are in memory.
+constexpr std::uint64_t k_most_fit_points = 50'000'000;
+
 }  // namespace
 
 double provision(double ratio) {
@@ -26,11 +37,46 @@ std::uint64_t samples_for(const Manifest& manifest, const RunOptions& options,
                           std::uint64_t triangles) {
   const double share = static_cast<double>(triangles) /
                        static_cast<double>(std::max<std::uint64_t>(1, manifest.triangles()));
-  return static_cast<std::uint64_t>(std::ceil(share * static_cast<double>(all_samples(options))));
+  return static_cast<std::uint64_t>(
+      std::ceil(share * static_cast<double>(sample_counts(manifest, options).all())));
 }
 
-std::uint64_t all_samples(const RunOptions& options) {
-  return options.error.value > 0 ? k_bound_samples : k_error_samples;
+SampleCounts sample_counts(const Manifest& manifest, const RunOptions& options) {
+  if (options.error.value > 0) return {k_bound_samples, 0};
+  SampleCounts counts{k_error_samples, 0};
+  // What was seen to cross nothing is not to move, nor what the paper's way made.
+  const bool may_fit = options.fit != VertexFit::off && options.finish == Finish::global &&
+                       options.lines.crossings == CrossingMode::allow;
+  if (!may_fit) return counts;
+  // Not of what is left of the input: jobs that cut it do not know that.
+  const std::uint64_t input = manifest.input_triangles;
+  const double share = options.ratio * static_cast<double>(input);
+  const std::uint64_t triangles =
+      std::min(input, options.triangles != 0 ? options.triangles
+                                             : static_cast<std::uint64_t>(std::llround(share)));
+  const std::uint64_t least = k_least_fit_points * triangles;
+  if (options.fit == VertexFit::automatic && least > k_most_automatic_fit_points) return counts;
+  counts.fitting = std::min({k_enough_fit_points * triangles,
+                             std::max(k_plenty_of_fit_points, least), k_most_fit_points});
+  return counts;
+}
+
+SplitSamples split_samples(std::vector<SurfaceSamples> all, const SampleCounts& counts) {
+  if (counts.fitting == 0) return {std::move(all), {}};
+  SplitSamples split;
+  const double share = static_cast<double>(counts.measured) / static_cast<double>(counts.all());
+  for (SurfaceSamples& set : all) {
+    SurfaceSamples& measured = split.measured.emplace_back(SurfaceSamples{set.area, {}});
+    SurfaceSamples& fitting = split.fitting.emplace_back(SurfaceSamples{set.area, {}});
+    for (std::size_t i = 0; i < set.points.size(); ++i) {
+      const auto place = static_cast<double>(i);
+      const bool is_measured =
+          i == 0 || std::floor(place * share) > std::floor((place - 1) * share);
+      (is_measured ? measured : fitting).points.push_back(set.points[i]);
+    }
+    set.points = {};
+  }
+  return split;
 }
 
 double refused_by(const Rung& rung, double free_triangles) {

@@ -15,6 +15,7 @@
 #include <meshfarm/geometry/simplify.hpp>
 #include <meshfarm/geometry/surface_measures.hpp>
 #include <meshfarm/geometry/topology.hpp>
+#include <meshfarm/geometry/vertex_fit.hpp>
 #include <meshfarm/io/boundary_file.hpp>
 #include <meshfarm/io/result_file.hpp>
 #include <meshfarm/pipeline/budget.hpp>
@@ -58,12 +59,14 @@ class ResultFinish {
     }
     std::vector<SurfaceSamples> samples;
     StitchedMesh stitched = stitch(chosen.rungs, samples);
-    make_meter(std::move(samples));
+    SplitSamples split = split_samples(std::move(samples), sample_counts(manifest_, run_));
+    make_meter(std::move(split.measured));
     summary_.dropped_components = drop_small(stitched.mesh);
     summary_.stitched = stitched.mesh.triangles.size();
     summary_.stitch_seconds = watch.lap();
     Mesh result = summary_.max_error > 0 ? finish_within_bound(std::move(stitched))
                                          : finish(std::move(stitched));
+    fit(result, split.fitting);
     count(result);
     compare_topology(chosen.kept, result);
     summary_.finish_seconds = watch.lap();
@@ -207,6 +210,17 @@ class ResultFinish {
                           run_.finish != Finish::boundary && !simplifier.pairs_sheets();
     if (may_mend) summary_.facing = mend(result);
     return result;
+  }
+
+  void fit(Mesh& result, std::vector<SurfaceSamples>& points) {
+    if (points.empty()) return;
+    tell("fit", 0, 0);
+    summary_.fitted_vertices = fit_vertices(result, points,
+                                            {.positions = manifest_.positions,
+                                             .keeps_borders = lines_.preserve_border,
+                                             .crease_angle = lines_.crease_angle,
+                                             .threads = options_.threads});
+    points = {};
   }
 
   FacingMended mend(Mesh& result) const {

@@ -44,6 +44,8 @@ constexpr std::uint64_t k_split_work = 2;
 constexpr std::uint64_t k_measured_at_once = 200'000;
 /// To read the result that is measured, and to arrange its points, is worth so many triangles.
 constexpr std::uint64_t k_before_measuring = 20'000;
+/// Of the points that vertices are fitted to: as they are staged, in memory, and what each pulls.
+constexpr std::uint64_t k_fitting_times = 6;
 /// And then so many triangles of it take the work of simplifying one.
 constexpr std::uint64_t k_measured_result = 3;
 
@@ -66,6 +68,7 @@ void FinishStage::begin(JobGraph& graph, const FinishGoal& goal,
     return done_(graph, std::nullopt, "there are more pieces than a job can name");
   }
   goal_ = goal;
+  weigh_.samples = sample_counts(manifest_, options_);
   weigh_.lines = lines_of(manifest_, options_);
   weigh_.lines.topology = goal.topology;
   parts_ = parts;
@@ -296,12 +299,25 @@ Job FinishStage::reduce_job(std::size_t piece, std::uint64_t quota) const {
   Job job;
   job.kind = k_reduce_kind;
   job.inputs = {from.divided_file};
-  job.sections = {{0, from.divided.mesh}};
+  job.sections = {{0, from.divided.mesh}, {0, from.divided.fitting}};
   job.parameters = encode_parameters(parameters);
   job.cost = rungs[parameters.rung];
-  job.memory = k_piece_process_bytes + from.divided.mesh.size + k_piece_triangle_bytes * job.cost +
+  job.memory = k_piece_process_bytes + from.divided.mesh.size +
+               k_fitting_times * from.divided.fitting.size + k_piece_triangle_bytes * job.cost +
                memory_of_channels(weigh_.lines, job.cost);
+  if (from.parts == 0 && weigh_.samples.fitting > 0) add_fitting_near(from, job);
   return job;
+}
+
+/// What left a piece for a group left its points behind.
+void FinishStage::add_fitting_near(const PieceOfResult& group, Job& job) const {
+  for (const PieceOfResult& each : made_.pieces) {
+    if (each.parts == 0 || !each.divided.box.meets(group.divided.box)) continue;
+    job.sections.push_back(
+        {static_cast<std::uint32_t>(job.inputs.size()), each.divided.strip_fitting});
+    job.inputs.push_back(each.divided_file);
+    job.memory += k_fitting_times * each.divided.strip_fitting.size;
+  }
 }
 
 Job FinishStage::measure_job(std::size_t number, const std::vector<PartRange>& ranges,

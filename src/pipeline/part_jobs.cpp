@@ -150,7 +150,7 @@ void PartJobs::set_share_of(SimplifyParameters& parameters, std::uint32_t part,
                        end_of_ladders(),
                        foresees(),
                        manifest_.triangles(),
-                       all_samples(options_)};
+                       sample_counts(manifest_, options_).all()};
   set_share(parameters, rule, entry.triangles, entry.boundary_vertices);
 }
 
@@ -187,7 +187,8 @@ ShareRule PartJobs::share_rule(double headroom) const {
   if (options_.triangles != 0) ratio = static_cast<double>(options_.triangles) / some;
   if (manifest_.uvs) ratio = static_cast<double>(target()) / some;
   if (by_error()) ratio = 1;
-  return {std::min(1.0, ratio), headroom, end_of_ladders(), foresees(), all, all_samples(options_)};
+  return {std::min(1.0, ratio), headroom, end_of_ladders(),
+          foresees(),           all,      sample_counts(manifest_, options_).all()};
 }
 
 /// Of what is kept for the finish. A finish in pieces asks how the counts fall down to the target.

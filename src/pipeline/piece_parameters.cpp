@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
 //
-// Parameters and summaries of the jobs of a farmed finish, version 8, little endian:
+// Parameters and summaries of the jobs of a farmed finish, version 9, little endian:
 //   weigh      = cost unit f64 | first step i32 | last share f64 | kept share f64 |
-//                is weighed u8 | lines
+//                is weighed u8 | samples measured u64 | fitting u64 | lines
 //   split      = version u8 | piece u32 | rung u32 | step i32 | is composed u8 | ref | weigh
 //   seam       = version u8 | strips u32 x (parts u32 | ref) | group u32 | groups u32 |
 //                all parts u32 | boundary (io/boundary_ref.hpp) | samples a triangle f64 | weigh |
@@ -16,7 +16,7 @@
 //                (bundle_list.hpp), else of each part a file
 //   write      = version u8 | pieces u64
 //   ref        = file | section;  box = 6 x f64
-//   divided    = 5 sections | gap triangles u64 | strip triangles u64 | shared u64 | box |
+//   divided    = 7 sections | gap triangles u64 | strip triangles u64 | shared u64 | box |
 //                rungs u32 x u64 | dropped degenerate u64 | duplicate u64 | turned u64 |
 //                before u64 | first step i32 | counts u32 x u64
 //   finished   = 2 sections | by area u64 | area f64 | vertices u64 | triangles u64
@@ -28,7 +28,8 @@
 // surroundings of the seams were one piece. In version 3 triangles of gaps had no columns, and no
 // components were left out. In version 4 there was one boundary file. In version 5 there was no
 // bound on the error, and measure jobs looked the parts up in the manifest. In version 6 a reduce
-// job read its input whole. In version 7 sides went with an input step of 1.
+// job read its input whole. In version 7 sides went with an input step of 1. In version 8 no
+// vertices were fitted.
 #include <cmath>
 
 #include <meshfarm/pipeline/piece_jobs.hpp>
@@ -41,7 +42,7 @@
 namespace meshfarm {
 namespace {
 
-constexpr std::uint8_t k_piece_version = 8;
+constexpr std::uint8_t k_piece_version = 9;
 constexpr double k_most_piece_samples = 1000;  // a triangle
 
 void begin_parameters(ByteWriter& out) {
@@ -58,6 +59,8 @@ void put_weigh(ByteWriter& out, const WeighParameters& weigh) {
   out.put(weigh.last_share);
   out.put(weigh.kept_share);
   out.put(static_cast<std::uint8_t>(weigh.is_weighed ? 1 : 0));
+  out.put(weigh.samples.measured);
+  out.put(weigh.samples.fitting);
   put(out, weigh.lines);
 }
 
@@ -68,6 +71,8 @@ WeighParameters get_weigh(ByteReader& in) {
   weigh.last_share = in.get<double>();
   weigh.kept_share = in.get<double>();
   weigh.is_weighed = in.get<std::uint8_t>() != 0;
+  weigh.samples.measured = in.get<std::uint64_t>();
+  weigh.samples.fitting = in.get<std::uint64_t>();
   weigh.lines = get_lines(in);
   const auto is_share = [](double x) { return x >= 0 && x <= 1; };
   if (!(weigh.cost_unit > 0) || !is_share(weigh.last_share) || !is_share(weigh.kept_share)) {
@@ -301,8 +306,8 @@ MeasureParameters decode_measure_parameters(std::string_view bytes) {
 
 std::string encode_summary(const DividedPiece& piece) {
   ByteWriter out;
-  for (const FileSection& section :
-       {piece.mesh, piece.gap, piece.strip, piece.samples, piece.between}) {
+  for (const FileSection& section : {piece.mesh, piece.gap, piece.strip, piece.samples,
+                                     piece.fitting, piece.strip_fitting, piece.between}) {
     out.put(section);
   }
   for (const std::uint64_t count : {piece.gap_triangles, piece.strip_triangles, piece.shared}) {
@@ -323,8 +328,8 @@ std::string encode_summary(const DividedPiece& piece) {
 DividedPiece decode_divided_piece(std::string_view bytes, std::string_view what) {
   ByteReader in(bytes, what);
   DividedPiece piece;
-  for (FileSection* section :
-       {&piece.mesh, &piece.gap, &piece.strip, &piece.samples, &piece.between}) {
+  for (FileSection* section : {&piece.mesh, &piece.gap, &piece.strip, &piece.samples,
+                               &piece.fitting, &piece.strip_fitting, &piece.between}) {
     *section = in.get<FileSection>();
   }
   for (std::uint64_t* count : {&piece.gap_triangles, &piece.strip_triangles, &piece.shared}) {

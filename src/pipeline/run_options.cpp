@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include <meshfarm/pipeline/algorithm.hpp>
+#include <meshfarm/pipeline/budget.hpp>
 #include <meshfarm/pipeline/finished_pieces.hpp>
 #include <meshfarm/pipeline/run_options.hpp>
 #include <meshfarm/util/bytes.hpp>
@@ -181,6 +182,7 @@ std::uint64_t run_key(const Manifest& manifest, const RunOptions& options) {
   out.put(options.allocation);
   out.put(options.finish);
   out.put(options.composition);
+  out.put(sample_counts(manifest, options).fitting);
   put(out, lines_of(manifest, options));
   out.put(options.drop_components.in(manifest.box));
   out.put(options.error.in(manifest.box));

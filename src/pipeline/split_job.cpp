@@ -88,9 +88,8 @@ struct SplitMesh {
   PieceStrip strip;
 };
 
-SplitMesh split(const ResultMesh& piece, std::uint32_t piece_number, int rings) {
+SplitMesh split(const ResultMesh& piece, const Sides& sides, std::uint32_t piece_number) {
   const Mesh& mesh = piece.mesh;
-  const Sides sides = sides_of(mesh, piece.boundary_vertices, rings);
   Numbers inner(mesh.positions.size());
   inner.add([&](std::uint32_t v) { return sides.strip[v] == 0 && sides.shared[v] != 0; });
   SplitMesh made;
@@ -119,6 +118,39 @@ SplitMesh split(const ResultMesh& piece, std::uint32_t piece_number, int rings) 
     }
   }
   return made;
+}
+
+/// Points that vertices are fitted to, by where they are nearest: to what stays in the piece, or to
+/// what leaves it.
+struct DividedPoints {
+  std::vector<SurfaceSamples> inner;
+  std::vector<SurfaceSamples> strip;
+};
+
+DividedPoints divide(std::vector<SurfaceSamples> points, const Mesh& mesh, const Sides& sides) {
+  DividedPoints divided;
+  if (points.empty() || mesh.triangles.empty()) return divided;
+  const DistanceMeter meter(mesh, 1);
+  for (SurfaceSamples& set : points) {
+    SurfaceSamples inner;
+    SurfaceSamples strip;
+    const std::vector<std::uint32_t> nearest = meter.nearest_triangles(set.points);
+    for (std::size_t i = 0; i < nearest.size(); ++i) {
+      const auto& [a, b, c] = mesh.triangles[nearest[i]];
+      const int in_strip = sides.strip[a] + sides.strip[b] + sides.strip[c];
+      if (in_strip == 0) inner.points.push_back(set.points[i]);
+      if (in_strip == 3) strip.points.push_back(set.points[i]);
+    }
+    const double each = set.area / static_cast<double>(std::max<std::size_t>(1, nearest.size()));
+    for (auto [some, all] :
+         {std::pair(&inner, &divided.inner), std::pair(&strip, &divided.strip)}) {
+      if (some->points.empty()) continue;
+      some->area = each * static_cast<double>(some->points.size());
+      all->push_back(std::move(*some));
+    }
+    set.points = {};
+  }
+  return divided;
 }
 
 /// Leaves out these components, which their lowest vertices tell. Returns their boundary vertices.
@@ -179,11 +211,16 @@ JobOutput split_piece(const Job& job, const JobContext& context) {
   for (const Vec3& v : piece.mesh.positions) made.box.add(v);
   std::vector<std::uint32_t> dropped = drop_components(parameters.small_components, context, piece);
   approach(parameters, context, piece, made);
-  SplitMesh halves = split(piece, parameters.piece,
-                           parameters.weigh.is_weighed ? k_strip_rings : k_bounded_strip_rings);
+  const Sides sides = sides_of(piece.mesh, piece.boundary_vertices,
+                               parameters.weigh.is_weighed ? k_strip_rings : k_bounded_strip_rings);
+  SplitMesh halves = split(piece, sides, parameters.piece);
   halves.strip.dropped = std::move(dropped);
   PieceFile file;
-  made.samples = file.add(encode_samples(piece.samples));
+  SplitSamples samples = split_samples(std::move(piece.samples), parameters.weigh.samples);
+  made.samples = file.add(encode_samples(samples.measured));
+  const DividedPoints fitting = divide(std::move(samples.fitting), piece.mesh, sides);
+  made.fitting = file.add(encode_samples(fitting.inner));
+  made.strip_fitting = file.add(encode_samples(fitting.strip));
   if (parameters.is_composed) made.between = file.add(inputs.beside());
   piece = {};
   made.strip_triangles = halves.strip.mesh.mesh.triangles.size();

@@ -259,6 +259,7 @@ Json run_json(const RunSummary& s, const std::string& warning) {
       {"parts", m.parts.size()},
       {"boundary_triangles", m.boundary_triangles},
       {"stitched_triangles", s.stitched},
+      {"fitted_vertices", s.fitted_vertices},
       {"finish", finish_json(s)},
       {"seconds",
        {{"cut", m.cut_seconds},

@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include <meshfarm/geometry/distance.hpp>
 #include <meshfarm/io/manifest.hpp>
 #include <meshfarm/io/result_file.hpp>
 #include <meshfarm/pipeline/run_options.hpp>
@@ -46,12 +47,26 @@ struct ChosenRungs {
 /// much is taken away (measured: no better with more), less where little is, as then seams are few.
 double provision(double ratio);
 
-/// How many points of a surface of so many of the input's triangles the error is measured by.
+/// How many points to take of a surface of so many of the input's triangles, for all purposes.
 std::uint64_t samples_for(const Manifest& manifest, const RunOptions& options,
                           std::uint64_t triangles);
 
-/// Of the whole surface.
-std::uint64_t all_samples(const RunOptions& options);
+/// Points of the whole surface: those that the error is measured by, and others that the vertices
+/// of the result are fitted to. What is fitted to a point is near it, which is no measure.
+struct SampleCounts {
+  std::uint64_t measured = 0;
+  std::uint64_t fitting = 0;  // 0: the vertices stay where they are
+  std::uint64_t all() const { return measured + fitting; }
+};
+SampleCounts sample_counts(const Manifest& manifest, const RunOptions& options);
+
+/// Points that were taken for both.
+struct SplitSamples {
+  std::vector<SurfaceSamples> measured;
+  std::vector<SurfaceSamples> fitting;  // none where none are to be fitted
+};
+/// Shares out the points of each set, evenly along it.
+SplitSamples split_samples(std::vector<SurfaceSamples> all, const SampleCounts& counts);
 
 /// How many collapses are refused to keep the topology by when so many free triangles are left, as
 /// far as a rung tells: refusals a triangle rise with about the fourth power of what has gone.

@@ -11,6 +11,7 @@
 #include <meshfarm/farm/job.hpp>
 #include <meshfarm/geometry/components.hpp>
 #include <meshfarm/io/bundles.hpp>
+#include <meshfarm/pipeline/budget.hpp>
 #include <meshfarm/pipeline/run_options.hpp>
 #include <meshfarm/report/summary.hpp>
 #include <meshfarm/staging/sections.hpp>
@@ -50,6 +51,7 @@ struct WeighParameters {
   double kept_share = 0;         // where the mesh is kept, to go on from there
   /// Where false, as a bound on the error decides how far all goes: it stays as it is.
   bool is_weighed = true;
+  SampleCounts samples;  // what those that were taken are shared out by
   LineOptions lines;
 };
 
@@ -79,8 +81,10 @@ struct DividedPiece {
   /// Of a piece: its triangles between the mesh and the surroundings. Of a group: those between it
   /// and other groups.
   FileSection gap;
-  FileSection strip;    // of a piece: what it gives to the groups. Of a group: what is shared
-  FileSection samples;  // of the input, by which the error is measured
+  FileSection strip;          // of a piece: what it gives to the groups. Of a group: what is shared
+  FileSection samples;        // of the input, by which the error is measured
+  FileSection fitting;        // others, which the vertices are fitted to
+  FileSection strip_fitting;  // of a piece: those of what it gives to the groups
   /// Of a composed piece: the input's triangles between its parts. Of a group: those between
   /// pieces.
   FileSection between;
@@ -166,7 +170,8 @@ SeamParameters decode_seam_parameters(std::string_view bytes);
 /// Of a piece that is finished as it is.
 inline constexpr std::uint64_t k_keep_all = UINT64_MAX;
 
-/// Of a job with one section of one input: DividedPiece::mesh.
+/// Of a job with a section of the first input, DividedPiece::mesh, and sections of all with points
+/// that its vertices are fitted to: DividedPiece::fitting, or strip_fitting.
 struct ReduceParameters {
   std::uint32_t rung = 0;
   std::uint64_t triangles = 0;  // or k_keep_all

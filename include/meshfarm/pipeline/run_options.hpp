@@ -40,6 +40,13 @@ enum class Composition : std::uint8_t {
   sink,       // the sink joins all
 };
 
+/// Whether the vertices of the result move to where it is nearer to the input (vertex_fit.hpp).
+enum class VertexFit : std::uint8_t {
+  automatic,  // where that takes little of the time
+  on,
+  off,
+};
+
 /// What becomes of the input's normals.
 enum class Normals : std::uint8_t {
   blend,      // fitted to the input's, as other channels are
@@ -80,6 +87,7 @@ struct RunOptions {
   Finish finish = Finish::global;
   FinishPlace finish_place = FinishPlace::automatic;
   Composition composition = Composition::automatic;
+  VertexFit fit = VertexFit::automatic;
   LineOptions lines;
   Length drop_components;  // components with a smaller diagonal are left out
   /// Black for white is as bad as a move of the surface by this share of the bounding box's

@@ -130,6 +130,7 @@ struct RunSummary {
   /// Where the result went to ruin and a few triangles more would not have.
   std::optional<BetterCount> better;
   std::uint64_t stitched = 0;            // triangles of the stitched mesh, before the finish
+  std::uint64_t fitted_vertices = 0;     // that moved after the sink's finish
   std::uint64_t dropped_degenerate = 0;  // cut, parts and finish together
   std::uint64_t dropped_duplicate = 0;
   std::uint64_t finished_in_pieces = 0;  // 0: the sink finished it

@@ -122,6 +122,7 @@ TEST_CASE("words that name no choice are told with the choices") {
   check("--allocation", "'threshold' or 'uniform'");
   check("--finish", "'auto', 'here', 'farm' or 'boundary'");
   check("--composition", "'auto', 'tree' or 'sink'");
+  check("--fit", "'auto', 'on' or 'off'");
   check("--topology", "'auto', 'keep' or 'simplify'");
   check("--crossings", "'allow' or 'avoid'");
   check("--normals", "'blend', 'recompute' or 'drop'");
@@ -167,7 +168,7 @@ TEST_CASE("a target's words say all of it again") {
       {"--error=0.1%", "--topology=keep", "--crossings=avoid", "--preserve-border",
        "--crease-angle=30.5"},
       {"--ratio=0.1", "--drop-components=2%", "--weight=colour=0.01", "--normals=recompute"},
-      {"--ratio=0.1", "--attributes=none", "--uv=bake", "--texture-size=1024"}};
+      {"--ratio=0.1", "--attributes=none", "--uv=bake", "--texture-size=1024", "--fit=off"}};
   for (const Words& line : lines) {
     CAPTURE(line.back());
     const TargetOptions first = target_of(line);
@@ -180,6 +181,7 @@ TEST_CASE("a target's words say all of it again") {
     CHECK(first.run.allocation == again.run.allocation);
     CHECK(first.run.finish == again.run.finish);
     CHECK(first.run.composition == again.run.composition);
+    CHECK(first.run.fit == again.run.fit);
     CHECK(first.run.lines.topology == again.run.lines.topology);
     CHECK(first.run.lines.crossings == again.run.lines.crossings);
     CHECK(first.run.lines.preserve_border == again.run.lines.preserve_border);

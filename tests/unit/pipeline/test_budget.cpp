@@ -536,3 +536,45 @@ TEST_CASE("parameters of a job that begins at a rung come back; damaged ones are
   }
   CHECK_THROWS_AS(decode_parameters(bytes + "x"), DataError);
 }
+
+TEST_CASE("vertices are fitted to points where these are few") {
+  const auto fitting = [](std::uint64_t input, RunOptions options) {
+    return sample_counts(manifest_of(10, input / 10), options).fitting;
+  };
+  CHECK(fitting(10'000'000, {.ratio = 0.001}) == 200'000);  // more a triangle are of no use
+  CHECK(fitting(10'000'000, {.ratio = 0.005}) == 300'000);
+  CHECK(fitting(10'000'000, {.triangles = 125'000}) == 500'000);
+  CHECK(fitting(10'000'000, {.triangles = 125'001}) == 0);  // fewer would not help
+  CHECK(fitting(10'000'000, {.ratio = 0.5, .fit = VertexFit::on}) == 20'000'000);
+  CHECK(fitting(100'000'000, {.ratio = 0.5, .fit = VertexFit::on}) == 50'000'000);
+  CHECK(fitting(10'000'000, {.triangles = 10'000, .fit = VertexFit::off}) == 0);
+  CHECK(fitting(10'000'000, {.ratio = 0.001, .finish = Finish::boundary}) == 0);
+  CHECK(fitting(10'000'000, {.error = {1, false}, .fit = VertexFit::on}) == 0);
+  RunOptions avoids{.ratio = 0.001};
+  avoids.lines.crossings = CrossingMode::avoid;
+  CHECK(fitting(10'000'000, avoids) == 0);
+}
+
+TEST_CASE("samples are split evenly, and each set keeps some to be measured by") {
+  std::vector<SurfaceSamples> sets(3);
+  sets[0].area = 2;
+  sets[1].area = 5;
+  for (int i = 0; i < 1000; ++i) sets[0].points.push_back({i * 1.0, 0, 0});
+  sets[1].points = {{-1, 0, 0}, {-2, 0, 0}};
+  const SplitSamples split = split_samples(sets, {100, 300});
+  REQUIRE(split.measured.size() == 3);
+  REQUIRE(split.fitting.size() == 3);
+  CHECK(split.measured[0].points.size() == 250);
+  CHECK(split.fitting[0].points.size() == 750);
+  CHECK(split.measured[0].points[0].x == 0);
+  CHECK(split.measured[0].points[100].x == 400);
+  CHECK(split.measured[0].area == 2);
+  CHECK(split.fitting[0].area == 2);
+  CHECK(split.measured[1].points.size() == 1);
+  CHECK(split.fitting[1].points.size() == 1);
+  CHECK(split.measured[2].points.empty());
+  // Where none are fitted all are measured.
+  const SplitSamples all = split_samples(sets, {100, 0});
+  CHECK(all.measured[0].points.size() == 1000);
+  CHECK(all.fitting.empty());
+}

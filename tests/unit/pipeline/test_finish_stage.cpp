@@ -325,6 +325,29 @@ TEST_CASE("handles and small pieces go in pieces, where the count is not met wit
   }
 }
 
+TEST_CASE("vertices are fitted, in pieces and by the sink, and by nobody where that is off") {
+  for (const CutOptions& options : both_schemes(4)) {
+    FinishBench bench(waves(160), options);
+    const auto rms_of = [&](VertexFit fit, FinishPlace place) {
+      RunOptions run = FinishBench::farmed(3'000);
+      run.fit = fit;
+      run.finish_place = place;
+      const RunSummary made = bench.run(run, "o.ply");
+      CHECK(made.triangles == 3'000);
+      CHECK((made.finished_in_pieces > 0) == (place == FinishPlace::farm));
+      CHECK((made.fitted_vertices > 0) == (fit != VertexFit::off && place == FinishPlace::here));
+      check_clean(measure_topology(bench.mesh("o.ply")));
+      return made.error.greater().rms;
+    };
+    for (const FinishPlace place : {FinishPlace::here, FinishPlace::farm}) {
+      CAPTURE(place);
+      const double off = rms_of(VertexFit::off, place);
+      CHECK(rms_of(VertexFit::on, place) < 0.98 * off);
+      CHECK(rms_of(VertexFit::automatic, place) < 0.98 * off);
+    }
+  }
+}
+
 TEST_CASE("what pieces have no way for is the sink's, and it says why") {
   FinishBench bench(waves(60), 4);
   RunOptions options = FinishBench::farmed(2'000);
