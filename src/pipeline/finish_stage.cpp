@@ -44,10 +44,11 @@ constexpr std::uint64_t k_split_work = 2;
 constexpr std::uint64_t k_measured_at_once = 200'000;
 /// To read the result that is measured, and to arrange its points, is worth so many triangles.
 constexpr std::uint64_t k_before_measuring = 20'000;
-/// Of the points that vertices are fitted to: as they are staged, in memory, and what each pulls.
-constexpr std::uint64_t k_fitting_times = 6;
 /// And then so many triangles of it take the work of simplifying one.
 constexpr std::uint64_t k_measured_result = 3;
+/// Of the points that vertices are fitted to: as they are staged, in memory, and what each pulls
+/// by.
+constexpr std::uint64_t k_fitting_times = 6;
 
 std::uint64_t steps_of(std::uint64_t count, std::uint64_t most) {
   return std::max<std::uint64_t>(1, (count + most - 1) / most);
@@ -299,24 +300,27 @@ Job FinishStage::reduce_job(std::size_t piece, std::uint64_t quota) const {
   Job job;
   job.kind = k_reduce_kind;
   job.inputs = {from.divided_file};
-  job.sections = {{0, from.divided.mesh}, {0, from.divided.fitting}};
+  job.sections = {{0, from.divided.mesh}};
   job.parameters = encode_parameters(parameters);
   job.cost = rungs[parameters.rung];
-  job.memory = k_piece_process_bytes + from.divided.mesh.size +
-               k_fitting_times * from.divided.fitting.size + k_piece_triangle_bytes * job.cost +
+  job.memory = k_piece_process_bytes + from.divided.mesh.size + k_piece_triangle_bytes * job.cost +
                memory_of_channels(weigh_.lines, job.cost);
-  if (from.parts == 0 && weigh_.samples.fitting > 0) add_fitting_near(from, job);
+  if (weigh_.samples.fitting > 0) add_fitting(from, job);
   return job;
 }
 
 /// What left a piece for a group left its points behind.
-void FinishStage::add_fitting_near(const PieceOfResult& group, Job& job) const {
+void FinishStage::add_fitting(const PieceOfResult& piece, Job& job) const {
+  const auto add = [&](std::size_t input, const FileSection& points) {
+    job.sections.push_back({static_cast<std::uint32_t>(input), points});
+    job.memory += k_fitting_times * points.size;
+  };
+  add(0, piece.divided.fitting);
+  if (piece.parts != 0) return;
   for (const PieceOfResult& each : made_.pieces) {
-    if (each.parts == 0 || !each.divided.box.meets(group.divided.box)) continue;
-    job.sections.push_back(
-        {static_cast<std::uint32_t>(job.inputs.size()), each.divided.strip_fitting});
+    if (each.parts == 0 || !each.divided.box.meets(piece.divided.box)) continue;
     job.inputs.push_back(each.divided_file);
-    job.memory += k_fitting_times * each.divided.strip_fitting.size;
+    add(job.inputs.size() - 1, each.divided.strip_fitting);
   }
 }
 
