@@ -37,8 +37,8 @@ struct TalkOptions {
 };
 
 /// --ratio, --triangles, --error, --certify, --allocation, --finish, --composition, --fit,
-/// --topology,
-/// --crossings, --preserve-border, --crease-angle, --drop-components, --weight, --normals.
+/// --topology, --crossings, --preserve-border, --crease-angle, --drop-components, --weight,
+/// --normals.
 struct TargetOptions {
   RunOptions run;
   std::string attributes = "auto";

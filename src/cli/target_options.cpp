@@ -4,6 +4,7 @@
 #include <cmath>
 #include <optional>
 
+#include <meshfarm/pipeline/budget.hpp>
 #include <meshfarm/util/errors.hpp>
 
 #include "cli/choice_words.hpp"
@@ -90,8 +91,9 @@ void TargetOptions::add(po::options_description& options) {
       "by the sink; auto: tree if there are many more triangles than wanted")(
       "fit", po::value(&fit)->default_value(fit)->value_name("auto|on|off"),
       "at the end, move the vertices to where the surface is nearer to the input, by points of it: "
-      "auto: where that takes little of the time; not with --error, --crossings avoid or --finish "
-      "boundary")(
+      "auto: for up to 125,000 triangles; on: up to 2 million; not with --error, --crossings "
+      "avoid, "
+      "--drop-components or --finish boundary")(
       "topology", po::value(&topology)->default_value(topology)->value_name("auto|keep|simplify"),
       "handles, holes and pieces: keep: never close or remove any; simplify: do so where it costs "
       "least; auto: keep them as long as the target can be met at a fair error; with "
@@ -193,6 +195,8 @@ void TargetOptions::check_surface() {
     throw UsageError("--texture-size: from 64 to 16384 pixels");
   }
   parse_weights(weight, run);
+  const std::string why = run.fit == VertexFit::on ? why_not_fitted(run) : "";
+  if (!why.empty()) throw UsageError("--fit on does not go with " + why);
 }
 
 std::vector<std::string> TargetOptions::words() const {

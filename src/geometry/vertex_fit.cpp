@@ -16,8 +16,8 @@ namespace {
 
 /// A vertex holds on to its place as so many points of mean weight would.
 constexpr double k_points_that_hold = 2.4;
-/// And this share of what pulls at it, so that it moves nowhere along a plane.
-constexpr double k_hold_along = 0.01;
+/// This share of what pulls at it slows each sweep down, most along planes.
+constexpr double k_slow_down = 0.01;
 /// Each is cheap beside the search for the nearest places.
 constexpr int k_sweeps = 4;
 /// Nearer than this share of a triangle's width a point is on it.
@@ -69,13 +69,14 @@ struct System {
   }
 };
 
-class VertexFit {
+class Fitter {
  public:
-  VertexFit(Mesh& mesh, const VertexFitOptions& options)
+  Fitter(Mesh& mesh, const VertexFitOptions& options)
       : mesh_(mesh), options_(options), stays_(mesh.positions.size(), 0) {
     std::fill_n(stays_.begin(), std::min<std::size_t>(options.locked_vertices, stays_.size()), 1);
     hold_shared_places();
-    if (options.keeps_borders || options.crease_angle > 0) hold_lines();
+    const bool has_lines = options.keeps_borders || options.crease_angle > 0;
+    if (has_lines || !mesh.columns.labels.empty()) hold_lines();
   }
 
   std::uint64_t run(std::span<const SurfaceSamples> points) {
@@ -103,7 +104,7 @@ class VertexFit {
     }
   }
 
-  /// The ends of borders and creases.
+  /// The ends of borders and creases, and corners of labels.
   void hold_lines() {
     struct Side {
       std::uint32_t low, high, triangle;
@@ -120,20 +121,38 @@ class VertexFit {
     std::sort(sides.begin(), sides.end(), [](const Side& a, const Side& b) {
       return std::array{a.low, a.high, a.triangle} < std::array{b.low, b.high, b.triangle};
     });
+    std::vector<std::uint8_t> label_lines(stays_.size(), 0);  // that end at a vertex
+    std::vector<std::uint8_t> at_border(stays_.size(), 0);
     for (std::size_t i = 0; i < sides.size();) {
       std::size_t end = i + 1;
       while (end < sides.size() && sides[end].low == sides[i].low &&
              sides[end].high == sides[i].high) {
         ++end;
       }
+      const auto& [low, high, triangle] = sides[i];
       const bool is_border = end - i == 1;
-      const bool is_held =
-          is_border ? options_.keeps_borders
-                    : options_.crease_angle > 0 &&
-                          (end - i > 2 || is_crease(sides[i].triangle, sides[i + 1].triangle));
-      if (is_held) stays_[sides[i].low] = stays_[sides[i].high] = 1;
+      if (is_border) at_border[low] = at_border[high] = 1;
+      if (!is_border && is_label_line(triangle, sides[i + 1].triangle)) {
+        for (const std::uint32_t v : {low, high}) {
+          label_lines[v] = static_cast<std::uint8_t>(std::min(label_lines[v] + 1, 3));
+        }
+      }
+      const bool is_held = is_border
+                               ? options_.keeps_borders
+                               : options_.crease_angle > 0 &&
+                                     (end - i > 2 || is_crease(triangle, sides[i + 1].triangle));
+      if (is_held) stays_[low] = stays_[high] = 1;
       i = end;
     }
+    for (std::size_t v = 0; v < stays_.size(); ++v) {
+      if (label_lines[v] == 0) continue;
+      if (label_lines[v] != 2 || at_border[v] != 0) stays_[v] = 1;
+    }
+  }
+
+  bool is_label_line(std::uint32_t a, std::uint32_t b) const {
+    const std::vector<Label>& labels = mesh_.columns.labels;
+    return !labels.empty() && labels[a] != labels[b];
   }
 
   bool is_crease(std::uint32_t a, std::uint32_t b) const {
@@ -211,7 +230,7 @@ class VertexFit {
   }
 
   double hold_of(const System& system) const {
-    return hold_ + k_hold_along * (system.xx + system.yy + system.zz);
+    return hold_ + k_slow_down * (system.xx + system.yy + system.zz);
   }
 
   void pull() {
@@ -295,7 +314,7 @@ class VertexFit {
 std::uint64_t fit_vertices(Mesh& mesh, std::span<const SurfaceSamples> points,
                            const VertexFitOptions& options) {
   if (mesh.triangles.empty()) return 0;
-  return VertexFit(mesh, options).run(points);
+  return Fitter(mesh, options).run(points);
 }
 
 }  // namespace meshfarm

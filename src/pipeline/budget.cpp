@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <string>
+#include <utility>
 
 #include <meshfarm/pipeline/budget.hpp>
 #include <meshfarm/pipeline/simplify_job.hpp>
@@ -22,10 +24,10 @@ constexpr std::uint64_t k_least_fit_points = 4;
 constexpr std::uint64_t k_enough_fit_points = 20;
 /// More than the least only up to so many.
 constexpr std::uint64_t k_plenty_of_fit_points = 300'000;
-/// About half a second of processor time.
+/// About a second of processor time.
 constexpr std::uint64_t k_most_automatic_fit_points = 500'000;
-/// They are in memory.
-constexpr std::uint64_t k_most_fit_points = 50'000'000;
+/// They are in memory, at up to 90 bytes each.
+constexpr std::uint64_t k_most_fit_points = 8'000'000;
 
 }  // namespace
 
@@ -41,13 +43,22 @@ std::uint64_t samples_for(const Manifest& manifest, const RunOptions& options,
       std::ceil(share * static_cast<double>(sample_counts(manifest, options).all())));
 }
 
+std::string why_not_fitted(const RunOptions& options) {
+  if (options.error.value > 0) return "--error: a bound decides where vertices are";
+  if (options.lines.crossings == CrossingMode::avoid) {
+    return "--crossings avoid: what was seen to cross nothing stays";
+  }
+  if (options.finish == Finish::boundary) return "--finish boundary: only edges at seams change";
+  if (options.drop_components.value > 0) {
+    return "--drop-components: points of what is left out would count";
+  }
+  return {};
+}
+
 SampleCounts sample_counts(const Manifest& manifest, const RunOptions& options) {
   if (options.error.value > 0) return {k_bound_samples, 0};
   SampleCounts counts{k_error_samples, 0};
-  // What was seen to cross nothing is not to move, nor what the paper's way made.
-  const bool may_fit = options.fit != VertexFit::off && options.finish == Finish::global &&
-                       options.lines.crossings == CrossingMode::allow;
-  if (!may_fit) return counts;
+  if (options.fit == VertexFit::off || !why_not_fitted(options).empty()) return counts;
   // Not of what is left of the input: jobs that cut it do not know that.
   const std::uint64_t input = manifest.input_triangles;
   const double share = options.ratio * static_cast<double>(input);
@@ -55,9 +66,10 @@ SampleCounts sample_counts(const Manifest& manifest, const RunOptions& options) 
       std::min(input, options.triangles != 0 ? options.triangles
                                              : static_cast<std::uint64_t>(std::llround(share)));
   const std::uint64_t least = k_least_fit_points * triangles;
-  if (options.fit == VertexFit::automatic && least > k_most_automatic_fit_points) return counts;
-  counts.fitting = std::min({k_enough_fit_points * triangles,
-                             std::max(k_plenty_of_fit_points, least), k_most_fit_points});
+  const bool is_asked = options.fit == VertexFit::on;
+  if (least > (is_asked ? k_most_fit_points : k_most_automatic_fit_points)) return counts;
+  counts.fitting =
+      std::min(k_enough_fit_points * triangles, std::max(k_plenty_of_fit_points, least));
   return counts;
 }
 

@@ -175,8 +175,8 @@ Job ComposeStage::job_of(const Level& level, std::size_t first, std::size_t end)
   parameters.level = goal_.level;
   parameters.max_cost = goal_.max_cost;
   parameters.samples_per_triangle =
-      std::min(1.0, static_cast<double>(samples_for(manifest_, options_, manifest_.triangles())) /
-                        static_cast<double>(std::max<std::uint64_t>(1, manifest_.triangles())));
+      std::min(100.0, static_cast<double>(samples_for(manifest_, options_, manifest_.triangles())) /
+                          static_cast<double>(std::max<std::uint64_t>(1, manifest_.triangles())));
   parameters.keeps_between = goal_.for_pieces;
   parameters.lines = lines_of(manifest_, options_);
   parameters.lines.topology = goal_.topology;

@@ -215,11 +215,8 @@ class ResultFinish {
   void fit(Mesh& result, std::vector<SurfaceSamples>& points) {
     if (points.empty()) return;
     tell("fit", 0, 0);
-    summary_.fitted_vertices = fit_vertices(result, points,
-                                            {.positions = manifest_.positions,
-                                             .keeps_borders = lines_.preserve_border,
-                                             .crease_angle = lines_.crease_angle,
-                                             .threads = options_.threads});
+    summary_.fitted_vertices =
+        fit_vertices(result, points, fit_options(lines_, manifest_.positions, 0, options_.threads));
     points = {};
   }
 
@@ -279,6 +276,7 @@ class ResultFinish {
   /// What was asked for cannot be met: then it is not to be ruined on the way.
   void take_better(const ChosenRungs& chosen, Mesh& result) {
     result = std::move(*better_mesh_);
+    summary_.fitted_vertices = 0;
     summary_.error = summary_.better->error;
     summary_.better.reset();
     count(result);

@@ -305,23 +305,11 @@ Job FinishStage::reduce_job(std::size_t piece, std::uint64_t quota) const {
   job.cost = rungs[parameters.rung];
   job.memory = k_piece_process_bytes + from.divided.mesh.size + k_piece_triangle_bytes * job.cost +
                memory_of_channels(weigh_.lines, job.cost);
-  if (weigh_.samples.fitting > 0) add_fitting(from, job);
-  return job;
-}
-
-/// What left a piece for a group left its points behind.
-void FinishStage::add_fitting(const PieceOfResult& piece, Job& job) const {
-  const auto add = [&](std::size_t input, const FileSection& points) {
-    job.sections.push_back({static_cast<std::uint32_t>(input), points});
-    job.memory += k_fitting_times * points.size;
-  };
-  add(0, piece.divided.fitting);
-  if (piece.parts != 0) return;
-  for (const PieceOfResult& each : made_.pieces) {
-    if (each.parts == 0 || !each.divided.box.meets(piece.divided.box)) continue;
-    job.inputs.push_back(each.divided_file);
-    add(job.inputs.size() - 1, each.divided.strip_fitting);
+  if (weigh_.samples.fitting > 0) {
+    job.sections.push_back({0, from.divided.fitting});
+    job.memory += k_fitting_times * from.divided.fitting.size;
   }
+  return job;
 }
 
 Job FinishStage::measure_job(std::size_t number, const std::vector<PartRange>& ranges,

@@ -64,7 +64,6 @@ class FinishStage {
   void find_components(JobGraph& graph);
   Job seam_job(std::uint32_t group, std::uint32_t groups) const;
   Job reduce_job(std::size_t piece, std::uint64_t quota) const;
-  void add_fitting(const PieceOfResult& piece, Job& job) const;
   Job measure_job(std::size_t number, const std::vector<PartRange>& ranges,
                   std::uint32_t share) const;
   std::vector<PartRange> ranges_of(const PieceOfResult& piece) const;

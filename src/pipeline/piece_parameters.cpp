@@ -16,7 +16,7 @@
 //                (bundle_list.hpp), else of each part a file
 //   write      = version u8 | pieces u64
 //   ref        = file | section;  box = 6 x f64
-//   divided    = 7 sections | gap triangles u64 | strip triangles u64 | shared u64 | box |
+//   divided    = 6 sections | gap triangles u64 | strip triangles u64 | shared u64 | box |
 //                rungs u32 x u64 | dropped degenerate u64 | duplicate u64 | turned u64 |
 //                before u64 | first step i32 | counts u32 x u64
 //   finished   = 2 sections | by area u64 | area f64 | vertices u64 | triangles u64
@@ -306,8 +306,8 @@ MeasureParameters decode_measure_parameters(std::string_view bytes) {
 
 std::string encode_summary(const DividedPiece& piece) {
   ByteWriter out;
-  for (const FileSection& section : {piece.mesh, piece.gap, piece.strip, piece.samples,
-                                     piece.fitting, piece.strip_fitting, piece.between}) {
+  for (const FileSection& section :
+       {piece.mesh, piece.gap, piece.strip, piece.samples, piece.fitting, piece.between}) {
     out.put(section);
   }
   for (const std::uint64_t count : {piece.gap_triangles, piece.strip_triangles, piece.shared}) {
@@ -328,8 +328,8 @@ std::string encode_summary(const DividedPiece& piece) {
 DividedPiece decode_divided_piece(std::string_view bytes, std::string_view what) {
   ByteReader in(bytes, what);
   DividedPiece piece;
-  for (FileSection* section : {&piece.mesh, &piece.gap, &piece.strip, &piece.samples,
-                               &piece.fitting, &piece.strip_fitting, &piece.between}) {
+  for (FileSection* section :
+       {&piece.mesh, &piece.gap, &piece.strip, &piece.samples, &piece.fitting, &piece.between}) {
     *section = in.get<FileSection>();
   }
   for (std::uint64_t* count : {&piece.gap_triangles, &piece.strip_triangles, &piece.shared}) {

@@ -51,37 +51,20 @@ Mesh reduced(ResultMesh piece, const ReduceParameters& parameters, const JobCont
   return simplifier.mesh();
 }
 
-/// The first section is the piece.
-std::vector<SurfaceSamples> read_fitting(const Job& job, const JobContext& context) {
-  std::vector<SurfaceSamples> all;
-  for (std::size_t i = 1; i < job.sections.size(); ++i) {
-    for (SurfaceSamples& set :
-         decode_samples(context.read_section(job, i), job.inputs[job.sections[i].input].name)) {
-      all.push_back(std::move(set));
-    }
-  }
-  return all;
-}
-
 }  // namespace
 
 JobOutput reduce_piece(const Job& job, const JobContext& context) {
   const ReduceParameters parameters = decode_reduce_parameters(job.parameters);
-  if (job.inputs.empty()) throw DataError("a reduce job takes a piece");
+  if (job.inputs.size() != 1) throw DataError("a reduce job takes one piece");
   ResultMesh piece =
       decode_result(context.read_section(job, 0), parameters.rung, job.inputs[0].name);
   const std::uint32_t locked = piece.boundary_vertices;
   const PositionType positions = piece.positions;
   Mesh mesh = parameters.triangles == k_keep_all ? std::move(piece.mesh)
                                                  : reduced(std::move(piece), parameters, context);
-  const std::vector<SurfaceSamples> fitting = read_fitting(job, context);
-  if (!fitting.empty()) {
-    fit_vertices(mesh, fitting,
-                 {.positions = positions,
-                  .locked_vertices = locked,
-                  .keeps_borders = parameters.lines.preserve_border,
-                  .crease_angle = parameters.lines.crease_angle,
-                  .threads = 1});
+  if (job.sections.size() > 1) {
+    fit_vertices(mesh, decode_samples(context.read_section(job, 1), job.inputs[0].name),
+                 fit_options(parameters.lines, positions, locked, 1));
   }
   std::string file;
   SectionWriter sections([&](std::string_view bytes) { file += bytes; });

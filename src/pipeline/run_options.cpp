@@ -125,6 +125,15 @@ LineOptions lines_of(const Manifest& manifest, const RunOptions& options) {
   return lines;
 }
 
+VertexFitOptions fit_options(const LineOptions& lines, PositionType positions,
+                             std::uint32_t locked_vertices, unsigned threads) {
+  return {.positions = positions,
+          .locked_vertices = locked_vertices,
+          .keeps_borders = lines.preserve_border,
+          .crease_angle = lines.crease_angle,
+          .threads = threads};
+}
+
 std::uint64_t memory_of_channels(const LineOptions& lines, std::uint64_t triangles) {
   constexpr std::uint64_t k_copies = 4;
   const std::uint64_t of_vertices =
@@ -175,8 +184,9 @@ std::uint64_t run_key(const Manifest& manifest, const RunOptions& options) {
   ByteWriter out;
   out.put(k_algorithm_version);
   out.put(checksum(encode_manifest(manifest)));
-  // A ratio and a count that come to the same are one run. Not where slabs are to be sorted yet, or
-  // parts to be cut: degenerate triangles are dropped then, and the ratio is that of what is left.
+  // A ratio and a count that come to the same are one run, if nothing of the input was left out.
+  // Not where slabs are to be sorted yet, or parts to be cut: degenerate triangles are dropped
+  // then, and the ratio is that of what is left.
   out.put(target_triangles(manifest, options));
   if (manifest.sorting || manifest.cutting) out.put(options.ratio);
   out.put(options.allocation);

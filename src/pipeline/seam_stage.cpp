@@ -88,8 +88,8 @@ Job FinishStage::seam_job(std::uint32_t group, std::uint32_t groups) const {
   parameters.all_parts = static_cast<std::uint32_t>(manifest_.parts.size());
   parameters.boundary = manifest_.boundary;
   parameters.samples_per_triangle =
-      std::min(1.0, static_cast<double>(samples_for(manifest_, options_, manifest_.triangles())) /
-                        static_cast<double>(std::max<std::uint64_t>(1, manifest_.triangles())));
+      std::min(100.0, static_cast<double>(samples_for(manifest_, options_, manifest_.triangles())) /
+                          static_cast<double>(std::max<std::uint64_t>(1, manifest_.triangles())));
   parameters.weigh = weigh_;
   if (by_error()) parameters.bound = bound();
   Job job;

@@ -120,37 +120,24 @@ SplitMesh split(const ResultMesh& piece, const Sides& sides, std::uint32_t piece
   return made;
 }
 
-/// Points that vertices are fitted to, by where they are nearest: to what stays in the piece, or to
-/// what leaves it.
-struct DividedPoints {
-  std::vector<SurfaceSamples> inner;
-  std::vector<SurfaceSamples> strip;
-};
-
-DividedPoints divide(std::vector<SurfaceSamples> points, const Mesh& mesh, const Sides& sides) {
-  DividedPoints divided;
-  if (points.empty() || mesh.triangles.empty()) return divided;
+/// Of points that vertices are fitted to those that are nearest to what stays in the piece: others
+/// are near to what leaves it, and only then to a sheet that stays.
+std::vector<SurfaceSamples> nearest_to_inner(std::vector<SurfaceSamples> points, const Mesh& mesh,
+                                             const Sides& sides) {
+  if (points.empty() || mesh.triangles.empty()) return {};
   const DistanceMeter meter(mesh, 1);
   for (SurfaceSamples& set : points) {
-    SurfaceSamples inner;
-    SurfaceSamples strip;
+    if (set.points.empty()) continue;
+    const double each = set.area / static_cast<double>(set.points.size());
     const std::vector<std::uint32_t> nearest = meter.nearest_triangles(set.points);
+    std::vector<Vec3> inner;
     for (std::size_t i = 0; i < nearest.size(); ++i) {
       const auto& [a, b, c] = mesh.triangles[nearest[i]];
-      const int in_strip = sides.strip[a] + sides.strip[b] + sides.strip[c];
-      if (in_strip == 0) inner.points.push_back(set.points[i]);
-      if (in_strip == 3) strip.points.push_back(set.points[i]);
+      if ((sides.strip[a] | sides.strip[b] | sides.strip[c]) == 0) inner.push_back(set.points[i]);
     }
-    const double each = set.area / static_cast<double>(std::max<std::size_t>(1, nearest.size()));
-    for (auto [some, all] :
-         {std::pair(&inner, &divided.inner), std::pair(&strip, &divided.strip)}) {
-      if (some->points.empty()) continue;
-      some->area = each * static_cast<double>(some->points.size());
-      all->push_back(std::move(*some));
-    }
-    set.points = {};
+    set = {each * static_cast<double>(inner.size()), std::move(inner)};
   }
-  return divided;
+  return points;
 }
 
 /// Leaves out these components, which their lowest vertices tell. Returns their boundary vertices.
@@ -218,9 +205,8 @@ JobOutput split_piece(const Job& job, const JobContext& context) {
   PieceFile file;
   SplitSamples samples = split_samples(std::move(piece.samples), parameters.weigh.samples);
   made.samples = file.add(encode_samples(samples.measured));
-  const DividedPoints fitting = divide(std::move(samples.fitting), piece.mesh, sides);
-  made.fitting = file.add(encode_samples(fitting.inner));
-  made.strip_fitting = file.add(encode_samples(fitting.strip));
+  made.fitting =
+      file.add(encode_samples(nearest_to_inner(std::move(samples.fitting), piece.mesh, sides)));
   if (parameters.is_composed) made.between = file.add(inputs.beside());
   piece = {};
   made.strip_triangles = halves.strip.mesh.mesh.triangles.size();

@@ -59,6 +59,7 @@ class DistanceMeter {
   double farthest(Points points, double least) const;
   /// The index of the triangle that is nearest to the point.
   std::uint32_t nearest_triangle(Vec3 point) const;
+  /// Those of all points, in their order.
   std::vector<std::uint32_t> nearest_triangles(Points points) const;
   /// Of `to`, for other measures.
   const TriangleIndex& index() const;

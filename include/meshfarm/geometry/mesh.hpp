@@ -190,10 +190,6 @@ struct Box {
     hi = {p.x > hi.x ? p.x : hi.x, p.y > hi.y ? p.y : hi.y, p.z > hi.z ? p.z : hi.z};
   }
   bool empty() const { return lo.x > hi.x; }
-  bool meets(const Box& other) const {
-    return lo.x <= other.hi.x && other.lo.x <= hi.x && lo.y <= other.hi.y && other.lo.y <= hi.y &&
-           lo.z <= other.hi.z && other.lo.z <= hi.z;
-  }
   double diagonal() const { return empty() ? 0.0 : length(hi - lo); }
 };
 

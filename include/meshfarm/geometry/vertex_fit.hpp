@@ -28,9 +28,9 @@ struct VertexFitOptions {
 /// in the least squares of the distances; triangles stay as they are (Hoppe et al. 1993, with one
 /// search for the nearest places). Every set of points counts by its area. A vertex also holds on
 /// to its place, as two points would: where few points are, it hardly moves. Vertices at the same
-/// place stay, and no triangle turns by more than about 30 degrees or loses two thirds of its area.
-/// Returns how many vertices moved.
-/// Coordinates must be finite. Memory: 40 bytes a vertex and 32 a point.
+/// place stay, and where lines between labels meet or end, and no triangle turns by more than about
+/// 30 degrees or loses more than 70 % of its area. Returns how many vertices moved. Coordinates
+/// must be finite. Memory: about 130 bytes a vertex, 40 a triangle and 32 to 64 a point.
 std::uint64_t fit_vertices(Mesh& mesh, std::span<const SurfaceSamples> points,
                            const VertexFitOptions& options);
 

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <span>
+#include <string>
 #include <vector>
 
 #include <meshfarm/geometry/distance.hpp>
@@ -58,6 +59,8 @@ struct SampleCounts {
   std::uint64_t fitting = 0;  // 0: the vertices stay where they are
   std::uint64_t all() const { return measured + fitting; }
 };
+/// The option that vertices are not fitted with, and why; empty: they may be.
+std::string why_not_fitted(const RunOptions& options);
 SampleCounts sample_counts(const Manifest& manifest, const RunOptions& options);
 
 /// Points that were taken for both.

@@ -81,10 +81,9 @@ struct DividedPiece {
   /// Of a piece: its triangles between the mesh and the surroundings. Of a group: those between it
   /// and other groups.
   FileSection gap;
-  FileSection strip;          // of a piece: what it gives to the groups. Of a group: what is shared
-  FileSection samples;        // of the input, by which the error is measured
-  FileSection fitting;        // others, which the vertices are fitted to
-  FileSection strip_fitting;  // of a piece: those of what it gives to the groups
+  FileSection strip;    // of a piece: what it gives to the groups. Of a group: what is shared
+  FileSection samples;  // of the input, by which the error is measured
+  FileSection fitting;  // others, which the vertices are fitted to
   /// Of a composed piece: the input's triangles between its parts. Of a group: those between
   /// pieces.
   FileSection between;
@@ -170,8 +169,7 @@ SeamParameters decode_seam_parameters(std::string_view bytes);
 /// Of a piece that is finished as it is.
 inline constexpr std::uint64_t k_keep_all = UINT64_MAX;
 
-/// Of a job with a section of the first input, DividedPiece::mesh, and sections of all with points
-/// that its vertices are fitted to: DividedPiece::fitting, or strip_fitting.
+/// Of a job with two sections of one input: DividedPiece::mesh, and fitting if there is any.
 struct ReduceParameters {
   std::uint32_t rung = 0;
   std::uint64_t triangles = 0;  // or k_keep_all

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include <meshfarm/geometry/simplify.hpp>
+#include <meshfarm/geometry/vertex_fit.hpp>
 #include <meshfarm/io/channel_choice.hpp>
 #include <meshfarm/io/manifest.hpp>
 #include <meshfarm/util/bytes.hpp>
@@ -130,6 +131,10 @@ std::uint64_t texture_floor(const Manifest& manifest);
 /// The run's lines, and how much the colours and labels of the stage count: none do if none is
 /// chosen.
 LineOptions lines_of(const Manifest& manifest, const RunOptions& options);
+
+/// How the vertices of a result with these lines are fitted.
+VertexFitOptions fit_options(const LineOptions& lines, PositionType positions,
+                             std::uint32_t locked_vertices, unsigned threads);
 
 /// What appearances and labels add to the memory of a job on so many triangles: four copies at
 /// most.

@@ -152,6 +152,19 @@ TEST_CASE("a tree has one threshold for all parts") {
               "--composition tree"));
 }
 
+TEST_CASE("vertices are not fitted with options that they would go against") {
+  CHECK(error_of({"--ratio=0.1", "--fit=on"}, target_of).empty());
+  for (const Words& line :
+       {Words{"--error=1"}, Words{"--ratio=0.1", "--crossings=avoid"},
+        Words{"--ratio=0.1", "--finish=boundary"}, Words{"--ratio=0.1", "--drop-components=1"}}) {
+    Words on = line;
+    on.emplace_back("--fit=on");
+    CAPTURE(line.back());
+    CHECK(error_of(line, target_of).empty());
+    CHECK(tells(error_of(on, target_of), "--fit on"));
+  }
+}
+
 TEST_CASE("angles and picture sizes have limits") {
   CHECK(target_of({"--ratio=0.1", "--crease-angle=40"}).run.lines.crease_angle == 40);
   CHECK(error_of({"--ratio=0.1", "--crease-angle=180"}, target_of) != "");

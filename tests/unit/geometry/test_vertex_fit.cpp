@@ -112,6 +112,55 @@ TEST_CASE("locked vertices, borders and creases stay where that is asked for") {
   }
 }
 
+TEST_CASE("where lines between labels meet or end their vertex stays, along them it moves") {
+  Mesh mesh = waves(10);
+  for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
+    const auto& [a, b, c] = mesh.triangles[i];
+    const Vec3 middle = (mesh.positions[a] + mesh.positions[b] + mesh.positions[c]) * (1.0 / 3);
+    mesh.columns.labels.push_back(middle.x < 0.5 ? 0 : middle.y < 0.5 ? 1 : 2);
+  }
+  Mesh higher = waves(60);
+  for (Vec3& p : higher.positions) p.z += 0.02;
+  const Mesh before = mesh;
+  fit_vertices(mesh, samples_of(higher, 20'000), {.threads = 1});
+  int corners = 0;
+  int others = 0;
+  for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
+    const Vec3 p = before.positions[v];
+    const bool on_first = p.x == 0.5;
+    const bool on_second = p.y == 0.5 && p.x > 0.5;
+    if (!on_first && !on_second) continue;
+    const bool is_corner = is_at_border(p) || (on_first && p.y == 0.5);
+    CHECK((mesh.positions[v] == p) == is_corner);
+    ++(is_corner ? corners : others);
+  }
+  CHECK(corners == 4);
+  CHECK(others == 12);
+}
+
+TEST_CASE("triangles of no area and any size or place of the mesh do no harm") {
+  const Mesh input = waves(60);
+  const Mesh coarse = simplified(input, 300);
+  Mesh fitted = coarse;
+  fit_vertices(fitted, samples_of(input, 6'000), {.threads = 1});
+  for (const double scale : {0x1p-30, 0x1p30}) {
+    Mesh scaled = coarse;
+    for (Vec3& p : scaled.positions) p = p * scale;
+    Mesh scaled_input = input;
+    for (Vec3& p : scaled_input.positions) p = p * scale;
+    // Of a flap that was folded up, and of a needle between two vertices.
+    scaled.triangles.push_back({0, 1, 1});
+    scaled.triangles.push_back({2, 3, 2});
+    CHECK(fit_vertices(scaled, samples_of(scaled_input, 6'000), {.threads = 1}) > 50);
+    double farthest = 0;
+    for (std::size_t v = 0; v < scaled.positions.size(); ++v) {
+      farthest =
+          std::max(farthest, length(scaled.positions[v] * (1 / scale) - fitted.positions[v]));
+    }
+    CHECK(farthest < 1e-6);
+  }
+}
+
 TEST_CASE("vertices at one place stay together") {
   // Two sheets that touch at a corner: each would go its own way.
   Mesh mesh = waves(10);

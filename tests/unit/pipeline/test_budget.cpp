@@ -545,11 +545,18 @@ TEST_CASE("vertices are fitted to points where these are few") {
   CHECK(fitting(10'000'000, {.ratio = 0.005}) == 300'000);
   CHECK(fitting(10'000'000, {.triangles = 125'000}) == 500'000);
   CHECK(fitting(10'000'000, {.triangles = 125'001}) == 0);  // fewer would not help
-  CHECK(fitting(10'000'000, {.ratio = 0.5, .fit = VertexFit::on}) == 20'000'000);
-  CHECK(fitting(100'000'000, {.ratio = 0.5, .fit = VertexFit::on}) == 50'000'000);
+  CHECK(fitting(10'000'000, {.ratio = 0.2, .fit = VertexFit::on}) == 8'000'000);
+  CHECK(fitting(100'000'000, {.ratio = 0.5, .fit = VertexFit::on}) == 0);  // too many
   CHECK(fitting(10'000'000, {.triangles = 10'000, .fit = VertexFit::off}) == 0);
   CHECK(fitting(10'000'000, {.ratio = 0.001, .finish = Finish::boundary}) == 0);
   CHECK(fitting(10'000'000, {.error = {1, false}, .fit = VertexFit::on}) == 0);
+  CHECK(fitting(10'000'000, {.ratio = 0.001, .drop_components = {1, false}}) == 0);
+  const Manifest manifest = manifest_of(10, 1'000'000);
+  const auto key_of_run = [&](VertexFit fit) {
+    return run_key(manifest, {.ratio = 0.001, .fit = fit});
+  };
+  CHECK(key_of_run(VertexFit::automatic) == key_of_run(VertexFit::on));
+  CHECK(key_of_run(VertexFit::automatic) != key_of_run(VertexFit::off));
   RunOptions avoids{.ratio = 0.001};
   avoids.lines.crossings = CrossingMode::avoid;
   CHECK(fitting(10'000'000, avoids) == 0);

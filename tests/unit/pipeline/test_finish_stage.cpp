@@ -342,8 +342,10 @@ TEST_CASE("vertices are fitted, in pieces and by the sink, and by nobody where t
     for (const FinishPlace place : {FinishPlace::here, FinishPlace::farm}) {
       CAPTURE(place);
       const double off = rms_of(VertexFit::off, place);
-      CHECK(rms_of(VertexFit::on, place) < 0.98 * off);
-      CHECK(rms_of(VertexFit::automatic, place) < 0.98 * off);
+      // In pieces what lies round the seams, much of so small a mesh, is not fitted.
+      const double share = place == FinishPlace::here ? 0.98 : 0.997;
+      CHECK(rms_of(VertexFit::on, place) < share * off);
+      CHECK(rms_of(VertexFit::automatic, place) < share * off);
     }
   }
 }
