@@ -199,9 +199,10 @@ TEST_CASE("no triangle turns over however the points lie") {
   }
   Mesh after = before;
   CHECK(fit_vertices(after, samples_of(rough, 300), {.threads = 1}) > 0);
-  for (const auto& [a, b, c] : before.triangles) {
-    const auto normal = [&](const Mesh& m) {
-      return cross(m.positions[b] - m.positions[a], m.positions[c] - m.positions[a]);
+  for (const Triangle& t : before.triangles) {
+    const auto normal = [&t](const Mesh& m) {
+      const Vec3 first = m.positions[t[0]];
+      return cross(m.positions[t[1]] - first, m.positions[t[2]] - first);
     };
     const Vec3 was = normal(before);
     const Vec3 is = normal(after);
