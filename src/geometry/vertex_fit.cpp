@@ -11,6 +11,8 @@
 #include <meshfarm/geometry/place_hash.hpp>
 #include <meshfarm/geometry/vertex_fit.hpp>
 
+#include "geometry/turned.hpp"
+
 namespace meshfarm {
 namespace {
 
@@ -156,16 +158,10 @@ class Fitter {
   }
 
   bool is_crease(std::uint32_t a, std::uint32_t b) const {
-    const Vec3 first = normal_of(a);
-    const Vec3 second = normal_of(b);
+    const Vec3 first = normal_of(mesh_, a);
+    const Vec3 second = normal_of(mesh_, b);
     const double most = std::cos(options_.crease_angle * std::numbers::pi / 180);
     return dot(first, second) < most * length(first) * length(second);
-  }
-
-  /// Of twice its area's length.
-  Vec3 normal_of(std::uint32_t triangle) const {
-    const auto& [a, b, c] = mesh_.triangles[triangle];
-    return cross(at(b) - at(a), at(c) - at(a));
   }
 
   void find_pulls(std::span<const SurfaceSamples> points) {
@@ -184,7 +180,7 @@ class Fitter {
 
   Pull pull_of(Vec3 point, std::uint32_t triangle, double weight) const {
     const auto& [a, b, c] = mesh_.triangles[triangle];
-    const Vec3 normal = normal_of(triangle);
+    const Vec3 normal = normal_of(mesh_, triangle);
     const double twice_area = length(normal);
     if (!(twice_area > 0)) return {};
     const std::array<double, 3> shares = nearest_shares(point, at(a), at(b), at(c));

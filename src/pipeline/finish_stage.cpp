@@ -305,7 +305,8 @@ Job FinishStage::reduce_job(std::size_t piece, std::uint64_t quota) const {
   job.cost = rungs[parameters.rung];
   job.memory = k_piece_process_bytes + from.divided.mesh.size + k_piece_triangle_bytes * job.cost +
                memory_of_channels(weigh_.lines, job.cost);
-  if (weigh_.samples.fitting > 0) {
+  // A group has no points of its own.
+  if (weigh_.samples.fitting > 0 && from.parts > 0) {
     job.sections.push_back({0, from.divided.fitting});
     job.memory += k_fitting_times * from.divided.fitting.size;
   }

@@ -167,7 +167,6 @@ JobOutput join_seams(const Job& job, const JobContext& context) {
     samples.push_back(sample_surface(group.between, {.samples = wanted, .threads = 1}));
   const SplitSamples split = split_samples(std::move(samples), parameters.weigh.samples);
   made.samples = file.add(encode_samples(split.measured));
-  made.fitting = file.add(encode_samples({}));  // they are between the pieces only
   made.between = file.add(encode_surface(group.between));
   made.gap = file.add(encode_gap(group.gap));
   made.strip = file.add(encode_list(group.shared));
