@@ -26,12 +26,10 @@ run_element() {
   while :; do
     "$program" worker "$stage" --threads "${SLURM_CPUS_PER_TASK:-1}" --wait 600 "$@" &
     worker=$!
+    # A signal ends the waiting only. The worker's code is kept for the wait after its end.
+    while kill -0 "$worker" 2> /dev/null; do wait "$worker" || true; done
     code=0
     wait "$worker" || code=$?
-    while kill -0 "$worker" 2> /dev/null; do # a signal has ended the waiting only
-      code=0
-      wait "$worker" || code=$?
-    done
     if [ "$code" -ne 3 ] || [ -n "$asked" ]; then exit "$code"; fi
     sleep 5 &
     wait $! || true
@@ -47,11 +45,8 @@ see_run_through() {
   trap '[ -z "$run" ] || kill -TERM "$run" 2> /dev/null' INT TERM HUP
   "$MESHFARM" run "$MESHFARM_STAGE" "$@" &
   run=$!
+  while kill -0 "$run" 2> /dev/null; do wait "$run" || true; done # as in run_element
   wait "$run" || code=$?
-  while kill -0 "$run" 2> /dev/null; do # a signal has ended the waiting only
-    code=0
-    wait "$run" || code=$?
-  done
 }
 
 # The job of the one allocation: program, stage, run options, --, the words of its workers.

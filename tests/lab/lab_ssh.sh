@@ -96,12 +96,14 @@ say "an interrupted one leaves a stage that the same command takes up"
 pkill -TERM -f "$MESHFARM run $stage" || true
 # It leaves the output to the next only when it is gone.
 wait_for 20 no_run_left || fail "a run that was asked to leave is still there"
-on_host 1 "$lab_root/scripts/launch-ssh.sh" host2:1 host3:1 -- "$stage" "${farmed[@]}" \
+# The launcher is held back after it has passed the signal on: its run may be gone by then.
+on_host 1 strace -o /dev/null -e trace=kill -e inject=kill:delay_exit=500000 \
+  "$lab_root/scripts/launch-ssh.sh" host2:1 host3:1 -- "$stage" "${farmed[@]}" \
   -o "$work/out2.ply" --bind 10.77.0.1 > /dev/null 2> "$work/run2.err" &
 launcher=$!
 wait_for 30 has_results "$stage" 40 || fail "no results of the third run: $(cat "$work/run2.err")"
 say "it is interrupted"
-pkill -TERM -o -f "bash .*launch-ssh.sh host2:1 host3:1 -- $stage"
+pkill -TERM -o -f "^bash .*launch-ssh.sh host2:1 host3:1 -- $stage"
 code=0
 wait $launcher || code=$?
 [ $code -eq 3 ] || fail "an interrupted launcher's code is $code: $(cat "$work/run2.err")"
