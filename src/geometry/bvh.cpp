@@ -26,7 +26,7 @@ std::vector<std::uint32_t> Bvh::search_order(std::span<const Vec3> points) const
   for (std::size_t i = 0; i < points.size(); ++i) {
     items[i] = {morton_code(to_frame(points[i])), static_cast<std::uint32_t>(i)};
   }
-  sort_by_code(items);
+  sort_along_curve(items, [&](std::uint32_t number) { return points[number]; });
   return numbers_of(items);
 }
 

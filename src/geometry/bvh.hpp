@@ -79,6 +79,7 @@ class Bvh {
   Vec3 to_frame(Vec3 p) const { return (p - center_) * scale_; }
   void set_frame();
   void make_nodes(unsigned threads);
+  Vec3 middle_of(std::uint32_t triangle) const;  // in the frame
   std::vector<MortonItem> sorted_items(unsigned threads) const;
   void split_into_nodes(std::span<const MortonItem> items);
   void set_leaf_boxes(Node& node) const;

@@ -99,18 +99,21 @@ void Bvh::make_nodes(unsigned threads) {
   for (std::size_t i = nodes_.size(); i-- > 0;) set_inner_boxes(nodes_[i]);
 }
 
+Vec3 Bvh::middle_of(std::uint32_t triangle) const {
+  const auto& [a, b, c] = triangles_[triangle];
+  return (to_frame(positions_[a]) + to_frame(positions_[b]) + to_frame(positions_[c])) * (1.0 / 3);
+}
+
 std::vector<MortonItem> Bvh::sorted_items(unsigned threads) const {
   std::vector<MortonItem> items(triangles_.size());
   parallel_for((items.size() + k_chunk - 1) / k_chunk, threads, [&](std::uint64_t chunk) {
     const std::size_t end = std::min<std::size_t>(items.size(), (chunk + 1) * k_chunk);
     for (std::size_t i = chunk * k_chunk; i < end; ++i) {
-      const Triangle& t = triangles_[i];
-      const Vec3 sum =
-          to_frame(positions_[t[0]]) + to_frame(positions_[t[1]]) + to_frame(positions_[t[2]]);
-      items[i] = {morton_code(sum * (1.0 / 3)), static_cast<std::uint32_t>(i)};
+      const auto number = static_cast<std::uint32_t>(i);
+      items[i] = {morton_code(middle_of(number)), number};
     }
   });
-  sort_by_code(items);
+  sort_along_curve(items, [&](std::uint32_t number) { return middle_of(number); });
   return items;
 }
 

@@ -4,7 +4,10 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <utility>
+
+#include <meshfarm/geometry/mesh.hpp>
 
 namespace meshfarm {
 namespace {
@@ -12,6 +15,7 @@ namespace {
 constexpr int k_axis_bits = 21;
 constexpr int k_digit_bits = 9;
 constexpr int k_digits = 7;  // of 9 bits: all 63 of a code
+constexpr std::ptrdiff_t k_many = 64;
 constexpr std::size_t k_values = std::size_t{1} << k_digit_bits;
 
 /// Puts two zero bits before each of the 21 low bits.
@@ -32,12 +36,7 @@ std::size_t digit(const MortonItem& item, int index) {
   return (item.code >> (index * k_digit_bits)) & (k_values - 1);
 }
 
-}  // namespace
-
-std::uint64_t morton_code(Vec3 p) {
-  return spread(cell(p.x)) << 2 | spread(cell(p.y)) << 1 | spread(cell(p.z));
-}
-
+/// Equal codes keep their order.
 void sort_by_code(std::vector<MortonItem>& items) {
   if (items.size() < k_values) {  // to clear and add up the counts would take longer
     std::stable_sort(items.begin(), items.end(),
@@ -56,6 +55,44 @@ void sort_by_code(std::vector<MortonItem>& items) {
     for (std::size_t& at : place) sum += std::exchange(at, sum);
     for (const MortonItem& item : items) other[place[digit(item, d)]++] = item;
     items.swap(other);
+  }
+}
+
+/// Sorts what has one code by the curve through its own box, and again what has one code there.
+void sort_finer(std::span<MortonItem> items, const std::function<Vec3(std::uint32_t)>& place_of) {
+  Box box;
+  for (const MortonItem& item : items) {
+    if (const Vec3 place = place_of(item.number); is_finite(place)) box.add(place);
+  }
+  if (box.empty()) return;
+  const Vec3 size = box.hi - box.lo;
+  const double scale = 1 / std::max({size.x, size.y, size.z});
+  if (!(scale > 0 && std::isfinite(scale))) return;
+  const Vec3 center = box.lo * 0.5 + box.hi * 0.5;
+  std::vector<MortonItem> finer(items.begin(), items.end());
+  for (MortonItem& item : finer) {
+    const Vec3 place = place_of(item.number);
+    item.code = is_finite(place) ? morton_code((place - center) * scale) : 0;
+  }
+  sort_along_curve(finer, place_of);
+  for (std::size_t i = 0; i < items.size(); ++i) items[i].number = finer[i].number;
+}
+
+}  // namespace
+
+std::uint64_t morton_code(Vec3 p) {
+  return spread(cell(p.x)) << 2 | spread(cell(p.y)) << 1 | spread(cell(p.z));
+}
+
+void sort_along_curve(std::vector<MortonItem>& items,
+                      const std::function<Vec3(std::uint32_t)>& place_of) {
+  sort_by_code(items);
+  for (auto begin = items.begin(); begin != items.end();) {
+    const auto end = std::find_if(begin, items.end(), [code = begin->code](const MortonItem& item) {
+      return item.code != code;
+    });
+    if (end - begin > k_many) sort_finer({begin, end}, place_of);
+    begin = end;
   }
 }
 

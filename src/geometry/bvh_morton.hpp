@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -19,8 +20,11 @@ struct MortonItem {
 /// woven.
 std::uint64_t morton_code(Vec3 p);
 
-/// Sorts by code; equal codes keep their order. Needs the same memory again.
-void sort_by_code(std::vector<MortonItem>& items);
+/// Sorts by code. Few that have one code keep their order; many follow the curve through the box of
+/// their own places, so that one far outlier does not leave all others unsorted.
+/// `place_of(number)`: any affine image of what the code was made of. Needs the same memory again.
+void sort_along_curve(std::vector<MortonItem>& items,
+                      const std::function<Vec3(std::uint32_t)>& place_of);
 
 std::vector<std::uint32_t> numbers_of(std::span<const MortonItem> items);
 

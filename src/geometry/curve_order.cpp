@@ -12,13 +12,15 @@ std::vector<std::uint32_t> along_a_curve(const Mesh& mesh) {
   const double side = box.diagonal();
   const double scale = side > 0 ? 1 / side : 0;
   const Vec3 center = (box.lo + box.hi) * 0.5;
-  std::vector<MortonItem> items(mesh.triangles.size());
-  for (std::size_t t = 0; t < items.size(); ++t) {
+  const auto middle_of = [&](std::uint32_t t) {
     const auto& [a, b, c] = mesh.triangles[t];
-    const Vec3 middle = (mesh.positions[a] + mesh.positions[b] + mesh.positions[c]) * (1.0 / 3);
-    items[t] = {morton_code((middle - center) * scale), static_cast<std::uint32_t>(t)};
+    return (mesh.positions[a] + mesh.positions[b] + mesh.positions[c]) * (1.0 / 3);
+  };
+  std::vector<MortonItem> items(mesh.triangles.size());
+  for (std::uint32_t t = 0; t < items.size(); ++t) {
+    items[t] = {morton_code((middle_of(t) - center) * scale), t};
   }
-  sort_by_code(items);
+  sort_along_curve(items, middle_of);
   return numbers_of(items);
 }
 

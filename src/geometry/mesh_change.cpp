@@ -42,12 +42,12 @@ void ChangingMesh::build_boxes() {
   BoxTree::Frame frame{all.lo * 0.5 + all.hi * 0.5, 1};
   const double size = all.diagonal();
   if (size > 0 && std::isfinite(size)) frame.scale = std::ldexp(1.0, -std::ilogb(size) - 1);
+  const auto corner_of = [&](std::uint32_t i) { return mesh_.positions[mesh_.triangles[i][0]]; };
   std::vector<MortonItem> items(mesh_.triangles.size());
   for (std::uint32_t i = 0; i < items.size(); ++i) {
-    const Vec3 corner = mesh_.positions[mesh_.triangles[i][0]];
-    items[i] = {morton_code((corner - frame.center) * frame.scale), i};
+    items[i] = {morton_code((corner_of(i) - frame.center) * frame.scale), i};
   }
-  sort_by_code(items);
+  sort_along_curve(items, corner_of);
   slot_of_.resize(items.size());
   triangle_in_.resize(items.size());
   std::vector<Box> boxes(items.size());

@@ -30,7 +30,7 @@ PointTree::PointTree(std::span<SearchingPoint> points, std::span<const std::uint
   for (const std::uint32_t i : indices) {
     items.push_back({morton_code((points[i].place - center) * scale), i});
   }
-  sort_by_code(items);
+  sort_along_curve(items, [&](std::uint32_t number) { return points[number].place; });
   order_ = numbers_of(items);
   add_levels();
 }

@@ -87,13 +87,14 @@ void CrossingGuard::start(const CollapseState& state, std::span<const Triangle> 
   if (!all.empty()) frame.center = all.lo * 0.5 + all.hi * 0.5;
   const double size = all.diagonal();
   if (size > 0 && std::isfinite(size)) frame.scale = std::ldexp(1.0, -std::ilogb(size) - 1);
+  const auto corner_of = [&](std::uint32_t i) { return state.positions[triangles[i][0]]; };
   std::vector<MortonItem> items(triangles.size());
-  for (std::size_t i = 0; i < items.size(); ++i) {
-    const Vec3 corner = state.positions[triangles[i][0]];
-    items[i].number = static_cast<std::uint32_t>(i);
+  for (std::uint32_t i = 0; i < items.size(); ++i) {
+    const Vec3 corner = corner_of(i);
+    items[i].number = i;
     if (is_finite(corner)) items[i].code = morton_code((corner - frame.center) * frame.scale);
   }
-  sort_by_code(items);
+  sort_along_curve(items, corner_of);
   triangles_.resize(items.size());
   std::vector<Box> boxes(items.size());
   for (std::size_t i = 0; i < items.size(); ++i) {
