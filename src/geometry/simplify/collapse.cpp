@@ -321,12 +321,15 @@ Collapse CollapseJudge::best_of_positions(std::uint32_t a, std::uint32_t b, std:
   // The walls of a small hole through a plate close in no other way. Were they left, corners of the
   // plate would go instead.
   const double most = max_cost / k_loss_of_far_turn;
-  Collapse far = at_near(least, most, Turn::far);
-  for (std::size_t i = 0; i < ends.size() && far.triangles == 0; ++i) {
-    far = at_position(ends[i], shared, most, Turn::far);
+  for (const Turn turn : {Turn::far, Turn::ribbon}) {
+    Collapse far = at_near(least, most, turn);
+    for (std::size_t i = 0; i < ends.size() && far.triangles == 0; ++i) {
+      far = at_position(ends[i], shared, most, turn);
+    }
+    far.cost *= k_loss_of_far_turn;
+    if (far.triangles > 0) return far;
   }
-  far.cost *= k_loss_of_far_turn;
-  return far;
+  return {};
 }
 
 /// On lines one of the ends: no other place is on a line of the pictures.

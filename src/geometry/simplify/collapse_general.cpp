@@ -326,9 +326,8 @@ GeneralCollapse GeneralJudge::judge(std::uint32_t a, std::uint32_t b,
   find_vanishing();
   if (removed_ > most_triangles) return {};
   GeneralCollapse result;
-  result.changes_topology = changes_topology();
-  changes_ = result.changes_topology;
-  if (result.changes_topology && crowds_an_edge()) return {};
+  result.changes_topology = changes_ = changes_topology();
+  if (changes_ && crowds_an_edge()) return {};
   half_ = (state_.positions[b] - state_.positions[a]) * 0.5;
   wedges_.clear();
   if (staying_ == 0) {
@@ -367,14 +366,16 @@ Collapse GeneralJudge::best_of_positions() {
 
 /// As CollapseJudge does, where every place turns a triangle by more than 60 degrees.
 Collapse GeneralJudge::turned_far(std::span<const Vec3, 2> ends) const {
-  Collapse far;
-  if (a_.rank < 2) far = at_best(Turn::far);
-  for (std::size_t i = 0; i < ends.size() && far.triangles == 0; ++i) {
-    far = at_position(ends[i], Turn::far);
+  for (const Turn turn : {Turn::far, Turn::ribbon}) {
+    Collapse far = a_.rank < 2 ? at_best(turn) : Collapse{};
+    for (std::size_t i = 0; i < ends.size() && far.triangles == 0; ++i) {
+      far = at_position(ends[i], turn);
+    }
+    far.cost *= k_loss_of_far_turn;
+    far.certain *= k_loss_of_far_turn;
+    if (far.triangles > 0) return far;
   }
-  far.cost *= k_loss_of_far_turn;
-  far.certain *= k_loss_of_far_turn;
-  return far;
+  return {};
 }
 
 /// Only at the ends, wherever they are: what is rare may be less good.

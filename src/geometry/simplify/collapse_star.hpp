@@ -14,8 +14,9 @@
 
 namespace meshfarm {
 
-/// How far a collapse may turn a triangle: by 60 degrees, by 30, or by 85.
-enum class Turn : std::uint8_t { wide, narrow, far };
+/// How far a collapse may turn a triangle: by 60 degrees, by 30, by 85, or, where all of them are
+/// parts of a thin ribbon, in any way.
+enum class Turn : std::uint8_t { wide, narrow, far, ribbon };
 
 /// Turning a triangle far costs so many times as much. With 1 a CAD town has 4.7 times the error at
 /// 0.3 %, with 4 or 8 plates keep more of their small holes.
@@ -99,6 +100,7 @@ class CollapseStar {
   static void root(const Pair& a, Pair& result) { result = Pair{std::sqrt(a[0]), std::sqrt(a[1])}; }
   void add_planes(const Two& two);
   bool is_folded(std::uint32_t first, std::uint32_t kept, Vec3 x, double cos_squared) const;
+  std::optional<double> lost_area_of_ribbon(std::uint32_t first, std::uint32_t kept, Vec3 x) const;
   bool is_acceptable(const Two& two, int lane, Vec3 x, double cos_squared) const;
 
   Vec3 middle_;

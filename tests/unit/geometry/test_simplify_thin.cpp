@@ -1,0 +1,90 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+//
+// Surfaces that are much narrower than they are long, and than their triangles: ribbons and pins.
+#include <cmath>
+#include <numbers>
+
+#include <doctest/doctest.h>
+
+#include <meshfarm/geometry/distance.hpp>
+#include <meshfarm/geometry/simplify.hpp>
+
+#include "test_simplify_meshes.hpp"
+
+using namespace meshfarm;
+using namespace meshfarm::simplify_test;
+
+namespace {
+
+constexpr std::uint32_t k_long = 1000;
+
+/// Two squares wide: `width` in all, `k_long` long, and along it a wave so high.
+Mesh ribbon(double width, double height) {
+  Mesh mesh = grid(2, k_long, [&](double, double along) {
+    return height * std::sin(4 * std::numbers::pi * along);
+  });
+  for (Vec3& p : mesh.positions) p = {p.x * width, p.y * k_long, p.z};
+  return mesh;
+}
+
+/// Six sides, open at both ends, straight.
+Mesh pin(double radius) {
+  Mesh closed;
+  for (std::uint32_t ring = 0; ring <= k_long; ++ring) {
+    for (int side = 0; side < 6; ++side) {
+      const double angle = side * std::numbers::pi / 3;
+      closed.positions.push_back(
+          {radius * std::cos(angle), radius * std::sin(angle), static_cast<double>(ring)});
+    }
+  }
+  for (std::uint32_t ring = 0; ring < k_long; ++ring) {
+    for (std::uint32_t side = 0; side < 6; ++side) {
+      const std::uint32_t a = 6 * ring + side;
+      const std::uint32_t b = 6 * ring + (side + 1) % 6;
+      closed.triangles.push_back({a, b, b + 6});
+      closed.triangles.push_back({a, b + 6, a + 6});
+    }
+  }
+  return closed;
+}
+
+/// The greater RMS of both directions over the length, with so many triangles left.
+double error_at(const Mesh& mesh, std::uint64_t triangles) {
+  Simplifier simplifier(mesh, {});
+  simplifier.reduce({triangles});
+  CHECK(simplifier.triangles() <= triangles);
+  CHECK(simplifier.triangles() + 2 >= triangles);
+  CHECK(is_clean(simplifier.mesh()));
+  DistanceOptions options;
+  options.samples = 20000;
+  const double there = measure_distance(mesh, simplifier.mesh(), options).rms;
+  const double back = measure_distance(simplifier.mesh(), mesh, options).rms;
+  return std::max(there, back) / k_long;
+}
+
+}  // namespace
+
+TEST_CASE("a straight ribbon keeps its length, however thin it is") {
+  for (const double width : {1.0, 1e-2, 1e-4, 1e-5}) {
+    CAPTURE(width);
+    CHECK(error_at(ribbon(width, 0), 400) < 1e-9);
+    CHECK(error_at(ribbon(width, 0), 40) < 1e-6);
+  }
+}
+
+TEST_CASE("a ribbon that bends keeps its shape where it is thinner than its triangles turn") {
+  for (const double width : {1.0, 1e-1, 1e-2, 1e-3, 1e-4}) {
+    CAPTURE(width);
+    CHECK(error_at(ribbon(width, 50), 400) < 2e-4);
+    CHECK(error_at(ribbon(width, 50), 100) < 1e-2);
+  }
+}
+
+TEST_CASE("a straight pin keeps its length, however thin it is") {
+  for (const double radius : {1e-1, 1e-2, 1e-3}) {
+    CAPTURE(radius);
+    CHECK(error_at(pin(radius), 1200) < 1e-9);
+    CHECK(error_at(pin(radius), 240) < 1e-6);
+  }
+}
