@@ -14,8 +14,8 @@ namespace {
 
 constexpr int k_axis_bits = 21;
 constexpr int k_digit_bits = 9;
-constexpr int k_digits = 7;  // of 9 bits: all 63 of a code
-constexpr std::ptrdiff_t k_many = 64;
+constexpr int k_digits = 7;            // of 9 bits: all 63 of a code
+constexpr std::ptrdiff_t k_many = 64;  // fewer cost a search no more than their sorting would
 constexpr std::size_t k_values = std::size_t{1} << k_digit_bits;
 
 /// Puts two zero bits before each of the 21 low bits.
@@ -36,11 +36,14 @@ std::size_t digit(const MortonItem& item, int index) {
   return (item.code >> (index * k_digit_bits)) & (k_values - 1);
 }
 
+bool has_lower_code(const MortonItem& a, const MortonItem& b) {
+  return a.code < b.code;
+}
+
 /// Equal codes keep their order.
 void sort_by_code(std::vector<MortonItem>& items) {
   if (items.size() < k_values) {  // to clear and add up the counts would take longer
-    std::stable_sort(items.begin(), items.end(),
-                     [](const MortonItem& a, const MortonItem& b) { return a.code < b.code; });
+    std::stable_sort(items.begin(), items.end(), has_lower_code);
     return;
   }
   std::vector<std::array<std::size_t, k_values>> places(k_digits);
@@ -58,8 +61,22 @@ void sort_by_code(std::vector<MortonItem>& items) {
   }
 }
 
-/// Sorts what has one code by the curve through its own box, and again what has one code there.
-void sort_finer(std::span<MortonItem> items, const std::function<Vec3(std::uint32_t)>& place_of) {
+void sort_equal(std::span<MortonItem> items, const std::function<Vec3(std::uint32_t)>& place_of);
+
+/// Of items that are sorted: where many have one code, these are sorted by finer ones.
+void sort_many_equal(std::span<MortonItem> items,
+                     const std::function<Vec3(std::uint32_t)>& place_of) {
+  for (auto begin = items.begin(); begin != items.end();) {
+    const auto end = std::find_if(begin, items.end(), [code = begin->code](const MortonItem& item) {
+      return item.code != code;
+    });
+    if (end - begin > k_many) sort_equal({begin, end}, place_of);
+    begin = end;
+  }
+}
+
+/// By the curve through their own box. They keep the one code that they have.
+void sort_equal(std::span<MortonItem> items, const std::function<Vec3(std::uint32_t)>& place_of) {
   Box box;
   for (const MortonItem& item : items) {
     if (const Vec3 place = place_of(item.number); is_finite(place)) box.add(place);
@@ -69,13 +86,14 @@ void sort_finer(std::span<MortonItem> items, const std::function<Vec3(std::uint3
   const double scale = 1 / std::max({size.x, size.y, size.z});
   if (!(scale > 0 && std::isfinite(scale))) return;
   const Vec3 center = box.lo * 0.5 + box.hi * 0.5;
-  std::vector<MortonItem> finer(items.begin(), items.end());
-  for (MortonItem& item : finer) {
+  const std::uint64_t code = items.front().code;
+  for (MortonItem& item : items) {
     const Vec3 place = place_of(item.number);
     item.code = is_finite(place) ? morton_code((place - center) * scale) : 0;
   }
-  sort_along_curve(finer, place_of);
-  for (std::size_t i = 0; i < items.size(); ++i) items[i].number = finer[i].number;
+  std::stable_sort(items.begin(), items.end(), has_lower_code);
+  sort_many_equal(items, place_of);
+  for (MortonItem& item : items) item.code = code;
 }
 
 }  // namespace
@@ -87,13 +105,7 @@ std::uint64_t morton_code(Vec3 p) {
 void sort_along_curve(std::vector<MortonItem>& items,
                       const std::function<Vec3(std::uint32_t)>& place_of) {
   sort_by_code(items);
-  for (auto begin = items.begin(); begin != items.end();) {
-    const auto end = std::find_if(begin, items.end(), [code = begin->code](const MortonItem& item) {
-      return item.code != code;
-    });
-    if (end - begin > k_many) sort_finer({begin, end}, place_of);
-    begin = end;
-  }
+  sort_many_equal(items, place_of);
 }
 
 std::vector<std::uint32_t> numbers_of(std::span<const MortonItem> items) {

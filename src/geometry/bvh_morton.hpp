@@ -22,7 +22,8 @@ std::uint64_t morton_code(Vec3 p);
 
 /// Sorts by code. Few that have one code keep their order; many follow the curve through the box of
 /// their own places, so that one far outlier does not leave all others unsorted.
-/// `place_of(number)`: any affine image of what the code was made of. Needs the same memory again.
+/// `place_of(number)`: the place that the code was made of, in any unit and from any origin. Needs
+/// the same memory again.
 void sort_along_curve(std::vector<MortonItem>& items,
                       const std::function<Vec3(std::uint32_t)>& place_of);
 

@@ -104,8 +104,9 @@ struct SimplifyGoal {
   /// triangles round the edge, as they are just before, of area x squared distance of the new
   /// vertex to their planes; open borders add a plane along each border edge, as heavy as three
   /// squares on it, creases two. No less than 0.8 of the area that the surface loses, or 0.2 of
-  /// what it gains, x the edge's squared length, since planes do not see a spike draw back. It
-  /// depends on nothing else but for changes of the topology: costs of parts compare.
+  /// what it gains, x the edge's squared length, since planes do not see a spike draw back. Sides
+  /// of ribbons weigh less, and there gains are free. It depends on nothing else but for changes of
+  /// the topology: costs of parts compare.
   double max_cost = std::numeric_limits<double>::infinity();
   /// About how many triangles will be left when all goals that follow are met; 0: none follows.
   /// The farther the end, the less care a collapse needs.
@@ -128,7 +129,8 @@ struct SimplifyGoal {
 /// thin walls and near the goal, and as much in sheets with twins.
 ///
 /// The input may be dirty: degenerate and duplicate triangles are dropped and counted; vertices on
-/// non-manifold edges merge along these. No triangle flips, none becomes degenerate.
+/// non-manifold edges merge along these. No triangle flips, but on ribbons that are much narrower
+/// than their triangles are long; none becomes degenerate.
 /// Deterministic: same mesh, options and goals, same bytes.
 class Simplifier {
  public:

@@ -172,16 +172,20 @@ void CollapseJudge::add_lines(const Ring& ring, std::uint32_t vertex, Vec3 end,
                               std::uint32_t without) {
   const Vec3 at = middle_ + end;
   Quadric planes;
+  const auto normal_of = [&](const Corner& c) {
+    return cross(state_.positions[c.next] - at, state_.positions[c.prev] - at);
+  };
   const auto add = [&](const Corner& c, std::uint32_t neighbour, double weight) {
-    add_line_plane(planes, cross(state_.positions[c.next] - at, state_.positions[c.prev] - at),
-                   state_.positions[neighbour] - at, weight);
+    add_line_plane(planes, normal_of(c), state_.positions[neighbour] - at, weight);
   };
   if (ring.border()) {
     std::array<Corner, k_max_star> corners;
     for (std::uint32_t i = 0; i < ring.size; ++i) corners[i] = {ring.next[i], ring.prev[i]};
     for_border_edges(std::span<const Corner>(corners.data(), ring.size),
                      [&](const Corner& c, std::uint32_t neighbour) {
-                       if (neighbour != without) add(c, neighbour, 1);
+                       if (neighbour == without) return;
+                       const Vec3 edge = state_.positions[neighbour] - at;
+                       add(c, neighbour, is_ribbon_ ? weight_of_side(normal_of(c), edge) : 1);
                      });
   }
   const auto is_other_on_crease = [&](std::uint32_t neighbour) {
@@ -249,6 +253,7 @@ Collapse CollapseJudge::judge(std::uint32_t a, std::uint32_t b, const CollapseLi
   quadric_.squared_length = 4 * squared_length(half);
   star_.sum_planes(quadric_);
   add_appearances(a, b, shared);
+  is_ribbon_ = is_ribbon();
   if ((ring_a_.flags & k_line) != 0) add_lines(ring_a_, a, half * -1.0, k_none);
   if ((ring_b_.flags & k_line) != 0) add_lines(ring_b_, b, half, a);
   if (state_.has_uvs()) return best_with_uvs(a, b, shared, limits.max_cost);
@@ -283,6 +288,18 @@ bool CollapseJudge::is_all_of_piece(std::uint32_t a, std::uint32_t b) const {
     if (v != a && count_in(ring_a_, v) == 0) corners += state_.adjacency->count(v);
   }
   return corners <= k_most_corners;
+}
+
+/// Whether all vertices of the edge's triangles are on a border, and nothing else.
+bool CollapseJudge::is_ribbon() const {
+  const auto is_open = [&](const Ring& ring) {
+    return ring.flags == k_border &&
+           std::all_of(ring.next.begin(), ring.next.begin() + ring.size,
+                       [&](std::uint32_t v) { return state_.flags[v] == k_border; }) &&
+           std::all_of(ring.prev.begin(), ring.prev.begin() + ring.size,
+                       [&](std::uint32_t v) { return state_.flags[v] == k_border; });
+  };
+  return is_open(ring_a_) && is_open(ring_b_);
 }
 
 Collapse CollapseJudge::best_of_positions(std::uint32_t a, std::uint32_t b, std::uint32_t shared,
@@ -321,15 +338,16 @@ Collapse CollapseJudge::best_of_positions(std::uint32_t a, std::uint32_t b, std:
   // The walls of a small hole through a plate close in no other way. Were they left, corners of the
   // plate would go instead.
   const double most = max_cost / k_loss_of_far_turn;
-  for (const Turn turn : {Turn::far, Turn::ribbon}) {
-    Collapse far = at_near(least, most, turn);
-    for (std::size_t i = 0; i < ends.size() && far.triangles == 0; ++i) {
-      far = at_position(ends[i], shared, most, turn);
+  const auto turned = [&](Turn turn) {
+    Collapse made = at_near(least, most, turn);
+    for (std::size_t i = 0; i < ends.size() && made.triangles == 0; ++i) {
+      made = at_position(ends[i], shared, most, turn);
     }
-    far.cost *= k_loss_of_far_turn;
-    if (far.triangles > 0) return far;
-  }
-  return {};
+    made.cost *= k_loss_of_far_turn;
+    return made;
+  };
+  const Collapse far = turned(Turn::far);
+  return far.triangles == 0 && is_ribbon_ && state_.turns_ribbons ? turned(Turn::ribbon) : far;
 }
 
 /// On lines one of the ends: no other place is on a line of the pictures.

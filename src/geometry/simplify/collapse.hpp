@@ -49,7 +49,7 @@ class CollapseJudge {
   void move_to(const CollapseState& state) { state_ = state; }
 
   /// Where the merged vertex would go and at what cost, if that keeps the topology, turns no
-  /// triangle by more than 60 degrees and makes none of no area. The quadric is of the triangles
+  /// triangle farther than Turn allows and makes none of no area. The quadric is of the triangles
   /// as they are now, each counted once.
   Collapse judge(std::uint32_t a, std::uint32_t b, const CollapseLimits& limits);
   /// Of the last, if it may be: what the merged vertex gets.
@@ -84,6 +84,7 @@ class CollapseJudge {
   Vec3 line_position(std::uint32_t a, std::uint32_t b) const;
   Collapse or_at_end(const Collapse& best, std::uint32_t a, std::uint32_t b, std::uint32_t shared);
   bool is_all_of_piece(std::uint32_t a, std::uint32_t b) const;
+  bool is_ribbon() const;
   Collapse at_position(Vec3 position, std::uint32_t shared, double max_cost, Turn turn);
   template <typename Candidate, typename Take>
   void for_creases_of(const Ring& ring, std::uint32_t vertex, Vec3 at,
@@ -104,6 +105,7 @@ class CollapseJudge {
   std::uint32_t kept_ = 0;
   CollapseStar star_;
   EdgeQuadric quadric_;
+  bool is_ribbon_ = false;
   AppearanceStar appearance_;
   WedgeStar wedges_;
   bool blends_uvs_ = false;  // the merged vertex is inside a chart

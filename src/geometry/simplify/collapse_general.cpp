@@ -366,16 +366,14 @@ Collapse GeneralJudge::best_of_positions() {
 
 /// As CollapseJudge does, where every place turns a triangle by more than 60 degrees.
 Collapse GeneralJudge::turned_far(std::span<const Vec3, 2> ends) const {
-  for (const Turn turn : {Turn::far, Turn::ribbon}) {
-    Collapse far = a_.rank < 2 ? at_best(turn) : Collapse{};
-    for (std::size_t i = 0; i < ends.size() && far.triangles == 0; ++i) {
-      far = at_position(ends[i], turn);
-    }
-    far.cost *= k_loss_of_far_turn;
-    far.certain *= k_loss_of_far_turn;
-    if (far.triangles > 0) return far;
+  Collapse far;
+  if (a_.rank < 2) far = at_best(Turn::far);
+  for (std::size_t i = 0; i < ends.size() && far.triangles == 0; ++i) {
+    far = at_position(ends[i], Turn::far);
   }
-  return {};
+  far.cost *= k_loss_of_far_turn;
+  far.certain *= k_loss_of_far_turn;
+  return far;
 }
 
 /// Only at the ends, wherever they are: what is rare may be less good.

@@ -15,7 +15,7 @@
 namespace meshfarm {
 
 /// How far a collapse may turn a triangle: by 60 degrees, by 30, by 85, or, where all of them are
-/// parts of a thin ribbon, in any way.
+/// as thin as those of a ribbon, in any way.
 enum class Turn : std::uint8_t { wide, narrow, far, ribbon };
 
 /// Turning a triangle far costs so many times as much. With 1 a CAD town has 4.7 times the error at

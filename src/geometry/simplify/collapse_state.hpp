@@ -26,6 +26,7 @@ struct CollapseState {
   AppearanceScale appearance_scale;
   double uv_scale = 0;                    // LineOptions::uv_scale
   std::span<const PastPlanes> past = {};  // of vertices that are k_complex; empty: of none
+  bool turns_ribbons = true;              // Turn::ribbon may be
 
   /// Those of a triangle's corners, from the one at the vertex on.
   AppearanceStar::Values values_at(std::uint32_t vertex, const Corner& c) const {

@@ -65,18 +65,21 @@ inline Vec3 solve(const Quadric& a, double ridge, Vec3 b) {
 }
 
 /// The plane through an edge of a border or crease perpendicular to a triangle there, as heavy as
-/// three squares on the edge, times `weight`: keeps the line where it is. Less where the triangle
-/// is lower than a twentieth of the edge, in proportion: the sides of a ribbon have little surface
-/// behind them, and would outweigh its ends. Adds nothing for a triangle of no area.
+/// three squares on the edge, times `weight`: keeps the line where it is. Adds nothing for a
+/// triangle of no area.
 inline void add_line_plane(Quadric& quadric, Vec3 triangle_normal, Vec3 edge, double weight = 1) {
   constexpr double k_weight = 3;
-  constexpr double k_low = 0.05;
   const Vec3 n = cross(triangle_normal, edge);
   const double scale = squared_length(n);
-  if (!(scale > 0 && std::isfinite(scale))) return;
-  const double squared = squared_length(edge);
-  const double height = length(triangle_normal) / squared;  // in lengths of the edge
-  quadric.add(n, weight * k_weight * std::min(1.0, height / k_low) * squared / scale);
+  if (scale > 0 && std::isfinite(scale))
+    quadric.add(n, weight * k_weight * squared_length(edge) / scale);
+}
+
+/// How heavy a side of a ribbon is: less where the triangle is lower than a twentieth of the edge,
+/// in proportion. There is little surface behind it, and the ribbon's ends would be outweighed.
+inline double weight_of_side(Vec3 triangle_normal, Vec3 edge) {
+  constexpr double k_low = 0.05;
+  return std::min(1.0, length(triangle_normal) / (k_low * squared_length(edge)));
 }
 
 /// The planes that the stars of some vertices had, about the place of the one that they became: x

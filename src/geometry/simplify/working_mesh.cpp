@@ -107,9 +107,17 @@ void WorkingMesh::begin_pass() {
 }
 
 CollapseState WorkingMesh::state() {
-  return {mesh_.positions, flags_,           target_,           &adjacency_,
-          type_,           &creases_.test(), mesh_.appearances, appearance_scale_,
-          uv_scale_};
+  return {mesh_.positions,
+          flags_,
+          target_,
+          &adjacency_,
+          type_,
+          &creases_.test(),
+          mesh_.appearances,
+          appearance_scale_,
+          uv_scale_,
+          {},
+          !avoids_crossings_};
 }
 
 void WorkingMesh::merge(std::uint32_t a, std::uint32_t b, const Collapse& collapse,

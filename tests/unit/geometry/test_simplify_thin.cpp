@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 //
 // Surfaces that are much narrower than they are long, and than their triangles: ribbons and pins.
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -30,11 +31,11 @@ Mesh ribbon(double width, double height) {
 
 /// Six sides, open at both ends, straight.
 Mesh pin(double radius) {
-  Mesh closed;
+  Mesh mesh;
   for (std::uint32_t ring = 0; ring <= k_long; ++ring) {
     for (int side = 0; side < 6; ++side) {
       const double angle = side * std::numbers::pi / 3;
-      closed.positions.push_back(
+      mesh.positions.push_back(
           {radius * std::cos(angle), radius * std::sin(angle), static_cast<double>(ring)});
     }
   }
@@ -42,11 +43,11 @@ Mesh pin(double radius) {
     for (std::uint32_t side = 0; side < 6; ++side) {
       const std::uint32_t a = 6 * ring + side;
       const std::uint32_t b = 6 * ring + (side + 1) % 6;
-      closed.triangles.push_back({a, b, b + 6});
-      closed.triangles.push_back({a, b + 6, a + 6});
+      mesh.triangles.push_back({a, b, b + 6});
+      mesh.triangles.push_back({a, b + 6, a + 6});
     }
   }
-  return closed;
+  return mesh;
 }
 
 /// The greater RMS of both directions over the length, with so many triangles left.
@@ -86,5 +87,22 @@ TEST_CASE("a straight pin keeps its length, however thin it is") {
     CAPTURE(radius);
     CHECK(error_at(pin(radius), 1200) < 1e-9);
     CHECK(error_at(pin(radius), 240) < 1e-6);
+  }
+}
+
+TEST_CASE("a stretched surface is no ribbon: none of its triangles turns over") {
+  Mesh mesh = grid(60, 60, [](double, double along) { return 0.05 * std::sin(9 * along); });
+  for (Vec3& p : mesh.positions) p.x *= 1e-4;
+  Simplifier simplifier(mesh, {});
+  simplifier.reduce({600});
+  CHECK(simplifier.triangles() == 600);
+  CHECK(is_clean(simplifier.mesh()));
+  for (const Triangle& t : simplifier.mesh().triangles) {
+    const auto at = [&](std::size_t corner) {
+      Vec3 p = simplifier.mesh().positions[t[corner]];
+      p.x *= 1e4;
+      return p;
+    };
+    CHECK(cross(at(1) - at(0), at(2) - at(0)).z > 0);
   }
 }
