@@ -28,7 +28,7 @@ enum class TopologyMode : std::uint8_t {
 /// What becomes of collapses whose new triangles would cross others.
 enum class CrossingMode : std::uint8_t {
   allow,
-  /// They are refused, but for those near the goal, which cost 16 times as much and are refused
+  /// They are refused, but for those near the goal, which cost 64 times as much and are refused
   /// only under a bound on the error: so the goal is met. Such is a collapse that adds to the pairs
   /// of triangles that cross (crossings.hpp); those of the input lock nothing. Near the goal all
   /// collapses are looked at, farther away those in thin walls, farthest none. Walls are thin where
