@@ -293,21 +293,19 @@ bool CollapseJudge::is_all_of_piece(std::uint32_t a, std::uint32_t b) const {
 /// Whether all vertices of the edge's triangles are on a border, and nothing else.
 bool CollapseJudge::is_ribbon() const {
   const auto is_open = [&](const Ring& ring) {
-    return ring.flags == k_border &&
-           std::all_of(ring.next.begin(), ring.next.begin() + ring.size,
-                       [&](std::uint32_t v) { return state_.flags[v] == k_border; }) &&
-           std::all_of(ring.prev.begin(), ring.prev.begin() + ring.size,
-                       [&](std::uint32_t v) { return state_.flags[v] == k_border; });
+    for (std::uint32_t i = 0; i < ring.size; ++i) {
+      const bool on_border = state_.flags[ring.next[i]] == k_border;
+      if (!on_border || state_.flags[ring.prev[i]] != k_border) return false;
+    }
+    return ring.flags == k_border;
   };
   return is_open(ring_a_) && is_open(ring_b_);
 }
 
 Collapse CollapseJudge::best_of_positions(std::uint32_t a, std::uint32_t b, std::uint32_t shared,
                                           double max_cost) {
-  if (line_rank(ring_a_.flags) != line_rank(ring_b_.flags)) {
-    const Vec3 point = line_position(a, b);
-    return at_position(point, shared, max_cost, Turn::wide);
-  }
+  if (line_rank(ring_a_.flags) != line_rank(ring_b_.flags))
+    return at_position(line_position(a, b), shared, max_cost, Turn::wide);
   const auto at_near = [&](Vec3 x, double most, Turn turn) {
     if (!quadric_.is_near(x)) return Collapse{};
     return at_position(rounded(middle_ + x, state_.type), shared, most, turn);
@@ -347,7 +345,7 @@ Collapse CollapseJudge::best_of_positions(std::uint32_t a, std::uint32_t b, std:
     return made;
   };
   const Collapse far = turned(Turn::far);
-  return far.triangles == 0 && is_ribbon_ && state_.turns_ribbons ? turned(Turn::ribbon) : far;
+  return far.triangles == 0 && may_turn_ribbon() ? turned(Turn::ribbon) : far;
 }
 
 /// On lines one of the ends: no other place is on a line of the pictures.
@@ -361,20 +359,27 @@ Collapse CollapseJudge::best_with_uvs(std::uint32_t a, std::uint32_t b, std::uin
     wedges_.add_to(quadric_);
     return best_of_positions(a, b, shared, max_cost);
   }
-  const auto at_end = [&](WedgeStar::End end, double most) {
+  const auto at_end = [&](WedgeStar::End end, double most, Turn turn) {
     const Vec3 position = state_.positions[end == WedgeStar::End::a ? a : b];
     if (!wedges_.place_at(end, position - middle_)) return Collapse{};
-    Collapse made = at_position(position, shared, most, Turn::wide);
+    Collapse made = at_position(position, shared, most, turn);
     made.cost += wedges_.cost();
     return made.cost <= most ? made : Collapse{};
   };
   if (rank_a != rank_b) {
-    return at_end(rank_a > rank_b ? WedgeStar::End::a : WedgeStar::End::b, max_cost);
+    return at_end(rank_a > rank_b ? WedgeStar::End::a : WedgeStar::End::b, max_cost, Turn::wide);
   }
-  const Collapse at_a = at_end(WedgeStar::End::a, max_cost);
-  const Collapse at_b = at_end(WedgeStar::End::b, at_a.triangles > 0 ? at_a.cost : max_cost);
-  if (at_a.triangles == 0 || (at_b.triangles > 0 && at_b.cost < at_a.cost)) return at_b;
-  return at_end(WedgeStar::End::a, max_cost);
+  const auto at_better_end = [&](double most, Turn turn) {
+    const Collapse at_a = at_end(WedgeStar::End::a, most, turn);
+    const Collapse at_b = at_end(WedgeStar::End::b, at_a.triangles > 0 ? at_a.cost : most, turn);
+    if (at_a.triangles == 0 || (at_b.triangles > 0 && at_b.cost < at_a.cost)) return at_b;
+    return at_end(WedgeStar::End::a, most, turn);
+  };
+  const Collapse best = at_better_end(max_cost, Turn::wide);
+  if (best.triangles > 0 || !may_turn_ribbon()) return best;
+  Collapse turned = at_better_end(max_cost / k_loss_of_far_turn, Turn::ribbon);
+  turned.cost *= k_loss_of_far_turn;
+  return turned;
 }
 
 /// Nothing if it costs more or a triangle would be spoiled.

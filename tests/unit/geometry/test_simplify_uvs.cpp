@@ -174,6 +174,23 @@ TEST_CASE("no triangle turns over on the picture") {
   }
 }
 
+TEST_CASE("a thin ribbon with a picture keeps its length") {
+  constexpr double k_width = 1e-2;
+  for (const double height : {0.0, 50.0}) {
+    CAPTURE(height);
+    Mesh mesh = grid(2, 1000, [&](double, double y) { return height * std::sin(12.6 * y); });
+    for (Vec3& p : mesh.positions) p = {p.x * k_width, p.y * 1000, p.z};
+    mesh = mapped(mesh, [](Vec3 p, Vec3) { return uv(p.x / k_width, p.y / 1000); });
+    Simplifier simplifier(mesh, {});
+    simplifier.reduce({80});
+    CHECK(simplifier.triangles() == 80);
+    CHECK(count_turned(simplifier.mesh()) == 0);
+    Box box;
+    for (const Vec3& p : simplifier.mesh().positions) box.add(p);
+    CHECK(box.hi.y - box.lo.y > 980);
+  }
+}
+
 TEST_CASE("what bends on the picture is kept where it counts") {
   const auto bent = [](Vec3 p, Vec3) { return uv(p.x + 0.05 * std::sin(12 * p.x), p.y); };
   const Mesh flat = mapped(shaken_grid(100, 0), bent);
