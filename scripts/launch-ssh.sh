@@ -108,8 +108,8 @@ for host in "${hosts[@]}"; do
   tend "$host" 9>&- &
   tenders+=($!)
 done
-# A signal ends the waiting, not the run: that is asked to leave and says what came of it. Its code is
-# kept for the wait after its end.
+# A signal ends the waiting, not the run: that is asked to leave and says what came of it. Its code
+# is kept for the wait after its end.
 while kill -0 "$run" 2> /dev/null; do wait "$run" || true; done
 code=0
 wait "$run" || code=$?

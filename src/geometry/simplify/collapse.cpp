@@ -292,12 +292,13 @@ bool CollapseJudge::is_all_of_piece(std::uint32_t a, std::uint32_t b) const {
 
 /// Whether all vertices of the edge's triangles are on a border, and nothing else.
 bool CollapseJudge::is_ribbon() const {
+  if (ring_a_.flags != k_border || ring_b_.flags != k_border) return false;
   const auto is_open = [&](const Ring& ring) {
     for (std::uint32_t i = 0; i < ring.size; ++i) {
       const bool on_border = state_.flags[ring.next[i]] == k_border;
       if (!on_border || state_.flags[ring.prev[i]] != k_border) return false;
     }
-    return ring.flags == k_border;
+    return true;
   };
   return is_open(ring_a_) && is_open(ring_b_);
 }
