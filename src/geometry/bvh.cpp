@@ -22,11 +22,10 @@ double Bvh::squared_to(Vec3 p, std::uint32_t triangle) const {
 }
 
 std::vector<std::uint32_t> Bvh::search_order(std::span<const Vec3> points) const {
+  const auto place_of = [&](std::uint32_t number) { return to_curve(to_frame(points[number])); };
   std::vector<MortonItem> items(points.size());
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    items[i] = {morton_code(to_frame(points[i])), static_cast<std::uint32_t>(i)};
-  }
-  sort_along_curve(items, [&](std::uint32_t number) { return points[number]; });
+  for (std::uint32_t i = 0; i < items.size(); ++i) items[i] = {morton_code(place_of(i)), i};
+  sort_along_curve(items, place_of);
   return numbers_of(items);
 }
 

@@ -19,9 +19,9 @@ namespace meshfarm {
 double squared_distance(Vec3 p, Vec3 a, Vec3 b, Vec3 c);
 
 /// A bounding volume hierarchy over the triangles of a mesh, four children a node, split along the
-/// Morton order of the triangles' centres (Lauterbach et al. 2009). Up to 20 bytes a triangle, 40
-/// while it is built. The mesh, or its positions and triangles, must outlive it and have finite
-/// coordinates.
+/// Morton order of the triangles' centres (Lauterbach et al. 2009); where triangles are stretched
+/// along an axis, so is the curve. Up to 20 bytes a triangle, 40 while it is built. The mesh, or
+/// its positions and triangles, must outlive it and have finite coordinates.
 class Bvh {
  public:
   struct Nearest {
@@ -79,6 +79,8 @@ class Bvh {
   Vec3 to_frame(Vec3 p) const { return (p - center_) * scale_; }
   void set_frame();
   void make_nodes(unsigned threads);
+  void set_curve();
+  Vec3 to_curve(Vec3 in_frame) const;
   Vec3 middle_of(std::uint32_t triangle) const;  // in the frame
   std::vector<MortonItem> sorted_items(unsigned threads) const;
   void split_into_nodes(std::span<const MortonItem> items);
@@ -95,6 +97,9 @@ class Bvh {
   std::span<const Triangle> triangles_;
   Vec3 center_;
   double scale_ = 1;  // a power of two
+  // What each axis counts along the curve: less where triangles are much longer in it than in the
+  // others, as splitting it more finely than that tells no triangles apart.
+  Vec3 along_curve_{1, 1, 1};
   std::vector<std::uint32_t> order_;
   std::vector<Node> nodes_;
 };

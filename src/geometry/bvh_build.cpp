@@ -16,6 +16,8 @@ namespace {
 
 constexpr std::uint32_t k_leaf = 6;
 constexpr std::uint64_t k_chunk = 4096;
+// An axis counts less along the curve only where triangles are so many times as long in it.
+constexpr double k_much_longer = 4;
 constexpr float k_huge = std::numeric_limits<float>::max();
 
 float below(double x) {
@@ -71,6 +73,7 @@ Bvh::Bvh(std::span<const Vec3> positions, std::span<const Triangle> triangles, u
     : positions_(positions), triangles_(triangles) {
   assert(!triangles.empty());
   set_frame();
+  set_curve();
   make_nodes(threads);
 }
 
@@ -83,6 +86,28 @@ void Bvh::set_frame() {
   const Vec3 size = box.hi - box.lo;
   const double longest = std::max({size.x, size.y, size.z});
   if (longest > 0) scale_ = std::ldexp(1.0, -std::ilogb(longest) - 1);
+}
+
+/// Where triangles are long in the direction of one axis, boxes are as thin across it as they are.
+void Bvh::set_curve() {
+  Vec3 sum;  // of the shapes of the triangles' boxes: large triangles count no more than small ones
+  for (const Triangle& t : triangles_) {
+    Box box;
+    for (const std::uint32_t v : t) box.add(positions_[v]);
+    const Vec3 size = box.hi - box.lo;
+    const double longest = std::max({size.x, size.y, size.z});
+    if (longest > 0) sum = sum + size * (1 / longest);
+  }
+  const double middle = std::max(std::min(sum.x, sum.y), std::min(std::max(sum.x, sum.y), sum.z));
+  if (!(middle > 0)) return;
+  const auto share = [middle](double length) {
+    return length > k_much_longer * middle ? middle / length : 1.0;
+  };
+  along_curve_ = {share(sum.x), share(sum.y), share(sum.z)};
+}
+
+Vec3 Bvh::to_curve(Vec3 in_frame) const {
+  return {in_frame.x * along_curve_.x, in_frame.y * along_curve_.y, in_frame.z * along_curve_.z};
 }
 
 void Bvh::make_nodes(unsigned threads) {
@@ -110,10 +135,10 @@ std::vector<MortonItem> Bvh::sorted_items(unsigned threads) const {
     const std::size_t end = std::min<std::size_t>(items.size(), (chunk + 1) * k_chunk);
     for (std::size_t i = chunk * k_chunk; i < end; ++i) {
       const auto number = static_cast<std::uint32_t>(i);
-      items[i] = {morton_code(middle_of(number)), number};
+      items[i] = {morton_code(to_curve(middle_of(number))), number};
     }
   });
-  sort_along_curve(items, [&](std::uint32_t number) { return middle_of(number); });
+  sort_along_curve(items, [&](std::uint32_t number) { return to_curve(middle_of(number)); });
   return items;
 }
 

@@ -54,6 +54,33 @@ double nearest_slowly(const Mesh& mesh, Vec3 p) {
   return best;
 }
 
+/// A rough height field above 60 x 60 squares, `tall` times as high as they are wide.
+Mesh heights(double tall) {
+  constexpr std::uint32_t k_side = 61;
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> unit(0, 1);
+  Mesh mesh;
+  for (std::uint32_t i = 0; i < k_side * k_side; ++i) {
+    const double x = i % k_side;
+    const double y = std::floor(i / double{k_side});
+    mesh.positions.push_back(
+        {x, y, tall * (20 * std::sin(x / 9) * std::cos(y / 7) + unit(random))});
+  }
+  for (std::uint32_t i = 0; i + k_side < k_side * k_side; ++i) {
+    if (i % k_side == k_side - 1) continue;
+    mesh.triangles.push_back({i, i + 1, i + k_side});
+    mesh.triangles.push_back({i + 1, i + k_side + 1, i + k_side});
+  }
+  return mesh;
+}
+
+std::size_t touching_leaves(const Mesh& mesh) {
+  const Bvh bvh(mesh, 1);
+  std::vector<Bvh::Leaf> found;
+  for (const Bvh::Leaf& leaf : bvh.leaves()) bvh.find_touching(leaf, found);
+  return found.size();
+}
+
 }  // namespace
 
 TEST_CASE("distance: a point and a triangle, seen from each of its seven sides and above") {
@@ -129,6 +156,22 @@ TEST_CASE("distance: the tree tells sheets apart that floats do not") {
     const Vec3 p{unit(random) * 7, unit(random) * 7, 0.7 + (unit(random) * 12 - 2) * 5e-8};
     const std::uint32_t guess = static_cast<std::uint32_t>(random() % mesh.triangles.size());
     REQUIRE(bvh.nearest(p, guess).squared == nearest_slowly(mesh, p));
+  }
+}
+
+TEST_CASE("distance: boxes of stretched triangles overlap no more than those of others") {
+  const std::size_t usual = touching_leaves(heights(1));
+  for (const double tall : {1e2, 1e4, 1e6}) {
+    CAPTURE(tall);
+    Mesh mesh = heights(tall);
+    CHECK(touching_leaves(mesh) < 2 * usual);
+    for (Vec3& p : mesh.positions) p = {p.z, p.x, p.y};
+    CHECK(touching_leaves(mesh) < 2 * usual);
+    const Bvh bvh(mesh, 1);
+    for (std::uint32_t v = 0; v < mesh.positions.size(); v += 37) {
+      const Vec3 p = mesh.positions[v] + Vec3{0.1 * tall, 0.2, 0.3};
+      CHECK(bvh.nearest(p, v).squared == nearest_slowly(mesh, p));
+    }
   }
 }
 
