@@ -147,8 +147,9 @@ SinkActions SinkCore::checked(const Check& check, const JobFailure& problem, Far
     return take();
   }
   checking_.erase(check.key);
-  // What was tried again may be damaged by now: then nothing is left to wait for.
-  if ((fine || checking_.empty()) && !again_at_) again_pause_ = FarmTime(0);
+  // What was tried again may be damaged by now: then nothing is left to wait for. Records are
+  // short: where there is room for one, a job of the sink may still find too little.
+  if ((fine || checking_.empty()) && !again_at_ && lack_room_.empty()) again_pause_ = FarmTime(0);
   const bool known = check.what == Check::What::known;
   if (known) --looking_;
   if (fine) {
@@ -246,12 +247,14 @@ SinkActions SinkCore::did(const DoHere& what, const JobOutput& output, const Sin
   if (phase_ == Phase::left) return take();
   if (problem.no_room && when_full_ == WhenFull::wait) {
     not_done_.push_back(what);
+    lack_room_.insert(what.key);
     wait_for_room(k_longest_output_pause, now);
     return take();
   }
   doing_.erase(what.key);
+  lack_room_.erase(what.key);
   if (!problem.text.empty()) return fail(problem);
-  again_pause_ = FarmTime(0);
+  if (!again_at_ && lack_room_.empty()) again_pause_ = FarmTime(0);
   const Check check{what.key, output, Check::What::result, {}, 0, what.times, what.job.kind};
   if (checking_.try_emplace(what.key, check).second) act(check);
   return take();

@@ -155,6 +155,7 @@ class SinkCore {
   std::vector<DoHere> waiting_;      // of these, those that wait until all is verified
   std::set<JobKey> doing_;           // jobs of the sink that DoHere was said of
   std::vector<DoHere> not_done_;     // of these, those that there was no room for
+  std::set<JobKey> lack_room_;       // those, also while they are tried again
   SinkActions out_;
   Phase phase_ = Phase::collecting;
   bool begun_ = false;

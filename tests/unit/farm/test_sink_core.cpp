@@ -262,6 +262,29 @@ TEST_CASE("a job of the sink that fails ends the run, one without room is done a
   CHECK_FALSE(said_so[0].resumable);
 }
 
+TEST_CASE("a job of the sink without room waits longer each time, whatever else is accepted") {
+  Job own = make_job("own");
+  own.by_sink = true;
+  SinkBench bench(in_stages({{own, make_job("job 0"), make_job("job 1")}}));
+  const auto to_do = only<DoHere>(bench.join(1));
+  REQUIRE(to_do.size() == 1);
+  const SinkProblem full{"ENOSPC", true};
+  bench.core.did(to_do[0], {}, full, bench.now);
+  for (const int pause : {1000, 2000}) {
+    CHECK(only<DoHere>(bench.silence(FarmTime(pause - 1))).empty());
+    CHECK(only<DoHere>(bench.silence(FarmTime(1))).size() == 1);
+    CHECK(said<Accept>(bench.accept(key(pause == 1000 ? "job 0" : "job 1"))).size() == 1);
+    CHECK(bench.core.waits_for_room());
+    bench.core.on_control(Alive{1, {}}, bench.now);
+    bench.core.did(to_do[0], {}, full, bench.now);
+  }
+  CHECK(only<DoHere>(bench.silence(FarmTime(3999))).empty());
+  CHECK(only<DoHere>(bench.silence(FarmTime(1))).size() == 1);
+  const SinkActions done = bench.core.did(to_do[0], result_of(key("own")), {}, bench.now);
+  CHECK(only<Check>(done).size() == 1);
+  CHECK_FALSE(bench.core.waits_for_room());
+}
+
 TEST_CASE("jobs that were given up end the run, and say whether it may be taken up again") {
   SinkBench bench(2);
   bench.join(1);
