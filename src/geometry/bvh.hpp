@@ -77,9 +77,8 @@ class Bvh {
   struct Query;
 
   Vec3 to_frame(Vec3 p) const { return (p - center_) * scale_; }
-  void set_frame();
+  void set_frame_and_curve();
   void make_nodes(unsigned threads);
-  void set_curve();
   Vec3 to_curve(Vec3 in_frame) const;
   Vec3 middle_of(std::uint32_t triangle) const;  // in the frame
   std::vector<MortonItem> sorted_items(unsigned threads) const;

@@ -27,6 +27,10 @@ float above(double x) {
   return std::nextafter(static_cast<float>(x), k_huge);
 }
 
+double longest_side(Vec3 size) {
+  return std::max({size.x, size.y, size.z});
+}
+
 struct Range {
   std::uint32_t begin = 0;
   std::uint32_t end = 0;
@@ -72,32 +76,27 @@ Bvh::Bvh(const Mesh& mesh, unsigned threads) : Bvh(mesh.positions, mesh.triangle
 Bvh::Bvh(std::span<const Vec3> positions, std::span<const Triangle> triangles, unsigned threads)
     : positions_(positions), triangles_(triangles) {
   assert(!triangles.empty());
-  set_frame();
-  set_curve();
+  set_frame_and_curve();
   make_nodes(threads);
 }
 
-void Bvh::set_frame() {
-  Box box;
-  for (const Triangle& t : triangles_) {
-    for (const std::uint32_t v : t) box.add(positions_[v]);
-  }
-  center_ = box.lo * 0.5 + box.hi * 0.5;
-  const Vec3 size = box.hi - box.lo;
-  const double longest = std::max({size.x, size.y, size.z});
-  if (longest > 0) scale_ = std::ldexp(1.0, -std::ilogb(longest) - 1);
-}
-
 /// Where triangles are long in the direction of one axis, boxes are as thin across it as they are.
-void Bvh::set_curve() {
+void Bvh::set_frame_and_curve() {
+  Box all;
   Vec3 sum;  // of the shapes of the triangles' boxes: large triangles count no more than small ones
   for (const Triangle& t : triangles_) {
     Box box;
-    for (const std::uint32_t v : t) box.add(positions_[v]);
+    for (const std::uint32_t v : t) {
+      box.add(positions_[v]);
+      all.add(positions_[v]);
+    }
     const Vec3 size = box.hi - box.lo;
-    const double longest = std::max({size.x, size.y, size.z});
+    const double longest = longest_side(size);
     if (longest > 0) sum = sum + size * (1 / longest);
   }
+  center_ = all.lo * 0.5 + all.hi * 0.5;
+  const double longest = longest_side(all.hi - all.lo);
+  if (longest > 0) scale_ = std::ldexp(1.0, -std::ilogb(longest) - 1);
   const double middle = std::max(std::min(sum.x, sum.y), std::min(std::max(sum.x, sum.y), sum.z));
   if (!(middle > 0)) return;
   const auto share = [middle](double length) {
