@@ -24,8 +24,7 @@ int FarmCommand::run() {
     work(stop);
   } catch (const IoError& error) {
     if (!is_no_space(error)) throw;
-    throw IncompleteError(std::string(error.what()) +
-                          "; what is done is kept: make room, then run the same command again");
+    throw IncompleteError(error.what() + std::string(k_after_making_room));
   } catch (const IncompleteError&) {
     if (supervised_ && (stop || sink_reports_failures())) return 3;
     throw;

@@ -6,6 +6,7 @@
 
 #include <meshfarm/farm/dispatcher.hpp>
 #include <meshfarm/util/checksum.hpp>
+#include <meshfarm/util/errors.hpp>
 
 namespace meshfarm {
 namespace {
@@ -82,8 +83,8 @@ void Dispatcher::on(const PeerId& peer, const Reject& reject) {
         stage_is_full(reject);
         break;
       }
-      return finish("the stage has no room left (" + reject.failure.reason +
-                        "); what is done is kept: make room, then run the same command again",
+      return finish("the stage has no room left (" + reject.failure.reason + ")" +
+                        std::string(k_after_making_room),
                     true);
     case FailureKind::attempt:
       if (!doubt(reject)) reject_attempt(reject, Blame::host);

@@ -7,6 +7,7 @@
 #include <meshfarm/farm/plan.hpp>
 #include <meshfarm/farm/sink_core.hpp>
 #include <meshfarm/util/checksum.hpp>
+#include <meshfarm/util/errors.hpp>
 
 namespace meshfarm {
 namespace {
@@ -18,6 +19,12 @@ constexpr FarmTime k_longest_sink_pause{5000};
 constexpr FarmTime k_longest_output_pause{60'000};
 /// To read less takes hardly longer than to look at it.
 constexpr std::uint64_t k_large_bytes = std::uint64_t{256} << 10;
+
+/// Of a sink that does not wait for room: they tell how to go on.
+SinkProblem as_last_words(SinkProblem problem) {
+  if (problem.no_room) problem.text += k_after_making_room;
+  return problem;
+}
 
 }  // namespace
 
@@ -141,7 +148,7 @@ SinkActions SinkCore::checked(const Check& check, const JobFailure& problem, Far
     return take();
   }
   if (problem.kind == FailureKind::no_space) {
-    if (when_full_ == WhenFull::end) return fail({problem.reason, true});
+    if (when_full_ == WhenFull::end) return fail(as_last_words({problem.reason, true}));
     unwritten_.push_back(check);
     wait_for_room(k_longest_sink_pause, now);
     return take();
@@ -253,7 +260,7 @@ SinkActions SinkCore::did(const DoHere& what, const JobOutput& output, const Sin
   }
   doing_.erase(what.key);
   lack_room_.erase(what.key);
-  if (!problem.text.empty()) return fail(problem);
+  if (!problem.text.empty()) return fail(as_last_words(problem));
   if (!again_at_ && lack_room_.empty()) again_pause_ = FarmTime(0);
   const Check check{what.key, output, Check::What::result, {}, 0, what.times, what.job.kind};
   if (checking_.try_emplace(what.key, check).second) act(check);
@@ -269,7 +276,7 @@ SinkActions SinkCore::completed(const SinkProblem& problem, FarmTime now) {
   again_pause_ = FarmTime(0);
   say_until_ = now + member_.options().patience;
   phase_ = Phase::saying_complete;
-  if (!problem.text.empty()) return fail(problem);
+  if (!problem.text.empty()) return fail(as_last_words(problem));
   if (told_all_) say_where_it_stands();
   return take();
 }

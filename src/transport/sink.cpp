@@ -19,6 +19,7 @@
 #include "transport/gatekeeper.hpp"
 #include "transport/result_checker.hpp"
 #include "transport/run_keys.hpp"
+#include "transport/sink_problem.hpp"
 #include "transport/sockets.hpp"
 #include "transport/task_thread.hpp"
 
@@ -221,11 +222,11 @@ class SinkLoop {
   void disk_answers(FarmTime now) {
     told_problem_ = problem_;
     if (std::exchange(making_output_, false)) {
-      const SinkProblem problem = problem_ ? what(problem_) : SinkProblem{};
+      const SinkProblem problem = problem_of(problem_);
       perform(core_.completed(problem, now));
       return tell_of_room(problem.text);
     }
-    if (problem_) return perform(core_.fail({what_is_kept(problem_), true}));
+    if (problem_) return perform(core_.fail(problem_of_journal(problem_)));
     std::string no_room;
     for (const CheckedResult& each : std::exchange(batch_, {})) {
       const bool full = each.problem.kind == FailureKind::no_space;
@@ -240,7 +241,7 @@ class SinkLoop {
 
   void own_job_answers(FarmTime now) {
     told_problem_of_job_ = std::exchange(problem_of_job_, nullptr);
-    const SinkProblem problem = told_problem_of_job_ ? what(told_problem_of_job_) : SinkProblem{};
+    const SinkProblem problem = problem_of(told_problem_of_job_);
     const DoHere done = *std::exchange(doing_, std::nullopt);
     perform(core_.did(done, std::exchange(made_, {}), problem, now));
     tell_of_room(problem.text);
@@ -251,26 +252,6 @@ class SinkLoop {
     const bool waits = core_.waits_for_room();
     if (waits == std::exchange(told_of_waiting_, waits)) return;
     log_warning(waits ? "no room, waiting: " + reason : "there is room again");
-  }
-
-  /// Of a journal that cannot be written.
-  static std::string what_is_kept(const std::exception_ptr& problem) {
-    return what(problem).text + "; what the journal has is kept: run the same command again";
-  }
-
-  static SinkProblem what(const std::exception_ptr& problem) {
-    try {
-      std::rethrow_exception(problem);
-    } catch (const IoError& error) {
-      if (!is_no_space(error)) return {error.what(), false};
-      return {std::string(error.what()) +
-                  "; what is done is kept: make room, then run the same command again",
-              true};
-    } catch (const std::exception& error) {
-      return {error.what(), false};
-    } catch (...) {
-      return {"an unknown exception", false};
-    }
   }
 
   /// On the disk thread.
@@ -296,8 +277,7 @@ class SinkLoop {
         return;
       }
       for (CheckedResult& each : batch_) {
-        if (each.to_record)
-          each.problem = {what(std::current_exception()).text, FailureKind::no_space};
+        if (each.to_record) each.problem = {error.what(), FailureKind::no_space};
       }
     } catch (...) {
       problem_ = std::current_exception();

@@ -260,6 +260,7 @@ TEST_CASE("a disk that is full for a while is waited for, and status says so") {
   CHECK(run.wait() == 0);
   CAPTURE(run.err());
   CHECK(errors_in(run.err()) == 0);
+  CHECK(run.err().find("run the same command again") == std::string::npos);  // it went on
   bench.check_result(bench.path("run/out.ply"));
 }
 

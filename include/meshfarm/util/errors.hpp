@@ -57,6 +57,10 @@ class UnreadDataError : public DataError, public UnreadError {
 /// Whether the error is that the disk, or the user's share of it, is full.
 bool is_no_space(const IoError& error);
 
+/// Ends the message of a run that a full disk stopped.
+inline constexpr std::string_view k_after_making_room =
+    "; what is done is kept: make room, then run the same command again";
+
 /// The run stopped before its end; what is staged is kept and can be taken up again (exit 3).
 class IncompleteError : public Error {
  public:
