@@ -6,11 +6,11 @@
 #include <optional>
 #include <utility>
 
-#include <meshfarm/util/byte_lists.hpp>
 #include <meshfarm/util/errors.hpp>
 
 #include "divide/bundle_file.hpp"
 #include "divide/part_builder.hpp"
+#include "divide/seam_numbers.hpp"
 #include "divide/seam_vertices.hpp"
 
 namespace meshfarm {
@@ -177,29 +177,6 @@ void add_same(const std::map<std::uint32_t, std::uint32_t>& same, BoundaryNumber
   numbers = std::move(sorted);
 }
 
-std::string encode_numbers(const BoundaryNumbers& numbers) {
-  ByteWriter out;
-  put_list(out, numbers.places);
-  put_list(out, numbers.numbers);
-  put_list(out, numbers.points);
-  return out.take();
-}
-
-BoundaryNumbers decode_numbers(std::string_view bytes) {
-  ByteReader in(bytes, "numbers of boundary vertices");
-  BoundaryNumbers numbers;
-  numbers.places = get_list<std::uint32_t>(in);
-  numbers.numbers = get_list<std::uint32_t>(in);
-  numbers.points = get_list<std::uint32_t>(in);
-  in.expect_end();
-  const std::size_t count = numbers.places.size();
-  if (numbers.numbers.size() != count ||
-      (!numbers.points.empty() && numbers.points.size() != count)) {
-    in.fail("not as many as vertices");
-  }
-  return numbers;
-}
-
 }  // namespace
 
 PartOfBlocks build_from_blocks(const Stage& stage, const BundlesOfMesh& bundles,
@@ -231,26 +208,17 @@ Mesh surface_from_blocks(const Stage& stage, const BundlesOfMesh& bundles, std::
 
 JoinedBoundary join_boundary(const Stage& stage, const BundlesOfMesh& bundles, std::uint32_t group,
                              const std::function<std::string(std::uint32_t part)>& numbers_of) {
-  std::vector<SeamTriangle> seams;
+  Seams seams;
   for (const TriangleBundleRef& each : bundles.triangles) {
     const SectionedFile file(stage, each.file);
     const auto groups = read_section<FileSection>(file, each.bundle.seams);
     if (group >= groups.size()) throw DataError(each.file.name + ": has other groups of regions");
     const auto some = read_section<SeamTriangle>(file, groups[group]);
-    seams.insert(seams.end(), some.begin(), some.end());
+    seams.triangles.insert(seams.triangles.end(), some.begin(), some.end());
   }
-  std::vector<BoundaryNumbers> of_parts(bundles.parts);
-  std::vector<std::uint8_t> is_known(bundles.parts, 0);
-  for (const SeamTriangle& t : seams) {
-    for (const SharePlace& corner : t) {
-      if (corner.share >= bundles.parts) throw DataError("a boundary triangle of no part");
-      if (std::exchange(is_known[corner.share], 1) != 0) continue;
-      of_parts[corner.share] = decode_numbers(numbers_of(corner.share));
-    }
-  }
-  SharedTriangles shared;
-  shared.triangles.reserve(seams.size());
-  number_seams(seams, {}, of_parts, shared);
+  SeamNumbers numbers(bundles.parts,
+                      [&](std::uint32_t part) { return decode_numbers(numbers_of(part)); });
+  SharedTriangles shared = numbers.number(seams);
   JoinedBoundary joined;
   joined.degenerate = shared.degenerate;
   joined.coincident = shared.coincident;

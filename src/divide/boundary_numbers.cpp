@@ -7,6 +7,9 @@
 #include <span>
 #include <utility>
 
+#include <meshfarm/util/byte_lists.hpp>
+#include <meshfarm/util/bytes.hpp>
+
 #include "divide/seam_vertices.hpp"
 #include "divide/vertex_sort.hpp"
 
@@ -60,6 +63,29 @@ BoundaryNumbers number_boundary(const MeshShare& raw, const Sorting& sorting) {
     }
   }
   return made;
+}
+
+std::string encode_numbers(const BoundaryNumbers& numbers) {
+  ByteWriter out;
+  put_list(out, numbers.places);
+  put_list(out, numbers.numbers);
+  put_list(out, numbers.points);
+  return out.take();
+}
+
+BoundaryNumbers decode_numbers(std::string_view bytes) {
+  ByteReader in(bytes, "numbers of boundary vertices");
+  BoundaryNumbers numbers;
+  numbers.places = get_list<std::uint32_t>(in);
+  numbers.numbers = get_list<std::uint32_t>(in);
+  numbers.points = get_list<std::uint32_t>(in);
+  in.expect_end();
+  const std::size_t count = numbers.places.size();
+  if (numbers.numbers.size() != count ||
+      (!numbers.points.empty() && numbers.points.size() != count)) {
+    in.fail("not as many as vertices");
+  }
+  return numbers;
 }
 
 }  // namespace meshfarm

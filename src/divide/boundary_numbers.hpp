@@ -3,6 +3,8 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
+#include <string_view>
 #include <vector>
 
 #include <meshfarm/geometry/sweep_order.hpp>
@@ -20,6 +22,10 @@ struct BoundaryNumbers {
   /// How many different numbers there are; they go from 0 on.
   std::uint32_t count() const;
 };
+
+std::string encode_numbers(const BoundaryNumbers& numbers);
+/// Throws DataError.
+BoundaryNumbers decode_numbers(std::string_view bytes);
 
 /// The boundary vertices of a share, ascending, each once.
 std::vector<std::uint32_t> boundary_places(std::vector<std::uint32_t> boundary);

@@ -11,17 +11,24 @@
 // Then each share is finished from its buckets by itself, on all cores.
 #include <algorithm>
 #include <chrono>
+#include <filesystem>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <utility>
+#include <vector>
 
 #include <meshfarm/divide/cut.hpp>
 #include <meshfarm/io/boundary_file.hpp>
+#include <meshfarm/io/regions.hpp>
 #include <meshfarm/staging/file_system.hpp>
+#include <meshfarm/util/bucket_file.hpp>
 #include <meshfarm/util/errors.hpp>
 #include <meshfarm/util/parallel.hpp>
 
+#include "divide/boundary_numbers.hpp"
 #include "divide/cut_scheme.hpp"
+#include "divide/seam_numbers.hpp"
 #include "divide/share_budget.hpp"
 #include "divide/share_out.hpp"
 
@@ -92,7 +99,7 @@ class Cutter {
     manifest_.coincident_corners = shares_->points_left_out();
   }
 
-  MeshShares::Options share_options(std::uint32_t shares) const {
+  MeshShares::Options share_options(std::uint32_t shares) {
     MeshShares::Options options{.shares = shares,
                                 .vertices = manifest_.input_vertices,
                                 .positions = manifest_.positions,
@@ -101,13 +108,14 @@ class Cutter {
                                 .triangles = std::max<std::uint64_t>(source_.info().faces, 1)};
     const std::uint64_t all = MeshShares::memory_for(options);
     options.memory_bytes = scheme_->memory_for_shares(all);
-    options.folder = scratch_folder(options_.scratch, stage_.root(), all - options.memory_bytes);
+    folder_ = scratch_folder(options_.scratch, stage_.root(), all - options.memory_bytes);
+    options.folder = folder_;
     return options;
   }
 
   void stage_shares() {
     const auto shares = static_cast<std::uint32_t>(manifest_.parts.size());
-    numbers_.resize(shares);
+    numbers_.emplace(folder_, shares);
     uv_facts_.resize(shares);
     std::mutex mutex;
     std::uint64_t done = 0;
@@ -116,7 +124,9 @@ class Cutter {
     parallel_for(shares, threads, [&](std::uint64_t i) {
       const auto number = static_cast<std::uint32_t>(i);
       StagedShare staged = scheme_->stage_share(shares_->read(number, options_.weld), number);
+      const std::string numbers = encode_numbers(std::exchange(staged.numbers, {}));
       const std::lock_guard lock(mutex);
+      numbers_->append(number, numbers);
       take(std::move(staged), i);
       tell(scheme_->words().shares, ++done, shares);
     });
@@ -128,7 +138,6 @@ class Cutter {
       manifest_.samples.resize(manifest_.parts.size());
       manifest_.samples[number] = std::move(*staged.sample);
     }
-    numbers_[number] = std::move(staged.numbers);
     uv_facts_[number] = staged.uv_facts;
     manifest_.coincident_vertices += staged.coincident_vertices;
     manifest_.dropped_degenerate += staged.dropped_degenerate;
@@ -137,15 +146,26 @@ class Cutter {
   }
 
   void stage_boundary() {
-    SharedTriangles shared = shares_->boundary(numbers_);
-    manifest_.dropped_degenerate += shared.degenerate;
-    manifest_.coincident_corners += shared.coincident;
-    scheme_->order_boundary(shared);
+    numbers_->finish();
     const auto parts = static_cast<std::uint32_t>(manifest_.parts.size());
-    manifest_.dropped_duplicate = order_by_region(parts, shared.triangles, shared.columns);
-    manifest_.boundary_triangles = shared.triangles.size();
-    const EncodedBoundary encoded = encode_boundary(parts, shared.triangles, shared.columns);
-    manifest_.boundary = {{stage_.publish(BoundaryName{}, encoded.file), encoded.index, 0}};
+    SeamNumbers numbers(parts, [this](std::uint32_t share) {
+      const std::vector<char> bytes = numbers_->read<char>(share);
+      return decode_numbers({bytes.data(), bytes.size()});
+    });
+    BoundaryWriter boundary(folder_, parts);
+    const std::uint32_t regions = Regions(parts).count();
+    for (std::uint32_t region = 0; region < regions; ++region) {
+      SharedTriangles shared = numbers.number(shares_->region(region));
+      manifest_.dropped_degenerate += shared.degenerate;
+      manifest_.coincident_corners += shared.coincident;
+      scheme_->order_boundary(shared);
+      manifest_.dropped_duplicate += drop_duplicates(shared.triangles, shared.columns);
+      boundary.add_region(shared.triangles, shared.columns);
+      numbers.forget_unused();
+      tell("boundary", region + 1, regions);
+    }
+    manifest_.boundary_triangles = boundary.triangles();
+    manifest_.boundary = {boundary.publish(stage_)};
   }
 
   /// What the input has beside its surface.
@@ -167,9 +187,10 @@ class Cutter {
     tell(phase, done, all);
   };
   Manifest manifest_;
+  std::filesystem::path folder_;  // for scratch files
   std::unique_ptr<MeshShares> shares_;
-  std::vector<BoundaryNumbers> numbers_;
-  std::vector<UvFacts> uv_facts_;  // of the parts
+  std::optional<BucketFile> numbers_;  // of the parts' boundary vertices
+  std::vector<UvFacts> uv_facts_;      // of the parts
 };
 
 }  // namespace

@@ -13,6 +13,7 @@
 
 #include "divide/boundary_numbers.hpp"
 #include "divide/mesh_shares.hpp"
+#include "divide/seam_numbers.hpp"
 #include "divide/share_map.hpp"
 #include "divide/slab_map.hpp"
 
@@ -51,7 +52,7 @@ class CutScheme {
                            std::uint64_t taken_bytes) const = 0;
   /// From several threads: makes of a share what the stage holds, and publishes it.
   virtual StagedShare stage_share(MeshShare share, std::uint32_t number) const = 0;
-  /// Puts the boundary triangles in the order in which they are staged.
+  /// Puts the boundary triangles of a region in the order in which they are staged.
   virtual void order_boundary(SharedTriangles& triangles) const = 0;
 };
 

@@ -112,7 +112,7 @@ class DividedSurface::Impl {
                                 .shares = divided.slabs,
                                 .vertices = survey_.vertices,
                                 .positions = survey_.positions,
-                                .seams = MeshShares::SeamsFor::each_share,
+                                .seams = MeshShares::SeamsFor::shares,
                                 .triangles = info.faces};
     const std::uint64_t all = MeshShares::memory_for(options);
     if (all <= options_.memory_bytes / 4) options.memory_bytes = all;

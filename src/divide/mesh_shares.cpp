@@ -45,7 +45,9 @@ MeshShares::MeshShares(const Options& options) : MeshShares(options, Memory(opti
 
 MeshShares::MeshShares(const Options& options, const Memory& memory)
     : positions_(options.positions),
-      seams_for_(options.seams),
+      regions_(options.seams == SeamsFor::shares_and_regions
+                   ? std::optional<Regions>(options.shares)
+                   : std::nullopt),
       map_(memory.map > 0
                ? MappedFile::memory(memory.map)
                : MappedFile::scratch(options.folder, options.vertices * sizeof(SharePlace))),
@@ -59,7 +61,14 @@ MeshShares::MeshShares(const Options& options, const Memory& memory)
       triangles_(options.folder, options.shares, memory.triangles),
       packers_(options.shares),
       seams_(options.folder, options.shares),
+      region_seams_(by_region(options, true)),
+      region_labels_(by_region(options, options.columns.labels)),
+      region_uvs_(by_region(options, options.columns.uvs)),
       next_(options.shares, 0) {}
+
+BucketFile MeshShares::by_region(const Options& options, bool wanted) const {
+  return {options.folder, regions_ && wanted ? regions_->count() : 0};
+}
 
 void MeshShares::add_vertices(const VertexView& batch, std::span<const std::uint32_t> shares,
                               std::span<const std::uint32_t> points) {
@@ -142,16 +151,22 @@ void MeshShares::add_triangles(const TriangleView& triangles) {
       if (columns_.labels) labels_.put(a.share, triangles.columns.labels[i]);
       if (columns_.uvs) uvs_.put(a.share, triangles.columns.uvs[i]);
     } else {
-      put_seam_triangle({a, b, c});
-      if (seams_for_ == SeamsFor::all) boundary_columns_.append(triangles.columns, i);
+      put_seam_triangle({a, b, c}, triangles.columns, i);
     }
   }
   forget_pages(batch.size());
 }
 
 /// To each of its shares, once.
-void MeshShares::put_seam_triangle(const SeamTriangle& t) {
-  if (seams_for_ == SeamsFor::all) boundary_.push_back(t);
+void MeshShares::put_seam_triangle(const SeamTriangle& t, const TriangleColumnsView& columns,
+                                   std::size_t place) {
+  if (regions_) {
+    const auto [least, greatest] = std::minmax({t[0].share, t[1].share, t[2].share});
+    const std::uint32_t region = regions_->of(least, greatest);
+    region_seams_.put(region, t);
+    if (columns_.labels) region_labels_.put(region, columns.labels[place]);
+    if (columns_.uvs) region_uvs_.put(region, columns.uvs[place]);
+  }
   for (std::size_t i = 0; i < 3; ++i) {
     const bool seen = (i > 0 && t[i].share == t[0].share) || (i > 1 && t[i].share == t[1].share);
     if (!seen) seams_.put(t[i].share, t);
@@ -163,6 +178,9 @@ void MeshShares::finish() {
   labels_.finish();
   uvs_.finish();
   seams_.finish();
+  region_seams_.finish();
+  region_labels_.finish();
+  region_uvs_.finish();
   map_ = {};
 }
 
@@ -205,54 +223,19 @@ std::vector<SeamTriangle> MeshShares::seam(std::uint32_t share) const {
   return seams_.read<SeamTriangle>(share);
 }
 
+Seams MeshShares::region(std::uint32_t region) const {
+  Seams seams;
+  seams.triangles = region_seams_.read<SeamTriangle>(region);
+  if (columns_.labels) seams.columns.labels = region_labels_.read<Label>(region);
+  if (columns_.uvs) seams.columns.uvs = region_uvs_.read<CornerUvs>(region);
+  return seams;
+}
+
 Vec3 MeshShares::position_of(SharePlace vertex) const {
   if (positions_ == PositionType::float64)
     return vertices_.read_one<Vec3>(vertex.share, vertex.place);
   const auto p = vertices_.read_one<std::array<float, 3>>(vertex.share, vertex.place);
   return {p[0], p[1], p[2]};
-}
-
-SharedTriangles MeshShares::boundary(std::span<const BoundaryNumbers> numbers) const {
-  SharedTriangles made;
-  made.triangles.reserve(boundary_.size());
-  number_seams(boundary_, boundary_columns_, numbers, made);
-  return made;
-}
-
-void number_seams(std::span<const SeamTriangle> seams, const TriangleColumns& columns,
-                  std::span<const BoundaryNumbers> numbers, SharedTriangles& made) {
-  constexpr std::size_t k_looked_at = 4;
-  // Neighbours in the file mostly have the same vertices, or the next.
-  std::vector<std::size_t> last(numbers.size(), 0);
-  const auto index = [&](const SharePlace& corner) {
-    const std::vector<std::uint32_t>& places = numbers[corner.share].places;
-    std::size_t& at = last[corner.share];
-    for (std::size_t i = at; i < std::min(at + k_looked_at, places.size()); ++i) {
-      if (places[i] == corner.place) return at = i;
-    }
-    at = static_cast<std::size_t>(std::lower_bound(places.begin(), places.end(), corner.place) -
-                                  places.begin());
-    if (at == places.size()) throw DataError("a boundary triangle of a vertex that is not there");
-    return at;
-  };
-  for (std::size_t place = 0; place < seams.size(); ++place) {
-    const SeamTriangle& t = seams[place];
-    BoundaryTriangle corners;
-    BoundaryTriangle points;
-    for (std::size_t i = 0; i < 3; ++i) {
-      const BoundaryNumbers& of = numbers[t[i].share];
-      const std::size_t at = index(t[i]);
-      corners[i] = {t[i].share, of.numbers[at]};
-      points[i] = {t[i].share, of.points.empty() ? of.numbers[at] : of.points[at]};
-    }
-    made.coincident += is_degenerate(points);
-    if (is_degenerate(corners)) {
-      ++made.degenerate;
-    } else {
-      made.triangles.push_back(corners);
-      made.columns.append(columns, place);
-    }
-  }
 }
 
 }  // namespace meshfarm

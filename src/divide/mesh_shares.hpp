@@ -5,20 +5,19 @@
 #include <array>
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <span>
 #include <unordered_map>
 #include <vector>
 
 #include <meshfarm/geometry/mesh.hpp>
 #include <meshfarm/geometry/weld.hpp>
-#include <meshfarm/io/boundary_file.hpp>
 #include <meshfarm/io/mesh_source.hpp>
 #include <meshfarm/io/packed_triangles.hpp>
+#include <meshfarm/io/regions.hpp>
 #include <meshfarm/io/slab_file.hpp>
 #include <meshfarm/util/bucket_file.hpp>
 #include <meshfarm/util/file.hpp>
-
-#include "divide/boundary_numbers.hpp"
 
 namespace meshfarm {
 
@@ -30,17 +29,11 @@ struct SharePlace {
 };
 using SeamTriangle = std::array<SharePlace, 3>;
 
-/// Triangles between shares; those that have lost a corner are left out.
-struct SharedTriangles {
-  std::vector<BoundaryTriangle> triangles;
-  TriangleColumns columns;       // of these
-  std::uint64_t degenerate = 0;  // that were left out
-  std::uint64_t coincident = 0;  // with two corners at one point, left out or not
+/// Triangles between shares, in file order.
+struct Seams {
+  std::vector<SeamTriangle> triangles;
+  TriangleColumns columns;
 };
-
-/// Appends triangles by final numbers, one entry of `numbers` a share; the order kept.
-void number_seams(std::span<const SeamTriangle> seams, const TriangleColumns& columns,
-                  std::span<const BoundaryNumbers> numbers, SharedTriangles& made);
 
 /// Divides a mesh while it is scanned, in bounded memory. The caller assigns each vertex to a
 /// share. A triangle goes to the share of its vertices, or to the boundary if they are in several.
@@ -48,16 +41,15 @@ void number_seams(std::span<const SeamTriangle> seams, const TriangleColumns& co
 /// mapped where the input has locality, or memory too.
 class MeshShares {
  public:
-  /// What will be asked for of the boundary triangles: boundary(), for which they are kept in
-  /// memory, or seam() alone.
-  enum class SeamsFor : std::uint8_t { all, each_share };
+  /// What will be asked for of the boundary triangles: seam() alone, or region() too.
+  enum class SeamsFor : std::uint8_t { shares, shares_and_regions };
   struct Options {
     std::filesystem::path folder;  // for scratch files
     std::uint32_t shares = 0;
     std::uint64_t vertices = 0;  // exactly as many are added
     PositionType positions = PositionType::float32;
     std::uint64_t memory_bytes = 0;  // of what is shared out; the rest goes to scratch files
-    SeamsFor seams = SeamsFor::all;
+    SeamsFor seams = SeamsFor::shares_and_regions;
     bool appearances = false;     // whether vertices have any
     ColumnSet columns = {};       // of the triangles
     std::uint64_t triangles = 0;  // about how many there are
@@ -83,10 +75,13 @@ class MeshShares {
 
   /// The boundary triangles that have a corner in this share, in file order; as safe as read().
   std::vector<SeamTriangle> seam(std::uint32_t share) const;
+  /// The boundary triangles of a region of the shares (regions.hpp); as safe as read(). Not for
+  /// SeamsFor::shares.
+  Seams region(std::uint32_t region) const;
 
   /// What buffers took until finish(): the process may keep it in pieces that are of little use.
   std::uint64_t buffer_bytes() const {
-    const std::uint64_t files = 2U + (columns_.labels ? 1U : 0U) + (columns_.uvs ? 1U : 0U);
+    const std::uint64_t files = 3U + (columns_.labels ? 1U : 0U) + (columns_.uvs ? 1U : 0U);
     return files * BucketFile::k_all_buffers_bytes;
   }
   /// Vertices that became one with an earlier one.
@@ -95,9 +90,6 @@ class MeshShares {
   std::uint64_t dropped() const { return dropped_; }
   /// Triangles whose corners were all one vertex.
   std::uint64_t points_left_out() const { return points_left_out_; }
-  /// The boundary triangles, in file order and by final numbers, one entry of `numbers` a share.
-  SharedTriangles boundary(std::span<const BoundaryNumbers> numbers) const;
-
   /// The memory that holds all of a usual mesh, whatever options.memory_bytes says.
   static std::uint64_t memory_for(const Options& options);
 
@@ -119,12 +111,16 @@ class MeshShares {
   };
   MeshShares(const Options& options, const Memory& memory);
   void put_position(std::uint32_t share, Vec3 p);
-  void put_seam_triangle(const SeamTriangle& t);
+  void put_seam_triangle(const SeamTriangle& t, const TriangleColumnsView& columns,
+                         std::size_t place);
   Vec3 position_of(SharePlace vertex) const;
   void forget_pages(std::size_t added);
 
+  /// A file for the values of the boundary triangles by region, or none.
+  BucketFile by_region(const Options& options, bool wanted) const;
+
   PositionType positions_;
-  SeamsFor seams_for_;
+  std::optional<Regions> regions_;
   MappedFile map_;
   bool is_in_memory_;
   bool has_appearances_;
@@ -136,15 +132,16 @@ class MeshShares {
   BucketFile uvs_;
   BucketFile triangles_;  // packed
   std::vector<TrianglePacker> packers_;
-  BucketFile seams_;                 // the boundary triangles at each share
+  BucketFile seams_;  // the boundary triangles at each share
+  BucketFile region_seams_;
+  BucketFile region_labels_;
+  BucketFile region_uvs_;
   std::vector<std::uint64_t> next_;  // place in each share
   std::unordered_map<std::uint32_t, PointVertex> points_;
   std::uint64_t added_ = 0;
   std::uint64_t merged_ = 0;
   std::uint64_t dropped_ = 0;
   std::uint64_t points_left_out_ = 0;
-  std::vector<SeamTriangle> boundary_;  // as the square root of the input
-  TriangleColumns boundary_columns_;
 };
 
 }  // namespace meshfarm

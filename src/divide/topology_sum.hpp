@@ -10,7 +10,9 @@
 
 #include <meshfarm/geometry/mesh.hpp>
 #include <meshfarm/geometry/topology.hpp>
+#include <meshfarm/io/boundary_file.hpp>
 
+#include "divide/boundary_numbers.hpp"
 #include "divide/mesh_shares.hpp"
 #include "divide/shared_vertices.hpp"
 

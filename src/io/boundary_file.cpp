@@ -9,7 +9,6 @@
 // What stands before the triangles is the index. Version 1 had the count of triangles alone.
 #include <algorithm>
 #include <bit>
-#include <cstring>
 #include <limits>
 #include <numeric>
 #include <utility>
@@ -17,6 +16,7 @@
 #include <meshfarm/io/boundary_file.hpp>
 #include <meshfarm/io/regions.hpp>
 #include <meshfarm/staging/sealed.hpp>
+#include <meshfarm/staging/staged_writer.hpp>
 #include <meshfarm/util/bytes.hpp>
 #include <meshfarm/util/checksum.hpp>
 #include <meshfarm/util/errors.hpp>
@@ -45,15 +45,10 @@ struct Head {
 };
 static_assert(sizeof(Head) == 16);
 
-/// What it has of a region.
-struct RegionEntry {
-  std::uint64_t triangles = 0;
-  std::uint64_t hash = 0;
-};
-static_assert(sizeof(RegionEntry) == 16);
+static_assert(sizeof(BoundaryRegion) == 16);
 
 std::uint64_t index_bytes(const Head& head) {
-  return sizeof(Head) + std::uint64_t{head.regions()} * sizeof(RegionEntry);
+  return sizeof(Head) + std::uint64_t{head.regions()} * sizeof(BoundaryRegion);
 }
 
 Head get_head(ByteReader& in) {
@@ -62,10 +57,38 @@ Head get_head(ByteReader& in) {
   return head;
 }
 
+Head head_of(std::uint32_t parts, std::uint64_t triangles, const ColumnSet& columns) {
+  return {triangles, parts,
+          (columns.labels ? k_boundary_labels : 0) | (columns.uvs ? k_boundary_uvs : 0)};
+}
+
+std::string encode_index(const Head& head, std::span<const BoundaryRegion> regions) {
+  ByteWriter out;
+  out.put(head);
+  out.put_array(regions);
+  return out.take();
+}
+
+FileSection section_of(std::string_view index) {
+  return {k_seal_head_bytes, index.size(), checksum(index)};
+}
+
+std::string encode_triangles(std::span<const BoundaryTriangle> triangles,
+                             const TriangleColumnsView& columns) {
+  ByteWriter out;
+  out.reserve(triangles.size() * (sizeof(BoundaryTriangle) + columns.set().bytes()));
+  for (std::size_t i = 0; i < triangles.size(); ++i) {
+    out.put(triangles[i]);
+    put_columns(out, columns.part(i, 1));
+  }
+  return out.take();
+}
+
 /// The entries tell of all triangles.
-void check_entries(const Head& head, std::span<const RegionEntry> entries, std::string_view what) {
+void check_entries(const Head& head, std::span<const BoundaryRegion> entries,
+                   std::string_view what) {
   std::uint64_t left = head.triangles;
-  const bool fits = std::all_of(entries.begin(), entries.end(), [&](const RegionEntry& entry) {
+  const bool fits = std::all_of(entries.begin(), entries.end(), [&](const BoundaryRegion& entry) {
     if (entry.triangles > left) return false;
     left -= entry.triangles;
     return true;
@@ -213,31 +236,59 @@ std::uint64_t order_by_region(std::uint32_t parts, std::vector<BoundaryTriangle>
 EncodedBoundary encode_boundary(std::uint32_t parts, const std::vector<BoundaryTriangle>& triangles,
                                 const TriangleColumnsView& columns) {
   RegionOf region_of(parts);
-  const ColumnSet set = columns.set();
-  const Head head{triangles.size(), parts,
-                  (set.labels ? k_boundary_labels : 0) | (set.uvs ? k_boundary_uvs : 0)};
-  std::vector<RegionEntry> entries(head.regions());
-  ByteWriter out;
-  out.reserve(index_bytes(head) + triangles.size() * head.triangle_bytes());
-  out.put(head);
-  out.put_array(std::span<const RegionEntry>(entries));  // filled in below
+  const Head head = head_of(parts, triangles.size(), columns.set());
+  std::vector<BoundaryRegion> regions(head.regions());
+  std::string payload(index_bytes(head), '\0');  // filled in below
+  payload.reserve(payload.size() + triangles.size() * head.triangle_bytes());
   std::size_t place = 0;
-  for (std::uint32_t region = 0; region < entries.size(); ++region) {
-    const std::size_t begin = out.bytes().size();
+  for (std::uint32_t region = 0; region < regions.size(); ++region) {
     const std::size_t first = place;
-    for (; place < triangles.size() && region_of(triangles[place]) == region; ++place) {
-      out.put(triangles[place]);
-      put_columns(out, columns.part(place, 1));
-    }
-    entries[region] = {place - first, checksum(std::string_view(out.bytes()).substr(begin))};
+    while (place < triangles.size() && region_of(triangles[place]) == region) ++place;
+    const std::string bytes = encode_triangles(std::span(triangles).subspan(first, place - first),
+                                               columns.part(first, place - first));
+    regions[region] = {place - first, checksum(bytes)};
+    payload += bytes;
   }
   if (place < triangles.size()) throw Error("boundary triangles are not in the order of regions");
-  std::string payload = out.take();
-  std::memcpy(&payload[sizeof head], entries.data(), entries.size() * sizeof(RegionEntry));
-  const std::uint64_t size = index_bytes(head);
-  const FileSection index{k_seal_head_bytes, size,
-                          checksum(std::string_view(payload).substr(0, size))};
-  return {seal(k_boundary_kind, k_boundary_version, payload), index};
+  const std::string index = encode_index(head, regions);
+  payload.replace(0, index.size(), index);
+  return {seal(k_boundary_kind, k_boundary_version, payload), section_of(index)};
+}
+
+BoundaryWriter::BoundaryWriter(const std::filesystem::path& folder, std::uint32_t parts)
+    : parts_(parts), scratch_(folder, Regions(parts).count()) {}
+
+void BoundaryWriter::add_region(std::span<const BoundaryTriangle> triangles,
+                                const TriangleColumnsView& columns) {
+  if (regions_.size() == Regions(parts_).count()) throw Error("more regions than there are");
+  const std::string bytes = encode_triangles(triangles, columns);
+  scratch_.append(regions_.size(), bytes);
+  regions_.push_back({triangles.size(), checksum(bytes)});
+  triangles_ += triangles.size();
+  if (!triangles.empty()) columns_ = columns.set();
+}
+
+BoundaryFile BoundaryWriter::publish(const Stage& stage) {
+  if (regions_.size() < Regions(parts_).count()) throw Error("fewer regions than there are");
+  scratch_.finish();
+  const Head head = head_of(parts_, triangles_, columns_);
+  const std::string index = encode_index(head, regions_);
+  StagedWriter file(stage, BoundaryName{});
+  Checksum sum;
+  const auto write = [&](std::string_view bytes) {
+    file.write(bytes);
+    sum.add(bytes);
+  };
+  write(seal_head(k_boundary_kind, k_boundary_version,
+                  index.size() + triangles_ * head.triangle_bytes()));
+  write(index);
+  for (std::uint32_t region = 0; region < regions_.size(); ++region) {
+    const std::vector<char> bytes = scratch_.read<char>(region);
+    write({bytes.data(), bytes.size()});
+  }
+  const std::uint64_t hash = sum.value();
+  file.write({reinterpret_cast<const char*>(&hash), sizeof hash});
+  return {file.commit(), section_of(index), 0};
 }
 
 std::vector<BoundaryTriangle> decode_boundary(std::string_view file, std::string_view what) {
@@ -250,7 +301,7 @@ std::vector<BoundaryTriangle> decode_boundary(std::string_view file, std::string
   ByteReader in(unseal(file, k_boundary_kind, k_boundary_version, what), what);
   columns.clear();
   const Head head = get_head(in);
-  check_entries(head, in.get_array<RegionEntry>(head.regions()), what);
+  check_entries(head, in.get_array<BoundaryRegion>(head.regions()), what);
   std::vector<BoundaryTriangle> triangles;
   get_triangles(in, head.triangles, head.column_set(), triangles, columns);
   in.expect_end();
@@ -319,13 +370,13 @@ BoundaryRegions::Open BoundaryRegions::open(const BoundaryFile& from) const {
   const std::string bytes = made.file.read(from.index);
   ByteReader in(bytes, from.file.name);
   const Head head = get_head(in);
-  const auto entries = in.get_array<RegionEntry>(head.regions());
+  const auto entries = in.get_array<BoundaryRegion>(head.regions());
   in.expect_end();
   check_entries(head, entries, from.file.name);
   if (head.parts != parts_) in.fail("is not of " + std::to_string(parts_) + " parts");
   made.columns = head.column_set();
   std::uint64_t offset = from.index.offset + from.index.size;
-  for (const RegionEntry& entry : entries) {
+  for (const BoundaryRegion& entry : entries) {
     if (entry.triangles > from.file.size / head.triangle_bytes()) in.fail("too many triangles");
     made.sections.push_back({offset, entry.triangles * head.triangle_bytes(), entry.hash});
     offset += made.sections.back().size;

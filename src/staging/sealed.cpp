@@ -35,14 +35,20 @@ std::uint64_t read_head(ByteReader& in, FileKind kind, std::uint32_t version) {
 
 }  // namespace
 
-std::string seal(FileKind kind, std::uint32_t version, std::string_view payload) {
+std::string seal_head(FileKind kind, std::uint32_t version, std::uint64_t payload_bytes) {
   ByteWriter out;
-  out.reserve(k_seal_head_bytes + payload.size() + sizeof(std::uint64_t));
   out.put(k_magic);
   out.put(kind);
   out.put(version);
   out.put(k_byte_order);
-  out.put(static_cast<std::uint64_t>(payload.size()));
+  out.put(payload_bytes);
+  return out.take();
+}
+
+std::string seal(FileKind kind, std::uint32_t version, std::string_view payload) {
+  ByteWriter out;
+  out.reserve(k_seal_head_bytes + payload.size() + sizeof(std::uint64_t));
+  out.put_array(std::span<const char>(seal_head(kind, version, payload.size())));
   out.put_array(std::span<const char>(payload));
   const std::uint64_t sum = checksum(out.bytes());
   out.put(sum);

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <filesystem>
 #include <functional>
 #include <optional>
 #include <span>
@@ -16,6 +17,7 @@
 #include <meshfarm/io/fill.hpp>
 #include <meshfarm/staging/sections.hpp>
 #include <meshfarm/staging/stage.hpp>
+#include <meshfarm/util/bucket_file.hpp>
 
 namespace meshfarm {
 
@@ -46,6 +48,33 @@ struct EncodedBoundary {
 /// step 4), in the order of order_by_region(), and their columns.
 EncodedBoundary encode_boundary(std::uint32_t parts, const std::vector<BoundaryTriangle>& triangles,
                                 const TriangleColumnsView& columns = {});
+
+/// What a side file has of a region.
+struct BoundaryRegion {
+  std::uint64_t triangles = 0;
+  std::uint64_t hash = 0;  // of their bytes
+};
+
+/// Publishes the same file, made a region at a time, of which it holds one.
+class BoundaryWriter {
+ public:
+  /// The folder is for a scratch file.
+  BoundaryWriter(const std::filesystem::path& folder, std::uint32_t parts);
+  /// The triangles of the next region, and their columns.
+  void add_region(std::span<const BoundaryTriangle> triangles, const TriangleColumnsView& columns);
+  /// All that were added.
+  std::uint64_t triangles() const { return triangles_; }
+  /// After all regions.
+  BoundaryFile publish(const Stage& stage);
+
+ private:
+  std::uint32_t parts_;
+  ColumnSet columns_;
+  std::uint64_t triangles_ = 0;
+  std::vector<BoundaryRegion> regions_;
+  BucketFile scratch_;
+};
+
 std::vector<BoundaryTriangle> decode_boundary(std::string_view file, std::string_view what);
 /// With the columns that the file has.
 std::vector<BoundaryTriangle> decode_boundary(std::string_view file, std::string_view what,

@@ -17,6 +17,9 @@ inline constexpr std::size_t k_seal_head_bytes = 24;
 /// Wraps a payload as a staged file: magic, kind, version, endianness, size, payload, checksum.
 std::string seal(FileKind kind, std::uint32_t version, std::string_view payload);
 
+/// What stands before a payload of so many bytes. After it stands the checksum of all before that.
+std::string seal_head(FileKind kind, std::uint32_t version, std::uint64_t payload_bytes);
+
 /// The payload within `file`. Throws DataError naming `what` if the file is of another kind or
 /// version, cut short, longer than it says, or damaged.
 std::string_view unseal(std::string_view file, FileKind kind, std::uint32_t version,

@@ -58,15 +58,12 @@ TEST_CASE("a large map is not held in memory, and knows all vertices") {
   }
 }
 
-TEST_CASE("boundary triangles that are asked for by share alone are not held in memory") {
+TEST_CASE("boundary triangles are not held in memory") {
   constexpr std::uint32_t k_batch = 100'000;
   constexpr std::uint32_t k_batches = 60;  // 144 MB of triangles
   const test::TempFolder folder;
   const std::uint64_t before = resident_bytes("RssAnon:");
-  MeshShares shares({.folder = folder.path(),
-                     .shares = 3,
-                     .vertices = 6,
-                     .seams = MeshShares::SeamsFor::each_share});
+  MeshShares shares({.folder = folder.path(), .shares = 3, .vertices = 6});
   const std::vector<Vec3> positions(6);
   shares.add_vertices(positions, std::vector<std::uint32_t>{0, 0, 1, 1, 2, 2});
   const std::vector<WideTriangle> even(k_batch, {0, 2, 4});
@@ -81,6 +78,30 @@ TEST_CASE("boundary triangles that are asked for by share alone are not held in 
     CHECK(seam.back() == SeamTriangle{{{0, 1}, {1, 0}, {2, 0}}});
   }
   CHECK(shares.read(0, Weld::off).boundary.size() == std::size_t{k_batch} * k_batches);
+  CHECK(shares.region(0).triangles == shares.seam(0));
+  CHECK(shares.region(1).triangles.empty());
+}
+
+TEST_CASE("boundary triangles are told by region, with their labels, in file order") {
+  const test::TempFolder folder;
+  MeshShares shares({.folder = folder.path(),
+                     .shares = 3,
+                     .vertices = 3,
+                     .columns = {.labels = true, .uvs = false}});
+  const std::vector<Vec3> positions(3);
+  shares.add_vertices(positions, std::vector<std::uint32_t>{0, 1, 2});
+  const std::vector<WideTriangle> triangles = {{1, 2, 2}, {0, 1, 2}, {2, 1, 1}, {1, 1, 0}};
+  const std::vector<Label> labels = {4, 5, 6, 7};
+  shares.add_triangles({triangles, {labels, {}}});
+  shares.finish();
+  const Seams outer = shares.region(0);
+  CHECK(outer.triangles ==
+        std::vector<SeamTriangle>{{{{0, 0}, {1, 0}, {2, 0}}}, {{{1, 0}, {1, 0}, {0, 0}}}});
+  CHECK(outer.columns.labels == std::vector<Label>{5, 7});
+  const Seams inner = shares.region(1);
+  CHECK(inner.triangles ==
+        std::vector<SeamTriangle>{{{{1, 0}, {2, 0}, {2, 0}}}, {{{2, 0}, {1, 0}, {1, 0}}}});
+  CHECK(inner.columns.labels == std::vector<Label>{4, 6});
 }
 
 TEST_CASE("vertices of one point become one") {
@@ -123,8 +144,8 @@ TEST_CASE("triangles that are points are left out and counted") {
 TEST_CASE("each vertex of a share has its appearance, in memory and in scratch files") {
   for (const std::uint64_t memory : {std::uint64_t{0}, std::uint64_t{1} << 20}) {
     const test::TempFolder folder;
-    MeshShares shares(
-        {folder.path(), 2, 5, PositionType::float32, memory, MeshShares::SeamsFor::all, true});
+    MeshShares shares({folder.path(), 2, 5, PositionType::float32, memory,
+                       MeshShares::SeamsFor::shares_and_regions, true});
     const std::vector<Vec3> positions(5);
     const std::vector<Appearance> appearances = test::appearances(5);
     shares.add_vertices({positions, appearances},

@@ -112,6 +112,37 @@ TEST_CASE("a region's boundary triangles are read without the others") {
   CHECK_THROWS_AS(encode_boundary(parts, triangles, columns), Error);
 }
 
+TEST_CASE("a side file that is made a region at a time is the same") {
+  for (const bool is_empty : {false, true}) {
+    const std::uint32_t parts = 11;
+    std::vector<Label> labels;
+    Triangles triangles = all_pairs(parts, labels);
+    if (is_empty) triangles.clear(), labels.clear();
+    TriangleColumns columns{labels, {}};
+    order_by_region(parts, triangles, columns);
+    const EncodedBoundary encoded = encode_boundary(parts, triangles, columns);
+    const TempFolder folder;
+    const Stage stage = Stage::create(folder.path());
+    BoundaryWriter writer(folder.path(), parts);
+    const Regions regions(parts);
+    for (std::uint32_t region = 0, first = 0, end = 0; region < regions.count(); ++region) {
+      first = end;
+      while (end < triangles.size() &&
+             regions.of(triangles[end][0].part, triangles[end][1].part) == region) {
+        ++end;
+      }
+      const auto count = end - first;
+      writer.add_region(std::span(triangles).subspan(first, count),
+                        TriangleColumnsView(columns).part(first, count));
+    }
+    CHECK(writer.triangles() == triangles.size());
+    const BoundaryFile written = writer.publish(stage);
+    CHECK(stage.read(written.file) == encoded.file);
+    CHECK(written.index.size == encoded.index.size);
+    CHECK(written.index.hash == encoded.index.hash);
+  }
+}
+
 TEST_CASE("of boundary triangles with the same corners the first stays") {
   const std::uint32_t parts = 11;
   std::vector<Label> labels;
