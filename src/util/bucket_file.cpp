@@ -38,11 +38,16 @@ BucketFile::BucketFile(const std::filesystem::path& folder, std::size_t buckets,
 void BucketFile::append(std::size_t bucket, std::string_view bytes) {
   Bucket& b = buckets_[bucket];
   if (b.buffer.size() + bytes.size() > buffer_bytes_) flush(b);
+  if (bytes.size() > buffer_bytes_) return store(b, bytes);
   b.buffer.append(bytes);
 }
 
 void BucketFile::flush(Bucket& bucket) {
-  const std::string& bytes = bucket.buffer;
+  store(bucket, bucket.buffer);
+  bucket.buffer.clear();
+}
+
+void BucketFile::store(Bucket& bucket, std::string_view bytes) {
   if (bytes.empty()) return;
   const std::span<char> memory = memory_.as_span<char>();
   if (bytes.size() <= memory.size() - kept_) {
@@ -54,7 +59,6 @@ void BucketFile::flush(Bucket& bucket) {
     bucket.extents.push_back({memory.size() + end_, bytes.size()});
     end_ += bytes.size();
   }
-  bucket.buffer.clear();
 }
 
 void BucketFile::finish() {

@@ -57,6 +57,7 @@ class BucketFile {
     std::vector<Extent> extents;
   };
   void flush(Bucket& bucket);
+  void store(Bucket& bucket, std::string_view bytes);
   void read_into(std::size_t bucket, std::uint64_t from, std::uint64_t size, char* to) const;
   void read_file_into(std::uint64_t offset, std::uint64_t size, char* to) const;
 

@@ -1,10 +1,12 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
 #include <numeric>
+#include <string>
 
 #include <doctest/doctest.h>
 
 #include <meshfarm/util/bucket_file.hpp>
+#include <meshfarm/util/memory.hpp>
 
 #include "support/temp_folder.hpp"
 
@@ -31,5 +33,30 @@ TEST_CASE("buckets give back what each was given, through full buffers and past 
     }
   }
   CHECK(buckets.read<std::uint32_t>(9999).empty());
+  CHECK(std::filesystem::is_empty(folder.path()));
+}
+
+TEST_CASE("what is larger than a buffer is not held") {
+  constexpr std::size_t k_large = std::size_t{16} << 20;
+  const test::TempFolder folder;
+  BucketFile buckets(folder.path(), 8);
+  std::string bytes(k_large, 'a');
+  const std::uint64_t before = resident_memory();
+  for (std::uint32_t b = 0; b < 8; ++b) {
+    buckets.put(b, std::uint64_t{b});
+    bytes.back() = static_cast<char>('a' + b);
+    buckets.append(b, bytes);
+    buckets.put(b, std::uint64_t{7});
+  }
+  CHECK(resident_memory() < before + k_large);
+  buckets.finish();
+  for (std::uint32_t b = 0; b < 8; ++b) {
+    CHECK(buckets.read_one<std::uint64_t>(b, 0) == b);
+    const auto values = buckets.read<char>(b);
+    REQUIRE(values.size() == k_large + 16);
+    CHECK(values[k_large + 6] == 'a');
+    CHECK(values[k_large + 7] == static_cast<char>('a' + b));
+    CHECK(values[k_large + 8] == 7);
+  }
   CHECK(std::filesystem::is_empty(folder.path()));
 }
