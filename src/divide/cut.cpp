@@ -8,7 +8,8 @@
 //               they are not spread as a surface is
 //   vertices    vertex map: share and place in it; positions to the share's bucket
 //   triangles   to the share's bucket, or, when two or three shares meet in one, to the boundary
-// Then each share is finished from its buckets by itself, on all cores.
+// Then each share is finished from its buckets by itself, on all cores, and the boundary region by
+// region.
 #include <algorithm>
 #include <chrono>
 #include <filesystem>
@@ -124,7 +125,7 @@ class Cutter {
     parallel_for(shares, threads, [&](std::uint64_t i) {
       const auto number = static_cast<std::uint32_t>(i);
       StagedShare staged = scheme_->stage_share(shares_->read(number, options_.weld), number);
-      const std::string numbers = encode_numbers(std::exchange(staged.numbers, {}));
+      const std::string numbers = encode_numbers(staged.numbers);
       const std::lock_guard lock(mutex);
       numbers_->append(number, numbers);
       take(std::move(staged), i);

@@ -274,19 +274,14 @@ BoundaryFile BoundaryWriter::publish(const Stage& stage) {
   const Head head = head_of(parts_, triangles_, columns_);
   const std::string index = encode_index(head, regions_);
   StagedWriter file(stage, BoundaryName{});
-  Checksum sum;
-  const auto write = [&](std::string_view bytes) {
-    file.write(bytes);
-    sum.add(bytes);
-  };
-  write(seal_head(k_boundary_kind, k_boundary_version,
-                  index.size() + triangles_ * head.triangle_bytes()));
-  write(index);
+  file.write(seal_head(k_boundary_kind, k_boundary_version,
+                       index.size() + triangles_ * head.triangle_bytes()));
+  file.write(index);
   for (std::uint32_t region = 0; region < regions_.size(); ++region) {
     const std::vector<char> bytes = scratch_.read<char>(region);
-    write({bytes.data(), bytes.size()});
+    file.write({bytes.data(), bytes.size()});
   }
-  const std::uint64_t hash = sum.value();
+  const std::uint64_t hash = file.hash();
   file.write({reinterpret_cast<const char*>(&hash), sizeof hash});
   return {file.commit(), section_of(index), 0};
 }

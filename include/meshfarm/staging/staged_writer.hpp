@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <string_view>
 
@@ -23,6 +24,8 @@ class StagedWriter {
     file_.write(bytes);
     sum_.add(bytes);
   }
+  /// Of what was written so far.
+  std::uint64_t hash() const { return sum_.value(); }
   FileRef commit() {
     file_.commit();
     return {name_, file_.size(), sum_.value()};
