@@ -39,6 +39,11 @@ constexpr double k_loss_of_crossing = 64;
 // not. With a 64th fewer triangles do, but a skull has 7 % more error.
 constexpr double k_cost_of_left_over = 0.125;
 
+// A refused edge of a complex vertex is looked at again when one in so many triangles round it has
+// changed. In a block of cells most are refused: to look at all of them after each collapse takes
+// twice as long, with the same error.
+constexpr std::uint32_t k_complex_changes = 16;
+
 constexpr CostKey k_greatest = k_any_cost - 1;
 constexpr CostKey k_least_step = 4U << 20;  // a factor of 16
 
@@ -51,18 +56,20 @@ constexpr std::uint64_t k_hopeless = 4;
 constexpr std::uint64_t k_edges_of_triangle = 3;
 
 /// How many fewer triangles than the goal may be left: with one that the goal itself may be below
-/// what was asked for, as triangles of closed surfaces go in pairs, 0.1 % of that, 2 % of few.
-std::uint64_t most_fewer(std::uint64_t goal) {
+/// what was asked for, as triangles of closed surfaces go in pairs, 0.1 % of that, 2 % of few. Of
+/// few it is one as long as anything else may do.
+std::uint64_t most_fewer(std::uint64_t goal, bool nothing_else_does) {
   constexpr std::uint64_t k_few = 100;
   constexpr std::uint64_t k_many = 1000;
   if (goal >= k_many) return goal / k_many - 1;
-  return goal >= k_few ? 1 : 0;
+  if (goal < k_few) return 0;
+  return nothing_else_does ? goal / (k_few / 2) - 1 : 1;
 }
 
 /// Triangles that a collapse may remove.
-std::uint64_t most_at_once(std::uint64_t excess, std::uint64_t goal) {
+std::uint64_t most_at_once(std::uint64_t excess, std::uint64_t goal, bool nothing_else_does) {
   const bool is_near = excess >= k_usual_loss && excess < k_few_to_go;
-  return is_near ? excess + most_fewer(goal) : excess;
+  return is_near ? excess + most_fewer(goal, nothing_else_does) : excess;
 }
 
 }  // namespace
@@ -203,6 +210,7 @@ bool CollapseQueue::reduce(const SimplifyGoal& goal, const Progress& progress) {
   bool is_ranked = limit_ > 0 && std::isfinite(goal.max_cost) &&
                    static_cast<double>(triangles_) > k_as_ranked * static_cast<double>(ranked_at_);
   if (!is_ranked) limit_ = 0;
+  ends_ = false;
   while (triangles_ > goal.triangles) {
     const std::uint64_t before = triangles_;
     const bool goes_on = std::exchange(is_ranked, false);
@@ -212,7 +220,11 @@ bool CollapseQueue::reduce(const SimplifyGoal& goal, const Progress& progress) {
     // What was refused as it would have removed too many may do for the next goal.
     if (triangles_ < goal.triangles + k_few_to_go) ranked_at_ = UINT64_MAX;
     if (stop != Stop::nothing_left) return stop != Stop::told;
-    if (limit_ >= std::min(key_of(most_cost_), k_greatest)) return true;
+    if (limit_ >= std::min(key_of(most_cost_), k_greatest)) {
+      // In a block of cells each edge that is left has more triangles than are to go.
+      if (ends_ || triangles_ >= goal.triangles + k_few_to_go) return true;
+      ends_ = true;
+    }
     // Dead ends: what is ranked is refused again and again.
     if (!goes_on && (before - triangles_) * 50 < before) share = 1;
   }
@@ -238,7 +250,7 @@ CollapseQueue::Stop CollapseQueue::run(const SimplifyGoal& goal, const Progress&
     const std::uint32_t b = queued.b;
     if (is_gone(a) || is_gone(b) || queued.stamp != stamp_of(a, b)) continue;
     const std::uint64_t kept_before = kept_topology_;
-    Collapse collapse = judge(a, b, most_at_once(excess, goal.triangles));
+    Collapse collapse = judge(a, b, most_at_once(excess, goal.triangles, ends_));
     if (cost_of(queued.key()) < max_cost_) blocked_ += kept_topology_ - kept_before;
     if (pieces_ != nullptr && collapse.triangles == 4 && pieces_->is_left_over(a)) {
       collapse.cost *= k_cost_of_left_over;
@@ -329,8 +341,18 @@ void CollapseQueue::merge(std::uint32_t a, std::uint32_t b, const Collapse& coll
   for (const std::uint32_t v : ring_) stale_[v] = 1;
   look_again(a);
   for (const std::uint32_t v : ring_) {
-    if (refused_[v] != 0) look_again(v);
+    if (refused_[v] != 0 && !may_be_left(v)) look_again(v);
   }
+}
+
+/// Whether too little has changed round a vertex with refused edges; that is counted.
+bool CollapseQueue::may_be_left(std::uint32_t vertex) {
+  if ((mesh_.flags[vertex] & k_complex) == 0) return false;
+  // No edge of a hub can collapse: so few changes are counted that a byte holds them.
+  const std::uint32_t triangles = std::min(mesh_.adjacency.count(vertex), k_max_star);
+  if (refused_[vertex] * k_complex_changes >= triangles) return false;
+  ++refused_[vertex];
+  return true;
 }
 
 /// A small chart goes with the last of its triangles, and with it the corners that only it made.

@@ -142,6 +142,7 @@ class CollapseQueue {
   void join_stars(std::uint32_t a, std::uint32_t b);
   void list_ring(std::uint32_t vertex);
   void join(const CornerFan& fan, std::size_t place);
+  bool may_be_left(std::uint32_t vertex);
   void look_again(std::uint32_t vertex);
   CollapseState state();
 
@@ -152,7 +153,9 @@ class CollapseQueue {
   SmallPieces* pieces_ = nullptr;
   std::vector<std::uint32_t> target_;  // the vertex that a vertex has become
   std::vector<PastPlanes> past_;       // CollapseState::past
-  std::vector<std::uint8_t> refused_;  // an edge at the vertex was refused since it last changed
+  // An edge at the vertex was refused since it was last looked at: 1, and how often what is round
+  // it has changed since then.
+  std::vector<std::uint8_t> refused_;
   // How often the edges at a vertex were ranked anew. Only increases, so that an entry is out of
   // date if the sum of its ends' has changed.
   std::vector<std::uint32_t> looks_;
@@ -184,6 +187,7 @@ class CollapseQueue {
   std::uint64_t blocked_ = 0;  // of these: cheaper than what has collapsed
   CostKey limit_ = 0;          // dearer edges wait for the next ranking
   bool by_general_ = false;    // the general judge judged the last
+  bool ends_ = false;          // nothing is left that would not miss the goal
   bool held_ = false;
 };
 
