@@ -57,7 +57,7 @@ class GeneralJudge {
     int rank = 0;
 
     /// As at a vertex where three walls cross. With 4 a head with small folds has 4 % more error.
-    bool is_in_cells() const { return rank == 2 && crowded >= 6; }
+    bool is_in_cells() const { return crowded >= 6; }
   };
   struct Kept {
     Corner corner;

@@ -153,8 +153,8 @@ class CollapseQueue {
   SmallPieces* pieces_ = nullptr;
   std::vector<std::uint32_t> target_;  // the vertex that a vertex has become
   std::vector<PastPlanes> past_;       // CollapseState::past
-  // An edge at the vertex was refused since it was last looked at: 1, and how often what is round
-  // it has changed since then.
+  // 0, or 1 when an edge at the vertex is refused, and one more for each change round it after
+  // that, until it is looked at again.
   std::vector<std::uint8_t> refused_;
   // How often the edges at a vertex were ranked anew. Only increases, so that an entry is out of
   // date if the sum of its ends' has changed.
