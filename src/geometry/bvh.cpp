@@ -58,10 +58,9 @@ template <class Distance>
 void Bvh::search(Query& query, double enough, const Distance& distance) const {
   const float most = query.limit;
   BvhStack stack;
-  std::size_t size = 0;
-  stack[size++] = {0, 0, 0};
-  while (size > 0 && query.best.squared > enough) {
-    const BvhEntry top = stack[--size];
+  stack.push_if(true, 0, 0, 0);
+  while (!stack.empty() && query.best.squared > enough) {
+    const BvhStack::Entry top = stack.pop();
     if (top.bound >= query.limit) continue;
     if (top.count > 0) {
       for (std::uint32_t i = top.child; i < top.child + top.count; ++i) {
@@ -71,7 +70,7 @@ void Bvh::search(Query& query, double enough, const Distance& distance) const {
       query.limit = std::min(query.limit, most);
       continue;
     }
-    query.push(nodes_[top.child], stack, size);
+    query.push(nodes_[top.child], stack);
   }
 }
 

@@ -19,17 +19,15 @@ Bvh::Nearest Bvh::nearest_facing(Vec3 p, Vec3 normal, std::uint32_t guess,
   };
   offer(guess);
   BvhStack stack;
-  std::size_t size = 0;
-  stack[size++] = {0, 0, 0};
-  while (size > 0 && query.best.squared > 0) {
-    const BvhEntry top = stack[--size];
+  stack.push_if(true, 0, 0, 0);
+  while (!stack.empty() && query.best.squared > 0) {
+    const BvhStack::Entry top = stack.pop();
     if (top.bound >= query.limit) continue;
     if (top.count > 0) {
       for (std::uint32_t i = 0; i < top.count; ++i) offer(order_[top.child + i]);
       continue;
     }
-    const Node& node = nodes_[top.child];
-    query.push(node, stack, size);
+    query.push(nodes_[top.child], stack);
   }
   return query.best;
 }
@@ -55,19 +53,18 @@ Vec3 Bvh::most_similar_normal(Vec3 p, Vec3 normal, double squared) const {
     best_cosine = cosine;
   };
   BvhStack stack;
-  std::size_t size = 0;
-  stack[size++] = {0, 0, 0};
-  while (size > 0) {
-    const BvhEntry top = stack[--size];
+  stack.push_if(true, 0, 0, 0);
+  while (!stack.empty()) {
+    const BvhStack::Entry top = stack.pop();
     if (top.count > 0) {
       for (std::uint32_t i = 0; i < top.count; ++i) look_at(order_[top.child + i]);
       continue;
     }
     const Node& node = nodes_[top.child];
-    alignas(16) float bounds[4];
+    float bounds[4];
     query.squared_gaps(node, bounds);
     for (std::size_t k = 0; k < 4; ++k) {
-      if (bounds[k] < limit) stack[size++] = {bounds[k], node.child[k], node.count[k]};
+      stack.push_if(bounds[k] < limit, bounds[k], node.child[k], node.count[k]);
     }
   }
   return best;

@@ -5,23 +5,72 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstring>
 #include <limits>
 
 #include "geometry/bvh.hpp"
 
 namespace meshfarm {
 
-/// What a search has still to look at.
-struct BvhEntry {
-  float bound;  // below the squared distance, in the frame
-  std::uint32_t child;
-  std::uint32_t count;
+// At most three entries stay behind on each level, and a level takes at least one of 63 bits of
+// code or halves the 2^32 triangles of one code. One more is written, wanted or not.
+inline constexpr std::size_t k_bvh_stack = 3 * (63 + 32) + 5;
+
+/// What a search has still to look at. What is written as three values is read as three: a read of
+/// a whole entry would wait for the writes.
+class BvhStack {
+ public:
+  struct Entry {
+    float bound;  // below the squared distance, in the frame
+    std::uint32_t child;
+    std::uint32_t count;
+  };
+
+  bool empty() const { return size_ == 0; }
+  std::size_t size() const { return size_; }
+  Entry pop() {
+    --size_;
+    return {bound_[size_], child_[size_], count_[size_]};
+  }
+  /// Without branches, which nobody could foresee.
+  void push_if(bool wanted, float bound, std::uint32_t child, std::uint32_t count) {
+    bound_[size_] = bound;
+    child_[size_] = child;
+    count_[size_] = count;
+    size_ += wanted ? 1 : 0;
+  }
+  /// Of those from `base` on the nearest comes to lie on top.
+  void sort_from(std::size_t base) {
+    for (std::size_t i = base + 1; i < size_; ++i) {
+      const float bound = bound_[i];
+      if (!(bound_[i - 1] < bound)) continue;
+      const std::uint32_t child = child_[i], count = count_[i];
+      std::size_t at = i;
+      for (; at > base && bound_[at - 1] < bound; --at) {
+        bound_[at] = bound_[at - 1];
+        child_[at] = child_[at - 1];
+        count_[at] = count_[at - 1];
+      }
+      bound_[at] = bound;
+      child_[at] = child;
+      count_[at] = count;
+    }
+  }
+
+ private:
+  std::size_t size_ = 0;
+  std::array<float, k_bvh_stack> bound_;
+  std::array<std::uint32_t, k_bvh_stack> child_;
+  std::array<std::uint32_t, k_bvh_stack> count_;
 };
 
-// At most three entries stay behind on each level, and a level takes at least one of 63 bits of
-// code or halves the 2^32 triangles of one code.
-inline constexpr std::size_t k_bvh_stack = 3 * (63 + 32) + 4;
-using BvhStack = std::array<BvhEntry, k_bvh_stack>;
+// g++ makes branches of loops over four floats that are at least 0.
+using Four = float __attribute__((vector_size(16)));
+inline Four four(const float (&values)[4]) {
+  Four all;
+  std::memcpy(&all, values, sizeof all);
+  return all;
+}
 
 /// A query keeps its point as a tiny float box that surely holds it, so that the distance between
 /// boxes is a lower bound in spite of rounding.
@@ -44,28 +93,25 @@ struct Bvh::Query {
   }
   /// Of the boxes of a node, in the frame: no more than they are.
   void squared_gaps(const Node& node, float (&bounds)[4]) const {
-    std::fill(bounds, bounds + 4, 0.0F);
+    Four sum{};
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      for (std::size_t k = 0; k < 4; ++k) {
-        const float before = node.lo[axis][k] - hi[axis];
-        const float after = lo[axis] - node.hi[axis][k];
-        float gap = before > after ? before : after;
-        gap = gap > 0 ? gap : 0;
-        bounds[k] += gap * gap;
-      }
+      const Four before = four(node.lo[axis]) - hi[axis];
+      const Four after = lo[axis] - four(node.hi[axis]);
+      const Four gap = before > after ? before : after;
+      const Four outside = gap > 0 ? gap : Four{};
+      sum += outside * outside;
     }
+    std::memcpy(bounds, &sum, sizeof sum);
   }
   /// Puts the node's boxes within the limit onto the stack; the nearest comes to lie on top.
-  void push(const Node& node, BvhStack& stack, std::size_t& size) const {
-    alignas(16) float bounds[4];
+  void push(const Node& node, BvhStack& stack) const {
+    float bounds[4];
     squared_gaps(node, bounds);
-    const std::size_t base = size;
+    const std::size_t base = stack.size();
     for (std::size_t k = 0; k < 4; ++k) {
-      if (!(bounds[k] < limit)) continue;
-      std::size_t at = size++;
-      for (; at > base && stack[at - 1].bound < bounds[k]; --at) stack[at] = stack[at - 1];
-      stack[at] = {bounds[k], node.child[k], node.count[k]};
+      stack.push_if(bounds[k] < limit, bounds[k], node.child[k], node.count[k]);
     }
+    stack.sort_from(base);
   }
   /// Of a squared distance in the mesh's unit: above what the rounding of a bound can make of it.
   float limit_of(double squared) const {
