@@ -6,7 +6,7 @@
 #include <meshfarm/util/errors.hpp>
 
 #include "divide/bundle_file.hpp"
-#include "divide/cell_map.hpp"
+#include "divide/cell_places.hpp"
 
 namespace meshfarm {
 namespace {
@@ -14,10 +14,10 @@ namespace {
 class VertexScatter {
  public:
   VertexScatter(std::string_view partition, PositionType type)
-      : map_(CellMap::decode(partition)), type_(type) {}
+      : cells_(CellPlaces::decode(partition)), type_(type) {}
 
   void add(std::span<const Vec3> batch) {
-    map_.find_targets(batch, targets_);
+    cells_.find_targets(batch, targets_);
     for (std::size_t i = 0; i < batch.size(); ++i) {
       const std::uint32_t part = targets_.shares[i];
       const std::uint32_t point =
@@ -92,7 +92,7 @@ class VertexScatter {
     }
   }
 
-  CellMap map_;
+  CellPlaces cells_;
   PositionType type_;
   ShareTargets targets_;
   std::vector<OfPart> parts_;

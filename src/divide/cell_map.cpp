@@ -61,14 +61,8 @@ CellMap CellMap::decode(std::string_view bytes, unsigned threads) {
   ByteReader in(bytes, "cells of a mesh");
   const auto parts = in.get<std::uint32_t>();
   CellMap map({parts, Weld::exact, threads}, CellTree::get(in));
-  map.part_of_cell_ = get_list<std::uint32_t>(in);
+  if (!get_list<std::uint32_t>(in).empty()) in.fail("parts of cells that are counted");
   in.expect_end();
-  const std::span<const Cell> cells = map.cells_.cells();
-  if (!map.part_of_cell_.empty() && map.part_of_cell_.size() != cells.size()) {
-    in.fail("parts of other cells");
-  }
-  map.merges_ =
-      std::any_of(cells.begin(), cells.end(), [](const Cell& each) { return each.is_one; });
   return map;
 }
 

@@ -22,8 +22,10 @@ struct CellMapOptions {
 class CellMap : public ShareMap {
  public:
   CellMap(const Box& box, const CellMapOptions& options);
-  /// What is known so far, for another process; throws DataError for what encode() did not make.
+  /// What is known so far, for another process: while vertices are counted, for decode(); once they
+  /// are divided the places, for CellPlaces.
   std::string encode(CellTree::Which which) const;
+  /// Throws DataError for what encode() did not make of cells that are counted.
   static CellMap decode(std::string_view bytes, unsigned threads = 1);
   /// Adds what a copy has counted.
   void join(CellMap other) { cells_.join(std::move(other.cells_)); }

@@ -59,8 +59,18 @@ class CellTree {
   /// number_of() needs.
   enum class Which : std::uint8_t { counted, all, places };
   void put(ByteWriter& out, Which which) const;
-  /// Throws DataError for what put() did not write. Vertices must not be dealt out.
+  /// Throws DataError for what put() did not write, or wrote of places. Vertices must not be dealt
+  /// out.
   static CellTree get(ByteReader& in);
+  /// What put() wrote of places.
+  struct Places {
+    std::vector<UniformGrid> grids;
+    std::vector<std::uint64_t> keys;        // of the cells that are not divided, then of the others
+    std::vector<bool> is_one;               // of those that are not divided
+    std::vector<std::uint32_t> divided_by;  // a grid, of each of the others
+  };
+  /// Throws DataError as get() does.
+  static Places get_places(ByteReader& in);
   /// Whether vertices at one point go to several cells, by their order.
   bool deals() const { return !dealt_.empty(); }
 
@@ -94,6 +104,7 @@ class CellTree {
   std::size_t slot_of(std::uint64_t key) const;
   std::size_t place_of(std::uint64_t key);
   void hash_all(std::size_t slots);
+  static CellTree get_head(ByteReader& in, Which& which);
   void coarsen();
   void divide(Cell& cell);
   void divide_points();

@@ -8,6 +8,9 @@
 //   x u64 | mean 3 x f64 | box 6 x f64 | grid u32 | is one u8), or, of places, cells u64 x (key u64
 //   | grid u32 | is one u8)
 // Version 1 had no places.
+#include <algorithm>
+#include <utility>
+
 #include "divide/cell_tree.hpp"
 
 namespace meshfarm {
@@ -29,16 +32,14 @@ void put_cell(ByteWriter& out, const Cell& cell, CellTree::Which which) {
   out.put(static_cast<std::uint8_t>(cell.is_one ? 1 : 0));
 }
 
-Cell get_cell(ByteReader& in, CellTree::Which which) {
+Cell get_cell(ByteReader& in) {
   Cell cell;
   cell.key = in.get<std::uint64_t>();
-  if (which != CellTree::Which::places) {
-    cell.vertices = in.get<std::uint64_t>();
-    cell.steps = in.get<std::array<std::uint64_t, 3>>();
-    cell.mean = in.get<Vec3>();
-    cell.box.lo = in.get<Vec3>();
-    cell.box.hi = in.get<Vec3>();
-  }
+  cell.vertices = in.get<std::uint64_t>();
+  cell.steps = in.get<std::array<std::uint64_t, 3>>();
+  cell.mean = in.get<Vec3>();
+  cell.box.lo = in.get<Vec3>();
+  cell.box.hi = in.get<Vec3>();
   cell.grid = in.get<std::uint32_t>();
   cell.is_one = in.get<std::uint8_t>() != 0;
   return cell;
@@ -71,8 +72,9 @@ void CellTree::put(ByteWriter& out, Which which) const {
   }
 }
 
-CellTree CellTree::get(ByteReader& in) {
-  const auto which = in.get<Which>();
+/// All that stands before the cells.
+CellTree CellTree::get_head(ByteReader& in, Which& which) {
+  which = in.get<Which>();
   if (which > Which::places) in.fail("unknown cells");
   CellTreeOptions options;
   options.bits = in.get<std::uint32_t>();
@@ -87,23 +89,60 @@ CellTree CellTree::get(ByteReader& in) {
   tree.scans_ = in.get<std::uint32_t>();
   tree.coarsened_ = in.get<std::uint32_t>();
   const auto grids = in.get<std::uint32_t>();
+  if (grids == 0) in.fail("cells of no grid");
   tree.grids_.clear();
   for (std::uint32_t i = 0; i < grids; ++i) tree.grids_.push_back(UniformGrid::get(in));
+  return tree;
+}
+
+CellTree CellTree::get(ByteReader& in) {
+  Which which{};
+  CellTree tree = get_head(in, which);
+  if (which == Which::places) in.fail("places of cells");
   const auto cells = in.get<std::uint64_t>();
-  if (grids == 0 ||
-      cells > in.remaining() / (which == Which::places ? k_place_bytes : k_cell_bytes) ||
-      tree.leaves_ > cells) {
-    in.fail("impossible cells");
-  }
+  if (cells > in.remaining() / k_cell_bytes || tree.leaves_ > cells) in.fail("impossible cells");
+  tree.cells_.reserve(cells);
   for (std::uint64_t i = 0; i < cells; ++i) {
-    tree.cells_.push_back(get_cell(in, which));
+    tree.cells_.push_back(get_cell(in));
     const Cell& cell = tree.cells_.back();
-    if (cell.grid >= grids || cell.key >> k_index_bits >= grids) in.fail("a cell of no grid");
+    if (std::max<std::uint64_t>(cell.grid, cell.key >> k_index_bits) >= tree.grids_.size()) {
+      in.fail("a cell of no grid");
+    }
   }
   std::size_t slots = tree.slots_.size();
   while (cells * 2 + 2 > slots) slots *= 2;
   tree.hash_all(slots);
   return tree;
+}
+
+CellTree::Places CellTree::get_places(ByteReader& in) {
+  Which which{};
+  CellTree head = get_head(in, which);
+  if (which != Which::places) in.fail("cells that are not all known");
+  const auto cells = in.get<std::uint64_t>();
+  if (cells > in.remaining() / k_place_bytes || head.leaves_ > cells) in.fail("impossible cells");
+  Places places{std::move(head.grids_), {}, {}, {}};
+  places.keys.reserve(cells);
+  places.is_one.reserve(head.leaves_);
+  for (std::uint64_t i = 0; i < cells; ++i) {
+    const auto key = in.get<std::uint64_t>();
+    const auto grid = in.get<std::uint32_t>();
+    const bool is_one = in.get<std::uint8_t>() != 0;
+    const bool is_leaf = i < head.leaves_;
+    if (key >> k_index_bits >= places.grids.size()) in.fail("a cell of no grid");
+    if (i > 0 && i != head.leaves_ && key <= places.keys.back()) in.fail("cells out of order");
+    // A grid stands after the one whose cell it divides, so no search goes in circles.
+    if (is_leaf ? grid != 0 : grid >= places.grids.size() || grid <= key >> k_index_bits) {
+      in.fail("a cell that is divided by no grid");
+    }
+    places.keys.push_back(key);
+    if (is_leaf) {
+      places.is_one.push_back(is_one);
+    } else {
+      places.divided_by.push_back(grid);
+    }
+  }
+  return places;
 }
 
 }  // namespace meshfarm

@@ -1,0 +1,64 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "divide/cell_tree.hpp"
+#include "divide/share_map.hpp"
+
+namespace meshfarm {
+
+/// Finds keys of cells in an increasing list: of each grid, a table tells where the keys that have
+/// the same highest bits begin. It is filled in order; a hash table would be missed by the cache
+/// for each key.
+class KeyTable {
+ public:
+  static constexpr std::uint32_t k_none = std::numeric_limits<std::uint32_t>::max();
+
+  /// `keys`: of cells, increasing; must outlive the table.
+  KeyTable(std::span<const std::uint64_t> keys, std::size_t grids);
+  /// Where the key stands in the list.
+  std::uint32_t find(std::uint64_t key) const;
+
+ private:
+  struct Grid {
+    std::size_t first = 0;  // in starts_
+    std::uint64_t last_index = 0;
+    unsigned shift = 0;
+    bool holds = false;  // any of the keys
+  };
+
+  std::span<const std::uint64_t> keys_;
+  std::vector<Grid> grids_;
+  std::vector<std::uint32_t> starts_;
+};
+
+/// The cells of a CellMap once they are divided, as encode() tells their places: only what finds
+/// the part of a vertex. About 25 bytes a cell.
+class CellPlaces {
+ public:
+  /// Throws DataError for what CellMap::encode() did not make of places.
+  static CellPlaces decode(std::string_view bytes);
+  CellPlaces(const CellPlaces&) = delete;  // the tables look into the keys
+  CellPlaces& operator=(const CellPlaces&) = delete;
+  /// As CellMap::find_targets(). Throws DataError for a vertex that was not counted.
+  void find_targets(std::span<const Vec3> batch, ShareTargets& targets) const;
+
+ private:
+  CellPlaces(CellTree::Places places, std::vector<std::uint32_t> part_of_cell);
+  std::uint32_t cell_of(std::uint64_t key, Vec3 p) const;
+
+  CellTree::Places places_;
+  std::vector<std::uint32_t> part_of_cell_;
+  KeyTable leaves_;
+  KeyTable divided_;
+  bool merges_;
+};
+
+}  // namespace meshfarm

@@ -1,0 +1,115 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#include <algorithm>
+#include <random>
+#include <string>
+#include <vector>
+
+#include <doctest/doctest.h>
+
+#include <meshfarm/util/errors.hpp>
+
+#include "divide/cell_map.hpp"
+#include "divide/cell_places.hpp"
+
+using namespace meshfarm;
+
+namespace {
+
+/// Dense in one corner, with one far outlier and a point that has 3,000 vertices.
+std::vector<Vec3> uneven_points() {
+  std::mt19937_64 random(7);
+  std::vector<Vec3> points;
+  const auto along = [&] { return static_cast<double>(random() >> 11) * 0x1p-53; };
+  for (int i = 0; i < 40'000; ++i) {
+    const double size = i % 2 == 0 ? 1 : 1e-3;
+    points.push_back({size * along(), size * along(), size * along()});
+  }
+  points.push_back({1e4, -20, 3});
+  points.insert(points.begin() + 17, 3000, Vec3{0.25, 0.25, 0});
+  return points;
+}
+
+CellMap divided_map(const std::vector<Vec3>& points, std::uint32_t parts) {
+  Box box;
+  for (const Vec3& p : points) box.add(p);
+  CellMap map(box, {parts, Weld::exact, 1});
+  do {
+    map.count(points);
+  } while (map.refine());
+  map.divide();
+  return map;
+}
+
+}  // namespace
+
+TEST_CASE("a table of keys finds each key of several grids, and no other") {
+  std::mt19937_64 random(3);
+  std::vector<std::uint64_t> keys{0, 1, 7, 4'000'000'000};
+  const auto key = [](std::uint64_t grid, std::uint64_t index) {
+    return grid << CellTree::k_index_bits | index;
+  };
+  keys.push_back(key(2, 0));
+  for (int i = 0; i < 500; ++i) keys.push_back(key(3, random() % 700));
+  for (int i = 0; i < 500; ++i) keys.push_back(key(5, random() % 68'719'476'736));
+  std::sort(keys.begin(), keys.end());
+  keys.erase(std::unique(keys.begin(), keys.end()), keys.end());
+  const KeyTable table(keys, 6);
+  for (std::size_t i = 0; i < keys.size(); ++i) {
+    CHECK(table.find(keys[i]) == i);
+    for (const std::uint64_t other : {keys[i] - 1, keys[i] + 1}) {
+      const bool is_there = std::binary_search(keys.begin(), keys.end(), other);
+      CHECK((table.find(other) != KeyTable::k_none) == is_there);
+    }
+  }
+  CHECK(table.find(key(1, 0)) == KeyTable::k_none);
+  CHECK(table.find(key(6, 0)) == KeyTable::k_none);
+  CHECK(KeyTable({}, 1).find(0) == KeyTable::k_none);
+}
+
+TEST_CASE("places in a file tell of each vertex what the cells do that were divided") {
+  const std::vector<Vec3> points = uneven_points();
+  for (const std::uint32_t parts : {2U, 40U}) {
+    CAPTURE(parts);
+    CellMap map = divided_map(points, parts);
+    CHECK(map.merges());
+    const std::string bytes = map.encode(CellTree::Which::places);
+    const CellPlaces places = CellPlaces::decode(bytes);
+    ShareTargets expected, found;
+    map.find_targets(points, expected);
+    places.find_targets(points, found);
+    CHECK(found.shares == expected.shares);
+    CHECK(found.points == expected.points);
+  }
+}
+
+TEST_CASE("a vertex that was not counted is an error") {
+  CellMap map = divided_map(uneven_points(), 40);
+  const CellPlaces places = CellPlaces::decode(map.encode(CellTree::Which::places));
+  ShareTargets targets;
+  CHECK_THROWS_AS(places.find_targets(std::vector<Vec3>{{5e3, 2, 3}}, targets), DataError);
+}
+
+TEST_CASE("bytes of places that are cut off or changed are an error or places, never a crash") {
+  const std::vector<Vec3> points = uneven_points();
+  const std::string bytes = divided_map(points, 4).encode(CellTree::Which::places);
+  std::mt19937_64 random(9);
+  int refused = 0;
+  const auto try_bytes = [&](const std::string& bad) {
+    try {
+      ShareTargets targets;
+      CellPlaces::decode(bad).find_targets(points, targets);
+    } catch (const DataError&) {
+      ++refused;
+    }
+  };
+  for (int i = 0; i < 200; ++i) {
+    try_bytes(bytes.substr(0, random() % bytes.size()));
+    std::string changed = bytes;
+    // Half of the changes are to what stands before the cells.
+    changed[random() % (i % 2 == 0 ? 200 : bytes.size())] ^= static_cast<char>(1 << random() % 8);
+    try_bytes(changed);
+  }
+  CHECK(refused >= 200);
+  CHECK_THROWS_AS(CellMap::decode(bytes), DataError);
+}
