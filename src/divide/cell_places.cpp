@@ -9,40 +9,36 @@
 #include <meshfarm/util/errors.hpp>
 
 namespace meshfarm {
-namespace {
-
-constexpr std::uint64_t k_index = (std::uint64_t{1} << CellTree::k_index_bits) - 1;
-
-}  // namespace
 
 KeyTable::KeyTable(std::span<const std::uint64_t> keys, std::size_t grids)
     : keys_(keys), grids_(grids) {
+  const auto grid_of = [&](std::size_t i) { return keys[i] >> CellTree::k_index_bits; };
+  starts_.reserve(2 * keys.size() + grids);  // at most two rows a key, and an end
   std::size_t begin = 0;
   while (begin < keys.size()) {
-    const std::uint64_t number = keys[begin] >> CellTree::k_index_bits;
-    const auto next = std::upper_bound(keys.begin() + static_cast<std::ptrdiff_t>(begin),
-                                       keys.end(), number << CellTree::k_index_bits | k_index);
-    const auto end = static_cast<std::size_t>(next - keys.begin());
-    Grid& grid = grids_.at(number);
-    grid.last_index = keys[end - 1] & k_index;
-    while (grid.last_index >> grid.shift >= 2 * (end - begin)) ++grid.shift;
+    std::size_t end = begin + 1;
+    while (end < keys.size() && grid_of(end) == grid_of(begin)) ++end;
+    Grid& grid = grids_.at(grid_of(begin));
+    const std::uint64_t last_index = keys[end - 1] & CellTree::k_index_mask;
+    while (last_index >> grid.shift >= 2 * (end - begin)) ++grid.shift;
     grid.first = starts_.size();
-    grid.holds = true;
-    for (std::size_t i = begin; i < end; ++i) {
-      const std::uint64_t row = (keys[i] & k_index) >> grid.shift;
-      starts_.resize(std::max(starts_.size(), grid.first + row + 1), static_cast<std::uint32_t>(i));
+    grid.rows = static_cast<std::size_t>(last_index >> grid.shift) + 1;
+    std::size_t i = begin;  // where the row begins; an empty one, too, at the next key
+    for (std::size_t row = 0; row <= grid.rows; ++row) {
+      while (i < end && (keys[i] & CellTree::k_index_mask) >> grid.shift < row) ++i;
+      starts_.push_back(static_cast<std::uint32_t>(i));
     }
-    starts_.push_back(static_cast<std::uint32_t>(end));
     begin = end;
   }
 }
 
 std::uint32_t KeyTable::find(std::uint64_t key) const {
-  const std::uint64_t number = key >> CellTree::k_index_bits, index = key & k_index;
+  const std::uint64_t number = key >> CellTree::k_index_bits;
   if (number >= grids_.size()) return k_none;
   const Grid& grid = grids_[number];
-  if (!grid.holds || index > grid.last_index) return k_none;
-  const std::size_t row = grid.first + (index >> grid.shift);
+  const std::uint64_t row_of_grid = (key & CellTree::k_index_mask) >> grid.shift;
+  if (row_of_grid >= grid.rows) return k_none;
+  const std::size_t row = grid.first + row_of_grid;
   const auto begin = keys_.begin() + starts_[row], end = keys_.begin() + starts_[row + 1];
   const auto found = std::lower_bound(begin, end, key);
   return found != end && *found == key ? static_cast<std::uint32_t>(found - keys_.begin()) : k_none;
@@ -58,11 +54,14 @@ CellPlaces::CellPlaces(CellTree::Places places, std::vector<std::uint32_t> part_
 
 CellPlaces CellPlaces::decode(std::string_view bytes) {
   ByteReader in(bytes, "cells of a mesh");
-  in.get<std::uint32_t>();  // parts that were wanted
+  const std::uint32_t parts = std::max<std::uint32_t>(in.get<std::uint32_t>(), 1);
   CellTree::Places places = CellTree::get_places(in);
   auto part_of_cell = get_list<std::uint32_t>(in);
   in.expect_end();
   if (part_of_cell.size() != places.is_one.size()) in.fail("parts of other cells");
+  for (const std::uint32_t part : part_of_cell) {
+    if (part >= parts) in.fail("a part that there is not");
+  }
   return {std::move(places), std::move(part_of_cell)};
 }
 

@@ -14,24 +14,23 @@
 
 namespace meshfarm {
 
-/// Finds keys of cells in an increasing list: of each grid, a table tells where the keys that have
-/// the same highest bits begin. It is filled in order; a hash table would be missed by the cache
-/// for each key.
+/// Finds a key in an increasing list of keys of cells. For each grid, a table tells where the keys
+/// with the same highest bits of the index begin. It is filled in order; a hash table would miss
+/// the cache once a key.
 class KeyTable {
  public:
   static constexpr std::uint32_t k_none = std::numeric_limits<std::uint32_t>::max();
 
   /// `keys`: of cells, increasing; must outlive the table.
   KeyTable(std::span<const std::uint64_t> keys, std::size_t grids);
-  /// Where the key stands in the list.
+  /// Where the key stands in the list, or k_none.
   std::uint32_t find(std::uint64_t key) const;
 
  private:
   struct Grid {
     std::size_t first = 0;  // in starts_
-    std::uint64_t last_index = 0;
-    unsigned shift = 0;
-    bool holds = false;  // any of the keys
+    std::size_t rows = 0;
+    unsigned shift = 0;  // of an index, to its row
   };
 
   std::span<const std::uint64_t> keys_;

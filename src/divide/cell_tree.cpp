@@ -116,11 +116,10 @@ void CellTree::coarsen() {
     coarser[grid] = true;
     can_again = can_again || grids_[grid].bits() > 1;
   }
-  constexpr std::uint64_t k_index = (std::uint64_t{1} << k_index_bits) - 1;
   for (Cell& cell : cells_) {
     const auto grid = static_cast<std::uint32_t>(cell.key >> k_index_bits);
     if (!coarser[grid]) continue;
-    cell.key = (cell.key & ~k_index) | grids_[grid].coarser_cell(cell.key & k_index);
+    cell.key = (cell.key & ~k_index_mask) | grids_[grid].coarser_cell(cell.key & k_index_mask);
   }
   std::stable_sort(cells_.begin(), cells_.end(),
                    [](const Cell& a, const Cell& b) { return a.key < b.key; });

@@ -59,23 +59,24 @@ class CellTree {
   /// number_of() needs.
   enum class Which : std::uint8_t { counted, all, places };
   void put(ByteWriter& out, Which which) const;
-  /// Throws DataError for what put() did not write, or wrote of places. Vertices must not be dealt
-  /// out.
+  /// Of cells that are being counted; throws DataError for anything else. Vertices must not be
+  /// dealt out.
   static CellTree get(ByteReader& in);
-  /// What put() wrote of places.
   struct Places {
     std::vector<UniformGrid> grids;
-    std::vector<std::uint64_t> keys;        // of the cells that are not divided, then of the others
+    /// Increasing: those of the cells that are not divided, then, increasing again, the others'.
+    std::vector<std::uint64_t> keys;
     std::vector<bool> is_one;               // of those that are not divided
-    std::vector<std::uint32_t> divided_by;  // a grid, of each of the others
+    std::vector<std::uint32_t> divided_by;  // of each of the others, its grid
   };
-  /// Throws DataError as get() does.
+  /// Of Which::places; throws DataError for anything else.
   static Places get_places(ByteReader& in);
   /// Whether vertices at one point go to several cells, by their order.
   bool deals() const { return !dealt_.empty(); }
 
   /// A key is the number of a grid, and below so many bits a cell's index in it.
   static constexpr unsigned k_index_bits = 36;
+  static constexpr std::uint64_t k_index_mask = (std::uint64_t{1} << k_index_bits) - 1;
   std::vector<unsigned> grid_bits() const;
   /// A cell's places along x, y and z in its grid, which has so many bits an axis.
   static std::array<std::uint64_t, 3> places_of(std::uint64_t key, unsigned bits) {
@@ -104,7 +105,7 @@ class CellTree {
   std::size_t slot_of(std::uint64_t key) const;
   std::size_t place_of(std::uint64_t key);
   void hash_all(std::size_t slots);
-  static CellTree get_head(ByteReader& in, Which& which);
+  static CellTree get_head(ByteReader& in);
   void coarsen();
   void divide(Cell& cell);
   void divide_points();

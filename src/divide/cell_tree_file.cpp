@@ -45,6 +45,11 @@ Cell get_cell(ByteReader& in) {
   return cell;
 }
 
+/// A grid stands after that of the cell that it divides: so a search ends.
+bool is_divided_by_later(std::uint64_t key, std::uint32_t grid) {
+  return grid > key >> CellTree::k_index_bits;
+}
+
 }  // namespace
 
 void CellTree::put(ByteWriter& out, Which which) const {
@@ -72,10 +77,8 @@ void CellTree::put(ByteWriter& out, Which which) const {
   }
 }
 
-/// All that stands before the cells.
-CellTree CellTree::get_head(ByteReader& in, Which& which) {
-  which = in.get<Which>();
-  if (which > Which::places) in.fail("unknown cells");
+/// All that stands between `which` and the cells.
+CellTree CellTree::get_head(ByteReader& in) {
   CellTreeOptions options;
   options.bits = in.get<std::uint32_t>();
   options.parts = in.get<std::uint32_t>();
@@ -91,22 +94,31 @@ CellTree CellTree::get_head(ByteReader& in, Which& which) {
   const auto grids = in.get<std::uint32_t>();
   if (grids == 0) in.fail("cells of no grid");
   tree.grids_.clear();
-  for (std::uint32_t i = 0; i < grids; ++i) tree.grids_.push_back(UniformGrid::get(in));
+  for (std::uint32_t i = 0; i < grids; ++i) {
+    tree.grids_.push_back(UniformGrid::get(in));
+    if (3 * tree.grids_.back().bits() > k_index_bits) in.fail("a grid that is too fine");
+  }
   return tree;
 }
 
 CellTree CellTree::get(ByteReader& in) {
-  Which which{};
-  CellTree tree = get_head(in, which);
-  if (which == Which::places) in.fail("places of cells");
+  const auto which = in.get<Which>();
+  if (which != Which::counted && which != Which::all) in.fail("no cells that are counted");
+  CellTree tree = get_head(in);
+  const bool may_go_on = tree.leaves_ == 0 && tree.first_new_ < tree.grids_.size() &&
+                         tree.coarsened_ <= k_index_bits / 3 &&
+                         (tree.scans_ == 0 || tree.heavy_ > 0);
   const auto cells = in.get<std::uint64_t>();
-  if (cells > in.remaining() / k_cell_bytes || tree.leaves_ > cells) in.fail("impossible cells");
+  if (!may_go_on || cells > in.remaining() / k_cell_bytes) in.fail("impossible cells");
   tree.cells_.reserve(cells);
   for (std::uint64_t i = 0; i < cells; ++i) {
     tree.cells_.push_back(get_cell(in));
     const Cell& cell = tree.cells_.back();
     if (std::max<std::uint64_t>(cell.grid, cell.key >> k_index_bits) >= tree.grids_.size()) {
       in.fail("a cell of no grid");
+    }
+    if (cell.grid != 0 && !is_divided_by_later(cell.key, cell.grid)) {
+      in.fail("a cell that is divided by an earlier grid");
     }
   }
   std::size_t slots = tree.slots_.size();
@@ -116,9 +128,8 @@ CellTree CellTree::get(ByteReader& in) {
 }
 
 CellTree::Places CellTree::get_places(ByteReader& in) {
-  Which which{};
-  CellTree head = get_head(in, which);
-  if (which != Which::places) in.fail("cells that are not all known");
+  if (in.get<Which>() != Which::places) in.fail("no places of cells");
+  CellTree head = get_head(in);
   const auto cells = in.get<std::uint64_t>();
   if (cells > in.remaining() / k_place_bytes || head.leaves_ > cells) in.fail("impossible cells");
   Places places{std::move(head.grids_), {}, {}, {}};
@@ -128,17 +139,16 @@ CellTree::Places CellTree::get_places(ByteReader& in) {
     const auto key = in.get<std::uint64_t>();
     const auto grid = in.get<std::uint32_t>();
     const bool is_one = in.get<std::uint8_t>() != 0;
-    const bool is_leaf = i < head.leaves_;
-    if (key >> k_index_bits >= places.grids.size()) in.fail("a cell of no grid");
-    if (i > 0 && i != head.leaves_ && key <= places.keys.back()) in.fail("cells out of order");
-    // A grid stands after the one whose cell it divides, so no search goes in circles.
-    if (is_leaf ? grid != 0 : grid >= places.grids.size() || grid <= key >> k_index_bits) {
-      in.fail("a cell that is divided by no grid");
+    if (std::max<std::uint64_t>(grid, key >> k_index_bits) >= places.grids.size()) {
+      in.fail("a cell of no grid");
     }
+    if (i > 0 && i != head.leaves_ && key <= places.keys.back()) in.fail("cells out of order");
     places.keys.push_back(key);
-    if (is_leaf) {
+    if (i < head.leaves_) {
+      if (grid != 0) in.fail("a divided cell among those that are not");
       places.is_one.push_back(is_one);
     } else {
+      if (!is_divided_by_later(key, grid)) in.fail("a cell that is divided by an earlier grid");
       places.divided_by.push_back(grid);
     }
   }

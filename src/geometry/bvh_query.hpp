@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <cmath>
 #include <cstring>
 #include <limits>
@@ -13,11 +14,11 @@
 namespace meshfarm {
 
 // At most three entries stay behind on each level, and a level takes at least one of 63 bits of
-// code or halves the 2^32 triangles of one code. One more is written, wanted or not.
-inline constexpr std::size_t k_bvh_stack = 3 * (63 + 32) + 5;
+// code or halves the 2^32 triangles of one code.
+inline constexpr std::size_t k_bvh_stack = 3 * (63 + 32) + 4;
 
-/// What a search has still to look at. What is written as three values is read as three: a read of
-/// a whole entry would wait for the writes.
+/// What a search has still to look at. Three arrays: one wide read of what three writes have just
+/// written would wait for them.
 class BvhStack {
  public:
   struct Entry {
@@ -32,8 +33,9 @@ class BvhStack {
     --size_;
     return {bound_[size_], child_[size_], count_[size_]};
   }
-  /// Without branches, which nobody could foresee.
+  /// Without a branch, which no processor could predict.
   void push_if(bool wanted, float bound, std::uint32_t child, std::uint32_t count) {
+    assert(size_ < k_bvh_stack);
     bound_[size_] = bound;
     child_[size_] = child;
     count_[size_] = count;
@@ -64,17 +66,12 @@ class BvhStack {
   std::array<std::uint32_t, k_bvh_stack> count_;
 };
 
-// g++ makes branches of loops over four floats that are at least 0.
-using Four = float __attribute__((vector_size(16)));
-inline Four four(const float (&values)[4]) {
-  Four all;
-  std::memcpy(&all, values, sizeof all);
-  return all;
-}
-
 /// A query keeps its point as a tiny float box that surely holds it, so that the distance between
 /// boxes is a lower bound in spite of rounding.
 struct Bvh::Query {
+  // g++ makes branches of a loop over four floats that asks which are above 0.
+  using Four = float __attribute__((vector_size(16)));
+
   Vec3 p;
   float lo[3];
   float hi[3];
@@ -90,6 +87,11 @@ struct Bvh::Query {
       lo[axis] = x - rounding;
       hi[axis] = x + rounding;
     }
+  }
+  static Four four(const float (&values)[4]) {
+    Four all;
+    std::memcpy(&all, values, sizeof all);
+    return all;
   }
   /// Of the boxes of a node, in the frame: no more than they are.
   void squared_gaps(const Node& node, float (&bounds)[4]) const {

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
 #include <algorithm>
+#include <cstring>
 #include <random>
 #include <string>
 #include <vector>
@@ -16,14 +17,16 @@ using namespace meshfarm;
 
 namespace {
 
-/// Dense in one corner, with one far outlier and a point that has 3,000 vertices.
+/// Dense in one corner, hollow in the middle, with one far outlier and a point that has 3,000
+/// vertices.
 std::vector<Vec3> uneven_points() {
   std::mt19937_64 random(7);
   std::vector<Vec3> points;
   const auto along = [&] { return static_cast<double>(random() >> 11) * 0x1p-53; };
   for (int i = 0; i < 40'000; ++i) {
     const double size = i % 2 == 0 ? 1 : 1e-3;
-    points.push_back({size * along(), size * along(), size * along()});
+    const double x = along();
+    points.push_back({size * (x < 0.5 ? 0.8 * x : 0.2 + 0.8 * x), size * along(), size * along()});
   }
   points.push_back({1e4, -20, 3});
   points.insert(points.begin() + 17, 3000, Vec3{0.25, 0.25, 0});
@@ -84,32 +87,60 @@ TEST_CASE("places in a file tell of each vertex what the cells do that were divi
 }
 
 TEST_CASE("a vertex that was not counted is an error") {
-  CellMap map = divided_map(uneven_points(), 40);
+  const CellMap map = divided_map(uneven_points(), 40);
   const CellPlaces places = CellPlaces::decode(map.encode(CellTree::Which::places));
-  ShareTargets targets;
-  CHECK_THROWS_AS(places.find_targets(std::vector<Vec3>{{5e3, 2, 3}}, targets), DataError);
+  const auto find = [&](Vec3 p) {
+    ShareTargets targets;
+    places.find_targets(std::vector<Vec3>{p}, targets);
+  };
+  CHECK_NOTHROW(find({1e4, -20, 3}));
+  CHECK_THROWS_AS(find({5e3, 2, 3}), DataError);
+  // In a cell that is divided, where the finer grid has none.
+  CHECK_THROWS_AS(find({0.5, 0.5, 0.5}), DataError);
 }
 
-TEST_CASE("bytes of places that are cut off or changed are an error or places, never a crash") {
+TEST_CASE("bytes of places that are cut off are an error, and changed ones never a crash") {
   const std::vector<Vec3> points = uneven_points();
   const std::string bytes = divided_map(points, 4).encode(CellTree::Which::places);
   std::mt19937_64 random(9);
-  int refused = 0;
-  const auto try_bytes = [&](const std::string& bad) {
-    try {
-      ShareTargets targets;
-      CellPlaces::decode(bad).find_targets(points, targets);
-    } catch (const DataError&) {
-      ++refused;
-    }
-  };
   for (int i = 0; i < 200; ++i) {
-    try_bytes(bytes.substr(0, random() % bytes.size()));
+    CHECK_THROWS_AS(CellPlaces::decode(bytes.substr(0, random() % bytes.size())), DataError);
     std::string changed = bytes;
     // Half of the changes are to what stands before the cells.
     changed[random() % (i % 2 == 0 ? 200 : bytes.size())] ^= static_cast<char>(1 << random() % 8);
-    try_bytes(changed);
+    try {
+      ShareTargets targets;
+      CellPlaces::decode(changed).find_targets(points, targets);
+    } catch (const DataError&) {
+    }
   }
-  CHECK(refused >= 200);
   CHECK_THROWS_AS(CellMap::decode(bytes), DataError);
+}
+
+TEST_CASE("places that contradict each other are an error") {
+  CellMap map = divided_map(uneven_points(), 40);
+  const std::string bytes = map.encode(CellTree::Which::places);
+  ByteReader in(std::string_view(bytes).substr(sizeof(std::uint32_t)), "cells");
+  const CellTree::Places places = CellTree::get_places(in);
+  REQUIRE(places.divided_by.size() > 1);
+  constexpr std::size_t k_record = 13, k_grid = 8, k_number = 4;
+  const std::size_t parts = bytes.size() - k_number * places.is_one.size();
+  const std::size_t last = parts - k_number - k_record;  // a divided cell
+  const auto with = [&](std::size_t at, std::uint32_t value) {
+    std::string changed = bytes;
+    std::memcpy(changed.data() + at, &value, sizeof value);
+    return changed;
+  };
+  const auto own = static_cast<std::uint32_t>(places.keys.back() >> CellTree::k_index_bits);
+  CHECK_NOTHROW(CellPlaces::decode(with(last + k_grid, places.divided_by.back())));
+  CHECK_THROWS_AS(CellPlaces::decode(with(last + k_grid, own)), DataError);
+  CHECK_THROWS_AS(
+      CellPlaces::decode(with(last + k_grid, static_cast<std::uint32_t>(places.grids.size()))),
+      DataError);
+  CHECK_THROWS_AS(CellPlaces::decode(with(parts, 40)), DataError);
+  std::string swapped = bytes;
+  std::swap_ranges(swapped.begin() + static_cast<std::ptrdiff_t>(last),
+                   swapped.begin() + static_cast<std::ptrdiff_t>(last + k_record),
+                   swapped.begin() + static_cast<std::ptrdiff_t>(last - k_record));
+  CHECK_THROWS_AS(CellPlaces::decode(swapped), DataError);
 }
