@@ -71,7 +71,8 @@ std::uint32_t CellPlaces::cell_of(std::uint64_t key, Vec3 p) const {
     if (cell != KeyTable::k_none) return cell;
     const std::uint32_t place = divided_.find(key);
     if (place == KeyTable::k_none) {
-      throw DataError("a vertex that was not there when all were counted: has the input changed?");
+      throw DataError(
+          "a vertex lies where none was counted: has the input changed? Then begin the run again");
     }
     const std::uint64_t grid = places_.divided_by[place];
     key = grid << CellTree::k_index_bits | places_.grids[grid].cell_of(p);

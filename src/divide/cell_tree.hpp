@@ -56,7 +56,7 @@ class CellTree {
   void join(CellTree other);
 
   /// The cells that were counted since the last refine(), or all; or all, but of each only what
-  /// number_of() needs.
+  /// CellPlaces needs.
   enum class Which : std::uint8_t { counted, all, places };
   void put(ByteWriter& out, Which which) const;
   /// Of cells that are being counted; throws DataError for anything else. Vertices must not be

@@ -58,7 +58,6 @@ template <class Distance>
 void Bvh::search(Query& query, double enough, const Distance& distance) const {
   const float most = query.limit;
   BvhStack stack;
-  stack.push_if(true, 0, 0, 0);
   while (!stack.empty() && query.best.squared > enough) {
     const BvhStack::Entry top = stack.pop();
     if (top.bound >= query.limit) continue;

@@ -19,7 +19,6 @@ Bvh::Nearest Bvh::nearest_facing(Vec3 p, Vec3 normal, std::uint32_t guess,
   };
   offer(guess);
   BvhStack stack;
-  stack.push_if(true, 0, 0, 0);
   while (!stack.empty() && query.best.squared > 0) {
     const BvhStack::Entry top = stack.pop();
     if (top.bound >= query.limit) continue;
@@ -53,7 +52,6 @@ Vec3 Bvh::most_similar_normal(Vec3 p, Vec3 normal, double squared) const {
     best_cosine = cosine;
   };
   BvhStack stack;
-  stack.push_if(true, 0, 0, 0);
   while (!stack.empty()) {
     const BvhStack::Entry top = stack.pop();
     if (top.count > 0) {

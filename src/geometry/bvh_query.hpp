@@ -17,8 +17,8 @@ namespace meshfarm {
 // code or halves the 2^32 triangles of one code.
 inline constexpr std::size_t k_bvh_stack = 3 * (63 + 32) + 4;
 
-/// What a search has still to look at. Three arrays: one wide read of what three writes have just
-/// written would wait for them.
+/// What a search has still to look at, at first the root. Three arrays: one wide read of what three
+/// writes have just written would wait for them.
 class BvhStack {
  public:
   struct Entry {
@@ -27,6 +27,7 @@ class BvhStack {
     std::uint32_t count;
   };
 
+  BvhStack() { push_if(true, 0, 0, 0); }
   bool empty() const { return size_ == 0; }
   std::size_t size() const { return size_; }
   Entry pop() {

@@ -27,7 +27,7 @@ constexpr std::uint64_t k_partitioned = 2;  // times the work, a cell
 
 constexpr std::uint64_t k_cut_process_bytes = std::uint64_t{16} << 20;
 constexpr std::uint64_t k_cell_bytes_in_memory = 300;   // in a tree, and as it is written
-constexpr std::uint64_t k_cell_bytes_of_places = 45;    // the same of what finds vertices' parts
+constexpr std::uint64_t k_cell_bytes_of_places = 50;    // the same of what finds vertices' parts
 constexpr std::uint64_t k_cell_bytes_of_graph = 1'000;  // while it is partitioned
 constexpr std::uint64_t k_seam_triangle_bytes = 24;     // in bundles
 constexpr std::uint64_t k_joined_triangle_bytes = 150;  // while they are joined
