@@ -70,6 +70,7 @@ Membership::Event Membership::on_welcome(const Welcome& welcome, FarmTime now) {
   heartbeat_ =
       FarmTime(std::clamp(welcome.heartbeat_ms, k_shortest_heartbeat_ms, k_longest_heartbeat_ms));
   next_beat_ = now;
+  first_beat_ = true;
   alone_since_.reset();
   greet_ = false;
   greetings_ = 0;
@@ -169,9 +170,17 @@ std::optional<Hello> Membership::hello() {
                options_.host, options_.results, options_.capacity,    options_.algorithm};
 }
 
+/// A share of a heartbeat, which each member has by its number: a crew that joined at the same
+/// time, as after the ventilator came again, does not speak at the same time ever after.
+FarmTime Membership::second_beat_after() const {
+  constexpr std::uint64_t k_shares = 1024;
+  const std::uint64_t share = (options_.incarnation >> 1) % k_shares;
+  return heartbeat_ * static_cast<FarmTime::rep>(share) / k_shares;
+}
+
 bool Membership::beat_due(FarmTime now) {
   if (!joined_ || now < next_beat_) return false;
-  next_beat_ = now + heartbeat_;
+  next_beat_ = now + (std::exchange(first_beat_, false) ? second_beat_after() : heartbeat_);
   return true;
 }
 

@@ -46,7 +46,7 @@ void Scheduler::join(WorkerId id, const std::string& host, const Capacity& capac
   }
   member.benchmark = capacity.speed == 0 ? k_usual_speed : static_cast<double>(capacity.speed);
   member.speed = estimated_speed(member);
-  ++member.host->workers;
+  member.host->workers.insert(id);
   member.host->memories.insert(limit_of(member.memory));
   undealt_.clear();
   outlook_.valid_until = FarmTime(-1);
@@ -62,7 +62,7 @@ std::vector<Scheduler::Held> Scheduler::leave(WorkerId id) {
     if (holders.empty()) holders_.erase(each.key);
   }
   Host& host = *found->second.host;
-  --host.workers;
+  host.workers.erase(id);
   host.memories.erase(host.memories.find(limit_of(found->second.memory)));
   leave_pool(found->second);
   crew_.erase(found);
@@ -116,20 +116,16 @@ void Scheduler::did(WorkerId id, JobKey key, std::uint32_t compute_ms, FarmTime 
   const double took = compute_ms != 0 ? compute_ms / 1000.0 : since;
   if (took <= 0) return;
   const auto cost = static_cast<double>(at->cost);
-  member.cost_done += cost;
+  Pace& kind = benchmark_paces_[at->kind];
+  kind.took += took;
+  kind.thought += cost / member.benchmark;
+  member.expected_done += cost / member.benchmark * kind.took / kind.thought;
   member.seconds_done += took;
+  seconds_done_ += took;
+  squares_done_ += took * took;
   cost_done_ += cost;
   benchmark_cost_done_ += member.benchmark * took;
-  ++jobs_done_;
   member.speed = estimated_speed(member);
-}
-
-/// The benchmark, corrected by what all hosts make of theirs, weighs as much as one job.
-double Scheduler::estimated_speed(const Member& member) const {
-  if (jobs_done_ == 0) return member.benchmark;
-  const double expected = member.benchmark * cost_done_ / benchmark_cost_done_;
-  const double weight = cost_done_ / jobs_done_;
-  return (member.cost_done + weight) / (member.seconds_done + weight / expected);
 }
 
 void Scheduler::avoid(WorkerId id, JobKey key) {
@@ -186,7 +182,7 @@ bool Scheduler::good(const Host& host) const {
 bool Scheduler::elsewhere(const std::vector<std::string>& hosts, std::uint64_t memory) const {
   return std::any_of(hosts_.begin(), hosts_.end(), [&](const auto& each) {
     const Host& host = each.second;
-    return host.workers > 0 && *host.memories.rbegin() >= memory && good(host) &&
+    return !host.workers.empty() && *host.memories.rbegin() >= memory && good(host) &&
            std::find(hosts.begin(), hosts.end(), each.first) == hosts.end();
   });
 }
@@ -325,8 +321,27 @@ void Scheduler::begin_turns(Member& member, FarmTime now) {
 void Scheduler::find_home(Plan& plan, std::uint64_t extent, const Host& host) const {
   if (extent == 0) return;
   const HostNumber before = plan.home(extent);
-  if (before != 0 && host_of_number_[before - 1]->workers > 0) return;
+  if (before != 0 && !host_of_number_[before - 1]->workers.empty()) return;
   plan.set_home(extent, host.number);
+}
+
+/// Whom a job is handed to that this worker could do: another that has no more to do before it, and
+/// whose host is the job's home.
+WorkerId Scheduler::at_home(WorkerId id, const IssuedJob& job, const Plan& plan,
+                            FarmTime now) const {
+  const Member& first = crew_.at(id);
+  const HostNumber home = plan.home(job.job.extent.name);
+  if (home == 0 || home == first.host->number) return id;
+  const auto is_as_good = [&](WorkerId each) {
+    const Member& member = crew_.at(each);
+    if (!member.rank || *member.rank > *first.rank) return false;
+    const JobChoice choice = choice_for(member, plan, now);
+    return job.job.cost <= choice.max_cost && job.job.memory <= choice.max_memory &&
+           (!choice.may || choice.may(job.key));
+  };
+  const std::set<WorkerId>& there = host_of_number_[home - 1]->workers;
+  const auto found = std::find_if(there.begin(), there.end(), is_as_good);
+  return found == there.end() ? id : *found;
 }
 
 Scheduler::Pick Scheduler::hand(Plan& plan, WorkerId id, IssuedJob job, FarmTime now) {
@@ -353,7 +368,7 @@ JobChoice Scheduler::choice_for(const Member& member, const Plan& plan, FarmTime
   if (!all_welcome) {
     choice.may = [&](JobKey key) { return may(member, key, plan.job(key).memory); };
   }
-  if (member.host->workers < crew_.size()) choice.host = member.host->number;
+  if (member.host->workers.size() < crew_.size()) choice.host = member.host->number;
   return choice;
 }
 
@@ -368,7 +383,9 @@ std::optional<Scheduler::Pick> Scheduler::next(Plan& plan, FarmTime now) {
     if (load >= k_second_rank + full) return std::nullopt;
     Member& member = crew_.at(id);
     const JobChoice choice = choice_for(member, plan, now);
-    if (auto job = plan.issue(choice)) return hand(plan, id, std::move(*job), now);
+    if (auto job = plan.issue(choice)) {
+      return hand(plan, at_home(id, *job, plan, now), std::move(*job), now);
+    }
     willing_.erase(willing_.begin());  // there is nothing for it before the next outlook
     member.rank.reset();
   }

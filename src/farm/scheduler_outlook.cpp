@@ -36,6 +36,17 @@ constexpr double k_about_the_fastest = 0.75;
 
 }  // namespace
 
+/// How much faster it was than others at jobs of the same kinds: what a kind costs is only thought,
+/// and whoever did those that go quicker than thought is no faster for that. The benchmark,
+/// corrected by what all hosts make of theirs, weighs as much as a job of those in which the time
+/// is spent.
+double Scheduler::estimated_speed(const Member& member) const {
+  if (seconds_done_ == 0) return member.benchmark;
+  const double average = member.benchmark * cost_done_ / benchmark_cost_done_;
+  const double weight = squares_done_ / seconds_done_;
+  return average * (member.expected_done + weight) / (member.seconds_done + weight);
+}
+
 double Scheduler::seconds_left(const Member& member, const Held& held, FarmTime now,
                                double times) const {
   const double whole = times * static_cast<double>(held.cost) / member.speed;

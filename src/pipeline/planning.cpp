@@ -98,7 +98,7 @@ JobSource source_of(std::span<const PlannedJob> jobs, const PlannedFarm& farm) {
                        JobGraph& graph, const std::vector<std::uint32_t>& places) {
     for (const std::uint32_t place : places) {
       Job job;
-      job.kind = "planned";
+      job.kind = jobs[place].kind;
       job.parameters = std::to_string(place);
       job.cost = jobs[place].triangles;
       job.after = after[place];
@@ -171,6 +171,7 @@ class TracedJobs {
                       seconds,
                       {},
                       done.stage,
+                      done.kind,
                       is_left_to_readers(done.kind),
                       {done.extent, done.extent_bytes}},
                      &done});

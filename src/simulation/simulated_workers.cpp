@@ -73,7 +73,7 @@ void SimulatedFarm::tick_worker(std::uint32_t index, std::uint64_t life) {
     feel_pulse(worker);
     worker_does(index_of(worker), worker.core->tick(worker.pulse, farm_now()));
   });
-  queue_.in(options_.heartbeat / 2 + up_to(options_.heartbeat / 20),
+  queue_.in(options_.heartbeat / 4 + up_to(options_.heartbeat / 2),
             [this, index, life] { tick_worker(index, life); });
 }
 

@@ -83,6 +83,7 @@ class Membership {
   Event lose(FarmTime now);
   const Endpoint* choose(std::span<const Endpoint* const> live, FarmTime now);
   void greet(const Endpoint& endpoint, FarmTime now);
+  FarmTime second_beat_after() const;
   Event on_refused(const Refused& refused, FarmTime now);
   Event on_welcome(const Welcome& welcome, FarmTime now);
 
@@ -95,6 +96,7 @@ class Membership {
   FarmTime look_pause_{5};
   FarmTime heard_{0};
   FarmTime next_beat_{0};
+  bool first_beat_ = false;  // the next one is the first since it joined
   std::optional<Endpoint> dialled_;
   bool seen_over_ = false;
   bool seen_other_run_ = false;

@@ -99,7 +99,7 @@ class Scheduler {
   struct Host {
     std::string name;
     HostNumber number = 0;  // from 1 on
-    std::uint32_t workers = 0;
+    std::set<WorkerId> workers;
     std::multiset<std::uint64_t> memories;  // of its workers
     std::uint32_t failures = 0;             // incidents in a row
     FarmTime incident{0};                   // when the last one began
@@ -119,7 +119,7 @@ class Scheduler {
     std::uint64_t memory = 0;  // 0: no limit
     double benchmark = 0;      // triangles a second and thread
     double speed = 0;
-    double cost_done = 0;
+    double expected_done = 0;  // seconds that others with its benchmark take for what it did
     double seconds_done = 0;
     std::uint64_t room = 0;
     std::vector<Held> held;
@@ -174,6 +174,7 @@ class Scheduler {
   const Outlook& outlook(const Plan& plan, FarmTime now);
   std::uint64_t greatest_cost(const Member& member, FarmTime now) const;
   JobChoice choice_for(const Member& member, const Plan& plan, FarmTime now) const;
+  WorkerId at_home(WorkerId id, const IssuedJob& job, const Plan& plan, FarmTime now) const;
   void find_home(Plan& plan, std::uint64_t extent, const Host& host) const;
   Pick hand(Plan& plan, WorkerId id, IssuedJob job, FarmTime now);
   std::optional<Pick> next_fixed(Plan& plan, FarmTime now);
@@ -197,8 +198,11 @@ class Scheduler {
   // What all workers did: how fast a host is at real jobs for what its benchmark says.
   double cost_done_ = 0;
   double benchmark_cost_done_ = 0;
-  double jobs_done_ = 0;
-  std::map<std::string, Pace> paces_;  // by kind
+  double seconds_done_ = 0;
+  double squares_done_ = 0;  // of the seconds of each job
+  // By kind: as thought by what the workers' speeds were estimated to be, and by their benchmarks.
+  std::map<std::string, Pace> paces_;
+  std::map<std::string, Pace> benchmark_paces_;
   // A fixed schedule: who shall get what.
   std::map<WorkerId, std::deque<JobKey>> sets_;
   std::unordered_map<JobKey, WorkerId, JobKeyHash> dealt_;  // what the sets hold

@@ -28,6 +28,7 @@ struct PlannedJob {
   double compute_s = 0;
   std::vector<Range> needs = {};  // if none are given: all jobs of less depth
   std::string stage = {};
+  std::string kind = {};         // Job::kind
   bool left_to_readers = false;  // Job::left_to_readers
   Extent extent = {};            // Job::extent
 };

@@ -1,5 +1,6 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
+#include <map>
 #include <string>
 #include <vector>
 
@@ -87,6 +88,33 @@ TEST_CASE("who lost a ventilator stays with its run") {
   CHECK(seeker.sees({live(1, 7), live(2, 8)}) == "tcp://1");
   CHECK(seeker.sees({live(1, 7), live(2, 8), over(3, 7)}).empty());
   CHECK(seeker.last == Membership::Event::run_over);
+}
+
+/// When one that joins at 0 shows that it lives, in milliseconds.
+std::vector<int> beats_of(std::uint64_t incarnation) {
+  Membership member({Role::worker, 0, incarnation, 1, "h", {}, FarmTime(30'000)});
+  const Endpoint endpoint = live(1, 7);
+  member.found({&endpoint, 1}, FarmTime(0));
+  member.on_message(Welcome{{1}, 1, 7, "lane", "", 1000}, FarmTime(0));
+  std::vector<int> beats;
+  for (int ms = 0; ms < 3000; ++ms) {
+    if (member.beat_due(FarmTime(ms))) beats.push_back(ms);
+  }
+  return beats;
+}
+
+TEST_CASE("those that joined at the same time do not show it at the same time ever after") {
+  constexpr std::uint64_t k_members = 1000;
+  std::map<int, int> at;
+  for (std::uint64_t i = 0; i < k_members; ++i) {
+    const std::vector<int> beats = beats_of(i * 2'654'435'761);
+    REQUIRE(beats.size() >= 3);
+    CHECK(beats[0] == 0);
+    CHECK(beats[1] <= 1000);
+    CHECK(beats[2] == beats[1] + 1000);
+    ++at[beats[2] / 100];
+  }
+  for (const auto& [when, members] : at) CHECK(members <= 150);
 }
 
 }  // namespace

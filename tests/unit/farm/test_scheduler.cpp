@@ -418,6 +418,42 @@ TEST_CASE("what a host has read is read there again, by any of its workers") {
   CHECK(desk.hand_out() == "then2@2 ");
 }
 
+TEST_CASE("of idle workers the one gets a job whose host has read what it reads") {
+  ScheduleDesk desk({{of_extent("first", 1), of_extent("other", 2)}, {of_extent("then", 2)}});
+  for (const std::uint32_t id : {1, 2}) desk.join(id, std::to_string(id), {1'000'000}, 1);
+  CHECK(desk.hand_out() == "first@1 other@2 ");
+  desk.done(1, "first");
+  desk.done(2, "other");
+  desk.scheduler.set_room({1}, 1);
+  SUBCASE("where it may take one") {
+    desk.scheduler.set_room({2}, 1);
+    CHECK(desk.hand_out() == "then@2 ");
+  }
+  SUBCASE("but nobody waits for it") {
+    CHECK(desk.hand_out() == "then@1 ");
+  }
+  SUBCASE("nor for one that had no luck with it") {
+    desk.scheduler.set_room({2}, 1);
+    desk.scheduler.avoid({2}, key_of(of_extent("then", 2)));
+    CHECK(desk.hand_out() == "then@1 ");
+  }
+}
+
+TEST_CASE("how fast a worker is shows beside what others take for jobs of its kinds") {
+  const Job quick = make_job("quick", 100'000);
+  Job heavy = make_job("heavy", 100'000);
+  heavy.kind = "heavy";
+  ScheduleDesk desk({{quick, heavy}, {make_job("last")}});
+  for (const std::uint32_t id : {1, 2}) desk.join(id, "host", {1'000'000}, 1);
+  CHECK(desk.hand_out() == "quick@1 heavy@2 ");
+  desk.scheduler.did({1}, key_of(quick), 10, desk.now);
+  desk.scheduler.did({2}, key_of(heavy), 1000, desk.now);
+  for (const Job& job : {quick, heavy}) desk.plan.accept(key_of(job), output_of(key_of(job)));
+  desk.now += FarmTime(1001);
+  CHECK(desk.hand_out().empty());  // they have no room; but they were looked at
+  CHECK(desk.scheduler.speed({1}) == doctest::Approx(desk.scheduler.speed({2})).epsilon(0.01));
+}
+
 TEST_CASE("where a host has left, another is at home with what it had read") {
   ScheduleDesk desk({{of_extent("first", 5)},
                      {make_job("longer", 110'000), of_extent("then", 5), of_extent("last", 5)}});

@@ -180,6 +180,7 @@ TEST_CASE("jobs are taken from a trace: once each, by processor time, as the fas
   done.extent = 1;
   done.extent_bytes = 5;
   done.job = 2;
+  done.kind = "climb";
   done.worker = 2;  // twice as slow
   done.cpu_us = 20'000;
   done.round = 1;
@@ -189,6 +190,7 @@ TEST_CASE("jobs are taken from a trace: once each, by processor time, as the fas
   CHECK(jobs[0].compute_s == doctest::Approx(0.01));
   CHECK(jobs[1].compute_s == doctest::Approx(0.01));
   CHECK(jobs[1].depth == 1);
+  CHECK(jobs[1].kind == "climb");
   CHECK(jobs[1].extent.name == 1);
   CHECK(jobs[1].extent.bytes == 5);
   CHECK_THROWS_AS(planned_jobs(Trace{}), DataError);
