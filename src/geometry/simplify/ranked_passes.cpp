@@ -58,7 +58,7 @@ RankedPasses::RankedPasses(WorkingMesh& mesh, const SurfaceBound* bound)
 RankedPasses::End RankedPasses::reduce(const SimplifyGoal& goal,
                                        const std::function<bool(std::uint64_t)>& progress) {
   all_collapses_ = all_refused_for_topology_ = 0;
-  while (mesh_.is_above(goal.triangles) && !is_near(goal)) {
+  while (mesh_.is_above(goal) && !is_near(goal)) {
     mesh_.begin_pass();
     ranking_.begin_pass({mesh_.mesh().positions, mesh_.mesh().triangles, mesh_.flags(),
                          &mesh_.adjacency(), &mesh_.creases().test(), mesh_.seam_only(), false,
@@ -70,7 +70,7 @@ RankedPasses::End RankedPasses::reduce(const SimplifyGoal& goal,
     all_collapses_ += collapses_;
     all_refused_for_topology_ += refused_for_topology_;
     if (progress && !progress(mesh_.triangles())) return End::told;
-    if (!mesh_.is_above(goal.triangles)) break;  // however little there was to do
+    if (!mesh_.is_above(goal)) break;  // however little there was to do
     // What is cheap is refused: what is dear is not to be taken for it.
     if (refused_for_topology_ > collapses_) return End::dead_end;
     if (static_cast<double>(refused_for_bound_) > k_bounded * static_cast<double>(collapses_)) {
@@ -111,14 +111,12 @@ RankedPasses::Pass RankedPasses::plan(const SimplifyGoal& goal) {
   const std::uint64_t excess = triangles - goal.triangles;
   const std::uint32_t vertices = mesh_.vertices();
   double share = k_pass_share;
-  // One triangle short, only border edges help, and those may rank anywhere.
-  if (excess == 1) share = 1;
   if (triangles > k_far * goal.triangles) share = std::max(share, k_far_share);
-  const bool far = share < 1 && excess > triangles / 8 && vertices > 2 * k_block;
+  const bool far = excess > triangles / 8 && vertices > 2 * k_block;
   Pass pass;
   pass.block = far ? k_block : vertices;
   const double most = far ? k_most_of_excess * static_cast<double>(excess) : HUGE_VAL;
-  pass.limit = share >= 1 ? k_any_cost : ranking_.estimate_limit(share, most);
+  pass.limit = ranking_.estimate_limit(share, most);
   pass.max_cost = std::min(goal.max_cost, cost_of(pass.limit));
   return pass;
 }
@@ -160,7 +158,7 @@ std::uint64_t RankedPasses::run(const SimplifyGoal& goal, const Pass& pass) {
   }
   const double paid = std::isfinite(reached) ? reached : mesh_.max_cost();
   const std::uint64_t removed = excess - limits.triangles;
-  mesh_.end_pass(removed, excess > 1 ? paid : mesh_.pass_cost());
+  mesh_.end_pass(removed, paid);
   if (removed > 0) renumber_drifts();
   return removed;
 }

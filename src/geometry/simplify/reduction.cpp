@@ -59,16 +59,16 @@ void Reduction::reduce(const SimplifyGoal& goal, const Progress& progress) {
     exhausted_cost_ = goal.max_cost;
     mesh_.restore_pieces();
   } else if (goal.in_passes && !end_.has_begun()) {
-    in_order_ = came_to != RankedPasses::End::told && mesh_.is_above(goal.triangles);
+    in_order_ = came_to != RankedPasses::End::told && mesh_.is_above(goal);
     mesh_.restore_pieces();
-  } else if (!is_told && mesh_.is_above(goal.triangles)) {
+  } else if (!is_told && mesh_.is_above(goal)) {
     if (const auto cost = end_.reduce(goal, progress)) exhausted_cost_ = *cost;
   }
 }
 
 /// False if progress says stop.
 bool Reduction::reduce_roughly(const SimplifyGoal& goal, const Progress& progress) {
-  while (may_be_rough_ && mesh_.is_above(goal.triangles) && RoughPass::is_worth_it(mesh_, goal)) {
+  while (may_be_rough_ && mesh_.is_above(goal) && RoughPass::is_worth_it(mesh_, goal)) {
     const auto before = static_cast<double>(mesh_.triangles());
     const std::uint64_t removed = RoughPass(mesh_).run(goal);
     may_be_rough_ = removed > 0;

@@ -22,11 +22,15 @@ constexpr double k_ranked_share = 0.35;
 constexpr double k_as_ranked = 0.8;
 // A collapse of complex vertices removes more than two triangles, hardly ever more than these.
 constexpr std::uint64_t k_few_to_go = 16;
-constexpr std::uint64_t k_usual_loss = 2;
 // A collapse that leaves fewer triangles than the goal costs so many times as much. Were none
 // taken, a board with pieces of four triangles gave up two of its corners for the last two
 // triangles.
 constexpr double k_loss_of_fewer = 4;
+// Where a single triangle is too many, so much more, and no less than what was paid before or is
+// nothing beside a square on the edge: the count is met exactly, at a border, unless that costs ten
+// times the distance. On coarse ground under a fine model it did.
+constexpr double k_loss_of_one_fewer = 100;
+constexpr double k_nothing = 1e-10;
 // A mesh that was kept is dropped when it has so many times the triangles that are left.
 constexpr double k_far_more = 1.3;
 
@@ -61,15 +65,16 @@ constexpr std::uint64_t k_edges_of_triangle = 3;
 std::uint64_t most_fewer(std::uint64_t goal, bool nothing_else_does) {
   constexpr std::uint64_t k_few = 100;
   constexpr std::uint64_t k_many = 1000;
-  if (goal >= k_many) return goal / k_many - 1;
+  if (goal >= k_many) return goal / k_many - (nothing_else_does ? 0 : 1);
   if (goal < k_few) return 0;
   return nothing_else_does ? goal / (k_few / 2) - 1 : 1;
 }
 
 /// Triangles that a collapse may remove.
 std::uint64_t most_at_once(std::uint64_t excess, std::uint64_t goal, bool nothing_else_does) {
-  const bool is_near = excess >= k_usual_loss && excess < k_few_to_go;
-  return is_near ? excess + most_fewer(goal, nothing_else_does) : excess;
+  constexpr std::uint64_t k_many = 1000;
+  if (excess == 1 && goal < k_many) return excess;
+  return excess < k_few_to_go ? excess + most_fewer(goal, nothing_else_does) : excess;
 }
 
 }  // namespace
@@ -255,7 +260,8 @@ CollapseQueue::Stop CollapseQueue::run(const SimplifyGoal& goal, const Progress&
     if (pieces_ != nullptr && collapse.triangles == 4 && pieces_->is_left_over(a)) {
       collapse.cost *= k_cost_of_left_over;
     }
-    const double cost = collapse.cost * (collapse.triangles > excess ? k_loss_of_fewer : 1);
+    const double cost =
+        collapse.triangles > excess ? cost_of_fewer(queued, collapse.cost, excess) : collapse.cost;
     if (collapse.triangles == 0) {
       refused_[a] = refused_[b] = 1;
     } else if (must_wait(queued, cost)) {
@@ -267,6 +273,14 @@ CollapseQueue::Stop CollapseQueue::run(const SimplifyGoal& goal, const Progress&
     }
   }
   return Stop::met;
+}
+
+/// Of a collapse that leaves fewer triangles than the goal.
+double CollapseQueue::cost_of_fewer(const QueuedEdge& queued, double cost,
+                                    std::uint64_t excess) const {
+  if (excess > 1) return cost * k_loss_of_fewer;
+  const double squared = squared_length(mesh_.positions[queued.a()] - mesh_.positions[queued.b]);
+  return std::max({cost * k_loss_of_one_fewer, max_cost_, k_nothing * squared * squared});
 }
 
 bool CollapseQueue::is_hopeless() const {

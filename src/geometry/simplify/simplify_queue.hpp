@@ -117,6 +117,7 @@ class CollapseQueue {
   void remember_planes();
   void rank(double share);
   Stop run(const SimplifyGoal& goal, const Progress& progress);
+  double cost_of_fewer(const QueuedEdge& queued, double cost, std::uint64_t excess) const;
   bool is_hopeless() const;
   bool must_wait(const QueuedEdge& queued, double cost) const;
   void wait(const QueuedEdge& queued, double cost);

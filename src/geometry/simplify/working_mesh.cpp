@@ -59,9 +59,10 @@ std::uint64_t WorkingMesh::free_triangles() const {
       std::count_if(mesh_.triangles.begin(), mesh_.triangles.end(), is_free));
 }
 
-bool WorkingMesh::is_above(std::uint64_t triangles) const {
+bool WorkingMesh::is_above(const SimplifyGoal& goal) const {
   const std::uint64_t now = mesh_.triangles.size();
-  return now > triangles && (now - triangles > 1 || has_free_border());
+  if (now != goal.triangles + 1) return now > goal.triangles;
+  return last_of(goal) >= goal.triangles && has_free_border();
 }
 
 bool WorkingMesh::has_free_border() const {

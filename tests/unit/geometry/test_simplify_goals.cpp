@@ -83,6 +83,31 @@ TEST_CASE("a goal that is met by one triangle at the border leaves more to do") 
   }
 }
 
+TEST_CASE("no corner of coarse ground goes for the last triangle of fine models") {
+  Mesh mesh = simplify_test::wavy_grid(12, 12);
+  const std::size_t ground = mesh.triangles.size();
+  for (int i = 0; i < 3; ++i) {
+    Mesh ball = test::icosphere(5);
+    for (Vec3& p : ball.positions) p = p * 1e-3 + Vec3{0.3 * i, 0.3, 2};
+    test::append(mesh, ball);
+  }
+  const auto on_ground = [](const Mesh& made) {
+    return std::count_if(made.triangles.begin(), made.triangles.end(),
+                         [&](const Triangle& t) { return made.positions[t[0]].z < 1; });
+  };
+  for (const std::uint64_t odd : {15'001U, 15'003U}) {
+    CAPTURE(odd);
+    Simplifier in_passes(mesh, {});
+    in_passes.reduce({.triangles = odd, .last_triangles = 1000});
+    CHECK(in_passes.triangles() == odd + 1);
+    CHECK(on_ground(in_passes.mesh()) == ground);
+    Simplifier in_order(mesh, {});
+    in_order.reduce({.triangles = odd});
+    CHECK(in_order.triangles() == odd - 1);
+    CHECK(on_ground(in_order.mesh()) == ground);
+  }
+}
+
 TEST_CASE("edges round thin tubes that are refused are no reason to stop") {
   Mesh rings;
   constexpr int k_rings = 40;

@@ -178,10 +178,10 @@ TEST_CASE("one triangle too many, which cannot go, is no end of what a cost allo
   Mesh mesh = sphere(4);
   mesh.triangles.pop_back();  // a hole of three edges
   Simplifier simplifier(mesh, {.lines = {.topology = TopologyMode::keep}});
-  simplifier.reduce({2000});
-  REQUIRE(simplifier.triangles() == 2001);
+  simplifier.reduce({900});  // too few for one fewer to be as good
+  REQUIRE(simplifier.triangles() == 901);
   simplifier.reduce({0, 4 * simplifier.pass_cost()});
-  CHECK(simplifier.triangles() < 1500);
+  CHECK(simplifier.triangles() < 675);
   CHECK(is_clean(simplifier.mesh()));
 }
 
