@@ -32,7 +32,11 @@ std::vector<std::uint32_t> Bvh::search_order(std::span<const Vec3> points) const
 Bvh::Nearest Bvh::nearest(Vec3 p, std::uint32_t guess, double enough) const {
   Query query(p, to_frame(p), scale_);
   query.offer(squared_to(p, guess), guess);
-  search(query, enough, [&](std::uint32_t triangle) { return squared_to(p, triangle); });
+  search(query, enough, [&](std::uint32_t triangle) {
+    const auto& [a, b, c] = triangles_[triangle];
+    return distance_across(p, positions_[a], positions_[b], positions_[c], query.best.squared)
+        .squared;
+  });
   return query.best;
 }
 

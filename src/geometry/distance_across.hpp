@@ -35,15 +35,22 @@ struct DistanceAcross {
   }
 };
 
-inline DistanceAcross distance_across(Vec3 p, Vec3 a, Vec3 b, Vec3 c) {
+/// `known` is a squared distance that is known already. Of a triangle whose plane is surely farther
+/// away than that, nothing is found.
+inline DistanceAcross distance_across(Vec3 p, Vec3 a, Vec3 b, Vec3 c, double known = HUGE_VAL) {
+  // For the rounding of a height, which is great where the triangle is narrow.
+  constexpr double k_above = 1 + 1e-6;
+  constexpr double k_rounding = 1e-22;
   const Vec3 ab = b - a, ac = c - a, ap = p - a;
   const Vec3 normal = cross(ab, ac);
   const double area = dot(normal, normal);
+  const double height = dot(ap, normal);
+  const double rounding = k_rounding * dot(ab, ab) * dot(ac, ac) * dot(ap, ap);
+  if (height * height > k_above * known * area + rounding) return {};
   const double at_b = dot(cross(ap, ac), normal);
   const double at_c = dot(cross(ab, ap), normal);
   const double at_a = area - at_b - at_c;
   if (area > 0 && at_a >= 0 && at_b >= 0 && at_c >= 0) {
-    const double height = dot(ap, normal);
     return {height * height / area, DistanceAcross::k_inside};
   }
   DistanceAcross found;
