@@ -35,8 +35,8 @@ struct DistanceAcross {
   }
 };
 
-/// `known` is a squared distance that is known already. Of a triangle whose plane is surely farther
-/// away than that, nothing is found.
+/// `known` is a squared distance that is known already. Where the triangle's plane is surely
+/// farther away than that, `squared` is infinite, and the side means nothing.
 inline DistanceAcross distance_across(Vec3 p, Vec3 a, Vec3 b, Vec3 c, double known = HUGE_VAL) {
   // For the rounding of a height, which is great where the triangle is narrow.
   constexpr double k_above = 1 + 1e-6;
@@ -45,8 +45,10 @@ inline DistanceAcross distance_across(Vec3 p, Vec3 a, Vec3 b, Vec3 c, double kno
   const Vec3 normal = cross(ab, ac);
   const double area = dot(normal, normal);
   const double height = dot(ap, normal);
-  const double rounding = k_rounding * dot(ab, ab) * dot(ac, ac) * dot(ap, ap);
-  if (height * height > k_above * known * area + rounding) return {};
+  if (known < HUGE_VAL) {
+    const double rounding = k_rounding * dot(ab, ab) * dot(ac, ac) * dot(ap, ap);
+    if (height * height > k_above * known * area + rounding) return {};
+  }
   const double at_b = dot(cross(ap, ac), normal);
   const double at_c = dot(cross(ab, ap), normal);
   const double at_a = area - at_b - at_c;

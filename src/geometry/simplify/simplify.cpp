@@ -83,7 +83,9 @@ struct Simplifier::Impl {
       const std::uint64_t before = single.triangles.size();
       const std::uint64_t all = pairs->triangles_of(single);
       const std::uint64_t excess = all - std::min(all, goal.triangles);
-      if (excess < k_least_excess) return is_new || excess <= 1;
+      if (excess < k_least_excess) {
+        return is_new || excess <= 1 || last_of(goal) < goal.triangles;
+      }
       const auto share_of = [&](std::uint64_t count) {
         return static_cast<std::uint64_t>(static_cast<double>(count) * static_cast<double>(before) /
                                           static_cast<double>(all));

@@ -26,11 +26,13 @@ constexpr std::uint64_t k_few_to_go = 16;
 // taken, a board with pieces of four triangles gave up two of its corners for the last two
 // triangles.
 constexpr double k_loss_of_fewer = 4;
-// Where a single triangle is too many, so much more, and no less than what was paid before or is
-// nothing beside a square on the edge: the count is met exactly, at a border, unless that costs ten
-// times the distance. On coarse ground under a fine model it did.
+// Where a single triangle is too many, so much more, and no less than what was paid before, or than
+// a distance of 1e-5 edges costs over a square on the edge: the count is met exactly, at a border,
+// unless that costs ten times the distance. On coarse ground under a fine model it did.
 constexpr double k_loss_of_one_fewer = 100;
 constexpr double k_nothing = 1e-10;
+// From so many triangles on one fewer is as good, if need be.
+constexpr std::uint64_t k_many = 1000;
 // A mesh that was kept is dropped when it has so many times the triangles that are left.
 constexpr double k_far_more = 1.3;
 
@@ -61,10 +63,9 @@ constexpr std::uint64_t k_edges_of_triangle = 3;
 
 /// How many fewer triangles than the goal may be left: with one that the goal itself may be below
 /// what was asked for, as triangles of closed surfaces go in pairs, 0.1 % of that, 2 % of few. Of
-/// few it is one as long as anything else may do.
+/// few it is one as long as anything else may do; of many it is one more where nothing else does.
 std::uint64_t most_fewer(std::uint64_t goal, bool nothing_else_does) {
   constexpr std::uint64_t k_few = 100;
-  constexpr std::uint64_t k_many = 1000;
   if (goal >= k_many) return goal / k_many - (nothing_else_does ? 0 : 1);
   if (goal < k_few) return 0;
   return nothing_else_does ? goal / (k_few / 2) - 1 : 1;
@@ -72,7 +73,6 @@ std::uint64_t most_fewer(std::uint64_t goal, bool nothing_else_does) {
 
 /// Triangles that a collapse may remove.
 std::uint64_t most_at_once(std::uint64_t excess, std::uint64_t goal, bool nothing_else_does) {
-  constexpr std::uint64_t k_many = 1000;
   if (excess == 1 && goal < k_many) return excess;
   return excess < k_few_to_go ? excess + most_fewer(goal, nothing_else_does) : excess;
 }

@@ -33,3 +33,13 @@ TEST_CASE("a triangle that is nearer than what is known is found, however narrow
   }
   CHECK(passed_over > 20'000);
 }
+
+TEST_CASE("what is known already is no harm at triangles that are none, or to points on them") {
+  const Vec3 a{0, 0, 0}, b{1, 0, 0}, c{0, 1, 0};
+  CHECK(distance_across({0.2, 0.2, 0}, a, b, c, 0).squared == 0);
+  CHECK(std::isinf(distance_across({0.2, 0.2, 1}, a, b, c, 0).squared));
+  for (const double known : {HUGE_VAL, 9.0}) {
+    CHECK(distance_across({0, 0, 2}, a, a, a, known).squared == 4);
+    CHECK(distance_across({0.5, 0, 2}, a, b, Vec3{0.5, 0, 0}, known).squared == 4);
+  }
+}
