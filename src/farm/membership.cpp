@@ -170,11 +170,11 @@ std::optional<Hello> Membership::hello() {
                options_.host, options_.results, options_.capacity,    options_.algorithm};
 }
 
-/// A share of a heartbeat, which each member has by its number: a crew that joined at the same
+/// A share of a heartbeat, which each member has by its incarnation: a crew that joined at the same
 /// time, as after the ventilator came again, does not speak at the same time ever after.
 FarmTime Membership::second_beat_after() const {
-  constexpr std::uint64_t k_shares = 1024;
-  const std::uint64_t share = (options_.incarnation >> 1) % k_shares;
+  constexpr std::uint64_t k_shares = 1023;
+  const std::uint64_t share = options_.incarnation % k_shares;
   return heartbeat_ * static_cast<FarmTime::rep>(share) / k_shares;
 }
 

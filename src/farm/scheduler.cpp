@@ -21,6 +21,8 @@ constexpr double k_usual_speed = 1e6;
 constexpr double k_least_buffer = 0.01;
 /// Added to the load of those who hold enough to read ahead: more seconds than anyone holds.
 constexpr double k_second_rank = 1e6;
+/// For a job's home no worker is chosen that is slower than this share of another.
+constexpr double k_about_as_fast = 0.75;
 constexpr std::uint64_t k_no_limit = std::numeric_limits<std::uint64_t>::max();
 
 /// Of a worker that tells of so much memory.
@@ -97,35 +99,6 @@ bool Scheduler::drop(WorkerId id, JobKey key, FarmTime now) {
   begin_turns(member, now);
   rank(id, member);
   return true;
-}
-
-void Scheduler::did(WorkerId id, JobKey key, std::uint32_t compute_ms, FarmTime now) {
-  Member& member = crew_.at(id);
-  const bool was_bad = !good(*member.host);
-  member.host->failures = 0;
-  if (was_bad) bans_changed();
-  const auto at = std::find_if(member.held.begin(), member.held.end(),
-                               [&](const Held& each) { return each.key == key; });
-  if (at == member.held.end() || at->cost == 0) return;
-  const double since = at->since ? seconds(now - *at->since) : 0;
-  if (at->since) {
-    Pace& pace = paces_[at->kind];
-    pace.took += since;
-    pace.thought += static_cast<double>(at->cost) / member.speed;
-  }
-  const double took = compute_ms != 0 ? compute_ms / 1000.0 : since;
-  if (took <= 0) return;
-  const auto cost = static_cast<double>(at->cost);
-  Pace& kind = benchmark_paces_[at->kind];
-  kind.took += took;
-  kind.thought += cost / member.benchmark;
-  member.expected_done += cost / member.benchmark * kind.took / kind.thought;
-  member.seconds_done += took;
-  seconds_done_ += took;
-  squares_done_ += took * took;
-  cost_done_ += cost;
-  benchmark_cost_done_ += member.benchmark * took;
-  member.speed = estimated_speed(member);
 }
 
 void Scheduler::avoid(WorkerId id, JobKey key) {
@@ -325,8 +298,8 @@ void Scheduler::find_home(Plan& plan, std::uint64_t extent, const Host& host) co
   plan.set_home(extent, host.number);
 }
 
-/// Whom a job is handed to that this worker could do: another that has no more to do before it, and
-/// whose host is the job's home.
+/// Whom a job is handed to that this worker could do: another that has no more to do before it, is
+/// about as fast, and whose host is the job's home.
 WorkerId Scheduler::at_home(WorkerId id, const IssuedJob& job, const Plan& plan,
                             FarmTime now) const {
   const Member& first = crew_.at(id);
@@ -335,6 +308,7 @@ WorkerId Scheduler::at_home(WorkerId id, const IssuedJob& job, const Plan& plan,
   const auto is_as_good = [&](WorkerId each) {
     const Member& member = crew_.at(each);
     if (!member.rank || *member.rank > *first.rank) return false;
+    if (member.speed < k_about_as_fast * first.speed) return false;
     const JobChoice choice = choice_for(member, plan, now);
     return job.job.cost <= choice.max_cost && job.job.memory <= choice.max_memory &&
            (!choice.may || choice.may(job.key));

@@ -1,7 +1,8 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
 //
-// The scheduler's estimates of what is left, and what follows from them near the end of a run.
+// The scheduler's estimates of how fast workers are and of what is left, and what follows from them
+// near the end of a run.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -31,10 +32,45 @@ constexpr double k_late_on_host = 10;
 /// longer than so many seconds more than was thought: what holds all of them up may be their hosts.
 constexpr std::size_t k_enough_in_work = 3;
 constexpr double k_patience = 10;
+/// What takes so many times as long as usual tells nothing of how long jobs take.
+constexpr double k_outlier = 10;
 /// No job is left to a worker that is faster by less than this.
 constexpr double k_about_the_fastest = 0.75;
 
 }  // namespace
+
+void Scheduler::did(WorkerId id, JobKey key, std::uint32_t compute_ms, FarmTime now) {
+  Member& member = crew_.at(id);
+  const bool was_bad = !good(*member.host);
+  member.host->failures = 0;
+  if (was_bad) bans_changed();
+  const auto at = std::find_if(member.held.begin(), member.held.end(),
+                               [&](const Held& each) { return each.key == key; });
+  if (at == member.held.end() || at->cost == 0) return;
+  const double since = at->since ? seconds(now - *at->since) : 0;
+  if (at->since) {
+    Pace& pace = paces_[at->kind];
+    pace.took += since;
+    pace.thought += static_cast<double>(at->cost) / member.speed;
+  }
+  const double took = compute_ms != 0 ? compute_ms / 1000.0 : since;
+  if (took <= 0) return;
+  const auto cost = static_cast<double>(at->cost);
+  Pace& kind = benchmark_paces_[at->kind];
+  double counted = took;
+  if (kind.thought > 0) {
+    counted = std::min(took, k_outlier * kind.took / kind.thought * cost / member.benchmark);
+  }
+  kind.took += member.benchmark * took;
+  kind.thought += cost;
+  member.expected_done += cost / member.benchmark * kind.took / kind.thought;
+  member.seconds_done += took;
+  seconds_done_ += counted;
+  squares_done_ += counted * counted;
+  cost_done_ += cost;
+  benchmark_cost_done_ += member.benchmark * took;
+  member.speed = estimated_speed(member);
+}
 
 /// How much faster it was than others at jobs of the same kinds: what a kind costs is only thought,
 /// and whoever did those that go quicker than thought is no faster for that. The benchmark,

@@ -29,7 +29,8 @@ namespace meshfarm {
 /// that would only make it busier: a second attempt is thought to take as long as the others do.
 ///
 /// Among jobs of about the same length a worker is given those that read what its host has read,
-/// then those that read what no host has.
+/// then those that read what no host has. Of workers that are equally idle and about as fast the
+/// one gets a job whose host has read what it reads.
 class Scheduler {
  public:
   struct Held {
@@ -119,7 +120,7 @@ class Scheduler {
     std::uint64_t memory = 0;  // 0: no limit
     double benchmark = 0;      // triangles a second and thread
     double speed = 0;
-    double expected_done = 0;  // seconds that others with its benchmark take for what it did
+    double expected_done = 0;  // seconds that any worker, at its benchmark, takes for what it did
     double seconds_done = 0;
     std::uint64_t room = 0;
     std::vector<Held> held;
@@ -133,7 +134,7 @@ class Scheduler {
     const Host* host = nullptr;  // of its holder
     double beyond = 0;           // seconds that it has taken longer than that
   };
-  /// What the jobs of a kind took that are done, in seconds, and what was thought.
+  /// What the jobs of a kind took that are done, and what was thought.
   struct Pace {
     double took = 0;
     double thought = 0;
@@ -200,7 +201,8 @@ class Scheduler {
   double benchmark_cost_done_ = 0;
   double seconds_done_ = 0;
   double squares_done_ = 0;  // of the seconds of each job
-  // By kind: as thought by what the workers' speeds were estimated to be, and by their benchmarks.
+  // By kind: in seconds, as thought by the workers' speeds; and in what a worker could have done by
+  // its benchmark, beside what the jobs cost.
   std::map<std::string, Pace> paces_;
   std::map<std::string, Pace> benchmark_paces_;
   // A fixed schedule: who shall get what.

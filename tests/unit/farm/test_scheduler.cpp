@@ -429,6 +429,11 @@ TEST_CASE("of idle workers the one gets a job whose host has read what it reads"
     desk.scheduler.set_room({2}, 1);
     CHECK(desk.hand_out() == "then@2 ");
   }
+  SUBCASE("and is about as fast") {
+    desk.scheduler.leave({2});
+    desk.join(3, "2", {100'000}, 1);
+    CHECK(desk.hand_out() == "then@1 ");
+  }
   SUBCASE("but nobody waits for it") {
     CHECK(desk.hand_out() == "then@1 ");
   }
@@ -452,6 +457,37 @@ TEST_CASE("how fast a worker is shows beside what others take for jobs of its ki
   desk.now += FarmTime(1001);
   CHECK(desk.hand_out().empty());  // they have no room; but they were looked at
   CHECK(desk.scheduler.speed({1}) == doctest::Approx(desk.scheduler.speed({2})).epsilon(0.01));
+}
+
+TEST_CASE("one that takes longer at each kind is slower, and a wrong benchmark is its own only") {
+  constexpr int k_jobs = 400;
+  std::vector<Job> jobs;
+  for (int i = 0; i < k_jobs; ++i) {
+    jobs.push_back(make_job(std::to_string(i), 100'000));
+    if (i % 2 != 0) jobs.back().kind = "heavy";
+  }
+  ScheduleDesk desk(jobs);
+  // The third promises a hundredth of what it does.
+  for (const std::uint32_t id : {1, 2, 3}) {
+    desk.join(id, "host", {id == 3 ? 10'000U : 1'000'000U}, 1);
+  }
+  for (int i = 0; i + 1 < k_jobs; ++i) {
+    const auto pick = desk.scheduler.next(desk.plan, desk.now);
+    REQUIRE(pick);
+    const std::uint32_t times = pick->worker.value == 2 ? 2 : 1;
+    const std::uint32_t ms = times * (pick->job.job.kind == "heavy" ? 300 : 100);
+    desk.scheduler.did(pick->worker, pick->job.key, ms, desk.now);
+    desk.scheduler.drop(pick->worker, pick->job.key, desk.now);
+    desk.plan.accept(pick->job.key, output_of(pick->job.key));
+    // They take turns, the third seldom.
+    desk.scheduler.set_room(pick->worker, 0);
+    desk.scheduler.set_room({i % 8 == 0 ? 3U : 1U + static_cast<std::uint32_t>(i / 2 % 2)}, 1);
+    desk.now += FarmTime(1001);
+  }
+  CHECK(desk.hand_out().size() > 0);
+  const double first = desk.scheduler.speed({1});
+  CHECK(first == doctest::Approx(500'000).epsilon(0.3));
+  CHECK(first / desk.scheduler.speed({2}) == doctest::Approx(2).epsilon(0.2));
 }
 
 TEST_CASE("where a host has left, another is at home with what it had read") {
