@@ -357,9 +357,10 @@ void Dispatcher::look_for_end() {
 /// A run of which nothing is left but jobs that fit no worker would wait for ever.
 void Dispatcher::look_for_memory() {
   const PlanCounts& counts = plan_.counts();
-  const auto greatest = scheduler_.greatest_memory();
-  const bool too_large = greatest && counts.ready > 0 && counts.running == 0 &&
-                         plan_.ready_above(*greatest) == counts.ready;
+  const bool is_at_rest = counts.ready > 0 && counts.running == 0;
+  // Asked only then: it looks through all workers.
+  const auto greatest = is_at_rest ? scheduler_.greatest_memory() : std::nullopt;
+  const bool too_large = greatest && plan_.ready_above(*greatest) == counts.ready;
   if (!too_large) return too_large_since_.reset();
   if (!too_large_since_) too_large_since_ = now_;
   if (now_ - *too_large_since_ < options_.wait_for_memory) return;
