@@ -103,14 +103,9 @@ const Plan::ReadyJob* Plan::at_home(HostNumber host, const ReadyJob& best,
   auto at = jobs->second.lower_bound(best);
   for (int tries = 0; at != jobs->second.end() && tries < k_tries_at_home; ++at, ++tries) {
     if (best.path - at->path > best.cost / k_home_share) break;
-    if (will_do(*at, choice)) return &*at;
+    if (choice.takes(at->key, at->cost, at->memory)) return &*at;
   }
   return nullptr;
-}
-
-bool Plan::will_do(const ReadyJob& job, const JobChoice& choice) {
-  return job.cost <= choice.max_cost && job.memory <= choice.max_memory &&
-         (!choice.may || choice.may(job.key));
 }
 
 const Plan::ReadyJob* Plan::longest_way(const JobChoice& choice) const {
@@ -119,14 +114,15 @@ const Plan::ReadyJob* Plan::longest_way(const JobChoice& choice) const {
   for (auto from = ready_.begin();; from = short_ways) {
     int tries = 0;
     for (auto at = from; at != ready_.end() && tries < k_tries; ++at, ++tries) {
-      if (will_do(*at, choice)) return &*at;
+      if (choice.takes(at->key, at->cost, at->memory)) return &*at;
     }
     if (tries < k_tries) return nullptr;
     if (from == short_ways) break;
   }
   auto at = by_memory_.upper_bound({choice.max_memory, ReadyJob{0, k_last}});
   for (int tries = 0; at != by_memory_.begin() && tries < k_tries; ++tries) {
-    if (will_do((--at)->second, choice)) return &at->second;
+    const ReadyJob& job = (--at)->second;
+    if (choice.takes(job.key, job.cost, job.memory)) return &job;
   }
   return nullptr;
 }

@@ -309,9 +309,7 @@ WorkerId Scheduler::at_home(WorkerId id, const IssuedJob& job, const Plan& plan,
     const Member& member = crew_.at(each);
     if (!member.rank || *member.rank > *first.rank) return false;
     if (member.speed < k_about_as_fast * first.speed) return false;
-    const JobChoice choice = choice_for(member, plan, now);
-    return job.job.cost <= choice.max_cost && job.job.memory <= choice.max_memory &&
-           (!choice.may || choice.may(job.key));
+    return choice_for(member, plan, now).takes(job.key, job.job.cost, job.job.memory);
   };
   const std::set<WorkerId>& there = host_of_number_[home - 1]->workers;
   const auto found = std::find_if(there.begin(), there.end(), is_as_good);

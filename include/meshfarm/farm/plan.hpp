@@ -44,6 +44,10 @@ struct JobChoice {
   std::uint64_t max_memory = std::numeric_limits<std::uint64_t>::max();
   std::function<bool(JobKey)> may = {};  // empty: any
   HostNumber host = 0;                   // jobs at home there are preferred; 0: none are
+
+  bool takes(JobKey key, std::uint64_t cost, std::uint64_t memory) const {
+    return cost <= max_cost && memory <= max_memory && (!may || may(key));
+  }
 };
 
 /// What an attempt that failed says of its job. worker_lost: the worker was, and the job in work.
@@ -157,7 +161,6 @@ class Plan {
   void want(std::vector<WantedJob> jobs, const std::map<JobKey, JobOutput>& accepted);
   void add_ready(JobKey key, const Entry& entry);
   void remove_ready(JobKey key, const Entry& entry);
-  static bool will_do(const ReadyJob& job, const JobChoice& choice);
   static ReadyJob ready_job(JobKey key, const Entry& entry);
   const ReadyJob* choose(const JobChoice& choice) const;
   const ReadyJob* longest_way(const JobChoice& choice) const;

@@ -484,7 +484,7 @@ TEST_CASE("one that takes longer at each kind is slower, and a wrong benchmark i
     desk.scheduler.set_room({i % 8 == 0 ? 3U : 1U + static_cast<std::uint32_t>(i / 2 % 2)}, 1);
     desk.now += FarmTime(1001);
   }
-  CHECK(desk.hand_out().size() > 0);
+  CHECK_FALSE(desk.hand_out().empty());
   const double first = desk.scheduler.speed({1});
   CHECK(first == doctest::Approx(500'000).epsilon(0.3));
   CHECK(first / desk.scheduler.speed({2}) == doctest::Approx(2).epsilon(0.2));
