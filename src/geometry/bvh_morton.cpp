@@ -15,7 +15,7 @@ namespace {
 constexpr int k_axis_bits = 21;
 constexpr int k_digit_bits = 9;
 constexpr int k_digits = 7;            // of 9 bits: all 63 of a code
-constexpr std::ptrdiff_t k_many = 64;  // fewer cost a search no more than their sorting would
+constexpr std::ptrdiff_t k_few_equal = 64;  // fewer cost a search no more than their sorting would
 constexpr std::size_t k_values = std::size_t{1} << k_digit_bits;
 
 /// Puts two zero bits before each of the 21 low bits.
@@ -70,7 +70,7 @@ void sort_many_equal(std::span<MortonItem> items,
     const auto end = std::find_if(begin, items.end(), [code = begin->code](const MortonItem& item) {
       return item.code != code;
     });
-    if (end - begin > k_many) sort_equal({begin, end}, place_of);
+    if (end - begin > k_few_equal) sort_equal({begin, end}, place_of);
     begin = end;
   }
 }

@@ -18,7 +18,7 @@ namespace {
 /// So many triangles are first looked at by their common box where no grid helps.
 constexpr std::size_t k_run = 32;
 /// So many are worth a hierarchy.
-constexpr std::size_t k_many = 256;
+constexpr std::size_t k_worth_a_tree = 256;
 /// The farthest place to look at is a little beyond what is known, so that it is found again.
 constexpr double k_a_little_more = 1 + 0x1p-20;
 /// Of the distance between vertices: to look a little farther costs nothing, nor do larger cells.
@@ -75,7 +75,7 @@ class PointMeter::Impl {
 
   void show(std::span<const Vec3> positions, std::span<const Triangle> triangles) {
     if (!grid_) return show_to_tree(positions, triangles);
-    if (grid_->is_crowded() && triangles.size() >= k_many)
+    if (grid_->is_crowded() && triangles.size() >= k_worth_a_tree)
       return show_at_once(positions, triangles);
     // Of few triangles it is cheaper not to look at each vertex.
     if (positions.size() > 2 * triangles.size()) {

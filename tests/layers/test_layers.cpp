@@ -6,6 +6,7 @@
 #include <fstream>
 #include <iterator>
 #include <map>
+#include <regex>
 #include <set>
 #include <sstream>
 #include <string>
@@ -262,11 +263,41 @@ void check_file(const SourceFile& file, const Layers& layers, Problems& problems
   }
 }
 
+/// The name that a line defines outside of functions and classes, or "". Functions may overload.
+std::string name_at_file_scope(const std::string& line) {
+  static const std::regex k_names(
+      "(?:(?:inline |static )*constexpr [^(=;{]*?\\b(k_\\w+)\\s*(?:\\[.*\\])?\\s*[={;].*"
+      "|(?:struct|class|enum class) (\\w+)\\b[^;]*"
+      "|using (\\w+) =.*)");
+  std::smatch match;
+  if (!std::regex_match(line, match, k_names)) return {};
+  return match[1].matched ? match[1] : match[2].matched ? match[2] : match[3];
+}
+
+/// Which sources are compiled together depends on how many there are: two that define the same name
+/// may pass for long.
+void check_names(const std::vector<SourceFile>& files, Problems& problems) {
+  std::map<std::pair<std::string, std::string>, std::string> first;  // of layer and name: the path
+  for (const SourceFile& file : files) {
+    if (!file.path.starts_with("src/") || !file.path.ends_with(".cpp")) continue;
+    const std::vector<std::string> lines = lines_of(file.text);
+    for (std::size_t i = 0; i < lines.size(); ++i) {
+      const std::string name = name_at_file_scope(lines[i]);
+      if (name.empty()) continue;
+      const auto [at_name, is_new] = first.try_emplace({parts_of(file.path)[1], name}, file.path);
+      if (is_new || at_name->second == file.path) continue;
+      problems.push_back(at(file.path, i + 1) + name + " is defined in " + at_name->second +
+                         " too");
+    }
+  }
+}
+
 Problems check_layers(const std::string& cmake, const std::vector<SourceFile>& files) {
   Problems problems;
   const Layers layers = parse_layers(cmake);
   check_table(layers, problems);
   for (const SourceFile& file : files) check_file(file, layers, problems);
+  check_names(files, problems);
   return problems;
 }
 
@@ -392,6 +423,29 @@ TEST_CASE("a layer that is not used is refused") {
   check_refused("tests/unit/mid/a.cpp", "#include <meshfarm/side/b.hpp>", fault);
   check_refused("src/low/a.cpp", "#include <meshfarm/nowhere/b.hpp>", "does not use layer nowhere");
   check_refused("src/low/a.cpp", "#include <meshfarm/b.hpp>", "of no layer");
+}
+
+TEST_CASE("no two sources of a layer define the same name") {
+  const auto problems_with = [](const std::string& path, const std::string& line) {
+    return check_layers(k_table, {{"src/mid/a.cpp",
+                                   "constexpr int k_many = 3;\nconstexpr double k_of[2]{1, 2};\n"
+                                   "struct Step {\n};\nclass Walk : public Step {\n};\n"
+                                   "using Steps = int;\n"},
+                                  {path, line + "\n"}});
+  };
+  for (const std::string line :
+       {"constexpr std::size_t k_many{25};", "static constexpr std::array<int, 2> k_of{1, 2};",
+        "struct Step {", "enum class Walk {", "using Steps = double;"}) {
+    CAPTURE(line);
+    const Problems problems = problems_with("src/mid/deep/b.cpp", line);
+    REQUIRE(problems.size() == 1);
+    CHECK(problems.front().starts_with("src/mid/deep/b.cpp:1: "));
+    CHECK(problems.front().ends_with(" is defined in src/mid/a.cpp too"));
+    CHECK(problems_with("src/low/b.cpp", line).empty());
+    CHECK(problems_with("src/mid/b.cpp", "  " + line).empty());
+  }
+  CHECK(problems_with("src/mid/b.cpp", "constexpr int k_more = k_many;").empty());
+  CHECK(problems_with("src/mid/b.cpp", "struct Step;").empty());
 }
 
 TEST_CASE("a private header of another layer is refused") {

@@ -19,7 +19,7 @@ constexpr std::uint64_t k_corners = 6;
 constexpr Vec3 k_box{1.5, 1.5, 0.6};
 constexpr double k_clear_of_ring = 0.6;
 constexpr double k_largest = 0.02;
-constexpr int k_halvings = 6;  // from the largest specks to the smallest
+constexpr int k_size_halvings = 6;  // from the largest specks to the smallest
 
 /// A crooked octahedron.
 class Speck {
@@ -29,7 +29,7 @@ class Speck {
       centre_ = {random() * k_box.x, random() * k_box.y, random() * k_box.z};
     } while (from_ring() < k_clear_of_ring);
     size_ = k_largest * (0.75 + 0.25 * random());
-    const double halvings = (random() + 1) / 2 * k_halvings;
+    const double halvings = (random() + 1) / 2 * k_size_halvings;
     for (int i = 0; i < static_cast<int>(halvings); ++i) size_ *= 0.5;
   }
 

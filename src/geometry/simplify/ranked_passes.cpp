@@ -33,7 +33,7 @@ constexpr double k_slowed = 0.01;
 // Refused in a pass, of the triangles: what is left that is cheap is not worth an order, which
 // takes long from many triangles on. With 10,000 a body model has 2 % more error.
 constexpr double k_little_refused = 0.01;
-constexpr std::uint64_t k_many = 25'000;
+constexpr std::uint64_t k_too_many_to_order = 25'000;
 
 // With a bound, the passes end when it may be near for this part of the collapses.
 constexpr double k_bounded = 0.2;
@@ -94,7 +94,7 @@ bool RankedPasses::is_slowed_by_topology() const {
 
 bool RankedPasses::refuses_little() const {
   const std::uint64_t left = mesh_.triangles();
-  return left > k_many &&
+  return left > k_too_many_to_order &&
          static_cast<double>(tried_ - collapses_) <= k_little_refused * static_cast<double>(left);
 }
 

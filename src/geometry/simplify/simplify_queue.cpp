@@ -32,7 +32,7 @@ constexpr double k_loss_of_fewer = 4;
 constexpr double k_loss_of_one_fewer = 100;
 constexpr double k_nothing = 1e-10;
 // From so many triangles on one fewer is as good, if need be.
-constexpr std::uint64_t k_many = 1000;
+constexpr std::uint64_t k_goal_of_one_fewer = 1000;
 // A mesh that was kept is dropped when it has so many times the triangles that are left.
 constexpr double k_far_more = 1.3;
 
@@ -66,14 +66,14 @@ constexpr std::uint64_t k_edges_of_triangle = 3;
 /// few it is one as long as anything else may do; of many it is one more where nothing else does.
 std::uint64_t most_fewer(std::uint64_t goal, bool nothing_else_does) {
   constexpr std::uint64_t k_few = 100;
-  if (goal >= k_many) return goal / k_many - (nothing_else_does ? 0 : 1);
+  if (goal >= k_goal_of_one_fewer) return goal / k_goal_of_one_fewer - (nothing_else_does ? 0 : 1);
   if (goal < k_few) return 0;
   return nothing_else_does ? goal / (k_few / 2) - 1 : 1;
 }
 
 /// Triangles that a collapse may remove.
 std::uint64_t most_at_once(std::uint64_t excess, std::uint64_t goal, bool nothing_else_does) {
-  if (excess == 1 && goal < k_many) return excess;
+  if (excess == 1 && goal < k_goal_of_one_fewer) return excess;
   return excess < k_few_to_go ? excess + most_fewer(goal, nothing_else_does) : excess;
 }
 
