@@ -256,6 +256,10 @@ Collapse CollapseJudge::judge(std::uint32_t a, std::uint32_t b, const CollapseLi
   is_ribbon_ = is_ribbon();
   if ((ring_a_.flags & k_line) != 0) add_lines(ring_a_, a, half * -1.0, k_none);
   if ((ring_b_.flags & k_line) != 0) add_lines(ring_b_, b, half, a);
+  if (is_ribbon_ && !state_.past.empty() && is_longer_than_ends()) {
+    quadric_.add(state_.past[a].about(half));
+    quadric_.add(state_.past[b].about(half * -1.0));
+  }
   if (state_.has_uvs()) return best_with_uvs(a, b, shared, limits.max_cost);
   return best_of_positions(a, b, shared, limits.max_cost);
 }
@@ -301,6 +305,18 @@ bool CollapseJudge::is_ribbon() const {
     return true;
   };
   return is_open(ring_a_) && is_open(ring_b_);
+}
+
+/// Whether a vertex round the edge is none that ends have become: of a card that has no others one
+/// has to move.
+bool CollapseJudge::is_longer_than_ends() const {
+  const auto has_other = [&](const Ring& ring) {
+    for (std::uint32_t i = 0; i < ring.size; ++i) {
+      if (state_.past[ring.next[i]].empty() || state_.past[ring.prev[i]].empty()) return true;
+    }
+    return false;
+  };
+  return has_other(ring_a_) || has_other(ring_b_);
 }
 
 Collapse CollapseJudge::best_of_positions(std::uint32_t a, std::uint32_t b, std::uint32_t shared,

@@ -85,6 +85,7 @@ class CollapseJudge {
   Collapse or_at_end(const Collapse& best, std::uint32_t a, std::uint32_t b, std::uint32_t shared);
   bool is_all_of_piece(std::uint32_t a, std::uint32_t b) const;
   bool is_ribbon() const;
+  bool is_longer_than_ends() const;
   bool may_turn_ribbon() const { return is_ribbon_ && state_.turns_ribbons; }
   Collapse at_position(Vec3 position, std::uint32_t shared, double max_cost, Turn turn);
   template <typename Candidate, typename Take>

@@ -25,7 +25,7 @@ struct CollapseState {
   std::span<Appearance> appearances;    // empty where they do not count
   AppearanceScale appearance_scale;
   double uv_scale = 0;                    // LineOptions::uv_scale
-  std::span<const PastPlanes> past = {};  // of vertices that are k_complex; empty: of none
+  std::span<const PastPlanes> past = {};  // of k_complex ones and ribbons' ends; empty: of none
   bool turns_ribbons = true;              // Turn::ribbon may be
 
   /// Those of a triangle's corners, from the one at the vertex on.

@@ -82,13 +82,16 @@ inline double weight_of_side(Vec3 triangle_normal, Vec3 edge) {
   return std::min(1.0, length(triangle_normal) / (k_low * squared_length(edge)));
 }
 
-/// The planes that the stars of some vertices had, about the place of the one that they became: x
-/// costs x'Ax - 2 b'x + c (Garland & Heckbert 1997).
+/// The planes that the stars of some vertices had, or the places that some ends were at, about the
+/// place of the vertex that they became: x costs x'Ax - 2 b'x + c (Garland & Heckbert 1997).
 struct PastPlanes {
   Quadric a;
   Vec3 b;
   double c = 0;
 
+  /// The square of the distance from here, times a weight.
+  static PastPlanes here(double weight) { return {{weight, 0, 0, weight, 0, weight}, {}, 0}; }
+  bool empty() const { return !(a.trace() > 0); }
   double cost(Vec3 x) const { return dot(a * x - b * 2.0, x) + c; }
   /// About the point x.
   PastPlanes about(Vec3 x) const { return {a, b - a * x, cost(x)}; }
@@ -115,6 +118,11 @@ struct EdgeQuadric {
     a = a + planes;
     b = b + moved;
     c += dot(moved, point);
+  }
+  void add(const PastPlanes& past) {
+    a = a + past.a;
+    b = b + past.b;
+    c += past.c;
   }
 
   /// Where the cost is least. Along directions that the planes leave open it stays at the middle.

@@ -3,6 +3,7 @@
 //
 // What the queue knows of its mesh, does to keep it tidy, and how it hands it out.
 #include <algorithm>
+#include <array>
 
 #include <meshfarm/geometry/vertices.hpp>
 
@@ -12,6 +13,12 @@
 namespace meshfarm {
 namespace {
 
+// Sides that meet at less than 120 degrees meet at an end.
+constexpr double k_cos_of_end = -0.5;
+// Of the area round an end, as the weight of its place. What a ribbon loses at an end it loses
+// again and again, and planes see only the last time: with 0 curved hair at 20 % has 1.9 times the
+// error. With 1 and 3 all is alike; more costs the middle of the ribbon more than the end gains.
+constexpr double k_weight_of_end = 2;
 // Four triangles are made no smaller than this to fit in.
 constexpr double k_smallest_share = 0.1;
 
@@ -32,19 +39,51 @@ bool CollapseQueue::has_free_border() const {
   return false;
 }
 
-/// Those of complex vertices, if there are any.
-void CollapseQueue::remember_planes() {
+/// Of complex vertices and of ribbons' ends, if there are any.
+void CollapseQueue::remember() {
   past_.clear();
   for (std::uint32_t v = 0; v < target_.size(); ++v) {
-    if ((mesh_.flags[v] & k_complex) == 0) continue;
+    const PastPlanes past = (mesh_.flags[v] & k_complex) != 0 ? planes_at(v) : end_at(v);
+    if (past.empty()) continue;
     past_.resize(target_.size());
-    for (const Corner& c : mesh_.adjacency.at(v)) {
-      const Vec3 at = mesh_.positions[v];
-      const Vec3 normal = cross(mesh_.positions[c.next] - at, mesh_.positions[c.prev] - at);
-      const double twice_area = length(normal);
-      if (twice_area > 0) past_[v].a.add(normal, 0.5 / twice_area);
-    }
+    past_[v] = past;
   }
+}
+
+PastPlanes CollapseQueue::planes_at(std::uint32_t vertex) const {
+  PastPlanes past;
+  const Vec3 at = mesh_.positions[vertex];
+  for (const Corner& c : mesh_.adjacency.at(vertex)) {
+    const Vec3 normal = cross(mesh_.positions[c.next] - at, mesh_.positions[c.prev] - at);
+    const double twice_area = length(normal);
+    if (twice_area > 0) past.a.add(normal, 0.5 / twice_area);
+  }
+  return past;
+}
+
+/// Where the sides of a ribbon meet, at its end: the place, as heavy as what is round it.
+PastPlanes CollapseQueue::end_at(std::uint32_t vertex) const {
+  const auto is_on_border = [&](std::uint32_t v) { return mesh_.flags[v] == k_border; };
+  const std::span<const Corner> fan = mesh_.adjacency.at(vertex);
+  if (!is_on_border(vertex) || !std::all_of(fan.begin(), fan.end(), [&](const Corner& c) {
+        return is_on_border(c.next) && is_on_border(c.prev);
+      })) {
+    return {};
+  }
+  const Vec3 at = mesh_.positions[vertex];
+  double twice_area = 0;
+  for (const Corner& c : fan) {
+    twice_area += length(cross(mesh_.positions[c.next] - at, mesh_.positions[c.prev] - at));
+  }
+  std::array<Vec3, 2> sides;
+  std::size_t count = 0;
+  for_border_edges(fan, [&](const Corner&, std::uint32_t neighbour) {
+    if (count < sides.size()) sides[count] = mesh_.positions[neighbour] - at;
+    ++count;
+  });
+  const bool is_end = count == sides.size() &&
+                      dot(sides[0], sides[1]) > k_cos_of_end * length(sides[0]) * length(sides[1]);
+  return is_end ? PastPlanes::here(k_weight_of_end * 0.5 * twice_area) : PastPlanes{};
 }
 
 /// After a collapse that may have left fans other than before: drops triangles that have become

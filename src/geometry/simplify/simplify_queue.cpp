@@ -91,7 +91,7 @@ void CollapseQueue::start(std::span<const Triangle> triangles) {
   looks_.assign(vertices, 0);
   stale_.assign(vertices, 0);
   heap_.clear();
-  remember_planes();
+  remember();
   ranking_.begin_pass({mesh_.positions, triangles, mesh_.flags, &mesh_.adjacency,
                        &mesh_.creases.test(), mesh_.seam_only, true, mesh_.any_topology, true,
                        mesh_.appearances, mesh_.appearance_scale, mesh_.uv_scale});

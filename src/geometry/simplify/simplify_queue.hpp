@@ -114,7 +114,9 @@ class CollapseQueue {
  private:
   enum class Stop : std::uint8_t { met, nothing_left, held, told };
 
-  void remember_planes();
+  void remember();
+  PastPlanes planes_at(std::uint32_t vertex) const;
+  PastPlanes end_at(std::uint32_t vertex) const;
   void rank(double share);
   Stop run(const SimplifyGoal& goal, const Progress& progress);
   double cost_of_fewer(const QueuedEdge& queued, double cost, std::uint64_t excess) const;

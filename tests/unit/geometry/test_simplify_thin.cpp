@@ -82,6 +82,35 @@ TEST_CASE("a ribbon that bends keeps its shape where it is thinner than its tria
   }
 }
 
+TEST_CASE("curved hair keeps its ends") {
+  // Two sides, narrower towards the end, half way round a circle.
+  constexpr std::uint32_t k_steps = 118;
+  Mesh hair;
+  for (std::uint32_t i = 0; i <= k_steps; ++i) {
+    const double along = static_cast<double>(i) / k_steps;
+    const double angle = std::numbers::pi * along;
+    const double half = 0.01 * (1 - 0.8 * along);
+    for (const double side : {-half, half}) {
+      hair.positions.push_back({std::cos(angle), std::sin(angle), side});
+    }
+  }
+  for (std::uint32_t a = 0; a < 2 * k_steps; a += 2) {
+    hair.triangles.push_back({a, a + 1, a + 3});
+    hair.triangles.push_back({a, a + 3, a + 2});
+  }
+  for (const std::uint64_t triangles : {48, 24, 12}) {
+    CAPTURE(triangles);
+    Simplifier simplifier(hair, {});
+    simplifier.reduce({triangles});
+    CHECK(simplifier.triangles() == triangles);
+    const std::vector<Vec3>& left = simplifier.mesh().positions;
+    const auto before = [](const Vec3& p, const Vec3& q) { return p.x < q.x; };
+    const double step = 2 * std::numbers::pi / static_cast<double>(triangles);
+    CHECK(length(*std::max_element(left.begin(), left.end(), before) - Vec3{1, 0, 0}) < step / 2);
+    CHECK(length(*std::min_element(left.begin(), left.end(), before) - Vec3{-1, 0, 0}) < step / 2);
+  }
+}
+
 TEST_CASE("a straight pin keeps its length, however thin it is") {
   for (const double radius : {1e-1, 1e-2, 1e-3}) {
     CAPTURE(radius);
