@@ -14,6 +14,10 @@ namespace {
 
 /// So many of its vertices tell what a component was.
 constexpr std::size_t k_voters = 15;
+/// A component that has this part of the area or more, and that none is taken for, is looked for by
+/// itself: close sheets may have all vertices of another nearer to them.
+constexpr double k_large = 0.01;
+constexpr std::size_t k_looked_for = 1000;  // points
 
 UnionFind components_of(const Mesh& mesh) {
   UnionFind pieces(mesh.positions.size());
@@ -53,6 +57,38 @@ std::uint32_t most_frequent(std::vector<std::uint32_t>& values) {
     best = std::max(best, last - first);
   }
   return winner;
+}
+
+/// Whether most of the component's triangles are much nearer to `after` than to the others of
+/// `before`.
+bool is_found(const Mesh& before, UnionFind& pieces, std::uint32_t piece, const Mesh& after,
+              unsigned threads) {
+  Mesh others;
+  others.positions = before.positions;
+  std::vector<Vec3> middles;
+  for (const Triangle& t : before.triangles) {
+    if (pieces.find(t[0]) != piece) {
+      others.triangles.push_back(t);
+      continue;
+    }
+    const auto& at = before.positions;
+    middles.push_back((at[t[0]] + at[t[1]] + at[t[2]]) * (1.0 / 3));
+  }
+  if (others.triangles.empty() || after.triangles.empty()) return !after.triangles.empty();
+  const std::size_t step = (middles.size() + k_looked_for - 1) / k_looked_for;
+  std::vector<Vec3> points;
+  for (std::size_t i = 0; i < middles.size(); i += step) points.push_back(middles[i]);
+  const auto distances_to = [&](const Mesh& mesh) {
+    std::vector<double> distances(points.size());
+    const DistanceMeter::Points all = points;
+    DistanceMeter(mesh, threads).measure_each({&all, 1}, distances);
+    return distances;
+  };
+  const std::vector<double> there = distances_to(after);
+  const std::vector<double> elsewhere = distances_to(others);
+  std::size_t found = 0;
+  for (std::size_t i = 0; i < points.size(); ++i) found += there[i] < 0.5 * elsewhere[i] ? 1 : 0;
+  return 2 * found > points.size();
 }
 
 }  // namespace
@@ -105,10 +141,12 @@ GoneComponents find_gone_components(const Mesh& before, const Mesh& after, unsig
     }
     areas[most_frequent(votes)] = -1;
   }
-  for (const double area : areas) {
-    if (area < 0) continue;
+  for (std::uint32_t piece = 0; piece < areas.size(); ++piece) {
+    if (areas[piece] < 0) continue;
+    const bool is_large = areas[piece] >= k_large * gone.area_of_all;
+    if (is_large && is_found(before, pieces, piece, after, threads)) continue;
     ++gone.components;
-    gone.area += area;
+    gone.area += areas[piece];
   }
   return gone;
 }
