@@ -307,6 +307,16 @@ bool CollapseJudge::is_ribbon() const {
   return is_open(ring_a_) && is_open(ring_b_);
 }
 
+/// Between corners in a row, as those of windows, what is flat has no other way to go than to leave
+/// a sliver between three of them. Without that the corners went themselves.
+Collapse CollapseJudge::into_line(Vec3 position, std::uint32_t shared, double max_cost) {
+  const Collapse made = at_position(position, shared, max_cost, Turn::wide);
+  if (made.triangles > 0) return made;
+  Collapse thin = at_position(position, shared, max_cost, Turn::sliver);
+  thin.cost += star_.cost_of_slivers(1, kept_, position - middle_);
+  return thin.cost <= max_cost ? thin : Collapse{};
+}
+
 /// Whether a vertex round the edge is none that ends have become: of a card that has no others one
 /// has to move.
 bool CollapseJudge::is_longer_than_ends() const {
@@ -322,7 +332,7 @@ bool CollapseJudge::is_longer_than_ends() const {
 Collapse CollapseJudge::best_of_positions(std::uint32_t a, std::uint32_t b, std::uint32_t shared,
                                           double max_cost) {
   if (line_rank(ring_a_.flags) != line_rank(ring_b_.flags))
-    return at_position(line_position(a, b), shared, max_cost, Turn::wide);
+    return into_line(line_position(a, b), shared, max_cost);
   const auto at_near = [&](Vec3 x, double most, Turn turn) {
     if (!quadric_.is_near(x)) return Collapse{};
     return at_position(rounded(middle_ + x, state_.type), shared, most, turn);

@@ -87,6 +87,7 @@ class CollapseJudge {
   bool is_ribbon() const;
   bool is_longer_than_ends() const;
   bool may_turn_ribbon() const { return is_ribbon_ && state_.turns_ribbons; }
+  Collapse into_line(Vec3 position, std::uint32_t shared, double max_cost);
   Collapse at_position(Vec3 position, std::uint32_t shared, double max_cost, Turn turn);
   template <typename Candidate, typename Take>
   void for_creases_of(const Ring& ring, std::uint32_t vertex, Vec3 at,

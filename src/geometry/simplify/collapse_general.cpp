@@ -351,7 +351,7 @@ GeneralCollapse GeneralJudge::judge(std::uint32_t a, std::uint32_t b,
 Collapse GeneralJudge::best_of_positions() {
   const Vec3 at_a = state_.positions[a_.vertex];
   const Vec3 at_b = state_.positions[b_.vertex];
-  if (a_.rank != b_.rank) return at_position(a_.rank > b_.rank ? at_a : at_b, Turn::wide);
+  if (a_.rank != b_.rank) return into_line(a_.rank > b_.rank ? at_a : at_b);
   if (a_.rank < 2) {
     const Collapse best = at_best(Turn::wide);
     if (best.triangles > 0) return best;
@@ -364,6 +364,17 @@ Collapse GeneralJudge::best_of_positions() {
     if (there.triangles > 0) return there;
   }
   return turned_far(ends);
+}
+
+/// As CollapseJudge does.
+Collapse GeneralJudge::into_line(Vec3 position) const {
+  const Collapse made = at_position(position, Turn::wide);
+  if (made.triangles > 0) return made;
+  Collapse thin = at_position(position, Turn::sliver);
+  const double more = star_.cost_of_slivers(0, staying_, position - middle_);
+  thin.cost += more;
+  thin.certain += more;
+  return thin;
 }
 
 /// As CollapseJudge does, where every place turns a triangle by more than 60 degrees.

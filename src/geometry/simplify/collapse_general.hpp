@@ -79,6 +79,7 @@ class GeneralJudge {
   void add_appearances();
   void add_lines(const End& end, const End& other, Vec3 at);
   Collapse best_of_positions();
+  Collapse into_line(Vec3 position) const;
   Collapse turned_far(std::span<const Vec3, 2> ends) const;
   Collapse best_with_uvs();
   bool may_go_to(Vec3 x) const;

@@ -22,6 +22,10 @@ constexpr double k_all_ways = 0.5;
 constexpr double k_ribbon_sine_squared = 0.0025;
 constexpr double k_least_of_ribbons = 1e-28;  // less is what rounding leaves of no area
 constexpr double k_thinner_squared = 1.0 / 16;
+// Slivers that a collapse may make have an angle below a quarter of a degree. It costs so much of
+// the fourth power of their longest side: more than what is nearly flat, much less than a corner.
+constexpr double k_sliver_sine_squared = 1.6e-5;
+constexpr double k_cost_of_sliver = 1e-5;
 
 /// Of the smallest angle of the triangle x, p, q with the normal cross(p - x, q - x). 0 if it has
 /// no area.
@@ -31,6 +35,15 @@ double squared_least_sine(Vec3 x, Vec3 p, Vec3 q, double squared_normal) {
   const double b = squared_length(q - x);
   const double c = squared_length(p - q);
   return squared_normal / std::max({a * b, b * c, c * a});
+}
+
+/// Whether a triangle that was none becomes a sliver if its end moves to x.
+bool becomes_sliver(const StarTriangle& old, Vec3 x) {
+  if (squared_least_sine(old.end, old.p, old.q, old.squared_size) < k_sliver_sine_squared)
+    return false;
+  const double size = squared_length(cross(old.p - x, old.q - x));
+  const double sine = squared_least_sine(x, old.p, old.q, size);
+  return sine > k_least_of_slivers && sine < k_sliver_sine_squared;
 }
 
 }  // namespace
@@ -83,7 +96,7 @@ bool CollapseStar::is_acceptable(const Two& two, int lane, Vec3 x, double cos_sq
 /// Whether a triangle that has turned faces against all together. At the tip of a thin pin some
 /// always do: there it counts if it did not before.
 bool CollapseStar::is_folded(std::uint32_t first, std::uint32_t kept, Vec3 x,
-                             double cos_squared) const {
+                             const TurnLimits& limits) const {
   const auto at = [&](const Vec3Pair& a, std::uint32_t i) {
     return Vec3{a.x[i % 2], a.y[i % 2], a.z[i % 2]};
   };
@@ -107,7 +120,8 @@ bool CollapseStar::is_folded(std::uint32_t first, std::uint32_t kept, Vec3 x,
     const Vec3 old_normal = at(two.normal, i);
     const double turn = meshfarm::dot(normal, old_normal);
     const double sizes = squared_length(normal) * two.squared_size[i % 2];
-    if (turn * turn >= cos_squared * sizes || meshfarm::dot(normal, all) > 0) continue;
+    if (turn * turn >= limits.cos_squared * sizes || meshfarm::dot(normal, all) > 0) continue;
+    if (limits.turn == Turn::sliver && becomes_sliver(triangle(2 * first + i), x)) continue;
     if (!faces_all_ways || meshfarm::dot(old_normal, old_all) > 0) return true;
   }
   return false;
@@ -130,10 +144,26 @@ std::optional<double> CollapseStar::lost_area_of_ribbon(std::uint32_t first, std
   return 0.5 * std::max(twice_lost, 0.0);
 }
 
+double CollapseStar::cost_of_slivers(std::uint32_t first, std::uint32_t kept, Vec3 x) const {
+  double cost = 0;
+  for (std::uint32_t i = 0; i < kept; ++i) {
+    const StarTriangle old = triangle(2 * first + i);
+    if (!becomes_sliver(old, x)) continue;
+    const double longest = std::max(
+        {squared_length(old.p - x), squared_length(old.q - x), squared_length(old.p - old.q)});
+    cost += k_cost_of_sliver * longest * longest;
+  }
+  return cost;
+}
+
 std::optional<double> CollapseStar::lost_area_from(std::uint32_t first, std::uint32_t kept, Vec3 x,
                                                    const TurnLimits& limits) const {
   if (limits.turn == Turn::ribbon) return lost_area_of_ribbon(first, kept, x);
   const double cos_squared = limits.turn == Turn::far ? k_cos_85_squared : k_cos_60_squared;
+  const auto is_spoilt = [&](std::uint32_t i) {
+    if (is_acceptable(pairs_[first + i / 2], static_cast<int>(i % 2), x, cos_squared)) return false;
+    return limits.turn != Turn::sliver || !becomes_sliver(triangle(2 * first + i), x);
+  };
   Pair twice_lost = sums_.twice_area;
   Mask steep{};
   Mask turning{};
@@ -157,16 +187,16 @@ std::optional<double> CollapseStar::lost_area_from(std::uint32_t first, std::uin
     const Mask good = (turned > 0) & (turned * turned >= cos_squared * sizes) &
                       (size > k_least_sine_squared * (squared_p * squared_q));
     if ((good[0] & good[1]) == 0) {
-      if (good[0] == 0 && !is_acceptable(two, 0, x, cos_squared)) return {};
+      if (good[0] == 0 && is_spoilt(i)) return {};
       // Beyond the last one is none; p == q makes it neither good nor an area.
-      if (good[1] == 0 && i + 1 < kept && !is_acceptable(two, 1, x, cos_squared)) return {};
+      if (good[1] == 0 && i + 1 < kept && is_spoilt(i + 1)) return {};
     }
     Pair length;
     root(size, length);
     twice_lost -= length;
   }
   if (limits.turn == Turn::narrow && (steep[0] | steep[1]) != 0) return {};
-  if ((turning[0] | turning[1]) != 0 && is_folded(first, kept, x, limits.cos_squared)) return {};
+  if ((turning[0] | turning[1]) != 0 && is_folded(first, kept, x, limits)) return {};
   return 0.5 * (twice_lost[0] + twice_lost[1]);
 }
 

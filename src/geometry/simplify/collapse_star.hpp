@@ -14,9 +14,9 @@
 
 namespace meshfarm {
 
-/// How far a collapse may turn a triangle: by 60 degrees, by 30, by 85, or, where all of them are
-/// as thin as those of a ribbon, in any way.
-enum class Turn : std::uint8_t { wide, narrow, far, ribbon };
+/// How far a collapse may turn a triangle: by 60 degrees, by 30, by 85; where all of them are as
+/// thin as those of a ribbon, in any way; or by 60, but those that become slivers in any way.
+enum class Turn : std::uint8_t { wide, narrow, far, ribbon, sliver };
 
 /// Turning a triangle far costs so many times as much. With 1 a CAD town has 4.7 times the error at
 /// 0.3 %, with 4 or 8 plates keep more of their small holes.
@@ -72,6 +72,8 @@ class CollapseStar {
   /// The same, where the kept ones begin at another pair.
   std::optional<double> lost_area_from(std::uint32_t first, std::uint32_t kept, Vec3 x,
                                        const TurnLimits& limits) const;
+  /// What Turn::sliver costs on top of all else.
+  double cost_of_slivers(std::uint32_t first, std::uint32_t kept, Vec3 x) const;
 
  private:
   struct Vec3Pair {
@@ -99,7 +101,7 @@ class CollapseStar {
   }
   static void root(const Pair& a, Pair& result) { result = Pair{std::sqrt(a[0]), std::sqrt(a[1])}; }
   void add_planes(const Two& two);
-  bool is_folded(std::uint32_t first, std::uint32_t kept, Vec3 x, double cos_squared) const;
+  bool is_folded(std::uint32_t first, std::uint32_t kept, Vec3 x, const TurnLimits& limits) const;
   std::optional<double> lost_area_of_ribbon(std::uint32_t first, std::uint32_t kept, Vec3 x) const;
   bool is_acceptable(const Two& two, int lane, Vec3 x, double cos_squared) const;
 

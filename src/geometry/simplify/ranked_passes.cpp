@@ -35,6 +35,12 @@ constexpr double k_slowed = 0.01;
 constexpr double k_little_refused = 0.01;
 constexpr std::uint64_t k_too_many_to_order = 25'000;
 
+// Passes rank no edges at complex vertices. From this part of all vertices on these may be most of
+// what is cheap, and a pass takes nothing that is so many times as dear as the pass before it took:
+// it took all corners of the holes in a shell model's walls.
+constexpr double k_many_complex = 1.0 / 64;
+constexpr double k_much_dearer = 64;
+
 // With a bound, the passes end when it may be near for this part of the collapses.
 constexpr double k_bounded = 0.2;
 // Drifts at a vertex add up to no more than this share of a bound before.
@@ -58,13 +64,18 @@ RankedPasses::RankedPasses(WorkingMesh& mesh, const SurfaceBound* bound)
 RankedPasses::End RankedPasses::reduce(const SimplifyGoal& goal,
                                        const std::function<bool(std::uint64_t)>& progress) {
   all_collapses_ = all_refused_for_topology_ = 0;
+  const bool climbs_slowly = has_many_complex();
+  double most = HUGE_VAL;
   while (mesh_.is_above(goal) && !is_near(goal)) {
     mesh_.begin_pass();
     ranking_.begin_pass({mesh_.mesh().positions, mesh_.mesh().triangles, mesh_.flags(),
                          &mesh_.adjacency(), &mesh_.creases().test(), mesh_.seam_only(), false,
                          false, ranks_by_bounds_, mesh_.mesh().appearances,
                          mesh_.appearance_scale(), mesh_.uv_scale()});
-    const Pass pass = plan(goal);
+    Pass pass = plan(goal);
+    const bool climbs_far = pass.max_cost > most;
+    pass.max_cost = std::min(pass.max_cost, most);
+    if (climbs_slowly) most = k_much_dearer * pass.max_cost;
     const std::uint64_t before = mesh_.triangles();
     const std::uint64_t removed = run(goal, pass);
     all_collapses_ += collapses_;
@@ -77,6 +88,7 @@ RankedPasses::End RankedPasses::reduce(const SimplifyGoal& goal,
       return End::near;
     }
     if (static_cast<double>(removed) < k_least_ranked * static_cast<double>(before)) {
+      if (climbs_far) return End::dead_end;
       if (ranks_by_bounds_ && goal.max_cost > cost_of(pass.limit)) {
         ranks_by_bounds_ = false;
         continue;
@@ -85,6 +97,13 @@ RankedPasses::End RankedPasses::reduce(const SimplifyGoal& goal,
     }
   }
   return End::near;
+}
+
+bool RankedPasses::has_many_complex() const {
+  const std::span<const std::uint8_t> flags = mesh_.flags();
+  const auto complex = std::count_if(flags.begin(), flags.end(),
+                                     [](std::uint8_t each) { return (each & k_complex) != 0; });
+  return static_cast<double>(complex) > k_many_complex * static_cast<double>(flags.size());
 }
 
 bool RankedPasses::is_slowed_by_topology() const {

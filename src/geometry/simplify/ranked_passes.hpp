@@ -45,6 +45,7 @@ class RankedPasses {
   };
 
   bool is_near(const SimplifyGoal& goal) const;
+  bool has_many_complex() const;
   Pass plan(const SimplifyGoal& goal);
   std::uint64_t run(const SimplifyGoal& goal, const Pass& pass);
   bool may_drift(DriftMeter& meter, const RankedEdge& edge, const Collapse& collapse);

@@ -1,0 +1,119 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+//
+// Sheets with rows of square holes: corners stay as long as anything that is nearly flat can go.
+#include <cmath>
+#include <functional>
+#include <map>
+#include <tuple>
+
+#include <doctest/doctest.h>
+
+#include <meshfarm/geometry/simplify.hpp>
+
+#include "test_simplify_meshes.hpp"
+
+using namespace meshfarm;
+using namespace meshfarm::simplify_test;
+
+namespace {
+
+/// Squares of the whole numbers' lattice, which share their corners; and those of the holes.
+class Sheets {
+ public:
+  /// A square bay of six by six squares, of which the middle four may be a hole.
+  void add_bay(const std::function<Vec3(int, int)>& at, bool has_hole = true) {
+    constexpr int k_squares = 6;
+    for (int i = 0; i < k_squares; ++i) {
+      for (int k = 0; k < k_squares; ++k) {
+        if (has_hole && i / 2 == 1 && k / 2 == 1) continue;
+        const std::uint32_t a = number(at(i, k));
+        const std::uint32_t c = number(at(i + 1, k + 1));
+        mesh_.triangles.push_back({a, number(at(i + 1, k)), c});
+        mesh_.triangles.push_back({a, c, number(at(i, k + 1))});
+      }
+    }
+    if (!has_hole) return;
+    for (const auto& [i, k] : {std::pair{2, 2}, {2, 4}, {4, 2}, {4, 4}}) {
+      corners_.push_back(number(at(i, k)));
+    }
+  }
+
+  Mesh bent(const std::function<Vec3(Vec3)>& bend) const {
+    Mesh mesh = mesh_;
+    for (Vec3& p : mesh.positions) p = bend(p);
+    return mesh;
+  }
+  const std::vector<std::uint32_t>& corners() const { return corners_; }
+
+ private:
+  std::uint32_t number(Vec3 p) {
+    const auto [found, is_new] =
+        numbers_.try_emplace({p.x, p.y, p.z}, static_cast<std::uint32_t>(mesh_.positions.size()));
+    if (is_new) mesh_.positions.push_back(p);
+    return found->second;
+  }
+
+  Mesh mesh_;
+  std::vector<std::uint32_t> corners_;
+  std::map<std::tuple<double, double, double>, std::uint32_t> numbers_;
+};
+
+/// How many of the corners are no vertices of the result.
+std::size_t lost_corners(const Sheets& sheets, const Mesh& mesh, std::uint64_t triangles) {
+  Simplifier simplifier(mesh, {});
+  simplifier.reduce({triangles});
+  CHECK(simplifier.triangles() <= triangles);
+  CHECK(static_cast<double>(simplifier.triangles()) >= 0.999 * static_cast<double>(triangles));
+  std::size_t lost = 0;
+  for (const std::uint32_t corner : sheets.corners()) {
+    double nearest = HUGE_VAL;
+    for (const Vec3& p : simplifier.mesh().positions) {
+      nearest = std::min(nearest, length(p - mesh.positions[corner]));
+    }
+    lost += nearest > 0.2 ? 1 : 0;
+  }
+  return lost;
+}
+
+}  // namespace
+
+TEST_CASE("what is flat between windows in rows goes before their corners") {
+  constexpr int k_bays = 20;
+  Sheets sheets;
+  for (int x = 0; x < 6 * k_bays; x += 6) {
+    for (int y = 0; y < 6 * k_bays; y += 6) {
+      sheets.add_bay([&](int i, int k) { return Vec3{1.0 * (x + i), 1.0 * (y + k), 0}; });
+    }
+  }
+  const Mesh mesh = sheets.bent([](Vec3 p) {
+    return Vec3{p.x, p.y, 6 * (0.004 * p.x * p.x / 36 + 0.02 * std::sin(p.y / 6))};
+  });
+  // 6.6 a bay, of which the corners alone need 5.9.
+  CHECK(lost_corners(sheets, mesh, 2640) == 0);
+}
+
+TEST_CASE("walls on a floor keep the corners of their holes while their lines may lose vertices") {
+  constexpr int k_bays = 10;
+  Sheets sheets;
+  for (int line = 0; line <= 6 * k_bays; line += 6) {
+    for (int bay = 0; bay < 6 * k_bays; bay += 6) {
+      sheets.add_bay([&](int i, int k) { return Vec3{1.0 * (bay + i), 1.0 * line, 1.0 * k}; });
+      sheets.add_bay([&](int i, int k) { return Vec3{1.0 * line, 1.0 * (bay + i), 1.0 * k}; });
+    }
+  }
+  for (int x = 0; x < 6 * k_bays; x += 6) {
+    for (int y = 0; y < 6 * k_bays; y += 6) {
+      const auto at = [&](int i, int k) { return Vec3{1.0 * (x + i), 1.0 * (y + k), 0}; };
+      sheets.add_bay(at, false);
+    }
+  }
+  const Mesh mesh = sheets.bent([](Vec3 p) {
+    return Vec3{p.x, p.y, p.z + 6 * (0.004 * p.x * p.x / 36 + 0.02 * std::sin(p.y / 6))};
+  });
+  for (const double share : {0.15, 0.13, 0.11}) {
+    CAPTURE(share);
+    const auto all = static_cast<double>(mesh.triangles.size());
+    CHECK(lost_corners(sheets, mesh, static_cast<std::uint64_t>(share * all)) == 0);
+  }
+}
