@@ -14,7 +14,7 @@ namespace {
 
 constexpr int k_axis_bits = 21;
 constexpr int k_digit_bits = 9;
-constexpr int k_digits = 7;            // of 9 bits: all 63 of a code
+constexpr int k_digits = 7;                 // of 9 bits: all 63 of a code
 constexpr std::ptrdiff_t k_few_equal = 64;  // fewer cost a search no more than their sorting would
 constexpr std::size_t k_values = std::size_t{1} << k_digit_bits;
 

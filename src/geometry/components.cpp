@@ -16,7 +16,7 @@ namespace {
 constexpr std::size_t k_voters = 15;
 /// A component that has this part of the area or more, and that none is taken for, is looked for by
 /// itself: close sheets may have all vertices of another nearer to them.
-constexpr double k_large = 0.01;
+constexpr double k_large_component = 0.05;
 constexpr std::size_t k_looked_for = 1000;  // points
 
 UnionFind components_of(const Mesh& mesh) {
@@ -143,7 +143,7 @@ GoneComponents find_gone_components(const Mesh& before, const Mesh& after, unsig
   }
   for (std::uint32_t piece = 0; piece < areas.size(); ++piece) {
     if (areas[piece] < 0) continue;
-    const bool is_large = areas[piece] >= k_large * gone.area_of_all;
+    const bool is_large = areas[piece] >= k_large_component * gone.area_of_all;
     if (is_large && is_found(before, pieces, piece, after, threads)) continue;
     ++gone.components;
     gone.area += areas[piece];
