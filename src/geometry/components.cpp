@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
 #include <map>
+#include <optional>
 #include <vector>
 
 #include <meshfarm/geometry/components.hpp>
@@ -61,8 +62,8 @@ std::uint32_t most_frequent(std::vector<std::uint32_t>& values) {
 
 /// Whether most of the component's triangles are much nearer to `after` than to the others of
 /// `before`.
-bool is_found(const Mesh& before, UnionFind& pieces, std::uint32_t piece, const Mesh& after,
-              unsigned threads) {
+bool is_found(const Mesh& before, UnionFind& pieces, std::uint32_t piece,
+              const DistanceMeter& after, unsigned threads) {
   Mesh others;
   others.positions = before.positions;
   std::vector<Vec3> middles;
@@ -74,18 +75,18 @@ bool is_found(const Mesh& before, UnionFind& pieces, std::uint32_t piece, const 
     const auto& at = before.positions;
     middles.push_back((at[t[0]] + at[t[1]] + at[t[2]]) * (1.0 / 3));
   }
-  if (others.triangles.empty() || after.triangles.empty()) return !after.triangles.empty();
+  if (others.triangles.empty()) return true;
   const std::size_t step = (middles.size() + k_looked_for - 1) / k_looked_for;
   std::vector<Vec3> points;
   for (std::size_t i = 0; i < middles.size(); i += step) points.push_back(middles[i]);
-  const auto distances_to = [&](const Mesh& mesh) {
+  const auto distances_by = [&](const DistanceMeter& meter) {
     std::vector<double> distances(points.size());
     const DistanceMeter::Points all = points;
-    DistanceMeter(mesh, threads).measure_each({&all, 1}, distances);
+    meter.measure_each({&all, 1}, distances);
     return distances;
   };
-  const std::vector<double> there = distances_to(after);
-  const std::vector<double> elsewhere = distances_to(others);
+  const std::vector<double> there = distances_by(after);
+  const std::vector<double> elsewhere = distances_by(DistanceMeter(others, threads));
   std::size_t found = 0;
   for (std::size_t i = 0; i < points.size(); ++i) found += there[i] < 0.5 * elsewhere[i] ? 1 : 0;
   return 2 * found > points.size();
@@ -141,10 +142,15 @@ GoneComponents find_gone_components(const Mesh& before, const Mesh& after, unsig
     }
     areas[most_frequent(votes)] = -1;
   }
+  std::optional<DistanceMeter> to_after;
+  const auto is_there = [&](std::uint32_t piece) {
+    if (after.triangles.empty() || !(areas[piece] > k_large_component * gone.area_of_all))
+      return false;
+    if (!to_after) to_after.emplace(after, threads);
+    return is_found(before, pieces, piece, *to_after, threads);
+  };
   for (std::uint32_t piece = 0; piece < areas.size(); ++piece) {
-    if (areas[piece] < 0) continue;
-    const bool is_large = areas[piece] >= k_large_component * gone.area_of_all;
-    if (is_large && is_found(before, pieces, piece, after, threads)) continue;
+    if (areas[piece] < 0 || is_there(piece)) continue;
     ++gone.components;
     gone.area += areas[piece];
   }

@@ -267,7 +267,7 @@ void check_file(const SourceFile& file, const Layers& layers, Problems& problems
 std::string name_at_file_scope(const std::string& line) {
   static const std::regex k_names(
       "(?:(?:inline |static )*constexpr [^(=;{]*?\\b(k_\\w+)\\s*(?:\\[.*\\])?\\s*[={;].*"
-      "|(?:struct|class|enum class) (\\w+)\\b[^;]*"
+      "|(?:struct|class|enum class) (\\w+)\\b(?!:)[^;]*"
       "|using (\\w+) =.*)");
   std::smatch match;
   if (!std::regex_match(line, match, k_names)) return {};

@@ -313,6 +313,7 @@ Collapse CollapseJudge::into_line(Vec3 position, std::uint32_t shared, double ma
   const Collapse made = at_position(position, shared, max_cost, Turn::wide);
   if (made.triangles > 0) return made;
   Collapse thin = at_position(position, shared, max_cost, Turn::sliver);
+  if (thin.triangles == 0) return {};
   thin.cost += star_.cost_of_slivers(1, kept_, position - middle_);
   return thin.cost <= max_cost ? thin : Collapse{};
 }

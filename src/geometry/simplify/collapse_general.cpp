@@ -371,6 +371,7 @@ Collapse GeneralJudge::into_line(Vec3 position) const {
   const Collapse made = at_position(position, Turn::wide);
   if (made.triangles > 0) return made;
   Collapse thin = at_position(position, Turn::sliver);
+  if (thin.triangles == 0) return {};
   const double more = star_.cost_of_slivers(0, staying_, position - middle_);
   thin.cost += more;
   thin.certain += more;

@@ -11,7 +11,7 @@ constexpr double k_cos_60_squared = 0.25;
 constexpr double k_cos_85_squared = 0.0076;
 // Of the angle at the new vertex: near 0 and near 180 degrees alike are as good as no area.
 constexpr double k_least_sine_squared = 1e-6;
-// What is so thin already may become four times as thin, down to this.
+// What is so thin already may become four times as thin, down to this, and new slivers, too.
 constexpr double k_least_of_slivers = 1e-12;
 // Of the sum of the areas that normals add up to: where it is less, a pin or a thin tube faces all
 // ways. Without a limit nearly twice as many triangles of a dragon cross; with 0.3 or 0.15 wires
@@ -22,8 +22,8 @@ constexpr double k_all_ways = 0.5;
 constexpr double k_ribbon_sine_squared = 0.0025;
 constexpr double k_least_of_ribbons = 1e-28;  // less is what rounding leaves of no area
 constexpr double k_thinner_squared = 1.0 / 16;
-// Slivers that a collapse may make have an angle below a quarter of a degree. It costs so much of
-// the fourth power of their longest side: more than what is nearly flat, much less than a corner.
+// Slivers that a collapse may make have an angle below a quarter of a degree. Each costs so much of
+// the fourth power of its longest side: more than what is nearly flat, much less than a corner.
 constexpr double k_sliver_sine_squared = 1.6e-5;
 constexpr double k_cost_of_sliver = 1e-5;
 

@@ -61,12 +61,19 @@ PastPlanes CollapseQueue::planes_at(std::uint32_t vertex) const {
   return past;
 }
 
-/// Where the sides of a ribbon meet, at its end: the place, as heavy as what is round it.
+/// Where the sides of a ribbon meet, at its end: the place, and how heavy it is.
 PastPlanes CollapseQueue::end_at(std::uint32_t vertex) const {
   const auto is_on_border = [&](std::uint32_t v) { return mesh_.flags[v] == k_border; };
+  const auto is_of_ribbon = [&](std::uint32_t v) {
+    const std::span<const Corner> fan = mesh_.adjacency.at(v);
+    return is_on_border(v) && std::all_of(fan.begin(), fan.end(), [&](const Corner& c) {
+             return is_on_border(c.next) && is_on_border(c.prev);
+           });
+  };
+  // The corner of a sheet may have no other triangle than one at its border.
   const std::span<const Corner> fan = mesh_.adjacency.at(vertex);
-  if (!is_on_border(vertex) || !std::all_of(fan.begin(), fan.end(), [&](const Corner& c) {
-        return is_on_border(c.next) && is_on_border(c.prev);
+  if (!is_of_ribbon(vertex) || !std::all_of(fan.begin(), fan.end(), [&](const Corner& c) {
+        return is_of_ribbon(c.next) && is_of_ribbon(c.prev);
       })) {
     return {};
   }
