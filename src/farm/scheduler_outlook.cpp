@@ -67,8 +67,6 @@ void Scheduler::did(WorkerId id, JobKey key, std::uint32_t compute_ms, FarmTime 
   member.seconds_done += took;
   seconds_done_ += counted;
   squares_done_ += counted * counted;
-  cost_done_ += cost;
-  benchmark_cost_done_ += member.benchmark * took;
   member.speed = estimated_speed(member);
 }
 
@@ -78,7 +76,12 @@ void Scheduler::did(WorkerId id, JobKey key, std::uint32_t compute_ms, FarmTime 
 /// is spent.
 double Scheduler::estimated_speed(const Member& member) const {
   if (seconds_done_ == 0) return member.benchmark;
-  const double average = member.benchmark * cost_done_ / benchmark_cost_done_;
+  Pace all;
+  for (const auto& [kind, pace] : benchmark_paces_) {
+    all.took += pace.took;
+    all.thought += pace.thought;
+  }
+  const double average = member.benchmark * all.thought / all.took;
   const double weight = squares_done_ / seconds_done_;
   return average * (member.expected_done + weight) / (member.seconds_done + weight);
 }

@@ -196,9 +196,7 @@ class Scheduler {
   Outlook outlook_;
   FarmTime next_second_attempts_{0};
   FarmTime next_ban_end_ = FarmTime::max();
-  // What all workers did: how fast a host is at real jobs for what its benchmark says.
-  double cost_done_ = 0;
-  double benchmark_cost_done_ = 0;
+  // What all workers took, what took far too long cut short.
   double seconds_done_ = 0;
   double squares_done_ = 0;  // of the seconds of each job
   // By kind: in seconds, as thought by the workers' speeds; and in what a worker could have done by

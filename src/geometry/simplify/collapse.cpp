@@ -311,11 +311,7 @@ bool CollapseJudge::is_ribbon() const {
 /// a sliver between three of them. Without that the corners went themselves.
 Collapse CollapseJudge::into_line(Vec3 position, std::uint32_t shared, double max_cost) {
   const Collapse made = at_position(position, shared, max_cost, Turn::wide);
-  if (made.triangles > 0) return made;
-  Collapse thin = at_position(position, shared, max_cost, Turn::sliver);
-  if (thin.triangles == 0) return {};
-  thin.cost += star_.cost_of_slivers(1, kept_, position - middle_);
-  return thin.cost <= max_cost ? thin : Collapse{};
+  return made.triangles > 0 ? made : at_position(position, shared, max_cost, Turn::sliver);
 }
 
 /// Whether a vertex round the edge is none that ends have become: of a card that has no others one
@@ -419,6 +415,7 @@ Collapse CollapseJudge::at_position(Vec3 position, std::uint32_t shared, double 
   const std::optional<double> lost = star_.lost_area(kept_, x, turn);
   if (!lost) return {};
   cost = std::max(cost, quadric_.cost_of_lost_area(*lost) - EdgeQuadric::area_cost_of_bends(cost));
+  if (turn == Turn::sliver) cost += star_.cost_of_slivers(1, kept_, x);
   if (!(cost <= max_cost)) return {};
   if (blends_uvs_ && !wedges_.place(x)) return {};
   return {shared, position, cost, false};

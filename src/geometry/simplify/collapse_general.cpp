@@ -220,8 +220,9 @@ Collapse GeneralJudge::at_position(Vec3 position, Turn turn) const {
   const double lost_cost = quadric_.cost_of_lost_area(*lost);
   const double planes = std::max(quadric_.cost(x), cost_of_past(x));
   const double times = (changes_ ? k_loss_of_change : 1) * (is_of_cells() ? k_loss_of_cells : 1);
-  const double cost = std::max(planes, lost_cost * times);
-  return {removed_, position, cost, false, std::max(planes, lost_cost)};
+  const double slivers = turn == Turn::sliver ? star_.cost_of_slivers(0, staying_, x) : 0;
+  const double cost = std::max(planes, lost_cost * times) + slivers;
+  return {removed_, position, cost, false, std::max(planes, lost_cost) + slivers};
 }
 
 Collapse GeneralJudge::at_best(Turn turn) const {
@@ -369,13 +370,7 @@ Collapse GeneralJudge::best_of_positions() {
 /// As CollapseJudge does.
 Collapse GeneralJudge::into_line(Vec3 position) const {
   const Collapse made = at_position(position, Turn::wide);
-  if (made.triangles > 0) return made;
-  Collapse thin = at_position(position, Turn::sliver);
-  if (thin.triangles == 0) return {};
-  const double more = star_.cost_of_slivers(0, staying_, position - middle_);
-  thin.cost += more;
-  thin.certain += more;
-  return thin;
+  return made.triangles > 0 ? made : at_position(position, Turn::sliver);
 }
 
 /// As CollapseJudge does, where every place turns a triangle by more than 60 degrees.

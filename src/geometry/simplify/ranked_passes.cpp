@@ -36,8 +36,8 @@ constexpr double k_little_refused = 0.01;
 constexpr std::uint64_t k_too_many_to_order = 25'000;
 
 // Passes rank no edges at complex vertices. From this part of all vertices on these may be most of
-// what is cheap, and a pass takes nothing that is so many times as dear as the pass before it took:
-// it took all corners of the holes in a shell model's walls.
+// what is cheap, and a pass takes nothing that is so many times as dear as the pass before it might
+// take: one took all corners of the holes in a shell model's walls.
 constexpr double k_many_complex = 1.0 / 64;
 constexpr double k_much_dearer = 64;
 constexpr double k_as_good_as_flat = 1e-12;  // of the square of a triangle's area

@@ -65,31 +65,15 @@ TEST_CASE("pieces that nothing is left of are told by number and area") {
 
 TEST_CASE(
     "a wall between two skins is found, though all that is left of its rims is nearer to these") {
-  const auto skin_at = [](double z) {
-    Mesh skin;
-    skin.positions = {{0, 0, z}, {9, 0, z}, {9, 9, z}, {0, 9, z}};
-    skin.triangles = {{0, 1, 2}, {0, 2, 3}};
-    return skin;
-  };
   const auto wall = [](double low, double high, std::uint32_t steps) {
-    Mesh mesh;
-    for (std::uint32_t i = 0; i <= steps; ++i) {
-      const double x = 1 + 7.0 * i / steps;
-      mesh.positions.push_back({x, 4, low});
-      mesh.positions.push_back({x, 4, high});
-      if (i == 0) continue;
-      mesh.triangles.push_back({2 * i - 2, 2 * i, 2 * i + 1});
-      mesh.triangles.push_back({2 * i - 2, 2 * i + 1, 2 * i - 1});
-    }
+    Mesh mesh = test::grid(steps, 1);
+    for (Vec3& p : mesh.positions) p = {1 + 7.0 * p.x / steps, 4, p.y > 0 ? high : low};
     return mesh;
   };
-  Mesh before;
-  add(before, skin_at(0), 1, {});
-  add(before, skin_at(2), 1, {});
-  add(before, wall(0.02, 1.98, 70), 1, {});
   Mesh after;
-  add(after, skin_at(0), 1, {});
-  add(after, skin_at(2), 1, {});
+  for (const double z : {0, 2}) add(after, test::grid(1, 1), 9, {0, 0, z});
+  Mesh before = after;
+  add(before, wall(0.02, 1.98, 70), 1, {});
   GoneComponents gone = find_gone_components(before, after, 1);
   CHECK(gone.components == 1);
   CHECK(gone.area == doctest::Approx(7 * 1.96));
