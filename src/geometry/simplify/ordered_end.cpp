@@ -21,16 +21,17 @@
 namespace meshfarm {
 namespace {
 
-// Topology is kept if the sum of the costs, which goes with the square of the error, or the last of
-// them is then no more than so many times what it would be without, or if the distance is. A few
-// dear ones are no reason.
+// Topology is kept if the sum of the costs, which goes with the square of the error, is then no
+// more than so many times what it would be without, or if the distance is.
 constexpr double k_fair = 1.44;
 constexpr double k_fair_distance = 1.2;
 constexpr std::uint64_t k_fair_samples = 10'000;
 // Once it is found fair, it is thought of again when so much of the triangles is left.
 constexpr double k_decided = 0.8;
-// With fewer refusals a collapse it is not even tried: to keep the topology cost 1.0 to 1.2 times
-// as much then.
+// Of all collapses, from which on they tell what those before them cost.
+constexpr double k_first_share = 0.125;
+// With fewer refusals a dear collapse it is not even tried: to keep the topology cost 1.0 to 1.2
+// times as much then.
 constexpr double k_costly = 0.75;
 // With a bound, so much must be gained at least.
 constexpr double k_worth = 0.8;
@@ -214,7 +215,20 @@ bool OrderedEnd::is_costly_to_keep(const SimplifyGoal& goal) const {
 
 bool OrderedEnd::refuses_much() const {
   return static_cast<double>(refused_by_topology()) >
-         k_costly * static_cast<double>(trial_->queue.collapses());
+         k_costly * static_cast<double>(trial_->queue.costs().dear());
+}
+
+/// What was paid for the mesh as it was before this, of what `other` paid: none of both lies nearer
+/// to the input. A surface's squared error is as one over the square of its triangles, unless the
+/// first collapses now tell that those before cost less.
+double OrderedEnd::share_paid_before(const CollapseQueue& other) const {
+  const auto triangles = static_cast<double>(mesh_.triangles());
+  const double times =
+      triangles / static_cast<double>(std::max<std::uint64_t>(1, other.triangles()));
+  const double first = other.costs().quantile(k_first_share);
+  // With the cost of a collapse as one over the cube of the triangles.
+  const double of_first = first * triangles / 4;
+  return std::min(1 / std::max(times * times - 1, 1e-6), of_first / other.paid());
 }
 
 /// Whether to keep the topology costs much more than to simplify it.
@@ -225,15 +239,11 @@ bool OrderedEnd::is_unfair(double paid, const CollapseQueue& other,
     return static_cast<double>(other.triangles()) < k_worth * static_cast<double>(kept.triangles());
   }
   if (kept.triangles() > goal.triangles + 1) return other.triangles() < kept.triangles();
-  if (!(paid > k_fair * other.paid() && kept.dearest() > k_fair * other.dearest())) return false;
+  if (!(paid > k_fair * other.paid())) return false;
   const DistanceFrom distance(mesh_.mesh());
   const double squared = distance.squared_to(other);
   const double squared_kept = distance.squared_to(kept);
-  // Both lie no nearer to the input than the mesh as it is does. A surface's error is as one over
-  // its triangles, which tells how far that is.
-  const double times = static_cast<double>(mesh_.triangles()) /
-                       static_cast<double>(std::max<std::uint64_t>(1, other.triangles()));
-  const double before = squared / std::max(times * times - 1, 1e-6);
+  const double before = squared * share_paid_before(other);
   return before + squared_kept > k_fair_distance * k_fair_distance * (before + squared);
 }
 

@@ -343,7 +343,7 @@ void CollapseQueue::merge(std::uint32_t a, std::uint32_t b, const Collapse& coll
   last_cost_ = collapse.cost;
   const double certain = collapse.certain < 0 ? collapse.cost : collapse.certain;
   paid_ += certain;
-  dearest_ = std::max(dearest_, certain);
+  costs_.add(certain);
   ++collapses_;
   if (by_general_) tidy(a);
   list_ring(a);

@@ -18,6 +18,7 @@
 #include "geometry/simplify/collapse.hpp"
 #include "geometry/simplify/collapse_general.hpp"
 #include "geometry/simplify/collapse_guard.hpp"
+#include "geometry/simplify/cost_counts.hpp"
 #include "geometry/simplify/crossing_guard.hpp"
 #include "geometry/simplify/fans.hpp"
 #include "geometry/simplify/simplify_lines.hpp"
@@ -102,9 +103,9 @@ class CollapseQueue {
   double last_cost() const { return last_cost_; }
   /// Whether it stopped because so many collapses are refused to keep the topology.
   bool is_held() const { return held_; }
-  /// The sum of the costs of all collapses, and the greatest, both without guesses.
+  /// The sum of the costs of all collapses, and how many had each cost, without guesses.
   double paid() const { return paid_; }
-  double dearest() const { return dearest_; }
+  const CostCounts& costs() const { return costs_; }
   /// SimplifyGoal::keep_at.
   std::vector<Mesh> take_kept() { return std::move(kept_); }
   std::uint64_t collapses() const { return collapses_; }
@@ -184,7 +185,7 @@ class CollapseQueue {
   double max_cost_ = 0;
   double last_cost_ = 0;
   double paid_ = 0;
-  double dearest_ = 0;
+  CostCounts costs_;
   std::uint64_t collapses_ = 0;
   std::uint64_t kept_topology_ = 0;
   std::uint64_t blocked_ = 0;  // of these: cheaper than what has collapsed

@@ -1,0 +1,52 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+#include "geometry/simplify/simplify_rank.hpp"
+
+namespace meshfarm {
+
+/// How many collapses had each cost, to a factor of 16.
+class CostCounts {
+ public:
+  void add(double cost) {
+    ++counts_[key_of(cost > 0 ? cost : 0) >> k_shift];
+    ++all_;
+  }
+
+  /// Those that cost a 16th of the dearest or more, and none that cost less than a 256th.
+  std::uint64_t dear() const {
+    std::uint64_t found = 0;
+    std::size_t left = k_dear_classes;
+    for (std::size_t i = counts_.size(); i > 0 && left > 0; --i) {
+      found += counts_[i - 1];
+      left -= found > 0 ? 1 : 0;
+    }
+    return found;
+  }
+
+  /// A cost that this share of all is below; at most 16 times the least such.
+  double quantile(double share) const {
+    const double wanted = share * static_cast<double>(all_);
+    std::uint64_t found = 0;
+    std::size_t i = 0;
+    for (; i + 1 < counts_.size(); ++i) {
+      found += counts_[i];
+      if (static_cast<double>(found) >= wanted) break;
+    }
+    return cost_of(static_cast<CostKey>((i + 1) << k_shift));
+  }
+
+ private:
+  static constexpr int k_shift = 22;  // of a key: a factor of 16
+  static constexpr std::size_t k_dear_classes = 2;
+
+  std::array<std::uint32_t, (k_any_cost >> k_shift) + 1> counts_{};
+  std::uint64_t all_ = 0;
+};
+
+}  // namespace meshfarm
