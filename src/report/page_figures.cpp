@@ -79,7 +79,7 @@ void add_shapes(Table& table, const SurfaceFigures& input, const SurfaceFigures&
 }
 
 bool is_closed(const Json& topology) {
-  return count_of(topology, "border_edges") == 0U && count_of(topology, "nonmanifold_edges") == 0U;
+  return topology.is_object() && topology.value("closed", false);
 }
 
 void add_topology(Table& table, const Json& input, const Json& result) {

@@ -65,14 +65,24 @@ Json topology_json(const Topology& t) {
   return {{"components", t.components},
           {"euler", t.euler},
           {"handles", handles ? Json(*handles) : Json(nullptr)},
+          {"closed", t.border_edges + t.nonmanifold_edges == 0},
           {"border_edges", t.border_edges},
           {"nonmanifold_edges", t.nonmanifold_edges}};
+}
+
+/// The parts keep what the input's borders are like, but not how many edges these have. Edges of
+/// more than two triangles are cut apart where that is possible.
+Json input_topology_json(const Topology& cleaned) {
+  Json json = topology_json(cleaned);
+  if (cleaned.border_edges > 0) json["border_edges"] = nullptr;
+  json["nonmanifold_edges"] = nullptr;
+  return json;
 }
 
 Json topology_json(const RunSummary& s) {
   if (!s.topology) return nullptr;
   const auto& [before, after, gone] = *s.topology;
-  return {{"input", topology_json(before)},
+  return {{"input", input_topology_json(before)},
           {"output", topology_json(after)},
           {"pieces_gone", gone.components},
           {"area_gone", gone.area},

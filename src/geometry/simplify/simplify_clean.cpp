@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <array>
-#include <map>
 #include <utility>
 
 #include <meshfarm/geometry/vertices.hpp>
@@ -184,17 +183,52 @@ bool any_turned(std::span<const std::uint8_t> flags, const Adjacency& adjacency)
   return false;
 }
 
+/// A vertex and a triangle at it.
+struct Place {
+  std::uint32_t vertex;
+  std::uint32_t triangle;
+};
+
+/// The triangles at vertices whose triangles are no single fan, by vertex.
+std::vector<Place> places_at_complex(const Mesh& mesh, std::span<const std::uint8_t> flags) {
+  std::vector<Place> places;
+  for (std::uint32_t i = 0; i < mesh.triangles.size(); ++i) {
+    for (const std::uint32_t v : mesh.triangles[i]) {
+      if ((flags[v] & k_still) == k_complex) places.push_back({v, i});
+    }
+  }
+  std::stable_sort(places.begin(), places.end(),
+                   [](const Place& x, const Place& y) { return x.vertex < y.vertex; });
+  return places;
+}
+
+/// The number of a vertex in a triangle, which must have it.
+std::size_t corner_of(const Triangle& triangle, std::uint32_t vertex) {
+  return static_cast<std::size_t>(std::find(triangle.begin(), triangle.end(), vertex) -
+                                  triangle.begin());
+}
+
+Corner corner_at(const Triangle& triangle, std::uint32_t vertex) {
+  const std::size_t k = corner_of(triangle, vertex);
+  return {triangle[(k + 1) % 3], triangle[(k + 2) % 3]};
+}
+
 /// Gives each closed fan at a vertex of several a vertex of its own. Returns whether there are any.
-bool separate_closed_fans(Mesh& mesh, std::span<const std::uint8_t> flags,
-                          const Adjacency& adjacency) {
+/// One vertex after the other: the four triangles at an edge must be paired alike at both its ends,
+/// or a slit opens between them.
+bool separate_closed_fans(Mesh& mesh, std::span<const std::uint8_t> flags) {
   FanSplitter splitter;
   FanSplitter single;
-  std::map<std::array<std::uint32_t, 3>, std::uint32_t> copies;  // by vertex and two others
+  std::vector<Corner> corners;
   std::vector<Corner> fan;
-  const auto vertices = static_cast<std::uint32_t>(flags.size());
-  for (std::uint32_t v = 0; v < vertices; ++v) {
-    if ((flags[v] & k_still) != k_complex) continue;
-    const std::span<const Corner> corners = adjacency.at(v);
+  const std::vector<Place> places = places_at_complex(mesh, flags);
+  const std::size_t vertices = mesh.positions.size();
+  for (std::size_t first = 0, last = 0; first < places.size(); first = last) {
+    const std::uint32_t v = places[first].vertex;
+    while (last < places.size() && places[last].vertex == v) ++last;
+    const std::span<const Place> at = std::span(places).subspan(first, last - first);
+    corners.clear();
+    for (const Place& p : at) corners.push_back(corner_at(mesh.triangles[p.triangle], v));
     const std::uint32_t fans = splitter.split(corners);
     for (std::uint32_t f = 1; f < fans; ++f) {
       fan.clear();
@@ -204,19 +238,13 @@ bool separate_closed_fans(Mesh& mesh, std::span<const std::uint8_t> flags,
       if (single.split(fan) != 1 || single.kind() != FanSplitter::Kind::closed) continue;
       const auto copy = static_cast<std::uint32_t>(mesh.positions.size());
       append_vertex(VertexView(mesh), v, mesh);
-      for (const Corner& c : fan) copies[{v, c.next, c.prev}] = copy;
+      for (std::size_t i = 0; i < corners.size(); ++i) {
+        Triangle& t = mesh.triangles[at[i].triangle];
+        if (splitter.fans()[i] == f) t[corner_of(t, v)] = copy;
+      }
     }
   }
-  if (copies.empty()) return false;
-  for (Triangle& t : mesh.triangles) {
-    const Triangle was = t;
-    for (std::size_t k = 0; k < 3; ++k) {
-      if ((flags[was[k]] & k_complex) == 0) continue;
-      const auto copy = copies.find({was[k], was[(k + 1) % 3], was[(k + 2) % 3]});
-      if (copy != copies.end()) t[k] = copy->second;
-    }
-  }
-  return true;
+  return mesh.positions.size() > vertices;
 }
 
 /// Where the topology gives way small pieces simplify better by themselves.
@@ -279,10 +307,10 @@ Surface clean_surface(Mesh& mesh, const SimplifyOptions& options, Adjacency& adj
     if (surface.dropped.turned > 0) again();
   }
   // With a seam pass vertices are what the caller's flags are for.
-  if (options.seam.empty() && separate_closed_fans(mesh, surface.flags, adjacency)) again();
+  if (options.seam.empty() && separate_closed_fans(mesh, surface.flags)) again();
   if (separates_pieces(options) && separate_small_pieces(mesh, surface.flags)) {
     again();
-    if (separate_closed_fans(mesh, surface.flags, adjacency)) again();
+    if (separate_closed_fans(mesh, surface.flags)) again();
   }
   return surface;
 }

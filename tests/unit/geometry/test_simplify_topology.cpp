@@ -50,30 +50,17 @@ Mesh scaled(Mesh mesh, double factor) {
   return mesh;
 }
 
-/// A bent plate with holes x holes square holes: closed, as many handles.
-///
-///     +---------+
-///     | +-+ +-+ |
-///     | +-+ +-+ |
-///     +---------+
-Mesh perforated_plate(std::uint32_t holes) {
-  using Cell = std::array<std::uint32_t, 3>;
-  constexpr std::uint32_t k_fine = 3;  // cells across a hole
-  const std::uint32_t size = (2 * holes + 1) * k_fine;
-  // From 1 on, so that there is a cell beside each.
-  const auto is_solid = [&](const Cell& c) {
-    if (std::min({c[0], c[1], c[2]}) == 0 || std::max(c[0], c[1]) > size || c[2] > 2) return false;
-    return (c[0] - 1) / k_fine % 2 == 0 || (c[1] - 1) / k_fine % 2 == 0;
-  };
+using Cell = std::array<std::uint32_t, 3>;
+
+/// The surface of unit cubes; of edges where two meet, and of corners, too. No cell is 0.
+template <typename IsSolid>
+Mesh surface_of_cells(const Cell& last, const IsSolid& is_solid) {
   Mesh mesh;
   std::map<Cell, std::uint32_t> numbers;
   const auto number = [&](const Cell& at) {
     const auto [found, is_new] =
         numbers.try_emplace(at, static_cast<std::uint32_t>(mesh.positions.size()));
-    const double x = 1.0 * at[0] / size;
-    const double y = 1.0 * at[1] / size;
-    const double bend = 0.1 * std::sin(5 * x) * std::cos(4 * y);
-    if (is_new) mesh.positions.push_back({x, y, 1.0 * at[2] / size + bend});
+    if (is_new) mesh.positions.push_back({1.0 * at[0], 1.0 * at[1], 1.0 * at[2]});
     return found->second;
   };
   const auto add_face = [&](const Cell& cell, std::size_t axis, bool is_upper) {
@@ -87,10 +74,10 @@ Mesh perforated_plate(std::uint32_t holes) {
     mesh.triangles.push_back({at(0, 0), at(1, 0), at(1, 1)});
     mesh.triangles.push_back({at(0, 0), at(1, 1), at(0, 1)});
   };
-  for (std::uint32_t x = 1; x <= size; ++x) {
-    for (std::uint32_t y = 1; y <= size; ++y) {
-      for (const std::uint32_t z : {1U, 2U}) {
-        const Cell cell{x, y, z};
+  Cell cell{};
+  for (cell[0] = 1; cell[0] <= last[0]; ++cell[0]) {
+    for (cell[1] = 1; cell[1] <= last[1]; ++cell[1]) {
+      for (cell[2] = 1; cell[2] <= last[2]; ++cell[2]) {
         if (!is_solid(cell)) continue;
         for (std::size_t axis = 0; axis < 3; ++axis) {
           Cell above = cell;
@@ -102,6 +89,29 @@ Mesh perforated_plate(std::uint32_t holes) {
         }
       }
     }
+  }
+  return mesh;
+}
+
+/// A bent plate with holes x holes square holes: closed, as many handles.
+///
+///     +---------+
+///     | +-+ +-+ |
+///     | +-+ +-+ |
+///     +---------+
+Mesh perforated_plate(std::uint32_t holes) {
+  constexpr std::uint32_t k_fine = 3;  // cells across a hole
+  const std::uint32_t size = (2 * holes + 1) * k_fine;
+  // From 1 on, so that there is a cell beside each.
+  const auto is_solid = [&](const Cell& c) {
+    if (std::min({c[0], c[1], c[2]}) == 0 || std::max(c[0], c[1]) > size || c[2] > 2) return false;
+    return (c[0] - 1) / k_fine % 2 == 0 || (c[1] - 1) / k_fine % 2 == 0;
+  };
+  Mesh mesh = surface_of_cells({size, size, 2}, is_solid);
+  for (Vec3& p : mesh.positions) {
+    const double x = p.x / size;
+    const double y = p.y / size;
+    p = {x, y, p.z / size + 0.1 * std::sin(5 * x) * std::cos(4 * y)};
   }
   return mesh;
 }
@@ -250,6 +260,33 @@ TEST_CASE("topology: automatic keeps it where the goal is easy, and only there")
   CHECK(hard.simplifies_topology());
   CHECK(hard.triangles() <= 101);
   CHECK(is_clean(hard.mesh()));
+}
+
+TEST_CASE("cells that touch along edges stay closed however they are joined at their corners") {
+  // At one end of the edge between the first two, others fill what is empty.
+  const std::vector<Cell> five{{1, 1, 1}, {2, 2, 1}, {1, 1, 2}, {1, 2, 2}, {2, 2, 2}};
+  const auto is_one = [&](const Cell& c) {
+    return std::find(five.begin(), five.end(), c) != five.end();
+  };
+  // And many at random.
+  Random random(7);
+  std::vector<bool> solid(std::size_t{14} * 14 * 14);
+  for (std::size_t i = 0; i < solid.size(); ++i) solid[i] = random.below(2) == 0;
+  const auto is_random = [&](const Cell& c) -> bool {
+    if (std::min({c[0], c[1], c[2]}) == 0 || std::max({c[0], c[1], c[2]}) > 12) return false;
+    return solid[(std::size_t{c[0]} * 14 + c[1]) * 14 + c[2]];
+  };
+  const Mesh few = surface_of_cells({2, 2, 2}, is_one);
+  const Mesh many = surface_of_cells({12, 12, 12}, is_random);
+  for (const Mesh& mesh : {few, many}) {
+    REQUIRE(check(mesh).border_edges == 0);
+    REQUIRE(check(mesh).crowded_edges > 0);
+    for (const std::size_t share : {1U, 2U, 5U}) {
+      CAPTURE(share);
+      const Simplifier result = reduced_topology(mesh, mesh.triangles.size() / share);
+      CHECK(check(result.mesh()).border_edges == 0);
+    }
+  }
 }
 
 TEST_CASE("topology: a second, farther goal may need it given up, too") {
