@@ -13,8 +13,8 @@
 namespace meshfarm {
 namespace {
 
-/// So many of its vertices tell what a component was.
-constexpr std::size_t k_voters = 15;
+/// So many of its triangles tell what a component was, by their area.
+constexpr std::size_t k_voters = 63;
 /// A component that has this part of the area or more, and that none is taken for, is looked for by
 /// itself: close sheets may have all vertices of another nearer to them.
 constexpr double k_large_component = 0.05;
@@ -34,30 +34,32 @@ double area_of(const Mesh& mesh, const Triangle& t) {
   return 0.5 * length(cross(mesh.positions[t[1]] - a, mesh.positions[t[2]] - a));
 }
 
-/// Some vertices of each component, spread over it.
+Vec3 middle_of(const Mesh& mesh, const Triangle& t) {
+  return (mesh.positions[t[0]] + mesh.positions[t[1]] + mesh.positions[t[2]]) * (1.0 / 3);
+}
+
+/// Some triangles of each component, spread over it. Vertices would not do: all those of a floor
+/// may be at the feet of what stands on it.
 std::map<std::uint32_t, std::vector<std::uint32_t>> voters_of(const Mesh& mesh) {
   UnionFind pieces = components_of(mesh);
-  std::map<std::uint32_t, std::vector<std::uint32_t>> corners;
-  for (const Triangle& t : mesh.triangles) corners[pieces.find(t[0])].push_back(t[0]);
-  for (auto& [piece, all] : corners) {
+  std::map<std::uint32_t, std::vector<std::uint32_t>> voters;
+  for (std::uint32_t i = 0; i < mesh.triangles.size(); ++i) {
+    voters[pieces.find(mesh.triangles[i][0])].push_back(i);
+  }
+  for (auto& [piece, all] : voters) {
     const std::size_t step = (all.size() + k_voters - 1) / k_voters;
     std::size_t kept = 0;
     for (std::size_t i = 0; i < all.size(); i += step) all[kept++] = all[i];
     all.resize(kept);
   }
-  return corners;
+  return voters;
 }
 
-std::uint32_t most_frequent(std::vector<std::uint32_t>& values) {
-  std::sort(values.begin(), values.end());
-  std::size_t best = 0;
-  std::uint32_t winner = values.front();
-  for (std::size_t first = 0, last = 0; first < values.size(); first = last) {
-    while (last < values.size() && values[last] == values[first]) ++last;
-    if (last - first > best) winner = values[first];
-    best = std::max(best, last - first);
-  }
-  return winner;
+/// The key of the greatest value, of equal ones the least.
+std::uint32_t key_of_most(const std::map<std::uint32_t, double>& values) {
+  return std::max_element(values.begin(), values.end(),
+                          [](const auto& x, const auto& y) { return x.second < y.second; })
+      ->first;
 }
 
 /// Whether most of the component's triangles are much nearer to `after` than to the others of
@@ -72,8 +74,7 @@ bool is_found(const Mesh& before, UnionFind& pieces, std::uint32_t piece,
       others.triangles.push_back(t);
       continue;
     }
-    const auto& at = before.positions;
-    middles.push_back((at[t[0]] + at[t[1]] + at[t[2]]) * (1.0 / 3));
+    middles.push_back(middle_of(before, t));
   }
   if (others.triangles.empty()) return true;
   const std::size_t step = (middles.size() + k_looked_for - 1) / k_looked_for;
@@ -133,14 +134,15 @@ GoneComponents find_gone_components(const Mesh& before, const Mesh& after, unsig
     gone.area_of_all += area_of(before, t);
   }
   const DistanceMeter meter(before, threads);
-  std::vector<std::uint32_t> votes;
-  for (const auto& [piece, vertices] : voters_of(after)) {
+  std::map<std::uint32_t, double> votes;
+  for (const auto& [piece, voters] : voters_of(after)) {
     votes.clear();
-    for (const std::uint32_t v : vertices) {
-      const std::uint32_t nearest = meter.nearest_triangle(after.positions[v]);
-      votes.push_back(pieces.find(before.triangles[nearest][0]));
+    for (const std::uint32_t i : voters) {
+      const Triangle& t = after.triangles[i];
+      const std::uint32_t nearest = meter.nearest_triangle(middle_of(after, t));
+      votes[pieces.find(before.triangles[nearest][0])] += area_of(after, t);
     }
-    areas[most_frequent(votes)] = -1;
+    areas[key_of_most(votes)] = -1;
   }
   std::optional<DistanceMeter> to_after;
   const auto is_there = [&](std::uint32_t piece) {

@@ -33,7 +33,7 @@ struct GoneComponents {
 };
 
 /// Those components of `before` that no component of `after` is what is left of: each is taken for
-/// what is left of the one that most of its vertices are nearest to. One with a twentieth of the
+/// what is left of the one that most of its area is nearest to. One with a twentieth of the
 /// area is there, too, if most of it is less than half as far from `after` as from the others. Both
 /// meshes need finite coordinates, and `before` a triangle. Vertices without triangles count for
 /// nothing.

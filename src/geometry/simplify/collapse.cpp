@@ -249,8 +249,7 @@ Collapse CollapseJudge::judge(std::uint32_t a, std::uint32_t b, const CollapseLi
   middle_ = state_.positions[a] + half;
   star_.clear(middle_, half);
   add_star(shared);
-  quadric_ = {};
-  quadric_.squared_length = 4 * squared_length(half);
+  quadric_ = state_.quadric_of(middle_, half);
   star_.sum_planes(quadric_);
   add_appearances(a, b, shared);
   is_ribbon_ = is_ribbon();

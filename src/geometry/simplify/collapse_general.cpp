@@ -167,8 +167,7 @@ void GeneralJudge::add_star(Vec3 half) {
   for (std::size_t i = 0; i < shared_.size(); i += 2) {
     add(shared_[i], i + 1 < shared_.size() ? shared_[i + 1] : none, CollapseStar::Pair{-1.0, -1.0});
   }
-  quadric_ = {};
-  quadric_.squared_length = 4 * squared_length(half);
+  quadric_ = state_.quadric_of(middle_, half);
   star_.sum_planes(quadric_);
   add_appearances();
 }

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <span>
 
@@ -31,6 +33,18 @@ struct CollapseState {
   /// Those of a triangle's corners, from the one at the vertex on.
   AppearanceStar::Values values_at(std::uint32_t vertex, const Corner& c) const {
     return {appearances[vertex], appearances[c.next], appearances[c.prev]};
+  }
+  /// For the edge from middle - half to middle + half, with no planes yet.
+  EdgeQuadric quadric_of(Vec3 middle, Vec3 half) const {
+    const auto greatest = [](Vec3 p) {
+      return std::max({std::abs(p.x), std::abs(p.y), std::abs(p.z)});
+    };
+    const double step =
+        (type == PositionType::float32 ? 0x1p-23 : 0x1p-52) * (greatest(middle) + greatest(half));
+    EdgeQuadric quadric;
+    quadric.squared_length = 4 * squared_length(half);
+    quadric.squared_rounding = step * step;
+    return quadric;
   }
   bool has_uvs() const { return adjacency->has_uvs(); }
 };

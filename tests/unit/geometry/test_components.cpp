@@ -63,6 +63,24 @@ TEST_CASE("pieces that nothing is left of are told by number and area") {
   CHECK(find_gone_components(before, {}, 1).components == 3);
 }
 
+TEST_CASE("a floor is found, though all that is left of its vertices is at the feet of boxes") {
+  constexpr std::uint32_t k_size = 40;
+  Mesh before;
+  Mesh after;
+  add(before, test::grid(k_size, k_size), 1, {});
+  Mesh floor = test::grid(k_size / 4, k_size / 4);
+  for (Vec3& p : floor.positions) p = p * 4.0 + Vec3{0, 0, 0.4};
+  add(after, floor, 1, {});
+  for (std::uint32_t x = 0; x <= k_size; x += 4) {
+    for (std::uint32_t y = 0; y <= k_size; y += 4) {
+      add(before, test::octahedron(), 0.5, {1.0 * x, 1.0 * y, 0.6});
+    }
+  }
+  const GoneComponents gone = find_gone_components(before, after, 1);
+  CHECK(gone.components == 121);
+  CHECK(gone.area < 0.2 * gone.area_of_all);
+}
+
 TEST_CASE(
     "a wall between two skins is found, though all that is left of its rims is nearer to these") {
   const auto wall = [](double low, double high, std::uint32_t steps) {

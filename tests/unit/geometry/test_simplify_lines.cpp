@@ -5,11 +5,13 @@
 #include <cmath>
 #include <cstdint>
 #include <map>
+#include <numbers>
 #include <set>
 #include <vector>
 
 #include <doctest/doctest.h>
 
+#include <meshfarm/geometry/distance.hpp>
 #include <meshfarm/geometry/simplify.hpp>
 #include <meshfarm/util/errors.hpp>
 
@@ -230,4 +232,41 @@ TEST_CASE("small components outlive the details of large ones") {
   CHECK(simplifier.triangles() == 1000);
   CHECK(is_clean(simplifier.mesh()));
   CHECK(check(simplifier.mesh()).euler == 2 * 21);
+}
+
+TEST_CASE("straight folds that are off by rounding go before small parts beside them") {
+  constexpr std::uint32_t k_size = 60;
+  Mesh mesh = grid(k_size, k_size, [](double x, double y) {
+    return 0.3 * y + (std::lround(x * k_size) % 2 == 0 ? 0 : 0.01);
+  });
+  // Hexagonal bolts: caps of 4 triangles, 12 round the sides.
+  const std::size_t first_bolt = mesh.positions.size();
+  Mesh bolt;
+  for (int side = 0; side < 6; ++side) {
+    const double turn = side * std::numbers::pi / 3;
+    for (const double z : {0.0, 1.0}) bolt.positions.push_back({std::cos(turn), std::sin(turn), z});
+  }
+  for (std::uint32_t side = 0; side < 6; ++side) {
+    const std::uint32_t low = 2 * side;
+    const std::uint32_t next = (low + 2) % 12;
+    bolt.triangles.insert(bolt.triangles.end(), {{low, next, next + 1}, {low, next + 1, low + 1}});
+    if (side == 0 || side == 5) continue;
+    bolt.triangles.insert(bolt.triangles.end(), {{0, next, low}, {1, low + 1, next + 1}});
+  }
+  constexpr std::uint32_t k_bolts = 14;
+  for (std::uint32_t i = 0; i < k_bolts * k_bolts; ++i) {
+    Mesh small = bolt;
+    for (Vec3& p : small.positions) p = p * 0.001;
+    append(mesh, small, {0.05 + 0.07 * (i % k_bolts), 0.05 + 0.07 * (i / k_bolts), 0.5});
+  }
+  for (Vec3& p : mesh.positions) p = rounded(p * 10.0, PositionType::float32);
+  SimplifyOptions options;
+  options.positions = PositionType::float32;
+  Simplifier result(mesh, options);
+  const std::uint64_t goal = 20 * k_bolts * k_bolts + 500;
+  result.reduce({goal});
+  CHECK(result.triangles() == goal);
+  const std::vector<Vec3> corners(mesh.positions.begin() + static_cast<long>(first_bolt),
+                                  mesh.positions.end());
+  CHECK(DistanceMeter(result.mesh(), 1).measure(corners).max < 1e-5);
 }
