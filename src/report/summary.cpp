@@ -70,8 +70,8 @@ Json topology_json(const Topology& t) {
           {"nonmanifold_edges", t.nonmanifold_edges}};
 }
 
-/// The parts keep what the input's borders are like, but not how many edges these have. Edges of
-/// more than two triangles are cut apart where that is possible.
+/// Of the input once parts have simplified it: that keeps whether there are borders, but not how
+/// many edges these have, and cuts edges of more than two triangles apart where that is possible.
 Json input_topology_json(const Topology& cleaned) {
   Json json = topology_json(cleaned);
   if (cleaned.border_edges > 0) json["border_edges"] = nullptr;

@@ -33,10 +33,10 @@ struct GoneComponents {
 };
 
 /// Those components of `before` that no component of `after` is what is left of: each is taken for
-/// what is left of the one that most of its area is nearest to. One with a twentieth of the
-/// area is there, too, if most of it is less than half as far from `after` as from the others. Both
-/// meshes need finite coordinates, and `before` a triangle. Vertices without triangles count for
-/// nothing.
+/// what is left of the one that most of it is nearest to, by the area of some of its triangles. One
+/// with a twentieth of the area is there, too, if most of it is less than half as far from `after`
+/// as from the others. Both meshes need finite coordinates, and `before` a triangle. Vertices
+/// without triangles count for nothing.
 GoneComponents find_gone_components(const Mesh& before, const Mesh& after, unsigned threads);
 
 }  // namespace meshfarm

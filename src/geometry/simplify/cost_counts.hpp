@@ -10,15 +10,16 @@
 
 namespace meshfarm {
 
-/// How many collapses had each cost, to a factor of 16.
+/// How many collapses had each cost, to a factor of two.
 class CostCounts {
  public:
+  /// What is no number counts as 0.
   void add(double cost) {
-    ++counts_[key_of(cost > 0 ? cost : 0) >> k_shift];
+    ++counts_[class_of(cost)];
     ++all_;
   }
 
-  /// Those that cost a 16th of the dearest or more, and none that cost less than a 256th.
+  /// Those that cost a 64th of the dearest or more, and none that cost less than a 128th.
   std::uint64_t dear() const {
     std::uint64_t found = 0;
     std::size_t left = k_dear_classes;
@@ -29,7 +30,8 @@ class CostCounts {
     return found;
   }
 
-  /// A cost that this share of all is below; at most 16 times the least such.
+  /// A cost that this share of all is below; at most twice the least such. Next to 0 if they cost
+  /// nothing.
   double quantile(double share) const {
     const double wanted = share * static_cast<double>(all_);
     std::uint64_t found = 0;
@@ -42,8 +44,10 @@ class CostCounts {
   }
 
  private:
-  static constexpr int k_shift = 22;  // of a key: a factor of 16
-  static constexpr std::size_t k_dear_classes = 2;
+  static constexpr int k_shift = 20;  // of a key: its exponent
+  static constexpr std::size_t k_dear_classes = 7;
+
+  static std::size_t class_of(double cost) { return key_of(cost > 0 ? cost : 0) >> k_shift; }
 
   std::array<std::uint32_t, (k_any_cost >> k_shift) + 1> counts_{};
   std::uint64_t all_ = 0;

@@ -28,9 +28,11 @@ constexpr double k_fair_distance = 1.2;
 constexpr std::uint64_t k_fair_samples = 10'000;
 // Once it is found fair, it is thought of again when so much of the triangles is left.
 constexpr double k_decided = 0.8;
-// Of all collapses, from which on they tell what those before them cost.
+// The cost that this share of the collapses is below stands for the first of them, and is taken so
+// many times.
 constexpr double k_first_share = 0.125;
-// With fewer refusals a dear collapse it is not even tried: to keep the topology cost 1.0 to 1.2
+constexpr double k_first_times = 4;
+// With fewer refusals per dear collapse it is not even tried: to keep the topology cost 1.0 to 1.2
 // times as much then.
 constexpr double k_costly = 0.75;
 // With a bound, so much must be gained at least.
@@ -218,16 +220,16 @@ bool OrderedEnd::refuses_much() const {
          k_costly * static_cast<double>(trial_->queue.costs().dear());
 }
 
-/// What was paid for the mesh as it was before this, of what `other` paid: none of both lies nearer
-/// to the input. A surface's squared error is as one over the square of its triangles, unless the
-/// first collapses now tell that those before cost less.
+/// What the mesh as it was before this has cost, as a share of what `other` paid: none of both lies
+/// nearer to the input. The squared error goes as one over the square of the triangles; where the
+/// first collapses were cheaper than that, they tell.
 double OrderedEnd::share_paid_before(const CollapseQueue& other) const {
   const auto triangles = static_cast<double>(mesh_.triangles());
   const double times =
       triangles / static_cast<double>(std::max<std::uint64_t>(1, other.triangles()));
   const double first = other.costs().quantile(k_first_share);
   // With the cost of a collapse as one over the cube of the triangles.
-  const double of_first = first * triangles / 4;
+  const double of_first = k_first_times * first * triangles / 4;
   return std::min(1 / std::max(times * times - 1, 1e-6), of_first / other.paid());
 }
 

@@ -106,7 +106,7 @@ struct EdgeQuadric {
   Vec3 b;
   double c = 0;
   double squared_length = 0;
-  double squared_rounding = 0;  // of the step between coordinates
+  double squared_rounding = 0;  // of the step between two coordinates here
   // Of all triangles: normals twice the area long, and these times a point of each. Where
   // dot(normals, x) is the height the volume stays as it is.
   Vec3 normals;

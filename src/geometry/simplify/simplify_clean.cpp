@@ -203,17 +203,32 @@ std::vector<Place> places_at_complex(const Mesh& mesh, std::span<const std::uint
 }
 
 /// The number of a vertex in a triangle, which must have it.
-std::size_t corner_of(const Triangle& triangle, std::uint32_t vertex) {
+std::size_t place_in(const Triangle& triangle, std::uint32_t vertex) {
   return static_cast<std::size_t>(std::find(triangle.begin(), triangle.end(), vertex) -
                                   triangle.begin());
 }
 
 Corner corner_at(const Triangle& triangle, std::uint32_t vertex) {
-  const std::size_t k = corner_of(triangle, vertex);
+  const std::size_t k = place_in(triangle, vertex);
   return {triangle[(k + 1) % 3], triangle[(k + 2) % 3]};
 }
 
-/// Gives each closed fan at a vertex of several a vertex of its own. Returns whether there are any.
+/// Whether without the fan a single triangle would be left at one of its edges: the foot of a wall
+/// on a floor.
+bool leaves_a_border(std::span<const Corner> fan, std::span<const Corner> corners,
+                     std::vector<std::uint32_t>& ends) {
+  ends.clear();
+  for (const Corner& c : corners) ends.insert(ends.end(), {c.next, c.prev});
+  std::sort(ends.begin(), ends.end());
+  const auto is_odd = [&](std::uint32_t end) {
+    const auto [first, last] = std::equal_range(ends.begin(), ends.end(), end);
+    return (last - first) % 2 != 0;
+  };
+  return std::any_of(fan.begin(), fan.end(),
+                     [&](const Corner& c) { return is_odd(c.next) || is_odd(c.prev); });
+}
+
+/// Gives closed fans at vertices of several vertices of their own. Returns whether there are any.
 /// One vertex after the other: the four triangles at an edge must be paired alike at both its ends,
 /// or a slit opens between them.
 bool separate_closed_fans(Mesh& mesh, std::span<const std::uint8_t> flags) {
@@ -221,6 +236,7 @@ bool separate_closed_fans(Mesh& mesh, std::span<const std::uint8_t> flags) {
   FanSplitter single;
   std::vector<Corner> corners;
   std::vector<Corner> fan;
+  std::vector<std::uint32_t> ends;
   const std::vector<Place> places = places_at_complex(mesh, flags);
   const std::size_t vertices = mesh.positions.size();
   for (std::size_t first = 0, last = 0; first < places.size(); first = last) {
@@ -236,11 +252,12 @@ bool separate_closed_fans(Mesh& mesh, std::span<const std::uint8_t> flags) {
         if (splitter.fans()[i] == f) fan.push_back(corners[i]);
       }
       if (single.split(fan) != 1 || single.kind() != FanSplitter::Kind::closed) continue;
+      if (leaves_a_border(fan, corners, ends)) continue;
       const auto copy = static_cast<std::uint32_t>(mesh.positions.size());
       append_vertex(VertexView(mesh), v, mesh);
       for (std::size_t i = 0; i < corners.size(); ++i) {
         Triangle& t = mesh.triangles[at[i].triangle];
-        if (splitter.fans()[i] == f) t[corner_of(t, v)] = copy;
+        if (splitter.fans()[i] == f) t[place_in(t, v)] = copy;
       }
     }
   }

@@ -426,6 +426,40 @@ TEST_CASE("triangles that are turned over cost nothing") {
   }
 }
 
+TEST_CASE("a wall stays on its floor, whichever comes first") {
+  constexpr std::uint32_t k_size = 40;
+  for (const bool wall_first : {false, true}) {
+    CAPTURE(wall_first);
+    Mesh mesh = wavy_grid(k_size, k_size);
+    const std::size_t of_floor = mesh.triangles.size();
+    // Not up to the floor's borders: all round the wall's ends it is closed.
+    const std::uint32_t base = k_size / 2 * (k_size + 1);
+    const auto top = static_cast<std::uint32_t>(mesh.positions.size());
+    constexpr std::uint32_t k_from = 8;
+    constexpr std::uint32_t k_to = 32;
+    for (std::uint32_t c = k_from; c <= k_to; ++c) {
+      mesh.positions.push_back(mesh.positions[base + c] + Vec3{0, 0, 0.3});
+    }
+    for (std::uint32_t c = k_from; c < k_to; ++c) {
+      const std::uint32_t above = top + c - k_from;
+      mesh.triangles.push_back({base + c, base + c + 1, above + 1});
+      mesh.triangles.push_back({base + c, above + 1, above});
+    }
+    if (wall_first) {
+      std::rotate(mesh.triangles.begin(),
+                  mesh.triangles.begin() + static_cast<std::ptrdiff_t>(of_floor),
+                  mesh.triangles.end());
+    }
+    REQUIRE(check(mesh).components == 1);
+    REQUIRE(check(mesh).crowded_edges == k_to - k_from);
+    for (const std::uint64_t goal : {std::uint64_t{mesh.triangles.size()}, std::uint64_t{400}}) {
+      const Simplifier result = reduced_topology(mesh, goal);
+      CHECK(check(result.mesh()).components == 1);
+      CHECK(check(result.mesh()).crowded_edges > 0);
+    }
+  }
+}
+
 TEST_CASE("three sheets that meet in a line reduce along it") {
   constexpr std::uint32_t k_size = 40;
   const Mesh mesh = wall_on_floor(k_size);
