@@ -7,15 +7,9 @@
 #include <numeric>
 
 #include "geometry/bvh_morton.hpp"
+#include "geometry/simplify/adjacency.hpp"
 
 namespace meshfarm {
-namespace {
-
-std::size_t place_of(const Triangle& t, std::uint32_t vertex) {
-  return static_cast<std::size_t>(std::find(t.begin(), t.end(), vertex) - t.begin());
-}
-
-}  // namespace
 
 ChangingMesh::ChangingMesh(Mesh& mesh) : mesh_(mesh) {
   list_fans();

@@ -79,7 +79,10 @@ void add_shapes(Table& table, const SurfaceFigures& input, const SurfaceFigures&
 }
 
 bool is_closed(const Json& topology) {
-  return topology.is_object() && topology.value("closed", false);
+  // Summaries of earlier versions have the counts alone.
+  const bool by_counts =
+      count_of(topology, "border_edges") == 0U && count_of(topology, "nonmanifold_edges") == 0U;
+  return topology.is_object() && topology.value("closed", by_counts);
 }
 
 void add_topology(Table& table, const Json& input, const Json& result) {

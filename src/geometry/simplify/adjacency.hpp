@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -19,6 +20,18 @@ struct Corner {
   std::uint32_t prev;
   friend bool operator==(const Corner&, const Corner&) = default;
 };
+
+/// Where a triangle has a vertex; 3 if it has not.
+inline std::size_t place_of(const Triangle& triangle, std::uint32_t vertex) {
+  return static_cast<std::size_t>(std::find(triangle.begin(), triangle.end(), vertex) -
+                                  triangle.begin());
+}
+
+/// The triangle must have the vertex.
+inline Corner corner_at(const Triangle& triangle, std::uint32_t vertex) {
+  const std::size_t at = place_of(triangle, vertex);
+  return {triangle[(at + 1) % 3], triangle[(at + 2) % 3]};
+}
 
 /// The corners at a vertex, and their ids if triangles have columns.
 struct CornerFan {

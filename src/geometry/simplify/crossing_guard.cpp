@@ -123,9 +123,7 @@ bool CrossingGuard::vanishes(const Triangle& t) const {
   if (has_corner(t, merge_.a) && has_corner(t, merge_.b)) return true;
   if (merge_.vanishing.empty()) return false;
   const std::uint32_t end = has_corner(t, merge_.a) ? merge_.a : merge_.b;
-  const auto at = static_cast<std::size_t>(std::find(t.begin(), t.end(), end) - t.begin());
-  const std::uint32_t next = t[(at + 1) % 3];
-  const std::uint32_t prev = t[(at + 2) % 3];
+  const auto [next, prev] = corner_at(t, end);
   const auto is_listed = [&](std::uint32_t first, std::uint32_t second) {
     return std::find(merge_.vanishing.begin(), merge_.vanishing.end(), std::pair(first, second)) !=
            merge_.vanishing.end();
@@ -272,13 +270,12 @@ void CrossingGuard::split(std::uint32_t vertex, std::uint32_t first_copy) {
   boxes_.find_touching(box, touching_);
   for (const std::uint32_t slot : touching_) {
     Triangle& t = triangles_[slot];
-    const auto place = std::find(t.begin(), t.end(), vertex);
-    if (place == t.end()) continue;
-    const auto at = static_cast<std::size_t>(place - t.begin());
-    const Corner corner{t[(at + 1) % 3], t[(at + 2) % 3]};
+    const std::size_t at = place_of(t, vertex);
+    if (at == t.size()) continue;
+    const Corner corner = corner_at(t, vertex);
     for (std::uint32_t copy = first_copy; copy < copies; ++copy) {
       const std::span<const Corner> fan = state_.adjacency->at(copy);
-      if (std::find(fan.begin(), fan.end(), corner) != fan.end()) *place = copy;
+      if (std::find(fan.begin(), fan.end(), corner) != fan.end()) t[at] = copy;
     }
   }
 }

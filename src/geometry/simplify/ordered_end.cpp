@@ -28,10 +28,8 @@ constexpr double k_fair_distance = 1.2;
 constexpr std::uint64_t k_fair_samples = 10'000;
 // Once it is found fair, it is thought of again when so much of the triangles is left.
 constexpr double k_decided = 0.8;
-// The cost that this share of the collapses is below stands for the first of them, and is taken so
-// many times.
+// The cost that this share of the collapses is below stands for the first of them.
 constexpr double k_first_share = 0.125;
-constexpr double k_first_times = 4;
 // With fewer refusals per dear collapse it is not even tried: to keep the topology cost 1.0 to 1.2
 // times as much then.
 constexpr double k_costly = 0.75;
@@ -228,8 +226,8 @@ double OrderedEnd::share_paid_before(const CollapseQueue& other) const {
   const double times =
       triangles / static_cast<double>(std::max<std::uint64_t>(1, other.triangles()));
   const double first = other.costs().quantile(k_first_share);
-  // With the cost of a collapse as one over the cube of the triangles.
-  const double of_first = k_first_times * first * triangles / 4;
+  // Four times what they cost if a collapse costs as one over the cube of the triangles.
+  const double of_first = first * triangles;
   return std::min(1 / std::max(times * times - 1, 1e-6), of_first / other.paid());
 }
 

@@ -202,17 +202,6 @@ std::vector<Place> places_at_complex(const Mesh& mesh, std::span<const std::uint
   return places;
 }
 
-/// The number of a vertex in a triangle, which must have it.
-std::size_t place_in(const Triangle& triangle, std::uint32_t vertex) {
-  return static_cast<std::size_t>(std::find(triangle.begin(), triangle.end(), vertex) -
-                                  triangle.begin());
-}
-
-Corner corner_at(const Triangle& triangle, std::uint32_t vertex) {
-  const std::size_t k = place_in(triangle, vertex);
-  return {triangle[(k + 1) % 3], triangle[(k + 2) % 3]};
-}
-
 /// Whether without the fan a single triangle would be left at one of its edges: the foot of a wall
 /// on a floor.
 bool leaves_a_border(std::span<const Corner> fan, std::span<const Corner> corners,
@@ -257,7 +246,7 @@ bool separate_closed_fans(Mesh& mesh, std::span<const std::uint8_t> flags) {
       append_vertex(VertexView(mesh), v, mesh);
       for (std::size_t i = 0; i < corners.size(); ++i) {
         Triangle& t = mesh.triangles[at[i].triangle];
-        if (splitter.fans()[i] == f) t[place_in(t, v)] = copy;
+        if (splitter.fans()[i] == f) t[place_of(t, v)] = copy;
       }
     }
   }

@@ -78,6 +78,30 @@ TEST_CASE("a run's summary warns of a result that a few triangles more would hav
   CHECK(json.find("\"triangles\": 5200") != std::string::npos);
 }
 
+TEST_CASE("a run's summary counts no edges of the input that only its simplified parts have") {
+  const auto summary_with = [](std::uint64_t border_edges) {
+    RunSummary s;
+    TopologyChange change;
+    change.before.border_edges = border_edges;
+    change.after.border_edges = border_edges;
+    s.topology = change;
+    return render(s, Format::json);
+  };
+  const auto count_of = [](const std::string& json, const std::string& text) {
+    std::size_t found = 0;
+    for (std::size_t at = 0; (at = json.find(text, at)) != std::string::npos; ++at) ++found;
+    return found;
+  };
+  const std::string closed = summary_with(0);
+  CHECK(count_of(closed, "\"closed\": true") == 2);
+  CHECK(count_of(closed, "\"border_edges\": 0") == 2);
+  CHECK(count_of(closed, "\"nonmanifold_edges\": null") == 1);
+  const std::string open = summary_with(8);
+  CHECK(count_of(open, "\"closed\": false") == 2);
+  CHECK(count_of(open, "\"border_edges\": 8") == 1);
+  CHECK(count_of(open, "\"border_edges\": null") == 1);
+}
+
 TEST_CASE("an input's name may hold any bytes") {
   Manifest m;
   m.input = "caf\xe9.ply";  // Latin-1: no valid UTF-8
