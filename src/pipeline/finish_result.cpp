@@ -332,7 +332,7 @@ class ResultFinish {
     if (after + 1 < summary_.target) return "pieces of a few triangles go as a whole";
     if (after < summary_.target) {
       return topology.border_edges == 0 ? "where no open border is left, triangles go in pairs"
-                                        : "where no border may change, triangles go in pairs";
+                                        : "away from open borders, triangles go in pairs";
     }
     if (run_.finish == Finish::boundary) return "nothing more can be collapsed at the seams";
     // A closed piece has four at least.

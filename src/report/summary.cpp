@@ -120,6 +120,7 @@ std::string text_of_topology(const RunSummary& s) {
     add("holes and handles simplified: Euler characteristic from " + std::to_string(before.euler) +
         " to " + std::to_string(after.euler));
   }
+  if (before.border_edges == 0 && after.border_edges > 0) add("small pieces opened into sheets");
   return text + advice;
 }
 

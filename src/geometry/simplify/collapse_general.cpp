@@ -312,10 +312,69 @@ void GeneralJudge::add_cost_of_tips(Collapse& collapse) {
   collapse.certain += cost;
 }
 
-/// All triangles at both ends go: a piece, or what stands out from one.
-Collapse GeneralJudge::removal() {
+/// Whether the triangles at both ends are all of a closed piece.
+bool GeneralJudge::is_closed_piece() const {
+  const auto is_free = [&](std::uint32_t v) {
+    return (state_.flags[v] & (k_fixed | k_border | k_complex)) == 0 && contains(lost_, v);
+  };
+  return shared_.size() == 2 && std::all_of(a_.neighbours.begin(), a_.neighbours.end(), is_free) &&
+         std::all_of(b_.neighbours.begin(), b_.neighbours.end(), is_free);
+}
+
+/// All triangles at one end go, but of a tetrahedron only those at the edge.
+Collapse GeneralJudge::opening(const End& without) {
+  going_.clear();
+  standing_.clear();
+  for (const auto& [next, prev] : shared_) going_.push_back({a_.vertex, next, prev});
+  const bool is_tetrahedron = kept_.size() == 2;
+  for (const auto& [corner, at_b, vanishes] : kept_) {
+    const std::uint32_t end = (at_b ? b_ : a_).vertex;
+    const bool stays = is_tetrahedron || end != without.vertex;
+    (stays ? standing_ : going_).push_back({end, corner.next, corner.prev});
+  }
+  Collapse made{static_cast<std::uint32_t>(going_.size()), middle_, cost_of_opening(), false};
+  made.opens = true;
+  return made;
+}
+
+/// By how far what goes is from what stands for it, at the middles of the quarters of each
+/// triangle.
+double GeneralJudge::cost_of_opening() const {
+  const auto corners_of = [&](const Triangle& t) {
+    return std::array{state_.positions[t[0]], state_.positions[t[1]], state_.positions[t[2]]};
+  };
+  const auto squared_from = [&](Vec3 point) {
+    double squared = HUGE_VAL;
+    for (const Triangle& t : standing_) {
+      const auto [p, q, r] = corners_of(t);
+      squared = std::min(squared, squared_distance(point, p, q, r));
+    }
+    return squared;
+  };
+  double cost = 0;
+  for (const Triangle& t : going_) {
+    const auto corners = corners_of(t);
+    const auto& [p, q, r] = corners;
+    const Vec3 middle = (p + q + r) * (1.0 / 3);
+    double sum = squared_from(middle);
+    for (const Vec3 corner : corners) sum += squared_from((middle + corner) * 0.5);
+    cost += 0.5 * length(cross(q - p, r - p)) * sum / 4;
+  }
+  return k_loss_of_piece * cost;
+}
+
+/// No triangle would stay: all go, or, of a closed piece, some stand for the others. Of a thin
+/// plate or a pin one sheet does as well as two.
+Collapse GeneralJudge::end_of_piece(std::uint64_t most_triangles) {
   list_lost();
-  return {removed_, middle_, cost_of_lost(), false};
+  Collapse best;
+  if (removed_ <= most_triangles) best = {removed_, middle_, cost_of_lost(), false};
+  if (!may_open_ || !is_closed_piece()) return best;
+  const Collapse without_a = opening(a_);
+  const Collapse without_b = opening(b_);
+  const Collapse& opened = without_a.cost < without_b.cost ? opening(a_) : without_b;
+  const bool is_better = best.triangles == 0 || opened.cost < best.cost;
+  return opened.triangles <= most_triangles && is_better ? opened : best;
 }
 
 GeneralCollapse GeneralJudge::judge(std::uint32_t a, std::uint32_t b,
@@ -326,7 +385,7 @@ GeneralCollapse GeneralJudge::judge(std::uint32_t a, std::uint32_t b,
   list_triangles();
   if (shared_.empty()) return {};
   find_vanishing();
-  if (removed_ > most_triangles) return {};
+  if (removed_ > most_triangles && staying_ > 0) return {};
   GeneralCollapse result;
   result.changes_topology = changes_ = changes_topology();
   if (changes_ && crowds_an_edge()) return {};
@@ -335,7 +394,7 @@ GeneralCollapse GeneralJudge::judge(std::uint32_t a, std::uint32_t b,
   if (staying_ == 0) {
     appearance_.clear(state_.appearance_scale);
     middle_ = state_.positions[a] + half_;
-    result.collapse = removal();
+    result.collapse = end_of_piece(most_triangles);
     return result;
   }
   add_star(half_);

@@ -30,6 +30,8 @@ class GeneralJudge {
   GeneralJudge(const CollapseState& state, bool any_topology)
       : state_(state), any_topology_(any_topology) {}
   void move_to(const CollapseState& state) { state_ = state; }
+  /// Whether closed pieces may become sheets before they go.
+  void let_open(bool may_open) { may_open_ = may_open; }
   /// To be told of each collapse.
   void merge() { surroundings_.change(); }
 
@@ -40,6 +42,8 @@ class GeneralJudge {
 
   /// Kept triangles that the collapse makes equal to another: by their other two vertices.
   std::span<const std::pair<std::uint32_t, std::uint32_t>> vanishing() const { return vanishing_; }
+  /// If it opens a closed piece: the triangles that go.
+  std::span<const Triangle> going() const { return going_; }
   /// Vertices whose fans are other ones than before, apart from the merged one.
   std::span<const std::uint32_t> changed() const { return changed_; }
   /// If it may be: what the merged vertex gets.
@@ -91,10 +95,14 @@ class GeneralJudge {
   double squared_to_cover(Vec3 from) const;
   double cost_of_lost();
   void add_cost_of_tips(Collapse& collapse);
-  Collapse removal();
+  Collapse end_of_piece(std::uint64_t most_triangles);
+  bool is_closed_piece() const;
+  Collapse opening(const End& without);
+  double cost_of_opening() const;
 
   CollapseState state_;
   bool any_topology_;
+  bool may_open_ = false;
   End a_;
   End b_;
   std::vector<Corner> shared_;  // as corners of a
@@ -111,6 +119,8 @@ class GeneralJudge {
   Vec3 middle_;
   Vec3 half_;                        // from there to b
   std::vector<std::uint32_t> lost_;  // ascending
+  std::vector<Triangle> going_;      // where a piece is opened
+  std::vector<Triangle> standing_;   // what is left of it
   Surroundings surroundings_;
   CollapseStar star_;
   EdgeQuadric quadric_;

@@ -205,6 +205,7 @@ std::uint32_t CollapseQueue::add_copy(std::uint32_t vertex) {
   }
   target_.push_back(copy);
   if (!past_.empty()) past_.emplace_back();
+  if (!opened_.empty()) opened_.push_back(0);
   refused_.push_back(0);
   looks_.push_back(0);
   stale_.push_back(1);

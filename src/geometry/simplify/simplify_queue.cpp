@@ -9,6 +9,8 @@
 #include <utility>
 
 #include "geometry/simplify/vertex_flags.hpp"
+#include "geometry/simplify/working_mesh.hpp"
+#include "geometry/union_find.hpp"
 
 namespace meshfarm {
 namespace {
@@ -40,6 +42,12 @@ constexpr double k_far_more = 1.3;
 // than twice as many of a skull's triangles cross; with 1,024 walls thinner than the error lose
 // their shape.
 constexpr double k_loss_of_crossing = 64;
+
+// What is left of a closed piece that was opened stands for both of its sides. Without that a
+// building of 16,000 pieces has 11 % more error at 1 %.
+constexpr double k_both_sides = 2;
+// Closed pieces are opened only where the goal has no room for so many triangles of each.
+constexpr std::uint64_t k_least_closed = 4;
 
 // Of what it would cost otherwise: what pinching has left over faces the wrong way more often than
 // not. With a 64th fewer triangles do, but a skull has 7 % more error.
@@ -77,6 +85,21 @@ std::uint64_t most_at_once(std::uint64_t excess, std::uint64_t goal, bool nothin
   return excess < k_few_to_go ? excess + most_fewer(goal, nothing_else_does) : excess;
 }
 
+/// Vertices without triangles are none.
+std::uint64_t components_of(std::size_t vertices, std::span<const Triangle> triangles) {
+  UnionFind sets(vertices);
+  std::uint64_t components = 0;
+  std::vector<std::uint8_t> is_used(vertices, 0);
+  for (const Triangle& t : triangles) {
+    for (const std::uint32_t v : t) {
+      components += is_used[v] == 0 ? 1 : 0;
+      is_used[v] = 1;
+    }
+    for (std::size_t k = 1; k < 3; ++k) components -= sets.join(t[0], t[k]) ? 1 : 0;
+  }
+  return components;
+}
+
 }  // namespace
 
 CollapseQueue::CollapseQueue(const QueuedMesh& mesh, EdgeRanking& ranking)
@@ -91,6 +114,7 @@ void CollapseQueue::start(std::span<const Triangle> triangles) {
   looks_.assign(vertices, 0);
   stale_.assign(vertices, 0);
   heap_.clear();
+  components_ = mesh_.any_topology ? components_of(vertices, triangles) : 0;
   remember();
   ranking_.begin_pass({mesh_.positions, triangles, mesh_.flags, &mesh_.adjacency,
                        &mesh_.creases.test(), mesh_.seam_only, true, mesh_.any_topology, true,
@@ -211,6 +235,9 @@ bool CollapseQueue::is_guarded(std::uint32_t a, std::uint32_t b, const Collapse&
 
 bool CollapseQueue::reduce(const SimplifyGoal& goal, const Progress& progress) {
   most_cost_ = goal.max_cost;
+  const std::uint64_t last = last_of(goal);
+  general_.let_open(last > 0 && last < k_least_closed * components_ && guard_ == nullptr &&
+                    crossings_ == nullptr);
   double share = k_ranked_share;
   bool is_ranked = limit_ > 0 && std::isfinite(goal.max_cost) &&
                    static_cast<double>(triangles_) > k_as_ranked * static_cast<double>(ranked_at_);
@@ -259,6 +286,10 @@ CollapseQueue::Stop CollapseQueue::run(const SimplifyGoal& goal, const Progress&
     if (cost_of(queued.key()) < max_cost_) blocked_ += kept_topology_ - kept_before;
     if (pieces_ != nullptr && collapse.triangles == 4 && pieces_->is_left_over(a)) {
       collapse.cost *= k_cost_of_left_over;
+    }
+    if (!opened_.empty() && opened_[a] != 0) {
+      collapse.cost *= k_both_sides;
+      collapse.certain *= k_both_sides;
     }
     const double cost =
         collapse.triangles > excess ? cost_of_fewer(queued, collapse.cost, excess) : collapse.cost;
@@ -319,8 +350,41 @@ void CollapseQueue::keep(const SimplifyGoal& goal) {
   copy_to(kept_.emplace_back(), flags, 0);
 }
 
-void CollapseQueue::merge(std::uint32_t a, std::uint32_t b, const Collapse& collapse) {
+void CollapseQueue::count(const Collapse& collapse) {
   general_.merge();
+  triangles_ -= collapse.triangles;
+  max_cost_ = std::max(max_cost_, collapse.cost);
+  last_cost_ = collapse.cost;
+  const double certain = collapse.certain < 0 ? collapse.cost : collapse.certain;
+  paid_ += certain;
+  costs_.add(certain);
+  ++collapses_;
+}
+
+/// Of a closed piece a sheet is left; no vertices merge.
+void CollapseQueue::open(const Collapse& collapse) {
+  ring_.clear();
+  for (const auto& [p, q, r] : general_.going()) {
+    mesh_.adjacency.remove(p, {q, r});
+    mesh_.adjacency.remove(q, {r, p});
+    mesh_.adjacency.remove(r, {p, q});
+    ring_.insert(ring_.end(), {p, q, r});
+  }
+  std::sort(ring_.begin(), ring_.end());
+  ring_.erase(std::unique(ring_.begin(), ring_.end()), ring_.end());
+  count(collapse);
+  opened_.resize(target_.size());
+  for (const std::uint32_t v : ring_) {
+    opened_[v] = 1;
+    stale_[v] = 1;
+    classify(v);
+  }
+  if (mesh_.adjacency.has_uvs()) update_lines(ring_.front());
+  for (const std::uint32_t v : ring_) look_again(v);
+}
+
+void CollapseQueue::merge(std::uint32_t a, std::uint32_t b, const Collapse& collapse) {
+  if (collapse.opens) return open(collapse);
   if (guard_ != nullptr) guard_->merge();
   if (crossings_ != nullptr) crossings_->merge();
   const MergedColumns columns =
@@ -338,13 +402,7 @@ void CollapseQueue::merge(std::uint32_t a, std::uint32_t b, const Collapse& coll
   mesh_.flags[a] |= mesh_.flags[b];
   mesh_.positions[a] = collapse.position;
   if (!mesh_.appearances.empty()) mesh_.appearances[a] = columns.appearance;
-  triangles_ -= collapse.triangles;
-  max_cost_ = std::max(max_cost_, collapse.cost);
-  last_cost_ = collapse.cost;
-  const double certain = collapse.certain < 0 ? collapse.cost : collapse.certain;
-  paid_ += certain;
-  costs_.add(certain);
-  ++collapses_;
+  count(collapse);
   if (by_general_) tidy(a);
   list_ring(a);
   if (pieces_ != nullptr) {

@@ -136,6 +136,8 @@ class CollapseQueue {
   bool must_not_cross(const QueuedEdge& queued, const Collapse& collapse);
   bool is_guarded(std::uint32_t a, std::uint32_t b, const Collapse& collapse);
   void merge(std::uint32_t a, std::uint32_t b, const Collapse& collapse);
+  void open(const Collapse& collapse);
+  void count(const Collapse& collapse);
   bool move(const SmallPieces::Places& places);
   void keep(const SimplifyGoal& goal);
   void update_lines(std::uint32_t merged);
@@ -157,6 +159,7 @@ class CollapseQueue {
   SmallPieces* pieces_ = nullptr;
   std::vector<std::uint32_t> target_;  // the vertex that a vertex has become
   std::vector<PastPlanes> past_;       // CollapseState::past
+  std::vector<std::uint8_t> opened_;   // of a piece that was closed; empty: none is
   // 0, or 1 when an edge at the vertex is refused, and one more for each change round it after
   // that, until it is looked at again.
   std::vector<std::uint8_t> refused_;
@@ -177,6 +180,7 @@ class CollapseQueue {
   std::vector<Corner> joined_;
   std::vector<CornerId> joined_ids_;
   std::uint64_t triangles_ = 0;
+  std::uint64_t components_ = 0;  // at the start; not counted where the topology is kept
   std::vector<Mesh> kept_;
   std::size_t next_kept_ = 0;  // of the goal's counts
   // As they were at the last ranking.

@@ -127,3 +127,73 @@ TEST_CASE("a stretched surface is no ribbon: none of its triangles turns over") 
     CHECK(cross(at(1) - at(0), at(2) - at(0)).z > 0);
   }
 }
+
+namespace {
+
+/// A closed box of twelve triangles. Diagonals of opposite faces run alike, or across.
+Mesh box(Vec3 size, bool alike) {
+  Mesh mesh;
+  for (int i = 0; i < 8; ++i) {
+    mesh.positions.push_back(
+        {(i & 1) != 0 ? size.x : 0, (i & 2) != 0 ? size.y : 0, (i & 4) != 0 ? size.z : 0});
+  }
+  mesh.triangles = {{0, 2, 3}, {0, 3, 1}, {0, 1, 5}, {0, 5, 4}, {2, 6, 7},
+                    {2, 7, 3}, {0, 4, 6}, {0, 6, 2}, {1, 3, 7}, {1, 7, 5}};
+  const auto top = alike ? std::array{Triangle{4, 5, 7}, Triangle{4, 7, 6}}
+                         : std::array{Triangle{4, 5, 6}, Triangle{5, 7, 6}};
+  mesh.triangles.insert(mesh.triangles.end(), top.begin(), top.end());
+  return mesh;
+}
+
+constexpr std::uint32_t k_plates = 50;
+
+Mesh plates() {
+  Mesh mesh;
+  for (std::uint32_t i = 0; i < k_plates; ++i) {
+    append(mesh, box({4, 3 + 0.01 * i, 0.1}, i % 2 == 0), {0, 0, 3.0 * i});
+  }
+  return mesh;
+}
+
+}  // namespace
+
+TEST_CASE("closed plates become sheets where there is no room for both of their sides") {
+  const Mesh mesh = plates();
+  for (const std::uint64_t goal : {std::uint64_t{3} * k_plates, std::uint64_t{2} * k_plates}) {
+    CAPTURE(goal);
+    Simplifier simplifier(mesh, {});
+    simplifier.reduce({.triangles = goal});
+    CHECK(simplifier.triangles() == goal);
+    CHECK(simplifier.simplifies_topology());
+    CHECK(check(simplifier.mesh()).components == k_plates);
+    CHECK(is_clean(simplifier.mesh()));
+    CHECK(measure_distance(mesh, simplifier.mesh(), {.samples = 20'000}).rms < 0.12);
+    CHECK(measure_distance(simplifier.mesh(), mesh, {.samples = 20'000}).rms < 0.12);
+  }
+}
+
+TEST_CASE("plates stay closed with the topology, within a bound, and where nothing may cross") {
+  const Mesh mesh = plates();
+  Simplifier keeps(mesh, {.lines = {.topology = TopologyMode::keep}});
+  Simplifier avoids(
+      mesh, {.lines = {.topology = TopologyMode::simplify, .crossings = CrossingMode::avoid}});
+  for (Simplifier* simplifier : {&keeps, &avoids}) {
+    simplifier->reduce({.triangles = 3 * k_plates});
+    CHECK(measure_topology(simplifier->mesh()).border_edges == 0);
+  }
+  CHECK(keeps.triangles() == 4 * k_plates);
+  CHECK(avoids.triangles() <= 3 * k_plates);
+}
+
+TEST_CASE("what is left of a closed plate stands for both of its sides") {
+  Mesh mesh = box({2, 2, 0.01}, true);
+  // Larger than one side, not than both.
+  append(mesh, Mesh{{{0, 0, 0}, {2.2, 0, 0}, {2.2, 2.2, 0}, {0, 2.2, 0}}, {{0, 1, 2}, {0, 2, 3}}},
+         {0, 0, 50});
+  Simplifier simplifier(mesh, {.lines = {.topology = TopologyMode::simplify}});
+  simplifier.reduce({.triangles = 3});
+  CHECK(simplifier.triangles() == 3);
+  const Mesh& made = simplifier.mesh();
+  CHECK(std::count_if(made.triangles.begin(), made.triangles.end(),
+                      [&](const Triangle& t) { return made.positions[t[0]].z < 1; }) == 2);
+}
