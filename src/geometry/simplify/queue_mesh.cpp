@@ -135,6 +135,7 @@ void CollapseQueue::tidy_star(std::uint32_t vertex) {
     joined_.clear();
     joined_ids_.clear();
     const std::uint32_t v = f == 0 ? vertex : add_copy(vertex);
+    set_origin(v, k_pinched);
     for (std::size_t i = 0; i < all.size(); ++i) {
       if (fan[i] != f) continue;
       const auto [next, prev] = all[i];
@@ -205,7 +206,7 @@ std::uint32_t CollapseQueue::add_copy(std::uint32_t vertex) {
   }
   target_.push_back(copy);
   if (!past_.empty()) past_.emplace_back();
-  if (!opened_.empty()) opened_.push_back(0);
+  if (!origins_.empty()) origins_.push_back(0);
   refused_.push_back(0);
   looks_.push_back(0);
   stale_.push_back(1);
