@@ -32,7 +32,7 @@ struct Collapse {
   double cost = 0;
   bool by_topology = false;  // that is why it may not be
   double certain = -1;       // the part of the cost that is no guess; below 0: all of it
-  bool opens = false;        // only the triangles at the edge go, and no vertices merge
+  bool opens = false;        // no vertices merge: GeneralJudge::going() go
 };
 
 /// What a vertex has besides its position, and its corners, after a collapse.
