@@ -19,6 +19,19 @@ Mesh octahedron() {
           {{0, 2, 4}, {2, 1, 4}, {1, 3, 4}, {3, 0, 4}, {2, 0, 5}, {1, 2, 5}, {3, 1, 5}, {0, 3, 5}}};
 }
 
+Mesh box(Vec3 size) {
+  Mesh mesh;
+  for (int i = 0; i < 8; ++i) {
+    mesh.positions.push_back({i % 2 * size.x, i / 2 % 2 * size.y, i / 4 * size.z});
+  }
+  for (const auto& [a, b, c, d] : std::initializer_list<std::array<std::uint32_t, 4>>{
+           {0, 2, 3, 1}, {4, 5, 7, 6}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 4, 6, 2}, {1, 3, 7, 5}}) {
+    mesh.triangles.push_back({a, b, c});
+    mesh.triangles.push_back({a, c, d});
+  }
+  return mesh;
+}
+
 Mesh icosphere(int levels) {
   const double g = (1 + std::sqrt(5.0)) / 2;
   Mesh mesh{{{-1, g, 0},

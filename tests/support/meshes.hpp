@@ -17,6 +17,9 @@ Mesh tetrahedron();
 /// A closed octahedron of radius 1.
 Mesh octahedron();
 
+/// A box of these sizes, closed, of twelve triangles; diagonals of opposite faces run alike.
+Mesh box(Vec3 size);
+
 /// An icosahedron, each triangle split into four `levels` times, on the sphere of radius 1:
 /// 20 * 4^levels triangles, 10 * 4^levels + 2 vertices.
 Mesh icosphere(int levels);

@@ -312,10 +312,13 @@ void GeneralJudge::add_cost_of_tips(Collapse& collapse) {
   collapse.certain += cost;
 }
 
-/// Whether the triangles at both ends are all of a closed piece.
+/// Whether the triangles at both ends are all of a closed piece of the mesh's own. What is pinched
+/// off would, as a sheet, stay longer than what matters more.
 bool GeneralJudge::is_closed_piece() const {
   const auto is_free = [&](std::uint32_t v) {
-    return (state_.flags[v] & (k_fixed | k_border | k_complex)) == 0 && contains(lost_, v);
+    const bool is_own = state_.origins.empty() || (state_.origins[v] & k_pinched) == 0;
+    return (state_.flags[v] & (k_fixed | k_border | k_complex)) == 0 && is_own &&
+           contains(lost_, v);
   };
   return shared_.size() == 2 && std::all_of(a_.neighbours.begin(), a_.neighbours.end(), is_free) &&
          std::all_of(b_.neighbours.begin(), b_.neighbours.end(), is_free);

@@ -29,6 +29,7 @@ struct CollapseState {
   double uv_scale = 0;                    // LineOptions::uv_scale
   std::span<const PastPlanes> past = {};  // of k_complex ones and ribbons' ends; empty: of none
   bool turns_ribbons = true;              // Turn::ribbon may be
+  std::span<const std::uint8_t> origins = {};  // VertexOrigin; empty: there is none
 
   /// Those of a triangle's corners, from the one at the vertex on.
   AppearanceStar::Values values_at(std::uint32_t vertex, const Corner& c) const {

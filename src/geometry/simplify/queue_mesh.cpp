@@ -135,7 +135,7 @@ void CollapseQueue::tidy_star(std::uint32_t vertex) {
     joined_.clear();
     joined_ids_.clear();
     const std::uint32_t v = f == 0 ? vertex : add_copy(vertex);
-    set_origin(v, k_pinched);
+    origins_[v] |= k_pinched;
     for (std::size_t i = 0; i < all.size(); ++i) {
       if (fan[i] != f) continue;
       const auto [next, prev] = all[i];

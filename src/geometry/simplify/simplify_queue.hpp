@@ -114,8 +114,6 @@ class CollapseQueue {
 
  private:
   enum class Stop : std::uint8_t { met, nothing_left, held, told };
-  /// Of what its piece is left; a merged vertex has those of both.
-  enum Origin : std::uint8_t { k_opened = 1, k_pinched = 2 };
 
   void remember();
   PastPlanes planes_at(std::uint32_t vertex) const;
@@ -139,11 +137,6 @@ class CollapseQueue {
   bool is_guarded(std::uint32_t a, std::uint32_t b, const Collapse& collapse);
   void merge(std::uint32_t a, std::uint32_t b, const Collapse& collapse);
   void open(const Collapse& collapse);
-  bool has_origin(std::uint32_t vertex, Origin origin) const {
-    return !origins_.empty() && (origins_[vertex] & origin) != 0;
-  }
-  void set_origin(std::uint32_t vertex, Origin origin);
-  bool may_open(std::uint32_t a, std::uint32_t b) const;
   void count(const Collapse& collapse);
   bool move(const SmallPieces::Places& places);
   void keep(const SimplifyGoal& goal);
@@ -166,7 +159,7 @@ class CollapseQueue {
   SmallPieces* pieces_ = nullptr;
   std::vector<std::uint32_t> target_;  // the vertex that a vertex has become
   std::vector<PastPlanes> past_;       // CollapseState::past
-  std::vector<std::uint8_t> origins_;  // Origin, of vertices; empty: all are as they were
+  std::vector<std::uint8_t> origins_;  // CollapseState::origins; empty where the topology is kept
   // 0, or 1 when an edge at the vertex is refused, and one more for each change round it after
   // that, until it is looked at again.
   std::vector<std::uint8_t> refused_;
@@ -202,7 +195,6 @@ class CollapseQueue {
   std::uint64_t blocked_ = 0;  // of these: cheaper than what has collapsed
   CostKey limit_ = 0;          // dearer edges wait for the next ranking
   bool by_general_ = false;    // the general judge judged the last
-  bool lacks_room_ = false;    // for all components
   bool ends_ = false;          // nothing is left that would not miss the goal
   bool held_ = false;
 };

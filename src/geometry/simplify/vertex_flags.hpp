@@ -17,6 +17,12 @@ enum VertexFlag : std::uint8_t {
   k_thin = 64      // another sheet is near
 };
 
+/// Of what piece a vertex is, one byte each; a merged vertex has those of both.
+enum VertexOrigin : std::uint8_t {
+  k_pinched = 1,  // of what was pinched off, or what that was pinched off from
+  k_opened = 2    // of one that was closed
+};
+
 /// Passes leave the edges at these vertices alone.
 constexpr std::uint8_t k_still = k_fixed | k_complex;
 

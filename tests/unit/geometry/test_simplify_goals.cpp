@@ -148,24 +148,9 @@ TEST_CASE("it is told where the topology refuses much") {
   CHECK(simplifier.is_slowed_by_topology());
 }
 
-namespace {
-
-/// 10 x 10 x 1, of twelve triangles.
-Mesh slab() {
-  Mesh mesh;
-  for (std::uint32_t i = 0; i < 8; ++i) {
-    mesh.positions.push_back({i & 1 ? 10.0 : 0.0, i & 2 ? 10.0 : 0.0, i & 4 ? 1.0 : 0.0});
-  }
-  mesh.triangles = {{0, 2, 3}, {0, 3, 1}, {4, 5, 7}, {4, 7, 6}, {0, 1, 5}, {0, 5, 4},
-                    {2, 6, 7}, {2, 7, 3}, {0, 4, 6}, {0, 6, 2}, {1, 3, 7}, {1, 7, 5}};
-  return mesh;
-}
-
-}  // namespace
-
 TEST_CASE("a large piece does not give up a corner for the last two triangles") {
   constexpr std::uint32_t k_specks = 30;
-  Mesh mesh = slab();
+  Mesh mesh = test::box({10, 10, 1});
   for (std::uint32_t i = 0; i < k_specks; ++i) {
     Mesh speck = test::tetrahedron();
     for (Vec3& p : speck.positions) p = p * (0.1 + 0.001 * i);

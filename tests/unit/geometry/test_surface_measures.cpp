@@ -26,20 +26,6 @@ EdgeLengths edges(const Mesh& mesh) {
   return measure_edge_lengths(mesh, 2);
 }
 
-/// A box of these sizes, closed, two triangles a face.
-Mesh box(Vec3 size) {
-  Mesh mesh;
-  for (int i = 0; i < 8; ++i) {
-    mesh.positions.push_back({i % 2 * size.x, i / 2 % 2 * size.y, i / 4 * size.z});
-  }
-  for (const auto& [a, b, c, d] : std::initializer_list<std::array<std::uint32_t, 4>>{
-           {0, 2, 3, 1}, {4, 5, 7, 6}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 4, 6, 2}, {1, 3, 7, 5}}) {
-    mesh.triangles.push_back({a, b, c});
-    mesh.triangles.push_back({a, c, d});
-  }
-  return mesh;
-}
-
 /// A cone without a base, its tip at the top: `count` triangles whose angle at the tip is known.
 Mesh cone(std::uint32_t count, double height) {
   Mesh mesh{{{0, 0, height}}, {}};
@@ -78,7 +64,7 @@ TEST_CASE("quantiles are values, and so many are above them") {
 }
 
 TEST_CASE("surface measures: a box, wherever it is and however it is turned") {
-  const Mesh mesh = box({1, 2, 3});
+  const Mesh mesh = test::box({1, 2, 3});
   CHECK(shape(mesh).area == doctest::Approx(22));
   CHECK(shape(mesh).volume == doctest::Approx(6));
   CHECK(edges(mesh).border == 0);
