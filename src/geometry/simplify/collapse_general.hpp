@@ -57,6 +57,7 @@ class GeneralJudge {
     std::uint32_t vertex = 0;
     std::vector<std::uint32_t> neighbours;  // ascending
     std::vector<std::uint32_t> singular;    // of these, those across singular edges
+    std::vector<std::uint32_t> open;        // of these, those across edges that have one triangle
     std::size_t crowded = 0;                // edges that have more than two triangles
     int rank = 0;
 
@@ -84,6 +85,7 @@ class GeneralJudge {
   void add_lines(const End& end, const End& other, Vec3 at);
   Collapse best_of_positions();
   Collapse into_line(Vec3 position) const;
+  Collapse or_beside_line(const Collapse& on_line) const;
   Collapse turned_far(std::span<const Vec3, 2> ends) const;
   Collapse best_with_uvs();
   bool may_go_to(Vec3 x) const;

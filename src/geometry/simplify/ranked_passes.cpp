@@ -35,13 +35,6 @@ constexpr double k_slowed = 0.01;
 constexpr double k_little_refused = 0.01;
 constexpr std::uint64_t k_too_many_to_order = 25'000;
 
-// Passes rank no edges at complex vertices. From this part of all vertices on these may be most of
-// what is cheap, and a pass takes nothing that is so many times as dear as the pass before it might
-// take: one took all corners of the holes in a shell model's walls.
-constexpr double k_many_complex = 1.0 / 64;
-constexpr double k_much_dearer = 64;
-constexpr double k_as_good_as_flat = 1e-12;  // of the square of a triangle's area
-
 // With a bound, the passes end when it may be near for this part of the collapses.
 constexpr double k_bounded = 0.2;
 // Drifts at a vertex add up to no more than this share of a bound before.
@@ -65,17 +58,13 @@ RankedPasses::RankedPasses(WorkingMesh& mesh, const SurfaceBound* bound)
 RankedPasses::End RankedPasses::reduce(const SimplifyGoal& goal,
                                        const std::function<bool(std::uint64_t)>& progress) {
   all_collapses_ = all_refused_for_topology_ = 0;
-  const double least = least_of_many_complex();
   while (mesh_.is_above(goal) && !is_near(goal)) {
     mesh_.begin_pass();
     ranking_.begin_pass({mesh_.mesh().positions, mesh_.mesh().triangles, mesh_.flags(),
                          &mesh_.adjacency(), &mesh_.creases().test(), mesh_.seam_only(), false,
                          false, ranks_by_bounds_, mesh_.mesh().appearances,
                          mesh_.appearance_scale(), mesh_.uv_scale()});
-    Pass pass = plan(goal);
-    const bool climbs_far = pass.max_cost > most_;
-    pass.max_cost = std::min(pass.max_cost, most_);
-    if (least > 0) most_ = std::max(k_much_dearer * pass.max_cost, least);
+    const Pass pass = plan(goal);
     const std::uint64_t before = mesh_.triangles();
     const std::uint64_t removed = run(goal, pass);
     all_collapses_ += collapses_;
@@ -88,7 +77,6 @@ RankedPasses::End RankedPasses::reduce(const SimplifyGoal& goal,
       return End::near;
     }
     if (static_cast<double>(removed) < k_least_ranked * static_cast<double>(before)) {
-      if (climbs_far) return End::dead_end;
       if (ranks_by_bounds_ && goal.max_cost > cost_of(pass.limit)) {
         ranks_by_bounds_ = false;
         continue;
@@ -97,24 +85,6 @@ RankedPasses::End RankedPasses::reduce(const SimplifyGoal& goal,
     }
   }
   return End::near;
-}
-
-/// What the next pass may take at least where there are many complex vertices, so that what is flat
-/// but for rounding does not count: by the mean area of the triangles. Otherwise 0.
-double RankedPasses::least_of_many_complex() const {
-  const std::span<const std::uint8_t> flags = mesh_.flags();
-  const auto complex = std::count_if(flags.begin(), flags.end(),
-                                     [](std::uint8_t each) { return (each & k_complex) != 0; });
-  if (!(static_cast<double>(complex) > k_many_complex * static_cast<double>(flags.size())))
-    return 0;
-  const Mesh& mesh = mesh_.mesh();
-  double twice_area = 0;
-  for (const auto& [a, b, c] : mesh.triangles) {
-    const Vec3 at = mesh.positions[a];
-    twice_area += length(cross(mesh.positions[b] - at, mesh.positions[c] - at));
-  }
-  const double mean = 0.5 * twice_area / static_cast<double>(mesh.triangles.size());
-  return k_as_good_as_flat * mean * mean;
 }
 
 bool RankedPasses::is_slowed_by_topology() const {

@@ -46,7 +46,6 @@ class RankedPasses {
   };
 
   bool is_near(const SimplifyGoal& goal) const;
-  double least_of_many_complex() const;
   Pass plan(const SimplifyGoal& goal);
   std::uint64_t run(const SimplifyGoal& goal, const Pass& pass);
   bool may_drift(DriftMeter& meter, const RankedEdge& edge, const Collapse& collapse);
@@ -59,7 +58,6 @@ class RankedPasses {
   // Ranks by bounds, so that what is flat goes before what is nearly flat. Where little of that is
   // left most of what ranks low is dearer, and refused.
   bool ranks_by_bounds_ = true;
-  double most_ = HUGE_VAL;                      // that a pass may take, by the one before it
   std::uint64_t all_collapses_ = 0;             // of the last reduce()
   std::uint64_t all_refused_for_topology_ = 0;  // in the last reduce()
   std::uint64_t tried_ = 0;                     // edges in the last pass

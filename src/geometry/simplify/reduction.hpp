@@ -40,7 +40,7 @@ class Reduction {
   TopologyMode topology_;
   const SurfaceBound* bound_;
   bool may_be_rough_;  // until a rough pass has done nothing
-  bool in_order_;      // passes have come to their end
+  bool in_order_;      // passes have come to their end, or would take what is dear
   RankedPasses passes_;
   OrderedEnd end_;
   double thickness_ = -1;       // of thin walls, when they are flagged
