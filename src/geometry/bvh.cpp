@@ -11,9 +11,21 @@
 #include "geometry/searching_point.hpp"
 
 namespace meshfarm {
+namespace {
+
+// From far away what is as near as the mesh's box, but for this share of the squared distance, is
+// as near as anything else in it.
+constexpr double k_as_near = 1 + 0x1p-19;
+
+}  // namespace
 
 double squared_distance(Vec3 p, Vec3 a, Vec3 b, Vec3 c) {
   return distance_across(p, a, b, c).squared;
+}
+
+Vec3 Bvh::near_frame(Vec3 in_frame) {
+  const auto near = [](double x) { return std::clamp(x, -k_bvh_far, k_bvh_far); };
+  return {near(in_frame.x), near(in_frame.y), near(in_frame.z)};
 }
 
 double Bvh::squared_to(Vec3 p, std::uint32_t triangle) const {
@@ -61,6 +73,9 @@ double Bvh::least_below(Vec3 p, double squared) const {
 template <class Distance>
 void Bvh::search(Query& query, double enough, const Distance& distance) const {
   const float most = query.limit;
+  if (const double gap = query.squared_gap_to_all(nodes_.front()); query.is_far(gap)) {
+    enough = std::max(enough, gap * k_as_near / query.to_frame);
+  }
   BvhStack stack;
   while (!stack.empty() && query.best.squared > enough) {
     const BvhStack::Entry top = stack.pop();

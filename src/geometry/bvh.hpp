@@ -34,8 +34,9 @@ class Bvh {
   /// The numbers of the points, which must be finite, along a curve (bvh_morton.hpp): what one
   /// finds is a good guess for the next.
   std::vector<std::uint32_t> search_order(std::span<const Vec3> points) const;
-  /// The triangle nearest to `p`, or some triangle whose squared distance is at most `enough`. A
-  /// good `guess` saves time.
+  /// The triangle nearest to `p`, or some triangle whose squared distance is at most `enough`; from
+  /// a thousand times as far away as the mesh is wide, one that is no more than 1e-6 of the
+  /// distance farther. A good `guess` saves time.
   Nearest nearest(Vec3 p, std::uint32_t guess, double enough = 0) const;
   /// Some triangle whose squared distance is at most `squared`; infinite if there is none.
   Nearest any_within(Vec3 p, double squared) const;
@@ -46,7 +47,8 @@ class Bvh {
   /// than the root of `most_squared`; else its squared distance is infinite.
   Nearest nearest_facing(Vec3 p, Vec3 normal, std::uint32_t guess, double most_squared) const;
   /// Of the normals of all triangles whose squared distance is `squared`, but for rounding, the one
-  /// that is most like `normal`; zero if none of them has one. Not of length 1.
+  /// that is most like `normal`, from far away of some of them; zero if none has one. Not of
+  /// length 1.
   Vec3 most_similar_normal(Vec3 p, Vec3 normal, double squared) const;
 
   /// Up to six triangles that lie together, and a box round them in the frame.
@@ -66,8 +68,9 @@ class Bvh {
   void find_touching(const Leaf& leaf, std::vector<Leaf>& found) const;
 
  private:
-  // Boxes are floats, rounded outwards, in a frame where the mesh's box is centred and its longest
-  // side between 1/2 and 1: far from the origin floats could not tell triangles apart.
+  // Boxes are floats, rounded outwards, in a frame where the box of the mesh, without outliers, is
+  // centred and its longest side between 1/2 and 1: far from the origin floats could not tell
+  // triangles apart.
   struct alignas(64) Node {
     float lo[3][4];
     float hi[3][4];
@@ -77,6 +80,8 @@ class Bvh {
   struct Query;
 
   Vec3 to_frame(Vec3 p) const { return (p - center_) * scale_; }
+  /// Where squares are still floats. Nothing comes to lie farther from anything else than it was.
+  static Vec3 near_frame(Vec3 in_frame);
   void set_frame_and_curve();
   void make_nodes(unsigned threads);
   Vec3 to_curve(Vec3 in_frame) const;

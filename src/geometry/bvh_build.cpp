@@ -19,6 +19,12 @@ constexpr std::uint64_t k_chunk = 4096;
 // An axis counts less along the curve only where triangles are so many times as long in it.
 constexpr double k_much_longer = 4;
 constexpr float k_huge = std::numeric_limits<float>::max();
+// One corner in so many triangles is asked where most are, at least of so many.
+constexpr std::size_t k_asked = 4096;
+// Most are what is between these shares along an axis. What is farther from them than so many times
+// their own extent may lie outside of the frame.
+constexpr double k_few = 1.0 / 16;
+constexpr double k_far_from_most = 64;
 
 float below(double x) {
   return std::nextafter(static_cast<float>(x), -k_huge);
@@ -29,6 +35,33 @@ float above(double x) {
 
 double longest_side(Vec3 size) {
   return std::max({size.x, size.y, size.z});
+}
+
+/// `all`, but for what is far from nearly all else. One vertex a hundred million times as far away
+/// as the mesh is wide would leave no float to tell the others apart.
+Box without_outliers(const Box& all, std::span<const Vec3> positions,
+                     std::span<const Triangle> triangles) {
+  const std::size_t step = std::max<std::size_t>(1, triangles.size() / k_asked);
+  Box most;
+  const std::array axes = {&Vec3::x, &Vec3::y, &Vec3::z};
+  for (double Vec3::*const axis : axes) {
+    std::vector<double> asked;
+    for (std::size_t t = 0; t < triangles.size(); t += step) {
+      asked.push_back(positions[triangles[t][0]].*axis);
+    }
+    const auto few = static_cast<std::ptrdiff_t>(k_few * static_cast<double>(asked.size()));
+    std::nth_element(asked.begin(), asked.begin() + few, asked.end());
+    most.lo.*axis = asked[static_cast<std::size_t>(few)];
+    std::nth_element(asked.begin(), asked.end() - 1 - few, asked.end());
+    most.hi.*axis = *(asked.end() - 1 - few);
+  }
+  const double margin = k_far_from_most * longest_side(most.hi - most.lo);
+  if (!(margin > 0 && std::isfinite(margin))) return all;
+  for (double Vec3::*const axis : axes) {
+    most.lo.*axis = std::max(all.lo.*axis, most.lo.*axis - margin);
+    most.hi.*axis = std::min(all.hi.*axis, most.hi.*axis + margin);
+  }
+  return most;
 }
 
 struct Range {
@@ -94,8 +127,9 @@ void Bvh::set_frame_and_curve() {
     const double longest = longest_side(size);
     if (longest > 0) sum = sum + size * (1 / longest);
   }
-  center_ = all.lo * 0.5 + all.hi * 0.5;
-  const double longest = longest_side(all.hi - all.lo);
+  const Box box = without_outliers(all, positions_, triangles_);
+  center_ = box.lo * 0.5 + box.hi * 0.5;
+  const double longest = longest_side(box.hi - box.lo);
   if (longest > 0) scale_ = std::ldexp(1.0, -std::ilogb(longest) - 1);
   const double middle = std::max(std::min(sum.x, sum.y), std::min(std::max(sum.x, sum.y), sum.z));
   if (!(middle > 0)) return;
@@ -171,7 +205,7 @@ void Bvh::set_leaf_boxes(Node& node) const {
     Box box;
     for (std::uint32_t i = 0; i < node.count[k]; ++i) {
       for (const std::uint32_t v : triangles_[order_[node.child[k] + i]]) {
-        box.add(to_frame(positions_[v]));
+        box.add(near_frame(to_frame(positions_[v])));
       }
     }
     for (int axis = 0; axis < 3; ++axis) {

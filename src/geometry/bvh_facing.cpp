@@ -4,6 +4,12 @@
 #include "geometry/bvh_query.hpp"
 
 namespace meshfarm {
+namespace {
+
+// From far away all triangles may be as near, but for rounding: so many are looked at.
+constexpr std::size_t k_most_from_afar = 64;
+
+}  // namespace
 
 // The loop of nearest() again: that one would be 4 % slower if it could leave triangles out.
 Bvh::Nearest Bvh::nearest_facing(Vec3 p, Vec3 normal, std::uint32_t guess,
@@ -51,11 +57,14 @@ Vec3 Bvh::most_similar_normal(Vec3 p, Vec3 normal, double squared) const {
     best = found;
     best_cosine = cosine;
   };
+  const bool is_far = Query::is_far(query.squared_gap_to_all(nodes_.front()));
+  std::size_t left = is_far ? k_most_from_afar : triangles_.size();
   BvhStack stack;
-  while (!stack.empty()) {
+  while (!stack.empty() && left > 0) {
     const BvhStack::Entry top = stack.pop();
     if (top.count > 0) {
       for (std::uint32_t i = 0; i < top.count; ++i) look_at(order_[top.child + i]);
+      left -= std::min<std::size_t>(left, top.count);
       continue;
     }
     const Node& node = nodes_[top.child];

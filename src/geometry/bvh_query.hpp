@@ -17,6 +17,9 @@ namespace meshfarm {
 // code or halves the 2^32 triangles of one code.
 inline constexpr std::size_t k_bvh_stack = 3 * (63 + 32) + 4;
 
+// As far out in the frame as anything comes to lie: its square is a float.
+inline constexpr double k_bvh_far = 1e15;
+
 /// What a search has still to look at, at first the root. Three arrays: one wide read of what three
 /// writes have just written would wait for them.
 class BvhStack {
@@ -74,16 +77,18 @@ struct Bvh::Query {
   using Four = float __attribute__((vector_size(16)));
 
   Vec3 p;
+  Vec3 place;  // in the frame
   float lo[3];
   float hi[3];
   double to_frame;  // from squared distances in the mesh's unit
   Nearest best;
   float limit = std::numeric_limits<float>::max();
 
-  Query(Vec3 point, Vec3 in_frame, double scale) : p(point), to_frame(scale * scale) {
-    constexpr double k_far = 1e15;  // nearer is a lower bound too, and its square is a float
+  Query(Vec3 point, Vec3 in_frame, double scale)
+      : p(point), place(in_frame), to_frame(scale * scale) {
+    const Vec3 near = near_frame(in_frame);
     for (int axis = 0; axis < 3; ++axis) {
-      const float x = static_cast<float>(std::clamp(in_frame[axis], -k_far, k_far));
+      const auto x = static_cast<float>(near[axis]);
       const float rounding = std::fabs(x) * 0x1p-23f + std::numeric_limits<float>::min();
       lo[axis] = x - rounding;
       hi[axis] = x + rounding;
@@ -106,6 +111,21 @@ struct Bvh::Query {
     }
     std::memcpy(bounds, &sum, sizeof sum);
   }
+  /// To the box of all, in the frame; no more than that where it reaches out of the frame.
+  double squared_gap_to_all(const Node& root) const {
+    double sum = 0;
+    for (int axis = 0; axis < 3; ++axis) {
+      const double lo = *std::min_element(root.lo[axis], root.lo[axis] + 4);
+      const double hi = *std::max_element(root.hi[axis], root.hi[axis] + 4);
+      const double before = lo > -k_bvh_far ? lo - place[axis] : 0;
+      const double after = hi < k_bvh_far ? place[axis] - hi : 0;
+      const double gap = std::max({before, after, 0.0});
+      sum += gap * gap;
+    }
+    return sum;
+  }
+  /// Whether the point is a thousand times as far away as the mesh is wide.
+  static bool is_far(double squared_gap) { return squared_gap > 0x1p20; }
   /// Puts the node's boxes within the limit onto the stack; the nearest comes to lie on top.
   void push(const Node& node, BvhStack& stack) const {
     float bounds[4];
