@@ -19,6 +19,12 @@ namespace meshfarm {
 
 PieceSamples sample_piece(std::span<const Vec3> positions, std::span<const Triangle> triangles,
                           std::uint64_t count, Vec3 origin) {
+  return sample_piece(
+      positions, triangles, [count](double) { return count; }, origin);
+}
+
+PieceSamples sample_piece(std::span<const Vec3> positions, std::span<const Triangle> triangles,
+                          const std::function<std::uint64_t(double area)>& count_of, Vec3 origin) {
   constexpr std::size_t k_block = 16;  // a number for each triangle would take long to write
   PieceSamples made;
   std::vector<double> before;  // the area up to the end of each block
@@ -34,6 +40,8 @@ PieceSamples sample_piece(std::span<const Vec3> positions, std::span<const Trian
     if (i % k_block == k_block - 1 || i + 1 == triangles.size()) before.push_back(made.area);
   }
   if (!(made.area > 0) || !std::isfinite(made.area)) return made;
+  const std::uint64_t count = count_of(made.area);
+  if (count == 0) return made;
   const double share = made.area / static_cast<double>(count);
   std::size_t block = 0;
   made.points.reserve(count);

@@ -34,6 +34,13 @@ std::uint64_t step_for(std::uint64_t count, std::uint64_t most) {
   return std::max<std::uint64_t>(1, (count + most - 1) / most);
 }
 
+/// Of those sets that have points.
+double area_sampled(std::span<const SurfaceSamples> samples) {
+  double area = 0;
+  for (const SurfaceSamples& part : samples) area += part.points.empty() ? 0 : part.area;
+  return area;
+}
+
 /// The greatest of what several threads find.
 class Greatest {
  public:
@@ -73,11 +80,10 @@ ErrorMeter::ErrorMeter(const Stage& stage, const Manifest& manifest,
       threads_(threads),
       points_(points),
       samples_(std::move(samples)),
+      area_(area_sampled(samples_)),
       input_(stage, manifest, threads),
-      normals_(manifest) {
+      normals_(manifest, area_) {
   for (const SurfaceSamples& part : samples_) {
-    if (part.points.empty()) continue;
-    area_ += part.area;
     surface_.insert(surface_.end(), part.points.begin(), part.points.end());
   }
   const auto triangles = static_cast<double>(std::max<std::uint64_t>(1, manifest.triangles()));

@@ -65,7 +65,7 @@ class ErrorMeter {
   unsigned threads_;
   ErrorPoints points_;
   std::vector<SurfaceSamples> samples_;
-  double area_ = 0;            // of the input
+  double area_;                // of the input
   double spacing_ = 0;         // of its vertices, about
   std::vector<Vec3> surface_;  // all samples
   InputSurface input_;

@@ -11,41 +11,28 @@ namespace {
 constexpr double k_least_points = 2'000;
 constexpr double k_most_points = 20'000;
 constexpr double k_points_a_triangle = 0.005;
-constexpr std::uint64_t k_most_sampled = 250'000;
-
-std::vector<Triangle> every(std::uint64_t step, std::span<const Triangle> triangles) {
-  std::vector<Triangle> some;
-  some.reserve(triangles.size() / step + 1);
-  for (std::size_t i = 0; i < triangles.size(); i += step) some.push_back(triangles[i]);
-  return some;
-}
 
 }  // namespace
 
-NormalSamples::NormalSamples(const Manifest& manifest)
-    : step_((manifest.triangles() + k_most_sampled - 1) / k_most_sampled),
-      parts_(manifest.parts.size() + 1) {
-  const auto triangles = static_cast<double>(std::max<std::uint64_t>(1, manifest.triangles()));
-  const double points = k_points_a_triangle * triangles;
-  per_triangle_ = std::clamp(points, k_least_points, k_most_points) / triangles;
+NormalSamples::NormalSamples(const Manifest& manifest, double area)
+    : parts_(manifest.parts.size() + 1) {
+  const double points = k_points_a_triangle * static_cast<double>(manifest.triangles());
+  per_area_ = area > 0 ? std::clamp(points, k_least_points, k_most_points) / area : 0;
 }
 
 void NormalSamples::add(const SurfacePiece& piece) {
   OfPart& part = parts_[piece.part];
-  const auto size = static_cast<double>(piece.triangles.size());
-  part.due += per_triangle_ * size;
-  const double count = std::floor(part.due);
-  if (!(count > 0)) return;
-  part.due -= count;
-  const std::vector<Triangle> some = every(step_, piece.triangles);
-  const PieceSamples found =
-      sample_piece(piece.positions, some, static_cast<std::uint64_t>(count), {});
-  if (found.points.empty()) return;
-  // So that a piece that was passed over for its size counts by the next.
-  const double each = found.area / static_cast<double>(some.size()) / per_triangle_;
+  const auto whole_points = [&](double area) {
+    part.due += per_area_ * area;
+    const double count = std::floor(part.due);
+    part.due -= count;
+    return static_cast<std::uint64_t>(count);
+  };
+  const PieceSamples found = sample_piece(piece.positions, piece.triangles, whole_points, {});
   Points& to = part.sampled;
   to.points.insert(to.points.end(), found.points.begin(), found.points.end());
-  to.areas.insert(to.areas.end(), found.points.size(), each);
+  // So that a piece too small for a point counts by the next.
+  to.areas.insert(to.areas.end(), found.points.size(), 1 / per_area_);
 }
 
 NormalSamples::Points NormalSamples::take() {

@@ -12,11 +12,11 @@
 namespace meshfarm {
 
 /// Points of an input that comes in pieces, and which way it faces there: one for 200 triangles,
-/// from 2,000 to 20,000. They are spread by area over a quarter of a million triangles that are
-/// evenly spread themselves, or over all if there are fewer.
+/// from 2,000 to 20,000, spread by area.
 class NormalSamples {
  public:
-  explicit NormalSamples(const Manifest& manifest);
+  /// `area`: of the input.
+  NormalSamples(const Manifest& manifest, double area);
   /// From several threads; the pieces of a part in order.
   void add(const SurfacePiece& piece);
 
@@ -33,8 +33,7 @@ class NormalSamples {
     double due = 0;  // points, not a whole one, that the pieces so far had too few of
   };
 
-  double per_triangle_;  // points
-  std::uint64_t step_;   // of the triangles that are looked at
+  double per_area_;  // points
   std::vector<OfPart> parts_;
 };
 

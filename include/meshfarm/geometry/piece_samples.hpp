@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -28,6 +29,9 @@ struct PieceSamples {
 /// Takes so many points, stratified by area; none where the piece has no area.
 PieceSamples sample_piece(std::span<const Vec3> positions, std::span<const Triangle> triangles,
                           std::uint64_t count, Vec3 origin);
+/// Takes `count(area)` points of a piece that has an area.
+PieceSamples sample_piece(std::span<const Vec3> positions, std::span<const Triangle> triangles,
+                          const std::function<std::uint64_t(double area)>& count, Vec3 origin);
 
 /// Where a mesh is nearest to a point.
 struct NearPlace {

@@ -24,6 +24,8 @@ TEST_CASE("samples of a piece lie on it, and stand for its area and volume") {
   }
   CHECK(above > 200);
   CHECK(above < 300);
+  const auto points_for = [](double area) { return static_cast<std::uint64_t>(10 * area); };
+  CHECK(sample_piece(sphere.positions, sphere.triangles, points_for, {}).points.size() == 125);
   const Mesh flat{.positions = {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}}, .triangles = {{0, 1, 2}}};
   CHECK(sample_piece(flat.positions, flat.triangles, 10, {}).points.empty());
 }

@@ -130,6 +130,24 @@ TEST_CASE("of triangles of unequal size normals count by area") {
   CHECK(told.to_output_normals->p95 == doctest::Approx(degrees).epsilon(0.001));
 }
 
+TEST_CASE("a large triangle counts by its area beside many small ones, wherever it comes") {
+  for (const std::size_t left_out : {0, 1, 2}) {
+    Mesh mesh = test::icosphere(7);
+    mesh.triangles.resize(mesh.triangles.size() - left_out);
+    test::append(mesh,
+                 {.positions = {{5, 0, 0}, {105, 0, 0}, {105, 100, 0}}, .triangles = {{0, 1, 2}}});
+    Mesh inside_out = mesh;
+    for (std::size_t t = 0; t + 1 < mesh.triangles.size(); ++t) {
+      std::swap(inside_out.triangles[t][0], inside_out.triangles[t][1]);
+    }
+    const MeasuredError told = measure(mesh, inside_out, Scheme::cut);
+    REQUIRE(told.to_output_normals);
+    CHECK(told.normal_samples > 1'500);
+    CHECK(told.to_output_normals->over_90 == doctest::Approx(4 * 3.14159 / 5e3).epsilon(0.4));
+    CHECK(told.to_output_normals->p95 < 1e-3);
+  }
+}
+
 TEST_CASE("an empty result has no error to tell") {
   const MeasuredError told = measure(test::icosphere(3), {}, Scheme::cut);
   CHECK(told.input_samples == 0);
