@@ -13,8 +13,9 @@
 namespace meshfarm {
 namespace {
 
-// From far away what is as near as the mesh's box, but for this share of the squared distance, is
-// as near as anything else in it.
+// Of many that are looked at from far away, one that is as near as the mesh's box, but for this
+// share of the squared distance, is near enough.
+constexpr std::int64_t k_many_from_afar = 1024;
 constexpr double k_as_near = 1 + 0x1p-19;
 
 }  // namespace
@@ -73,9 +74,8 @@ double Bvh::least_below(Vec3 p, double squared) const {
 template <class Distance>
 void Bvh::search(Query& query, double enough, const Distance& distance) const {
   const float most = query.limit;
-  if (const double gap = query.squared_gap_to_all(nodes_.front()); query.is_far(gap)) {
-    enough = std::max(enough, gap * k_as_near / query.to_frame);
-  }
+  const double gap = query.squared_gap_to_all(nodes_.front());
+  std::int64_t left = query.is_far(gap) ? k_many_from_afar : INT64_MAX;
   BvhStack stack;
   while (!stack.empty() && query.best.squared > enough) {
     const BvhStack::Entry top = stack.pop();
@@ -86,6 +86,8 @@ void Bvh::search(Query& query, double enough, const Distance& distance) const {
         if (query.best.squared <= enough) break;
       }
       query.limit = std::min(query.limit, most);
+      left -= top.count;
+      if (left < 0) enough = std::max(enough, gap * k_as_near / query.to_frame);
       continue;
     }
     query.push(nodes_[top.child], stack);

@@ -34,9 +34,9 @@ class Bvh {
   /// The numbers of the points, which must be finite, along a curve (bvh_morton.hpp): what one
   /// finds is a good guess for the next.
   std::vector<std::uint32_t> search_order(std::span<const Vec3> points) const;
-  /// The triangle nearest to `p`, or some triangle whose squared distance is at most `enough`; from
-  /// a thousand times as far away as the mesh is wide, one that is no more than 1e-6 of the
-  /// distance farther. A good `guess` saves time.
+  /// The triangle nearest to `p`, or some triangle whose squared distance is at most `enough`. Of
+  /// more than a thousand that are as near, seen from a thousand times as far away as the mesh is
+  /// wide, it may be one that is 1e-6 of the distance farther. A good `guess` saves time.
   Nearest nearest(Vec3 p, std::uint32_t guess, double enough = 0) const;
   /// Some triangle whose squared distance is at most `squared`; infinite if there is none.
   Nearest any_within(Vec3 p, double squared) const;

@@ -105,10 +105,11 @@ struct SimplifyGoal {
   /// Collapse no edge that costs more. A cost is an area times a squared distance: the sum over the
   /// triangles round the edge, as they are just before, of area x squared distance of the new
   /// vertex to their planes; open borders add a plane along each border edge, as heavy as three
-  /// squares on it, creases two. No less than 0.8 of the area that the surface loses, or 0.2 of
-  /// what it gains, x the edge's squared length, since planes do not see a spike draw back. Sides
-  /// of ribbons weigh less, and there gains are free. It depends on nothing else but for changes of
-  /// the topology: costs of parts compare.
+  /// squares on it, creases two. No less than 0.8 of the area that the surface loses x the edge's
+  /// squared length, since planes do not see a spike draw back, or 0.2 of what it gains x the
+  /// square of five times the width of that, along the edge, or of the edge's length, if that is
+  /// less. Sides of ribbons weigh less, and there gains are free. It depends on nothing else but
+  /// for changes of the topology: costs of parts compare.
   double max_cost = std::numeric_limits<double>::infinity();
   /// About how many triangles will be left when all goals that follow are met; 0: none follows.
   /// The farther the end, the less care a collapse needs.

@@ -32,9 +32,9 @@ void append_turned(const TriangleColumnsView& from, CornerId id, TriangleColumns
 
 }  // namespace
 
-bool CollapseQueue::has_free_border() const {
+bool CollapseQueue::may_lose_one() const {
   for (std::uint32_t v = 0; v < target_.size(); ++v) {
-    if ((mesh_.flags[v] & (k_border | k_fixed)) == k_border && !is_gone(v)) return true;
+    if (meshfarm::may_lose_one(mesh_.flags[v]) && !is_gone(v)) return true;
   }
   return false;
 }

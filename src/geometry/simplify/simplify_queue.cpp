@@ -280,13 +280,13 @@ bool CollapseQueue::reduce(const SimplifyGoal& goal, const Progress& progress) {
 CollapseQueue::Stop CollapseQueue::run(const SimplifyGoal& goal, const Progress& progress) {
   std::uint64_t collapses = 0;
   const CostKey dearest = key_of(goal.max_cost);
-  std::optional<bool> any_border;  // asked once: one triangle too many goes at a border only
+  std::optional<bool> may_be_odd;  // asked once
   while (triangles_ > goal.triangles) {
     // Something is to be left, whatever the goal.
     const std::uint64_t excess = triangles_ - std::max<std::uint64_t>(1, goal.triangles);
     if (excess == 0) return Stop::met;
-    if (excess == 1 && !any_border) any_border = has_free_border();
-    if (excess == 1 && !*any_border) return Stop::met;
+    if (excess == 1 && !may_be_odd) may_be_odd = may_lose_one();
+    if (excess == 1 && !*may_be_odd) return Stop::met;
     if (is_hopeless()) return Stop::held;
     const QueuedEdge* const first = next();
     if (first == nullptr || first->key() > dearest) return Stop::nothing_left;

@@ -125,8 +125,8 @@ class CollapseQueue {
   bool must_wait(const QueuedEdge& queued, double cost) const;
   void wait(const QueuedEdge& queued, double cost);
   void refresh(std::uint32_t vertex);
+  bool may_lose_one() const;
   bool is_gone(std::uint32_t vertex) const { return target_[vertex] != vertex; }
-  bool has_free_border() const;
   const QueuedEdge* next() const;
   void drop_next();
   void push(const RankedEdge& edge);

@@ -17,6 +17,12 @@ enum VertexFlag : std::uint8_t {
   k_thin = 64      // another sheet is near
 };
 
+/// By the flags of a vertex: whether a collapse there may remove an odd number of triangles.
+/// Elsewhere they go in pairs.
+inline bool may_lose_one(std::uint8_t flags) {
+  return (flags & k_fixed) == 0 && (flags & (k_border | k_complex)) != 0;
+}
+
 /// Of what piece a vertex is, one byte each; a merged vertex has those of both.
 enum VertexOrigin : std::uint8_t {
   k_pinched = 1,  // of what was pinched off, or what that was pinched off from

@@ -62,7 +62,7 @@ std::uint64_t WorkingMesh::free_triangles() const {
 bool WorkingMesh::is_above(const SimplifyGoal& goal) const {
   const std::uint64_t now = mesh_.triangles.size();
   if (now != goal.triangles + 1) return now > goal.triangles;
-  return last_of(goal) >= goal.triangles && has_free_border();
+  return last_of(goal) >= goal.triangles && std::any_of(flags_.begin(), flags_.end(), may_lose_one);
 }
 
 bool WorkingMesh::has_free_border() const {

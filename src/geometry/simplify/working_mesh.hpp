@@ -46,7 +46,7 @@ class WorkingMesh {
   std::uint64_t free_triangles() const;
   bool has_free_border() const;
   /// Whether there are more triangles than the goal's, and some edge may go. The last one too many
-  /// goes at an open border only, at whatever cost: it may stay where another goal follows.
+  /// goes as may_lose_one says, at whatever cost: it may stay where another goal follows.
   bool is_above(const SimplifyGoal& goal) const;
   /// 1 a vertex that is, or was merged from, a seam vertex; empty without a seam.
   std::vector<std::uint8_t> seam() const;
