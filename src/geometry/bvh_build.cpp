@@ -23,7 +23,7 @@ constexpr float k_huge = std::numeric_limits<float>::max();
 constexpr std::size_t k_asked = 4096;
 // Most are what is between these shares along an axis. What is farther from them than so many times
 // their own extent may lie outside of the frame.
-constexpr double k_few = 1.0 / 16;
+constexpr double k_outermost = 1.0 / 16;
 constexpr double k_far_from_most = 64;
 
 float below(double x) {
@@ -49,7 +49,7 @@ Box without_outliers(const Box& all, std::span<const Vec3> positions,
     for (std::size_t t = 0; t < triangles.size(); t += step) {
       asked.push_back(positions[triangles[t][0]].*axis);
     }
-    const auto few = static_cast<std::ptrdiff_t>(k_few * static_cast<double>(asked.size()));
+    const auto few = static_cast<std::ptrdiff_t>(k_outermost * static_cast<double>(asked.size()));
     std::nth_element(asked.begin(), asked.begin() + few, asked.end());
     most.lo.*axis = asked[static_cast<std::size_t>(few)];
     std::nth_element(asked.begin(), asked.end() - 1 - few, asked.end());
