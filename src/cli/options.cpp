@@ -33,7 +33,8 @@ void TalkOptions::add(po::options_description& options) {
 }
 
 void TalkOptions::add_quiet(po::options_description& options) {
-  options.add_options()("quiet,q", po::bool_switch(&quiet), "no progress, only errors");
+  options.add_options()("quiet,q", po::bool_switch(&quiet),
+                        "no progress: only the result, warnings and errors");
 }
 
 ProgressStyle TalkOptions::progress() const {
