@@ -75,7 +75,7 @@ template <class Distance>
 void Bvh::search(Query& query, double enough, const Distance& distance) const {
   const float most = query.limit;
   const double gap = query.squared_gap_to_all(nodes_.front());
-  std::int64_t left = query.is_far(gap) ? k_many_from_afar : INT64_MAX;
+  std::int64_t left = Query::is_far(gap) ? k_many_from_afar : INT64_MAX;
   BvhStack stack;
   while (!stack.empty() && query.best.squared > enough) {
     const BvhStack::Entry top = stack.pop();

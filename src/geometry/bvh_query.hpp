@@ -115,10 +115,10 @@ struct Bvh::Query {
   double squared_gap_to_all(const Node& root) const {
     double sum = 0;
     for (int axis = 0; axis < 3; ++axis) {
-      const double lo = *std::min_element(root.lo[axis], root.lo[axis] + 4);
-      const double hi = *std::max_element(root.hi[axis], root.hi[axis] + 4);
-      const double before = lo > -k_bvh_far ? lo - place[axis] : 0;
-      const double after = hi < k_bvh_far ? place[axis] - hi : 0;
+      const double first = *std::min_element(root.lo[axis], root.lo[axis] + 4);
+      const double last = *std::max_element(root.hi[axis], root.hi[axis] + 4);
+      const double before = first > -k_bvh_far ? first - place[axis] : 0;
+      const double after = last < k_bvh_far ? place[axis] - last : 0;
       const double gap = std::max({before, after, 0.0});
       sum += gap * gap;
     }

@@ -20,6 +20,12 @@ constexpr std::uint32_t k_voxels = 36;  // voxels
 constexpr std::uint32_t k_row_of_corners = k_voxels + 1;
 constexpr std::uint32_t k_grains = 24;  // that touch each other, and nothing beside them
 
+/// Of the n-th of a cube of points, `side` of them a side.
+Vec3 place_on_grid(std::uint32_t n, std::uint32_t side) {
+  const std::uint32_t layer = n / (side * side), row = n / side % side;
+  return {1.0 * (n % side), 1.0 * row, 1.0 * layer};
+}
+
 /// By the nearest of some points: which grain each voxel belongs to.
 std::vector<std::uint32_t> grains_of_voxels() {
   std::vector<Vec3> middles;
@@ -27,10 +33,9 @@ std::vector<std::uint32_t> grains_of_voxels() {
     const Vec3 share{random_unit(3 * i), random_unit(3 * i + 1), random_unit(3 * i + 2)};
     middles.push_back(share * k_voxels);
   }
-  std::vector<std::uint32_t> grains(k_voxels * k_voxels * k_voxels);
+  std::vector<std::uint32_t> grains(std::size_t{k_voxels} * k_voxels * k_voxels);
   for (std::uint32_t i = 0; i < grains.size(); ++i) {
-    const Vec3 at{1.0 * (i % k_voxels), 1.0 * (i / k_voxels % k_voxels),
-                  1.0 * (i / (k_voxels * k_voxels))};
+    const Vec3 at = place_on_grid(i, k_voxels);
     const auto nearest = std::min_element(middles.begin(), middles.end(), [&](Vec3 p, Vec3 q) {
       return squared_length(p - at) < squared_length(q - at);
     });
@@ -64,9 +69,7 @@ Mesh walls_of_grains() {
   const std::vector<std::uint32_t> grains = grains_of_voxels();
   Mesh mesh;
   for (std::uint32_t i = 0; i < k_row_of_corners * k_row_of_corners * k_row_of_corners; ++i) {
-    mesh.positions.push_back({1.0 * (i % k_row_of_corners),
-                              1.0 * (i / k_row_of_corners % k_row_of_corners),
-                              1.0 * (i / (k_row_of_corners * k_row_of_corners))});
+    mesh.positions.push_back(place_on_grid(i, k_row_of_corners));
   }
   const std::uint32_t steps[] = {1, k_row_of_corners, k_row_of_corners * k_row_of_corners};
   const std::uint32_t voxel_steps[] = {1, k_voxels, k_voxels * k_voxels};
