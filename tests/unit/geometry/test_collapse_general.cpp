@@ -16,7 +16,7 @@ using namespace meshfarm;
 
 namespace {
 
-constexpr std::uint32_t k_voxels = 36;  // voxels
+constexpr std::uint32_t k_voxels = 36;  // a side
 constexpr std::uint32_t k_row_of_corners = k_voxels + 1;
 constexpr std::uint32_t k_grains = 24;  // that touch each other, and nothing beside them
 

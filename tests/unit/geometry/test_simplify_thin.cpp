@@ -29,6 +29,18 @@ Mesh ribbon(double width, double height) {
   return mesh;
 }
 
+/// Makes a tube, open at both ends, of rings of so many vertices each.
+void join_rings(Mesh& mesh, std::uint32_t sides) {
+  for (std::uint32_t first = 0; first + sides < mesh.positions.size(); first += sides) {
+    for (std::uint32_t side = 0; side < sides; ++side) {
+      const std::uint32_t a = first + side;
+      const std::uint32_t b = first + (side + 1) % sides;
+      mesh.triangles.push_back({a, b, b + sides});
+      mesh.triangles.push_back({a, b + sides, a + sides});
+    }
+  }
+}
+
 /// Six sides, open at both ends, straight.
 Mesh pin(double radius) {
   Mesh mesh;
@@ -39,14 +51,7 @@ Mesh pin(double radius) {
           {radius * std::cos(angle), radius * std::sin(angle), static_cast<double>(ring)});
     }
   }
-  for (std::uint32_t ring = 0; ring < k_long; ++ring) {
-    for (std::uint32_t side = 0; side < 6; ++side) {
-      const std::uint32_t a = 6 * ring + side;
-      const std::uint32_t b = 6 * ring + (side + 1) % 6;
-      mesh.triangles.push_back({a, b, b + 6});
-      mesh.triangles.push_back({a, b + 6, a + 6});
-    }
-  }
+  join_rings(mesh, 6);
   return mesh;
 }
 
@@ -128,14 +133,7 @@ Mesh strand(double bend) {
       mesh.positions.push_back(middle + side * radius);
     }
   }
-  for (std::uint32_t ring = 0; ring + 1 < k_rings; ++ring) {
-    for (std::uint32_t side = 0; side < 4; ++side) {
-      const std::uint32_t a = 4 * ring + side;
-      const std::uint32_t b = 4 * ring + (side + 1) % 4;
-      mesh.triangles.push_back({a, b, b + 4});
-      mesh.triangles.push_back({a, b + 4, a + 4});
-    }
-  }
+  join_rings(mesh, 4);
   return mesh;
 }
 
