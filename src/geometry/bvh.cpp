@@ -74,8 +74,7 @@ double Bvh::least_below(Vec3 p, double squared) const {
 template <class Distance>
 void Bvh::search(Query& query, double enough, const Distance& distance) const {
   const float most = query.limit;
-  const double gap = query.squared_gap_to_all(nodes_.front());
-  std::int64_t left = Query::is_far(gap) ? k_many_from_afar : INT64_MAX;
+  std::int64_t left = k_many_from_afar;
   BvhStack stack;
   while (!stack.empty() && query.best.squared > enough) {
     const BvhStack::Entry top = stack.pop();
@@ -87,7 +86,11 @@ void Bvh::search(Query& query, double enough, const Distance& distance) const {
       }
       query.limit = std::min(query.limit, most);
       left -= top.count;
-      if (left < 0) enough = std::max(enough, gap * k_as_near / query.to_frame);
+      if (left < 0) {  // few searches ask
+        left = INT64_MAX;
+        const double gap = query.squared_gap_to_all(nodes_.front());
+        if (Query::is_far(gap)) enough = std::max(enough, gap * k_as_near / query.to_frame);
+      }
       continue;
     }
     query.push(nodes_[top.child], stack);
