@@ -9,6 +9,8 @@
 
 #include <meshfarm/util/parallel.hpp>
 
+#include "geometry/piece_bounder.hpp"
+
 namespace meshfarm {
 namespace {
 
@@ -79,8 +81,10 @@ std::vector<FarPoint> far_corners(const Mesh& from, const Bvh& to, double least,
     std::uint32_t guess = 0;
     const std::size_t end = std::min(count, (chunk + 1) * k_corner_chunk);
     for (std::size_t i = chunk * k_corner_chunk; i < end; ++i) {
-      for (const std::uint32_t vertex : from.triangles[i]) {
-        const Bvh::Nearest nearest = to.nearest(from.positions[vertex], guess, farthest);
+      const auto [a, b, c] = corners_of(from.positions, from.triangles[i]);
+      if (a == b || b == c || c == a) continue;  // no surface: a run drops it
+      for (const Vec3& corner : {a, b, c}) {
+        const Bvh::Nearest nearest = to.nearest(corner, guess, farthest);
         guess = nearest.triangle;
         if (!(nearest.squared > farthest)) continue;
         farthest = nearest.squared;

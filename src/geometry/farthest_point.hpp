@@ -18,9 +18,9 @@ struct FarPoint {
 };
 
 /// The greatest distance that is found from `from` to the other surface: that of all corners of
-/// triangles, and of those triangles that are farthest, by corners or by `known` points, of points
-/// ever nearer to the farthest. No bound, but samples by area alone miss more. Depends on no
-/// threads (0: one a core).
+/// triangles, but of those with two at one place, and of those triangles that are farthest, by
+/// corners or by `known` points, of points ever nearer to the farthest. No bound, but samples by
+/// area alone miss more. Depends on no threads (0: one a core).
 double find_farthest(const Mesh& from, const Bvh& to, std::span<const FarPoint> known,
                      unsigned threads);
 

@@ -73,11 +73,8 @@ std::vector<std::uint32_t> NearCells::touching(std::span<const Vec3> positions,
   constexpr std::uint32_t k_outside = UINT32_MAX;
   std::vector<std::uint32_t> cells(positions.size(), k_outside);
   for (std::size_t i = 0; i < cells.size(); ++i) {
-    const Vec3& p = positions[i];
-    const bool is_inside = p.x >= box_.lo.x && p.x <= box_.hi.x && p.y >= box_.lo.y &&
-                           p.y <= box_.hi.y && p.z >= box_.lo.z && p.z <= box_.hi.z;
-    if (!is_inside) continue;
-    const Cell cell = cell_of(p);
+    if (!box_.contains(positions[i])) continue;
+    const Cell cell = cell_of(positions[i]);
     cells[i] = static_cast<std::uint32_t>(index_of(cell[0], cell[1], cell[2]));
   }
   for (std::uint32_t i = 0; i < triangles.size(); ++i) {

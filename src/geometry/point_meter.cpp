@@ -50,7 +50,10 @@ class PointMeter::Impl {
  public:
   Impl(std::span<const Vec3> points, const PointMeterHints& hints)
       : hints_(hints),
-        reach_(k_a_little_more * std::max(hints.usual, k_least_reach * hints.spacing)),
+        reach_(hints.all_are_beyond
+                   ? 0
+                   : k_a_little_more * std::max(hints.usual, k_least_reach * hints.spacing)),
+        pass_(hints.all_are_beyond ? 1 : 0),
         points_(points.size()) {
     for (std::size_t i = 0; i < points.size(); ++i) {
       points_[i].place = points[i];
@@ -164,8 +167,8 @@ class PointMeter::Impl {
 
   PointMeterHints hints_;
   double reach_;  // of the first pass
+  int pass_;      // that is on
   std::vector<SearchingPoint> points_;
-  int pass_ = 0;
   std::optional<PointGrid> grid_;  // of the first pass
   std::optional<PointTree> tree_;  // of what is searching in this pass
 };

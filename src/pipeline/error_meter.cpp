@@ -19,6 +19,10 @@ constexpr double k_usual = 2.5;
 /// Farther than this the first pass need not look: so many triangles are then near each point that
 /// the second is cheaper.
 constexpr double k_far_in_spacings = 2;
+/// So many of the farthest points show where to look more closely, in steps of so much of the
+/// greatest distance.
+constexpr std::size_t k_looked_round = 200;
+constexpr double k_closer_step = 0.1;
 /// A few per cent are all that an estimate may be wrong by.
 constexpr std::uint64_t k_points_for_estimate = 5'000;
 
@@ -93,20 +97,24 @@ ErrorMeter::ErrorMeter(const Stage& stage, const Manifest& manifest,
 ErrorMeter::ResultPoints ErrorMeter::points_of(const Mesh& result) const {
   SurfaceSamples samples =
       sample_surface(result, {.samples = points_.by_area, .threads = threads_});
-  ResultPoints all{std::move(samples.points), 0};
+  ResultPoints all{std::move(samples.points), 0, samples.area};
   all.by_area = all.points.size();
   const std::vector<Vec3> vertices =
       thinned(result.positions, step_for(result.positions.size(), points_.vertices));
   all.points.insert(all.points.end(), vertices.begin(), vertices.end());
+  for (const std::uint32_t v : farthest_points(heights_of_vertices(result), points_.peaks)) {
+    all.points.push_back(result.positions[v]);
+  }
   const std::vector<Vec3> middles =
       thinned(middles_of_longest_sides(result.positions, result.triangles),
-              step_for(result.triangles.size(), points_.vertices));
+              step_for(result.triangles.size(), points_.sides));
   all.points.insert(all.points.end(), middles.begin(), middles.end());
   return all;
 }
 
 /// Every set of samples counts by the area it stands for.
-void ErrorMeter::measure_samples(const DistanceMeter& meter, MeasuredError& measured) const {
+std::vector<double> ErrorMeter::measure_samples(const DistanceMeter& meter,
+                                                MeasuredError& measured) const {
   std::vector<DistanceMeter::Points> points;
   for (const SurfaceSamples& part : samples_) points.emplace_back(part.points);
   std::vector<double> of_points(surface_.size());
@@ -129,6 +137,7 @@ void ErrorMeter::measure_samples(const DistanceMeter& meter, MeasuredError& meas
   }
   WeightedValues values(std::move(weighted));
   measured.to_output_quantiles = DistanceQuantiles{values.quantile(0.95), values.quantile(0.99)};
+  return of_points;
 }
 
 double ErrorMeter::estimate_rms(const DistanceMeter& to_result) const {
@@ -142,23 +151,58 @@ double ErrorMeter::estimate_rms(const DistanceMeter& to_result) const {
   return std::sqrt(sum / area_);
 }
 
-/// Shows the input to the points of the result, and vertices of the input to `vertices`, from
-/// several threads.
+/// Shows the input to the points of the result, and each piece of it once to `once`, from several
+/// threads.
 void ErrorMeter::show_input(PointMeter& to_input,
-                            const std::function<void(std::span<const Vec3>)>& vertices) {
-  const std::uint64_t step = step_for(manifest_.input_vertices, points_.input_vertices);
+                            const std::function<void(const SurfacePiece&)>& once) {
   for (bool is_first = true; to_input.begin_pass(); is_first = false) {
     input_.show([&](const Box& box) { return to_input.wants(box); },
                 [&](const SurfacePiece& piece) {
                   to_input.show(piece.positions, piece.triangles);
-                  if (!is_first) return;
-                  if (!facing_) normals_.add(piece);
-                  vertices(thinned(piece.fresh, step));
-                  if (manifest_.input_vertices <= points_.input_sides) {
-                    vertices(middles_of_longest_sides(piece.positions, piece.triangles));
-                  }
+                  if (is_first) once(piece);
                 });
   }
+}
+
+/// Points of the input's piece, of which one may be farther from the result than those that are
+/// known.
+std::vector<Vec3> ErrorMeter::points_of(const SurfacePiece& piece,
+                                        const PlacesOfPoints& farthest_samples,
+                                        double known) const {
+  std::vector<Vec3> points =
+      thinned(piece.fresh, step_for(manifest_.input_vertices, points_.input_vertices));
+  if (manifest_.input_vertices <= points_.input_sides) {
+    const std::vector<Vec3> middles = middles_of_longest_sides(piece.positions, piece.triangles);
+    points.insert(points.end(), middles.begin(), middles.end());
+  }
+  const double radius = std::sqrt(area_ / static_cast<double>(surface_.size()));
+  farthest_samples.append_points_of(piece.positions, piece.triangles,
+                                    {k_closer_step * known, radius}, points);
+  return points;
+}
+
+/// The greatest distance of the result's triangles that have the farthest of the points.
+double ErrorMeter::farthest_round(std::span<const Vec3> points, std::span<const double> distances,
+                                  double radius, const DistanceMeter& to_result) {
+  std::vector<Vec3> places;
+  for (const std::uint32_t i : farthest_points(distances, k_looked_round)) {
+    places.push_back(points[i]);
+  }
+  const std::vector<std::uint32_t> triangles = to_result.nearest_triangles(places);
+  const double known = distance_of(distances).max;
+  const CloserSteps steps{k_closer_step * known, radius};
+  const Mesh& result = to_result.index().mesh();
+  std::vector<std::uint8_t> is_first(result.triangles.size(), 1);
+  std::vector<Vec3> closer;
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    std::uint8_t& first = is_first[triangles[i]];
+    append_points(result.positions, result.triangles[triangles[i]], places[i], first != 0, steps,
+                  closer);
+    first = 0;
+  }
+  PointMeter to_input(closer, {.spacing = spacing_, .surface = surface_, .all_are_beyond = true});
+  show_input(to_input, [](const SurfacePiece&) {});
+  return std::max(known, distance_of(to_input.distances()).max);
 }
 
 void ErrorMeter::measure_normals(const TriangleIndex& result, MeasuredError& measured) const {
@@ -172,7 +216,7 @@ MeasuredError ErrorMeter::measure(const Mesh& result,
   MeasuredError error;
   if (result.triangles.empty() || !(area_ > 0)) return error;
   const DistanceMeter to_result(result, threads_);
-  measure_samples(to_result, error);
+  const std::vector<double> of_samples = measure_samples(to_result, error);
   const ResultPoints from = points_of(result);
   // The maximum where that is within the neighbours' distance: the first pass then finds them all.
   const double usual =
@@ -180,16 +224,18 @@ MeasuredError ErrorMeter::measure(const Mesh& result,
                std::min(2 * error.to_output.max, spacing_));
   PointMeter to_input(from.points, {spacing_, usual, surface_});
   const double least = error.to_output.max;
+  const PlacesOfPoints farthest_samples(surface_, farthest_points(of_samples, k_looked_round));
   Greatest greatest(least);
-  show_input(to_input, [&](std::span<const Vec3> vertices) {
-    greatest.add(to_result.farthest(vertices, least));
+  show_input(to_input, [&](const SurfacePiece& piece) {
+    if (!facing_) normals_.add(piece);
+    greatest.add(to_result.farthest(points_of(piece, farthest_samples, least), least));
   });
   error.to_output.max = greatest.value();
   if (!facing_) facing_ = normals_.take();
   measure_normals(to_result.index(), error);
   const std::vector<double> distances = to_input.distances();
   error.to_input = distance_of(std::span(distances).first(from.by_area));
-  error.to_input.max = distance_of(distances).max;
+  error.to_input.max = farthest_round(from.points, distances, from.spacing(), to_result);
   std::vector<double> by_area(distances.begin(),
                               distances.begin() + static_cast<std::ptrdiff_t>(from.by_area));
   error.to_input_quantiles = quantiles_of(by_area);

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 #include <functional>
 #include <optional>
@@ -13,6 +14,7 @@
 #include <meshfarm/pipeline/input_surface.hpp>
 #include <meshfarm/report/summary.hpp>
 
+#include "pipeline/closer_look.hpp"
 #include "pipeline/normal_samples.hpp"
 
 namespace meshfarm {
@@ -23,13 +25,16 @@ Distance distance_of(std::span<const double> distances);
 /// How many points are looked at for the maximum: all that the sum of squares needs and more.
 struct ErrorPoints {
   std::uint64_t by_area = 20'000;            // of the result
-  std::uint64_t vertices = 10'000;           // of the result, at most, and as many middles of sides
+  std::uint64_t vertices = 10'000;           // of the result, at most
+  std::uint64_t peaks = 10'000;              // vertices of the result farthest from neighbours
+  std::uint64_t sides = 10'000;              // of the result: middles of their longest, at most
   std::uint64_t input_vertices = 1'000'000;  // at most
   std::uint64_t input_sides = 30'000;        // middles count too if there are no more vertices
 };
 
 /// For a bound on the error, which is one on the maximum.
-inline constexpr ErrorPoints k_points_for_bound{200'000, 400'000, 4'000'000, 2'000'000};
+inline constexpr ErrorPoints k_points_for_bound{200'000, 400'000,   400'000,
+                                                400'000, 4'000'000, 2'000'000};
 
 /// Measures how far a result is from the input, in both directions.
 ///
@@ -53,12 +58,19 @@ class ErrorMeter {
   struct ResultPoints {
     std::vector<Vec3> points;
     std::size_t by_area = 0;  // the first of them
+    double area = 0;
+
+    double spacing() const { return std::sqrt(area / static_cast<double>(by_area)); }
   };
 
   ResultPoints points_of(const Mesh& result) const;
-  /// From the input to the result.
-  void measure_samples(const DistanceMeter& meter, MeasuredError& measured) const;
-  void show_input(PointMeter& to_input, const std::function<void(std::span<const Vec3>)>& vertices);
+  std::vector<Vec3> points_of(const SurfacePiece& piece, const PlacesOfPoints& farthest_samples,
+                              double known) const;
+  /// From the input to the result. Returns the distances of all samples.
+  std::vector<double> measure_samples(const DistanceMeter& meter, MeasuredError& measured) const;
+  void show_input(PointMeter& to_input, const std::function<void(const SurfacePiece&)>& once);
+  double farthest_round(std::span<const Vec3> points, std::span<const double> distances,
+                        double radius, const DistanceMeter& to_result);
   void measure_normals(const TriangleIndex& result, MeasuredError& measured) const;
 
   const Manifest& manifest_;

@@ -190,6 +190,9 @@ struct Box {
     hi = {p.x > hi.x ? p.x : hi.x, p.y > hi.y ? p.y : hi.y, p.z > hi.z ? p.z : hi.z};
   }
   bool empty() const { return lo.x > hi.x; }
+  bool contains(Vec3 p) const {
+    return p.x >= lo.x && p.x <= hi.x && p.y >= lo.y && p.y <= hi.y && p.z >= lo.z && p.z <= hi.z;
+  }
   double diagonal() const { return empty() ? 0.0 : length(hi - lo); }
 };
 

@@ -16,6 +16,7 @@ struct PointMeterHints {
   double usual = 0;    // a distance that few of the points are beyond
   /// Points of the surface, at least one: the distance to the nearest of them is an upper bound.
   std::span<const Vec3> surface;
+  bool all_are_beyond = false;  // `usual`: the first pass, which looks no farther, is left out
 };
 
 /// The middle of each triangle's longest side. Where triangles are far from a surface, their

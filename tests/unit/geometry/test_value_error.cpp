@@ -133,6 +133,14 @@ TEST_CASE("the greatest distance is found between samples: at a corner, on a sid
   CHECK(found > 0.9999 * bounds.lower);
 }
 
+TEST_CASE("a triangle with two corners at one place is no surface that anything is far from") {
+  const Mesh sheet = test::grid(60, 40);
+  Mesh with_point = sheet;
+  test::append(with_point, {.positions = {{5, 5, 30}, {5, 5, 30}, {6, 5, 30}},
+                            .triangles = {{0, 1, 2}, {0, 0, 0}}});
+  CHECK(measure_error({with_point, {}}, {sheet, {}}, {}, {.samples = 50}).distance.max == 0);
+}
+
 TEST_CASE("distances are those without values, and threads change nothing") {
   const Mesh fine = test::icosphere(4);
   const Mesh coarse = test::icosphere(2);

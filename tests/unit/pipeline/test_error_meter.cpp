@@ -86,6 +86,30 @@ TEST_CASE("so is one of many") {
   }
 }
 
+TEST_CASE("a spike of a result of many vertices is told") {
+  const Mesh sheet = test::grid(300, 300);
+  for (const std::size_t pulled : {45'189U, 45'190U, 45'191U}) {
+    Mesh spiked = sheet;
+    spiked.positions[pulled].z = 30;
+    CHECK(measure(sheet, spiked, Scheme::cut).to_input.max == doctest::Approx(30));
+  }
+}
+
+TEST_CASE("what is farthest between the corners of a large triangle is found, in both directions") {
+  // A lid over a narrow pit: nothing of it is farther from the sheet than what lies over the
+  // middle.
+  const Mesh lid = {.positions = {{0, 0, 0}, {880, 0, 0}, {0, 880, 0}}, .triangles = {{0, 1, 2}}};
+  Mesh pit = test::grid(180, 180);
+  for (Vec3& p : pit.positions) p = {5 * p.x, 5 * p.y, p.x == 41 && p.y == 52 ? -40.0 : 0.0};
+  std::erase_if(pit.triangles, [&](const Triangle& t) {
+    return pit.positions[t[0]].x + pit.positions[t[0]].y > 890;
+  });
+  const double farthest =
+      measure_error({lid, {}}, {pit, {}}, {}, {.samples = 400'000}).distance.max;
+  CHECK(measure(pit, lid, Scheme::cut).to_input.max > 0.98 * farthest);
+  CHECK(measure(lid, pit, Scheme::cut).to_output.max > 0.98 * farthest);
+}
+
 TEST_CASE("the same figures from any number of threads") {
   const Mesh fine = test::torus(120, 60);
   const Mesh coarse = test::torus(30, 15);

@@ -1,0 +1,141 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+#include "pipeline/closer_look.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numeric>
+
+namespace meshfarm {
+namespace {
+
+constexpr int k_most_steps = 10;  // along a side
+constexpr int k_round_steps = 3;
+/// Of the greatest side of a box: a point of a triangle may lie outside of it by rounding.
+constexpr double k_rounding = 0x1p-20;
+
+using Corners = std::array<Vec3, 3>;
+
+Corners corners_of(std::span<const Vec3> positions, const Triangle& t) {
+  return {positions[t[0]], positions[t[1]], positions[t[2]]};
+}
+
+double longest_side(const Corners& corners) {
+  const auto& [a, b, c] = corners;
+  return std::max({length(b - a), length(c - b), length(a - c)});
+}
+
+/// Of so many steps along each side, or as many as are allowed.
+void append_grid(const Corners& corners, double wanted, std::vector<Vec3>& points) {
+  const int steps =
+      wanted < k_most_steps ? std::max(1, static_cast<int>(std::ceil(wanted))) : k_most_steps;
+  const auto& [a, b, c] = corners;
+  for (int i = 0; i <= steps; ++i) {
+    for (int j = 0; i + j <= steps; ++j) {
+      const double of_b = static_cast<double>(i) / steps;
+      const double of_c = static_cast<double>(j) / steps;
+      points.push_back(a * (static_cast<double>(steps - i - j) / steps) + b * of_b + c * of_c);
+    }
+  }
+}
+
+/// In a square of the triangle's plane, as far as it is on the triangle.
+void append_round(const Corners& corners, Vec3 place, double radius, std::vector<Vec3>& points) {
+  const auto& [a, b, c] = corners;
+  const Vec3 normal = cross(b - a, c - a);
+  if (!(squared_length(normal) > 0)) return;
+  const Vec3 x = (b - a) * (1 / length(b - a));
+  const Vec3 y = cross(normal, x) * (1 / length(normal));
+  for (int i = -k_round_steps; i <= k_round_steps; ++i) {
+    for (int j = -k_round_steps; j <= k_round_steps; ++j) {
+      const Vec3 from_a =
+          place - a + x * (radius * i / k_round_steps) + y * (radius * j / k_round_steps);
+      const double of_c = dot(from_a, y) / dot(c - a, y);
+      const double of_b = (dot(from_a, x) - of_c * dot(c - a, x)) / dot(b - a, x);
+      if (of_b < 0 || of_c < 0 || of_b + of_c > 1) continue;
+      points.push_back(a + (b - a) * of_b + (c - a) * of_c);
+    }
+  }
+}
+
+std::vector<Vec3> taken(std::span<const Vec3> points, std::span<const std::uint32_t> some) {
+  std::vector<Vec3> taken;
+  taken.reserve(some.size());
+  for (const std::uint32_t i : some) taken.push_back(points[i]);
+  return taken;
+}
+
+std::vector<Triangle> as_triangles(std::size_t points) {
+  std::vector<Triangle> triangles;
+  for (std::uint32_t i = 0; i < points; ++i) triangles.push_back({i, i, i});
+  return triangles;
+}
+
+Box rounded_box_of(const Corners& corners) {
+  Box box;
+  for (const Vec3& corner : corners) box.add(corner);
+  const Vec3 sides = box.hi - box.lo;
+  const double margin = k_rounding * std::max({sides.x, sides.y, sides.z});
+  return {box.lo - Vec3{margin, margin, margin}, box.hi + Vec3{margin, margin, margin}};
+}
+
+}  // namespace
+
+std::vector<std::uint32_t> farthest_points(std::span<const double> distances, std::size_t most) {
+  std::vector<std::uint32_t> order(distances.size());
+  std::iota(order.begin(), order.end(), 0U);
+  const auto is_farther = [&](std::uint32_t a, std::uint32_t b) {
+    return distances[a] != distances[b] ? distances[a] > distances[b] : a < b;
+  };
+  const auto end = order.begin() + static_cast<std::ptrdiff_t>(std::min(most, order.size()));
+  std::partial_sort(order.begin(), end, order.end(), is_farther);
+  order.erase(end, order.end());
+  return order;
+}
+
+std::vector<double> heights_of_vertices(const Mesh& mesh) {
+  std::vector<Vec3> sums(mesh.positions.size());
+  std::vector<std::uint32_t> corners(mesh.positions.size(), 0);
+  for (const auto& [a, b, c] : mesh.triangles) {
+    const Vec3 sum = mesh.positions[a] + mesh.positions[b] + mesh.positions[c];
+    for (const std::uint32_t v : {a, b, c}) {
+      sums[v] = sums[v] + (sum - mesh.positions[v]);
+      ++corners[v];
+    }
+  }
+  std::vector<double> heights(mesh.positions.size(), 0);
+  for (std::size_t v = 0; v < heights.size(); ++v) {
+    if (corners[v] > 0) heights[v] = length(mesh.positions[v] - sums[v] * (0.5 / corners[v]));
+  }
+  return heights;
+}
+
+void append_points(std::span<const Vec3> positions, const Triangle& triangle, Vec3 place,
+                   bool is_first, const CloserSteps& steps, std::vector<Vec3>& points) {
+  const Corners corners = corners_of(positions, triangle);
+  const double longest = longest_side(corners);
+  if (is_first) append_grid(corners, longest / steps.step, points);
+  if (longest > k_most_steps * steps.step && longest > steps.radius) {
+    append_round(corners, place, steps.radius, points);
+  }
+}
+
+PlacesOfPoints::PlacesOfPoints(std::span<const Vec3> points, std::span<const std::uint32_t> some)
+    : places_(taken(points, some)), cells_(places_, as_triangles(places_.size()), 0) {}
+
+void PlacesOfPoints::append_points_of(std::span<const Vec3> positions,
+                                      std::span<const Triangle> triangles, const CloserSteps& steps,
+                                      std::vector<Vec3>& points) const {
+  for (const std::uint32_t i : cells_.touching(positions, triangles)) {
+    const Box box = rounded_box_of(corners_of(positions, triangles[i]));
+    bool is_first = true;
+    for (const Vec3& place : places_) {
+      if (!box.contains(place)) continue;
+      append_points(positions, triangles[i], place, is_first, steps, points);
+      is_first = false;
+    }
+  }
+}
+
+}  // namespace meshfarm
