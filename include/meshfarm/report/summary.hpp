@@ -117,7 +117,7 @@ struct RunSummary {
   bool topology_simplified = false;  // handles, holes or pieces might go
   /// Nothing where it is not known what the input had.
   std::optional<TopologyChange> topology;
-  std::uint64_t turned = 0;  // triangles that faced another way than most of their piece
+  std::uint64_t turned = 0;  // triangles that faced another way than most of their piece's area
   DroppedComponents dropped_components;  // and their triangles before the finish
   MeasuredError error;
   std::optional<SurfaceFigures> result;  // its own figures; nothing where it is in pieces

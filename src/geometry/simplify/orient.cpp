@@ -68,24 +68,45 @@ std::vector<std::uint32_t> find_neighbours(const std::vector<Triangle>& triangle
   return across;
 }
 
-/// Turns the smaller half of a piece, or the half without its first triangle.
-std::uint64_t turn_piece(std::vector<Triangle>& triangles, std::span<CornerUvs> uvs,
-                         const std::vector<std::uint32_t>& piece,
+double area_of(const Mesh& mesh, std::uint32_t triangle) {
+  const auto& [a, b, c] = mesh.triangles[triangle];
+  const Vec3& p = mesh.positions[a];
+  return length(cross(mesh.positions[b] - p, mesh.positions[c] - p)) / 2;
+}
+
+/// What faces each way of a piece.
+struct Half {
+  double area = 0;
+  std::uint64_t triangles = 0;
+};
+
+/// Turns the half of a piece that is smaller by area, else by triangles, else the one without its
+/// first triangle.
+std::uint64_t turn_piece(Mesh& mesh, const std::vector<std::uint32_t>& piece,
                          const std::vector<std::uint8_t>& half) {
-  const auto other = static_cast<std::uint64_t>(
-      std::count_if(piece.begin(), piece.end(), [&](std::uint32_t t) { return half[t] == 1; }));
-  const std::uint8_t turned = 2 * other > piece.size() ? 0 : 1;
+  std::array<Half, 2> halves;
+  for (const std::uint32_t t : piece) {
+    halves[half[t]].area += area_of(mesh, t);
+    ++halves[half[t]].triangles;
+  }
+  if (halves[1].triangles == 0) return 0;
+  const auto& [first, other] = halves;
+  const bool is_known_by_area = first.area < other.area || first.area > other.area;
+  const bool is_first_smaller =
+      is_known_by_area ? first.area < other.area : first.triangles < other.triangles;
+  const std::uint8_t turned = is_first_smaller ? 0 : 1;
   for (const std::uint32_t t : piece) {
     if (half[t] != turned) continue;
-    std::swap(triangles[t][1], triangles[t][2]);
-    if (!uvs.empty()) std::swap(uvs[t][1], uvs[t][2]);
+    std::swap(mesh.triangles[t][1], mesh.triangles[t][2]);
+    if (!mesh.columns.uvs.empty()) std::swap(mesh.columns.uvs[t][1], mesh.columns.uvs[t][2]);
   }
-  return std::min<std::uint64_t>(other, piece.size() - other);
+  return halves[turned].triangles;
 }
 
 }  // namespace
 
-std::uint64_t orient(std::vector<Triangle>& triangles, std::span<CornerUvs> uvs) {
+std::uint64_t orient(Mesh& mesh) {
+  const std::vector<Triangle>& triangles = mesh.triangles;
   const std::vector<std::uint32_t> across = find_neighbours(triangles);
   constexpr std::uint8_t k_unseen = 2;
   std::vector<std::uint8_t> half(triangles.size(), k_unseen);
@@ -103,7 +124,7 @@ std::uint64_t orient(std::vector<Triangle>& triangles, std::span<CornerUvs> uvs)
         piece.push_back(next / 2);
       }
     }
-    turned += turn_piece(triangles, uvs, piece, half);
+    turned += turn_piece(mesh, piece, half);
   }
   return turned;
 }

@@ -309,7 +309,7 @@ Surface clean_surface(Mesh& mesh, const SimplifyOptions& options, Adjacency& adj
     again();
   }
   if (any_turned(surface.flags, adjacency)) {
-    surface.dropped.turned = orient(mesh.triangles, mesh.columns.uvs);
+    surface.dropped.turned = orient(mesh);
     if (surface.dropped.turned > 0) again();
   }
   // With a seam pass vertices are what the caller's flags are for.
