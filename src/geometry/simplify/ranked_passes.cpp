@@ -64,6 +64,7 @@ RankedPasses::End RankedPasses::reduce(const SimplifyGoal& goal,
                          &mesh_.adjacency(), &mesh_.creases().test(), mesh_.seam_only(), false,
                          false, ranks_by_bounds_, mesh_.mesh().appearances,
                          mesh_.appearance_scale(), mesh_.uv_scale()});
+    if (ranks_finely_) ranking_.refine();
     const Pass pass = plan(goal);
     const std::uint64_t before = mesh_.triangles();
     const std::uint64_t removed = run(goal, pass);
@@ -71,20 +72,33 @@ RankedPasses::End RankedPasses::reduce(const SimplifyGoal& goal,
     all_refused_for_topology_ += refused_for_topology_;
     if (progress && !progress(mesh_.triangles())) return End::told;
     if (!mesh_.is_above(goal)) break;  // however little there was to do
+    const bool is_little =
+        static_cast<double>(removed) < k_least_ranked * static_cast<double>(before);
+    if (is_little && is_too_rough(goal, pass)) {
+      ranks_finely_ = true;
+      continue;
+    }
     // What is cheap is refused: what is dear is not to be taken for it.
     if (refused_for_topology_ > collapses_) return End::dead_end;
     if (static_cast<double>(refused_for_bound_) > k_bounded * static_cast<double>(collapses_)) {
       return End::near;
     }
-    if (static_cast<double>(removed) < k_least_ranked * static_cast<double>(before)) {
+    if (is_little) {
       if (ranks_by_bounds_ && goal.max_cost > cost_of(pass.limit)) {
-        ranks_by_bounds_ = false;
+        ranks_by_bounds_ = ranks_finely_ = false;
         continue;
       }
       return goal.max_cost <= cost_of(pass.limit) ? End::exhausted : End::dead_end;
     }
   }
   return End::near;
+}
+
+/// Whether most edges that rank low turned out to cost more than they ranked by.
+bool RankedPasses::is_too_rough(const SimplifyGoal& goal, const Pass& pass) const {
+  const std::uint64_t too_dear = tried_ - collapses_ - refused_for_topology_;
+  return ranks_by_bounds_ && !ranks_finely_ && 2 * too_dear > tried_ &&
+         goal.max_cost > cost_of(pass.limit);
 }
 
 bool RankedPasses::is_slowed_by_topology() const {

@@ -49,6 +49,7 @@ class RankedPasses {
   Pass plan(const SimplifyGoal& goal);
   std::uint64_t run(const SimplifyGoal& goal, const Pass& pass);
   bool may_drift(DriftMeter& meter, const RankedEdge& edge, const Collapse& collapse);
+  bool is_too_rough(const SimplifyGoal& goal, const Pass& pass) const;
   void renumber_drifts();
 
   WorkingMesh& mesh_;
@@ -58,6 +59,7 @@ class RankedPasses {
   // Ranks by bounds, so that what is flat goes before what is nearly flat. Where little of that is
   // left most of what ranks low is dearer, and refused.
   bool ranks_by_bounds_ = true;
+  bool ranks_finely_ = false;                   // as most of what ranks low is flat but for noise
   std::uint64_t all_collapses_ = 0;             // of the last reduce()
   std::uint64_t all_refused_for_topology_ = 0;  // in the last reduce()
   std::uint64_t tried_ = 0;                     // edges in the last pass

@@ -18,6 +18,9 @@ constexpr double k_length_share = 2e-7;
 // Where a ranking is a lower bound, and what is flat is told exactly later.
 constexpr double k_least_length_share = 1e-12;
 
+// What is less than this share is known to a tenth at best.
+constexpr double k_rough_share = 10 * k_length_share;
+
 // Of the trace, as in EdgeQuadric::best.
 constexpr float k_ridge = 1e-5F;
 
@@ -103,6 +106,10 @@ void EdgeCosts::weigh(bool bounds) {
   }
 }
 
+bool EdgeCosts::is_rough(std::size_t i) const {
+  return cost_[i] < k_rough_share * squared_[i];
+}
+
 EdgeCost cost_of_end(const FloatQuadric& other, Vec3 half, bool bounds) {
   const FloatQuadric& q = other;
   const Vec3 moved{q.xx * half.x + q.xy * half.y + q.xz * half.z,
@@ -113,8 +120,24 @@ EdgeCost cost_of_end(const FloatQuadric& other, Vec3 half, bool bounds) {
   const double cost = 4 * dot(moved, half) / trace;
   const double squared = squared_length(half);
   const double least = least_cost(cost, trace, squared);
-  if (bounds) return {least, least + k_least_length_share * trace * squared};
-  return {least, ranking_cost(cost, trace, squared)};
+  const bool is_rough = cost < k_rough_share * squared;
+  if (bounds) return {least, least + k_least_length_share * trace * squared, is_rough};
+  return {least, ranking_cost(cost, trace, squared), is_rough};
+}
+
+EdgeCost fine_cost(const Quadric& a, const Quadric& b, Vec3 half) {
+  EdgeQuadric quadric;
+  quadric.squared_length = 4 * squared_length(half);
+  quadric.add(a, half * -1.0);
+  quadric.add(b, half);
+  const double least =
+      std::min({quadric.cost(quadric.cheapest()), quadric.cost(half * -1.0), quadric.cost(half)});
+  return {least, least + k_least_length_share * quadric.a.trace() * squared_length(half)};
+}
+
+EdgeCost fine_cost_of_end(const Quadric& other, Vec3 half) {
+  const double least = 4 * dot(other * half, half);
+  return {least, least + k_least_length_share * other.trace() * squared_length(half)};
 }
 
 }  // namespace meshfarm

@@ -48,8 +48,9 @@ struct FloatQuadric {
 };
 
 struct EdgeCost {
-  double least;    // of any position, by the ridge or of an end; 0 where it drowns in rounding
-  double ranking;  // orders edges: where planes cost nothing, the short ones come first
+  double least = 0;    // of any position, by the ridge or of an end; 0 where it drowns in rounding
+  double ranking = 0;  // orders edges: where planes cost nothing, the short ones come first
+  bool is_rough = false;  // so little that floats hardly tell how much
 };
 
 /// Costs of edges, some at a time: laid out so that a compiler makes vector instructions of it.
@@ -67,13 +68,14 @@ class EdgeCosts {
   }
   /// With `bounds` a ranking is a lower bound of the cost.
   void compute(bool bounds = false);
-  EdgeCost get(std::size_t i) const { return {least_[i], ranking_[i]}; }
+  EdgeCost get(std::size_t i) const { return {least_[i], ranking_[i], is_rough(i)}; }
 
  private:
   using Lane = std::array<float, k_size>;
   void gather();
   void solve();
   void weigh(bool bounds);
+  bool is_rough(std::size_t i) const;
 
   std::array<FloatQuadric, k_size> a_;
   std::array<FloatQuadric, k_size> b_;
@@ -90,5 +92,9 @@ class EdgeCosts {
 
 /// The cost of drawing the edge's other end to the vertex whose quadric is not counted.
 EdgeCost cost_of_end(const FloatQuadric& other, Vec3 half, bool bounds = false);
+
+// The same, lower bounds, where floats are too rough.
+EdgeCost fine_cost(const Quadric& a, const Quadric& b, Vec3 half);
+EdgeCost fine_cost_of_end(const Quadric& other, Vec3 half);
 
 }  // namespace meshfarm

@@ -57,6 +57,11 @@ constexpr double k_cost_of_left_over = 0.125;
 // twice as long, with the same error.
 constexpr std::uint32_t k_complex_changes = 16;
 
+// Where edges turn out to be dearer than they rank so much more often than one collapses, and so
+// often at all, they are ranked finely.
+constexpr std::uint64_t k_rough = 4;
+constexpr std::uint64_t k_least_rough = 1000;
+
 constexpr CostKey k_greatest = k_any_cost - 1;
 constexpr CostKey k_least_step = 4U << 20;  // a factor of 16
 
@@ -124,6 +129,7 @@ void CollapseQueue::start(std::span<const Triangle> triangles) {
   heap_.clear();
   room_for_all_ = mesh_.any_topology ? room_for_all(mesh_.flags, triangles) : 0;
   remember();
+  is_fine_ = false;
   ranking_.begin_pass({mesh_.positions, triangles, mesh_.flags, &mesh_.adjacency,
                        &mesh_.creases.test(), mesh_.seam_only, true, mesh_.any_topology, true,
                        mesh_.appearances, mesh_.appearance_scale, mesh_.uv_scale});
@@ -141,6 +147,7 @@ void CollapseQueue::rank(double share) {
   next_first_ = 0;
   blocked_before_ = blocked_;
   collapses_before_ = collapses_;
+  waited_ = 0;
   ranked_at_ = triangles_;
   const auto vertices = static_cast<std::uint32_t>(target_.size());
   for (const RankedEdge& e : ranking_.cheapest(0, vertices, {limit_, HUGE_VAL})) {
@@ -263,6 +270,12 @@ bool CollapseQueue::reduce(const SimplifyGoal& goal, const Progress& progress) {
     if (!goes_on) rank(share);
     const Stop stop = run(goal, progress);
     held_ = held_ || stop == Stop::held;
+    if (stop == Stop::too_rough) {
+      is_fine_ = true;
+      ranking_.refine();
+      limit_ = 0;
+      continue;
+    }
     // What was refused as it would have removed too many may do for the next goal.
     if (triangles_ < goal.triangles + k_few_to_go) ranked_at_ = UINT64_MAX;
     if (stop != Stop::nothing_left) return stop != Stop::told;
@@ -288,6 +301,7 @@ CollapseQueue::Stop CollapseQueue::run(const SimplifyGoal& goal, const Progress&
     if (excess == 1 && !may_be_odd) may_be_odd = may_lose_one();
     if (excess == 1 && !*may_be_odd) return Stop::met;
     if (is_hopeless()) return Stop::held;
+    if (is_too_rough()) return Stop::too_rough;
     const QueuedEdge* const first = next();
     if (first == nullptr || first->key() > dearest) return Stop::nothing_left;
     const QueuedEdge queued = *first;
@@ -311,6 +325,7 @@ CollapseQueue::Stop CollapseQueue::run(const SimplifyGoal& goal, const Progress&
       refused_[a] = refused_[b] = 1;
     } else if (must_wait(queued, cost)) {
       wait(queued, cost);
+      ++waited_;
     } else if (!must_not_cross(queued, collapse) && !is_guarded(a, b, collapse)) {
       keep(goal);
       merge(a, b, collapse);
@@ -332,6 +347,11 @@ bool CollapseQueue::is_hopeless() const {
   const std::uint64_t blocked = blocked_ - blocked_before_;
   const std::uint64_t done = collapses_ - collapses_before_;
   return mesh_.stops_when_held && blocked > k_hopeless * done + k_edges_of_triangle * triangles_;
+}
+
+bool CollapseQueue::is_too_rough() const {
+  const std::uint64_t done = collapses_ - collapses_before_;
+  return !is_fine_ && waited_ > k_rough * done + k_least_rough;
 }
 
 /// Whether it costs more than the goal allows, or more than it was ranked by and the next.

@@ -113,7 +113,7 @@ class CollapseQueue {
   std::uint64_t kept_topology() const { return kept_topology_; }
 
  private:
-  enum class Stop : std::uint8_t { met, nothing_left, held, told };
+  enum class Stop : std::uint8_t { met, nothing_left, held, too_rough, told };
 
   void remember();
   PastPlanes planes_at(std::uint32_t vertex) const;
@@ -122,6 +122,7 @@ class CollapseQueue {
   Stop run(const SimplifyGoal& goal, const Progress& progress);
   double cost_of_fewer(const QueuedEdge& queued, double cost, std::uint64_t excess) const;
   bool is_hopeless() const;
+  bool is_too_rough() const;
   bool must_wait(const QueuedEdge& queued, double cost) const;
   void wait(const QueuedEdge& queued, double cost);
   void refresh(std::uint32_t vertex);
@@ -186,6 +187,8 @@ class CollapseQueue {
   // As they were at the last ranking.
   std::uint64_t blocked_before_ = 0;
   std::uint64_t collapses_before_ = 0;
+  std::uint64_t waited_ = 0;  // edges since then that turned out to be dearer than they ranked
+  bool is_fine_ = false;      // edges are ranked finely
   double max_cost_ = 0;
   double last_cost_ = 0;
   double paid_ = 0;

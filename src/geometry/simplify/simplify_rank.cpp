@@ -50,6 +50,7 @@ double cost_of(CostKey key) {
 
 void EdgeRanking::begin_pass(const RankingInput& input) {
   input_ = input;
+  fine_.clear();
   quadrics_.assign(input_.positions.size(), {});
   sum_planes();
   if (!input_.appearances.empty()) {
@@ -63,6 +64,11 @@ void EdgeRanking::begin_pass(const RankingInput& input) {
     }
   }
   sum_line_planes();
+}
+
+void EdgeRanking::refine() {
+  fine_.resize(input_.positions.size());
+  for (std::uint32_t v = 0; v < fine_.size(); ++v) refresh(v);
 }
 
 /// What the vertex's star adds about the vertex, in which all its triangles agree.
@@ -120,14 +126,14 @@ void EdgeRanking::sum_planes() {
 
 void EdgeRanking::sum_line_planes() {
   for (std::uint32_t v = 0; v < input_.flags.size(); ++v) {
-    if ((input_.flags[v] & k_line) != 0) add_line_planes(v);
+    if ((input_.flags[v] & k_line) != 0) quadrics_[v].add(FloatQuadric(line_planes_at(v)));
   }
 }
 
-void EdgeRanking::add_line_planes(std::uint32_t vertex) {
+Quadric EdgeRanking::line_planes_at(std::uint32_t vertex) const {
   const std::uint8_t flags = input_.flags[vertex];
   const std::span<const Corner> fan = input_.adjacency->at(vertex);
-  if ((flags & k_fixed) != 0 || fan.size() > k_max_star) return;
+  if ((flags & k_fixed) != 0 || fan.size() > k_max_star) return {};
   const Vec3 at = input_.positions[vertex];
   Quadric planes;
   const auto add = [&](const Corner& c, std::uint32_t end, double weight) {
@@ -141,7 +147,7 @@ void EdgeRanking::add_line_planes(std::uint32_t vertex) {
     add(one, one.prev, crease_weight(is_between_labels));
     add(other, one.prev, crease_weight(is_between_labels));
   });
-  quadrics_[vertex].add(FloatQuadric(planes));
+  return planes;
 }
 
 void EdgeRanking::move_to(std::span<const Vec3> positions, std::span<const std::uint8_t> flags,
@@ -150,6 +156,7 @@ void EdgeRanking::move_to(std::span<const Vec3> positions, std::span<const std::
   input_.flags = flags;
   input_.appearances = appearances;
   quadrics_.resize(positions.size());
+  if (!fine_.empty()) fine_.resize(positions.size());
 }
 
 void EdgeRanking::refresh(std::uint32_t vertex) {
@@ -162,8 +169,9 @@ void EdgeRanking::refresh(std::uint32_t vertex) {
   }
   if (!input_.appearances.empty()) planes = planes + appearance_at(vertex);
   if (weighs_uvs()) planes = planes + uvs_at(vertex);
+  if ((input_.flags[vertex] & k_line) != 0) planes = planes + line_planes_at(vertex);
   quadrics_[vertex] = FloatQuadric(planes);
-  if ((input_.flags[vertex] & k_line) != 0) add_line_planes(vertex);
+  if (!fine_.empty()) fine_[vertex] = planes;
 }
 
 /// The creases that the vertex is on, by the mesh as it is at the beginning of the pass.
@@ -218,18 +226,28 @@ void EdgeRanking::list_edges_at(std::uint32_t vertex, std::uint32_t least) {
   listed_count_ = static_cast<std::size_t>(end_of_list - listed_.data());
 }
 
-/// The merged vertex takes the position of the one of higher rank, or of the cheaper one.
-EdgeCost EdgeRanking::cost_of_line_end(const Edge& e) const {
-  const Vec3 half = (input_.positions[e.b] - input_.positions[e.a]) * 0.5;
-  const auto moved = [&](std::uint32_t end) {
-    return cost_of_end(quadrics_[end], half, input_.bounds);
-  };
+/// The merged vertex takes the position of the one of higher rank, or of the cheaper one; `moved`
+/// tells what it costs that the other one moves there.
+template <typename Moved>
+EdgeCost EdgeRanking::cost_of_line_end(const Edge& e, const Moved& moved) const {
   const int rank_a = line_rank(input_.flags[e.a]);
   const int rank_b = line_rank(input_.flags[e.b]);
   if (rank_a != rank_b || !input_.adjacency->has_uvs()) return moved(rank_a > rank_b ? e.b : e.a);
   const EdgeCost to_b = moved(e.a);
   const EdgeCost to_a = moved(e.b);
   return to_a.ranking < to_b.ranking ? to_a : to_b;
+}
+
+EdgeCost EdgeRanking::cost_of_line_end(const Edge& e) const {
+  const Vec3 half = (input_.positions[e.b] - input_.positions[e.a]) * 0.5;
+  return cost_of_line_end(
+      e, [&](std::uint32_t end) { return cost_of_end(quadrics_[end], half, input_.bounds); });
+}
+
+EdgeCost EdgeRanking::fine_cost_of(const Edge& e, bool is_by_end) const {
+  const Vec3 half = (input_.positions[e.b] - input_.positions[e.a]) * 0.5;
+  if (!is_by_end) return fine_cost(fine_[e.a], fine_[e.b], half);
+  return cost_of_line_end(e, [&](std::uint32_t end) { return fine_cost_of_end(fine_[end], half); });
 }
 
 /// Counts the keys of the edges of one in so many vertices into starts_.

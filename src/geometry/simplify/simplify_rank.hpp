@@ -73,6 +73,9 @@ class EdgeRanking {
  public:
   /// Sums the quadrics. Keeps its memory from one pass to the next.
   void begin_pass(const RankingInput& input);
+  /// Then ranks by bounds of what floats are too rough for, too, with 48 bytes a vertex more: where
+  /// a surface is flat but for noise or rounding.
+  void refine();
 
   /// Estimates from a sample the key that the cheapest `share` (0 to 1) of all edges, but no more
   /// than `most`, do not exceed.
@@ -111,20 +114,24 @@ class EdgeRanking {
   Quadric appearance_at(std::uint32_t vertex);
   bool weighs_uvs() const { return input_.uv_scale > 0 && input_.adjacency->has_uvs(); }
   Quadric uvs_at(std::uint32_t vertex);
-  void add_line_planes(std::uint32_t vertex);
+  Quadric line_planes_at(std::uint32_t vertex) const;
   /// Those whose other end is `least` or greater.
   void list_edges_at(std::uint32_t vertex, std::uint32_t least);
   template <typename Take>
   void cost_listed(const Take& take);
   template <typename Take>
   void for_creases_at(std::uint32_t vertex, const Take& take) const;
+  template <typename Moved>
+  EdgeCost cost_of_line_end(const Edge& e, const Moved& moved) const;
   EdgeCost cost_of_line_end(const Edge& e) const;
+  EdgeCost fine_cost_of(const Edge& e, bool is_by_end) const;
   std::uint64_t sample_costs(std::uint32_t one_in);
   void sort_found();
 
   RankingInput input_;
   std::vector<FloatQuadric> quadrics_;
-  std::vector<Edge> listed_;  // the first listed_count_
+  std::vector<Quadric> fine_;  // the same, if refined
+  std::vector<Edge> listed_;   // the first listed_count_
   std::size_t listed_count_ = 0;
   EdgeCosts costs_;
   AppearanceStar star_;
@@ -153,7 +160,9 @@ void EdgeRanking::cost_listed(const Take& take) {
     for (std::size_t i = 0; i < count; ++i) {
       const Edge& e = edges[i];
       const int unlike = (flags[e.a] ^ flags[e.b]) & (k_line | k_corner | k_fixed);
-      take(e, (unlike | (flags[e.a] & by_ends)) == 0 ? costs_.get(i) : cost_of_line_end(e));
+      const bool is_by_end = (unlike | (flags[e.a] & by_ends)) != 0;
+      const EdgeCost cost = is_by_end ? cost_of_line_end(e) : costs_.get(i);
+      take(e, cost.is_rough && !fine_.empty() ? fine_cost_of(e, is_by_end) : cost);
     }
   }
   listed_count_ = 0;

@@ -197,6 +197,30 @@ TEST_CASE("ranking agrees with the cost of the best position") {
   }
 }
 
+TEST_CASE("what floats are too rough for is told finely") {
+  simplify_test::Random random(11);
+  EdgeCosts costs;
+  for (const double roughness : {1e-2, 1e-5, 1e-7}) {
+    for (std::size_t i = 0; i < EdgeCosts::k_size; ++i) {
+      const Vec3 half{random.unit() - 0.5, random.unit() - 0.5, roughness * random.unit()};
+      const Quadric a = random_planes(random, roughness);
+      const Quadric b = random_planes(random, roughness);
+      EdgeQuadric exact;
+      exact.squared_length = 4 * squared_length(half);
+      exact.add(a, half * -1.0);
+      exact.add(b, half);
+      costs.put(i, FloatQuadric(a), FloatQuadric(b), half);
+      costs.compute(true);
+      const EdgeCost fine = fine_cost(a, b, half);
+      CHECK(costs.get(i).is_rough == (roughness < 1e-3));
+      CHECK(fine.least <= exact.cost(exact.cheapest()));
+      CHECK(fine.least >= exact.cost(exact.cheapest()) / 4);
+      CHECK(fine.ranking > fine.least);
+      CHECK(fine_cost_of_end(b, half).least == doctest::Approx(4 * dot(b * half, half)));
+    }
+  }
+}
+
 TEST_CASE("ranking takes planes without area, and prefers short edges where planes cost nothing") {
   EdgeCosts costs;
   Quadric plane;

@@ -156,6 +156,44 @@ TEST_CASE("flat edges come before folds, and short ones before long ones") {
   CHECK(cost_of(last.key) > 1000 * cost_of(first->key));
 }
 
+TEST_CASE("once it is refined, what is flat but for noise is told apart") {
+  // Noise of 2e-4 of an edge on the right, a tenth of it on the left.
+  Random random(5);
+  Mesh mesh = flat_grid(40, 40);
+  for (Vec3& p : mesh.positions) p.z = (p.x > 0.5 ? 5e-6 : 5e-7) * random.unit();
+  CollapseBench bench(mesh);
+  RankingInput input = input_of(bench);
+  input.bounds = true;
+  EdgeRanking ranking;
+  const auto vertices = static_cast<std::uint32_t>(mesh.positions.size());
+  const auto right_ones_of_first = [&] {
+    std::vector<RankedEdge> found = ranked(ranking, vertices);
+    std::erase_if(found, [&](const RankedEdge& e) {
+      return ((bench.flags[e.a] | bench.flags[e.b]) & k_border) != 0;
+    });
+    REQUIRE(found.size() > 3'000);
+    return std::count_if(found.begin(), found.begin() + 1'000, [&](const RankedEdge& e) {
+      return mesh.positions[e.a].x > 0.5 && mesh.positions[e.b].x > 0.5;
+    });
+  };
+  ranking.begin_pass(input);
+  CHECK(right_ones_of_first() > 300);
+  ranking.refine();
+  CHECK(right_ones_of_first() < 20);
+  std::vector<RankedEdge> at_one;
+  ranking.refresh(820);
+  ranking.for_edges_at(820, HUGE_VAL, [&](const RankedEdge& e) { at_one.push_back(e); });
+  const std::vector<RankedEdge> all = ranked(ranking, vertices);
+  CHECK(!at_one.empty());
+  for (const RankedEdge& each : at_one) {
+    CHECK(std::any_of(all.begin(), all.end(), [&](const RankedEdge& e) {
+      return e.a == each.a && e.b == each.b && e.key == each.key;
+    }));
+  }
+  ranking.begin_pass(input);  // is as rough as before
+  CHECK(right_ones_of_first() > 300);
+}
+
 TEST_CASE("fixed vertices have no edges, and with a seam only its edges count") {
   CollapseBench bench(wavy_grid(10, 10));
   bench.flags[60] |= k_fixed;
