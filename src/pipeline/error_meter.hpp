@@ -9,12 +9,12 @@
 #include <span>
 #include <vector>
 
+#include <meshfarm/geometry/closer_look.hpp>
 #include <meshfarm/geometry/distance.hpp>
 #include <meshfarm/geometry/point_meter.hpp>
 #include <meshfarm/pipeline/input_surface.hpp>
 #include <meshfarm/report/summary.hpp>
 
-#include "pipeline/closer_look.hpp"
 #include "pipeline/normal_samples.hpp"
 
 namespace meshfarm {

@@ -35,7 +35,8 @@ void append_points(std::span<const Vec3> positions, const Triangle& triangle, Ve
 class PlacesOfPoints {
  public:
   PlacesOfPoints(std::span<const Vec3> points, std::span<const std::uint32_t> some);
-  /// Appends points of those triangles that the places lie on, and of few others.
+  /// Appends points of those triangles that the places lie on, and of some beside them: whose boxes
+  /// they are in.
   void append_points_of(std::span<const Vec3> positions, std::span<const Triangle> triangles,
                         const CloserSteps& steps, std::vector<Vec3>& points) const;
 

@@ -1,33 +1,28 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
-#include "pipeline/closer_look.hpp"
-
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <numeric>
+
+#include <meshfarm/geometry/closer_look.hpp>
+
+#include "geometry/piece_bounder.hpp"
 
 namespace meshfarm {
 namespace {
 
 constexpr int k_most_steps = 10;  // along a side
 constexpr int k_round_steps = 3;
-/// Of the greatest side of a box: a point of a triangle may lie outside of it by rounding.
+/// Of the longest side: a point of a triangle may lie outside of its box by rounding.
 constexpr double k_rounding = 0x1p-20;
 
-using Corners = std::array<Vec3, 3>;
-
-Corners corners_of(std::span<const Vec3> positions, const Triangle& t) {
-  return {positions[t[0]], positions[t[1]], positions[t[2]]};
-}
-
-double longest_side(const Corners& corners) {
+double longest_side(const CornerPoints& corners) {
   const auto& [a, b, c] = corners;
   return std::max({length(b - a), length(c - b), length(a - c)});
 }
 
 /// Of so many steps along each side, or as many as are allowed.
-void append_grid(const Corners& corners, double wanted, std::vector<Vec3>& points) {
+void append_grid(const CornerPoints& corners, double wanted, std::vector<Vec3>& points) {
   const int steps =
       wanted < k_most_steps ? std::max(1, static_cast<int>(std::ceil(wanted))) : k_most_steps;
   const auto& [a, b, c] = corners;
@@ -41,7 +36,8 @@ void append_grid(const Corners& corners, double wanted, std::vector<Vec3>& point
 }
 
 /// In a square of the triangle's plane, as far as it is on the triangle.
-void append_round(const Corners& corners, Vec3 place, double radius, std::vector<Vec3>& points) {
+void append_round(const CornerPoints& corners, Vec3 place, double radius,
+                  std::vector<Vec3>& points) {
   const auto& [a, b, c] = corners;
   const Vec3 normal = cross(b - a, c - a);
   if (!(squared_length(normal) > 0)) return;
@@ -70,14 +66,6 @@ std::vector<Triangle> as_triangles(std::size_t points) {
   std::vector<Triangle> triangles;
   for (std::uint32_t i = 0; i < points; ++i) triangles.push_back({i, i, i});
   return triangles;
-}
-
-Box rounded_box_of(const Corners& corners) {
-  Box box;
-  for (const Vec3& corner : corners) box.add(corner);
-  const Vec3 sides = box.hi - box.lo;
-  const double margin = k_rounding * std::max({sides.x, sides.y, sides.z});
-  return {box.lo - Vec3{margin, margin, margin}, box.hi + Vec3{margin, margin, margin}};
 }
 
 }  // namespace
@@ -113,7 +101,7 @@ std::vector<double> heights_of_vertices(const Mesh& mesh) {
 
 void append_points(std::span<const Vec3> positions, const Triangle& triangle, Vec3 place,
                    bool is_first, const CloserSteps& steps, std::vector<Vec3>& points) {
-  const Corners corners = corners_of(positions, triangle);
+  const CornerPoints corners = corners_of(positions, triangle);
   const double longest = longest_side(corners);
   if (is_first) append_grid(corners, longest / steps.step, points);
   if (longest > k_most_steps * steps.step && longest > steps.radius) {
@@ -128,7 +116,11 @@ void PlacesOfPoints::append_points_of(std::span<const Vec3> positions,
                                       std::span<const Triangle> triangles, const CloserSteps& steps,
                                       std::vector<Vec3>& points) const {
   for (const std::uint32_t i : cells_.touching(positions, triangles)) {
-    const Box box = rounded_box_of(corners_of(positions, triangles[i]));
+    const CornerPoints corners = corners_of(positions, triangles[i]);
+    const double margin = k_rounding * longest_side(corners);
+    Box box;
+    for (const Vec3& corner : corners) box.add(corner);
+    box = {box.lo - Vec3{margin, margin, margin}, box.hi + Vec3{margin, margin, margin}};
     bool is_first = true;
     for (const Vec3& place : places_) {
       if (!box.contains(place)) continue;
