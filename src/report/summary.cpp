@@ -363,6 +363,7 @@ std::string render(const RunSummary& s, Format format) {
 }
 
 std::string warning_of(const RunSummary& s) {
+  if (s.triangles == 0) return "the result has no triangles";
   std::string warning;
   if (s.triangles > s.target && !s.why_not_exact.empty()) {
     warning = grouped(s.target) + " triangles were asked for, " + grouped(s.triangles) +

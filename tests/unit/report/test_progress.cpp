@@ -59,6 +59,13 @@ TEST_CASE("a run's summary says when the count is not the one asked for") {
   CHECK(render(s, Format::text).find("101 were asked for: for a reason") != std::string::npos);
 }
 
+TEST_CASE("a run's summary warns of a result without triangles") {
+  RunSummary s;
+  CHECK(warning_of(s) == "the result has no triangles");
+  CHECK(render(s, Format::json).find("\"warning\": \"the result has no triangles\"") !=
+        std::string::npos);
+}
+
 TEST_CASE("a run's summary warns of a result that a few triangles more would have saved") {
   RunSummary s;
   s.manifest.box.add({0, 0, 0});
