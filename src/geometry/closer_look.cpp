@@ -11,10 +11,10 @@
 namespace meshfarm {
 namespace {
 
-constexpr int k_most_steps = 10;  // along a side
+constexpr int k_grid_steps = 10;  // along a side
 constexpr int k_round_steps = 3;
 /// Of the longest side: a point of a triangle may lie outside of its box by rounding.
-constexpr double k_rounding = 0x1p-20;
+constexpr double k_beside_box = 0x1p-20;
 
 double longest_side(const CornerPoints& corners) {
   const auto& [a, b, c] = corners;
@@ -24,7 +24,7 @@ double longest_side(const CornerPoints& corners) {
 /// Of so many steps along each side, or as many as are allowed.
 void append_grid(const CornerPoints& corners, double wanted, std::vector<Vec3>& points) {
   const int steps =
-      wanted < k_most_steps ? std::max(1, static_cast<int>(std::ceil(wanted))) : k_most_steps;
+      wanted < k_grid_steps ? std::max(1, static_cast<int>(std::ceil(wanted))) : k_grid_steps;
   const auto& [a, b, c] = corners;
   for (int i = 0; i <= steps; ++i) {
     for (int j = 0; i + j <= steps; ++j) {
@@ -104,7 +104,7 @@ void append_points(std::span<const Vec3> positions, const Triangle& triangle, Ve
   const CornerPoints corners = corners_of(positions, triangle);
   const double longest = longest_side(corners);
   if (is_first) append_grid(corners, longest / steps.step, points);
-  if (longest > k_most_steps * steps.step && longest > steps.radius) {
+  if (longest > k_grid_steps * steps.step && longest > steps.radius) {
     append_round(corners, place, steps.radius, points);
   }
 }
@@ -117,7 +117,7 @@ void PlacesOfPoints::append_points_of(std::span<const Vec3> positions,
                                       std::vector<Vec3>& points) const {
   for (const std::uint32_t i : cells_.touching(positions, triangles)) {
     const CornerPoints corners = corners_of(positions, triangles[i]);
-    const double margin = k_rounding * longest_side(corners);
+    const double margin = k_beside_box * longest_side(corners);
     Box box;
     for (const Vec3& corner : corners) box.add(corner);
     box = {box.lo - Vec3{margin, margin, margin}, box.hi + Vec3{margin, margin, margin}};

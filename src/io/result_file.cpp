@@ -13,16 +13,17 @@
 //             sets u32 | sets x samples | where what is beside is | rungs u32 |
 //             rungs x (level i32 | vertices u64 | triangles u64 | free triangles u64 | error f64 |
 //             where it is)
-//   samples = area f64 | points u32 | points, 3 numbers each, of the part's surface
+//   samples = area f64 | points u32 | points, 3 x f64 each, of the part's surface
 //   where   = offset u64 | size u64 | xxh3-64
 // Each section has its own checksum, so that a reader of one rung reads that and the tail only.
 // Vertices are their positions, then their appearances, 4 x u16 each, if the format says so.
 // Columns are labels, u32 a triangle, then texture coordinates, 6 x f32 a triangle, if it says so.
 // A rung's vertices are the boundary vertices, then those of its blocks. Of a block's vertices
 // there are at most 65536, and as many triangles.
-//   Version 6. Version 1 was sealed, with the counts in front and one set of samples; version 2 had
+//   Version 8. Version 1 was sealed, with the counts in front and one set of samples; version 2 had
 //   nothing beside; in version 3 the summary did not say whether a ladder goes on; in version 4
-//   triangles were not packed; version 5 had one checksum for all, at its end.
+//   triangles were not packed; version 5 had one checksum for all, at its end; in version 7 samples
+//   were rounded as vertices are.
 // The summary that travels with the message:
 //   dropped degenerate u64 | dropped duplicate u64 | held by topology u8 | end of the ladder u8 |
 //   turned u64 | rungs as above | where the tail is | where what is beside is | of a part that was
@@ -50,7 +51,7 @@ namespace {
 
 constexpr FileKind k_result_magic = {'M', 'F', 'R', 'M'};
 constexpr FileKind k_result_kind = {'R', 'S', 'L', 'T'};
-constexpr std::uint32_t k_result_version = 7;
+constexpr std::uint32_t k_result_version = 8;
 constexpr std::uint32_t k_result_byte_order = 0x01020304;
 constexpr std::uint32_t k_max_rungs = 256;
 constexpr std::uint32_t k_most_in_result_block = 65536;
@@ -109,10 +110,13 @@ void check_result_head(ByteReader in) {
   if (in.get<std::uint32_t>() != k_result_byte_order) in.fail("written with another byte order");
 }
 
-std::vector<Vec3> get_result_points(ByteReader& in, PositionType type) {
+/// Where little is lost the error is less than what floats round.
+constexpr PositionType k_sample_type = PositionType::float64;
+
+std::vector<Vec3> get_sample_points(ByteReader& in) {
   const auto count = in.get<std::uint32_t>();
-  if (count > in.remaining() / (3 * static_cast<std::size_t>(type))) in.fail("too short");
-  return get_positions(in, count, type);
+  if (count > in.remaining() / (3 * static_cast<std::size_t>(k_sample_type))) in.fail("too short");
+  return get_positions(in, count, k_sample_type);
 }
 
 /// What all rungs have in common, and where they are.
@@ -141,7 +145,7 @@ ResultTail get_result_tail(std::string_view bytes, std::string_view what) {
     SurfaceSamples samples;
     samples.area = in.get<double>();
     if (!std::isfinite(samples.area) || samples.area < 0) in.fail("impossible area");
-    samples.points = get_result_points(in, tail.format.positions);
+    samples.points = get_sample_points(in);
     tail.common.samples.push_back(std::move(samples));
   }
   tail.beside = in.get<FileSection>();
@@ -361,7 +365,7 @@ void ResultWriter::finish(const VertexView& boundary, std::span<const SurfaceSam
   for (const SurfaceSamples& set : samples) {
     out.put(set.area);
     out.put(static_cast<std::uint32_t>(set.points.size()));
-    put_positions(out, set.points, vertices_.positions);
+    put_positions(out, set.points, k_sample_type);
   }
   out.put(beside_);
   put_rungs(out, rungs_);

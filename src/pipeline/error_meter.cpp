@@ -21,7 +21,7 @@ constexpr double k_usual = 2.5;
 constexpr double k_far_in_spacings = 2;
 /// So many of the farthest points show where to look more closely, in steps of so much of the
 /// greatest distance.
-constexpr std::size_t k_looked_round = 200;
+constexpr std::size_t k_looked_round = 100;
 constexpr double k_closer_step = 0.1;
 /// A few per cent are all that an estimate may be wrong by.
 constexpr std::uint64_t k_points_for_estimate = 5'000;

@@ -180,7 +180,8 @@ class Simplifier {
   bool is_slowed_by_topology() const;
   std::uint64_t dropped_degenerate() const;
   std::uint64_t dropped_duplicate() const;
-  /// Triangles of the input that faced another way than most of their piece's area, and were turned.
+  /// Triangles of the input that faced another way than most of their piece's area, and were
+  /// turned.
   std::uint64_t turned() const;
   /// Flags of the vertices of mesh() that are, or were merged from, seam vertices.
   std::span<const std::uint8_t> seam() const;

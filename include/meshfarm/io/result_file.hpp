@@ -55,7 +55,7 @@ struct ResultSummary {
   std::uint64_t dropped_degenerate = 0;
   std::uint64_t dropped_duplicate = 0;
   bool held_by_topology = false;  // keeping it refused more than was collapsed
-  std::uint64_t turned = 0;       // triangles that faced another way than most of their piece's area
+  std::uint64_t turned = 0;       // triangles that faced another way than most of a piece's area
   std::optional<BuiltFacts> built = {};
   LadderEnd end = LadderEnd::floor;
   FileSection tail = {};    // of the file: what all rungs have in common

@@ -59,8 +59,8 @@ constexpr std::uint32_t k_complex_changes = 16;
 
 // Where edges turn out to be dearer than they rank so much more often than one collapses, and so
 // often at all, they are ranked finely.
-constexpr std::uint64_t k_rough = 4;
-constexpr std::uint64_t k_least_rough = 1000;
+constexpr std::uint64_t k_waits_of_rough = 4;
+constexpr std::uint64_t k_least_waits = 1000;
 
 constexpr CostKey k_greatest = k_any_cost - 1;
 constexpr CostKey k_least_step = 4U << 20;  // a factor of 16
@@ -351,7 +351,7 @@ bool CollapseQueue::is_hopeless() const {
 
 bool CollapseQueue::is_too_rough() const {
   const std::uint64_t done = collapses_ - collapses_before_;
-  return !is_fine_ && waited_ > k_rough * done + k_least_rough;
+  return !is_fine_ && waited_ > k_waits_of_rough * done + k_least_waits;
 }
 
 /// Whether it costs more than the goal allows, or more than it was ranked by and the next.
