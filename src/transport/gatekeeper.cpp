@@ -29,24 +29,6 @@ std::string raw_key(const std::string& z85) {
   return {bytes.begin(), bytes.end()};
 }
 
-/// What a monitor tells: 16 bits, then 32 with its value.
-struct MonitorEvent {
-  std::uint16_t event = 0;
-  std::uint32_t value = 0;
-
-  explicit MonitorEvent(const std::string& frame) {
-    if (frame.size() < sizeof event + sizeof value) return;
-    std::memcpy(&event, frame.data(), sizeof event);
-    std::memcpy(&value, frame.data() + sizeof event, sizeof value);
-  }
-  /// A peer that ends in the middle of the handshake, as one that is killed does, is no stranger.
-  bool is_refusal() const {
-    const bool is_gone =
-        event == ZMQ_EVENT_HANDSHAKE_FAILED_NO_DETAIL && (value == EPIPE || value == ECONNRESET);
-    return (event & k_refusals) != 0 && !is_gone;
-  }
-};
-
 /// All frames of a message; none if there is no message.
 std::vector<std::string> receive_frames(zmq::socket_t& socket) {
   std::vector<std::string> frames;
@@ -151,16 +133,17 @@ bool Gatekeeper::read_events(zmq::socket_t& monitor) {
   for (;;) {
     const std::vector<std::string> frames = receive_frames(monitor);
     if (frames.empty()) return true;
-    const MonitorEvent told(frames[0]);
-    if (told.event == ZMQ_EVENT_MONITOR_STOPPED) return false;
-    if (told.is_refusal()) refused_.fetch_add(1, std::memory_order_relaxed);
+    std::uint16_t event = 0;
+    if (frames[0].size() >= sizeof event) std::memcpy(&event, frames[0].data(), sizeof event);
+    if (event == ZMQ_EVENT_MONITOR_STOPPED) return false;
+    if ((event & k_refusals) != 0) refused_.fetch_add(1, std::memory_order_relaxed);
   }
 }
 
 void tell_of_strangers(std::uint64_t refused_connections, std::uint64_t garbled_messages) {
   if (refused_connections > 0) {
-    log_warning("refused " + std::to_string(refused_connections) +
-                " connections that did not prove to belong to this run");
+    log_warning(std::to_string(refused_connections) +
+                " connections ended before they had proven to belong to this run");
   }
   if (garbled_messages > 0) {
     log_warning("dropped " + std::to_string(garbled_messages) +

@@ -30,7 +30,8 @@ class Gatekeeper {
 
   /// Counts those that do not get through the socket's handshake. Call it before binding.
   void watch(zmq::socket_t& socket);
-  /// Connections refused so far: garbage, wrong or no keys, silence.
+  /// Connections refused so far: garbage, wrong or no keys, silence. A peer that is killed while it
+  /// connects looks like these, as does one that finds that the server speaks another mechanism.
   std::uint64_t refused() const { return refused_.load(std::memory_order_relaxed); }
 
  private:
