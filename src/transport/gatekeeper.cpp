@@ -142,8 +142,8 @@ bool Gatekeeper::read_events(zmq::socket_t& monitor) {
 
 void tell_of_strangers(std::uint64_t refused_connections, std::uint64_t garbled_messages) {
   if (refused_connections > 0) {
-    log_warning(std::to_string(refused_connections) +
-                " connections ended before they had proven to belong to this run");
+    log_warning("refused " + std::to_string(refused_connections) +
+                " connections that did not prove to belong to this run");
   }
   if (garbled_messages > 0) {
     log_warning("dropped " + std::to_string(garbled_messages) +
