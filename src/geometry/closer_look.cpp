@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <numeric>
 
 #include <meshfarm/geometry/closer_look.hpp>
@@ -15,11 +16,6 @@ constexpr int k_grid_steps = 10;  // along a side
 constexpr int k_round_steps = 3;
 /// Of the longest side: a point of a triangle may lie outside of its box by rounding.
 constexpr double k_beside_box = 0x1p-20;
-
-double longest_side(const CornerPoints& corners) {
-  const auto& [a, b, c] = corners;
-  return std::max({length(b - a), length(c - b), length(a - c)});
-}
 
 /// Of so many steps along each side, or as many as are allowed.
 void append_grid(const CornerPoints& corners, double wanted, std::vector<Vec3>& points) {
@@ -99,14 +95,14 @@ std::vector<double> heights_of_vertices(const Mesh& mesh) {
   return heights;
 }
 
-void append_points(std::span<const Vec3> positions, const Triangle& triangle, Vec3 place,
-                   bool is_first, const CloserSteps& steps, std::vector<Vec3>& points) {
+void append_points(std::span<const Vec3> positions, const Triangle& triangle,
+                   std::span<const Vec3> places, const CloserSteps& steps,
+                   std::vector<Vec3>& points) {
   const CornerPoints corners = corners_of(positions, triangle);
   const double longest = longest_side(corners);
-  if (is_first) append_grid(corners, longest / steps.step, points);
-  if (longest > k_grid_steps * steps.step && longest > steps.radius) {
-    append_round(corners, place, steps.radius, points);
-  }
+  append_grid(corners, longest / steps.step, points);
+  if (longest <= k_grid_steps * steps.step || longest <= steps.radius) return;
+  for (const Vec3& place : places) append_round(corners, place, steps.radius, points);
 }
 
 PlacesOfPoints::PlacesOfPoints(std::span<const Vec3> points, std::span<const std::uint32_t> some)
@@ -115,18 +111,17 @@ PlacesOfPoints::PlacesOfPoints(std::span<const Vec3> points, std::span<const std
 void PlacesOfPoints::append_points_of(std::span<const Vec3> positions,
                                       std::span<const Triangle> triangles, const CloserSteps& steps,
                                       std::vector<Vec3>& points) const {
+  std::vector<Vec3> here;
   for (const std::uint32_t i : cells_.touching(positions, triangles)) {
     const CornerPoints corners = corners_of(positions, triangles[i]);
     const double margin = k_beside_box * longest_side(corners);
     Box box;
     for (const Vec3& corner : corners) box.add(corner);
     box = {box.lo - Vec3{margin, margin, margin}, box.hi + Vec3{margin, margin, margin}};
-    bool is_first = true;
-    for (const Vec3& place : places_) {
-      if (!box.contains(place)) continue;
-      append_points(positions, triangles[i], place, is_first, steps, points);
-      is_first = false;
-    }
+    here.clear();
+    std::copy_if(places_.begin(), places_.end(), std::back_inserter(here),
+                 [&](const Vec3& place) { return box.contains(place); });
+    if (!here.empty()) append_points(positions, triangles[i], here, steps, points);
   }
 }
 

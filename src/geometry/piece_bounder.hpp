@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <vector>
 
@@ -18,6 +19,11 @@ using CornerPoints = std::array<Vec3, 3>;
 
 inline CornerPoints corners_of(std::span<const Vec3> positions, const Triangle& t) {
   return {positions[t[0]], positions[t[1]], positions[t[2]]};
+}
+
+inline double longest_side(const CornerPoints& corners) {
+  const auto& [a, b, c] = corners;
+  return std::sqrt(std::max({squared_length(b - a), squared_length(c - b), squared_length(a - c)}));
 }
 
 /// No less than the distance of `p` to the triangle, but for the rounding of a few operations on

@@ -9,6 +9,7 @@
 #include <meshfarm/geometry/surface_bound.hpp>
 
 #include "geometry/bvh.hpp"
+#include "geometry/piece_bounder.hpp"
 #include "geometry/surface_walk.hpp"
 
 namespace meshfarm {
@@ -22,11 +23,6 @@ constexpr double k_long_side = 1.5;
 constexpr double k_small_side = 4;
 /// A small bound on large triangles does not ask for more points than this a triangle, all in all.
 constexpr double k_most_points = 4;
-
-double longest_side(const Mesh& mesh, const Triangle& t) {
-  const Vec3 a = mesh.positions[t[0]], b = mesh.positions[t[1]], c = mesh.positions[t[2]];
-  return std::sqrt(std::max({squared_length(b - a), squared_length(c - b), squared_length(a - c)}));
-}
 
 /// Into how many parts each side is divided; 0 if the vertices are enough.
 double steps_for(double side, double spacing) {
@@ -52,7 +48,7 @@ void flag_dense(const Mesh& mesh, std::span<const std::uint32_t> numbers, double
                 std::vector<SurfacePoint>& points) {
   for (SurfacePoint& point : points) point.is_dense = true;
   for (const Triangle& t : mesh.triangles) {
-    if (longest_side(mesh, t) <= k_small_side * distance) continue;
+    if (longest_side(corners_of(mesh.positions, t)) <= k_small_side * distance) continue;
     for (const std::uint32_t v : t) points[numbers[v]].is_dense = false;
   }
 }
@@ -94,7 +90,7 @@ class LongSides {
 double count_inside(const Mesh& mesh, double spacing) {
   double count = 0;
   for (const Triangle& t : mesh.triangles) {
-    const double steps = steps_for(longest_side(mesh, t), spacing);
+    const double steps = steps_for(longest_side(corners_of(mesh.positions, t)), spacing);
     count += steps * steps;
   }
   return count;
@@ -125,7 +121,8 @@ std::vector<SurfacePoint> points_inside(const Mesh& mesh, double distance) {
   while (count_inside(mesh, spacing) > most) spacing *= k_wider;
   std::vector<SurfacePoint> points;
   for (std::uint32_t i = 0; i < mesh.triangles.size(); ++i) {
-    const double steps = steps_for(longest_side(mesh, mesh.triangles[i]), spacing);
+    const double steps =
+        steps_for(longest_side(corners_of(mesh.positions, mesh.triangles[i])), spacing);
     if (steps > 0) add_grid(mesh, i, steps, points);
   }
   return points;

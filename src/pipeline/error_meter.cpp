@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <mutex>
 #include <utility>
 
@@ -184,21 +185,19 @@ std::vector<Vec3> ErrorMeter::points_of(const SurfacePiece& piece,
 /// The greatest distance of the result's triangles that have the farthest of the points.
 double ErrorMeter::farthest_round(std::span<const Vec3> points, std::span<const double> distances,
                                   double radius, const DistanceMeter& to_result) {
-  std::vector<Vec3> places;
+  std::vector<Vec3> farthest;
   for (const std::uint32_t i : farthest_points(distances, k_looked_round)) {
-    places.push_back(points[i]);
+    farthest.push_back(points[i]);
   }
-  const std::vector<std::uint32_t> triangles = to_result.nearest_triangles(places);
+  const std::vector<std::uint32_t> triangles = to_result.nearest_triangles(farthest);
+  std::map<std::uint32_t, std::vector<Vec3>> places;  // by the triangle that they are on
+  for (std::size_t i = 0; i < farthest.size(); ++i) places[triangles[i]].push_back(farthest[i]);
   const double known = distance_of(distances).max;
-  const CloserSteps steps{k_closer_step * known, radius};
   const Mesh& result = to_result.index().mesh();
-  std::vector<std::uint8_t> is_first(result.triangles.size(), 1);
   std::vector<Vec3> closer;
-  for (std::size_t i = 0; i < places.size(); ++i) {
-    std::uint8_t& first = is_first[triangles[i]];
-    append_points(result.positions, result.triangles[triangles[i]], places[i], first != 0, steps,
-                  closer);
-    first = 0;
+  for (const auto& [triangle, here] : places) {
+    append_points(result.positions, result.triangles[triangle], here,
+                  {k_closer_step * known, radius}, closer);
   }
   PointMeter to_input(closer, {.spacing = spacing_, .surface = surface_, .all_are_beyond = true});
   show_input(to_input, [](const SurfacePiece&) {});

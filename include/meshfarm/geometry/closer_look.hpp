@@ -26,10 +26,11 @@ struct CloserSteps {
   double radius = 0;  // round a point on a larger triangle: 49 points, in steps of a third of it
 };
 
-/// Appends points of the triangle that `place` is on: a grid over all of it, its corners among them
-/// (if `is_first`, as it is the first place on it), and some round the place.
-void append_points(std::span<const Vec3> positions, const Triangle& triangle, Vec3 place,
-                   bool is_first, const CloserSteps& steps, std::vector<Vec3>& points);
+/// Appends points of a triangle that the places are on: a grid over all of it, its corners among
+/// them, and where that is coarse some round each place.
+void append_points(std::span<const Vec3> positions, const Triangle& triangle,
+                   std::span<const Vec3> places, const CloserSteps& steps,
+                   std::vector<Vec3>& points);
 
 /// Points that are looked for in a surface that they were taken from.
 class PlacesOfPoints {

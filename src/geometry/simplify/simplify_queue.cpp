@@ -129,7 +129,6 @@ void CollapseQueue::start(std::span<const Triangle> triangles) {
   heap_.clear();
   room_for_all_ = mesh_.any_topology ? room_for_all(mesh_.flags, triangles) : 0;
   remember();
-  is_fine_ = false;
   ranking_.begin_pass({mesh_.positions, triangles, mesh_.flags, &mesh_.adjacency,
                        &mesh_.creases.test(), mesh_.seam_only, true, mesh_.any_topology, true,
                        mesh_.appearances, mesh_.appearance_scale, mesh_.uv_scale});
@@ -271,7 +270,6 @@ bool CollapseQueue::reduce(const SimplifyGoal& goal, const Progress& progress) {
     const Stop stop = run(goal, progress);
     held_ = held_ || stop == Stop::held;
     if (stop == Stop::too_rough) {
-      is_fine_ = true;
       ranking_.refine();
       limit_ = 0;
       continue;
@@ -351,7 +349,7 @@ bool CollapseQueue::is_hopeless() const {
 
 bool CollapseQueue::is_too_rough() const {
   const std::uint64_t done = collapses_ - collapses_before_;
-  return !is_fine_ && waited_ > k_waits_of_rough * done + k_least_waits;
+  return !ranking_.is_refined() && waited_ > k_waits_of_rough * done + k_least_waits;
 }
 
 /// Whether it costs more than the goal allows, or more than it was ranked by and the next.

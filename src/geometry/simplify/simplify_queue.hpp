@@ -188,7 +188,6 @@ class CollapseQueue {
   std::uint64_t blocked_before_ = 0;
   std::uint64_t collapses_before_ = 0;
   std::uint64_t waited_ = 0;  // edges since then that turned out to be dearer than they ranked
-  bool is_fine_ = false;      // edges are ranked finely
   double max_cost_ = 0;
   double last_cost_ = 0;
   double paid_ = 0;

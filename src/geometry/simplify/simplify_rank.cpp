@@ -156,7 +156,7 @@ void EdgeRanking::move_to(std::span<const Vec3> positions, std::span<const std::
   input_.flags = flags;
   input_.appearances = appearances;
   quadrics_.resize(positions.size());
-  if (!fine_.empty()) fine_.resize(positions.size());
+  if (is_refined()) fine_.resize(positions.size());
 }
 
 void EdgeRanking::refresh(std::uint32_t vertex) {
@@ -171,7 +171,7 @@ void EdgeRanking::refresh(std::uint32_t vertex) {
   if (weighs_uvs()) planes = planes + uvs_at(vertex);
   if ((input_.flags[vertex] & k_line) != 0) planes = planes + line_planes_at(vertex);
   quadrics_[vertex] = FloatQuadric(planes);
-  if (!fine_.empty()) fine_[vertex] = planes;
+  if (is_refined()) fine_[vertex] = planes;
 }
 
 /// The creases that the vertex is on, by the mesh as it is at the beginning of the pass.

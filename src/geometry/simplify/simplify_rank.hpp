@@ -76,6 +76,7 @@ class EdgeRanking {
   /// Then ranks by bounds of what floats are too rough for, too, with 48 bytes a vertex more: where
   /// a surface is flat but for noise or rounding.
   void refine();
+  bool is_refined() const { return !fine_.empty(); }
 
   /// Estimates from a sample the key that the cheapest `share` (0 to 1) of all edges, but no more
   /// than `most`, do not exceed.
@@ -162,7 +163,7 @@ void EdgeRanking::cost_listed(const Take& take) {
       const int unlike = (flags[e.a] ^ flags[e.b]) & (k_line | k_corner | k_fixed);
       const bool is_by_end = (unlike | (flags[e.a] & by_ends)) != 0;
       const EdgeCost cost = is_by_end ? cost_of_line_end(e) : costs_.get(i);
-      take(e, cost.is_rough && !fine_.empty() ? fine_cost_of(e, is_by_end) : cost);
+      take(e, cost.is_rough && is_refined() ? fine_cost_of(e, is_by_end) : cost);
     }
   }
   listed_count_ = 0;

@@ -17,6 +17,9 @@ namespace {
 
 const Mesh k_large = {.positions = {{0, 0, 0}, {100, 0, 0}, {0, 100, 0}}, .triangles = {{0, 1, 2}}};
 
+const std::vector<Vec3> k_inside = {{20, 30, 0}};
+const std::vector<Vec3> k_corner = {{0, 0, 0}};
+
 bool are_on(const Mesh& mesh, const Triangle& t, const std::vector<Vec3>& points) {
   return std::all_of(points.begin(), points.end(), [&](const Vec3& p) {
     return squared_distance(p, mesh.positions[t[0]], mesh.positions[t[1]], mesh.positions[t[2]]) <
@@ -47,13 +50,13 @@ TEST_CASE(
 
 TEST_CASE("a small triangle gets few points, a large one 66 and those round the place") {
   std::vector<Vec3> points;
-  append_points(k_large.positions, k_large.triangles[0], {20, 30, 0}, true, {200, 5}, points);
+  append_points(k_large.positions, k_large.triangles[0], k_inside, {200, 5}, points);
   CHECK(points.size() == 3);
   points.clear();
-  append_points(k_large.positions, k_large.triangles[0], {20, 30, 0}, true, {50, 5}, points);
+  append_points(k_large.positions, k_large.triangles[0], k_inside, {50, 5}, points);
   CHECK(points.size() == 10);
   points.clear();
-  append_points(k_large.positions, k_large.triangles[0], {20, 30, 0}, true, {1, 6}, points);
+  append_points(k_large.positions, k_large.triangles[0], k_inside, {1, 6}, points);
   CHECK(points.size() == 66 + 49);
   CHECK(are_on(k_large, k_large.triangles[0], points));
   const auto near = std::count_if(points.begin(), points.end(), [](const Vec3& p) {
@@ -61,17 +64,17 @@ TEST_CASE("a small triangle gets few points, a large one 66 and those round the 
   });
   CHECK(near >= 49);
   points.clear();
-  append_points(k_large.positions, k_large.triangles[0], {0, 0, 0}, false, {1, 6}, points);
-  CHECK(points.size() == 16);  // a quarter of them is on the triangle
+  append_points(k_large.positions, k_large.triangles[0], k_corner, {1, 6}, points);
+  CHECK(points.size() == 66 + 16);  // a quarter of them is on the triangle
   CHECK(are_on(k_large, k_large.triangles[0], points));
 }
 
 TEST_CASE("no step and no area are no harm") {
   std::vector<Vec3> points;
-  append_points(k_large.positions, k_large.triangles[0], {20, 30, 0}, true, {0, 0}, points);
+  append_points(k_large.positions, k_large.triangles[0], k_inside, {0, 0}, points);
   CHECK(points.size() >= 66);
   const Mesh needle = {.positions = {{0, 0, 0}, {1, 0, 0}, {3, 0, 0}}, .triangles = {{0, 1, 2}}};
-  append_points(needle.positions, needle.triangles[0], {1, 0, 0}, true, {0.01, 0.1}, points);
+  append_points(needle.positions, needle.triangles[0], needle.positions, {0.01, 0.1}, points);
   CHECK(std::all_of(points.begin(), points.end(), [](const Vec3& p) { return is_finite(p); }));
 }
 
