@@ -244,22 +244,19 @@ void Stage::remove(const StagedName& name) const noexcept {
 
 void remove_stage(const std::filesystem::path& root) {
   std::error_code ignored;
-  const auto staged = [](const std::string& name) {
-    const bool temporary = name.find("/.") != std::string::npos &&
-                           (name.ends_with(".tmp") || name.ends_with(".claim"));
-    return temporary || parse_staged_name(name).has_value();
-  };
-  for (const std::string_view folder : k_stage_folders) {
+  const auto remove_staged = [&](const std::string& folder) {
     for (const auto& entry : std::filesystem::directory_iterator(root / folder, ignored)) {
-      const std::string name = std::string(folder) + "/" + entry.path().filename().string();
-      if (staged(name)) std::filesystem::remove(entry.path(), ignored);
+      const std::string name = entry.path().filename().string();
+      const bool temporary =
+          name.starts_with(".") && (name.ends_with(".tmp") || name.ends_with(".claim"));
+      const bool staged =
+          temporary || parse_staged_name(folder.empty() ? name : folder + "/" + name).has_value();
+      if (staged) std::filesystem::remove(entry.path(), ignored);
     }
     std::filesystem::remove(root / folder, ignored);
-  }
-  std::filesystem::remove(root / to_string(ManifestName{}), ignored);
-  std::filesystem::remove(root / to_string(BoundaryName{}), ignored);
-  std::filesystem::remove(root / to_string(CutName{}), ignored);
-  std::filesystem::remove(root, ignored);
+  };
+  for (const std::string_view folder : k_stage_folders) remove_staged(std::string(folder));
+  remove_staged("");
 }
 
 }  // namespace meshfarm

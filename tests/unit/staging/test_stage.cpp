@@ -125,6 +125,8 @@ TEST_CASE("removing a stage leaves what is not its own") {
   const Stage stage = Stage::create(root);
   stage.publish(PartName{1}, "x");
   stage.publish(ManifestName{}, "x");
+  stage.publish(ChannelsName{}, "x");
+  std::ofstream(root / ".manifest.0.tmp") << "x";
   std::ofstream(root / "mine.ply") << "x";
   remove_stage(root);
   CHECK_FALSE(std::filesystem::exists(root / "parts"));
