@@ -282,6 +282,20 @@ double GeneralJudge::squared_to_cover(Vec3 from) const {
   return squared;
 }
 
+/// If no more is lost than the triangles at the edge: what stands for a leaf or a hair may lie
+/// close to others in its middle, and far from all at its ends.
+void GeneralJudge::list_points_of_sheet() {
+  points_of_sheet_.clear();
+  if (!kept_.empty()) return;
+  for (const Corner& c : shared_) {
+    const Vec3 p = state_.positions[a_.vertex];
+    const Vec3 q = state_.positions[c.next];
+    const Vec3 r = state_.positions[c.prev];
+    const Vec3 middle = (p + q + r) * (1.0 / 3);
+    for (const Vec3& corner : {p, q, r}) points_of_sheet_.push_back((middle + corner) * 0.5);
+  }
+}
+
 /// Of what goes with these vertices, by how far it is from the rest.
 double GeneralJudge::cost_of_lost() {
   if (!any_topology_ || lost_.empty()) return 0;
@@ -302,8 +316,9 @@ double GeneralJudge::cost_of_lost() {
   }
   if (area == 0) return 0;
   const Vec3 middle = sum * (1 / area);
+  list_points_of_sheet();
   const double squared = surroundings_.squared_distance(
-      {state_.positions, state_.target, state_.adjacency}, middle, lost_);
+      {state_.positions, state_.target, state_.adjacency}, {middle, points_of_sheet_, lost_});
   return k_loss_of_piece * area * std::min(squared, squared_to_cover(middle));
 }
 

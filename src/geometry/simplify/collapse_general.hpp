@@ -95,6 +95,7 @@ class GeneralJudge {
   bool is_lost(std::uint32_t vertex) const;
   void list_lost();
   double squared_to_cover(Vec3 from) const;
+  void list_points_of_sheet();
   double cost_of_lost();
   void add_cost_of_tips(Collapse& collapse);
   Collapse end_of_piece(std::uint64_t most_triangles);
@@ -124,6 +125,7 @@ class GeneralJudge {
   std::vector<Triangle> going_;      // where a piece is opened
   std::vector<Triangle> standing_;   // what is left of it
   Surroundings surroundings_;
+  std::vector<Vec3> points_of_sheet_;
   CollapseStar star_;
   EdgeQuadric quadric_;
   AppearanceStar appearance_;

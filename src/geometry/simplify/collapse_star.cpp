@@ -26,6 +26,9 @@ constexpr double k_thinner_squared = 1.0 / 16;
 // the fourth power of its longest side: more than what is nearly flat, much less than a corner.
 constexpr double k_sliver_sine_squared = 1.6e-5;
 constexpr double k_cost_of_sliver = 1e-5;
+// With 1 spines have up to a quarter more error from the result to the input, with 10 up to 4 %
+// less and 1 % more the other way.
+constexpr double k_of_protruding = 3;
 
 /// Of the smallest angle of the triangle x, p, q with the normal cross(p - x, q - x). 0 if it has
 /// no area.
@@ -142,6 +145,20 @@ std::optional<double> CollapseStar::lost_area_of_ribbon(std::uint32_t first, std
     twice_lost -= std::sqrt(size);
   }
   return 0.5 * std::max(twice_lost, 0.0);
+}
+
+double CollapseStar::cost_of_protruding(std::uint32_t kept, Vec3 x, double gained) const {
+  const double squared_half = squared_length(half_);
+  const double at = meshfarm::dot(x, half_);
+  if (!(std::abs(at) > squared_half)) return 0;
+  const Vec3 out = half_ * (at > 0 ? 1.0 : -1.0);
+  double least = std::abs(at) - squared_half;
+  for (std::uint32_t i = 0; i < kept && least > 0; ++i) {
+    const StarTriangle t = triangle(2 + i);
+    const double beyond = std::max(meshfarm::dot(t.p, out), meshfarm::dot(t.q, out));
+    least = std::min(least, std::abs(at) - beyond);
+  }
+  return least > 0 ? k_of_protruding * gained * least * least / squared_half : 0;
 }
 
 double CollapseStar::cost_of_slivers(std::uint32_t first, std::uint32_t kept, Vec3 x) const {

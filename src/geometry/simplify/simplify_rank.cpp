@@ -244,6 +244,22 @@ EdgeCost EdgeRanking::cost_of_line_end(const Edge& e) const {
       e, [&](std::uint32_t end) { return cost_of_end(quadrics_[end], half, input_.bounds); });
 }
 
+/// Whether no triangle of a sheet or a tetrahedron would stay. Its planes do not tell what that
+/// costs, but how far it is from the rest: it has to be looked at to know.
+bool EdgeRanking::is_all_of_piece(const Edge& e) const {
+  constexpr std::size_t k_most = 3;
+  const std::span<const Corner> at_a = input_.adjacency->at(e.a);
+  const std::span<const Corner> at_b = input_.adjacency->at(e.b);
+  if (at_a.size() != at_b.size() || at_a.size() > k_most) return false;
+  const auto is_at = [](std::span<const Corner> fan, std::uint32_t v) {
+    return std::any_of(fan.begin(), fan.end(),
+                       [v](const Corner& c) { return c.next == v || c.prev == v; });
+  };
+  return std::all_of(at_a.begin(), at_a.end(), [&](const Corner& c) {
+    return (c.next == e.b || is_at(at_b, c.next)) && (c.prev == e.b || is_at(at_b, c.prev));
+  });
+}
+
 EdgeCost EdgeRanking::fine_cost_of(const Edge& e, bool is_by_end) const {
   const Vec3 half = (input_.positions[e.b] - input_.positions[e.a]) * 0.5;
   if (!is_by_end) return fine_cost(fine_[e.a], fine_[e.b], half);

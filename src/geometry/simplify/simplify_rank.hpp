@@ -126,6 +126,7 @@ class EdgeRanking {
   EdgeCost cost_of_line_end(const Edge& e, const Moved& moved) const;
   EdgeCost cost_of_line_end(const Edge& e) const;
   EdgeCost fine_cost_of(const Edge& e, bool is_by_end) const;
+  bool is_all_of_piece(const Edge& e) const;
   std::uint64_t sample_costs(std::uint32_t one_in);
   void sort_found();
 
@@ -150,6 +151,7 @@ void EdgeRanking::cost_listed(const Take& take) {
   const std::uint8_t* const flags = input_.flags.data();
   // Where there are texture coordinates vertices on lines merge to one of the two.
   const int by_ends = input_.adjacency->has_uvs() ? k_line | k_corner : 0;
+  const bool ends_pieces = input_.bounds && input_.any_topology;
   for (std::size_t first = 0; first < listed_count_; first += EdgeCosts::k_size) {
     const std::size_t count = std::min(EdgeCosts::k_size, listed_count_ - first);
     const Edge* const edges = listed_.data() + first;
@@ -163,6 +165,10 @@ void EdgeRanking::cost_listed(const Take& take) {
       const int unlike = (flags[e.a] ^ flags[e.b]) & (k_line | k_corner | k_fixed);
       const bool is_by_end = (unlike | (flags[e.a] & by_ends)) != 0;
       const EdgeCost cost = is_by_end ? cost_of_line_end(e) : costs_.get(i);
+      if (ends_pieces && is_all_of_piece(e)) {
+        take(e, EdgeCost{});
+        continue;
+      }
       take(e, cost.is_rough && is_refined() ? fine_cost_of(e, is_by_end) : cost);
     }
   }

@@ -25,24 +25,31 @@ std::uint32_t vertex_now(const ShrinkingMesh& mesh, std::uint32_t v) {
 
 }  // namespace
 
-double Surroundings::squared_distance(const ShrinkingMesh& mesh, Vec3 from,
-                                      std::span<const std::uint32_t> without) {
+double Surroundings::squared_distance(const ShrinkingMesh& mesh, const Lost& lost) {
   if (!index_) list_vertices(mesh);
-  if (without.empty()) return search(mesh, from, without);
-  const auto [entry, is_new] = found_.try_emplace(without.front());
+  if (lost.without.empty()) return mean_of(mesh, lost);
+  const auto [entry, is_new] = found_.try_emplace(lost.without.front());
   Found& found = entry->second;
-  if (is_new || !is_up_to_date(found, from, without.size())) {
-    found = {from, search(mesh, from, without), without.size(), changes_};
+  if (is_new || !is_up_to_date(found, lost)) {
+    found = {lost.middle, mean_of(mesh, lost), lost.without.size(), changes_};
   }
   return found.squared;
 }
 
 /// The same piece, as it is now: its edges tell its middle by sums in another order.
-bool Surroundings::is_up_to_date(const Found& found, Vec3 from, std::size_t vertices) const {
+bool Surroundings::is_up_to_date(const Found& found, const Lost& lost) const {
   constexpr double k_same = 1e-12;  // of the squared distance
   const std::uint64_t left = corners_ - std::min(corners_, changes_);
-  return found.vertices == vertices && changes_ - found.at <= left / k_vertices_a_change &&
-         squared_length(found.from - from) <= k_same * found.squared;
+  return found.vertices == lost.without.size() &&
+         changes_ - found.at <= left / k_vertices_a_change &&
+         squared_length(found.middle - lost.middle) <= k_same * found.squared;
+}
+
+double Surroundings::mean_of(const ShrinkingMesh& mesh, const Lost& lost) {
+  if (lost.points.empty()) return search(mesh, lost.middle, lost.without);
+  double sum = 0;
+  for (const Vec3& point : lost.points) sum += search(mesh, point, lost.without);
+  return sum / static_cast<double>(lost.points.size());
 }
 
 double Surroundings::search(const ShrinkingMesh& mesh, Vec3 from,

@@ -28,22 +28,27 @@ class Surroundings {
  public:
   /// To be told of each change of the mesh: what was found of a piece stands for a few of them.
   void change() { ++changes_; }
-  /// The squared distance of the nearest triangle that is left and has no corner of `without`
-  /// (ascending), as far as corners and points inside of large triangles tell; infinite if there is
-  /// none.
-  double squared_distance(const ShrinkingMesh& mesh, Vec3 from,
-                          std::span<const std::uint32_t> without);
+  struct Lost {
+    Vec3 middle;
+    std::span<const Vec3> points;            // where it is looked from; none: from the middle
+    std::span<const std::uint32_t> without;  // its vertices, ascending
+  };
+  /// The squared distance, a mean of all points, of the nearest triangle that is left and has none
+  /// of the vertices, as far as corners and points inside of large triangles tell; infinite if
+  /// there is none.
+  double squared_distance(const ShrinkingMesh& mesh, const Lost& lost);
 
  private:
   /// What was found of a piece: by one of its edges for all of them.
   struct Found {
-    Vec3 from;
+    Vec3 middle;
     double squared = 0;
     std::size_t vertices = 0;  // of the piece: its tip may have the same lowest one
     std::uint64_t at = 0;      // changes_
   };
 
-  bool is_up_to_date(const Found& found, Vec3 from, std::size_t vertices) const;
+  bool is_up_to_date(const Found& found, const Lost& lost) const;
+  double mean_of(const ShrinkingMesh& mesh, const Lost& lost);
   double search(const ShrinkingMesh& mesh, Vec3 from, std::span<const std::uint32_t> without);
   void list_vertices(const ShrinkingMesh& mesh);
   void add_points_inside(const ShrinkingMesh& mesh, std::vector<Vec3>& points);

@@ -147,6 +147,26 @@ TEST_CASE("a star tells the area that is lost, and refuses turned triangles") {
   CHECK(!star.lost_area(k_kept, {0, 3, 0}).has_value());
 }
 
+TEST_CASE("a tip that goes beyond all round it costs the area gained as far out as it goes") {
+  const Vec3 half{0, 0, 1};  // from -1 to 1
+  CollapseStar star;
+  star.clear({}, half);
+  const Vec3 p{1, 0, -2};
+  const Vec3 q{0, 1, -2};
+  star.add({p, half, half, q}, CollapseStar::Pair{-1, -1});
+  star.add({q, p, q, p}, CollapseStar::Pair{-1, -1});
+  constexpr std::uint32_t k_kept = 2;
+  const double gained = 0.5;
+  const double near = star.cost_of_protruding(k_kept, {0, 0, 1.5}, gained);
+  CHECK(near > 0);
+  CHECK(star.cost_of_protruding(k_kept, {0, 0, 2}, gained) == doctest::Approx(4 * near));
+  CHECK(star.cost_of_protruding(k_kept, {0, 0, 2}, 2 * gained) == doctest::Approx(8 * near));
+  CHECK(star.cost_of_protruding(k_kept, {9, 9, 0.9}, gained) == 0);
+  // The other end is no tip: what is round it lies as far.
+  CHECK(star.cost_of_protruding(k_kept, {0, 0, -1.5}, gained) == 0);
+  CHECK(star.cost_of_protruding(k_kept, {0, 0, -2.5}, gained) == doctest::Approx(near));
+}
+
 TEST_CASE("adjacency lists each vertex's corners in triangle order") {
   // 3 - 2
   // | / |

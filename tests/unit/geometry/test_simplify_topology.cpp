@@ -347,6 +347,29 @@ TEST_CASE("topology: of two specks that of which the rest is near goes first") {
   }
 }
 
+TEST_CASE("topology: leaves go everywhere alike, not from one end on") {
+  Mesh mesh;
+  constexpr std::uint32_t k_along = 200;
+  constexpr std::uint32_t k_across = 10;
+  for (std::uint32_t leaf = 0; leaf < k_along * k_across; ++leaf) {
+    const Vec3 at = {0.3 * (leaf / k_across), 0.3 * (leaf % k_across), 0.1 * (leaf % 3)};
+    const auto first = static_cast<std::uint32_t>(mesh.positions.size());
+    mesh.positions.insert(mesh.positions.end(), {at, at + Vec3{1, 0, 0}, at + Vec3{0, 1, 0.2}});
+    mesh.triangles.push_back({first, first + 1, first + 2});
+  }
+  const Simplifier result = reduced_topology(mesh, 200, TopologyMode::simplify);
+  CHECK(result.triangles() == 200);
+  std::array<int, 4> left{};
+  for (const Triangle& t : result.mesh().triangles) {
+    const double x = result.mesh().positions[t[0]].x / (0.3 * k_along);
+    ++left[std::clamp(static_cast<int>(4 * x), 0, 3)];
+  }
+  for (const int count : left) {
+    CHECK(count > 35);
+    CHECK(count < 65);
+  }
+}
+
 TEST_CASE("topology: needles that stand out far are left") {
   Mesh mesh = sphere(4);
   const auto add_needle = [&](std::size_t triangle, double height) {

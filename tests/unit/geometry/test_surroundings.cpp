@@ -43,7 +43,7 @@ struct LonelyPieces {
   /// From the first piece.
   double found_from(Vec3 from) {
     const std::vector<std::uint32_t> without = {0, 1, 2};
-    return surroundings.squared_distance({mesh.positions, target, &adjacency}, from, without);
+    return surroundings.squared_distance({mesh.positions, target, &adjacency}, {from, {}, without});
   }
 
   Mesh mesh;
@@ -73,7 +73,8 @@ TEST_CASE("what is found of a piece is not taken for its tip") {
   adjacency.build(mesh.triangles, 4, mesh.columns);
   Surroundings surroundings;
   const auto found = [&](const std::vector<std::uint32_t>& without) {
-    return surroundings.squared_distance({mesh.positions, target, &adjacency}, {0, 0, 2}, without);
+    return surroundings.squared_distance({mesh.positions, target, &adjacency},
+                                         {{0, 0, 2}, {}, without});
   };
   CHECK(std::isinf(found({0, 1, 2, 3})));
   CHECK(found({0}) == doctest::Approx(4));
@@ -91,7 +92,7 @@ TEST_CASE("the nearest that is left is found, however many pieces are gone") {
     for (const Triangle& t : mesh.triangles) {
       const std::vector<std::uint32_t> without(t.begin(), t.end());
       const double found = surroundings.squared_distance({mesh.positions, target, &adjacency},
-                                                         mesh.positions[t[0]], without);
+                                                         {mesh.positions[t[0]], {}, without});
       const double wanted = nearest_other(mesh, t[0] / 3);
       CHECK((found == wanted || found == doctest::Approx(wanted).epsilon(1e-12)));
     }
@@ -99,6 +100,22 @@ TEST_CASE("the nearest that is left is found, however many pieces are gone") {
     for (std::size_t gone = left; gone < mesh.triangles.size(); ++gone) surroundings.change();
     mesh.triangles.resize(left);
   }
+}
+
+TEST_CASE("what is long is as far as its points are, in the mean") {
+  Mesh mesh;
+  mesh.positions = {{0, 0, 0}, {9, 0, 0}, {0, 1, 0}, {0, 0, 2}, {0, 1, 2}, {1, 0, 2}};
+  mesh.triangles = {{0, 1, 2}, {3, 5, 4}};
+  std::vector<std::uint32_t> target(mesh.positions.size());
+  std::iota(target.begin(), target.end(), 0U);
+  Adjacency adjacency;
+  adjacency.build(mesh.triangles, mesh.positions.size(), mesh.columns);
+  const std::vector<std::uint32_t> without = {0, 1, 2};
+  const std::vector<Vec3> points = {{0, 0, 0}, {7, 0, 0}};  // 2 from the other, and (6, 0, -2)
+  Surroundings surroundings;
+  const ShrinkingMesh shrinking{mesh.positions, target, &adjacency};
+  CHECK(surroundings.squared_distance(shrinking, {{3, 0, 0}, points, without}) ==
+        doctest::Approx((4 + 40) / 2.0));
 }
 
 TEST_CASE("a large triangle is near wherever it is, until it is gone") {
@@ -111,7 +128,7 @@ TEST_CASE("a large triangle is near wherever it is, until it is gone") {
   adjacency.build(mesh.triangles, mesh.positions.size(), mesh.columns);
   Surroundings surroundings;
   const auto found = [&](Vec3 from, const std::vector<std::uint32_t>& without) {
-    return surroundings.squared_distance({mesh.positions, target, &adjacency}, from, without);
+    return surroundings.squared_distance({mesh.positions, target, &adjacency}, {from, {}, without});
   };
   for (const double x : {25.0, 40.0, 50.0}) {
     CHECK(found({x, 30, 0.5}, {}) == doctest::Approx(0.25));
