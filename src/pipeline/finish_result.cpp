@@ -270,7 +270,8 @@ class ResultFinish {
     const BetterCount better{triangles, meter_->measure(mesh)};
     if (!is_past_knee(made(), {triangles, better.error.greater().rms})) return;
     summary_.better = better;
-    if (goal_ > summary_.target) better_mesh_ = mesh;
+    const bool instead = goal_ > summary_.target && is_a_little_more(goal_, triangles);
+    if (instead) better_mesh_ = mesh;
   }
 
   /// What was asked for cannot be met: then it is not to be ruined on the way.

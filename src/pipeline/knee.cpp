@@ -40,6 +40,10 @@ std::vector<std::uint64_t> counts_before_knee(std::uint64_t goal) {
   return counts;
 }
 
+bool is_a_little_more(std::uint64_t goal, std::uint64_t triangles) {
+  return static_cast<double>(triangles) <= k_step * k_step * static_cast<double>(goal);
+}
+
 bool is_visible(double rms_of_diagonal) {
   return rms_of_diagonal > k_visible;
 }

@@ -24,6 +24,9 @@ std::vector<std::uint64_t> counts_before_knee(std::uint64_t goal);
 /// the error goes with one by the triangles.
 bool is_past_knee(const CountAndError& made, const CountAndError& better);
 
+/// Whether so many triangles are not many more than the goal.
+bool is_a_little_more(std::uint64_t goal, std::uint64_t triangles);
+
 /// Whether an RMS, as a fraction of the diagonal, is worth a word, and whether it is seen at once.
 bool is_visible(double rms_of_diagonal);
 bool is_plain(double rms_of_diagonal);

@@ -17,6 +17,12 @@ TEST_CASE("the counts that are looked at rise from the goal by quarters") {
   CHECK(counts_before_knee(2'000'000).empty());
 }
 
+TEST_CASE("half as many triangles more are a little more, twice as many are not") {
+  CHECK(is_a_little_more(1000, 1000));
+  CHECK(is_a_little_more(1000, 1500));
+  CHECK_FALSE(is_a_little_more(1000, 2000));
+}
+
 TEST_CASE("a knee is told of where it shows and little would mend it") {
   CHECK(is_past_knee({4000, 2.7e-2}, {5200, 3.1e-4}));
   CHECK_FALSE(is_past_knee({4000, 2.7e-2}, {5200, 1e-2}));
