@@ -22,6 +22,12 @@ constexpr double k_fair_excess = 2;
 /// the level that is chosen tells. Where keeping the topology turned out to cost more than is fair,
 /// it was 1.2 to 5 in six of seven cases, where it did not up to 0.9.
 constexpr double k_fair_refused = 1.1;
+/// Refusals alone do not tell: at the same level, which is the same cost of the last collapse,
+/// those that keep their topology may have no more than so many times the triangles of those that
+/// do not, as may their distance from the input. Before less than so much has gone from the first
+/// rungs, which are the same, that is not known.
+constexpr double k_fair_count = 1.2;
+constexpr double k_least_way = 1.25;
 
 /// So many triangles are compared with the result, to tell which pieces and handles went.
 constexpr double k_most_compared = 4e6;
@@ -70,11 +76,16 @@ JobNeeds ClimbStage::ask(JobGraph& graph, const std::vector<std::uint32_t>& part
 }
 
 Job ClimbStage::climb(std::uint32_t part) const {
-  if (goes_on_[part] == 0) return jobs_.climb(part, headroom_[part], results_.topology);
+  const TopologyMode topology = results_.topology;
+  if (goes_on_[part] == 0) {
+    return jobs_.climb(part, headroom_[part], is_decided_ ? TopologyMode::keep : topology);
+  }
   const ResultSummary& before = results_.summaries[part];
-  const Rung& rung = before.rungs.front();
-  return jobs_.climb_on(part, {.file = results_.files[part], .place = place_of(before, 0)},
-                        rung.level, rung.triangles, results_.topology);
+  const std::size_t last = before.rungs.size() - 1;
+  ChosenRung from{.file = results_.files[part]};
+  from.rung = is_decided_ ? static_cast<std::uint32_t>(last) : 0;
+  from.place = place_of(before, from.rung);
+  return jobs_.climb_on(part, from, before.rungs[from.rung], topology);
 }
 
 void ClimbStage::take(const JobGraph& graph, const std::vector<std::uint32_t>& parts) {
@@ -104,12 +115,18 @@ std::vector<std::uint32_t> ClimbStage::choose_level() {
   std::vector<ResultSummary> climbed;
   for (const std::uint32_t part : climbed_) climbed.push_back(results_.summaries[part]);
   results_.level = common_level(climbed, static_cast<std::uint64_t>(jobs_.wanted()));
-  if (results_.topology == TopologyMode::keep_while_fair && is_unfair()) {
-    keep_coarsest();
-    results_.topology = TopologyMode::simplify;
-    headroom_.assign(headroom_.size(), k_first_headroom);
-    goes_on_.assign(goes_on_.size(), 1);
-    return climbed_;
+  if (results_.topology == TopologyMode::keep_while_fair && !is_decided_) {
+    const bool is_held = is_held_back();
+    if (is_held || is_much_refused()) {
+      if (!is_held) before_ = results_;
+      give_up_topology();
+      return climbed_;
+    }
+  } else if (before_) {
+    const std::vector<std::uint32_t> on =
+        was_fair() ? keep_after_all() : std::vector<std::uint32_t>{};
+    before_.reset();
+    if (!on.empty()) return on;
   }
   std::vector<std::uint32_t> again;
   if (options_.allocation == Allocation::uniform) return again;
@@ -121,29 +138,68 @@ std::vector<std::uint32_t> ClimbStage::choose_level() {
   return again;
 }
 
+/// All are asked for once more, from the first rung that they have.
+void ClimbStage::give_up_topology() {
+  keep_coarsest();
+  results_.topology = TopologyMode::simplify;
+  headroom_.assign(headroom_.size(), k_first_headroom);
+  goes_on_.assign(goes_on_.size(), 1);
+}
+
+/// Whether those that kept their topology had hardly more triangles at the level that they came to.
+bool ClimbStage::was_fair() const {
+  double first = 0;
+  for (const std::uint32_t part : climbed_) {
+    first += static_cast<double>(before_->summaries[part].rungs.front().free_triangles);
+  }
+  const auto kept = static_cast<double>(before_->free_triangles(before_->level));
+  const auto others = static_cast<double>(results_.free_triangles(before_->level));
+  return first >= k_least_way * kept && kept <= k_fair_count * others;
+}
+
+/// Returns those that had stopped, to be asked for from the last rung that they have.
+std::vector<std::uint32_t> ClimbStage::keep_after_all() {
+  results_ = *before_;
+  kept_.clear();
+  is_decided_ = true;
+  goes_on_.assign(goes_on_.size(), 0);
+  std::vector<std::uint32_t> stopped;
+  for (const std::uint32_t part : climbed_) {
+    if (results_.summaries[part].end != LadderEnd::refusals) continue;
+    goes_on_[part] = 1;
+    stopped.push_back(part);
+  }
+  return stopped;
+}
+
 /// Whether parts that keep their topology could not follow the others to the common level, or all
-/// together not to the count, or whether not even all that they could do would meet the target, or
-/// whether most of what they tried is refused. What is kept at too high a cost before that the
-/// finish finds out.
-bool ClimbStage::is_unfair() const {
+/// together not to the count, or whether not even all that they could do would meet the target.
+/// What is kept at too high a cost before that the finish finds out.
+bool ClimbStage::is_held_back() const {
   const auto all = static_cast<double>(results_.free_triangles(results_.level));
   double held = 0;
   double least = 0;
-  double refused = 0;
   bool any = false;
   for (std::uint32_t p = 0; p < results_.summaries.size(); ++p) {
     const ResultSummary& result = results_.summaries[p];
     const Rung& last = result.rungs.back();
     const auto left = static_cast<double>(last.free_triangles);
     least += result.goes_on() ? std::min(left, jobs_.least_of(p)) : left;
-    refused += refused_in(p, all);
     if (!result.held_by_topology) continue;
     any = true;
     if (!result.goes_on() && last.level < results_.level) held += left;
   }
-  if (jobs_.foresees() && refused > k_fair_refused * all) return true;
   if (any && least > static_cast<double>(jobs_.target())) return true;
   return held > k_fair_share * all || (any && all > k_fair_excess * jobs_.wanted());
+}
+
+/// Whether most of what they tried is refused.
+bool ClimbStage::is_much_refused() const {
+  if (!jobs_.foresees()) return false;
+  const auto all = static_cast<double>(results_.free_triangles(results_.level));
+  double refused = 0;
+  for (std::uint32_t p = 0; p < results_.summaries.size(); ++p) refused += refused_in(p, all);
+  return refused > k_fair_refused * all;
 }
 
 /// By when all parts together, which have `all` free triangles at the common level, have what is

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <vector>
 
 #include <meshfarm/pipeline/budget.hpp>
@@ -27,7 +28,8 @@ class ClimbStage {
   void take(const JobGraph& graph, const std::vector<std::uint32_t>& parts);
   /// Once all are there. Returns the parts to climb again: those that were taken too far, with a
   /// finer start; or all, with their topology simplified, if so much of the mesh is held back by it
-  /// that the others would pay for that.
+  /// that the others would pay for that; or those that had stopped for that reason, if the others
+  /// would not have paid after all.
   std::vector<std::uint32_t> choose_level();
   /// What kept its topology, before it was given up; none if it was not.
   const std::vector<ChosenRung>& kept() const { return kept_; }
@@ -35,8 +37,12 @@ class ClimbStage {
  private:
   Job climb(std::uint32_t part) const;
   void stand_for_stream(std::uint32_t part);
-  bool is_unfair() const;
+  bool is_held_back() const;
+  bool is_much_refused() const;
   double refused_in(std::uint32_t part, double all) const;
+  void give_up_topology();
+  bool was_fair() const;
+  std::vector<std::uint32_t> keep_after_all();
   void keep_coarsest();
 
   const Manifest& manifest_;
@@ -50,6 +56,8 @@ class ClimbStage {
   std::uint32_t jobs_asked_ = 0;
   std::vector<std::uint32_t> climbed_;  // parts that have a ladder
   std::vector<ChosenRung> kept_;
+  std::optional<PartResults> before_;  // as they kept their topology; none if that can't be done
+  bool is_decided_ = false;            // the topology is kept in all parts
 };
 
 }  // namespace meshfarm

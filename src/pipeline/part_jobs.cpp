@@ -115,17 +115,19 @@ Job PartJobs::climb(std::uint32_t part, double headroom, TopologyMode topology) 
   return job;
 }
 
-Job PartJobs::climb_on(std::uint32_t part, const ChosenRung& rung, std::int32_t level,
-                       std::uint64_t triangles, TopologyMode topology) const {
+Job PartJobs::climb_on(std::uint32_t part, const ChosenRung& from, const Rung& rung,
+                       TopologyMode topology) const {
   SimplifyParameters parameters = parameters_of(topology);
   set_share_of(parameters, part, k_first_headroom);
-  parameters.from_level = level;
+  parameters.foreseen_triangles = 0;
+  parameters.from = RungOfLadder{from.rung, rung.level};
   Job job;
   job.kind = k_simplify_kind;
-  const std::uint64_t bytes = add_rung_input(rung, true, job);
+  const std::uint64_t bytes = add_rung_input(from, true, job);
   job.parameters = encode_parameters(parameters);
-  job.cost = triangles;
-  job.memory = memory_of_rung(bytes, triangles) + memory_of_channels(parameters.lines, triangles);
+  job.cost = rung.triangles;
+  job.memory =
+      memory_of_rung(bytes, rung.triangles) + memory_of_channels(parameters.lines, rung.triangles);
   return job;
 }
 

@@ -50,9 +50,9 @@ class PartJobs {
   /// Climbs the ladder of a part, or of a sample of a long stream, from so many times its even
   /// share.
   Job climb(std::uint32_t part, double headroom, TopologyMode topology) const;
-  /// The same from the first rung of a ladder that it has.
-  Job climb_on(std::uint32_t part, const ChosenRung& rung, std::int32_t level,
-               std::uint64_t triangles, TopologyMode topology) const;
+  /// The same from a rung of a ladder that it has, whatever is refused.
+  Job climb_on(std::uint32_t part, const ChosenRung& from, const Rung& rung,
+               TopologyMode topology) const;
   /// Sweeps a long stream, to a level.
   Job sweep(std::uint32_t part, std::int32_t level, TopologyMode topology) const;
   /// What a collapse may cost in a sweep to this level; below 0 if none is to be made.

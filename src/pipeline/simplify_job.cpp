@@ -21,13 +21,13 @@
 namespace meshfarm {
 namespace {
 
-// Version 10: allocation u8 | start u64 | even share u64 | end u64 | foreseen u64 | samples u64 |
+// Version 11: allocation u8 | start u64 | even share u64 | end u64 | foreseen u64 | samples u64 |
 // cost unit f64 | greatest error f64 | certified error f64 | lines (run_options.hpp) | source u8 |
-// of a rung: level i32 | of what is built: part u32 | ratio f64 | headroom f64 | end f64 | foresees
-// u8 | all triangles u64 | all samples u64 | bundles (bundle_list.hpp). Version 4 knew no
-// appearances and labels, version 5 nothing to build, version 6 no certified error, version 7 no
-// end, version 8 no rung, version 9 foresaw nothing.
-constexpr std::uint8_t k_climb_version = 10;
+// of a rung: its place u32, level i32 | of what is built: part u32 | ratio f64 | headroom f64 | end
+// f64 | foresees u8 | all triangles u64 | all samples u64 | bundles (bundle_list.hpp). Version 4
+// knew no appearances and labels, version 5 nothing to build, version 6 no certified error, version
+// 7 no end, version 8 no rung, version 9 foresaw nothing, version 10 began at first rungs only.
+constexpr std::uint8_t k_climb_version = 11;
 constexpr std::uint64_t k_most_climb_samples = 100'000'000;
 constexpr std::int32_t k_top_level = 52;
 constexpr double k_mostly_free = 0.5;  // of triangles
@@ -52,7 +52,7 @@ class LadderBuilder {
         simplifier_(std::move(part.mesh), {.locked_vertices = part.boundary_vertices,
                                            .positions = part.positions,
                                            .lines = parameters.lines,
-                                           .was_simplified = parameters.from_level.has_value(),
+                                           .was_simplified = parameters.from.has_value(),
                                            .in_order = begins_in_order()}),
         result_(
             vertices_, [this](std::string_view bytes) { file_ += bytes; }, beside) {}
@@ -94,7 +94,7 @@ class LadderBuilder {
       reduce(goal);
       return std::max(level, reached());
     }
-    const std::int32_t first = parameters_.from_level.value_or(k_input_level);
+    const std::int32_t first = parameters_.from ? parameters_.from->level : k_input_level;
     snapshot(first);
     if (first != k_input_level) return first + 1;
     // A first step by count finds the level to begin at; below it there is little to collapse.
@@ -104,7 +104,7 @@ class LadderBuilder {
 
   /// Where the rung is finer than what was asked for: there the passes had come to their end.
   bool begins_in_order() const {
-    return parameters_.from_level && input_triangles_ > parameters_.start_triangles;
+    return parameters_.from && input_triangles_ > parameters_.start_triangles;
   }
   bool may_give_up_topology() const {
     return parameters_.lines.topology == TopologyMode::keep_while_fair;
@@ -210,10 +210,10 @@ struct PartAtHand {
   std::optional<BuiltFacts> facts;
 };
 
-PartAtHand part_of_rung(const Job& job, const JobContext& context) {
+PartAtHand part_of_rung(const Job& job, const JobContext& context, std::uint32_t place) {
   if (job.inputs.size() != 1) throw DataError("a simplify job takes one rung");
   RungInputs rungs(job, context);
-  ResultMesh rung = rungs.next(0);
+  ResultMesh rung = rungs.next(place);
   PartAtHand at_hand;
   at_hand.part.mesh = std::move(rung.mesh);
   at_hand.part.boundary_vertices = rung.boundary_vertices;
@@ -224,7 +224,7 @@ PartAtHand part_of_rung(const Job& job, const JobContext& context) {
 }
 
 PartAtHand part_at_hand(const Job& job, const JobContext& context, SimplifyParameters& parameters) {
-  if (parameters.from_level) return part_of_rung(job, context);
+  if (parameters.from) return part_of_rung(job, context, parameters.from->place);
   if (!parameters.build) {
     if (job.inputs.size() != 1) throw DataError("a simplify job takes one part");
     return {read_part(context, job.inputs[0]), {}, {}, {}};
@@ -255,10 +255,13 @@ std::string encode_parameters(const SimplifyParameters& parameters) {
   out.put(parameters.max_error);
   out.put(parameters.certified_error);
   put(out, parameters.lines);
-  out.put(parameters.build        ? PartSource::bundles
-          : parameters.from_level ? PartSource::rung
-                                  : PartSource::file);
-  if (parameters.from_level) out.put(*parameters.from_level);
+  out.put(parameters.build  ? PartSource::bundles
+          : parameters.from ? PartSource::rung
+                            : PartSource::file);
+  if (parameters.from) {
+    out.put(parameters.from->place);
+    out.put(parameters.from->level);
+  }
   if (!parameters.build) return out.take();
   out.put(parameters.build->part);
   out.put(parameters.build->rule.ratio);
@@ -290,8 +293,10 @@ SimplifyParameters decode_parameters(std::string_view bytes) {
   const auto source = in.get<PartSource>();
   if (source > PartSource::rung) in.fail("impossible part");
   if (source == PartSource::rung) {
-    parameters.from_level = in.get<std::int32_t>();
-    if (*parameters.from_level < k_input_level || *parameters.from_level > k_top_level) {
+    RungOfLadder& from = parameters.from.emplace();
+    from.place = in.get<std::uint32_t>();
+    from.level = in.get<std::int32_t>();
+    if (from.level < k_input_level || from.level > k_top_level) {
       in.fail("impossible level");
     }
   }
@@ -352,7 +357,7 @@ JobOutput simplify_part(const Job& job, const JobContext& context) {
     return {context.publish(name, bounded.file), encode_summary(bounded.summary)};
   }
   std::vector<SurfaceSamples>& samples = at_hand.samples;
-  if (!parameters.from_level) {
+  if (!parameters.from) {
     samples.push_back(sample_surface(part.mesh, {.samples = parameters.samples, .threads = 1}));
   }
   LadderBuilder ladder(std::move(part), std::move(samples), parameters, context, at_hand.beside);

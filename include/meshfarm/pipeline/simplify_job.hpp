@@ -33,6 +33,12 @@ struct PartToBuild {
   ShareRule rule;
 };
 
+/// Where in a ladder a rung is.
+struct RungOfLadder {
+  std::uint32_t place = 0;
+  std::int32_t level = 0;
+};
+
 /// Parameters of a simplify job.
 struct SimplifyParameters {
   Allocation allocation = Allocation::threshold;
@@ -50,8 +56,7 @@ struct SimplifyParameters {
   double certified_error = 0;
   LineOptions lines;
   std::optional<PartToBuild> build;  // the job has no input then, and finds its share by the rule
-  /// Where set: the input is the first rung of a ladder of the part, and this its level.
-  std::optional<std::int32_t> from_level;
+  std::optional<RungOfLadder> from;  // where set: the input is this, of a ladder of the part
 };
 
 /// Sets first rung, share, last rung and samples of a part.

@@ -148,13 +148,20 @@ std::optional<double> OrderedEnd::reduce(const SimplifyGoal& goal,
   const bool may_give_up = topology_ == TopologyMode::automatic && !simplifies_topology();
   std::unique_ptr<Rival> rival;
   const auto tell = [&](std::uint64_t left) { return !progress || progress(left); };
-  bool goes_on = trial_->queue.reduce(goal, [&](std::uint64_t left) {
-    // Else it would have to be done afterwards, alone.
-    if (may_give_up && rival == nullptr && bound_ == nullptr && refuses_much()) {
-      rival = std::make_unique<Rival>(mesh_, bound_, goal);
-    }
-    return tell(left);
-  });
+  const auto reduce_trial = [&] {
+    return trial_->queue.reduce(goal, [&](std::uint64_t left) {
+      // Else it would have to be done afterwards, alone.
+      if (may_give_up && rival == nullptr && bound_ == nullptr && refuses_much()) {
+        rival = std::make_unique<Rival>(mesh_, bound_, goal);
+      }
+      return tell(left);
+    });
+  };
+  bool goes_on = reduce_trial();
+  if (goes_on && may_give_up && is_held_near(goal)) {
+    trial_->queue.go_on_when_held();
+    goes_on = reduce_trial();
+  }
   if (goes_on && may_give_up && must_decide(goal) && is_costly_to_keep(goal)) {
     if (rival == nullptr) rival = std::make_unique<Rival>(mesh_, bound_, goal);
     std::unique_ptr<Trial> other = rival->take([&] { return tell(trial_->queue.triangles()); });
@@ -191,6 +198,13 @@ std::uint64_t OrderedEnd::refused_by_topology() const {
 
 bool OrderedEnd::is_hampered() const {
   return has_begun() && refused_by_topology() > trial_->queue.collapses();
+}
+
+/// Whether that it is held may be wrong: of flat plates what is refused costs nothing, and is
+/// looked at again and again. How good the rest is is then seen.
+bool OrderedEnd::is_held_near(const SimplifyGoal& goal) const {
+  constexpr std::uint64_t k_near = 2;
+  return bound_ == nullptr && is_held() && trial_->queue.triangles() <= k_near * goal.triangles;
 }
 
 /// Not again for a few collapses more: one that is dear would decide for all.

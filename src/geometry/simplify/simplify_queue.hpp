@@ -103,6 +103,8 @@ class CollapseQueue {
   double last_cost() const { return last_cost_; }
   /// Whether it stopped because so many collapses are refused to keep the topology.
   bool is_held() const { return held_; }
+  /// From now on nothing that is refused is a reason to stop.
+  void go_on_when_held() { mesh_.stops_when_held = held_ = false; }
   /// The sum of the costs of all collapses, and how many had each cost, without guesses.
   double paid() const { return paid_; }
   const CostCounts& costs() const { return costs_; }

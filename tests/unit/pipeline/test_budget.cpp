@@ -206,7 +206,8 @@ TEST_CASE("where others would pay for the topology, all are asked for again with
     // From where its first job had begun to refuse anything.
     CHECK(again[p].inputs == std::vector{done[p].output.file});
     CHECK(again[p].sections.size() == 3);
-    CHECK(decode_parameters(again[p].parameters).from_level == 10);
+    CHECK(decode_parameters(again[p].parameters).from->level == 10);
+    CHECK(decode_parameters(again[p].parameters).from->place == 0);
     CHECK(decode_parameters(again[p].parameters).start_triangles ==
           decode_parameters(jobs[p].parameters).start_triangles);
     CHECK(key_of(again[p]) != key_of(jobs[p]));
@@ -217,7 +218,7 @@ TEST_CASE("where others would pay for the topology, all are asked for again with
   const std::vector<Job> finer = source(done);
   REQUIRE(finer.size() == 1);
   CHECK(finer[0].inputs == jobs[1].inputs);
-  CHECK_FALSE(decode_parameters(finer[0].parameters).from_level);
+  CHECK_FALSE(decode_parameters(finer[0].parameters).from);
   CHECK(topology_of(finer[0]) == TopologyMode::simplify);
   done.push_back(accepted(finer[0], {rung(6, 40'000), rung(20, 3000)}));
   CHECK(source(done).empty());
@@ -299,6 +300,57 @@ TEST_CASE("parts that are refused too much are asked for again without their top
   };
   CHECK_FALSE(asked_beside(600));
   CHECK(asked_beside(800));
+}
+
+TEST_CASE("parts that were refused too much go on if the others would not have paid") {
+  const Manifest manifest = manifest_of(2, 100'000);
+  const RunOptions options{.ratio = 0.1};  // 40,000 are wanted before the finish
+  const auto source = next_of(manifest, options);
+  const std::vector<Job> jobs = source({});
+  const auto ended = [](const Job& job, LadderEnd end) {
+    Rung first = rung(10, 40'000);
+    Rung last = rung(12, 26'000);
+    first.refused = 100;
+    last.refused = 90'000;
+    ResultSummary summary{{first, last}};
+    summary.end = end;
+    AcceptedJob done = accepted(job, {});
+    done.output.summary = encode_summary(summary);
+    return done;
+  };
+  std::vector<AcceptedJob> done = {ended(jobs[0], LadderEnd::refusals),
+                                   ended(jobs[1], LadderEnd::enough)};
+  const std::vector<Job> without = source(done);
+  REQUIRE(without.size() == 2);
+  CHECK(topology_of(without[0]) == TopologyMode::simplify);
+  const auto after = [&](std::uint64_t triangles) {
+    std::vector<AcceptedJob> all = done;
+    for (const Job& job : without) {
+      all.push_back(accepted(job, {rung(10, 40'000), rung(12, triangles), rung(13, 15'000)}));
+    }
+    return all;
+  };
+  // With more than 1.2 times the triangles at the same cost the topology is given up.
+  CHECK(source(after(21'600)).empty());
+  CHECK(chosen_of(manifest, options, after(21'600)).topology == TopologyMode::simplify);
+  // Else the one that had stopped goes on from its last rung.
+  std::vector<AcceptedJob> all = after(21'800);
+  const std::vector<Job> on = source(all);
+  REQUIRE(on.size() == 1);
+  CHECK(topology_of(on[0]) == TopologyMode::keep_while_fair);
+  CHECK(on[0].inputs == std::vector{done[0].output.file});
+  CHECK(decode_parameters(on[0].parameters).from->place == 1);
+  CHECK(decode_parameters(on[0].parameters).from->level == 12);
+  CHECK(decode_parameters(on[0].parameters).foreseen_triangles == 0);
+  // And that is not asked again, whatever it is refused.
+  Rung much = rung(12, 26'000);
+  much.refused = 1'000'000;
+  all.push_back(accepted(on[0], {much, rung(13, 14'000)}));
+  CHECK(source(all).empty());
+  const ChosenRungs chosen = chosen_of(manifest, options, all);
+  CHECK(chosen.topology == TopologyMode::automatic);
+  CHECK(chosen.rungs[0].file.name == all.back().output.file.name);
+  CHECK(chosen.rungs[1].file.name == done[1].output.file.name);
 }
 
 TEST_CASE("who says what becomes of the topology is asked once") {
@@ -504,7 +556,7 @@ TEST_CASE("parameters come back; damaged ones are refused") {
     CHECK_THROWS_AS(decode_parameters(std::string_view(bytes).substr(0, i)), DataError);
   }
   CHECK_THROWS_AS(decode_parameters(bytes + "x"), DataError);
-  CHECK_THROWS_AS(decode_parameters("\x0b" + bytes.substr(1)), DataError);
+  CHECK_THROWS_AS(decode_parameters("\x0c" + bytes.substr(1)), DataError);
   // The topology stands last but for the two numbers of appearances, what is said of labels, and
   // that there is nothing to build.
   std::string other = bytes;
@@ -523,12 +575,13 @@ TEST_CASE("parameters come back; damaged ones are refused") {
 
 TEST_CASE("parameters of a job that begins at a rung come back; damaged ones are refused") {
   SimplifyParameters p;
-  p.from_level = 7;
+  p.from = RungOfLadder{3, 7};
   const std::string bytes = encode_parameters(p);
-  CHECK(decode_parameters(bytes).from_level == 7);
+  CHECK(decode_parameters(bytes).from->level == 7);
+  CHECK(decode_parameters(bytes).from->place == 3);
   CHECK_FALSE(decode_parameters(bytes).build);
   for (const std::int32_t level : {-2, 53, INT32_MAX}) {
-    p.from_level = level;
+    p.from->level = level;
     CHECK_THROWS_AS(decode_parameters(encode_parameters(p)), DataError);
   }
   for (std::size_t i = 0; i < bytes.size(); ++i) {

@@ -70,12 +70,14 @@ class ClimbBench {
     parameters.foreseen_triangles = foreseen_triangles;
     return do_job({std::string(k_simplify_kind), {part_}, encode_parameters(parameters)});
   }
-  ClimbedPart climb_on(const ClimbedPart& from, TopologyMode topology) const {
+  ClimbedPart climb_on(const ClimbedPart& from, TopologyMode topology,
+                       std::uint32_t place = 0) const {
     SimplifyParameters parameters = parameters_of(topology);
-    parameters.from_level = from.first().level;
+    parameters.from = RungOfLadder{place, from.summary.rungs[place].level};
     Job job;
     job.kind = k_simplify_kind;
-    add_rung_input({.file = from.file, .place = place_of(from.summary, 0)}, true, job);
+    add_rung_input({.file = from.file, .rung = place, .place = place_of(from.summary, place)}, true,
+                   job);
     job.parameters = encode_parameters(parameters);
     return do_job(job);
   }
@@ -147,6 +149,20 @@ TEST_CASE("a ladder ends where too much is going to be refused, if that is fores
   CHECK(bench.climb(TopologyMode::keep_while_fair, 0, 100'000).summary.end == LadderEnd::floor);
   CHECK(bench.climb(TopologyMode::simplify, 0, k_wanted).summary.end == LadderEnd::floor);
   CHECK(bench.climb(TopologyMode::keep, 0, k_wanted).summary.end == LadderEnd::floor);
+}
+
+TEST_CASE("a ladder that ended for what is refused goes on from its last rung") {
+  const ClimbBench bench(part_of_spheres(60));
+  const ClimbedPart early = bench.climb(TopologyMode::keep_while_fair, 0, 250);
+  REQUIRE(early.summary.rungs.size() >= 2);
+  const auto last = static_cast<std::uint32_t>(early.summary.rungs.size() - 1);
+  const ClimbedPart on = bench.climb_on(early, TopologyMode::keep_while_fair, last);
+  CHECK(on.first().level == early.last().level);
+  CHECK(on.first().triangles == early.last().triangles);
+  CHECK(bench.mesh_of(on, 0).mesh.triangles == bench.mesh_of(early, last).mesh.triangles);
+  CHECK(on.last().triangles < early.last().triangles);
+  const ResultMesh coarsest = bench.mesh_of(on, on.summary.rungs.size() - 1);
+  CHECK(measure_topology(coarsest.mesh).components == 60);
 }
 
 TEST_CASE("what begins at a rung has the part's boundary vertices and points") {
