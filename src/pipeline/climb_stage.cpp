@@ -123,8 +123,8 @@ std::vector<std::uint32_t> ClimbStage::choose_level() {
       return climbed_;
     }
   } else if (before_) {
-    const std::vector<std::uint32_t> on =
-        was_fair() ? keep_after_all() : std::vector<std::uint32_t>{};
+    std::vector<std::uint32_t> on;
+    if (was_fair()) on = keep_after_all();
     before_.reset();
     if (!on.empty()) return on;
   }

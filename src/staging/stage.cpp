@@ -245,12 +245,12 @@ void Stage::remove(const StagedName& name) const noexcept {
 void remove_stage(const std::filesystem::path& root) {
   std::error_code ignored;
   const auto remove_staged = [&](const std::string& folder) {
+    const std::string before = folder.empty() ? "" : folder + "/";
     for (const auto& entry : std::filesystem::directory_iterator(root / folder, ignored)) {
       const std::string name = entry.path().filename().string();
       const bool temporary =
           name.starts_with(".") && (name.ends_with(".tmp") || name.ends_with(".claim"));
-      const bool staged =
-          temporary || parse_staged_name(folder.empty() ? name : folder + "/" + name).has_value();
+      const bool staged = temporary || parse_staged_name(before + name).has_value();
       if (staged) std::filesystem::remove(entry.path(), ignored);
     }
     std::filesystem::remove(root / folder, ignored);
