@@ -53,7 +53,6 @@ constexpr FileKind k_result_magic = {'M', 'F', 'R', 'M'};
 constexpr FileKind k_result_kind = {'R', 'S', 'L', 'T'};
 constexpr std::uint32_t k_result_version = 8;
 constexpr std::uint32_t k_result_byte_order = 0x01020304;
-constexpr std::uint32_t k_max_rungs = 256;
 constexpr std::uint32_t k_most_in_result_block = 65536;
 constexpr std::uint32_t k_max_sets = 1 << 20;
 constexpr std::size_t k_result_head_bytes = 2 * sizeof(FileKind) + 2 * sizeof(std::uint32_t);
@@ -73,7 +72,7 @@ void put_rungs(ByteWriter& out, const std::vector<Rung>& rungs) {
 
 std::vector<Rung> get_rungs(ByteReader& in) {
   const auto count = in.get<std::uint32_t>();
-  if (count == 0 || count > k_max_rungs) in.fail("impossible number of rungs");
+  if (count == 0 || count > k_most_rungs) in.fail("impossible number of rungs");
   std::vector<Rung> rungs;
   for (std::uint32_t i = 0; i < count; ++i) {
     Rung rung;

@@ -22,10 +22,10 @@ constexpr double k_fair_excess = 2;
 /// the level that is chosen tells. Where keeping the topology turned out to cost more than is fair,
 /// it was 1.2 to 5 in six of seven cases, where it did not up to 0.9.
 constexpr double k_fair_refused = 1.1;
-/// Refusals alone do not tell: at the same level, which is the same cost of the last collapse,
-/// those that keep their topology may have no more than so many times the triangles of those that
-/// do not, as may their distance from the input. Before less than so much has gone from the first
-/// rungs, which are the same, that is not known.
+/// Refusals alone do not tell. At the same level, which is the same cost of the last collapse,
+/// parts that keep their topology may have so many times the triangles of those that do not: their
+/// distance from the input differs about as much. Until the count has fallen by this much since the
+/// first rungs, which both have, that says nothing, and the topology is given up.
 constexpr double k_fair_count = 1.2;
 constexpr double k_least_way = 1.25;
 
@@ -75,15 +75,17 @@ JobNeeds ClimbStage::ask(JobGraph& graph, const std::vector<std::uint32_t>& part
   return asked;
 }
 
+/// Where the topology is kept after all no ladder is to end for what is refused: one that goes on
+/// foresees nothing, one that begins anew may not give it up.
 Job ClimbStage::climb(std::uint32_t part) const {
   const TopologyMode topology = results_.topology;
   if (goes_on_[part] == 0) {
-    return jobs_.climb(part, headroom_[part], is_decided_ ? TopologyMode::keep : topology);
+    return jobs_.climb(part, headroom_[part], keeps_after_all_ ? TopologyMode::keep : topology);
   }
   const ResultSummary& before = results_.summaries[part];
   const std::size_t last = before.rungs.size() - 1;
   ChosenRung from{.file = results_.files[part]};
-  from.rung = is_decided_ ? static_cast<std::uint32_t>(last) : 0;
+  from.rung = keeps_after_all_ ? static_cast<std::uint32_t>(last) : 0;
   from.place = place_of(before, from.rung);
   return jobs_.climb_on(part, from, before.rungs[from.rung], topology);
 }
@@ -115,17 +117,17 @@ std::vector<std::uint32_t> ClimbStage::choose_level() {
   std::vector<ResultSummary> climbed;
   for (const std::uint32_t part : climbed_) climbed.push_back(results_.summaries[part]);
   results_.level = common_level(climbed, static_cast<std::uint64_t>(jobs_.wanted()));
-  if (results_.topology == TopologyMode::keep_while_fair && !is_decided_) {
+  if (results_.topology == TopologyMode::keep_while_fair) {
     const bool is_held = is_held_back();
-    if (is_held || is_much_refused()) {
-      if (!is_held) before_ = results_;
+    if (is_held || (!keeps_after_all_ && is_much_refused())) {
+      if (!is_held) kept_ladders_ = results_;
       give_up_topology();
       return climbed_;
     }
-  } else if (before_) {
+  } else if (kept_ladders_) {
     std::vector<std::uint32_t> on;
     if (was_fair()) on = keep_after_all();
-    before_.reset();
+    kept_ladders_.reset();
     if (!on.empty()) return on;
   }
   std::vector<std::uint32_t> again;
@@ -142,26 +144,32 @@ std::vector<std::uint32_t> ClimbStage::choose_level() {
 void ClimbStage::give_up_topology() {
   keep_coarsest();
   results_.topology = TopologyMode::simplify;
+  keeps_after_all_ = false;
   headroom_.assign(headroom_.size(), k_first_headroom);
   goes_on_.assign(goes_on_.size(), 1);
 }
 
-/// Whether those that kept their topology had hardly more triangles at the level that they came to.
+/// Whether those that kept their topology had hardly more triangles, each at the level that it came
+/// to.
 bool ClimbStage::was_fair() const {
   double first = 0;
+  double kept = 0;
+  double others = 0;
   for (const std::uint32_t part : climbed_) {
-    first += static_cast<double>(before_->summaries[part].rungs.front().free_triangles);
+    const ResultSummary& before = kept_ladders_->summaries[part];
+    const std::int32_t level = std::min(kept_ladders_->level, before.rungs.back().level);
+    first += static_cast<double>(before.rungs.front().free_triangles);
+    kept += static_cast<double>(free_triangles_at(before, level));
+    others += static_cast<double>(free_triangles_at(results_.summaries[part], level));
   }
-  const auto kept = static_cast<double>(before_->free_triangles(before_->level));
-  const auto others = static_cast<double>(results_.free_triangles(before_->level));
   return first >= k_least_way * kept && kept <= k_fair_count * others;
 }
 
 /// Returns those that had stopped, to be asked for from the last rung that they have.
 std::vector<std::uint32_t> ClimbStage::keep_after_all() {
-  results_ = *before_;
+  results_ = *kept_ladders_;
   kept_.clear();
-  is_decided_ = true;
+  keeps_after_all_ = true;
   goes_on_.assign(goes_on_.size(), 0);
   std::vector<std::uint32_t> stopped;
   for (const std::uint32_t part : climbed_) {

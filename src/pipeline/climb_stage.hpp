@@ -52,12 +52,12 @@ class ClimbStage {
   std::function<JobNeeds(std::uint32_t)> needs_;
   std::vector<double> headroom_;
   std::vector<JobName> asked_;         // the last job that was asked for, by part
-  std::vector<std::uint8_t> goes_on_;  // from the first rung that it has, by part
+  std::vector<std::uint8_t> goes_on_;  // from a rung that it has, by part
   std::uint32_t jobs_asked_ = 0;
   std::vector<std::uint32_t> climbed_;  // parts that have a ladder
   std::vector<ChosenRung> kept_;
-  std::optional<PartResults> before_;  // as they kept their topology; none if that can't be done
-  bool is_decided_ = false;            // the topology is kept in all parts
+  std::optional<PartResults> kept_ladders_;  // until they are compared with those that did not
+  bool keeps_after_all_ = false;             // as the comparison told
 };
 
 }  // namespace meshfarm

@@ -50,7 +50,7 @@ class PartJobs {
   /// Climbs the ladder of a part, or of a sample of a long stream, from so many times its even
   /// share.
   Job climb(std::uint32_t part, double headroom, TopologyMode topology) const;
-  /// The same from a rung of a ladder that it has, whatever is refused.
+  /// The same from a rung of a ladder that it has, without foreseeing what is refused.
   Job climb_on(std::uint32_t part, const ChosenRung& from, const Rung& rung,
                TopologyMode topology) const;
   /// Sweeps a long stream, to a level.

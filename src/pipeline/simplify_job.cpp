@@ -82,7 +82,8 @@ class LadderBuilder {
  private:
   /// Makes the first rung and returns the level that the mesh has reached with it.
   std::int32_t start() {
-    if (parameters_.start_triangles < simplifier_.triangles()) {
+    const bool begins_at_later_rung = parameters_.from && parameters_.from->place > 0;
+    if (!begins_at_later_rung && parameters_.start_triangles < simplifier_.triangles()) {
       SimplifyGoal goal{.triangles = parameters_.start_triangles,
                         .last_triangles = parameters_.share_triangles,
                         .in_passes = may_give_up_topology()};
@@ -104,7 +105,8 @@ class LadderBuilder {
 
   /// Where the rung is finer than what was asked for: there the passes had come to their end.
   bool begins_in_order() const {
-    return parameters_.from && input_triangles_ > parameters_.start_triangles;
+    return parameters_.from &&
+           (parameters_.from->place > 0 || input_triangles_ > parameters_.start_triangles);
   }
   bool may_give_up_topology() const {
     return parameters_.lines.topology == TopologyMode::keep_while_fair;
@@ -299,6 +301,9 @@ SimplifyParameters decode_parameters(std::string_view bytes) {
     if (from.level < k_input_level || from.level > k_top_level) {
       in.fail("impossible level");
     }
+    const bool is_ladder =
+        parameters.allocation == Allocation::threshold && !(parameters.max_error > 0);
+    if (from.place >= k_most_rungs || !is_ladder) in.fail("impossible rung");
   }
   if (source == PartSource::bundles) parameters.build = get_part_to_build(in);
   in.expect_end();

@@ -242,21 +242,37 @@ void Stage::remove(const StagedName& name) const noexcept {
   std::filesystem::remove(path(name), ignored);
 }
 
+namespace {
+
+/// A file of a stage, or what is left of the writing of one.
+bool is_staged(const std::string& folder, const std::string& name) {
+  const bool is_temporary =
+      name.starts_with(".") && (name.ends_with(".tmp") || name.ends_with(".claim"));
+  if (folder.empty()) {
+    const std::string of = is_temporary ? name.substr(1, name.find('.', 1) - 1) : name;
+    return parse_staged_name(of).has_value();
+  }
+  std::string path = folder;
+  path.append("/").append(name);
+  return is_temporary || parse_staged_name(path).has_value();
+}
+
+}  // namespace
+
 void remove_stage(const std::filesystem::path& root) {
   std::error_code ignored;
   const auto remove_staged = [&](const std::string& folder) {
-    const std::string before = folder.empty() ? "" : folder + "/";
     for (const auto& entry : std::filesystem::directory_iterator(root / folder, ignored)) {
       const std::string name = entry.path().filename().string();
-      const bool temporary =
-          name.starts_with(".") && (name.ends_with(".tmp") || name.ends_with(".claim"));
-      const bool staged = temporary || parse_staged_name(before + name).has_value();
-      if (staged) std::filesystem::remove(entry.path(), ignored);
+      if (is_staged(folder, name)) std::filesystem::remove(entry.path(), ignored);
     }
-    std::filesystem::remove(root / folder, ignored);
   };
-  for (const std::string_view folder : k_stage_folders) remove_staged(std::string(folder));
+  for (const std::string_view folder : k_stage_folders) {
+    remove_staged(std::string(folder));
+    std::filesystem::remove(root / folder, ignored);
+  }
   remove_staged("");
+  std::filesystem::remove(root, ignored);
 }
 
 }  // namespace meshfarm

@@ -108,7 +108,8 @@ struct SimplifyGoal {
   /// squares on it, creases two. No less than 0.8 of the area that the surface loses x the edge's
   /// squared length, since planes do not see a spike draw back, or 0.2 of what it gains x the
   /// square of five times the width of that, along the edge, or of the edge's length, if that is
-  /// less. Sides of ribbons weigh less, and there gains are free. It depends on nothing else but
+  /// less, or three times the square of how far a tip goes beyond all round it, if that is more.
+  /// Sides of ribbons weigh less, and there gains are free. It depends on nothing else but
   /// for changes of the topology: costs of parts compare.
   double max_cost = std::numeric_limits<double>::infinity();
   /// About how many triangles will be left when all goals that follow are met; 0: none follows.

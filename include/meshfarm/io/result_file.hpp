@@ -42,6 +42,9 @@ struct BuiltFacts {
   std::uint64_t coincident_corners = 0;
 };
 
+/// A ladder has no more rungs.
+inline constexpr std::uint32_t k_most_rungs = 256;
+
 /// Why a ladder has no more rungs.
 enum class LadderEnd : std::uint8_t {
   floor,    // it has come to the least that is left of any part, or nothing more collapses

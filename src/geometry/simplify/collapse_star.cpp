@@ -147,14 +147,15 @@ std::optional<double> CollapseStar::lost_area_of_ribbon(std::uint32_t first, std
   return 0.5 * std::max(twice_lost, 0.0);
 }
 
-double CollapseStar::cost_of_protruding(std::uint32_t kept, Vec3 x, double gained) const {
+double CollapseStar::cost_of_protruding(std::uint32_t first, std::uint32_t kept, Vec3 x,
+                                        double gained) const {
   const double squared_half = squared_length(half_);
   const double at = meshfarm::dot(x, half_);
   if (!(std::abs(at) > squared_half)) return 0;
   const Vec3 out = half_ * (at > 0 ? 1.0 : -1.0);
   double least = std::abs(at) - squared_half;
   for (std::uint32_t i = 0; i < kept && least > 0; ++i) {
-    const StarTriangle t = triangle(2 + i);
+    const StarTriangle t = triangle(2 * first + i);
     const double beyond = std::max(meshfarm::dot(t.p, out), meshfarm::dot(t.q, out));
     least = std::min(least, std::abs(at) - beyond);
   }

@@ -74,7 +74,7 @@ class CollapseStar {
                                        const TurnLimits& limits) const;
   /// What the area that is gained costs at least where x lies beyond all that is round the edge: at
   /// the tip of a spike, where it is narrow and long.
-  double cost_of_protruding(std::uint32_t kept, Vec3 x, double gained) const;
+  double cost_of_protruding(std::uint32_t first, std::uint32_t kept, Vec3 x, double gained) const;
   /// What Turn::sliver costs on top of all else.
   double cost_of_slivers(std::uint32_t first, std::uint32_t kept, Vec3 x) const;
 

@@ -323,7 +323,7 @@ CollapseQueue::Stop CollapseQueue::run(const SimplifyGoal& goal, const Progress&
       refused_[a] = refused_[b] = 1;
     } else if (must_wait(queued, cost)) {
       wait(queued, cost);
-      ++waited_;
+      waited_ += by_general_ ? 0 : 1;  // how far a piece lies from the rest no ranking tells
     } else if (!must_not_cross(queued, collapse) && !is_guarded(a, b, collapse)) {
       keep(goal);
       merge(a, b, collapse);

@@ -272,7 +272,8 @@ std::uint64_t EdgeRanking::sample_costs(std::uint32_t one_in) {
   std::uint64_t sampled = 0;
   const auto count = [&](const Edge&, const EdgeCost& cost) {
     const CostKey key = key_of(cost.ranking);
-    if (key > k_greatest_finite) return;
+    // Those of whole pieces say nothing of the others.
+    if (key == 0 || key > k_greatest_finite) return;
     ++starts_[bucket_of(key)];
     ++sampled;
   };

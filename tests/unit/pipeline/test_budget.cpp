@@ -271,6 +271,14 @@ TEST_CASE("parameters of a job that begins at a rung come back; damaged ones are
     p.from->level = level;
     CHECK_THROWS_AS(decode_parameters(encode_parameters(p)), DataError);
   }
+  p.from = RungOfLadder{k_most_rungs, 7};
+  CHECK_THROWS_AS(decode_parameters(encode_parameters(p)), DataError);
+  p.from = RungOfLadder{3, 7};
+  p.max_error = 0.1;
+  CHECK_THROWS_AS(decode_parameters(encode_parameters(p)), DataError);
+  p.max_error = 0;
+  p.allocation = Allocation::uniform;
+  CHECK_THROWS_AS(decode_parameters(encode_parameters(p)), DataError);
   for (std::size_t i = 0; i < bytes.size(); ++i) {
     CHECK_THROWS_AS(decode_parameters(std::string_view(bytes).substr(0, i)), DataError);
   }

@@ -248,6 +248,40 @@ TEST_CASE("parts that were refused too much go on if the others would not have p
   CHECK(chosen.topology == TopologyMode::automatic);
   CHECK(chosen.rungs[0].file.name == all.back().output.file.name);
   CHECK(chosen.rungs[1].file.name == done[1].output.file.name);
+  // But where it turns out to be held back, the topology is given up for good.
+  all.back() = accepted_held(on[0], {rung(12, 26'000)});
+  const std::vector<Job> given_up = source(all);
+  REQUIRE(given_up.size() == 1);  // the other one's is known
+  CHECK(topology_of(given_up[0]) == TopologyMode::simplify);
+  CHECK(decode_parameters(given_up[0].parameters).from->place == 0);
+  all.push_back(accepted(given_up[0], {rung(12, 25'000), rung(13, 15'000)}));
+  CHECK(source(all).empty());
+  CHECK(chosen_of(manifest, options, all).topology == TopologyMode::simplify);
+}
+
+TEST_CASE("ladders are compared where each of them ended, and not before they have gone some way") {
+  const Manifest manifest = manifest_of(2, 100'000);
+  const auto goes_on = [&](std::uint64_t of_first, std::uint64_t of_last, std::uint64_t of_other) {
+    const auto source = next_of(manifest, {.ratio = 0.1});
+    const std::vector<Job> jobs = source({});
+    Rung begin = rung(10, of_first);
+    Rung end = rung(11, of_last);
+    end.refused = 1'000'000;
+    ResultSummary ended{{begin, end}};
+    ended.end = LadderEnd::refusals;
+    std::vector<AcceptedJob> done = {accepted(jobs[0], {}),
+                                     accepted(jobs[1], {rung(10, 31'000), rung(12, 30'000)})};
+    done[0].output.summary = encode_summary(ended);
+    const std::vector<Job> without = source(done);
+    REQUIRE(without.size() == 2);
+    done.push_back(accepted(without[0], {rung(10, of_first), rung(11, of_other), rung(12, 9000)}));
+    done.push_back(accepted(without[1], {rung(10, 31'000), rung(12, 30'000)}));
+    const std::vector<Job> on = source(done);
+    return !on.empty() && topology_of(on[0]) == TopologyMode::keep_while_fair;
+  };
+  CHECK(goes_on(60'000, 40'000, 29'000));
+  CHECK_FALSE(goes_on(60'000, 40'000, 27'000));
+  CHECK_FALSE(goes_on(42'000, 40'000, 40'000));
 }
 
 TEST_CASE("who says what becomes of the topology is asked once") {

@@ -128,10 +128,14 @@ TEST_CASE("removing a stage leaves what is not its own") {
   stage.publish(ChannelsName{}, "x");
   std::ofstream(root / ".manifest.0.tmp") << "x";
   std::ofstream(root / "mine.ply") << "x";
+  std::ofstream(root / ".mine.ply.0.tmp") << "x";
   remove_stage(root);
   CHECK_FALSE(std::filesystem::exists(root / "parts"));
-  CHECK(std::filesystem::exists(root / "mine.ply"));
-  std::filesystem::remove(root / "mine.ply");
+  CHECK_FALSE(std::filesystem::exists(root / ".manifest.0.tmp"));
+  for (const char* const mine : {"mine.ply", ".mine.ply.0.tmp"}) {
+    CHECK(std::filesystem::exists(root / mine));
+    std::filesystem::remove(root / mine);
+  }
   remove_stage(root);
   CHECK_FALSE(std::filesystem::exists(root));
 }
