@@ -158,13 +158,11 @@ std::optional<double> OrderedEnd::reduce(const SimplifyGoal& goal,
     });
   };
   bool goes_on = reduce_trial();
-  const bool was_held = goes_on && may_give_up && is_held_near(goal);
-  if (was_held) {
+  if (goes_on && may_give_up && is_held_near(goal)) {
     trial_->queue.go_on_when_held();
     goes_on = reduce_trial();
   }
-  const bool decides = goes_on && may_give_up && must_decide(goal);
-  if (goes_on && (was_held || (decides && is_costly_to_keep(goal)))) {
+  if (goes_on && may_give_up && must_decide(goal) && is_costly_to_keep(goal)) {
     if (rival == nullptr) rival = std::make_unique<Rival>(mesh_, bound_, goal);
     std::unique_ptr<Trial> other = rival->take([&] { return tell(trial_->queue.triangles()); });
     goes_on = other != nullptr;
@@ -203,7 +201,7 @@ bool OrderedEnd::is_hampered() const {
 }
 
 /// Being held may be a false alarm: of flat plates what is refused costs nothing, and is looked at
-/// again and again. So near the goal both are made and compared.
+/// again and again. So near the goal that alone is no reason to give the topology up.
 bool OrderedEnd::is_held_near(const SimplifyGoal& goal) const {
   constexpr std::uint64_t k_near = 2;
   return bound_ == nullptr && is_held() && trial_->queue.triangles() <= k_near * goal.triangles;
