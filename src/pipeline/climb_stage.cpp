@@ -197,7 +197,8 @@ bool ClimbStage::is_held_back() const {
     any = true;
     if (!result.goes_on() && last.level < results_.level) held += left;
   }
-  if (any && least > static_cast<double>(jobs_.target())) return true;
+  // Once it is kept after all, the finish may do what parts on their own could not.
+  if (any && !keeps_after_all_ && least > static_cast<double>(jobs_.target())) return true;
   return held > k_fair_share * all || (any && all > k_fair_excess * jobs_.wanted());
 }
 

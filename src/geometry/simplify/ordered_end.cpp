@@ -203,7 +203,7 @@ bool OrderedEnd::is_hampered() const {
 /// Being held may be a false alarm: of flat plates what is refused costs nothing, and is looked at
 /// again and again. So near the goal that alone is no reason to give the topology up.
 bool OrderedEnd::is_held_near(const SimplifyGoal& goal) const {
-  constexpr std::uint64_t k_near = 2;
+  constexpr std::uint64_t k_near = 4;
   return bound_ == nullptr && is_held() && trial_->queue.triangles() <= k_near * goal.triangles;
 }
 

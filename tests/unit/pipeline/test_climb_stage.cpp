@@ -204,9 +204,9 @@ TEST_CASE("parts that were refused too much go on if the others would not have p
   const RunOptions options{.ratio = 0.1};  // 40,000 are wanted before the finish
   const auto source = next_of(manifest, options);
   const std::vector<Job> jobs = source({});
-  const auto ended = [](const Job& job, LadderEnd end) {
+  const auto ended = [](const Job& job, std::int32_t level, LadderEnd end) {
     Rung first = rung(10, 40'000);
-    Rung last = rung(12, 26'000);
+    Rung last = rung(level, 26'000);
     first.refused = 100;
     last.refused = 90'000;
     ResultSummary summary{{first, last}};
@@ -215,8 +215,8 @@ TEST_CASE("parts that were refused too much go on if the others would not have p
     done.output.summary = encode_summary(summary);
     return done;
   };
-  std::vector<AcceptedJob> done = {ended(jobs[0], LadderEnd::refusals),
-                                   ended(jobs[1], LadderEnd::enough)};
+  std::vector<AcceptedJob> done = {ended(jobs[0], 12, LadderEnd::refusals),
+                                   ended(jobs[1], 13, LadderEnd::enough)};
   const std::vector<Job> without = source(done);
   REQUIRE(without.size() == 2);
   CHECK(topology_of(without[0]) == TopologyMode::simplify);
@@ -228,10 +228,10 @@ TEST_CASE("parts that were refused too much go on if the others would not have p
     return all;
   };
   // With more than 1.2 times the triangles at the same cost the topology is given up.
-  CHECK(source(after(21'600)).empty());
-  CHECK(chosen_of(manifest, options, after(21'600)).topology == TopologyMode::simplify);
+  CHECK(source(after(28'200)).empty());
+  CHECK(chosen_of(manifest, options, after(28'200)).topology == TopologyMode::simplify);
   // Else the one that had stopped goes on from its last rung.
-  std::vector<AcceptedJob> all = after(21'800);
+  std::vector<AcceptedJob> all = after(28'400);
   const std::vector<Job> on = source(all);
   REQUIRE(on.size() == 1);
   CHECK(topology_of(on[0]) == TopologyMode::keep_while_fair);
