@@ -83,9 +83,8 @@ Job ClimbStage::climb(std::uint32_t part) const {
     return jobs_.climb(part, headroom_[part], keeps_after_all_ ? TopologyMode::keep : topology);
   }
   const ResultSummary& before = results_.summaries[part];
-  const std::size_t last = before.rungs.size() - 1;
   ChosenRung from{.file = results_.files[part]};
-  from.rung = keeps_after_all_ ? static_cast<std::uint32_t>(last) : 0;
+  if (keeps_after_all_) from.rung = static_cast<std::uint32_t>(before.rungs.size() - 1);
   from.place = place_of(before, from.rung);
   return jobs_.climb_on(part, from, before.rungs[from.rung], topology);
 }
@@ -125,10 +124,10 @@ std::vector<std::uint32_t> ClimbStage::choose_level() {
       return climbed_;
     }
   } else if (kept_ladders_) {
-    std::vector<std::uint32_t> on;
-    if (was_fair()) on = keep_after_all();
+    std::vector<std::uint32_t> stopped;
+    if (was_fair()) stopped = keep_after_all();
     kept_ladders_.reset();
-    if (!on.empty()) return on;
+    if (!stopped.empty()) return stopped;
   }
   std::vector<std::uint32_t> again;
   if (options_.allocation == Allocation::uniform) return again;
@@ -167,10 +166,9 @@ bool ClimbStage::was_fair() const {
 
 /// Returns those that had stopped, to be asked for from the last rung that they have.
 std::vector<std::uint32_t> ClimbStage::keep_after_all() {
-  results_ = *kept_ladders_;
+  results_ = std::move(*kept_ladders_);
   kept_.clear();
   keeps_after_all_ = true;
-  goes_on_.assign(goes_on_.size(), 0);
   std::vector<std::uint32_t> stopped;
   for (const std::uint32_t part : climbed_) {
     if (results_.summaries[part].end != LadderEnd::refusals) continue;

@@ -270,8 +270,7 @@ class ResultFinish {
     const BetterCount better{triangles, meter_->measure(mesh)};
     if (!is_past_knee(made(), {triangles, better.error.greater().rms})) return;
     summary_.better = better;
-    const bool instead = goal_ > summary_.target && is_a_little_more(goal_, triangles);
-    if (instead) better_mesh_ = mesh;
+    if (goal_ > summary_.target && is_a_little_more(goal_, triangles)) better_mesh_ = mesh;
   }
 
   /// What was asked for cannot be met: then it is not to be ruined on the way.

@@ -82,8 +82,7 @@ class LadderBuilder {
  private:
   /// Makes the first rung and returns the level that the mesh has reached with it.
   std::int32_t start() {
-    const bool begins_at_later_rung = parameters_.from && parameters_.from->place > 0;
-    if (!begins_at_later_rung && parameters_.start_triangles < simplifier_.triangles()) {
+    if (!begins_at_later_rung() && parameters_.start_triangles < simplifier_.triangles()) {
       SimplifyGoal goal{.triangles = parameters_.start_triangles,
                         .last_triangles = parameters_.share_triangles,
                         .in_passes = may_give_up_topology()};
@@ -105,9 +104,10 @@ class LadderBuilder {
 
   /// Where the rung is finer than what was asked for: there the passes had come to their end.
   bool begins_in_order() const {
-    return parameters_.from &&
-           (parameters_.from->place > 0 || input_triangles_ > parameters_.start_triangles);
+    return begins_at_later_rung() ||
+           (parameters_.from && input_triangles_ > parameters_.start_triangles);
   }
+  bool begins_at_later_rung() const { return parameters_.from && parameters_.from->place > 0; }
   bool may_give_up_topology() const {
     return parameters_.lines.topology == TopologyMode::keep_while_fair;
   }

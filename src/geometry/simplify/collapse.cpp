@@ -414,7 +414,7 @@ Collapse CollapseJudge::at_position(Vec3 position, std::uint32_t shared, double 
   const std::optional<double> lost = star_.lost_area(kept_, x, turn);
   if (!lost) return {};
   cost = std::max(cost, quadric_.cost_of_lost_area(*lost) - EdgeQuadric::area_cost_of_bends(cost));
-  if (*lost < 0) cost = std::max(cost, star_.cost_of_protruding(1, kept_, x, -*lost));
+  cost = std::max(cost, star_.cost_of_protruding(1, kept_, x, *lost));
   if (turn == Turn::sliver) cost += star_.cost_of_slivers(1, kept_, x);
   if (!(cost <= max_cost)) return {};
   if (blends_uvs_ && !wedges_.place(x)) return {};

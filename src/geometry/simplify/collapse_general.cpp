@@ -220,10 +220,8 @@ Collapse GeneralJudge::at_position(Vec3 position, Turn turn) const {
   const Vec3 x = position - middle_;
   const std::optional<double> lost = star_.lost_area_from(0, staying_, x, {.turn = turn});
   if (!lost) return {};
-  double lost_cost = quadric_.cost_of_lost_area(*lost);
-  if (*lost < 0) {
-    lost_cost = std::max(lost_cost, star_.cost_of_protruding(0, staying_, x, -*lost));
-  }
+  const double lost_cost =
+      std::max(quadric_.cost_of_lost_area(*lost), star_.cost_of_protruding(0, staying_, x, *lost));
   const double planes = std::max(quadric_.cost(x), cost_of_past(x));
   const double times = (changes_ ? k_loss_of_change : 1) * (is_of_cells() ? k_loss_of_cells : 1);
   const double slivers = turn == Turn::sliver ? star_.cost_of_slivers(0, staying_, x) : 0;

@@ -148,10 +148,10 @@ std::optional<double> CollapseStar::lost_area_of_ribbon(std::uint32_t first, std
 }
 
 double CollapseStar::cost_of_protruding(std::uint32_t first, std::uint32_t kept, Vec3 x,
-                                        double gained) const {
+                                        double lost) const {
   const double squared_half = squared_length(half_);
   const double at = meshfarm::dot(x, half_);
-  if (!(std::abs(at) > squared_half)) return 0;
+  if (lost >= 0 || !(std::abs(at) > squared_half)) return 0;
   const Vec3 out = half_ * (at > 0 ? 1.0 : -1.0);
   double least = std::abs(at) - squared_half;
   for (std::uint32_t i = 0; i < kept && least > 0; ++i) {
@@ -159,7 +159,7 @@ double CollapseStar::cost_of_protruding(std::uint32_t first, std::uint32_t kept,
     const double beyond = std::max(meshfarm::dot(t.p, out), meshfarm::dot(t.q, out));
     least = std::min(least, std::abs(at) - beyond);
   }
-  return least > 0 ? k_of_protruding * gained * least * least / squared_half : 0;
+  return least > 0 ? k_of_protruding * -lost * least * least / squared_half : 0;
 }
 
 double CollapseStar::cost_of_slivers(std::uint32_t first, std::uint32_t kept, Vec3 x) const {

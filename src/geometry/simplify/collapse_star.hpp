@@ -72,9 +72,9 @@ class CollapseStar {
   /// The same, where the kept ones begin at another pair.
   std::optional<double> lost_area_from(std::uint32_t first, std::uint32_t kept, Vec3 x,
                                        const TurnLimits& limits) const;
-  /// What the area that is gained costs at least where x lies beyond all that is round the edge: at
-  /// the tip of a spike, where it is narrow and long.
-  double cost_of_protruding(std::uint32_t first, std::uint32_t kept, Vec3 x, double gained) const;
+  /// What area that is gained, which is lost area below 0, costs at least where x lies beyond all
+  /// that is round the edge: at the tip of a spike, where it is narrow and long.
+  double cost_of_protruding(std::uint32_t first, std::uint32_t kept, Vec3 x, double lost) const;
   /// What Turn::sliver costs on top of all else.
   double cost_of_slivers(std::uint32_t first, std::uint32_t kept, Vec3 x) const;
 

@@ -162,13 +162,13 @@ void EdgeRanking::cost_listed(const Take& take) {
     costs_.compute(input_.bounds);
     for (std::size_t i = 0; i < count; ++i) {
       const Edge& e = edges[i];
-      const int unlike = (flags[e.a] ^ flags[e.b]) & (k_line | k_corner | k_fixed);
-      const bool is_by_end = (unlike | (flags[e.a] & by_ends)) != 0;
-      const EdgeCost cost = is_by_end ? cost_of_line_end(e) : costs_.get(i);
       if (ends_pieces && is_all_of_piece(e)) {
         take(e, EdgeCost{});
         continue;
       }
+      const int unlike = (flags[e.a] ^ flags[e.b]) & (k_line | k_corner | k_fixed);
+      const bool is_by_end = (unlike | (flags[e.a] & by_ends)) != 0;
+      const EdgeCost cost = is_by_end ? cost_of_line_end(e) : costs_.get(i);
       take(e, cost.is_rough && is_refined() ? fine_cost_of(e, is_by_end) : cost);
     }
   }

@@ -157,14 +157,15 @@ TEST_CASE("a tip that goes beyond all round it costs the area gained as far out 
   star.add({q, p, q, p}, CollapseStar::Pair{-1, -1});
   constexpr std::uint32_t k_kept = 2;
   const double gained = 0.5;
-  const double near = star.cost_of_protruding(1, k_kept, {0, 0, 1.5}, gained);
+  const double near = star.cost_of_protruding(1, k_kept, {0, 0, 1.5}, -gained);
   CHECK(near > 0);
-  CHECK(star.cost_of_protruding(1, k_kept, {0, 0, 2}, gained) == doctest::Approx(4 * near));
-  CHECK(star.cost_of_protruding(1, k_kept, {0, 0, 2}, 2 * gained) == doctest::Approx(8 * near));
-  CHECK(star.cost_of_protruding(1, k_kept, {9, 9, 0.9}, gained) == 0);
+  CHECK(star.cost_of_protruding(1, k_kept, {0, 0, 2}, -gained) == doctest::Approx(4 * near));
+  CHECK(star.cost_of_protruding(1, k_kept, {0, 0, 2}, -2 * gained) == doctest::Approx(8 * near));
+  CHECK(star.cost_of_protruding(1, k_kept, {0, 0, 2}, gained) == 0);  // that is lost
+  CHECK(star.cost_of_protruding(1, k_kept, {9, 9, 0.9}, -gained) == 0);
   // The other end is no tip: what is round it lies as far.
-  CHECK(star.cost_of_protruding(1, k_kept, {0, 0, -1.5}, gained) == 0);
-  CHECK(star.cost_of_protruding(1, k_kept, {0, 0, -2.5}, gained) == doctest::Approx(near));
+  CHECK(star.cost_of_protruding(1, k_kept, {0, 0, -1.5}, -gained) == 0);
+  CHECK(star.cost_of_protruding(1, k_kept, {0, 0, -2.5}, -gained) == doctest::Approx(near));
 }
 
 TEST_CASE("adjacency lists each vertex's corners in triangle order") {

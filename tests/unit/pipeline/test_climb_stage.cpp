@@ -151,10 +151,7 @@ TEST_CASE("parts whose topology leaves more than the target are asked for again 
   CHECK(source(both(2002)).size() == 2);
   // One that goes on would have left half of its share.
   const auto beside = [&](std::uint64_t triangles) {
-    ResultSummary other{{rung(10, 2500)}};
-    other.end = LadderEnd::enough;
-    AcceptedJob going = accepted(jobs[1], {});
-    going.output.summary = encode_summary(other);
+    const AcceptedJob going = accepted_ended(jobs[1], {rung(10, 2500)}, LadderEnd::enough);
     return std::vector{accepted_held(jobs[0], {rung(10, 2500), rung(14, triangles)}), going};
   };
   CHECK(source(beside(1500)).empty());
@@ -188,10 +185,7 @@ TEST_CASE("parts that are refused too much are asked for again without their top
   const auto asked_beside = [&](std::uint64_t refused_of_one) {
     Rung first = rung(10, 40'000);
     first.refused = refused_of_one;
-    ResultSummary ended{{first}};
-    ended.end = LadderEnd::refusals;
-    AcceptedJob one = accepted(jobs[0], {});
-    one.output.summary = encode_summary(ended);
+    const AcceptedJob one = accepted_ended(jobs[0], {first}, LadderEnd::refusals);
     const std::vector<Rung> other = {rung(10, 60'000), rung(12, 30'000)};
     return !source(std::vector{one, accepted(jobs[1], other)}).empty();
   };
@@ -209,11 +203,7 @@ TEST_CASE("parts that were refused too much go on if the others would not have p
     Rung last = rung(level, 26'000);
     first.refused = 100;
     last.refused = 90'000;
-    ResultSummary summary{{first, last}};
-    summary.end = end;
-    AcceptedJob done = accepted(job, {});
-    done.output.summary = encode_summary(summary);
-    return done;
+    return accepted_ended(job, {first, last}, end);
   };
   std::vector<AcceptedJob> done = {ended(jobs[0], 12, LadderEnd::refusals),
                                    ended(jobs[1], 13, LadderEnd::enough)};
@@ -264,14 +254,11 @@ TEST_CASE("ladders are compared where each of them ended, and not before they ha
   const auto goes_on = [&](std::uint64_t of_first, std::uint64_t of_last, std::uint64_t of_other) {
     const auto source = next_of(manifest, {.ratio = 0.1});
     const std::vector<Job> jobs = source({});
-    Rung begin = rung(10, of_first);
     Rung end = rung(11, of_last);
     end.refused = 1'000'000;
-    ResultSummary ended{{begin, end}};
-    ended.end = LadderEnd::refusals;
-    std::vector<AcceptedJob> done = {accepted(jobs[0], {}),
-                                     accepted(jobs[1], {rung(10, 31'000), rung(12, 30'000)})};
-    done[0].output.summary = encode_summary(ended);
+    std::vector<AcceptedJob> done = {
+        accepted_ended(jobs[0], {rung(10, of_first), end}, LadderEnd::refusals),
+        accepted(jobs[1], {rung(10, 31'000), rung(12, 30'000)})};
     const std::vector<Job> without = source(done);
     REQUIRE(without.size() == 2);
     done.push_back(accepted(without[0], {rung(10, of_first), rung(11, of_other), rung(12, 9000)}));

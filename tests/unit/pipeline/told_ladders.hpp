@@ -38,17 +38,24 @@ inline Manifest manifest_of(std::uint32_t parts, std::uint64_t triangles_each) {
   return m;
 }
 
-inline AcceptedJob accepted(const Job& job, std::vector<Rung> rungs) {
+inline AcceptedJob accepted(const Job& job, const ResultSummary& summary) {
   return {key_of(job),
           {{to_string(ResultName{key_of(job).value, 1, 1}), 1, key_of(job).value},
-           encode_summary({std::move(rungs), 0, 0})}};
+           encode_summary(summary)}};
+}
+
+inline AcceptedJob accepted(const Job& job, std::vector<Rung> rungs) {
+  return accepted(job, ResultSummary{.rungs = std::move(rungs)});
 }
 
 /// Of a part that its topology held back at its last rung.
 inline AcceptedJob accepted_held(const Job& job, std::vector<Rung> rungs) {
-  AcceptedJob done = accepted(job, {});
-  done.output.summary = encode_summary({std::move(rungs), 0, 0, true});
-  return done;
+  return accepted(job, ResultSummary{.rungs = std::move(rungs), .held_by_topology = true});
+}
+
+/// Of one whose ladder ended for that reason.
+inline AcceptedJob accepted_ended(const Job& job, std::vector<Rung> rungs, LadderEnd end) {
+  return accepted(job, ResultSummary{.rungs = std::move(rungs), .end = end});
 }
 
 /// What is possible once some jobs are accepted.
