@@ -167,6 +167,18 @@ void CollapseJudge::for_creases_of(const Ring& ring, std::uint32_t vertex, Vec3 
                    at, state_.positions, *state_.creases, is_candidate, take);
 }
 
+/// By the two edges of a border that leave the vertex at `at`; where there are more, as at a
+/// corner.
+double CollapseJudge::border_weight_at(std::span<const Corner> fan, Vec3 at) const {
+  std::array<Vec3, 2> edges;
+  std::size_t count = 0;
+  for_border_edges(fan, [&](const Corner&, std::uint32_t neighbour) {
+    if (count < edges.size()) edges[count] = state_.positions[neighbour] - at;
+    ++count;
+  });
+  return count == edges.size() ? border_weight_between(edges[0], edges[1]) : 1;
+}
+
 /// Adds the planes of the lines at one end, but for the edge to `without`.
 void CollapseJudge::add_lines(const Ring& ring, std::uint32_t vertex, Vec3 end,
                               std::uint32_t without) {
@@ -181,12 +193,13 @@ void CollapseJudge::add_lines(const Ring& ring, std::uint32_t vertex, Vec3 end,
   if (ring.border()) {
     std::array<Corner, k_max_star> corners;
     for (std::uint32_t i = 0; i < ring.size; ++i) corners[i] = {ring.next[i], ring.prev[i]};
-    for_border_edges(std::span<const Corner>(corners.data(), ring.size),
-                     [&](const Corner& c, std::uint32_t neighbour) {
-                       if (neighbour == without) return;
-                       const Vec3 edge = state_.positions[neighbour] - at;
-                       add(c, neighbour, is_ribbon_ ? weight_of_side(normal_of(c), edge) : 1);
-                     });
+    const std::span<const Corner> fan(corners.data(), ring.size);
+    const double weight = is_ribbon_ ? k_border_weight : border_weight_at(fan, at);
+    for_border_edges(fan, [&](const Corner& c, std::uint32_t neighbour) {
+      if (neighbour == without) return;
+      const Vec3 edge = state_.positions[neighbour] - at;
+      add(c, neighbour, weight * (is_ribbon_ ? weight_of_side(normal_of(c), edge) : 1));
+    });
   }
   const auto is_other_on_crease = [&](std::uint32_t neighbour) {
     return neighbour != without && (state_.flags[neighbour] & k_crease) != 0;
@@ -389,8 +402,11 @@ Collapse CollapseJudge::best_with_uvs(std::uint32_t a, std::uint32_t b, std::uin
     made.cost += wedges_.cost();
     return made.cost <= most ? made : Collapse{};
   };
-  if (rank_a != rank_b) {
-    return at_end(rank_a > rank_b ? WedgeStar::End::a : WedgeStar::End::b, max_cost, Turn::wide);
+  // A border stays where it is on the picture, too, when another line merges into it from beside.
+  const bool is_one_on_border = ring_a_.border() != ring_b_.border();
+  if (rank_a != rank_b || is_one_on_border) {
+    const bool at_a = rank_a != rank_b ? rank_a > rank_b : ring_a_.border();
+    return at_end(at_a ? WedgeStar::End::a : WedgeStar::End::b, max_cost, Turn::wide);
   }
   const auto at_better_end = [&](double most, Turn turn) {
     const Collapse at_a = at_end(WedgeStar::End::a, most, turn);

@@ -81,6 +81,7 @@ class CollapseJudge {
   void add_star(std::uint32_t shared);
   void add_appearances(std::uint32_t a, std::uint32_t b, std::uint32_t shared);
   std::span<const CornerId> ids_of(std::uint32_t vertex, std::span<CornerId> buffer) const;
+  double border_weight_at(std::span<const Corner> fan, Vec3 at) const;
   void add_lines(const Ring& ring, std::uint32_t vertex, Vec3 end, std::uint32_t without);
   Vec3 line_position(std::uint32_t a, std::uint32_t b) const;
   Collapse or_at_end(const Collapse& best, std::uint32_t a, std::uint32_t b, std::uint32_t shared);

@@ -205,7 +205,7 @@ void GeneralJudge::add_lines(const End& end, const End& other, Vec3 at) {
     for (const std::uint32_t v : {c.next, c.prev}) {
       const bool counted = v == other.vertex && end.vertex > other.vertex;
       if (counted || !contains(end.open, v)) continue;
-      add_line_plane(planes, normal, state_.positions[v] - position);
+      add_line_plane(planes, normal, state_.positions[v] - position, k_border_weight);
     }
   }
   quadric_.add(planes, at);

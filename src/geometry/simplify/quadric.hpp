@@ -64,6 +64,18 @@ inline Vec3 solve(const Quadric& a, double ridge, Vec3 b) {
   return x * (1.0 / determinant);
 }
 
+/// How heavy a border is beside a crease. Where a border moves within its surface, only a narrow
+/// strip comes or goes: as heavy as creases, borders get triangles that the surface lacks.
+constexpr double k_border_weight = 0.1;
+
+/// That, or 1 at a corner: where two edges of a border leave a vertex at less than 120 degrees. As
+/// light as all of a border, sheets lose their corners.
+inline double border_weight_between(Vec3 edge, Vec3 other) {
+  constexpr double k_cos_of_corner = -0.5;
+  const double lengths = std::sqrt(squared_length(edge) * squared_length(other));
+  return dot(edge, other) > k_cos_of_corner * lengths ? 1 : k_border_weight;
+}
+
 /// The plane through an edge of a border or crease perpendicular to a triangle there, as heavy as
 /// three squares on the edge, times `weight`: keeps the line where it is. Adds nothing for a
 /// triangle of no area.
@@ -75,8 +87,9 @@ inline void add_line_plane(Quadric& quadric, Vec3 triangle_normal, Vec3 edge, do
     quadric.add(n, weight * k_weight * squared_length(edge) / scale);
 }
 
-/// How heavy a side of a ribbon is: less where the triangle is lower than a twentieth of the edge,
-/// in proportion. There is little surface behind it, and the ribbon's ends would be outweighed.
+/// How heavy a side of a ribbon is beside other borders: less where the triangle is lower than a
+/// twentieth of the edge, in proportion. There is little surface behind it, and the ribbon's ends
+/// would be outweighed.
 inline double weight_of_side(Vec3 triangle_normal, Vec3 edge) {
   constexpr double k_low = 0.05;
   return std::min(1.0, length(triangle_normal) / (k_low * squared_length(edge)));

@@ -141,7 +141,8 @@ Quadric EdgeRanking::line_planes_at(std::uint32_t vertex) const {
     add_line_plane(planes, normal, input_.positions[end] - at, weight);
   };
   if ((flags & k_border) != 0) {
-    for_border_edges(fan, [&](const Corner& c, std::uint32_t end) { add(c, end, 1); });
+    for_border_edges(fan,
+                     [&](const Corner& c, std::uint32_t end) { add(c, end, k_border_weight); });
   }
   for_creases_at(vertex, [&](const Corner& one, const Corner& other, bool is_between_labels) {
     add(one, one.prev, crease_weight(is_between_labels));

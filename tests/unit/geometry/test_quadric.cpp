@@ -1,5 +1,8 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
+#include <cmath>
+#include <numbers>
+
 #include <doctest/doctest.h>
 
 #include "geometry/simplify/adjacency.hpp"
@@ -87,6 +90,20 @@ TEST_CASE("a border plane stands on the edge, perpendicular to the triangle") {
   Quadric none;
   add_line_plane(none, {0, 0, 0}, {2, 0, 0});
   CHECK(none.trace() == 0);
+}
+
+TEST_CASE("borders are light but at their corners") {
+  const auto between = [](double degrees, double length) {
+    const double angle = degrees * std::numbers::pi / 180;
+    return border_weight_between({3, 0, 0}, Vec3{std::cos(angle), std::sin(angle), 0} * length);
+  };
+  for (const double length : {0.1, 10.0}) {
+    CHECK(between(180, length) == 0.1);
+    CHECK(between(121, length) == 0.1);
+    CHECK(between(119, length) == 1);
+    CHECK(between(90, length) == 1);
+    CHECK(between(20, length) == 1);
+  }
 }
 
 TEST_CASE("a star sums the planes of its triangles, and those of no area add nothing") {
