@@ -119,6 +119,12 @@ TEST_CASE("a surface that wants long triangles gets no rough pass") {
   CHECK(has_limit(sheet_with_detail()));
   CHECK_FALSE(has_limit(wide_torus(200, 100)));
   CHECK_FALSE(has_limit(ring_of_tube(1000, 40, 0.04)));
+  // Beside balls that are dear whatever goes, too.
+  Mesh mesh = ring_of_tube(1000, 40, 0.04);
+  for (Vec3& p : mesh.positions) p = p * 0.3;
+  const Mesh ball = sphere(5);
+  for (int i = 1; i <= 3; ++i) append(mesh, ball, {3.0 * i, 0, 0});
+  CHECK_FALSE(has_limit(mesh));
 }
 
 TEST_CASE("thin tubes keep their shape however far the goal is") {
