@@ -54,12 +54,7 @@ class CompareCommand : public Command {
  private:
   void check_map() const {
     check_writable(map_);
-    for (const std::string& mesh : {a_, b_}) {
-      std::error_code not_there;
-      if (std::filesystem::equivalent(map_, mesh, not_there)) {
-        throw UsageError("--map: " + map_ + " is " + mesh + ", which it would write over");
-      }
-    }
+    for (const std::string& mesh : {a_, b_}) check_not_over("--map", map_, mesh);
   }
 
   std::string a_;

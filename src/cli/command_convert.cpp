@@ -49,6 +49,7 @@ class ConvertCommand : public Command {
     if (is_output_format(output_)) texture_words_for(output_, uv_);
   }
   int run() override {
+    check_not_over("OUTPUT", output_, input_);
     check_writable(output_);
     if (talk_.quiet) set_log(name(), LogLevel::warning);
     const Textures textures = parse_uv(texture_words_for(output_, uv_).cut);

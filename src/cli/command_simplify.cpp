@@ -70,6 +70,7 @@ class SimplifyCommand : public Command {
   }
   int run() override {
     const std::atomic<bool>& stop = stop_on_signals();
+    check_not_over("-o", output_, input_);
     check_writable(output_);
     if (!report_.empty()) check_place(report_);
     const Claim claim(claim_of(output_), output_ + ": is being made");

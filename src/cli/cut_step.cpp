@@ -153,4 +153,11 @@ void check_place(const std::string& output) {
   if (::access(folder.c_str(), W_OK | X_OK) != 0) throw_errno("cannot write into", folder);
 }
 
+void check_not_over(std::string_view option, const std::string& output, const std::string& input) {
+  std::error_code not_there;
+  if (!std::filesystem::equivalent(output, input, not_there)) return;
+  throw UsageError(std::string(option) + ": " + output + " is " + input +
+                   ", which it would write over");
+}
+
 }  // namespace meshfarm

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <functional>
 #include <string>
+#include <string_view>
 
 #include <meshfarm/io/manifest.hpp>
 
@@ -35,5 +36,7 @@ void tell_textures(const std::string& input, const MeshFileInfo& info);
 void check_writable(const std::string& output);
 /// The same of what is no mesh.
 void check_place(const std::string& output);
+/// Throws UsageError if `output`, which is given by `option`, is the file `input`.
+void check_not_over(std::string_view option, const std::string& output, const std::string& input);
 
 }  // namespace meshfarm
