@@ -85,6 +85,24 @@ TEST_CASE("a run's summary warns of a result that a few triangles more would hav
   CHECK(json.find("\"triangles\": 5200") != std::string::npos);
 }
 
+TEST_CASE("a run's summary warns of a bound that a sampled point breaks") {
+  RunSummary s;
+  s.manifest.box.add({0, 0, 0});
+  s.manifest.box.add({0, 0, 10});
+  s.target = s.triangles = 4000;
+  s.max_error = 0.1;
+  s.error.input_samples = s.error.output_samples = 1000;
+  s.error.to_input.max = 0.1;
+  CHECK(warning_of(s).empty());
+  s.error.to_input.max = 0.114;
+  const std::string warning =
+      "the bound of 0.01 is not kept everywhere: 0.0114 at a sampled point; --certify would keep "
+      "it";
+  CHECK(warning_of(s) == warning);
+  CHECK(render(s, Format::text).find("warning          " + warning) != std::string::npos);
+  CHECK(render(s, Format::json).find("\"warning\": \"" + warning) != std::string::npos);
+}
+
 TEST_CASE("a run's summary counts no edges of the input that only its simplified parts have") {
   const auto summary_with = [](std::uint64_t border_edges) {
     RunSummary s;
