@@ -30,9 +30,10 @@ class Gatekeeper {
 
   /// Counts those that do not get through the socket's handshake. Call it before binding.
   void watch(zmq::socket_t& socket);
-  /// Connections refused so far: garbage, wrong or no keys, silence. A peer that is killed while it
-  /// connects looks like these, as does one that finds that the server speaks another mechanism.
-  std::uint64_t refused() const { return refused_.load(std::memory_order_relaxed); }
+  /// Connections refused so far: garbage, wrong or no keys, silence. A peer that ends while it
+  /// connects looks like silence, as does one that finds that the server speaks another mechanism:
+  /// a few of these count for nothing.
+  std::uint64_t refused() const;
 
  private:
   void run();
@@ -45,7 +46,8 @@ class Gatekeeper {
   std::string client_key_;  // the one that may come in, 32 bytes; empty: nobody is asked
   Fd event_;
   zmq::socket_t door_;
-  std::atomic<std::uint64_t> refused_{0};
+  std::atomic<std::uint64_t> refused_{0};   // by what they said
+  std::atomic<std::uint64_t> left_off_{0};  // without a word
   std::atomic<bool> ending_{false};
   std::mutex mutex_;
   std::vector<zmq::socket_t> new_monitors_;
