@@ -1,6 +1,5 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
-#include <filesystem>
 #include <iostream>
 
 #include <meshfarm/geometry/distance.hpp>

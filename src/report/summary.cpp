@@ -368,11 +368,11 @@ std::string warning_of(const RunSummary& s) {
   }
   const double greatest = s.error.greater().max;
   if (s.max_error > 0 && s.error.input_samples > 0 && greatest > s.max_error) {
-    const auto share = [&](double length) {
-      return number(length / s.manifest.box.diagonal(), "%.3g");
-    };
-    warning = "the bound of " + share(s.max_error) + " is not kept everywhere: " + share(greatest) +
-              " at a sampled point; --certify would keep it";
+    const double diagonal = s.manifest.box.diagonal();
+    warning += (warning.empty() ? "" : "; ") + std::string("the bound of ") +
+               number(s.max_error / diagonal, "%.3g") +
+               " is not kept everywhere: " + number(greatest / diagonal, "%.6g") +
+               " at a sampled point; --certify would keep it";
   }
   if (!s.better) return warning;
   const auto rms = [&](const MeasuredError& error) {

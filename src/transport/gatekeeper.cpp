@@ -19,8 +19,8 @@ namespace meshfarm {
 namespace {
 
 constexpr std::size_t k_key_bytes = 32;
-constexpr int k_proven = ZMQ_EVENT_HANDSHAKE_FAILED_PROTOCOL | ZMQ_EVENT_HANDSHAKE_FAILED_AUTH;
-constexpr int k_refusals = k_proven | ZMQ_EVENT_HANDSHAKE_FAILED_NO_DETAIL;
+constexpr int k_told = ZMQ_EVENT_HANDSHAKE_FAILED_PROTOCOL | ZMQ_EVENT_HANDSHAKE_FAILED_AUTH;
+constexpr int k_refusals = k_told | ZMQ_EVENT_HANDSHAKE_FAILED_NO_DETAIL;
 /// Members that end while they connect, as at the end of a short run, leave off as well.
 constexpr std::uint64_t k_usually_left_off = 16;
 constexpr std::chrono::milliseconds k_for_ever{-1};
@@ -139,7 +139,7 @@ bool Gatekeeper::read_events(zmq::socket_t& monitor) {
     if (frames[0].size() >= sizeof event) std::memcpy(&event, frames[0].data(), sizeof event);
     if (event == ZMQ_EVENT_MONITOR_STOPPED) return false;
     if ((event & k_refusals) == 0) continue;
-    ((event & k_proven) != 0 ? refused_ : left_off_).fetch_add(1, std::memory_order_relaxed);
+    ((event & k_told) != 0 ? refused_ : left_off_).fetch_add(1, std::memory_order_relaxed);
   }
 }
 

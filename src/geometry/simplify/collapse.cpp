@@ -388,8 +388,12 @@ Collapse CollapseJudge::best_of_positions(std::uint32_t a, std::uint32_t b, std:
 Collapse CollapseJudge::best_with_uvs(std::uint32_t a, std::uint32_t b, std::uint32_t shared,
                                       double max_cost) {
   wedges_.list(state_, a, b, middle_);
-  const int rank_a = line_rank(ring_a_.flags);
-  const int rank_b = line_rank(ring_b_.flags);
+  // A border stays where it is on the picture, too, when another line merges into it from beside.
+  const auto rank_of = [](const Ring& ring) {
+    return 2 * line_rank(ring.flags) + (ring.border() ? 1 : 0);
+  };
+  const int rank_a = rank_of(ring_a_);
+  const int rank_b = rank_of(ring_b_);
   blends_uvs_ = rank_a == 0 && rank_b == 0 && wedges_.is_even();
   if (blends_uvs_) {
     wedges_.add_to(quadric_);
@@ -402,11 +406,8 @@ Collapse CollapseJudge::best_with_uvs(std::uint32_t a, std::uint32_t b, std::uin
     made.cost += wedges_.cost();
     return made.cost <= most ? made : Collapse{};
   };
-  // A border stays where it is on the picture, too, when another line merges into it from beside.
-  const bool is_one_on_border = ring_a_.border() != ring_b_.border();
-  if (rank_a != rank_b || is_one_on_border) {
-    const bool at_a = rank_a != rank_b ? rank_a > rank_b : ring_a_.border();
-    return at_end(at_a ? WedgeStar::End::a : WedgeStar::End::b, max_cost, Turn::wide);
+  if (rank_a != rank_b) {
+    return at_end(rank_a > rank_b ? WedgeStar::End::a : WedgeStar::End::b, max_cost, Turn::wide);
   }
   const auto at_better_end = [&](double most, Turn turn) {
     const Collapse at_a = at_end(WedgeStar::End::a, most, turn);

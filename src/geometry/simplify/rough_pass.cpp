@@ -63,7 +63,7 @@ bool are_shortest_good(std::span<const MergeCosts> costs, double limit) {
     ++count;
     much_dearer += each.shortest > k_most_dearer_of_quarter * each.cheapest ? 1 : 0;
   }
-  return sum.shortest <= k_most_dearer * sum.cheapest && 4 * much_dearer < count;
+  return sum.shortest <= k_most_dearer * sum.cheapest && 4 * much_dearer <= count;
 }
 
 double cost_at(std::vector<double>& costs, double share) {

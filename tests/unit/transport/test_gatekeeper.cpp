@@ -6,7 +6,12 @@
 #include <string>
 #include <thread>
 
+#include <arpa/inet.h>
 #include <doctest/doctest.h>
+#include <netinet/in.h>
+#include <sys/socket.h>
+
+#include <meshfarm/util/file.hpp>
 
 #include "transport/gatekeeper.hpp"
 #include "transport/sockets.hpp"
@@ -53,6 +58,19 @@ struct Client {
   zmq::socket_t push;
 };
 
+/// Connects so many times, and leaves without a word.
+void come_and_go(const Server& server, int times) {
+  sockaddr_in to{};
+  to.sin_family = AF_INET;
+  to.sin_port = htons(
+      static_cast<std::uint16_t>(std::stoi(server.address.substr(server.address.rfind(':') + 1))));
+  to.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+  for (int i = 0; i < times; ++i) {
+    const Fd fd(::socket(AF_INET, SOCK_STREAM, 0));
+    REQUIRE(::connect(fd.get(), reinterpret_cast<const sockaddr*>(&to), sizeof to) == 0);
+  }
+}
+
 constexpr std::chrono::milliseconds k_soon{10'000};
 constexpr std::chrono::milliseconds k_never{300};
 
@@ -89,6 +107,15 @@ TEST_CASE("without keys everybody comes in, but for who does not speak the proto
   CHECK(server.hears(k_soon));
   const Client curve(server, make_run_keys());
   CHECK(server.refuses(1));
+}
+
+TEST_CASE("a few that leave while they connect count for nothing, many do") {
+  const Server server(make_run_keys());
+  come_and_go(server, 10);
+  std::this_thread::sleep_for(k_never);
+  CHECK(server.gate.refused() == 0);
+  come_and_go(server, 30);
+  CHECK(server.refuses(17));
 }
 
 TEST_CASE("sockets may come and go") {
