@@ -101,6 +101,8 @@ TEST_CASE("a run's summary warns of a bound that a sampled point breaks") {
   CHECK(warning_of(s) == warning);
   CHECK(render(s, Format::text).find("warning          " + warning) != std::string::npos);
   CHECK(render(s, Format::json).find("\"warning\": \"" + warning) != std::string::npos);
+  s.dropped_components.components = 3;
+  CHECK(warning_of(s).find("--certify") == std::string::npos);
 }
 
 TEST_CASE("a run's summary counts no edges of the input that only its simplified parts have") {
