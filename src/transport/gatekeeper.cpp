@@ -143,9 +143,12 @@ bool Gatekeeper::read_events(zmq::socket_t& monitor) {
   }
 }
 
-std::uint64_t Gatekeeper::refused() const {
-  const std::uint64_t left_off = left_off_.load(std::memory_order_relaxed);
-  return refused_.load(std::memory_order_relaxed) + (left_off > k_usually_left_off ? left_off : 0);
+Refusals Gatekeeper::refused() const {
+  return {refused_.load(std::memory_order_relaxed), left_off_.load(std::memory_order_relaxed)};
+}
+
+std::uint64_t Refusals::strangers() const {
+  return stated + (left_off > k_usually_left_off ? left_off : 0);
 }
 
 void tell_of_strangers(std::uint64_t refused_connections, std::uint64_t garbled_messages) {

@@ -17,6 +17,15 @@
 
 namespace meshfarm {
 
+/// Connections that did not get through the handshake.
+struct Refusals {
+  std::uint64_t stated = 0;    // garbage, wrong keys, another mechanism
+  std::uint64_t left_off = 0;  // ended without a word
+  /// Those to tell of. A peer that ends while it connects leaves off, and so may one that finds
+  /// that the server speaks another mechanism: a few of these are usual where a run ends.
+  std::uint64_t strangers() const;
+};
+
 /// Stands at the doors of a process that listens: says who may come in, by ZeroMQ's authentication
 /// protocol (ZAP, rfc.zeromq.org/spec/27), from a thread of its own, and counts who is refused.
 /// Must be there before any socket of the context is bound and end after all are closed.
@@ -30,10 +39,8 @@ class Gatekeeper {
 
   /// Counts those that do not get through the socket's handshake. Call it before binding.
   void watch(zmq::socket_t& socket);
-  /// Connections refused so far: garbage, wrong or no keys, silence. A peer that ends while it
-  /// connects looks like silence, as does one that finds that the server speaks another mechanism:
-  /// a few of these count for nothing.
-  std::uint64_t refused() const;
+  /// Connections refused so far.
+  Refusals refused() const;
 
  private:
   void run();

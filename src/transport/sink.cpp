@@ -93,7 +93,7 @@ class SinkLoop {
       if (stopped()) perform(core_.stop());
       turn();
     }
-    tell_of_strangers(gate_.refused(), garbage_);
+    tell_of_strangers(gate_.refused().strangers(), garbage_);
     for (const std::exception_ptr& problem : {told_problem_of_job_, told_problem_}) {
       if (problem && left_->why != SinkLeaves::Why::incomplete) std::rethrow_exception(problem);
     }

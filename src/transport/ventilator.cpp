@@ -76,7 +76,7 @@ class VentilatorLoop {
     if (options_.progress) options_.progress(progress());
     next_state_ = FarmTime(0);
     tell_state(farm_clock());
-    tell_of_strangers(gate_.refused(), garbage_);
+    tell_of_strangers(gate_.refused().strangers(), garbage_);
     say_over();
     if (end_->resumable) throw IncompleteError(end_->failure);
     if (!end_->failure.empty()) throw DataError(end_->failure);
@@ -189,7 +189,7 @@ class VentilatorLoop {
 
   FarmProgress progress() const {
     FarmProgress progress = dispatcher_.progress();
-    progress.refused = gate_.refused();
+    progress.refused = gate_.refused().strangers();
     return progress;
   }
 
