@@ -142,15 +142,20 @@ std::vector<std::int32_t> run_metis(WeightedGraph& graph, idx_t parts, Metis sch
 /// own k-way scheme is the same, but divides the coarsest graph four times over, which is most of
 /// its time; parts have as much boundary (-4 to +5 % at 96 parts).
 std::vector<std::int32_t> divide_multilevel(WeightedGraph cells, std::int32_t parts) {
-  constexpr std::size_t k_of_part = 60;       // nodes of the coarsest graph
+  constexpr std::size_t k_of_part = 60;       // nodes of the coarsest graph...
+  constexpr std::size_t k_of_many = 30;       // ...if these are more than the next
+  constexpr std::size_t k_coarsest = 14'400;  // METIS divides so many in 20 ms
   constexpr std::int64_t k_of_heaviest = 12;  // a part has at least so many nodes
   const std::int64_t all =
       std::accumulate(cells.weights.begin(), cells.weights.end(), std::int64_t{0});
   const RefineOptions refine{.parts = parts, .heaviest = all * 103 / (std::int64_t{100} * parts)};
 
+  const auto many = static_cast<std::size_t>(parts);
+  const std::size_t coarsest = std::max(k_of_many * many, std::min(k_of_part * many, k_coarsest));
+
   std::vector<Coarsening> levels;  // each with the graph that the next is made of
   levels.push_back({std::move(cells), {}});
-  while (levels.back().graph.nodes() > k_of_part * static_cast<std::size_t>(parts)) {
+  while (levels.back().graph.nodes() > coarsest) {
     Coarsening next = coarsened(levels.back().graph, all / (k_of_heaviest * parts));
     if (10 * next.graph.nodes() > 9 * levels.back().graph.nodes()) break;
     levels.push_back(std::move(next));

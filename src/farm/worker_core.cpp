@@ -70,7 +70,7 @@ void WorkerCore::beat(const WorkerPulse& pulse, FarmTime now) {
   if (credit_ > 0) act(Say{Credit{joined.epoch, joined.worker, credit_}});
 }
 
-/// Takes the slots' pulses. Whoever waits for a compute thread does not stand still.
+/// Takes the slots' pulses. Whoever waits for its turn does not stand still.
 void WorkerCore::feel(const WorkerPulse& pulse, FarmTime now) {
   for (std::size_t i = 0; i < std::min(slots_.size(), pulse.slots.size()); ++i) {
     if (!slots_[i]) continue;
@@ -304,7 +304,7 @@ void WorkerCore::raise_credit() {
   // Where every slot waits for storage with what another lane brought, nothing is asked for: it
   // would wait here, maybe for long, while others could do it.
   const bool stuck = std::all_of(slots_.begin(), slots_.end(), [](const auto& slot) {
-    return slot && !slot->on_this_lane && slot->pulse.phase == JobPhase::storage;
+    return slot && !slot->on_this_lane && slot->pulse.phase != JobPhase::computing;
   });
   if (stuck) return;
   std::uint64_t on_lane = 0;

@@ -60,6 +60,7 @@ class SimulatedFarm {
     Job job;
     SimulatedWork work;
     JobPhase phase = JobPhase::storage;
+    bool reads_much = false;  // at the moment
     bool hangs = false;
     bool looks_for_file = false;  // its reader waits for a file that is not to be seen yet
     SimulatedTime begin{0};       // of computing
@@ -73,8 +74,10 @@ class SimulatedFarm {
     std::string lane;
     std::string sink;
     std::vector<std::optional<InWork>> slots;
-    std::deque<std::uint32_t> gate;  // slots that wait to compute
-    std::uint32_t computing = 0;     // threads that do
+    std::deque<std::uint32_t> to_read;     // slots that wait to read much
+    std::uint32_t reading = 0;             // ...that do
+    std::deque<std::uint32_t> to_compute;  // slots that wait to compute
+    std::uint32_t computing = 0;           // threads that do
     WorkerPulse pulse;
     SimulatedChannel lane_channel, to_sink;
   };
@@ -210,7 +213,10 @@ class SimulatedFarm {
       });
     });
   }
-  void open_gate(Worker& worker);
+  void read_next(Worker& worker);
+  void read(Worker& worker, std::uint32_t slot);
+  void end_reading(Worker& worker, InWork& in_work);
+  void compute_next(Worker& worker);
   void begin_computing(Worker& worker, std::uint32_t slot);
   void compute(Worker& worker, std::uint32_t slot);
   void end_computing(Worker& worker, InWork& in_work);

@@ -1,8 +1,9 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
 //
-// A job in a simulated worker, as in src/transport/job_slot.cpp: its inputs are read, it waits for
-// a compute thread, is computed, and its output is written and published.
+// A job in a simulated worker, as in src/transport/job_slot.cpp: it waits until it may read its
+// inputs, reads them, waits for a compute thread, is computed, and its output is written and
+// published.
 #include <utility>
 
 #include "simulation/made_up_run.hpp"
@@ -24,25 +25,52 @@ void SimulatedFarm::act(std::uint32_t index, Begin& each) {
                      ? options_.work(in_work.job)
                      : SimulatedWork{static_cast<double>(in_work.job.cost) * 1e-3, 0, made_up};
   in_work.clock = JobClock(farm_now());
+  if (in_work.work.read_bytes < k_much_input) return read(worker, each.slot);
+  in_work.phase = JobPhase::waiting;
+  worker.to_read.push_back(each.slot);
+  read_next(worker);
+}
+
+void SimulatedFarm::read_next(Worker& worker) {
+  const std::uint64_t life = worker.life;
+  while (worker.alive && worker.life == life && !worker.to_read.empty() &&
+         worker.reading < options_.workers[index_of(worker)].threads) {
+    const std::uint32_t slot = worker.to_read.front();
+    worker.to_read.pop_front();
+    worker.slots[slot]->reads_much = true;
+    ++worker.reading;
+    read(worker, slot);
+  }
+}
+
+void SimulatedFarm::read(Worker& worker, std::uint32_t slot) {
+  InWork& in_work = *worker.slots[slot];
+  in_work.phase = JobPhase::storage;
   const SimulatedTime delay = folder_.visibility_delay();
   const SimulatedTime readable = std::max(folder_.readable(worker.host), lost_part(in_work.key));
   in_work.looks_for_file = delay.count() > 0 || readable > queue_.now();
   const SimulatedTime gives_up = queue_.now() + SimulatedFolder::k_patience;
   if (readable > gives_up) {
-    return while_in_work(worker, each.slot, gives_up, [this, &worker, slot = each.slot] {
+    return while_in_work(worker, slot, gives_up, [this, &worker, slot] {
       fail_job(worker, slot, "cannot open its part", FailureKind::no_input);
     });
   }
   const SimulatedTime there = std::max(
       folder_.read(worker.host, in_work.work.read_bytes, in_work.work.extent) + delay, readable);
-  while_in_work(worker, each.slot, there, [this, &worker, slot = each.slot] {
-    InWork& read = *worker.slots[slot];
-    read.clock.read(farm_now());
-    read.phase = JobPhase::waiting;
-    read.looks_for_file = false;
-    worker.gate.push_back(slot);
-    open_gate(worker);
+  while_in_work(worker, slot, there, [this, &worker, slot] {
+    InWork& has_read = *worker.slots[slot];
+    end_reading(worker, has_read);
+    has_read.clock.read(farm_now());
+    has_read.phase = JobPhase::waiting;
+    has_read.looks_for_file = false;
+    worker.to_compute.push_back(slot);
+    compute_next(worker);
+    read_next(worker);
   });
+}
+
+void SimulatedFarm::end_reading(Worker& worker, InWork& in_work) {
+  if (std::exchange(in_work.reads_much, false)) --worker.reading;
 }
 
 /// From when on the job's input can be read: the same for all who try.
@@ -66,12 +94,12 @@ void SimulatedFarm::feel_pulse(Worker& worker) {
   }
 }
 
-void SimulatedFarm::open_gate(Worker& worker) {
+void SimulatedFarm::compute_next(Worker& worker) {
   const std::uint64_t life = worker.life;
-  while (worker.alive && worker.life == life && !worker.gate.empty() &&
+  while (worker.alive && worker.life == life && !worker.to_compute.empty() &&
          worker.computing < options_.workers[index_of(worker)].threads) {
-    const std::uint32_t slot = worker.gate.front();
-    worker.gate.pop_front();
+    const std::uint32_t slot = worker.to_compute.front();
+    worker.to_compute.pop_front();
     begin_computing(worker, slot);
   }
 }
@@ -113,7 +141,7 @@ void SimulatedFarm::compute(Worker& worker, std::uint32_t slot) {
     end_computing(worker, computed);
     const SimulatedTime written = folder_.write(worker.host, computed.work.write_bytes);
     while_in_work(worker, slot, written, [this, &worker, slot] { write(worker, slot); });
-    open_gate(worker);
+    compute_next(worker);
   });
 }
 
@@ -153,14 +181,18 @@ void SimulatedFarm::fail_job(Worker& worker, std::uint32_t slot, const char* rea
 
 void SimulatedFarm::finish_job(Worker& worker, std::uint32_t slot,
                                std::variant<JobOutput, JobFailure> outcome) {
+  end_reading(worker, *worker.slots[slot]);
   end_computing(worker, *worker.slots[slot]);
   const JobTimes times = worker.slots[slot]->clock.times();
-  std::erase(worker.gate, slot);
+  std::erase(worker.to_read, slot);
+  std::erase(worker.to_compute, slot);
   worker.slots[slot].reset();
   note(index_of(worker));
   const std::uint64_t life = worker.life;
   worker_does(index_of(worker), worker.core->finished(slot, std::move(outcome), farm_now(), times));
-  if (worker.life == life) open_gate(worker);
+  if (worker.life != life) return;
+  compute_next(worker);
+  read_next(worker);
 }
 
 void SimulatedFarm::act(std::uint32_t index, GiveUp& each) {

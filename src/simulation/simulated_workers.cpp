@@ -37,8 +37,9 @@ void SimulatedFarm::start_worker(std::uint32_t index) {
   member.capacity.threads = is.threads;
   const WorkerLimits limits = limits_of(member.capacity, options_.buffer);
   worker.slots.assign(limits.slots, std::nullopt);
-  worker.gate.clear();
-  worker.computing = 0;
+  worker.to_read.clear();
+  worker.to_compute.clear();
+  worker.reading = worker.computing = 0;
   worker.pulse = {};
   worker.pulse.slots.resize(worker.slots.size());
   worker.core = std::make_unique<WorkerCore>(member, limits);

@@ -47,7 +47,8 @@ void JobSlot::begin(const Begin& begin) {
 
 void JobSlot::give_up() {
   give_up_ = true;
-  gate_.look_up();
+  gates_.reading.look_up();
+  gates_.computing.look_up();
 }
 
 SlotPulse JobSlot::pulse() const {
@@ -61,10 +62,10 @@ SlotPulse JobSlot::pulse() const {
 /// not ours.
 JobOutcome JobSlot::attempt(const Begin& begin) {
   clock_ = JobClock(farm_clock());
-  read_ahead(begin.job);
+  wait_and_read_ahead(begin.job);
   clock_.read(farm_clock());
   phase_ = JobPhase::waiting;
-  if (!gate_.enter(give_up_)) return JobFailure{"given up", FailureKind::attempt};
+  if (!gates_.computing.enter(give_up_)) return JobFailure{"given up", FailureKind::attempt};
   clock_.computes(farm_clock());
   phase_ = JobPhase::computing;
   cpu_before_us_ = thread_cpu_us();
@@ -116,9 +117,19 @@ JobOutcome JobSlot::checked(const Begin& begin, JobOutput output) const {
   return output;
 }
 
+void JobSlot::wait_and_read_ahead(const Job& job) {
+  const std::uint64_t bytes = input_bytes(job);
+  if (bytes > job.memory) return;  // the job means to read it bit by bit
+  if (bytes < k_much_input) return read_ahead(job);
+  phase_ = JobPhase::waiting;
+  if (!gates_.reading.enter(give_up_)) return;
+  phase_ = JobPhase::storage;
+  read_ahead(job);
+  gates_.reading.leave();
+}
+
 /// What cannot be read now is read again by the job itself, which says why it cannot be.
 void JobSlot::read_ahead(const Job& job) {
-  if (input_bytes(job) > job.memory) return;  // the job means to read it bit by bit
   try {
     for (const InputSection& each : job.sections) {
       if (give_up_) return;
@@ -177,7 +188,7 @@ void JobSlot::end_computing() {
   if (!clock_.computing()) return;
   clock_.computed(farm_clock(), thread_cpu_us() - cpu_before_us_);
   phase_ = JobPhase::storage;
-  gate_.leave();
+  gates_.computing.leave();
 }
 
 }  // namespace meshfarm

@@ -18,19 +18,21 @@
 #include <meshfarm/staging/stage.hpp>
 #include <meshfarm/staging/staged_writer.hpp>
 
-#include "transport/compute_gate.hpp"
 #include "transport/task_thread.hpp"
+#include "transport/turn_gate.hpp"
 
 namespace meshfarm {
 
 using JobOutcome = std::variant<JobOutput, JobFailure>;
 
-/// One of a worker's places for a job in work, with its thread: reads the inputs ahead, waits for
-/// its turn to compute, lets the next compute while the output is written.
+/// One of a worker's places for a job in work, with its thread: waits for its turn to read where
+/// the inputs are large, reads them ahead, waits for its turn to compute, lets the next compute
+/// while the output is written.
 class JobSlot : private JobStorage {
  public:
-  JobSlot(const Stage& stage, const JobFunction& work, ComputeGate& gate, std::uint64_t incarnation)
-      : stage_(stage), work_(work), gate_(gate), incarnation_(incarnation) {}
+  JobSlot(const Stage& stage, const JobFunction& work, WorkerGates& gates,
+          std::uint64_t incarnation)
+      : stage_(stage), work_(work), gates_(gates), incarnation_(incarnation) {}
 
   /// Only when the last job was taken.
   void begin(const Begin& begin);
@@ -50,6 +52,7 @@ class JobSlot : private JobStorage {
   JobOutcome attempt(const Begin& begin);
   JobOutcome compute(const Begin& begin);
   JobOutcome checked(const Begin& begin, JobOutput output) const;
+  void wait_and_read_ahead(const Job& job);
   void read_ahead(const Job& job);
   void end_computing();
   void write_in_pieces(StagedWriter& file, std::string_view bytes);
@@ -65,7 +68,7 @@ class JobSlot : private JobStorage {
 
   const Stage& stage_;
   const JobFunction& work_;
-  ComputeGate& gate_;
+  WorkerGates& gates_;
   std::uint64_t incarnation_;
   std::atomic<std::uint64_t> progress_{0};
   std::atomic<std::uint64_t> moved_{0};  // bytes to and from the stage

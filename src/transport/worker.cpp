@@ -16,11 +16,11 @@
 #include <meshfarm/util/log.hpp>
 #include <meshfarm/util/memory.hpp>
 
-#include "transport/compute_gate.hpp"
 #include "transport/control_link.hpp"
 #include "transport/job_slot.hpp"
 #include "transport/sockets.hpp"
 #include "transport/task_thread.hpp"
+#include "transport/turn_gate.hpp"
 
 namespace meshfarm {
 namespace {
@@ -56,9 +56,9 @@ class WorkerLoop {
                options.capacity,
                options.algorithm},
               limits_of(options)),
-        gate_(std::max(1U, options.capacity.threads)) {
+        gates_(std::max(1U, options.capacity.threads)) {
     for (std::uint32_t i = 0; i < limits_of(options).slots; ++i) {
-      slots_.push_back(std::make_unique<JobSlot>(stage, work, gate_, incarnation_));
+      slots_.push_back(std::make_unique<JobSlot>(stage, work, gates_, incarnation_));
     }
   }
 
@@ -200,7 +200,7 @@ class WorkerLoop {
   FarmTime computed_{0};
   FarmTime next_look_at_memory_{0};
   std::uint64_t rss_bytes_ = 0;
-  ComputeGate gate_;
+  WorkerGates gates_;
   std::deque<TryRead> to_read_;  // the first is in work
   bool readable_ = false;        // the reader's while it works
   // The last members, so that their threads end first.

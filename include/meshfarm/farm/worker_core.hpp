@@ -31,6 +31,10 @@ struct WorkerLimits {
 /// read ahead meanwhile, or its output is written.
 WorkerLimits limits_of(const Capacity& capacity, std::uint32_t buffer);
 
+/// Of jobs with so many bytes of input no more are read at once than are computed: a worker that
+/// waits for storage begins to compute as soon as it can, and only then reads the next.
+inline constexpr std::uint64_t k_much_input = std::uint64_t{1} << 20;
+
 /// What the job in a slot is at.
 enum class JobPhase : std::uint8_t { storage, waiting, computing };
 struct SlotPulse {

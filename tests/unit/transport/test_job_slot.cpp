@@ -1,5 +1,6 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
+#include <atomic>
 #include <string>
 #include <variant>
 
@@ -26,8 +27,8 @@ JobOutcome outcome_of(const Stage& stage, const Job& job) {
     const ResultName name{key_of(given).value, context.attempt, context.incarnation};
     return JobOutput{context.publish(name, read), {}};
   };
-  ComputeGate gate(1);
-  JobSlot slot(stage, work, gate, 7);
+  WorkerGates gates(1);
+  JobSlot slot(stage, work, gates, 7);
   slot.begin({0, 1, key_of(job), job});
   pollfd finished{slot.fd(), POLLIN, 0};
   REQUIRE(::poll(&finished, 1, 10'000) == 1);
@@ -66,6 +67,49 @@ TEST_CASE("a section that is damaged is the fault of the input") {
   const JobOutcome made = outcome_of(stage, job);
   REQUIRE(std::holds_alternative<JobFailure>(made));
   CHECK(std::get<JobFailure>(made).kind == FailureKind::damaged_input);
+}
+
+TEST_CASE("a job that reads much waits for its turn, one that reads little does not") {
+  const TempFolder folder;
+  const Stage stage = Stage::create(folder.path());
+  const JobFunction work = [](const Job& given, const JobContext& context) {
+    const ResultName name{key_of(given).value, context.attempt, context.incarnation};
+    return JobOutput{context.publish(name, std::to_string(context.read(given.inputs[0]).size())),
+                     {}};
+  };
+  WorkerGates gates(1);
+  const std::atomic<bool> never{false};
+  REQUIRE(gates.reading.enter(never));  // as another slot that reads much
+  JobSlot slot(stage, work, gates, 7);
+  const auto begin = [&](std::size_t bytes) {
+    Job job{"read", {stage.publish(PartName{0}, std::string(bytes, 'x'))}, {}, 1};
+    job.memory = 2 * bytes;
+    slot.begin({0, 1, key_of(job), job});
+  };
+  const auto ends_within = [&](int ms) {
+    pollfd finished{slot.fd(), POLLIN, 0};
+    return ::poll(&finished, 1, ms) == 1 && slot.take_finished();
+  };
+  begin(k_much_input - 1);
+  REQUIRE(ends_within(10'000));
+  CHECK(std::holds_alternative<JobOutput>(slot.outcome()));
+
+  begin(k_much_input);
+  CHECK_FALSE(ends_within(100));
+  CHECK(slot.pulse().phase == JobPhase::waiting);
+  SUBCASE("until the turn comes") {
+    gates.reading.leave();
+    REQUIRE(ends_within(10'000));
+    CHECK(std::holds_alternative<JobOutput>(slot.outcome()));
+    CHECK(gates.reading.enter(never));  // it has left
+  }
+  SUBCASE("or it is given up") {
+    slot.give_up();
+    REQUIRE(ends_within(10'000));
+    CHECK(std::holds_alternative<JobFailure>(slot.outcome()));
+    gates.reading.leave();
+    CHECK(gates.reading.enter(never));  // it took no place
+  }
 }
 
 }  // namespace

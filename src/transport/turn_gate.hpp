@@ -9,12 +9,12 @@
 
 namespace meshfarm {
 
-/// Lets so many threads compute at once, in the order in which they came.
-class ComputeGate {
+/// Lets so many threads read, or compute, at once, in the order in which they came.
+class TurnGate {
  public:
-  explicit ComputeGate(std::uint32_t places) : free_(places) {}
-  ComputeGate(const ComputeGate&) = delete;
-  ComputeGate& operator=(const ComputeGate&) = delete;
+  explicit TurnGate(std::uint32_t places) : free_(places) {}
+  TurnGate(const TurnGate&) = delete;
+  TurnGate& operator=(const TurnGate&) = delete;
 
   /// Waits for a place. False, and none is taken, once `given_up` is set (see look_up()).
   bool enter(const std::atomic<bool>& given_up);
@@ -28,6 +28,13 @@ class ComputeGate {
   std::uint32_t free_;
   std::uint64_t next_ticket_ = 0;
   std::uint64_t served_ = 0;
+};
+
+/// The two that all slots of a worker go through.
+struct WorkerGates {
+  explicit WorkerGates(std::uint32_t threads) : reading(threads), computing(threads) {}
+  TurnGate reading;  // by jobs that read much; see k_much_input
+  TurnGate computing;
 };
 
 }  // namespace meshfarm

@@ -1,10 +1,10 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
-#include "transport/compute_gate.hpp"
+#include "transport/turn_gate.hpp"
 
 namespace meshfarm {
 
-bool ComputeGate::enter(const std::atomic<bool>& given_up) {
+bool TurnGate::enter(const std::atomic<bool>& given_up) {
   std::unique_lock lock(mutex_);
   const std::uint64_t ticket = next_ticket_++;
   changed_.wait(lock, [&] { return served_ == ticket && (free_ > 0 || given_up); });
@@ -16,7 +16,7 @@ bool ComputeGate::enter(const std::atomic<bool>& given_up) {
   return entered;
 }
 
-void ComputeGate::leave() {
+void TurnGate::leave() {
   {
     const std::lock_guard lock(mutex_);
     ++free_;
@@ -24,7 +24,7 @@ void ComputeGate::leave() {
   changed_.notify_all();
 }
 
-void ComputeGate::look_up() {
+void TurnGate::look_up() {
   const std::lock_guard lock(mutex_);
   changed_.notify_all();
 }
