@@ -206,8 +206,8 @@ void CollapseJudge::add_lines(const Ring& ring, std::uint32_t vertex, Vec3 end,
   };
   for_creases_of(ring, vertex, at, is_other_on_crease,
                  [&](const Corner& one, const Corner& other, bool is_between_labels) {
-                   add(one, one.prev, crease_weight(is_between_labels));
-                   add(other, one.prev, crease_weight(is_between_labels));
+                   add(one, one.prev, state_.creases->weight(is_between_labels));
+                   add(other, one.prev, state_.creases->weight(is_between_labels));
                  });
   quadric_.add(planes, end);
 }

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "geometry/simplify/simplify_lines.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -33,6 +34,15 @@ double cosine_of(double degrees) {
 
 }  // namespace
 
+double label_line_weight(std::uint64_t on_lines, std::uint64_t vertices) {
+  constexpr double k_of_labels = 7;
+  constexpr std::uint64_t k_percent_before = 50;
+  constexpr std::uint64_t k_percent_to_halve = 2;
+  const std::uint64_t percent = vertices == 0 ? 0 : 100 * on_lines / vertices;
+  const std::uint64_t beyond = percent - std::min(percent, k_percent_before);
+  return std::ldexp(k_of_labels, -static_cast<int>(beyond / k_percent_to_halve));
+}
+
 CreaseTest::CreaseTest(double degrees) {
   constexpr double k_below_all = -2;
   const double cosine = cosine_of(degrees);
@@ -40,7 +50,7 @@ CreaseTest::CreaseTest(double degrees) {
 }
 
 void CreaseLines::find(const Mesh& mesh, const Adjacency& adjacency,
-                       std::vector<std::uint8_t>& flags) const {
+                       std::vector<std::uint8_t>& flags) {
   if (!exists_) return;
   for (std::uint32_t v = 0; v < flags.size(); ++v) {
     // Of an edge between two vertices each end sees it; one of them is enough.
@@ -55,25 +65,41 @@ void CreaseLines::find(const Mesh& mesh, const Adjacency& adjacency,
 }
 
 void CreaseLines::update(const Mesh& mesh, const Adjacency& adjacency,
-                         std::vector<std::uint8_t>& flags) const {
+                         std::vector<std::uint8_t>& flags) {
   if (!exists_) return;
   const std::vector<std::uint8_t> before = flags;
+  std::uint64_t vertices = 0;
+  std::uint64_t between_labels = 0;
   for (std::uint32_t v = 0; v < flags.size(); ++v) {
-    if ((before[v] & k_crease) != 0) flags[v] = updated(v, mesh.positions, adjacency, before);
+    vertices += adjacency.count(v) > 0 ? 1 : 0;
+    if ((before[v] & k_crease) == 0) continue;
+    const Updated now = look_at(v, mesh.positions, adjacency, before);
+    flags[v] = now.flags;
+    between_labels += now.is_between_labels ? 1 : 0;
   }
+  still_sharp_.weigh_labels(label_line_weight(between_labels, vertices));
 }
 
 std::uint8_t CreaseLines::updated(std::uint32_t vertex, std::span<const Vec3> positions,
                                   const Adjacency& adjacency,
                                   std::span<const std::uint8_t> flags) const {
+  return look_at(vertex, positions, adjacency, flags).flags;
+}
+
+CreaseLines::Updated CreaseLines::look_at(std::uint32_t vertex, std::span<const Vec3> positions,
+                                          const Adjacency& adjacency,
+                                          std::span<const std::uint8_t> flags) const {
   const auto is_on_crease = [&](std::uint32_t end) { return (flags[end] & k_crease) != 0; };
   int creases = 0;
+  Updated now{static_cast<std::uint8_t>(flags[vertex] & ~(k_crease | k_corner))};
   for_crease_edges(adjacency.fan_at(vertex), positions[vertex], positions, still_sharp_,
-                   is_on_crease, [&](const Corner&, const Corner&, bool) { ++creases; });
-  auto now = static_cast<std::uint8_t>(flags[vertex] & ~(k_crease | k_corner));
+                   is_on_crease, [&](const Corner&, const Corner&, bool is_between_labels) {
+                     ++creases;
+                     now.is_between_labels = now.is_between_labels || is_between_labels;
+                   });
   if (creases == 0) return now;
-  now |= k_crease;
-  if (creases != 2 || (now & k_border) != 0) now |= k_corner;
+  now.flags |= k_crease;
+  if (creases != 2 || (now.flags & k_border) != 0) now.flags |= k_corner;
   return now;
 }
 

@@ -32,11 +32,26 @@ inline std::uint8_t barred_along(std::uint8_t flags) {
   return (flags & k_corner) != 0 ? k_corner : 0;
 }
 
+/// How much the planes along a line between labels count: these lines are all that is seen of
+/// labels, and are to be as exact as the surface is. At 2 % of the triangles 5 leaves them less
+/// exact than the surface of a scan in 60 cells whose jags hold half of the vertices; from 4 to 7
+/// costs the surface 10 to 13 % there. Were seams of texture coordinates as heavy, models with many
+/// charts would have 1.1 to 1.5 times the error.
+///
+/// Where more than half of the vertices are on such lines, as where labels are as fine as what is
+/// left of the mesh, these count half as much for each two per cent more. Else they would hold
+/// nearly all vertices, and little be left for the surface.
+double label_line_weight(std::uint64_t on_lines, std::uint64_t vertices);
+
 /// Tells creases by the angle: inner edges whose two triangles' normals differ by more.
 class CreaseTest {
  public:
   /// `degrees` in (0, 180), or 0: no edge is one.
   explicit CreaseTest(double degrees);
+
+  /// How much the planes along a crease count.
+  double weight(bool is_between_labels) const { return is_between_labels ? of_labels_ : 1; }
+  void weigh_labels(double weight) { of_labels_ = weight; }
 
   /// Of the edge from `at` to `end`, between the triangles (at, right, end) and (at, end, left).
   bool is_crease(Vec3 at, Vec3 right, Vec3 end, Vec3 left) const {
@@ -50,17 +65,8 @@ class CreaseTest {
 
  private:
   double cosine_squared_;  // with the cosine's sign
+  double of_labels_ = 1;
 };
-
-/// How much the planes along a crease count: lines between labels are all that is seen of these,
-/// and are to be as exact as the surface is. At 2 % of the triangles 5 leaves them less exact than
-/// the surface of a scan in 60 cells whose jags hold half of the vertices; from 4 to 7 costs the
-/// surface 10 to 13 % there. Were seams of texture coordinates as heavy, models with many charts
-/// would have 1.1 to 1.5 times the error.
-inline double crease_weight(bool is_between_labels) {
-  constexpr double k_of_labels = 7;
-  return is_between_labels ? k_of_labels : 1;
-}
 
 /// Calls take(one, other, is_between_labels) for the edges of a fan at the vertex at `at` that are
 /// creases, seams, or lie between two labels: the triangle that ends at the edge and the one that
@@ -97,14 +103,21 @@ class CreaseLines {
   const CreaseTest& test() const { return still_sharp_; }
 
   /// Flags the creases of the input and their corners.
-  void find(const Mesh& mesh, const Adjacency& adjacency, std::vector<std::uint8_t>& flags) const;
-  /// Unflags what is on no crease any more, and tells corners anew.
-  void update(const Mesh& mesh, const Adjacency& adjacency, std::vector<std::uint8_t>& flags) const;
+  void find(const Mesh& mesh, const Adjacency& adjacency, std::vector<std::uint8_t>& flags);
+  /// Unflags what is on no crease any more, tells corners anew, and weighs lines between labels.
+  void update(const Mesh& mesh, const Adjacency& adjacency, std::vector<std::uint8_t>& flags);
   /// The flags of one vertex as they should be.
   std::uint8_t updated(std::uint32_t vertex, std::span<const Vec3> positions,
                        const Adjacency& adjacency, std::span<const std::uint8_t> flags) const;
 
  private:
+  struct Updated {
+    std::uint8_t flags = 0;
+    bool is_between_labels = false;
+  };
+  Updated look_at(std::uint32_t vertex, std::span<const Vec3> positions, const Adjacency& adjacency,
+                  std::span<const std::uint8_t> flags) const;
+
   bool exists_;
   CreaseTest sharp_;
   CreaseTest still_sharp_;

@@ -145,8 +145,8 @@ Quadric EdgeRanking::line_planes_at(std::uint32_t vertex) const {
                      [&](const Corner& c, std::uint32_t end) { add(c, end, k_border_weight); });
   }
   for_creases_at(vertex, [&](const Corner& one, const Corner& other, bool is_between_labels) {
-    add(one, one.prev, crease_weight(is_between_labels));
-    add(other, one.prev, crease_weight(is_between_labels));
+    add(one, one.prev, input_.creases->weight(is_between_labels));
+    add(other, one.prev, input_.creases->weight(is_between_labels));
   });
   return planes;
 }

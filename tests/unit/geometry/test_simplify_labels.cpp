@@ -14,6 +14,7 @@
 #include <meshfarm/geometry/simplify.hpp>
 #include <meshfarm/util/errors.hpp>
 
+#include "geometry/simplify/simplify_lines.hpp"
 #include "test_simplify_meshes.hpp"
 
 using namespace meshfarm;
@@ -135,6 +136,36 @@ TEST_CASE("a round region neither grows nor shrinks as its line becomes coarse")
     const Mesh result = simplified_labelled(flat, target);
     CHECK(areas_of(result).at(1) == doctest::Approx(before).epsilon(0.0035));
   }
+}
+
+/// The square mean of how far the triangles of a sphere of radius 1 are inside it.
+double sag_of(const Mesh& mesh) {
+  double sum = 0;
+  for (const Triangle& t : mesh.triangles) {
+    const double sag = 1 - length(centre_of(mesh, t));
+    sum += sag * sag;
+  }
+  return std::sqrt(sum / static_cast<double>(mesh.triangles.size()));
+}
+
+TEST_CASE("labels as fine as the result leave vertices for the surface") {
+  const Mesh ball = sphere(6);
+  const auto waves = [](Vec3 p) -> Label {
+    return std::sin(30 * p.x) + std::sin(30 * p.y) + std::sin(30 * p.z) > 0 ? 1 : 0;
+  };
+  const Mesh result = simplified_labelled(labelled(ball, waves), 3000);
+  const Mesh plain = simplified_labelled(ball, 3000);
+  CHECK(result.triangles.size() == plain.triangles.size());
+  CHECK(lines_of(result).size() > 300);
+  CHECK(sag_of(result) < 2 * sag_of(plain));
+}
+
+TEST_CASE("lines between labels count less where they have more than half of the vertices") {
+  CHECK(label_line_weight(0, 0) == 7);
+  CHECK(label_line_weight(50, 100) == 7);
+  CHECK(label_line_weight(52, 100) == 3.5);
+  CHECK(label_line_weight(60, 100) == 7.0 / 32);
+  CHECK(label_line_weight(100, 100) > 0);
 }
 
 TEST_CASE("labels that are all the same change nothing") {
