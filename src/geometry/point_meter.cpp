@@ -32,6 +32,8 @@ std::vector<Vec3> middles_of_longest_sides(std::span<const Vec3> positions,
   std::vector<Vec3> middles;
   middles.reserve(triangles.size());
   for (const Triangle& t : triangles) {
+    const Vec3 at = positions[t[0]];
+    if (cross(positions[t[1]] - at, positions[t[2]] - at) == Vec3{}) continue;
     std::size_t longest = 0;
     double most = -1;
     for (std::size_t k = 0; k < 3; ++k) {
@@ -44,6 +46,18 @@ std::vector<Vec3> middles_of_longest_sides(std::span<const Vec3> positions,
     middles.push_back(positions[t[longest]] * 0.5 + positions[t[(longest + 1) % 3]] * 0.5);
   }
   return middles;
+}
+
+std::vector<Vec3> vertices_of_surface(std::span<const Vec3> positions,
+                                      std::span<const Triangle> triangles) {
+  std::vector<std::uint8_t> is_there(positions.size(), 0);
+  for_corners_with_area(positions, triangles, [&](std::uint32_t v) { is_there[v] = 1; });
+  std::vector<Vec3> vertices;
+  vertices.reserve(positions.size());
+  for (std::size_t v = 0; v < positions.size(); ++v) {
+    if (is_there[v] != 0) vertices.push_back(positions[v]);
+  }
+  return vertices;
 }
 
 class PointMeter::Impl {

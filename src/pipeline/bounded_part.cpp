@@ -14,6 +14,7 @@
 #include <meshfarm/geometry/surface_bound.hpp>
 #include <meshfarm/util/errors.hpp>
 
+#include "pipeline/beyond_bound.hpp"
 #include "pipeline/bound_proof.hpp"
 
 namespace meshfarm {
@@ -50,11 +51,47 @@ class PartSimplifier {
   BoundedPart run(Part part) {
     samples_ = sample_surface(part.mesh, {.samples = parameters_.samples, .threads = 1});
     vertices_ = vertices_of(part);
-    return write(parameters_.certified_error > 0 ? certified(part) : simplified(std::move(part)));
+    return write(parameters_.certified_error > 0 ? certified(part) : measured(part));
   }
 
  private:
-  Simplifier simplified(Part part, double share = 1) const {
+  /// Where it goes too far, the part stays as it came; if that were much of it, it is simplified to
+  /// a share of the bound.
+  Simplifier measured(const Part& part) const {
+    constexpr double k_little = 0.05;  // vertices, for each triangle of the result
+    constexpr double k_less = 0.85;
+    const double most = k_most_beyond * parameters_.max_error;
+    std::vector<std::uint8_t> moves = free_vertices(part);
+    double share = 1;
+    for (int tries = 1;; ++tries) {
+      Simplifier simplifier = simplified(with_locked(part, moves), share);
+      const Mesh& made = simplifier.mesh();
+      if (made.triangles.empty() || tries == k_bounded_tries) return simplifier;
+      const Mesh lost = part_beyond(part.mesh, PointsInside::none, made, most, 1);
+      const Mesh astray = part_beyond(made, PointsInside::some, part.mesh, most, 1);
+      if (lost.triangles.empty() && astray.triangles.empty()) return simplifier;
+      std::vector<std::uint8_t> left = moves;
+      clear_near(lost, parameters_.max_error, part.mesh.positions, left);
+      clear_near(astray, parameters_.max_error, part.mesh.positions, left);
+      const auto held = static_cast<double>(std::count(left.begin(), left.end(), 0));
+      const bool is_little =
+          held - part.boundary_vertices < k_little * static_cast<double>(made.triangles.size());
+      is_little ? moves.swap(left) : static_cast<void>(share *= k_less);
+    }
+  }
+
+  static std::vector<std::uint8_t> free_vertices(const Part& part) {
+    std::vector<std::uint8_t> moves(part.mesh.positions.size(), 1);
+    std::fill(moves.begin(), moves.begin() + part.boundary_vertices, std::uint8_t{0});
+    return moves;
+  }
+
+  static Part with_locked(Part part, const std::vector<std::uint8_t>& moves) {
+    part.boundary_vertices = put_last(part.mesh, moves);
+    return part;
+  }
+
+  Simplifier simplified(Part part, double share) const {
     const std::uint64_t before = part.mesh.triangles.size();
     std::optional<SurfaceBound> bound;
     if (before > 0) {
@@ -82,13 +119,10 @@ class PartSimplifier {
   /// where that is little.
   Simplifier certified(const Part& part) const {
     const BoundProof proof(part.mesh, parameters_.certified_error, 1);
-    std::vector<std::uint8_t> moves(part.mesh.positions.size(), 1);
-    std::fill(moves.begin(), moves.begin() + part.boundary_vertices, std::uint8_t{0});
+    std::vector<std::uint8_t> moves = free_vertices(part);
     std::size_t tries = 0;
     for (std::size_t i = 0; i < k_certified_shares.size();) {
-      Part with_locked = part;
-      with_locked.boundary_vertices = put_last(with_locked.mesh, moves);
-      Simplifier simplifier = simplified(std::move(with_locked), k_certified_shares[i]);
+      Simplifier simplifier = simplified(with_locked(part, moves), k_certified_shares[i]);
       goes_on(1, 1);
       const bool is_near = proof.is_near(simplifier.mesh());
       const std::vector<Triangle> lost = proof.find_lost(simplifier.mesh());

@@ -6,6 +6,7 @@
 
 #include <meshfarm/divide/block_cut.hpp>
 #include <meshfarm/divide/slab.hpp>
+#include <meshfarm/geometry/point_meter.hpp>
 #include <meshfarm/io/part_file.hpp>
 #include <meshfarm/io/slab_file.hpp>
 #include <meshfarm/io/stream_file.hpp>
@@ -27,6 +28,7 @@ class StreamWindow {
     forget_finished();
     positions_.insert(positions_.end(), block.positions.begin(), block.positions.end());
     finished_.resize(positions_.size(), 0);
+    shown_.resize(positions_.size(), 0);
     for (const StreamCorner vertex : block.boundary) {
       if (vertex.last_use())
         finished_[positions_.size() - block.positions.size() + vertex.vertex()] = 1;
@@ -40,9 +42,15 @@ class StreamWindow {
       }
       triangles_.push_back(triangle);
     }
+    fresh_.clear();
+    for_corners_with_area(positions_, triangles_, [&](std::uint32_t v) {
+      if (std::exchange(shown_[v], 1) == 0) fresh_.push_back(positions_[v]);
+    });
     return triangles_;
   }
   std::span<const Vec3> positions() const { return positions_; }
+  /// Those of the block's triangles that none had before.
+  std::span<const Vec3> fresh() const { return fresh_; }
 
  private:
   void forget_finished() {
@@ -50,12 +58,15 @@ class StreamWindow {
     first_ += static_cast<std::uint32_t>(first);
     positions_.erase(positions_.begin(), positions_.begin() + first);
     finished_.erase(finished_.begin(), finished_.begin() + first);
+    shown_.erase(shown_.begin(), shown_.begin() + first);
   }
 
   std::uint32_t first_ = 0;  // number in the stream of the first vertex that is kept
   std::vector<Vec3> positions_;
   std::vector<std::uint8_t> finished_;
+  std::vector<std::uint8_t> shown_;
   std::vector<Triangle> triangles_;
+  std::vector<Vec3> fresh_;
 };
 
 }  // namespace
@@ -106,7 +117,8 @@ void InputSurface::show_part(std::uint32_t p, const Show& show) {
     for (const Vec3& v : positions) boxes_[p].add(v);
     boundary_[p].assign(positions.begin(), positions.begin() + part.boundary_vertices);
   }
-  show({positions, part.mesh.triangles, part.mesh.columns, positions, p});
+  const std::vector<Vec3> fresh = vertices_of_surface(positions, part.mesh.triangles);
+  show({positions, part.mesh.triangles, part.mesh.columns, fresh, p});
 }
 
 /// Sorted as the job does it, for the numbers of its boundary vertices.
@@ -121,7 +133,8 @@ void InputSurface::show_slab(std::uint32_t p, const Show& show) {
       if (sorted.boundary[i] != 0) boundary_[p].push_back(positions[i]);
     }
   }
-  show({positions, sorted.mesh.triangles, sorted.mesh.columns, positions, p});
+  const std::vector<Vec3> fresh = vertices_of_surface(positions, sorted.mesh.triangles);
+  show({positions, sorted.mesh.triangles, sorted.mesh.columns, fresh, p});
 }
 
 void InputSurface::show_stream(std::uint32_t p, const Show& show) {
@@ -139,7 +152,7 @@ void InputSurface::show_stream(std::uint32_t p, const Show& show) {
       }
     }
     const std::vector<Triangle>& triangles = window.add(block);
-    show({window.positions(), triangles, block.columns, block.positions, p});
+    show({window.positions(), triangles, block.columns, window.fresh(), p});
   }
   bytes.expect_end();
 }

@@ -230,7 +230,8 @@ class PieceMeter {
     double farthest = error_.to_output.max;
     for (const Mesh& part : parts) {
       std::vector<Vec3> points;
-      append_every(part.positions, parameters_.input_step, points);
+      append_every(vertices_of_surface(part.positions, part.triangles), parameters_.input_step,
+                   points);
       if (parameters_.with_sides) {
         append_every(middles_of_longest_sides(part.positions, part.triangles), 1, points);
       }

@@ -22,6 +22,7 @@
 #include <meshfarm/geometry/triangle_index.hpp>
 #include <meshfarm/geometry/vertices.hpp>
 
+#include "pipeline/beyond_bound.hpp"
 #include "pipeline/bound_proof.hpp"
 
 namespace meshfarm {
@@ -218,6 +219,47 @@ BoundedFinish simplified_with_proof(SeamMesh seams, const SurfaceBound& bound,
   return simplified(std::move(seams), nullptr, options);
 }
 
+/// What was near before: the rest of the input is near what lies beside the seams.
+Mesh part_lost(const Mesh& input, const Mesh& before, const Mesh& after, double most,
+               unsigned threads) {
+  const Mesh beyond = part_beyond(input, PointsInside::none, after, most, threads);
+  if (beyond.triangles.empty()) return {};
+  const Mesh others = part_beyond(beyond, PointsInside::none, before, most, threads);
+  std::vector<Places> known;
+  for (const Triangle& t : others.triangles) known.push_back(places_of(others, t));
+  std::sort(known.begin(), known.end());
+  std::vector<Triangle> lost;
+  std::copy_if(beyond.triangles.begin(), beyond.triangles.end(), std::back_inserter(lost),
+               [&](const Triangle& t) {
+                 return !std::binary_search(known.begin(), known.end(), places_of(beyond, t));
+               });
+  Mesh part;
+  append_surface(beyond.positions, lost, part);
+  return part;
+}
+
+/// Where it goes too far, and what was there before did not, that stays as it is.
+BoundedFinish simplified_and_measured(SeamMesh seams, const SurfaceBound& bound,
+                                      const BoundedFinishOptions& options) {
+  const double most = k_most_beyond * options.max_error;
+  const std::vector<Places> fixed = fixed_places(seams);
+  for (int tries = 1;; ++tries) {
+    BoundedFinish finish = simplified(seams, &bound, options);
+    if (finish.mesh.triangles.empty() || tries == k_bounded_tries) return finish;
+    Mesh changed;
+    changed.positions = finish.mesh.positions;
+    are_kept(fixed, finish.mesh, changed.triangles);
+    const Mesh astray =
+        part_beyond(changed, PointsInside::some, bound.surface(), most, options.threads);
+    const Mesh lost = part_lost(bound.surface(), seams.mesh, finish.mesh, most, options.threads);
+    if (astray.triangles.empty() && lost.triangles.empty()) return finish;
+    std::vector<std::uint8_t> flags = free_flags(seams);
+    clear_near(astray, options.max_error, seams.mesh.positions, flags);
+    clear_near(lost, options.max_error, seams.mesh.positions, flags);
+    lock_others(std::move(flags), seams);
+  }
+}
+
 }  // namespace
 
 NearCells cells_round_changes(const SeamMesh& seams, const BoundedFinishOptions& options) {
@@ -249,7 +291,7 @@ BoundedFinish simplify_seams(SeamMesh seams, Mesh input, const BoundedFinishOpti
   if (input.triangles.empty()) return simplified(std::move(seams), nullptr, options);
   const SurfaceBound bound(std::move(input), {options.max_error, options.threads, true});
   return options.certified_error > 0 ? simplified_with_proof(std::move(seams), bound, options)
-                                     : simplified(std::move(seams), &bound, options);
+                                     : simplified_and_measured(std::move(seams), bound, options);
 }
 
 }  // namespace meshfarm

@@ -208,6 +208,22 @@ TEST_CASE("streams: a flipped byte or a cut is named with its place, and nothing
   }
 }
 
+TEST_CASE("a bound is kept inside of large triangles, too") {
+  const std::string foam = bench().path("foam.ply");
+  REQUIRE(
+      bench().meshfarm({"generate", "--shape", "foam", "--triangles", "60000", "-o", foam}).code ==
+      0);
+  const Ran ran = bench().meshfarm({"simplify", foam, "-o", bench().path("bounded.ply"), "--scheme",
+                                    "stream", "--error", "2%", "--json"});
+  CHECK(ran.code == 0);
+  const auto told = [&](const char* name, std::size_t from) {
+    const std::string key = std::string("\"") + name + "\": ";
+    return std::stod(ran.out.substr(ran.out.find(key, from) + key.size()));
+  };
+  CHECK(told("max", ran.out.find("\"error\": {")) < 1.12 * 0.02);
+  CHECK(told("triangles", ran.out.find("\"output\": {")) < 2000);
+}
+
 TEST_CASE("streams: info tells what a stream holds, and names the place of damage") {
   const std::string stage = bench().streams();
   const std::string stream = (fs::path(stage) / "streams" / "000001.stream").string();

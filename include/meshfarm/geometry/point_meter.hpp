@@ -19,10 +19,25 @@ struct PointMeterHints {
   bool all_are_beyond = false;  // `usual`: the first pass, which looks no farther, is left out
 };
 
-/// The middle of each triangle's longest side. Where triangles are far from a surface, their
-/// vertices or these points usually show it.
+/// The middle of the longest side of each triangle that has an area. Where triangles are far from a
+/// surface, their vertices or these points usually show it.
 std::vector<Vec3> middles_of_longest_sides(std::span<const Vec3> positions,
                                            std::span<const Triangle> triangles);
+
+/// Of the surface only those vertices are a part that a triangle with an area has: calls
+/// `take(vertex)` for each corner of these triangles.
+template <typename Take>
+void for_corners_with_area(std::span<const Vec3> positions, std::span<const Triangle> triangles,
+                           const Take& take) {
+  for (const Triangle& t : triangles) {
+    const Vec3 at = positions[t[0]];
+    if (cross(positions[t[1]] - at, positions[t[2]] - at) == Vec3{}) continue;
+    for (const std::uint32_t v : t) take(v);
+  }
+}
+/// Their positions, in the order of their numbers.
+std::vector<Vec3> vertices_of_surface(std::span<const Vec3> positions,
+                                      std::span<const Triangle> triangles);
 
 /// Measures from points to a surface that does not fit into memory. The caller shows the surface
 /// piece by piece, all of it in each pass. The first pass finds what is near; a second pass, if

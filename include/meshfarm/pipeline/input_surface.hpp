@@ -18,7 +18,7 @@ struct SurfacePiece {
   std::span<const Vec3> positions;
   std::span<const Triangle> triangles;
   TriangleColumnsView columns;  // of these
-  /// Vertices that no piece of the same part showed before.
+  /// Vertices of triangles with an area that no piece of the same part showed before.
   std::span<const Vec3> fresh;
   std::uint32_t part = 0;  // as many as there are parts: between parts
 };

@@ -147,6 +147,14 @@ TEST_CASE("the last pass asks only for what is near the points that found nothin
   CHECK(shown.pieces < near.pieces + 120);  // of 200
 }
 
+TEST_CASE("vertices and middles are those of triangles with an area") {
+  const std::vector<Vec3> positions = {{0, 0, 0}, {4, 0, 0}, {0, 1, 0}, {9, 9, 9}, {2, 0, 0}};
+  const std::vector<Triangle> triangles = {{0, 1, 2}, {0, 0, 3}, {0, 1, 4}};
+  CHECK(vertices_of_surface(positions, triangles) ==
+        std::vector<Vec3>{positions[0], positions[1], positions[2]});
+  CHECK(middles_of_longest_sides(positions, triangles) == std::vector<Vec3>{{2, 0.5, 0}});
+}
+
 TEST_CASE("no points need no pass") {
   PointMeter meter({}, {1, 1, {}});
   CHECK_FALSE(meter.begin_pass());
