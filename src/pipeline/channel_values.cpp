@@ -2,8 +2,11 @@
 // SPDX-License-Identifier: MIT
 #include "pipeline/channel_values.hpp"
 
+#include <algorithm>
 #include <array>
+#include <limits>
 #include <span>
+#include <vector>
 
 #include <meshfarm/geometry/channel_fit.hpp>
 #include <meshfarm/geometry/vertex_normals.hpp>
@@ -36,6 +39,29 @@ void recompute_normals(const Mesh& mesh, std::size_t channels,
   }
 }
 
+/// What the values of a channel are between. Least squares go beyond that where points tell little
+/// of a vertex, or values make a step.
+struct Range {
+  float lo = std::numeric_limits<float>::infinity();
+  float hi = -std::numeric_limits<float>::infinity();
+
+  void add(float value) {
+    lo = std::min(lo, value);
+    hi = std::max(hi, value);
+  }
+  float nearest(float value) const { return lo <= hi ? std::clamp(value, lo, hi) : value; }
+};
+
+void add_to(std::vector<Range>& ranges, std::span<const float> values) {
+  for (std::size_t i = 0; i < values.size(); ++i) ranges[i % ranges.size()].add(values[i]);
+}
+
+void bring_into(const std::vector<Range>& ranges, std::span<float> values) {
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    values[i] = ranges[i % ranges.size()].nearest(values[i]);
+  }
+}
+
 }  // namespace
 
 ChannelValues fit_channels(const Stage& stage, const Manifest& manifest, const Mesh& result,
@@ -52,6 +78,7 @@ ChannelValues fit_channels(const Stage& stage, const Manifest& manifest, const M
     return made;
   }
   ChannelFit fit(result, {channels, staged.points, fitting.threads});
+  std::vector<Range> ranges(channels);
   StagedReader file(stage, staged.file);
   ChannelReader reader([&](std::span<char> buffer) { file.fill(buffer); }, staged,
                        manifest.positions, staged.file.name);
@@ -60,11 +87,13 @@ ChannelValues fit_channels(const Stage& stage, const Manifest& manifest, const M
   while (reader.next(block)) {
     if (channels != width) block.values = values_at(block.values, width, fitting.columns);
     fit.add(block.points, block.values);
+    add_to(ranges, block.values);
     done += block.points.size();
     progress(static_cast<double>(done) / static_cast<double>(staged.points));
   }
   file.expect_end();
   made.values = fit.values();
+  bring_into(ranges, made.values);
   repair_values(made.channels, made.values);
   const auto normals = normal_columns(made.channels);
   if (fitting.normals == Normals::recompute && normals) {

@@ -187,6 +187,21 @@ TEST_CASE("a picture on a flat wall stays") {
   }
 }
 
+TEST_CASE("no vertex has a value beyond those of the input") {
+  Bench bench;
+  const Mesh wall = test::grid(240, 160);
+  std::vector<float> values;
+  for (const Vec3& p : wall.positions) values.push_back(p.x + 0.3 * p.y < 130 ? 0.25F : 1);
+  write_mesh(bench.path("step.ply"), wall, PositionType::float32, {k_channels.back()}, values);
+  for (const std::string scheme : {"cut", "stream"}) {
+    REQUIRE(bench.simplify("step.ply", "out.ply", {"--scheme", scheme}).code == 0);
+    for (const float value : read_channels(bench.path("out.ply")).all.values) {
+      CHECK(value >= 0.25F);
+      CHECK(value <= 1);
+    }
+  }
+}
+
 TEST_CASE("a stage holds the channels: a replay needs no input, and finds damage") {
   Bench bench;
   const std::string stage = bench.path("stage");
