@@ -86,7 +86,8 @@ class PartSimplifier {
     return moves;
   }
 
-  static Part with_locked(Part part, const std::vector<std::uint8_t>& moves) {
+  static Part with_locked(const Part& as_it_came, const std::vector<std::uint8_t>& moves) {
+    Part part = as_it_came;
     part.boundary_vertices = put_last(part.mesh, moves);
     return part;
   }
