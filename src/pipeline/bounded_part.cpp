@@ -48,7 +48,7 @@ class PartSimplifier {
                  std::string_view beside)
       : parameters_(parameters), context_(context), beside_(beside) {}
 
-  BoundedPart run(Part part) {
+  BoundedPart run(const Part& part) {
     samples_ = sample_surface(part.mesh, {.samples = parameters_.samples, .threads = 1});
     vertices_ = vertices_of(part);
     return write(parameters_.certified_error > 0 ? certified(part) : measured(part));
@@ -164,9 +164,9 @@ class PartSimplifier {
 
 }  // namespace
 
-BoundedPart simplify_to_bound(Part part, const SimplifyParameters& parameters,
+BoundedPart simplify_to_bound(const Part& part, const SimplifyParameters& parameters,
                               const JobContext& context, std::string_view beside) {
-  return PartSimplifier(parameters, context, beside).run(std::move(part));
+  return PartSimplifier(parameters, context, beside).run(part);
 }
 
 }  // namespace meshfarm

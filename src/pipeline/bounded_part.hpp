@@ -20,7 +20,7 @@ struct BoundedPart {
 /// Simplifies a part as far as no distance between it and what it was is above
 /// SimplifyParameters::max_error, in either direction. `beside`: what the file is to have beside
 /// its mesh.
-BoundedPart simplify_to_bound(Part part, const SimplifyParameters& parameters,
+BoundedPart simplify_to_bound(const Part& part, const SimplifyParameters& parameters,
                               const JobContext& context, std::string_view beside = {});
 
 }  // namespace meshfarm

@@ -357,7 +357,7 @@ JobOutput simplify_part(const Job& job, const JobContext& context) {
   part.mesh.columns.keep(parameters.lines.columns);
   const ResultName name{key_of(job).value, context.attempt, context.incarnation};
   if (parameters.max_error > 0) {
-    BoundedPart bounded = simplify_to_bound(std::move(part), parameters, context, at_hand.beside);
+    BoundedPart bounded = simplify_to_bound(part, parameters, context, at_hand.beside);
     bounded.summary.built = at_hand.facts;
     return {context.publish(name, bounded.file), encode_summary(bounded.summary)};
   }
