@@ -59,7 +59,7 @@ TEST_CASE("what is missing and what fails have patience of their own") {
 
 TEST_CASE("what was waited for in vain is not waited for again") {
   ReadPatience patience = {
-      .first_wait_ms = 1, .missing = milliseconds(5000), .failing = milliseconds(30)};
+      .first_wait_ms = 1, .missing = milliseconds(5000), .failing = milliseconds(1000)};
   Failing fails{EIO, 1'000'000};
   try {
     outlast(patience, [&] { return fails(); });
