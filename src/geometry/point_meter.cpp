@@ -27,23 +27,26 @@ constexpr double k_meter_cell = 2;
 
 }  // namespace
 
+Vec3 middle_of_longest_side(std::span<const Vec3> positions, const Triangle& triangle) {
+  std::size_t longest = 0;
+  double most = -1;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const double squared =
+        squared_length(positions[triangle[(k + 1) % 3]] - positions[triangle[k]]);
+    if (squared > most) {
+      most = squared;
+      longest = k;
+    }
+  }
+  return positions[triangle[longest]] * 0.5 + positions[triangle[(longest + 1) % 3]] * 0.5;
+}
+
 std::vector<Vec3> middles_of_longest_sides(std::span<const Vec3> positions,
                                            std::span<const Triangle> triangles) {
   std::vector<Vec3> middles;
   middles.reserve(triangles.size());
   for (const Triangle& t : triangles) {
-    const Vec3 at = positions[t[0]];
-    if (cross(positions[t[1]] - at, positions[t[2]] - at) == Vec3{}) continue;
-    std::size_t longest = 0;
-    double most = -1;
-    for (std::size_t k = 0; k < 3; ++k) {
-      const double squared = squared_length(positions[t[(k + 1) % 3]] - positions[t[k]]);
-      if (squared > most) {
-        most = squared;
-        longest = k;
-      }
-    }
-    middles.push_back(positions[t[longest]] * 0.5 + positions[t[(longest + 1) % 3]] * 0.5);
+    if (!has_no_area(positions, t)) middles.push_back(middle_of_longest_side(positions, t));
   }
   return middles;
 }

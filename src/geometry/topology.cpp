@@ -14,11 +14,6 @@
 namespace meshfarm {
 namespace {
 
-bool has_no_area(const Mesh& mesh, const Triangle& t) {
-  const Vec3 a = mesh.positions[t[0]];
-  return cross(mesh.positions[t[1]] - a, mesh.positions[t[2]] - a) == Vec3{};
-}
-
 /// Values sorted into buckets by one counting sort: 8 bytes a bucket, no second copy of the values.
 template <typename Value>
 class Buckets {
@@ -174,7 +169,7 @@ PieceTopology measure_piece(const Mesh& mesh, std::span<const std::array<std::ui
     if (is_degenerate(t))
       ++topology.degenerate;
     else
-      topology.zero_area += has_no_area(mesh, t);
+      topology.zero_area += has_no_area(mesh.positions, t);
   }
   piece.roots = count_components(mesh, shared, topology);
   count_edges(mesh, sides, topology);

@@ -10,10 +10,10 @@
 
 #include <meshfarm/geometry/distance.hpp>
 #include <meshfarm/geometry/near_cells.hpp>
+#include <meshfarm/geometry/point_meter.hpp>
 #include <meshfarm/geometry/vertices.hpp>
 
 namespace meshfarm {
-
 namespace {
 
 /// Points of a surface, and the triangles that they are of.
@@ -27,26 +27,14 @@ struct PointsOfTriangles {
   }
 };
 
-Vec3 middle_of_longest_side(const std::array<Vec3, 3>& corners) {
-  std::size_t longest = 0;
-  double most = -1;
-  for (std::size_t i = 0; i < 3; ++i) {
-    const double squared = squared_length(corners[(i + 1) % 3] - corners[i]);
-    if (squared > most) {
-      most = squared;
-      longest = i;
-    }
-  }
-  return corners[longest] * 0.5 + corners[(longest + 1) % 3] * 0.5;
-}
-
 /// The corners of a grid that divides the triangle, but for its own.
-void add_grid(const std::array<Vec3, 3>& corners, std::uint32_t triangle, double distance,
+void add_grid(const Mesh& mesh, std::uint32_t triangle, double distance,
               PointsOfTriangles& points) {
   constexpr double k_spacing = 0.5;  // in distances
   constexpr double k_least = 3;
   constexpr double k_most = 10;
-  const auto& [a, b, c] = corners;
+  const Triangle& t = mesh.triangles[triangle];
+  const Vec3 a = mesh.positions[t[0]], b = mesh.positions[t[1]], c = mesh.positions[t[2]];
   const double longest =
       std::sqrt(std::max({squared_length(b - a), squared_length(c - b), squared_length(a - c)}));
   const double steps = std::clamp(std::ceil(longest / (k_spacing * distance)), k_least, k_most);
@@ -64,15 +52,13 @@ PointsOfTriangles points_of(const Mesh& mesh, PointsInside inside, double distan
   PointsOfTriangles found;
   std::vector<std::uint8_t> is_there(mesh.positions.size(), 0);
   for (std::uint32_t i = 0; i < mesh.triangles.size(); ++i) {
-    const auto& [a, b, c] = mesh.triangles[i];
-    const std::array<Vec3, 3> corners = {mesh.positions[a], mesh.positions[b], mesh.positions[c]};
-    if (cross(corners[1] - corners[0], corners[2] - corners[0]) == Vec3{}) continue;
-    for (const std::uint32_t v : mesh.triangles[i]) {
+    const Triangle& t = mesh.triangles[i];
+    if (has_no_area(mesh.positions, t)) continue;
+    for (const std::uint32_t v : t) {
       if (std::exchange(is_there[v], 1) == 0) found.add(mesh.positions[v], i);
     }
-    found.add(middle_of_longest_side(corners), i);
-    if (inside == PointsInside::none) continue;
-    add_grid(corners, i, distance, found);
+    found.add(middle_of_longest_side(mesh.positions, t), i);
+    if (inside == PointsInside::some) add_grid(mesh, i, distance, found);
   }
   return found;
 }

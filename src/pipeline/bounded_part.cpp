@@ -76,7 +76,11 @@ class PartSimplifier {
       const auto held = static_cast<double>(std::count(left.begin(), left.end(), 0));
       const bool is_little =
           held - part.boundary_vertices < k_little * static_cast<double>(made.triangles.size());
-      is_little ? moves.swap(left) : static_cast<void>(share *= k_less);
+      if (is_little) {
+        moves = std::move(left);
+      } else {
+        share *= k_less;
+      }
     }
   }
 

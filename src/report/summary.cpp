@@ -367,14 +367,16 @@ std::string warning_of(const RunSummary& s) {
               " are left: " + s.why_not_exact;
   }
   const double greatest = s.error.greater().max;
-  if (s.max_error > 0 && s.error.input_samples > 0 && greatest > s.max_error) {
+  const double bound = std::max(s.max_error, s.certified_error);
+  if (bound > 0 && s.error.input_samples > 0 && greatest > bound) {
     const double diagonal = s.manifest.box.diagonal();
     warning += (warning.empty() ? "" : "; ") + std::string("the bound of ") +
-               number(s.max_error / diagonal, "%.3g") +
+               number(bound / diagonal, "%.3g") +
                " is not kept everywhere: " + number(greatest / diagonal, "%.6g") +
                " at a sampled point";
     // Not with --drop-components.
-    if (s.dropped_components.components == 0) warning += "; --certify would keep it";
+    const bool may_certify = !(s.certified_error > 0) && s.dropped_components.components == 0;
+    if (may_certify) warning += "; --certify would keep it";
   }
   if (!s.better) return warning;
   const auto rms = [&](const MeasuredError& error) {

@@ -21,6 +21,12 @@ bool is_degenerate(const std::array<Index, 3>& t) {
   return t[0] == t[1] || t[1] == t[2] || t[2] == t[0];
 }
 
+/// Whether the corners are on one line, or two of them at one place: no part of a surface.
+inline bool has_no_area(std::span<const Vec3> positions, const Triangle& t) {
+  const Vec3 at = positions[t[0]];
+  return cross(positions[t[1]] - at, positions[t[2]] - at) == Vec3{};
+}
+
 /// How positions are kept in files. Coordinates are double in memory; a float32 mesh keeps every
 /// coordinate exactly representable as float, so that writing it loses nothing.
 enum class PositionType : std::uint8_t { float32 = 4, float64 = 8 };

@@ -19,6 +19,8 @@ struct PointMeterHints {
   bool all_are_beyond = false;  // `usual`: the first pass, which looks no farther, is left out
 };
 
+Vec3 middle_of_longest_side(std::span<const Vec3> positions, const Triangle& triangle);
+
 /// The middle of the longest side of each triangle that has an area. Where triangles are far from a
 /// surface, their vertices or these points usually show it.
 std::vector<Vec3> middles_of_longest_sides(std::span<const Vec3> positions,
@@ -30,8 +32,7 @@ template <typename Take>
 void for_corners_with_area(std::span<const Vec3> positions, std::span<const Triangle> triangles,
                            const Take& take) {
   for (const Triangle& t : triangles) {
-    const Vec3 at = positions[t[0]];
-    if (cross(positions[t[1]] - at, positions[t[2]] - at) == Vec3{}) continue;
+    if (has_no_area(positions, t)) continue;
     for (const std::uint32_t v : t) take(v);
   }
 }

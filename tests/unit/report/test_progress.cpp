@@ -103,6 +103,12 @@ TEST_CASE("a run's summary warns of a bound that a sampled point breaks") {
   CHECK(render(s, Format::json).find("\"warning\": \"" + warning) != std::string::npos);
   s.dropped_components.components = 3;
   CHECK(warning_of(s).find("--certify") == std::string::npos);
+  s.dropped_components = {};
+  s.certified_error = 0.1 + 1e-9;  // with the rounding of the output
+  CHECK(warning_of(s).find("is not kept everywhere") != std::string::npos);
+  CHECK(warning_of(s).find("--certify") == std::string::npos);
+  s.error.to_output.max = s.error.to_input.max = 0.1 + 1e-10;
+  CHECK(warning_of(s).empty());
 }
 
 TEST_CASE("a run's summary counts no edges of the input that only its simplified parts have") {
