@@ -8,9 +8,9 @@
 
 #include "cli/command.hpp"
 #include "cli/comparer.hpp"
-#include "cli/cut_step.hpp"
 #include "cli/measure_words.hpp"
 #include "cli/options.hpp"
+#include "cli/output_place.hpp"
 
 namespace meshfarm {
 namespace {
@@ -53,7 +53,7 @@ class CompareCommand : public Command {
  private:
   void check_map() const {
     check_writable(map_);
-    for (const std::string& mesh : {a_, b_}) check_not_over("--map", map_, mesh);
+    for (const std::string& mesh : {a_, b_}) check_not_over("--map", map_, "the input", mesh);
   }
 
   std::string a_;

@@ -14,6 +14,7 @@
 #include "cli/command.hpp"
 #include "cli/cut_step.hpp"
 #include "cli/options.hpp"
+#include "cli/output_place.hpp"
 #include "cli/output_words.hpp"
 #include "cli/texture_words.hpp"
 
@@ -49,7 +50,7 @@ class ConvertCommand : public Command {
     if (is_output_format(output_)) texture_words_for(output_, uv_);
   }
   int run() override {
-    check_not_over("OUTPUT", output_, input_);
+    check_not_over("OUTPUT", output_, "the input", input_);
     check_writable(output_);
     if (talk_.quiet) set_log(name(), LogLevel::warning);
     const Textures textures = parse_uv(texture_words_for(output_, uv_).cut);

@@ -6,6 +6,7 @@
 
 #include "cli/command.hpp"
 #include "cli/options.hpp"
+#include "cli/output_place.hpp"
 
 namespace meshfarm {
 namespace {
@@ -38,7 +39,8 @@ class GenerateCommand : public Command {
     shape_named(shape_);
   }
   int run() override {
-    check_output_format(output_);
+    check_writable(output_);
+    if (!from_.empty()) check_not_over("-o", output_, "the input", from_);
     shuffle_ ? write_shuffled() : write_in_order();
     return 0;
   }

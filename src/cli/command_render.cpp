@@ -12,6 +12,7 @@
 #include "cli/cut_step.hpp"
 #include "cli/measure_words.hpp"
 #include "cli/options.hpp"
+#include "cli/output_place.hpp"
 #include "cli/staged_picture.hpp"
 #include "cli/view_words.hpp"
 
@@ -42,6 +43,8 @@ class RenderCommand : public Command {
   }
   int run() override {
     check_place(view_.output);
+    check_not_over("-o", view_.output, "the input", mesh_);
+    check_not_of_stage("-o", view_.output, mesh_);
     if (talk_.quiet) set_log(name(), LogLevel::warning);
     ProgressPrinter printer(talk_.progress());
     RenderOptions& options = view_.render;

@@ -3,7 +3,7 @@
 #include <optional>
 
 #include "cli/command.hpp"
-#include "cli/cut_step.hpp"
+#include "cli/output_place.hpp"
 #include "cli/run_report.hpp"
 #include "cli/view_words.hpp"
 
@@ -33,6 +33,7 @@ class ReportCommand : public Command {
   }
   int run() override {
     check_place(output_);
+    check_not_of_stage("-o", output_, stage_);
     RunReport report{stage_, output_, MadeBy::another};
     if (epoch_ != 0) report.epoch = epoch_;
     if (!up_.empty()) report.up = parse_up(up_);

@@ -13,9 +13,9 @@
 #include <meshfarm/util/log.hpp>
 
 #include "cli/command.hpp"
-#include "cli/cut_step.hpp"
 #include "cli/local_farm.hpp"
 #include "cli/options.hpp"
+#include "cli/output_place.hpp"
 #include "cli/run_report.hpp"
 #include "cli/signals.hpp"
 #include "cli/texture_words.hpp"
@@ -77,7 +77,8 @@ class RunCommand : public Command {
     if (worker_words_) return print_worker_words();
     const std::atomic<bool>& stop = stop_on_signals();
     check_writable(output_);
-    if (!report_.empty()) check_place(report_);
+    check_not_of_stage("-o", output_, stage_);
+    if (!report_.empty()) check_report();
     const Claim claim(claim_of(output_), output_ + ": is being made");
     remove_unfinished(output_);
     const int code = run_local_farm(
@@ -91,6 +92,12 @@ class RunCommand : public Command {
   }
 
  private:
+  void check_report() const {
+    check_place(report_);
+    check_not_over("--report", report_, "the result", output_);
+    check_not_of_stage("--report", report_, stage_);
+  }
+
   int print_worker_words() const {
     const Stage stage = Stage::open(stage_);
     const Manifest manifest =

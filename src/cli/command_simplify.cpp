@@ -11,9 +11,11 @@
 #include <meshfarm/util/log.hpp>
 
 #include "cli/command.hpp"
+#include "cli/cut_record.hpp"
 #include "cli/cut_step.hpp"
 #include "cli/local_farm.hpp"
 #include "cli/options.hpp"
+#include "cli/output_place.hpp"
 #include "cli/run_report.hpp"
 #include "cli/signals.hpp"
 #include "cli/texture_words.hpp"
@@ -63,6 +65,7 @@ class SimplifyCommand : public Command {
     if (in_batch_) workers_ = 0;
     if ((workers_ == 0 && !in_batch_) || workers_ > 1000)
       throw UsageError("--workers: from 1 to 1000");
+    is_own_stage_ = stage_.empty() || in_batch_;
     if (stage_.empty()) stage_ = output_ + ".stage";
     network_.bind = "127.0.0.1";
     network_.this_host_only = true;
@@ -70,18 +73,26 @@ class SimplifyCommand : public Command {
   }
   int run() override {
     const std::atomic<bool>& stop = stop_on_signals();
-    check_not_over("-o", output_, input_);
+    check_not_over("-o", output_, "the input", input_);
     check_writable(output_);
-    if (!report_.empty()) check_place(report_);
+    if (!report_.empty()) check_report();
+    check_not_of_stage("-o", output_, stage_);
     const Claim claim(claim_of(output_), output_ + ": is being made");
     remove_unfinished(output_);
+    const bool stage_was_there = is_own_stage_ ? false : holds_cut(stage_);
     cut_to_stage({input_, stage_, cut_, talk_, stop,
                   [this](std::uint64_t triangles) { return farm_pays(triangles); }});
     const int code = run_local_farm(
         {stage_, output_, output_words_, target_, network_, schedule_, when_full_, talk_, workers_},
         stop);
     if (code == 0 && !report_.empty()) write_run_report({stage_, report_, MadeBy::this_command});
-    if (code == 0 && !keep_stage_) remove_stage(stage_);
+    if (code == 0 && !keep_stage_) {
+      if (stage_was_there) {
+        log_info(stage_ + " is kept: it held the cut before");
+      } else {
+        remove_stage(stage_);
+      }
+    }
     if (code == 3) {
       log_info(
           "stopped; the parts are kept: the same command goes on from there, and so does "
@@ -92,6 +103,13 @@ class SimplifyCommand : public Command {
   }
 
  private:
+  void check_report() const {
+    check_place(report_);
+    check_not_over("--report", report_, "the input", input_);
+    check_not_over("--report", report_, "the result", output_);
+    check_not_of_stage("--report", report_, stage_);
+  }
+
   /// Before there is a stage that a later command would find in its way.
   void check_farmed_cut() const {
     constexpr std::string_view k_not_kept =
@@ -117,6 +135,7 @@ class SimplifyCommand : public Command {
   std::string input_;
   std::string output_;
   std::string stage_;
+  bool is_own_stage_ = true;  // not one that a user may have made
   bool keep_stage_ = false;
   bool in_batch_ = false;
   std::uint32_t workers_ = default_workers();

@@ -16,8 +16,8 @@
 #include <meshfarm/util/memory.hpp>
 #include <meshfarm/util/stopwatch.hpp>
 
-#include "cli/cut_step.hpp"
 #include "cli/farm_command.hpp"
+#include "cli/output_place.hpp"
 #include "cli/output_words.hpp"
 #include "cli/texture_words.hpp"
 
@@ -58,6 +58,7 @@ class SinkCommand : public FarmCommand {
   void serve(const Stage& stage, const std::atomic<bool>& stop) override {
     const Manifest manifest = read_manifest(stage);
     check_writable(output_);
+    check_not_of_stage("-o", output_, stage.root().string());
     check_output_fits(output_, manifest, target_.run);
     check_need(manifest);
     if (!supervised()) tell_textures(manifest, target_.run);

@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <array>
+#include <system_error>
 
 #include <sys/stat.h>
 #include <unistd.h>
@@ -48,9 +49,8 @@ std::string options_of(const CutWords& words, bool farmed) {
   return text + ", algorithm " + std::to_string(k_algorithm_version);
 }
 
-}  // namespace
-
-CutRecord record_of(const std::string& input, const CutWords& words, bool farmed) {
+/// Without options.
+CutRecord record_of(const std::string& input) {
   const Fd fd = open_for_read(input);
   struct stat status {};
   if (::fstat(fd.get(), &status) != 0) throw_errno("cannot look at", input);
@@ -65,8 +65,27 @@ CutRecord record_of(const std::string& input, const CutWords& words, bool farmed
     sum.add(piece);
   }
   record.sum = sum.value();
+  return record;
+}
+
+}  // namespace
+
+CutRecord record_of(const std::string& input, const CutWords& words, bool farmed) {
+  CutRecord record = record_of(input);
   record.options = options_of(words, farmed);
   return record;
+}
+
+bool holds_cut(const std::filesystem::path& stage) {
+  std::error_code ignored;
+  return std::filesystem::exists(stage / to_string(ManifestName{}), ignored);
+}
+
+bool is_of_input(const Stage& stage, const std::string& file) {
+  const std::optional<CutRecord> staged = read_record(stage);
+  if (!staged) return false;
+  const CutRecord now = record_of(file);
+  return now.size == staged->size && now.changed_ns == staged->changed_ns && now.sum == staged->sum;
 }
 
 std::string difference(const CutRecord& staged, const CutRecord& wanted) {

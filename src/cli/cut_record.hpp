@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <optional>
 #include <string>
 
@@ -26,6 +27,10 @@ CutRecord record_of(const std::string& input, const CutWords& words, bool farmed
 std::string difference(const CutRecord& staged, const CutRecord& wanted);
 
 void publish_record(const Stage& stage, const CutRecord& record);
+/// Whether the stage holds a finished cut.
+bool holds_cut(const std::filesystem::path& stage);
+/// Whether the file is the one that the stage was cut from, as it was then.
+bool is_of_input(const Stage& stage, const std::string& file);
 /// Nothing if the stage has none: it was made by an older version.
 std::optional<CutRecord> read_record(const Stage& stage);
 

@@ -3,13 +3,9 @@
 #include "cli/cut_step.hpp"
 
 #include <cstdlib>
-#include <filesystem>
 #include <memory>
 #include <optional>
-#include <system_error>
 #include <utility>
-
-#include <unistd.h>
 
 #include <meshfarm/divide/block_cut.hpp>
 #include <meshfarm/divide/cut.hpp>
@@ -46,11 +42,6 @@ Manifest taken_up(const Stage& stage, const CutStep& step) {
   }
   log_info(root + " holds this cut already; it is taken up");
   return decode_manifest(stage.read(ManifestName{}), stage.path(ManifestName{}).string());
-}
-
-bool holds_cut(const std::filesystem::path& stage) {
-  std::error_code ignored;
-  return std::filesystem::exists(stage / to_string(ManifestName{}), ignored);
 }
 
 std::unique_ptr<MeshSource> open_input(const CutStep& step) {
@@ -138,26 +129,6 @@ void tell_textures(const std::string& input, const MeshFileInfo& info) {
   }
   if (info.textures.empty()) return;
   log_info(input + ": the vertices' colours are of the textures " + joined(info.textures));
-}
-
-void check_writable(const std::string& output) {
-  check_output_format(output);
-  check_place(output);
-}
-
-void check_place(const std::string& output) {
-  const std::filesystem::path path(output);
-  const std::filesystem::path folder = path.has_parent_path() ? path.parent_path() : ".";
-  if (std::filesystem::is_directory(path))
-    throw IoError("cannot write over the folder", path, EISDIR);
-  if (::access(folder.c_str(), W_OK | X_OK) != 0) throw_errno("cannot write into", folder);
-}
-
-void check_not_over(std::string_view option, const std::string& output, const std::string& input) {
-  std::error_code not_there;
-  if (!std::filesystem::equivalent(output, input, not_there)) return;
-  throw UsageError(std::string(option) + ": " + output + " is " + input +
-                   ", which it would write over");
 }
 
 }  // namespace meshfarm

@@ -6,7 +6,6 @@
 #include <cstdint>
 #include <functional>
 #include <string>
-#include <string_view>
 
 #include <meshfarm/io/manifest.hpp>
 
@@ -31,12 +30,5 @@ Manifest cut_to_stage(const CutStep& step);
 
 /// Tells, in a line, which textures have become colours, if any.
 void tell_textures(const std::string& input, const MeshFileInfo& info);
-
-/// Throws IoError now rather than after an hour's work if `output` cannot be made.
-void check_writable(const std::string& output);
-/// The same of what is no mesh.
-void check_place(const std::string& output);
-/// Throws UsageError if `output`, which is given by `option`, is the file `input`.
-void check_not_over(std::string_view option, const std::string& output, const std::string& input);
 
 }  // namespace meshfarm

@@ -16,6 +16,8 @@
 #include <meshfarm/util/file.hpp>
 #include <meshfarm/util/log.hpp>
 
+#include "cli/output_place.hpp"
+
 namespace meshfarm {
 namespace {
 
@@ -80,7 +82,8 @@ void PlanWords::add(po::options_description& options) {
                         "plan for the mesh cut into so many parts");
   options.add_options()("schedule",
                         po::value(&schedule)->default_value(schedule)->value_name("dynamic|static"),
-                        "dynamic or static");
+                        "dynamic: each job goes to the worker that is expected to finish it first; "
+                        "static: jobs are dealt out beforehand");
   options.add_options()("storage", po::value(&storage)->default_value(storage)->value_name("GBIT"),
                         "Gbit/s of the shared folder's server");
   options.add_options()("link", po::value(&link)->default_value(link)->value_name("GBIT"),
@@ -101,6 +104,7 @@ void PlanWords::add(po::options_description& options) {
 }
 
 void PlanWords::check() {
+  if (!output.empty() && !paper) throw UsageError("-o goes with --paper");
   std::istringstream words(workers);
   for (std::string word; std::getline(words, word, ',');) farms_.push_back({word, groups_in(word)});
   if (farms_.empty()) throw UsageError("--workers: none");
@@ -177,6 +181,13 @@ ScheduleComparison PlanWords::compare_schedules(const std::string& stage) const 
 }
 
 void PlanWords::run(Format format) const {
+  if (!output.empty()) {
+    check_place(output);
+    for (const std::string& stage : stages) {
+      check_not_over("-o", output, "the trace", stage);
+      check_not_of_stage("-o", output, stage);
+    }
+  }
   if (!paper) {
     for (const std::string& stage : stages) {
       std::cout << render(plan_of(stage, farms_), format) << "\n";

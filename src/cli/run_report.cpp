@@ -13,6 +13,7 @@
 #include <meshfarm/util/errors.hpp>
 #include <meshfarm/util/log.hpp>
 
+#include "cli/output_place.hpp"
 #include "cli/report_scene.hpp"
 
 namespace meshfarm {
@@ -91,6 +92,7 @@ void write_run_report(const RunReport& report) {
   if (report.made_by == MadeBy::this_command) page.command = command_of(own_words());
   if (!page.summary.empty()) {
     const RunResult made = parse_run_result(page.summary, "the run's summary");
+    check_not_over("the page", report.page, "the result", made.path);
     if (page.command.empty()) {
       page.command = command_of(
           {"replay", report.stage, "-o", made.path, "--triangles", std::to_string(made.triangles)});

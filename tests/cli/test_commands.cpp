@@ -298,25 +298,6 @@ TEST_CASE("an output of another format is refused before any work") {
   }
 }
 
-TEST_CASE("no result is written over the input that it is made of") {
-  Shell shell;
-  const std::string cube = shell.cube();
-  const std::string before = read_text(cube);
-  fs::create_symlink(cube, shell.path("link.ply"));
-  for (const std::string& output : {cube, shell.path("link.ply")}) {
-    for (const std::vector<std::string>& words :
-         {std::vector<std::string>{"simplify", cube, "-o", output, "--ratio", "0.5"},
-          {"convert", cube, output}}) {
-      const Ran ran = shell(words);
-      CHECK(ran.code == 2);
-      CHECK(lines(ran.err) == 1);
-      CHECK(has(ran.err, "which it would write over"));
-      CHECK(read_text(cube) == before);
-      CHECK_FALSE(fs::exists(output + ".stage"));
-    }
-  }
-}
-
 TEST_CASE("the manual pages are made of the options that help shows") {
   Shell shell;
   const std::string manual = shell.path("manual");
