@@ -78,7 +78,7 @@ class RunCommand : public Command {
     const std::atomic<bool>& stop = stop_on_signals();
     check_writable(output_);
     check_not_of_stage("-o", output_, stage_);
-    if (!report_.empty()) check_report();
+    if (!report_.empty()) check_report(report_, output_, stage_);
     const Claim claim(claim_of(output_), output_ + ": is being made");
     remove_unfinished(output_);
     const int code = run_local_farm(
@@ -92,12 +92,6 @@ class RunCommand : public Command {
   }
 
  private:
-  void check_report() const {
-    check_place(report_);
-    check_not_over("--report", report_, "the result", output_);
-    check_not_of_stage("--report", report_, stage_);
-  }
-
   int print_worker_words() const {
     const Stage stage = Stage::open(stage_);
     const Manifest manifest =

@@ -75,11 +75,14 @@ class SimplifyCommand : public Command {
     const std::atomic<bool>& stop = stop_on_signals();
     check_not_over("-o", output_, "the input", input_);
     check_writable(output_);
-    if (!report_.empty()) check_report();
+    if (!report_.empty()) {
+      check_not_over("--report", report_, "the input", input_);
+      check_report(report_, output_, stage_);
+    }
     check_not_of_stage("-o", output_, stage_);
     const Claim claim(claim_of(output_), output_ + ": is being made");
     remove_unfinished(output_);
-    const bool stage_was_there = is_own_stage_ ? false : holds_cut(stage_);
+    const bool stage_was_there = !is_own_stage_ && holds_cut(stage_);
     cut_to_stage({input_, stage_, cut_, talk_, stop,
                   [this](std::uint64_t triangles) { return farm_pays(triangles); }});
     const int code = run_local_farm(
@@ -103,13 +106,6 @@ class SimplifyCommand : public Command {
   }
 
  private:
-  void check_report() const {
-    check_place(report_);
-    check_not_over("--report", report_, "the input", input_);
-    check_not_over("--report", report_, "the result", output_);
-    check_not_of_stage("--report", report_, stage_);
-  }
-
   /// Before there is a stage that a later command would find in its way.
   void check_farmed_cut() const {
     constexpr std::string_view k_not_kept =

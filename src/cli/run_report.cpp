@@ -83,6 +83,12 @@ void add_report(po::options_description& options, std::string& page) {
                         "figures, and where the time went");
 }
 
+void check_report(const std::string& page, const std::string& result, const std::string& stage) {
+  check_place(page);
+  check_not_over("--report", page, "the result", result);
+  check_not_of_stage("--report", page, stage);
+}
+
 void write_run_report(const RunReport& report) {
   const Stage stage = Stage::open(report.stage);
   RunPage page;

@@ -17,6 +17,10 @@ namespace po = boost::program_options;
 /// Adds --report.
 void add_report(po::options_description& options, std::string& page);
 
+/// Throws Error if --report names what cannot be written, the result, or a file or the input of the
+/// stage.
+void check_report(const std::string& page, const std::string& result, const std::string& stage);
+
 /// Whose run it is: the page tells the command, or else how to replay the stage.
 enum class MadeBy : std::uint8_t { this_command, another };
 
