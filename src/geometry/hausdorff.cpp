@@ -140,7 +140,8 @@ class SurfaceBounder {
       const std::uint32_t near = near_[t[i]];
       if (i > 0 && near == near_[t[i - 1]]) continue;
       const double upper =
-          farthest_corner(corners, corners_of(to.positions, to.triangles[near])) * (1 + 0x1p-44) +
+          farthest_corner(corners, corners_of(to.positions, to.triangles[near]), options.enough) *
+              (1 + 0x1p-44) +
           rounding_;
       if (upper <= options.enough) return {0, upper};
     }

@@ -51,9 +51,12 @@ double distance_above(Vec3 p, const CornerPoints& triangle) {
   return std::sqrt(best);
 }
 
-double farthest_corner(const CornerPoints& corners, const CornerPoints& triangle) {
+double farthest_corner(const CornerPoints& corners, const CornerPoints& triangle, double most) {
   double farthest = 0;
-  for (const Vec3 p : corners) farthest = std::max(farthest, distance_above(p, triangle));
+  for (const Vec3 p : corners) {
+    farthest = std::max(farthest, distance_above(p, triangle));
+    if (farthest > most) return HUGE_VAL;
+  }
   return farthest;
 }
 
@@ -74,8 +77,8 @@ double PieceBounder::target() const {
 
 /// Tightens the piece's bound, and that from below.
 bool PieceBounder::is_settled(Piece& piece) {
-  piece.upper = std::min(piece.upper, farthest_from(piece, piece.guess));
   const double most = target();
+  piece.upper = std::min(piece.upper, farthest_from(piece, piece.guess, most));
   if (piece.upper <= most) return true;
   const auto& [a, b, c] = piece.corners;
   const Vec3 middle = (a + b + c) * (1.0 / 3);
@@ -87,7 +90,7 @@ bool PieceBounder::is_settled(Piece& piece) {
   const CornerPoints there = corners_of(to_.positions, to_.triangles[nearest.triangle]);
   piece.upper = std::min(piece.upper, distance_above(middle, there) + radius);
   if (nearest.triangle != piece.guess) {
-    piece.upper = std::min(piece.upper, farthest_corner(piece.corners, there));
+    piece.upper = std::min(piece.upper, farthest_corner(piece.corners, there, most));
     piece.guess = nearest.triangle;
   }
   return piece.upper <= target();

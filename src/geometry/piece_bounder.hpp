@@ -30,9 +30,9 @@ inline double longest_side(const CornerPoints& corners) {
 /// coordinates: it is that to a point of the triangle, however thin this is.
 double distance_above(Vec3 p, const CornerPoints& triangle);
 
-/// The greatest of the corners' distances to the triangle. As a triangle is convex, no point
-/// between the corners is farther.
-double farthest_corner(const CornerPoints& corners, const CornerPoints& triangle);
+/// The greatest of the corners' distances to the triangle, infinite if that is more than `most`. As
+/// a triangle is convex, no point between the corners is farther.
+double farthest_corner(const CornerPoints& corners, const CornerPoints& triangle, double most);
 
 /// What rounding may change of distances between points with such coordinates.
 double rounding_of(const Box& box);
@@ -60,8 +60,8 @@ class PieceBounder {
   double target() const;
   void look_at(Piece piece);
   bool is_settled(Piece& piece);
-  double farthest_from(const Piece& piece, std::uint32_t triangle) const {
-    return farthest_corner(piece.corners, corners_of(to_.positions, to_.triangles[triangle]));
+  double farthest_from(const Piece& piece, std::uint32_t triangle, double most) const {
+    return farthest_corner(piece.corners, corners_of(to_.positions, to_.triangles[triangle]), most);
   }
 
   const Mesh& to_;

@@ -3,92 +3,98 @@
 #include "pipeline/beyond_bound.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstddef>
-#include <utility>
+#include <iterator>
+#include <span>
 
-#include <meshfarm/geometry/distance.hpp>
+#include <meshfarm/geometry/hausdorff.hpp>
 #include <meshfarm/geometry/near_cells.hpp>
-#include <meshfarm/geometry/point_meter.hpp>
 #include <meshfarm/geometry/vertices.hpp>
 
 namespace meshfarm {
 namespace {
 
-/// Points of a surface, and the triangles that they are of.
-struct PointsOfTriangles {
-  std::vector<Vec3> points;
-  std::vector<std::uint32_t> triangles;
-
-  void add(Vec3 point, std::uint32_t triangle) {
-    points.push_back(point);
-    triangles.push_back(triangle);
-  }
-};
-
-/// The corners of a grid that divides the triangle, but for its own.
-void add_grid(const Mesh& mesh, std::uint32_t triangle, double distance,
-              PointsOfTriangles& points) {
-  constexpr double k_spacing = 0.5;  // in distances
-  constexpr double k_least = 3;
-  constexpr double k_most = 10;
-  const Triangle& t = mesh.triangles[triangle];
-  const Vec3 a = mesh.positions[t[0]], b = mesh.positions[t[1]], c = mesh.positions[t[2]];
-  const double longest =
-      std::sqrt(std::max({squared_length(b - a), squared_length(c - b), squared_length(a - c)}));
-  const double steps = std::clamp(std::ceil(longest / (k_spacing * distance)), k_least, k_most);
-  const Vec3 along = (b - a) * (1 / steps);
-  const Vec3 across = (c - a) * (1 / steps);
-  for (double i = 0; i <= steps; ++i) {
-    for (double j = 0; i + j <= steps; ++j) {
-      const bool is_corner = i == steps || j == steps || i + j == 0;
-      if (!is_corner) points.add(a + along * i + across * j, triangle);
-    }
-  }
+Mesh picked(std::span<const Vec3> positions, std::span<const Triangle> triangles,
+            const std::vector<std::uint32_t>& numbers) {
+  if (numbers.empty()) return {};
+  std::vector<Triangle> chosen;
+  chosen.reserve(numbers.size());
+  for (const std::uint32_t i : numbers) chosen.push_back(triangles[i]);
+  Mesh part;
+  append_surface(positions, chosen, part);
+  return part;
 }
 
-PointsOfTriangles points_of(const Mesh& mesh, PointsInside inside, double distance) {
-  PointsOfTriangles found;
-  std::vector<std::uint8_t> is_there(mesh.positions.size(), 0);
-  for (std::uint32_t i = 0; i < mesh.triangles.size(); ++i) {
-    const Triangle& t = mesh.triangles[i];
-    if (has_no_area(mesh.positions, t)) continue;
-    for (const std::uint32_t v : t) {
-      if (std::exchange(is_there[v], 1) == 0) found.add(mesh.positions[v], i);
+/// Adds equal pieces of a triangle: as many as it takes for none to be longer, but no more than are
+/// needed to find a place in it.
+void add_pieces(Vec3 a, Vec3 b, Vec3 c, double longest, Mesh& pieces) {
+  constexpr double k_most_steps = 32;
+  const double side =
+      std::sqrt(std::max({squared_length(b - a), squared_length(c - b), squared_length(a - c)}));
+  const double steps = std::clamp(std::ceil(side / longest), 1.0, k_most_steps);
+  const Vec3 down = (b - a) * (1 / steps);
+  const Vec3 along = (c - b) * (1 / steps);
+  const auto rows = static_cast<std::uint32_t>(steps);
+  auto row = static_cast<std::uint32_t>(pieces.positions.size());
+  pieces.positions.push_back(a);
+  for (std::uint32_t i = 1; i <= rows; ++i) {
+    const std::uint32_t next = row + i;
+    for (std::uint32_t j = 0; j <= i; ++j) pieces.positions.push_back(a + down * i + along * j);
+    for (std::uint32_t j = 0; j < i; ++j) {
+      pieces.triangles.push_back({row + j, next + j, next + j + 1});
+      if (j + 1 < i) pieces.triangles.push_back({row + j, next + j + 1, row + j + 1});
     }
-    found.add(middle_of_longest_side(mesh.positions, t), i);
-    if (inside == PointsInside::some) add_grid(mesh, i, distance, found);
+    row = next;
   }
-  return found;
 }
 
 }  // namespace
 
-Mesh part_beyond(const Mesh& from, PointsInside points, const Mesh& to, double distance,
-                 unsigned threads) {
-  if (to.triangles.empty()) return {};
-  const PointsOfTriangles all = points_of(from, points, distance);
-  const DistanceMeter meter(to, threads);
-  if (!(meter.farthest(all.points, distance) > distance)) return {};
-  std::vector<double> distances(all.points.size());
-  const std::array<DistanceMeter::Points, 1> set = {all.points};
-  meter.measure_each(set, distances);
-  std::vector<Triangle> beyond;
-  for (std::size_t i = 0; i < all.points.size(); ++i) {
-    if (distances[i] > distance) beyond.push_back(from.triangles[all.triangles[i]]);
+Mesh part_beyond(const Mesh& from, const TriangleIndex& to, double distance, unsigned threads) {
+  std::vector<Triangle> surface;
+  std::copy_if(from.triangles.begin(), from.triangles.end(), std::back_inserter(surface),
+               [&](const Triangle& t) { return !has_no_area(from.positions, t); });
+  return picked(from.positions, surface,
+                find_beyond(from.positions, surface, to, distance, threads));
+}
+
+Mesh pieces_beyond(const Mesh& from, const TriangleIndex& to, double distance, unsigned threads) {
+  constexpr double k_longest = 0.5;  // in distances
+  Mesh pieces;
+  const Mesh beyond = part_beyond(from, to, distance, threads);
+  for (const auto& [a, b, c] : beyond.triangles) {
+    add_pieces(beyond.positions[a], beyond.positions[b], beyond.positions[c], k_longest * distance,
+               pieces);
   }
-  Mesh part;
-  append_surface(from.positions, beyond, part);
-  return part;
+  if (pieces.triangles.empty()) return {};
+  return picked(pieces.positions, pieces.triangles,
+                find_beyond(pieces.positions, pieces.triangles, to, distance, threads));
 }
 
 void clear_near(const Mesh& surface, double distance, const std::vector<Vec3>& positions,
                 std::vector<std::uint8_t>& flags) {
   if (surface.triangles.empty()) return;
   const NearCells near(surface.positions, surface.triangles, distance);
-  for (std::size_t v = 0; v < positions.size(); ++v) {
-    if (near.touch({positions[v], positions[v]})) flags[v] = 0;
+  std::vector<std::uint32_t> candidates;
+  std::vector<Vec3> points;
+  for (std::uint32_t v = 0; v < positions.size(); ++v) {
+    if (!near.touch({positions[v], positions[v]})) continue;
+    candidates.push_back(v);
+    points.push_back(positions[v]);
+  }
+  const std::vector<float> distances = distances_to(TriangleIndex(surface, 1), points, 1);
+  for (std::size_t i = 0; i < candidates.size(); ++i) {
+    if (distances[i] <= distance) flags[candidates[i]] = 0;
+  }
+}
+
+void clear_touched(const Mesh& surface, double distance, const Mesh& mesh,
+                   std::vector<std::uint8_t>& flags) {
+  if (surface.triangles.empty()) return;
+  const NearCells near(surface.positions, surface.triangles, distance);
+  for (const std::uint32_t i : near.touching(mesh.positions, mesh.triangles)) {
+    for (const std::uint32_t v : mesh.triangles[i]) flags[v] = 0;
   }
 }
 

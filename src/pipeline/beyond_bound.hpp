@@ -6,24 +6,32 @@
 #include <vector>
 
 #include <meshfarm/geometry/mesh.hpp>
+#include <meshfarm/geometry/triangle_index.hpp>
 
 namespace meshfarm {
 
-/// Simplification looks at some points. Where others turn out to be beyond so many times the bound
-/// that it was given, what is near stays as it was, and it begins again; so often, all in all.
+/// Simplification looks at some points. Where the whole surface turns out to be beyond so many
+/// times the bound that it was given, what is near stays as it was, and it begins again; so often,
+/// all in all.
 inline constexpr double k_most_beyond = 1.2;
 inline constexpr int k_bounded_tries = 4;
+/// In bounds: what went astray is farther than one from what it should be near.
+inline constexpr double k_reach_of_astray = 1.8;
 
-/// Of a triangle, beside its corners and the middle of its longest side.
-enum class PointsInside : std::uint8_t { none, some };
+/// Those triangles of a surface, with an area, that are not proven to be within the distance of
+/// another surface, which has some triangle (find_beyond).
+Mesh part_beyond(const Mesh& from, const TriangleIndex& to, double distance, unsigned threads);
 
-/// Those triangles of a surface, with an area, of which a point that is looked at is farther from
-/// another surface than that. Cheap where there are none.
-Mesh part_beyond(const Mesh& from, PointsInside points, const Mesh& to, double distance,
-                 unsigned threads);
+/// The same, but of large triangles only the pieces that are beyond.
+Mesh pieces_beyond(const Mesh& from, const TriangleIndex& to, double distance, unsigned threads);
 
 /// Clears the flags of vertices within the distance of the surface.
 void clear_near(const Mesh& surface, double distance, const std::vector<Vec3>& positions,
                 std::vector<std::uint8_t>& flags);
+
+/// Clears the flags of the corners of triangles of a mesh that come near the surface: within the
+/// distance, or a little farther.
+void clear_touched(const Mesh& surface, double distance, const Mesh& mesh,
+                   std::vector<std::uint8_t>& flags);
 
 }  // namespace meshfarm

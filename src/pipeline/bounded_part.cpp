@@ -12,6 +12,7 @@
 #include <meshfarm/geometry/hausdorff.hpp>
 #include <meshfarm/geometry/simplify.hpp>
 #include <meshfarm/geometry/surface_bound.hpp>
+#include <meshfarm/geometry/triangle_index.hpp>
 #include <meshfarm/util/errors.hpp>
 
 #include "pipeline/beyond_bound.hpp"
@@ -61,22 +62,24 @@ class PartSimplifier {
     constexpr double k_little = 0.05;  // vertices, for each triangle of the result
     constexpr double k_less = 0.85;
     const double most = k_most_beyond * parameters_.max_error;
+    std::optional<TriangleIndex> index;
+    if (!part.mesh.triangles.empty()) index.emplace(part.mesh, 1);
     std::vector<std::uint8_t> moves = free_vertices(part);
     double share = 1;
     for (int tries = 1;; ++tries) {
       Simplifier simplifier = simplified(with_locked(part, moves), share);
       const Mesh& made = simplifier.mesh();
       if (made.triangles.empty() || tries == k_bounded_tries) return simplifier;
-      const Mesh lost = part_beyond(part.mesh, PointsInside::none, made, most, 1);
-      const Mesh astray = part_beyond(made, PointsInside::some, part.mesh, most, 1);
+      const Mesh lost = part_beyond(part.mesh, TriangleIndex(made, 1), most, 1);
+      const Mesh astray = pieces_beyond(made, *index, most, 1);
       if (lost.triangles.empty() && astray.triangles.empty()) return simplifier;
       std::vector<std::uint8_t> left = moves;
       clear_near(lost, parameters_.max_error, part.mesh.positions, left);
-      clear_near(astray, parameters_.max_error, part.mesh.positions, left);
+      clear_near(astray, k_reach_of_astray * parameters_.max_error, part.mesh.positions, left);
       const auto held = static_cast<double>(std::count(left.begin(), left.end(), 0));
       const bool is_little =
           held - part.boundary_vertices < k_little * static_cast<double>(made.triangles.size());
-      if (is_little) {
+      if (is_little && left != moves) {
         moves = std::move(left);
       } else {
         share *= k_less;

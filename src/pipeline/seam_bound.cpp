@@ -220,11 +220,11 @@ BoundedFinish simplified_with_proof(SeamMesh seams, const SurfaceBound& bound,
 }
 
 /// What was near before: the rest of the input is near what lies beside the seams.
-Mesh part_lost(const Mesh& input, const Mesh& before, const Mesh& after, double most,
+Mesh part_lost(const Mesh& input, const TriangleIndex& before, const Mesh& after, double most,
                unsigned threads) {
-  const Mesh beyond = part_beyond(input, PointsInside::none, after, most, threads);
+  const Mesh beyond = part_beyond(input, TriangleIndex(after, threads), most, threads);
   if (beyond.triangles.empty()) return {};
-  const Mesh others = part_beyond(beyond, PointsInside::none, before, most, threads);
+  const Mesh others = part_beyond(beyond, before, most, threads);
   std::vector<Places> known;
   for (const Triangle& t : others.triangles) known.push_back(places_of(others, t));
   std::sort(known.begin(), known.end());
@@ -242,6 +242,9 @@ Mesh part_lost(const Mesh& input, const Mesh& before, const Mesh& after, double 
 BoundedFinish simplified_and_measured(SeamMesh seams, const SurfaceBound& bound,
                                       const BoundedFinishOptions& options) {
   const double most = k_most_beyond * options.max_error;
+  const TriangleIndex input(bound.surface(), options.threads);
+  const Mesh before = seams.mesh;
+  const TriangleIndex index_before(before, options.threads);
   const std::vector<Places> fixed = fixed_places(seams);
   for (int tries = 1;; ++tries) {
     BoundedFinish finish = simplified(seams, &bound, options);
@@ -249,14 +252,15 @@ BoundedFinish simplified_and_measured(SeamMesh seams, const SurfaceBound& bound,
     Mesh changed;
     changed.positions = finish.mesh.positions;
     are_kept(fixed, finish.mesh, changed.triangles);
-    const Mesh astray =
-        part_beyond(changed, PointsInside::some, bound.surface(), most, options.threads);
-    const Mesh lost = part_lost(bound.surface(), seams.mesh, finish.mesh, most, options.threads);
+    const Mesh astray = pieces_beyond(changed, input, most, options.threads);
+    const Mesh lost = part_lost(bound.surface(), index_before, finish.mesh, most, options.threads);
     if (astray.triangles.empty() && lost.triangles.empty()) return finish;
+    const std::uint32_t locked = seams.locked;
     std::vector<std::uint8_t> flags = free_flags(seams);
-    clear_near(astray, options.max_error, seams.mesh.positions, flags);
-    clear_near(lost, options.max_error, seams.mesh.positions, flags);
+    clear_touched(astray, k_reach_of_astray * options.max_error, seams.mesh, flags);
+    clear_touched(lost, most, seams.mesh, flags);
     lock_others(std::move(flags), seams);
+    if (seams.locked == locked) return finish;  // it would be the same once more
   }
 }
 

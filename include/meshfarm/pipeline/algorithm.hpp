@@ -10,6 +10,6 @@ namespace meshfarm {
 /// input and options, or a run has other jobs. It stands in the keys of jobs and runs and in every
 /// greeting, so that results of two versions never meet: older ones in a stage are done again,
 /// processes of another are refused.
-inline constexpr std::uint32_t k_algorithm_version = 39;
+inline constexpr std::uint32_t k_algorithm_version = 40;
 
 }  // namespace meshfarm

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
 #include <iterator>
+#include <random>
+#include <string>
 
 #include <doctest/doctest.h>
 
@@ -9,6 +11,7 @@
 #include <meshfarm/geometry/hausdorff.hpp>
 #include <meshfarm/pipeline/input_surface.hpp>
 
+#include "pipeline/beyond_bound.hpp"
 #include "pipeline/bounded_finish.hpp"
 #include "pipeline/bounded_part.hpp"
 #include "support/memory_source.hpp"
@@ -38,7 +41,29 @@ Mesh simplified(const Mesh& mesh, double max_error, double certified_error,
   return decode_result(made.file, 0, "the part").mesh;
 }
 
+/// A rough sheet full of holes: between the points that simplification looks at there is room for
+/// errors.
+Mesh rough_sheet(std::uint32_t seed) {
+  std::mt19937 random(seed);
+  Mesh sheet = test::grid(40, 40);
+  for (Vec3& p : sheet.positions) p.z = 3.0 * random() / std::mt19937::max();
+  std::erase_if(sheet.triangles, [&](const Triangle&) { return random() % 4 == 0; });
+  return sheet;
+}
+
 }  // namespace
+
+TEST_CASE("what is made of a part is near it everywhere, not at points only") {
+  const test::TempFolder folder;
+  constexpr double k_bound = 1;
+  for (std::uint32_t seed = 1; seed <= 4; ++seed) {
+    CAPTURE(seed);
+    const Mesh sheet = rough_sheet(seed);
+    const Mesh made = simplified(sheet, k_bound, 0, folder);
+    CHECK(made.triangles.size() < sheet.triangles.size() / 2);
+    CHECK(farthest(sheet, made) <= k_most_beyond * k_bound);
+  }
+}
 
 TEST_CASE("a part keeps more where what is simplified is not within what is to be proven") {
   const Mesh torus = test::torus(60, 40);
