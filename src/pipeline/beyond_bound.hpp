@@ -12,11 +12,17 @@ namespace meshfarm {
 
 /// Simplification looks at some points. Where the whole surface turns out to be beyond so many
 /// times the bound that it was given, what is near stays as it was, and it begins again; so often,
-/// all in all.
-inline constexpr double k_most_beyond = 1.2;
-inline constexpr int k_bounded_tries = 4;
-/// In bounds: what went astray is farther than one from what it should be near.
-inline constexpr double k_reach_of_astray = 1.8;
+/// all in all. Parts and seams are given shares of the run's bound (k_bound_share_of_parts,
+/// k_bound_share): 1.08 of that is the most for both.
+inline constexpr double k_most_beyond_of_part = 1.2;
+inline constexpr double k_most_beyond_of_seam = 1.17;
+inline constexpr int k_bounded_tries = 6;
+
+/// In bounds: within that what is near stays when a piece went astray, which is farther than one
+/// from all that it should be near. More each time, as the first may not have been enough.
+constexpr double reach_of_astray(int tries) {
+  return 1.2 + 0.2 * tries;
+}
 
 /// Those triangles of a surface, with an area, that are not proven to be within the distance of
 /// another surface, which has some triangle (find_beyond).

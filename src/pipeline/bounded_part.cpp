@@ -59,9 +59,9 @@ class PartSimplifier {
   /// Where it goes too far, the part stays as it came; if that were much of it, it is simplified to
   /// a share of the bound.
   Simplifier measured(const Part& part) const {
-    constexpr double k_little = 0.05;  // vertices, for each triangle of the result
+    constexpr double k_little = 0.3;  // vertices, for each triangle of the result
     constexpr double k_less = 0.85;
-    const double most = k_most_beyond * parameters_.max_error;
+    const double most = k_most_beyond_of_part * parameters_.max_error;
     std::optional<TriangleIndex> index;
     if (!part.mesh.triangles.empty()) index.emplace(part.mesh, 1);
     std::vector<std::uint8_t> moves = free_vertices(part);
@@ -75,7 +75,7 @@ class PartSimplifier {
       if (lost.triangles.empty() && astray.triangles.empty()) return simplifier;
       std::vector<std::uint8_t> left = moves;
       clear_near(lost, parameters_.max_error, part.mesh.positions, left);
-      clear_near(astray, k_reach_of_astray * parameters_.max_error, part.mesh.positions, left);
+      clear_near(astray, reach_of_astray(tries) * parameters_.max_error, part.mesh.positions, left);
       const auto held = static_cast<double>(std::count(left.begin(), left.end(), 0));
       const bool is_little =
           held - part.boundary_vertices < k_little * static_cast<double>(made.triangles.size());

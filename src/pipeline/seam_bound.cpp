@@ -241,7 +241,7 @@ Mesh part_lost(const Mesh& input, const TriangleIndex& before, const Mesh& after
 /// Where it goes too far, and what was there before did not, that stays as it is.
 BoundedFinish simplified_and_measured(SeamMesh seams, const SurfaceBound& bound,
                                       const BoundedFinishOptions& options) {
-  const double most = k_most_beyond * options.max_error;
+  const double most = k_most_beyond_of_seam * options.max_error;
   const TriangleIndex input(bound.surface(), options.threads);
   const Mesh before = seams.mesh;
   const TriangleIndex index_before(before, options.threads);
@@ -257,7 +257,7 @@ BoundedFinish simplified_and_measured(SeamMesh seams, const SurfaceBound& bound,
     if (astray.triangles.empty() && lost.triangles.empty()) return finish;
     const std::uint32_t locked = seams.locked;
     std::vector<std::uint8_t> flags = free_flags(seams);
-    clear_touched(astray, k_reach_of_astray * options.max_error, seams.mesh, flags);
+    clear_touched(astray, reach_of_astray(tries) * options.max_error, seams.mesh, flags);
     clear_touched(lost, most, seams.mesh, flags);
     lock_others(std::move(flags), seams);
     if (seams.locked == locked) return finish;  // it would be the same once more
