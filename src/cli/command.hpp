@@ -3,6 +3,7 @@
 #pragma once
 
 #include <memory>
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -12,6 +13,10 @@
 namespace meshfarm {
 
 namespace po = boost::program_options;
+
+/// The long names of the options that stand on the command line. What a config file says is not
+/// among them: it may be meant for other commands.
+using GivenOptions = std::set<std::string, std::less<>>;
 
 /// One command of the program. The members that options are bound to hold the defaults.
 class Command {
@@ -25,6 +30,9 @@ class Command {
                      po::positional_options_description& positional) = 0;
   /// Checks what was parsed; throws UsageError; no work.
   virtual void check() {}
+  /// Refuses, or warns of, options that were given and would do nothing; throws UsageError. Comes
+  /// after check().
+  virtual void check_given(const GivenOptions& /*given*/) const {}
   /// Whether freed memory is kept for all threads (keep_freed_memory()). Not where each thread
   /// allocates often and shares nothing: they would wait for each other.
   virtual bool keeps_freed_memory() const { return true; }

@@ -105,6 +105,16 @@ class BatchCommand : public Command {
       }
     }
   }
+  void check_given(const GivenOptions& given) const override {
+    cut_.check_given(given);
+    // One word for all files: it need not be for each.
+    const auto of_packing = [](const std::string& input) {
+      return has_packing(output_name(input));
+    };
+    if (std::none_of(inputs_.begin(), inputs_.end(), of_packing)) {
+      output_words_.check_given(given, output_name(inputs_.front()));
+    }
+  }
   int run() override {
     const std::atomic<bool>& stop = stop_on_signals();
     if (talk_.quiet) set_log(name(), LogLevel::warning);

@@ -49,6 +49,9 @@ class ConvertCommand : public Command {
     }
     if (is_output_format(output_)) texture_words_for(output_, uv_);
   }
+  void check_given(const GivenOptions& given) const override {
+    output_words_.check_given(given, output_);
+  }
   int run() override {
     check_not_over("OUTPUT", output_, "the input", input_);
     check_writable(output_);

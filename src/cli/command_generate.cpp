@@ -38,6 +38,10 @@ class GenerateCommand : public Command {
     if (!from_.empty() && !shuffle_) throw UsageError("--from goes with --shuffle");
     shape_named(shape_);
   }
+  void check_given(const GivenOptions& given) const override {
+    if (!from_.empty())
+      refuse_given(given, {"triangles", "shape"}, "a mesh that is made, not --from");
+  }
   int run() override {
     check_writable(output_);
     if (!from_.empty()) check_not_over("-o", output_, "the input", from_);

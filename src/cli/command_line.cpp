@@ -81,6 +81,12 @@ void read_config(const std::string& path, const po::options_description& options
   po::store(parsed, values);
 }
 
+GivenOptions given_options(const po::basic_parsed_options<char>& parsed) {
+  GivenOptions given;
+  for (const auto& option : parsed.options) given.insert(option.string_key);
+  return given;
+}
+
 /// Names what --help shows: an option, or a place in the synopsis, which is its option in capitals.
 UsageError missing(const po::required_option& error, const DescribedCommand& described) {
   std::string name = error.get_option_name();
@@ -117,6 +123,7 @@ int run_command(std::unique_ptr<Command> named, const std::vector<std::string>& 
     throw missing(error, described);
   }
   command.check();
+  command.check_given(given_options(parsed));
   if (command.keeps_freed_memory()) keep_freed_memory();
   return command.run();
 }

@@ -73,6 +73,11 @@ class RunCommand : public Command {
     network_.check();
     schedule_.check();
   }
+  void check_given(const GivenOptions& given) const override {
+    target_.check_given(given);
+    schedule_.check_given(given);
+    output_words_.check_given(given, output_);
+  }
   int run() override {
     if (worker_words_) return print_worker_words();
     const std::atomic<bool>& stop = stop_on_signals();

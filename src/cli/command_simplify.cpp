@@ -71,6 +71,12 @@ class SimplifyCommand : public Command {
     network_.this_host_only = true;
     network_.check();
   }
+  void check_given(const GivenOptions& given) const override {
+    if (in_batch_) return;  // the batch did, of its own
+    target_.check_given(given);
+    cut_.check_given(given);
+    output_words_.check_given(given, output_);
+  }
   int run() override {
     const std::atomic<bool>& stop = stop_on_signals();
     check_not_over("-o", output_, "the input", input_);

@@ -56,6 +56,17 @@ class SimulateCommand : public Command {
       check_seeds();
     }
   }
+  void check_given(const GivenOptions& given) const override {
+    if (plans_) {
+      refuse_given(given, {"jobs", "graph", "threads"}, "--seed or --seeds");
+      plan_.check_given(given);
+    } else {
+      refuse_given(given,
+                   {"parts", "schedule", "storage", "link", "cache", "delay", "limits", "paper",
+                    "off", "output"},
+                   "a STAGE, not --seed or --seeds");
+    }
+  }
   bool keeps_freed_memory() const override { return false; }
   int run() override {
     if (!plans_) return run_seeds();

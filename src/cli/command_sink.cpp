@@ -52,6 +52,11 @@ class SinkCommand : public FarmCommand {
     target_.check();
     network_.check();
   }
+  void check_given(const GivenOptions& given) const override {
+    if (supervised()) return;  // who started it did
+    target_.check_given(given);
+    output_words_.check_given(given, output_);
+  }
 
  protected:
   const SecurityWords& security() const override { return network_.security; }

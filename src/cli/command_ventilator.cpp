@@ -48,6 +48,11 @@ class VentilatorCommand : public FarmCommand {
       throw UsageError("--heartbeat-ms: from 50 to 60000");
     }
   }
+  void check_given(const GivenOptions& given) const override {
+    if (supervised()) return;  // who started it did
+    target_.check_given(given);
+    schedule_.check_given(given);
+  }
 
  protected:
   const SecurityWords& security() const override { return network_.security; }

@@ -27,6 +27,14 @@ std::uint16_t parse_port(std::string_view text) {
 
 }  // namespace
 
+void refuse_given(const GivenOptions& given, std::initializer_list<std::string_view> options,
+                  std::string_view with) {
+  for (const std::string_view option : options) {
+    if (given.count(option) == 0) continue;
+    throw UsageError("--" + std::string(option) + " goes with " + std::string(with));
+  }
+}
+
 void TalkOptions::add(po::options_description& options) {
   add_quiet(options);
   options.add_options()("json", po::bool_switch(&json), "print the result as JSON");
@@ -109,12 +117,19 @@ void CutWords::check() {
   if (cut.memory_bytes == 0) throw UsageError("--memory must be above 0");
 }
 
+void CutWords::check_given(const GivenOptions& given) const {
+  if (where != "farm") refuse_given(given, {"blocks"}, "--cut farm");
+  if (cut.scheme != Scheme::stream) refuse_given(given, {"window"}, "--scheme stream");
+}
+
 std::vector<std::string> CutWords::words() const {
-  std::vector<std::string> words = {"--scheme", scheme_word, "--sort",  sort,
-                                    "--weld",   weld,        "--window"};
-  words.push_back(std::to_string(cut.window_triangles));
+  std::vector<std::string> words = {"--scheme", scheme_word, "--sort", sort, "--weld", weld};
+  if (cut.scheme == Scheme::stream) {
+    words.insert(words.end(), {"--window", std::to_string(cut.window_triangles)});
+  }
   if (where != "auto") words.insert(words.end(), {"--cut", where});
-  if (blocks != 0) words.insert(words.end(), {"--blocks", std::to_string(blocks)});
+  if (where == "farm" && blocks != 0)
+    words.insert(words.end(), {"--blocks", std::to_string(blocks)});
   if (!memory.empty()) words.insert(words.end(), {"--memory", memory});
   if (attributes != "auto") words.insert(words.end(), {"--attributes", attributes});
   if (uv != "auto") words.insert(words.end(), {"--uv", uv});
@@ -209,10 +224,19 @@ void ScheduleWords::check() {
   if (hang_s == 0 || hang_s > 86'400) throw UsageError("--hang-seconds: from 1 to 86400");
 }
 
+void ScheduleWords::check_given(const GivenOptions& given) const {
+  if (options.schedule != Schedule::fixed) {
+    refuse_given(given, {"expect-workers"}, "--schedule static");
+  }
+}
+
 std::vector<std::string> ScheduleWords::words() const {
-  return {"--schedule",       schedule,
-          "--expect-workers", std::to_string(options.expect_workers),
-          "--hang-seconds",   std::to_string(hang_s)};
+  std::vector<std::string> words = {"--schedule", schedule, "--hang-seconds",
+                                    std::to_string(hang_s)};
+  if (options.schedule == Schedule::fixed) {
+    words.insert(words.end(), {"--expect-workers", std::to_string(options.expect_workers)});
+  }
+  return words;
 }
 
 void FullWords::add(po::options_description& options) {

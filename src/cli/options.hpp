@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <initializer_list>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -18,12 +19,18 @@
 #include <meshfarm/report/summary.hpp>
 #include <meshfarm/transport/security.hpp>
 
+#include "cli/command.hpp"
+
 namespace meshfarm {
 
 namespace po = boost::program_options;
 
 // The option groups that commands share: add() declares, the other functions turn the texts into
 // values and throw UsageError. Defaults stand in the members.
+
+/// Throws UsageError if one of the options was given, which do nothing but `with`.
+void refuse_given(const GivenOptions& given, std::initializer_list<std::string_view> options,
+                  std::string_view with);
 
 /// --quiet and --json.
 struct TalkOptions {
@@ -62,6 +69,8 @@ struct TargetOptions {
   /// what is not wanted.
   void add_attributes(po::options_description& options);
   void check();
+  /// As Command::check_given().
+  void check_given(const GivenOptions& given) const;
   /// The same as words for a command line.
   std::vector<std::string> words() const;
 
@@ -86,7 +95,9 @@ struct CutWords {
 
   void add(po::options_description& options);
   void check();
-  /// The same as words for a command line.
+  /// As Command::check_given().
+  void check_given(const GivenOptions& given) const;
+  /// The same as words for a command line: those that count.
   std::vector<std::string> words() const;
 };
 
@@ -127,6 +138,8 @@ struct ScheduleWords {
 
   void add(po::options_description& described);
   void check();
+  /// As Command::check_given().
+  void check_given(const GivenOptions& given) const;
   std::vector<std::string> words() const;
 };
 

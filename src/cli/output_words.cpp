@@ -6,6 +6,7 @@
 
 #include <meshfarm/io/channel_choice.hpp>
 #include <meshfarm/io/mesh_format.hpp>
+#include <meshfarm/util/log.hpp>
 
 namespace meshfarm {
 
@@ -13,6 +14,11 @@ void OutputWords::add(po::options_description& options) {
   options.add_options()("plain", po::bool_switch(&plain),
                         "write .glb without quantisation and compression, for programs that cannot "
                         "read EXT_meshopt_compression");
+}
+
+void OutputWords::check_given(const GivenOptions& given, const std::string& output) const {
+  if (given.count("plain") == 0 || !is_output_format(output) || has_packing(output)) return;
+  log_warning("--plain changes nothing: " + output + " is no .glb");
 }
 
 std::vector<std::string> OutputWords::words() const {

@@ -11,6 +11,8 @@
 #include <meshfarm/io/mesh_sink.hpp>
 #include <meshfarm/pipeline/run_options.hpp>
 
+#include "cli/command.hpp"
+
 namespace meshfarm {
 
 namespace po = boost::program_options;
@@ -21,6 +23,8 @@ struct OutputWords {
 
   void add(po::options_description& options);
   Packing packing() const { return plain ? Packing::plain : Packing::compressed; }
+  /// As Command::check_given(), of who writes `output`.
+  void check_given(const GivenOptions& given, const std::string& output) const;
   /// The same as words for a command line.
   std::vector<std::string> words() const;
 };

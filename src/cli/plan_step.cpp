@@ -104,7 +104,6 @@ void PlanWords::add(po::options_description& options) {
 }
 
 void PlanWords::check() {
-  if (!output.empty() && !paper) throw UsageError("-o goes with --paper");
   std::istringstream words(workers);
   for (std::string word; std::getline(words, word, ',');) farms_.push_back({word, groups_in(word)});
   if (farms_.empty()) throw UsageError("--workers: none");
@@ -119,6 +118,13 @@ void PlanWords::check() {
   like_.link_bytes_per_s = number_in(link, "--link") * 1e9 / 8;
   like_.cache_bytes = static_cast<double>(parse_size(cache, "--cache"));
   like_.delay_s = delay_ms * 1e-3;
+}
+
+void PlanWords::check_given(const GivenOptions& given) const {
+  if (!paper) refuse_given(given, {"output", "off"}, "--paper");
+  if (paper && given.count("workers") != 0) {
+    throw UsageError("--paper has farms of its own: not with --workers");
+  }
 }
 
 PlannedFarm PlanWords::farm_of(const Farm& farm) const {
@@ -181,7 +187,7 @@ ScheduleComparison PlanWords::compare_schedules(const std::string& stage) const 
 }
 
 void PlanWords::run(Format format) const {
-  if (!output.empty()) {
+  if (paper && !output.empty()) {
     check_place(output);
     for (const std::string& stage : stages) {
       check_not_over("-o", output, "the trace", stage);

@@ -30,6 +30,8 @@ struct PlanWords {
 
   void add(po::options_description& options);
   void check();
+  /// As Command::check_given().
+  void check_given(const GivenOptions& given) const;
   /// Prints; the picture goes to `output`. Throws Error.
   void run(Format format) const;
 

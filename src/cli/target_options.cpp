@@ -199,6 +199,12 @@ void TargetOptions::check_surface() {
   if (!why.empty()) throw UsageError("--fit on does not go with " + why);
 }
 
+void TargetOptions::check_given(const GivenOptions& given) const {
+  if (run.textures == TextureMode::keep || run.textures == TextureMode::drop) {
+    refuse_given(given, {"texture-size"}, "--uv bake, where the output has a place for textures");
+  }
+}
+
 std::vector<std::string> TargetOptions::words() const {
   std::vector<std::string> words = {"--allocation", allocation,      "--finish",
                                     finish,         "--composition", composition};

@@ -164,6 +164,11 @@ bool keeps_doubles(const std::filesystem::path& path) {
   return create != create_glb && create != create_gltf && create != create_stl;
 }
 
+bool has_packing(const std::filesystem::path& path) {
+  check_output_format(path);
+  return find_output_format(path)->create == create_glb;
+}
+
 std::unique_ptr<MeshSink> create_mesh(const std::filesystem::path& path,
                                       const MeshSinkOptions& options) {
   check_output_format(path);

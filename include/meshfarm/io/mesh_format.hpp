@@ -35,6 +35,9 @@ bool keeps_map(const std::filesystem::path& path, MapUse use);
 /// Whether a file of this name keeps positions of 64 bits as they are.
 bool keeps_doubles(const std::filesystem::path& path);
 
+/// Whether Packing changes a file of this name.
+bool has_packing(const std::filesystem::path& path);
+
 /// Where a mesh goes, and how.
 struct MeshOutput {
   std::filesystem::path path;

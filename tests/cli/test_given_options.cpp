@@ -1,0 +1,100 @@
+// SPDX-FileCopyrightText: 2026 the meshfarm authors
+// SPDX-License-Identifier: MIT
+//
+// Options that would do nothing: refused on the command line, passed over in a config file.
+#include <doctest/doctest.h>
+
+#include "support/shell.hpp"
+
+using meshfarm::test::has;
+using meshfarm::test::lines;
+using meshfarm::test::Ran;
+using meshfarm::test::Shell;
+namespace fs = std::filesystem;
+
+TEST_CASE("an option that would do nothing is refused, and what it goes with is told") {
+  Shell shell;
+  const std::string cube = shell.cube();
+  const std::string out = shell.path("o.ply");
+  const std::string stage = shell.path("s");
+  struct Line {
+    std::vector<std::string> words;
+    std::string error;
+  };
+  const Line refused[] = {
+      {{"simplify", cube, "-o", out, "--ratio", "1", "--blocks", "3"},
+       "--blocks goes with --cut farm"},
+      {{"cut", cube, "--stage", stage, "--cut", "here", "--blocks", "3"},
+       "--blocks goes with --cut farm"},
+      {{"simplify", cube, "-o", out, "--ratio", "1", "--window", "2000"},
+       "--window goes with --scheme stream"},
+      {{"batch", cube, "-o", stage, "--ratio", "1", "--window", "2000"},
+       "--window goes with --scheme stream"},
+      {{"simplify", cube, "-o", shell.path("o.stl"), "--ratio", "1", "--texture-size", "512"},
+       "--texture-size goes with --uv bake"},
+      {{"run", stage, "--ratio", "1", "--uv", "keep", "--texture-size", "512"},
+       "--texture-size goes with --uv bake"},
+      {{"run", stage, "--ratio", "1", "--expect-workers", "2"},
+       "--expect-workers goes with --schedule static"},
+      {{"simulate", "--seeds", "2", "--limits"}, "--limits goes with a STAGE"},
+      {{"simulate", "--seed", "2", "--paper"}, "--paper goes with a STAGE"},
+      {{"simulate", "--seeds", "2", "-o", out}, "--output goes with a STAGE"},
+      {{"simulate", stage, "--jobs", "50"}, "--jobs goes with --seed or --seeds"},
+      {{"simulate", stage, "--off", "0.1"}, "--off goes with --paper"},
+      {{"simulate", stage, "-o", out}, "--output goes with --paper"},
+      {{"simulate", stage, "--paper", "--workers", "3"}, "not with --workers"},
+      {{"generate", "-o", out, "--shuffle", "--from", cube, "--triangles", "100"},
+       "--triangles goes with a mesh that is made, not --from"},
+  };
+  for (const Line& line : refused) {
+    const Ran ran = shell(line.words);
+    CAPTURE(line.error);
+    CAPTURE(ran.err);
+    CHECK(ran.code == 2);
+    CHECK(lines(ran.err) == 1);
+    CHECK(has(ran.err, line.error));
+  }
+  CHECK_FALSE(fs::exists(out));
+  CHECK_FALSE(fs::exists(stage));
+}
+
+TEST_CASE("a config file may say what a command has no use of") {
+  Shell shell;
+  const std::string cube = shell.cube();
+  const std::string out = shell.path("o.ply");
+  const std::string config = shell.file("all.conf",
+                                        "blocks = 3\nwindow = 2000\nplain = true\n"
+                                        "ratio = 1\nworkers = 1\n");
+  const std::string sized = shell.file("sized.conf", "texture-size = 512\nuv = keep\nratio = 1\n");
+  for (const std::vector<std::string>& words :
+       {std::vector<std::string>{"simplify", cube, "-o", out, "--config", config},
+        {"simplify", cube, "-o", out, "--config", sized},
+        {"batch", cube, "-o", shell.path("all"), "--config", config}}) {
+    const Ran ran = shell(words);
+    CAPTURE(ran.err);
+    CHECK(ran.code == 0);
+    CHECK_FALSE(has(ran.err, "warning"));
+  }
+  const std::string plan = shell.file("plan.conf", "limits = true\noutput = figure.svg\n");
+  CHECK(shell({"simulate", "--seed", "2", "--jobs", "16", "--config", plan}).code == 0);
+  const std::string farm = shell.file("farm.conf", "expect-workers = 2\n");
+  REQUIRE(shell({"cut", cube, "--stage", shell.path("s")}).code == 0);
+  CHECK(shell({"replay", shell.path("s"), "--ratio", "1", "--config", farm}).code == 0);
+}
+
+TEST_CASE("--plain of another format than GLB is told to change nothing, once") {
+  Shell shell;
+  const std::string cube = shell.cube();
+  for (const std::vector<std::string>& words :
+       {std::vector<std::string>{"convert", cube, shell.path("o.obj"), "--plain"},
+        {"simplify", cube, "-o", shell.path("o.ply"), "--ratio", "1", "--plain", "-q"},
+        {"batch", cube, "-o", shell.path("all"), "--ratio", "1", "--plain", "-q"}}) {
+    const Ran ran = shell(words);
+    CAPTURE(ran.err);
+    CHECK(ran.code == 0);
+    CHECK(has(ran.err, "warning: --plain changes nothing: "));
+    CHECK(has(ran.err, " is no .glb\n"));
+    CHECK(ran.err.find("--plain") == ran.err.rfind("--plain"));
+  }
+  CHECK_FALSE(has(shell({"convert", cube, shell.path("o.glb"), "--plain"}).err, "--plain"));
+}
