@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cctype>
 #include <cstdio>
-#include <fstream>
 #include <iostream>
 #include <new>
 #include <sstream>
@@ -16,6 +15,7 @@
 #include <meshfarm/util/memory.hpp>
 
 #include "cli/command.hpp"
+#include "cli/config_file.hpp"
 #include "cli/manual.hpp"
 #include "cli/version.hpp"
 
@@ -71,16 +71,6 @@ void refuse_negative_numbers(const po::basic_parsed_options<char>& parsed) {
   }
 }
 
-/// Options of the config file have the names of the command line; the command line wins.
-void read_config(const std::string& path, const po::options_description& options,
-                 po::variables_map& values) {
-  std::ifstream file(path);
-  if (!file) throw_errno("cannot open", path);
-  const auto parsed = po::parse_config_file(file, options);
-  refuse_negative_numbers(parsed);
-  po::store(parsed, values);
-}
-
 GivenOptions given_options(const po::basic_parsed_options<char>& parsed) {
   GivenOptions given;
   for (const auto& option : parsed.options) given.insert(option.string_key);
@@ -101,6 +91,13 @@ UsageError missing(const po::required_option& error, const DescribedCommand& des
                     std::string(command.synopsis()));
 }
 
+int check_and_run(Command& command, const GivenOptions& given) {
+  command.check();
+  command.check_given(given);
+  if (command.keeps_freed_memory()) keep_freed_memory();
+  return command.run();
+}
+
 int run_command(std::unique_ptr<Command> named, const std::vector<std::string>& words) {
   const DescribedCommand described(std::move(named));
   Command& command = *described.command;
@@ -114,18 +111,19 @@ int run_command(std::unique_ptr<Command> named, const std::vector<std::string>& 
     std::cout << help_of(command, described_only(options));
     return k_done;
   }
-  if (values.count("config") != 0) {
-    read_config(values["config"].as<std::string>(), options, values);
-  }
+  ConfigFile config;
+  if (values.count("config") != 0) config = {values["config"].as<std::string>(), options};
+  config.store(values);
+  const GivenOptions given = given_options(parsed);
   try {
+    refuse_negative_numbers(config.parsed());
     po::notify(values);
+    return check_and_run(command, given);
   } catch (const po::required_option& error) {
     throw missing(error, described);
+  } catch (const UsageError& error) {
+    throw UsageError(config.placed(error.what(), given));
   }
-  command.check();
-  command.check_given(given_options(parsed));
-  if (command.keeps_freed_memory()) keep_freed_memory();
-  return command.run();
 }
 
 int dispatch(const std::vector<std::string>& words) {

@@ -98,3 +98,24 @@ TEST_CASE("--plain of another format than GLB is told to change nothing, once") 
   }
   CHECK_FALSE(has(shell({"convert", cube, shell.path("o.glb"), "--plain"}).err, "--plain"));
 }
+
+TEST_CASE("what is wrong in a config file is told with the file and the line") {
+  Shell shell;
+  const std::string config = shell.path("run.conf");
+  const auto error_of = [&](const std::string& text) {
+    shell.file("run.conf", text);
+    const Ran ran =
+        shell({"simplify", shell.cube(), "-o", shell.path("o.ply"), "--config", config});
+    CHECK(ran.code == 2);
+    CHECK(lines(ran.err) == 1);
+    return ran.err;
+  };
+  CHECK(has(error_of("rato = 0.5\n"), config + ": line 1: unrecognised option 'rato'"));
+  CHECK(has(error_of("ratio = 1\nworkers = no\n"), config + ": line 2: "));
+  CHECK(has(error_of("workers = 1\nratio = 2\n"), config + ": line 2: --ratio takes a share"));
+  CHECK(has(error_of("ratio = 1\nparts = -2\n"), config + ": line 2: --parts takes no negative"));
+  CHECK(has(error_of("ratio = 1\nattributes = heat\n"), config + ": line 2: --attributes: "));
+  const Ran folder = shell({"info", shell.cube(), "--config", fs::path(config).parent_path()});
+  CHECK(folder.code == 1);
+  CHECK(has(folder.err, "Is a directory"));
+}
