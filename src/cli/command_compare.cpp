@@ -3,6 +3,7 @@
 #include <iostream>
 
 #include <meshfarm/geometry/distance.hpp>
+#include <meshfarm/io/mesh_format.hpp>
 #include <meshfarm/report/summary.hpp>
 #include <meshfarm/util/errors.hpp>
 
@@ -53,6 +54,9 @@ class CompareCommand : public Command {
  private:
   void check_map() const {
     check_writable(map_);
+    if (kept_channels(map_, distance_channels()).empty()) {
+      throw UsageError("--map " + map_ + ": this format has no place for distances; .ply has");
+    }
     for (const std::string& mesh : {a_, b_}) check_not_over("--map", map_, "the input", mesh);
   }
 

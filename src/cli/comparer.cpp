@@ -166,10 +166,7 @@ class MeshComparer {
         distances.empty() ? 0 : *std::max_element(distances.begin(), distances.end());
     std::vector<float> sorted = distances;
     const float brightest = quantile(std::span(sorted), k_brightest);
-    const std::vector<Channel> channels = {{"quality"},
-                                           {"red", ChannelType::uint8, ChannelRole::colour},
-                                           {"green", ChannelType::uint8, ChannelRole::colour},
-                                           {"blue", ChannelType::uint8, ChannelRole::colour}};
+    const std::vector<Channel> channels = distance_channels();
     std::vector<float> values;
     values.reserve(distances.size() * channels.size());
     for (const float distance : distances) {
@@ -226,6 +223,13 @@ class MeshComparer {
 };
 
 }  // namespace
+
+std::vector<Channel> distance_channels() {
+  return {{"quality"},
+          {"red", ChannelType::uint8, ChannelRole::colour},
+          {"green", ChannelType::uint8, ChannelRole::colour},
+          {"blue", ChannelType::uint8, ChannelRole::colour}};
+}
 
 Comparison compare_meshes(const std::string& path_a, const std::string& path_b,
                           const CompareOptions& options) {

@@ -3,9 +3,11 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include <meshfarm/divide/divided_surface.hpp>
 #include <meshfarm/geometry/distance.hpp>
+#include <meshfarm/io/channel.hpp>
 #include <meshfarm/report/summary.hpp>
 
 namespace meshfarm {
@@ -16,6 +18,9 @@ struct CompareOptions {
   bool certify = false;      // bound the greatest distances over all points
   std::string map;           // B with its vertices' distances from A is written there; may be empty
 };
+
+/// What a map has beside its positions.
+std::vector<Channel> distance_channels();
 
 /// Measures two mesh files of any size. What takes both in memory is left out where they do not
 /// fit, and the comparison says so; but a map or bounds that were asked for are a UsageError then.

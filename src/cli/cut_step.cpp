@@ -3,6 +3,7 @@
 #include "cli/cut_step.hpp"
 
 #include <cstdlib>
+#include <filesystem>
 #include <memory>
 #include <optional>
 #include <utility>
@@ -100,17 +101,10 @@ Manifest plan_cut(const CutStep& step, const MeshFileInfo& info, const Cutting& 
   return manifest;
 }
 
-}  // namespace
-
-Manifest cut_to_stage(const CutStep& step) {
-  // An input that cannot be read, or has not what is asked for, leaves no stage behind.
-  std::unique_ptr<MeshSource> source = holds_cut(step.stage) ? nullptr : open_input(step);
-  const Stage stage = Stage::create(step.stage);
-  const Claim claim(stage.root() / ".cut.claim", step.stage + ": is being cut");
-  if (stage.has_manifest()) return taken_up(stage, step);
-  if (!source) source = open_input(step);
-  if (const auto cutting = cutting_for(step, *source)) {
-    return plan_cut(step, source->info(), *cutting, stage);
+/// By this host, or by the first jobs of a run.
+Manifest cut(MeshSource& source, const Stage& stage, const CutStep& step) {
+  if (const auto cutting = cutting_for(step, source)) {
+    return plan_cut(step, source.info(), *cutting, stage);
   }
   publish_record(stage, record_of(step.input, step.words));
   ProgressPrinter printer(step.talk.progress());
@@ -120,7 +114,31 @@ Manifest cut_to_stage(const CutStep& step) {
   options.progress = [&](std::string_view phase, double done) {
     printer.show({.phase = phase, .done = done, .triangles = 0});
   };
-  return cut_mesh(*source, stage, options);
+  return cut_mesh(source, stage, options);
+}
+
+}  // namespace
+
+Manifest cut_to_stage(const CutStep& step) {
+  // An input that cannot be read, or has not what is asked for, leaves no stage behind.
+  std::unique_ptr<MeshSource> source = holds_cut(step.stage) ? nullptr : open_input(step);
+  const bool is_new = !std::filesystem::exists(step.stage);
+  const Stage stage = Stage::create(step.stage);
+  const Claim claim(stage.root() / ".cut.claim", step.stage + ": is being cut");
+  if (stage.has_manifest()) return taken_up(stage, step);
+  if (!source) source = open_input(step);
+  const auto forget = [&] {
+    if (is_new && !stage.has_manifest()) remove_stage(stage.root());
+  };
+  try {
+    return cut(*source, stage, step);
+  } catch (const DataError&) {  // found on the way
+    forget();
+    throw;
+  } catch (const UsageError&) {
+    forget();
+    throw;
+  }
 }
 
 void tell_textures(const std::string& input, const MeshFileInfo& info) {

@@ -108,3 +108,37 @@ TEST_CASE("what cannot be a file to write is refused before the work") {
   CHECK(file.code == 1);
   CHECK(has(file.err, "Not a directory"));
 }
+
+TEST_CASE("an input that turns out to be unfit leaves no stage that was not there") {
+  Shell shell;
+  // The header is in order, and a vertex is not.
+  const std::string bad =
+      shell.file("bad.ply",
+                 "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\n"
+                 "property float z\nend_header\n0 word 0\n");
+  const std::string output = shell.path("o.ply");
+  const std::string stage = shell.path("s");
+  CHECK(shell({"simplify", bad, "-o", output, "--ratio", "1"}).code == 1);
+  CHECK_FALSE(fs::exists(output + ".stage"));
+  CHECK(shell({"cut", bad, "--stage", stage}).code == 1);
+  CHECK_FALSE(fs::exists(stage));
+  CHECK(shell({"cut", shell.cube(), "--stage", stage, "--cut", "farm"}).code == 2);  // it is ascii
+  CHECK_FALSE(fs::exists(stage));
+  // A folder that was there is somebody's, and so is a file in a new one.
+  fs::create_directory(stage);
+  shell.file("s/mine.txt", "x");
+  CHECK(shell({"cut", bad, "--stage", stage}).code == 1);
+  CHECK(fs::exists(stage + "/mine.txt"));
+}
+
+TEST_CASE("a map of distances goes to a format that has a place for them") {
+  Shell shell;
+  const std::string cube = shell.cube();
+  const std::string map = shell.path("map.stl");
+  const Ran ran = shell({"compare", cube, cube, "--map", map});
+  CHECK(ran.code == 2);
+  CHECK(lines(ran.err) == 1);
+  CHECK(has(ran.err, "--map " + map + ": this format has no place for distances"));
+  CHECK_FALSE(fs::exists(map));
+  CHECK(shell({"compare", cube, cube, "--map", shell.path("map.obj")}).code == 0);
+}
