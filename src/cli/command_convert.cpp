@@ -33,7 +33,7 @@ class ConvertCommand : public Command {
     options.add_options()("input", po::value(&input_)->required(), "")(
         "output", po::value(&output_)->required(), "")(
         "threads", po::value(&threads_)->default_value(threads_)->value_name("N"),
-        "that parse text (0: one a core)")(
+        "threads that parse text (0: one a core)")(
         "uv", po::value(&uv_)->default_value(uv_)->value_name("auto|keep|colours|drop"),
         "textures: keep: their coordinates, and pictures beside the output or in it; colours: "
         "theirs become those of the vertices; drop: they are left out; auto: keep, or colours "

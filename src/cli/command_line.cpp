@@ -45,8 +45,8 @@ std::string list_of_commands() {
 
 std::string help_of(const Command& command, const po::options_description& options) {
   std::ostringstream out;
-  out << "meshfarm " << command.name() << " " << command.synopsis() << "\n  " << command.summary()
-      << "\n\n"
+  out << "meshfarm " << command.name() << (command.synopsis().empty() ? "" : " ")
+      << command.synopsis() << "\n  " << command.summary() << "\n\n"
       << options;
   return out.str();
 }

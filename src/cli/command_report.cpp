@@ -22,7 +22,8 @@ class ReportCommand : public Command {
     options.add_options()("stage", po::value(&stage_)->required(), "")(
         "output,o", po::value(&output_)->value_name("FILE"),
         "where the page goes, as HTML (default: STAGE/report.html)")(
-        "epoch", po::value(&epoch_)->value_name("N"), "the run of this epoch (default: the last)")(
+        "epoch", po::value(&epoch_)->value_name("N"),
+        "the run of this epoch (0, the default: the last)")(
         "up", po::value(&up_)->value_name("x|y|z|-x|-y|-z"),
         "the mesh's axis that points up (default: y, or z if the mesh lies)");
     positional.add("stage", 1);

@@ -40,7 +40,7 @@ class SimulateCommand : public Command {
         "with --seeds: 'run', the jobs of a whole run, cut and finish included, or "
         "'stages', three stages");
     options.add_options()("threads", po::value(&seeds_.threads)->value_name("N"),
-                          "with --seeds: histories tried at once (default: one a core)");
+                          "with --seeds: histories tried at once (0, the default: one a core)");
     talk_.add(options);
     positional.add("stage", -1);
   }

@@ -38,14 +38,15 @@ class WorkerCommand : public FarmCommand {
         "the fewest workers for its remaining work first; looks on after the end of each");
     options.add_options()("wait", po::value(&wait_s_)->value_name("SECONDS"),
                           "how long to look for a ventilator (default: 60; with --pool: for ever)");
-    options.add_options()(
-        "speed", po::value(&speed_)->value_name("N"),
-        "triangles a second that this host simplifies (default: as 'meshfarm benchmark' measured)")(
+    options.add_options()("speed", po::value(&speed_)->value_name("N"),
+                          "triangles a second that this host simplifies (0, the default: as "
+                          "'meshfarm benchmark' measured)")(
         "threads", po::value(&threads_)->default_value(threads_)->value_name("N"),
-        "parts simplified at once")("memory", po::value(&memory_)->value_name("SIZE"),
-                                    "what parts in work may take together, as 8G (default: this "
-                                    "worker's share of what the host "
-                                    "or its control group has free)");
+        "parts simplified at once, 1 to 256")(
+        "memory", po::value(&memory_)->value_name("SIZE"),
+        "what parts in work may take together, as 8G (default: this "
+        "worker's share of what the host "
+        "or its control group has free; 0: no limit)");
     options.add_options()(
         "run", po::value(&run_)->value_name("KEY"),
         "serve this run only, as 'meshfarm run --worker-words' tells it (default: "

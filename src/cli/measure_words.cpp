@@ -26,7 +26,7 @@ void MeasureWords::add(po::options_description& options) {
                         "memory to work with, as 512M or 2G; what does not fit goes to scratch "
                         "files")("scratch", po::value(&scratch_)->value_name("FOLDER"),
                                  "where these lie (default: $TMPDIR, or /tmp)")(
-      "threads", po::value(&divide.threads)->value_name("N"), "threads (default: cores)");
+      "threads", po::value(&divide.threads)->value_name("N"), "threads (0, the default: cores)");
 }
 
 void MeasureWords::check() {

@@ -60,23 +60,24 @@ void CutWords::add(po::options_description& options) {
       "a binary PLY file of triangles that all hosts see; auto: farm, if simplify keeps no parts, "
       "the mesh is large, and there are workers enough")(
       "blocks", po::value(&blocks)->value_name("N"),
-      "with --cut farm: blocks of vertices, and of triangles, up to 144 (default: of about "
+      "with --cut farm: blocks of vertices, and of triangles, up to 144 (0, the default: of about "
       "300,000 each); the parts do not depend on it")(
       "sort", po::value(&sort)->default_value(sort)->value_name("here|farm"),
       "with --scheme stream: here: sort the slabs on this host; farm: the first jobs of a run sort "
-      "them, on all hosts")(
-      "parts", po::value(&cut.parts)->value_name("N"),
-      "number of parts (default: parts of about one million triangles, and at least 16 of a large "
-      "mesh) or streams (default: 1.2 million triangles each)")(
+      "them, on all hosts")("parts", po::value(&cut.parts)->value_name("N"),
+                            "number of parts (0, the default: parts of about one million "
+                            "triangles, and at least 16 of a large "
+                            "mesh) or streams (of 1.2 million triangles each)")(
       "weld", po::value(&weld)->default_value(weld)->value_name("exact|off"),
       "exact: merge vertices at the same position, except where surfaces only touch; off: do not "
-      "merge")(
-      "attributes", po::value(&attributes)->default_value(attributes)->value_name("auto|none|LIST"),
-      "auto: colours, normals and other numbers that the vertices have, and materials or "
-      "other labels of triangles, if the formats have a place for them; none: positions "
-      "only; LIST: these, as in red,green,blue ('colours' and 'normals' stand for "
-      "theirs)")("uv", po::value(&uv)->default_value(uv)->value_name(k_uv_words), k_uv_help)(
-      "threads", po::value(&cut.threads)->value_name("N"), "threads of the cut (default: cores)")(
+      "merge")("attributes",
+               po::value(&attributes)->default_value(attributes)->value_name("auto|none|LIST"),
+               "auto: colours, normals and other numbers that the vertices have, and materials or "
+               "other labels of triangles, if the formats have a place for them; none: positions "
+               "only; LIST: these, as in red,green,blue ('colours' and 'normals' stand for "
+               "theirs)")("uv", po::value(&uv)->default_value(uv)->value_name(k_uv_words),
+                          k_uv_help)("threads", po::value(&cut.threads)->value_name("N"),
+                                     "threads of the cut (0, the default: cores)")(
       "memory", po::value(&memory)->value_name("BYTES"),
       "memory of the cut, for example 2G: with --scheme stream for sorting (default: 512M), with "
       "--scheme cut for the parts that are made at once (default: no limit)")(

@@ -68,8 +68,9 @@ void check_certify(const RunOptions& run) {
 }  // namespace
 
 void TargetOptions::add(po::options_description& options) {
-  options.add_options()("ratio", po::value(&ratio)->value_name("R"),
-                        "share of the input's triangles to keep, for example 0.01 or 1%")(
+  options.add_options()(
+      "ratio", po::value(&ratio)->value_name("R"),
+      "share of the input's triangles to keep, above 0 and up to 1, for example 0.01 or 1%")(
       "triangles", po::value(&run.triangles)->value_name("N"), "number of triangles to keep")(
       "error", po::value(&error)->value_name("LENGTH"),
       "keep as few triangles as stay within this distance of the input, measured at sampled "
@@ -104,7 +105,8 @@ void TargetOptions::add(po::options_description& options) {
       "allow: nobody looks")("preserve-border", po::bool_switch(&run.lines.preserve_border),
                              "leave the vertices on open borders as they are")(
       "crease-angle", po::value(&run.lines.crease_angle)->value_name("DEGREES"),
-      "keep edges that are sharper than this in place: their vertices merge only along them")(
+      "keep edges that are sharper than this in place: their vertices merge only along them (0, "
+      "the default: none; below 180)")(
       "drop-components", po::value(&drop_components)->value_name("LENGTH"),
       "leave out pieces smaller than this: in the mesh's unit, or as a share of the diagonal, for "
       "example 0.5%")("weight", po::value(&weight)->value_name("NAME=W,..."), k_weight_help)(
@@ -114,8 +116,9 @@ void TargetOptions::add(po::options_description& options) {
 }
 
 void TargetOptions::add_texture_size(po::options_description& options) {
-  options.add_options()("texture-size", po::value(&run.texture_size)->value_name("PIXELS"),
-                        "sides of a picture that is made by --uv bake (default: by the input's)");
+  options.add_options()(
+      "texture-size", po::value(&run.texture_size)->value_name("PIXELS"),
+      "sides of a picture that is made by --uv bake, 64 to 16384 (0, the default: by the input's)");
 }
 
 void TargetOptions::add_attributes(po::options_description& options) {

@@ -119,3 +119,55 @@ TEST_CASE("what is wrong in a config file is told with the file and the line") {
   CHECK(folder.code == 1);
   CHECK(has(folder.err, "Is a directory"));
 }
+
+TEST_CASE("errors show what was typed, and help ends no line with a blank") {
+  Shell shell;
+  CHECK(has(shell({"simulate", "s", "--workers", "x"}).err, "--workers: 'x' is no number"));
+  CHECK(has(shell({"simulate", "s", "--workers", "24x"}).err, "--workers: '24x' is no number"));
+  CHECK(shell({"benchmark", "--help"}).out.starts_with("meshfarm benchmark\n"));
+}
+
+TEST_CASE("an empty file, a buffer that is not there and a run that was not are told as that") {
+  Shell shell;
+  const std::string empty = shell.file("empty.ply", "");
+  CHECK(has(shell({"info", empty}).err, empty + ": is empty\n"));
+  const std::string gltf = shell.file(
+      "mesh.gltf",
+      R"({"asset":{"version":"2.0"},"buffers":[{"uri":"gone.bin","byteLength":36}],)"
+      R"("bufferViews":[{"buffer":0,"byteLength":36}],"accessors":[{"bufferView":0,)"
+      R"("componentType":5126,"count":3,"type":"VEC3"}],"meshes":[{"primitives":[)"
+      R"({"attributes":{"POSITION":0}}]}],"nodes":[{"mesh":0}],"scenes":[{"nodes":[0]}]})");
+  const Ran info = shell({"info", gltf});
+  CHECK(info.code == 1);
+  CHECK(has(info.err, gltf));
+  CHECK(has(info.err, shell.path("gone.bin")));
+  const std::string stage = shell.path("s");
+  REQUIRE(shell({"cut", shell.cube(), "--stage", stage}).code == 0);
+  REQUIRE(shell({"replay", stage, "--ratio", "1"}).code == 0);
+  const Ran report = shell({"report", stage, "--epoch", "99"});
+  CHECK(report.code == 1);
+  CHECK(has(report.err, stage + ": no run of epoch 99 was traced; there are 1\n"));
+}
+
+TEST_CASE("help says where 0 is the default, and what range a value has") {
+  Shell shell;
+  const auto help_of = [&](const char* command) {
+    std::string words;  // without the line breaks of help's columns
+    for (const char c : shell({command, "--help"}).out) {
+      if (c != '\n' && c != ' ') words += c;
+    }
+    return words;
+  };
+  const std::string simplify = help_of("simplify");
+  CHECK(has(simplify, "(0,thedefault:ofabout300,000each)"));
+  CHECK(has(simplify, "numberofparts(0,thedefault:"));
+  CHECK(has(simplify, "threadsofthecut(0,thedefault:cores)"));
+  CHECK(has(simplify, "64to16384(0,thedefault:bytheinput's)"));
+  CHECK(has(simplify, "above0andupto1"));
+  CHECK(has(simplify, "(0,thedefault:none;below180)"));
+  CHECK(has(help_of("worker"), "(0,thedefault:as'meshfarmbenchmark'measured)"));
+  CHECK(has(help_of("worker"), "0:nolimit"));
+  CHECK(has(help_of("report"), "(0,thedefault:thelast)"));
+  CHECK(has(help_of("info"), "threads(0,thedefault:cores)"));
+  CHECK(has(help_of("convert"), "threadsthatparsetext(0:oneacore)"));
+}
