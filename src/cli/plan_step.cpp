@@ -29,12 +29,13 @@ const std::vector<WorkerGroup> k_mixed_pcs = {{16, 1}, {8, 1.0 / 3}};
 constexpr std::uint64_t k_fewest_jobs = 128;
 constexpr std::uint64_t k_most_jobs = 4096;
 
-double number_in(const std::string& text, std::string_view option) {
+/// `typed` is for the message.
+double number_in(const std::string& text, std::string_view option, const std::string& typed) {
   double value = 0;
   const char* last = text.data() + text.size();
   const auto [end, error] = std::from_chars(text.data(), last, value);
   if (error != std::errc{} || end != last || !(value > 0) || value > 1e9) {
-    throw UsageError(std::string(option) + ": '" + text + "' is no number above 0");
+    throw UsageError(std::string(option) + ": '" + typed + "' is no number above 0");
   }
   return value;
 }
@@ -46,9 +47,10 @@ std::vector<WorkerGroup> groups_in(const std::string& text) {
   std::uint64_t all = 0;
   for (std::string word; std::getline(words, word, '+');) {
     const std::size_t times = word.find('x');
-    const double count = number_in(word.substr(0, times), "--workers");
+    const double count = number_in(word.substr(0, times), "--workers", word);
     WorkerGroup group{static_cast<std::uint64_t>(count), 1};
-    if (times != std::string::npos) group.speed = number_in(word.substr(times + 1), "--workers");
+    if (times != std::string::npos)
+      group.speed = number_in(word.substr(times + 1), "--workers", word);
     all += group.count;
     groups.push_back(group);
   }
@@ -114,8 +116,8 @@ void PlanWords::check() {
   if (!(delay_ms >= 0) || delay_ms > 1e6) throw UsageError("--delay: from 0 to 1000000");
   if (!(off >= 0) || off >= 1) throw UsageError("--off: from 0 to 1");
   like_.schedule = schedule == "static" ? Schedule::fixed : Schedule::dynamic;
-  like_.server_bytes_per_s = number_in(storage, "--storage") * 1e9 / 8;
-  like_.link_bytes_per_s = number_in(link, "--link") * 1e9 / 8;
+  like_.server_bytes_per_s = number_in(storage, "--storage", storage) * 1e9 / 8;
+  like_.link_bytes_per_s = number_in(link, "--link", link) * 1e9 / 8;
   like_.cache_bytes = static_cast<double>(parse_size(cache, "--cache"));
   like_.delay_s = delay_ms * 1e-3;
 }

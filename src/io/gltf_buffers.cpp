@@ -141,7 +141,12 @@ std::shared_ptr<const GltfBuffer> GltfBuffers::open_uri(const GltfValue& uri) co
   if (!name || is_elsewhere || !is_beneath(*name)) {
     uri.fail(shown(text) + " does not name a file beside this one, or in a folder below");
   }
-  return std::make_shared<const GltfBuffer>(buffer_in_file(files_, folder_ / *name));
+  const std::filesystem::path beside = folder_ / *name;
+  std::error_code ignored;
+  if (!std::filesystem::exists(beside, ignored)) {
+    uri.fail("names a buffer that is not there: " + beside.string());
+  }
+  return std::make_shared<const GltfBuffer>(buffer_in_file(files_, beside));
 }
 
 }  // namespace meshfarm

@@ -113,6 +113,7 @@ std::unique_ptr<MeshSource> open_mesh(const std::filesystem::path& path,
   for (const MeshFormat& format : k_formats) {
     if (format.recognises(file)) return format.open(std::move(file), options);
   }
+  if (file.size() == 0) throw DataError(path.string() + ": is empty");
   throw DataError(path.string() + ": unknown format; meshfarm reads " + listed(&MeshFormat::name) +
                   ", plain or compressed with gzip or zstd");
 }

@@ -8,6 +8,7 @@
 #include <meshfarm/staging/file_system.hpp>
 #include <meshfarm/util/errors.hpp>
 #include <meshfarm/util/log.hpp>
+#include <meshfarm/util/text.hpp>
 
 namespace meshfarm {
 namespace {
@@ -140,6 +141,12 @@ Trace read_newest_trace(const Stage& stage, std::optional<std::uint32_t> epoch) 
   const std::vector<std::uint32_t> traces = stage.traces();
   if (traces.empty()) {
     throw DataError(stage.root().string() + ": no run of this stage was traced yet");
+  }
+  if (epoch && std::find(traces.begin(), traces.end(), *epoch) == traces.end()) {
+    std::vector<std::string> there;
+    for (const std::uint32_t each : traces) there.push_back(std::to_string(each));
+    throw DataError(stage.root().string() + ": no run of epoch " + std::to_string(*epoch) +
+                    " was traced; there are " + joined(there));
   }
   const TraceName name{epoch.value_or(traces.back())};
   return parse_trace(stage.read(name), stage.path(name).string());

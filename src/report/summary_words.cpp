@@ -50,10 +50,14 @@ std::optional<std::int64_t> handles_of(const Topology& t) {
   return (2 * static_cast<std::int64_t>(t.components) - t.euler) / 2;
 }
 
+std::string counted(std::uint64_t count, std::string_view thing) {
+  return grouped(count) + " " + std::string(thing) + (count == 1 ? "" : "s");
+}
+
 std::string text_of(const Topology& t) {
   const auto handles = handles_of(t);
-  return grouped(t.components) + " components, " + grouped(t.border_edges) + " border edges, " +
-         grouped(t.nonmanifold_edges) + " non-manifold edges, " + grouped(t.degenerate) +
+  return counted(t.components, "component") + ", " + counted(t.border_edges, "border edge") + ", " +
+         counted(t.nonmanifold_edges, "non-manifold edge") + ", " + grouped(t.degenerate) +
          " degenerate, " + grouped(t.zero_area) + " of zero area, " + grouped(t.duplicate) +
          " duplicate, Euler characteristic " + std::to_string(t.euler) +
          (handles ? ", " + std::to_string(*handles) + (*handles == 1 ? " handle" : " handles")

@@ -58,6 +58,8 @@ Json to_json(const MeasuredError& error, double diagonal);
 void add_quantiles(const std::optional<DistanceQuantiles>& quantiles, double diagonal, Json& json);
 std::string text_of(const NormalDeviation& normals);
 std::string text_of(const Topology& topology);
+/// "1 component", "2,000 components".
+std::string counted(std::uint64_t count, std::string_view thing);
 /// Genus, of all pieces together. Nothing where borders or edges that are not manifold make the
 /// Euler characteristic tell more than handles.
 std::optional<std::int64_t> handles_of(const Topology& topology);

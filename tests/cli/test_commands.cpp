@@ -426,7 +426,7 @@ TEST_CASE("generate, info and compare fit together") {
   Shell shell;
   CHECK(shell({"generate", "-o", shell.path("t.ply"), "--triangles", "20000"}).code == 0);
   const Ran info = shell({"info", shell.path("t.ply")});
-  CHECK(has(info.out, "1 components, 0 border edges, 0 non-manifold edges"));
+  CHECK(has(info.out, "1 component, 0 border edges, 0 non-manifold edges"));
   CHECK(has(info.out, "Euler characteristic 0"));
   CHECK(shell({"simplify", shell.path("t.ply"), "-o", shell.path("s.ply"), "--triangles", "2000"})
             .code == 0);
@@ -471,7 +471,7 @@ TEST_CASE("one mesh has one result, as whatever format it comes and goes") {
   }
   simplified("t.ply", "r.stl");
   CHECK(has(shell({"compare", path("r.stl"), path("from-ply.ply"), "--samples", "1000"}).out,
-            "1 components, 0 border edges, 0 non-manifold edges"));
+            "1 component, 0 border edges, 0 non-manifold edges"));
 }
 
 TEST_CASE("generate makes the same mesh in all formats") {
@@ -497,14 +497,14 @@ TEST_CASE("info and compare weld, and hold no more than they are given") {
                                       "end_header\n0 0 0\n1 0 0\n0 1 0\n1 0 0\n1 1 0\n0 1 0\n"
                                       "3 0 1 2\n3 3 4 5\n");
   const Ran info = shell({"info", seam});
-  const std::size_t welded = info.out.find("welded (2 coincident vertices merged): 1 components");
+  const std::size_t welded = info.out.find("welded (2 coincident vertices merged): 1 component,");
   REQUIRE(welded != std::string::npos);
   CHECK(info.out.find("as it is: 2 components") > welded);
   CHECK(info.out.find("as it is: 2 components") != std::string::npos);
   CHECK(has(shell({"info", seam, "--json"}).out, "\"topology_not_welded\""));
   // In many slabs, by way of scratch files.
   const Ran little = shell({"info", torus, "--memory", "100K"});
-  CHECK(has(little.out, "1 components, 0 border edges, 0 non-manifold edges"));
+  CHECK(has(little.out, "1 component, 0 border edges, 0 non-manifold edges"));
   CHECK_FALSE(has(little.out, "welded"));
   const auto rms_of = [](const Ran& ran) {
     const std::size_t at = ran.out.find("rms ");
