@@ -12,6 +12,7 @@
 #include <meshfarm/pipeline/sink_need.hpp>
 #include <meshfarm/staging/file_system.hpp>
 #include <meshfarm/staging/stage.hpp>
+#include <meshfarm/transport/addresses.hpp>
 #include <meshfarm/util/checksum.hpp>
 #include <meshfarm/util/control_groups.hpp>
 #include <meshfarm/util/errors.hpp>
@@ -82,6 +83,15 @@ class KeysAside {
   std::filesystem::path folder_;
 };
 
+/// Before ventilator and sink say the same, each for itself.
+void check_network(const NetworkOptions& network) {
+  if (!network.this_host_only) check_bind(network.bind);
+  const std::filesystem::path keys = network.security.key_file;
+  if (std::filesystem::exists(keys) && !std::filesystem::is_regular_file(keys)) {
+    throw DataError(keys.string() + ": not a file");
+  }
+}
+
 }  // namespace
 
 std::uint32_t default_workers() {
@@ -92,6 +102,7 @@ int run_local_farm(const LocalFarm& farm, const std::atomic<bool>& stop) {
   // Looked at here once, so that a missing or damaged stage is one line and not one a process.
   const Stage stage = Stage::open(farm.stage);
   farm.network.security.check_mount(farm.stage);
+  check_network(farm.network);
   const Manifest manifest =
       decode_manifest(stage.read(ManifestName{}), stage.path(ManifestName{}).string());
   check_output_fits(farm.output, manifest, farm.target.run);

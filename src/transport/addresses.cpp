@@ -9,6 +9,8 @@
 
 #include <meshfarm/transport/addresses.hpp>
 
+#include "transport/sockets.hpp"
+
 namespace meshfarm {
 namespace {
 
@@ -34,6 +36,12 @@ bool is_loopback(std::string_view bind) {
     if (bind == each->ifa_name) return (each->ifa_flags & IFF_LOOPBACK) != 0;
   }
   return false;
+}
+
+void check_bind(const std::string& bind) {
+  zmq::context_t context;
+  zmq::socket_t socket(context, zmq::socket_type::pull);
+  bind_within(socket, bind, {});
 }
 
 std::optional<std::string> network_address() {

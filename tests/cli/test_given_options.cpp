@@ -171,3 +171,20 @@ TEST_CASE("help says where 0 is the default, and what range a value has") {
   CHECK(has(help_of("info"), "threads(0,thedefault:cores)"));
   CHECK(has(help_of("convert"), "threadsthatparsetext(0:oneacore)"));
 }
+
+TEST_CASE("a run says once that it cannot listen, or that its keys are no file") {
+  Shell shell;
+  const std::string stage = shell.path("s");
+  REQUIRE(shell({"cut", shell.cube(), "--stage", stage}).code == 0);
+  const auto error_of = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> words = {"run", stage, "--ratio", "1"};
+    words.insert(words.end(), more.begin(), more.end());
+    const Ran ran = shell(words);
+    CHECK(ran.code == 1);
+    CHECK(lines(ran.err) == 1);
+    return ran.err;
+  };
+  CHECK(
+      has(error_of({"--bind", "nonesuch0"}), "run: error: cannot listen on any port of nonesuch0"));
+  CHECK(has(error_of({"--bind", "127.0.0.1", "--key-file", stage}), stage + ": not a file"));
+}
