@@ -126,6 +126,7 @@ class InfoCommand : public Command {
     summary.triangles = surface.triangles();
     summary.short_faces = source.small_faces();
     summary.not_finite = surface.not_finite();
+    summary.dropped_not_finite = surface.dropped();
     const SurfaceTopology topology = surface.measure_topology();
     summary.welded = topology.welded;
     summary.as_it_is = topology.as_it_is;

@@ -114,7 +114,12 @@ Manifest cut(MeshSource& source, const Stage& stage, const CutStep& step) {
   options.progress = [&](std::string_view phase, double done) {
     printer.show({.phase = phase, .done = done, .triangles = 0});
   };
-  return cut_mesh(source, stage, options);
+  Manifest made = cut_mesh(source, stage, options);
+  if (source.small_faces() > 0) {
+    log_warning(step.input + ": left out: " + std::to_string(source.small_faces()) +
+                " faces of 0 to 2 corners");
+  }
+  return made;
 }
 
 }  // namespace

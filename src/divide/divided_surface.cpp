@@ -46,7 +46,8 @@ class DividedSurface::Impl {
   }
 
   const VertexSurvey& found() const { return survey_; }
-  std::uint64_t triangles() const { return triangles_ - welded_.shares->dropped(); }
+  std::uint64_t triangles() const { return triangles_ - dropped(); }
+  std::uint64_t dropped() const { return welded_.shares->dropped(); }
 
   SurfaceTopology measure() const {
     std::uint64_t merged = 0;
@@ -184,6 +185,9 @@ std::uint64_t DividedSurface::vertices() const {
 }
 std::uint64_t DividedSurface::not_finite() const {
   return impl_->found().not_finite;
+}
+std::uint64_t DividedSurface::dropped() const {
+  return impl_->dropped();
 }
 std::uint64_t DividedSurface::triangles() const {
   return impl_->triangles();

@@ -28,6 +28,7 @@ std::string render(const FileSummary& s, Format format) {
                  {"triangles", s.triangles},
                  {"short_faces", s.short_faces},
                  {"not_finite", s.not_finite},
+                 {"dropped_not_finite", s.dropped_not_finite},
                  {"positions", s.file.positions == PositionType::float64 ? "float64" : "float32"},
                  {"channels", names_of(s.file.channels)},
                  {"labels", to_json(s.file.labels)},
@@ -49,6 +50,10 @@ std::string render(const FileSummary& s, Format format) {
                 (s.file.compression == "none" ? "" : ", compressed by " + s.file.compression));
   lines.add("triangles", grouped(s.triangles));
   if (s.short_faces > 0) lines.add("left out", grouped(s.short_faces) + " faces of 0 to 2 corners");
+  if (s.dropped_not_finite > 0) {
+    lines.add("left out",
+              counted(s.dropped_not_finite, "triangle") + " with positions that are not finite");
+  }
   lines.add("vertices", grouped(s.file.vertices) +
                             (s.file.positions == PositionType::float64 ? ", double" : ", float"));
   if (s.not_finite > 0) {

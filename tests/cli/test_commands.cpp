@@ -92,11 +92,28 @@ TEST_CASE("a NaN costs the triangles that use it, and everybody says so") {
     CHECK(ran.code == 0);
     CHECK(has(ran.out, "triangles with positions that are not finite"));
     CHECK_FALSE(has(ran.out, "dropped          0"));
+    CHECK(has(ran.out, "5 triangles with positions that are not finite"));
   }
   const Ran info = shell({"info", input});
   CHECK(info.code == 0);
   CHECK(has(info.out, "2 of them with a coordinate that is not finite"));
+  CHECK(has(info.out, "left out         5 triangles with positions that are not finite"));
   CHECK(has(shell({"info", input, "--no-topology", "--json"}).out, "\"not_finite\": 2"));
+}
+
+TEST_CASE("faces of fewer than three corners are left out, and simplify says so too") {
+  Shell shell;
+  std::string text = read_text(shell.cube());
+  text.replace(text.find("face 6"), 6, "face 8");
+  const std::string input = shell.file("lines.ply", text + "2 0 1\n1 3\n");
+  const std::string left_out = input + ": left out: 2 faces of 0 to 2 corners\n";
+  for (const std::string scheme : {"cut", "stream"}) {
+    const Ran ran = shell({"simplify", input, "-o", shell.path("out.ply"), "--ratio", "1",
+                           "--scheme", scheme, "--quiet"});
+    CHECK(ran.code == 0);
+    CHECK(has(ran.err, left_out));
+  }
+  CHECK(has(shell({"info", input}).out, "left out         2 faces of 0 to 2 corners\n"));
 }
 
 TEST_CASE("a cut that leaves the sorting to the farm says so, and the run then knows streams") {

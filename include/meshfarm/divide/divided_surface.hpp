@@ -40,6 +40,7 @@ class DividedSurface {
   const Box& box() const;
   std::uint64_t vertices() const;
   std::uint64_t not_finite() const;  // vertices with a coordinate that is not
+  std::uint64_t dropped() const;     // triangles that have such a corner: not in triangles()
   std::uint64_t triangles() const;   // but those that use such a vertex
   /// Coincident vertices are welded as in a run.
   SurfaceTopology measure_topology() const;

@@ -149,8 +149,9 @@ struct FileSummary {
   MeshFileInfo file;
   Box box;
   std::uint64_t triangles = 0;
-  std::uint64_t short_faces = 0;  // faces with fewer than three corners, left out
-  std::uint64_t not_finite = 0;   // vertices with a coordinate that is not
+  std::uint64_t short_faces = 0;         // faces with fewer than three corners, left out
+  std::uint64_t not_finite = 0;          // vertices with a coordinate that is not
+  std::uint64_t dropped_not_finite = 0;  // triangles of theirs, left out
   /// About as few triangles as a result has that keeps the textures; 0 where that is not known.
   std::uint64_t texture_floor = 0;
   /// With coincident vertices welded as a run does, and as the file has them.
