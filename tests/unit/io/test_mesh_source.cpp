@@ -137,12 +137,13 @@ TEST_CASE("unknown formats are refused with what is supported") {
       "with gzip "
       "or zstd";
   for (const auto text :
-       {"", "\n\n", "vertex 0 0 0\n", "v\n", "solid x\n", "solid x\nsurface\n", "OFFICE 1\n",
+       {"\n\n", "vertex 0 0 0\n", "v\n", "solid x\n", "solid x\nsurface\n", "OFFICE 1\n",
         "off\n0 0 0\n", "plying\n", "PLY\n", " ply\n", "p", "\x1f", "\x28\xb5\x2f"}) {
     CHECK(refusal(text) == why);
   }
   CHECK(refusal(gzipped("V 0 0 0\n")) == why);
   CHECK(refusal(zstandard("")) == why);
+  CHECK(refusal("") == "m.ply: is empty");
 }
 
 TEST_CASE("what is no readable file is refused") {
