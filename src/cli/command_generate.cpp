@@ -39,8 +39,10 @@ class GenerateCommand : public Command {
     shape_named(shape_);
   }
   void check_given(const GivenOptions& given) const override {
-    if (!from_.empty())
-      refuse_given(given, {"triangles", "shape"}, "a mesh that is made, not --from");
+    for (const char* option : {"triangles", "shape"}) {
+      if (from_.empty() || given.count(option) == 0) continue;
+      throw UsageError("--" + std::string(option) + " is of a mesh that is made: not with --from");
+    }
   }
   int run() override {
     check_writable(output_);

@@ -58,16 +58,15 @@ class SimulateCommand : public Command {
   }
   void check_given(const GivenOptions& given) const override {
     if (plans_) {
-      refuse_given(given, {"jobs", "graph", "threads"}, "--seed or --seeds");
+      warn_of_unused(given, {"jobs", "graph", "threads"}, "--seed or --seeds");
       plan_.check_given(given);
-    } else {
-      refuse_given(given,
-                   {"parts", "schedule", "storage", "link", "cache", "delay", "limits", "paper",
-                    "off", "output"},
-                   "a STAGE, not --seed or --seeds");
+      return;
     }
+    if (given.count("output") != 0) throw UsageError("-o goes with a STAGE and --paper");
+    warn_of_unused(
+        given, {"parts", "schedule", "storage", "link", "cache", "delay", "limits", "paper", "off"},
+        "a STAGE");
   }
-  bool keeps_freed_memory() const override { return false; }
   int run() override {
     if (!plans_) return run_seeds();
     plan_.run(talk_.format());

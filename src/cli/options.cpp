@@ -8,6 +8,7 @@
 #include <meshfarm/staging/file_system.hpp>
 #include <meshfarm/transport/addresses.hpp>
 #include <meshfarm/util/errors.hpp>
+#include <meshfarm/util/log.hpp>
 
 #include "cli/choice_words.hpp"
 #include "cli/texture_words.hpp"
@@ -27,11 +28,11 @@ std::uint16_t parse_port(std::string_view text) {
 
 }  // namespace
 
-void refuse_given(const GivenOptions& given, std::initializer_list<std::string_view> options,
-                  std::string_view with) {
+void warn_of_unused(const GivenOptions& given, std::initializer_list<std::string_view> options,
+                    std::string_view needed) {
   for (const std::string_view option : options) {
     if (given.count(option) == 0) continue;
-    throw UsageError("--" + std::string(option) + " goes with " + std::string(with));
+    log_warning("--" + std::string(option) + " changes nothing without " + std::string(needed));
   }
 }
 
@@ -119,8 +120,8 @@ void CutWords::check() {
 }
 
 void CutWords::check_given(const GivenOptions& given) const {
-  if (where != "farm") refuse_given(given, {"blocks"}, "--cut farm");
-  if (cut.scheme != Scheme::stream) refuse_given(given, {"window"}, "--scheme stream");
+  if (!may_be_farmed()) warn_of_unused(given, {"blocks"}, "--cut farm");
+  if (cut.scheme != Scheme::stream) warn_of_unused(given, {"window"}, "--scheme stream");
 }
 
 std::vector<std::string> CutWords::words() const {
@@ -129,8 +130,9 @@ std::vector<std::string> CutWords::words() const {
     words.insert(words.end(), {"--window", std::to_string(cut.window_triangles)});
   }
   if (where != "auto") words.insert(words.end(), {"--cut", where});
-  if (where == "farm" && blocks != 0)
+  if (may_be_farmed() && blocks != 0) {
     words.insert(words.end(), {"--blocks", std::to_string(blocks)});
+  }
   if (!memory.empty()) words.insert(words.end(), {"--memory", memory});
   if (attributes != "auto") words.insert(words.end(), {"--attributes", attributes});
   if (uv != "auto") words.insert(words.end(), {"--uv", uv});
@@ -227,7 +229,7 @@ void ScheduleWords::check() {
 
 void ScheduleWords::check_given(const GivenOptions& given) const {
   if (options.schedule != Schedule::fixed) {
-    refuse_given(given, {"expect-workers"}, "--schedule static");
+    warn_of_unused(given, {"expect-workers"}, "--schedule static");
   }
 }
 

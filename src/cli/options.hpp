@@ -28,9 +28,9 @@ namespace po = boost::program_options;
 // The option groups that commands share: add() declares, the other functions turn the texts into
 // values and throw UsageError. Defaults stand in the members.
 
-/// Throws UsageError if one of the options was given, which do nothing but `with`.
-void refuse_given(const GivenOptions& given, std::initializer_list<std::string_view> options,
-                  std::string_view with);
+/// A warning for each of the options that was given, which do nothing without what is needed.
+void warn_of_unused(const GivenOptions& given, std::initializer_list<std::string_view> options,
+                    std::string_view needed);
 
 /// --quiet and --json.
 struct TalkOptions {
@@ -97,6 +97,8 @@ struct CutWords {
   void check();
   /// As Command::check_given().
   void check_given(const GivenOptions& given) const;
+  /// Whether the first jobs of a run may cut.
+  bool may_be_farmed() const { return where != "here" && cut.scheme != Scheme::stream; }
   /// The same as words for a command line: those that count.
   std::vector<std::string> words() const;
 };

@@ -123,9 +123,10 @@ void PlanWords::check() {
 }
 
 void PlanWords::check_given(const GivenOptions& given) const {
-  if (!paper) refuse_given(given, {"output", "off"}, "--paper");
+  if (!paper && given.count("output") != 0) throw UsageError("-o goes with --paper");
+  if (!paper) warn_of_unused(given, {"off"}, "--paper");
   if (paper && given.count("workers") != 0) {
-    throw UsageError("--paper has farms of its own: not with --workers");
+    log_warning("--workers changes nothing: --paper has farms of its own");
   }
 }
 

@@ -204,7 +204,7 @@ void TargetOptions::check_surface() {
 
 void TargetOptions::check_given(const GivenOptions& given) const {
   if (run.textures == TextureMode::keep || run.textures == TextureMode::drop) {
-    refuse_given(given, {"texture-size"}, "--uv bake, where the output has a place for textures");
+    warn_of_unused(given, {"texture-size"}, "--uv bake, and an output for textures");
   }
 }
 
