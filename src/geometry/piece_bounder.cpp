@@ -11,6 +11,8 @@ namespace {
 /// So thin triangles are not sure on which side of them a point is.
 constexpr double k_sliver = 1e-10;
 constexpr double k_relative_rounding = 0x1p-44;
+/// Of what is enough for a whole piece.
+constexpr double k_near_enough = 0.25;
 
 /// Of the segment's nearest point.
 double squared_above(Vec3 p, Vec3 a, Vec3 b) {
@@ -84,7 +86,9 @@ bool PieceBounder::is_settled(Piece& piece) {
   const Vec3 middle = (a + b + c) * (1.0 / 3);
   double radius = 0;
   for (const Vec3 p : piece.corners) radius = std::max(radius, length(p - middle));
-  const double enough = most > radius ? (most - radius) * (most - radius) : 0;
+  // Too large for the middle to settle it, a piece needs some triangle for its parts to begin with.
+  const double slack = radius < most ? most - radius : k_near_enough * most;
+  const double enough = slack * slack;
   const Bvh::Nearest nearest = bvh_.nearest(middle, piece.guess, enough);
   if (nearest.squared > enough) bounds_.lower = std::max(bounds_.lower, std::sqrt(nearest.squared));
   const CornerPoints there = corners_of(to_.positions, to_.triangles[nearest.triangle]);

@@ -51,6 +51,16 @@ void add_pieces(Vec3 a, Vec3 b, Vec3 c, double longest, Mesh& pieces) {
 
 }  // namespace
 
+TrianglePlaces places_of(const Mesh& mesh, const Triangle& t) {
+  TrianglePlaces places{};
+  for (std::size_t i = 0; i < 3; ++i) {
+    const Vec3 p = mesh.positions[t[i]];
+    places[i] = {p.x, p.y, p.z};
+  }
+  std::sort(places.begin(), places.end());
+  return places;
+}
+
 Mesh part_beyond(const Mesh& from, const TriangleIndex& to, double distance, unsigned threads) {
   std::vector<Triangle> surface;
   std::copy_if(from.triangles.begin(), from.triangles.end(), std::back_inserter(surface),
@@ -59,17 +69,34 @@ Mesh part_beyond(const Mesh& from, const TriangleIndex& to, double distance, uns
                 find_beyond(from.positions, surface, to, distance, threads));
 }
 
-Mesh pieces_beyond(const Mesh& from, const TriangleIndex& to, double distance, unsigned threads) {
+Mesh AstrayFinder::find(const Mesh& result) {
   constexpr double k_longest = 0.5;  // in distances
+  std::vector<TrianglePlaces> places;
+  Mesh fresh;
+  fresh.positions = result.positions;
+  for (const Triangle& t : result.triangles) {
+    const TrianglePlaces each = places_of(result, t);
+    if (std::binary_search(near_.begin(), near_.end(), each)) continue;
+    places.push_back(each);
+    fresh.triangles.push_back(t);
+  }
+  const Mesh beyond = part_beyond(fresh, surface_, distance_, threads_);
   Mesh pieces;
-  const Mesh beyond = part_beyond(from, to, distance, threads);
-  for (const auto& [a, b, c] : beyond.triangles) {
-    add_pieces(beyond.positions[a], beyond.positions[b], beyond.positions[c], k_longest * distance,
+  std::vector<TrianglePlaces> far;
+  for (const Triangle& t : beyond.triangles) {
+    far.push_back(places_of(beyond, t));
+    const auto& [a, b, c] = t;
+    add_pieces(beyond.positions[a], beyond.positions[b], beyond.positions[c], k_longest * distance_,
                pieces);
   }
-  if (pieces.triangles.empty()) return {};
+  std::sort(far.begin(), far.end());
+  std::copy_if(places.begin(), places.end(), std::back_inserter(near_),
+               [&](const TrianglePlaces& each) {
+                 return !std::binary_search(far.begin(), far.end(), each);
+               });
+  std::sort(near_.begin(), near_.end());
   return picked(pieces.positions, pieces.triangles,
-                find_beyond(pieces.positions, pieces.triangles, to, distance, threads));
+                find_beyond(pieces.positions, pieces.triangles, surface_, distance_, threads_));
 }
 
 void clear_near(const Mesh& surface, double distance, const std::vector<Vec3>& positions,

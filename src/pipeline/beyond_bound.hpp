@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -24,12 +25,32 @@ constexpr double reach_of_astray(int tries) {
   return 1.2 + 0.2 * tries;
 }
 
+/// A triangle by its places, in an order of their own: vertices may be taken apart, or their
+/// numbers change.
+using TrianglePlaces = std::array<std::array<double, 3>, 3>;
+TrianglePlaces places_of(const Mesh& mesh, const Triangle& t);
+
 /// Those triangles of a surface, with an area, that are not proven to be within the distance of
 /// another surface, which has some triangle (find_beyond).
 Mesh part_beyond(const Mesh& from, const TriangleIndex& to, double distance, unsigned threads);
 
-/// The same, but of large triangles only the pieces that are beyond.
-Mesh pieces_beyond(const Mesh& from, const TriangleIndex& to, double distance, unsigned threads);
+/// Finds what of a result is too far from a surface. What it has seen near, it does not look at
+/// again: of a result that was made once more, most is as it was.
+class AstrayFinder {
+ public:
+  /// The surface, which must outlive it, has some triangle.
+  AstrayFinder(const TriangleIndex& surface, double distance, unsigned threads)
+      : surface_(surface), distance_(distance), threads_(threads) {}
+
+  /// Triangles with an area that are not proven to be near; of large ones the pieces that are not.
+  Mesh find(const Mesh& result);
+
+ private:
+  const TriangleIndex& surface_;
+  double distance_;
+  unsigned threads_;
+  std::vector<TrianglePlaces> near_;  // ascending
+};
 
 /// Clears the flags of vertices within the distance of the surface.
 void clear_near(const Mesh& surface, double distance, const std::vector<Vec3>& positions,

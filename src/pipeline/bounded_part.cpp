@@ -63,7 +63,8 @@ class PartSimplifier {
     constexpr double k_less = 0.85;
     const double most = k_most_beyond_of_part * parameters_.max_error;
     std::optional<TriangleIndex> index;
-    if (!part.mesh.triangles.empty()) index.emplace(part.mesh, 1);
+    std::optional<AstrayFinder> finder;
+    if (!part.mesh.triangles.empty()) finder.emplace(index.emplace(part.mesh, 1), most, 1);
     std::vector<std::uint8_t> moves = free_vertices(part);
     double share = 1;
     for (int tries = 1;; ++tries) {
@@ -71,7 +72,7 @@ class PartSimplifier {
       const Mesh& made = simplifier.mesh();
       if (made.triangles.empty() || tries == k_bounded_tries) return simplifier;
       const Mesh lost = part_beyond(part.mesh, TriangleIndex(made, 1), most, 1);
-      const Mesh astray = pieces_beyond(made, *index, most, 1);
+      const Mesh astray = finder->find(made);
       if (lost.triangles.empty() && astray.triangles.empty()) return simplifier;
       std::vector<std::uint8_t> left = moves;
       clear_near(lost, parameters_.max_error, part.mesh.positions, left);

@@ -54,22 +54,9 @@ std::vector<std::uint8_t> free_flags(const SeamMesh& seams) {
   return flags;
 }
 
-/// A triangle by its places: vertices may be taken apart, or their numbers change.
-using Places = std::array<std::array<double, 3>, 3>;
-
-Places places_of(const Mesh& mesh, const Triangle& t) {
-  Places places{};
-  for (std::size_t i = 0; i < 3; ++i) {
-    const Vec3 p = mesh.positions[t[i]];
-    places[i] = {p.x, p.y, p.z};
-  }
-  std::sort(places.begin(), places.end());
-  return places;
-}
-
 /// Those that do not change, in an order of their own.
-std::vector<Places> fixed_places(const SeamMesh& seams) {
-  std::vector<Places> fixed;
+std::vector<TrianglePlaces> fixed_places(const SeamMesh& seams) {
+  std::vector<TrianglePlaces> fixed;
   for (const Triangle& t : seams.mesh.triangles) {
     if (!may_change(seams, t) && !is_degenerate(t)) fixed.push_back(places_of(seams.mesh, t));
   }
@@ -78,7 +65,8 @@ std::vector<Places> fixed_places(const SeamMesh& seams) {
 }
 
 /// Whether none of them has gone. Tells which of the triangles are others.
-bool are_kept(const std::vector<Places>& fixed, const Mesh& mesh, std::vector<Triangle>& others) {
+bool are_kept(const std::vector<TrianglePlaces>& fixed, const Mesh& mesh,
+              std::vector<Triangle>& others) {
   std::vector<std::uint8_t> is_there(fixed.size(), 0);
   for (const Triangle& t : mesh.triangles) {
     const auto [first, last] = std::equal_range(fixed.begin(), fixed.end(), places_of(mesh, t));
@@ -225,7 +213,7 @@ Mesh part_lost(const Mesh& input, const TriangleIndex& before, const Mesh& after
   const Mesh beyond = part_beyond(input, TriangleIndex(after, threads), most, threads);
   if (beyond.triangles.empty()) return {};
   const Mesh others = part_beyond(beyond, before, most, threads);
-  std::vector<Places> known;
+  std::vector<TrianglePlaces> known;
   for (const Triangle& t : others.triangles) known.push_back(places_of(others, t));
   std::sort(known.begin(), known.end());
   std::vector<Triangle> lost;
@@ -243,16 +231,17 @@ BoundedFinish simplified_and_measured(SeamMesh seams, const SurfaceBound& bound,
                                       const BoundedFinishOptions& options) {
   const double most = k_most_beyond_of_seam * options.max_error;
   const TriangleIndex input(bound.surface(), options.threads);
+  AstrayFinder finder(input, most, options.threads);
   const Mesh before = seams.mesh;
   const TriangleIndex index_before(before, options.threads);
-  const std::vector<Places> fixed = fixed_places(seams);
+  const std::vector<TrianglePlaces> fixed = fixed_places(seams);
   for (int tries = 1;; ++tries) {
     BoundedFinish finish = simplified(seams, &bound, options);
     if (finish.mesh.triangles.empty() || tries == k_bounded_tries) return finish;
     Mesh changed;
     changed.positions = finish.mesh.positions;
     are_kept(fixed, finish.mesh, changed.triangles);
-    const Mesh astray = pieces_beyond(changed, input, most, options.threads);
+    const Mesh astray = finder.find(changed);
     const Mesh lost = part_lost(bound.surface(), index_before, finish.mesh, most, options.threads);
     if (astray.triangles.empty() && lost.triangles.empty()) return finish;
     const std::uint32_t locked = seams.locked;

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
 #include <cmath>
+#include <utility>
 #include <vector>
 
 #include <doctest/doctest.h>
@@ -47,7 +48,8 @@ TEST_CASE("what is beyond a bound: the pieces of a large triangle that are, and 
   const TriangleIndex index(pit, 1);
   const Mesh lid = {{{0, 0, 0}, {5, 0, 0}, {0, 5, 0}}, {{0, 1, 2}}};
   CHECK(part_beyond(lid, index, 0.3, 1).triangles.size() == 1);
-  const Mesh pieces = pieces_beyond(lid, index, 0.3, 1);
+  AstrayFinder finder(index, 0.3, 1);
+  const Mesh pieces = finder.find(lid);
   CHECK(pieces.triangles.size() > 4);
   for (const Triangle& t : pieces.triangles) {
     for (const std::uint32_t v : t) {
@@ -56,7 +58,23 @@ TEST_CASE("what is beyond a bound: the pieces of a large triangle that are, and 
     }
   }
   const Mesh plane = large_plane();
-  CHECK(pieces_beyond(roof(0), TriangleIndex(plane, 1), 0.3, 1).triangles.empty());
+  const TriangleIndex flat(plane, 1);
+  CHECK(AstrayFinder(flat, 0.3, 1).find(roof(0)).triangles.empty());
+}
+
+TEST_CASE("what went astray is found again in what was made once more") {
+  const Mesh plane = large_plane();
+  const TriangleIndex index(plane, 1);
+  AstrayFinder finder(index, 1, 1);
+  Mesh made = roof(0.5);
+  CHECK(finder.find(made).triangles.empty());
+  append_surface(roof(2).positions, roof(2).triangles, made);
+  const std::size_t far = finder.find(made).triangles.size();
+  CHECK(far > 0);
+  CHECK(finder.find(made).triangles.size() == far);
+  std::swap(made.positions[0], made.positions[1]);  // other numbers, the same places
+  CHECK(finder.find(made).triangles.size() == far);
+  CHECK(finder.find(roof(0.5)).triangles.empty());
 }
 
 TEST_CASE("what is beyond a bound: what has no area is no surface") {
