@@ -30,8 +30,8 @@ class Command {
                      po::positional_options_description& positional) = 0;
   /// Checks what was parsed; throws UsageError; no work.
   virtual void check() {}
-  /// Warns of options that were given and do nothing; throws UsageError where another result than
-  /// this command's must have been meant. Comes after check().
+  /// Warns of options that were given and do nothing; throws UsageError where they ask for what
+  /// this command cannot do. Comes after check().
   virtual void check_given(const GivenOptions& /*given*/) const {}
   /// Whether freed memory is kept for all threads (keep_freed_memory()). Not where each thread
   /// allocates often and shares nothing: they would wait for each other.

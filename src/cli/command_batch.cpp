@@ -106,7 +106,7 @@ class BatchCommand : public Command {
     }
   }
   void check_given(const GivenOptions& given) const override {
-    cut_.check_given(given);
+    cut_.check_given(given, false);
     // One word for all files: it need not be for each.
     const auto of_packing = [](const std::string& input) {
       return has_packing(output_name(input));

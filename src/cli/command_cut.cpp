@@ -33,7 +33,7 @@ class CutCommand : public Command {
     std::cout << render(manifest, stage_, talk_.format());
     return 0;
   }
-  void check_given(const GivenOptions& given) const override { cut_.check_given(given); }
+  void check_given(const GivenOptions& given) const override { cut_.check_given(given, false); }
 
  private:
   std::string input_;

@@ -91,11 +91,18 @@ UsageError missing(const po::required_option& error, const DescribedCommand& des
                     std::string(command.synopsis()));
 }
 
-int check_and_run(Command& command, const GivenOptions& given) {
-  command.check();
-  command.check_given(given);
-  if (command.keeps_freed_memory()) keep_freed_memory();
-  return command.run();
+void take_values(const DescribedCommand& described, po::variables_map& values,
+                 const ConfigFile& config, const GivenOptions& given) {
+  try {
+    refuse_negative_numbers(config.parsed());
+    po::notify(values);
+    described.command->check();
+    described.command->check_given(given);
+  } catch (const po::required_option& error) {
+    throw missing(error, described);
+  } catch (const UsageError& error) {
+    throw UsageError(config.placed(error.what(), given));
+  }
 }
 
 int run_command(std::unique_ptr<Command> named, const std::vector<std::string>& words) {
@@ -115,14 +122,14 @@ int run_command(std::unique_ptr<Command> named, const std::vector<std::string>& 
   if (values.count("config") != 0) config = {values["config"].as<std::string>(), options};
   config.store(values);
   const GivenOptions given = given_options(parsed);
+  take_values(described, values, config, given);
+  if (command.keeps_freed_memory()) keep_freed_memory();
   try {
-    refuse_negative_numbers(config.parsed());
-    po::notify(values);
-    return check_and_run(command, given);
-  } catch (const po::required_option& error) {
-    throw missing(error, described);
+    return command.run();
   } catch (const UsageError& error) {
-    throw UsageError(config.placed(error.what(), given));
+    // Else the option that it names may be what it advises.
+    const bool is_of_option = std::string_view(error.what()).starts_with("--");
+    throw UsageError(is_of_option ? config.placed(error.what(), given) : error.what());
   }
 }
 

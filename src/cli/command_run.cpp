@@ -74,6 +74,7 @@ class RunCommand : public Command {
     schedule_.check();
   }
   void check_given(const GivenOptions& given) const override {
+    if (worker_words_) return;  // the run itself tells it
     target_.check_given(given);
     schedule_.check_given(given);
     output_words_.check_given(given, output_);

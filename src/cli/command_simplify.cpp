@@ -74,7 +74,7 @@ class SimplifyCommand : public Command {
   void check_given(const GivenOptions& given) const override {
     if (in_batch_) return;  // the batch did, of its own
     target_.check_given(given);
-    cut_.check_given(given);
+    cut_.check_given(given, true);
     output_words_.check_given(given, output_);
   }
   int run() override {

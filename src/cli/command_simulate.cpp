@@ -67,6 +67,7 @@ class SimulateCommand : public Command {
         given, {"parts", "schedule", "storage", "link", "cache", "delay", "limits", "paper", "off"},
         "a STAGE");
   }
+  bool keeps_freed_memory() const override { return false; }
   int run() override {
     if (!plans_) return run_seeds();
     plan_.run(talk_.format());

@@ -27,12 +27,14 @@ bool begins_section(const std::string& line) {
 /// A line at a time, as the parser does not tell where it stopped.
 ConfigFile::ConfigFile(const std::string& path, const po::options_description& options)
     : path_(path), parsed_(&options) {
-  if (std::filesystem::is_directory(path)) throw IoError("cannot read", path, EISDIR);
+  std::error_code ignored;
+  if (std::filesystem::is_directory(path, ignored)) throw IoError("cannot read", path, EISDIR);
   std::ifstream text(path);  // or a pipe
   if (!text) throw_errno("cannot open", path);
   std::size_t number = 0;
   for (std::string line; std::getline(text, line);) {
     ++number;
+    if (!line.empty() && line.back() == '\r') line.pop_back();
     if (begins_section(line)) throw UsageError(place_of_line(number) + "there are no sections");
     std::istringstream one(line);
     try {

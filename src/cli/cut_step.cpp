@@ -127,7 +127,8 @@ Manifest cut(MeshSource& source, const Stage& stage, const CutStep& step) {
 Manifest cut_to_stage(const CutStep& step) {
   // An input that cannot be read, or has not what is asked for, leaves no stage behind.
   std::unique_ptr<MeshSource> source = holds_cut(step.stage) ? nullptr : open_input(step);
-  const bool is_new = !std::filesystem::exists(step.stage);
+  std::error_code unknown;
+  const bool is_new = !std::filesystem::exists(step.stage, unknown) && !unknown;
   const Stage stage = Stage::create(step.stage);
   const Claim claim(stage.root() / ".cut.claim", step.stage + ": is being cut");
   if (stage.has_manifest()) return taken_up(stage, step);

@@ -87,7 +87,8 @@ class KeysAside {
 void check_network(const NetworkOptions& network) {
   if (!network.this_host_only) check_bind(network.bind);
   const std::filesystem::path keys = network.security.key_file;
-  if (std::filesystem::is_directory(keys)) throw DataError(keys.string() + ": not a file");
+  std::error_code ignored;
+  if (std::filesystem::is_directory(keys, ignored)) throw DataError(keys.string() + ": not a file");
 }
 
 }  // namespace

@@ -119,8 +119,9 @@ void CutWords::check() {
   if (cut.memory_bytes == 0) throw UsageError("--memory must be above 0");
 }
 
-void CutWords::check_given(const GivenOptions& given) const {
-  if (!may_be_farmed()) warn_of_unused(given, {"blocks"}, "--cut farm");
+void CutWords::check_given(const GivenOptions& given, bool auto_farms) const {
+  if (!may_be_farmed() || (where == "auto" && !auto_farms))
+    warn_of_unused(given, {"blocks"}, "--cut farm");
   if (cut.scheme != Scheme::stream) warn_of_unused(given, {"window"}, "--scheme stream");
 }
 

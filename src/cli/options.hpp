@@ -95,8 +95,8 @@ struct CutWords {
 
   void add(po::options_description& options);
   void check();
-  /// As Command::check_given().
-  void check_given(const GivenOptions& given) const;
+  /// As Command::check_given(). `auto_farms`: whether --cut auto may be that of the farm.
+  void check_given(const GivenOptions& given, bool auto_farms) const;
   /// Whether the first jobs of a run may cut.
   bool may_be_farmed() const { return where != "here" && cut.scheme != Scheme::stream; }
   /// The same as words for a command line: those that count.

@@ -139,10 +139,10 @@ class SurfaceBounder {
     for (std::size_t i = 0; i < 3; ++i) {
       const std::uint32_t near = near_[t[i]];
       if (i > 0 && near == near_[t[i - 1]]) continue;
-      const double upper =
-          farthest_corner(corners, corners_of(to.positions, to.triangles[near]), options.enough) *
-              (1 + 0x1p-44) +
-          rounding_;
+      const double upper = farthest_corner(corners, corners_of(to.positions, to.triangles[near]),
+                                           options.stops_beyond ? options.enough : HUGE_VAL) *
+                               (1 + 0x1p-44) +
+                           rounding_;
       if (upper <= options.enough) return {0, upper};
     }
     std::uint32_t guess = near_[t[0]];

@@ -11,7 +11,8 @@ namespace {
 /// So thin triangles are not sure on which side of them a point is.
 constexpr double k_sliver = 1e-10;
 constexpr double k_relative_rounding = 0x1p-44;
-/// Of what is enough for a whole piece.
+/// A first guess is good enough within this share of what is enough for a piece; measured: 0.1
+/// takes 10 % longer, 0.5 as long.
 constexpr double k_near_enough = 0.25;
 
 /// Of the segment's nearest point.
@@ -80,13 +81,15 @@ double PieceBounder::target() const {
 /// Tightens the piece's bound, and that from below.
 bool PieceBounder::is_settled(Piece& piece) {
   const double most = target();
-  piece.upper = std::min(piece.upper, farthest_from(piece, piece.guess, most));
+  // Where bounds are told and not only compared, it is good to know them as they are.
+  const double limit = options_.stops_beyond ? most : HUGE_VAL;
+  piece.upper = std::min(piece.upper, farthest_from(piece, piece.guess, limit));
   if (piece.upper <= most) return true;
   const auto& [a, b, c] = piece.corners;
   const Vec3 middle = (a + b + c) * (1.0 / 3);
   double radius = 0;
   for (const Vec3 p : piece.corners) radius = std::max(radius, length(p - middle));
-  // Too large for the middle to settle it, a piece needs some triangle for its parts to begin with.
+  // Of a piece that is too large for its middle to settle it, its parts need a first guess only.
   const double slack = radius < most ? most - radius : k_near_enough * most;
   const double enough = slack * slack;
   const Bvh::Nearest nearest = bvh_.nearest(middle, piece.guess, enough);
@@ -94,7 +97,7 @@ bool PieceBounder::is_settled(Piece& piece) {
   const CornerPoints there = corners_of(to_.positions, to_.triangles[nearest.triangle]);
   piece.upper = std::min(piece.upper, distance_above(middle, there) + radius);
   if (nearest.triangle != piece.guess) {
-    piece.upper = std::min(piece.upper, farthest_corner(piece.corners, there, most));
+    piece.upper = std::min(piece.upper, farthest_corner(piece.corners, there, limit));
     piece.guess = nearest.triangle;
   }
   return piece.upper <= target();

@@ -143,7 +143,7 @@ std::shared_ptr<const GltfBuffer> GltfBuffers::open_uri(const GltfValue& uri) co
   }
   const std::filesystem::path beside = folder_ / *name;
   std::error_code ignored;
-  if (!std::filesystem::exists(beside, ignored)) {
+  if (std::filesystem::status(beside, ignored).type() == std::filesystem::file_type::not_found) {
     uri.fail("names a buffer that is not there: " + beside.string());
   }
   return std::make_shared<const GltfBuffer>(buffer_in_file(files_, beside));

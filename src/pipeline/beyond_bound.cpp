@@ -7,6 +7,8 @@
 #include <cstddef>
 #include <iterator>
 #include <span>
+#include <unordered_map>
+#include <utility>
 
 #include <meshfarm/geometry/hausdorff.hpp>
 #include <meshfarm/geometry/near_cells.hpp>
@@ -15,19 +17,27 @@
 namespace meshfarm {
 namespace {
 
+/// With the vertices that they have.
 Mesh picked(std::span<const Vec3> positions, std::span<const Triangle> triangles,
             const std::vector<std::uint32_t>& numbers) {
   if (numbers.empty()) return {};
-  std::vector<Triangle> chosen;
-  chosen.reserve(numbers.size());
-  for (const std::uint32_t i : numbers) chosen.push_back(triangles[i]);
   Mesh part;
-  append_surface(positions, chosen, part);
+  std::unordered_map<std::uint32_t, std::uint32_t> number;
+  for (const std::uint32_t i : numbers) {
+    Triangle& added = part.triangles.emplace_back();
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::uint32_t v = triangles[i][k];
+      const auto [at, is_new] =
+          number.try_emplace(v, static_cast<std::uint32_t>(part.positions.size()));
+      if (is_new) part.positions.push_back(positions[v]);
+      added[k] = at->second;
+    }
+  }
   return part;
 }
 
-/// Adds equal pieces of a triangle: as many as it takes for none to be longer, but no more than are
-/// needed to find a place in it.
+/// Adds equal pieces of a triangle: as many as it takes for none to be longer, but at most 32 along
+/// a side.
 void add_pieces(Vec3 a, Vec3 b, Vec3 c, double longest, Mesh& pieces) {
   constexpr double k_most_steps = 32;
   const double side =
@@ -69,34 +79,57 @@ Mesh part_beyond(const Mesh& from, const TriangleIndex& to, double distance, uns
                 find_beyond(from.positions, surface, to, distance, threads));
 }
 
+AstrayFinder::AstrayFinder(const TriangleIndex& surface, double distance, unsigned threads)
+    : surface_(surface), distance_(distance), threads_(threads) {}
+
+void AstrayFinder::pass_over(const Mesh& known) {
+  for (const Triangle& t : known.triangles) known_.push_back(places_of(known, t));
+  std::sort(known_.begin(), known_.end());
+}
+
 Mesh AstrayFinder::find(const Mesh& result) {
-  constexpr double k_longest = 0.5;  // in distances
-  std::vector<TrianglePlaces> places;
+  std::vector<TrianglePlaces> near;
   Mesh fresh;
   fresh.positions = result.positions;
   for (const Triangle& t : result.triangles) {
-    const TrianglePlaces each = places_of(result, t);
-    if (std::binary_search(near_.begin(), near_.end(), each)) continue;
-    places.push_back(each);
-    fresh.triangles.push_back(t);
+    const TrianglePlaces places = places_of(result, t);
+    if (std::binary_search(known_.begin(), known_.end(), places)) continue;
+    near.push_back(places);
+    if (!std::binary_search(near_.begin(), near_.end(), places)) fresh.triangles.push_back(t);
   }
   const Mesh beyond = part_beyond(fresh, surface_, distance_, threads_);
-  Mesh pieces;
   std::vector<TrianglePlaces> far;
-  for (const Triangle& t : beyond.triangles) {
-    far.push_back(places_of(beyond, t));
-    const auto& [a, b, c] = t;
-    add_pieces(beyond.positions[a], beyond.positions[b], beyond.positions[c], k_longest * distance_,
-               pieces);
-  }
+  for (const Triangle& t : beyond.triangles) far.push_back(places_of(beyond, t));
   std::sort(far.begin(), far.end());
-  std::copy_if(places.begin(), places.end(), std::back_inserter(near_),
-               [&](const TrianglePlaces& each) {
-                 return !std::binary_search(far.begin(), far.end(), each);
-               });
-  std::sort(near_.begin(), near_.end());
-  return picked(pieces.positions, pieces.triangles,
-                find_beyond(pieces.positions, pieces.triangles, surface_, distance_, threads_));
+  near.erase(std::remove_if(near.begin(), near.end(),
+                            [&](const TrianglePlaces& each) {
+                              return std::binary_search(far.begin(), far.end(), each);
+                            }),
+             near.end());
+  std::sort(near.begin(), near.end());
+  near_ = std::move(near);
+  return far_pieces(beyond);
+}
+
+/// Some triangles at a time: each may have many pieces.
+Mesh AstrayFinder::far_pieces(const Mesh& beyond) const {
+  constexpr double k_longest = 0.5;  // in distances
+  constexpr std::size_t k_at_once = 1000;
+  Mesh all;
+  for (std::size_t first = 0; first < beyond.triangles.size(); first += k_at_once) {
+    Mesh pieces;
+    const std::size_t end = std::min(beyond.triangles.size(), first + k_at_once);
+    for (std::size_t i = first; i < end; ++i) {
+      const auto& [a, b, c] = beyond.triangles[i];
+      add_pieces(beyond.positions[a], beyond.positions[b], beyond.positions[c],
+                 k_longest * distance_, pieces);
+    }
+    const Mesh far =
+        picked(pieces.positions, pieces.triangles,
+               find_beyond(pieces.positions, pieces.triangles, surface_, distance_, threads_));
+    append_surface(far.positions, far.triangles, all);
+  }
+  return all;
 }
 
 void clear_near(const Mesh& surface, double distance, const std::vector<Vec3>& positions,

@@ -13,14 +13,14 @@ namespace meshfarm {
 
 /// Simplification looks at some points. Where the whole surface turns out to be beyond so many
 /// times the bound that it was given, what is near stays as it was, and it begins again; so often,
-/// all in all. Parts and seams are given shares of the run's bound (k_bound_share_of_parts,
-/// k_bound_share): 1.08 of that is the most for both.
+/// all in all: the last is not looked at. Parts and seams are given shares of the run's bound
+/// (k_bound_share_of_parts, k_bound_share), of which this makes about 1.08.
 inline constexpr double k_most_beyond_of_part = 1.2;
 inline constexpr double k_most_beyond_of_seam = 1.17;
 inline constexpr int k_bounded_tries = 6;
 
-/// In bounds: within that what is near stays when a piece went astray, which is farther than one
-/// from all that it should be near. More each time, as the first may not have been enough.
+/// How far round a piece that went astray the input stays as it was, in bounds: the piece is more
+/// than one from all of it. It grows with each try.
 constexpr double reach_of_astray(int tries) {
   return 1.2 + 0.2 * tries;
 }
@@ -39,25 +39,29 @@ Mesh part_beyond(const Mesh& from, const TriangleIndex& to, double distance, uns
 class AstrayFinder {
  public:
   /// The surface, which must outlive it, has some triangle.
-  AstrayFinder(const TriangleIndex& surface, double distance, unsigned threads)
-      : surface_(surface), distance_(distance), threads_(threads) {}
+  AstrayFinder(const TriangleIndex& surface, double distance, unsigned threads);
 
+  /// Does not look at these triangles, wherever they are.
+  void pass_over(const Mesh& known);
   /// Triangles with an area that are not proven to be near; of large ones the pieces that are not.
   Mesh find(const Mesh& result);
 
  private:
+  Mesh far_pieces(const Mesh& beyond) const;
+
   const TriangleIndex& surface_;
   double distance_;
   unsigned threads_;
-  std::vector<TrianglePlaces> near_;  // ascending
+  std::vector<TrianglePlaces> known_;  // both ascending
+  std::vector<TrianglePlaces> near_;   // of the last result
 };
 
 /// Clears the flags of vertices within the distance of the surface.
 void clear_near(const Mesh& surface, double distance, const std::vector<Vec3>& positions,
                 std::vector<std::uint8_t>& flags);
 
-/// Clears the flags of the corners of triangles of a mesh that come near the surface: within the
-/// distance, or a little farther.
+/// Clears the flags of the corners of triangles of a mesh whose boxes come within the distance of
+/// the boxes of the surface's triangles.
 void clear_touched(const Mesh& surface, double distance, const Mesh& mesh,
                    std::vector<std::uint8_t>& flags);
 

@@ -71,7 +71,9 @@ class PartSimplifier {
       Simplifier simplifier = simplified(with_locked(part, moves), share);
       const Mesh& made = simplifier.mesh();
       if (made.triangles.empty() || tries == k_bounded_tries) return simplifier;
+      goes_on(1, 1);
       const Mesh lost = part_beyond(part.mesh, TriangleIndex(made, 1), most, 1);
+      goes_on(1, 1);
       const Mesh astray = finder->find(made);
       if (lost.triangles.empty() && astray.triangles.empty()) return simplifier;
       std::vector<std::uint8_t> left = moves;

@@ -13,8 +13,9 @@
 namespace meshfarm {
 namespace {
 
-/// The part as it came, its hierarchy, and the points that stand for it, up to five a triangle.
-constexpr std::uint64_t k_bound_bytes_per_triangle = 500;
+/// The part as it came, its two hierarchies, the points that stand for it, up to five a triangle,
+/// and the places of the triangles that were found to be near.
+constexpr std::uint64_t k_bound_bytes_per_triangle = 560;
 
 /// Of a part that is not built yet: tenths of the average that it may have, bytes a triangle that
 /// it would have as a file, and what it takes to build a triangle, of the work to simplify it.

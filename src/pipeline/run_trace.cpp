@@ -146,7 +146,7 @@ Trace read_newest_trace(const Stage& stage, std::optional<std::uint32_t> epoch) 
     std::vector<std::string> there;
     for (const std::uint32_t each : traces) there.push_back(std::to_string(each));
     throw DataError(stage.root().string() + ": no run of epoch " + std::to_string(*epoch) +
-                    " was traced; there are " + joined(there));
+                    " was traced; those of " + joined(there) + " were");
   }
   const TraceName name{epoch.value_or(traces.back())};
   return parse_trace(stage.read(name), stage.path(name).string());

@@ -233,15 +233,13 @@ BoundedFinish simplified_and_measured(SeamMesh seams, const SurfaceBound& bound,
   const TriangleIndex input(bound.surface(), options.threads);
   AstrayFinder finder(input, most, options.threads);
   const Mesh before = seams.mesh;
+  finder.pass_over(before);
   const TriangleIndex index_before(before, options.threads);
-  const std::vector<TrianglePlaces> fixed = fixed_places(seams);
   for (int tries = 1;; ++tries) {
     BoundedFinish finish = simplified(seams, &bound, options);
     if (finish.mesh.triangles.empty() || tries == k_bounded_tries) return finish;
-    Mesh changed;
-    changed.positions = finish.mesh.positions;
-    are_kept(fixed, finish.mesh, changed.triangles);
-    const Mesh astray = finder.find(changed);
+    options.progress(finish.mesh.triangles.size());
+    const Mesh astray = finder.find(finish.mesh);
     const Mesh lost = part_lost(bound.surface(), index_before, finish.mesh, most, options.threads);
     if (astray.triangles.empty() && lost.triangles.empty()) return finish;
     const std::uint32_t locked = seams.locked;

@@ -25,7 +25,7 @@ constexpr std::uint64_t k_seam_work = 3;
 /// Under a bound a group has about so many triangles of the input near it, which take so many bytes
 /// and so much work each.
 constexpr std::uint64_t k_bounded_input = 1'000'000;
-constexpr std::uint64_t k_bounded_input_bytes = 500;
+constexpr std::uint64_t k_bounded_input_bytes = 560;
 constexpr std::uint64_t k_bounded_work = 1;
 /// Of fewer pieces groups meet nearly everywhere: on foam in 7 pieces that is 2.5 % of the error.
 constexpr std::uint64_t k_least_pieces_for_groups = 12;

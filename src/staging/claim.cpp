@@ -109,9 +109,14 @@ Claim::Claim(fs::path file, std::string_view work) : file_(std::move(file)) {
                   file_.string() + ")");
 }
 
+/// Another's may lie there by now, where a folder was removed with its claim and made anew.
 Claim::~Claim() {
+  const Owner owner = read_owner(file_);
+  const Owner self = this_process();
+  const bool is_own = owner.boot == self.boot && owner.pids == self.pids && owner.pid == self.pid &&
+                      owner.started == self.started;
   std::error_code ignored;
-  fs::remove(file_, ignored);
+  if (is_own) fs::remove(file_, ignored);
 }
 
 std::optional<std::string> holder_of(const fs::path& file) {

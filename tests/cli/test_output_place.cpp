@@ -124,7 +124,7 @@ TEST_CASE("an input that turns out to be unfit leaves no stage that was not ther
   CHECK_FALSE(fs::exists(stage));
   CHECK(shell({"cut", shell.cube(), "--stage", stage, "--cut", "farm"}).code == 2);  // it is ascii
   CHECK_FALSE(fs::exists(stage));
-  // A folder that was there is somebody's, and so is a file in a new one.
+  // A folder that was there is somebody's.
   fs::create_directory(stage);
   shell.file("s/mine.txt", "x");
   CHECK(shell({"cut", bad, "--stage", stage}).code == 1);

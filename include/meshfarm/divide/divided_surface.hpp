@@ -40,8 +40,8 @@ class DividedSurface {
   const Box& box() const;
   std::uint64_t vertices() const;
   std::uint64_t not_finite() const;  // vertices with a coordinate that is not
-  std::uint64_t dropped() const;     // triangles that have such a corner: not in triangles()
-  std::uint64_t triangles() const;   // but those that use such a vertex
+  std::uint64_t dropped() const;     // triangles that have such a corner
+  std::uint64_t triangles() const;   // but the dropped ones
   /// Coincident vertices are welded as in a run.
   SurfaceTopology measure_topology() const;
   /// Shows all triangles in pieces, one after the other.

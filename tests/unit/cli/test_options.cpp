@@ -11,6 +11,7 @@
 
 #include <meshfarm/util/errors.hpp>
 
+#include "cli/command.hpp"
 #include "cli/options.hpp"
 
 using namespace meshfarm;
@@ -264,4 +265,9 @@ TEST_CASE("schedules have words of their own") {
   for (const char* wrong : {"--schedule=lazy", "--hang-seconds=0", "--hang-seconds=86401"}) {
     CHECK(error_of({wrong}, parse<ScheduleWords>) != "");
   }
+}
+
+TEST_CASE("the simulator's threads have memory of their own") {
+  CHECK_FALSE(make_simulate_command()->keeps_freed_memory());
+  CHECK(make_simplify_command()->keeps_freed_memory());
 }

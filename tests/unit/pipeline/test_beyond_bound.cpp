@@ -77,6 +77,15 @@ TEST_CASE("what went astray is found again in what was made once more") {
   CHECK(finder.find(roof(0.5)).triangles.empty());
 }
 
+TEST_CASE("what is known is passed over, however far it is") {
+  const Mesh plane = large_plane();
+  const TriangleIndex index(plane, 1);
+  AstrayFinder finder(index, 1, 1);
+  finder.pass_over(roof(2));
+  CHECK(finder.find(roof(2)).triangles.empty());
+  CHECK_FALSE(finder.find(roof(3)).triangles.empty());
+}
+
 TEST_CASE("what is beyond a bound: what has no area is no surface") {
   Mesh needle = roof(0.5);
   needle.positions.push_back({0, 0, 8});

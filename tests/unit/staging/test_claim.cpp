@@ -86,5 +86,15 @@ TEST_CASE("a claim of the dead is taken over, one of whom we cannot see is not")
   }
 }
 
+TEST_CASE("a claim that has become another's is not removed") {
+  const test::TempFolder folder;
+  const auto file = folder / "claim";
+  {
+    const Claim mine(file, "");
+    write_words(file, {"elsewhere", "7", "pid:[1]", "2", "3", "4"});
+  }
+  CHECK(std::filesystem::exists(file));
+}
+
 }  // namespace
 }  // namespace meshfarm
