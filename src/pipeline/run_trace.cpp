@@ -144,6 +144,7 @@ Trace read_newest_trace(const Stage& stage, std::optional<std::uint32_t> epoch) 
   }
   if (epoch && std::find(traces.begin(), traces.end(), *epoch) == traces.end()) {
     std::vector<std::string> there;
+    there.reserve(traces.size());
     for (const std::uint32_t each : traces) there.push_back(std::to_string(each));
     throw DataError(stage.root().string() + ": no run of epoch " + std::to_string(*epoch) +
                     " was traced; those of " + joined(there) + " were");
