@@ -40,7 +40,7 @@ class GenerateCommand : public Command {
   }
   void check_given(const GivenOptions& given) const override {
     for (const char* option : {"triangles", "shape"}) {
-      if (from_.empty() || given.count(option) == 0) continue;
+      if (from_.empty() || !given.contains(option)) continue;
       throw UsageError("--" + std::string(option) + " is of a mesh that is made: not with --from");
     }
   }

@@ -72,7 +72,7 @@ std::string ConfigFile::placed(const std::string& error, const GivenOptions& giv
     while (end < error.size() && is_of_name(error[end])) ++end;
     const std::string_view name = std::string_view(error).substr(at, end - at);
     const auto line = lines_.find(name);
-    if (line != lines_.end() && given.count(name) == 0) return place_of_line(line->second) + error;
+    if (line != lines_.end() && !given.contains(name)) return place_of_line(line->second) + error;
   }
   return error;
 }

@@ -31,7 +31,7 @@ std::uint16_t parse_port(std::string_view text) {
 void warn_of_unused(const GivenOptions& given, std::initializer_list<std::string_view> options,
                     std::string_view needed) {
   for (const std::string_view option : options) {
-    if (given.count(option) == 0) continue;
+    if (!given.contains(option)) continue;
     log_warning("--" + std::string(option) + " changes nothing without " + std::string(needed));
   }
 }

@@ -17,7 +17,7 @@ void OutputWords::add(po::options_description& options) {
 }
 
 void OutputWords::check_given(const GivenOptions& given, const std::string& output) const {
-  if (given.count("plain") == 0 || !is_output_format(output) || has_packing(output)) return;
+  if (!given.contains("plain") || !is_output_format(output) || has_packing(output)) return;
   log_warning("--plain changes nothing: " + output + " is no .glb");
 }
 

@@ -123,9 +123,9 @@ void PlanWords::check() {
 }
 
 void PlanWords::check_given(const GivenOptions& given) const {
-  if (!paper && given.count("output") != 0) throw UsageError("-o goes with --paper");
+  if (!paper && given.contains("output")) throw UsageError("-o goes with --paper");
   if (!paper) warn_of_unused(given, {"off"}, "--paper");
-  if (paper && given.count("workers") != 0) {
+  if (paper && given.contains("workers")) {
     log_warning("--workers changes nothing: --paper has farms of its own");
   }
 }
