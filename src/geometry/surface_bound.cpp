@@ -135,7 +135,7 @@ class SurfaceBound::Impl {
   Impl(Mesh surface, const SurfaceBoundOptions& options)
       : surface_(std::move(surface)),
         options_(options),
-        bvh_(surface_, options.threads),
+        index_(surface_, options.threads),
         walk_(surface_),
         points_(used_vertices(surface_, numbers_)),
         sides_(surface_, numbers_, options.distance) {
@@ -151,12 +151,13 @@ class SurfaceBound::Impl {
     return sides_.at(point);
   }
   const Mesh& surface() const { return surface_; }
+  const TriangleIndex& index() const { return index_; }
   double squared_distance_near(Vec3 point, double enough, std::uint32_t& guess) const {
     const double most = options_.distance * options_.distance;
     Bvh::Nearest found = walk_.towards(point, guess, enough);
     guess = found.triangle;
     if (found.squared <= most) return found.squared;
-    found = bvh_.any_within(point, most);
+    found = index_.bvh().any_within(point, most);
     if (found.squared <= most) guess = found.triangle;
     return found.squared;
   }
@@ -164,7 +165,7 @@ class SurfaceBound::Impl {
  private:
   Mesh surface_;
   SurfaceBoundOptions options_;
-  Bvh bvh_;
+  TriangleIndex index_;
   SurfaceWalk walk_;
   std::vector<std::uint32_t> numbers_;  // of vertices; while it is made
   std::vector<SurfacePoint> points_;
@@ -184,6 +185,9 @@ std::span<const SurfacePoint> SurfaceBound::points() const {
 }
 std::span<const std::uint32_t> SurfaceBound::across_sides(std::uint32_t point) const {
   return impl_->across_sides(point);
+}
+const TriangleIndex& SurfaceBound::index() const {
+  return impl_->index();
 }
 const Mesh& SurfaceBound::surface() const {
   return impl_->surface();

@@ -20,19 +20,9 @@ namespace {
 /// With the vertices that they have.
 Mesh picked(std::span<const Vec3> positions, std::span<const Triangle> triangles,
             const std::vector<std::uint32_t>& numbers) {
-  if (numbers.empty()) return {};
   Mesh part;
   std::unordered_map<std::uint32_t, std::uint32_t> number;
-  for (const std::uint32_t i : numbers) {
-    Triangle& added = part.triangles.emplace_back();
-    for (std::size_t k = 0; k < 3; ++k) {
-      const std::uint32_t v = triangles[i][k];
-      const auto [at, is_new] =
-          number.try_emplace(v, static_cast<std::uint32_t>(part.positions.size()));
-      if (is_new) part.positions.push_back(positions[v]);
-      added[k] = at->second;
-    }
-  }
+  for (const std::uint32_t i : numbers) append_triangle(positions, triangles[i], number, part);
   return part;
 }
 

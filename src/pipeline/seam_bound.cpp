@@ -9,7 +9,6 @@
 #include "pipeline/seam_bound.hpp"
 
 #include <algorithm>
-#include <array>
 #include <iterator>
 #include <numeric>
 #include <optional>
@@ -77,6 +76,17 @@ bool are_kept(const std::vector<TrianglePlaces>& fixed, const Mesh& mesh,
   return std::find(is_there.begin(), is_there.end(), 0) == is_there.end();
 }
 
+/// Leaves out the triangles of these numbers, which are ascending.
+void drop_numbered(const std::vector<std::uint32_t>& numbers, std::vector<Triangle>& triangles) {
+  TriangleColumns none;
+  std::size_t next = 0;
+  keep_triangles(triangles, none, [&](std::size_t i) {
+    if (next == numbers.size() || numbers[next] != i) return true;
+    ++next;
+    return false;
+  });
+}
+
 /// Proves what was made round the seams. What is farther from them was proven before, part by part.
 class SeamProof {
  public:
@@ -100,13 +110,7 @@ class SeamProof {
       for (const std::uint32_t v : seams.mesh.triangles[i]) flags[v] = 0;
     }
     lock_others(std::move(flags), seams);
-    TriangleColumns none;
-    std::size_t next = 0;
-    keep_triangles(to_prove_, none, [&](std::size_t i) {
-      if (next == beyond.size() || beyond[next] != i) return true;
-      ++next;
-      return false;
-    });
+    drop_numbered(beyond, to_prove_);
   }
 
   /// What is not proven of a result: triangles of either surface.
@@ -210,28 +214,17 @@ BoundedFinish simplified_with_proof(SeamMesh seams, const SurfaceBound& bound,
 /// What was near before: the rest of the input is near what lies beside the seams.
 Mesh part_lost(const Mesh& input, const TriangleIndex& before, const Mesh& after, double most,
                unsigned threads) {
-  const Mesh beyond = part_beyond(input, TriangleIndex(after, threads), most, threads);
-  if (beyond.triangles.empty()) return {};
-  const Mesh others = part_beyond(beyond, before, most, threads);
-  std::vector<TrianglePlaces> known;
-  for (const Triangle& t : others.triangles) known.push_back(places_of(others, t));
-  std::sort(known.begin(), known.end());
-  std::vector<Triangle> lost;
-  std::copy_if(beyond.triangles.begin(), beyond.triangles.end(), std::back_inserter(lost),
-               [&](const Triangle& t) {
-                 return !std::binary_search(known.begin(), known.end(), places_of(beyond, t));
-               });
-  Mesh part;
-  append_surface(beyond.positions, lost, part);
-  return part;
+  Mesh beyond = part_beyond(input, TriangleIndex(after, threads), most, threads);
+  drop_numbered(find_beyond(beyond.positions, beyond.triangles, before, most, threads),
+                beyond.triangles);
+  return beyond;
 }
 
 /// Where it goes too far, and what was there before did not, that stays as it is.
 BoundedFinish simplified_and_measured(SeamMesh seams, const SurfaceBound& bound,
                                       const BoundedFinishOptions& options) {
   const double most = k_most_beyond_of_seam * options.max_error;
-  const TriangleIndex input(bound.surface(), options.threads);
-  AstrayFinder finder(input, most, options.threads);
+  AstrayFinder finder(bound.index(), most, options.threads);
   const Mesh before = seams.mesh;
   finder.pass_over(before);
   const TriangleIndex index_before(before, options.threads);
@@ -267,14 +260,7 @@ void add_near(std::span<const Vec3> positions, std::span<const Triangle> triangl
   for (const Triangle& t : triangles) {
     Box box;
     for (const std::uint32_t v : t) box.add(positions[v]);
-    if (!near.touch(box)) continue;
-    Triangle& added = mesh.triangles.emplace_back();
-    for (std::size_t i = 0; i < 3; ++i) {
-      const auto [at, is_new] =
-          number.try_emplace(t[i], static_cast<std::uint32_t>(mesh.positions.size()));
-      if (is_new) mesh.positions.push_back(positions[t[i]]);
-      added[i] = at->second;
-    }
+    if (near.touch(box)) append_triangle(positions, t, number, mesh);
   }
 }
 

@@ -7,6 +7,7 @@
 #include <span>
 
 #include <meshfarm/geometry/mesh.hpp>
+#include <meshfarm/geometry/triangle_index.hpp>
 
 namespace meshfarm {
 
@@ -44,6 +45,8 @@ class SurfaceBound {
   /// alone do not tell how far they are from another surface.
   std::span<const std::uint32_t> across_sides(std::uint32_t point) const;
   const Mesh& surface() const;
+  /// Of the surface, for other measures.
+  const TriangleIndex& index() const;
   /// The squared distance to a triangle of the surface near the point, one that is within the bound
   /// if any is; infinite if none is. Stops to look at `enough`. `guess` is a triangle, becomes the
   /// one that was found, and saves time if it is near the point.

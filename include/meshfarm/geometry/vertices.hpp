@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <limits>
 #include <span>
+#include <unordered_map>
 
 #include <meshfarm/geometry/mesh.hpp>
 
@@ -72,6 +73,18 @@ inline void append_surface(std::span<const Vec3> positions, std::span<const Tria
   append_vertices(VertexView(positions), to);
   for (const auto& [a, b, c] : triangles) {
     to.triangles.push_back({a + first, b + first, c + first});
+  }
+}
+
+/// Adds a triangle, and its vertices that are not there yet. `number`: of those that are.
+inline void append_triangle(std::span<const Vec3> positions, const Triangle& triangle,
+                            std::unordered_map<std::uint32_t, std::uint32_t>& number, Mesh& to) {
+  Triangle& added = to.triangles.emplace_back();
+  for (std::size_t i = 0; i < 3; ++i) {
+    const auto [at, is_new] =
+        number.try_emplace(triangle[i], static_cast<std::uint32_t>(to.positions.size()));
+    if (is_new) to.positions.push_back(positions[triangle[i]]);
+    added[i] = at->second;
   }
 }
 
