@@ -31,7 +31,7 @@ void Adjacency::build(std::span<const Triangle> triangles, std::size_t vertices,
   put_ids(triangles);
 }
 
-/// Beside the corners, in their order.
+/// Fills the ids in the order of the corners.
 void Adjacency::put_ids(std::span<const Triangle> triangles) {
   ids_.resize(columns_.empty() ? 0 : corners_.size());
   if (columns_.empty()) return;

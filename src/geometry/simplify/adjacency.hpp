@@ -21,7 +21,7 @@ struct Corner {
   friend bool operator==(const Corner&, const Corner&) = default;
 };
 
-/// Where a triangle has a vertex; 3 if it has not.
+/// The place of a vertex in a triangle; 3 if it is not there.
 inline std::size_t place_of(const Triangle& triangle, std::uint32_t vertex) {
   return static_cast<std::size_t>(std::find(triangle.begin(), triangle.end(), vertex) -
                                   triangle.begin());
@@ -39,7 +39,7 @@ struct CornerFan {
   std::span<const CornerId> ids;
   const TriangleColumnsView* columns = nullptr;  // where there are ids
 
-  /// Whether columns make a line of the edge that triangle i ends at and k begins at.
+  /// Whether columns make a line of the edge where triangle i ends and k begins.
   bool differ(std::size_t i, std::size_t k) const {
     return columns != nullptr && are_apart(*columns, ids[i], ids[k]);
   }
@@ -51,8 +51,8 @@ struct CornerFan {
 /// The corners at each vertex in one flat array (compressed sparse rows), in triangle order.
 class Adjacency {
  public:
-  /// Keeps its memory from one build to the next. The columns must stay where they are as long as
-  /// fans are looked at; what they hold may change.
+  /// Keeps its memory from one build to the next. The columns must not move in memory while fans
+  /// are in use; their contents may change.
   void build(std::span<const Triangle> triangles, std::size_t vertices,
              const TriangleColumnsView& columns = {});
   bool has_labels() const { return !columns_.labels.empty(); }
@@ -75,17 +75,17 @@ class Adjacency {
 
   // Changes to single vertices; the caller keeps the rows of a triangle's three vertices in step.
 
-  /// Gives a vertex other corners, which must not be a part of this, with ids if there are any.
-  /// A longer row than before moves to the end of the array. Throws UsageError if that is too long
+  /// Replaces the corners of a vertex, with their ids if there are any; `fan` must not be a part of
+  /// this. A row that grows moves to the end of the array. Throws UsageError if that is too long
   /// for 32-bit indices.
   void assign(std::uint32_t vertex, const CornerFan& fan);
   /// Adds a vertex without corners and returns its number.
   std::uint32_t add_vertex();
-  /// Writes `now` for `was` in the corners of a vertex, and drops those that have lost their area.
+  /// Replaces `was` by `now` in the corners of a vertex, and drops those that lose their area.
   void replace(std::uint32_t vertex, std::uint32_t was, std::uint32_t now);
-  /// Writes `now` for one corner of a vertex.
+  /// Replaces one corner of a vertex by `now`.
   void replace(std::uint32_t vertex, Corner was, Corner now);
-  /// Takes one corner from a vertex, if it is there.
+  /// Removes one corner of a vertex, if it is there.
   void remove(std::uint32_t vertex, Corner corner);
 
  private:
@@ -97,7 +97,7 @@ class Adjacency {
 
   std::vector<Row> rows_;
   std::vector<Corner> corners_;
-  std::vector<CornerId> ids_;  // one a corner, or none
+  std::vector<CornerId> ids_;  // one per corner, or none
   TriangleColumnsView columns_;
 };
 

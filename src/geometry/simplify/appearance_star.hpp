@@ -16,11 +16,11 @@
 
 namespace meshfarm {
 
-/// What the appearances round one edge, or one vertex, add to its quadric (Hoppe 1999): a triangle
-/// blends those of its corners linearly, and so foretells one for any point, inside it or not. At
-/// the merged vertex all triangles are to have one appearance: the mean of what they foretell,
-/// weighted by area. What they miss it by costs area x squared difference, in units of length.
-/// The quadric is memoryless like that of the planes: it is made from the mesh as it is.
+/// What the appearances around one edge, or one vertex, add to its quadric (Hoppe 1999). A triangle
+/// interpolates those of its corners linearly, and so predicts an appearance for any point, inside
+/// it or not. The merged vertex gets the mean of the predictions of all triangles, weighted by
+/// area. Deviations from the mean cost area x squared difference, in units of length. The quadric
+/// is memoryless like that of the planes: it is made from the mesh as it is.
 class AppearanceStar {
  public:
   struct Values {
@@ -33,19 +33,19 @@ class AppearanceStar {
   void add(const StarTriangle& triangle, const Values& values);
 
   void add_to(EdgeQuadric& edge) const;
-  /// The same without what is linear or constant: of a star of one vertex, about the vertex.
+  /// The same without linear and constant terms: for the star of one vertex, about the vertex.
   Quadric quadric() const;
-  /// That of the merged vertex at x.
+  /// The appearance of the merged vertex at x.
   Appearance at(Vec3 x) const;
 
  private:
-  /// One number of each of the four values: vectors of GNU C++, which clang has, too. Float is
-  /// enough, as numbers are counted from one of them.
+  /// The four numbers of an appearance: a vector type of GNU C++, which clang has, too. Float is
+  /// enough, as numbers are relative to those of one appearance.
   using Four = float __attribute__((vector_size(16)));
 
   static constexpr double k_range = 65535;
-  // What differs by no more than one of 256 levels is not seen, and is what rounding to 8 bits
-  // makes. Where meshes are fine it would cost more than the shape.
+  // Differences of at most one of 256 levels are not visible, and are what rounding to 8 bits
+  // makes. In fine meshes they would cost more than the shape.
   static constexpr float k_unseen = 257;
 
   static Four numbers(const Appearance& appearance);
@@ -57,17 +57,17 @@ class AppearanceStar {
   float steepest_ = 0;  // AppearanceScale::steepest
   bool is_empty_ = true;
   bool is_even_ = true;  // all are equal so far
-  Appearance base_{};    // numbers are counted from this
+  Appearance base_{};    // numbers are relative to this
   Four base_numbers_{};
-  // Sums, weighted by area: of the gradients and their products, and of what is foretold for the
-  // origin.
+  // Sums, weighted by area: of the gradients, their products, and the predictions for the origin.
   double area_ = 0;
   Four gx_{}, gy_{}, gz_{}, height_{};
   Four xx_{}, xy_{}, xz_{}, yy_{}, yz_{}, zz_{};
   Four hx_{}, hy_{}, hz_{}, hh_{};
 };
 
-/// Each alone: of the whole compilers make a loop, which takes as long as a triangle.
+/// Member by member: compilers turn clearing the whole into a loop that takes as long as a
+/// triangle.
 inline void AppearanceStar::clear(const AppearanceScale& scale) {
   unit_ = static_cast<float>(scale.length * (1 / k_range));
   steepest_ = static_cast<float>(scale.steepest);
@@ -87,7 +87,7 @@ inline AppearanceStar::Four AppearanceStar::numbers(const Appearance& appearance
                                  Four);
 }
 
-/// What of a difference is seen, in units of length.
+/// The visible part of a difference, in units of length.
 inline AppearanceStar::Four AppearanceStar::seen(const Four& difference) const {
   const Four most = {k_unseen, k_unseen, k_unseen, k_unseen};
   const Four at_most = difference < most ? difference : most;
@@ -121,7 +121,7 @@ inline void AppearanceStar::add(const StarTriangle& t, const Values& values) {
     area_ += area;
     return;
   }
-  // The gradient of what is linear: normal x (to_p rise_q - to_q rise_p) / |normal|^2.
+  // The gradient of the linear function: normal x (to_p rise_q - to_q rise_p) / |normal|^2.
   const Vec3 to_p = t.p - t.end;
   const Vec3 to_q = t.q - t.end;
   const Vec3 n = t.normal * (1 / t.squared_size);

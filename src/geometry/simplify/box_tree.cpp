@@ -11,7 +11,7 @@ namespace meshfarm {
 namespace {
 
 constexpr float k_beyond = std::numeric_limits<float>::max();
-// More than what rounding to a float, and to the frame before, may move a coordinate by.
+// More than rounding to the frame, and then to float, may move a coordinate by.
 constexpr double k_margin = 0x1p-22;
 
 }  // namespace
@@ -75,7 +75,7 @@ void BoxTree::set(std::uint32_t slot, const Box& box) {
   std::size_t at = slot;
   for (std::vector<Four>& level : levels_) {
     Four& four = level[at / 4];
-    // What is round it is then as it was, too.
+    // All levels above are then unchanged, too.
     if (&level != &levels_.front() && has(four, at % 4, now)) return;
     put(four, at % 4, now);
     now = around(four);
@@ -83,7 +83,7 @@ void BoxTree::set(std::uint32_t slot, const Box& box) {
   }
 }
 
-/// A bit for each lane that is set.
+/// One bit per lane that is set.
 unsigned BoxTree::lanes_of(Mask mask) {
   const auto halves = std::bit_cast<std::array<std::uint64_t, 2>>(mask & Mask{1, 2, 4, 8});
   const std::uint64_t bits = halves[0] | halves[1];
@@ -96,7 +96,7 @@ void BoxTree::find_touching(const Box& box, std::vector<std::uint32_t>& slots) c
     std::uint32_t level;
     std::uint32_t four;
   };
-  // Three wait at each level at most.
+  // At most three wait at each level.
   std::array<Place, 64> waiting;
   std::size_t size = 0;
   waiting[size++] = {static_cast<std::uint32_t>(levels_.size() - 1), 0};

@@ -12,8 +12,9 @@
 
 namespace meshfarm {
 
-/// Boxes that change, in slots whose order keeps what is near together: four children a node, by
-/// their places, as in a heap. Boxes are kept as floats, rounded outwards.
+/// A tree of boxes that may change, in slots whose order keeps near boxes together. It has four
+/// children per node, found by their places, as in a heap. Boxes are stored as floats, rounded
+/// outwards.
 class BoxTree {
  public:
   /// `center` and `scale` bring most coordinates into [-1, 1].
@@ -50,7 +51,7 @@ class BoxTree {
 
   Frame frame_;
   std::vector<std::vector<Four>>
-      levels_;  // the boxes, then those round each four of the one before
+      levels_;  // the boxes, then those around each four of the level before
 };
 
 }  // namespace meshfarm

@@ -14,11 +14,11 @@ constexpr std::uint32_t k_none = UINT32_MAX;
 
 constexpr std::uint32_t k_compared_at_once = 8;
 
-// An end is better than the best point if it costs less than this share: with all of it one
-// triangle of a height field turned over, and a noisy town had 3 % more error.
+// An end is preferred to the best point if it costs less than this share of its cost. With a share
+// of 1, one triangle of a height field turned over, and a noisy town had 3 % more error.
 constexpr double k_next_to_nothing = 0.01;
 
-// Of triangles round an edge.
+// Pairs of triangles around an edge.
 constexpr std::uint32_t k_few_pairs = 3;
 
 // The neighbour of an open ring that no triangle begins at.
@@ -40,8 +40,8 @@ std::uint32_t count_in(const Ring& ring, std::uint32_t vertex) {
 
 }  // namespace
 
-/// Lists the triangles at one end. All is written always and counted if wanted: which triangles
-/// are there no processor guesses.
+/// Lists the triangles at one end. Everything is written, but counted only if wanted: a branch on
+/// which triangles are there would be mispredicted.
 CollapseJudge::Walk CollapseJudge::walk(const Walk& walk, Ring& ring) const {
   const std::uint32_t* const target = state_.target.data();
   const std::uint32_t other = walk.other;
@@ -72,7 +72,7 @@ std::uint32_t CollapseJudge::list_star(std::uint32_t a, std::uint32_t b) {
   std::array<Corner, k_max_star> shared_again;
   std::array<Corner, k_max_star> shared_once;
   const Walk at_a = walk({a, b, shared_once.data(), corners_.data() + 2}, ring_a_);
-  // The ring that is searched may be compared beyond its end.
+  // Comparisons may read beyond the end of this ring.
   std::fill_n(ring_a_.next.begin() + ring_a_.size, k_compared_at_once, k_none);
   const Walk at_b = walk({b, a, shared_again.data(), at_a.kept}, ring_b_);
   *at_b.kept = {a, a};
@@ -121,7 +121,7 @@ void CollapseJudge::add_star(std::uint32_t shared) {
     star_.add({positions[c0.next], positions[c0.prev], positions[c1.next], positions[c1.prev]},
               sides);
   };
-  // One at a border.
+  // Only one at a border.
   if (shared == 1) corners_[1] = {corners_[0].next, corners_[0].next};
   add(0, CollapseStar::Pair{-1, -1});
   for (std::uint32_t i = 0; i < kept_; i += 2) {
@@ -129,7 +129,7 @@ void CollapseJudge::add_star(std::uint32_t shared) {
   }
 }
 
-/// After the star, whose places are those of the corners.
+/// Call after add_star(): places in the star are those in corners_.
 void CollapseJudge::add_appearances(std::uint32_t a, std::uint32_t b, std::uint32_t shared) {
   if (state_.appearances.empty()) return;
   appearance_.clear(state_.appearance_scale);
@@ -142,7 +142,7 @@ void CollapseJudge::add_appearances(std::uint32_t a, std::uint32_t b, std::uint3
   appearance_.add_to(quadric_);
 }
 
-/// Those of the triangles of the vertex's ring, in its order; none where there are none.
+/// The ids of the corners in the vertex's ring, in its order; empty if there are none.
 std::span<const CornerId> CollapseJudge::ids_of(std::uint32_t vertex,
                                                 std::span<CornerId> buffer) const {
   const CornerFan fan = state_.adjacency->fan_at(vertex);
@@ -154,7 +154,7 @@ std::span<const CornerId> CollapseJudge::ids_of(std::uint32_t vertex,
   return buffer.first(size);
 }
 
-/// for_crease_edges of one end, as it is now.
+/// for_crease_edges() at one end, as it is now.
 template <typename Candidate, typename Take>
 void CollapseJudge::for_creases_of(const Ring& ring, std::uint32_t vertex, Vec3 at,
                                    const Candidate& is_candidate, const Take& take) const {
@@ -167,7 +167,7 @@ void CollapseJudge::for_creases_of(const Ring& ring, std::uint32_t vertex, Vec3 
                    at, state_.positions, *state_.creases, is_candidate, take);
 }
 
-/// By the two edges of a border that leave the vertex at `at`; where there are more, as at a
+/// From the two border edges that leave the vertex at `at`; if there are more, the weight of a
 /// corner.
 double CollapseJudge::border_weight_at(std::span<const Corner> fan, Vec3 at) const {
   std::array<Vec3, 2> edges;
@@ -179,7 +179,7 @@ double CollapseJudge::border_weight_at(std::span<const Corner> fan, Vec3 at) con
   return count == edges.size() ? border_weight_between(edges[0], edges[1]) : 1;
 }
 
-/// Adds the planes of the lines at one end, but for the edge to `without`.
+/// Adds the planes of the lines at one end, except for the edge to `without`.
 void CollapseJudge::add_lines(const Ring& ring, std::uint32_t vertex, Vec3 end,
                               std::uint32_t without) {
   const Vec3 at = middle_ + end;
@@ -212,7 +212,7 @@ void CollapseJudge::add_lines(const Ring& ring, std::uint32_t vertex, Vec3 end,
   quadric_.add(planes, end);
 }
 
-/// The only neighbour along a crease but `without`.
+/// The only neighbour along a crease other than `without`; k_none if there are none or several.
 std::uint32_t CollapseJudge::next_on_line(const Ring& ring, std::uint32_t vertex,
                                           std::uint32_t without) const {
   std::uint32_t found = k_none;
@@ -228,9 +228,9 @@ std::uint32_t CollapseJudge::next_on_line(const Ring& ring, std::uint32_t vertex
   return count == 1 ? found : k_none;
 }
 
-/// Moves x to where the areas on both sides of a line between labels stay as they are, seen along
-/// the mean normal: planes alone let all curves bulge. That saves 4 % of the lines' error on a
-/// dragon at 2 %, and 8 % of that of the input's lines to the result's.
+/// Moves x so that the areas on both sides of a line between labels stay the same, seen along the
+/// mean normal: planes alone let all curves bulge. This saves 4 % of the lines' error on a dragon
+/// at 2 %, and 8 % of the error from the input's lines to the result's.
 Vec3 CollapseJudge::keep_label_areas(std::uint32_t a, std::uint32_t b, Vec3 x) const {
   if (!state_.adjacency->has_labels()) return x;
   const std::uint32_t before = next_on_line(ring_a_, a, b);
@@ -238,15 +238,15 @@ Vec3 CollapseJudge::keep_label_areas(std::uint32_t a, std::uint32_t b, Vec3 x) c
   if (before == k_none || after == k_none) return x;
   const Vec3 p = state_.positions[before] - middle_;
   const Vec3 q = state_.positions[after] - middle_;
-  // Of a line that turns back on itself the area says little of its place.
+  // Where a line turns back on itself, the area says little about its place.
   if (!(squared_length(p - q) > quadric_.squared_length)) return x;
   const Vec3 half = (state_.positions[b] - state_.positions[a]) * 0.5;
   const Vec3& normal = quadric_.normals;
   return quadric_.moved(x, cross(normal, p - q), dot(normal, cross(half, p + q)), 1);
 }
 
-/// A vertex that merges into a line from beside leaves the line as it is, and one that merges into
-/// a corner the corner.
+/// A vertex that merges into a line from the side leaves the line unchanged; one that merges into a
+/// corner leaves the corner unchanged.
 Vec3 CollapseJudge::line_position(std::uint32_t a, std::uint32_t b) const {
   const bool at_a = line_rank(ring_a_.flags) > line_rank(ring_b_.flags);
   return rounded(state_.positions[at_a ? a : b], state_.type);
@@ -276,9 +276,9 @@ Collapse CollapseJudge::judge(std::uint32_t a, std::uint32_t b, const CollapseLi
   return best_of_positions(a, b, shared, limits.max_cost);
 }
 
-/// Along a straight edge to a corner the best point is the corner, but for the ridge of the
-/// quadric: a little beside it, where the surface loses some area. Then long straight edges would
-/// cost more than what is round them. On a lattice of struts that is six times the error at 10 %.
+/// Along a straight edge to a corner, the best point would be the corner, but the ridge of the
+/// quadric moves it slightly away, where the surface loses some area. Long straight edges would
+/// then cost more than what is around them: six times the error on a lattice of struts at 10 %.
 Collapse CollapseJudge::or_at_end(const Collapse& best, std::uint32_t a, std::uint32_t b,
                                   std::uint32_t shared) {
   const Vec3 half = (state_.positions[b] - state_.positions[a]) * 0.5;
@@ -291,7 +291,7 @@ Collapse CollapseJudge::or_at_end(const Collapse& best, std::uint32_t a, std::ui
   return there.triangles > 0 ? there : best;
 }
 
-/// Whether the piece has no more than these two vertices and four round them.
+/// Whether the piece has only these two vertices and at most four around them.
 bool CollapseJudge::is_all_of_piece(std::uint32_t a, std::uint32_t b) const {
   constexpr std::uint32_t k_most_corners = 24;  // of eight triangles
   if (ring_a_.border() || ring_b_.border()) return false;
@@ -306,7 +306,7 @@ bool CollapseJudge::is_all_of_piece(std::uint32_t a, std::uint32_t b) const {
   return corners <= k_most_corners;
 }
 
-/// Whether all vertices of the edge's triangles are on a border, and nothing else.
+/// Whether all vertices of the triangles at both ends are on a border and have no other flag.
 bool CollapseJudge::is_ribbon() const {
   if (ring_a_.flags != k_border || ring_b_.flags != k_border) return false;
   const auto is_open = [&](const Ring& ring) {
@@ -319,15 +319,15 @@ bool CollapseJudge::is_ribbon() const {
   return is_open(ring_a_) && is_open(ring_b_);
 }
 
-/// Between corners in a row, as those of windows, what is flat has no other way to go than to leave
-/// a sliver between three of them. Without that the corners went themselves.
+/// Between corners in a row, like those of windows, a flat region can only go by leaving a sliver
+/// between three of them. Without that, the corners themselves went.
 Collapse CollapseJudge::into_line(Vec3 position, std::uint32_t shared, double max_cost) {
   const Collapse made = at_position(position, shared, max_cost, Turn::wide);
   return made.triangles > 0 ? made : at_position(position, shared, max_cost, Turn::sliver);
 }
 
-/// Whether a vertex round the edge is none that ends have become: of a card that has no others one
-/// has to move.
+/// Whether some vertex around the edge is not the end of a ribbon. On a card without other
+/// vertices, one of the ends has to move.
 bool CollapseJudge::is_longer_than_ends() const {
   const auto has_other = [&](const Ring& ring) {
     for (std::uint32_t i = 0; i < ring.size; ++i) {
@@ -351,9 +351,9 @@ Collapse CollapseJudge::best_of_positions(std::uint32_t a, std::uint32_t b, std:
   const Collapse best =
       at_near(keeps_areas ? keep_label_areas(a, b, least) : least, max_cost, Turn::wide);
   if (best.triangles > 0) return keeps_areas ? best : or_at_end(best, a, b, shared);
-  // Where the best point is far off or would spoil a triangle, one of the ends may do: without them
-  // flat faces with sharp edges are dead ends. To let them turn triangles as far costs 6 % of the
-  // error on thin bridges.
+  // Where the best point is far off or would spoil a triangle, one of the ends may do: without
+  // them, flat faces with sharp edges are dead ends. Letting them turn triangles as far costs 6 %
+  // of the error on thin bridges.
   const Vec3 half = (state_.positions[b] - state_.positions[a]) * 0.5;
   const bool a_first = quadric_.cost(half * -1.0) <= quadric_.cost(half);
   const std::array<Vec3, 2> ends = {state_.positions[a_first ? a : b],
@@ -363,14 +363,14 @@ Collapse CollapseJudge::best_of_positions(std::uint32_t a, std::uint32_t b, std:
     if (there.triangles > 0) return there;
   }
   if (star_.pairs() <= k_few_pairs) {
-    // Of pieces that are nearly as small as can be, few collapses keep any of the volume, and those
-    // of a prism with three sides turn two of them by 60 degrees or more.
+    // In pieces that are nearly as small as possible, few collapses keep any of the volume, and
+    // those of a three-sided prism turn two of its sides by 60 degrees or more.
     const Collapse cheapest = at_near(quadric_.cheapest(), max_cost, Turn::wide);
     if (cheapest.triangles > 0) return cheapest;
     if (is_all_of_piece(a, b)) return at_near(least, max_cost, Turn::far);
   }
-  // The walls of a small hole through a plate close in no other way. Were they left, corners of the
-  // plate would go instead.
+  // The walls of a small hole through a plate cannot close in any other way. If they were left,
+  // corners of the plate would go instead.
   const double most = max_cost / k_loss_of_far_turn;
   const auto turned = [&](Turn turn) {
     Collapse made = at_near(least, most, turn);
@@ -384,11 +384,11 @@ Collapse CollapseJudge::best_of_positions(std::uint32_t a, std::uint32_t b, std:
   return far.triangles == 0 && may_turn_ribbon() ? turned(Turn::ribbon) : far;
 }
 
-/// On lines one of the ends: no other place is on a line of the pictures.
+/// On lines, only the ends are candidates: no other position is on a line of the texture.
 Collapse CollapseJudge::best_with_uvs(std::uint32_t a, std::uint32_t b, std::uint32_t shared,
                                       double max_cost) {
   wedges_.list(state_, a, b, middle_);
-  // A border stays where it is on the picture, too, when another line merges into it from beside.
+  // A border also keeps its place on the texture when another line merges into it from the side.
   const auto rank_of = [](const Ring& ring) {
     return 2 * line_rank(ring.flags) + (ring.border() ? 1 : 0);
   };
@@ -422,7 +422,7 @@ Collapse CollapseJudge::best_with_uvs(std::uint32_t a, std::uint32_t b, std::uin
   return turned;
 }
 
-/// Nothing if it costs more or a triangle would be spoiled.
+/// Refused if it costs more than `max_cost` or spoils a triangle.
 Collapse CollapseJudge::at_position(Vec3 position, std::uint32_t shared, double max_cost,
                                     Turn turn) {
   const Vec3 x = position - middle_;

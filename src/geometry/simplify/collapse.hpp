@@ -17,8 +17,8 @@
 
 namespace meshfarm {
 
-/// An edge whose ends have more triangles than this together does not collapse: a hub of many
-/// thousand would be walked once for each of its edges. Its rim collapses, so that it shrinks.
+/// Edges whose ends have more triangles than this together are refused: a hub of many thousand
+/// would be walked once per edge. A hub shrinks as its rim collapses.
 constexpr std::uint32_t k_max_star = CollapseStar::k_capacity;
 
 struct CollapseLimits {
@@ -27,17 +27,17 @@ struct CollapseLimits {
 };
 
 struct Collapse {
-  std::uint32_t triangles = 0;  // that it removes: 2, at a border 1; 0 if it may not be
+  std::uint32_t triangles = 0;  // that it removes: 2, at a border 1; 0 if refused
   Vec3 position;
   double cost = 0;
-  bool by_topology = false;  // that is why it may not be
+  bool by_topology = false;  // refused to keep the topology
   double certain = -1;       // the part of the cost that is no guess; below 0: all of it
-  bool opens = false;        // no vertices merge: GeneralJudge::going() go
+  bool opens = false;        // no vertices merge; GeneralJudge::going() are removed
 };
 
-/// What a vertex has besides its position, and its corners, after a collapse.
+/// The values of a merged vertex besides its position, and those of its corners.
 struct MergedColumns {
-  Appearance appearance{};  // where appearances count
+  Appearance appearance{};  // if appearances are used
   std::span<const WedgeMerge> wedges;
 };
 
@@ -49,11 +49,11 @@ class CollapseJudge {
   /// The state has moved in memory.
   void move_to(const CollapseState& state) { state_ = state; }
 
-  /// Where the merged vertex would go and at what cost, if that keeps the topology, turns no
-  /// triangle farther than Turn allows and makes none of no area. The quadric is of the triangles
-  /// as they are now, each counted once.
+  /// The position and cost of the merged vertex, if the collapse keeps the topology, turns no
+  /// triangle farther than Turn allows and makes none without area. The quadric is that of the
+  /// triangles as they are now, each counted once.
   Collapse judge(std::uint32_t a, std::uint32_t b, const CollapseLimits& limits);
-  /// Of the last, if it may be: what the merged vertex gets.
+  /// What the merged vertex gets, for the last collapse judged if it was not refused.
   MergedColumns columns_of(const Collapse& collapse) const {
     return {state_.appearances.empty() ? Appearance{} : appearance_.at(collapse.position - middle_),
             wedges_.merges()};
@@ -70,8 +70,8 @@ class CollapseJudge {
   struct Walk {
     std::uint32_t vertex;
     std::uint32_t other;  // the edge's other end
-    Corner* shared;       // where to list the triangles that have it
-    Corner* kept;         // and those that have not
+    Corner* shared;       // where to list the triangles that have `other`
+    Corner* kept;         // and those that do not
   };
 
   Walk walk(const Walk& walk, Ring& ring) const;
@@ -104,7 +104,8 @@ class CollapseJudge {
   Vec3 middle_;
   Ring ring_a_;
   Ring ring_b_;
-  // The shared triangles, two places; those that a keeps; those that b keeps; one place more.
+  // Two places for the shared triangles, then those that a keeps, those that b keeps, one spare
+  // place.
   std::array<Corner, k_max_star + 3> corners_;
   std::uint32_t kept_of_a_ = 0;
   std::uint32_t kept_ = 0;

@@ -29,7 +29,7 @@ void DriftMeter::list_star(std::uint32_t a, std::uint32_t b, Vec3 position) {
 double DriftMeter::drift_of(std::uint32_t a, std::uint32_t b, Vec3 position, double least) {
   list_star(a, b, position);
   double greatest = least * least;
-  // The triangle that is nearest is often the one in the same place, or its neighbour.
+  // The nearest triangle is often the one in the same place, or its neighbour.
   const auto look = [&](Vec3 point, const std::vector<Facet>& facets, std::size_t first) {
     double squared = std::numeric_limits<double>::infinity();
     for (std::size_t i = 0; i < facets.size() && squared > greatest; ++i) {

@@ -9,12 +9,12 @@
 
 namespace meshfarm {
 
-/// Tells by and large how far a collapse moves the surface: from points of the triangles that were
-/// to those that it makes, and back.
+/// Estimates how far a collapse moves the surface: from points of the old triangles to the new
+/// ones, and back.
 class DriftMeter {
  public:
   explicit DriftMeter(const CollapseState& state) : state_(state) {}
-  /// The greatest of these distances; those below `least` are not told apart.
+  /// The greatest of these distances, or `least` if they are smaller.
   double drift_of(std::uint32_t a, std::uint32_t b, Vec3 position, double least);
 
  private:

@@ -13,14 +13,16 @@
 namespace meshfarm {
 namespace {
 
-/// What a change of the topology takes away lies farther from what is left than an edge's length:
-/// nobody knows how far. From 1 to 30 the error changes by some per cent.
+/// Cost factor of lost area where the topology changes: what goes is farther from what is left than
+/// an edge's length, by an unknown distance. From 1 to 30, the error changes by a few per cent.
 constexpr double k_loss_of_change = 2;
-/// Of the area of a piece that goes times its squared distance from the rest. Costs are sums over
-/// whole triangles of what only one corner moves, so that those of the same error are some times
-/// greater than that error. From 6 to 15 all is alike, with 1 or 40 scans of many pieces lose 10 %.
+/// Cost of losing a piece, per area times squared distance from the rest. Other costs are sums over
+/// whole triangles although only one corner moves, so they are a few times greater than for the
+/// same error here. From 6 to 15 the results are alike; with 1 or 40, scans of many pieces lose
+/// 10 %.
 constexpr double k_loss_of_piece = 10;
-/// Walls inside of a block of cells lose no area, and others stay near. With 5: twice the error.
+/// Cost factor of lost area in a block of cells: walls inside it lose no area, and others stay
+/// near. With 5, twice the error.
 constexpr double k_loss_of_cells = 25;
 constexpr double k_clearly_less = 0.9;
 
@@ -72,8 +74,8 @@ void GeneralJudge::list_triangles() {
   }
 }
 
-/// Of two triangles that become one and face opposite ways both go; of two that face the same way
-/// that of b.
+/// Of two triangles that become equal, both go if they face opposite ways; if they face the same
+/// way, that of b goes.
 void GeneralJudge::find_vanishing() {
   vanishing_.clear();
   for (Kept& of_b : kept_) {
@@ -123,8 +125,8 @@ bool GeneralJudge::is_crowded(std::uint32_t vertex, const End& end) const {
   return begin > 1 || all - begin > 1;
 }
 
-/// Whether two edges that were fine become one that is crowded even after what is pinched has been
-/// cut apart. A result is to be no less manifold than its input.
+/// Whether two uncrowded edges become one that is crowded even after pinched vertices are cut
+/// apart. A result must be no less manifold than its input.
 bool GeneralJudge::crowds_an_edge() {
   merged_.clear();
   for (std::size_t i = 0; i < staying_; ++i) merged_.push_back(kept_[i].corner);
@@ -158,7 +160,7 @@ void GeneralJudge::add_star(Vec3 half) {
   };
   const auto kept_at = [&](std::size_t i) { return i < kept_.size() ? kept_[i].corner : none; };
   const auto side = [&](std::size_t i) { return i < kept_.size() && kept_[i].at_b ? 1.0 : -1.0; };
-  // Those that stay first: only they are looked at again for each position.
+  // Triangles that stay come first: only they are checked again for each position.
   for (std::size_t i = 0; i < staying_; i += 2) {
     const bool pair = i + 1 < staying_;
     add(kept_at(i), pair ? kept_at(i + 1) : none,
@@ -175,7 +177,8 @@ void GeneralJudge::add_star(Vec3 half) {
   add_appearances();
 }
 
-/// After the star: triangles that stay, those that vanish and shared ones begin at even places.
+/// Call after the star is listed: triangles that stay, vanishing ones and shared ones each begin at
+/// an even place.
 void GeneralJudge::add_appearances() {
   if (state_.appearances.empty()) return;
   appearance_.clear(state_.appearance_scale);
@@ -193,8 +196,8 @@ void GeneralJudge::add_appearances() {
   appearance_.add_to(quadric_);
 }
 
-/// Adds the planes along the open edges of one end. Where three sheets or more meet their own
-/// planes hold the line: counted once more, jags of lines outweighed the sheets between them.
+/// Adds the planes along the open edges of one end. Where three or more sheets meet, their own
+/// planes hold the line: with extra planes, jags of lines outweighed the sheets between them.
 void GeneralJudge::add_lines(const End& end, const End& other, Vec3 at) {
   if (end.open.empty()) return;
   Quadric planes;
@@ -211,7 +214,7 @@ void GeneralJudge::add_lines(const End& end, const End& other, Vec3 at) {
   quadric_.add(planes, at);
 }
 
-/// To one of the ends.
+/// Whether the merged vertex may go to x, one of the ends.
 bool GeneralJudge::may_go_to(Vec3 x) const {
   return star_.lost_area_from(0, staying_, x, {.turn = Turn::wide}).has_value();
 }
@@ -235,15 +238,16 @@ Collapse GeneralJudge::at_best(Turn turn) const {
   return at_position(rounded(middle_ + x, state_.type), turn);
 }
 
-/// Where sheets meet everywhere, what is outermost has fewest triangles, and would always be the
-/// cheapest to draw back: by a little each time, as far as what is left now can tell.
+/// The cost by past planes. Where sheets meet everywhere, the outermost parts have the fewest
+/// triangles and would always be the cheapest to draw back: by a little each time, as far as the
+/// current mesh can tell.
 double GeneralJudge::cost_of_past(Vec3 x) const {
   if (state_.past.empty()) return 0;
   return quadric_.unless_noise(state_.past[a_.vertex].cost(x + half_) +
                                state_.past[b_.vertex].cost(x - half_));
 }
 
-/// Whether each triangle at a neighbour of the two ends goes.
+/// Whether all triangles at `vertex`, a neighbour of the two ends, go.
 bool GeneralJudge::is_lost(std::uint32_t vertex) const {
   std::ptrdiff_t gone = std::count_if(shared_.begin(), shared_.end(),
                                       [&](const Corner& c) { return has(c, vertex); });
@@ -252,7 +256,7 @@ bool GeneralJudge::is_lost(std::uint32_t vertex) const {
   return gone == static_cast<std::ptrdiff_t>(state_.adjacency->count(vertex));
 }
 
-/// The vertices that no triangle is left at.
+/// Lists the vertices that lose all their triangles.
 void GeneralJudge::list_lost() {
   lost_.clear();
   if (staying_ == 0) lost_.assign({a_.vertex, b_.vertex});
@@ -268,7 +272,7 @@ void GeneralJudge::list_lost() {
   lost_.erase(std::unique(lost_.begin(), lost_.end()), lost_.end());
 }
 
-/// The squared distance of what will cover the foot of a needle or fin, where two of its triangles
+/// The squared distance to what will cover the foot of a needle or fin, where two of its triangles
 /// close upon each other; infinite if nothing will.
 double GeneralJudge::squared_to_cover(Vec3 from) const {
   double squared = HUGE_VAL;
@@ -283,8 +287,8 @@ double GeneralJudge::squared_to_cover(Vec3 from) const {
   return squared;
 }
 
-/// If no more is lost than the triangles at the edge: what stands for a leaf or a hair may lie
-/// close to others in its middle, and far from all at its ends.
+/// Lists points only if nothing but the triangles at the edge is lost: what stands for a leaf or a
+/// hair may be close to others in its middle, and far from everything at its ends.
 void GeneralJudge::list_points_of_sheet() {
   points_of_sheet_.clear();
   if (!kept_.empty()) return;
@@ -297,7 +301,7 @@ void GeneralJudge::list_points_of_sheet() {
   }
 }
 
-/// Of what goes with these vertices, by how far it is from the rest.
+/// The cost of the triangles that go with the lost vertices, by their distance from the rest.
 double GeneralJudge::cost_of_lost() {
   if (!any_topology_ || lost_.empty()) return 0;
   Vec3 sum;
@@ -323,8 +327,8 @@ double GeneralJudge::cost_of_lost() {
   return k_loss_of_piece * area * std::min(squared, squared_to_cover(middle));
 }
 
-/// What needles and fins cost that go with the edge at their foot: planes tell only how far that
-/// moves.
+/// Adds the cost of needles and fins that go with the edge at their foot: planes only tell how far
+/// the foot moves.
 void GeneralJudge::add_cost_of_tips(Collapse& collapse) {
   list_lost();
   const double cost = cost_of_lost();
@@ -332,8 +336,8 @@ void GeneralJudge::add_cost_of_tips(Collapse& collapse) {
   collapse.certain += cost;
 }
 
-/// Whether the triangles at both ends are all of a closed piece of the mesh's own. What is pinched
-/// off would, as a sheet, stay longer than what matters more.
+/// Whether the triangles at both ends are a whole closed piece of the original mesh. Pinched-off
+/// pieces do not count: as sheets, they would stay longer than more important ones.
 bool GeneralJudge::is_closed_piece() const {
   const auto is_free = [&](std::uint32_t v) {
     const bool is_own = state_.origins.empty() || (state_.origins[v] & k_pinched) == 0;
@@ -344,7 +348,7 @@ bool GeneralJudge::is_closed_piece() const {
          std::all_of(b_.neighbours.begin(), b_.neighbours.end(), is_free);
 }
 
-/// All triangles at one end go, but of a tetrahedron only those at the edge.
+/// Opens a piece: all triangles at `without` go; of a tetrahedron, only those at the edge.
 Collapse GeneralJudge::opening(const End& without) {
   going_.clear();
   standing_.clear();
@@ -360,8 +364,8 @@ Collapse GeneralJudge::opening(const End& without) {
   return made;
 }
 
-/// By how far what goes is from what stands for it, at the middles of the quarters of each
-/// triangle.
+/// The cost by the distance of the removed triangles from those that stand for them, measured at
+/// the middles of the quarters of each triangle.
 double GeneralJudge::cost_of_opening() const {
   const auto corners_of = [&](const Triangle& t) {
     return std::array{state_.positions[t[0]], state_.positions[t[1]], state_.positions[t[2]]};
@@ -386,8 +390,8 @@ double GeneralJudge::cost_of_opening() const {
   return k_loss_of_piece * cost;
 }
 
-/// No triangle would stay: all go, or, of a closed piece, some stand for the others. Of a thin
-/// plate or a pin one sheet does as well as two.
+/// No triangle would stay: either all go, or some of a closed piece stay and stand for the others.
+/// For a thin plate or a pin, one sheet does as well as two.
 Collapse GeneralJudge::end_of_piece(std::uint64_t most_triangles) {
   list_lost();
   Collapse best;
@@ -421,7 +425,7 @@ GeneralCollapse GeneralJudge::judge(std::uint32_t a, std::uint32_t b,
     return result;
   }
   add_star(half_);
-  // Of most that are refused this is why.
+  // Most refused collapses are refused here.
   if (a_.rank == 2 && b_.rank == 2 && !may_go_to(half_ * -1.0) && !may_go_to(half_)) return result;
   add_lines(a_, b_, half_ * -1.0);
   add_lines(b_, a_, half_);
@@ -454,9 +458,9 @@ Collapse GeneralJudge::into_line(Vec3 position) const {
   return made.triangles > 0 ? made : at_position(position, Turn::sliver);
 }
 
-/// Or, where sheets meet and no border ends, at the best point, if that costs clearly less: flat
-/// sheets meet where the line is. Kept on the line, cells of an irregular block have up to 7 % more
-/// error.
+/// Where sheets meet and there is no border or crease, takes the best point instead if it costs
+/// clearly less: flat sheets meet where the line is. Kept on the line, cells of an irregular block
+/// have up to 7 % more error.
 Collapse GeneralJudge::or_beside_line(const Collapse& on_line) const {
   const std::uint8_t flags = state_.flags[a_.vertex] | state_.flags[b_.vertex];
   if ((flags & k_line) != 0) return on_line;
@@ -478,7 +482,7 @@ Collapse GeneralJudge::turned_far(std::span<const Vec3, 2> ends) const {
   return far;
 }
 
-/// Only at the ends, wherever they are: what is rare may be less good.
+/// Only at the ends, wherever they are: a rare case may be less good.
 Collapse GeneralJudge::best_with_uvs() {
   wedges_.list(state_, a_.vertex, b_.vertex, middle_);
   const auto at_end = [&](WedgeStar::End end) {

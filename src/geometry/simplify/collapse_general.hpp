@@ -13,40 +13,40 @@
 
 namespace meshfarm {
 
-/// What a collapse that CollapseJudge cannot judge would do.
+/// The outcome of a collapse that CollapseJudge cannot judge.
 struct GeneralCollapse {
-  Collapse collapse;  // its triangles are 0 if it may not be
+  Collapse collapse;  // its triangles are 0 if refused
   /// It pinches off a handle or a strip, closes a hole, or removes a piece.
   bool changes_topology = false;
 };
 
-/// Judges collapses on any complex of triangles: at vertices whose triangles are no single fan, and
-/// those that change the topology. Singular are edges that have not two triangles: they are lines,
-/// along which their vertices merge.
+/// Judges collapses on any complex of triangles: at vertices whose triangles are not a single fan,
+/// and collapses that change the topology. Edges that do not have exactly two triangles are
+/// singular: they are lines, along which their vertices merge.
 class GeneralJudge {
  public:
-  /// Target must be the identity: the adjacency is kept up to date.
-  /// Without `any_topology` what changes the topology will be refused: its cost need not be right.
+  /// Target must be the identity: the adjacency is kept up to date. Without `any_topology`,
+  /// collapses that change the topology will be refused, so their cost need not be right.
   GeneralJudge(const CollapseState& state, bool any_topology)
       : state_(state), any_topology_(any_topology) {}
   void move_to(const CollapseState& state) { state_ = state; }
   /// Whether closed pieces may become sheets before they go.
   void let_open(bool may_open) { may_open_ = may_open; }
-  /// To be told of each collapse.
+  /// Must be called for each collapse.
   void merge() { surroundings_.change(); }
 
   /// Neither end may be fixed.
   GeneralCollapse judge(std::uint32_t a, std::uint32_t b, std::uint64_t most_triangles);
 
-  // Of the last that was judged.
+  // For the last collapse judged:
 
-  /// Kept triangles that the collapse makes equal to another: by their other two vertices.
+  /// Kept triangles that the collapse makes equal to another, by their other two vertices.
   std::span<const std::pair<std::uint32_t, std::uint32_t>> vanishing() const { return vanishing_; }
   /// If it opens a closed piece: the triangles that go.
   std::span<const Triangle> going() const { return going_; }
-  /// Vertices whose fans are other ones than before, apart from the merged one.
+  /// Vertices other than the merged one whose fans change.
   std::span<const std::uint32_t> changed() const { return changed_; }
-  /// If it may be: what the merged vertex gets.
+  /// What the merged vertex gets, if the collapse was not refused.
   MergedColumns columns_of(const Collapse& collapse) const {
     return {state_.appearances.empty() ? Appearance{} : appearance_.at(collapse.position - middle_),
             wedges_.merges()};
@@ -61,7 +61,7 @@ class GeneralJudge {
     std::size_t crowded = 0;                // edges that have more than two triangles
     int rank = 0;
 
-    /// As at a vertex where three walls cross. With 4 a head with small folds has 4 % more error.
+    /// As where three walls cross. With 4, a head with small folds has 4 % more error.
     bool is_in_cells() const { return crowded >= 6; }
   };
   struct Kept {
@@ -76,7 +76,7 @@ class GeneralJudge {
   bool changes_topology();
   bool is_crowded(std::uint32_t vertex, const End& end) const;
   bool crowds_an_edge();
-  /// Whether sheets cross all round the edge.
+  /// Whether sheets cross all around the edge.
   bool is_of_cells() const {
     return a_.rank == 2 && b_.rank == 2 && (a_.is_in_cells() || b_.is_in_cells());
   }
@@ -122,7 +122,7 @@ class GeneralJudge {
   Vec3 middle_;
   Vec3 half_;                        // from there to b
   std::vector<std::uint32_t> lost_;  // ascending
-  std::vector<Triangle> going_;      // where a piece is opened
+  std::vector<Triangle> going_;      // if a piece is opened
   std::vector<Triangle> standing_;   // what is left of it
   Surroundings surroundings_;
   std::vector<Vec3> points_of_sheet_;

@@ -16,19 +16,19 @@ namespace meshfarm {
 namespace {
 
 constexpr std::size_t k_points_at_once = 4096;
-/// A triangle is as good as any other if it is so near, as a share of the bound.
+/// A triangle nearer than this share of the bound is as good as any other.
 constexpr double k_near_share = 0.5;
 /// The same at the start, where the triangles are small.
 constexpr double k_start_share = 0.25;
-/// Points of a side of the surface are so far apart, in distances of the bound, but no more than
-/// that.
+/// Spacing of the points checked on a side of the surface, in units of the bound, and the maximum
+/// number of steps.
 constexpr double k_side_spacing = 0.75;
 constexpr double k_most_on_side = 32;
 constexpr std::size_t k_memo = 1U << 18;
 
 }  // namespace
 
-/// With the nearest of the triangle's corners.
+/// The owner is the nearest of the triangle's corners.
 CollapseGuard::Place CollapseGuard::place_on(std::uint32_t point, const Triangle& triangle) const {
   const Vec3 p = held_[point].point;
   std::size_t best = 0;
@@ -130,7 +130,7 @@ bool CollapseGuard::allows(const Merge& merge) {
   return false;
 }
 
-/// Of the edge and how often its ends have moved; never 0.
+/// A hash of the edge and of how often its ends have moved; never 0.
 std::uint32_t CollapseGuard::signature() const {
   std::uint64_t h = (std::uint64_t{merge_.a} << 32 | merge_.b) * 0x9e3779b97f4a7c15U;
   h ^= h >> 29;
@@ -144,12 +144,13 @@ std::uint32_t& CollapseGuard::memo() {
   return memo_[(h >> 40) % k_memo];
 }
 
-/// Of what another vertex than the ends holds: whether the triangle is one of theirs or not known.
+/// For a point held by a vertex other than the ends: whether its triangle is one of theirs, or
+/// unknown.
 bool CollapseGuard::is_changed(const Held& held) const {
   return held.next == held.prev || is_end(held.next) || is_end(held.prev);
 }
 
-/// What has failed often fails again.
+/// Points that failed before often fail again, so they are tried first.
 bool CollapseGuard::fails_again(std::uint32_t vertex) {
   const std::uint32_t first = bag_[vertex];
   if (has_failed_[vertex] == 0 || first == k_no_point) return false;
@@ -182,7 +183,7 @@ bool CollapseGuard::place_bag(std::uint32_t vertex, bool all) {
   return true;
 }
 
-/// Points that were too far will be asked first.
+/// Moves a point that was too far to the front, to be tried first.
 void CollapseGuard::to_front(std::uint32_t vertex, std::uint32_t before, std::uint32_t point) {
   has_failed_[vertex] = 1;
   if (before == k_no_point) return;
@@ -190,7 +191,7 @@ void CollapseGuard::to_front(std::uint32_t vertex, std::uint32_t before, std::ui
   held_[point].following = std::exchange(bag_[vertex], point);
 }
 
-/// Where the triangle that a point was near to is in the star, if it is.
+/// The index in the star of the triangle that a point was near, or 0.
 std::size_t CollapseGuard::facet_of(std::uint32_t owner, const Held& held) const {
   Corner corner{held.next, held.prev};
   if (is_end(held.next)) corner = {held.prev, owner};
@@ -199,7 +200,7 @@ std::size_t CollapseGuard::facet_of(std::uint32_t owner, const Held& held) const
   return found == star_.end() ? 0 : static_cast<std::size_t>(found - star_.begin());
 }
 
-/// Looks until one is near enough, or below the point and no farther than `most`.
+/// Searches until a triangle is near enough, or is right below the point and at most `most` away.
 void CollapseGuard::look_at_star(Vec3 point, std::size_t first, double enough, double most,
                                  Nearest& nearest) const {
   for (std::size_t i = 0; i < star_.size() && nearest.squared > enough; ++i) {
@@ -213,7 +214,7 @@ void CollapseGuard::look_at_star(Vec3 point, std::size_t first, double enough, d
   }
 }
 
-/// Of a vertex of the ring.
+/// Searches the triangles at a vertex of the ring, except those at the ends.
 void CollapseGuard::look_round(std::uint32_t around, Vec3 point, Nearest& nearest) const {
   for (const auto& [next, prev] : state_.adjacency->at(around)) {
     if (is_end(next) || is_end(prev)) continue;
@@ -254,7 +255,7 @@ double CollapseGuard::squared_to(Vec3 point, const Triangle& triangle) const {
   return squared_distance(point, at(triangle[0]), at(triangle[1]), at(triangle[2]));
 }
 
-/// A side of the surface is near as a whole if both of its ends are near one triangle.
+/// A side of the surface is near as a whole if both of its ends are near the same triangle.
 bool CollapseGuard::are_sides_near() {
   return std::all_of(places_.begin(), places_.end(), [&](const Place& place) {
     const auto across = bound_.across_sides(held_[place.point].number);
@@ -282,7 +283,7 @@ bool CollapseGuard::is_side_near(const Place& place, std::uint32_t across) {
   return is_side_near(from, to, at_end, place.facet == k_no_point ? 0 : place.facet);
 }
 
-/// Of what was not, the collapse changes nothing.
+/// If a point was not near the old star, the collapse changes nothing for it.
 bool CollapseGuard::was_near_star(Vec3 point, double most) const {
   for (const std::uint32_t end : {merge_.a, merge_.b}) {
     for (const auto& [next, prev] : state_.adjacency->at(end)) {
@@ -295,7 +296,7 @@ bool CollapseGuard::was_near_star(Vec3 point, double most) const {
   return false;
 }
 
-/// Of points between the ends, if these are near different triangles.
+/// Checks points between the ends, if these are near different triangles.
 bool CollapseGuard::is_side_near(const Held& from, const Held& to, const Triangle& at_end,
                                  std::size_t first) const {
   const double most = std::max(from.limit, to.limit);
@@ -316,7 +317,7 @@ bool CollapseGuard::is_side_near(const Held& from, const Held& to, const Triangl
   return true;
 }
 
-/// Of what a point stands for: looked at only where the point itself is not quite near.
+/// Checks the area that a point stands for; only needed where the point itself is not quite near.
 bool CollapseGuard::is_cell_near(const Held& held, std::size_t first) const {
   constexpr double k_to_corner = 0.7;
   const Mesh& surface = bound_.surface();
@@ -334,7 +335,7 @@ bool CollapseGuard::is_cell_near(const Held& held, std::size_t first) const {
                      });
 }
 
-/// What is not near the star may be near what lies round that.
+/// Points that are not near the star may be near the triangles around it.
 std::uint32_t CollapseGuard::nearest_of_ring(Vec3 point) const {
   return *std::min_element(ring_.begin(), ring_.end(), [&](std::uint32_t x, std::uint32_t y) {
     return squared_length(state_.positions[x] - point) <
@@ -342,7 +343,8 @@ std::uint32_t CollapseGuard::nearest_of_ring(Vec3 point) const {
   });
 }
 
-/// The sides of the ring were there before, and the merged vertex is near.
+/// Checks the new triangles only: the sides of the ring were there before, and the merged vertex is
+/// known to be near.
 bool CollapseGuard::is_star_near() {
   for (const std::uint32_t v : ring_) {
     if (!probe_.is_side_near(merge_.position, state_.positions[v])) return false;

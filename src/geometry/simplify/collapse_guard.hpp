@@ -15,30 +15,30 @@
 
 namespace meshfarm {
 
-/// Refuses collapses that would take a surface farther from another one than a bound allows, in
-/// either direction. Points of the other surface are held by the vertices that they are near to,
-/// each with a triangle within the bound; so are its long sides, by what their ends are near to.
-/// Points of triangles that are new are looked for on the other surface.
+/// Refuses collapses that would move a surface farther from another one than a bound allows, in
+/// either direction. Each point of the other surface is held by a vertex near it, with a triangle
+/// within the bound; its long sides are checked by the triangles near their ends. Points of new
+/// triangles are looked up on the other surface.
 class CollapseGuard {
  public:
   struct Merge {
     std::uint32_t a = 0;
     std::uint32_t b = 0;  // becomes a
     Vec3 position;
-    /// Triangles of either end that go though they have not both, by their other two vertices.
+    /// Triangles that go although they have only one of the ends, by their other two vertices.
     std::span<const std::pair<std::uint32_t, std::uint32_t>> vanishing;
   };
 
   explicit CollapseGuard(const SurfaceBound& bound) : bound_(bound), probe_(bound) {}
   void move_to(const CollapseState& state) { state_ = state; }
 
-  /// Hands the points out. Those that are too far from the start may become no farther.
+  /// Assigns the points to vertices. Points that are too far at the start must not get farther.
   void start(const CollapseState& state, const Mesh& mesh);
 
   bool allows(const Merge& merge);
-  /// Before the merge that was allowed last is done.
+  /// Must be called before the merge that was allowed last is done.
   void merge();
-  /// Some of the vertex's triangles are now at copies of it, the latest vertices.
+  /// Some of the vertex's triangles have moved to copies of it: the vertices from `first_copy` on.
   void split(std::uint32_t vertex, std::uint32_t first_copy);
 
  private:
@@ -46,11 +46,11 @@ class CollapseGuard {
 
   struct Held {
     Vec3 point;
-    float limit;              // squared: how far it may be, or is from the start
+    float limit;              // squared: how far it may be, or was at the start
     float share;              // SurfacePoint::share
     std::uint32_t source;     // the triangle of the other surface
-    std::uint32_t following;  // held by the same vertex
-    // The triangle, from the vertex that holds it; may have become another.
+    std::uint32_t following;  // next point held by the same vertex
+    // The triangle near the point, starting at the vertex that holds it; it may have changed since.
     std::uint32_t owner, next, prev;
     std::uint32_t number;   // of the bound's points
     bool is_dense = false;  // SurfacePoint::is_dense
@@ -58,13 +58,13 @@ class CollapseGuard {
   struct Place {
     std::uint32_t point;
     std::uint32_t owner, next, prev;
-    std::uint32_t following;  // on the same triangle of the star
-    std::uint32_t facet;      // that one, if it is one of the star
+    std::uint32_t following;  // next place on the same triangle of the star
+    std::uint32_t facet;      // index of that triangle, if it is in the star
   };
   struct Nearest {
     double squared = HUGE_VAL;
     Triangle triangle{};
-    std::uint32_t facet = 0;  // of the star, if it is one
+    std::uint32_t facet = 0;  // index in the star, if it is there
   };
 
   void hold(std::uint32_t point, const Triangle& triangle);
@@ -101,16 +101,16 @@ class CollapseGuard {
   std::vector<Held> held_;
   std::vector<std::uint32_t> held_of_;    // for each of the bound's points
   std::vector<std::uint32_t> bag_;        // the first point that a vertex holds
-  std::vector<std::uint8_t> has_failed_;  // a vertex's first point was too far once
-  std::vector<std::uint32_t> moves_;      // of each vertex
-  std::vector<std::uint32_t> memo_;       // of collapses that were refused
+  std::vector<std::uint8_t> has_failed_;  // a vertex's first point has been too far before
+  std::vector<std::uint32_t> moves_;      // how often each vertex moved
+  std::vector<std::uint32_t> memo_;       // signatures of refused collapses
 
-  // Of the merge that is judged.
+  // For the merge being judged:
   Merge merge_;
   std::vector<Corner> star_;  // the triangles that it makes
   std::vector<std::uint32_t> ring_;
   std::vector<Place> places_;
-  std::vector<std::uint32_t> place_of_;  // of each point held, the last one that it was to get
+  std::vector<std::uint32_t> place_of_;  // of each held point: the last place tried
   std::vector<std::uint32_t> on_facet_;  // the first place on each triangle of the star
   std::vector<Vec3> feet_;
   SurfaceProbe probe_;

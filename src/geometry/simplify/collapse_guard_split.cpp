@@ -28,7 +28,7 @@ void CollapseGuard::split(std::uint32_t vertex, std::uint32_t first_copy) {
   }
 }
 
-/// The triangle nearest to a point, of a vertex and its copies from `first_copy` on.
+/// The triangle nearest to a point, of those at a vertex and its copies from `first_copy` on.
 Triangle CollapseGuard::nearest_of_copies(Vec3 point, std::uint32_t vertex,
                                           std::uint32_t first_copy) const {
   double best = std::numeric_limits<double>::infinity();
@@ -47,7 +47,7 @@ Triangle CollapseGuard::nearest_of_copies(Vec3 point, std::uint32_t vertex,
   return nearest;
 }
 
-/// Of the points that `owner` holds, those near a triangle of `vertex` do not know theirs any more.
+/// Forgets the triangles of those points held by `owner` that are near a triangle of `vertex`.
 void CollapseGuard::forget_triangles(std::uint32_t owner, std::uint32_t vertex) {
   for (std::uint32_t i = bag_[owner]; i != k_no_point; i = held_[i].following) {
     Held& held = held_[i];

@@ -9,29 +9,32 @@ namespace {
 
 constexpr double k_cos_60_squared = 0.25;
 constexpr double k_cos_85_squared = 0.0076;
-// Of the angle at the new vertex: near 0 and near 180 degrees alike are as good as no area.
+// Minimum squared sine of the angle at the new vertex: angles near 0 or 180 degrees are as good as
+// no area.
 constexpr double k_least_sine_squared = 1e-6;
-// What is so thin already may become four times as thin, down to this, and new slivers, too.
+// Triangles that are this thin already may become four times as thin, down to this limit, which
+// also applies to new slivers.
 constexpr double k_least_of_slivers = 1e-12;
-// Of the sum of the areas that normals add up to: where it is less, a pin or a thin tube faces all
-// ways. Without a limit nearly twice as many triangles of a dragon cross; with 0.3 or 0.15 wires
-// have 10 % more error.
+// If the normals add up to less than this share of the total area, the star faces all ways, as on a
+// pin or a thin tube. Without a limit, nearly twice as many triangles of a dragon cross; with 0.3
+// or 0.15, wires have 10 % more error.
 constexpr double k_all_ways = 0.5;
-// Triangles of ribbons have an angle below 3 degrees. With 1.1 curved hair has 15 to 25 % more
-// error, with 6 about as much.
+// Triangles of ribbons have an angle below 3 degrees. With 1.1, curved hair has 15 to 25 % more
+// error; with 6, about as much.
 constexpr double k_ribbon_sine_squared = 0.0025;
-constexpr double k_least_of_ribbons = 1e-28;  // less is what rounding leaves of no area
+constexpr double k_least_of_ribbons = 1e-28;  // anything less is rounding noise of no area
 constexpr double k_thinner_squared = 1.0 / 16;
-// Slivers that a collapse may make have an angle below a quarter of a degree. Each costs so much of
-// the fourth power of its longest side: more than what is nearly flat, much less than a corner.
+// Slivers that a collapse may make have an angle below a quarter of a degree. Each costs this much
+// times the fourth power of its longest side: more than nearly flat regions, much less than a
+// corner.
 constexpr double k_sliver_sine_squared = 1.6e-5;
 constexpr double k_cost_of_sliver = 1e-5;
-// With 1 spines have up to a quarter more error from the result to the input, with 10 up to 4 %
+// With 1, spines have up to a quarter more error from the result to the input; with 10, up to 4 %
 // less and 1 % more the other way.
 constexpr double k_of_protruding = 3;
 
-/// Of the smallest angle of the triangle x, p, q with the normal cross(p - x, q - x). 0 if it has
-/// no area.
+/// The squared sine of the smallest angle of the triangle x, p, q with the normal cross(p - x, q -
+/// x). 0 if it has no area.
 double squared_least_sine(Vec3 x, Vec3 p, Vec3 q, double squared_normal) {
   if (!(squared_normal > 0)) return 0;
   const double a = squared_length(p - x);
@@ -40,7 +43,7 @@ double squared_least_sine(Vec3 x, Vec3 p, Vec3 q, double squared_normal) {
   return squared_normal / std::max({a * b, b * c, c * a});
 }
 
-/// Whether a triangle that was none becomes a sliver if its end moves to x.
+/// Whether a triangle that is not a sliver yet becomes one if its end moves to x.
 bool becomes_sliver(const StarTriangle& old, Vec3 x) {
   if (squared_least_sine(old.end, old.p, old.q, old.squared_size) < k_sliver_sine_squared)
     return false;
@@ -62,9 +65,9 @@ void CollapseStar::sum_planes(EdgeQuadric& quadric) const {
   quadric.twice_area = sum(s.twice_area);
 }
 
-/// A sliver of the input may stay one, or nothing round it could ever collapse, though its angle at
-/// the old end was wide: each sliver has a wide one. A needle whose tip is at x, and that stands
-/// straight on its short side, has a normal as good as any.
+/// A sliver of the input may stay one, even if its angle at the old end was wide, as every sliver
+/// has a wide angle: otherwise nothing around it could ever collapse. A needle whose tip is at x
+/// and that stands straight on its short side has a normal as good as any.
 bool CollapseStar::is_acceptable(const Two& two, int lane, Vec3 x, double cos_squared) const {
   const auto at = [&](const Vec3Pair& a) { return Vec3{a.x[lane], a.y[lane], a.z[lane]}; };
   const Vec3 p = at(two.p);
@@ -94,10 +97,10 @@ bool CollapseStar::is_acceptable(const Two& two, int lane, Vec3 x, double cos_sq
   return size * old_scale >= thinner * old_size * scale && (size > 0 || old_size == 0);
 }
 
-/// The normal of a sliver may turn by 60 degrees again and again and so fold over in the end. One
-/// that turns much must still face the way of its new neighbours, each counted by its area.
-/// Whether a triangle that has turned faces against all together. At the tip of a thin pin some
-/// always do: there it counts if it did not before.
+/// Whether a triangle that has turned much faces against the new star as a whole, weighted by area.
+/// The normal of a sliver may turn by 60 degrees again and again, and so fold over in the end. At
+/// the tip of a thin pin some triangles always face against the rest: there, one counts only if it
+/// did not before.
 bool CollapseStar::is_folded(std::uint32_t first, std::uint32_t kept, Vec3 x,
                              const TurnLimits& limits) const {
   const auto at = [&](const Vec3Pair& a, std::uint32_t i) {
@@ -131,7 +134,7 @@ bool CollapseStar::is_folded(std::uint32_t first, std::uint32_t kept, Vec3 x,
 }
 
 /// Where a ribbon bends, one side becomes straight before the other, and the triangles between them
-/// stand across until that one does, too. The area that they add until then is no loss.
+/// stand across until the other does, too. The area that they add until then is no loss.
 std::optional<double> CollapseStar::lost_area_of_ribbon(std::uint32_t first, std::uint32_t kept,
                                                         Vec3 x) const {
   double twice_lost = sums_.twice_area[0] + sums_.twice_area[1];
@@ -206,7 +209,7 @@ std::optional<double> CollapseStar::lost_area_from(std::uint32_t first, std::uin
                       (size > k_least_sine_squared * (squared_p * squared_q));
     if ((good[0] & good[1]) == 0) {
       if (good[0] == 0 && is_spoilt(i)) return {};
-      // Beyond the last one is none; p == q makes it neither good nor an area.
+      // Beyond the last triangle there may be none: p == q makes it neither good nor an area.
       if (good[1] == 0 && i + 1 < kept && is_spoilt(i + 1)) return {};
     }
     Pair length;

@@ -14,16 +14,17 @@
 
 namespace meshfarm {
 
-/// How far a collapse may turn a triangle: by 60 degrees, by 30, by 85; where all of them are as
-/// thin as those of a ribbon, in any way; or by 60, but those that become slivers in any way.
+/// How far a collapse may turn a triangle: by 60 degrees; by 30; by 85; in any way, where all are
+/// as thin as those of a ribbon; or by 60, but in any way if it becomes a sliver.
 enum class Turn : std::uint8_t { wide, narrow, far, ribbon, sliver };
 
-/// Turning a triangle far costs so many times as much. With 1 a CAD town has 4.7 times the error at
-/// 0.3 %, with 4 or 8 plates keep more of their small holes.
+/// Cost factor for turning a triangle far. With 1, a CAD town has 4.7 times the error at 0.3 %;
+/// with 4 or 8, plates keep more of their small holes.
 inline constexpr double k_loss_of_far_turn = 2;
 
-/// The triangles round one edge, relative to its middle, two at a time in vector registers. The
-/// types are those of GNU C++, which clang has too: loops over two are vectorised by neither.
+/// The triangles around one edge, relative to its middle, two at a time in vector registers. The
+/// types are extensions of GNU C++, which clang has too: neither compiler vectorises loops over
+/// two.
 class CollapseStar {
  public:
   static constexpr std::uint32_t k_capacity = 256;
@@ -33,7 +34,7 @@ class CollapseStar {
   using Pair = double __attribute__((vector_size(16)));
   using Mask = std::int64_t __attribute__((vector_size(16)));  // all bits of a lane or none
 
-  /// Two triangles at the edge, without the end that they are at. One with p == q is none.
+  /// Two triangles at the edge, without the end that they are at. p == q means no triangle.
   struct TwoTriangles {
     const Vec3& p0;
     const Vec3& q0;
@@ -48,16 +49,17 @@ class CollapseStar {
     size_ = 0;
     sums_ = Sums{};
   }
-  /// First the two that both ends share. `sides` are the ends that they are at: -1 or 1.
+  /// For lost_area(), the two that both ends share come first. `sides` are the ends that the
+  /// triangles are at: -1 or 1.
   void add(const TwoTriangles& triangles, const Pair& sides);
 
-  /// Of triangles that were added.
+  /// Pairs of triangles that were added.
   std::uint32_t pairs() const { return size_; }
 
-  /// The triangle in this place: that of a pair's second has none where nothing was added there.
+  /// The triangle in this place; without area if it is the unused second place of a pair.
   StarTriangle triangle(std::uint32_t place) const;
 
-  /// Adds the planes, and what the volume needs.
+  /// Adds the planes, and the sums needed to keep the volume.
   void sum_planes(EdgeQuadric& quadric) const;
 
   /// The area that is lost if both ends move to x; nothing if that spoils the shape of one of the
@@ -67,15 +69,15 @@ class CollapseStar {
   }
   struct TurnLimits {
     Turn turn = Turn::wide;
-    double cos_squared = k_cos_30_squared;  // beyond this a look tells whether a triangle folds
+    double cos_squared = k_cos_30_squared;  // beyond this, check whether a triangle folds
   };
-  /// The same, where the kept ones begin at another pair.
+  /// The same, with the kept triangles beginning at pair `first`.
   std::optional<double> lost_area_from(std::uint32_t first, std::uint32_t kept, Vec3 x,
                                        const TurnLimits& limits) const;
-  /// What area that is gained, which is lost area below 0, costs at least where x lies beyond all
-  /// that is round the edge: at the tip of a spike, where it is narrow and long.
+  /// The least cost of gained area (`lost` below 0) where x lies beyond everything around the edge:
+  /// at the tip of a spike, where that area is narrow and long.
   double cost_of_protruding(std::uint32_t first, std::uint32_t kept, Vec3 x, double lost) const;
-  /// What Turn::sliver costs on top of all else.
+  /// The extra cost of Turn::sliver.
   double cost_of_slivers(std::uint32_t first, std::uint32_t kept, Vec3 x) const;
 
  private:

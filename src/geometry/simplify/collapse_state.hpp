@@ -24,14 +24,14 @@ struct CollapseState {
   const Adjacency* adjacency = nullptr;   // as it was when the pass began
   PositionType type = PositionType::float64;
   const CreaseTest* creases = nullptr;  // where vertices are flagged as on creases
-  std::span<Appearance> appearances;    // empty where they do not count
+  std::span<Appearance> appearances;    // empty if they are not used
   AppearanceScale appearance_scale;
-  double uv_scale = 0;                    // LineOptions::uv_scale
-  std::span<const PastPlanes> past = {};  // of k_complex ones and ribbons' ends; empty: of none
-  bool turns_ribbons = true;              // Turn::ribbon may be
-  std::span<const std::uint8_t> origins = {};  // VertexOrigin; empty: there is none
+  double uv_scale = 0;                         // LineOptions::uv_scale
+  std::span<const PastPlanes> past = {};       // of complex vertices and ribbons' ends, or empty
+  bool turns_ribbons = true;                   // Turn::ribbon is allowed
+  std::span<const std::uint8_t> origins = {};  // VertexOrigin, or empty
 
-  /// Those of a triangle's corners, from the one at the vertex on.
+  /// The appearances of a triangle's corners, beginning with the one at the vertex.
   AppearanceStar::Values values_at(std::uint32_t vertex, const Corner& c) const {
     return {appearances[vertex], appearances[c.next], appearances[c.prev]};
   }

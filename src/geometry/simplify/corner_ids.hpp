@@ -10,7 +10,7 @@
 
 namespace meshfarm {
 
-/// A corner of a triangle: 3 x triangle + its place there. By it columns are looked up.
+/// A corner of a triangle: 3 x triangle + its place there. Columns are looked up by it.
 using CornerId = std::uint32_t;
 
 constexpr CornerId next_corner(CornerId id) {
@@ -32,13 +32,13 @@ inline bool is_same(const Uv& a, const Uv& b) {
   return std::bit_cast<std::uint64_t>(a) == std::bit_cast<std::uint64_t>(b);
 }
 
-/// Whether an edge is a line between labels. `ends` is the corner at one of its ends of the
-/// triangle that ends at the edge, `begins` that of the one that begins there.
+/// Whether an edge is a line between labels. At one end of the edge, `ends` is the corner of the
+/// triangle that ends at the edge, `begins` that of the triangle that begins there.
 inline bool are_of_two_labels(const TriangleColumnsView& columns, CornerId ends, CornerId begins) {
   return !columns.labels.empty() && columns.labels[ends / 3] != columns.labels[begins / 3];
 }
 
-/// Whether it is that, or a seam of texture coordinates.
+/// Whether an edge is a line between labels, or a seam of texture coordinates.
 inline bool are_apart(const TriangleColumnsView& columns, CornerId ends, CornerId begins) {
   if (are_of_two_labels(columns, ends, begins)) return true;
   if (columns.uvs.empty()) return false;

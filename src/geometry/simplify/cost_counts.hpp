@@ -10,16 +10,17 @@
 
 namespace meshfarm {
 
-/// How many collapses had each cost, to a factor of two.
+/// The number of collapses at each cost, to a factor of two.
 class CostCounts {
  public:
-  /// What is no number counts as 0.
+  /// NaN counts as 0.
   void add(double cost) {
     ++counts_[class_of(cost)];
     ++all_;
   }
 
-  /// Those that cost a 64th of the dearest or more, and none that cost less than a 128th.
+  /// The number of expensive collapses: all that cost at least 1/64 of the greatest cost, and none
+  /// that cost less than 1/128.
   std::uint64_t dear() const {
     std::uint64_t found = 0;
     std::size_t left = k_dear_classes;
@@ -30,8 +31,8 @@ class CostCounts {
     return found;
   }
 
-  /// A cost that this share of all is below; at most twice the least such. Next to 0 if they cost
-  /// nothing.
+  /// A cost that this share of all collapses is below; at most twice the least such cost. Close to
+  /// 0 if they cost nothing.
   double quantile(double share) const {
     const double wanted = share * static_cast<double>(all_);
     std::uint64_t found = 0;

@@ -16,13 +16,13 @@ bool has_corner(const Triangle& t, std::uint32_t vertex) {
   return t[0] == vertex || t[1] == vertex || t[2] == vertex;
 }
 
-/// Whether a normal is no farther than so from a direction, by the squared cosine.
+/// Whether a normal is within an angle of a direction, given by the squared cosine.
 bool is_along(Vec3 normal, Vec3 way, double cos_squared) {
   const double along = dot(normal, way);
   return along > 0 && along * along > cos_squared * squared_length(normal) * squared_length(way);
 }
 
-/// The way that all of a star faces, if there is one: then no two of its triangles cross.
+/// The direction that all triangles of a star face, if there is one: then no two of them cross.
 std::optional<Vec3> way_of(const std::vector<CrossingTriangle>& star) {
   constexpr double k_least = 1e-9;
   Vec3 sum;
@@ -49,8 +49,8 @@ CrossingTriangle CrossingGuard::triangle_of(const Triangle& t) const {
   return CrossingTriangle({state_.positions[t[0]], state_.positions[t[1]], state_.positions[t[2]]});
 }
 
-/// Those of which a vertex is within two edges of a thin wall: all triangles at the ends of
-/// whatever is to be looked at.
+/// The triangles with a vertex within two edges of a thin wall: all those at the ends of any edge
+/// that has to be checked.
 std::vector<Triangle> CrossingGuard::chosen(std::span<const Triangle> triangles) {
   levels_.assign(state_.positions.size(), 0);
   bool any = false;
@@ -104,7 +104,7 @@ void CrossingGuard::start(const CollapseState& state, std::span<const Triangle> 
   boxes_.build(frame, boxes);
 }
 
-/// Of all that the merge changes, before and after it.
+/// The box of everything that the merge changes, before and after it.
 Box CrossingGuard::box_round(const Merge& merge) const {
   Box box;
   box.add(merge.position);
@@ -118,7 +118,8 @@ Box CrossingGuard::box_round(const Merge& merge) const {
   return box;
 }
 
-/// Of two triangles of the ends that become one and face the same way, that of a stays.
+/// Whether the triangle goes. Of two triangles that become equal and face the same way, that of a
+/// stays.
 bool CrossingGuard::vanishes(const Triangle& t) const {
   if (has_corner(t, merge_.a) && has_corner(t, merge_.b)) return true;
   if (merge_.vanishing.empty()) return false;
@@ -152,8 +153,8 @@ void CrossingGuard::list(const Merge& merge) {
   }
 }
 
-/// The pairs that cross of a star's triangles with each other and those round about; stops at
-/// `enough`.
+/// Counts the crossing pairs of a star's triangles, with each other and with those around them.
+/// Stops at `enough`.
 std::size_t CrossingGuard::count(const std::vector<CrossingTriangle>& star,
                                  std::size_t enough) const {
   std::size_t pairs = 0;
@@ -184,7 +185,8 @@ std::size_t CrossingGuard::count(const std::vector<CrossingTriangle>& star,
   return pairs;
 }
 
-/// Whether a triangle beside the star goes on the way that the star faces: then they do not cross.
+/// Whether a triangle beside the star faces roughly the way that the star faces: then they do not
+/// cross.
 bool CrossingGuard::goes_on(const Triangle& t, Vec3 way) const {
   constexpr double k_cos_60_squared = 0.25;
   const bool is_beside =

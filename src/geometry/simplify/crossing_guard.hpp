@@ -17,8 +17,8 @@
 
 namespace meshfarm {
 
-/// Knows which collapses would make triangles cross: after which more pairs would than before
-/// (do_cross). So what crosses from the start locks nothing.
+/// Tells which collapses would make triangles cross: those after which more pairs cross than before
+/// (do_cross). So triangles that cross from the start lock nothing.
 class CrossingGuard {
  public:
   using Merge = CollapseGuard::Merge;
@@ -29,19 +29,20 @@ class CrossingGuard {
 
   void move_to(const CollapseState& state) { state_ = state; }
 
-  /// The mesh as it is. Triangles with coordinates that are not finite cross nothing.
+  /// Starts with the mesh as it is. Triangles with coordinates that are not finite cross nothing.
   void start(const CollapseState& state, std::span<const Triangle> triangles, Where where);
 
-  /// Whether it is to be asked about a collapse, and told of it.
+  /// Whether the guard must be asked about a collapse, and told of it.
   bool concerns(std::uint32_t a, std::uint32_t b) const {
     return levels_.empty() || (levels_[a] | levels_[b]) != 0;
   }
   bool crosses(const Merge& merge);
-  /// Before the merge that was judged last is done.
+  /// Must be called before the merge that was judged last is done.
   void merge();
-  /// Moves all corners of a piece, but not where more pairs of triangles would cross than before.
+  /// Moves all corners of a piece and returns true, unless more pairs of triangles would cross than
+  /// before.
   bool moves(std::span<const std::uint32_t> vertices, std::span<const Vec3> places);
-  /// Some of the vertex's triangles are now at copies of it, the latest vertices.
+  /// Some of the vertex's triangles have moved to copies of it: the vertices from `first_copy` on.
   void split(std::uint32_t vertex, std::uint32_t first_copy);
 
  private:
@@ -57,18 +58,18 @@ class CrossingGuard {
   std::size_t count(const std::vector<CrossingTriangle>& star, std::size_t enough) const;
 
   CollapseState state_;
-  std::vector<Triangle> triangles_;  // by slot; with two corners alike: gone
+  std::vector<Triangle> triangles_;  // by slot; gone if two corners are equal
   BoxTree boxes_;
-  /// Of each vertex how near it is to a thin wall, if only these count: 4 on one, 3 and 2 within
-  /// one edge and two, 1 if some other triangle of it is in a slot.
+  /// How near each vertex is to a thin wall, if only these count: 4 on one, 3 within one edge, 2
+  /// within two, 1 if it is a corner of some other triangle in a slot.
   std::vector<std::uint8_t> levels_;
 
-  // Of the merge that is judged.
+  // For the merge being judged:
   Merge merge_;
   std::vector<std::uint32_t> touching_;
   std::vector<std::uint32_t> star_;    // slots of the triangles at its ends
-  std::vector<std::uint32_t> others_;  // slots of those round about
-  std::vector<std::uint32_t> listed_;  // of each vertex, the last list_ whose star has it
+  std::vector<std::uint32_t> others_;  // slots of the triangles around them
+  std::vector<std::uint32_t> listed_;  // of each vertex, the last list_ with it in the star
   std::uint32_t list_ = 0;
   std::vector<CrossingTriangle> fresh_;
 };

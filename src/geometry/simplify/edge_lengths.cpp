@@ -13,7 +13,7 @@
 namespace meshfarm {
 namespace {
 
-constexpr std::size_t k_vertices_a_block = 4096;  // fixed, so that sums are
+constexpr std::size_t k_vertices_a_block = 4096;  // fixed, so that sums are, too
 
 /// A side of a triangle, seen from the lower of its vertices.
 struct TurnedSide {
@@ -33,7 +33,7 @@ class EdgeMeter {
     for_sides([&](std::uint32_t from, TurnedSide) { ++ends_[from + 1]; });
     std::partial_sum(ends_.begin(), ends_.end(), ends_.begin());
     sides_.resize(ends_.back());
-    // Moves the begin of each vertex to its end.
+    // Advances the begin of each vertex to its end.
     for_sides([&](std::uint32_t from, TurnedSide side) { sides_[ends_[from]++] = side; });
   }
 
@@ -86,13 +86,13 @@ class EdgeMeter {
 
   bool is_feature(std::size_t vertex, const TurnedSide& a, const TurnedSide& b) const {
     const Vec3 of_a = normal_seen_from(vertex, a), of_b = normal_seen_from(vertex, b);
-    // One of the two is seen from behind where both triangles face the same side.
+    // Where both triangles face the same side, one of the two is seen from behind.
     static const double k_cosine = std::cos(k_feature_degrees * std::acos(-1.0) / 180);
     const double both = length(of_a) * length(of_b);
     return both > 0 && -dot(of_a, of_b) < k_cosine * both;
   }
 
-  /// As if the triangle went from the vertex to the side's other one.
+  /// The normal as if the triangle went from the vertex to the other vertex of the side.
   Vec3 normal_seen_from(std::size_t vertex, const TurnedSide& side) const {
     const Triangle t = welded(side.triangle);
     const Vec3 a = mesh_.positions[t[0]];
@@ -104,8 +104,8 @@ class EdgeMeter {
   }
 
   const Mesh& mesh_;
-  std::vector<std::uint32_t> vertices_;  // that each is after welding
-  std::vector<std::uint64_t> ends_;      // in sides_, of the vertices
+  std::vector<std::uint32_t> vertices_;  // the vertex that each is after welding
+  std::vector<std::uint64_t> ends_;      // the end of each vertex's sides in sides_
   std::vector<TurnedSide> sides_;
 };
 

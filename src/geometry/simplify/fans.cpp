@@ -50,7 +50,7 @@ std::uint32_t FanSplitter::split(std::span<const Corner> corners) {
     complex += last - first > 2 ? 1 : 0;
   });
   if (complex > 0) {
-    // Chains by now are what the edges of two triangles hold together.
+    // By now, chains are the triangles joined by edges of two triangles.
     std::vector<std::uint32_t> chain(size);
     for (std::uint32_t i = 0; i < size; ++i) chain[i] = root(i);
     for_edges([&](std::size_t first, std::size_t last) {

@@ -21,20 +21,21 @@
 namespace meshfarm {
 namespace {
 
-// Topology is kept if the sum of the costs, which goes with the square of the error, is then no
-// more than so many times what it would be without, or if the distance is.
+// The topology is kept if the sum of the costs, which goes with the square of the error, is at most
+// this many times the sum without keeping it, or if the distance is at most k_fair_distance times
+// as great.
 constexpr double k_fair = 1.44;
 constexpr double k_fair_distance = 1.2;
 constexpr std::uint64_t k_fair_samples = 10'000;
-// Once it is found fair, it is thought of again when so much of the triangles is left.
+// Once found fair, this is reconsidered when at most this share of the triangles is left.
 constexpr double k_decided = 0.8;
-// The cost that this share of the collapses is below stands for the first of them.
+// This quantile of the costs stands for the first collapses.
 constexpr double k_first_share = 0.125;
-// With fewer refusals per dear collapse it is not even tried: to keep the topology mostly cost 1.0
-// to 1.2 times as much then. With 0.75 screws of patches kept theirs at 1 %, at 3.5 times the
-// error.
+// With fewer refusals per expensive collapse, giving up the topology is not even tried: keeping it
+// then mostly cost 1.0 to 1.2 times as much. With 0.75, screws of patches kept theirs at 1 %, at
+// 3.5 times the error.
 constexpr double k_costly = 0.5;
-// With a bound, so much must be gained at least.
+// With a bound, the topology is given up only if that leaves less than this share of the triangles.
 constexpr double k_worth = 0.8;
 
 bool is_measurable(const Mesh& mesh) {
@@ -43,8 +44,8 @@ bool is_measurable(const Mesh& mesh) {
                      [](Vec3 p) { return std::isfinite(squared_length(p) * squared_length(p)); });
 }
 
-/// Measures what became of a mesh. A cost does not know how far from what is left a lost piece
-/// lies.
+/// Measures how far a result is from its mesh. Costs do not know how far a lost piece is from what
+/// is left.
 class DistanceFrom {
  public:
   /// `mesh` must outlive it.
@@ -54,7 +55,8 @@ class DistanceFrom {
     to_mesh_.emplace(mesh, 1);
   }
 
-  /// The squared RMS, the farther way; 0 if one of the two can't be measured.
+  /// The squared RMS distance, the greater of both directions; 0 if one of the two cannot be
+  /// measured.
   double squared_to(const CollapseQueue& queue) const {
     Mesh result;
     std::vector<std::uint8_t> flags;
@@ -110,9 +112,10 @@ struct OrderedEnd::Trial {
   std::optional<CrossingGuard> crossings;
 };
 
-/// What the same goal takes without keeping the topology, found beside the caller's own work.
+/// A trial for the same goal without keeping the topology, run in parallel to the caller's own
+/// work.
 struct OrderedEnd::Rival {
-  /// All must outlive it; none may change.
+  /// All arguments must outlive it; none may change.
   Rival(const WorkingMesh& mesh, const SurfaceBound* bound, const SimplifyGoal& goal)
       : done(std::async(std::launch::async, [this, &mesh, bound, &goal] {
           trial = std::make_unique<Trial>(mesh, TopologyMode::simplify, bound);
@@ -134,7 +137,7 @@ struct OrderedEnd::Rival {
 
   std::atomic<bool> stop = false;
   std::unique_ptr<Trial> trial;
-  std::future<void> done;  // the last one: its end is waited for before the others go
+  std::future<void> done;  // declared last: waits for its end before the others go
 };
 
 OrderedEnd::OrderedEnd(WorkingMesh& mesh, TopologyMode topology, const SurfaceBound* bound)
@@ -151,7 +154,7 @@ std::optional<double> OrderedEnd::reduce(const SimplifyGoal& goal,
   const auto tell = [&](std::uint64_t left) { return !progress || progress(left); };
   const auto reduce_trial = [&] {
     return trial_->queue.reduce(goal, [&](std::uint64_t left) {
-      // Else it would have to be done afterwards, alone.
+      // Otherwise it would have to be done afterwards, alone.
       if (may_give_up && rival == nullptr && bound_ == nullptr && refuses_much()) {
         rival = std::make_unique<Rival>(mesh_, bound_, goal);
       }
@@ -201,14 +204,14 @@ bool OrderedEnd::is_hampered() const {
   return has_begun() && refused_by_topology() > trial_->queue.collapses();
 }
 
-/// Being held may be a false alarm: of flat plates what is refused costs nothing, and is looked at
-/// again and again. So near the goal that alone is no reason to give the topology up.
+/// Being held may be a false alarm: on flat plates, refused edges cost nothing and are judged again
+/// and again. This near to the goal, it is no reason by itself to give up the topology.
 bool OrderedEnd::is_held_near(const SimplifyGoal& goal) const {
   constexpr std::uint64_t k_near = 4;
   return bound_ == nullptr && is_held() && trial_->queue.triangles() <= k_near * goal.triangles;
 }
 
-/// Not again for a few collapses more: one that is dear would decide for all.
+/// Not again after a few more collapses: a single expensive one would decide for all.
 bool OrderedEnd::must_decide(const SimplifyGoal& goal) {
   const std::uint64_t left = trial_->queue.triangles();
   if (left <= goal.triangles + 1 &&
@@ -219,7 +222,7 @@ bool OrderedEnd::must_decide(const SimplifyGoal& goal) {
   return true;
 }
 
-/// Whether so much is refused to keep the topology that it is worth a try without.
+/// Whether enough is refused to keep the topology to make a trial without worthwhile.
 bool OrderedEnd::is_costly_to_keep(const SimplifyGoal& goal) const {
   const CollapseQueue& queue = trial_->queue;
   if (bound_ == nullptr && std::isinf(goal.max_cost) && queue.triangles() > goal.triangles + 1) {
@@ -233,20 +236,20 @@ bool OrderedEnd::refuses_much() const {
          k_costly * static_cast<double>(trial_->queue.costs().dear());
 }
 
-/// What the mesh as it was before this has cost, as a share of what `other` paid: none of both lies
-/// nearer to the input. The squared error goes as one over the square of the triangles; where the
-/// first collapses were cheaper than that, they tell.
+/// Estimates what the mesh had cost before this, as a share of what `other` paid: neither result is
+/// nearer to the input than that. The squared error goes as one over the square of the triangles;
+/// where the first collapses were cheaper than that, they are used.
 double OrderedEnd::share_paid_before(const CollapseQueue& other) const {
   const auto triangles = static_cast<double>(mesh_.triangles());
   const double times =
       triangles / static_cast<double>(std::max<std::uint64_t>(1, other.triangles()));
   const double first = other.costs().quantile(k_first_share);
-  // Four times what they cost if a collapse costs as one over the cube of the triangles.
+  // Four times what was paid before, if a collapse costs as one over the cube of the triangles.
   const double of_first = first * triangles;
   return std::min(1 / std::max(times * times - 1, 1e-6), of_first / other.paid());
 }
 
-/// Whether to keep the topology costs much more than to simplify it.
+/// Whether keeping the topology costs much more than simplifying it.
 bool OrderedEnd::is_unfair(double paid, const CollapseQueue& other,
                            const SimplifyGoal& goal) const {
   const CollapseQueue& kept = trial_->queue;

@@ -16,7 +16,7 @@
 namespace meshfarm {
 
 /// The last part of the way: edges collapse strictly in order of their cost. Decides whether the
-/// topology is kept, where that is left to it.
+/// topology is kept, where that is left open.
 class OrderedEnd {
  public:
   /// `bound` may be null.
@@ -24,9 +24,9 @@ class OrderedEnd {
   ~OrderedEnd();
   OrderedEnd(OrderedEnd&&) noexcept;
 
-  /// Once it has begun the mesh is changed by this only.
+  /// Once it has begun, only this changes the mesh.
   bool has_begun() const { return trial_ != nullptr; }
-  /// Returns the cost up to which nothing is left that could collapse, if it was reached.
+  /// Returns the cost up to which no edge is left that could collapse, if that was reached.
   std::optional<double> reduce(const SimplifyGoal& goal,
                                const std::function<bool(std::uint64_t)>& progress);
 
@@ -51,8 +51,8 @@ class OrderedEnd {
   TopologyMode topology_;
   const SurfaceBound* bound_;
   std::unique_ptr<Trial> trial_;
-  std::uint64_t taken_ = UINT64_MAX;       // collapses of the trial that the mesh knows of
-  std::uint64_t decided_at_ = UINT64_MAX;  // triangles left when the topology was last thought of
+  std::uint64_t taken_ = UINT64_MAX;       // collapses of the trial that the mesh has taken over
+  std::uint64_t decided_at_ = UINT64_MAX;  // triangles left at the last decision on the topology
 };
 
 }  // namespace meshfarm

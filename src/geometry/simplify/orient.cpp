@@ -19,8 +19,8 @@ struct EdgeSide {
   bool upwards;
 };
 
-/// The sides of all triangles by their lower vertex, those of one by the higher one and in order of
-/// the triangles. `starts` has one more than the vertices.
+/// The sides of all triangles, sorted by lower vertex, then higher vertex, then triangle. `starts`
+/// has one entry more than there are vertices.
 std::vector<EdgeSide> sort_sides(const std::vector<Triangle>& triangles,
                                  std::vector<std::uint32_t>& starts) {
   std::uint32_t highest = 0;
@@ -74,14 +74,14 @@ double area_of(const Mesh& mesh, std::uint32_t triangle) {
   return length(cross(mesh.positions[b] - p, mesh.positions[c] - p)) / 2;
 }
 
-/// What faces each way of a piece.
+/// The part of a piece that faces one way.
 struct Half {
   double area = 0;
   std::uint64_t triangles = 0;
 };
 
-/// Turns the half of a piece that is smaller by area, else by triangles, else the one without its
-/// first triangle.
+/// Turns the half of a piece with less area; if equal, the one with fewer triangles; if equal, the
+/// one without the first triangle.
 std::uint64_t turn_piece(Mesh& mesh, const std::vector<std::uint32_t>& piece,
                          const std::vector<std::uint8_t>& half) {
   std::array<Half, 2> halves;

@@ -8,9 +8,9 @@
 
 namespace meshfarm {
 
-/// Turns triangles so that two that share an edge of two triangles face the same way, in each piece
-/// the way that most of its area does, which simplifying hardly changes. A piece that has but one
-/// side keeps a seam. Returns how many were turned. Triangles have three different vertices.
+/// Turns triangles so that two that share an edge of two triangles face the same way: in each
+/// piece, the way that most of its area faces, which simplifying hardly changes. A one-sided piece
+/// keeps a seam. Returns how many were turned. Triangles must have three different vertices.
 std::uint64_t orient(Mesh& mesh);
 
 }  // namespace meshfarm

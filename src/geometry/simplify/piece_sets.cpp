@@ -24,8 +24,8 @@ bool PieceSets::is_complex(std::uint32_t v) const {
   return (flags_[v] & k_complex) != 0;
 }
 
-/// A triangle has the node of one of its vertices, or one of its own where all are complex. Returns
-/// how many there are.
+/// A triangle gets the node of one of its simple vertices, or one of its own if all are complex.
+/// Returns the number of nodes.
 std::size_t PieceSets::give_nodes() {
   auto nodes = static_cast<std::uint32_t>(mesh_.positions.size());
   for (std::size_t i = 0; i < first_.size(); ++i) {
@@ -38,7 +38,7 @@ std::size_t PieceSets::give_nodes() {
   return nodes;
 }
 
-/// All others have two triangles, which a vertex joins.
+/// Lists the edges between complex vertices. All others have two triangles, joined by a vertex.
 void PieceSets::list_edges() {
   for (std::uint32_t i = 0; i < first_.size(); ++i) {
     const Triangle& t = mesh_.triangles[i];

@@ -13,10 +13,10 @@
 
 namespace meshfarm {
 
-/// The triangles of a mesh in sets that are joined by edges of two triangles.
+/// The triangles of a mesh in sets that are joined across edges of two triangles.
 class PieceSets {
  public:
-  /// Of more triangles a piece is not small. Larger ones are not left with four.
+  /// A piece of more triangles is not small. Larger ones are not left with four.
   static constexpr std::size_t k_most = 1'024;
 
   /// `flags` (VertexFlag) tell which vertices are complex, fixed or on a border.
@@ -50,14 +50,14 @@ class PieceSets {
   const Mesh& mesh_;
   std::span<const std::uint8_t> flags_;
   std::vector<std::uint32_t> first_;  // of each triangle: its node
-  std::vector<std::uint32_t> sizes_;  // by node, of those that stand for a set; 0: it is open
+  std::vector<std::uint32_t> sizes_;  // by the node that stands for a set; 0: it is open
   std::vector<std::uint8_t> touches_;
   UnionFind sets_;
   std::vector<Edge> edges_;  // between complex vertices
 };
 
-/// Gives closed pieces of few triangles that touch others vertices of their own. Returns whether
-/// there are any.
+/// Gives small closed pieces that touch others vertices of their own. Returns whether there are
+/// any.
 bool separate_small_pieces(Mesh& mesh, std::span<const std::uint8_t> flags);
 
 }  // namespace meshfarm

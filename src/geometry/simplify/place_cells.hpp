@@ -18,15 +18,15 @@
 
 namespace meshfarm {
 
-/// A hashed grid of points, to find what is near: quicker than a k-d tree where it is known how far
-/// to look, and where points lie no closer in one place than in another.
+/// A hashed grid of points, to find the nearest: faster than a k-d tree where the search radius is
+/// known and the density of points is the same everywhere.
 class PlaceCells {
  public:
-  /// Looks no farther than `reach`. `spacing`: about how far points are from their neighbours.
+  /// Searches no farther than `reach`. `spacing`: about how far points are from their neighbours.
   PlaceCells(std::vector<Vec3> points, double reach, double spacing)
       : points_(std::move(points)), reach_(reach) {
     for (const Vec3& p : points_) box_.add(p);
-    // Beside a cell are always others, and a place along an axis is a number of 20 bits.
+    // Each cell needs others beside it, and a place along an axis must fit in 20 bits.
     const double least = box_.diagonal() / static_cast<double>(k_axis - 4);
     cell_ = std::max({std::min(reach, k_spacings * spacing), reach / k_most_rings, least});
     if (!(cell_ > 0 && std::isfinite(cell_))) cell_ = 1;
@@ -37,12 +37,13 @@ class PlaceCells {
     }
   }
 
-  /// The nearest point that counts, of those as near the first; none within reach: none.
+  /// The nearest point that counts, of equally near ones the first; nothing if none is within
+  /// reach.
   template <class Counts>
   std::optional<std::uint32_t> nearest(Vec3 from, const Counts& counts) const {
     double best = reach_ * reach_;
     std::optional<std::uint32_t> found;
-    // From farther away a cell has no number. There is no place in the box of no points.
+    // Cells farther away have no number, and without points there is no box.
     if (points_.empty() || squared_way_to_box(from) > best) return found;
     const Cell middle = cell_of(from);
     const Vec3 within = from - corner_of(middle);
@@ -57,7 +58,7 @@ class PlaceCells {
         found = i;
       }
     };
-    // What is in a ring of cells is no nearer than those within it are wide.
+    // Points in a ring of cells are at least as far as the cells within that ring are wide.
     for (std::int64_t ring = 0;; ++ring) {
       const double inner = static_cast<double>(ring - 1) * cell_;
       if (ring > 0 && inner * inner > best) return found;
@@ -105,7 +106,7 @@ class PlaceCells {
     }
     return squared;
   }
-  /// How far it is, squared, from a place in a cell to the cell that is so many cells away.
+  /// The squared distance from a place in a cell to the cell at this offset.
   double squared_way(Vec3 within, const Cell& offset) const {
     double squared = 0;
     for (int axis = 0; axis < 3; ++axis) {
@@ -117,7 +118,7 @@ class PlaceCells {
     }
     return squared;
   }
-  /// Cells that are no neighbours may share one.
+  /// Cells that are not neighbours may share a key.
   static std::uint64_t key_of(const Cell& cell) {
     return static_cast<std::uint64_t>((cell[0] * k_axis + cell[1]) * k_axis + cell[2]);
   }
@@ -129,7 +130,7 @@ class PlaceCells {
   double reach_;
   double cell_ = 1;
   Box box_;
-  std::vector<std::uint32_t> first_;  // point of each hash, and from each point the next
+  std::vector<std::uint32_t> first_;  // first point per hash, and the next after each point
   std::vector<std::uint32_t> next_;
 };
 

@@ -64,21 +64,22 @@ inline Vec3 solve(const Quadric& a, double ridge, Vec3 b) {
   return x * (1.0 / determinant);
 }
 
-/// How heavy a border is beside a crease. Where a border moves within its surface, only a narrow
-/// strip comes or goes: as heavy as creases, borders get triangles that the surface lacks.
+/// Weight of a border relative to a crease. Where a border moves within its surface, only a narrow
+/// strip is gained or lost: with the weight of creases, borders get triangles that the surface
+/// lacks.
 constexpr double k_border_weight = 0.1;
 
-/// That, or 1 at a corner: where two edges of a border leave a vertex at less than 120 degrees. As
-/// light as all of a border, sheets lose their corners.
+/// k_border_weight, or 1 at a corner: where two edges of a border leave a vertex at less than 120
+/// degrees. With the lower weight, sheets lose their corners.
 inline double border_weight_between(Vec3 edge, Vec3 other) {
   constexpr double k_cos_of_corner = -0.5;
   const double lengths = std::sqrt(squared_length(edge) * squared_length(other));
   return dot(edge, other) > k_cos_of_corner * lengths ? 1 : k_border_weight;
 }
 
-/// The plane through an edge of a border or crease perpendicular to a triangle there, as heavy as
-/// three squares on the edge, times `weight`: keeps the line where it is. Adds nothing for a
-/// triangle of no area.
+/// Adds the plane through an edge of a border or crease, perpendicular to a triangle there, which
+/// keeps the line in place. It has the weight of three squares on the edge, times `weight`. Adds
+/// nothing for a triangle of no area.
 inline void add_line_plane(Quadric& quadric, Vec3 triangle_normal, Vec3 edge, double weight = 1) {
   constexpr double k_weight = 3;
   const Vec3 n = cross(triangle_normal, edge);
@@ -87,22 +88,23 @@ inline void add_line_plane(Quadric& quadric, Vec3 triangle_normal, Vec3 edge, do
     quadric.add(n, weight * k_weight * squared_length(edge) / scale);
 }
 
-/// How heavy a side of a ribbon is beside other borders: less where the triangle is lower than a
-/// twentieth of the edge, in proportion. There is little surface behind it, and the ribbon's ends
-/// would be outweighed.
+/// Weight of a side of a ribbon relative to other borders: proportionally less where the triangle's
+/// height is below a twentieth of the edge. There is little surface behind such a side, and it
+/// would outweigh the ribbon's ends.
 inline double weight_of_side(Vec3 triangle_normal, Vec3 edge) {
   constexpr double k_low = 0.05;
   return std::min(1.0, length(triangle_normal) / (k_low * squared_length(edge)));
 }
 
-/// The planes that the stars of some vertices had, or the places that some ends were at, about the
-/// place of the vertex that they became: x costs x'Ax - 2 b'x + c (Garland & Heckbert 1997).
+/// The planes that the stars of some vertices had, or the positions of some ends, about the
+/// position of the vertex that they have become: x costs x'Ax - 2 b'x + c (Garland & Heckbert
+/// 1997).
 struct PastPlanes {
   Quadric a;
   Vec3 b;
   double c = 0;
 
-  /// The square of the distance from here, times a weight.
+  /// The squared distance from here, times a weight.
   static PastPlanes here(double weight) { return {{weight, 0, 0, weight, 0, weight}, {}, 0}; }
   bool empty() const { return !(a.trace() > 0); }
   double cost(Vec3 x) const { return dot(a * x - b * 2.0, x) + c; }
@@ -119,9 +121,9 @@ struct EdgeQuadric {
   Vec3 b;
   double c = 0;
   double squared_length = 0;
-  double squared_rounding = 0;  // of the step between two coordinates here
-  // Of all triangles: normals twice the area long, and these times a point of each. Where
-  // dot(normals, x) is the height the volume stays as it is.
+  double squared_rounding = 0;  // of the spacing of coordinates here
+  // Sums over all triangles: the normals, twice the area long, and their dot products with a point
+  // of each triangle. Where dot(normals, x) == height, the volume is kept.
   Vec3 normals;
   double height = 0;
   double twice_area = 0;
@@ -139,14 +141,14 @@ struct EdgeQuadric {
     c += past.c;
   }
 
-  /// Where the cost is least. Along directions that the planes leave open it stays at the middle.
-  /// A ridge of 1e-3 cost 6 % of the error at 10 % of the triangles; 1e-6 or 1e-8 gained nothing.
+  /// Where the cost is least. In directions that the planes leave open, it stays at the middle. A
+  /// ridge of 1e-3 cost 6 % of the error at 10 % of the triangles; 1e-6 or 1e-8 gained nothing.
   Vec3 cheapest() const { return solve(a, ridge(), b); }
 
-  /// Three tenths of the way from there to where the volume is kept (Lindstrom & Turk 1998): what
-  /// is round swells where only planes count. That saves a third of the error on thin pins, 2 to 11
-  /// % on CT and indoor scans, and costs up to 2 % on a dragon. Half of the way saves 1 to 4 % more
-  /// there and costs as much again on the dragon.
+  /// Three tenths of the way from cheapest() to where the volume is kept (Lindstrom & Turk 1998):
+  /// with planes alone, round shapes swell. This saves a third of the error on thin pins, 2 to 11 %
+  /// on CT and indoor scans, and costs up to 2 % on a dragon. Half of the way saves 1 to 4 % more
+  /// on the former and costs as much again on the dragon.
   Vec3 best() const {
     constexpr double k_least_normal =
         0.1;  // of the area: what faces all ways has no volume to keep
@@ -157,7 +159,7 @@ struct EdgeQuadric {
     return moved(start, normals, height, k_way);
   }
 
-  /// From `start` a share of the way to where dot(normal, x) is `level`, where that costs least.
+  /// Goes from `start` a share of the way to where dot(normal, x) == level, along the cheapest way.
   Vec3 moved(Vec3 start, Vec3 normal, double level, double share) const {
     const Vec3 way = solve(a, ridge(), normal);
     const double rise = dot(normal, way);
@@ -165,26 +167,26 @@ struct EdgeQuadric {
     return start + way * (share * (level - dot(normal, start)) / rise);
   }
 
-  /// Planes that are nearly parallel meet far away: a point farther from the middle than the edge
-  /// is long makes spikes of thin walls.
+  /// Nearly parallel planes meet far away: a point farther from the middle than the edge's length
+  /// would make spikes of thin walls.
   bool is_near(Vec3 x) const { return meshfarm::squared_length(x) <= squared_length; }
 
-  /// The sum of weight x squared distance; differences of rounding count as none.
+  /// The sum of weight x squared distance; rounding noise counts as zero.
   double cost(Vec3 x) const { return unless_noise(dot(a * x - b * 2.0, x) + c); }
-  /// A cost that is no more than differences of rounding is none.
+  /// The value, or zero if it is no more than rounding noise.
   double unless_noise(double value) const {
     return value > 1e-14 * a.trace() * squared_length ? value : 0.0;
   }
 
-  /// Planes are endless and do not see a thin spike or tube draw back: only its tiny tip moves away
-  /// from its planes. The area that is lost tells. Nor do they see the rim of a wall without
-  /// thickness slide outwards in its plane: then the area that is gained tells. That lies no
-  /// farther out than it is wide, along the edge. If it counted as if it were as far as the edge is
-  /// long, hair and tubes would have 1.5 to 1.7 times the error. With weights of 0.1 the error of
-  /// CT scans is 20 % higher and the greatest distance of a dragon seven times as far; from 1 on
-  /// flat surfaces lose 5 %. Weights by the longest edge helped less. What a straight fold loses to
-  /// rounding grows with the distance by which its vertices are off, and what that costs its planes
-  /// only with the square: small parts beside long folds would go first.
+  /// Planes are infinite and do not see a thin spike or tube draw back: only its tiny tip moves
+  /// away from its planes. The lost area measures that. Nor do planes see the rim of a wall without
+  /// thickness slide outwards in its plane; the gained area measures that. It lies no farther out
+  /// than its width along the edge: if it counted as far out as the edge is long, hair and tubes
+  /// would have 1.5 to 1.7 times the error. With weights of 0.1, the error of CT scans is 20 %
+  /// higher and the greatest distance of a dragon seven times as far; from 1 on, flat surfaces lose
+  /// 5 %. Weights by the longest edge helped less. Rounding is not charged: the area that a
+  /// straight fold loses to it grows with the offset of its vertices, its cost by planes only with
+  /// the square, so small parts beside long folds would go first.
   double cost_of_lost_area(double area) const {
     if (area * area <= squared_rounding * squared_length) return 0;
     constexpr double k_of_lost = 0.8;
@@ -195,9 +197,9 @@ struct EdgeQuadric {
     return unless_noise(-k_of_gained * area *
                         std::min(squared_length, k_squared_widths * squared_width));
   }
-  /// How much of that cost is not charged, where planes cost `planes`: a surface that bends evenly
-  /// loses area wherever it is simplified, and what that costs its planes tell. Charged in full,
-  /// CAD and bodies have 4 % more error. Twice as much of it spared costs thin bridges 2 %.
+  /// How much of that cost is not charged where planes cost `planes`: a surface that bends evenly
+  /// loses area wherever it is simplified, and its planes already charge for that. Charged in full,
+  /// CAD and bodies have 4 % more error. Sparing twice as much costs thin bridges 2 %.
   static double area_cost_of_bends(double planes) {
     constexpr double k_of_planes = 2.4;
     return k_of_planes * planes;

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
 //
-// What the queue knows of its mesh, does to keep it tidy, and how it hands it out.
+// How the queue inspects its mesh, keeps it tidy, and hands it out.
 #include <algorithm>
 #include <array>
 
@@ -13,16 +13,16 @@
 namespace meshfarm {
 namespace {
 
-// Sides that meet at less than 120 degrees meet at an end.
+// Sides of a ribbon that meet at less than 120 degrees meet at its end.
 constexpr double k_cos_of_end = -0.5;
-// Of the area round an end, as the weight of its place. What a ribbon loses at an end it loses
-// again and again, and planes see only the last time: with 0 curved hair at 20 % has 1.9 times the
-// error. With 1 and 3 all is alike; more costs the middle of the ribbon more than the end gains.
+// Weight of an end's position, per area around it. What a ribbon loses at an end it loses again and
+// again, and planes see only the last time: with 0, curved hair at 20 % has 1.9 times the error.
+// With 1 and 3 the results are alike; more costs the middle of the ribbon more than the end gains.
 constexpr double k_weight_of_end = 2;
-// Four triangles are made no smaller than this to fit in.
+// Pieces of four triangles are shrunk to no less than this share to fit in.
 constexpr double k_smallest_share = 0.1;
 
-/// What a triangle has, from this corner on.
+/// Appends the columns of a triangle, beginning at this corner.
 void append_turned(const TriangleColumnsView& from, CornerId id, TriangleColumns& to) {
   to.append(from, id / 3);
   if (to.uvs.empty()) return;
@@ -39,7 +39,7 @@ bool CollapseQueue::may_lose_one() const {
   return false;
 }
 
-/// Of complex vertices and of ribbons' ends, if there are any.
+/// Records the planes of complex vertices and the ends of ribbons, if there are any.
 void CollapseQueue::remember() {
   past_.clear();
   for (std::uint32_t v = 0; v < target_.size(); ++v) {
@@ -61,7 +61,7 @@ PastPlanes CollapseQueue::planes_at(std::uint32_t vertex) const {
   return past;
 }
 
-/// Where the sides of a ribbon meet, at its end: the place, and how heavy it is.
+/// The end of a ribbon, where its sides meet: its position and weight. Empty elsewhere.
 PastPlanes CollapseQueue::end_at(std::uint32_t vertex) const {
   const auto is_on_border = [&](std::uint32_t v) { return mesh_.flags[v] == k_border; };
   const auto is_of_ribbon = [&](std::uint32_t v) {
@@ -70,7 +70,8 @@ PastPlanes CollapseQueue::end_at(std::uint32_t vertex) const {
              return is_on_border(c.next) && is_on_border(c.prev);
            });
   };
-  // The corner of a sheet may have no other triangle than one at its border.
+  // The corner of a sheet may have only triangles at its border, so the neighbours are checked,
+  // too.
   const std::span<const Corner> fan = mesh_.adjacency.at(vertex);
   if (!is_of_ribbon(vertex) || !std::all_of(fan.begin(), fan.end(), [&](const Corner& c) {
         return is_of_ribbon(c.next) && is_of_ribbon(c.prev);
@@ -93,8 +94,8 @@ PastPlanes CollapseQueue::end_at(std::uint32_t vertex) const {
   return is_end ? PastPlanes::here(k_weight_of_end * 0.5 * twice_area) : PastPlanes{};
 }
 
-/// After a collapse that may have left fans other than before: drops triangles that have become
-/// equal, and takes vertices apart that hold several fans.
+/// After a collapse that may have changed fans: drops triangles that have become equal, and splits
+/// vertices that hold several fans.
 void CollapseQueue::tidy(std::uint32_t merged) {
   tidied_.assign(general_.changed().begin(), general_.changed().end());
   for (const auto& [next, prev] : general_.vanishing()) {
@@ -121,7 +122,7 @@ void CollapseQueue::tidy(std::uint32_t merged) {
 void CollapseQueue::tidy_star(std::uint32_t vertex) {
   if ((mesh_.flags[vertex] & k_fixed) != 0 || mesh_.adjacency.count(vertex) == 0) return;
   const std::uint32_t fans = splitter_.split(mesh_.adjacency.at(vertex));
-  // What touches is cut apart only where the topology may change.
+  // Fans that touch are cut apart only where the topology may change.
   if (fans == 1 || !mesh_.any_topology) {
     classify(vertex);
     return;
@@ -161,7 +162,7 @@ void CollapseQueue::list_ring(std::uint32_t vertex) {
   ring_.erase(std::unique(ring_.begin(), ring_.end()), ring_.end());
 }
 
-/// Makes the triangles of b ones of a; those that have both go.
+/// Moves the triangles of b to a; those that have both go.
 void CollapseQueue::join_stars(std::uint32_t a, std::uint32_t b) {
   list_ring(b);
   for (const std::uint32_t v : ring_) {
@@ -220,7 +221,8 @@ std::uint32_t CollapseQueue::add_copy(std::uint32_t vertex) {
   return copy;
 }
 
-/// Four triangles that would cross others become smaller instead: they face the same way then.
+/// Moves a piece. If it has four triangles and they would cross others, they become smaller
+/// instead: they face the same way then.
 bool CollapseQueue::move(const SmallPieces::Places& places) {
   const std::size_t size = places.vertices.size();
   const auto is_there = [&](std::size_t i) {
@@ -245,7 +247,7 @@ bool CollapseQueue::move(const SmallPieces::Places& places) {
     const std::uint32_t v = places.vertices[i];
     mesh_.positions[v] = to[i];
     stale_[v] = 1;
-    refused_[v] = 1;  // is looked at again
+    refused_[v] = 1;  // will be judged again
   }
   return true;
 }

@@ -8,42 +8,43 @@
 namespace meshfarm {
 namespace {
 
-// Only the cheapest edges are taken before all are ranked anew. With 0.25 or 0.3 the error is the
-// same, with 0.5 it is 2 to 4 % more for 10 % less time.
+// Only this share of the edges, the cheapest, is taken before all are ranked again. With 0.25 or
+// 0.3 the error is the same; with 0.5 it is 2 to 4 % more for 10 % less time.
 constexpr double k_pass_share = 0.35;
 
-// As long as there are so many times the triangles of the goal, more may be taken at once: the
-// error is made later. From 4 times on, it is 1 % more at a tenth of the triangles.
+// Above this many times the triangles of the goal, more may be taken at once: the error is made
+// later. From 4 times on, it is 1 % more at a tenth of the triangles.
 constexpr std::uint64_t k_far = 8;
 constexpr double k_far_share = 0.5;
 
-// A pass that removes less than this part of the triangles finds that what it ranks is refused.
-// What is cheap and refused must not make room for what is dear: the rest is done in order.
+// If a pass removes less than this share of the triangles, most edges that it ranks are refused.
+// Refused cheap edges must not make room for expensive ones: the rest is done in order.
 constexpr double k_least_ranked = 0.05;
 
-// From so many times the triangles of the last goal on edges collapse strictly in order; of a large
-// goal from so many times on, as long as passes have no dead ends.
+// At this many times the triangles of the last goal, edges begin to collapse strictly in order; for
+// a large goal at k_near_of_large times, unless passes reach a dead end.
 constexpr std::uint64_t k_near = 2;
 constexpr double k_near_of_large = 1.25;
 constexpr std::uint64_t k_large = 50'000;
 
-// Of the collapses: refused to keep the topology. On smooth surfaces it is one in a thousand.
+// Topology refusals, as a share of the collapses. On smooth surfaces it is one in a thousand.
 constexpr double k_slowed = 0.01;
 
-// Refused in a pass, of the triangles: what is left that is cheap is not worth an order, which
-// takes long from many triangles on. With 10,000 a body model has 2 % more error.
+// Refusals in a pass, as a share of the triangles. Below it, the cheap edges that are left are not
+// worth an ordered run, which takes long above this many triangles. With 10,000, a body model has
+// 2 % more error.
 constexpr double k_little_refused = 0.01;
 constexpr std::uint64_t k_too_many_to_order = 25'000;
 
-// With a bound, the passes end when it may be near for this part of the collapses.
+// The passes end when the bound may be near for more than this many edges per collapse.
 constexpr double k_bounded = 0.2;
-// Drifts at a vertex add up to no more than this share of a bound before.
+// Until then, drifts at a vertex add up to at most this share of the bound.
 constexpr double k_drift_share = 0.4;
-// What a collapse at least counts for.
+// Minimum drift counted for a collapse, as a share of the bound.
 constexpr double k_least_drift = 0.02;
 
-// The edges taken in a pass that must not overshoot, as a part of the triangles still to go: each
-// that can collapse, about six in ten, removes two.
+// Edges taken in a pass that must not overshoot, as a share of the triangles still to go: about six
+// in ten can collapse, and each of these removes two.
 constexpr double k_most_of_excess = 0.7;
 
 // Vertices whose edges are ranked, sorted and collapsed together: they and their stars fit into a
@@ -78,7 +79,7 @@ RankedPasses::End RankedPasses::reduce(const SimplifyGoal& goal,
       ranks_finely_ = true;
       continue;
     }
-    // What is cheap is refused: what is dear is not to be taken for it.
+    // Cheap edges are refused: expensive ones must not be taken instead.
     if (refused_for_topology_ > collapses_) return End::dead_end;
     if (static_cast<double>(refused_for_bound_) > k_bounded * static_cast<double>(collapses_)) {
       return End::near;
@@ -135,8 +136,8 @@ RankedPasses::Pass RankedPasses::plan(const SimplifyGoal& goal) {
   return pass;
 }
 
-/// Returns the triangles removed. The pass may have paid less than its limit where it stops at the
-/// goal while it goes through the whole mesh.
+/// Returns the number of triangles removed. A pass through the whole mesh that stops at the goal
+/// may have paid less than its limit.
 std::uint64_t RankedPasses::run(const SimplifyGoal& goal, const Pass& pass) {
   const std::uint32_t vertices = mesh_.vertices();
   const std::span<const std::uint8_t> touched = mesh_.touched();
@@ -177,7 +178,7 @@ std::uint64_t RankedPasses::run(const SimplifyGoal& goal, const Pass& pass) {
   return removed;
 }
 
-/// Whether there is no bound, or it is far. If so, the collapse is done.
+/// Whether there is no bound, or it is far off. If so, the collapse must be done.
 bool RankedPasses::may_drift(DriftMeter& meter, const RankedEdge& edge, const Collapse& collapse) {
   if (bound_ == nullptr) return true;
   const double least = k_least_drift * bound_->distance();

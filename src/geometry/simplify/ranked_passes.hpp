@@ -18,14 +18,13 @@
 
 namespace meshfarm {
 
-/// Passes that each rank all edges and take the cheapest share of them, as long as the goal is not
-/// near.
+/// Passes that each rank all edges and take the cheapest share of them, while the goal is not near.
 class RankedPasses {
  public:
   enum class End : std::uint8_t {
-    near,       // what is left is to be done in order
+    near,       // the rest is to be done in order
     exhausted,  // little is left that costs no more than the goal allows
-    dead_end,   // what is cheap is refused
+    dead_end,   // cheap edges are refused
     told        // progress said stop
   };
 
@@ -35,7 +34,7 @@ class RankedPasses {
   End reduce(const SimplifyGoal& goal, const std::function<bool(std::uint64_t)>& progress);
   /// Simplifier::is_slowed_by_topology, of the last reduce().
   bool is_slowed_by_topology() const;
-  /// Whether the last pass could do nearly all that it tried, and there are many triangles left.
+  /// Whether the last pass could do nearly all that it tried, and many triangles are left.
   bool refuses_little() const;
 
  private:
@@ -56,10 +55,10 @@ class RankedPasses {
   const SurfaceBound* bound_;
   std::vector<float> drifts_;  // of each vertex, where there is a bound
   EdgeRanking ranking_;
-  // Ranks by bounds, so that what is flat goes before what is nearly flat. Where little of that is
-  // left most of what ranks low is dearer, and refused.
+  // Ranks by lower bounds, so that flat regions go before nearly flat ones. Where few of those are
+  // left, most edges that rank low cost more and are refused.
   bool ranks_by_bounds_ = true;
-  bool ranks_finely_ = false;                   // as most of what ranks low is flat but for noise
+  bool ranks_finely_ = false;                   // most edges that rank low are flat but for noise
   std::uint64_t all_collapses_ = 0;             // of the last reduce()
   std::uint64_t all_refused_for_topology_ = 0;  // in the last reduce()
   std::uint64_t tried_ = 0;                     // edges in the last pass

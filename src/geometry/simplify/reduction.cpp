@@ -12,16 +12,16 @@
 namespace meshfarm {
 namespace {
 
-// Less than this part of the triangles removed is not worth a rough pass.
+// A rough pass that removes less than this share of the triangles is not worth it.
 constexpr double k_least_rough = 0.1;
 
-// Where passes have come to the end of what a cost allows, and have left no more than this of the
-// triangles, few are refused. Nor are many if the last pass could do nearly all that it tried.
+// Where passes have exhausted a cost limit and left at most this share of the triangles, few edges
+// are refused. The same holds if the last pass could do nearly all that it tried.
 constexpr double k_healthy = 0.66;
 
-// Passes rank no edges at complex vertices. From this part of all vertices on these may be most of
-// what is cheap, and passes would take what is dear between them: blocks of cells have up to 1.9
-// times the error then, and walls of shell models lose the corners of their holes.
+// Passes rank no edges at complex vertices. From this share of all vertices on, those may be most
+// of the cheap edges, and passes would take the expensive ones between them: blocks of cells then
+// have up to 1.9 times the error, and walls of shell models lose the corners of their holes.
 constexpr double k_many_complex = 1.0 / 64;
 
 bool has_many_complex(std::span<const std::uint8_t> flags) {
@@ -30,8 +30,8 @@ bool has_many_complex(std::span<const std::uint8_t> flags) {
   return static_cast<double>(complex) > k_many_complex * static_cast<double>(flags.size());
 }
 
-/// Where crossings are avoided small handles are not kept at any cost: the triangles of a handle
-/// smaller than they are cross each other, and face the wrong way.
+/// Where crossings are avoided, small handles are not kept at any cost: triangles larger than their
+/// handle cross each other and face the wrong way.
 TopologyMode chosen_topology(const SimplifyOptions& options) {
   const LineOptions& lines = options.lines;
   const bool gives_way = lines.topology == TopologyMode::automatic && options.bound == nullptr &&
@@ -79,7 +79,7 @@ void Reduction::reduce(const SimplifyGoal& goal, const Progress& progress) {
   }
 }
 
-/// False if progress says stop.
+/// Returns false if progress says stop.
 bool Reduction::reduce_roughly(const SimplifyGoal& goal, const Progress& progress) {
   while (may_be_rough_ && mesh_.is_above(goal) && RoughPass::is_worth_it(mesh_, goal)) {
     const auto before = static_cast<double>(mesh_.triangles());

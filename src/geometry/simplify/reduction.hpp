@@ -24,7 +24,8 @@ class Reduction {
 
   /// As Simplifier::reduce.
   void reduce(const SimplifyGoal& goal, const Progress& progress);
-  /// Done once, for the first goal. Returns how thin these are; 0 where crossings are allowed.
+  /// Done once, for the first goal. Returns the thickness up to which walls are flagged; 0 where
+  /// crossings are allowed.
   double flag_thin_walls(const SimplifyGoal& goal);
 
   const WorkingMesh& mesh() const { return mesh_; }
@@ -40,11 +41,11 @@ class Reduction {
   TopologyMode topology_;
   const SurfaceBound* bound_;
   bool may_be_rough_;  // until a rough pass has done nothing
-  bool in_order_;      // passes have come to their end, or would take what is dear
+  bool in_order_;      // passes have ended, or would take expensive edges
   RankedPasses passes_;
   OrderedEnd end_;
   double thickness_ = -1;       // of thin walls, when they are flagged
-  double exhausted_cost_ = -1;  // nothing is left that costs no more
+  double exhausted_cost_ = -1;  // nothing is left that costs at most this
 };
 
 }  // namespace meshfarm

@@ -13,45 +13,50 @@
 namespace meshfarm {
 namespace {
 
-// From so many times the triangles of the last goal on. Down to 8 times they took 10 % longer for
-// 1 % less error. And as long as there is as much more to go in this step.
+// A rough pass needs more than this many times the triangles of the last goal, and more than
+// k_far_of_step times those of this step's goal. Used only down to 8 times the last goal, they took
+// 10 % longer for 1 % less error.
 constexpr std::uint64_t k_far_rank = 4;
 constexpr std::uint64_t k_far_of_step = 2;
 constexpr std::uint32_t k_least_vertices = 8192;
 
-// A rough pass spares as many of the costliest vertices as the goal leaves, but at least these.
+// A rough pass merges no more than this share of the vertices, and spares at least as many of the
+// most expensive ones as the goal leaves.
 constexpr double k_most_rough = 0.97;
-// No vertex merges that costs more than so many times as much as half of those that do. A model of
-// 8 boxes and 260 finely tessellated pieces, whose vertices are all but 3 in a hundred, lost the
-// boxes' shape first.
+// No vertex merges that costs more than this many times the median of those that do. A model of 8
+// boxes and 260 finely tessellated pieces, which have all but 3 % of the vertices, lost the boxes'
+// shape first.
 constexpr double k_most_above_half = 65'536;
-// And it keeps this far below the goal's own limit, near which the order matters.
+// The limit also stays this factor below the goal's own, near which the order matters.
 constexpr double k_rough_margin = 8;
 
-// Gives the rank to one or two per cent.
+// Sample size: determines the rank to one or two per cent.
 constexpr std::uint32_t k_rough_vertices = 2048;
 constexpr std::size_t k_least_rough_sample = 128;
-// With fewer vertices that merge a pass is not worth its time.
+// If less than this share of the vertices can merge, a pass is not worth its time.
 constexpr double k_least_rough_share = 0.3;
-// At one in so many it is looked whether another edge than the shortest would cost less.
+// At one sampled vertex in this many, check whether another edge than the shortest would cost less.
 constexpr std::size_t k_looked_round = 8;
-// Where the shortest edges cost more than so many times as much in all, the surface wants long
-// triangles: along tubes, folds and blades. What rough passes spoil there ranked ones do not mend.
-// Scans, noise and most CT have 1.1 to 2, a turbine's blade and a ship's hull 2 to 3, which with 4
-// have 20 % more error, tubes 5 and more as long as there are many triangles round them.
+// Maximum ratio of the total cost of the shortest edges to that of the cheapest ones. Above it, the
+// surface needs long triangles: along tubes, folds and blades. What rough passes spoil there,
+// ranked ones do not mend. Scans, noise and most CT have 1.1 to 2; a turbine's blade and a ship's
+// hull 2 to 3, which with a limit of 4 have 20 % more error; tubes 5 and more as long as there are
+// many triangles around them.
 constexpr double k_most_dearer = 2;
-// What is dear may hide what is not: of a circuit board, whose pieces are much dearer than the
-// rest, all shortest edges together cost 1.1 times as much as the cheapest, but a quarter of them
-// 140 times or more. That is 2 to 7 on scans.
+// The same ratio per vertex, which at most a quarter of them may exceed: expensive edges may hide
+// others. On a circuit board, whose pieces are much more expensive than the rest, all shortest
+// edges together cost 1.1 times as much as the cheapest, but a quarter of them 140 times or more.
+// On scans that is 2 to 7.
 constexpr double k_most_dearer_of_quarter = 16;
 
-/// By the shortest edge of a vertex, and by the cheapest.
+/// The costs of merging a vertex along its shortest edge, and along its cheapest.
 struct MergeCosts {
   double shortest = 0;
   double cheapest = 0;
 };
 
-/// Of those that are done by the limit: in all, and but for a quarter of them.
+/// Whether the shortest edges within the limit are good enough: in total, and for all but a quarter
+/// of them.
 bool are_shortest_good(std::span<const MergeCosts> costs, double limit) {
   MergeCosts sum;
   std::size_t count = 0;

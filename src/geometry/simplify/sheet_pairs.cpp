@@ -17,7 +17,7 @@ namespace {
 
 constexpr std::uint32_t k_no_twin = UINT32_MAX;
 
-// So many triangles tell whether it is worth to look at all: a third of them must have twins.
+// Sample size to tell whether a search is worthwhile: a third of these triangles must have twins.
 constexpr std::size_t k_looked_at_first = 64;
 
 }  // namespace
@@ -105,7 +105,7 @@ class SheetPairing {
     return twin ? vertices_[*twin] : k_no_twin;
   }
 
-  /// Whether the triangle is there with which the twins of another one's corners face back.
+  /// Whether the twins of a triangle's corners form a triangle that faces back.
   bool has_triangle(const Triangle& twins) const {
     if (std::find(twins.begin(), twins.end(), k_no_twin) != twins.end()) return false;
     const std::span<const Corner> fan = adjacency_.at(twins[0]);
@@ -123,8 +123,7 @@ class SheetPairing {
     return 3 * found > looked_at;
   }
 
-  /// What hangs together by triangles with twins is a sheet. One that is its own mirror image is
-  /// none.
+  /// Connected triangles with twins are a sheet, except one that is its own mirror image.
   void sort_triangles() {
     UnionFind sheets(mesh_.positions.size());
     sides_.assign(mesh_.triangles.size(), Side::alone);
@@ -156,7 +155,7 @@ class SheetPairing {
         if (sides_[i] == Side::leads) leads_[v] = 1;
       }
     }
-    // The twins of what is alone in a part may be in other parts, where they are as they were.
+    // In a part, the twins of unpaired vertices may be in other parts, where they stay unchanged.
     std::vector<std::uint8_t> holds(leads_.size(), 0);
     if (locked > 0) holds = stays;
     for (std::uint32_t v = 0; v < leads_.size(); ++v) {

@@ -12,34 +12,34 @@
 
 namespace meshfarm {
 
-/// Two sheets of a wall that have the same triangles, the one as seen in a mirror: what a surface
-/// and its offset have. One of them can stand for both while it is simplified, so that they do not
-/// cross, however near they are.
+/// Pairs of sheets of a wall that have the same triangles, mirrored, as a surface and its offset
+/// have. One sheet can stand for both while it is simplified, so that they do not cross, however
+/// near they are.
 class SheetPairs {
  public:
   struct Wall {
     std::uint32_t locked = 0;  // of the mesh: the first vertices
     PositionType positions = PositionType::float64;
     double reach = 0;                // no vertex is farther from its twin
-    std::uint64_t most_held_up = 0;  // no more vertices are held where sheets end than so many
+    std::uint64_t most_held_up = 0;  // maximum number of vertices held where sheets end
   };
 
-  /// None where no more than half of the triangles have a twin. `flags` are the vertices'
-  /// (VertexFlag): twins are those of vertices flagged as k_thin. The mesh must have no appearances
+  /// Nothing unless more than half of the triangles have a twin. `flags` are those of the vertices
+  /// (VertexFlag): only vertices flagged as k_thin have twins. The mesh must have no appearances
   /// and no columns.
   static std::optional<SheetPairs> find(const Mesh& mesh, std::span<const std::uint8_t> flags,
                                         const Wall& wall);
 
-  /// One sheet of each pair and all else, to be taken once. The first locked() vertices must stay:
-  /// those of the mesh that are locked, and then those where a sheet ends. If not all triangles
-  /// have a twin, labels tell which have.
+  /// One sheet of each pair and all other triangles; may be taken once. The first locked() vertices
+  /// must stay: the locked ones of the mesh, then those where a sheet ends. If not all triangles
+  /// have a twin, labels tell which do.
   Mesh take_single() { return std::move(single_); }
   std::uint32_t locked() const { return static_cast<std::uint32_t>(twins_.size()); }
 
-  /// What has become of the single mesh, with the twins; without unused vertices but the locked
-  /// ones of the mesh, which come first.
+  /// What the single mesh has become, with the twins added. Unused vertices are dropped, except the
+  /// locked ones of the mesh, which come first.
   Mesh both(const Mesh& single) const;
-  /// How many triangles that has.
+  /// How many triangles both(single) has.
   std::uint64_t triangles_of(const Mesh& single) const;
 
  private:
@@ -54,7 +54,7 @@ class SheetPairs {
   Mesh single_;
   std::vector<std::uint32_t> twins_;  // of the vertices that stay: in the single mesh, or none
   std::optional<PointIndex> places_;  // of the vertices with twins at the start
-  std::vector<Vec3> ways_;            // from these to their twins
+  std::vector<Vec3> ways_;            // offsets from these to their twins
 };
 
 }  // namespace meshfarm

@@ -12,10 +12,9 @@
 namespace meshfarm {
 namespace {
 
-// Where sheets end their vertices are held: no more of them than this share of the triangles that
-// are left in the end.
+// Vertices are held where sheets end: at most one per this many triangles that are left in the end.
 constexpr std::uint64_t k_triangles_a_held = 10;
-// Two sheets lose their triangles by four.
+// Two sheets lose four triangles at a time.
 constexpr std::uint64_t k_least_excess = 4;
 
 /// Whether a sheet may stand for its twin, if there are any.
@@ -28,8 +27,8 @@ bool may_pair(const Mesh& input, const SimplifyOptions& options) {
 
 }  // namespace
 
-/// Where most of the surface is in two sheets of the same triangles, one of them is reduced for
-/// both; else all of it.
+/// Where most of the surface is in pairs of sheets with the same triangles, one of each pair is
+/// reduced for both; else the whole surface is reduced.
 struct Simplifier::Impl {
   Impl(Mesh input, const SimplifyOptions& given)
       : locked(given.locked_vertices),
@@ -73,7 +72,7 @@ struct Simplifier::Impl {
     reduction = std::make_unique<Reduction>(std::move(mesh), options);
   }
 
-  /// False if it was asked again for what it could not do before.
+  /// Returns false if it was asked again for what it could not do before.
   bool reduce_pairs(const SimplifyGoal& goal, const Reduction::Progress& progress) {
     bool goes_on = true;
     bool is_new = goal.triangles < asked.triangles || goal.max_cost > asked.max_cost;
@@ -123,7 +122,7 @@ struct Simplifier::Impl {
   std::uint32_t locked;
   PositionType positions;
   LineOptions lines;
-  bool may_be_paired;  // as nobody has looked
+  bool may_be_paired;  // until pair_sheets() has looked
   std::unique_ptr<Reduction> reduction;
   std::vector<std::uint8_t> seam;
   Dropped dropped;

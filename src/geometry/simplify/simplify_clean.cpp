@@ -16,8 +16,8 @@
 namespace meshfarm {
 namespace {
 
-/// The vertices that are the smallest of two triangles with the same vertices, ascending. The two
-/// together are a fan of their own, so that only bad fans and fans of two need a look.
+/// The smallest vertex of each pair of triangles with the same vertices, ascending. Such a pair is
+/// a fan of its own, so only broken fans and fans of two are checked.
 std::vector<std::uint32_t> vertices_with_duplicates(std::span<const std::uint8_t> flags,
                                                     const Adjacency& adjacency) {
   std::vector<std::uint32_t> found;
@@ -35,7 +35,8 @@ std::vector<std::uint32_t> vertices_with_duplicates(std::span<const std::uint8_t
   return found;
 }
 
-/// Of the triangles whose smallest vertex is in `vertices`, keeps the first of each set.
+/// Of the triangles whose smallest vertex is in `vertices`, keeps the first for each set of
+/// corners.
 std::uint64_t drop_duplicates_at(const std::vector<std::uint32_t>& vertices, Mesh& mesh) {
   std::vector<std::uint8_t> doubtful(mesh.positions.size(), 0);
   for (const std::uint32_t v : vertices) doubtful[v] = 1;
@@ -76,7 +77,7 @@ class FanWalker {
     return i;
   }
 
-  /// Nearly every vertex has a closed fan, and only this is worth no guesses of the processor.
+  /// Nearly every vertex has a closed fan, so only this case is worth code without branches.
   static Fan walk_few(std::span<const Corner> corners) {
     const auto size = static_cast<std::uint32_t>(corners.size());
     std::array<std::uint32_t, k_few> after;
@@ -189,7 +190,7 @@ struct Place {
   std::uint32_t triangle;
 };
 
-/// The triangles at vertices whose triangles are no single fan, by vertex.
+/// The triangles at vertices whose triangles are not a single fan, by vertex.
 std::vector<Place> places_at_complex(const Mesh& mesh, std::span<const std::uint8_t> flags) {
   std::vector<Place> places;
   for (std::uint32_t i = 0; i < mesh.triangles.size(); ++i) {
@@ -202,8 +203,8 @@ std::vector<Place> places_at_complex(const Mesh& mesh, std::span<const std::uint
   return places;
 }
 
-/// Whether without the fan a single triangle would be left at one of its edges: the foot of a wall
-/// on a floor.
+/// Whether removing the fan would leave a single triangle at one of its edges, as at the foot of a
+/// wall on a floor.
 bool leaves_a_border(std::span<const Corner> fan, std::span<const Corner> corners,
                      std::vector<std::uint32_t>& ends) {
   ends.clear();
@@ -217,9 +218,9 @@ bool leaves_a_border(std::span<const Corner> fan, std::span<const Corner> corner
                      [&](const Corner& c) { return is_odd(c.next) || is_odd(c.prev); });
 }
 
-/// Gives closed fans at vertices of several vertices of their own. Returns whether there are any.
-/// One vertex after the other: the four triangles at an edge must be paired alike at both its ends,
-/// or a slit opens between them.
+/// Where a vertex has several fans, gives the closed ones vertices of their own. Returns whether
+/// there are any. Works on one vertex after the other: the four triangles at an edge must be paired
+/// alike at both of its ends, or a slit opens between them.
 bool separate_closed_fans(Mesh& mesh, std::span<const std::uint8_t> flags) {
   FanSplitter splitter;
   FanSplitter single;
@@ -253,7 +254,7 @@ bool separate_closed_fans(Mesh& mesh, std::span<const std::uint8_t> flags) {
   return mesh.positions.size() > vertices;
 }
 
-/// Where the topology gives way small pieces simplify better by themselves.
+/// Where the topology may change, small pieces simplify better on their own.
 bool separates_pieces(const SimplifyOptions& options) {
   return options.lines.crossings == CrossingMode::avoid && options.seam.empty() &&
          options.bound == nullptr && options.lines.topology != TopologyMode::keep;
@@ -292,7 +293,7 @@ void check_input(const Mesh& mesh, const SimplifyOptions& options) {
 
 Surface clean_surface(Mesh& mesh, const SimplifyOptions& options, Adjacency& adjacency) {
   Surface surface;
-  // Mostly there are none, and to look for one is cheaper than to move all.
+  // Usually there are none, and looking for one is cheaper than moving all.
   if (std::any_of(mesh.triangles.begin(), mesh.triangles.end(), is_degenerate<std::uint32_t>)) {
     surface.dropped.degenerate =
         keep_triangles(mesh, [&](std::size_t i) { return !is_degenerate(mesh.triangles[i]); });
@@ -312,7 +313,7 @@ Surface clean_surface(Mesh& mesh, const SimplifyOptions& options, Adjacency& adj
     surface.dropped.turned = orient(mesh);
     if (surface.dropped.turned > 0) again();
   }
-  // With a seam pass vertices are what the caller's flags are for.
+  // In a seam pass, the caller's flags are for the given vertices, so none are added.
   if (options.seam.empty() && separate_closed_fans(mesh, surface.flags)) again();
   if (separates_pieces(options) && separate_small_pieces(mesh, surface.flags)) {
     again();

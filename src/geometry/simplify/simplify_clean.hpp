@@ -13,7 +13,7 @@
 
 namespace meshfarm {
 
-/// Throws UsageError or DataError if options or mesh cannot be taken.
+/// Throws UsageError or DataError if the options or the mesh cannot be accepted.
 void check_input(const Mesh& mesh, const SimplifyOptions& options);
 
 struct Dropped {
@@ -22,17 +22,17 @@ struct Dropped {
   std::uint64_t turned = 0;  // not dropped, but made to face the other way
 };
 
-/// What a mesh is made of, once it is clean.
+/// What is known about a mesh once it is clean.
 struct Surface {
   Dropped dropped;
   std::vector<std::uint8_t> flags;  // VertexFlag
 };
 
-/// Drops triangles with two equal corners, then those with the vertices of an earlier one; turns
-/// triangles that face another way than their neighbours; takes vertices apart where closed fans
+/// Drops triangles with two equal corners, then those with the same vertices as an earlier one;
+/// turns triangles that face another way than their neighbours; splits vertices where closed fans
 /// touch; and flags the vertices. Leaves `adjacency` built for what is left.
 ///
-/// Fixed are the locked and those that are not finite.
+/// Vertices that are locked or not finite are flagged as fixed.
 Surface clean_surface(Mesh& mesh, const SimplifyOptions& options, Adjacency& adjacency);
 
 }  // namespace meshfarm

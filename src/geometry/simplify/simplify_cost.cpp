@@ -9,16 +9,16 @@
 namespace meshfarm {
 namespace {
 
-// Of trace x squared half length: so that flat regions do not collapse into fans in order of their
-// indices. 1e-3 costs 15 % of the error at 10 % of the triangles; 4e-6 lets what is nearly flat go
-// before what is flat, with three times the error of a surface that is half flat. Less drowns in
-// the rounding of floats.
+// Cost of length, per trace x squared half length, so that flat regions do not collapse into fans
+// in order of their indices. 1e-3 costs 15 % of the error at 10 % of the triangles; 4e-6 lets
+// nearly flat regions go before flat ones, with three times the error on a surface that is half
+// flat. Less is lost in the rounding of floats.
 constexpr double k_length_share = 2e-7;
 
-// Where a ranking is a lower bound, and what is flat is told exactly later.
+// The same where a ranking is a lower bound, and flat regions are told apart exactly later.
 constexpr double k_least_length_share = 1e-12;
 
-// What is less than this share is known to a tenth at best.
+// Costs below this share are known to a tenth at best.
 constexpr double k_rough_share = 10 * k_length_share;
 
 // Of the trace, as in EdgeQuadric::best.
@@ -62,7 +62,7 @@ void EdgeCosts::gather() {
 void EdgeCosts::solve() {
   for (std::size_t i = 0; i < k_size; ++i) {
     const float trace = xx_[i] + yy_[i] + zz_[i];
-    // The summand keeps no area at all from dividing by zero without a branch.
+    // Adding FLT_MIN avoids a division by zero, without a branch, where there is no area.
     const float scale = 1 / (trace + FLT_MIN);
     const float hx = hx_[i];
     const float hy = hy_[i];
@@ -86,7 +86,7 @@ void EdgeCosts::solve() {
     const float y2 = bz - l2 * bx - l3 * y1;
     const float saved = bx * bx * inverse0 + y1 * y1 * inverse1 + y2 * y2 * inverse2;
     trace_[i] = trace;
-    // Or that of one of the ends, where the ridge counts nothing.
+    // Or the cost of one of the ends, where the ridge counts nothing.
     const float sum = (ax * hx + ay * hy + az * hz) * scale;
     const float difference = std::abs(bx * hx + by * hy + bz * hz);
     cost_[i] = std::min(sum - saved, 2 * (sum - difference));
@@ -94,7 +94,7 @@ void EdgeCosts::solve() {
   }
 }
 
-/// In double, as float has not the range for an area times a squared distance.
+/// In double, as float lacks the range for an area times a squared distance.
 void EdgeCosts::weigh(bool bounds) {
   for (std::size_t i = 0; i < k_size; ++i) {
     least_[i] = least_cost(cost_[i], trace_[i], squared_[i]);

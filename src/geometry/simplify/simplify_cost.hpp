@@ -13,7 +13,7 @@
 namespace meshfarm {
 
 /// A vertex's quadric for ranking. Float is enough: about the vertex itself nothing is subtracted
-/// from big numbers, and an error of 1e-7 of trace x squared length drowns in the ranking's own
+/// from large numbers, and an error of 1e-7 of trace x squared length is lost in the ranking's own
 /// preference for short edges.
 struct FloatQuadric {
   float xx = 0;
@@ -22,7 +22,7 @@ struct FloatQuadric {
   float yy = 0;
   float yz = 0;
   float zz = 0;
-  // So that it fills two vector registers and lies in one cache line.
+  // Padding to two vector registers, so that it lies in one cache line.
   float none0 = 0;
   float none1 = 0;
 
@@ -48,12 +48,12 @@ struct FloatQuadric {
 };
 
 struct EdgeCost {
-  double least = 0;    // of any position, by the ridge or of an end; 0 where it drowns in rounding
-  double ranking = 0;  // orders edges: where planes cost nothing, the short ones come first
-  bool is_rough = false;  // so little that floats hardly tell how much
+  double least = 0;       // of any position, by the ridge or of an end; 0 if lost in rounding
+  double ranking = 0;     // orders edges: where planes cost nothing, the short ones come first
+  bool is_rough = false;  // too little for float to tell
 };
 
-/// Costs of edges, some at a time: laid out so that a compiler makes vector instructions of it.
+/// Costs of several edges at a time, laid out so that compilers vectorise the loops.
 class EdgeCosts {
  public:
   static constexpr std::size_t k_size = 16;
@@ -90,10 +90,11 @@ class EdgeCosts {
   std::array<double, k_size> ranking_{};
 };
 
-/// The cost of drawing the edge's other end to the vertex whose quadric is not counted.
+/// The cost of moving the end with the quadric `other` to the opposite end, whose quadric is not
+/// counted.
 EdgeCost cost_of_end(const FloatQuadric& other, Vec3 half, bool bounds = false);
 
-// The same, lower bounds, where floats are too rough.
+// The same, as lower bounds in double, where float is too coarse.
 EdgeCost fine_cost(const Quadric& a, const Quadric& b, Vec3 half);
 EdgeCost fine_cost_of_end(const Quadric& other, Vec3 half);
 

@@ -10,8 +10,8 @@ namespace meshfarm {
 
 namespace {
 
-/// The cosine of up to 45 degrees, or the sine: its series, which begins with `term`, the term of
-/// the power `power`.
+/// The cosine or sine of an angle up to 45 degrees, by its series, which begins with `term`, the
+/// term of power `power`.
 double series(double angle, double term, int power) {
   constexpr int k_most_terms = 12;
   double sum = 0;
@@ -22,8 +22,8 @@ double series(double angle, double term, int power) {
   return sum;
 }
 
-/// Of an angle from 0 to 180 degrees, and exactly 0 of 90. By plain arithmetic: std::cos takes
-/// other ways on other processors, and workers must agree on every bit.
+/// The cosine of an angle from 0 to 180 degrees; exactly 0 for 90. By plain arithmetic: std::cos
+/// may differ between processors, and workers must agree on every bit.
 double cosine_of(double degrees) {
   if (degrees > 90) return -cosine_of(180 - degrees);
   constexpr double k_degree = std::numbers::pi / 180;
@@ -53,7 +53,7 @@ void CreaseLines::find(const Mesh& mesh, const Adjacency& adjacency,
                        std::vector<std::uint8_t>& flags) {
   if (!exists_) return;
   for (std::uint32_t v = 0; v < flags.size(); ++v) {
-    // Of an edge between two vertices each end sees it; one of them is enough.
+    // Both ends of an edge see it; one of them is enough.
     const auto is_greater = [v](std::uint32_t end) { return end > v; };
     for_crease_edges(adjacency.fan_at(v), mesh.positions[v], mesh.positions, sharp_, is_greater,
                      [&](const Corner& one, const Corner&, bool) {

@@ -17,65 +17,69 @@ namespace {
 
 constexpr std::uint64_t k_told_every = 4096;  // collapses
 
-// So many of the edges are ranked at a time, the cheapest; dearer ones are not kept in order. The
-// order of collapses depends on it only where an edge becomes cheaper that is not looked at.
+// The share of edges ranked at a time, the cheapest; more expensive ones are not kept in order.
+// This affects the order of collapses only where an edge becomes cheaper without being judged
+// again.
 constexpr double k_ranked_share = 0.35;
-// From one cost to the next the order goes on, as long as so much is left of what was ranked.
+// From one cost limit to the next, the order continues while more than this share of the ranked
+// triangles is left.
 constexpr double k_as_ranked = 0.8;
-// A collapse of complex vertices removes more than two triangles, hardly ever more than these.
+// A collapse of complex vertices removes more than two triangles, but rarely more than this.
 constexpr std::uint64_t k_few_to_go = 16;
-// A collapse that leaves fewer triangles than the goal costs so many times as much. Were none
-// taken, a board with pieces of four triangles gave up two of its corners for the last two
-// triangles.
+// Cost factor of a collapse that leaves fewer triangles than the goal. When none was allowed, a
+// board with pieces of four triangles gave up two of its corners for the last two triangles.
 constexpr double k_loss_of_fewer = 4;
-// Where a single triangle is too many, so much more, and no less than what was paid before, or than
-// a distance of 1e-5 edges costs over a square on the edge: the count is met exactly, at a border,
-// unless that costs ten times the distance. On coarse ground under a fine model it did.
+// The factor where just one triangle is too many. The cost is also at least the greatest paid so
+// far, and at least that of a distance of 1e-5 edges over a square on the edge. So the count is met
+// exactly, at a border, unless that costs ten times the distance. On coarse ground under a fine
+// model it did.
 constexpr double k_loss_of_one_fewer = 100;
 constexpr double k_nothing = 1e-10;
-// From so many triangles on one fewer is as good, if need be.
+// For goals of at least this many triangles, one fewer is as good, if need be.
 constexpr std::uint64_t k_goal_of_one_fewer = 1000;
-// A mesh that was kept is dropped when it has so many times the triangles that are left.
+// A kept mesh is dropped once it has more than this many times the triangles that are left.
 constexpr double k_far_more = 1.3;
 
-// What makes triangles cross costs so many times as much, eight times the distance. With 16 more
-// than twice as many of a skull's triangles cross; with 1,024 walls thinner than the error lose
+// Cost factor of a collapse that makes triangles cross: eight times the distance. With 16, more
+// than twice as many of a skull's triangles cross; with 1,024, walls thinner than the error lose
 // their shape.
 constexpr double k_loss_of_crossing = 64;
 
-// What is left of a closed piece that was opened stands for both of its sides, and its planes tell
-// nothing of the one that went. With 2 bearings at 0.3 % have 1.36 times the error, with 40 ten
-// meshes have 0.94 to 1.02 times.
+// Cost factor for a closed piece that was opened. What is left stands for both of its sides, and
+// its planes know nothing of the side that is gone. With 2, bearings at 0.3 % have 1.36 times the
+// error; with 40, ten meshes have 0.94 to 1.02 times.
 constexpr double k_loss_of_opened = 8;
 
-// Of what it would cost otherwise: what pinching has left over faces the wrong way more often than
-// not. With a 64th fewer triangles do, but a skull has 7 % more error.
+// Cost factor for the leftovers of pinching: they face the wrong way more often than not. With
+// 1/64, fewer triangles do, but a skull has 7 % more error.
 constexpr double k_cost_of_left_over = 0.125;
 
-// A refused edge of a complex vertex is looked at again when one in so many triangles round it has
-// changed. In a block of cells most are refused: to look at all of them after each collapse takes
-// twice as long, with the same error.
+// A refused edge of a complex vertex is judged again after one change per this many triangles
+// around it. In a block of cells most edges are refused: judging all of them after each collapse
+// takes twice as long, with the same error.
 constexpr std::uint32_t k_complex_changes = 16;
 
-// Where edges turn out to be dearer than they rank so much more often than one collapses, and so
-// often at all, they are ranked finely.
+// Edges are re-ranked in double precision once this many waits per collapse, and at least this many
+// waits in all, show that the ranking is too coarse.
 constexpr std::uint64_t k_waits_of_rough = 4;
 constexpr std::uint64_t k_least_waits = 1000;
 
 constexpr CostKey k_greatest = k_any_cost - 1;
 constexpr CostKey k_least_step = 4U << 20;  // a factor of 16
 
-// From so many refusals to keep the topology on, a collapse, all that is left is dear. Only those
-// of edges that are cheaper than what has collapsed count: on a thin tube all edges round it are
-// refused whenever one along it collapses. A surface of many handles whose result was still good
-// had 1.6.
+// Above this many topology refusals per collapse, everything that is left is expensive. Only
+// refusals of edges cheaper than the greatest cost paid so far count: on a thin tube, all edges
+// around it are refused whenever one along it collapses. A surface of many handles whose result was
+// still good had 1.6.
 constexpr std::uint64_t k_hopeless = 4;
-// And all edges are looked at twice, after each ranking, before that is said.
+// Refusals allowed per triangle in addition: after each ranking, all edges may be judged twice
+// before the queue gives up.
 constexpr std::uint64_t k_edges_of_triangle = 3;
 
-/// How many fewer triangles than the goal may be left: with one that the goal itself may be below
-/// what was asked for, as triangles of closed surfaces go in pairs, 0.1 % of that, 2 % of few. Of
-/// few it is one as long as anything else may do; of many it is one more where nothing else does.
+/// How many triangles fewer than the goal may be left. Together with the one by which the goal
+/// itself may be below what was asked for, as triangles of closed surfaces go in pairs, it is 0.1 %
+/// of large goals and 2 % of small ones. Small goals allow just one while any other edge may do;
+/// large ones allow one more once no other does.
 std::uint64_t most_fewer(std::uint64_t goal, bool nothing_else_does) {
   constexpr std::uint64_t k_few = 100;
   if (goal >= k_goal_of_one_fewer) return goal / k_goal_of_one_fewer - (nothing_else_does ? 0 : 1);
@@ -90,7 +94,7 @@ std::uint64_t most_at_once(std::uint64_t excess, std::uint64_t goal, bool nothin
 }
 
 /// Four triangles for each closed component, two for each that is fixed, open or complex; 0 if
-/// there is but one.
+/// there is only one component.
 std::uint64_t room_for_all(std::span<const std::uint8_t> flags,
                            std::span<const Triangle> triangles) {
   UnionFind sets(flags.size());
@@ -136,7 +140,7 @@ void CollapseQueue::start(std::span<const Triangle> triangles) {
   general_.move_to(state());
 }
 
-/// The cheapest share of all edges, but those of a limit above the last one at least.
+/// Ranks the cheapest share of all edges, at least up to a limit one step above the last one.
 void CollapseQueue::rank(double share) {
   for (std::uint32_t v = 0; v < target_.size(); ++v) refresh(v);
   const CostKey wanted = share < 1 ? ranking_.estimate_limit(share, HUGE_VAL) : k_greatest;
@@ -229,26 +233,27 @@ CollapseGuard::Merge CollapseQueue::planned(std::uint32_t a, std::uint32_t b,
   return merge;
 }
 
-/// Whether triangles would cross, and something else may go before; that is then seen to.
+/// Whether triangles would cross and other edges should go first. If so, the edge waits or is
+/// refused.
 bool CollapseQueue::must_not_cross(const QueuedEdge& queued, const Collapse& collapse) {
   if (crossings_ == nullptr) return false;
   const std::uint32_t a = queued.a();
   const std::uint32_t b = queued.b;
   if (!crossings_->crosses(planned(a, b, collapse))) return false;
   const double cost = collapse.cost * k_loss_of_crossing;
-  // A bound on the error is no reason to go on at any cost.
+  // With a bound on the error, crossings are not accepted at any cost.
   if (guard_ != nullptr) {
     refused_[a] = refused_[b] = 1;
     return true;
   }
   if (!must_wait(queued, cost)) return false;
-  // Until then it may come to cross nothing any more.
+  // By then it may no longer cross anything.
   if (cost > most_cost_) refused_[a] = refused_[b] = 1;
   wait(queued, cost);
   return true;
 }
 
-/// Such an edge is looked at again when one of its ends has moved, not when what is round it has.
+/// A refused edge is judged again when one of its ends has moved, not when something around it has.
 bool CollapseQueue::is_guarded(std::uint32_t a, std::uint32_t b, const Collapse& collapse) {
   if (guard_ == nullptr) return false;
   return !guard_->allows(planned(a, b, collapse));
@@ -274,15 +279,15 @@ bool CollapseQueue::reduce(const SimplifyGoal& goal, const Progress& progress) {
       limit_ = 0;
       continue;
     }
-    // What was refused as it would have removed too many may do for the next goal.
+    // Edges refused because they would remove too many triangles may do for the next goal.
     if (triangles_ < goal.triangles + k_few_to_go) ranked_at_ = UINT64_MAX;
     if (stop != Stop::nothing_left) return stop != Stop::told;
     if (limit_ >= std::min(key_of(most_cost_), k_greatest)) {
-      // In a block of cells each edge that is left has more triangles than are to go.
+      // In a block of cells, each edge that is left may have more triangles than are still to go.
       if (ends_ || triangles_ >= goal.triangles + k_few_to_go) return true;
       ends_ = true;
     }
-    // Dead ends: what is ranked is refused again and again.
+    // Dead end: the ranked edges are refused again and again.
     if (!goes_on && (before - triangles_) * 50 < before) share = 1;
   }
   return true;
@@ -293,7 +298,7 @@ CollapseQueue::Stop CollapseQueue::run(const SimplifyGoal& goal, const Progress&
   const CostKey dearest = key_of(goal.max_cost);
   std::optional<bool> may_be_odd;  // asked once
   while (triangles_ > goal.triangles) {
-    // Something is to be left, whatever the goal.
+    // At least one triangle stays, whatever the goal.
     const std::uint64_t excess = triangles_ - std::max<std::uint64_t>(1, goal.triangles);
     if (excess == 0) return Stop::met;
     if (excess == 1 && !may_be_odd) may_be_odd = may_lose_one();
@@ -323,7 +328,7 @@ CollapseQueue::Stop CollapseQueue::run(const SimplifyGoal& goal, const Progress&
       refused_[a] = refused_[b] = 1;
     } else if (must_wait(queued, cost)) {
       wait(queued, cost);
-      waited_ += by_general_ ? 0 : 1;  // how far a piece lies from the rest no ranking tells
+      waited_ += by_general_ ? 0 : 1;  // no ranking knows how far a piece is from the rest
     } else if (!must_not_cross(queued, collapse) && !is_guarded(a, b, collapse)) {
       keep(goal);
       merge(a, b, collapse);
@@ -333,7 +338,7 @@ CollapseQueue::Stop CollapseQueue::run(const SimplifyGoal& goal, const Progress&
   return Stop::met;
 }
 
-/// Of a collapse that leaves fewer triangles than the goal.
+/// The cost of a collapse that leaves fewer triangles than the goal.
 double CollapseQueue::cost_of_fewer(const QueuedEdge& queued, double cost,
                                     std::uint64_t excess) const {
   if (excess > 1) return cost * k_loss_of_fewer;
@@ -352,7 +357,7 @@ bool CollapseQueue::is_too_rough() const {
   return !ranking_.is_refined() && waited_ > k_waits_of_rough * done + k_least_waits;
 }
 
-/// Whether it costs more than the goal allows, or more than it was ranked by and the next.
+/// Whether the edge costs more than the goal allows, or more than both its rank and the next edge.
 bool CollapseQueue::must_wait(const QueuedEdge& queued, double cost) const {
   if (cost > most_cost_) return true;
   const CostKey exact = key_of(cost);
@@ -361,13 +366,14 @@ bool CollapseQueue::must_wait(const QueuedEdge& queued, double cost) const {
   return exact > limit_ || (other != nullptr && other->key() < exact);
 }
 
-/// Comes again by its cost; not before the goal's is reached if it is dearer.
+/// Queues the edge again by its exact cost; beyond the goal's limit if it costs more than that.
 void CollapseQueue::wait(const QueuedEdge& queued, double cost) {
   const CostKey least = cost > most_cost_ ? key_of(most_cost_) + 1 : 0;
   push({queued.a(), queued.b, std::max(key_of(cost), least)});
 }
 
-/// Before a collapse: so many triangles are not left any more.
+/// Called before each collapse: keeps a copy of the mesh if the next of the goal's counts is
+/// reached.
 void CollapseQueue::keep(const SimplifyGoal& goal) {
   bool is_due = false;
   for (; next_kept_ < goal.keep_at.size() && triangles_ <= goal.keep_at[next_kept_]; ++next_kept_) {
@@ -393,7 +399,7 @@ void CollapseQueue::count(const Collapse& collapse) {
   ++collapses_;
 }
 
-/// Of a closed piece a sheet is left; no vertices merge.
+/// Leaves a sheet of a closed piece; no vertices merge.
 void CollapseQueue::open(const Collapse& collapse) {
   ring_.clear();
   for (const auto& [p, q, r] : general_.going()) {
@@ -449,18 +455,20 @@ void CollapseQueue::merge(std::uint32_t a, std::uint32_t b, const Collapse& coll
   }
 }
 
-/// Whether too little has changed round a vertex with refused edges; that is counted.
+/// Whether too little has changed around a vertex to judge its refused edges again. Counts the
+/// change.
 bool CollapseQueue::may_be_left(std::uint32_t vertex) {
   if ((mesh_.flags[vertex] & k_complex) == 0) return false;
-  // No edge of a hub can collapse: so few changes are counted that a byte holds them.
+  // No edge of a hub can collapse, so its triangles are capped: the count of changes fits in a
+  // byte.
   const std::uint32_t triangles = std::min(mesh_.adjacency.count(vertex), k_max_star);
   if (refused_[vertex] * k_complex_changes >= triangles) return false;
   ++refused_[vertex];
   return true;
 }
 
-/// A small chart goes with the last of its triangles, and with it the corners that only it made.
-/// Without texture coordinates they stay until the next pass.
+/// A small chart goes with its last triangle, and with it the corners that only it made. Without
+/// texture coordinates, such corners stay until the next pass.
 void CollapseQueue::update_lines(std::uint32_t merged) {
   const auto update = [&](std::uint32_t v) {
     std::uint8_t& flags = mesh_.flags[v];
@@ -469,7 +477,7 @@ void CollapseQueue::update_lines(std::uint32_t merged) {
         mesh_.creases.updated(v, mesh_.positions, mesh_.adjacency, mesh_.flags);
     if (now == flags) return;
     flags = now;
-    refused_[v] = 1;  // is looked at again
+    refused_[v] = 1;  // will be judged again
   };
   update(merged);
   for (const std::uint32_t v : ring_) update(v);

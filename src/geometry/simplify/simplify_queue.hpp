@@ -27,8 +27,7 @@
 
 namespace meshfarm {
 
-/// An edge in the queue: the cheaper one comes first, of two that are equally cheap that of lower
-/// vertices.
+/// An edge in the queue. Cheaper edges come first; of equally cheap ones, that of lower vertices.
 struct QueuedEdge {
   std::uint64_t order = 0;  // key, then the first end
   std::uint32_t b = 0;
@@ -43,12 +42,12 @@ struct QueuedEdge {
   }
 };
 
-/// For a heap, which has the greatest on top: of two the one that comes later is less.
+/// The heap keeps the greatest on top, so an edge that comes later compares as less.
 struct IsLater {
   bool operator()(const QueuedEdge& x, const QueuedEdge& y) const { return x.is_later(y); }
 };
-/// The cheapest on top. Most entries have been replaced by others before their turn, and what is
-/// taken off goes down a heap of two children twice as far.
+/// The cheapest edge is on top. Most entries are stale before their turn, and with two children per
+/// node instead of four each removal would go down twice as many levels.
 using QueuedEdges =
     boost::heap::d_ary_heap<QueuedEdge, boost::heap::arity<4>, boost::heap::compare<IsLater>>;
 
@@ -61,17 +60,17 @@ struct QueuedMesh {
   PositionType type = PositionType::float64;
   bool seam_only = false;
   bool any_topology = false;             // collapses may change it
-  bool stops_when_held = false;          // rather than go on where most of what is cheap is refused
-  std::vector<Appearance>& appearances;  // empty where they do not count
+  bool stops_when_held = false;          // where most cheap edges are refused
+  std::vector<Appearance>& appearances;  // empty if they are not used
   AppearanceScale appearance_scale;
   TriangleColumns& columns;  // what the adjacency was built with
   double uv_scale = 0;
 };
 
-/// Collapses edges strictly in order of their cost: what was refused, or has become cheaper, is
-/// looked at again as soon as something round it has changed. Slower than passes by a half, and as
-/// good as an order can be: for the last part of the way. Where the topology may change, what is
-/// pinched is cut apart.
+/// Collapses edges strictly in order of cost. An edge that was refused, or has become cheaper, is
+/// judged again as soon as something around it changes. Takes half as long again as passes, but the
+/// order is as good as it can be: for the last part of the way. Where the topology may change,
+/// pinched vertices are cut apart.
 class CollapseQueue {
  public:
   using Progress = std::function<bool(std::uint64_t)>;
@@ -80,20 +79,21 @@ class CollapseQueue {
 
   /// Ranks all edges. `triangles` are those that the adjacency was built from.
   void start(std::span<const Triangle> triangles);
-  /// Then: what else refuses collapses. `mesh` is what the queue begins with.
+  /// After start(): guards that refuse further collapses. `mesh` is the mesh that the queue begins
+  /// with.
   void set_guard(CollapseGuard& guard, const Mesh& mesh);
   void set_guard(CrossingGuard& guard, std::span<const Triangle> triangles);
-  /// What four triangles that are left of a piece become like. Needs the guard of crossings.
+  /// The shapes to restore when four triangles are left of a piece. Needs the crossing guard.
   void set_pieces(SmallPieces& pieces) { pieces_ = &pieces; }
 
-  /// Collapses until the goal is met or nothing that ranks within it is left: what costs nothing
-  /// ranks by its length, a little above that. May be called again; the order goes on then, as long
-  /// as most of what was ranked is left. False if progress said stop.
+  /// Collapses until the goal is met or no edge is left that ranks within it. Edges that cost
+  /// nothing rank slightly above that, by length. May be called again: the order then continues, as
+  /// long as most of the ranked triangles are left. Returns false if progress said stop.
   bool reduce(const SimplifyGoal& goal, const Progress& progress);
 
-  /// Gives the pieces of few triangles their shape again.
+  /// Restores the shape of pieces that have few triangles left.
   void restore_pieces();
-  /// The mesh as it is now, with the vertices in their order, and their flags.
+  /// Writes the mesh as it is now, with the vertices in their order, and their flags.
   void copy_to(Mesh& mesh, std::vector<std::uint8_t>& flags, std::uint32_t locked) const;
 
   std::uint64_t triangles() const { return triangles_; }
@@ -101,11 +101,12 @@ class CollapseQueue {
   double max_cost() const { return max_cost_; }
   /// The cost of the last collapse.
   double last_cost() const { return last_cost_; }
-  /// Whether it stopped because so many collapses are refused to keep the topology.
+  /// Whether it stopped because too many collapses are refused to keep the topology.
   bool is_held() const { return held_; }
-  /// From now on nothing that is refused is a reason to stop.
+  /// From now on, refusals are no reason to stop.
   void go_on_when_held() { mesh_.stops_when_held = held_ = false; }
-  /// The sum of the costs of all collapses, and how many had each cost, without guesses.
+  /// The sum and the distribution of the costs of all collapses, without the parts that are
+  /// guesses.
   double paid() const { return paid_; }
   const CostCounts& costs() const { return costs_; }
   /// SimplifyGoal::keep_at.
@@ -163,18 +164,18 @@ class CollapseQueue {
   std::vector<std::uint32_t> target_;  // the vertex that a vertex has become
   std::vector<PastPlanes> past_;       // CollapseState::past
   std::vector<std::uint8_t> origins_;  // CollapseState::origins; empty where the topology is kept
-  // 0, or 1 when an edge at the vertex is refused, and one more for each change round it after
-  // that, until it is looked at again.
+  // 0 if no edge at the vertex is refused; else 1, plus one per change around the vertex since
+  // then. Reset when its edges are ranked again.
   std::vector<std::uint8_t> refused_;
-  // How often the edges at a vertex were ranked anew. Only increases, so that an entry is out of
-  // date if the sum of its ends' has changed.
+  // How often the edges at each vertex were ranked again. Only increases, so an entry is stale if
+  // the sum over its two ends has changed.
   std::vector<std::uint32_t> looks_;
-  std::vector<std::uint8_t> stale_;  // its quadric is that of a star that has changed
+  std::vector<std::uint8_t> stale_;  // its star has changed since its quadric was summed
   double most_cost_ = 0;             // the goal's
   std::uint64_t ranked_at_ = 0;      // triangles left when all edges were ranked
   std::vector<QueuedEdge> first_;    // as ranked at the start, cheapest first
   std::size_t next_first_ = 0;
-  QueuedEdges heap_;  // those that came later
+  QueuedEdges heap_;  // edges queued since then
   CollapseJudge judge_;
   GeneralJudge general_;
   FanSplitter splitter_;
@@ -183,23 +184,23 @@ class CollapseQueue {
   std::vector<Corner> joined_;
   std::vector<CornerId> joined_ids_;
   std::uint64_t triangles_ = 0;
-  std::uint64_t room_for_all_ = 0;  // what components need at the start; 0 if topology is kept
+  std::uint64_t room_for_all_ = 0;  // triangles for all components; 0 if topology is kept
   std::vector<Mesh> kept_;
   std::size_t next_kept_ = 0;  // of the goal's counts
-  // As they were at the last ranking.
+  // As of the last ranking.
   std::uint64_t blocked_before_ = 0;
   std::uint64_t collapses_before_ = 0;
-  std::uint64_t waited_ = 0;  // edges since then that turned out to be dearer than they ranked
+  std::uint64_t waited_ = 0;  // edges since then that cost more than they ranked by
   double max_cost_ = 0;
   double last_cost_ = 0;
   double paid_ = 0;
   CostCounts costs_;
   std::uint64_t collapses_ = 0;
   std::uint64_t kept_topology_ = 0;
-  std::uint64_t blocked_ = 0;  // of these: cheaper than what has collapsed
-  CostKey limit_ = 0;          // dearer edges wait for the next ranking
-  bool by_general_ = false;    // the general judge judged the last
-  bool ends_ = false;          // nothing is left that would not miss the goal
+  std::uint64_t blocked_ = 0;  // of these: cheaper than max_cost_
+  CostKey limit_ = 0;          // more expensive edges wait for the next ranking
+  bool by_general_ = false;    // the last collapse was judged by general_
+  bool ends_ = false;          // every edge left would miss the goal
   bool held_ = false;
 };
 

@@ -12,29 +12,30 @@
 namespace meshfarm {
 namespace {
 
-// Edges whose costs differ by less than 3 % are taken in order of their vertices, which costs
-// nothing measurable and walks through memory in its order.
+// Edges whose costs differ by less than 3 % are taken in vertex order, which costs nothing
+// measurable and walks through memory in order.
 constexpr unsigned k_bucket_shift = 15;
 std::uint32_t bucket_of(CostKey key) {
   return key >> k_bucket_shift;
 }
 
-// About 12,000 edges give the rank to half a per cent.
+// About 12,000 edges determine the rank to half a per cent.
 constexpr std::uint32_t k_sampled_vertices = 4096;
 constexpr std::uint64_t k_least_sample = 2000;
 
-// A key has the sign, eleven bits of the exponent, and the first of the fraction.
+// A key holds the sign, the eleven bits of the exponent, and the first bits of the fraction.
 constexpr int k_exponent_shift = 20;
 
-// Keys of infinity and of what is no number are greater.
+// Keys of infinity and NaN are greater.
 constexpr CostKey k_greatest_finite = 0x7FEFFFFF;
 
-// What the star of each end foretells for the merged vertex differs within the star, which its
-// quadric tells, and from star to star, which no sum of two quadrics does: nearly as much. Along an
-// edge between two colours that is too much, so that bounds of costs are only about right there.
+// The predictions for the merged vertex differ within the star of each end, which its quadric
+// measures, and nearly as much between the two stars, which no sum of two quadrics does. This
+// factor accounts for both. Along an edge between two colours it is too much, so bounds of costs
+// are only approximate there.
 constexpr double k_both_ends = 1.8;
 
-// Few enough that what the listing fetches ahead is still in the first cache.
+// Few enough that the data prefetched while listing is still in the L1 cache.
 constexpr std::size_t k_listed_at_once = 256;
 
 }  // namespace
@@ -71,7 +72,7 @@ void EdgeRanking::refine() {
   for (std::uint32_t v = 0; v < fine_.size(); ++v) refresh(v);
 }
 
-/// What the vertex's star adds about the vertex, in which all its triangles agree.
+/// The appearance quadric of the vertex's star, about the vertex, in which all its triangles agree.
 Quadric EdgeRanking::appearance_at(std::uint32_t vertex) {
   const std::span<const Corner> fan = input_.adjacency->at(vertex);
   if (fan.size() > k_max_star) return {};
@@ -84,7 +85,7 @@ Quadric EdgeRanking::appearance_at(std::uint32_t vertex) {
   return star_.quadric() * k_both_ends;
 }
 
-/// The same of texture coordinates: the triangles of each wedge by themselves.
+/// The same for texture coordinates, for the triangles of each wedge separately.
 Quadric EdgeRanking::uvs_at(std::uint32_t vertex) {
   const CornerFan fan = input_.adjacency->fan_at(vertex);
   if (fan.corners.size() > k_max_star) return {};
@@ -175,7 +176,7 @@ void EdgeRanking::refresh(std::uint32_t vertex) {
   if (is_refined()) fine_[vertex] = planes;
 }
 
-/// The creases that the vertex is on, by the mesh as it is at the beginning of the pass.
+/// The creases at the vertex, by the mesh as it was at the beginning of the pass.
 template <typename Take>
 void EdgeRanking::for_creases_at(std::uint32_t vertex, const Take& take) const {
   if ((input_.flags[vertex] & k_crease) == 0) return;
@@ -192,7 +193,8 @@ void EdgeRanking::list_edges_at(std::uint32_t vertex, std::uint32_t least) {
   const std::span<const Corner> fan = input_.adjacency->at(vertex);
   const std::uint8_t still = input_.general ? std::uint8_t{k_fixed} : k_still;
   if ((flags & still) != 0 || fan.size() > k_max_star) return;
-  // Written always, counted if wanted: which neighbours are the greater ones no processor guesses.
+  // Always written, counted only if wanted: a branch on which neighbours are greater would be
+  // mispredicted.
   const std::size_t most = listed_count_ + 2 * fan.size() + 2;
   if (listed_.size() < most) listed_.resize(2 * most);
   Edge* end_of_list = listed_.data() + listed_count_;
@@ -227,8 +229,8 @@ void EdgeRanking::list_edges_at(std::uint32_t vertex, std::uint32_t least) {
   listed_count_ = static_cast<std::size_t>(end_of_list - listed_.data());
 }
 
-/// The merged vertex takes the position of the one of higher rank, or of the cheaper one; `moved`
-/// tells what it costs that the other one moves there.
+/// The merged vertex takes the position of the end of higher rank, or of the cheaper end. `moved`
+/// is the cost of moving one end to the other.
 template <typename Moved>
 EdgeCost EdgeRanking::cost_of_line_end(const Edge& e, const Moved& moved) const {
   const int rank_a = line_rank(input_.flags[e.a]);
@@ -245,8 +247,8 @@ EdgeCost EdgeRanking::cost_of_line_end(const Edge& e) const {
       e, [&](std::uint32_t end) { return cost_of_end(quadrics_[end], half, input_.bounds); });
 }
 
-/// Whether no triangle of a sheet or a tetrahedron would stay. Its planes do not tell what that
-/// costs, but how far it is from the rest: it has to be looked at to know.
+/// Whether no triangle of a sheet or a tetrahedron would stay. The cost of that depends on the
+/// distance from the rest, not on the planes, so the edge must be judged to know it.
 bool EdgeRanking::is_all_of_piece(const Edge& e) const {
   constexpr std::size_t k_most = 3;
   const std::span<const Corner> at_a = input_.adjacency->at(e.a);
@@ -267,13 +269,13 @@ EdgeCost EdgeRanking::fine_cost_of(const Edge& e, bool is_by_end) const {
   return cost_of_line_end(e, [&](std::uint32_t end) { return fine_cost_of_end(fine_[end], half); });
 }
 
-/// Counts the keys of the edges of one in so many vertices into starts_.
+/// Counts the keys of the edges of one in `one_in` vertices into starts_.
 std::uint64_t EdgeRanking::sample_costs(std::uint32_t one_in) {
   starts_.assign(bucket_of(k_any_cost) + 1, 0);
   std::uint64_t sampled = 0;
   const auto count = [&](const Edge&, const EdgeCost& cost) {
     const CostKey key = key_of(cost.ranking);
-    // Those of whole pieces say nothing of the others.
+    // Edges of whole pieces say nothing about the others.
     if (key == 0 || key > k_greatest_finite) return;
     ++starts_[bucket_of(key)];
     ++sampled;
@@ -292,7 +294,7 @@ CostKey EdgeRanking::estimate_limit(double share, double most) {
   const auto vertices = static_cast<std::uint32_t>(input_.positions.size());
   std::uint32_t one_in = std::max(1U, vertices / k_sampled_vertices);
   std::uint64_t sampled = sample_costs(one_in);
-  // Where most vertices are locked or no seam, a sample may say too little.
+  // Where most vertices are locked or off the seam, the sample may be too small.
   if (sampled < k_least_sample && one_in > 1) {
     one_in = 1;
     sampled = sample_costs(one_in);

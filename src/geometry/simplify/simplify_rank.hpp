@@ -26,9 +26,9 @@ CostKey key_of(double cost);
 /// The greatest cost that has this key.
 double cost_of(CostKey key);
 
-/// What a pass takes costs at most so many times what half of it does, as a power of two: where
-/// straight edges and flat faces go for nothing, a share of all edges would reach into what is dear
-/// before the rest of what is free has its turn.
+/// A pass takes edges up to this power of two times the cost of the cheaper half of them. Where
+/// straight edges and flat faces cost nothing, a share of all edges would otherwise reach expensive
+/// ones before all free ones have had their turn.
 constexpr int k_greatest_jump = 10;
 
 /// Scrambles a number, so that a sample follows no pattern of the numbering.
@@ -42,7 +42,7 @@ struct RankedEdge {
   CostKey key;
 };
 
-/// What ranking reads; all of it stays as it is for edges whose ends have not taken part in a
+/// The input of a ranking. It stays unchanged for edges whose ends have not taken part in a
 /// collapse yet.
 struct RankingInput {
   std::span<const Vec3> positions;
@@ -51,11 +51,11 @@ struct RankingInput {
   const Adjacency* adjacency = nullptr;
   const CreaseTest* creases = nullptr;
   bool seam_only = false;
-  /// Edges are judged by what can judge any: those at complex vertices are listed, too.
+  /// Edges at complex vertices are listed, too: a GeneralJudge is there to judge them.
   bool general = false;
-  bool any_topology = false;                // and those that would change the topology
+  bool any_topology = false;                // and edges that would change the topology
   bool bounds = false;                      // rank by lower bounds of the costs
-  std::span<const Appearance> appearances;  // empty where they do not count
+  std::span<const Appearance> appearances;  // empty if they are not used
   AppearanceScale appearance_scale;
   double uv_scale = 0;
 };
@@ -66,20 +66,20 @@ struct RankLimits {
   double max_cost = 0;
 };
 
-/// Ranks the edges of one mesh by what their collapse would cost. A vertex's quadric is the sum
-/// over its star, an edge's the sum of its ends': the two triangles that they share count twice,
-/// which leaves the order nearly as it is and saves looking them up.
+/// Ranks the edges of one mesh by the cost of their collapse. A vertex's quadric is the sum over
+/// its star, an edge's the sum of its two ends'. The two triangles that the ends share count twice,
+/// which hardly changes the order and saves looking them up.
 class EdgeRanking {
  public:
   /// Sums the quadrics. Keeps its memory from one pass to the next.
   void begin_pass(const RankingInput& input);
-  /// Then ranks by bounds of what floats are too rough for, too, with 48 bytes a vertex more: where
-  /// a surface is flat but for noise or rounding.
+  /// From then on, costs that float is too coarse for are ranked in double precision, for 48 bytes
+  /// more per vertex. For surfaces that are flat apart from noise or rounding.
   void refine();
   bool is_refined() const { return !fine_.empty(); }
 
-  /// Estimates from a sample the key that the cheapest `share` (0 to 1) of all edges, but no more
-  /// than `most`, do not exceed.
+  /// Estimates from a sample the greatest key of the cheapest `share` (0 to 1) of all edges, but of
+  /// no more than `most` edges.
   CostKey estimate_limit(double share, double most);
 
   /// The edges within the limits whose smaller end is in [first, last), cheapest first; equal
@@ -92,10 +92,10 @@ class EdgeRanking {
   /// The mesh has more vertices than before, or they have moved in memory.
   void move_to(std::span<const Vec3> positions, std::span<const std::uint8_t> flags,
                std::span<const Appearance> appearances);
-  /// Sums the quadric of a vertex whose star has changed.
+  /// Recomputes the quadric of a vertex whose star has changed.
   void refresh(std::uint32_t vertex);
-  /// Calls take(edge) for all edges at the vertex that may collapse and may cost no more than that,
-  /// in the order of its corners.
+  /// Calls take(edge) for all edges at the vertex that may collapse and may cost at most
+  /// `max_cost`, in the order of its corners.
   template <typename Take>
   void for_edges_at(std::uint32_t vertex, double max_cost, const Take& take) {
     list_edges_at(vertex, 0);
@@ -116,7 +116,7 @@ class EdgeRanking {
   bool weighs_uvs() const { return input_.uv_scale > 0 && input_.adjacency->has_uvs(); }
   Quadric uvs_at(std::uint32_t vertex);
   Quadric line_planes_at(std::uint32_t vertex) const;
-  /// Those whose other end is `least` or greater.
+  /// Lists the edges whose other end is `least` or greater.
   void list_edges_at(std::uint32_t vertex, std::uint32_t least);
   template <typename Take>
   void cost_listed(const Take& take);
@@ -149,7 +149,7 @@ template <typename Take>
 void EdgeRanking::cost_listed(const Take& take) {
   const Vec3* const positions = input_.positions.data();
   const std::uint8_t* const flags = input_.flags.data();
-  // Where there are texture coordinates vertices on lines merge to one of the two.
+  // With texture coordinates, vertices on lines merge to one of the two ends.
   const int by_ends = input_.adjacency->has_uvs() ? k_line | k_corner : 0;
   const bool ends_pieces = input_.bounds && input_.any_topology;
   for (std::size_t first = 0; first < listed_count_; first += EdgeCosts::k_size) {

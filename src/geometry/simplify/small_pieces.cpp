@@ -14,19 +14,20 @@ namespace {
 
 using Matrix = std::array<std::array<double, 3>, 3>;
 
-// A body thinner than this share of its length has no inside that numbers could tell.
+// A body thinner than this share of its length has no numerically usable inside.
 constexpr double k_thinnest = 1e-5;
-// Rotations of all three planes in turn: a few do, as each squares what is left.
+// Rounds of rotations of all three planes: a few are enough, as each squares the residual.
 constexpr int k_turns = 16;
 
-// A piece of more triangles keeps its shape by itself.
+// A piece of more triangles keeps its shape without help.
 constexpr std::size_t k_few = 64;
-// Nor is one made longer or shorter by more than this in any direction, but for four triangles.
+// No piece is stretched or shrunk by more than this factor in any direction, except those of four
+// triangles.
 constexpr double k_most_stretch = 8;
 
 constexpr std::uint8_t k_open = k_fixed | k_border | k_complex;
 
-/// Makes a symmetric matrix diagonal, by Jacobi's rotations. Returns the axes, in columns.
+/// Diagonalises a symmetric matrix by Jacobi rotations. Returns the axes as columns.
 Matrix diagonalise(Matrix& m) {
   Matrix axes{};
   for (std::size_t i = 0; i < 3; ++i) axes[i][i] = 1;
@@ -72,7 +73,8 @@ Matrix multiplied(const Matrix& a, const Matrix& b) {
   return c;
 }
 
-/// The root of a symmetric matrix, or one over it; nothing if that of a body without thickness.
+/// The square root of a symmetric matrix, or its inverse; nothing if it is that of a body without
+/// thickness.
 std::optional<Matrix> power_of(Matrix m, double exponent) {
   const Matrix axes = diagonalise(m);
   if (!has_inside(m)) return std::nullopt;
@@ -91,8 +93,8 @@ double volume_of(const std::array<Vec3, 4>& p) {
   return dot(p[3] - p[0], cross(p[1] - p[0], p[2] - p[0])) / 6;
 }
 
-/// The other three vertices of a piece of four triangles at a vertex, as its first triangle names
-/// them; nothing if it has more.
+/// The vertices of a piece of four triangles at a vertex: itself, then the others in the order of
+/// its first triangle; nothing if the piece has more triangles.
 std::optional<std::array<std::uint32_t, 4>> vertices_of_four(std::uint32_t vertex,
                                                              const Adjacency& adjacency) {
   const std::span<const Corner> fan = adjacency.at(vertex);
@@ -153,7 +155,7 @@ std::optional<std::array<Vec3, 4>> tetrahedron_like(const SolidMoments& moments)
   if (!has_inside(m)) return std::nullopt;
   std::array<Vec3, 3> half{};
   for (std::size_t i = 0; i < 3; ++i) {
-    // Of a tetrahedron in a cube of half the side 1 it is 1 / 5.
+    // For a tetrahedron in a cube of half the side 1 it is 1 / 5.
     half[i] = Vec3{axes[0][i], axes[1][i], axes[2][i]} * std::sqrt(5 * m[i][i]);
   }
   const auto [u, v, w] = half;

@@ -15,23 +15,23 @@
 
 namespace meshfarm {
 
-/// What a closed surface holds: below 0 if it faces inwards.
+/// Moments of the inside of a closed surface; the volume is below 0 if it faces inwards.
 struct SolidMoments {
   double volume = 0;
   Vec3 center;
-  std::array<double, 6> spread{};  // xx, xy, xz, yy, yz, zz about the centre, of a unit of volume
+  std::array<double, 6> spread{};  // xx, xy, xz, yy, yz, zz about the centre, per volume
 };
 
-/// Triangles by their corners' places.
+/// Of triangles given by the positions of their corners.
 SolidMoments moments_of(std::span<const std::array<Vec3, 3>> triangles);
 
-/// Corners of the tetrahedron with these moments but for the volume: its edges lie across the
-/// principal axes, so that each side faces as a rounded body does there. Nothing if the moments are
-/// those of no body, or of one without thickness.
+/// Corners of the tetrahedron with these moments, except for the volume. Its edges lie across the
+/// principal axes, so that each side faces as a rounded body does there. Nothing if no body has
+/// these moments, or only one without thickness.
 std::optional<std::array<Vec3, 4>> tetrahedron_like(const SolidMoments& moments);
 
-/// A map that gives a body with the moments `from` those `to` but for the volume, and turns
-/// nothing: the one that moves it least.
+/// The map from a body with the moments `from` to one with the moments `to`, except for the volume,
+/// without rotation: the one that moves it least.
 struct AffineMap {
   Vec3 from;
   Vec3 to;
@@ -40,29 +40,30 @@ struct AffineMap {
 };
 std::optional<AffineMap> map_between(const SolidMoments& from, const SolidMoments& to);
 
-/// Closed pieces, while they lose triangles: what four triangles that are left of one are to be
-/// like. As edges collapse they are much thinner than it was, or inside out: half of them then face
-/// the other way than what of it is nearest.
+/// Closed pieces, while they lose triangles: remembers the shape to give to the last four triangles
+/// of each. As edges collapse, these become much thinner than the piece was, or inside out: half of
+/// them then face away from what is nearest on the piece.
 class SmallPieces {
  public:
-  /// All of a mesh. A piece with a vertex that is flagged as fixed, border or complex is none.
+  /// Finds all pieces of a mesh. A piece with a vertex flagged as fixed, border or complex does not
+  /// count.
   void find(const Mesh& mesh, std::span<const std::uint8_t> flags);
-  /// Of a mesh that edges of have been collapsed: those that have become one at the vertices.
+  /// In a mesh whose edges have been collapsed: finds the pieces that have formed at the vertices.
   void find_at(std::span<const std::uint32_t> vertices, const Adjacency& adjacency,
                std::span<const Vec3> positions, std::span<const std::uint8_t> flags);
   bool empty() const { return of_vertex_.empty(); }
   bool has(std::uint32_t vertex) const { return of_vertex_[vertex] != 0; }
-  /// Whether it is of a piece that was pinched off with no more than four triangles: no part of the
-  /// surface, but what pinching has left over.
+  /// Whether the vertex is of a piece that was pinched off with at most four triangles: not a part
+  /// of the surface, but a leftover of pinching.
   bool is_left_over(std::uint32_t vertex) const {
     return !empty() && left_over_[of_vertex_[vertex]] != 0;
   }
   void clear() { of_vertex_.clear(); }
-  /// A new vertex, of no piece as yet.
+  /// Adds a vertex that belongs to no piece yet.
   void add_vertex() {
     if (!empty()) of_vertex_.push_back(0);
   }
-  /// `target`: what vertex each is merged into, itself if none. The others close up.
+  /// `target`: the vertex that each is merged into, itself if none. Merged vertices are dropped.
   void compact(std::span<const std::uint32_t> target);
 
   /// Where vertices of a piece should be.
@@ -70,10 +71,10 @@ class SmallPieces {
     std::vector<std::uint32_t> vertices;
     std::vector<Vec3> positions;
   };
-  /// Those of a piece of four triangles, if one is left at the vertex.
+  /// The places for the piece at the vertex, if four triangles are left of it.
   std::optional<Places> tetrahedron_at(std::uint32_t vertex, const Adjacency& adjacency,
                                        PositionType type) const;
-  /// Those of all pieces of few triangles that are left of the mesh.
+  /// The places for all pieces of the mesh that have few triangles left.
   std::vector<Places> restored(std::span<const Triangle> triangles, std::span<const Vec3> positions,
                                PositionType type) const;
 
@@ -81,9 +82,9 @@ class SmallPieces {
   std::optional<Places> placed(std::array<std::uint32_t, 4> vertices, const SolidMoments& moments,
                                PositionType type) const;
 
-  std::vector<std::uint32_t> of_vertex_;  // from 1 on; 0: none
-  std::vector<SolidMoments> moments_;     // by that
-  std::vector<std::uint8_t> left_over_;   // by that
+  std::vector<std::uint32_t> of_vertex_;  // piece of each vertex, from 1; 0: none
+  std::vector<SolidMoments> moments_;     // by piece
+  std::vector<std::uint8_t> left_over_;   // by piece
 };
 
 }  // namespace meshfarm

@@ -9,18 +9,18 @@
 namespace meshfarm {
 namespace {
 
-/// What is so near, as a share of the bound, need not be looked at more closely.
+/// Points nearer than this share of the bound need no closer look.
 constexpr double k_quite_near = 0.5;
-/// Points that are looked at are so far apart, in distances of the bound, but no more on a side.
+/// Spacing of the tested points on a side, in units of the bound, and the maximum number of steps.
 constexpr double k_probe_spacing = 1.25;
 constexpr double k_most_probes = 32;
-/// Inside of triangles so far, and in no more rows.
+/// The same inside triangles, within a row and between rows, and the maximum number of either.
 constexpr double k_row_spacing = 1;
 constexpr double k_most_rows = 64;
-/// So large, in distances of the bound, is a cell, but no smaller than this share of the base.
+/// Size of a cell, in units of the bound, and its minimum as a share of the base.
 constexpr double k_cell_size = 2;
 constexpr double k_least_cell = 1.0 / 32;
-/// So thin triangles are looked at along their sides only.
+/// Triangles lower than this share of their base are tested along their sides only.
 constexpr double k_flat_height = 1e-6;
 
 }  // namespace
@@ -89,7 +89,7 @@ void SurfaceProbe::mark_cells(const Rows& rows, std::span<const Vec3> feet) {
   }
 }
 
-/// The cell or one beside it.
+/// Whether the cell or one beside it is marked.
 bool SurfaceProbe::is_marked_round(double x, double y) const {
   const auto column = static_cast<std::size_t>(x / cell_);
   const auto line = static_cast<std::size_t>(y / cell_);
@@ -111,7 +111,7 @@ bool SurfaceProbe::is_inside_near(const std::array<Vec3, 3>& triangle, std::span
   return true;
 }
 
-/// Every other row is looked at backwards: so each place is near the last.
+/// Every other row is tested backwards, so that each place is near the last.
 bool SurfaceProbe::is_row_near(const Rows& rows, double row) {
   const double y = rows.height * ((row + 0.5) / rows.count);
   const double steps = steps_for(rows.width(y), k_row_spacing, k_most_rows);
@@ -124,7 +124,7 @@ bool SurfaceProbe::is_row_near(const Rows& rows, double row) {
   return true;
 }
 
-/// Looks at its middle, and where that is not quite near at those of its sides.
+/// Tests the middle of the cell and, if that is not quite near, the middles of its sides.
 bool SurfaceProbe::is_cell_near(const Rows& rows, double share, double half, double y) {
   const double most = bound_.distance() * bound_.distance();
   const double enough = most * k_quite_near * k_quite_near;

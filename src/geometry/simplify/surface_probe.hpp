@@ -11,21 +11,21 @@
 
 namespace meshfarm {
 
-/// Tells whether new triangles are within a bound of a surface, by points of them.
+/// Tells whether new triangles are within a bound of a surface, by testing points of them.
 ///
-/// Between two surfaces that are nearly parallel the distance is greatest at a vertex of either, or
-/// where two of their sides cross. So of a triangle the corners and the sides are looked at
-/// closely, and what is inside only where no point of the surface is near.
+/// Between two surfaces that are nearly parallel, the distance is greatest at a vertex of either,
+/// or where two of their sides cross. So the corners and sides of a triangle are tested closely,
+/// its inside only where no point of the surface is near.
 class SurfaceProbe {
  public:
   /// `bound` must outlive it.
   explicit SurfaceProbe(const SurfaceBound& bound) : bound_(bound) {}
 
   bool is_near(Vec3 point);
-  /// Of a side; not its ends.
+  /// Tests a side, without its ends.
   bool is_side_near(Vec3 from, Vec3 to);
-  /// Of a triangle whose sides and corners are near. `feet`: points of the surface that are within
-  /// the bound of this triangle, and have others near them.
+  /// Tests the inside of a triangle whose sides and corners are near. `feet`: points of the surface
+  /// that are within the bound of this triangle, and have others near them.
   bool is_inside_near(const std::array<Vec3, 3>& triangle, std::span<const Vec3> feet);
 
  private:

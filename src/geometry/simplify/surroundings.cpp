@@ -12,10 +12,11 @@ namespace meshfarm {
 
 namespace {
 
-/// To make the index anew takes about as long as to pass over so many points for each that it has.
+/// Rebuilding the index takes about as long as passing over this many points per point that it has.
 constexpr std::uint64_t k_worth_an_index = 8;
 
-/// What was found of a piece stands until one in so many of the vertices that are left has gone.
+/// The distance found for a piece is valid until one in this many of the vertices that are left has
+/// gone.
 constexpr std::uint64_t k_vertices_a_change = 1000;
 
 std::uint32_t vertex_now(const ShrinkingMesh& mesh, std::uint32_t v) {
@@ -36,7 +37,8 @@ double Surroundings::squared_distance(const ShrinkingMesh& mesh, const Lost& los
   return found.squared;
 }
 
-/// The same piece, as it is now: its edges tell its middle by sums in another order.
+/// Whether it is the same piece, unchanged. Different edges of it compute its middle by sums in
+/// another order.
 bool Surroundings::is_up_to_date(const Found& found, const Lost& lost) const {
   constexpr double k_same = 1e-12;  // of the squared distance
   const std::uint64_t left = corners_ - std::min(corners_, changes_);
@@ -73,7 +75,8 @@ double Surroundings::search(const ShrinkingMesh& mesh, Vec3 from,
   });
 }
 
-/// Where most pieces go, a search would pass over more and more points, and find the same.
+/// Rebuilds the index without points that are gone: where most pieces go, a search would pass over
+/// more and more points and find the same.
 void Surroundings::drop_what_is_gone(const ShrinkingMesh& mesh) {
   std::vector<Vec3> points;
   std::vector<std::uint32_t> vertices;
@@ -100,8 +103,8 @@ void Surroundings::list_vertices(const ShrinkingMesh& mesh) {
   index_.emplace(std::move(points));
 }
 
-/// Of triangles so large that their corners do not tell where they are. Each stands for the nearest
-/// corner.
+/// Adds points inside triangles too large for their corners to stand for them. Each point stands
+/// for the nearest corner.
 void Surroundings::add_points_inside(const ShrinkingMesh& mesh, std::vector<Vec3>& points) {
   constexpr std::size_t k_least_points = 30'000;
   const std::size_t corners = vertices_.size();
@@ -109,7 +112,7 @@ void Surroundings::add_points_inside(const ShrinkingMesh& mesh, std::vector<Vec3
     for (std::size_t i = 0; i < corners; ++i) {
       const std::uint32_t v = vertices_[i];
       for (const Corner& c : mesh.adjacency->at(v)) {
-        if (v > c.next || v > c.prev) continue;  // once a triangle
+        if (v > c.next || v > c.prev) continue;  // once per triangle
         const Vec3 p = mesh.positions[c.next] - mesh.positions[v];
         const Vec3 q = mesh.positions[c.prev] - mesh.positions[v];
         visit(Triangle{v, c.next, c.prev}, 0.5 * length(cross(p, q)));

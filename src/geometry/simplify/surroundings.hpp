@@ -23,23 +23,24 @@ struct ShrinkingMesh {
 };
 
 /// Tells how far a piece, or its tip, is from the rest of a mesh: what is lost with it. Vertices
-/// stand for the surface, where they were when it was first asked.
+/// stand for the surface, at their positions when first asked.
 class Surroundings {
  public:
-  /// To be told of each change of the mesh: what was found of a piece stands for a few of them.
+  /// Must be called for each change of the mesh: the distance found for a piece stays valid for a
+  /// few of them.
   void change() { ++changes_; }
   struct Lost {
     Vec3 middle;
-    std::span<const Vec3> points;            // where it is looked from; none: from the middle
+    std::span<const Vec3> points;            // where to search from; empty: from the middle
     std::span<const std::uint32_t> without;  // its vertices, ascending
   };
-  /// The squared distance, a mean of all points, of the nearest triangle that is left and has none
-  /// of the vertices, as far as corners and points inside of large triangles tell; infinite if
+  /// The squared distance, a mean over all points, to the nearest triangle that is left and has
+  /// none of the vertices, as far as corners and points inside large triangles tell; infinite if
   /// there is none.
   double squared_distance(const ShrinkingMesh& mesh, const Lost& lost);
 
  private:
-  /// What was found of a piece: by one of its edges for all of them.
+  /// The distance found for a piece: by one of its edges, for all of them.
   struct Found {
     Vec3 middle;
     double squared = 0;

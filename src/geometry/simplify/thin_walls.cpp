@@ -14,8 +14,8 @@
 namespace meshfarm {
 namespace {
 
-// Of a normal's components, those that are no less than this share of its length tell where it
-// points to. The largest is 0.577 at least.
+// The components of a normal that are at least this share of its length tell where it points. The
+// largest is at least 0.577.
 constexpr double k_points_there = 0.4;
 
 constexpr int k_cell_bits = 20;  // of a cell's place along an axis
@@ -25,12 +25,12 @@ std::uint8_t opposite(std::uint8_t ways) {
   return static_cast<std::uint8_t>((ways & 0x15U) << 1 | (ways & 0x2AU) >> 1);
 }
 
-/// A brick of 4 x 4 x 4 cells and a layer of cells round it, which are other bricks'.
+/// A brick of 4 x 4 x 4 cells and a layer of cells around it, which belong to other bricks.
 constexpr std::size_t k_side = 6;
 using LayeredBrick = std::array<std::uint8_t, k_side * k_side * k_side>;
 
-/// Cells of a grid, each with the ways that its triangles face: one of six bits for each direction
-/// of an axis. Bricks of 4 x 4 x 4 cells, a line of the cache each, are hashed.
+/// Cells of a grid, each with the directions that its triangles face: one of six bits for each
+/// direction of an axis. Bricks of 4 x 4 x 4 cells, one cache line each, are hashed.
 class FacingCells {
  public:
   /// Which cell of which brick.
@@ -50,7 +50,7 @@ class FacingCells {
     const auto y = static_cast<std::uint64_t>(at.y);
     const auto z = static_cast<std::uint64_t>(at.z);
     const std::uint64_t key = (x / 4 + 1) * k_x + (y / 4 + 1) * k_y + (z / 4 + 1) * k_z;
-    // As a rule that of the triangle before.
+    // Usually the same brick as for the triangle before.
     if (keys_[last_].key != key) last_ = find_or_add(key);
     const auto cell = static_cast<std::uint8_t>(x % 4 + 4 * (y % 4) + 16 * (z % 4));
     bricks_[last_][cell] |= ways;
@@ -58,15 +58,15 @@ class FacingCells {
     return {last_, cell};
   }
 
-  /// Marks the cells where a triangle in the cell or in one beside it faces against one in the
-  /// cell.
+  /// Marks the cells with a triangle that another one, in the same cell or beside it, faces
+  /// against.
   void find_opposed() {
     std::vector<std::uint64_t> opposed(bricks_.size(), 0);
     std::array<std::uint32_t, 27> round{};
     for (std::size_t i = 1; i < bricks_.size(); ++i) {
       std::uint8_t ways = 0;
       for (std::uint64_t k = 0; k < round.size(); ++k) {
-        // Keys of neighbours: none is at the end of its axis.
+        // Keys of neighbours: no brick is at the end of its axis.
         const std::uint64_t beside =
             keys_[i].key + (k % 3) * k_x + (k / 3 % 3) * k_y + (k / 9) * k_z - k_x - k_y - k_z;
         round[k] = find(beside);
@@ -88,10 +88,11 @@ class FacingCells {
   static constexpr std::uint64_t k_y = std::uint64_t{1} << k_cell_bits;
   static constexpr std::uint64_t k_z = std::uint64_t{1} << (2 * k_cell_bits);
 
-  /// A bit a cell of the brick that is in the middle of 27.
+  /// One bit per cell of the brick in the middle of 27.
   std::uint64_t opposed_of(std::size_t brick, const std::array<std::uint32_t, 27>& round) const {
     LayeredBrick ways = layered(round);
-    // What is beside a cell along one axis after the other: ends are wrong in the outer layer only.
+    // Adds the neighbours of each cell, along one axis after the other: only the outer layer gets
+    // wrong values.
     spread<1>(ways);
     spread<k_side>(ways);
     spread<k_side * k_side>(ways);
@@ -158,11 +159,11 @@ class FacingCells {
   std::vector<Key> keys_;      // of these
   std::vector<std::uint32_t> table_;
   int shift_ = 54;                      // of hashes, to places in the table
-  std::vector<std::uint64_t> opposed_;  // of each brick, a bit a cell
+  std::vector<std::uint64_t> opposed_;  // of each brick, one bit per cell
   std::uint32_t last_ = 0;
 };
 
-/// A bit for each direction of an axis that a vector points to.
+/// One bit for each direction of an axis that a vector points to.
 std::uint8_t ways_of(Vec3 n) {
   const double least = k_points_there * k_points_there * squared_length(n);
   const auto bits = [least](double x, int place) {

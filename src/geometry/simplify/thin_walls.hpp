@@ -9,9 +9,9 @@
 
 namespace meshfarm {
 
-/// Flags as k_thin the vertices that may have another sheet within `reach`: near them are triangles
-/// that face the other way, by their centres. No sheet is missed that far, if triangles are small
-/// beside it; most of what is flagged is no nearer than twice that.
+/// Flags as k_thin the vertices that may have another sheet within `reach`: those near triangles
+/// that face the other way, by their centres. No sheet within `reach` is missed if triangles are
+/// small beside it; most of what is flagged is no nearer than twice that.
 void flag_thin_walls(const Mesh& mesh, double reach, std::span<std::uint8_t> flags);
 
 }  // namespace meshfarm

@@ -6,7 +6,7 @@
 
 namespace meshfarm {
 
-/// What a vertex may do, one byte each; a merged vertex inherits all but that it is fixed.
+/// What a vertex may do, one byte each. A merged vertex inherits all flags except k_fixed.
 enum VertexFlag : std::uint8_t {
   k_fixed = 1,     // neither moves nor goes
   k_border = 2,    // on an edge that has one triangle
@@ -17,16 +17,16 @@ enum VertexFlag : std::uint8_t {
   k_thin = 64      // another sheet is near
 };
 
-/// By the flags of a vertex: whether a collapse there may remove an odd number of triangles.
-/// Elsewhere they go in pairs.
+/// Whether a collapse at a vertex with these flags may remove an odd number of triangles. Elsewhere
+/// they go in pairs.
 inline bool may_lose_one(std::uint8_t flags) {
   return (flags & k_fixed) == 0 && (flags & (k_border | k_complex)) != 0;
 }
 
-/// Of what piece a vertex is, one byte each; a merged vertex has those of both.
+/// What kind of piece a vertex is of, one byte each. A merged vertex has the flags of both.
 enum VertexOrigin : std::uint8_t {
-  k_pinched = 1,  // of what was pinched off, or what that was pinched off from
-  k_opened = 2    // of one that was closed
+  k_pinched = 1,  // of a piece pinched off, or of what it was pinched off from
+  k_opened = 2    // of an opened piece that was closed before
 };
 
 /// Passes leave the edges at these vertices alone.

@@ -8,16 +8,18 @@
 namespace meshfarm {
 namespace {
 
-// A slope, of texture coordinates as a length over a length, from which on more counts no more.
+// The steepest slope of texture coordinates, as a length over a length, that counts in full:
+// steeper ones count no more than this.
 constexpr double k_steepest = 1;
 
-// Of the angle between two sides on the picture: smaller ones are as good as no area.
+// Minimum squared sine of the angle between two sides on the texture: smaller ones are as good as
+// no area.
 constexpr double k_least_wedge_sine_squared = 1e-6;
-// Texture coordinates are rounded: what area they leave uncertain, as a part of their size times
-// that of the sides.
+// Texture coordinates are rounded: the area that this leaves uncertain, as a share of their size
+// times that of the sides.
 constexpr double k_rounding = 0x1p-22;
 
-/// A triangle on the picture.
+/// A triangle on the texture.
 struct FlatPoint {
   double area = 0;  // signed, twice; 0 where rounding may have made it
   double scale = 0;
@@ -35,7 +37,7 @@ struct FlatPoint {
   }
 };
 
-/// Whether a triangle whose first corner moves is not turned over on the picture and keeps some
+/// Whether a triangle whose first corner moves is not turned over on the texture and keeps some
 /// area there, if it had any.
 bool keeps_shape(const LinearUv::Corners& c, const Uv& now) {
   const FlatPoint was(c.at_end, c.at_p, c.at_q);
@@ -186,7 +188,7 @@ bool WedgeStar::place(Vec3 x) {
   return true;
 }
 
-/// Whether those that leave from one place on the picture come to one.
+/// Whether sides that start at the same place on the texture also end at the same place.
 bool WedgeStar::sides_agree(bool at_b) const {
   return std::all_of(sides_.begin(), sides_.end(), [&](const Side& s) {
     const Side& first = *side_of(at_b ? s.at_b : s.at_a, at_b);

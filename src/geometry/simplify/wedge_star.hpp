@@ -15,8 +15,8 @@
 
 namespace meshfarm {
 
-/// What becomes of the texture coordinates on one side of an edge that collapses: the corners at
-/// either end that have the old ones get the new ones.
+/// The new texture coordinates on one side of an edge that collapses: the corners at either end
+/// that have the old ones get the new ones.
 struct WedgeMerge {
   Uv at_a{};
   Uv at_b{};
@@ -27,12 +27,12 @@ struct WedgeMerge {
 void merge_wedges(std::span<const WedgeMerge> merges, std::span<const CornerId> at_a,
                   std::span<const CornerId> at_b, std::span<CornerUvs> uvs);
 
-/// Texture coordinates as a linear function over the space round a triangle, or the sum of some.
-/// Relative to some place on the picture and a point in space.
+/// Texture coordinates as a linear function over the space around a triangle, or the sum of
+/// several. Relative to a place on the texture and a point in space.
 struct LinearUv {
   std::array<Vec3, 2> slope{};
   std::array<double, 2> at_origin{};
-  double weight = 0;  // area; less if steeper than what counts; 0 if there is no telling
+  double weight = 0;  // area; less if too steep; 0 if undefined
 
   struct Corners {
     Vec3 end, p, q;
@@ -45,7 +45,7 @@ struct LinearUv {
   }
 };
 
-/// Sums of such functions, weighted, and what they miss their mean by.
+/// Weighted sums of such functions, and of their deviations from the mean.
 struct LinearUvSums {
   double weight = 0;
   std::array<Vec3, 2> slopes{};
@@ -55,38 +55,39 @@ struct LinearUvSums {
   double squared_heights = 0;
 
   void add(const LinearUv& uv);
-  /// Weight x squared distance from the mean, as it is without what is linear or constant.
+  /// Weight x squared distance from the mean, without linear and constant terms.
   Quadric quadric() const;
-  /// The whole, in units of length.
+  /// Adds the whole, in units of length.
   void add_to(EdgeQuadric& edge, double scale) const;
   std::array<double, 2> mean_at(Vec3 x) const;
 };
 
-/// The texture coordinates round one edge, and what becomes of them when it collapses. Hoppe, "New
-/// Quadric Metric for Simplifying Meshes with Appearance Attributes" (1999): each triangle
-/// foretells those of the merged vertex. Inside a chart it gets the mean of what they foretell,
-/// weighted by area. On seams, and on borders, the merged vertex is one of the two, on all sides,
-/// so that it stays on its line on the pictures.
+/// The texture coordinates around one edge, and their values after its collapse. Hoppe, "New
+/// Quadric Metric for Simplifying Meshes with Appearance Attributes" (1999): each triangle predicts
+/// those of the merged vertex. Inside a chart, it gets the mean of the predictions, weighted by
+/// area. On seams and borders, the merged vertex is one of the two ends, on all sides, so that it
+/// stays on its line on the texture.
 class WedgeStar {
  public:
   enum class End : std::uint8_t { a, b };
 
-  /// `middle` is what positions are relative to.
+  /// Positions are relative to `middle`.
   void list(const CollapseState& state, std::uint32_t a, std::uint32_t b, Vec3 middle);
 
   /// Whether all corners at each end are one wedge.
   bool is_even() const { return is_even_; }
-  /// Where both ends are inside a chart: what a position costs.
+  /// If both ends are inside a chart: adds the cost of a position.
   void add_to(EdgeQuadric& edge);
-  /// And what the merged vertex has at x. False if it may not be: a triangle would be turned over
-  /// on the picture or lose its area there.
+  /// If both ends are inside a chart: puts the merged vertex at x. False if refused: a triangle
+  /// would be turned over on the texture or lose its area there.
   bool place(Vec3 x);
-  /// It is one of the ends. False also if the other end has a wedge that is on neither side.
+  /// Puts the merged vertex at one of the ends. False also if the other end has a wedge that is on
+  /// neither side.
   bool place_at(End end, Vec3 x);
-  /// Of the latter: what it costs.
+  /// The cost of the last place_at().
   double cost() const { return cost_; }
 
-  /// Of what was placed last.
+  /// For the last placement.
   std::span<const WedgeMerge> merges() const { return merges_; }
   void clear() { merges_.clear(); }
 

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
 //
-// Welding glues where scanners and exporters left a seam. Of surfaces that merely touch it would
-// make non-manifold vertices and edges; how to tell, and how to take such a vertex apart: Gueziec,
+// Welding closes the seams that scanners and exporters leave. Where surfaces merely touch, it would
+// make non-manifold vertices and edges. How to recognise such a vertex and split it: Gueziec,
 // Taubin, Lazarus, Horn, "Cutting and Stitching: Converting Sets of Polygons to Manifold Surfaces",
 // IEEE Transactions on Visualization and Computer Graphics 2001.
 #include <algorithm>
@@ -24,15 +24,15 @@ struct TwinCorner {
   std::uint32_t prev;
 };
 
-/// The same, by what the twins are a part of.
+/// The same, by the sheet that the twins belong to.
 struct SheetCorner {
   std::uint32_t sheet;
   std::uint32_t next;
   std::uint32_t prev;
 };
 
-/// The welded vertices whose twins may part: at each are the three triangles that a closed fan
-/// takes at least. In a soup of triangles there is none, and no more is looked at.
+/// The welded vertices whose twins may be separated: each twin has at least three triangles, the
+/// least for a closed fan. In a soup of triangles there are none, and nothing more is checked.
 std::vector<std::uint8_t> find_candidates(std::span<const Triangle> triangles,
                                           std::span<const std::uint32_t> open,
                                           const std::vector<std::uint32_t>& first) {

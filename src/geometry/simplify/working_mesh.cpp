@@ -15,12 +15,12 @@
 namespace meshfarm {
 namespace {
 
-// Walls are thin that are thinner than this share of an edge's length in the end. With 0.1 to 0.35
-// no more and no fewer triangles cross on scans.
+// Walls thinner than this share of the final edge length are thin. From 0.1 to 0.35, the number of
+// crossing triangles on scans is the same.
 constexpr double k_thin_share = 0.15;
-// Of an equilateral triangle, squared.
+// Squared edge length per area of an equilateral triangle.
 constexpr double k_edge_of_area = 2.31;
-// Where nobody knows how far it goes: no farther than that.
+// The maximum reduction assumed, as nobody knows the final one.
 constexpr double k_most_at_once = 64;
 
 bool has_three_corners(const Triangle& t) {
@@ -168,7 +168,8 @@ void WorkingMesh::compact() {
   mesh_.triangles.resize(left);
 }
 
-/// By themselves, so that meshes without them do not even ask. While the targets are old numbers.
+/// Separate, so that meshes without appearances do not even ask. Must run while the targets are old
+/// numbers.
 void WorkingMesh::compact_appearances() {
   if (mesh_.appearances.empty()) return;
   std::uint32_t kept = 0;
@@ -179,7 +180,8 @@ void WorkingMesh::compact_appearances() {
   mesh_.appearances.resize(kept);
 }
 
-/// The same of columns, while the targets are new numbers, and the triangles' corners old ones.
+/// The same for columns. Must run while the targets are new numbers and the triangles' corners old
+/// ones.
 void WorkingMesh::compact_columns() {
   if (mesh_.columns.empty()) return;
   std::size_t left = 0;
@@ -196,7 +198,7 @@ void WorkingMesh::move_vertex(std::uint32_t from, std::uint32_t to) {
   flags_[to] = flags_[from];
 }
 
-/// The first ones.
+/// Keeps the first `count` vertices.
 void WorkingMesh::keep_vertices(std::uint32_t count) {
   resize_vertices(mesh_, count);
   flags_.resize(count);

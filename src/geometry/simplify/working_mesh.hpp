@@ -19,7 +19,7 @@ namespace meshfarm {
 
 class CollapseQueue;
 
-/// A mesh that is being simplified: clean, its vertices flagged, without unused vertices but the
+/// A mesh that is being simplified: clean, its vertices flagged, without unused vertices except the
 /// locked ones. A pass merges vertices, each at most once, and then compacts the mesh.
 class WorkingMesh {
  public:
@@ -37,27 +37,28 @@ class WorkingMesh {
   double uv_scale() const { return uv_scale_; }
   bool seam_only() const { return seam_only_; }
   bool avoids_crossings() const { return avoids_crossings_; }
-  /// Where crossings are avoided, without a bound and a seam, until the queue begins.
+  /// Found where crossings are avoided, without a bound and a seam; kept until the queue begins.
   const SmallPieces& pieces() const { return pieces_; }
-  /// Once the passes have ended.
+  /// Restores the shape of small pieces, once the passes have ended.
   void restore_pieces();
   const Dropped& dropped() const { return dropped_; }
-  /// Those that no locked vertex has.
+  /// Triangles without a locked vertex.
   std::uint64_t free_triangles() const;
   bool has_free_border() const;
-  /// Whether there are more triangles than the goal's, and some edge may go. The last one too many
-  /// goes as may_lose_one says, at whatever cost: it may stay where another goal follows.
+  /// Whether there are more triangles than the goal's, and some edge may go. If there is just one
+  /// too many, it goes only where may_lose_one() allows it, at whatever cost; it may stay where
+  /// another goal follows.
   bool is_above(const SimplifyGoal& goal) const;
-  /// 1 a vertex that is, or was merged from, a seam vertex; empty without a seam.
+  /// 1 for each vertex that is, or was merged from, a seam vertex, else 0; empty without a seam.
   std::vector<std::uint8_t> seam() const;
 
-  /// Where crossings are avoided: flags as k_thin what another sheet may be near to. `last` is how
-  /// many triangles will be left when all is done, `bound` how far the surface may move or 0.
-  /// Returns how near that is, else 0.
+  /// Where crossings are avoided: flags as k_thin the vertices that another sheet may be near to.
+  /// `last` is the number of triangles left when all is done, `bound` how far the surface may move,
+  /// or 0. Returns the distance that counts as near; 0 where crossings are allowed.
   double flag_thin_walls(std::uint64_t last, double bound);
 
   void begin_pass();
-  /// Of the pass that has begun.
+  /// The state of the pass that has begun.
   CollapseState state();
   /// Whether a vertex took part in a collapse of this pass.
   std::span<const std::uint8_t> touched() const { return touched_; }
@@ -65,10 +66,10 @@ class WorkingMesh {
              const MergedColumns& columns);
   /// `removed`: how many triangles have gone; `cost`: what the pass might pay.
   void end_pass(std::uint64_t removed, double cost);
-  /// After a pass that has removed triangles: the new number of each vertex, or that of the one it
-  /// has merged into, which is smaller than those of all that stay and follow.
+  /// After a pass that has removed triangles: the new number of each vertex, or of the vertex it
+  /// has merged into, which is smaller than those of all later vertices that stay.
   std::span<const std::uint32_t> numbers() const { return target_; }
-  /// Becomes what the queue has made of it.
+  /// Takes over what the queue has made of the mesh.
   void take(const CollapseQueue& queue);
 
   /// The greatest cost paid so far.
