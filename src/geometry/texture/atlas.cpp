@@ -14,9 +14,10 @@
 namespace meshfarm {
 namespace {
 
-/// How much of the picture charts will have, about.
+/// Expected share of the picture that charts cover.
 constexpr double k_usual_coverage = 0.5;
-/// A chart of fewer texels, for each of the margin squared, costs more in margins than it is worth.
+/// A chart with fewer texels than this times the margin squared costs more in margins than it is
+/// worth.
 constexpr double k_tiny_texels = 16;
 
 using PointOnPicture = std::array<float, 2>;
@@ -53,7 +54,8 @@ void put_charts(std::span<const FlatChart> charts, const Packing& packing, std::
   atlas.coverage = texels / (static_cast<double>(side) * side);
 }
 
-/// A triangle without a chart lies in a point of one that it shares a vertex with, or of any.
+/// Maps a triangle without a chart to a point of a triangle that it shares a vertex with, or of
+/// any.
 void put_rest(const Mesh& mesh, Atlas& atlas) {
   if (std::find(atlas.chart_of.begin(), atlas.chart_of.end(), k_no_chart) == atlas.chart_of.end()) {
     return;

@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
 //
-// Regions grow from seeds by the shortest way, which is longer over triangles whose normals are far
-// from the axis; then each chart's middle becomes its seed and all grow again, as in Cohen-Steiner
-// et al., Variational Shape Approximation (2004).
+// Regions grow from seeds along shortest paths, where triangles count as longer the farther their
+// normals are from the axis. Then each chart's middle becomes its seed and all regions grow again,
+// as in Cohen-Steiner et al., Variational Shape Approximation (2004).
 #include "geometry/texture/atlas_charts.hpp"
 
 #include <algorithm>
@@ -20,7 +20,7 @@ namespace {
 /// A chart grows over normals within 50 degrees of its axis.
 constexpr double k_growth_cosine = 0.643;
 constexpr int k_rounds = 3;
-/// How much longer a way is where the normals deviate: by this times 1 - cosine.
+/// Path lengths grow by this times 1 - cosine of the normals' deviation.
 constexpr double k_deviation_weight = 6;
 
 Vec3 unit(Vec3 v) {
@@ -38,7 +38,7 @@ struct Step {
   double way;
   std::uint32_t triangle;
   std::uint32_t chart;
-  /// The shortest way is the greatest for std::priority_queue.
+  /// Reversed, so that std::priority_queue yields the shortest path.
   friend bool operator<(const Step& a, const Step& b) {
     return std::tie(a.way, a.triangle, a.chart) > std::tie(b.way, b.triangle, b.chart);
   }
@@ -49,7 +49,8 @@ class Growth {
   explicit Growth(const ChartSurface& surface)
       : surface_(surface), chart_of_(surface.triangles(), k_no_chart) {}
 
-  /// All seeds at once, each along its axis; then charts for what none of them reaches.
+  /// Grows all seeds at once, each along its axis; then adds charts for triangles that none of them
+  /// reaches.
   Charts grow(std::span<const Seed> seeds) {
     for (const Seed& seed : seeds) start(seed);
     run([this](std::uint32_t chart) { return axes_[chart]; });
@@ -65,7 +66,7 @@ class Growth {
     axes_.push_back(seed.axis);
   }
 
-  /// The axis follows the mean of the normals.
+  /// Grows one chart whose axis follows the mean of its normals.
   void grow_alone(std::uint32_t triangle) {
     start({triangle, surface_.normals[triangle]});
     Vec3 sum;
@@ -100,7 +101,7 @@ class Growth {
     steps_.push({from.way + apart * (1 + k_deviation_weight * turn), next, from.chart});
   }
 
-  /// 1 - the cosine. A triangle without area fits everywhere.
+  /// 1 - cosine. A triangle without area fits everywhere.
   double deviation(std::uint32_t triangle, Vec3 axis) const {
     return surface_.areas[triangle] > 0 ? 1 - dot(surface_.normals[triangle], axis) : 0;
   }

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
 //
-// Charts: connected regions of triangles whose normals lie in a cone, so that a projection along
-// its axis turns no triangle over.
+// Charts: connected regions of triangles whose normals lie within a cone, so that projection along
+// its axis flips no triangle.
 #pragma once
 
 #include <cstdint>
@@ -15,7 +15,7 @@
 
 namespace meshfarm {
 
-/// What charts are made from: of each triangle its links, normal, area and centre.
+/// Input for making charts: links, normal, area and centre of each triangle.
 struct ChartSurface {
   const Mesh& mesh;
   std::vector<Vec3> normals;  // of length 1; 0 without an area
@@ -48,16 +48,17 @@ struct Charts {
   std::uint32_t count = 0;
 };
 
-/// A direction for a chart with these triangles: the mean of their normals by area, moved if need
-/// be so that all have at least the cosine `least` with it. 0 if there is no such direction.
+/// An axis for a chart with these triangles: the area-weighted mean of their normals, moved if
+/// necessary so that each normal's cosine with it is at least `least`. 0 if there is no such axis.
 Vec3 chart_axis(const ChartSurface& surface, std::span<const std::uint32_t> triangles,
                 double least);
 
-/// The cosine that each normal of a chart has with its axis, at least: what chart_axis() is asked
-/// for in the end.
+/// The final lower limit for the cosine of a chart's normals with its axis, as passed to
+/// chart_axis().
 inline constexpr double k_least_cosine = 0.17;
 
-/// Divides the surface. Charts of an area below `tiny_area` are joined with others where they can.
+/// Divides the surface into charts. Charts with an area below `tiny_area` are joined with others
+/// where possible.
 Charts make_charts(const ChartSurface& surface, double tiny_area);
 
 /// One step of make_charts(): joins charts with neighbours.

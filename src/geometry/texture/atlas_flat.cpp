@@ -50,7 +50,7 @@ TurnedBox smallest_box(const std::vector<Flat>& hull) {
   constexpr std::size_t k_most_sides = 256;
   TurnedBox best;
   for (const Flat& p : hull) best.box.add(p);
-  // Of equal boxes the squarest is easiest to pack.
+  // Among equal boxes, the squarest is easiest to pack.
   const auto cost = [](const FlatBox& box) {
     const Flat size = box.hi - box.lo;
     return size.x * size.y + 0.01 * std::max(size.x * size.x, size.y * size.y);
@@ -67,7 +67,7 @@ TurnedBox smallest_box(const std::vector<Flat>& hull) {
   return best;
 }
 
-/// The frame that a chart is projected to.
+/// The frame onto which a chart is projected.
 struct Plane {
   Vec3 origin, u, v;
 
@@ -82,7 +82,7 @@ Plane plane_across(Vec3 axis, Vec3 origin) {
   return {origin, unit, cross(axis, unit)};
 }
 
-/// Lays one chart flat, in as many pieces as it takes.
+/// Flattens one chart, into as many pieces as necessary.
 class Flattener {
  public:
   Flattener(const ChartSurface& surface, std::span<const std::uint32_t> triangles)
@@ -122,7 +122,7 @@ class Flattener {
     return made;
   }
 
-  /// Where no direction fits all.
+  /// For charts where no direction suits all triangles: projects each along its own normal.
   void project_each() {
     for (const std::uint32_t t : triangles_) {
       const Vec3 axis = surface_.areas[t] > 0 ? surface_.normals[t] : Vec3{0, 0, 1};
@@ -143,8 +143,8 @@ class Flattener {
     }
   }
 
-  /// Takes what can be reached from a triangle without overlapping what has been taken, in the
-  /// order of the steps.
+  /// Takes the triangles that can be reached from `first` without overlapping those already taken,
+  /// breadth-first.
   void take_piece(std::uint32_t first, const FlatOverlaps& overlaps) {
     const std::uint32_t piece = pieces_++;
     std::deque<std::uint32_t> open{first};
@@ -161,7 +161,7 @@ class Flattener {
     }
   }
 
-  /// Of a triangle of the mesh among this chart's, which are in order.
+  /// The index of a triangle of the mesh among this chart's triangles, which are sorted.
   std::uint32_t index_of(std::uint32_t triangle) const {
     const auto found = std::lower_bound(triangles_.begin(), triangles_.end(), triangle);
     if (found == triangles_.end() || *found != triangle) return k_none;

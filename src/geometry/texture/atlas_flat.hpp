@@ -10,12 +10,12 @@
 
 namespace meshfarm {
 
-/// A chart laid flat: its area is that of the surface.
+/// A flattened chart: its area equals that of the surface.
 struct FlatChart {
   std::vector<std::uint32_t> triangles;
   std::vector<FlatTriangle> corners;         // of each triangle; no two overlap
-  std::vector<std::array<Flat, 2>> outline;  // the sides that no two of its triangles share
-  Flat size;                                 // of its box, from (0, 0) on
+  std::vector<std::array<Flat, 2>> outline;  // sides that belong to only one triangle
+  Flat size;                                 // of its box, which starts at (0, 0)
 };
 
 /// Projects each chart along its axis, and turns it to the smallest box. A chart that would overlap

@@ -39,7 +39,7 @@ std::optional<Gap> Gaps::take(Size size) {
   gaps_.pop_back();
   const auto [width, height] = size;
   const int wide = gap.width - width, high = gap.height - height;
-  // The larger of the two rests is left whole.
+  // Keep the larger of the two remainders whole.
   const bool is_beside = wide > high;
   add({gap.x + width, gap.y, wide, is_beside ? gap.height : height});
   add({gap.x, gap.y + height, is_beside ? width : gap.width, high});
@@ -67,7 +67,7 @@ Horizon::Spot Horizon::best_spot(const Profile& shape) {
   return best_between(shape, 0, places);
 }
 
-/// Of the first columns begin to end.
+/// The best spot with a first column from `begin` to `end`.
 Horizon::Spot Horizon::best_between(const Profile& shape, std::size_t begin, std::size_t end) {
   const std::size_t width = shape.low.size();
   const std::size_t places = end - begin;
@@ -88,7 +88,7 @@ Horizon::Spot Horizon::best_between(const Profile& shape, std::size_t begin, std
   for (std::size_t x = 0; x < places; ++x) {
     const int y = rest_[x];
     if (y + shape.top <= side_) {
-      // Low is good, and so is little room below, in the mean over the columns.
+      // Prefer low spots, and little wasted room below, averaged over the columns.
       const double lost = static_cast<double>(shape.low_sum - below) / columns + y;
       const double score = y + shape.top + 0.5 * lost;
       if (score < best.score) best = {score, begin + x, y};
@@ -107,7 +107,7 @@ void Horizon::put(const Profile& shape, const Spot& spot, Gaps& gaps) {
   for (std::size_t b = spot.column / k_block; b * k_block < end; ++b) set_block(b);
 }
 
-/// Between the horizon and the shape: the largest box, then those to its sides.
+/// Adds the gaps between the horizon and the shape: the largest box, then those at its sides.
 void Horizon::add_gaps(const Profile& shape, const Spot& spot, Gaps& gaps) const {
   struct Columns {
     std::size_t begin, end;

@@ -17,7 +17,7 @@ struct Gap {
   int x = 0, y = 0, width = 0, height = 0;
 };
 
-/// Boxes that are free below what lies on the horizon.
+/// Free boxes below the horizon.
 class Gaps {
  public:
   struct Size {
@@ -27,9 +27,9 @@ class Gaps {
   explicit Gaps(int least) : least_(least) {}
   void add(const Gap& gap);
   std::size_t size() const { return gaps_.size(); }
-  /// A corner of the gap that a box of this size fits best; what is left of it stays free.
+  /// A corner of the gap that best fits a box of this size; the rest of the gap stays free.
   std::optional<Gap> take(Size size);
-  /// How well the box would fit: the lower the better; HUGE_VAL if it does not.
+  /// How badly the box would fit: lower is better; HUGE_VAL if it does not fit.
   double waste(Size size) const;
 
  private:
@@ -42,7 +42,7 @@ class Gaps {
 /// The top of what lies in each column of a picture.
 class Horizon {
  public:
-  /// Hasty: narrow shapes are looked for only round where the horizon is lowest.
+  /// `is_hasty`: for narrow shapes, search only near the lowest part of the horizon.
   Horizon(std::uint32_t side, std::uint32_t column, bool is_hasty);
 
   struct Spot {
@@ -50,13 +50,13 @@ class Horizon {
     std::size_t column = 0;
     int y = 0;
   };
-  /// Where the shape lies best; its score is infinite if it does not fit.
+  /// The best spot for the shape; its score is infinite if the shape does not fit.
   Spot best_spot(const Profile& shape);
-  /// Puts it there. What it shuts off from above goes to the gaps.
+  /// Places the shape there. Space that it closes off from above is added to the gaps.
   void put(const Profile& shape, const Spot& spot, Gaps& gaps);
 
  private:
-  static constexpr std::size_t k_block = 16;   // columns of which the lowest is known
+  static constexpr std::size_t k_block = 16;   // columns that share a minimum
   static constexpr std::size_t k_window = 64;  // columns
 
   void set_block(std::size_t block);
@@ -69,7 +69,7 @@ class Horizon {
   bool is_hasty_;
   std::vector<Height> top_;
   std::vector<Height> blocks_;  // the lowest of each
-  std::vector<Height> rest_;    // where a shape would lie, for each first column
+  std::vector<Height> rest_;    // height at which a shape would lie, per first column
 };
 
 }  // namespace meshfarm

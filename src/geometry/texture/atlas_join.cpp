@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
 //
-// Charts, the smallest first, are joined with the neighbour that they have the longest border with,
-// if the normals of both lie in one cone: a wider one for tiny charts, which would cost more in
-// margins than their triangles lose by the projection.
+// Charts, the smallest first, are joined with the neighbour with which they share the longest
+// border, if the normals of both lie within one cone. The cone is wider for tiny charts, which
+// would waste more in margins than their triangles lose by the projection.
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -19,7 +19,7 @@ namespace {
 
 constexpr double k_join_cosine = 0.574;       // 55 degrees
 constexpr double k_tiny_join_cosine = 0.259;  // 75 degrees
-/// Charts that are not tiny share at least this part of the smaller one's border.
+/// Charts that are not tiny must share at least this part of the smaller one's border.
 constexpr double k_least_shared = 0.2;
 
 class Joiner {
@@ -51,7 +51,7 @@ class Joiner {
     double border = 0;                           // all of it
     double area = 0;
     Vec3 normals;        // summed by area
-    double spread = -1;  // no normal has a lower cosine with the axis; -1: not known
+    double spread = -1;  // lowest cosine of a normal with the axis; -1: unknown
   };
 
   static double cosine_of_sum(double a, double b) {
@@ -84,7 +84,7 @@ class Joiner {
     return all > 0 ? normals * (1 / all) : Vec3{};
   }
 
-  /// May end early if it is below `enough`.
+  /// May stop early once it is below `enough`.
   double lowest_cosine(const Item& item, Vec3 axis, double enough) const {
     double lowest = 1;
     for (const std::uint32_t t : item.triangles) {
@@ -95,8 +95,7 @@ class Joiner {
     return lowest;
   }
 
-  /// The cosine that the normals of a chart have with another axis, at least: a bound where that
-  /// suffices.
+  /// The lowest cosine of a chart's normals with another axis, or a lower bound if that suffices.
   double spread_about(const Item& item, Vec3 axis, double enough) const {
     const double turned = std::clamp(dot(axis_of(item.normals), axis), -1.0, 1.0);
     if (item.spread > 0 && turned > 0) {
@@ -130,7 +129,7 @@ class Joiner {
     return true;
   }
 
-  /// The one with more triangles takes the other.
+  /// The chart with more triangles absorbs the other.
   void unite(std::uint32_t a, std::uint32_t b, double spread) {
     if (list_[a].triangles.size() < list_[b].triangles.size()) std::swap(a, b);
     Item& to = list_[a];

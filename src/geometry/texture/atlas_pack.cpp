@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
 //
-// Shapes are let down, the largest first, onto a horizon: the top of what lies in each column. Each
-// goes where it comes to lie lowest and leaves least room below it, turned as is best for that
-// (Levy et al., Least Squares Conformal Maps, 2002, section 4).
+// Shapes are lowered, the largest first, onto a horizon: the top of what lies in each column. Each
+// shape goes where it lies lowest and wastes least room below it, in the best of its four
+// orientations (Levy et al., Least Squares Conformal Maps, 2002, section 4).
 #include "geometry/texture/atlas_pack.hpp"
 
 #include <algorithm>
@@ -39,12 +39,12 @@ class Packer {
   }
 
  private:
-  /// Of the picture, that shapes must have for their margins to be kept.
+  /// Least share of the picture that shapes must cover for their margins to be kept.
   static constexpr double k_least_share = 0.1;
   static constexpr double k_close_enough = 1.004;
-  /// Of the picture, that boxes have, about.
+  /// Approximate share of the picture that boxes cover.
   static constexpr double k_usual_fill = 0.9;
-  /// Steps of the inner loop for one trial.
+  /// Inner loop steps per trial.
   static constexpr double k_most_work = 4e8;
   static constexpr std::uint32_t k_widest_column = 4;
   static constexpr std::size_t k_many = 8000;
@@ -54,7 +54,7 @@ class Packer {
   double side() const { return options_.side; }
   double share_of(double scale) const { return scale * scale * options_.area / (side() * side()); }
 
-  /// The scale at which the boxes with their margins have a share of the picture.
+  /// The scale at which the boxes with their margins cover this share of the picture.
   double scale_at_share(std::uint32_t margin, double share) const {
     double low = 0, high = 2 * side() / std::sqrt(options_.area);
     for (int i = 0; i < 50; ++i) {
@@ -139,7 +139,7 @@ class Packer {
             static_cast<std::uint16_t>(shape.height())};
   }
 
-  /// By its box.
+  /// Fits the shape into a gap by its box.
   static std::optional<PackPlace> in_gap(const ShapeProfiles& shape, Gaps& gaps) {
     const Gaps::Size upright{shape.width(), shape.height()}, turned{shape.height(), shape.width()};
     const bool is_turned = gaps.waste(turned) < gaps.waste(upright);
@@ -148,7 +148,7 @@ class Packer {
     return placed_at(shape, is_turned ? 1 : 0, gap->x, gap->y);
   }
 
-  /// Of no width if it does not fit.
+  /// The width is 0 if the shape does not fit.
   static PackPlace on_horizon(const ShapeProfiles& shape, std::uint32_t column, Horizon& horizon,
                               Gaps& gaps) {
     Profile now, chosen;
@@ -167,7 +167,7 @@ class Packer {
     return placed_at(shape, best_turn, static_cast<int>(best.column * column), best.y);
   }
 
-  /// More shapes than texels: each lies in one, several in some.
+  /// For more shapes than texels: each shape lies in one texel, and texels hold several.
   Packing heaped() const {
     double largest = 0;
     for (const PackShape& shape : shapes_) largest = std::max(largest, longest(shape));

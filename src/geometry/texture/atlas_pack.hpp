@@ -11,13 +11,13 @@
 
 namespace meshfarm {
 
-/// What is packed: a shape in a box from (0, 0) on, by its outline.
+/// A shape to pack: its outline in a box from (0, 0) on.
 struct PackShape {
   Flat size;
   std::span<const std::array<Flat, 2>> outline;
 };
 
-/// Where a shape has come to lie.
+/// Where a shape was placed.
 struct PackPlace {
   std::uint8_t quarter_turns = 0;       // counter-clockwise, of the box with its margins
   std::uint16_t x = 0, y = 0;           // of the turned box, in texels
@@ -25,7 +25,7 @@ struct PackPlace {
 };
 
 struct Packing {
-  double scale = 0;  // texels a unit
+  double scale = 0;  // texels per unit
   std::uint32_t margin = 0;
   std::vector<PackPlace> places;
 
@@ -36,12 +36,12 @@ struct Packing {
 struct PackOptions {
   std::uint32_t side = 0;    // texels of the picture
   std::uint32_t margin = 0;  // texels round each shape
-  double area = 0;           // of all shapes, without what is between
+  double area = 0;           // of all shapes, without gaps
 };
 
-/// Puts the shapes at the greatest scale, about, at which they fit, turned by quarters, with their
-/// margins clear of each other. Takes a smaller margin where the shapes are so many that little but
-/// margins would fit; 0 with shapes that overlap if it must.
+/// Packs the shapes at about the greatest scale at which they fit, turned by quarter turns, with
+/// their margins not overlapping. If there are so many shapes that little but margins would fit,
+/// uses a smaller margin; if unavoidable, margin 0 with overlapping shapes.
 Packing pack_shapes(std::span<const PackShape> shapes, const PackOptions& options);
 
 }  // namespace meshfarm

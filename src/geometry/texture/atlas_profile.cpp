@@ -59,7 +59,7 @@ std::size_t ShapeProfiles::columns(double texels) const {
   return static_cast<std::size_t>(std::ceil(std::max(texels, 1.0) / raster_.column));
 }
 
-/// All that is within the margin of a side, by its two axes alone.
+/// Adds what is within the margin of a side, measured along the two axes separately.
 void ShapeProfiles::add_side(Flat a, Flat b, Profile& to) const {
   if (a.x > b.x) std::swap(a, b);
   const double margin = raster_.margin, column = raster_.column;

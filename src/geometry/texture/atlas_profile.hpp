@@ -10,9 +10,9 @@
 
 namespace meshfarm {
 
-using Height = std::int16_t;  // texels: a picture has at most 16,384 a side
+using Height = std::int16_t;  // texels: a picture has at most 16,384 per side
 
-/// A shape with its margins, in one turn: for each column of some texels the range that it takes.
+/// A shape with its margins, in one orientation: the range that it covers in each column of texels.
 struct Profile {
   std::vector<Height> low;
   std::vector<Height> high;
@@ -23,17 +23,17 @@ struct Profile {
 struct Raster {
   double scale = 0;
   std::uint32_t margin = 0;
-  std::uint32_t column = 1;  // texels a column
+  std::uint32_t column = 1;  // texels per column
 };
 
-/// The profiles of a shape from its four sides.
+/// The profiles of a shape in its four orientations.
 class ShapeProfiles {
  public:
   /// False if the shape is larger than the picture.
   bool measure(const PackShape& shape, const Raster& raster, std::uint32_t side);
   int width() const { return width_; }
   int height() const { return height_; }
-  /// Of the shape turned by so many quarters.
+  /// The profile of the shape, turned by this many quarters.
   void turn(int quarters, Profile& to) const;
 
  private:

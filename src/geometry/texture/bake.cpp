@@ -18,13 +18,13 @@
 namespace meshfarm {
 namespace {
 
-constexpr std::uint32_t k_tile = 64;  // texels a side that are painted together
-/// Beside a triangle lower than this, in texels, its plane tells nothing of the surface.
+constexpr std::uint32_t k_tile = 64;  // texels per side that are painted together
+/// Outside a triangle lower than this, in texels, its plane does not represent the surface.
 constexpr double k_least_height = 0.25;
 
 using TexelCorners = std::array<double, 3>;
 
-/// The corners' shares in a point, which may lie outside.
+/// The corners' shares at a point, which may lie outside.
 std::optional<TexelCorners> plane_shares(Flat p, const FlatTriangle& t) {
   const double all = doubled_area(t);
   const double longest = std::max({length(t[1] - t[0]), length(t[2] - t[1]), length(t[0] - t[2])});
@@ -34,19 +34,19 @@ std::optional<TexelCorners> plane_shares(Flat p, const FlatTriangle& t) {
   return TexelCorners{1 - of_b - of_c, of_b, of_c};
 }
 
-/// The corners' shares in the triangle's nearest point.
+/// The corners' shares at the triangle's nearest point.
 TexelCorners inner_shares(Flat p, const FlatTriangle& t) {
   return nearest_shares({p.x, p.y, 0}, {t[0].x, t[0].y, 0}, {t[1].x, t[1].y, 0},
                         {t[2].x, t[2].y, 0});
 }
 
-/// Points of one tile that wait for their colours, `samples * samples` of each texel.
+/// Points of one tile that wait for their colours, `samples * samples` per texel.
 struct Asked {
   std::vector<Vec3> points;
   std::vector<Vec3> normals;
 };
 
-/// Paints one tile of the picture after the other.
+/// Paints the picture tile by tile.
 class Baker {
  public:
   Baker(const BakeSurface& surface, const BakeOptions& options, const ColoursAt& colours_at)
@@ -161,7 +161,7 @@ class Baker {
     return values[a] * shares[0] + values[b] * shares[1] + values[c] * shares[2];
   }
 
-  /// The blend of the vertices' normals, if it is on the triangle's side; else the triangle's own.
+  /// The interpolated vertex normal, if it is on the triangle's side; otherwise the triangle's own.
   Vec3 normal_at(const TexelCorners& shares, std::uint32_t triangle) const {
     const auto [a, b, c] = surface_.triangles[triangle];
     const Vec3 p = surface_.positions[a];
@@ -172,7 +172,7 @@ class Baker {
     return all > 0 ? chosen * (1 / all) : Vec3{};
   }
 
-  /// Asks for the colours, and leaves nothing to ask for.
+  /// Asks for the colours of all waiting points, and clears `asked`.
   void paint(Asked& asked, BakedTexels& made) const {
     if (asked.points.empty()) return;
     std::vector<BakedColour> colours(asked.points.size());

@@ -11,7 +11,7 @@
 namespace meshfarm {
 namespace {
 
-constexpr std::uint32_t k_chunk_cell = 32;  // texels a side
+constexpr std::uint32_t k_chunk_cell = 32;  // texels per side
 
 std::uint64_t rounded_up(double x) {
   return static_cast<std::uint64_t>(std::ceil(x));
@@ -31,7 +31,8 @@ BakeChunks::BakeChunks(const Mesh& mesh, std::span<const CornerUvs> uvs,
   sort_into_cells();
 }
 
-/// Into chunks of about the same work: a triangle takes that of a few texels beside its own.
+/// Divides into chunks of about equal work: a triangle costs as much as a few texels in addition to
+/// its own.
 void BakeChunks::divide() {
   constexpr double k_texels_of_triangle = 4;
   order_ = along_a_curve(mesh_);
@@ -101,7 +102,7 @@ std::span<const std::uint32_t> BakeChunks::own(std::size_t chunk) const {
   return std::span(order_).subspan(begin, ends_[chunk] - begin);
 }
 
-/// The chunk's own triangles, and all that its texels may be nearer to or may have been on their
+/// The chunk's own triangles, and all that its texels may be nearer to, or may have passed on their
 /// way to an owner: those within twice the margin. Ascending.
 std::vector<std::uint32_t> BakeChunks::with_neighbours(std::size_t chunk) const {
   const double margin = 2 * (options_.margin_texels + 1.0);

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
 //
-// Gortler et al., The Lumigraph (1996), section 3.4: means are pulled up a pyramid of pictures,
-// each of half the side, and pushed down again to where there was nothing.
+// Pull-push (Gortler et al., The Lumigraph, 1996, section 3.4): means are pulled up a pyramid of
+// pictures, each with half the side length, and pushed down again to where there was nothing.
 #include "geometry/texture/bake_fill.hpp"
 
 #include <algorithm>
@@ -59,7 +59,7 @@ Level half_of(const Level& fine, unsigned threads) {
   return made;
 }
 
-/// Blends the four nearest of the coarser level, as if between their centres.
+/// Interpolates between the centres of the four nearest texels of the coarser level.
 Texel blend_at(const Level& coarse, std::uint32_t x, std::uint32_t y) {
   const auto beside = [&coarse](std::uint32_t at) {
     const std::uint32_t half = at / 2;

@@ -8,9 +8,9 @@
 
 namespace meshfarm {
 
-/// Gives each texel of a square picture that is not set a blend of what is set round it, by the
-/// means of squares of 2, 4, 8, ... texels. `is_set`: one a texel. Without any that is set all
-/// become grey.
+/// Fills each texel of a square picture that is not set with a blend of the set texels round it, by
+/// the means of squares of 2, 4, 8, ... texels. `is_set`: one per texel. If none is set, all become
+/// grey.
 void fill_texels(std::vector<std::array<std::uint8_t, 3>>& texels,
                  std::vector<std::uint8_t>& is_set, std::uint32_t side, unsigned threads);
 

@@ -88,7 +88,7 @@ void TexelOwners::grow() {
   }
 }
 
-/// Of the eight texels round this one.
+/// The nearest of the owners of the eight texels round this one.
 std::uint32_t TexelOwners::nearest_owner(std::uint32_t x, std::uint32_t y,
                                          const std::vector<std::uint32_t>& owners) const {
   const Flat p{x + 0.5, y + 0.5};

@@ -14,7 +14,7 @@
 namespace meshfarm {
 namespace {
 
-/// A vertex of more triangles is none that matters.
+/// Vertices with more triangles are ignored.
 constexpr std::size_t k_most_triangles = 1024;
 
 constexpr std::uint32_t k_no_column = SeamGraph::k_none;
@@ -25,8 +25,8 @@ struct LineEdge {
   std::array<std::uint32_t, 2> triangles;  // the second may be k_no_column
 };
 
-/// Calls take(i, k) for the edges from a vertex: the corner that ends there and the one that
-/// begins; one of them is the fan's size where there is none.
+/// Calls take(i, k) for the edges from a vertex: i is the corner that ends at the edge, k the one
+/// that begins there; either is the fan's size if there is none.
 template <typename Take>
 void for_edges(const CornerFan& fan, const Take& take) {
   const std::size_t size = fan.corners.size();
@@ -60,7 +60,7 @@ class GraphBuilder {
     number_charts();
     for (std::uint32_t i = 0; i < inner_edges_.size(); ++i) {
       SeamGraph::Chart& chart = graph_.charts[chart_at(i)];
-      // Of vertices - edges + triangles, an edge a side but for those within.
+      // Of vertices - edges + triangles: one edge per side, but inner edges are shared.
       chart.euler += inner_edges_[i] - 2;
       ++chart.triangles;
     }
@@ -113,7 +113,7 @@ class GraphBuilder {
     return chart_numbers_[chart_of_.find(triangle)];
   }
 
-  /// A chart has a vertex as often as it comes there from another side.
+  /// Counts a vertex for each chart as often as the chart's rim visits it.
   void count_sides(std::uint32_t vertex) {
     const CornerFan fan = fan_at(vertex);
     const std::size_t size = fan.corners.size();
@@ -181,9 +181,9 @@ class GraphBuilder {
   std::span<const Vec3> positions_;
   Adjacency adjacency_;
   UnionFind chart_of_;                        // sets of triangles
-  std::vector<std::uint32_t> chart_numbers_;  // of the sets, at the triangle that names each
-  std::vector<std::uint8_t> inner_edges_;     // some of each triangle's
-  std::vector<std::uint32_t> corner_;         // its number, of each vertex
+  std::vector<std::uint32_t> chart_numbers_;  // of the sets, at their representative triangles
+  std::vector<std::uint8_t> inner_edges_;     // those assigned to each triangle
+  std::vector<std::uint32_t> corner_;         // the corner number of each vertex
   std::vector<std::uint8_t> is_on_line_;
   std::vector<LineEdge> edges_;
   SeamGraph graph_;

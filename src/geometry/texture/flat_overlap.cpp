@@ -7,9 +7,9 @@
 namespace meshfarm {
 namespace {
 
-/// Of the size of all.
+/// Relative to the total size.
 constexpr double k_slack = 1e-9;
-constexpr double k_most_cells = 4096;  // a side
+constexpr double k_most_cells = 4096;  // per side
 
 }  // namespace
 
@@ -64,7 +64,7 @@ FlatOverlaps::Range FlatOverlaps::cells_of(std::uint32_t triangle) const {
           cell_at(box.hi.x - box_.lo.x, columns_), cell_at(box.hi.y - box_.lo.y, rows_)};
 }
 
-/// Whether a side of the triangle has the whole cell on its outer side.
+/// Whether the whole cell lies on the outer side of a side of the triangle.
 bool FlatOverlaps::cell_is_clear(std::uint32_t triangle, std::uint32_t x, std::uint32_t y) const {
   const FlatTriangle& t = triangles_[triangle];
   const double cell = 1 / per_cell_;
@@ -72,14 +72,14 @@ bool FlatOverlaps::cell_is_clear(std::uint32_t triangle, std::uint32_t x, std::u
   const double side = cell + 2 * slack_;
   for (std::size_t k = 0; k < 3; ++k) {
     const Flat along = t[(k + 1) % 3] - t[k];
-    // The corner that is farthest inwards.
+    // The innermost corner.
     const Flat corner{along.y < 0 ? lo.x + side : lo.x, along.x > 0 ? lo.y + side : lo.y};
     if (cross(along, corner - t[k]) < 0) return true;
   }
   return false;
 }
 
-/// Whether a side of a has all of b on its outer side.
+/// Whether all of b lies on the outer side of a side of a.
 bool FlatOverlaps::is_clear(const FlatTriangle& a, const FlatTriangle& b) const {
   for (std::size_t k = 0; k < 3; ++k) {
     const Flat along = a[(k + 1) % 3] - a[k];

@@ -10,13 +10,13 @@
 
 namespace meshfarm {
 
-/// Finds which triangles of a plane overlap, by a grid of cells. Triangles must be counter-
-/// clockwise; those without an area overlap nothing. What touches does not overlap.
+/// Finds overlapping triangles in a plane, using a grid of cells. Triangles must be
+/// counter-clockwise; those without an area overlap nothing. Touching is not overlapping.
 class FlatOverlaps {
  public:
   explicit FlatOverlaps(std::span<const FlatTriangle> triangles);
 
-  /// Whether no two overlap.
+  /// Whether no two triangles overlap.
   bool none() const;
   /// Whether the triangle overlaps another one for which counts(index) is true.
   template <typename Counts>
@@ -51,7 +51,7 @@ class FlatOverlaps {
   std::span<const FlatTriangle> triangles_;
   FlatBox box_;
   double per_cell_ = 0;  // 1 / a cell's side
-  double slack_ = 0;     // a length that does not count
+  double slack_ = 0;     // tolerance
   std::uint32_t columns_ = 1;
   std::uint32_t rows_ = 1;
   std::vector<std::uint8_t> is_solid_;

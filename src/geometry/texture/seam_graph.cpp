@@ -13,9 +13,9 @@ using Chart = SeamGraph::Chart;
 using Line = SeamGraph::Line;
 constexpr std::uint32_t k_no_corner = SeamGraph::k_none;
 
-// Of the length of a line: with a shorter chord it bends. Found on scans and on charts round the
-// vertices of surfaces, where it foretells what is reached to 8 %; lines that are only jagged count
-// if it is 0.6, and the bends of scans do not if it is 0.3.
+// A line is bent if its chord is shorter than this share of its length. Tuned on scans and on
+// charts round the vertices of surfaces, where the prediction is within 8 %. With 0.6, lines that
+// are only jagged count as bent; with 0.3, the bends of scans do not.
 constexpr double k_bent = 0.45;
 
 class SeamReduction {
@@ -33,8 +33,8 @@ class SeamReduction {
     }
   }
 
-  /// Beside corners: a loop needs three vertices, and a line one if it bends much or there is
-  /// another one between the same corners.
+  /// Vertices needed besides corners: a loop needs three in all, and a line one if it bends
+  /// strongly or another line has the same corners.
   std::vector<std::int64_t> other_vertices() const {
     std::vector<std::int64_t> others(graph_.charts.size(), 0);
     std::vector<const Line*> lines;
@@ -62,7 +62,7 @@ class SeamReduction {
     return chart;
   }
 
-  /// So that triangles beside it would turn over if it were straight.
+  /// Whether triangles beside the line would turn over if it were straight.
   bool is_bent(const Line& line) const {
     if (line.corners[1] == k_no_corner || line.is_loop()) return false;
     const Vec3 chord =
@@ -74,7 +74,7 @@ class SeamReduction {
     return !chart.is_gone && !chart.is_part && chart.corners <= 2 && chart.euler == 1;
   }
 
-  /// The chart on its other side, if the chart can be drawn together along it.
+  /// The chart on the line's other side, if `chart` can be contracted along the line.
   std::uint32_t beyond(std::uint32_t chart, const Line& line) const {
     if (line.is_gone || line.is_border()) return k_no_corner;
     const std::int64_t ends = line.corners[0] == k_no_corner ? 0 : line.is_loop() ? 1 : 2;
@@ -84,7 +84,7 @@ class SeamReduction {
     return one == chart ? other : one;
   }
 
-  /// The chart becomes a part of one beside it.
+  /// Merges the chart into a neighbouring one.
   void drop(std::uint32_t chart) {
     Chart& gone = graph_.charts[chart];
     for (const std::uint32_t number : gone.lines) {
@@ -126,7 +126,7 @@ class SeamReduction {
     if (seams == 0 || (seams == 2 && !corner.is_on_border)) dissolve(number);
   }
 
-  /// It is none any more.
+  /// Makes the corner an ordinary vertex.
   void dissolve(std::uint32_t number) {
     SeamGraph::Corner& corner = graph_.corners[number];
     for (const std::uint32_t chart : corner.charts) {
@@ -150,7 +150,7 @@ class SeamReduction {
     line.inner += other.inner;
     line.length += other.length;
     other.is_gone = true;
-    if (end == k_no_corner) return;  // of a line that forks
+    if (end == k_no_corner) return;  // the line forks
     auto& lines = graph_.corners[end].lines;
     std::replace(lines.begin(), lines.end(), second, first);
   }
@@ -170,7 +170,7 @@ std::uint64_t floor_of(SeamGraph graph) {
   for (std::size_t i = 0; i < graph.charts.size(); ++i) {
     const Chart& chart = graph.charts[i];
     if (chart.is_gone || chart.triangles == 0) continue;
-    // Half of the two triangles less is for each of two parts.
+    // The two fewer triangles are shared by two parts.
     const std::int64_t least = chart.corners + others[i] - (chart.is_part ? 1 : 2) * chart.euler;
     floor += static_cast<std::uint64_t>(
         std::clamp<std::int64_t>(least, chart.is_part ? 0 : 1, chart.triangles));

@@ -10,20 +10,21 @@
 
 namespace meshfarm {
 
-/// The lines between labels or charts of a surface, and what they enclose, without its triangles.
+/// The lines between labels or charts of a surface, and the charts that they enclose, without
+/// triangles.
 struct SeamGraph {
   static constexpr std::uint32_t k_none = UINT32_MAX;
 
-  /// What lines and borders enclose.
+  /// A region enclosed by lines and borders.
   struct Chart {
     std::int64_t triangles = 0;
     std::int64_t euler = 0;    // characteristic of the surface cut open along all lines
-    std::int64_t corners = 0;  // as often as one comes there from another side
-    bool is_part = false;      // the rest is elsewhere
+    std::int64_t corners = 0;  // counted once per visit of the rim
+    bool is_part = false;      // the rest is in other parts
     bool is_gone = false;
     std::vector<std::uint32_t> lines;
   };
-  /// A line, or what of a border lies between two corners.
+  /// A line, or a stretch of border between two corners.
   struct Line {
     std::array<std::uint32_t, 2> corners{k_none, k_none};  // k_none: a loop without any
     std::array<std::uint32_t, 2> charts{k_none, k_none};   // the second k_none: a border
@@ -38,8 +39,8 @@ struct SeamGraph {
   struct Corner {
     Vec3 position;
     bool is_on_border = false;
-    std::vector<std::uint32_t> lines;   // those that begin and end there twice
-    std::vector<std::uint32_t> charts;  // as often as they come there
+    std::vector<std::uint32_t> lines;   // those that begin and end there: twice
+    std::vector<std::uint32_t> charts;  // once per visit
   };
 
   std::vector<Chart> charts;
@@ -47,9 +48,9 @@ struct SeamGraph {
   std::vector<Corner> corners;
 };
 
-/// How many triangles are left at least, about: a chart of the shape of a disk keeps two less than
-/// it has corners, and the corners stay. One of two corners goes with its last triangle: its lines
-/// become one, and where two lines are left there is no corner any more.
+/// The approximate minimum number of triangles. A chart with the shape of a disk keeps two fewer
+/// than it has corners, and the corners stay. A chart with two corners vanishes with its last
+/// triangle: its lines become one, and where only two lines are left there is no corner any more.
 std::uint64_t floor_of(SeamGraph graph);
 
 }  // namespace meshfarm

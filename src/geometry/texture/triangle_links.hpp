@@ -17,8 +17,9 @@ inline constexpr std::uint32_t k_no_triangle = 0xffffffff;
 /// next one.
 using TriangleLinks = std::array<std::uint32_t, 3>;
 
-/// Links triangles that share an edge and are turned the same way. Where an edge has more than two,
-/// those with the most similar normals are linked, in pairs. `normals` are of length 1, or 0.
+/// Links triangles that share an edge and have the same orientation. If an edge has more than two
+/// triangles, those with the most similar normals are linked, in pairs. `normals` have length 1, or
+/// 0.
 std::vector<TriangleLinks> link_triangles(const Mesh& mesh, std::span<const Vec3> normals);
 
 }  // namespace meshfarm
