@@ -26,7 +26,8 @@ constexpr double k_ledge = 0.25;   // height of the counterbore's floor
 constexpr double k_fillet = 0.06;  // where the hole meets the top
 constexpr std::uint64_t k_min_side = 2;
 
-/// Points of a ring: `square` of the way from a circle of this radius to the outline.
+/// The points of a ring lie at the share `square` of the way from a circle of this radius to the
+/// outline.
 struct Ring {
   double square = 0;
   double radius = 0;
@@ -42,7 +43,7 @@ struct Layers {
         bore(of(side, 19)),
         ledge(of(side, 12)),
         drill(of(side, 25)) {}
-  /// Of a square: those on its outlines, which are shared, do not count.
+  /// Per square: rings on its outlines do not count, because they are shared.
   std::uint64_t inner_rings() const { return face + fillet + bore + ledge + drill + face - 1; }
 
  private:
@@ -97,7 +98,7 @@ class Block : public GeneratedMesh {
   static std::uint64_t triangles_of_squares(std::uint64_t side) {
     return k_squares * 2 * 4 * side * (Layers(side).inner_rings() + 1);
   }
-  /// The most that leaves the plate's sides triangles of about the same size.
+  /// The largest number that still leaves the plate's sides triangles of about the same size.
   static std::uint64_t side_for(std::uint64_t triangles) {
     const auto fits = [&](std::uint64_t side) {
       const std::uint64_t walls = 4 * (k_across + k_along) * side * (side / 2 + 1);
@@ -117,8 +118,8 @@ class Block : public GeneratedMesh {
   std::uint64_t ring() const { return 4 * side_; }
   std::uint64_t outline() const { return 2 * (k_across + k_along) * side_; }
 
-  // Vertices: on the lines between the squares of the top, of the bottom, on the sides between
-  // them, inside the squares.
+  // Vertex order: on the lines between the squares of the top, of the bottom, on the sides between
+  // top and bottom, inside the squares.
   std::uint64_t on_lines() const { return line_vertex({k_across * side_, k_along * side_}) + 1; }
   std::uint64_t first_in_squares() const { return 2 * on_lines() + (walls_ - 1) * outline(); }
   /// Every side-th row of points is a line; the other rows have a point on each crossing line.

@@ -10,7 +10,7 @@
 namespace meshfarm {
 namespace {
 
-constexpr std::uint64_t k_dust_noise = 100;  // its own random numbers
+constexpr std::uint64_t k_dust_noise = 100;  // separate random numbers
 constexpr std::array<std::array<std::uint64_t, 3>, 8> k_faces{
     {{0, 2, 4}, {2, 1, 4}, {1, 3, 4}, {3, 0, 4}, {2, 0, 5}, {1, 2, 5}, {3, 1, 5}, {0, 3, 5}}};
 constexpr std::uint64_t k_corners = 6;

@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
 //
-// The level set of a sum of plane waves of about one length (a spinodal foam: Cahn 1965), cut out
-// by a box. Marching tetrahedra (Doi, Koide 1991; six to a cell, after Kuhn) go through it layer by
-// layer; whatever the values are, their surface is closed and manifold.
+// The level set of a sum of plane waves of about equal length (a spinodal foam: Cahn 1965), cut out
+// by a box. Marching tetrahedra (Doi, Koide 1991; six per cell, after Kuhn) process it layer by
+// layer; the surface is closed and manifold for any values.
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -17,26 +17,26 @@
 namespace meshfarm {
 namespace {
 
-constexpr std::uint64_t k_foam_noise = 300;  // its own random numbers
+constexpr std::uint64_t k_foam_noise = 300;  // separate random numbers
 constexpr std::uint64_t k_waves = 24;
 constexpr double k_wave_length = 6;  // in cells
-constexpr double k_band = 0.15;      // wave lengths differ by so much
+constexpr double k_band = 0.15;      // relative spread of wave lengths
 constexpr double k_foam_cell = 0x1p-3;
 constexpr double k_in_a_cell = 3.6;  // triangles, about
-// The box is a cube, but at most so wide, that layers fit into any memory: then it grows longer.
+// The box is a cube up to this width, so that layers fit into memory; beyond that it grows longer.
 constexpr std::uint64_t k_min_width = 6, k_max_width = 512;
-// Values are cut off here, so that the box's walls, with the least value, are flat inside of the
+// Values are clamped to this, so that the box's walls, with the least value, are flat inside the
 // foam and meet its surface without steps.
 constexpr double k_most = 3;
-constexpr double k_least_share = 0.05;  // of an edge, between a vertex and its end
+constexpr double k_least_share = 0.05;  // least share of an edge between vertex and end
 
-/// A direction from a corner of a cell to another is three bits: 1 is x, 2 is y, 4 is z. Those of
-/// edges in a layer come before those that leave it.
+/// A direction from one corner of a cell to another is three bits: 1 is x, 2 is y, 4 is z.
+/// Directions of edges within a layer come before those that leave it.
 using Direction = unsigned;
 constexpr Direction k_flat_directions = 3, k_directions = 7;
 
-/// The even order of a tetrahedron's corners that has those in the set first; sets of three are
-/// those of their complement.
+/// The even permutation of a tetrahedron's corners that puts those in the set first; sets of three
+/// use that of their complement.
 constexpr std::array<std::array<unsigned, 4>, 16> k_order{{{},
                                                            {0, 1, 2, 3},
                                                            {1, 0, 3, 2},
@@ -54,13 +54,13 @@ constexpr std::array<std::array<unsigned, 4>, 16> k_order{{{},
                                                            {0, 1, 2, 3},
                                                            {}}};
 
-/// The tetrahedra of a cell: each runs from corner 0 to corner 7 along the axes in another order.
-/// All are oriented alike.
+/// The tetrahedra of a cell: each runs from corner 0 to corner 7 along the axes in a different
+/// order. All have the same orientation.
 constexpr std::array<std::array<Direction, 4>, 6> k_tetrahedra{
     {{0, 1, 3, 7}, {0, 2, 6, 7}, {0, 4, 5, 7}, {0, 3, 2, 7}, {0, 6, 4, 7}, {0, 5, 1, 7}}};
 
 struct Wave {
-  Vec3 turns;  // along each axis, a cell
+  Vec3 turns;  // along each axis, per cell
   double phase = 0;
 };
 
@@ -92,7 +92,7 @@ class Field {
     }
   }
 
-  /// Positive inside of the foam.
+  /// Positive inside the foam.
   void fill(std::uint64_t layer, std::vector<double>& values) const {
     values.assign((width_ + 1) * (width_ + 1), -k_most);
     for (std::uint64_t y = 1; y < width_; ++y) {
@@ -120,7 +120,7 @@ class Field {
 /// The edges in one direction group (in a layer, or from it to the next) that cross the surface.
 struct Crossings {
   std::vector<std::uint64_t> first;  // vertex of each point's first crossing
-  std::vector<std::uint8_t> set;     // a bit a direction
+  std::vector<std::uint8_t> set;     // one bit per direction
 
   std::uint64_t vertex(std::uint64_t point, Direction d) const {
     return first[point] + static_cast<std::uint64_t>(std::popcount(set[point] & ((1U << d) - 1)));
@@ -137,7 +137,7 @@ struct Counts {
   std::uint64_t triangles = 0;
 };
 
-/// Where on an edge the surface is, from the end with value `a` to that with `b`.
+/// Where the surface crosses an edge, from the end with value `a` to that with `b`.
 double share_at(double a, double b) {
   return std::clamp(a / (a - b), k_least_share, 1 - k_least_share);
 }
@@ -157,7 +157,7 @@ class Sweep {
     find_flat(lower_);
   }
 
-  /// One layer up; `last`: to the box's wall.
+  /// Moves up one layer; `last`: to the box's wall.
   void step(bool last) {
     if (last) {
       upper_.values.assign(lower_.values.size(), -k_most);
@@ -172,7 +172,7 @@ class Sweep {
     }
     std::swap(lower_, upper_);
   }
-  /// What there is below the current layer.
+  /// Vertices and triangles below the current layer.
   const Counts& counts() const { return counts_; }
 
  private:
@@ -218,7 +218,8 @@ class Sweep {
     return {along(at[0], 1), along(at[1], 2), along(layer_, 4)};
   }
 
-  /// The vertex between two corners of the cell at `point`, of which one leads to the other.
+  /// The vertex between two corners of the cell at `point`, where an edge leads from one to the
+  /// other.
   std::uint64_t vertex(std::uint64_t point, Direction a, Direction b) const {
     const Direction start = a & b, d = a ^ b;
     const std::uint64_t p = point + offset(start);
@@ -290,7 +291,7 @@ class Foam : public GeneratedMesh {
   }
 
  private:
-  /// As many layers as come nearest to the number of triangles.
+  /// Finds the number of layers that comes nearest to the number of triangles.
   void find_height(std::uint64_t triangles) {
     Sweep open(width_);
     std::uint64_t before = 0;
@@ -314,7 +315,7 @@ class Foam : public GeneratedMesh {
   }
 
   std::uint64_t width_ = 0;
-  std::uint64_t height_ = 0;  // layers of points inside of the box
+  std::uint64_t height_ = 0;  // layers of points inside the box
   Counts counts_;
 };
 

@@ -11,7 +11,7 @@
 
 namespace meshfarm {
 
-/// Throws UsageError for fewer triangles than `least`, or absurdly many.
+/// Throws UsageError for fewer triangles than `least`, or an absurd number.
 void check_size(std::uint64_t triangles, std::uint64_t least);
 
 struct Grid {
@@ -19,11 +19,11 @@ struct Grid {
   std::uint64_t columns = 0;
 };
 
-/// The grid nearest to so many cells among those with about `shape` times as many rows as columns;
-/// the best shape if two are.
+/// The grid with the number of cells nearest to `cells`, among those with about `shape` times as
+/// many rows as columns; if two are equally near, the one with the better shape.
 Grid nearest_grid(std::uint64_t cells, double shape);
 
-/// Collects vertices or triangles, and hands them on in batches.
+/// Collects vertices or triangles, and passes them on in batches.
 template <class T>
 class Batches {
  public:
@@ -32,7 +32,7 @@ class Batches {
     batch_.push_back(item);
     if (batch_.size() == k_batch) finish();
   }
-  /// The last batch.
+  /// Passes on the last batch.
   void finish() {
     if (!batch_.empty()) take_(batch_);
     batch_.clear();
@@ -44,7 +44,7 @@ class Batches {
   std::vector<T> batch_;
 };
 
-/// Two triangles for a cell of a grid, whose corners are counter-clockwise seen from outside.
+/// Adds two triangles for a grid cell whose corners are counter-clockwise seen from outside.
 inline void add_cell(Batches<GeneratedMesh::Corners>& triangles,
                      const std::array<std::uint64_t, 4>& cell) {
   const auto [a, b, c, d] = cell;

@@ -5,8 +5,8 @@
 #include <cstdint>
 #include <vector>
 
-// What generated shapes are made of. It uses + - * / and square roots only, all exactly rounded, so
-// that every machine and C library makes the same mesh.
+// The building blocks of generated shapes. They use only + - * / and square roots, all exactly
+// rounded, so that every machine and C library makes the same mesh.
 
 namespace meshfarm {
 
@@ -24,7 +24,7 @@ double smooth_step(double t);
 /// A fixed random number in [-1, 1) for each corner of each lattice.
 double lattice_value(std::uint64_t lattice, std::uint64_t row, std::uint64_t column);
 
-/// One row of value noise (Perlin's lattice, values in place of gradients) that closes on itself.
+/// One row of periodic value noise (Perlin's lattice, with values in place of gradients).
 class NoiseRow {
  public:
   NoiseRow(std::uint64_t lattice, std::uint64_t rows, std::uint64_t columns);

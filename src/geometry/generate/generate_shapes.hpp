@@ -9,7 +9,7 @@
 
 namespace meshfarm {
 
-// One file each: generate_foam.cpp and so on. The size was checked.
+// One file each: generate_foam.cpp and so on. The size was checked before.
 std::unique_ptr<GeneratedMesh> make_foam(std::uint64_t triangles);
 std::unique_ptr<GeneratedMesh> make_dust(std::uint64_t triangles);
 std::unique_ptr<GeneratedMesh> make_soup(std::uint64_t triangles);

@@ -9,7 +9,7 @@ namespace {
 // The torus is 4 wide and its tube 0.38 thick: 0.0004 between the sheets, where there are no bumps.
 constexpr double k_inner_thickness = 1 - 0.0004 / 0.38;
 
-/// A hollow body: the inner sheet faces inwards. Rings of both sheets take turns.
+/// A hollow body: the inner sheet faces inwards. Rings of the two sheets alternate.
 class Shell : public GeneratedMesh {
  public:
   explicit Shell(std::uint64_t triangles) : grid_(torus_grid(triangles / 4)) {}

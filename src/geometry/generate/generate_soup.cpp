@@ -8,7 +8,8 @@
 namespace meshfarm {
 namespace {
 
-// Corners draw back from where their neighbours have theirs, or a weld would join them again.
+// Corners are moved away from those of neighbouring triangles; otherwise a weld would join them
+// again.
 constexpr double k_shrink = 0.98;
 
 /// Every triangle with three vertices of its own.

@@ -10,16 +10,16 @@
 namespace meshfarm {
 namespace {
 
-constexpr std::uint64_t k_terrain_noise = 200;  // its own random numbers
+constexpr std::uint64_t k_terrain_noise = 200;  // separate random numbers
 constexpr std::uint64_t k_first_cells = 4;
 constexpr std::uint64_t k_last_cells = 4096;
-constexpr double k_part = 0.9;     // of the noise, which closes on itself
+constexpr double k_part = 0.9;     // of the noise that is used, because it is periodic
 constexpr double k_height = 0.25;  // of the first octave; the ground is 1 x 1
-constexpr double k_fade = 0.45;    // from an octave to the next
+constexpr double k_fade = 0.45;    // from one octave to the next
 constexpr double k_lake = 0.24;    // its level
 
-/// Ridged noise (Musgrave 1994): |n| folds each octave into ridges, and what is low is a lake.
-/// Octaves go on as long as the grid can show them.
+/// Ridged noise (Musgrave 1994): |n| folds each octave into ridges; low ground becomes lakes. There
+/// are as many octaves as the grid can resolve.
 class Terrain : public GeneratedMesh {
  public:
   explicit Terrain(std::uint64_t triangles) : grid_(nearest_grid(triangles / 2, 1)) {}

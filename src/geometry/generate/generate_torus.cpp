@@ -12,13 +12,13 @@ namespace {
 
 constexpr std::uint64_t k_least_torus = 200;
 
-// Round the axis; the tube's own radius is 0.38 on its flat sides.
+// The ring's radius round the axis; the tube's radius is 0.38 on its flat sides.
 constexpr double k_ring_radius = 1;
 constexpr double k_tube_radius = 0.38;
 constexpr double k_bump_height = 0.22;  // at most, as a share of the tube's radius
 
 constexpr int k_octaves = 7;
-constexpr std::uint64_t k_first_rows = 10;  // cells of the first octave round the axis
+constexpr std::uint64_t k_first_rows = 10;  // cells of the first octave, round the axis
 constexpr std::uint64_t k_first_columns = 4;
 constexpr std::uint64_t k_mask_rows = 9;
 constexpr std::uint64_t k_mask_columns = 4;
@@ -57,7 +57,7 @@ void TorusRings::add_ring(double turn, double thickness, std::vector<Vec3>& ring
   }
 }
 
-/// In [-1, 1]: none where the mask is not positive, more towards its heights.
+/// In [-1, 1]: 0 where the mask is not positive, larger towards its peaks.
 double TorusRings::bump(double turn) const {
   const double mask = mask_(turn) + k_mask_lift;
   if (mask <= 0) return 0;

@@ -16,8 +16,8 @@ namespace meshfarm {
 Grid torus_grid(std::uint64_t cells);
 
 /// The surface of the bumpy torus, one ring of the tube at a time. Each ring is star-shaped about
-/// its own centre and stays on its own side of the axis: whatever the bumps, the surface cannot
-/// meet itself, nor itself with another `thickness`.
+/// its own centre and stays on its own side of the axis. So, whatever the bumps, the surface cannot
+/// intersect itself, nor the same surface with another `thickness`.
 class TorusRings {
  public:
   explicit TorusRings(std::uint64_t columns);
