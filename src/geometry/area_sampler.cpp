@@ -58,8 +58,8 @@ Vec3 AreaSampler::sample(std::uint64_t n) {
   return random_place(mesh_.positions[t[0]], mesh_.positions[t[1]], mesh_.positions[t[2]], n);
 }
 
-// Jumps to the block that holds the place, then walks. Block sums and walked sums may differ in
-// the last bit, so a walk may end on the triangle beside: it is on the surface as well.
+// Jumps to the block that contains the place, then walks. Block sums and walked sums may differ in
+// the last bit, so a walk may end on the next triangle: that is on the surface as well.
 void AreaSampler::seek(double place) {
   const auto next = std::upper_bound(before_.begin() + 1, before_.end() - 1, place);
   const auto block = static_cast<std::size_t>(next - before_.begin()) - 1;

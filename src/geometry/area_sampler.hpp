@@ -19,19 +19,19 @@ inline std::uint64_t chunks_of(std::uint64_t samples) {
 }
 
 /// The area of all triangles before each block of them; the whole area at the end. Throws DataError
-/// naming `which` mesh if that is not finite.
+/// naming `which` mesh if the area is not finite.
 std::vector<double> areas_before(const Mesh& mesh, unsigned threads, const char* which);
 
 /// Throws DataError naming `which` mesh if it has no area.
 void check_area(const std::vector<double>& before, const char* which);
 
-/// Sample n lies in the n-th of equal shares of the area, at a random place of it. Samples must be
-/// asked for in rising order.
+/// Sample n lies in the n-th of equal shares of the area, at a random place within it. Samples must
+/// be requested in ascending order.
 class AreaSampler {
  public:
   AreaSampler(const Mesh& mesh, const std::vector<double>& before, std::uint64_t samples);
   Vec3 sample(std::uint64_t n);
-  /// The one that the last sample lies on.
+  /// The triangle that the last sample lies on.
   std::size_t triangle() const { return triangle_; }
 
  private:

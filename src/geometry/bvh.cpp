@@ -13,8 +13,8 @@
 namespace meshfarm {
 namespace {
 
-// Of many that are looked at from far away, one that is as near as the mesh's box, but for this
-// share of the squared distance, is near enough.
+// Seen from far away, after this many triangles, one is near enough if it is as near as the mesh's
+// box, up to this factor of the squared distance.
 constexpr std::int64_t k_many_from_afar = 1024;
 constexpr double k_as_near = 1 + 0x1p-19;
 
@@ -86,7 +86,7 @@ void Bvh::search(Query& query, double enough, const Distance& distance) const {
       }
       query.limit = std::min(query.limit, most);
       left -= top.count;
-      if (left < 0) {  // few searches ask
+      if (left < 0) {  // few searches get here
         left = INT64_MAX;
         const double gap = query.squared_gap_to_all(nodes_.front());
         if (Query::is_far(gap)) enough = std::max(enough, gap * k_as_near / query.to_frame);

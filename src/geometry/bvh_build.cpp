@@ -16,13 +16,14 @@ namespace {
 
 constexpr std::uint32_t k_leaf = 6;
 constexpr std::uint64_t k_chunk = 4096;
-// An axis counts less along the curve only where triangles are so many times as long in it.
+// An axis gets less weight along the curve only if triangles are this many times as long along it.
 constexpr double k_much_longer = 4;
 constexpr float k_huge = std::numeric_limits<float>::max();
-// One corner in so many triangles is asked where most are, at least of so many.
+// At least this many triangles (or all) are sampled, by one corner each, to find where most of the
+// mesh is.
 constexpr std::size_t k_asked = 4096;
-// Most are what is between these shares along an axis. What is farther from them than so many times
-// their own extent may lie outside of the frame.
+// Most of the mesh is what lies between these shares along an axis. Points farther away from it
+// than this multiple of its extent may lie outside the frame.
 constexpr double k_outermost = 1.0 / 16;
 constexpr double k_far_from_most = 64;
 
@@ -37,8 +38,8 @@ double longest_side(Vec3 size) {
   return std::max({size.x, size.y, size.z});
 }
 
-/// `all`, but for what is far from nearly all else. One vertex a hundred million times as far away
-/// as the mesh is wide would leave no float to tell the others apart.
+/// `all` without what is far from nearly everything else. With one vertex a hundred million times
+/// as far away as the mesh is wide, floats could not tell the others apart.
 Box without_outliers(const Box& all, std::span<const Vec3> positions,
                      std::span<const Triangle> triangles) {
   const std::size_t step = std::max<std::size_t>(1, triangles.size() / k_asked);
@@ -70,8 +71,8 @@ struct Range {
   std::uint32_t size() const { return end - begin; }
 };
 
-/// Where the highest bit in which the codes of the range differ turns to 1; the middle if all are
-/// equal.
+/// The position where the highest differing bit of the range's codes turns to 1; the middle if all
+/// codes are equal.
 std::uint32_t split_of(std::span<const MortonItem> items, Range range) {
   const std::uint64_t differing = items[range.begin].code ^ items[range.end - 1].code;
   if (differing == 0) return range.begin + range.size() / 2;
@@ -87,7 +88,7 @@ struct Split {
   std::size_t count = 0;
 };
 
-/// Splits the largest part in two until there are four, or all are leaves.
+/// Repeatedly splits the largest part in two, until there are four or all are leaves.
 Split split_in_four(std::span<const MortonItem> items, Range range) {
   Split split{{range}, 1};
   while (split.count < 4) {
@@ -113,10 +114,10 @@ Bvh::Bvh(std::span<const Vec3> positions, std::span<const Triangle> triangles, u
   make_nodes(threads);
 }
 
-/// Where triangles are long in the direction of one axis, boxes are as thin across it as they are.
+/// Where triangles are long along one axis, boxes become as thin across it as the triangles.
 void Bvh::set_frame_and_curve() {
   Box all;
-  Vec3 sum;  // of the shapes of the triangles' boxes: large triangles count no more than small ones
+  Vec3 sum;  // of the triangles' boxes, scaled: large triangles count no more than small ones
   for (const Triangle& t : triangles_) {
     Box box;
     for (const std::uint32_t v : t) {
@@ -153,7 +154,7 @@ void Bvh::make_nodes(unsigned threads) {
     const std::size_t end = std::min<std::size_t>(nodes_.size(), (chunk + 1) * k_chunk);
     for (std::size_t i = chunk * k_chunk; i < end; ++i) set_leaf_boxes(nodes_[i]);
   });
-  // A child stands after its parent.
+  // Children come after their parents.
   for (std::size_t i = nodes_.size(); i-- > 0;) set_inner_boxes(nodes_[i]);
 }
 

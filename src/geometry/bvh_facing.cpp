@@ -6,12 +6,12 @@
 namespace meshfarm {
 namespace {
 
-// From far away all triangles may be as near, but for rounding: so many are looked at.
+// From far away, all triangles may be equally near up to rounding: only this many are tried.
 constexpr std::size_t k_most_from_afar = 64;
 
 }  // namespace
 
-// The loop of nearest() again: that one would be 4 % slower if it could leave triangles out.
+// Repeats the loop of nearest(), which would be 4 % slower if it could leave triangles out.
 Bvh::Nearest Bvh::nearest_facing(Vec3 p, Vec3 normal, std::uint32_t guess,
                                  double most_squared) const {
   Query query(p, to_frame(p), scale_);
@@ -38,7 +38,7 @@ Bvh::Nearest Bvh::nearest_facing(Vec3 p, Vec3 normal, std::uint32_t guess,
 }
 
 Vec3 Bvh::most_similar_normal(Vec3 p, Vec3 normal, double squared) const {
-  // What rounding can make of the distances to a corner or a side that triangles have in common.
+  // The margin covers the rounding of distances to a corner or side that triangles share.
   const double reach = std::sqrt(squared) + 0x1p-40 / scale_;
   const double most_squared = reach * reach;
   const Query query(p, to_frame(p), scale_);

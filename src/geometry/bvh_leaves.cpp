@@ -34,7 +34,7 @@ void Bvh::find_touching(const Leaf& leaf, std::vector<Leaf>& found) const {
   stack[size++] = 0;
   while (size > 0) {
     const Node& node = nodes_[stack[--size]];
-    // How far the boxes are apart along the axis where that is most; empty ones are far away.
+    // The distance between the boxes along the axis where it is largest; empty boxes are far away.
     float gaps[4] = {-1, -1, -1, -1};
     for (std::size_t axis = 0; axis < 3; ++axis) {
       for (std::size_t k = 0; k < 4; ++k) {

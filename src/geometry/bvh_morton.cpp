@@ -15,7 +15,7 @@ namespace {
 constexpr int k_axis_bits = 21;
 constexpr int k_digit_bits = 9;
 constexpr int k_digits = 7;                 // of 9 bits: all 63 of a code
-constexpr std::ptrdiff_t k_few_equal = 64;  // fewer cost a search no more than their sorting would
+constexpr std::ptrdiff_t k_few_equal = 64;  // with fewer, sorting would not pay off
 constexpr std::size_t k_values = std::size_t{1} << k_digit_bits;
 
 /// Puts two zero bits before each of the 21 low bits.
@@ -40,9 +40,9 @@ bool has_lower_code(const MortonItem& a, const MortonItem& b) {
   return a.code < b.code;
 }
 
-/// Equal codes keep their order.
+/// Stable.
 void sort_by_code(std::vector<MortonItem>& items) {
-  if (items.size() < k_values) {  // to clear and add up the counts would take longer
+  if (items.size() < k_values) {  // clearing and summing the counts would take longer
     std::stable_sort(items.begin(), items.end(), has_lower_code);
     return;
   }
@@ -63,7 +63,7 @@ void sort_by_code(std::vector<MortonItem>& items) {
 
 void sort_equal(std::span<MortonItem> items, const std::function<Vec3(std::uint32_t)>& place_of);
 
-/// Of items that are sorted: where many have one code, these are sorted by finer ones.
+/// In sorted items: where many have equal codes, these are sorted by finer ones.
 void sort_many_equal(std::span<MortonItem> items,
                      const std::function<Vec3(std::uint32_t)>& place_of) {
   for (auto begin = items.begin(); begin != items.end();) {
@@ -75,7 +75,7 @@ void sort_many_equal(std::span<MortonItem> items,
   }
 }
 
-/// By the curve through their own box. They keep the one code that they have.
+/// Sorts by the curve through their own box. The items keep their code.
 void sort_equal(std::span<MortonItem> items, const std::function<Vec3(std::uint32_t)>& place_of) {
   Box box;
   for (const MortonItem& item : items) {

@@ -13,17 +13,17 @@ namespace meshfarm {
 
 struct MortonItem {
   std::uint64_t code = 0;
-  std::uint32_t number = 0;  // of what lies there
+  std::uint32_t number = 0;  // of the item there
 };
 
-/// The place of `p`, each coordinate in [-1/2, 1/2], along the Z-shaped curve: 21 bits an axis,
-/// woven.
+/// The position of `p`, with each coordinate in [-1/2, 1/2], along the Z-order curve: 21 bits per
+/// axis, interleaved.
 std::uint64_t morton_code(Vec3 p);
 
-/// Sorts by code. Few that have one code keep their order; many follow the curve through the box of
-/// their own places, so that one far outlier does not leave all others unsorted.
-/// `place_of(number)`: the place that the code was made of, in any unit and from any origin. Needs
-/// the same memory again.
+/// Sorts by code. A few items with equal codes keep their order; many are sorted along the curve
+/// through their own box, so that one far outlier does not leave all others unsorted.
+/// `place_of(number)`: the place from which the code was made, in any unit and from any origin.
+/// Needs as much memory again.
 void sort_along_curve(std::vector<MortonItem>& items,
                       const std::function<Vec3(std::uint32_t)>& place_of);
 

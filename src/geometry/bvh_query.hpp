@@ -13,15 +13,15 @@
 
 namespace meshfarm {
 
-// At most three entries stay behind on each level, and a level takes at least one of 63 bits of
-// code or halves the 2^32 triangles of one code.
+// At most three entries per level stay on the stack, and each level consumes at least one of the 63
+// code bits or halves the 2^32 triangles of one code.
 inline constexpr std::size_t k_bvh_stack = 3 * (63 + 32) + 4;
 
-// As far out in the frame as anything comes to lie: its square is a float.
+// The farthest coordinate in the frame: its square still is a float.
 inline constexpr double k_bvh_far = 1e15;
 
-/// What a search has still to look at, at first the root. Three arrays: one wide read of what three
-/// writes have just written would wait for them.
+/// The nodes that a search has yet to visit, initially the root. Stored as three arrays: a single
+/// wide read of what three writes have just stored would stall.
 class BvhStack {
  public:
   struct Entry {
@@ -37,7 +37,7 @@ class BvhStack {
     --size_;
     return {bound_[size_], child_[size_], count_[size_]};
   }
-  /// Without a branch, which no processor could predict.
+  /// Branch-free, because a branch would be unpredictable.
   void push_if(bool wanted, float bound, std::uint32_t child, std::uint32_t count) {
     assert(size_ < k_bvh_stack);
     bound_[size_] = bound;
@@ -45,7 +45,7 @@ class BvhStack {
     count_[size_] = count;
     size_ += wanted ? 1 : 0;
   }
-  /// Of those from `base` on the nearest comes to lie on top.
+  /// Sorts the entries from `base` on so that the nearest is on top.
   void sort_from(std::size_t base) {
     for (std::size_t i = base + 1; i < size_; ++i) {
       const float bound = bound_[i];
@@ -70,17 +70,17 @@ class BvhStack {
   std::array<std::uint32_t, k_bvh_stack> count_;
 };
 
-/// A query keeps its point as a tiny float box that surely holds it, so that the distance between
-/// boxes is a lower bound in spite of rounding.
+/// A query stores its point as a tiny float box that certainly contains it, so that the distance
+/// between boxes is a lower bound despite rounding.
 struct Bvh::Query {
-  // g++ makes branches of a loop over four floats that asks which are above 0.
+  // For a loop over four floats that tests which are above 0, g++ emits branches.
   using Four = float __attribute__((vector_size(16)));
 
   Vec3 p;
   Vec3 place;  // in the frame
   float lo[3];
   float hi[3];
-  double to_frame;  // from squared distances in the mesh's unit
+  double to_frame;  // factor for squared distances in the mesh's unit
   Nearest best;
   float limit = std::numeric_limits<float>::max();
 
@@ -99,7 +99,7 @@ struct Bvh::Query {
     std::memcpy(&all, values, sizeof all);
     return all;
   }
-  /// Of the boxes of a node, in the frame: no more than they are.
+  /// Lower bounds of the squared distances to a node's boxes, in the frame.
   void squared_gaps(const Node& node, float (&bounds)[4]) const {
     Four sum{};
     for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -111,7 +111,8 @@ struct Bvh::Query {
     }
     std::memcpy(bounds, &sum, sizeof sum);
   }
-  /// To the box of all, in the frame; no more than that where it reaches out of the frame.
+  /// The squared distance to the whole box, in the frame; a lower bound if the box reaches out of
+  /// the frame.
   double squared_gap_to_all(const Node& root) const {
     double sum = 0;
     for (int axis = 0; axis < 3; ++axis) {
@@ -124,9 +125,9 @@ struct Bvh::Query {
     }
     return sum;
   }
-  /// Whether the point is a thousand times as far away as the mesh is wide.
+  /// Whether the point is at least a thousand times as far away as the mesh is wide.
   static bool is_far(double squared_gap) { return squared_gap > 0x1p20; }
-  /// Puts the node's boxes within the limit onto the stack; the nearest comes to lie on top.
+  /// Pushes the node's boxes within the limit; the nearest ends up on top.
   void push(const Node& node, BvhStack& stack) const {
     float bounds[4];
     squared_gaps(node, bounds);
@@ -136,7 +137,7 @@ struct Bvh::Query {
     }
     stack.sort_from(base);
   }
-  /// Of a squared distance in the mesh's unit: above what the rounding of a bound can make of it.
+  /// The limit for a squared distance in the mesh's unit, with a margin for the rounding of bounds.
   float limit_of(double squared) const {
     const double above = squared * to_frame * (1 + 0x1p-20) + std::numeric_limits<float>::min();
     return static_cast<float>(std::min<double>(above, std::numeric_limits<float>::max()));

@@ -1,12 +1,12 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
 //
-// For a point with the value c, whose nearest triangle has the values x0, x1, x2 at its corners and
-// shares s0, s1, s2 in the point, the square (s0 x0 + s1 x1 + s2 x2 - c)^2 is to be small. The sum
-// of all squares is least where A x = b: A is made of the products si sj, b of si c, both added up
-// by triangles. Vertices that few points tell of would swing: each is also held, by a small part of
-// its weight, to the mean of the values round it. Solved by conjugate gradients, which need few
-// steps, as A is nearly diagonal.
+// For a point with value c, whose nearest triangle has the values x0, x1, x2 at its corners and
+// shares s0, s1, s2 at the point, the square (s0 x0 + s1 x1 + s2 x2 - c)^2 is to be small. The sum
+// of all squares is least where A x = b: A is made of the products si sj, b of si c, both summed
+// per triangle. Vertices with few points would oscillate: each is also held, by a small part of its
+// weight, to the mean of the values round it. Solved by conjugate gradients, which need few steps
+// because A is nearly diagonal.
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -21,18 +21,19 @@ namespace meshfarm {
 namespace {
 
 constexpr std::size_t k_samples_at_once = 1024;
-/// A triangle has half a vertex: more points than this tell little more of it.
+/// There is half a vertex per triangle: more points than this add little.
 constexpr double k_points_per_triangle = 12;
-/// How much of its weight holds a vertex to the mean of what is round it.
+/// The share of its weight that holds a vertex to the mean of its surroundings.
 constexpr double k_held = 0.02;
 constexpr int k_steps = 20;
-/// Of the square of what is missing at first: then it is far below what eight bits tell apart.
+/// Of the initial squared residual: by then it is far below what eight bits can represent.
 constexpr double k_done = 1e-12;
-/// A triangle that a point is so near to, as a part of its size, will do: which of some triangles
-/// is the nearest then changes the point's shares little, and half of the time is saved.
+/// A triangle is near enough if its distance from the point is below this part of its size. Which
+/// of several such triangles is chosen changes the point's shares little, and half of the time is
+/// saved.
 constexpr double k_near_value = 0.01;
 
-/// Of a triangle: the sums of s0 s0, s1 s1, s2 s2, s0 s1, s1 s2, s2 s0.
+/// Per triangle: the sums of s0 s0, s1 s1, s2 s2, s0 s1, s1 s2, s2 s0.
 using Products = std::array<double, 6>;
 using Corners = std::array<double, 3>;
 
@@ -125,8 +126,8 @@ class Solver {
     }
   }
 
-  /// What no point tells of has the mean of its neighbours, from the nearest that are told of on;
-  /// a piece where none is has the mean of all.
+  /// Vertices without points take the mean of their neighbours, starting from the nearest vertices
+  /// that have points. A piece without any points takes the mean of all.
   void fill(std::vector<double>& x) const {
     std::vector<std::uint8_t> known(x.size());
     for (std::size_t v = 0; v < x.size(); ++v) known[v] = is_told(v) ? 1 : 0;
@@ -176,7 +177,7 @@ std::array<double, 3> nearest_shares(Vec3 p, Vec3 a, Vec3 b, Vec3 c) {
   const double of_c = dot(cross(b - a, p - a), normal);
   const double of_a = all - of_b - of_c;
   if (all > 0 && std::min({of_a, of_b, of_c}) >= 0) return {of_a / all, of_b / all, of_c / all};
-  // Beyond the sides, or the triangle has no inside.
+  // The point is beyond a side, or the triangle has no inside.
   const std::array<Vec3, 3> corners = {a, b, c};
   Corners best{};
   double least = HUGE_VAL;
@@ -277,7 +278,7 @@ class ChannelFit::Impl {
     points_ += points.size();
   }
 
-  /// The squared distance that will do.
+  /// The squared distance that is near enough.
   double near_to(std::uint32_t triangle) const {
     const auto& [a, b, c] = mesh_.triangles[triangle];
     const Vec3 normal =
@@ -303,13 +304,13 @@ class ChannelFit::Impl {
   const Mesh& mesh_;
   std::size_t channels_;
   unsigned threads_;
-  double share_;            // of the points that is taken
-  std::uint64_t seen_ = 0;  // points, taken or not
+  double share_;            // of the points that is used
+  std::uint64_t seen_ = 0;  // points, used or not
   Bvh bvh_;
   std::vector<Products> products_;
   std::vector<std::vector<Corners>> sums_;  // of each channel: s0 c, s1 c, s2 c by triangle
   std::vector<double> squares_;             // of each channel: c c
-  std::uint64_t points_ = 0;                // taken
+  std::uint64_t points_ = 0;                // used
   std::vector<Vec3> picked_points_;
   std::vector<float> picked_values_;
   std::vector<Found> found_;

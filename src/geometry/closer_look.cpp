@@ -14,10 +14,10 @@ namespace {
 
 constexpr int k_grid_steps = 10;  // along a side
 constexpr int k_round_steps = 3;
-/// Of the longest side: a point of a triangle may lie outside of its box by rounding.
+/// In longest sides: by rounding, a point of a triangle may lie outside its box.
 constexpr double k_beside_box = 0x1p-20;
 
-/// Of so many steps along each side, or as many as are allowed.
+/// A grid of `wanted` steps along each side, or as many as allowed.
 void append_grid(const CornerPoints& corners, double wanted, std::vector<Vec3>& points) {
   const int steps =
       wanted < k_grid_steps ? std::max(1, static_cast<int>(std::ceil(wanted))) : k_grid_steps;
@@ -31,7 +31,7 @@ void append_grid(const CornerPoints& corners, double wanted, std::vector<Vec3>& 
   }
 }
 
-/// In a square of the triangle's plane, as far as it is on the triangle.
+/// Points of a square in the triangle's plane, as far as they are on the triangle.
 void append_round(const CornerPoints& corners, Vec3 place, double radius,
                   std::vector<Vec3>& points) {
   const auto& [a, b, c] = corners;

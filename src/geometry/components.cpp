@@ -13,10 +13,10 @@
 namespace meshfarm {
 namespace {
 
-/// So many of its triangles tell what a component was, by their area.
+/// At most this many triangles per component vote, by area, on what it was before.
 constexpr std::size_t k_voters = 63;
-/// A component that has this part of the area or more, and that none is taken for, is looked for by
-/// itself: close sheets may have all vertices of another nearer to them.
+/// A component with at least this share of the area that no other is taken for is searched for
+/// separately: close sheets may have all vertices of another sheet nearer to them.
 constexpr double k_large_component = 0.05;
 constexpr std::size_t k_looked_for = 1000;  // points
 
@@ -38,8 +38,8 @@ Vec3 middle_of(const Mesh& mesh, const Triangle& t) {
   return (mesh.positions[t[0]] + mesh.positions[t[1]] + mesh.positions[t[2]]) * (1.0 / 3);
 }
 
-/// Some triangles of each component, spread over it. Vertices would not do: all those of a floor
-/// may be at the feet of what stands on it.
+/// Some triangles of each component, spread over it. Vertices would not do: all vertices of a floor
+/// may be at the feet of things that stand on it.
 std::map<std::uint32_t, std::vector<std::uint32_t>> voters_of(const Mesh& mesh) {
   UnionFind pieces = components_of(mesh);
   std::map<std::uint32_t, std::vector<std::uint32_t>> voters;
@@ -55,7 +55,7 @@ std::map<std::uint32_t, std::vector<std::uint32_t>> voters_of(const Mesh& mesh) 
   return voters;
 }
 
-/// The key of the greatest value, of equal ones the least.
+/// The key of the greatest value; if equal, the least key.
 std::uint32_t key_of_most(const std::map<std::uint32_t, double>& values) {
   return std::max_element(values.begin(), values.end(),
                           [](const auto& x, const auto& y) { return x.second < y.second; })
@@ -96,7 +96,7 @@ bool is_found(const Mesh& before, UnionFind& pieces, std::uint32_t piece,
 }  // namespace
 
 DroppedComponents drop_small_components(Mesh& mesh, double diagonal) {
-  if (!(diagonal > 0)) return {};  // no box is smaller than nothing
+  if (!(diagonal > 0)) return {};  // no diagonal is below 0
   UnionFind pieces = components_of(mesh);
   std::vector<Box> boxes(mesh.positions.size());
   for (const Triangle& t : mesh.triangles) {
@@ -126,7 +126,7 @@ std::vector<std::uint32_t> lowest_connected(std::size_t vertices,
 
 GoneComponents find_gone_components(const Mesh& before, const Mesh& after, unsigned threads) {
   UnionFind pieces = components_of(before);
-  std::vector<double> areas(before.positions.size(), -1);  // of those that are not found again
+  std::vector<double> areas(before.positions.size(), -1);  // of those not found again
   GoneComponents gone;
   for (const Triangle& t : before.triangles) {
     double& area = areas[pieces.find(t[0])];

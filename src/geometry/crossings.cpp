@@ -51,7 +51,7 @@ class CrossingFinder {
     }
   };
 
-  /// The number of all pairs decides it, whoever looks at which first.
+  /// Depends only on the number of all pairs, not on the order in which threads find them.
   bool is_too_much() const { return pairs_.load(std::memory_order_relaxed) > most_pairs_; }
 
   void load(const Bvh::Leaf& leaf, std::vector<CrossingTriangle>& triangles) const {

@@ -15,7 +15,7 @@
 namespace meshfarm {
 namespace {
 
-/// Measures one chunk of so many samples.
+/// Measures one chunk of `count` samples.
 DistanceSums measure_chunk(const Bvh& bvh, std::uint64_t count, std::uint64_t chunk,
                            AreaSampler sampler) {
   const std::uint64_t end = std::min(count, (chunk + 1) * k_samples_a_chunk);
@@ -111,7 +111,7 @@ class DistanceMeter::Impl {
     return squared;
   }
 
-  /// From several threads.
+  /// Calls `found` from several threads.
   template <class Found>
   void find_nearest(Points points, const Found& found) const {
     constexpr std::size_t k_run = 1024;

@@ -9,7 +9,7 @@
 
 namespace meshfarm {
 
-/// From a point to the segment from a to b, which may be a point.
+/// The squared distance from a point to the segment from a to b, which may be a point.
 inline double squared_to_segment(Vec3 p, Vec3 a, Vec3 b) {
   const Vec3 ab = b - a, ap = p - a;
   const double along = dot(ap, ab), all = dot(ab, ab);
@@ -18,8 +18,8 @@ inline double squared_to_segment(Vec3 p, Vec3 a, Vec3 b) {
   return squared_length(ap - ab * (along / all));
 }
 
-/// How far a point is from a triangle, and which of its sides is nearest, if the point is beyond
-/// one. Degenerate triangles are the segments or points that they are.
+/// The distance of a point from a triangle, and the nearest side if the point is beyond one.
+/// Degenerate triangles count as the segments or points that they are.
 struct DistanceAcross {
   static constexpr std::size_t k_inside = 3;
   double squared = HUGE_VAL;
@@ -35,10 +35,10 @@ struct DistanceAcross {
   }
 };
 
-/// `known` is a squared distance that is known already. Where the triangle's plane is surely
-/// farther away than that, `squared` is infinite, and the side means nothing.
+/// `known` is an already known squared distance. If the triangle's plane is certainly farther away,
+/// `squared` is infinite, and the side means nothing.
 inline DistanceAcross distance_across(Vec3 p, Vec3 a, Vec3 b, Vec3 c, double known = HUGE_VAL) {
-  // For the rounding of a height, which is great where the triangle is narrow.
+  // Allow for the rounding of the height, which is large for narrow triangles.
   constexpr double k_above = 1 + 1e-6;
   constexpr double k_rounding = 1e-22;
   const Vec3 ab = b - a, ac = c - a, ap = p - a;

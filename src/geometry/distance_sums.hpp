@@ -10,7 +10,7 @@
 
 namespace meshfarm {
 
-/// What distances are made of, to be added up chunk by chunk.
+/// The sums behind Distance, added up chunk by chunk.
 struct DistanceSums {
   double squares = 0;
   double distances = 0;

@@ -10,7 +10,7 @@
 namespace meshfarm {
 namespace {
 
-/// A number as the exact sum of two.
+/// A number as the exact sum of two doubles.
 struct Two {
   double value = 0;
   double rest = 0;
@@ -27,7 +27,7 @@ Two product_of(double a, double b) {
   return {product, std::fma(a, b, -product)};
 }
 
-/// A sum of doubles without rounding: terms that do not overlap, by rising size (Shewchuk's
+/// A sum of doubles without rounding: non-overlapping terms of increasing size (Shewchuk's
 /// expansions).
 class ExactSum {
  public:
@@ -136,8 +136,8 @@ int exact_side_of_plane(Vec3 a, Vec3 b, Vec3 c, Vec3 p) {
   Rows rows = {difference(b, a), difference(c, a), difference(p, a)};
   const double largest = largest_of(rows);
   if (!(largest > 0)) return 0;
-  // Coordinates that were floats are whole numbers then, as a rule: sums of their products fit into
-  // 128 bits.
+  // Coordinates that were floats are usually whole numbers after scaling: sums of their products
+  // fit into 128 bits.
   scale(rows, 39 - std::ilogb(largest));
   if (are_integers(rows)) return sign_of_integers(rows);
   ExactSum volume;

@@ -8,11 +8,11 @@
 
 namespace meshfarm {
 
-// Signs of determinants, exact for all coordinates that differ by neither more than 1e100 nor less
-// than 1e-90 times that. What rounding cannot turn over is computed as usual, all else exactly
-// (Shewchuk 1997).
+// Signs of determinants, exact if the coordinates' differences are at most 1e100 and at least 1e-90
+// times that. Computed as usual where rounding cannot change the sign, otherwise exactly (Shewchuk
+// 1997).
 
-/// A plane of coordinates: the axes that are left of a point in space.
+/// A coordinate plane: the axes that are kept of a point in space.
 struct Axes {
   int first = 0;
   int second = 1;
@@ -21,8 +21,8 @@ struct Axes {
 int exact_side_of_plane(Vec3 a, Vec3 b, Vec3 c, Vec3 p);
 int exact_turn(Vec3 a, Vec3 b, Vec3 c, Axes axes);
 
-/// Where p is from the plane through a, b and c: 1 on the side that they go counter-clockwise seen
-/// from, -1 on the other, 0 on the plane or if the three are on a line.
+/// The side of the plane through a, b and c on which p lies: 1 on the side from which they appear
+/// counter-clockwise, -1 on the other, 0 on the plane or if the three are collinear.
 inline int side_of_plane(Vec3 a, Vec3 b, Vec3 c, Vec3 p) {
   const Vec3 u = b - a, v = c - a, w = p - a;
   const double yz = v.y * w.z, zy = v.z * w.y;
@@ -33,13 +33,13 @@ inline int side_of_plane(Vec3 a, Vec3 b, Vec3 c, Vec3 p) {
                      std::abs(u.y) * (std::abs(zx) + std::abs(xz)) +
                      std::abs(u.z) * (std::abs(xy) + std::abs(yx));
   constexpr double k_rounding = 8 * 0x1p-53;
-  constexpr double k_tiny = 1e-280;  // above what is lost where products underflow
+  constexpr double k_tiny = 1e-280;  // more than is lost where products underflow
   if (all > k_tiny && std::abs(volume) > k_rounding * all) return volume > 0 ? 1 : -1;
   return exact_side_of_plane(a, b, c, p);
 }
 
 /// 1 if a, b and c go counter-clockwise in the plane of these axes, -1 if clockwise, 0 if they are
-/// on a line there.
+/// collinear there.
 inline int turn(Vec3 a, Vec3 b, Vec3 c, Axes axes) {
   const double left = (b[axes.first] - a[axes.first]) * (c[axes.second] - a[axes.second]);
   const double right = (b[axes.second] - a[axes.second]) * (c[axes.first] - a[axes.first]);

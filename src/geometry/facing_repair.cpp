@@ -17,11 +17,11 @@
 namespace meshfarm {
 namespace {
 
-/// Distances that differ by rounding alone are the same.
+/// Distances that differ only by rounding are the same.
 constexpr double k_same = 1 + 1e-9;
 constexpr std::size_t k_small_piece = 16;  // triangles
-/// What is changed comes to lie no farther from the original than this share of the reach: first
-/// what costs least is tried.
+/// Limits on the distance of changed places from the original, as shares of the reach. The smaller
+/// one, which costs less, is tried first.
 constexpr std::array k_limits{0.25, 0.5};
 
 Vec3 center_of(const TriangleCorners& t) {
@@ -44,7 +44,8 @@ class NearOriginal {
   NearOriginal(const Mesh& original, double reach)
       : original_(original), places_(original, {.reach = reach, .threads = 0}) {}
 
-  /// Whether the nearest place to the centre faces the other way, and none as near faces this way.
+  /// Whether the place nearest to the centre faces the other way, and none equally near faces this
+  /// way.
   bool is_behind(const TriangleCorners& t) const {
     const Vec3 normal = normal_of(t);
     if (!(squared_length(normal) > 0)) return false;
@@ -56,7 +57,7 @@ class NearOriginal {
   }
   double squared_distance(Vec3 p) const { return places_.find(p, {}).squared; }
 
-  /// From the centre to the nearest place that faces as the triangle does.
+  /// The vector from the centre to the nearest place that faces as the triangle does.
   std::optional<Vec3> way_to_facing(const TriangleCorners& t) const {
     const Vec3 center = center_of(t), normal = normal_of(t);
     const SurfacePlace place = places_.find(center, normal);
@@ -89,13 +90,14 @@ class TriangleMender {
   }
 
  private:
-  /// A place is no farther from the original than it may be, or than that was which it is for.
+  /// Whether a new place is farther from the original than the limit, and than the old place.
   bool is_too_far(Vec3 now, Vec3 was) const {
     const double squared = original_.squared_distance(now);
     return squared > squared_limit_ && squared > original_.squared_distance(was);
   }
 
-  /// Does it if fewer triangles face the wrong way then, and nothing else gets worse.
+  /// Applies the change if it leaves fewer triangles facing the wrong way, and makes nothing else
+  /// worse.
   bool improve(const MeshChange& change) {
     for (const auto& [vertex, place] : change.moved) {
       if (!is_finite(place) || is_too_far(place, mesh_.positions[vertex])) return false;
@@ -115,7 +117,7 @@ class TriangleMender {
     return fewer > 0 && changing_.apply(change, concerned);
   }
 
-  /// An edge, the longest first.
+  /// Flips an edge, the longest first.
   bool flip(std::uint32_t triangle) {
     if (!mesh_.columns.empty() || !mesh_.appearances.empty()) return false;
     const TriangleCorners corners = changing_.corners_of(triangle);
@@ -155,7 +157,7 @@ class TriangleMender {
 
   Vec3 kept(Vec3 p) const { return rounded(p, options_.positions); }
 
-  /// A corner to the other side of the edge opposite, the nearest first.
+  /// Moves a corner to the other side of the opposite edge, the nearest corner first.
   bool move_across(std::uint32_t triangle) {
     const Triangle t = mesh_.triangles[triangle];
     std::vector<std::pair<std::uint32_t, Vec3>> ways;
@@ -178,7 +180,7 @@ class TriangleMender {
     return false;
   }
 
-  /// One vertex, two or all three towards what faces the same way.
+  /// Moves one, two or all three vertices towards the nearest place that faces the same way.
   bool move_towards(std::uint32_t triangle) {
     const Triangle t = mesh_.triangles[triangle];
     const std::optional<Vec3> way = original_.way_to_facing(changing_.corners_of(triangle));
@@ -221,7 +223,7 @@ class TriangleMender {
     return false;
   }
 
-  /// The vertices of a closed piece of few triangles; none if it is not.
+  /// The vertices of the triangle's piece, if that is closed and has few triangles; otherwise none.
   std::vector<std::uint32_t> small_piece_of(std::uint32_t triangle) const {
     std::vector<std::uint32_t> triangles{triangle}, vertices;
     for (std::size_t i = 0; i < triangles.size() && triangles.size() <= k_small_piece; ++i) {
@@ -262,7 +264,7 @@ class FacingRepair::Impl {
     if (!changing_) changing_.emplace(mesh_);
     TriangleMender mender(*changing_, original, options_);
     for (const std::uint32_t triangle : wrong) {
-      // It may have been mended with another one.
+      // It may have been repaired together with another one.
       if (is_behind(original, triangle)) mender.mend(triangle);
     }
     const auto mended = std::count_if(wrong.begin(), wrong.end(), [&](std::uint32_t triangle) {

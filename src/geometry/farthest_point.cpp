@@ -14,7 +14,7 @@
 namespace meshfarm {
 namespace {
 
-constexpr std::size_t k_corner_chunk = 4096;  // triangles; fixed, as is what is found in one
+constexpr std::size_t k_corner_chunk = 4096;  // triangles; fixed, so that results are too
 constexpr std::size_t k_searched = 200;       // triangles
 constexpr int k_first_steps = 10;             // along a side
 constexpr int k_next_steps = 5;
@@ -24,7 +24,7 @@ bool is_farther(const FarPoint& a, const FarPoint& b) {
   return a.distance != b.distance ? a.distance > b.distance : a.triangle < b.triangle;
 }
 
-/// Searches the farthest point of a triangle.
+/// Searches for the farthest point of a triangle.
 class TriangleSearch {
  public:
   TriangleSearch(const Mesh& from, std::uint32_t triangle, const Bvh& to) : to_(to) {
@@ -40,7 +40,7 @@ class TriangleSearch {
   }
 
  private:
-  /// At a grid over a square of shares of the second and third corner, as far as it is on the
+  /// Tries a grid over a square of shares of the second and third corner, as far as it is on the
   /// triangle.
   void look_round(double first, double second, double side, int steps) {
     for (int i = 0; i <= steps; ++i) {
@@ -53,7 +53,7 @@ class TriangleSearch {
   void look_at(double b, double c) {
     b = std::clamp(b, 0.0, 1.0);
     c = std::clamp(c, 0.0, 1.0);
-    if (b + c > 1) {  // beyond the third side: onto it
+    if (b + c > 1) {  // beyond the third side: move onto it
       b = std::clamp((1 + b - c) / 2, 0.0, 1.0);
       c = 1 - b;
     }
@@ -72,7 +72,7 @@ class TriangleSearch {
   std::uint32_t guess_ = 0;
 };
 
-/// Of each chunk of triangles the corner that is farthest, if it is farther than `least`.
+/// The farthest corner of each chunk of triangles, if it is farther than `least`.
 std::vector<FarPoint> far_corners(const Mesh& from, const Bvh& to, double least, unsigned threads) {
   const std::size_t count = from.triangles.size();
   std::vector<FarPoint> found((count + k_corner_chunk - 1) / k_corner_chunk);
@@ -82,7 +82,7 @@ std::vector<FarPoint> far_corners(const Mesh& from, const Bvh& to, double least,
     const std::size_t end = std::min(count, (chunk + 1) * k_corner_chunk);
     for (std::size_t i = chunk * k_corner_chunk; i < end; ++i) {
       const auto [a, b, c] = corners_of(from.positions, from.triangles[i]);
-      if (a == b || b == c || c == a) continue;  // no surface: a run drops it
+      if (a == b || b == c || c == a) continue;  // not a surface: a run drops it
       for (const Vec3& corner : {a, b, c}) {
         const Bvh::Nearest nearest = to.nearest(corner, guess, farthest);
         guess = nearest.triangle;

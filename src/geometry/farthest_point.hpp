@@ -11,16 +11,16 @@
 
 namespace meshfarm {
 
-/// A point of a surface that is far from another one, by the triangle that it lies on.
+/// A point of a surface far from another surface, by the triangle that it lies on.
 struct FarPoint {
   double distance = 0;
   std::uint32_t triangle = 0;
 };
 
-/// The greatest distance that is found from `from` to the other surface: that of all corners of
-/// triangles, but of those with two at one place, and of those triangles that are farthest, by
-/// corners or by `known` points, of points ever nearer to the farthest. No bound, but samples by
-/// area alone miss more. Depends on no threads (0: one a core).
+/// The greatest distance found from `from` to the other surface. Tries all triangle corners, except
+/// of triangles with coincident corners, and, in the triangles that are farthest by their corners
+/// or by `known` points, points that close in on the farthest. This is not a bound, but samples by
+/// area alone miss more. The result does not depend on the threads (0: one per core).
 double find_farthest(const Mesh& from, const Bvh& to, std::span<const FarPoint> known,
                      unsigned threads);
 

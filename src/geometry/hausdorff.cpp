@@ -14,14 +14,14 @@ namespace meshfarm {
 namespace {
 
 constexpr std::uint64_t k_triangles_at_once = 1024;
-/// Chunks that are bounded at once know the lower bound of those before. More and more: what is
-/// farthest is soon found, and threads should not wait for each other.
+/// Chunks bounded at the same time know the lower bound of all chunks before. Their number doubles:
+/// the farthest point is soon found, and threads should not wait for each other.
 constexpr std::uint64_t k_first_chunks = 8;
 constexpr std::uint64_t k_most_chunks = 1024;
-/// A vertex is near if it is within this share of what is enough.
+/// A vertex is near if its distance is below this share of HausdorffOptions::enough.
 constexpr double k_near_corner_share = 0.5;
 
-/// Where a point is so near to a distance, as a share of it, nothing is proven.
+/// Nothing is proven for points closer to the distance than this share of it.
 constexpr double k_gap_of_proof = 0x1p-10;
 
 constexpr std::uint32_t k_unused = UINT32_MAX;
@@ -66,7 +66,7 @@ class SurfaceBounder {
     return bounds_;
   }
 
-  /// Those whose upper bound is more than is enough.
+  /// The triangles whose upper bound exceeds `enough`.
   std::vector<std::uint32_t> find_beyond() {
     find_near_triangles();
     std::vector<std::vector<std::uint32_t>> found(chunks_of_all(triangles_.size()));
@@ -93,7 +93,7 @@ class SurfaceBounder {
   }
   bool is_beyond() const { return options_.stops_beyond && bounds_.lower > options_.enough; }
 
-  /// Of each vertex that is used. Where they are beyond what is enough, so is the surface.
+  /// For each used vertex. If a vertex is beyond `enough`, so is the surface.
   void find_near_triangles() {
     near_.assign(positions_.size(), k_unused);
     for (const Triangle& t : triangles_) near_[t[0]] = near_[t[1]] = near_[t[2]] = 0;
@@ -131,7 +131,8 @@ class SurfaceBounder {
     return found;
   }
 
-  /// Most are near one triangle as a whole, which then is near one of the corners.
+  /// Most triangles are entirely near one triangle of the other mesh, which is then near one of
+  /// their corners.
   DistanceBounds bound_triangle(const Triangle& t, const HausdorffOptions& options,
                                 PieceBounder& pieces) const {
     const CornerPoints corners = corners_of(positions_, t);

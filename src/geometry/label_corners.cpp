@@ -7,7 +7,7 @@
 namespace meshfarm {
 namespace {
 
-/// A vertex of more triangles is none that matters.
+/// Vertices with more triangles are ignored.
 constexpr std::size_t k_most_counted_triangles = 1024;
 
 std::size_t lines_at(const CornerFan& fan) {

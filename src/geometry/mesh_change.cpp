@@ -29,7 +29,7 @@ void ChangingMesh::list_fans() {
   }
 }
 
-/// Slots are in the order of the triangles' first corners along a curve.
+/// Slots are sorted by the triangles' first corners along a curve.
 void ChangingMesh::build_boxes() {
   Box all;
   for (const Vec3& p : mesh_.positions) all.add(p);
@@ -152,7 +152,7 @@ void ChangingMesh::list_others(std::span<const std::uint32_t> concerned, const T
   }
 }
 
-/// That cross, of these with each other and with the others; stops at `enough`.
+/// The pairs of these triangles that cross, with each other and with the others; stops at `enough`.
 std::size_t ChangingMesh::pairs_of(const Triangles& some, std::size_t enough) const {
   std::size_t pairs = 0;
   const auto crosses = [&](const CrossingTriangle& a, const CrossingTriangle& b) {
@@ -177,7 +177,7 @@ void ChangingMesh::rewire(const MeshChange& change) {
   }
 }
 
-/// After the triangle has left the vertex or come to it.
+/// Updates the fan after the triangle has left the vertex or joined it.
 void ChangingMesh::change_fan(std::uint32_t vertex, std::uint32_t triangle) {
   const std::span<const std::uint32_t> before = fan(vertex);
   std::vector<std::uint32_t> changed(before.begin(), before.end());

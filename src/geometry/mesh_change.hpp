@@ -17,17 +17,17 @@
 
 namespace meshfarm {
 
-/// What would be other than it is: places of vertices, corners of triangles.
+/// A proposed change: new places of vertices, new corners of triangles.
 struct MeshChange {
   std::vector<std::pair<std::uint32_t, Vec3>> moved;
   std::vector<std::pair<std::uint32_t, Triangle>> rewired;
 };
 
-/// A mesh in which small changes are judged by what they do to the triangles that they concern, and
-/// to what crosses. As many triangles and vertices stay.
+/// A mesh in which small changes are judged by their effect on the triangles concerned, and on
+/// crossings. The numbers of triangles and vertices stay the same.
 class ChangingMesh {
  public:
-  /// The mesh must outlive it, and be changed by it alone; with finite coordinates.
+  /// The mesh must outlive it, have finite coordinates, and be changed only through it.
   explicit ChangingMesh(Mesh& mesh);
 
   const Mesh& mesh() const { return mesh_; }
@@ -35,15 +35,16 @@ class ChangingMesh {
   TriangleCorners corners_after(std::uint32_t triangle, const MeshChange& change) const;
   /// The triangles at a vertex.
   std::span<const std::uint32_t> fan(std::uint32_t vertex) const;
-  /// The triangle on the other side of the edge from a to b, if the edge has no more than one there
-  /// and they are turned the same way.
+  /// The triangle on the other side of the edge from a to b, if exactly one is there and both have
+  /// the same orientation.
   std::optional<std::uint32_t> beside(std::uint32_t a, std::uint32_t b) const;
   /// Whether all edges at the vertex have two triangles.
   bool is_inside(std::uint32_t vertex) const;
 
-  /// The triangles that would be other than they are, in order.
+  /// The triangles that would change, in order.
   std::vector<std::uint32_t> concerned_by(const MeshChange& change) const;
-  /// Does it, if not more pairs of triangles cross then than before. `concerned` are its triangles.
+  /// Applies the change unless more pairs of triangles would cross than before. `concerned` are its
+  /// triangles.
   bool apply(const MeshChange& change, std::span<const std::uint32_t> concerned);
 
  private:
@@ -65,7 +66,7 @@ class ChangingMesh {
   std::vector<std::uint32_t> slot_of_;      // of each triangle in boxes_
   std::vector<std::uint32_t> triangle_in_;  // each slot
   std::vector<std::uint32_t> touching_;
-  Triangles others_;  // round about what is judged
+  Triangles others_;  // near the triangles that are judged
 };
 
 }  // namespace meshfarm

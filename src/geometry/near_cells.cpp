@@ -64,12 +64,12 @@ bool NearCells::touch(const Box& box) const {
                   [&](std::size_t cell) { return bool{near_[cell]}; });
 }
 
-/// Most triangles lie in one cell.
+/// Most triangles lie within a single cell.
 std::vector<std::uint32_t> NearCells::touching(std::span<const Vec3> positions,
                                                std::span<const Triangle> triangles) const {
   std::vector<std::uint32_t> touching;
   if (near_.empty()) return touching;
-  // What is outside of the box has no cell.
+  // Points outside the box have no cell.
   constexpr std::uint32_t k_outside = UINT32_MAX;
   std::vector<std::uint32_t> cells(positions.size(), k_outside);
   for (std::size_t i = 0; i < cells.size(); ++i) {

@@ -8,14 +8,14 @@
 namespace meshfarm {
 namespace {
 
-/// So thin triangles are not sure on which side of them a point is.
+/// For triangles thinner than this, rounding decides on which side a point is.
 constexpr double k_sliver = 1e-10;
 constexpr double k_relative_rounding = 0x1p-44;
-/// A first guess is good enough within this share of what is enough for a piece; measured: 0.1
-/// takes 10 % longer, 0.5 as long.
+/// A first guess within this share of the target distance is good enough; measured: 0.1 takes 10 %
+/// longer, 0.5 the same time.
 constexpr double k_near_enough = 0.25;
 
-/// Of the segment's nearest point.
+/// The squared distance to the segment's nearest point.
 double squared_above(Vec3 p, Vec3 a, Vec3 b) {
   const Vec3 ab = b - a;
   const double all = dot(ab, ab);
@@ -72,16 +72,16 @@ double rounding_of(const Box& box) {
   return k_relative_rounding * greatest;
 }
 
-/// What is no farther is settled.
+/// Pieces that are no farther are settled.
 double PieceBounder::target() const {
   const double gap = std::max(options_.gap, options_.relative_gap * bounds_.lower);
   return std::max(options_.enough - rounding_, bounds_.lower + gap);
 }
 
-/// Tightens the piece's bound, and that from below.
+/// Tightens the piece's upper bound and the overall lower bound.
 bool PieceBounder::is_settled(Piece& piece) {
   const double most = target();
-  // Where bounds are told and not only compared, it is good to know them as they are.
+  // Where bounds are returned and not only compared, compute them exactly.
   const double limit = options_.stops_beyond ? most : HUGE_VAL;
   piece.upper = std::min(piece.upper, farthest_from(piece, piece.guess, limit));
   if (piece.upper <= most) return true;
@@ -89,7 +89,7 @@ bool PieceBounder::is_settled(Piece& piece) {
   const Vec3 middle = (a + b + c) * (1.0 / 3);
   double radius = 0;
   for (const Vec3 p : piece.corners) radius = std::max(radius, length(p - middle));
-  // Of a piece that is too large for its middle to settle it, its parts need a first guess only.
+  // A piece too large to be settled by its middle only needs a first guess for its parts.
   const double slack = radius < most ? most - radius : k_near_enough * most;
   const double enough = slack * slack;
   const Bvh::Nearest nearest = bvh_.nearest(middle, piece.guess, enough);

@@ -26,26 +26,26 @@ inline double longest_side(const CornerPoints& corners) {
   return std::sqrt(std::max({squared_length(b - a), squared_length(c - b), squared_length(a - c)}));
 }
 
-/// No less than the distance of `p` to the triangle, but for the rounding of a few operations on
-/// coordinates: it is that to a point of the triangle, however thin this is.
+/// An upper bound of the distance of `p` to the triangle, up to the rounding of a few operations on
+/// coordinates: the distance to some point of the triangle, however thin it is.
 double distance_above(Vec3 p, const CornerPoints& triangle);
 
-/// The greatest of the corners' distances to the triangle, infinite if that is more than `most`. As
-/// a triangle is convex, no point between the corners is farther.
+/// The greatest of the corners' distances to the triangle; infinite if that exceeds `most`. As a
+/// triangle is convex, no point between the corners is farther.
 double farthest_corner(const CornerPoints& corners, const CornerPoints& triangle, double most);
 
-/// What rounding may change of distances between points with such coordinates.
+/// The rounding error of distances between points with such coordinates.
 double rounding_of(const Box& box);
 
-/// Bounds the distance of the farthest point of a triangle to a surface, by pieces: what is left in
-/// doubt is cut in two.
+/// Bounds the distance of the farthest point of a triangle to a surface, by pieces: undecided
+/// pieces are cut in two.
 class PieceBounder {
  public:
   /// Both must outlive it. `rounding`: of all coordinates (rounding_of).
   PieceBounder(const Mesh& to, const Bvh& bvh, double rounding)
       : to_(to), bvh_(bvh), rounding_(rounding) {}
 
-  /// `guess`: a triangle near the corners; becomes another one. The options' threads don't matter.
+  /// `guess`: a triangle near the corners; updated. The options' threads are ignored.
   DistanceBounds bound(const CornerPoints& corners, const HausdorffOptions& options,
                        std::uint32_t& guess);
 
@@ -68,7 +68,7 @@ class PieceBounder {
   const Bvh& bvh_;
   double rounding_;
   HausdorffOptions options_;
-  DistanceBounds bounds_;    // but for rounding; above, of what is settled
+  DistanceBounds bounds_;    // without rounding; `upper`: of settled pieces
   std::vector<Piece> open_;  // a heap: the piece that may be farthest is on top
 };
 

@@ -25,7 +25,7 @@ PieceSamples sample_piece(std::span<const Vec3> positions, std::span<const Trian
 
 PieceSamples sample_piece(std::span<const Vec3> positions, std::span<const Triangle> triangles,
                           const std::function<std::uint64_t(double area)>& count_of, Vec3 origin) {
-  constexpr std::size_t k_block = 16;  // a number for each triangle would take long to write
+  constexpr std::size_t k_block = 16;  // one number per triangle would take long to write
   PieceSamples made;
   std::vector<double> before;  // the area up to the end of each block
   before.reserve(triangles.size() / k_block + 1);

@@ -10,7 +10,7 @@ namespace {
 
 constexpr std::size_t k_least = 1024;
 constexpr std::size_t k_bits_an_entry = 16;
-// Points that share a cell with one of them, on the average.
+// The average number of points per cell, seen from a point, above which the grid is crowded.
 constexpr double k_crowd = 2;
 
 }  // namespace
@@ -22,7 +22,8 @@ PointGrid::PointGrid(std::span<SearchingPoint> points, double reach, double cell
   is_crowded_ = find_crowds();
 }
 
-/// A point looks into at most eight cells, and there are not too many of them for a key.
+/// Cells are large enough that a point reaches at most eight of them, and a key can number them
+/// all.
 void PointGrid::set_cells(double reach, double cell) {
   Box box;
   for (const SearchingPoint& p : points_) box.add(p.place);

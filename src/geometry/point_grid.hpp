@@ -11,22 +11,22 @@
 
 namespace meshfarm {
 
-/// A hashed grid of points that all look equally far for the nearest triangle. Each point stands in
-/// every cell that it looks into, so that a triangle finds the points by its own cells; a bit for
-/// each hash tells of most cells that no point is there.
+/// A hashed grid of points that all search equally far for their nearest triangle. Each point is
+/// stored in every cell that it reaches, so that a triangle finds the points by its own cells. One
+/// bit per hash tells for most cells that no point is there.
 class PointGrid {
  public:
-  /// `points` must outlive the grid. Cells are as large as asked for unless that makes too many.
+  /// `points` must outlive the grid. Cells have the requested size unless that makes too many.
   PointGrid(std::span<SearchingPoint> points, double reach, double cell);
 
-  /// The cell of a vertex; its highest bit tells whether points may look into it.
+  /// The cell of a vertex; the highest bit tells whether points may reach it.
   std::uint64_t key_of(Vec3 p) const {
     const std::uint64_t cell = cell_of(p);
     return has(cell) ? cell | k_hit : cell;
   }
 
   enum class Reach { none, some, many_cells };
-  /// Whether points may look at a triangle whose corners have these keys; a large one lies in too
+  /// Whether points may reach a triangle whose corners have these keys; a large one lies in too
   /// many cells to tell.
   Reach reach_of(std::uint64_t a, std::uint64_t b, std::uint64_t c) const {
     if (a == b && b == c) return (a & k_hit) != 0 ? Reach::some : Reach::none;
@@ -35,9 +35,10 @@ class PointGrid {
     if (((a | b | c) & k_hit) != 0) return Reach::some;
     return cells.find([&](std::uint64_t cell) { return has(cell); }) ? Reach::some : Reach::none;
   }
-  /// Whether a triangle meets so many points that it is cheaper for each point to look for it.
+  /// Whether triangles meet so many points that it is cheaper for each point to search for its
+  /// triangle.
   bool is_crowded() const { return is_crowded_; }
-  /// Offers a triangle of not too many cells to the points that look into them.
+  /// Offers a triangle that lies in few enough cells to the points that reach them.
   void offer(const OfferedTriangle& triangle);
 
  private:
@@ -46,11 +47,11 @@ class PointGrid {
   static constexpr std::uint64_t k_hit = std::uint64_t{1} << (3 * k_axis_bits);
   static constexpr std::uint64_t k_most_cells = 64;
 
-  /// The cells of the box round some.
+  /// The cells of the box round some cells.
   struct Cells {
     std::array<std::uint64_t, 3> lo{k_axis, k_axis, k_axis};
     std::array<std::uint64_t, 3> hi{};
-    std::uint64_t count = 1;  // all that is above k_most_cells is alike
+    std::uint64_t count = 1;  // counts above k_most_cells are capped
 
     template <std::size_t N>
     explicit Cells(const std::array<std::uint64_t, N>& corners) {
@@ -64,7 +65,7 @@ class PointGrid {
         if (count > k_most_cells) count = k_most_cells + 1;
       }
     }
-    /// Whether a cell is what is looked for.
+    /// Whether is(cell) is true for some cell.
     template <class Is>
     bool find(Is is) const {
       for (std::uint64_t z = lo[2]; z <= hi[2]; ++z) {

@@ -12,7 +12,7 @@
 namespace meshfarm {
 namespace {
 
-/// The view of the points that nanoflann asks for.
+/// The view of the points that nanoflann requires.
 struct PointCloud {
   std::vector<Vec3> points;
   std::size_t kdtree_get_point_count() const { return points.size(); }
@@ -25,7 +25,7 @@ struct PointCloud {
   }
 };
 
-/// What a search has found so far, as nanoflann asks for it: the nearest that counts.
+/// The result of a search so far, in the form that nanoflann requires: the nearest that counts.
 class LeastValue {
  public:
   explicit LeastValue(const std::function<double(std::uint32_t)>& value) : value_(value) {}

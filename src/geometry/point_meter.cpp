@@ -15,13 +15,14 @@
 namespace meshfarm {
 namespace {
 
-/// So many triangles are first looked at by their common box where no grid helps.
+/// Where no grid helps, runs of this many triangles are first tested by their common box.
 constexpr std::size_t k_run = 32;
-/// So many are worth a hierarchy.
+/// At least this many triangles are worth a hierarchy.
 constexpr std::size_t k_worth_a_tree = 256;
-/// The farthest place to look at is a little beyond what is known, so that it is found again.
+/// Search a little beyond the known distance, so that the known place is found again.
 constexpr double k_a_little_more = 1 + 0x1p-20;
-/// Of the distance between vertices: to look a little farther costs nothing, nor do larger cells.
+/// Shares of the distance between vertices: a slightly larger reach costs nothing, nor do larger
+/// cells.
 constexpr double k_least_reach = 0.25;
 constexpr double k_meter_cell = 2;
 
@@ -97,7 +98,7 @@ class PointMeter::Impl {
     if (!grid_) return show_to_tree(positions, triangles);
     if (grid_->is_crowded() && triangles.size() >= k_worth_a_tree)
       return show_at_once(positions, triangles);
-    // Of few triangles it is cheaper not to look at each vertex.
+    // With few triangles it is cheaper not to compute a key for each vertex.
     if (positions.size() > 2 * triangles.size()) {
       for (const auto& [a, b, c] : triangles) {
         offer(positions[a], positions[b], positions[c], grid_->key_of(positions[a]),
@@ -119,7 +120,7 @@ class PointMeter::Impl {
   }
 
  private:
-  /// What was not found near is nowhere farther than the points of the surface that are known.
+  /// Points without a near triangle are no farther from the surface than from its known points.
   std::vector<std::uint32_t> begin_last_pass() {
     grid_.reset();
     std::vector<std::uint32_t> searching;
@@ -147,7 +148,7 @@ class PointMeter::Impl {
     return keys;
   }
 
-  /// Those that are near some point, in a hierarchy of their own.
+  /// Puts the triangles that are near some point into their own hierarchy.
   void show_at_once(std::span<const Vec3> positions, std::span<const Triangle> triangles) {
     const std::vector<std::uint64_t> keys = keys_of(positions);
     std::vector<Triangle> near;
@@ -184,10 +185,10 @@ class PointMeter::Impl {
 
   PointMeterHints hints_;
   double reach_;  // of the first pass
-  int pass_;      // that is on
+  int pass_;      // the current one
   std::vector<SearchingPoint> points_;
   std::optional<PointGrid> grid_;  // of the first pass
-  std::optional<PointTree> tree_;  // of what is searching in this pass
+  std::optional<PointTree> tree_;  // of the points searching in this pass
 };
 
 PointMeter::PointMeter(std::span<const Vec3> points, const PointMeterHints& hints)

@@ -11,7 +11,7 @@ namespace meshfarm {
 namespace {
 
 constexpr std::size_t k_children = 8;
-// Seven stay behind on each of at most 11 levels of 2^32 points.
+// Seven entries stay on each of at most 11 levels of 2^32 points.
 constexpr std::size_t k_stack = 7 * 11 + 1;
 
 }  // namespace
@@ -56,8 +56,8 @@ void PointTree::add_levels() {
   }
 }
 
-/// Visits the points of all leaves that may look into the box, until a visit says that it is
-/// enough; returns whether one did.
+/// Visits the points of all leaves that may reach into the box, until a visit returns true; returns
+/// whether one did.
 template <class Visit>
 bool PointTree::visit(const Box& box, Visit visit_leaf) const {
   if (levels_.empty()) return false;

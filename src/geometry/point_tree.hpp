@@ -10,24 +10,24 @@
 
 namespace meshfarm {
 
-/// A tree over points that look for the nearest triangle, each no farther than it had found one
-/// when the tree was made: eight of the next level a node, in Morton order.
+/// A tree over points that search for their nearest triangle, each within the distance known when
+/// the tree was built: eight children per node, in Morton order.
 class PointTree {
  public:
-  /// Of the points with these indices. `points` must outlive the tree.
+  /// Contains the points with these indices. `points` must outlive the tree.
   PointTree(std::span<SearchingPoint> points, std::span<const std::uint32_t> indices);
 
-  /// Whether something in the box may be nearer to a point than what it knows.
+  /// Whether something in the box may be nearer to a point than its known distance.
   bool wants(const Box& box) const;
-  /// Offers the triangle to all points that it may be the nearest to.
+  /// Offers the triangle to all points that it may be nearest to.
   void offer(const OfferedTriangle& triangle);
-  /// Offers many triangles, in this box, at once.
+  /// Offers many triangles, all in this box, at once.
   void offer(const Bvh& triangles, const Box& box);
 
  private:
   struct Node {
     Box box;                   // of the points
-    double squared_reach = 0;  // how far one of them looks at most
+    double squared_reach = 0;  // the largest search distance of a point
   };
 
   template <class Visit>

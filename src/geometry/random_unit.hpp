@@ -19,14 +19,14 @@ inline double random_unit(std::uint64_t n) {
   return static_cast<double>(z >> 11) * 0x1p-53;
 }
 
-/// The corners' shares in a random place of a triangle, for each number: it takes the numbers 3n +
-/// 1 and 3n + 2 of the sequence.
+/// The corners' shares at the n-th random place of a triangle: uses numbers 3n + 1 and 3n + 2 of
+/// the sequence.
 inline std::array<double, 3> random_shares(std::uint64_t n) {
   const double root = std::sqrt(random_unit(3 * n + 1)), across = random_unit(3 * n + 2);
   return {1 - root, root * (1 - across), root * across};
 }
 
-/// That place.
+/// The place with these shares.
 inline Vec3 random_place(Vec3 a, Vec3 b, Vec3 c, std::uint64_t n) {
   const auto [of_a, of_b, of_c] = random_shares(n);
   return a * of_a + b * of_b + c * of_c;

@@ -13,8 +13,8 @@
 
 namespace meshfarm {
 
-/// How far a box begins from a point, squared; 0 within it. Never above the distance of anything
-/// in the box, in spite of rounding.
+/// The squared distance from a point to a box; 0 inside it. Never above the distance of anything in
+/// the box, despite rounding.
 inline double squared_gap(const Box& box, Vec3 p) {
   const auto gap = [](double lo, double hi, double x) {
     return lo > x ? lo - x : x > hi ? x - hi : 0.0;
@@ -25,7 +25,7 @@ inline double squared_gap(const Box& box, Vec3 p) {
   return x * x + y * y + z * z;
 }
 
-/// The same of two boxes.
+/// The same for two boxes.
 inline double squared_gap(const Box& a, const Box& b) {
   const auto gap = [](double a_lo, double a_hi, double b_lo, double b_hi) {
     return a_lo > b_hi ? a_lo - b_hi : b_lo > a_hi ? b_lo - a_hi : 0.0;
@@ -49,7 +49,7 @@ struct OfferedTriangle {
     box.add(c);
   }
 
-  /// Never below the gap to the box, by which triangles are passed over: so the least of several
+  /// Never below the gap to the box, by which triangles are skipped, so that the least of several
   /// does not depend on their order.
   double squared_from(Vec3 p) const { return squared_from(p, squared_gap(box, p)); }
   double squared_from(Vec3 p, double gap) const {
@@ -57,8 +57,8 @@ struct OfferedTriangle {
   }
 };
 
-/// A point and the squared distance of the nearest triangle that it was offered. Several threads
-/// may offer at a time.
+/// A point and the squared distance of the nearest triangle offered so far. Several threads may
+/// offer at once.
 struct SearchingPoint {
   Vec3 place;
   std::atomic<double> squared;

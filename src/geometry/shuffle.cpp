@@ -10,7 +10,7 @@
 namespace meshfarm {
 namespace {
 
-/// By Fisher and Yates; what std::shuffle does with its random numbers is each library's own.
+/// Fisher-Yates. How std::shuffle uses its random numbers differs between libraries.
 template <class T>
 void shuffle_all(std::vector<T>& values, std::mt19937_64& random) {
   for (std::size_t i = values.size(); i > 1; --i) std::swap(values[i - 1], values[random() % i]);

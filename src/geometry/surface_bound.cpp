@@ -15,13 +15,13 @@
 namespace meshfarm {
 namespace {
 
-/// Points inside of triangles are so far apart, in distances of the bound.
+/// Spacing of points inside triangles, in distances of the bound.
 constexpr double k_bound_spacing = 6;
-/// Of shorter sides the ends are enough.
+/// For shorter sides, the end points are enough.
 constexpr double k_long_side = 1.5;
-/// Triangles with longer sides are not small.
+/// Triangles with longer sides are not small. In distances of the bound.
 constexpr double k_small_side = 4;
-/// A small bound on large triangles does not ask for more points than this a triangle, all in all.
+/// Limit of points per triangle on average, for a small bound on large triangles.
 constexpr double k_most_points = 4;
 
 /// Into how many parts each side is divided; 0 if the vertices are enough.
@@ -29,7 +29,7 @@ double steps_for(double side, double spacing) {
   return side > spacing ? std::ceil(side / spacing) : 0;
 }
 
-/// The points of the vertices that a triangle has, and their numbers.
+/// The points of the used vertices, and the vertices' numbers.
 std::vector<SurfacePoint> used_vertices(const Mesh& mesh, std::vector<std::uint32_t>& numbers) {
   numbers.assign(mesh.positions.size(), UINT32_MAX);
   std::vector<SurfacePoint> vertices;
@@ -53,7 +53,7 @@ void flag_dense(const Mesh& mesh, std::span<const std::uint32_t> numbers, double
   }
 }
 
-/// The long sides of all triangles, once from each end.
+/// The long sides of all triangles, one entry from each end.
 class LongSides {
  public:
   LongSides(const Mesh& mesh, std::span<const std::uint32_t> numbers, double distance) {
@@ -96,7 +96,7 @@ double count_inside(const Mesh& mesh, double spacing) {
   return count;
 }
 
-/// The middles of the triangles that a grid divides a triangle into.
+/// The centres of the triangles of a grid over a triangle.
 void add_grid(const Mesh& mesh, std::uint32_t triangle, double steps,
               std::vector<SurfacePoint>& points) {
   const auto& [a, b, c] = mesh.triangles[triangle];

@@ -11,12 +11,12 @@
 namespace meshfarm {
 namespace {
 
-constexpr std::size_t k_measured_a_block = 8192;  // fixed, so that sums are
+constexpr std::size_t k_measured_a_block = 8192;  // fixed, so that sums are too
 constexpr double k_steps_a_degree = 1000;
-constexpr std::size_t k_greatest_step = 60'000;  // the narrowest angle of a triangle has 60 degrees
+constexpr std::size_t k_greatest_step = 60'000;  // a smallest angle has at most 60 degrees
 const double k_degrees = 180 / std::acos(-1.0);
 
-/// At the corner that is across the shortest side.
+/// The angle at the corner opposite the shortest side.
 double smallest_angle(const std::array<Vec3, 3>& corners) {
   std::size_t narrowest = 0;
   double shortest = HUGE_VAL;

@@ -13,7 +13,7 @@ double area_of(Vec3 a, Vec3 b, Vec3 c) {
 
 }  // namespace
 
-/// Sample n lies in the n-th share of the area, at a random place of it.
+/// Sample n lies in the n-th share of the area, at a random place within it.
 double SurfaceSampler::next_place() const {
   const auto n = samples_.size();
   return (static_cast<double>(n) + random_unit(3 * n)) * share_;

@@ -12,16 +12,16 @@
 namespace meshfarm {
 namespace {
 
-/// What is farther is found sooner from the root.
+/// Triangles farther away are found sooner from the root.
 constexpr int k_most_steps = 12;
-/// So many of them may lead away.
+/// At most this many consecutive steps may lead away.
 constexpr int k_most_detours = 2;
 
-/// A side as the lesser of its vertices keeps it.
+/// A side, stored at its lower vertex.
 struct SideOfTriangle {
   std::uint32_t other = 0;  // vertex
   std::uint32_t triangle = 0;
-  std::uint32_t corner = 0;  // that it goes on from
+  std::uint32_t corner = 0;  // where the side begins
 
   bool operator<(const SideOfTriangle& side) const {
     return other != side.other ? other < side.other : triangle < side.triangle;
@@ -48,7 +48,7 @@ SurfaceWalk::SurfaceWalk(const Mesh& mesh) : mesh_(mesh), across_(mesh.triangles
   for (std::size_t v = 0; v + 1 < first.size(); ++v) {
     const auto begin = sides.begin() + first[v], end = sides.begin() + first[v + 1];
     std::sort(begin, end);
-    // Of several triangles at a side each leads to the next, and the last to the first.
+    // If several triangles share a side, each leads to the next, and the last to the first.
     for (auto group = begin; group != end;) {
       const auto after = std::find_if(
           group, end, [&](const SideOfTriangle& side) { return side.other != group->other; });

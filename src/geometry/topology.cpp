@@ -14,7 +14,8 @@
 namespace meshfarm {
 namespace {
 
-/// Values sorted into buckets by one counting sort: 8 bytes a bucket, no second copy of the values.
+/// Values sorted into buckets by one counting sort: 8 bytes per bucket, no second copy of the
+/// values.
 template <typename Value>
 class Buckets {
  public:
@@ -26,7 +27,7 @@ class Buckets {
   }
   // Moves the bucket's begin to its end: after the last put, ends_[b] is where bucket b ends.
   void put(std::size_t bucket, Value value) { values_[ends_[bucket]++] = value; }
-  /// Once all is put: the values of one bucket.
+  /// The values of one bucket, once all are put.
   std::span<Value> operator[](std::size_t bucket) {
     const std::uint64_t begin = bucket == 0 ? 0 : ends_[bucket - 1];
     return std::span(values_).subspan(begin, ends_[bucket] - begin);
@@ -56,7 +57,8 @@ std::size_t run_length(std::span<const std::uint32_t> values, std::size_t from,
   return at - from;
 }
 
-/// The edges from one vertex to higher ones: `up` as triangles go from it, `down` as they come.
+/// The edges from one vertex to higher ones. `up`: for each triangle that traverses the edge
+/// upwards, the other vertex; `down`: downwards.
 void count_edges_at(std::span<const std::uint32_t> up, std::span<const std::uint32_t> down,
                     Topology& topology) {
   std::size_t u = 0, d = 0;
@@ -84,7 +86,7 @@ void for_proper_triangles(const Mesh& mesh, const Visit& visit) {
 using Sides = std::span<const std::array<std::uint32_t, 2>>;
 
 void count_edges(const Mesh& mesh, Sides sides, Topology& topology) {
-  // Two buckets a vertex: the directed edges up from it and those down to it.
+  // Two buckets per vertex: the directed edges up from it and those down to it.
   Buckets<std::uint32_t> edges(2 * mesh.positions.size());
   const auto for_edges = [&](const auto& visit) {
     const auto visit_side = [&](std::uint32_t a, std::uint32_t b) {

@@ -17,7 +17,7 @@ int turn_of(const TriangleCorners& t, Axes axes) {
   return turn(t[0], t[1], t[2], axes);
 }
 
-/// Axes whose plane shows the triangle with some area.
+/// Axes in whose plane the triangle has an area.
 Axes axes_of(const TriangleCorners& t) {
   return *std::find_if(k_planes.begin(), k_planes.end() - 1,
                        [&](Axes axes) { return turn_of(t, axes) != 0; });
@@ -51,7 +51,7 @@ bool has_side_through(const TriangleCorners& a, const std::array<int, 3>& sides,
                       const TriangleCorners& b) {
   for (std::size_t k = 0; k < 3; ++k) {
     const std::size_t next = (k + 1) % 3;
-    // Of a side in the plane the ends are seen to by the other sides.
+    // The ends of a side in the plane are covered by the other sides.
     if (sides[k] * sides[next] > 0 || (sides[k] == 0 && sides[next] == 0)) continue;
     if (goes_through(a[k], a[next], b)) return true;
   }
@@ -88,7 +88,8 @@ bool leads_into(Vec3 p, const TriangleCorners& t, Axes axes) {
   return turn(t[0], t[1], p, axes) != -inside && turn(t[0], p, t[2], axes) != -inside;
 }
 
-/// The first corners are one. What is more of both than that reaches the far side of one of them.
+/// The first corners are the same. If the triangles meet at more than that, the intersection
+/// reaches the far side of one of them.
 bool cross_at_corner(const TriangleCorners& a, const TriangleCorners& b) {
   const int b_1 = side_of_plane(a[0], a[1], a[2], b[1]);
   const int b_2 = side_of_plane(a[0], a[1], a[2], b[2]);
@@ -104,7 +105,7 @@ bool cross_at_corner(const TriangleCorners& a, const TriangleCorners& b) {
   return goes_through(a[1], a[2], b) || goes_through(b[1], b[2], a);
 }
 
-/// The first two corners are the same: folded flat onto each other or not.
+/// The first two corners are the same: whether the triangles are folded flat onto each other.
 bool cross_at_side(const TriangleCorners& a, const TriangleCorners& b) {
   if (side_of_plane(a[0], a[1], a[2], b[2]) != 0) return false;
   const Axes axes = axes_of(a);
@@ -138,14 +139,14 @@ std::size_t common_corners(const TriangleCorners& a, const TriangleCorners& b) {
   return common;
 }
 
-/// Whether all corners of `b` that are not a's are surely on one side of a's plane. A common corner
-/// is never surely on a side.
+/// Whether all corners of `b` that are not a's are certainly on one side of a's plane. A common
+/// corner is never certainly on a side.
 bool lies_beside(const CrossingTriangle& a, const CrossingTriangle& b, std::size_t common) {
   std::size_t above = 0, below = 0;
   for (const Vec3& p : b.corners) {
     const Vec3 from = p - a.corners[0];
     const double height = dot(a.normal, from);
-    const double rounding = a.rounding * largest(from) + 1e-280;  // and what underflows
+    const double rounding = a.rounding * largest(from) + 1e-280;  // plus what underflows
     above += height > rounding ? 1 : 0;
     below += height < -rounding ? 1 : 0;
   }

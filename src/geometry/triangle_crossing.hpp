@@ -12,7 +12,7 @@ namespace meshfarm {
 
 using TriangleCorners = std::array<Vec3, 3>;
 
-/// Without branches, of which half would be guessed wrong.
+/// Branch-free, because half of the branches would be mispredicted.
 inline bool do_touch(const Box& a, const Box& b) {
   const double x = std::max(a.lo.x - b.hi.x, b.lo.x - a.hi.x);
   const double y = std::max(a.lo.y - b.hi.y, b.lo.y - a.hi.y);
@@ -20,21 +20,21 @@ inline bool do_touch(const Box& a, const Box& b) {
   return std::max({x, y, z}) <= 0;
 }
 
-/// A triangle, and what tells soon that it does not cross another one.
+/// A triangle, with data that quickly rules out crossings.
 struct CrossingTriangle {
   TriangleCorners corners{};
   Box box{};
   Vec3 normal{};        // rounded, not of length 1
-  double rounding = 0;  // what is farther along the normal is surely beside the plane
+  double rounding = 0;  // farther along the normal is certainly off the plane
   bool has_area = false;
 
   CrossingTriangle() = default;
   explicit CrossingTriangle(const TriangleCorners& from);
 };
 
-/// Whether two triangles meet at more than corners or sides that both have: one cuts the other,
-/// touches it where that has no corner, or lies on it. Corners at one place are one. Triangles
-/// without area cross nothing. Exact.
+/// Whether two triangles meet at more than shared corners or sides: one cuts the other, touches it
+/// where that has no corner, or lies on it. Corners at one place are one. Triangles without area
+/// cross nothing. Exact.
 bool do_cross(const CrossingTriangle& a, const CrossingTriangle& b);
 
 }  // namespace meshfarm

@@ -10,13 +10,13 @@
 
 namespace meshfarm {
 
-/// Disjoint sets of vertices; the lowest vertex stands for its set.
+/// Disjoint sets of vertices; each set is represented by its lowest vertex.
 class UnionFind {
  public:
   explicit UnionFind(std::size_t vertices) : parent_(vertices) {
     std::iota(parent_.begin(), parent_.end(), std::uint32_t{0});
   }
-  /// True if they were apart.
+  /// True if they were in different sets.
   bool join(std::uint32_t a, std::uint32_t b) {
     a = find(a);
     b = find(b);

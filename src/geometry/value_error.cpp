@@ -32,7 +32,7 @@ struct ValueSums {
     max = std::max(max, other.max);
     samples += other.samples;
   }
-  /// Of a point, or of one of its columns.
+  /// The difference at a point, or in one of its columns.
   void add_difference(double difference) {
     squares += difference * difference;
     sum += difference;
@@ -45,7 +45,7 @@ struct ValueSums {
   }
 };
 
-/// Of each sample.
+/// One entry per sample.
 struct Sampled {
   std::vector<double> distances;
   std::vector<float> degrees;  // below 0 where a triangle has no normal
@@ -85,7 +85,7 @@ class Comparer {
     has_labels_ = !from.labels.empty() && !to.labels.empty();
   }
 
-  /// Fills in those samples that are in the chunk.
+  /// Fills in the samples of the chunk.
   ChunkSums compare_chunk(AreaSampler sampler, std::uint64_t chunk, Sampled& sampled) const {
     ChunkSums sums{{}, std::vector<ValueSums>(groups_.size()), 0, {}};
     std::vector<double> here(columns_);

@@ -16,27 +16,28 @@
 namespace meshfarm {
 namespace {
 
-/// A vertex holds on to its place as so many points of mean weight would.
+/// A vertex is held to its place with the weight of this many points of mean weight.
 constexpr double k_points_that_hold = 2.4;
-/// This share of what pulls at it slows each sweep down, most along planes.
+/// Each sweep is damped by this share of the pull on a vertex, most noticeably along planes.
 constexpr double k_slow_down = 0.01;
-/// Each is cheap beside the search for the nearest places.
+/// Each sweep is cheap compared with the search for the nearest places.
 constexpr int k_sweeps = 4;
-/// Nearer than this share of a triangle's width a point is on it.
+/// A point nearer than this share of a triangle's width counts as on it.
 constexpr double k_exact = 0x1p-20;
-/// Of the moves of a triangle's corners, if it turns by more or loses more.
+/// The moves of a triangle's corners are halved if it turns by more or shrinks to less than this,
+/// up to k_halvings times, and then dropped.
 constexpr double k_least_cosine = 0.85;
 constexpr double k_least_area = 0.3;
 constexpr int k_halvings = 4;
 
-/// What a point pulls the triangle by that is nearest to it. Floats: what is pulled is as far off
-/// as the result is from the input.
+/// How a point pulls its nearest triangle. Floats suffice: the distances are as large as the error
+/// of the result.
 struct Pull {
   std::uint32_t triangle = 0;
   std::array<float, 2> shares{};  // of the first two corners
   std::array<float, 3> way{};     // of length 1
   float distance = 0;
-  float weight = 0;  // 0: by nothing
+  float weight = 0;  // 0: no pull
 
   std::array<double, 3> all_shares() const {
     const auto a = static_cast<double>(shares[0]);
@@ -48,7 +49,7 @@ struct Pull {
   }
 };
 
-/// A symmetric matrix of three rows, and a right side.
+/// A symmetric 3 x 3 matrix and a right-hand side.
 struct System {
   double xx = 0, xy = 0, xz = 0, yy = 0, yz = 0, zz = 0;
   Vec3 side;
@@ -61,7 +62,7 @@ struct System {
     yz += weight * way.y * way.z;
     zz += weight * way.z * way.z;
   }
-  /// Cramer's rule; what it holds is positive definite.
+  /// Cramer's rule; the matrix is positive definite.
   Vec3 solved() const {
     const Vec3 a = {xx, xy, xz};
     const Vec3 b = {xy, yy, yz};
@@ -93,7 +94,7 @@ class Fitter {
  private:
   Vec3 at(std::uint32_t v) const { return mesh_.positions[v]; }
 
-  /// Else surfaces that touch would come apart.
+  /// Otherwise touching surfaces would come apart.
   void hold_shared_places() {
     struct Hash {
       std::size_t operator()(const PlaceKey& key) const { return hash_of(key); }
@@ -186,9 +187,10 @@ class Fitter {
     const std::array<double, 3> shares = nearest_shares(point, at(a), at(b), at(c));
     const Vec3 off = point - (at(a) * shares[0] + at(b) * shares[1] + at(c) * shares[2]);
     double distance = length(off);
-    // What is farther than the triangle is wide has gone: a piece, or a handle.
+    // Points farther away than the triangle's width belong to something that is gone: a piece or a
+    // handle.
     if (distance * distance > twice_area) return {};
-    // Of what is exact as good as nothing is to move.
+    // Where the surface is exact, almost nothing should move.
     if (distance * distance < k_exact * k_exact * twice_area) distance = 0;
     Vec3 way = normal * (1 / twice_area);
     double along = distance > 0 ? dot(off, way) : 0;
@@ -205,8 +207,8 @@ class Fitter {
             static_cast<float>(weight)};
   }
 
-  /// A corner's share of a point stands for its squared share too: with this much more weight to
-  /// what holds the corner each sweep comes nearer for sure.
+  /// A corner's share in a point replaces its squared share: with this additional weight on the
+  /// diagonal, each sweep is sure to come nearer.
   void sum_up() {
     systems_.resize(mesh_.positions.size());
     for (const Pull& each : pulls_) {
@@ -251,7 +253,7 @@ class Fitter {
     }
   }
 
-  /// All of a move, or a half, a quarter, as much as its triangles bear.
+  /// Applies the whole move, or half or a quarter of it, as much as the triangles tolerate.
   std::uint64_t apply() {
     std::vector<Vec3> moved(mesh_.positions.size());
     std::vector<double> share(moved.size(), 1);

@@ -8,8 +8,8 @@
 namespace meshfarm {
 namespace {
 
-/// The angle of this cosine, the same on all machines, which std::acos is not (Abramowitz & Stegun
-/// 1964, 4.4.45).
+/// The arc cosine, identical on all machines, which std::acos is not (Abramowitz & Stegun 1964,
+/// 4.4.45).
 double angle_of(double cosine) {
   const double x = std::min(1.0, std::abs(cosine));
   const double angle =

@@ -12,7 +12,7 @@ namespace meshfarm {
 namespace {
 
 constexpr std::uint32_t k_empty = std::numeric_limits<std::uint32_t>::max();
-// So many slots are fetched ahead of their use: the table is bigger than the near caches.
+// This many slots are prefetched: the table does not fit into the nearer caches.
 constexpr std::size_t k_ahead = 16;
 
 /// Open addressing with linear probing, never more than half full.

@@ -15,39 +15,41 @@ namespace meshfarm {
 /// Red, green and blue, from 0 to 1.
 using BakedColour = std::array<float, 3>;
 
-/// Tells the colours at points of a mesh, where it has these normals of length 1. Called by several
-/// threads at once, with up to k_most_baked_points points that are near each other. What it tells
-/// must depend on these alone.
+/// Computes the colours at points of a mesh with these normals, of length 1. Called by several
+/// threads at once, with up to k_most_baked_points points that are near each other. The result must
+/// depend on the arguments alone.
 using ColoursAt = std::function<void(std::span<const Vec3> points, std::span<const Vec3> normals,
                                      std::span<BakedColour> colours)>;
 inline constexpr std::size_t k_most_baked_points = 1024;
 
 struct BakeOptions {
-  std::uint32_t texture_size = 2048;  // texels a side
-  /// So far round the triangles the texels have what the surface has there, as if it went on.
+  std::uint32_t texture_size = 2048;  // texels per side
+  /// Up to this distance round the triangles, texels have the colours that the surface would have
+  /// if it went on.
   std::uint32_t margin_texels = 4;
-  std::uint32_t samples = 1;  // a side of a texel, which has their mean: 2 asks for 4 points
-  /// Makes a mean of colours a level from 0 to 1; none: as it is. For colours that are linear in
-  /// the light it is the curve of sRGB.
+  std::uint32_t samples = 1;  // per texel side, averaged: 2 samples 4 points per texel
+  /// Maps a mean of colours to a level from 0 to 1; null: identity. For colours linear in the
+  /// light, this is the sRGB curve.
   double (*level_of)(double) = nullptr;
-  unsigned threads = 0;  // 0: one a core
+  unsigned threads = 0;  // 0: one per core
 };
 
-/// Triangles of a mesh, in their order there, and where they lie on a square picture: from its
-/// lower left corner, v upwards.
+/// Triangles of a mesh, in mesh order, and where they lie on a square picture: from its lower left
+/// corner, v upwards.
 struct BakeSurface {
   std::vector<Vec3> positions;  // of the vertices
   std::vector<Vec3> normals;    // likewise, of length 1 or 0
   std::vector<Triangle> triangles;
   std::vector<CornerUvs> uvs;
-  /// Whether its texels are wanted. The others are there because texels may be nearer to them.
+  /// Whether a triangle's texels are wanted. The other triangles are included because texels may be
+  /// nearer to them.
   std::vector<std::uint8_t> is_own;
 };
 
-/// All of a mesh.
+/// The whole mesh.
 BakeSurface surface_to_bake(const Mesh& mesh, std::span<const CornerUvs> uvs);
 
-/// Texels beside each other in a row: from x on, the row counted from below.
+/// Adjacent texels in a row: from x on; rows are counted from below.
 struct TexelRun {
   std::uint32_t x = 0;
   std::uint32_t y = 0;
@@ -61,9 +63,9 @@ struct BakedTexels {
   std::vector<TexelLevels> levels;  // of the runs' texels, in order
 };
 
-/// The colours of the texels that the surface's own triangles are nearest to, up to the margin. The
-/// result does not depend on the threads, and no texel's on which other triangles are own.
-/// Memory: 100 bytes a triangle and 3 a texel.
+/// The colours of the texels whose nearest triangle is one of the surface's own, up to the margin.
+/// The result does not depend on the threads, and no texel depends on which other triangles are
+/// own. Memory: 100 bytes per triangle and 3 per texel.
 BakedTexels bake_texels(const BakeSurface& surface, const BakeOptions& options,
                         const ColoursAt& colours_at);
 
@@ -72,14 +74,14 @@ struct BakedPicture {
   std::vector<std::uint8_t> texels;  // red, green and blue, row by row from the top
 };
 
-/// A square picture that is put together from texels.
+/// A square picture assembled from texels.
 class BakedCanvas {
  public:
   explicit BakedCanvas(std::uint32_t side);
   /// Throws DataError if a run leaves the picture, or has no levels.
   void add(const BakedTexels& texels);
-  /// Texels that were not added have a blend of what is round them, so that smaller copies of the
-  /// picture do not darken. Leaves the canvas empty. Memory: 16 bytes a texel.
+  /// Fills texels that were not added with a blend of those round them, so that smaller copies of
+  /// the picture do not darken. Leaves the canvas empty. Memory: 16 bytes per texel.
   BakedPicture finish(unsigned threads = 0);
 
  private:

@@ -14,28 +14,28 @@ namespace meshfarm {
 
 struct BakeChunkOptions {
   std::uint32_t texture_size = 2048;
-  std::uint32_t margin_texels = 4;  // as it is baked with
-  /// About the most of a chunk.
+  std::uint32_t margin_texels = 4;  // the margin used in baking
+  /// Approximate maximum per chunk.
   std::uint64_t triangles = 65'536;
   std::uint64_t texels = std::uint64_t{1} << 20;
-  std::size_t most_chunks = 1024;  // if need be chunks are larger
+  std::size_t most_chunks = 1024;  // chunks are larger if necessary
 };
 
-/// Divides a surface that is to be baked into chunks of neighbouring triangles. The chunks' texels,
-/// put together, are those of the whole surface, to the byte.
+/// Divides a surface to be baked into chunks of neighbouring triangles. The texels of all chunks
+/// together equal those of the whole surface, byte by byte.
 class BakeChunks {
  public:
   /// `mesh` and `uvs` must outlive it.
   BakeChunks(const Mesh& mesh, std::span<const CornerUvs> uvs, const BakeChunkOptions& options);
-  /// None for a mesh of nothing.
+  /// 0 for an empty mesh.
   std::size_t size() const { return ends_.size(); }
-  /// About how many its own triangles cover, without margins.
+  /// About how many texels the chunk's own triangles cover, without margins.
   std::uint64_t texels(std::size_t chunk) const { return texels_[chunk]; }
   BakeSurface surface(std::size_t chunk) const;
 
  private:
   struct Cells {
-    std::uint32_t x0, y0, x1, y1;  // the last ones included
+    std::uint32_t x0, y0, x1, y1;  // inclusive
   };
   void divide();
   void sort_into_cells();

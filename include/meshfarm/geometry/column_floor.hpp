@@ -9,14 +9,14 @@
 
 namespace meshfarm {
 
-/// What simplification cannot go below as long as columns are kept, about. Those of parts of a mesh
-/// add up to that of the mesh, but for what lies between them.
+/// About the least that simplification can reach as long as columns are kept. The floors of a
+/// mesh's parts add up to that of the mesh, except for what lies between the parts.
 struct ColumnFloor {
-  /// Vertices that stay where they are: those where more or fewer than two lines end, lines between
-  /// labels or seams of texture coordinates, but at least one; or where a line meets a border.
+  /// Vertices that cannot move: those where one line ends, or more than two (lines between labels
+  /// or seams of texture coordinates), or where a line meets a border.
   std::uint64_t corners = 0;
-  /// Triangles that are left if each chart, which is what lines enclose, keeps no other vertices
-  /// than these: two less than those on its rim, but at least one.
+  /// Triangles left if each chart (a region enclosed by lines) keeps only these vertices: two fewer
+  /// than the vertices on its rim, but at least one.
   std::uint64_t triangles = 0;
 
   ColumnFloor& operator+=(const ColumnFloor& other) {
@@ -26,8 +26,8 @@ struct ColumnFloor {
   }
 };
 
-/// Without columns of the set the floor is nothing. The first `locked` vertices, which a part has
-/// in common with others, are no corners.
+/// Zero if the mesh has no columns of the set. The first `locked` vertices, which a part shares
+/// with other parts, are not corners.
 ColumnFloor find_column_floor(const Mesh& mesh, const ColumnSet& columns, std::size_t locked = 0);
 
 }  // namespace meshfarm

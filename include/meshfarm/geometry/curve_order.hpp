@@ -9,8 +9,8 @@
 
 namespace meshfarm {
 
-/// The mesh's triangles along a curve through space (Morton 1966), so that those that follow each
-/// other are near each other.
+/// The mesh's triangles in the order of a space-filling curve (Morton 1966), so that consecutive
+/// triangles are near each other.
 std::vector<std::uint32_t> along_a_curve(const Mesh& mesh);
 
 }  // namespace meshfarm

@@ -12,9 +12,9 @@
 
 namespace meshfarm {
 
-/// The triangles whose centres have one that faces against them within `reach`: only these can face
-/// the wrong way by the nearest point of a surface that this mesh is near to. Depends on no threads
-/// (0: one a core).
+/// The triangles with an opposing triangle within `reach` of their centre. Only these can face the
+/// wrong way relative to the nearest point of a surface that this mesh is near to. The result does
+/// not depend on the threads (0: one per core).
 std::vector<std::uint32_t> find_opposed_triangles(const TriangleIndex& index, double reach,
                                                   unsigned threads);
 
@@ -24,26 +24,26 @@ struct FacingMended {
 };
 
 struct FacingRepairOptions {
-  /// No vertex is moved farther. What is moved comes to lie within half of it from the original, or
-  /// no farther than it was.
+  /// No vertex is moved farther than this. What is moved ends up within half of it from the
+  /// original, or no farther away than it was.
   double reach = 0;
   PositionType positions = PositionType::float64;
 };
 
-/// Mends triangles that face the wrong way: away from the nearest point of the original to their
+/// Repairs triangles that face the wrong way: away from the point of the original nearest to their
 /// centre. Flips one of their edges, or moves one, two or all three of their vertices, or all of a
-/// small piece, so that fewer triangles do, none is turned by more than 60 degrees that did not,
-/// and no more pairs cross than before. The number of triangles and what hangs together stay;
-/// vertices of borders do not move.
-/// The mesh must outlive it and have finite coordinates. Memory: about 70 bytes a triangle, once
-/// one of them is to be mended.
+/// small piece. After each change fewer triangles face the wrong way, no triangle that faced the
+/// right way is turned by more than 60 degrees, and no more pairs of triangles cross than before.
+/// The number of triangles and the connectivity stay; border vertices do not move. The mesh must
+/// outlive it and have finite coordinates. Memory: about 70 bytes per triangle, once one of them is
+/// to be repaired.
 class FacingRepair {
  public:
   FacingRepair(Mesh& mesh, const FacingRepairOptions& options);
   ~FacingRepair();
 
-  /// Of these triangles. `original`: what of it is within reach of all triangles at their vertices,
-  /// with finite coordinates; another one at each call.
+  /// Repairs those of these triangles that need it. `original`: the part of the original within
+  /// reach of all vertices of these triangles, with finite coordinates; may differ between calls.
   FacingMended mend(std::span<const std::uint32_t> triangles, const Mesh& original);
 
  private:

@@ -10,9 +10,9 @@
 
 namespace meshfarm {
 
-/// How many vertices stay where they are as long as labels are kept: those where more or fewer than
-/// two edges lie between triangles of two labels, but at least one. No result has much fewer
-/// vertices than these. Labels: one a triangle, or none.
+/// How many vertices cannot move as long as labels are kept: those with one, or more than two,
+/// edges between triangles of different labels. No result has much fewer vertices than these.
+/// Labels: one per triangle, or none.
 std::uint64_t count_label_corners(std::span<const Triangle> triangles,
                                   std::span<const Label> labels, std::size_t vertices);
 

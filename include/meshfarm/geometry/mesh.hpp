@@ -21,31 +21,32 @@ bool is_degenerate(const std::array<Index, 3>& t) {
   return t[0] == t[1] || t[1] == t[2] || t[2] == t[0];
 }
 
-/// Whether the corners are on one line, or two of them at one place: no part of a surface.
+/// Whether the corners are on one line, or two of them coincide: then it is no part of a surface.
 inline bool has_no_area(std::span<const Vec3> positions, const Triangle& t) {
   const Vec3 at = positions[t[0]];
   return cross(positions[t[1]] - at, positions[t[2]] - at) == Vec3{};
 }
 
-/// How positions are kept in files. Coordinates are double in memory; a float32 mesh keeps every
+/// How positions are stored in files. Coordinates are double in memory; a float32 mesh keeps every
 /// coordinate exactly representable as float, so that writing it loses nothing.
 enum class PositionType : std::uint8_t { float32 = 4, float64 = 8 };
 
 /// What a surface looks like at a vertex, as far as simplification is to keep it: up to four
-/// numbers that are blended over the triangles, each from 0 to 65535 over the whole range of its
-/// channel.
+/// numbers that are interpolated over the triangles, each from 0 to 65535 over the whole range of
+/// its channel.
 using Appearance = std::array<std::uint16_t, 4>;
 
-/// What a triangle belongs to, a material or a region. Only whether two are the same counts while a
-/// mesh is simplified.
+/// What a triangle belongs to: a material or a region. While a mesh is simplified, labels are only
+/// compared for equality.
 using Label = std::uint32_t;
 
-/// A place on a picture, counted in its sizes from its lower left corner. May be beyond its sides.
+/// A place on a picture, in units of its width and height from its lower left corner. May be
+/// outside the picture.
 using Uv = std::array<float, 2>;
-/// Those of a triangle's three corners.
+/// The texture coordinates of a triangle's three corners.
 using CornerUvs = std::array<Uv, 3>;
 
-/// Which columns triangles have beside their corners.
+/// Which columns triangles have besides their corners.
 struct ColumnSet {
   bool labels = false;
   bool uvs = false;
@@ -54,22 +55,21 @@ struct ColumnSet {
   ColumnSet and_in(const ColumnSet& other) const {
     return {labels && other.labels, uvs && other.uvs};
   }
-  /// Of one triangle.
+  /// Bytes per triangle.
   constexpr std::size_t bytes() const {
     return (labels ? sizeof(Label) : 0) + (uvs ? sizeof(CornerUvs) : 0);
   }
   friend bool operator==(const ColumnSet&, const ColumnSet&) = default;
 };
 
-/// What some triangles have beside their corners: each column has one entry a triangle, or none at
-/// all.
+/// The columns of some triangles: each has one entry per triangle, or is empty.
 struct TriangleColumnsView {
   std::span<const Label> labels;
   std::span<const CornerUvs> uvs;
 
   bool empty() const { return labels.empty() && uvs.empty(); }
   ColumnSet set() const { return {!labels.empty(), !uvs.empty()}; }
-  /// Whether these are the columns that so many triangles of the set have.
+  /// Whether these are the set's columns, each with one entry for each of `triangles`.
   bool fits(const ColumnSet& columns, std::size_t triangles) const {
     return labels.size() == (columns.labels ? triangles : 0) &&
            uvs.size() == (columns.uvs ? triangles : 0);
@@ -80,7 +80,7 @@ struct TriangleColumnsView {
   }
 };
 
-/// The same, and all that moves triangles moves these with them.
+/// The same, but owning its data. Whatever moves triangles must move these with them.
 struct TriangleColumns {
   std::vector<Label> labels;
   std::vector<CornerUvs> uvs;
@@ -92,7 +92,7 @@ struct TriangleColumns {
     labels.insert(labels.end(), more.labels.begin(), more.labels.end());
     uvs.insert(uvs.end(), more.uvs.begin(), more.uvs.end());
   }
-  /// One triangle's.
+  /// Appends the columns of one triangle.
   void append(const TriangleColumnsView& from, std::size_t triangle) {
     if (!from.labels.empty()) labels.push_back(from.labels[triangle]);
     if (!from.uvs.empty()) uvs.push_back(from.uvs[triangle]);
@@ -101,7 +101,7 @@ struct TriangleColumns {
     if (!labels.empty()) labels[to] = labels[from];
     if (!uvs.empty()) uvs[to] = uvs[from];
   }
-  /// Leaves columns that are empty as they are.
+  /// Leaves empty columns empty.
   void resize(std::size_t triangles) {
     if (!labels.empty()) labels.resize(triangles);
     if (!uvs.empty()) uvs.resize(triangles);
@@ -121,12 +121,12 @@ struct TriangleColumns {
 struct Mesh {
   std::vector<Vec3> positions;
   std::vector<Triangle> triangles;
-  std::vector<Appearance> appearances = {};  // one a vertex, or none at all
+  std::vector<Appearance> appearances = {};  // one per vertex, or none
   TriangleColumns columns = {};              // of the triangles
 };
 
-/// Keeps the triangles, with their columns, for whose index keep(index) is true; each is asked for
-/// once, in order. Returns how many have gone.
+/// Keeps the triangles, with their columns, for which keep(index) is true; it is called once per
+/// triangle, in order. Returns the number of triangles removed.
 template <typename AnyTriangle, typename Keep>
 std::size_t keep_triangles(std::vector<AnyTriangle>& triangles, TriangleColumns& columns,
                            const Keep& keep) {
@@ -166,14 +166,14 @@ struct VertexView {
   std::span<const Appearance> appearances;
 };
 
-/// Stands for a vertex without a position: one of its coordinates was not finite.
+/// Marks a vertex without a position: one of its coordinates was not finite.
 inline constexpr Vec3 k_no_position{NAN, NAN, NAN};
 inline bool has_position(Vec3 p) {
   return p.x == p.x;
 }
 
-/// The nearest number that a float can hold. Through memory, as g++ 12 drops the rounding of two
-/// neighbours when it packs them into a vector ((double)(float)x at -O2).
+/// The nearest number that a float can hold. Goes through memory, because g++ 12 drops the rounding
+/// of two neighbours when it packs them into a vector ((double)(float)x at -O2).
 inline double rounded_to_float(double x) {
   const volatile auto narrow = static_cast<float>(x);
   return static_cast<double>(narrow);
@@ -190,7 +190,7 @@ struct Box {
   Vec3 lo{HUGE_VAL, HUGE_VAL, HUGE_VAL};
   Vec3 hi{-HUGE_VAL, -HUGE_VAL, -HUGE_VAL};
 
-  /// A coordinate that is not a number adds nothing. (Not std::fmin, which is a call.)
+  /// Ignores coordinates that are NaN. (Not std::fmin, which is a call.)
   void add(Vec3 p) {
     lo = {p.x < lo.x ? p.x : lo.x, p.y < lo.y ? p.y : lo.y, p.z < lo.z ? p.z : lo.z};
     hi = {p.x > hi.x ? p.x : hi.x, p.y > hi.y ? p.y : hi.y, p.z > hi.z ? p.z : hi.z};

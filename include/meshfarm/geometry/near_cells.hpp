@@ -11,15 +11,14 @@
 
 namespace meshfarm {
 
-/// The cells of a grid that a surface comes near to: tells quickly what of another surface may
-/// matter. 2 MB.
+/// The grid cells near a surface: tells quickly which parts of another surface may matter. 2 MB.
 class NearCells {
  public:
-  /// Of these triangles, and what is within the distance of their boxes.
+  /// The cells of these triangles' boxes, grown by the distance.
   NearCells(std::span<const Vec3> positions, std::span<const Triangle> triangles, double distance);
-  /// Whether the box has a cell in common with what is near: it may then still be a little farther.
+  /// Whether the box shares a cell with what is near. If so, it may still be a little farther away.
   bool touch(const Box& box) const;
-  /// The triangles, by index, whose boxes do.
+  /// The indices of the triangles whose boxes do.
   std::vector<std::uint32_t> touching(std::span<const Vec3> positions,
                                       std::span<const Triangle> triangles) const;
 

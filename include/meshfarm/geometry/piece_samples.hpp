@@ -19,14 +19,14 @@ struct FacingPoint {
   Vec3 normal;
 };
 
-/// A piece of a surface, by what it adds to the whole.
+/// What a piece of a surface contributes to the whole.
 struct PieceSamples {
   double area = 0;    // each point stands for an equal share of it
   double volume = 0;  // between it and the origin, signed
   std::vector<FacingPoint> points;
 };
 
-/// Takes so many points, stratified by area; none where the piece has no area.
+/// Takes `count` points, stratified by area; none if the piece has no area.
 PieceSamples sample_piece(std::span<const Vec3> positions, std::span<const Triangle> triangles,
                           std::uint64_t count, Vec3 origin);
 /// Takes `count(area)` points of a piece that has an area.
@@ -37,14 +37,14 @@ PieceSamples sample_piece(std::span<const Vec3> positions, std::span<const Trian
 struct NearPlace {
   double distance = 0;
   std::uint32_t triangle = 0;
-  float degrees = -1;  // that this is turned by against the point's normal; -1 without normals
+  float degrees = -1;  // angle of its normal to the point's normal; -1 without normals
 };
 
-/// Depends on no threads (0: one a core).
+/// The result does not depend on the threads (0: one per core).
 std::vector<NearPlace> find_near_places(const TriangleIndex& index,
                                         std::span<const FacingPoint> points, unsigned threads);
 
-/// Of places that each stand for so much of an area. Those without normals do not count.
+/// The deviation over places, each weighted by its area. Places without normals do not count.
 NormalDeviation normals_of(std::span<const NearPlace> places, std::span<const double> areas);
 
 }  // namespace meshfarm

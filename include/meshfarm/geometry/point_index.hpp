@@ -12,7 +12,7 @@
 
 namespace meshfarm {
 
-/// A k-d tree over fixed points. Several threads may ask it at a time.
+/// A k-d tree over fixed points. Several threads may query it at once.
 class PointIndex {
  public:
   explicit PointIndex(std::vector<Vec3> points);
@@ -22,12 +22,12 @@ class PointIndex {
 
   std::span<const Vec3> points() const;
 
-  /// Writes the indices of the nearest points to `found`, nearest first, and returns how many there
-  /// are: as many as it has room for, or all.
+  /// Writes the indices of the nearest points to `found`, nearest first, and returns how many were
+  /// written: as many as there is room for, or all.
   std::size_t nearest(Vec3 from, std::span<std::uint32_t> found) const;
 
-  /// The least of what `value` tells of the points, nearest first, that are nearer by their squared
-  /// distance than the least so far; infinite if there are none.
+  /// The least `value` of the points, visited nearest first, as long as their squared distance is
+  /// below the least value so far; infinite if there are none.
   double least(Vec3 from, const std::function<double(std::uint32_t point)>& value) const;
 
  private:

@@ -9,8 +9,8 @@
 
 namespace meshfarm {
 
-/// The least value that no more than the rest of this share of the values is above: exact, and one
-/// of them. 0 if there are none. They must be numbers, and come in another order.
+/// The quantile at this share: the least of the values such that at most the remaining share of
+/// them is greater. Exact; 0 if there are no values. None may be NaN. Reorders the values.
 template <typename Number>
 Number quantile(std::span<Number> values, double share) {
   if (values.empty()) return 0;

@@ -13,23 +13,23 @@ namespace meshfarm {
 
 struct SurfaceBoundOptions {
   double distance = 0;   // above 0
-  unsigned threads = 1;  // 0: one a core. Nothing depends on it.
-  /// What is simplified may be nearly so far already, and not the surface itself.
+  unsigned threads = 1;  // 0: one per core. Nothing depends on it.
+  /// The mesh to be simplified may already be nearly this far away, and not be the surface itself.
   bool is_used_up = false;
 };
 
 struct SurfacePoint {
   Vec3 at;
   std::uint32_t triangle = 0;  // that it lies on
-  /// It stands for a triangle round it, as large as this share of its own; below 0: of one that is
-  /// turned round.
+  /// The point stands for a triangle round it. This is that triangle's size as a share of the
+  /// triangle it lies on; negative if it is turned upside down.
   float share = 0;
-  /// A vertex of small triangles only: the surface has others near it.
+  /// A vertex with small triangles only: the surface has other vertices near it.
   bool is_dense = false;
 };
 
-/// A surface, and how far one that is made of it may be from it and it from that. Needs about 110
-/// bytes a triangle, 40 for each point, and 8 for each long side.
+/// A surface, and how far a surface made from it may be from it, in both directions. Needs about
+/// 110 bytes per triangle, 40 per point, and 8 per long side.
 class SurfaceBound {
  public:
   /// The mesh must have a triangle and finite coordinates.
@@ -39,17 +39,17 @@ class SurfaceBound {
 
   const SurfaceBoundOptions& options() const;
   double distance() const { return options().distance; }
-  /// What stands for the surface: its vertices first, and points inside of large triangles.
+  /// Points that represent the surface: its vertices first, then points inside large triangles.
   std::span<const SurfacePoint> points() const;
-  /// Of a vertex's point: those at the other ends of its sides, if they are so long that the points
-  /// alone do not tell how far they are from another surface.
+  /// For a vertex's point: the points at the other ends of its long sides. Sides are long if their
+  /// end points alone do not tell how far the sides are from another surface.
   std::span<const std::uint32_t> across_sides(std::uint32_t point) const;
   const Mesh& surface() const;
-  /// Of the surface, for other measures.
+  /// The index of the surface, for other measurements.
   const TriangleIndex& index() const;
-  /// The squared distance to a triangle of the surface near the point, one that is within the bound
-  /// if any is; infinite if none is. Stops to look at `enough`. `guess` is a triangle, becomes the
-  /// one that was found, and saves time if it is near the point.
+  /// The squared distance to a triangle of the surface near the point, one within the bound if
+  /// there is any; infinite if there is none. Stops searching at `enough`. `guess` is a triangle;
+  /// it saves time if it is near the point, and is set to the one found.
   double squared_distance_near(Vec3 point, double enough, std::uint32_t& guess) const;
 
  private:

@@ -11,20 +11,20 @@
 
 namespace meshfarm {
 
-/// What the triangles of a surface tell by themselves, in the mesh's unit and in degrees.
+/// Measures of a surface's triangles, in the mesh's unit and in degrees.
 struct ShapeMeasures {
   double area = 0;
-  /// Signed: above 0 if the triangles face outwards. Means something only if the surface is closed
+  /// Signed: positive if the triangles face outwards. Meaningful only if the surface is closed
   /// (Topology::unmatched_edges is 0).
   double volume = 0;
-  /// Of the triangles' smallest angles one in a hundred is not greater than this; to a thousandth
-  /// of a degree. Triangles with corners at one place are left out, others without area have 0.
+  /// The first percentile of the triangles' smallest angles, to a thousandth of a degree. Triangles
+  /// with coincident corners are left out; others without area have angle 0.
   double smallest_angle_p1 = 0;
-  double share_below_5 = 0;  // of the triangles: with an angle below 5 degrees
+  double share_below_5 = 0;  // of the triangles that have an angle below 5 degrees
 };
 
-/// Measures a surface that comes piece by piece. The figures depend on the pieces by rounding only,
-/// and on no threads (0: one a core).
+/// Measures a surface that is added piece by piece. The pieces affect the figures only by rounding,
+/// and the threads (0: one per core) not at all.
 class ShapeMeter {
  public:
   explicit ShapeMeter(unsigned threads);
@@ -44,19 +44,19 @@ class ShapeMeter {
   std::optional<Vec3> origin_;  // volumes are those of tetrahedra with this point
   Sums sums_;
   std::uint64_t triangles_ = 0;        // that have angles
-  std::vector<std::uint64_t> angles_;  // how many smallest angles are so many thousandths
+  std::vector<std::uint64_t> angles_;  // count of smallest angles per thousandth of a degree
 };
 
-/// Edges of more degrees than this between the normals of their triangles are features.
+/// Edges are features if the normals of their triangles differ by more degrees than this.
 inline constexpr double k_feature_degrees = 40;
 
 struct EdgeLengths {
-  double border = 0;   // of one triangle
-  double feature = 0;  // of two, with a feature between them
+  double border = 0;   // of edges with one triangle
+  double feature = 0;  // of edges with two triangles that are features
 };
 
-/// Vertices are welded as in a run, triangles of two corners left out. Depends on no threads (0:
-/// one a core). Memory: about 45 bytes a triangle.
+/// Vertices are welded as in a run, and triangles with two corners left out. The result does not
+/// depend on the threads (0: one per core). Memory: about 45 bytes per triangle.
 EdgeLengths measure_edge_lengths(const Mesh& mesh, unsigned threads);
 
 }  // namespace meshfarm

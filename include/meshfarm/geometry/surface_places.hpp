@@ -16,11 +16,11 @@ namespace meshfarm {
 /// A point of a mesh's surface.
 struct SurfacePlace {
   std::uint32_t triangle = 0;
-  std::array<double, 3> shares{};  // of its corners: not negative, 1 together
-  double squared = 0;              // the squared distance from the point that was asked for
+  std::array<double, 3> shares{};  // of its corners: not negative, sum 1
+  double squared = 0;              // the squared distance from the query point
 };
 
-/// What triangles' corners have, blended by their shares in a place.
+/// Interpolates the corners' values by their shares at a place.
 template <std::size_t N>
 std::array<float, N> blended(const SurfacePlace& place, const std::array<float, N>& a,
                              const std::array<float, N>& b, const std::array<float, N>& c) {
@@ -34,15 +34,15 @@ std::array<float, N> blended(const SurfacePlace& place, const std::array<float, 
 }
 
 struct SurfacePlacesOptions {
-  /// A side that faces another way than a point's normal is passed over if one that faces the same
-  /// way is within this distance of the point. Where the mesh may be turned inside out in places it
-  /// should be little more than the surfaces are apart.
+  /// A triangle that faces against a point's normal is passed over if one that faces the same way
+  /// is within this distance of the point. If parts of the mesh may be turned inside out, this
+  /// should be little more than the distance between the surfaces.
   double reach = std::numeric_limits<double>::infinity();
-  unsigned threads = 0;  // that build it; 0: one a core
+  unsigned threads = 0;  // for building; 0: one per core
 };
 
-/// Finds the places of a surface that are nearest to points near it. May be asked by several
-/// threads. Memory: up to 20 bytes a triangle, 40 while it is built.
+/// Finds the places of a surface that are nearest to given points. May be used by several threads
+/// at once. Memory: up to 20 bytes per triangle, 40 while it is built.
 class SurfacePlaces {
  public:
   /// `mesh` must outlive it and have finite coordinates and at least one triangle.
@@ -50,11 +50,12 @@ class SurfacePlaces {
   ~SurfacePlaces();
   SurfacePlaces(SurfacePlaces&&) noexcept;
 
-  /// The nearest place whose normal is within 90 degrees of `normal`, if one is in reach; else, and
-  /// for a normal of no length, the nearest of all. A `guess` of the triangle saves time.
+  /// The nearest place whose normal is within 90 degrees of `normal`, if one is in reach;
+  /// otherwise, and for a zero normal, the nearest of all. A good `guess` of the triangle saves
+  /// time.
   SurfacePlace find(Vec3 point, Vec3 normal, std::uint32_t guess = 0) const;
-  /// The same of many points, which are best given near each other: those of one triangle or one
-  /// corner of a picture.
+  /// The same for many points, which should be near each other, such as those of one triangle or
+  /// one corner of a picture.
   void find(std::span<const Vec3> points, std::span<const Vec3> normals,
             std::span<SurfacePlace> places) const;
 

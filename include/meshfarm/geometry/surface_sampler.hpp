@@ -22,7 +22,7 @@ class SurfaceSampler {
     double distance = HUGE_VAL;  // for the user
   };
 
-  /// Takes two to four thirds of `samples`, but none of a surface without area.
+  /// Takes two to four thirds of `samples`; none from a surface without area.
   explicit SurfaceSampler(std::uint64_t samples) : least_((2 * samples + 2) / 3) {}
   void add(std::span<const Vec3> positions, std::span<const Triangle> triangles);
   std::span<Sample> samples() { return samples_; }

@@ -9,7 +9,8 @@
 
 namespace meshfarm {
 
-/// The order of a sweep: by the coordinate along its axis, rising or falling, then by the others.
+/// The order of a sweep: by the coordinate along its axis, ascending or descending, then by the
+/// others.
 struct SweepOrder {
   std::array<int, 3> axes = {0, 1, 2};
   double sign = 1;  // -1: the first coordinate falls

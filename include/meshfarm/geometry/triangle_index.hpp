@@ -12,9 +12,8 @@ namespace meshfarm {
 
 class Bvh;
 
-/// Where the triangles of a mesh are, for measures that look at one mesh after another. The mesh
-/// must outlive it, have a triangle and finite coordinates. About 20 bytes a triangle, 40 while it
-/// is built.
+/// A spatial index of a mesh's triangles, for several measurements in turn. The mesh must outlive
+/// it, have a triangle and finite coordinates. About 20 bytes per triangle, 40 while it is built.
 class TriangleIndex {
  public:
   TriangleIndex(const Mesh& mesh, unsigned threads);
@@ -29,8 +28,8 @@ class TriangleIndex {
   std::unique_ptr<Bvh> bvh_;
 };
 
-/// How far each point is from the mesh, in its unit; a point that is not finite is at 0. The result
-/// does not depend on the threads.
+/// The distance of each point from the mesh, in its unit; 0 for a point that is not finite. The
+/// result does not depend on the threads.
 std::vector<float> distances_to(const TriangleIndex& index, std::span<const Vec3> points,
                                 unsigned threads);
 

@@ -13,18 +13,18 @@
 
 namespace meshfarm {
 
-// What moves vertices from mesh to mesh, and within one, moves all that they have: only these name
-// the columns of vertices one by one.
+// Whatever moves vertices between meshes, or within one, must move all their data. Only these
+// functions name the vertex columns one by one.
 
-/// Of a vertex that is left out where vertices get new numbers.
+/// The new number of a vertex that is left out when vertices are renumbered.
 inline constexpr std::uint32_t k_left_out = std::numeric_limits<std::uint32_t>::max();
 
-/// With columns that are empty, or not.
+/// `appearances`: whether the mesh has them.
 inline void resize_vertices(Mesh& mesh, std::size_t count, bool appearances) {
   mesh.positions.resize(count);
   mesh.appearances.resize(appearances ? count : 0);
 }
-/// Those that it has.
+/// Keeps the columns that the mesh has.
 inline void resize_vertices(Mesh& mesh, std::size_t count) {
   resize_vertices(mesh, count, !mesh.appearances.empty());
 }
@@ -33,19 +33,19 @@ inline void clear_vertices(Mesh& mesh) {
   resize_vertices(mesh, 0, false);
 }
 
-/// Vertex `at` of a mesh, which is there, becomes a vertex of `from`; this may be the same mesh.
+/// Overwrites the existing vertex `at` with a vertex of `from`, which may view the same mesh.
 inline void put_vertex(const VertexView& from, std::size_t vertex, Mesh& to, std::size_t at) {
   to.positions[at] = from.positions[vertex];
   if (!from.appearances.empty()) to.appearances[at] = from.appearances[vertex];
 }
 
-/// May be a vertex of the same mesh.
+/// `from` may view the same mesh.
 inline void append_vertex(const VertexView& from, std::size_t vertex, Mesh& to) {
   to.positions.push_back(from.positions[vertex]);
   if (!from.appearances.empty()) to.appearances.push_back(from.appearances[vertex]);
 }
 
-/// All. If only one of the two has appearances, those of the other are 0.
+/// Appends all vertices. If only one of the two has appearances, the other's become 0.
 inline void append_vertices(const VertexView& from, Mesh& to) {
   const std::size_t first = to.positions.size();
   const bool appearances = !from.appearances.empty() || !to.appearances.empty();
@@ -56,7 +56,7 @@ inline void append_vertices(const VertexView& from, Mesh& to) {
   to.appearances.resize(to.positions.size());
 }
 
-/// The vertices of `to` become those of another mesh: v becomes number[v], which are 0 to count - 1
+/// Replaces the vertices of `to` by those of `from`: v becomes number[v], which are 0 to count - 1
 /// in any order, or k_left_out.
 inline void place_vertices(const VertexView& from, std::span<const std::uint32_t> number,
                            std::size_t count, Mesh& to) {
@@ -66,7 +66,7 @@ inline void place_vertices(const VertexView& from, std::span<const std::uint32_t
   }
 }
 
-/// Adds a surface after what is there: positions and triangles.
+/// Appends a surface: positions and triangles.
 inline void append_surface(std::span<const Vec3> positions, std::span<const Triangle> triangles,
                            Mesh& to) {
   const auto first = static_cast<std::uint32_t>(to.positions.size());
@@ -76,7 +76,8 @@ inline void append_surface(std::span<const Vec3> positions, std::span<const Tria
   }
 }
 
-/// Adds a triangle, and its vertices that are not there yet. `number`: of those that are.
+/// Appends a triangle, and those of its vertices that are not there yet. `number`: the new numbers
+/// of those that are.
 inline void append_triangle(std::span<const Vec3> positions, const Triangle& triangle,
                             std::unordered_map<std::uint32_t, std::uint32_t>& number, Mesh& to) {
   Triangle& added = to.triangles.emplace_back();

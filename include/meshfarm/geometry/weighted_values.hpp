@@ -9,10 +9,10 @@
 
 namespace meshfarm {
 
-/// Values, each with its weight: the area that it stands for.
+/// Values, each with a weight: the area that it represents.
 class WeightedValues {
  public:
-  /// Values and weights; numbers all.
+  /// Pairs of value and weight; none is NaN.
   explicit WeightedValues(std::vector<std::pair<double, double>> values)
       : values_(std::move(values)) {
     for (const auto& [value, weight] : values_) weight_ += weight;
@@ -20,9 +20,9 @@ class WeightedValues {
   /// In any order.
   const std::vector<std::pair<double, double>>& values() const { return values_; }
   double weight() const { return weight_; }
-  /// The least value that at most the rest of this share of the weight is beyond; 0 if there are
-  /// none. Takes time in proportion to their number, or to those beyond the share before if that
-  /// was less. Changes their order.
+  /// The quantile at this share of the weight: the least value such that at most the remaining
+  /// weight lies beyond it; 0 if there are no values. Takes time proportional to the number of
+  /// values, or to those beyond the previous share if that was smaller. Reorders the values.
   double quantile(double share) {
     if (values_.empty()) return 0;
     if (share < share_) found_ = {};
@@ -49,7 +49,7 @@ class WeightedValues {
  private:
   std::vector<std::pair<double, double>> values_;
   double weight_ = 0;
-  /// The last quantile: what is less lies before it, what is greater behind it.
+  /// The last quantile: smaller values lie before it, greater ones after it.
   struct Found {
     std::ptrdiff_t place = 0;
     double weight_before = 0;

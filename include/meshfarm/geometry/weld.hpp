@@ -14,8 +14,8 @@ namespace meshfarm {
 /// Whether vertices at the same position become one.
 enum class Weld { exact, off };
 
-/// Fewer vertices than these at one point may turn out to be apart (separate_touching). So many are
-/// made one wherever else they would have to fit into one memory.
+/// Fewer vertices than this at one point may turn out to be separate (separate_touching). This many
+/// or more are merged wherever they would otherwise have to fit into one machine's memory.
 inline constexpr std::uint64_t k_crowd = 256;
 
 /// Which vertices have the same position.
@@ -24,16 +24,16 @@ struct WeldResult {
   std::uint64_t merged = 0;          // vertices that have a lower twin
 };
 
-/// Finds the vertices with exactly the same coordinates; -0.0 is 0.0, and what is not a number
-/// equals what has the same bits. Takes fewer than 2^32 positions. Memory: up to 20 bytes a vertex.
+/// Finds vertices with exactly the same coordinates; -0.0 equals 0.0, and NaNs are equal if their
+/// bits are. Takes fewer than 2^32 positions. Memory: up to 20 bytes per vertex.
 WeldResult weld(std::span<const Vec3> positions);
 
 /// Undoes merges that would make a vertex non-manifold although each of its twins was manifold:
-/// where closed surfaces touch at a point or along an edge, and where a neck has no width. Twins
-/// are separated if the triangles of each form a closed fan; twins linked by triangles without area
-/// count as one. Copies of one surface stay merged. So do the vertices in `open`, which have
-/// triangles elsewhere. Memory: 2 bytes a vertex; 5 more if any may be separated, and 16 for each
-/// corner of a triangle there.
+/// where closed surfaces touch at a point or along an edge, or a neck has no width. Twins are
+/// separated if the triangles of each form a closed fan; twins linked by triangles without area
+/// count as one. Copies of one surface stay merged, and so do the vertices in `open`, which have
+/// triangles elsewhere. Memory: 2 bytes per vertex; 5 more if any may be separated, and 16 for each
+/// triangle corner there.
 void separate_touching(std::span<const Triangle> triangles, std::span<const std::uint32_t> open,
                        WeldResult& welded);
 
