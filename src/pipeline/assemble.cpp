@@ -30,14 +30,14 @@ namespace meshfarm {
 
 namespace {
 
-/// How far a vertex may be from its place in the file: where this has no doubles.
+/// How far the file's format may move a vertex: 0 unless it rounds doubles.
 double rounding_of_file(const std::filesystem::path& path, PositionType positions, const Box& box) {
   if (positions == PositionType::float32 || keeps_doubles(path) || box.empty()) return 0;
   double greatest = 0;
   for (int axis = 0; axis < 3; ++axis) {
     greatest = std::max({greatest, std::abs(box.lo[axis]), std::abs(box.hi[axis])});
   }
-  // glTF counts from another place of the mesh, up to twice as far.
+  // glTF positions are relative to another origin within the mesh: up to twice as far.
   return 2 * std::sqrt(3.0) * 0x1p-24 * greatest;
 }
 
@@ -68,7 +68,7 @@ class Assembler::Impl {
   RunSummary complete(std::span<const AcceptedJob> accepted) {
     const ChosenRungs& chosen = take(accepted);
     if (state_.finished) return complete_in_pieces(*state_.finished);
-    // If another sink did the jobs, this one knows nothing of what it finished.
+    // If another sink did the jobs, this one does not have the finished mesh.
     if (!finished_) finish(chosen);
     Stopwatch watch;
     RunSummary summary = std::move(finished_->summary);
@@ -107,7 +107,7 @@ class Assembler::Impl {
         [this] { check_stop(); }};
     finished_ = finish_result(stage_, manifest_, run_, chosen, options);
     finished_->summary.output = options_.output.string();
-    // Or it was to be by itself, and could not.
+    // The farm was asked to finish, or should have by default but could not.
     if (run_.finish_place == FinishPlace::farm ||
         (why_finish_here(manifest_, run_).empty() && state_.why_finish_here != k_sink_holds_it)) {
       finished_->summary.why_finished_here = state_.why_finish_here;
@@ -137,8 +137,8 @@ class Assembler::Impl {
     return write_pieces(stage_, manifest_, result, options_.output, [this] { check_stop(); });
   }
 
-  /// What was too large to be finished here is written as it is read, but for what is fitted to the
-  /// whole. If another sink did so, this one does it again.
+  /// A result too large to be finished here is written as it is read, except for attributes, which
+  /// are fitted to the whole. If another sink wrote it, this one writes it again.
   RunSummary complete_in_pieces(const FinishedPieces& result) {
     Stopwatch watch;
     RunSummary summary = summary_of_pieces(result);
@@ -247,12 +247,12 @@ class Assembler::Impl {
   const Stage& stage_;
   const Manifest& staged_;
   RunState state_;
-  const Manifest& manifest_ = state_.manifest;  // its slabs are sorted
+  const Manifest& manifest_ = state_.manifest;  // with sorted slabs
   const RunOptions& run_;
   AssembleOptions options_;
   std::optional<FinishedResult> finished_;
   std::optional<TextureLayout> layout_;  // of a new texture
-  std::unique_ptr<MeshSink> written_;    // of what was finished in pieces; not committed
+  std::unique_ptr<MeshSink> written_;    // a result finished in pieces; not committed yet
 };
 
 Assembler::Assembler(const Stage& stage, const Manifest& manifest, const RunOptions& run,

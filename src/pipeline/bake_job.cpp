@@ -18,7 +18,7 @@
 namespace meshfarm {
 namespace {
 
-// Of parameters and summaries; version 1:
+// Parameters and summaries, version 1:
 // finish parameters: version u8 | run u64 | chosen u64
 // finish summary: scene section | chunks u32 x texels u32 | pictures u32 x is used u8 | memory u64
 // tile parameters: version u8 | pictures u32 x number u32

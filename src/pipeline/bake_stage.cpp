@@ -14,12 +14,12 @@ namespace meshfarm {
 namespace {
 
 constexpr std::uint64_t k_bake_process_bytes = std::uint64_t{16} << 20;
-/// A part with its columns, what finds the places on it, and the file that it is read from.
+/// A part with its columns, its search structure, and the file it is read from.
 constexpr std::uint64_t k_bytes_of_triangle = 150;
 constexpr std::uint64_t k_usual_pieces = std::uint64_t{128} << 20;
-/// A chunk as it is read, as it is painted, and its texels.
+/// A chunk as read, as painted, and its texels.
 constexpr std::uint64_t k_chunk_bytes = std::uint64_t{64} << 20;
-/// To decode a byte of a picture's file takes so much of the work on a triangle.
+/// This many bytes of a picture's file take as long to decode as a triangle takes to simplify.
 constexpr std::uint64_t k_bytes_of_cost = 16;
 
 std::uint64_t largest_part(const Manifest& manifest) {
@@ -99,7 +99,7 @@ Job BakeStage::finish_job(const ChosenRungs& chosen) const {
   return job;
 }
 
-/// Neighbouring pictures share a job where there are very many.
+/// Neighbouring pictures share a job if there are very many.
 std::vector<Job> BakeStage::tile_jobs() const {
   std::vector<std::uint32_t> used;
   for (std::uint32_t i = 0; i < std::min(finish_.is_used.size(), manifest_.pictures.size()); ++i) {
@@ -116,7 +116,7 @@ std::vector<Job> BakeStage::tile_jobs() const {
       parameters.pictures.push_back(used[i]);
       job.inputs.push_back(file);
       job.cost += 1 + file.size / k_bytes_of_cost;
-      job.memory += file.size;  // all may be read ahead
+      job.memory += file.size;  // all pictures may be read ahead
     }
     job.kind = k_tile_kind;
     job.parameters = encode_parameters(parameters);

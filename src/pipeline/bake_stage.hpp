@@ -14,30 +14,31 @@
 
 namespace meshfarm {
 
-/// Work on a texel beside that on a triangle which is simplified: measured.
+/// Work per texel relative to simplifying a triangle: measured.
 inline constexpr std::uint64_t k_cost_of_texel = 2;
-/// Tiles of pictures that a bake job keeps in memory.
+/// Size of the cache of picture tiles in a bake job.
 inline constexpr std::uint64_t k_tile_cache_bytes = std::uint64_t{64} << 20;
-/// Jobs that tile pictures, at most: a bake job's parameters name all their files.
+/// Maximum number of jobs that tile pictures: a bake job's parameters name all their files.
 inline constexpr std::size_t k_most_tile_jobs = 64;
 
-/// Of the input's parts that a bake job keeps in memory; the largest fits in any case.
+/// Memory for the input's parts in a bake job; the largest part fits in any case.
 std::uint64_t bake_piece_bytes(const Manifest& manifest);
-/// What a bake job takes in all.
+/// The total memory of a bake job.
 std::uint64_t memory_of_bake(const Manifest& manifest);
 
 /// Whether a run makes a new texture.
 bool bakes_texture(const Manifest& manifest, const RunOptions& options);
 
 /// The last stages of a run that makes a new texture: the sink finishes the mesh, workers tile the
-/// pictures that it shows, and bake its chunks. A bake job needs all tiles: any may be near it.
+/// pictures that it shows, and bake its chunks. A bake job needs all tiles, as any may be near its
+/// chunk.
 class BakeStage {
  public:
   /// All must outlive this.
   BakeStage(const Manifest& manifest, const RunOptions& options, BakedTexture& baked)
       : manifest_(manifest), options_(options), baked_(baked) {}
 
-  /// Asks for all of it, from the finish on.
+  /// Asks for everything from the finish on.
   void begin(JobGraph& graph, const ChosenRungs& chosen);
 
  private:

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
 //
-// A remembered speed is a file speed-KEYHASH of two lines: the key, and triangles a second. The
-// name carries the key's hash, so hosts that share a home do not write over each other's.
+// A cached speed is a file speed-KEYHASH of two lines: the key, and triangles per second. The name
+// has the key's hash, so hosts that share a home do not overwrite each other's.
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
@@ -49,7 +49,7 @@ std::uint64_t measure_speed() {
   using Clock = std::chrono::steady_clock;
   const Mesh mesh = in_memory(BumpyTorus(k_triangles));
   const auto collapse_away = [&] { Simplifier(mesh, {}).reduce({.triangles = 0}); };
-  collapse_away();  // finds caches cold and memory fresh, as no later part will
+  collapse_away();  // warms caches and memory, which later rounds find warm
   std::uint64_t rounds = 0;
   const auto start = Clock::now();
   Clock::duration took{0};

@@ -17,7 +17,7 @@
 namespace meshfarm {
 namespace {
 
-/// With the vertices that they have.
+/// Copies these triangles with their vertices.
 Mesh picked(std::span<const Vec3> positions, std::span<const Triangle> triangles,
             const std::vector<std::uint32_t>& numbers) {
   Mesh part;
@@ -26,7 +26,7 @@ Mesh picked(std::span<const Vec3> positions, std::span<const Triangle> triangles
   return part;
 }
 
-/// Adds equal pieces of a triangle: as many as it takes for none to be longer, but at most 32 along
+/// Adds equal pieces of a triangle: enough that none is longer than `longest`, but at most 32 along
 /// a side.
 void add_pieces(Vec3 a, Vec3 b, Vec3 c, double longest, Mesh& pieces) {
   constexpr double k_most_steps = 32;
@@ -101,9 +101,9 @@ Mesh AstrayFinder::find(const Mesh& result) {
   return far_pieces(beyond);
 }
 
-/// Some triangles at a time: each may have many pieces.
+/// Processes some triangles at a time, as each may have many pieces.
 Mesh AstrayFinder::far_pieces(const Mesh& beyond) const {
-  constexpr double k_longest = 0.5;  // in distances
+  constexpr double k_longest = 0.5;  // in multiples of the distance
   constexpr std::size_t k_at_once = 1000;
   Mesh all;
   for (std::size_t first = 0; first < beyond.triangles.size(); first += k_at_once) {

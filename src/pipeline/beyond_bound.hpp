@@ -11,39 +11,40 @@
 
 namespace meshfarm {
 
-/// Simplification looks at some points. Where the whole surface turns out to be beyond so many
-/// times the bound that it was given, what is near stays as it was, and it begins again; so often,
-/// all in all: the last is not looked at. Parts and seams are given shares of the run's bound
-/// (k_bound_share_of_parts, k_bound_share), of which this makes about 1.08.
+/// Simplification checks only points. If the whole surface turns out to exceed the bound by this
+/// factor somewhere, everything near there stays unchanged, and simplification begins again; at
+/// most k_bounded_tries times in all, and the last result is not checked. Parts and seams are given
+/// shares of the run's bound (k_bound_share_of_parts, k_bound_share), and these factors make about
+/// 1.08 of them.
 inline constexpr double k_most_beyond_of_part = 1.2;
 inline constexpr double k_most_beyond_of_seam = 1.17;
 inline constexpr int k_bounded_tries = 6;
 
-/// How far round a piece that went astray the input stays as it was, in bounds: the piece is more
-/// than one from all of it. It grows with each try.
+/// How far around an astray piece the input stays unchanged, in multiples of the bound: the piece
+/// is more than one bound away from all of it. Grows with each try.
 constexpr double reach_of_astray(int tries) {
   return 1.2 + 0.2 * tries;
 }
 
-/// A triangle by its places, in an order of their own: vertices may be taken apart, or their
-/// numbers change.
+/// A triangle by its positions, in sorted order: vertices may be taken apart, or renumbered.
 using TrianglePlaces = std::array<std::array<double, 3>, 3>;
 TrianglePlaces places_of(const Mesh& mesh, const Triangle& t);
 
-/// Those triangles of a surface, with an area, that are not proven to be within the distance of
-/// another surface, which has some triangle (find_beyond).
+/// The triangles of a surface with non-zero area that are not proven to be within the distance of
+/// another surface, which must not be empty (find_beyond).
 Mesh part_beyond(const Mesh& from, const TriangleIndex& to, double distance, unsigned threads);
 
-/// Finds what of a result is too far from a surface. What it has seen near, it does not look at
-/// again: of a result that was made once more, most is as it was.
+/// Finds what of a result is too far from a surface. Triangles found near once are not checked
+/// again: most of a result that was made again is unchanged.
 class AstrayFinder {
  public:
-  /// The surface, which must outlive it, has some triangle.
+  /// The surface must not be empty, and must outlive it.
   AstrayFinder(const TriangleIndex& surface, double distance, unsigned threads);
 
-  /// Does not look at these triangles, wherever they are.
+  /// Skips these triangles in later checks, wherever they are.
   void pass_over(const Mesh& known);
-  /// Triangles with an area that are not proven to be near; of large ones the pieces that are not.
+  /// Triangles with non-zero area that are not proven to be near; for large ones only the pieces
+  /// that are not.
   Mesh find(const Mesh& result);
 
  private:
@@ -52,7 +53,7 @@ class AstrayFinder {
   const TriangleIndex& surface_;
   double distance_;
   unsigned threads_;
-  std::vector<TrianglePlaces> known_;  // both ascending
+  std::vector<TrianglePlaces> known_;  // sorted, like near_
   std::vector<TrianglePlaces> near_;   // of the last result
 };
 

@@ -14,7 +14,8 @@
 namespace meshfarm {
 namespace {
 
-/// And those of no triangle, which are to go.
+/// Flags k_bounded_rings rings around the flagged vertices, and vertices without triangles, which
+/// are to go.
 std::vector<std::uint8_t> vertices_round(const Mesh& mesh, std::vector<std::uint8_t> near) {
   std::vector<std::uint8_t> flags;
   for (int ring = 0; ring < k_bounded_rings; ++ring) {
@@ -31,7 +32,7 @@ std::vector<std::uint8_t> vertices_round(const Mesh& mesh, std::vector<std::uint
   return near;
 }
 
-/// Pieces of a part come in order, parts in any.
+/// Pieces of a part come in order, parts in any order.
 Mesh input_near(const Stage& stage, const Manifest& manifest, const NearCells& near,
                 unsigned threads) {
   std::vector<Mesh> of_part(manifest.parts.size() + 1);

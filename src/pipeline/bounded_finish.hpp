@@ -9,8 +9,8 @@
 
 namespace meshfarm {
 
-/// Simplifies what is round the seams of parts that were simplified to a bound, as far as the bound
-/// allows: what is farther from seams stays as it is. Of the input only what is near the seams is
+/// Simplifies the surroundings of seams between parts that were simplified to a bound, as far as
+/// the bound allows; what is farther from seams stays unchanged. Only the input near the seams is
 /// held in memory.
 BoundedFinish finish_to_bound(const Stage& stage, const Manifest& manifest, StitchedMesh stitched,
                               const BoundedFinishOptions& options);

@@ -18,7 +18,7 @@
 namespace meshfarm {
 namespace {
 
-/// As jobs before this one have cut it, if they have.
+/// The manifest as earlier jobs have cut it, if they have.
 Manifest read_manifest(const JobContext& context, const GroupBound& bound) {
   Manifest manifest = decode_manifest(context.stage.read(ManifestName{}), "the manifest");
   if (!bound.bundles) return manifest;
@@ -74,7 +74,7 @@ class GroupFinish {
   }
 
  private:
-  /// Flags of the pieces of which it has something.
+  /// Flags the pieces that the group has vertices of.
   std::vector<std::uint8_t> pieces_of_group() const {
     std::vector<std::uint8_t> pieces(parameters_.strips.size(), 0);
     for (std::uint32_t v = 0; v < number_.size(); ++v) {
@@ -83,7 +83,7 @@ class GroupFinish {
     return pieces;
   }
 
-  /// Of the group's parts, and between them.
+  /// The input of the group's parts and between them.
   Mesh input_near(const NearCells& near) const {
     std::vector<std::uint32_t> parts;
     std::uint32_t part = 0;
@@ -115,7 +115,7 @@ class GroupFinish {
     return at;
   }
 
-  /// What other groups may change, and what lies between.
+  /// Adds what other groups may change, and the triangles between.
   void add_strips(const NearCells& near) {
     const Mesh& all = strips_.mesh();
     for (const std::uint32_t i : near.touching(all.positions, all.triangles)) {
@@ -127,7 +127,7 @@ class GroupFinish {
     end_of_strips_ = static_cast<std::uint32_t>(mesh_.positions.size());
   }
 
-  /// What stays in a piece, and its gap: nobody changes these any more.
+  /// Adds what stays in a piece, and its gap: nobody changes these any more.
   void add_piece(std::size_t number, const NearCells& near) {
     const SeamParameters::Strip& strip = parameters_.strips[number];
     const std::string& name = strip.ref.file.name;
@@ -166,7 +166,7 @@ class GroupFinish {
     }
   }
 
-  /// The shared vertices, then those of strips, then those of pieces, which all stay.
+  /// The vertices that stay: first the shared ones, then those of strips, then those of pieces.
   SeamMesh with_surroundings() {
     SeamMesh seams;
     std::vector<std::uint8_t> flags(mesh_.positions.size(), 0);
@@ -179,7 +179,7 @@ class GroupFinish {
     return seams;
   }
 
-  /// Of the vertices those before `end` that are not shared are the surroundings'.
+  /// Drops the vertices of the surroundings: those before `end` that are not shared.
   void keep_group(std::uint32_t end, Mesh& mesh) const {
     std::vector<std::uint32_t> number(mesh.positions.size(), k_left_out);
     std::uint32_t count = 0;
@@ -205,10 +205,10 @@ class GroupFinish {
   std::uint32_t shared_;
   std::vector<std::uint32_t> number_;  // of the strips' vertices
   std::vector<std::uint8_t> pieces_;   // flags
-  Mesh mesh_;                          // the group's, and then what is round it
+  Mesh mesh_;                          // the group's, later with its surroundings
   std::uint32_t of_group_ = 0;         // the first vertices
-  std::uint32_t end_of_strips_ = 0;    // those of other groups come next
-  std::uint64_t before_ = 0;           // its triangles
+  std::uint32_t end_of_strips_ = 0;    // those of other groups come after of_group_
+  std::uint64_t before_ = 0;           // the group's triangles
   BoundedFinishOptions options_;
 };
 

@@ -17,13 +17,13 @@ namespace meshfarm {
 struct GroupToBound {
   Mesh mesh;
   std::uint32_t shared = 0;  // the first vertices, which stay
-  /// Of each vertex of the strips its number in the mesh, or k_left_out.
+  /// For each vertex of the strips, its number in the mesh, or k_left_out.
   std::vector<std::uint32_t> number;
 };
 
-/// Simplifies a group as far as SeamParameters::bound allows: by the input of the parts that it is
-/// of, and beside what is left of their pieces, of which it holds what is near. Throws as reading
-/// does.
+/// Simplifies a group as far as SeamParameters::bound allows: measured against the input of its
+/// parts, with the rest of their pieces beside it. Only what is near is held in memory. Throws as
+/// reading does.
 BoundedFinish simplify_group(GroupToBound group, const JoinedStrips& strips,
                              const SeamParameters& parameters, const JobContext& context);
 

@@ -21,19 +21,19 @@
 namespace meshfarm {
 namespace {
 
-/// The highest level that a mesh has reached for which this much was paid.
+/// The highest level that a mesh has reached at this cost.
 std::int32_t level_reached(double cost, double unit) {
   if (!(cost > 0)) return k_input_level;
   const std::int32_t level = level_of(cost, unit);
   return level_cost(level, unit) > cost ? level - 1 : level;
 }
 
-/// Where no more than this share of a part's triangles is lost, these are kept as they came, and
-/// the rest is simplified again as far as before; so often.
+/// If at most this share of a part's triangles is lost, these are kept unchanged, and the rest is
+/// simplified again as far as before; at most k_most_tries times.
 constexpr double k_little_lost = 0.002;
 constexpr std::size_t k_most_tries = 4;
 
-/// These triangles and those that touch them.
+/// Keeps these triangles and those that touch them.
 void keep_round(const Mesh& mesh, const std::vector<Triangle>& lost,
                 std::vector<std::uint8_t>& moves) {
   std::vector<std::uint8_t> flags(moves.size(), 0);
@@ -56,8 +56,8 @@ class PartSimplifier {
   }
 
  private:
-  /// Where it goes too far, the part stays as it came; if that were much of it, it is simplified to
-  /// a share of the bound.
+  /// Where the result goes too far, the part stays unchanged; if that would be a large area, the
+  /// part is simplified to a share of the bound instead.
   Simplifier measured(const Part& part) const {
     constexpr double k_little = 0.3;  // vertices, for each triangle of the result
     constexpr double k_less = 0.85;
@@ -126,8 +126,8 @@ class PartSimplifier {
     throw IncompleteError("the job was given up");
   }
 
-  /// As simple as it may be with a proof; the part as it came has one. What of it was lost stays,
-  /// where that is little.
+  /// As simple as a proof allows; the unchanged part has one. Lost triangles are kept unchanged if
+  /// they are few.
   Simplifier certified(const Part& part) const {
     const BoundProof proof(part.mesh, parameters_.certified_error, 1);
     std::vector<std::uint8_t> moves = free_vertices(part);

@@ -17,9 +17,9 @@ struct BoundedPart {
   ResultSummary summary;
 };
 
-/// Simplifies a part as far as no distance between it and what it was is above
-/// SimplifyParameters::max_error, in either direction. `beside`: what the file is to have beside
-/// its mesh.
+/// Simplifies a part as far as possible with no distance between result and part above
+/// SimplifyParameters::max_error, in either direction. `beside`: stored in the file beside its
+/// mesh.
 BoundedPart simplify_to_bound(const Part& part, const SimplifyParameters& parameters,
                               const JobContext& context, std::string_view beside = {});
 

@@ -12,21 +12,21 @@
 namespace meshfarm {
 namespace {
 
-/// Points of the input by which the error of the result is measured: the RMS of as many varies by
-/// less than one per cent.
+/// Points of the input to measure the error of the result by: the RMS of this many varies by less
+/// than one per cent.
 constexpr std::uint64_t k_error_samples = 100'000;
-/// A bound is on the greatest distance, which more points find more of, vertices most.
+/// A bound limits the maximum, which more points find better, vertices best.
 constexpr std::uint64_t k_bound_samples = 200'000;
 
-/// Points a triangle of the result, to fit its vertices: with fewer it hardly comes nearer, and
-/// more are of no use.
+/// Points per triangle of the result to fit its vertices: with fewer the result hardly gets nearer,
+/// and more are useless.
 constexpr std::uint64_t k_least_fit_points = 4;
 constexpr std::uint64_t k_enough_fit_points = 20;
-/// More than the least only up to so many.
+/// More than the minimum are used only up to this total.
 constexpr std::uint64_t k_plenty_of_fit_points = 300'000;
 /// About a second of processor time.
 constexpr std::uint64_t k_most_automatic_fit_points = 500'000;
-/// They are in memory, at up to 90 bytes each.
+/// In memory, at up to 90 bytes each.
 constexpr std::uint64_t k_most_fit_points = 8'000'000;
 
 }  // namespace
@@ -59,7 +59,7 @@ SampleCounts sample_counts(const Manifest& manifest, const RunOptions& options) 
   if (options.error.value > 0) return {k_bound_samples, 0};
   SampleCounts counts{k_error_samples, 0};
   if (options.fit == VertexFit::off || !why_not_fitted(options).empty()) return counts;
-  // Not of what is left of the input: jobs that cut it do not know that.
+  // Uses the full input, as jobs that cut it do not know what is left of it.
   const std::uint64_t input = manifest.input_triangles;
   const double share = options.ratio * static_cast<double>(input);
   const std::uint64_t triangles =

@@ -12,7 +12,7 @@
 namespace meshfarm {
 namespace {
 
-/// A summary has room for twice as much, parameters for nearly three times.
+/// A summary has room for twice as much, parameters for nearly three times as much.
 constexpr std::size_t k_most_told_of_one = 8'192;
 constexpr std::size_t k_most_told_of_all = 98'304;
 

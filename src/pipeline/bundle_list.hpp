@@ -1,14 +1,14 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
 //
-// Bundles as they stand in parameters of jobs:
+// Encoding of bundles in parameters of jobs:
 //   bundles  = position type u8 | parts u32 | vertices u32 x (file | directory section | runs
 //              section | crowds section | merged u64 | of parts) | triangles u32 x (file |
 //              directory section | seams section | seam triangles u64 | dropped u64 | points left
 //              out u64 | vertices section | groups u32 | of parts)
 //   of parts = told u8 | if told: u32 x (part u32, of vertices: | count u32)
-// A summary has what follows the file. What is of which part is left out where it takes too much
-// room: of some bundle in a summary, of all in parameters.
+// A summary has what follows the file. The list of parts is left out if it takes too much room:
+// that of a bundle in a summary, those of all bundles in parameters.
 #pragma once
 
 #include <string>
@@ -20,7 +20,7 @@
 namespace meshfarm {
 
 void put_bundles(ByteWriter& out, const BundlesOfMesh& bundles);
-/// Throws DataError for what put_bundles() did not write.
+/// Throws DataError for bytes that put_bundles() did not write.
 BundlesOfMesh get_bundles(ByteReader& in);
 
 std::string encode_summary(const VertexBundle& bundle);

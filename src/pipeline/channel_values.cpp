@@ -18,7 +18,7 @@ namespace meshfarm {
 
 namespace {
 
-/// Which way normals point is the input's to say: the triangles may all face the other way.
+/// The input decides on which side normals point: the triangles may all face the other way.
 void recompute_normals(const Mesh& mesh, std::size_t channels,
                        const std::array<std::size_t, 3>& columns, std::span<float> values) {
   std::vector<Vec3> normals = vertex_normals(mesh);
@@ -31,7 +31,7 @@ void recompute_normals(const Mesh& mesh, std::size_t channels,
   }
   const double side = agreement < 0 ? -1 : 1;
   for (std::size_t v = 0; v < normals.size(); ++v) {
-    if (squared_length(normals[v]) == 0) continue;  // it has no triangle with an area
+    if (squared_length(normals[v]) == 0) continue;  // it has no triangle with non-zero area
     for (std::size_t axis = 0; axis < 3; ++axis) {
       values[v * channels + columns[axis]] =
           static_cast<float>(side * normals[v][static_cast<int>(axis)]);
@@ -39,8 +39,8 @@ void recompute_normals(const Mesh& mesh, std::size_t channels,
   }
 }
 
-/// What the values of a channel are between. Least squares go beyond that where points tell little
-/// of a vertex, or values make a step.
+/// The range of the values of a channel. Least squares may exceed it if few points determine a
+/// vertex, or if values have a step.
 struct Range {
   float lo = std::numeric_limits<float>::infinity();
   float hi = -std::numeric_limits<float>::infinity();

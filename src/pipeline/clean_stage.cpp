@@ -1,10 +1,10 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
 //
-// A run is known to be complete by its newest endpoint, which says so. All that a journal holds for
-// another run, or for one that it does not name, is needed. Whoever is at work at this moment may
-// need what is in no journal yet: while a sink is there, results and journals are left alone, and
-// what nobody is known to want is removed only when it is old.
+// A run is complete if its newest endpoint says so. Everything that a journal holds for another
+// run, or for a run that it does not name, is needed. Processes working right now may need files
+// that are in no journal yet: while there is a sink, results and journals are left alone, and files
+// that nobody is known to need are removed only when they are old.
 #include <algorithm>
 #include <filesystem>
 #include <map>
@@ -46,7 +46,7 @@ struct ListedFile {
   fs::file_time_type changed;
 };
 
-/// Those that are still there when they are looked at.
+/// Lists the files that still exist when they are looked at.
 std::vector<ListedFile> files_in(const fs::path& folder) {
   std::vector<ListedFile> files;
   std::error_code error;
@@ -108,7 +108,7 @@ class Cleaning {
     for (const Endpoint& each : endpoints_.look(stage_)) {
       Run& run = runs_[each.run];
       run.newest = std::max(run.newest, each.epoch);
-      run.complete = each.done;  // of the newest, as they come in order
+      run.complete = each.done;  // that of the newest, as they come in order
     }
   }
 
@@ -139,7 +139,7 @@ class Cleaning {
     }
   }
 
-  /// Before the results: what is in no journal, nobody takes up.
+  /// Journals are removed before the results: nobody uses a result that is in no journal.
   void remove_journals() {
     if (!sinks_.empty() || options_.what != CleanWhat::finished_runs) return;
     std::uint32_t removed = 0;
@@ -158,7 +158,7 @@ class Cleaning {
       if (found->number == journals_.back().number) removed = found->number;
       remove(file, "journals of finished runs");
     }
-    // So that no name is used twice.
+    // Ensures that no name is used twice.
     if (removed != 0 && !options_.dry_run) JournalWriter(stage_.path(JournalName{removed + 1}));
   }
 
@@ -184,7 +184,7 @@ class Cleaning {
     for (const Endpoint& each : endpoints_.look(stage_)) {
       const Run& run = runs_[each.run];
       read.insert(each.epoch);
-      // Its last word tells late workers that it is over, and us that it is complete.
+      // The newest endpoint tells late workers that the run is over, and us that it is complete.
       const bool last_word = run.complete && sinks_.empty();
       const bool finished = last_word && options_.what == CleanWhat::finished_runs;
       if (each.epoch != run.newest || finished) stale.insert(each.epoch);
@@ -192,7 +192,7 @@ class Cleaning {
     for (const ListedFile& file : files_in(stage_.root() / "control")) {
       const auto name = parse_staged_name("control/" + file.name);
       const auto* endpoint = name ? std::get_if<EndpointName>(&*name) : nullptr;
-      // The highest stays, so that no number is used twice.
+      // The highest number stays, so that no number is used twice.
       if (endpoint == nullptr || endpoint->epoch == epochs.back() || !is_old(file)) continue;
       const bool unreadable = !read.contains(endpoint->epoch);
       if (unreadable || stale.contains(endpoint->epoch)) {
@@ -249,13 +249,13 @@ class Cleaning {
   const CleanOptions& options_;
   CleanReport report_;
   fs::file_time_type now_;
-  std::vector<std::string> sinks_;  // that are at work
+  std::vector<std::string> sinks_;  // working now
   EndpointList endpoints_;
   std::map<std::uint64_t, Run> runs_;
   std::vector<Journal> journals_;
-  std::set<JobKey> keys_;         // that any journal has
-  std::set<std::string> known_;   // results that any journal has
-  std::set<std::string> needed_;  // of those, for a run that is not complete
+  std::set<JobKey> keys_;         // in any journal
+  std::set<std::string> known_;   // results in any journal
+  std::set<std::string> needed_;  // those for a run that is not complete
 };
 
 }  // namespace
@@ -275,9 +275,9 @@ SinkPresence::SinkPresence(const Stage& stage) {
             (std::string(k_sink_claim) + to_hex(random) + std::string(k_claim_end)),
         "a sink is at work");
   } catch (const IoError& error) {
-    log_debug(error.what());  // on a full disk a run goes on, and nothing is cleaned
+    log_debug(error.what());  // on a full disk a run continues, and nothing is cleaned
   }
-  // Seen by whoever begins to clean from now on.
+  // Whoever begins to clean from now on sees this.
   for (bool told = false; const auto holder = holder_of(cleaning_claim(stage)); told = true) {
     if (!told) log_info("the stage is being cleaned by " + *holder + "; waiting for its end");
     std::this_thread::sleep_for(std::chrono::milliseconds(200));

@@ -14,25 +14,26 @@ namespace {
 
 constexpr double k_more_headroom = 8;
 
-/// Parts that their topology holds back are to have no more of all triangles than this at the level
-/// that is chosen, and all together no more than so many times what is wanted: one level is 1.6.
+/// Parts held back by their topology may have at most this share of all triangles at the chosen
+/// level, and all parts together at most k_fair_excess times what is wanted: one level is 1.6.
 constexpr double k_fair_share = 0.1;
 constexpr double k_fair_excess = 2;
-/// And so many collapses a triangle are to be refused at most by when the count is met, as far as
-/// the level that is chosen tells. Where keeping the topology turned out to cost more than is fair,
-/// it was 1.2 to 5 in six of seven cases, where it did not up to 0.9.
+/// At most this many collapses per triangle may be refused by the time the count is reached,
+/// extrapolated from the chosen level. In the cases where keeping the topology turned out to cost
+/// more than is fair, it was 1.2 to 5 in six of seven; in the others up to 0.9.
 constexpr double k_fair_refused = 1.1;
-/// Refusals alone do not tell. At the same level, which is the same cost of the last collapse,
-/// parts that keep their topology may have so many times the triangles of those that do not: their
-/// distance from the input differs about as much. Until the count has fallen by this much since the
-/// first rungs, which both have, that says nothing, and the topology is given up.
+/// Refusals alone do not decide. At the same level, which is the same cost of the last collapse,
+/// parts that keep their topology may have this many times the triangles of those that do not:
+/// their distances from the input differ by about the same factor. Until the count has fallen by
+/// k_least_way since the first rungs, which both have in common, this comparison says nothing, and
+/// the topology is given up.
 constexpr double k_fair_count = 1.2;
 constexpr double k_least_way = 1.25;
 
-/// So many triangles are compared with the result, to tell which pieces and handles went.
+/// At most this many triangles are compared with the result, to find which pieces and handles went.
 constexpr double k_most_compared = 4e6;
 
-/// Which may turn out not to be fair.
+/// The first choice, which may turn out not to be fair.
 TopologyMode first_topology(const RunOptions& options, bool by_error) {
   if (options.lines.topology != TopologyMode::automatic) return options.lines.topology;
   if (by_error) return TopologyMode::keep;
@@ -40,7 +41,7 @@ TopologyMode first_topology(const RunOptions& options, bool by_error) {
                                                      : TopologyMode::automatic;
 }
 
-/// What a first job found of the part that a second has only seen a rung of.
+/// Adds what a first job found about the part, as a second job has only seen a rung of it.
 void add_to(const ResultSummary& before, ResultSummary& summary) {
   summary.dropped_degenerate += before.dropped_degenerate;
   summary.dropped_duplicate += before.dropped_duplicate;
@@ -75,8 +76,8 @@ JobNeeds ClimbStage::ask(JobGraph& graph, const std::vector<std::uint32_t>& part
   return asked;
 }
 
-/// Where the topology is kept after all no ladder is to end for what is refused: one that goes on
-/// foresees nothing, one that begins anew may not give it up.
+/// If the topology is kept after all, no ladder may end because of refusals: a job that continues
+/// does not predict them, and one that starts anew may not give up the topology.
 Job ClimbStage::climb(std::uint32_t part) const {
   const TopologyMode topology = results_.topology;
   if (goes_on_[part] == 0) {
@@ -99,7 +100,7 @@ void ClimbStage::take(const JobGraph& graph, const std::vector<std::uint32_t>& p
   }
 }
 
-/// As many triangles as there would be of the whole stream.
+/// Scales the counts of a sample to the whole stream.
 void ClimbStage::stand_for_stream(std::uint32_t part) {
   const double times =
       static_cast<double>(manifest_.parts[part].triangles) /
@@ -139,7 +140,7 @@ std::vector<std::uint32_t> ClimbStage::choose_level() {
   return again;
 }
 
-/// All are asked for once more, from the first rung that they have.
+/// Asks for all parts again, from their first rungs.
 void ClimbStage::give_up_topology() {
   keep_coarsest();
   results_.topology = TopologyMode::simplify;
@@ -148,8 +149,8 @@ void ClimbStage::give_up_topology() {
   goes_on_.assign(goes_on_.size(), 1);
 }
 
-/// Whether those that kept their topology had hardly more triangles, each at the level that it came
-/// to.
+/// Whether the parts that kept their topology had hardly more triangles, each at the level that it
+/// reached.
 bool ClimbStage::was_fair() const {
   double first = 0;
   double kept = 0;
@@ -164,7 +165,7 @@ bool ClimbStage::was_fair() const {
   return first >= k_least_way * kept && kept <= k_fair_count * others;
 }
 
-/// Returns those that had stopped, to be asked for from the last rung that they have.
+/// Returns the parts that had stopped, to continue from their last rungs.
 std::vector<std::uint32_t> ClimbStage::keep_after_all() {
   results_ = std::move(*kept_ladders_);
   kept_.clear();
@@ -179,8 +180,8 @@ std::vector<std::uint32_t> ClimbStage::keep_after_all() {
 }
 
 /// Whether parts that keep their topology could not follow the others to the common level, or all
-/// together not to the count, or whether not even all that they could do would meet the target.
-/// What is kept at too high a cost before that the finish finds out.
+/// parts together miss the count by far, or not even their maximum reduction would reach the
+/// target. The finish finds out where the topology is kept at too high a cost before that.
 bool ClimbStage::is_held_back() const {
   const auto all = static_cast<double>(results_.free_triangles(results_.level));
   double held = 0;
@@ -195,12 +196,12 @@ bool ClimbStage::is_held_back() const {
     any = true;
     if (!result.goes_on() && last.level < results_.level) held += left;
   }
-  // Once it is kept after all, the finish may do what parts on their own could not.
+  // Once it is kept after all, the finish may do what single parts could not.
   if (any && !keeps_after_all_ && least > static_cast<double>(jobs_.target())) return true;
   return held > k_fair_share * all || (any && all > k_fair_excess * jobs_.wanted());
 }
 
-/// Whether most of what they tried is refused.
+/// Whether most of the collapses that the parts try will be refused.
 bool ClimbStage::is_much_refused() const {
   if (!jobs_.foresees()) return false;
   const auto all = static_cast<double>(results_.free_triangles(results_.level));
@@ -209,20 +210,20 @@ bool ClimbStage::is_much_refused() const {
   return refused > k_fair_refused * all;
 }
 
-/// By when all parts together, which have `all` free triangles at the common level, have what is
-/// wanted.
+/// Refusals by the time all parts together, which have `all` free triangles at the common level,
+/// are reduced to what is wanted.
 double ClimbStage::refused_in(std::uint32_t part, double all) const {
   const ResultSummary& result = results_.summaries[part];
   const Rung& rung = result.rungs[rung_at(result.rungs, results_.level)];
-  // What is below the end of other ladders is too little to tell from.
+  // Beyond the end of other ladders too little is left to extrapolate from.
   const std::uint64_t left = result.end == LadderEnd::refusals
                                  ? free_triangles_at(result, results_.level)
                                  : rung.free_triangles;
   return refused_by(rung, static_cast<double>(left) * jobs_.wanted() / all);
 }
 
-/// A sample of a stream tells nothing, and what is far larger than the result is not worth the
-/// memory: the sink would hold all of it to tell what went.
+/// A sample of a stream has no topology to compare, and meshes far larger than the result are not
+/// worth the memory: the sink would hold all of them to tell what went.
 void ClimbStage::keep_coarsest() {
   double triangles = 0;
   for (std::uint32_t p = 0; p < results_.summaries.size(); ++p) {

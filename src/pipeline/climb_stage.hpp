@@ -15,23 +15,24 @@
 namespace meshfarm {
 
 /// Every part, or a sample of a long stream, is simplified to a ladder: snapshots at rising cost
-/// levels that are the same in all parts. From the rungs' counts one level is chosen for all.
+/// levels that are the same in all parts. One level is chosen for all parts from the counts of the
+/// rungs.
 class ClimbStage {
  public:
   /// All must outlive this. `needs`: what a part needs before it can be climbed.
   ClimbStage(const Manifest& manifest, const RunOptions& options, const PartJobs& jobs,
              PartResults& results, std::function<JobNeeds(std::uint32_t part)> needs);
 
-  /// Asks for the ladders of these parts, once more if they were asked for before.
+  /// Asks for the ladders of these parts, again if they were asked for before.
   JobNeeds ask(JobGraph& graph, const std::vector<std::uint32_t>& parts);
-  /// Once they are there.
+  /// Call this once they are accepted.
   void take(const JobGraph& graph, const std::vector<std::uint32_t>& parts);
-  /// Once all are there. Returns the parts to climb again: those that were taken too far, with a
-  /// finer start; or all, with their topology simplified, if so much of the mesh is held back by it
-  /// that the others would pay for that; or those that had stopped for that reason, if the others
-  /// would not have paid after all.
+  /// Call this once all are accepted. Returns the parts to climb again: those that were simplified
+  /// too far, with a finer start; or all, with their topology simplified, if it holds back so much
+  /// of the mesh that the other parts would pay for it; or those that had stopped for that reason,
+  /// if the others would not have paid after all.
   std::vector<std::uint32_t> choose_level();
-  /// What kept its topology, before it was given up; none if it was not.
+  /// The rungs that kept their topology before it was given up; empty if it was not.
   const std::vector<ChosenRung>& kept() const { return kept_; }
 
  private:
@@ -51,13 +52,13 @@ class ClimbStage {
   PartResults& results_;
   std::function<JobNeeds(std::uint32_t)> needs_;
   std::vector<double> headroom_;
-  std::vector<JobName> asked_;         // the last job that was asked for, by part
-  std::vector<std::uint8_t> goes_on_;  // from a rung that it has, by part
+  std::vector<JobName> asked_;         // the last job asked for, by part
+  std::vector<std::uint8_t> goes_on_;  // continues from an existing rung, by part
   std::uint32_t jobs_asked_ = 0;
   std::vector<std::uint32_t> climbed_;  // parts that have a ladder
   std::vector<ChosenRung> kept_;
-  std::optional<PartResults> kept_ladders_;  // until they are compared with those that did not
-  bool keeps_after_all_ = false;             // as the comparison told
+  std::optional<PartResults> kept_ladders_;  // until they are compared with ladders that gave it up
+  bool keeps_after_all_ = false;             // the outcome of that comparison
 };
 
 }  // namespace meshfarm

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
 //
-// Components that are left out may span pieces: what a piece tells of those that do is which of its
-// boundary vertices they connect, and their boxes. So one piece is in memory at a time.
+// Components to leave out may span pieces. For these a piece only records which of its boundary
+// vertices they connect, and their boxes, so only one piece is in memory at a time.
 //
 // Parameters, version 3 (version 1 had one boundary file, version 2 whole files), and summary,
 // little endian:
@@ -49,7 +49,7 @@ struct ComponentSize {
   bool is_below(double diagonal) const { return triangles > 0 && box.diagonal() < diagonal; }
 };
 
-/// Takes the pieces one after the other, and of each keeps what its boundary vertices tell.
+/// Takes the pieces one after the other, and keeps only what concerns their boundary vertices.
 class ComponentFinder {
  public:
   explicit ComponentFinder(const ComponentsParameters& parameters)
@@ -81,7 +81,7 @@ class ComponentFinder {
     stitcher_.add(piece, parts);
   }
 
-  /// Of each piece the components to drop, by their lowest vertices.
+  /// For each piece the components to drop, by their lowest vertices.
   std::vector<std::vector<std::uint32_t>> finish(std::span<const BoundaryTriangle> boundary) {
     const StitchedMesh stitched = stitcher_.finish(boundary);
     const Mesh& seams = stitched.mesh;
@@ -112,7 +112,7 @@ class ComponentFinder {
   /// A boundary vertex, and its component in the piece.
   struct OpenVertex {
     std::uint32_t lowest = 0;
-    ComponentSize size;  // at the first that the component has
+    ComponentSize size;  // stored at the component's first vertex
   };
 
   bool drops(const ComponentSize& size) {
@@ -125,7 +125,7 @@ class ComponentFinder {
   const ComponentsParameters& parameters_;
   Stitcher stitcher_;
   std::vector<OpenVertex> open_;
-  std::vector<std::size_t> first_;  // of the open vertices, by piece
+  std::vector<std::size_t> first_;  // the first open vertex of each piece
   std::vector<Triangle> links_;     // between open vertices
   std::vector<std::vector<std::uint32_t>> dropped_;
   DroppedComponents sum_;

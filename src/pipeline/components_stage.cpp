@@ -17,9 +17,9 @@ namespace meshfarm {
 namespace {
 
 constexpr std::uint64_t k_finder_process_bytes = std::uint64_t{16} << 20;
-/// Of the piece that is looked at.
+/// For the current piece.
 constexpr std::uint64_t k_finder_triangle_bytes = 100;
-/// Of the triangles between parts: the file, and what is made of it.
+/// For the triangles between parts: the file and its decoded forms.
 constexpr std::uint64_t k_boundary_copies = 6;
 
 }  // namespace

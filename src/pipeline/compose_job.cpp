@@ -97,7 +97,7 @@ class Composer {
     return seams;
   }
 
-  /// The triangles between parts are still those of the input.
+  /// The triangles between parts are still the input's.
   void sample_seams(StitchedMesh& stitched) {
     const auto count = static_cast<std::ptrdiff_t>(stitched.boundary_triangles);
     Mesh seams;
@@ -110,7 +110,7 @@ class Composer {
     std::swap(seams.positions, stitched.mesh.positions);
   }
 
-  /// Renumbers the vertices, the order kept otherwise.
+  /// Renumbers the open vertices to the front, keeping the order otherwise.
   static Mesh open_first(StitchedMesh stitched) {
     Mesh& from = stitched.mesh;
     std::vector<std::uint32_t> number(from.positions.size(), 0);

@@ -16,15 +16,16 @@
 namespace meshfarm {
 namespace {
 
-/// Joined at once: with two there are more levels, with all of them nothing is left to share out.
+/// How many are joined at once: with two there are more levels; with all, nothing is left to
+/// distribute.
 constexpr std::size_t k_most_joined = 4;
 
-/// The sink joins and finishes so many in about a second and 200 MB.
+/// The sink joins and finishes this many triangles in about a second and 200 MB.
 constexpr std::uint64_t k_worth_a_tree = 2'000'000;
-/// Of what the parts are to keep together: with less there is little left to simplify.
+/// A multiple of what the parts together keep: below it there is little left to simplify.
 constexpr double k_worth_seams = 1.5;
 
-/// The files as they are read, the joined mesh, the simplifier and the file that is written.
+/// The files as read, the joined mesh, the simplifier and the file that is written.
 std::uint64_t memory_of_composition(std::uint64_t file_bytes, std::uint64_t triangles) {
   constexpr std::uint64_t k_process = std::uint64_t{16} << 20;
   return k_process + file_bytes + 150 * triangles;
@@ -80,8 +81,8 @@ bool ComposeStage::can_join() const {
          options_.composition != Composition::sink;
 }
 
-/// What whoever simplified the parts can hold: a sweep's window, or the largest of them. Pieces of
-/// a result need not be larger than is good for them.
+/// The capacity that simplifying the parts needed: a sweep's window, or the largest part. Pieces of
+/// a result have a size that suits them instead.
 std::uint64_t ComposeStage::most_triangles(std::uint64_t all_triangles) const {
   if (goal_.for_pieces) {
     const double seams = static_cast<double>(manifest_.boundary_triangles) /
@@ -99,7 +100,7 @@ std::uint64_t ComposeStage::most_triangles(std::uint64_t all_triangles) const {
   return most;
 }
 
-/// By those that are taken: it may be clear before all are.
+/// Judges by the results so far: the outcome may be clear before all are there.
 bool ComposeStage::is_worth_it(const Level& level) const {
   if (!can_join()) return false;
   if (options_.composition == Composition::tree || goal_.for_pieces) return true;
@@ -107,16 +108,16 @@ bool ComposeStage::is_worth_it(const Level& level) const {
          static_cast<double>(level.triangles) > k_worth_seams * goal_.triangles;
 }
 
-/// The next of a level is there.
+/// Takes the next result of a level.
 void ComposeStage::take(JobGraph& graph, std::size_t number) {
   Level& level = levels_[number];
   level.triangles += level.parts[level.taken++].triangles;
-  // What was not joined before does not fit now either.
+  // Results that were not joined on the level below don't fit now either.
   const bool any_new = number == 0 || levels_[number - 1].joins;
   if (any_new && is_worth_it(level)) join(graph, number);
 }
 
-/// Neighbours are joined as long as they fit.
+/// Joins neighbours as long as they fit.
 void ComposeStage::join(JobGraph& graph, std::size_t number) {
   Level& level = levels_[number];
   const std::uint64_t seam = manifest_.boundary_triangles / manifest_.parts.size();
@@ -130,12 +131,12 @@ void ComposeStage::join(JobGraph& graph, std::size_t number) {
       if (!fits) break;
     }
     const bool last = level.whole && end == level.parts.size();
-    if (fits && !last && end - level.first < k_most_joined) return;  // the next may fit, too
+    if (fits && !last && end - level.first < k_most_joined) return;  // the next one may fit, too
     close_group(graph, number, end);
   }
 }
 
-/// Becomes one of the next level.
+/// The group becomes one entry of the next level.
 void ComposeStage::close_group(JobGraph& graph, std::size_t number, std::size_t end) {
   if (number + 1 == levels_.size()) levels_.emplace_back();
   Level& level = levels_[number];
@@ -156,7 +157,7 @@ void ComposeStage::close_group(JobGraph& graph, std::size_t number, std::size_t 
   });
 }
 
-/// Of what joins a result of so many triangles and parts with others like it, level by level.
+/// The work of joining a result of this size with others like it, level by level.
 std::uint64_t ComposeStage::work_after(std::uint64_t triangles, std::uint64_t parts) const {
   std::uint64_t work = 0;
   while (parts < manifest_.parts.size() && k_most_joined * triangles <= most_triangles_) {
@@ -202,7 +203,7 @@ Job ComposeStage::job_of(const Level& level, std::size_t first, std::size_t end)
   return job;
 }
 
-/// All of a level are there.
+/// All results of a level are there.
 void ComposeStage::end_level(JobGraph& graph, std::size_t number) {
   levels_[number].whole = true;
   if (is_worth_it(levels_[number])) join(graph, number);

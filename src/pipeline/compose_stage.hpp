@@ -20,25 +20,25 @@ struct ComposedParts {
   std::uint64_t weight = 0;     // free triangles of its parts before anything was composed
 };
 
-/// The cost threshold of all parts, and what they are to keep together for the finish.
+/// The cost threshold of all parts, and the triangles that they keep for the finish.
 struct ComposeGoal {
   std::int32_t level = 0;
   double max_cost = 0;
   double triangles = 0;
   TopologyMode topology = TopologyMode::keep;
-  bool for_pieces = false;  // what comes of it is finished piece by piece
+  bool for_pieces = false;  // the composed parts are finished piece by piece
 };
 
-/// Joins neighbours, and what came of that again (Xiong et al. 2008, 4.3): a few at once, and no
-/// more than a worker could hold when it simplified them, so that it needs no more memory than for
-/// that. Parts are numbered so that neighbours by number lie together, slabs anyway. What is then
-/// left for the sink to join is one result, or such as are too large.
+/// Joins neighbours, and the results of that again (Xiong et al. 2008, 4.3): a few at once, and no
+/// more than a worker could hold when it simplified them, so that joining needs no more memory than
+/// that. Parts with neighbouring numbers lie together, as slabs do anyway. What is left for the
+/// sink to join is one result, or results that are too large.
 ///
-/// On its own this is done where the sink would be long at joining: from two million triangles on,
-/// and only if they are much more than are wanted.
+/// By default this is done only if joining would take the sink long: from two million triangles on,
+/// and only if they are many more than wanted.
 ///
-/// Neighbours are joined from the first on, as many as fit. So a job needs those that it joins and
-/// those before them on its level, not the whole level.
+/// Neighbours are joined starting with the first, as many as fit. So a job needs the results that
+/// it joins and those before them on its level, not the whole level.
 class ComposeStage {
  public:
   using Done = std::function<void(JobGraph&, const std::vector<ComposedParts>&)>;
@@ -47,18 +47,18 @@ class ComposeStage {
   ComposeStage(const Manifest& manifest, const RunOptions& options)
       : manifest_(manifest), options_(options) {}
 
-  /// `done` is called once nothing more is to be joined.
+  /// `done` is called once there is nothing more to join.
   void begin(JobGraph& graph, const ComposeGoal& goal, std::vector<ComposedParts> parts, Done done);
 
  private:
-  /// The parts as they were simplified, then what came of joining these, and so on.
+  /// The parts as they were simplified, then the results of joining these, and so on.
   struct Level {
     std::vector<ComposedParts> parts;
-    std::size_t taken = 0;        // the first of these are there
-    std::size_t first = 0;        // not in a group yet
+    std::size_t taken = 0;        // how many of these are there, from the first on
+    std::size_t first = 0;        // the first that is not in a group yet
     std::uint64_t triangles = 0;  // of those taken
     bool whole = false;           // all are known
-    bool joins = false;           // any of them
+    bool joins = false;           // whether any of them are joined
   };
 
   bool can_join() const;
@@ -75,7 +75,7 @@ class ComposeStage {
   const RunOptions& options_;
   ComposeGoal goal_;
   Done done_;
-  std::uint64_t weight_ = 0;          // of all
+  std::uint64_t weight_ = 0;          // sum over all parts
   std::uint64_t most_triangles_ = 0;  // of a group
   std::deque<Level> levels_;
 };

@@ -27,7 +27,8 @@ FileFacts facts_of(const std::filesystem::path& path) {
           std::int64_t{status.st_mtim.tv_sec} * 1'000'000'000 + status.st_mtim.tv_nsec};
 }
 
-/// The input, as it was when the cut was planned. A host that does not see it says so: another may.
+/// Opens the input, unchanged since the cut was planned. A host that can't see it says so, as
+/// another host may see it.
 std::unique_ptr<MeshBlocks> open_input(const Cutting& cutting) {
   FileFacts facts;
   std::unique_ptr<MeshBlocks> mesh;
@@ -58,7 +59,7 @@ JobOutput publish_bytes(const Job& job, const JobContext& context, std::string_v
   return {context.publish(cut_result_name(job, context), bytes), std::move(summary)};
 }
 
-/// What a job's function makes in sections.
+/// Publishes a file of sections that `make` writes.
 template <class Make>
 JobOutput write_sections(const Job& job, const JobContext& context, const Make& make) {
   const auto file = context.create(cut_result_name(job, context));
@@ -71,7 +72,7 @@ BlockRange vertices_of(const CutJobParameters& parameters, const MeshBlocks& mes
   return block_of(mesh.vertices(), parameters.cutting.vertex_blocks, parameters.block);
 }
 
-/// The cells that are counted in this round: the first input, if it is not the first.
+/// The cells to count in this round: the first input, except in the first round.
 std::string cells_of(const CutJobParameters& parameters, const Job& job,
                      const JobContext& context) {
   if (parameters.round == 0) return begin_cells(parameters.box, parameters.cutting.parts);
@@ -142,14 +143,15 @@ JobOutput join_boundary_of_parts(const Job& job, const JobContext& context) {
   return publish_bytes(job, context, made.encoded.file, encode_summary(summary));
 }
 
-constexpr std::uint64_t k_usual_workers = 24;  // they end together, if as many parts are of each
+constexpr std::uint64_t k_usual_workers = 24;  // they end together with equally many parts each
 
 std::uint64_t as_many_of_each(std::uint64_t wanted) {
   return (wanted + k_usual_workers - 1) / k_usual_workers * k_usual_workers;
 }
 
-/// Two dozen workers are done at about the same time where each has four parts or more. Smaller
-/// parts, or more of them, cost all: the partition is one job, and seams are most of small parts.
+/// Two dozen workers end at about the same time if each has four parts or more. Smaller parts, or
+/// more of them, slow down everything: the partition is a single job, and small parts consist
+/// mostly of seams.
 std::uint32_t parts_for_cluster(std::uint64_t triangles) {
   constexpr std::uint64_t k_part = 300'000;
   constexpr std::uint64_t k_least = 72;
@@ -163,7 +165,8 @@ std::optional<Cutting> plan_cutting(const std::filesystem::path& input,
   const auto mesh = open_blocks(input);
   if (mesh == nullptr) return std::nullopt;
   const auto blocks = [&](std::uint64_t records) {
-    // Enough for all workers of a cluster, few enough that each is worth its messages and files.
+    // Enough for all workers of a cluster, but few enough that each is worth its messages and
+    // files.
     constexpr std::uint64_t k_records = 300'000;
     std::uint64_t wanted = records / k_records;
     if (wanted > k_usual_workers) wanted = as_many_of_each(wanted);

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
 //
-// Of the jobs of a cut; version 4 (bundles of version 3 did not tell what they have, version 2 had
-// one join, version 1 told all of each cell):
+// Parameters and summaries of the jobs of a cut, version 4 (in version 3 bundles did not list their
+// parts, version 2 had one join, version 1 described each cell completely):
 // parameters: version u8 | cutting (io/manifest.hpp) | block u32 | round u32 | box 6 x f64 |
 // bundles (bundle_list.hpp)
 // join parameters: version u8 | group u32 | bundles | parts u32 x (file | section)

@@ -17,22 +17,22 @@
 namespace meshfarm {
 namespace {
 
-/// Measured: so many vertices, or triangles, take the work of simplifying one triangle.
+/// Measured: this many vertices or triangles take the work of simplifying one triangle.
 constexpr std::uint64_t k_surveyed = 30;
 constexpr std::uint64_t k_counted = 15;
 constexpr std::uint64_t k_scattered_vertices = 9;
 constexpr std::uint64_t k_scattered_triangles = 8;
 constexpr std::uint64_t k_joined = 4;
-constexpr std::uint64_t k_partitioned = 2;  // times the work, a cell
+constexpr std::uint64_t k_partitioned = 2;  // times the work, per cell
 
 constexpr std::uint64_t k_cut_process_bytes = std::uint64_t{16} << 20;
-constexpr std::uint64_t k_cell_bytes_in_memory = 300;   // in a tree, and as it is written
-constexpr std::uint64_t k_cell_bytes_of_places = 50;    // the same of what finds vertices' parts
+constexpr std::uint64_t k_cell_bytes_in_memory = 300;   // in a tree, and in its encoding
+constexpr std::uint64_t k_cell_bytes_of_places = 50;    // the same for CellPlaces
 constexpr std::uint64_t k_cell_bytes_of_graph = 1'000;  // while it is partitioned
 constexpr std::uint64_t k_seam_triangle_bytes = 24;     // in bundles
 constexpr std::uint64_t k_joined_triangle_bytes = 150;  // while they are joined
-/// A message names the results of so many parts at most. Where there are more, the sink joins the
-/// boundary, which it reads of the bundles then.
+/// A message names the results of at most this many parts. If there are more, the sink joins the
+/// boundary, which it then reads from the bundles.
 constexpr std::uint32_t k_most_parts_named = 2'500;
 constexpr std::uint64_t k_most_cells = std::uint64_t{1} << 20;
 constexpr std::uint64_t k_cells_a_part = 1024;
@@ -41,7 +41,7 @@ std::uint64_t likely_cells(std::uint32_t parts) {
   return std::min(k_most_cells, k_cells_a_part * parts);
 }
 
-/// In bytes, beside that of the process.
+/// In bytes, without those of the process.
 struct MemoryOfCut {
   explicit MemoryOfCut(const Manifest& manifest, const Cutting& cutting) {
     const std::uint64_t cells = likely_cells(cutting.parts);
@@ -80,7 +80,7 @@ std::uint64_t CutStage::triangles_of_block() const {
   return manifest_.input_triangles / cutting_.triangle_blocks + 1;
 }
 
-/// Of a block, by and large: coordinates.
+/// Bytes of the coordinates in a block, approximately.
 std::uint64_t CutStage::bytes_of_vertices() const {
   const std::uint64_t all =
       3 * static_cast<std::uint64_t>(manifest_.positions) * manifest_.input_vertices;
@@ -123,7 +123,7 @@ void CutStage::take_surveys(const JobGraph& graph) {
   }
 }
 
-/// A round: all blocks, then the partition, which may ask for another one.
+/// One round: all blocks, then the partition, which may ask for another round.
 void CutStage::count(JobGraph& graph, std::uint32_t round) {
   const std::uint32_t blocks = cutting_.vertex_blocks;
   const std::uint64_t cells = likely_cells(cutting_.parts);
@@ -281,7 +281,7 @@ Manifest as_if_cut(Manifest manifest) {
   const std::uint32_t parts = manifest.cutting->parts;
   manifest.cutting.reset();
   PartEntry part;
-  constexpr std::uint64_t k_tenths = 12;  // of the average that a part may have
+  constexpr std::uint64_t k_tenths = 12;  // the largest part relative to the average
   part.triangles = k_tenths * manifest.input_triangles / parts / 10 + 1;
   part.vertices = part.triangles / 2 + 1;
   part.shared_triangles = part.triangles;

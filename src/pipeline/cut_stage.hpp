@@ -13,17 +13,18 @@
 namespace meshfarm {
 
 /// The first stages of a run whose input is cut by jobs: survey, count and partition, as often as
-/// the cells ask for it, then scatter vertices and triangles. Parts are built by the jobs that
-/// simplify them. What these tell makes the manifest and the boundary what a cut would have made.
+/// the cells require, then scatter vertices and triangles. Parts are built by the jobs that
+/// simplify them. The outputs of these jobs make the manifest and the boundary the same as those of
+/// a cut.
 class CutStage {
  public:
   explicit CutStage(Manifest& manifest) : manifest_(manifest) {}
 
-  /// Cuts, and goes on once parts can be built.
+  /// Cuts, and continues with `then` once parts can be built.
   void begin(JobGraph& graph, JobGraph::Step then);
-  /// What parts are built of; null if the cut was made before the run.
+  /// The bundles that parts are built from; null if the cut was made before the run.
   const BundlesOfMesh* bundles() const { return cuts_ ? &bundles_ : nullptr; }
-  /// Once all parts have ladders: completes the manifest, if it is not complete, and goes on.
+  /// Call this once all parts have ladders: completes the manifest if necessary, and continues.
   void join(JobGraph& graph, const PartResults& results, JobGraph::Step then);
 
  private:
@@ -51,10 +52,10 @@ class CutStage {
   BundlesOfMesh bundles_;
 };
 
-/// What the largest job of a cut takes, in bytes.
+/// The memory of the largest job of a cut, in bytes.
 std::uint64_t memory_of_cut(const Manifest& manifest);
 
-/// What will be once the input is cut, as far as it can be told: for estimates only.
+/// The manifest that a cut of the input will make, as far as it is known: for estimates only.
 Manifest as_if_cut(Manifest manifest);
 
 }  // namespace meshfarm

@@ -15,19 +15,19 @@
 namespace meshfarm {
 namespace {
 
-/// Most points of a result are nearer than so many times the RMS.
+/// Most points of a result are nearer than this multiple of the RMS.
 constexpr double k_usual = 2.5;
-/// Farther than this the first pass need not look: so many triangles are then near each point that
-/// the second is cheaper.
+/// The first pass need not look farther than this: so many triangles would be near each point that
+/// the second pass is cheaper.
 constexpr double k_far_in_spacings = 2;
-/// So many of the farthest points show where to look more closely, in steps of so much of the
-/// greatest distance.
+/// This many of the farthest points show where to look more closely, at points this fraction of the
+/// greatest distance apart.
 constexpr std::size_t k_looked_round = 100;
 constexpr double k_closer_step = 0.1;
-/// A few per cent are all that an estimate may be wrong by.
+/// Enough for an estimate that is off by a few per cent.
 constexpr std::uint64_t k_points_for_estimate = 5'000;
 
-/// Every n-th, so that there are at most so many.
+/// Every `step`-th of the points.
 std::vector<Vec3> thinned(std::span<const Vec3> points, std::uint64_t step) {
   std::vector<Vec3> thinned;
   thinned.reserve(points.size() / step + 1);
@@ -39,14 +39,14 @@ std::uint64_t step_for(std::uint64_t count, std::uint64_t most) {
   return std::max<std::uint64_t>(1, (count + most - 1) / most);
 }
 
-/// Of those sets that have points.
+/// The area of those sets that have points.
 double area_sampled(std::span<const SurfaceSamples> samples) {
   double area = 0;
   for (const SurfaceSamples& part : samples) area += part.points.empty() ? 0 : part.area;
   return area;
 }
 
-/// The greatest of what several threads find.
+/// The greatest value that several threads find.
 class Greatest {
  public:
   explicit Greatest(double least) : value_(least) {}
@@ -113,7 +113,7 @@ ErrorMeter::ResultPoints ErrorMeter::points_of(const Mesh& result) const {
   return all;
 }
 
-/// Every set of samples counts by the area it stands for.
+/// Each set of samples is weighted by its area.
 std::vector<double> ErrorMeter::measure_samples(const DistanceMeter& meter,
                                                 MeasuredError& measured) const {
   std::vector<DistanceMeter::Points> points;
@@ -152,8 +152,8 @@ double ErrorMeter::estimate_rms(const DistanceMeter& to_result) const {
   return std::sqrt(sum / area_);
 }
 
-/// Shows the input to the points of the result, and each piece of it once to `once`, from several
-/// threads.
+/// Shows the input to the points of the result, from several threads; also shows each piece of it
+/// once to `once`.
 void ErrorMeter::show_input(PointMeter& to_input,
                             const std::function<void(const SurfacePiece&)>& once) {
   for (bool is_first = true; to_input.begin_pass(); is_first = false) {
@@ -165,7 +165,7 @@ void ErrorMeter::show_input(PointMeter& to_input,
   }
 }
 
-/// Points of the input's piece, of which one may be farther from the result than those that are
+/// Points of a piece of the input that may be farther from the result than the greatest distance
 /// known.
 std::vector<Vec3> ErrorMeter::points_of(const SurfacePiece& piece,
                                         const PlacesOfPoints& farthest_samples,
@@ -182,7 +182,7 @@ std::vector<Vec3> ErrorMeter::points_of(const SurfacePiece& piece,
   return points;
 }
 
-/// The greatest distance of the result's triangles that have the farthest of the points.
+/// The greatest distance on those triangles of the result that have the farthest points.
 double ErrorMeter::farthest_round(std::span<const Vec3> points, std::span<const double> distances,
                                   double radius, const DistanceMeter& to_result) {
   std::vector<Vec3> farthest;
@@ -190,7 +190,7 @@ double ErrorMeter::farthest_round(std::span<const Vec3> points, std::span<const 
     farthest.push_back(points[i]);
   }
   const std::vector<std::uint32_t> triangles = to_result.nearest_triangles(farthest);
-  std::map<std::uint32_t, std::vector<Vec3>> places;  // by the triangle that they are on
+  std::map<std::uint32_t, std::vector<Vec3>> places;  // by the triangle they lie on
   for (std::size_t i = 0; i < farthest.size(); ++i) places[triangles[i]].push_back(farthest[i]);
   const double known = distance_of(distances).max;
   const Mesh& result = to_result.index().mesh();
@@ -217,7 +217,7 @@ MeasuredError ErrorMeter::measure(const Mesh& result,
   const DistanceMeter to_result(result, threads_);
   const std::vector<double> of_samples = measure_samples(to_result, error);
   const ResultPoints from = points_of(result);
-  // The maximum where that is within the neighbours' distance: the first pass then finds them all.
+  // The maximum if that is within the distance of neighbours: the first pass then finds them all.
   const double usual =
       std::max(std::min(k_usual * error.to_output.rms, k_far_in_spacings * spacing_),
                std::min(2 * error.to_output.max, spacing_));

@@ -19,39 +19,39 @@
 
 namespace meshfarm {
 
-/// The RMS, the mean and the greatest of them.
+/// RMS, mean and maximum.
 Distance distance_of(std::span<const double> distances);
 
-/// How many points are looked at for the maximum: all that the sum of squares needs and more.
+/// How many points are checked for the maximum: those that the sum of squares needs, and more.
 struct ErrorPoints {
   std::uint64_t by_area = 20'000;            // of the result
   std::uint64_t vertices = 10'000;           // of the result, at most
-  std::uint64_t peaks = 10'000;              // vertices of the result farthest from neighbours
-  std::uint64_t sides = 10'000;              // of the result: middles of their longest, at most
+  std::uint64_t peaks = 10'000;              // result vertices farthest from their neighbours
+  std::uint64_t sides = 10'000;              // of the result: midpoints of longest sides, at most
   std::uint64_t input_vertices = 1'000'000;  // at most
-  std::uint64_t input_sides = 30'000;        // middles count too if there are no more vertices
+  std::uint64_t input_sides = 30'000;        // midpoints count if there are no more vertices
 };
 
-/// For a bound on the error, which is one on the maximum.
+/// For a bound on the error, which is a bound on the maximum.
 inline constexpr ErrorPoints k_points_for_bound{200'000, 400'000,   400'000,
                                                 400'000, 4'000'000, 2'000'000};
 
 /// Measures how far a result is from the input, in both directions.
 ///
-/// RMS and mean come from points that are shared out by area. Of the input the workers took them,
-/// while they had it in memory; those of the result are measured against the input as it lies in
-/// the stage, read once more. The maximum counts vertices, too, as extremes of surfaces lie there.
-/// No figure depends on the number of threads.
+/// RMS and mean are computed from points distributed by area. The workers sampled the input while
+/// they had it in memory; points of the result are measured against the input in the stage, which
+/// is read again. The maximum also includes vertices, as extremes of surfaces lie there. No figure
+/// depends on the number of threads.
 class ErrorMeter {
  public:
-  /// `samples`: of the input, each set standing for its area. Stage and manifest must outlive this.
+  /// `samples`: of the input; each set represents its area. Stage and manifest must outlive this.
   ErrorMeter(const Stage& stage, const Manifest& manifest, std::vector<SurfaceSamples> samples,
              unsigned threads, const ErrorPoints& points = {});
 
-  /// What else is to be measured with the result's index may be done in `with_index`.
+  /// `with_index` may measure more with the result's index.
   MeasuredError measure(const Mesh& result,
                         const std::function<void(const TriangleIndex&)>& with_index = {});
-  /// About the RMS from the input to the result, by few points: much cheaper.
+  /// Estimates the RMS from the input to the result from few points: much cheaper.
   double estimate_rms(const DistanceMeter& to_result) const;
 
  private:
@@ -78,11 +78,11 @@ class ErrorMeter {
   ErrorPoints points_;
   std::vector<SurfaceSamples> samples_;
   double area_;                // of the input
-  double spacing_ = 0;         // of its vertices, about
+  double spacing_ = 0;         // of its vertices, approximately
   std::vector<Vec3> surface_;  // all samples
   InputSurface input_;
   NormalSamples normals_;
-  std::optional<NormalSamples::Points> facing_;  // once all of the input was shown
+  std::optional<NormalSamples::Points> facing_;  // set once all of the input was shown
 };
 
 }  // namespace meshfarm

@@ -91,7 +91,7 @@ class ResultFinish {
     ResultMesh part =
         decode_rung(stage_.read(chosen.file, chosen.place.rung),
                     stage_.read(chosen.file, chosen.place.tail), chosen.rung, chosen.file.name);
-    // Of composed streams the stitcher knows.
+    // For composed streams the stitcher checks this.
     if (chosen.parts == 1 &&
         part.boundary_vertices != manifest_.parts[first_part].boundary_vertices) {
       throw DataError(chosen.file.name + ": is not the result of part " +
@@ -126,7 +126,7 @@ class ResultFinish {
     return stitched;
   }
 
-  /// The boundary triangles, last in the stitched mesh, are still those of the input.
+  /// The boundary triangles, last in the stitched mesh, are still the input's.
   SurfaceSamples samples_of_boundary(Mesh& stitched, std::size_t count) const {
     Mesh boundary;
     boundary.triangles.assign(stitched.triangles.end() - static_cast<std::ptrdiff_t>(count),
@@ -165,7 +165,7 @@ class ResultFinish {
     return std::move(finish.mesh);
   }
 
-  /// To so many triangles, or as few as there may be.
+  /// Reduces to this many triangles, or as few as possible.
   Simplifier reduced(StitchedMesh stitched, std::uint64_t target) const {
     const std::uint64_t before = stitched.mesh.triangles.size();
     SimplifyOptions options{
@@ -188,9 +188,10 @@ class ResultFinish {
       });
     };
     reduce_to(target);
-    // Sheets that are simplified in pairs may have left two or three.
+    // Sheets that are simplified in pairs may have left two or three triangles too many.
     if (simplifier.triangles() > target + 1) reduce_to(target);
-    // A closed surface loses triangles in pairs: of an odd target one fewer is taken, not one more.
+    // A closed surface loses triangles in pairs: an odd target is missed by one fewer, not one
+    // more.
     if (simplifier.triangles() == target + 1 && target > 0) reduce_to(target - 1);
     return simplifier;
   }
@@ -225,7 +226,8 @@ class ResultFinish {
     return mend_facing(result, *meter_, stage_, manifest_, options_.threads);
   }
 
-  /// What is kept need not be compared. `kept` has the input's topology, if there is any.
+  /// A topology that was kept need not be compared. `kept` has the input's topology, if there is
+  /// any.
   void compare_topology(const std::vector<ChosenRung>& kept, const Mesh& result) {
     TopologyChange change;
     change.after = measure_topology(result);
@@ -236,7 +238,7 @@ class ResultFinish {
       std::vector<SurfaceSamples> unused;
       StitchedMesh stitched = stitch(kept, unused);
       drop_small(stitched.mesh);
-      // Cleans it as the finish does.
+      // Cleans the mesh as the finish does.
       const Simplifier cleaned(std::move(stitched.mesh), {.positions = manifest_.positions});
       change.before = measure_topology(cleaned.mesh());
       if (change.before.components > 1) {
@@ -246,8 +248,8 @@ class ResultFinish {
     summary_.topology = change;
   }
 
-  /// Finds out what a few triangles more would have had: the finish may have gone too far, or the
-  /// parts before it.
+  /// Finds out what slightly more triangles would have given: the finish may have gone too far, or
+  /// the parts before it.
   void look_for_better(const ChosenRungs& chosen) {
     const double rms = summary_.error.greater().rms;
     if (!is_visible(rms / manifest_.box.diagonal())) return;
@@ -273,7 +275,7 @@ class ResultFinish {
     if (goal_ > summary_.target && is_a_little_more(goal_, triangles)) better_mesh_ = mesh;
   }
 
-  /// What was asked for cannot be met: then it is not to be ruined on the way.
+  /// The number asked for cannot be reached anyway, so the result is not ruined for it.
   void take_better(const ChosenRungs& chosen, Mesh& result) {
     result = std::move(*better_mesh_);
     summary_.fitted_vertices = 0;
@@ -285,7 +287,7 @@ class ResultFinish {
     count_crossings(TriangleIndex(result, options_.threads), result);
   }
 
-  /// Takes about as long for a triangle of the result as a run for two of the input.
+  /// Per triangle of the result this takes about as long as a run per two triangles of the input.
   void count_crossings(const TriangleIndex& index, const Mesh& result) {
     constexpr std::uint64_t k_always = 10'000;
     constexpr std::uint64_t k_of_input = 64;
@@ -311,7 +313,7 @@ class ResultFinish {
     summary_.result = figures_;
   }
 
-  /// An estimate, of one direction only, which may be the lesser: it tells what to measure.
+  /// Estimates one direction only, which may be the smaller one: decides what to measure.
   bool may_be_better(const Mesh& mesh, std::uint64_t triangles) const {
     constexpr double k_doubt = 2;
     if (mesh.triangles.empty()) return false;
@@ -335,7 +337,7 @@ class ResultFinish {
                                         : "away from open borders, triangles go in pairs";
     }
     if (run_.finish == Finish::boundary) return "nothing more can be collapsed at the seams";
-    // A closed piece has four at least.
+    // A closed piece has at least four triangles.
     if (after <= 4 * topology.components) {
       if (topology.components == 1) return "the last piece stays, and it can't be smaller";
       if (lines_.topology == TopologyMode::keep) {
@@ -364,12 +366,12 @@ class ResultFinish {
   const Stage& stage_;
   const Manifest& manifest_;
   const RunOptions& run_;
-  LineOptions lines_;                // as the parts were made
-  std::optional<Mesh> better_mesh_;  // of summary_.better, where it is to be the result
+  LineOptions lines_;                // those the parts were made with
+  std::optional<Mesh> better_mesh_;  // of summary_.better, if it is to be the result
   std::uint64_t goal_ = 0;           // triangles of the result
   const FinishResultOptions& options_;
   RunSummary summary_;
-  std::vector<Mesh> larger_;  // what the result was before it was so small
+  std::vector<Mesh> larger_;  // earlier states of the result, with more triangles
   std::optional<ErrorMeter> meter_;
   SurfaceFigures figures_;  // of the result
 };

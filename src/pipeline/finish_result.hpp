@@ -16,12 +16,12 @@
 namespace meshfarm {
 
 struct FinishResultOptions {
-  unsigned threads = 0;  // 0: one a core
+  unsigned threads = 0;  // 0: one per core
   std::function<void(std::string_view phase, double done, std::uint64_t triangles)> progress;
-  std::function<void()> check_stop;  // throws when it is to stop
+  std::function<void()> check_stop;  // throws to stop
 };
 
-/// The mesh of a run, and what is to be told of it.
+/// The mesh of a run, and its summary.
 struct FinishedResult {
   Mesh mesh;
   RunSummary summary;

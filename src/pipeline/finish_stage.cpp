@@ -20,41 +20,42 @@
 namespace meshfarm {
 namespace {
 
-/// Of the share of their triangles that all pieces keep: so far each is weighed, as one may keep
+/// A piece is weighed down to this fraction of the average share that pieces keep, as it may keep
 /// less than others.
 constexpr double k_last_of_share = 0.8;
-/// Nearly each keeps less than so much of it.
+/// Nearly every piece keeps less than this multiple of that share.
 constexpr double k_kept_of_share = 1.3;
-/// So often quotas are mended.
+/// How often quotas are corrected.
 constexpr std::size_t k_most_rounds = 4;
-/// So often pieces are divided. The later one is so many steps before the threshold.
+/// How often pieces are divided. The second time is k_steps_before_end steps before the threshold.
 constexpr std::size_t k_most_turns = 2;
-/// Where nothing was collapsed before, what is wanted may be so many times farther.
+/// If nothing was collapsed before, the target may be this many times farther away.
 constexpr double k_from_the_start = 8;
-/// Samples of streams tell counts within a few per cent. So many steps have about so many times
-/// fewer triangles.
+/// Samples of streams predict counts within a few per cent. Going back k_steps_back steps gives
+/// about k_from_a_step_before times as many triangles.
 constexpr std::int32_t k_steps_back = 2;
 constexpr double k_from_a_step_before = 1.3;
 constexpr std::int32_t k_steps_before_end = 2;
 constexpr std::int32_t k_steps_for_turn = 2;
 
-/// Measured: to split a piece takes the work of simplifying so many times its triangles.
+/// Measured: splitting a piece takes the work of simplifying this many times its triangles.
 constexpr std::uint64_t k_split_work = 2;
-/// Of the input, by one job, at least.
+/// Triangles of the input per job, at least.
 constexpr std::uint64_t k_measured_at_once = 200'000;
-/// To read the result that is measured, and to arrange its points, is worth so many triangles.
+/// Reading the result that is measured, and arranging its points, costs as much as this many
+/// triangles.
 constexpr std::uint64_t k_before_measuring = 20'000;
-/// And then so many triangles of it take the work of simplifying one.
+/// After that, this many triangles of the result take the work of simplifying one.
 constexpr std::uint64_t k_measured_result = 3;
-/// Of the points that vertices are fitted to: as they are staged, in memory, and what each pulls
-/// by.
+/// Memory per staged byte of the points that vertices are fitted to: the points as staged, in
+/// memory, and the pull of each.
 constexpr std::uint64_t k_fitting_times = 6;
 
 std::uint64_t steps_of(std::uint64_t count, std::uint64_t most) {
   return std::max<std::uint64_t>(1, (count + most - 1) / most);
 }
 
-/// As of all, at least one.
+/// In proportion to the triangles, but at least one.
 std::uint64_t share_of_points(std::uint64_t points, std::uint64_t triangles, std::uint64_t all) {
   return 1 + points * triangles / std::max<std::uint64_t>(1, all);
 }
@@ -140,8 +141,8 @@ void FinishStage::weigh(JobGraph& graph) {
   if (gaps > made_.target || all + gaps < made_.target) {
     return done_(graph, std::nullopt, "the pieces have no common threshold for the count");
   }
-  // Where seams are much of the surface, the ladders tell of little of it: far from the end the
-  // pieces would share what is denser than the rest.
+  // If the seams are a large part of the surface, the ladders describe only a small part of it: far
+  // from the target, what the pieces share would be denser than the rest.
   const std::int32_t step = step_below(weights_, made_.target - gaps) - k_steps_before_end;
   const std::size_t most_turns = step_ < 0 ? k_most_turns + 1 : k_most_turns;
   if (made_.pieces.size() > 1 && turns_ < most_turns && step >= step_ + k_steps_for_turn) {
@@ -152,8 +153,9 @@ void FinishStage::weigh(JobGraph& graph) {
   reduce(graph, share_out_triangles(weights_, made_.target - gaps));
 }
 
-/// All began too far: the ladders tell of what was left out, too, or only of samples. Where that is
-/// not mended by a little, nothing is simplified before the pieces are divided.
+/// The pieces started too far along: the ladders also count what was left out, or count only
+/// samples. If a small step back is not enough, nothing is simplified before the pieces are
+/// divided.
 void FinishStage::step_back() {
   const bool is_unknown = made_.dropped_components.components > 0 || turns_ > 1;
   const double times = is_unknown ? k_from_the_start : k_from_a_step_before;
@@ -163,12 +165,12 @@ void FinishStage::step_back() {
   weigh_.kept_share /= times;
 }
 
-/// A bound has decided how much is left.
+/// A bound has already decided how much is left.
 void FinishStage::keep_all(JobGraph& graph) {
   reduce(graph, std::vector<std::uint64_t>(made_.pieces.size(), k_keep_all));
 }
 
-/// Those whose quota is new.
+/// Reduces the pieces whose quota has changed.
 void FinishStage::reduce(JobGraph& graph, const std::vector<std::uint64_t>& quotas) {
   const std::size_t pieces = made_.pieces.size();
   ++rounds_;
@@ -209,7 +211,7 @@ void FinishStage::look_at_count(JobGraph& graph) {
   done_(graph, std::nullopt, "the pieces by themselves cannot be brought to the count");
 }
 
-/// As many jobs a piece as its input is worth.
+/// The number of jobs per piece depends on the size of its input.
 void FinishStage::measure(JobGraph& graph) {
   std::vector<Job> jobs;
   std::vector<std::size_t> end;  // of a piece's jobs
@@ -228,7 +230,7 @@ void FinishStage::measure(JobGraph& graph) {
   for (std::size_t j = 0; j < jobs.size(); ++j) {
     graph.add(job_name(RunStage::measure, j), std::move(jobs[j]));
   }
-  // What is fitted to the whole comes later.
+  // Attributes are fitted to the whole result, so it is written later.
   if (!has_attributes(manifest_)) {
     needs.push_back(just(job_name(RunStage::write, 0)));
     graph.add(job_name(RunStage::write, 0), write_job(made_));
@@ -247,8 +249,8 @@ void FinishStage::take_measured(const JobGraph& graph, PieceOfResult& piece, std
   add_share(decode_piece_error(output.summary, "summary of " + output.file.name), piece.error);
 }
 
-/// Neighbouring parts of the input. First an empty range: what lies between the parts of a piece,
-/// or between the pieces.
+/// Ranges of neighbouring parts of the input. The first one is empty: it stands for what lies
+/// between the parts of a piece, or between the pieces.
 std::vector<PartRange> FinishStage::ranges_of(const PieceOfResult& piece) const {
   std::vector<PartRange> ranges;
   if (piece.parts != 1) ranges.push_back({piece.first_part, piece.first_part});
@@ -277,7 +279,7 @@ Job FinishStage::split_job(const ComposedParts& parts, std::size_t number) const
   return job;
 }
 
-/// From the rung that is nearest above.
+/// Starts from the rung that is nearest above the quota.
 Job FinishStage::reduce_job(std::size_t piece, std::uint64_t quota) const {
   const PieceOfResult& from = made_.pieces[piece];
   const ErrorPoints points = by_error() ? k_points_for_bound : ErrorPoints{};
@@ -347,7 +349,7 @@ Job FinishStage::measure_job(std::size_t number, const std::vector<PartRange>& r
   }
   parameters.input_step = steps_of(manifest_.input_vertices, points.input_vertices);
   parameters.with_sides = manifest_.input_vertices <= points.input_sides;
-  std::uint64_t part = 0;   // all that the job has
+  std::uint64_t part = 0;   // memory of all that the job has
   std::uint64_t first = 0;  // bytes of the first part
   std::uint64_t read = 0;
   std::uint64_t triangles = 0;
@@ -365,7 +367,7 @@ Job FinishStage::measure_job(std::size_t number, const std::vector<PartRange>& r
   job.parameters = encode_parameters(parameters);
   job.reads = read;
   if (triangles > 0) job.extent = extent_of_part(parameters.first_part, first);
-  // To build a part takes about as long as to measure to it.
+  // Building a part takes about as long as measuring to it.
   const std::uint64_t shown = triangles / (manifest_.bundles ? 4 : 8);
   job.cost = k_before_measuring + shown + result / k_measured_result;
   if (piece.parts == 0) job.cost += piece.divided.strip_triangles;
@@ -373,7 +375,7 @@ Job FinishStage::measure_job(std::size_t number, const std::vector<PartRange>& r
   return job;
 }
 
-/// Of so many triangles of the input, about.
+/// Size of the bundles for this many triangles of the input, approximately.
 std::uint64_t FinishStage::bytes_of_bundles(std::uint64_t triangles) const {
   double bytes = 0;
   for (const VertexBundleRef& each : manifest_.bundles->vertices) {

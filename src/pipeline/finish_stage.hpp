@@ -18,12 +18,12 @@
 
 namespace meshfarm {
 
-/// So many pieces a seam job can name.
+/// A seam job can name this many pieces.
 inline constexpr std::size_t k_most_pieces = 400;
-/// Parts are composed up to a 32nd of all triangles, so that many workers have a piece each, within
-/// these bounds: of smaller pieces much would lie round the seams, and larger ones are worth no
-/// process's memory. Where boundary triangles are many, so many times their share of the input is
-/// the least.
+/// Parts are composed up to a 32nd of all triangles, so that many workers get a piece each, within
+/// these bounds: much of a smaller piece would lie around the seams, and larger pieces waste the
+/// memory of a process. If there are many boundary triangles, the minimum is k_least_by_seams times
+/// their share of the input.
 inline constexpr std::uint64_t k_least_piece = 60'000;
 inline constexpr std::uint64_t k_least_with_long_seams = 131'072;
 inline constexpr double k_least_by_seams = 1e7;
@@ -31,25 +31,25 @@ inline constexpr std::uint64_t k_usual_piece = 262'144;
 inline constexpr std::uint64_t k_pieces_of_all = 32;
 
 inline constexpr std::uint64_t k_piece_process_bytes = std::uint64_t{16} << 20;
-/// The mesh, what simplifies it, and the file that is written.
+/// The mesh, its simplifier, and the file that is written.
 inline constexpr std::uint64_t k_piece_triangle_bytes = 170;
-/// A part that is built for the occasion, and what it is built of.
+/// A part built temporarily, and what it is built from.
 inline constexpr std::uint64_t k_built_triangle_bytes = 120;
 
-/// Where all pieces begin.
+/// Where all pieces start.
 struct FinishGoal {
-  std::int32_t step = -1;  // to which all is collapsed first: a little more is left than is wanted
-  double share = 1;        // of what is left then that the result has, about
+  std::int32_t step = -1;  // all pieces are collapsed to this first, slightly above the target
+  double share = 1;        // of what is left then that the result keeps, about
   TopologyMode topology = TopologyMode::keep;
-  bool may_simplify = false;  // the topology, where the count is not met with it
+  bool may_simplify = false;  // the topology, if the count is not reached with it
 };
 
 /// The finish as jobs: pieces are divided again so that the seams lie inside, each is simplified to
-/// its quota under the one threshold that their weights tell, and measured where it is.
+/// its quota under one threshold computed from their weights, and measured in place.
 class FinishStage {
  public:
-  /// Called once the pieces are finished, and again when they are measured; or once it is clear
-  /// that the sink has to finish, with the reason.
+  /// Called once the pieces are finished, and again when they are measured; or, with the reason,
+  /// once it is clear that the sink has to finish.
   using Done = std::function<void(JobGraph&, std::optional<FinishedPieces>, std::string why_here)>;
 
   /// Both must outlive this.
@@ -89,10 +89,10 @@ class FinishStage {
   const RunOptions& options_;
   Done done_;
   std::vector<ComposedParts> parts_;
-  std::vector<SectionRef> small_components_;  // of each piece; none if they are not to be left out
+  std::vector<SectionRef> small_components_;  // of each piece; empty if none are to be left out
   FinishGoal goal_;
-  std::size_t turns_ = 0;  // that pieces were divided
-  // Asked for so far.
+  std::size_t turns_ = 0;  // how often pieces were divided
+  // Jobs asked for so far.
   std::size_t split_jobs_ = 0;
   std::size_t seam_jobs_ = 0;
   std::size_t reduce_jobs_ = 0;
@@ -101,7 +101,7 @@ class FinishStage {
   FinishedPieces made_;
   std::vector<PieceWeight> weights_;
   std::vector<std::uint64_t> quotas_;
-  std::size_t rounds_ = 0;  // in which quotas were given out
+  std::size_t rounds_ = 0;  // in which quotas were assigned
 };
 
 }  // namespace meshfarm

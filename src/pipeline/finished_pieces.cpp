@@ -11,11 +11,12 @@
 namespace meshfarm {
 namespace {
 
-/// What the sink stitches in so few triangles it finishes sooner by itself.
+/// Up to this many stitched triangles the sink finishes sooner by itself.
 constexpr std::uint64_t k_comfortable = 20'000'000;
 
-/// Round the boxes: of their diagonals, and at most so many sides of the result's triangles. Of
-/// many slabs, which are long and thin, most would be near each other by their diagonals.
+/// Margin of the boxes: a fraction of their diagonals, but at most this many sides of the result's
+/// triangles. By their diagonals, most of many slabs, which are long and thin, would be near each
+/// other.
 constexpr double k_margin_of_boxes = 0.05;
 constexpr double k_margin_in_sides = 32;
 

@@ -14,7 +14,7 @@
 namespace meshfarm {
 namespace {
 
-/// Of the gap between two boxes.
+/// The squared gap between two boxes.
 double squared_gap(const Box& a, const Box& b) {
   if (a.empty() || b.empty()) return HUGE_VAL;
   double sum = 0;
@@ -118,7 +118,7 @@ void InputColours::find(std::span<const Vec3> points, std::span<const Vec3> norm
                         std::span<BakedColour> colours) {
   const double squared_reach = input_.scene.reach * input_.scene.reach;
   std::vector<Best> best(points.size(), Best{HUGE_VAL, false, {}});
-  std::vector<std::size_t> asked;  // the points that a piece may be nearest to
+  std::vector<std::size_t> asked;  // the points that may be nearest to this piece
   std::vector<Vec3> asked_points;
   std::vector<Vec3> asked_normals;
   std::vector<SurfacePlace> places;

@@ -18,8 +18,8 @@
 
 namespace meshfarm {
 
-/// What the textures of a stage's input show at the places of its surface that are nearest to given
-/// points. Parts are read when a point may be near them, and forgotten when their memory is needed.
+/// The colours that the textures of a stage's input show at the surface places nearest to given
+/// points. Parts are read when a point may be near them, and evicted when their memory is needed.
 class InputColours {
  public:
   struct Input {
@@ -28,8 +28,8 @@ class InputColours {
     const BakeScene& scene;
     const MaterialColours& materials;
   };
-  /// What `input` names must outlive it. `columns`: of its triangles. `memory_bytes`: of the parts
-  /// that are kept, but one at least.
+  /// What `input` refers to must outlive it. `columns`: of its triangles. `memory_bytes`: for the
+  /// cached parts; at least one part is kept.
   InputColours(const Input& input, const ColumnSet& columns, std::uint64_t memory_bytes);
 
   /// Throws DataError, IoError for parts that cannot be read.
@@ -42,7 +42,7 @@ class InputColours {
     Mesh mesh;
     std::optional<SurfacePlaces> places;
     std::uint64_t bytes = 0;
-    std::uint64_t used = 0;  // when, counted
+    std::uint64_t used = 0;  // time of the last use, counted
   };
   struct Best {
     double squared = 0;
@@ -59,7 +59,7 @@ class InputColours {
   Input input_;
   ColumnSet columns_;
   std::uint64_t room_;
-  std::vector<Box> boxes_;  // of the pieces: the parts, then what is between them
+  std::vector<Box> boxes_;  // of the pieces: the parts, then the triangles between them
   std::vector<std::unique_ptr<Piece>> kept_;
   std::uint64_t uses_ = 0;
   std::uint64_t bytes_ = 0;

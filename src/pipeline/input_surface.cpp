@@ -20,10 +20,10 @@ namespace {
 
 constexpr std::size_t k_between_at_once = 16'384;  // triangles
 
-/// The vertices of a stream that triangles to come may use, as its blocks come.
+/// Those vertices of a stream that later triangles may use, block by block.
 class StreamWindow {
  public:
-  /// Returns the block's triangles, by place in positions().
+  /// Returns the block's triangles, as indices into positions().
   const std::vector<Triangle>& add(const StreamBlock& block) {
     forget_finished();
     positions_.insert(positions_.end(), block.positions.begin(), block.positions.end());
@@ -49,7 +49,7 @@ class StreamWindow {
     return triangles_;
   }
   std::span<const Vec3> positions() const { return positions_; }
-  /// Those of the block's triangles that none had before.
+  /// The vertices of the block's triangles that no earlier triangle used.
   std::span<const Vec3> fresh() const { return fresh_; }
 
  private:
@@ -61,7 +61,7 @@ class StreamWindow {
     shown_.erase(shown_.begin(), shown_.begin() + first);
   }
 
-  std::uint32_t first_ = 0;  // number in the stream of the first vertex that is kept
+  std::uint32_t first_ = 0;  // number in the stream of the first vertex kept
   std::vector<Vec3> positions_;
   std::vector<std::uint8_t> finished_;
   std::vector<std::uint8_t> shown_;
@@ -121,7 +121,7 @@ void InputSurface::show_part(std::uint32_t p, const Show& show) {
   show({positions, part.mesh.triangles, part.mesh.columns, fresh, p});
 }
 
-/// Sorted as the job does it, for the numbers of its boundary vertices.
+/// Sorted as the sort job does, to get the numbers of the boundary vertices.
 void InputSurface::show_slab(std::uint32_t p, const Show& show) {
   const FileRef& file = manifest_.parts[p].file;
   const StreamMesh sorted =
@@ -166,7 +166,7 @@ Vec3 InputSurface::corner(const BoundaryCorner& corner) const {
   return boundary_[corner.part][corner.local];
 }
 
-/// They stand for a part after the last.
+/// Shown as a part after the last one.
 void InputSurface::show_between(const Wants& wants, const Show& show) const {
   Mesh some;
   const auto flush = [&] {

@@ -42,7 +42,7 @@ constexpr std::pair<std::string_view, JobPointer> k_table[] = {
     {k_measure_kind, measure_piece},
 };
 
-/// Whether it is a job of the cut.
+/// Returns whether it is a job of the cut.
 bool check_output_of_cut(std::string_view kind, const JobOutput& output, const std::string& what) {
   if (kind == k_survey_kind) {
     decode_survey(output.summary, what);

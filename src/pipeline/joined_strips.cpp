@@ -133,7 +133,7 @@ void JoinedStrips::stitch(const JobContext& context, const std::vector<std::uint
   stitched_ = stitcher.finish(between.triangles, between.columns);
 }
 
-/// A corner of triangles of several groups is of the first of them.
+/// A corner of triangles of several groups belongs to the first of these groups.
 void JoinedStrips::begin_groups() {
   for (const Triangle& t : boundary_triangles()) {
     std::uint32_t piece = UINT32_MAX;
@@ -143,7 +143,8 @@ void JoinedStrips::begin_groups() {
   }
 }
 
-/// From the seams ring by ring; what is not reached is of the piece's own group.
+/// Spreads groups from the seams ring by ring; vertices not reached belong to the piece's own
+/// group.
 void JoinedStrips::spread(const Strip& strip, std::uint32_t own) {
   const std::span<const Triangle> triangles =
       std::span(mesh().triangles).first(strip.end_triangle).subspan(strip.first_triangle);

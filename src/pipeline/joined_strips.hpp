@@ -15,25 +15,26 @@ namespace meshfarm {
 
 class SeamTriangles;
 
-/// The strips that a group of the seams' surroundings has to do with, joined by the triangles
-/// between them: those of the input come last.
+/// The strips that concern a group of the seams' surroundings, joined by the triangles between
+/// them: those of the input come last.
 class JoinedStrips {
  public:
-  /// Reads what it joins; the parameters must outlive it.
+  /// Reads the strips that it joins; the parameters must outlive it.
   JoinedStrips(const SeamParameters& parameters, const JobContext& context);
 
   const Mesh& mesh() const { return stitched_.mesh; }
-  /// Of a component that is left out. In the strips there is nothing of it, but between them.
+  /// Whether it belongs to a component that is left out. The strips have none of it, but triangles
+  /// between them may.
   bool is_dropped(const Triangle& t) const {
     return std::any_of(t.begin(), t.end(), [this](std::uint32_t v) { return dropped_[v] != 0; });
   }
   bool is_ours(std::uint32_t vertex) const { return group_[vertex] == parameters_.group; }
-  /// How many of the corners are.
+  /// How many of the corners are ours.
   int ours_of(const Triangle& t) const {
     return static_cast<int>(
         std::count_if(t.begin(), t.end(), [this](std::uint32_t v) { return is_ours(v); }));
   }
-  /// Of the input.
+  /// Those of the input.
   std::span<const Triangle> boundary_triangles() const {
     return std::span(mesh().triangles).last(stitched_.boundary_triangles);
   }
@@ -63,7 +64,7 @@ class JoinedStrips {
   StitchedMesh stitched_;
   std::vector<Strip> strips_;
   std::vector<std::uint32_t> shared_;
-  std::vector<std::uint8_t> dropped_;  // a flag a vertex
+  std::vector<std::uint8_t> dropped_;  // per vertex
   std::vector<std::uint32_t> group_;
   PositionType positions_ = PositionType::float32;
 };

@@ -7,21 +7,21 @@
 namespace meshfarm {
 namespace {
 
-/// From one count to the next. More than two such steps are not a little more.
+/// Factor between consecutive counts. More than two such steps are not a little more.
 constexpr double k_step = 1.25;
-/// Up to 86 times the goal.
+/// Reaches 86 times the goal.
 constexpr int k_steps = 20;
-/// With more triangles than that, what is kept would take too much memory.
+/// With more triangles than this, keeping them would take too much memory.
 constexpr std::uint64_t k_large = 1'000'000;
-/// A knee is worth a word if the error falls to less than this part.
+/// A knee is reported if the error falls by more than this factor.
 constexpr double k_least_gain = 3;
-/// An error that is less than this part of the diagonal is not seen.
+/// An error below this fraction of the diagonal is not visible.
 constexpr double k_visible = 1e-4;
-/// And this is seen at once.
+/// And one above this is obvious.
 constexpr double k_plain = 1e-3;
 
-/// Past a knee the error falls by more than the fifth power of the triangles: with 1.5 times as
-/// many to an eighth. Of scans it is a power of 1 to 1.5, of machined parts up to 4.5.
+/// Past a knee the error falls by more than the fifth power of the number of triangles: with 1.5
+/// times as many, to an eighth. For scans it is a power of 1 to 1.5, for machined parts up to 4.5.
 double least_gain(double times) {
   return std::max(k_least_gain, times * times * times * times * times);
 }

@@ -25,7 +25,7 @@ namespace {
 constexpr double k_usual_in_rms = 4;
 constexpr double k_usual_in_spacings = 4;
 
-/// About, by so many of its triangles.
+/// Approximate spacing, from k_looked_at of its triangles.
 double spacing_of(const Mesh& mesh) {
   constexpr std::size_t k_looked_at = 10'000;
   const std::size_t step = mesh.triangles.size() / k_looked_at + 1;
@@ -51,7 +51,7 @@ double squared_distance(const Vec3& p, const Box& box) {
   return dot(d, d);
 }
 
-/// Some of the points of several pieces, and where they stand.
+/// Some of the points of several pieces, and their places in the lists.
 struct SomePoints {
   struct Place {
     std::size_t list = 0;
@@ -66,7 +66,7 @@ struct SomePoints {
   }
 };
 
-/// Of all lists but the first.
+/// Takes points from all lists but the first.
 SomePoints points_near(const std::vector<std::vector<Vec3>>& lists, const Box& box, double margin) {
   SomePoints near;
   for (std::size_t list = 1; list < lists.size(); ++list) {
@@ -77,8 +77,8 @@ SomePoints points_near(const std::vector<std::vector<Vec3>>& lists, const Box& b
   return near;
 }
 
-/// Of the first list, those to which something in the box may be nearer than some points of the
-/// surface.
+/// Takes those points of the first list to which something in the box may be nearer than the known
+/// points of the surface.
 SomePoints points_that_want(const std::vector<std::vector<Vec3>>& lists, const Box& box,
                             const PointMeterHints& hints) {
   PointMeter meter(lists.front(), hints);
@@ -92,7 +92,7 @@ SomePoints points_that_want(const std::vector<std::vector<Vec3>>& lists, const B
   return some;
 }
 
-/// Corners of the gap become those of the mesh, and new vertices.
+/// Corners of the gap become vertices of the mesh, shared or new.
 void append_gap(const PieceGap& gap, std::uint32_t shared, Mesh& mesh) {
   const auto first = static_cast<std::uint32_t>(mesh.positions.size());
   mesh.positions.insert(mesh.positions.end(), gap.positions.begin(), gap.positions.end());
@@ -136,7 +136,7 @@ class PieceMeter {
     return points;
   }
 
-  /// With the triangles between it and others.
+  /// Reads a mesh with the triangles between it and others.
   Mesh read_mesh(const SeamSurface& from) const {
     const SectionRef& ref = from.mesh;
     ResultMesh piece = decode_result(read_section(context_, ref), 0, ref.file.name);
@@ -154,10 +154,10 @@ class PieceMeter {
       area_ += each.area;
       all += each.points.size();
     }
-    // Neighbours: sets are of neighbouring parts.
+    // Consecutive samples: sets belong to neighbouring parts.
     const std::uint64_t begin = all * parameters_.share / parameters_.shares;
     const std::uint64_t end = all * (parameters_.share + 1) / parameters_.shares;
-    std::vector<std::size_t> counts;  // of each set's
+    std::vector<std::size_t> counts;  // per set
     std::uint64_t number = 0;
     for (const SurfaceSamples& each : samples) {
       const std::size_t before = points.size();
@@ -193,22 +193,22 @@ class PieceMeter {
     error_.to_output.mean /= error_.input_area;
   }
 
-  /// The farthest that is looked for at first.
+  /// The largest distance that the first pass looks for.
   double usual(double spacing) const {
     const Distance& d = error_.to_output;
     return std::max(std::min(k_usual_in_rms * d.rms, k_usual_in_spacings * spacing),
                     std::min(2 * d.max, spacing));
   }
 
-  /// The piece's own points are as near as they are, to what one of its jobs has; others may be
-  /// nearer to what other pieces have.
+  /// The piece's own points are nearest to what one of its jobs has, however far that is; other
+  /// points may be nearer to what other pieces have.
   void measure_to_input() {
     const PieceInput input = read_piece_input(context_.stage, parameters_);
     const std::vector<std::vector<Vec3>> points = read_points();
     const std::vector<Vec3> known = known_points();
     const auto triangles = static_cast<double>(parameters_.triangles);
     const double spacing = std::sqrt(2 * area_ / triangles);
-    // Hardly a point is as far as triangles of the result are long.
+    // Hardly any point is farther away than the triangles of the result are long.
     const double reach = std::max({2 * error_.to_output.max, spacing, triangle_size_});
     const SomePoints near = points_near(points, input.box, reach);
     const SomePoints own = points_that_want(points, input.box, {spacing, usual(spacing), known});
@@ -217,7 +217,7 @@ class PieceMeter {
     PointMeter to_own(own.points, {spacing, usual(spacing), known});
     while (to_own.begin_pass()) show(input, to_own);
     take_found(own, to_own.distances(), HUGE_VAL);
-    // Where a part was left out, the reach is long, and a first pass that went as far slow.
+    // If a part was left out, the reach is long, and a first pass that went that far would be slow.
     const double first_reach = std::min(reach, 2 * triangle_size_ + spacing);
     PointMeter to_near(near.points, {spacing, first_reach, known});
     if (to_near.begin_pass()) show(input, to_near);
@@ -267,7 +267,7 @@ class PieceMeter {
     DistanceMeter(between, 1).measure_each({&all, 1}, to_input);
   }
 
-  /// The distance to the nearest of these is no less than that to the input's surface.
+  /// The distance to the nearest of these is an upper bound on the distance to the input's surface.
   std::vector<Vec3> known_points() const {
     const std::vector<SurfaceSamples> samples =
         decode_samples(read_section(context_, parameters_.samples), parameters_.samples.file.name);
@@ -280,7 +280,7 @@ class PieceMeter {
   const MeasureParameters& parameters_;
   const JobContext& context_;
   Mesh surface_;              // the piece of the result, and the seams near it
-  double triangle_size_ = 0;  // of the piece, by the sides of its triangles
+  double triangle_size_ = 0;  // of the piece, from the sides of its triangles
   std::optional<DistanceMeter> to_surface_;
   PieceError error_;
   double area_ = 0;  // of the piece's input

@@ -31,7 +31,7 @@ void NormalSamples::add(const SurfacePiece& piece) {
   const PieceSamples found = sample_piece(piece.positions, piece.triangles, whole_points, {});
   Points& to = part.sampled;
   to.points.insert(to.points.end(), found.points.begin(), found.points.end());
-  // So that a piece too small for a point counts by the next.
+  // So that a piece too small for a point is represented by the next one.
   to.areas.insert(to.areas.end(), found.points.size(), 1 / per_area_);
 }
 

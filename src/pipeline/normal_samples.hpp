@@ -11,18 +11,18 @@
 
 namespace meshfarm {
 
-/// Points of an input that comes in pieces, and which way it faces there: one for 200 triangles,
-/// from 2,000 to 20,000, spread by area.
+/// Points of an input that comes in pieces, with its normals there: one per 200 triangles, from
+/// 2,000 to 20,000, distributed by area.
 class NormalSamples {
  public:
   /// `area`: of the input.
   NormalSamples(const Manifest& manifest, double area);
-  /// From several threads; the pieces of a part in order.
+  /// Called from several threads; the pieces of a part in order.
   void add(const SurfacePiece& piece);
 
   struct Points {
     std::vector<FacingPoint> points;
-    std::vector<double> areas;  // that they stand for
+    std::vector<double> areas;  // that they represent
   };
   /// In an order that does not depend on the threads. Call this last.
   Points take();
@@ -30,7 +30,7 @@ class NormalSamples {
  private:
   struct OfPart {
     Points sampled;
-    double due = 0;  // points, not a whole one, that the pieces so far had too few of
+    double due = 0;  // fraction of a point still to be taken from later pieces
   };
 
   double per_area_;  // points

@@ -13,34 +13,35 @@
 namespace meshfarm {
 namespace {
 
-/// The part as it came, its two hierarchies, the points that stand for it, up to five a triangle,
-/// and the places of the triangles that were found to be near.
+/// The unchanged part, its two hierarchies, its sample points, up to five per triangle, and the
+/// places of the triangles that were found to be near.
 constexpr std::uint64_t k_bound_bytes_per_triangle = 560;
 
-/// Of a part that is not built yet: tenths of the average that it may have, bytes a triangle that
-/// it would have as a file, and what it takes to build a triangle, of the work to simplify it.
+/// For a part that is not built yet: its maximum size in tenths of the average, its bytes per
+/// triangle as a file, and the work to build a triangle, as a fraction (1/4) of that to simplify
+/// it.
 constexpr std::uint64_t k_largest_part = 12;
 constexpr std::uint64_t k_part_bytes = 24;
 constexpr std::uint64_t k_build_share = 4;
-/// To prove the bound: the part once more, and a hierarchy of it.
+/// To prove the bound: a copy of the part, and a hierarchy of it.
 constexpr std::uint64_t k_proof_bytes_per_triangle = 100;
 
-/// What a simplify job needs by and large: the part's file and its mesh (20 and 40 bytes a
+/// Approximate memory of a simplify job: the part's file and its mesh (20 and 40 bytes per
 /// triangle), the simplifier (50 to 70), and the ladder, whose rungs shrink by a third or more from
-/// the first on.
+/// each to the next.
 std::uint64_t memory_of(const PartEntry& part, std::uint64_t first_rung) {
   constexpr std::uint64_t k_process = std::uint64_t{16} << 20;
   const std::uint64_t ladder = 60 * std::min(part.triangles, first_rung);
   return k_process + part.file.size + 110 * part.triangles + ladder;
 }
 
-/// The same from a rung of so many bytes.
+/// The same when starting from a rung of this many bytes.
 std::uint64_t memory_of_rung(std::uint64_t bytes, std::uint64_t triangles) {
   constexpr std::uint64_t k_process = std::uint64_t{16} << 20;
   return k_process + bytes + 170 * triangles;
 }
 
-/// The window as it comes and as it is simplified, and what was sent on from it.
+/// The window before and after it is simplified, and the triangles sent on from it.
 std::uint64_t memory_of_sweep(std::uint64_t window_triangles) {
   constexpr std::uint64_t k_process = std::uint64_t{16} << 20;
   return k_process + 150 * window_triangles;
@@ -79,14 +80,14 @@ double PartJobs::wanted() const {
   return provision(ratio()) * static_cast<double>(target());
 }
 
-/// Of fewer triangles the finish finds out as fast, and of the last hundred of a body nearly all
-/// collapses were refused, though to keep its limbs was best.
+/// Below k_least_foreseen triangles the finish finds out as fast; and when a body was reduced to
+/// its last hundred, nearly all collapses were refused, although keeping its limbs was best.
 bool PartJobs::foresees() const {
   constexpr double k_least_foreseen = 20'000;
   return wanted() >= k_least_foreseen;
 }
 
-/// A proof needs a stream in memory, as it came: it is climbed as a part.
+/// A proof needs the whole unchanged stream in memory: it is climbed like a part.
 bool PartJobs::is_sampled(std::uint32_t part) const {
   return !options_.certify && !manifest_.samples.empty() &&
          !manifest_.samples[part].file.name.empty();
@@ -111,7 +112,7 @@ Job PartJobs::climb(std::uint32_t part, double headroom, TopologyMode topology) 
               memory_of_channels(parameters.lines, entry.triangles) +
               memory_of_bound(entry.triangles)};
   if (!is_sampled(part)) job.extent = extent_of_part(part, entry.file.size);
-  // Other sweeps need not wait for the stream's own.
+  // So that other sweeps need not wait for this stream's.
   if (by_error() && is_sampled(part)) job.after = manifest_.parts[part].triangles;
   return job;
 }
@@ -157,13 +158,13 @@ void PartJobs::set_share_of(SimplifyParameters& parameters, std::uint32_t part,
   set_share(parameters, rule, entry.triangles, entry.boundary_vertices);
 }
 
-/// To keep a bound, and to prove it.
+/// Memory to keep a bound, and to prove it.
 std::uint64_t PartJobs::memory_of_bound(std::uint64_t triangles) const {
   return (by_error() ? k_bound_bytes_per_triangle * triangles : 0) +
          (options_.certify ? k_proof_bytes_per_triangle * triangles : 0);
 }
 
-/// How large the part is going to be is known on the average.
+/// The size of a part to build is only known on average.
 Job PartJobs::build_and_climb(std::uint32_t part, double headroom,
                               SimplifyParameters parameters) const {
   const std::uint64_t parts = std::max<std::uint64_t>(1, manifest_.parts.size());
@@ -182,7 +183,7 @@ Job PartJobs::build_and_climb(std::uint32_t part, double headroom,
   return job;
 }
 
-/// By the input's triangles, as far as they have positions.
+/// In terms of the input's triangles that have positions.
 ShareRule PartJobs::share_rule(double headroom) const {
   const std::uint64_t all = manifest_.input_triangles - manifest_.dropped_not_finite;
   const auto some = static_cast<double>(std::max<std::uint64_t>(1, all));
@@ -194,7 +195,8 @@ ShareRule PartJobs::share_rule(double headroom) const {
           foresees(),           all,      sample_counts(manifest_, options_).all()};
 }
 
-/// Of what is kept for the finish. A finish in pieces asks how the counts fall down to the target.
+/// A multiple of what is kept for the finish. A finish in pieces needs the counts down to the
+/// target.
 double PartJobs::end_of_ladders() const {
   constexpr double k_of_target = 0.5;
   return finishes_here_ ? k_level_step : k_of_target;
@@ -206,7 +208,7 @@ double PartJobs::least_of(std::uint32_t part) const {
 
 void PartJobs::set_error_bound(SimplifyParameters& parameters, std::uint32_t part) const {
   parameters.allocation = Allocation::threshold;
-  // What a sample tells is done to its stream by cost alone.
+  // The level found on a sample is applied to its stream by cost alone.
   const double share = is_sampled(part) ? k_error_share : k_bound_share_of_parts;
   parameters.max_error = share * options_.error.in(manifest_.box);
   parameters.start_triangles = climbed(part).triangles;
@@ -224,7 +226,7 @@ Job PartJobs::sweep(std::uint32_t part, std::int32_t level, TopologyMode topolog
   parameters.samples = samples_for(manifest_, options_, entry.triangles);
   parameters.max_error = by_error() ? k_error_share * options_.error.in(manifest_.box) : 0;
   parameters.lines = lines_of(manifest_, options_);
-  // One window can't tell what is fair.
+  // A single window can't tell what is fair.
   parameters.lines.topology =
       topology == TopologyMode::simplify ? TopologyMode::simplify : TopologyMode::keep;
   return {std::string(k_sweep_kind),
@@ -235,7 +237,7 @@ Job PartJobs::sweep(std::uint32_t part, std::int32_t level, TopologyMode topolog
               memory_of_channels(parameters.lines, manifest_.window_triangles)};
 }
 
-/// Nothing is so cheap that the rung of a part as it came would have lost it.
+/// A level below 0 is the unchanged part: not even collapses of cost 0 are allowed.
 double PartJobs::sweep_cost(std::int32_t level) const {
   return level < 0 ? -1 : level_cost(level, cost_unit(manifest_.box.diagonal()));
 }

@@ -12,50 +12,50 @@
 
 namespace meshfarm {
 
-/// Of a bound on the error, streams that are swept by cost may take up this share.
+/// The share of a bound on the error for streams that are swept by cost.
 constexpr double k_error_share = 0.5;
 
-/// A ladder begins at this many times the part's even share, so that a part of much detail can keep
-/// more than its share; a part that deserves still more is asked for again.
+/// A ladder begins at this multiple of the part's even share, so that a detailed part can keep more
+/// than its share; a part that deserves even more is climbed again.
 constexpr double k_first_headroom = 4;
 
-/// What it takes to build a part, of which so many triangles are the average, and to climb it.
+/// The memory to build a part of this average size and to climb it.
 std::uint64_t memory_to_build(std::uint64_t average_triangles);
 
-/// A part's file, or the sections that it is built of.
+/// A part's file, or the sections that it is built from.
 Extent extent_of_part(std::uint32_t part, std::uint64_t bytes);
 
-/// Makes the jobs of single parts and streams, and knows what in them follows from the run's
-/// options alone.
+/// Makes the jobs for single parts and streams, with parameters that follow from the run's options
+/// alone.
 class PartJobs {
  public:
-  /// All must outlive this. `bundles`: what parts are to be built of; null if they are there.
+  /// All must outlive this. `bundles`: to build the parts from; null if the parts exist.
   PartJobs(const Manifest& manifest, const RunOptions& options,
            const BundlesOfMesh* bundles = nullptr);
 
   std::uint64_t target() const;
-  /// Of the triangles that are there, those that are wanted.
+  /// The wanted share of the existing triangles.
   double ratio() const;
-  /// What the parts are to keep together for the finish to choose from.
+  /// The triangles that the parts together keep for the finish to choose from.
   double wanted() const;
-  /// Whether it is worth to foresee that the topology is given up.
+  /// Whether it is worth predicting that the topology will be given up.
   bool foresees() const;
   bool by_error() const { return options_.error.value > 0; }
-  /// Whether levels are to be found: the same ratio everywhere needs none.
+  /// Whether a level must be found: the same ratio everywhere needs none.
   bool climbs_samples() const { return by_error() || options_.allocation == Allocation::threshold; }
   bool is_sampled(std::uint32_t part) const;
-  /// The triangles that any ladder of this part leaves.
+  /// The number of triangles that any ladder of this part leaves.
   double least_of(std::uint32_t part) const;
 
-  /// Climbs the ladder of a part, or of a sample of a long stream, from so many times its even
-  /// share.
+  /// Climbs the ladder of a part, or of a sample of a long stream, starting at `headroom` times its
+  /// even share.
   Job climb(std::uint32_t part, double headroom, TopologyMode topology) const;
-  /// The same from a rung of a ladder that it has, without foreseeing what is refused.
+  /// The same from an existing rung, without predicting refusals.
   Job climb_on(std::uint32_t part, const ChosenRung& from, const Rung& rung,
                TopologyMode topology) const;
-  /// Sweeps a long stream, to a level.
+  /// Sweeps a long stream to a level.
   Job sweep(std::uint32_t part, std::int32_t level, TopologyMode topology) const;
-  /// What a collapse may cost in a sweep to this level; below 0 if none is to be made.
+  /// The highest cost of a collapse in a sweep to this level; below 0 if none is allowed.
   double sweep_cost(std::int32_t level) const;
 
  private:
@@ -71,7 +71,7 @@ class PartJobs {
   const Manifest& manifest_;
   const RunOptions& options_;
   const BundlesOfMesh* bundles_;
-  bool finishes_here_;  // the sink, as one mesh
+  bool finishes_here_;  // in the sink, as one mesh
 };
 
 }  // namespace meshfarm

@@ -11,7 +11,7 @@
 
 namespace meshfarm {
 
-/// What the stages that climb and sweep have come to, by part.
+/// The results of the stages that climb and sweep, by part.
 struct PartResults {
   explicit PartResults(std::size_t parts) : made_by(parts), summaries(parts), files(parts) {}
 
@@ -25,10 +25,10 @@ struct PartResults {
     return free_triangles_at(summaries, at_level);
   }
 
-  std::vector<JobName> made_by;  // the last job that is accepted
+  std::vector<JobName> made_by;  // the last accepted job
   std::vector<ResultSummary> summaries;
   std::vector<FileRef> files;
-  std::int32_t level = 0;  // that is chosen for all
+  std::int32_t level = 0;  // the one chosen for all
   TopologyMode topology = TopologyMode::automatic;
 };
 

@@ -10,10 +10,10 @@
 
 namespace meshfarm {
 
-/// The input's surface that a measure job of a piece looks at.
+/// The surface of the input for a measure job of a piece.
 struct PieceInput {
   std::vector<Mesh> parts;  // read, or built where they are not kept
-  Mesh between;             // what lies between the parts of the whole piece, if it is this job's
+  Mesh between;             // between the parts of the whole piece, if it is this job's
   Box box;                  // of all
 };
 /// Throws as reading does.

@@ -27,8 +27,8 @@
 // In version 1 parts were always kept, and a piece was measured by one job. In version 2 the
 // surroundings of the seams were one piece. In version 3 triangles of gaps had no columns, and no
 // components were left out. In version 4 there was one boundary file. In version 5 there was no
-// bound on the error, and measure jobs looked the parts up in the manifest. In version 6 a reduce
-// job read its input whole. In version 7 sides went with an input step of 1. In version 8 no
+// bound on the error, and measure jobs looked up the parts in the manifest. In version 6 a reduce
+// job read its input whole. In version 7 sides were implied by an input step of 1. In version 8 no
 // vertices were fitted.
 #include <cmath>
 
@@ -43,7 +43,7 @@ namespace meshfarm {
 namespace {
 
 constexpr std::uint8_t k_piece_version = 9;
-constexpr double k_most_piece_samples = 1000;  // a triangle
+constexpr double k_most_piece_samples = 1000;  // per triangle
 
 void begin_parameters(ByteWriter& out) {
   out.put(k_piece_version);

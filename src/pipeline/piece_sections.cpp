@@ -25,10 +25,11 @@
 namespace meshfarm {
 namespace {
 
-/// What is left to be collapsed is little, or refused.
+/// Weighing ends after this many steps without a change: little is left to collapse, or it is
+/// refused.
 constexpr std::int32_t k_idle_steps = 12;
 constexpr std::int32_t k_most_weigh_steps = 240;
-/// Less than this part of the triangles is not worth a rung.
+/// A reduction by less than this fraction of the triangles is not worth a rung.
 constexpr std::uint64_t k_worth_a_rung = 8;
 /// A first step by count finds the cost to begin at.
 constexpr std::uint64_t k_first_share = 20;

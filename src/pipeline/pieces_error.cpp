@@ -27,7 +27,7 @@ std::string section_of(const Stage& stage, const FileRef& file, const FileSectio
   return SectionedFile(stage, file).read(section);
 }
 
-/// `lists`: of the points of these pieces.
+/// `lists`: distances of the points of the pieces `of`.
 void take_least(const std::vector<std::vector<double>>& lists, const std::vector<std::size_t>& of,
                 const std::string& what, std::vector<std::vector<double>>& least) {
   if (lists.size() != of.size()) throw DataError(what + ": is of other pieces");
@@ -41,11 +41,11 @@ void take_least(const std::vector<std::vector<double>>& lists, const std::vector
 
 using WeightedDistances = std::vector<std::pair<double, double>>;
 
-/// What the measure jobs of all pieces found.
+/// The results of the measure jobs of all pieces.
 struct FoundDistances {
-  /// Of the points of each piece, the distances to the nearest of the input that any piece has.
+  /// For the points of each piece, the distances to the nearest input of any piece.
   std::vector<std::vector<double>> to_input;
-  /// From the samples of each piece, with the areas that they stand for.
+  /// From the samples of each piece, with the areas that they represent.
   std::vector<WeightedDistances> to_output;
 };
 
@@ -76,7 +76,7 @@ DistanceQuantiles quantiles(WeightedDistances distances) {
   return {values.quantile(0.95), values.quantile(0.99)};
 }
 
-/// Those that are not known are measured to all of the input.
+/// Measures unknown distances to the whole input.
 void find_missing(const Stage& stage, const Manifest& manifest, const PieceOfResult& seams,
                   const FinishedPieces& result, unsigned threads, std::vector<double>& distances) {
   if (std::find(distances.begin(), distances.end(), HUGE_VAL) == distances.end()) return;
@@ -111,7 +111,7 @@ void find_missing(const Stage& stage, const Manifest& manifest, const PieceOfRes
   }
 }
 
-/// Adds what stands for so much of an area.
+/// Adds an error, weighted by the area it represents.
 void add_error(const Distance& of_piece, double area, Distance& sums) {
   sums.rms += area * of_piece.rms * of_piece.rms;
   sums.mean += area * of_piece.mean;

@@ -11,8 +11,8 @@
 
 namespace meshfarm {
 
-/// The error of the whole by those of its pieces, which it appends. The few points of the seams'
-/// surroundings that no piece's input is near to are measured here.
+/// The error of the whole, computed from those of its pieces, which are appended to `of_pieces`.
+/// The few points of the seams' surroundings that are near no piece's input are measured here.
 MeasuredError error_of_pieces(const Stage& stage, const Manifest& manifest,
                               const FinishedPieces& result, unsigned threads,
                               std::vector<ErrorOfPiece>& of_pieces);

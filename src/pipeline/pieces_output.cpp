@@ -54,7 +54,7 @@ class PiecesWriter {
  private:
   void vertices(std::size_t piece) { sink_.vertices(mesh_of(piece).mesh.positions); }
 
-  /// The mesh, then the gap to the surroundings, or to other groups of them.
+  /// Writes the mesh, then the gap to the surroundings or to other groups of them.
   void triangles(std::size_t i) {
     const PieceOfResult& piece = result_.pieces[i];
     const ResultMesh mesh = mesh_of(i);
@@ -73,7 +73,7 @@ class PiecesWriter {
     });
   }
 
-  /// A vertex that groups share, and which it is of the result.
+  /// A vertex that groups share, and its number in the result.
   using SharedPlace = std::pair<SeamVertex, std::uint64_t>;
 
   void add_shared(const PieceOfResult& group, std::uint64_t first) {
@@ -126,7 +126,7 @@ class PiecesWriter {
   std::vector<SharedPlace> shared_;  // ascending
 };
 
-/// Takes all into memory.
+/// Collects everything in memory.
 class MeshInMemory : public MeshSink {
  public:
   void vertices(std::span<const Vec3> batch) override {

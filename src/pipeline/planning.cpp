@@ -19,7 +19,7 @@
 namespace meshfarm {
 namespace {
 
-/// The fewest seconds that a job is held to take: the trace counts in milliseconds.
+/// Minimum time of a job in seconds: the trace counts in milliseconds.
 constexpr double k_least_compute_s = 100e-6;
 
 SimulatedTime simulated(double seconds) {
@@ -30,7 +30,7 @@ double seconds(SimulatedTime time) {
   return std::chrono::duration<double>(time).count();
 }
 
-/// The processor's time, as the trace's host may have been busy with other things.
+/// Prefers processor time, as the trace's host may have been busy with other things.
 double compute_s(const TraceDone& job) {
   if (job.cpu_us > 0) return static_cast<double>(job.cpu_us) * 1e-6;
   return std::max(k_least_compute_s, job.compute_ms / 1000.0);
@@ -42,7 +42,7 @@ struct Speed {
   double value() const { return seconds > 0 ? triangles / seconds : 0; }
 };
 
-/// Knuth's 64-bit congruential generator: the same draw on every machine.
+/// Knuth's 64-bit linear congruential generator: the same draw on every machine.
 class Draw {
  public:
   explicit Draw(std::uint64_t seed) : state_(seed) {}
@@ -58,7 +58,7 @@ class Draw {
 
 using Needs = std::vector<PlannedJob::Range>;
 
-/// Of jobs sorted by depth.
+/// For jobs sorted by depth.
 Needs needs_of(std::span<const PlannedJob> jobs, const PlannedJob& job) {
   if (!job.needs.empty() || job.depth == 0) return job.needs;
   const auto end = std::partition_point(
@@ -68,7 +68,7 @@ Needs needs_of(std::span<const PlannedJob> jobs, const PlannedJob& job) {
 
 using ByNeeds = std::map<Needs, std::vector<std::uint32_t>>;
 
-/// Of each job the longest chain of jobs after it.
+/// For each job the longest chain of jobs after it.
 std::vector<std::uint64_t> work_after(std::span<const PlannedJob> jobs, const ByNeeds& by_needs) {
   std::vector<const ByNeeds::value_type*> deepest_first;
   for (const auto& each : by_needs) deepest_first.push_back(&each);
@@ -88,7 +88,7 @@ std::vector<std::uint64_t> work_after(std::span<const PlannedJob> jobs, const By
   return after;
 }
 
-/// Jobs that are named by their place.
+/// Jobs are named by their place.
 JobSource source_of(std::span<const PlannedJob> jobs, const PlannedFarm& farm) {
   const auto by_needs = std::make_shared<ByNeeds>();
   for (std::uint32_t i = 0; i < jobs.size(); ++i) {
@@ -158,7 +158,7 @@ SimulationOptions options_of(std::span<const PlannedJob> jobs, const PlannedFarm
   return options;
 }
 
-/// Jobs of a trace, of which each comes after those that it needs.
+/// Jobs of a trace; each comes after those that it needs.
 class TracedJobs {
  public:
   void add(const TraceDone& done, double seconds) {
@@ -202,7 +202,7 @@ class TracedJobs {
   using Ranges = std::vector<TraceDone::Needs>;
   using Words = std::vector<std::tuple<std::string, std::uint32_t, std::uint32_t>>;
 
-  /// What is not in the trace was there before, or is the sink's.
+  /// Jobs that are not in the trace were done before, or are the sink's.
   template <class Visit>
   void visit(const Ranges& needs, const Visit& visit) const {
     for (const TraceDone::Needs& each : needs) {
@@ -223,7 +223,7 @@ class TracedJobs {
     return words;
   }
 
-  /// Many jobs need the same: that is looked through once.
+  /// Many jobs need the same ranges: these are looked through only once.
   std::uint32_t depth_of(const Ranges& needs) {
     const auto [depth, is_new] = depths_.try_emplace(words_of(needs));
     if (is_new) {
@@ -254,7 +254,7 @@ class TracedJobs {
   std::map<Words, Needs> ranges_;
 };
 
-/// The jobs, which are sorted by it, of the depth with the most work.
+/// The jobs of the depth with the most work. `jobs` are sorted by depth.
 PlannedJob::Range heaviest_depth(std::span<const PlannedJob> jobs) {
   PlannedJob::Range heaviest;
   double most = -1;
@@ -301,7 +301,7 @@ std::vector<PlannedJob> as_parts(std::span<const PlannedJob> jobs, std::uint64_t
   const auto of = [&](std::uint64_t value) {
     return static_cast<std::uint64_t>(static_cast<double>(value) * share);
   };
-  // What was needed of the old ones is needed of the new ones that have the same work.
+  // Jobs that needed old ones need the new ones that have the same work.
   const auto place_of = [&](std::size_t place, std::size_t rounding) {
     if (place <= heaviest.first) return place;
     if (place >= heaviest.end) return place + count - old_count;
@@ -374,7 +374,7 @@ std::vector<PlannedStage> simulate_stages(std::span<const PlannedJob> jobs,
   PlannedRun before;
   for (std::size_t first = 0, end = 0; first < jobs.size(); first = end) {
     PlannedStage& stage = stages.emplace_back();
-    std::map<std::string, double> work;  // of those that are done side by side
+    std::map<std::string, double> work;  // per stage, of jobs that are done side by side
     for (; end < jobs.size() && jobs[end].depth == jobs[first].depth; ++end) {
       const PlannedJob& job = jobs[end];
       work[job.stage] += job.compute_s;

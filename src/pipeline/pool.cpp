@@ -15,7 +15,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// What the run's trace says of it; a run that has just begun has all the mesh before it.
+/// Uses what the run's trace says; a run that has just begun has the whole mesh to do.
 void look_at_trace(const Stage& stage, PoolRun& run) {
   const auto traces = stage.traces();
   if (std::find(traces.begin(), traces.end(), run.epoch) != traces.end()) {
@@ -28,14 +28,14 @@ void look_at_trace(const Stage& stage, PoolRun& run) {
         return;
       }
     } catch (const Error& error) {
-      log_debug(error.what());  // its first line is being written
+      log_debug(error.what());  // its first line is still being written
     }
   }
   const std::string what = stage.path(ManifestName{}).string();
   run.triangles = decode_manifest(stage.read(ManifestName{}), what).triangles();
 }
 
-/// By a listing: a name that is looked up too early stays invisible on NFS.
+/// Lists the folder: on NFS a name that is looked up too early stays invisible.
 bool is_cut(const fs::path& folder) {
   std::error_code error;
   return std::any_of(fs::directory_iterator(folder, error), fs::directory_iterator(),

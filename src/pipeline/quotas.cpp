@@ -8,7 +8,7 @@
 namespace meshfarm {
 namespace {
 
-/// A piece that was brought to its quota is asked for so little of it again, at most.
+/// A piece that reached its quota may lose at most this fraction of it again.
 constexpr std::uint64_t k_least_kept = 2;  // half
 
 std::uint64_t sum_at(std::span<const PieceWeight> pieces, std::int32_t step) {
@@ -17,7 +17,7 @@ std::uint64_t sum_at(std::span<const PieceWeight> pieces, std::int32_t step) {
   return sum;
 }
 
-/// Numbers of the pieces, that with most triangles first.
+/// Numbers of the pieces, largest first.
 std::vector<std::size_t> by_size(std::span<const std::uint64_t> quotas) {
   std::vector<std::size_t> order(quotas.size());
   for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
@@ -55,7 +55,7 @@ std::vector<std::uint64_t> share_out_triangles(std::span<const PieceWeight> piec
   const std::int32_t step = step_below(pieces, target);
   const std::uint64_t above = std::max(target, sum_at(pieces, step - 1));
   const std::uint64_t below = std::min(target, sum_at(pieces, step));
-  // Where not even the last step is low enough, all give the same share of what they have.
+  // If even the last step leaves too many, all give the same share of what they have.
   const bool is_between = sum_at(pieces, step) <= target;
   const double share =
       is_between ? static_cast<double>(above - target) /
@@ -69,7 +69,7 @@ std::vector<std::uint64_t> share_out_triangles(std::span<const PieceWeight> piec
     quotas.push_back(each.before - even(each.before - (most - gives)));
     all += quotas.back();
   }
-  // Rounding left too many: no more than two a piece.
+  // Rounding left too many triangles: at most two per piece.
   for (const std::size_t i : by_size(quotas)) {
     if (all <= target + 1) break;
     const std::uint64_t taken = std::min(even(all - target), even(quotas[i]));
@@ -101,7 +101,7 @@ std::vector<std::uint64_t> share_out_again(std::span<const PieceWeight> pieces,
     again[i] -= taken;
     excess -= std::min(excess, taken);
   }
-  // Where an open border can't change, the last triangle goes with another one.
+  // If an open border can't change, the last triangle goes together with another one.
   for (std::size_t i = 0; i < made.size() && excess > 0; ++i) {
     if (made[i] != quotas[i] + 1 || quotas[i] == 0) continue;
     --again[i];

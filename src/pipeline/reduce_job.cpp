@@ -22,7 +22,7 @@ void append_thinned(std::span<const Vec3> points, std::uint64_t most, std::vecto
   for (std::size_t i = 0; i < points.size(); i += step) to.push_back(points[i]);
 }
 
-/// Vertices and the middles of sides show how far the surface is at most.
+/// Vertices and midpoints of sides show the maximum distance of the surface.
 std::vector<Vec3> points_of_piece(const Mesh& mesh, const ReduceParameters& parameters,
                                   FinishedPiece& made) {
   if (mesh.triangles.empty()) return {};

@@ -14,9 +14,10 @@
 namespace meshfarm {
 namespace {
 
-/// Nearly all points of a surface are nearer to the other one than half of so many times the RMS.
+/// Nearly all points of a surface are nearer to the other surface than half this multiple of the
+/// RMS.
 constexpr double k_reach = 8;
-/// So many triangles of the input are held at a time, about.
+/// About this many triangles of the input are held at a time.
 constexpr double k_held = 4'000'000;
 
 class FacingMender {
@@ -47,7 +48,7 @@ class FacingMender {
     return find_opposed_triangles(to_result.index(), reach_, threads_);
   }
 
-  /// With those round about a triangle of the result stands for ten.
+  /// With its neighbourhood a triangle of the result stands for ten.
   std::size_t triangles_at_once() const {
     constexpr double k_round_about = 10;
     const double input_each = k_round_about * static_cast<double>(manifest_.triangles()) /
@@ -55,7 +56,7 @@ class FacingMender {
     return static_cast<std::size_t>(std::max(1.0, k_held / std::max(1.0, input_each)));
   }
 
-  /// The input near all triangles at the vertices of these, in an order that is always the same.
+  /// The input near all triangles at the vertices of these, in a deterministic order.
   Mesh input_near(std::span<const std::uint32_t> some) {
     std::vector<std::uint8_t> touched(result_.positions.size(), 0);
     for (const std::uint32_t i : some) {

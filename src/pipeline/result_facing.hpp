@@ -11,9 +11,9 @@
 
 namespace meshfarm {
 
-/// Mends triangles of a result that face away from the nearest point of the input, where that can
-/// be done near by (repair_facing). Reads the input once if surfaces are near each other anywhere,
-/// and what is near such triangles once more; holds that.
+/// Mends triangles of a result that face away from the nearest point of the input, if that is
+/// possible locally (repair_facing). Reads the input once if surfaces are near each other anywhere,
+/// and reads and holds what is near such triangles once more.
 FacingMended mend_facing(Mesh& result, const ErrorMeter& meter, const Stage& stage,
                          const Manifest& manifest, unsigned threads);
 

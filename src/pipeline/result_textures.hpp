@@ -17,7 +17,7 @@
 
 namespace meshfarm {
 
-/// A texture that was made anew.
+/// A newly made texture.
 struct MadeTexture {
   TextureLayout layout;
   std::function<PictureFiles()> picture;
@@ -26,11 +26,11 @@ struct MadeTexture {
 struct ResultTextures {
   TexturesMade made;
   PictureFiles pictures;
-  std::optional<LabelMeaning> labels;  // of a picture that was made; else those of the stage stay
+  std::optional<LabelMeaning> labels;  // of a picture that was made; else the stage's labels stay
 };
 
-/// The textures of a result: those of the stage as they are, or a new one that it was laid out on,
-/// or none, as the run and the output's format say. The result's columns are set for it.
+/// The textures of a result: those of the stage, unchanged, or a new one that it was laid out on,
+/// or none, depending on the run and the output's format. The result's columns are set accordingly.
 ResultTextures textures_of_result(const Stage& stage, const Manifest& manifest,
                                   const RunOptions& run, const std::filesystem::path& output,
                                   const std::optional<MadeTexture>& made, Mesh& result);

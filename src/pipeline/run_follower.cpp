@@ -17,7 +17,7 @@ void RunFollower::look(std::optional<Trace>& trace) {
     Reader next{numbers.back(), TraceFeed(stage_.path(TraceName{numbers.back()}).string())};
     Trace begun;
     read(next, begun);
-    if (next.feed.lines() == 0) return;  // it is there, and its first line is not yet
+    if (next.feed.lines() == 0) return;  // the file exists, but not its first line yet
     reader_ = std::move(next);
     trace = std::move(begun);
   } catch (const Error&) {
@@ -26,7 +26,7 @@ void RunFollower::look(std::optional<Trace>& trace) {
   }
 }
 
-/// The file is opened each time: that is when an NFS client asks the server what is new.
+/// Opens the file each time: only then does an NFS client ask the server for changes.
 void RunFollower::read(Reader& reader, Trace& trace) const {
   const std::filesystem::path path = stage_.path(TraceName{reader.number});
   const Fd file = open_for_read(path);

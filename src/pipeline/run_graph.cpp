@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
 //
-// A run from top to bottom: which jobs follow which. How the jobs of a stage are made, and what is
-// made of their outputs, is told by the stages' own files.
+// A run from top to bottom: which jobs follow which. The stages' own files define how their jobs
+// are made and how their outputs are used.
 #include <algorithm>
 #include <map>
 #include <memory>
@@ -26,12 +26,13 @@
 namespace meshfarm {
 namespace {
 
-/// What is thought of as a finer level has so many times the triangles, and is so near.
+/// A level counts as finer if it has this many times the triangles, and is at most this many levels
+/// away.
 constexpr double k_finer = 1.2;
 constexpr std::int32_t k_most_finer = 6;
 
-/// Pieces are divided again when so many times the target is left, seams not counted: what is held
-/// from then on is about as simple as the result.
+/// Pieces are divided again once this many times the target is left, not counting seams: what is
+/// locked from then on is about as simple as the result.
 constexpr double k_before_finish = 1.02;
 constexpr std::int32_t k_most_levels = 60;
 
@@ -42,8 +43,8 @@ class Run {
   Run(Manifest manifest, RunOptions options)
       : options_(std::move(options)), state_{std::move(manifest), {}, {}, {}, {}} {}
 
-  /// The input is cut, or slabs are sorted, if that is to be done; from then on the run is the one
-  /// that parts or streams would have had.
+  /// Cuts the input or sorts the slabs first, if needed; from then on the run is the same as for a
+  /// stage of parts or streams.
   void begin(JobGraph& graph) {
     state_.why_finish_here = why_finish_here(manifest(), options_);
     if (manifest().cutting) {
@@ -68,8 +69,8 @@ class Run {
     climb(graph, all);
   }
 
-  /// To a common level: of a long stream a sample is climbed, which stands for the stream by its
-  /// share of the triangles.
+  /// Simplifies to a common level. For a long stream a sample is climbed, whose counts are scaled
+  /// to the stream.
   void climb(JobGraph& graph, const Parts& parts) {
     graph.then(climbs().ask(graph, parts), [this, parts](JobGraph& so_far) {
       climbs().take(so_far, parts);
@@ -115,7 +116,7 @@ class Run {
     });
   }
 
-  /// To a bound on the error each part is taken on its own.
+  /// Under a bound on the error each part is simplified independently.
   void simplify_to_error(JobGraph& graph, const Parts& parts) {
     if (parts.empty()) return compose(graph);
     for (const std::uint32_t part : parts) {
@@ -144,7 +145,7 @@ class Run {
     });
   }
 
-  /// Neighbours are joined by workers, where that is worth it.
+  /// Workers join neighbours, if that is worth it.
   void compose(JobGraph& graph) {
     const ComposeGoal goal{
         results().level, jobs().sweep_cost(results().level), jobs().wanted(),
@@ -158,7 +159,8 @@ class Run {
                      });
   }
 
-  /// In pieces; a result that cannot be made so is the sink's to make of what was chosen.
+  /// Finishes in pieces; if the result can't be made that way, the sink makes it from the chosen
+  /// rungs.
   void finish(JobGraph& graph, const ComposeGoal& goal, const std::vector<ComposedParts>& parts) {
     finishing_.begin(graph, finish_goal(goal.topology), parts,
                      [this](JobGraph&, std::optional<FinishedPieces> made, std::string why_here) {
@@ -167,8 +169,8 @@ class Run {
                      });
   }
 
-  /// By the ladders, between whose levels counts are taken to fall evenly. Those of samples of
-  /// streams are corrected by what the sweeps made of these.
+  /// Computed from the ladders; counts are assumed to fall evenly between levels. Counts from
+  /// samples of streams are corrected by the results of the sweeps.
   FinishGoal finish_goal(TopologyMode topology) const {
     const double wanted =
         k_before_finish * static_cast<double>(target_triangles(manifest(), options_));
@@ -192,7 +194,7 @@ class Run {
     return goal;
   }
 
-  /// What is to be stitched of each part, before anything is composed.
+  /// The rung of each part to stitch, before anything is composed.
   std::vector<ComposedParts> reached() const {
     std::vector<ComposedParts> reached;
     for (std::size_t p = 0; p < results().files.size(); ++p) {
@@ -218,7 +220,7 @@ class Run {
         topology == TopologyMode::keep_while_fair ? TopologyMode::automatic : topology;
   }
 
-  /// Of ladders: swept streams have one rung, and what was composed is none.
+  /// For ladders only: swept streams have one rung, and composed parts have no ladder.
   void add_finer(ChosenRungs& chosen) const {
     if (jobs().by_error() || chosen.rungs.size() != results().files.size()) return;
     const std::int32_t chosen_level = results().level;
@@ -237,7 +239,7 @@ class Run {
     }
   }
 
-  /// Those are made once the slabs are sorted.
+  /// Created once the slabs are sorted.
   struct Simplifying {
     Simplifying(const Manifest& manifest, const RunOptions& options, const BundlesOfMesh* bundles,
                 std::function<JobNeeds(std::uint32_t)> sample_of)
@@ -271,7 +273,7 @@ class Run {
   SortStage sorting_{state_.manifest};
   std::optional<Simplifying> simplifying_;
   std::size_t parts_done_ = 0;
-  std::vector<ResultSummary> ladders_;  // by which the level was chosen, by part
+  std::vector<ResultSummary> ladders_;  // that the level was chosen by, by part
   ComposeStage composing_{state_.manifest, options_};
   FinishStage finishing_{state_.manifest, options_};
   BakeStage baking_{state_.manifest, options_, state_.baked};

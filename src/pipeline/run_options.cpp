@@ -14,8 +14,8 @@
 namespace meshfarm {
 namespace {
 
-/// At the default weight sharp edges of colours cost the shape up to a third of its error. Greater
-/// ones are for users to whom colours matter more than that: by them such edges are kept as well.
+/// At the default weight sharp colour edges cost the shape up to a third of its error. Greater
+/// weights are for users to whom colours matter more than that: they keep such edges as well.
 double steepest_of(double colour_weight) {
   const double relative = colour_weight / RunOptions{}.colour_weight;
   return AppearanceScale{}.steepest * relative * std::sqrt(relative);
@@ -26,7 +26,7 @@ bool has_pictures(const LabelMeaning& labels) {
                      [](const Material& material) { return !material.maps.empty(); });
 }
 
-/// Whether there is something that a new picture could show.
+/// Whether there is anything that a new picture could show.
 bool has_colour_pictures(const Manifest& manifest) {
   if (!manifest.labels) return false;
   const std::vector<Material>& materials = manifest.labels->materials;
@@ -39,7 +39,7 @@ bool has_colour_pictures(const Manifest& manifest) {
 constexpr std::uint8_t k_border = 1;     // is preserved
 constexpr std::uint8_t k_crossings = 2;  // are avoided
 
-// Of the columns that lines keep.
+// Columns that the lines keep.
 constexpr std::uint8_t k_labels = 1;
 constexpr std::uint8_t k_uvs = 2;
 
@@ -52,7 +52,7 @@ std::uint64_t asked_triangles(const Manifest& manifest, const RunOptions& option
     throw UsageError(
         "give the size of the result: --ratio above 0 and up to 1, --triangles, or --error");
   }
-  // Of what in the input is a triangle: one number, however the mesh is divided.
+  // A ratio of the proper triangles of the input: the same number however the mesh is divided.
   const std::uint64_t left_out =
       std::min(manifest.input_triangles, manifest.dropped_not_finite + manifest.coincident_corners);
   const double wanted = options.ratio * static_cast<double>(manifest.input_triangles - left_out);
@@ -75,8 +75,8 @@ std::vector<std::size_t> chosen_columns(const Manifest& manifest, const RunOptio
 }
 
 bool are_labels_too_fine(const Manifest& manifest, const RunOptions& options) {
-  // A closed surface has twice as many triangles as vertices. More than a third of them could not
-  // be chosen.
+  // A closed surface has twice as many triangles as vertices. The labels are too fine if they pin
+  // more than a third of the result's vertices.
   constexpr std::uint64_t k_triangles_per_corner = 6;
   if (!manifest.labels || !options.channels.all || options.error.value > 0) return false;
   return k_triangles_per_corner * manifest.label_corners > target_triangles(manifest, options);
@@ -138,7 +138,7 @@ std::uint64_t memory_of_channels(const LineOptions& lines, std::uint64_t triangl
   constexpr std::uint64_t k_copies = 4;
   const std::uint64_t of_vertices =
       lines.appearance_scale.length > 0 ? k_copies * sizeof(Appearance) / 2 : 0;
-  // Those at the corners of the triangles, too.
+  // Also those at the corners of the triangles.
   const std::uint64_t of_triangles = (k_copies + 3) * lines.columns.bytes();
   return (of_vertices + of_triangles) * triangles;
 }
@@ -184,9 +184,9 @@ std::uint64_t run_key(const Manifest& manifest, const RunOptions& options) {
   ByteWriter out;
   out.put(k_algorithm_version);
   out.put(checksum(encode_manifest(manifest)));
-  // A ratio and a count that come to the same are one run, if nothing of the input was left out.
-  // Not where slabs are to be sorted yet, or parts to be cut: degenerate triangles are dropped
-  // then, and the ratio is that of what is left.
+  // A ratio and a count that give the same number are the same run, if nothing of the input was
+  // left out. But not if slabs are still to be sorted or parts to be cut: degenerate triangles are
+  // dropped then, and the ratio applies to what is left.
   out.put(target_triangles(manifest, options));
   if (manifest.sorting || manifest.cutting) out.put(options.ratio);
   out.put(options.allocation);
@@ -196,9 +196,9 @@ std::uint64_t run_key(const Manifest& manifest, const RunOptions& options) {
   put(out, lines_of(manifest, options));
   out.put(options.drop_components.in(manifest.box));
   out.put(options.error.in(manifest.box));
-  // Where nothing is to be proven, this says nothing: keys are those of older versions.
+  // Only included if something is to be proven, so that other keys are those of older versions.
   if (options.certify) out.put(std::uint8_t{1});
-  // Where all are kept as they come, this says nothing: keys are those of older versions.
+  // Only included if some are not kept unchanged, so that other keys are those of older versions.
   if (!options.channels.all || options.normals != Normals::blend) {
     out.put(options.normals);
     for (const std::size_t column : chosen_columns(manifest, options)) {
@@ -209,7 +209,7 @@ std::uint64_t run_key(const Manifest& manifest, const RunOptions& options) {
     out.put(chosen_textures(manifest, options));
     out.put(options.texture_size);
   }
-  // Older versions had one way.
+  // Older versions had only one way to finish.
   if (why_finish_here(manifest, options).empty()) out.put(FinishPlace::farm);
   const std::uint64_t key = checksum(out.bytes());
   return key == 0 ? 1 : key;  // 0 means "any run" to the farm

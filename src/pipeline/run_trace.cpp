@@ -13,7 +13,7 @@
 namespace meshfarm {
 namespace {
 
-/// By a clock that whoever reads the trace can ask, too.
+/// Uses a clock that readers of the trace can also query.
 double unix_seconds(const Stage& stage) {
   const std::filesystem::path folder = stage.path(TraceName{1}).parent_path();
   std::error_code ignored;

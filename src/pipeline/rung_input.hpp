@@ -11,17 +11,17 @@
 
 namespace meshfarm {
 
-/// Makes a rung an input of the job, which reads no more of its file than that. Returns how many
-/// bytes that is.
+/// Makes a rung an input of the job, which reads only that part of its file. Returns its size in
+/// bytes.
 std::uint64_t add_rung_input(const ChosenRung& chosen, bool with_beside, Job& job);
 
-/// Reads the inputs that were added so, in their order.
+/// Reads the inputs that were added this way, in their order.
 class RungInputs {
  public:
   RungInputs(const Job& job, const JobContext& context) : job_(job), context_(context) {}
 
   ResultMesh next(std::uint32_t rung);
-  /// What is beside the rung that came last, if it was added with it.
+  /// What is stored beside the last rung, if it was added with it.
   std::string beside() { return context_.read_section(job_, next_++); }
 
  private:

@@ -1,11 +1,12 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
 //
-// Why a proof holds where several groups of seams are changed at once. Each point of the input has
-// some point of what was there before within the bound. If that lies on a triangle that nobody
-// changes, it stays. Else the group that changes the triangle proves the point anew: by what it
-// made and by what nobody changes, but not by what another group may change. What it cannot prove
-// that way before it begins, it leaves to the others, and leaves as it is what is near.
+// Why a proof holds although several groups of seams are changed at once: each point of the input
+// has some point of the earlier surface within the bound. If that point lies on a triangle that
+// nobody changes, it stays. Otherwise the group that changes the triangle proves the point again:
+// by the new triangles and by those that nobody changes, but not by triangles that another group
+// may change. Input that it can't prove that way from the start is left to the other groups, and
+// everything near it stays unchanged.
 #include "pipeline/seam_bound.hpp"
 
 #include <algorithm>
@@ -27,16 +28,18 @@
 namespace meshfarm {
 namespace {
 
-/// In distances of the bound: what is farther from a surface matters to nothing that is made of it.
+/// In multiples of the bound: anything farther from a surface than this cannot affect its
+/// simplification.
 constexpr double k_bound_reach = 2;
-/// So often what is not proven is left as it was, before all is.
+/// How often unproven areas are left unchanged before everything is.
 constexpr int k_proof_attempts = 4;
 
 bool may_change(const SeamMesh& seams, const Triangle& t) {
   return *std::max_element(t.begin(), t.end()) >= seams.locked;
 }
 
-/// Those that are not flagged are locked, and those of no triangle go.
+/// Locks the vertices that are not flagged, and unlocks those that no triangle uses, so that they
+/// go.
 void lock_others(std::vector<std::uint8_t> flags, SeamMesh& seams) {
   std::vector<std::uint8_t> used(flags.size(), 0);
   for (const auto& [a, b, c] : seams.mesh.triangles) used[a] = used[b] = used[c] = 1;
@@ -46,14 +49,14 @@ void lock_others(std::vector<std::uint8_t> flags, SeamMesh& seams) {
   seams.locked = put_last(seams.mesh, flags);
 }
 
-/// Those beside the first `locked`.
+/// Flags all vertices but the first `locked`.
 std::vector<std::uint8_t> free_flags(const SeamMesh& seams) {
   std::vector<std::uint8_t> flags(seams.mesh.positions.size(), 1);
   std::fill_n(flags.begin(), seams.locked, std::uint8_t{0});
   return flags;
 }
 
-/// Those that do not change, in an order of their own.
+/// Triangles that do not change, sorted by their places.
 std::vector<TrianglePlaces> fixed_places(const SeamMesh& seams) {
   std::vector<TrianglePlaces> fixed;
   for (const Triangle& t : seams.mesh.triangles) {
@@ -63,7 +66,7 @@ std::vector<TrianglePlaces> fixed_places(const SeamMesh& seams) {
   return fixed;
 }
 
-/// Whether none of them has gone. Tells which of the triangles are others.
+/// Whether all of these are still in the mesh. Also collects the other triangles.
 bool are_kept(const std::vector<TrianglePlaces>& fixed, const Mesh& mesh,
               std::vector<Triangle>& others) {
   std::vector<std::uint8_t> is_there(fixed.size(), 0);
@@ -87,7 +90,7 @@ void drop_numbered(const std::vector<std::uint32_t>& numbers, std::vector<Triang
   });
 }
 
-/// Proves what was made round the seams. What is farther from them was proven before, part by part.
+/// Proves the changes around the seams. What is farther away was proven before, part by part.
 class SeamProof {
  public:
   /// `input`: all of it that is near what may change.
@@ -98,7 +101,7 @@ class SeamProof {
     if (!input_.triangles.empty()) index_.emplace(input_, options.threads);
   }
 
-  /// What is near more of the input than can be proven without the unsure triangles stays.
+  /// Locks everything near input that cannot be proven without the unsure triangles.
   void leave_to_others(SeamMesh& seams) {
     if (seams.first_unsure == seams.end_unsure) return;
     const std::vector<std::uint32_t> beyond = numbers_beyond(sure_part(seams, seams.mesh));
@@ -113,7 +116,7 @@ class SeamProof {
     drop_numbered(beyond, to_prove_);
   }
 
-  /// What is not proven of a result: triangles of either surface.
+  /// The unproven triangles of a result and of the input.
   Mesh find_unproven(const SeamMesh& before, const Mesh& result) const {
     std::vector<Triangle> changed;
     if (!index_ || result.triangles.empty() || !are_kept(fixed_places(before), result, changed)) {
@@ -143,7 +146,7 @@ class SeamProof {
     return sure;
   }
 
-  /// Of the input, what is not proven to be near.
+  /// Triangles of the input that are not proven to be near.
   std::vector<std::uint32_t> numbers_beyond(const Mesh& surface) const {
     if (!surface.triangles.empty()) {
       return find_beyond(input_.positions, to_prove_, TriangleIndex(surface, options_.threads),
@@ -189,7 +192,7 @@ BoundedFinish simplified(SeamMesh seams, const SurfaceBound* bound,
           simplifier.turned()};
 }
 
-/// Where the proof fails, what was there stays as it is; in the end all of it, which has a proof.
+/// Where the proof fails, the old surface stays; in the end all of it, which has a proof.
 BoundedFinish simplified_with_proof(SeamMesh seams, const SurfaceBound& bound,
                                     const BoundedFinishOptions& options) {
   SeamProof proof(bound.surface(), options);
@@ -211,7 +214,8 @@ BoundedFinish simplified_with_proof(SeamMesh seams, const SurfaceBound& bound,
   return simplified(std::move(seams), nullptr, options);
 }
 
-/// What was near before: the rest of the input is near what lies beside the seams.
+/// Input that is too far from `after` but not from `before`. The rest of the input is near what
+/// lies beside the seams.
 Mesh part_lost(const Mesh& input, const TriangleIndex& before, const Mesh& after, double most,
                unsigned threads) {
   Mesh beyond = part_beyond(input, TriangleIndex(after, threads), most, threads);
@@ -220,7 +224,7 @@ Mesh part_lost(const Mesh& input, const TriangleIndex& before, const Mesh& after
   return beyond;
 }
 
-/// Where it goes too far, and what was there before did not, that stays as it is.
+/// If the result goes too far where the old surface did not, the old surface stays there.
 BoundedFinish simplified_and_measured(SeamMesh seams, const SurfaceBound& bound,
                                       const BoundedFinishOptions& options) {
   const double most = k_most_beyond_of_seam * options.max_error;
@@ -240,7 +244,7 @@ BoundedFinish simplified_and_measured(SeamMesh seams, const SurfaceBound& bound,
     clear_touched(astray, reach_of_astray(tries) * options.max_error, seams.mesh, flags);
     clear_touched(lost, most, seams.mesh, flags);
     lock_others(std::move(flags), seams);
-    if (seams.locked == locked) return finish;  // it would be the same once more
+    if (seams.locked == locked) return finish;  // another try would give the same
   }
 }
 

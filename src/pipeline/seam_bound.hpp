@@ -12,14 +12,14 @@
 
 namespace meshfarm {
 
-/// So many triangles from a seam on parts that were simplified to a bound are as simple as they may
-/// be.
+/// At this many triangles from a seam, parts that were simplified to a bound are as simple as they
+/// can be.
 inline constexpr int k_bounded_rings = 5;
 
 struct BoundedFinishOptions {
   double max_error = 0;
-  /// Where above 0: what is made is proven to be within this distance of the input, if what was
-  /// there before is.
+  /// Where above 0: the result is proven to be within this distance of the input, if the mesh was
+  /// before.
   double certified_error = 0;
   PositionType positions = PositionType::float32;
   LineOptions lines;
@@ -27,14 +27,14 @@ struct BoundedFinishOptions {
   std::function<void(std::uint64_t triangles_left)> progress;
 };
 
-/// What lies round seams.
+/// The surroundings of seams.
 struct SeamMesh {
   Mesh mesh;
-  std::uint32_t locked = 0;  // the first vertices, which neither move nor go
-  /// Of these the first, which stay though no triangle has them.
+  std::uint32_t locked = 0;  // the first vertices; they neither move nor go
+  /// The first of these stay even if no triangle uses them.
   std::uint32_t kept = 0;
-  /// Triangles of these vertices alone, which are locked, may be changed by others meanwhile: they
-  /// prove nothing.
+  /// Triangles that only have vertices from this range, which are locked, may be changed by others
+  /// meanwhile: they prove nothing.
   std::uint32_t first_unsure = 0;
   std::uint32_t end_unsure = 0;
 };
@@ -46,16 +46,16 @@ struct BoundedFinish {
   std::uint64_t turned = 0;
 };
 
-/// Where the input matters to what may change.
+/// The cells in which the input affects what may change.
 NearCells cells_round_changes(const SeamMesh& seams, const BoundedFinishOptions& options);
 
 /// Adds the triangles that are near, with vertices of their own.
 void add_near(std::span<const Vec3> positions, std::span<const Triangle> triangles,
               const NearCells& near, Mesh& mesh);
 
-/// Simplifies as far as the bound allows. `input`: all of it that is near what may change; if there
-/// is none, the mesh is only cleaned. The result has the locked vertices first that are not left
-/// out, in their order.
+/// Simplifies as far as the bound allows. `input`: all of it that is near what may change; if it is
+/// empty, the mesh is only cleaned. The locked vertices that are not left out come first in the
+/// result, in their order.
 BoundedFinish simplify_seams(SeamMesh seams, Mesh input, const BoundedFinishOptions& options);
 
 }  // namespace meshfarm

@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
 //
-// A job has all that its group's seams touch: the strips of their pieces, and those of the pieces
-// next to these, as triangles of the group may have a corner there. So a job's memory is that of
-// some neighbouring pieces' strips, however many pieces there are.
+// A job reads all that its group's seams touch: the strips of their pieces, and those of the pieces
+// next to these, as triangles of the group may have a corner there. So a job's memory is that of a
+// few neighbouring pieces' strips, however many pieces there are.
 #include <algorithm>
 #include <cmath>
 #include <optional>
@@ -22,11 +22,11 @@
 namespace meshfarm {
 namespace {
 
-/// What of the joined strips is the group's.
+/// The group's part of the joined strips.
 struct GroupMesh {
   Mesh mesh;
   std::vector<SeamVertex> shared;  // its first vertices
-  PieceGap gap;                    // the triangles whose first corner is the group's come first
+  PieceGap gap;                    // triangles whose first corner is the group's come first
   std::uint64_t gap_triangles = 0;
   Mesh between;
   std::vector<std::uint32_t> number;  // of the strips' vertices in the mesh, or k_left_out
@@ -73,7 +73,7 @@ class GroupMaker {
     made_.shared.push_back(strips_.name_of(v));
   }
 
-  /// The corners of gaps with pieces, and with other groups.
+  /// Shares the corners of gaps to pieces and to other groups.
   void share() {
     for (const std::uint32_t v : strips_.shared()) share(v);
     for (const Triangle& t : strips_.mesh().triangles) {
@@ -122,7 +122,7 @@ Box box_of_group(const GroupMesh& group) {
   return box;
 }
 
-/// How far the bound allows.
+/// Simplifies as far as the bound allows.
 WeighedMesh bounded(GroupMesh group, const JoinedStrips& strips, const SeamParameters& parameters,
                     const JobContext& context) {
   const auto shared = static_cast<std::uint32_t>(group.shared.size());
@@ -138,7 +138,7 @@ WeighedMesh bounded(GroupMesh group, const JoinedStrips& strips, const SeamParam
   return made;
 }
 
-/// How its triangles can be reduced, or what has come of them where a bound decides.
+/// The group weighed, or simplified if a bound decides how far.
 WeighedMesh finished(GroupMesh group, std::optional<JoinedStrips> strips,
                      const SeamParameters& parameters, const JobContext& context) {
   if (parameters.bound) return bounded(std::move(group), *strips, parameters, context);

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
 //
-// The jobs of a farmed finish that join what lies round the seams.
+// The jobs of a farmed finish that join the surroundings of the seams.
 #include <algorithm>
 #include <utility>
 
@@ -14,20 +14,22 @@
 namespace meshfarm {
 namespace {
 
-/// A seam job is for so many triangles round the seams, or more where there are jobs for two dozen
-/// workers, up to the second number. It also has those of so many pieces more.
+/// A seam job takes about k_seam_triangles triangles around the seams, or up to
+/// k_most_seam_triangles if there are jobs for two dozen workers. It also reads the strips of
+/// k_pieces_round_group more pieces.
 constexpr std::uint64_t k_seam_triangles = 24'000;
 constexpr std::uint64_t k_most_seam_triangles = 150'000;
 constexpr std::uint64_t k_usual_groups = 24;
 constexpr std::uint64_t k_pieces_round_group = 20;
-/// Measured: to join them takes the work of simplifying so many times as many.
+/// Measured: joining them takes the work of simplifying this many times as many triangles.
 constexpr std::uint64_t k_seam_work = 3;
-/// Under a bound a group has about so many triangles of the input near it, which take so many bytes
-/// and so much work each.
+/// Under a bound, a group has about this many triangles of the input near it; the memory and the
+/// work per triangle follow.
 constexpr std::uint64_t k_bounded_input = 1'000'000;
 constexpr std::uint64_t k_bounded_input_bytes = 560;
 constexpr std::uint64_t k_bounded_work = 1;
-/// Of fewer pieces groups meet nearly everywhere: on foam in 7 pieces that is 2.5 % of the error.
+/// With fewer pieces, groups meet nearly everywhere: on foam in 7 pieces that is 2.5 % of the
+/// error.
 constexpr std::uint64_t k_least_pieces_for_groups = 12;
 
 }  // namespace
@@ -59,7 +61,8 @@ std::uint32_t FinishStage::groups_of_seams() const {
       std::clamp<std::uint64_t>(groups, 1, std::min(pieces, by_error() ? pieces : most)));
 }
 
-/// About so many of the input's triangles, by the shares of their pieces that left these.
+/// The number of the input's triangles around the seams, estimated from the shares of the pieces
+/// that were left there.
 std::uint64_t FinishStage::input_round_seams() const {
   double triangles = static_cast<double>(manifest_.boundary_triangles);
   for (const PieceOfResult& each : made_.pieces) {
@@ -113,7 +116,7 @@ GroupBound FinishStage::bound() const {
   return {k_bound_share * error, options_.certify ? error : 0, manifest_.bundles};
 }
 
-/// What of the input is near the seams of a group, while one part of it is read.
+/// Memory for the input near the seams of a group, while one part of it is read.
 std::uint64_t FinishStage::memory_of_bound(std::uint32_t groups) const {
   std::uint64_t part = 0;
   for (const PartEntry& each : manifest_.parts) {

@@ -23,22 +23,23 @@ namespace {
 
 // Version 11: allocation u8 | start u64 | even share u64 | end u64 | foreseen u64 | samples u64 |
 // cost unit f64 | greatest error f64 | certified error f64 | lines (run_options.hpp) | source u8 |
-// of a rung: its place u32, level i32 | of what is built: part u32 | ratio f64 | headroom f64 | end
-// f64 | foresees u8 | all triangles u64 | all samples u64 | bundles (bundle_list.hpp). Version 4
-// knew no appearances and labels, version 5 nothing to build, version 6 no certified error, version
-// 7 no end, version 8 no rung, version 9 foresaw nothing, version 10 began at first rungs only.
+// for a rung: its place u32, level i32 | for a part to build: part u32 | ratio f64 | headroom f64 |
+// end f64 | foresees u8 | all triangles u64 | all samples u64 | bundles (bundle_list.hpp). Version
+// 4 had no appearances and labels, version 5 nothing to build, version 6 no certified error,
+// version 7 no end, version 8 no rung, version 9 no foreseen triangles; version 10 began at first
+// rungs only.
 constexpr std::uint8_t k_climb_version = 11;
 constexpr std::uint64_t k_most_climb_samples = 100'000'000;
 constexpr std::int32_t k_top_level = 52;
 constexpr double k_mostly_free = 0.5;  // of triangles
 
-/// A ladder ends where so many collapses a triangle are going to be refused: some times what is
-/// fair, as it is foreseen from further away than the sink does.
+/// A ladder ends where this many collapses per triangle are expected to be refused: some multiple
+/// of what is fair, as the prediction is made from further away than in the sink.
 constexpr double k_most_refused = 4;
 
 enum class PartSource : std::uint8_t { file, bundles, rung };
 
-/// Climbs the levels and keeps a snapshot wherever the mesh changed.
+/// Climbs the levels and keeps a snapshot at each level where the mesh changed.
 class LadderBuilder {
  public:
   LadderBuilder(Part part, std::vector<SurfaceSamples> samples,
@@ -66,12 +67,12 @@ class LadderBuilder {
     }
   }
 
-  /// The whole file; the last that is asked of it.
+  /// The whole file. Call this last.
   std::string take_file() {
     result_.finish(VertexView(simplifier_.mesh()).part(0, vertices_.boundary), samples_);
     return std::move(file_);
   }
-  /// Of the whole file.
+  /// The summary of the whole file.
   ResultSummary summary() const {
     ResultSummary summary = result_.summary_of(simplifier_);
     summary.held_by_topology = simplifier_.is_hampered_by_topology();
@@ -80,7 +81,7 @@ class LadderBuilder {
   }
 
  private:
-  /// Makes the first rung and returns the level that the mesh has reached with it.
+  /// Makes the first rung and returns the level that the mesh has reached then.
   std::int32_t start() {
     if (!begins_at_later_rung() && parameters_.start_triangles < simplifier_.triangles()) {
       SimplifyGoal goal{.triangles = parameters_.start_triangles,
@@ -88,7 +89,7 @@ class LadderBuilder {
                         .in_passes = may_give_up_topology()};
       reduce(goal);
       const std::int32_t level = reached();
-      snapshot(level - 1);  // what costs that much is done in part only
+      snapshot(level - 1);  // collapses at this cost are only partly done
       if (!goal.in_passes || simplifier_.triangles() <= goal.triangles) return level;
       goal.in_passes = false;
       reduce(goal);
@@ -97,12 +98,12 @@ class LadderBuilder {
     const std::int32_t first = parameters_.from ? parameters_.from->level : k_input_level;
     snapshot(first);
     if (first != k_input_level) return first + 1;
-    // A first step by count finds the level to begin at; below it there is little to collapse.
+    // A first step by count finds the level to begin at; little can be collapsed below it.
     reduce({.triangles = simplifier_.triangles() - simplifier_.triangles() / 10});
     return reached();
   }
 
-  /// Where the rung is finer than what was asked for: there the passes had come to their end.
+  /// If the rung is finer than requested, the passes had come to their end there.
   bool begins_in_order() const {
     return begins_at_later_rung() ||
            (parameters_.from && input_triangles_ > parameters_.start_triangles);
@@ -136,8 +137,8 @@ class LadderBuilder {
            refused_by(rung, wanted) > k_most_refused * wanted;
   }
 
-  /// Whether the next rung would have less than what is wanted: it is not made, and nor are those
-  /// after it. Where much is locked counts fall anyhow. Where the topology is kept at any cost some
+  /// Whether the next rung would have less than what is wanted: it and those after it are not made.
+  /// If many vertices are locked, counts fall anyway. If the topology is kept at any cost, some
   /// parts may have to make up for others.
   bool is_enough(std::uint64_t floor) const {
     const std::uint64_t left = simplifier_.triangles();
@@ -157,13 +158,13 @@ class LadderBuilder {
     if (given_up) throw IncompleteError("the job was given up");
   }
 
-  /// Keeps the mesh as it is as a rung.
+  /// Keeps the current mesh as a rung.
   void snapshot(std::int32_t level) {
     result_.add_rung(level, simplifier_.mesh(), simplifier_.free_triangles(), 0,
                      simplifier_.refused_by_topology());
   }
 
-  std::vector<SurfaceSamples> samples_;  // of the part as it came
+  std::vector<SurfaceSamples> samples_;  // of the unchanged part
   const SimplifyParameters& parameters_;
   const JobContext& context_;
   std::uint64_t input_triangles_;
@@ -174,8 +175,8 @@ class LadderBuilder {
   LadderEnd end_ = LadderEnd::floor;
 };
 
-/// A part, or a stream as one. What is not whole may be read whole by the next attempt; what is
-/// whole by its checksum and makes no sense never will.
+/// Reads a part, or a stream as one. An incomplete file may be read completely by the next attempt;
+/// invalid contents with a correct checksum stay invalid.
 Part read_part(const JobContext& context, const FileRef& input) {
   const std::string file = context.read(input);
   try {
@@ -204,7 +205,7 @@ PartToBuild get_part_to_build(ByteReader& in) {
   return build;
 }
 
-/// A part of the stage, a rung of it, or one that is built here, with what is told of it then.
+/// A part of the stage, a rung of it, or a part that is built here, with what is known of it.
 struct PartAtHand {
   Part part;
   std::vector<SurfaceSamples> samples;
@@ -322,7 +323,7 @@ void set_share(SimplifyParameters& parameters, const ShareRule& rule,
     end = rule.end * kept;
     if (start > 0.7 * triangles) {
       start = triangles;
-      end = std::min(end, kept);  // the first rung after the part as it came is anyone's guess
+      end = std::min(end, kept);  // the first rung after the whole part is unpredictable
     }
   }
   parameters.share_triangles = static_cast<std::uint64_t>(share);

@@ -14,12 +14,12 @@
 namespace meshfarm {
 namespace {
 
-/// What a Simplifier takes at most.
+/// The maximum for a Simplifier.
 constexpr std::uint64_t k_most_triangles = UINT32_MAX / 3 - 1;
-/// The stitched mesh and what simplifies it: measured, of the whole process, 140 to 180.
+/// The stitched mesh and its simplifier: measured, of the whole process, 140 to 180.
 constexpr std::uint64_t k_bytes_per_triangle = 180;
 constexpr std::uint64_t k_process_bytes = std::uint64_t{32} << 20;
-/// The level that all parts are taken to is the last with enough: up to one step has too many.
+/// All parts use the last level with enough triangles: it has up to one step too many.
 constexpr double k_half_a_step = 1.25;
 
 std::string counted(std::uint64_t triangles) {
@@ -36,7 +36,7 @@ std::uint64_t bytes_of_bake(const RunOptions& options, double triangles) {
                                     k_bytes_per_texel * side * side);
 }
 
-/// Of a finish in pieces, which holds the result while attributes are fitted to it.
+/// For a finish in pieces, which holds the result while attributes are fitted to it.
 SinkNeed need_of_pieces(const Manifest& manifest, const RunOptions& options) {
   constexpr std::uint64_t k_held_bytes = 90;
   constexpr std::uint64_t k_bytes_of_channel = 40;
@@ -71,7 +71,7 @@ std::string check_sink_need(const Manifest& manifest, const RunOptions& options,
     if (!has_attributes(manifest)) return {};
     need = need_of_pieces(manifest, options);
   }
-  // No less than the target is stitched, whatever the levels are.
+  // At least the target is stitched, whatever the levels are.
   const std::uint64_t least = std::min(manifest.triangles(), target_triangles(manifest, options));
   if (least > k_most_triangles) {
     throw UsageError("a result of " + counted(least) +

@@ -17,8 +17,8 @@ namespace {
 // Version 1: sorting (io/sorting.hpp) | number u32.
 constexpr std::uint8_t k_sort_version = 1;
 
-/// Reads the job's input. What is whole by its checksum and makes no sense never will, whoever
-/// reads it.
+/// Reads the job's input. Invalid contents with a correct checksum stay invalid, whoever reads
+/// them.
 template <class Decode>
 auto read_input(const Job& job, const JobContext& context, const Decode& decode) {
   if (job.inputs.size() != 1) throw DataError("a " + job.kind + " job takes one file");

@@ -14,8 +14,8 @@
 namespace meshfarm {
 namespace {
 
-/// Measured: to sort a triangle takes a quarter of the time that simplifying it does where the
-/// input is in no order (a tenth where it is), to read it for a sample a fifteenth.
+/// Measured: sorting a triangle takes a quarter of the time of simplifying it if the input is in no
+/// order (a tenth if it is), reading it for a sample a fifteenth.
 constexpr std::uint64_t k_sort_share = 4;
 constexpr std::uint64_t k_sample_share = 15;
 
@@ -24,7 +24,7 @@ std::uint64_t memory_of_sort(const PartEntry& slab, std::uint64_t bytes_per_tria
   return k_process + slab.file.size + bytes_per_triangle * slab.triangles;
 }
 
-/// The stream as it is read, its mesh (24 bytes a triangle, twice that as it grows), the sample.
+/// The stream as read, its mesh (24 bytes per triangle, twice that as it grows), the sample.
 std::uint64_t memory_of_sample(const PartEntry& stream) {
   constexpr std::uint64_t k_process = std::uint64_t{16} << 20;
   return k_process + stream.file.size + 60 * stream.triangles;

@@ -9,18 +9,20 @@
 
 namespace meshfarm {
 
-/// The first stages of a run whose stage holds slabs: a sort job each, and a sample job for each
-/// stream that is longer than a sweep's window. A sample is a job of its own, and not made while
-/// its stream is sorted, as a job has one output.
+/// The first stages of a run whose stage holds slabs: a sort job for each, and a sample job for
+/// each stream longer than a sweep's window. A sample is a separate job, not made while its stream
+/// is sorted, as a job has one output.
 class SortStage {
  public:
-  /// The manifest becomes what it would be if the cut had sorted, but for the names of files: a
-  /// stream as it is sorted, a sample as it is taken. Until then a sample is as large as estimated.
+  /// Updates the manifest to what it would be if the cut had sorted, except for file names: a
+  /// stream when it is sorted, a sample when it is taken. Until then a sample has its estimated
+  /// size.
   explicit SortStage(Manifest& manifest) : manifest_(manifest) {}
 
-  /// Returns what sorts all. Throws DataError later for outputs that cannot be those of the slabs.
+  /// Returns the jobs that sort everything. Later throws DataError for outputs that do not match
+  /// the slabs.
   JobNeeds ask(JobGraph& graph);
-  /// What takes the sample of a long stream; nothing if it was there before.
+  /// The job that takes the sample of a long stream; nothing if the sample existed before.
   JobNeeds sample_of(std::uint32_t stream) const;
 
  private:
@@ -32,7 +34,7 @@ class SortStage {
   bool takes_samples_ = false;
 };
 
-/// What will be once the slabs are sorted, as far as it can be told: for estimates only.
+/// The manifest after sorting the slabs, as far as it is known: for estimates only.
 Manifest as_if_sorted(Manifest manifest);
 
 }  // namespace meshfarm

@@ -18,18 +18,18 @@
 namespace meshfarm {
 namespace {
 
-/// So many triangles from a seam a piece is as simple as the rest of it.
+/// At this many triangles from a seam a piece is as simple as elsewhere.
 constexpr int k_strip_rings = 4;
-/// The corners of the last ring are held.
+/// The corners of the last ring are locked.
 constexpr int k_bounded_strip_rings = k_bounded_rings + 1;
 
-/// Where each vertex of a piece goes.
+/// The side that each vertex of a piece goes to.
 struct Sides {
-  std::vector<std::uint8_t> strip;   // a flag a vertex: it leaves
-  std::vector<std::uint8_t> shared;  // it is a corner of a triangle with corners on both sides
+  std::vector<std::uint8_t> strip;   // per vertex: it leaves
+  std::vector<std::uint8_t> shared;  // per vertex: a triangle of it has corners on both sides
 };
 
-/// Vertices of no triangle stay where they are: the simplifier drops them.
+/// Vertices without triangles stay where they are: the simplifier drops them.
 Sides sides_of(const Mesh& mesh, std::uint32_t boundary, int rings) {
   Sides sides;
   sides.strip.assign(mesh.positions.size(), 0);
@@ -50,7 +50,7 @@ Sides sides_of(const Mesh& mesh, std::uint32_t boundary, int rings) {
   return sides;
 }
 
-/// The vertices of some mesh, numbered anew: those that are wanted, in order.
+/// New numbers for the wanted vertices of a mesh, in order.
 class Numbers {
  public:
   explicit Numbers(std::size_t vertices) : of_(vertices, k_left_out) {}
@@ -80,7 +80,7 @@ class Numbers {
   std::uint32_t count_ = 0;
 };
 
-/// A piece in three: its mesh, what leaves it, and the triangles between the two.
+/// A piece split into three: its mesh, the part that leaves it, and the triangles between the two.
 struct SplitMesh {
   Mesh inner;
   std::uint32_t locked = 0;  // the first vertices of the inner mesh
@@ -120,8 +120,8 @@ SplitMesh split(const ResultMesh& piece, const Sides& sides, std::uint32_t piece
   return made;
 }
 
-/// Of points that vertices are fitted to those that are nearest to what stays in the piece: others
-/// are near to what leaves it, and only then to a sheet that stays.
+/// Keeps the points for fitting that are nearest to what stays in the piece: the others are nearest
+/// to what leaves it, and at most second to a sheet that stays.
 std::vector<SurfaceSamples> nearest_to_inner(std::vector<SurfaceSamples> points, const Mesh& mesh,
                                              const Sides& sides) {
   if (points.empty() || mesh.triangles.empty()) return {};
@@ -140,7 +140,7 @@ std::vector<SurfaceSamples> nearest_to_inner(std::vector<SurfaceSamples> points,
   return points;
 }
 
-/// Leaves out these components, which their lowest vertices tell. Returns their boundary vertices.
+/// Leaves out these components, given by their lowest vertices. Returns their boundary vertices.
 std::vector<std::uint32_t> drop_components(const SectionRef& components, const JobContext& context,
                                            ResultMesh& piece) {
   std::vector<std::uint32_t> boundary;
@@ -161,8 +161,8 @@ std::vector<std::uint32_t> drop_components(const SectionRef& components, const J
   return boundary;
 }
 
-/// What will be shared is held for the rest of the run: it had better be about as simple by then as
-/// the result.
+/// Shared vertices stay locked for the rest of the run, so the piece should be about as simple as
+/// the result before that.
 void approach(const SplitParameters& parameters, const JobContext& context, ResultMesh& piece,
               DividedPiece& made) {
   if (parameters.step < 0) return;

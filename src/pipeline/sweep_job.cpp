@@ -21,7 +21,7 @@ constexpr std::uint8_t k_sweep_version = 3;
 constexpr std::uint64_t k_most_sweep_samples = 100'000'000;
 constexpr std::uint64_t k_max_window = std::uint64_t{1} << 30;
 
-/// Sweeps from the stream to the result, holding neither.
+/// Sweeps from the stream to the result without holding either.
 class SweepToFile {
  public:
   SweepToFile(const Job& job, const JobContext& context)
@@ -73,7 +73,7 @@ class SweepToFile {
         });
   }
 
-  /// What is whole by its checksum and makes no sense never will, whoever reads it.
+  /// Invalid contents with a correct checksum stay invalid, whoever reads them.
   void sweep_in_memory() {
     const std::string stream = context_.read(input());
     try {

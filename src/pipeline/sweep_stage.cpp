@@ -25,7 +25,7 @@ JobNeeds SweepStage::ask(JobGraph& graph, const std::vector<std::uint32_t>& stre
   return asked;
 }
 
-/// The name of the job that was asked for last.
+/// The name of the last job asked for.
 JobName SweepStage::last_of(std::uint32_t stream) const {
   return job_name(RunStage::sweep, (asked_[stream] - 1) * manifest_.parts.size() + stream);
 }

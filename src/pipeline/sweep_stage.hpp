@@ -12,21 +12,21 @@
 
 namespace meshfarm {
 
-/// A long stream of which a sample was climbed is swept itself, at the level that was chosen.
+/// Long streams of which samples were climbed are swept themselves, at the chosen level.
 class SweepStage {
  public:
   /// All must outlive this.
   SweepStage(const Manifest& manifest, const RunOptions& options, const PartJobs& jobs,
              PartResults& results);
 
-  /// Asks for these streams at this level, once more if they were asked for before.
+  /// Asks for these streams at this level, again if they were asked for before.
   JobNeeds ask(JobGraph& graph, const std::vector<std::uint32_t>& streams, std::int32_t level);
-  /// Once they are there.
+  /// Call this once they are accepted.
   void take(const JobGraph& graph, const std::vector<std::uint32_t>& streams);
-  /// Once all are there: whether all are to be swept again, one level finer, as together they hold
-  /// less than the target.
+  /// Call this once all are accepted: whether all must be swept again, one level finer, because
+  /// together they hold less than the target.
   bool is_too_coarse() const;
-  /// Whether a stream was taken farther from what it was than it may be.
+  /// Whether a stream's error is greater than allowed.
   bool is_too_far(std::uint32_t stream) const;
 
  private:
@@ -36,7 +36,7 @@ class SweepStage {
   const RunOptions& options_;
   const PartJobs& jobs_;
   PartResults& results_;
-  std::vector<std::uint32_t> asked_;  // how often, by stream
+  std::vector<std::uint32_t> asked_;  // how often, per stream
 };
 
 }  // namespace meshfarm

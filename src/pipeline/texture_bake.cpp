@@ -29,7 +29,7 @@ namespace {
 constexpr std::uint32_t k_margin_texels = 4;
 constexpr std::size_t k_triangles_of_seam = 16'384;
 
-/// The power of two that has about as many texels.
+/// The power of two with about this many texels.
 std::uint32_t side_for(std::uint64_t texels) {
   constexpr std::uint32_t k_least = 256;
   const double side = std::sqrt(static_cast<double>(texels));
@@ -38,7 +38,7 @@ std::uint32_t side_for(std::uint64_t texels) {
   return power;
 }
 
-/// By the file's first bytes, if they say it.
+/// From the first bytes of the file, if they suffice.
 PictureFacts facts_of(const Stage& stage, const FileRef& file) {
   constexpr std::uint64_t k_first = std::uint64_t{256} << 10;
   if (file.size > k_first) {
@@ -47,13 +47,13 @@ PictureFacts facts_of(const Stage& stage, const FileRef& file) {
     first.resize(read_at(fd.get(), 0, first, stage.root() / file.name));
     try {
       return picture_facts(first);
-    } catch (const DataError&) {  // it says so further on, or not at all
+    } catch (const DataError&) {  // the facts come later in the file, or not at all
     }
   }
   return picture_facts(stage.read(file));
 }
 
-/// What is known of the input's pictures that have colours; nothing of those that are damaged.
+/// Facts about the input's pictures that have colours; nothing for damaged ones.
 std::vector<std::optional<PictureFacts>> facts_of_pictures(const Stage& stage,
                                                            const Manifest& manifest) {
   std::vector<std::optional<PictureFacts>> facts(manifest.pictures.size());
@@ -62,7 +62,7 @@ std::vector<std::optional<PictureFacts>> facts_of_pictures(const Stage& stage,
     if (!is_used[i]) continue;
     try {
       facts[i] = facts_of(stage, manifest.pictures[i].file);
-    } catch (const DataError&) {  // told of when the picture is made
+    } catch (const DataError&) {  // reported when the picture is made
     }
   }
   return facts;
@@ -81,7 +81,7 @@ void tell_of_damaged(const Manifest& manifest,
   }
 }
 
-/// What is known of the input's surface after it was read once.
+/// Facts about the input's surface after reading it once.
 struct InputSeen {
   std::vector<Box> boxes;  // of the parts
   Mesh between;            // the triangles between them
@@ -109,7 +109,7 @@ InputSeen see_input(const Stage& stage, const Manifest& manifest, unsigned threa
   return seen;
 }
 
-/// Each triangle with vertices of its own.
+/// Each triangle has vertices of its own.
 BakeSeam write_seam(const Mesh& between, std::span<const std::uint32_t> triangles,
                     SectionWriter& sections) {
   Part part;

@@ -6,10 +6,10 @@
 
 namespace meshfarm {
 
-/// To be raised with every change after which a job, or the sink, makes other bytes of the same
-/// input and options, or a run has other jobs. It stands in the keys of jobs and runs and in every
-/// greeting, so that results of two versions never meet: older ones in a stage are done again,
-/// processes of another are refused.
+/// Raise this with every change that makes a job or the sink produce different bytes from the same
+/// input and options, or that gives a run other jobs. It is part of the keys of jobs and runs and
+/// of every greeting, so results of two versions never mix: older results in a stage are
+/// recomputed, and processes of another version are refused.
 inline constexpr std::uint32_t k_algorithm_version = 40;
 
 }  // namespace meshfarm

@@ -19,12 +19,12 @@ namespace meshfarm {
 
 struct AssembleOptions {
   MeshOutput output;
-  unsigned threads = 0;  // to measure with, 0: one a core; nothing depends on it
+  unsigned threads = 0;  // to measure with, 0: one per core; nothing depends on it
   std::function<void(std::string_view phase, double done, std::uint64_t triangles)> progress;
   const std::atomic<bool>* stop = nullptr;
 };
 
-/// The sink's part of a run: makes one mesh of what the workers made, and writes it.
+/// The sink's part of a run: makes one mesh from the workers' results, and writes it.
 class Assembler {
  public:
   /// Stage, manifest and run must outlive it.
@@ -34,13 +34,13 @@ class Assembler {
   Assembler(const Assembler&) = delete;
   Assembler& operator=(const Assembler&) = delete;
 
-  /// Does a job of make_job_source that is the sink's: finishes the mesh before others go on with
-  /// it. `accepted`: at least what made the mesh.
+  /// Does a job of make_job_source that is the sink's: finishes the mesh before other jobs go on
+  /// with it. `accepted`: at least the jobs that made the mesh.
   JobOutput do_job(const Job& job, const JobContext& context,
                    std::span<const AcceptedJob> accepted);
   /// The end of a run, once every job is accepted: reads the chosen rungs, stitches them in the
-  /// order of the parts, finishes to the target, and writes the result. What do_job() did is not
-  /// done again. Throws IncompleteError when stopped: nothing is written then.
+  /// order of the parts, finishes to the target, and writes the result. Does not repeat what
+  /// do_job() did. Throws IncompleteError when stopped; nothing is written then.
   RunSummary complete(std::span<const AcceptedJob> accepted);
 
  private:

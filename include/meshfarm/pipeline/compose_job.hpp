@@ -16,7 +16,7 @@ inline constexpr std::string_view k_compose_kind = "compose";
 
 /// One of the results that a compose job joins.
 struct ComposeInput {
-  std::uint32_t parts = 1;  // that are joined in it already
+  std::uint32_t parts = 1;  // already joined in it
   std::uint32_t rung = 0;
 };
 
@@ -24,11 +24,11 @@ struct ComposeInput {
 struct ComposeParameters {
   std::uint32_t first_part = 0;
   std::uint32_t all_parts = 0;       // of the stage
-  std::vector<ComposeInput> inputs;  // as many as the job has, in the order of the parts
-  BoundaryFiles boundary;            // no inputs, as they are not to be read whole
-  std::int32_t level = 0;            // of the one rung that is made
-  double max_cost = 0;               // what the level costs
-  std::uint64_t floor = 0;           // triangles that are to be left
+  std::vector<ComposeInput> inputs;  // one per input of the job, in the order of the parts
+  BoundaryFiles boundary;            // not inputs, as they are not read whole
+  std::int32_t level = 0;            // of the single rung that is made
+  double max_cost = 0;               // the cost of the level
+  std::uint64_t floor = 0;           // triangles to leave
   double samples_per_triangle = 0;   // of the seams, to measure the final error by
   bool keeps_between = false;        // the input's triangles between the parts, to measure to them
   LineOptions lines;
@@ -38,10 +38,10 @@ std::string encode_parameters(const ComposeParameters& parameters);
 ComposeParameters decode_compose_parameters(std::string_view bytes);
 
 /// Joins the results of neighbours by the boundary triangles between them (Xiong et al. 2008, 4.3)
-/// and simplifies what was locked there under the same cost threshold as the parts were.
-/// What the group shares with parts outside of it stays as it is. Of the boundary side file only
-/// the regions are read that the group touches. The triangles that are kept stand beside the
-/// result: a surface (piece_sections.hpp).
+/// and simplifies what was locked there, under the same cost threshold as the parts. Whatever the
+/// group shares with parts outside it stays unchanged. Only the regions of the boundary side file
+/// that the group touches are read. The triangles kept are stored beside the result as a surface
+/// (piece_sections.hpp).
 JobOutput compose_parts(const Job& job, const JobContext& context);
 
 }  // namespace meshfarm

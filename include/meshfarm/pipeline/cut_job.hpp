@@ -25,16 +25,18 @@ inline constexpr std::string_view k_vertices_kind = "scatter-vertices";
 inline constexpr std::string_view k_triangles_kind = "scatter-triangles";
 inline constexpr std::string_view k_join_kind = "join";
 
-/// Bundles, and what leads to them: workers alone read them, each section with its checksum.
+/// Whether the job's output is bundles, or leads to them: only workers read these, and each section
+/// has its own checksum.
 bool is_left_to_readers(std::string_view kind);
 
-/// Parameters of all but the join. A job reads what else it needs of the stage's manifest.
+/// Parameters of all jobs but the join. A job reads everything else it needs from the stage's
+/// manifest.
 struct CutJobParameters {
   Cutting cutting;
   std::uint32_t block = 0;
-  std::uint32_t round = 0;  // of counting: the first begins with the box, others with a file
+  std::uint32_t round = 0;  // of counting: the first starts from the box, later ones from a file
   Box box;                  // of the first round
-  BundlesOfMesh bundles;    // to scatter triangles: those of the vertices
+  BundlesOfMesh bundles;    // to scatter triangles: the bundles of the vertices
 };
 std::string encode_parameters(const CutJobParameters& parameters);
 CutJobParameters decode_cut_parameters(std::string_view bytes);
@@ -49,7 +51,7 @@ struct PartitionSummary {
 std::string encode_summary(const PartitionSummary& summary);
 PartitionSummary decode_partition_summary(std::string_view summary, std::string_view what);
 
-/// Where a ladder's file tells of its boundary vertices.
+/// The section of a ladder's file that describes its boundary vertices.
 struct PartNumbers {
   FileRef file;
   FileSection section;
@@ -82,12 +84,12 @@ JobOutput scatter_triangles_of_block(const Job& job, const JobContext& context);
 JobOutput join_boundary_of_parts(const Job& job, const JobContext& context);
 
 struct CutPlanOptions {
-  std::uint32_t parts = 0;   // 0: as many as a cut here would make
-  std::uint32_t blocks = 0;  // of vertices, and of triangles; 0: of about 300,000 each
-  bool for_cluster = false;  // more parts, if none are told, so that two dozen workers end together
+  std::uint32_t parts = 0;   // 0: as many as a local cut would make
+  std::uint32_t blocks = 0;  // of vertices, and of triangles; 0: about 300,000 in each
+  bool for_cluster = false;  // more parts by default, so that two dozen workers end together
 };
-/// What a cut by jobs is to be of this file; nothing if its records cannot be read by themselves.
-/// Throws IoError.
+/// The plan to cut this file by jobs; nothing if its records cannot be read independently. Throws
+/// IoError.
 std::optional<Cutting> plan_cutting(const std::filesystem::path& input,
                                     const CutPlanOptions& options);
 

@@ -13,27 +13,27 @@
 
 namespace meshfarm {
 
-/// Some of the input's triangles, and the vertices they use among others.
+/// Some of the input's triangles, and vertices that include all those they use.
 struct SurfacePiece {
   std::span<const Vec3> positions;
   std::span<const Triangle> triangles;
   TriangleColumnsView columns;  // of these
-  /// Vertices of triangles with an area that no piece of the same part showed before.
+  /// Vertices of triangles with non-zero area that no earlier piece of the same part has shown.
   std::span<const Vec3> fresh;
-  std::uint32_t part = 0;  // as many as there are parts: between parts
+  std::uint32_t part = 0;  // the number of parts: between parts
 };
 
 /// The surface of the input, read from the stage: the parts or streams, and the triangles between
-/// them. Of streams a few blocks are in memory, else a part or an unsorted slab a thread.
+/// them. Memory: a few blocks of each stream, or one part or unsorted slab per thread.
 class InputSurface {
  public:
   using Wants = std::function<bool(const Box&)>;
   using Show = std::function<void(const SurfacePiece&)>;
 
-  /// `threads`: 0 for one a core.
+  /// `threads`: 0 for one per core.
   InputSurface(const Stage& stage, const Manifest& manifest, unsigned threads);
   /// Shows the pieces of all parts whose boxes are wanted, and the triangles between parts, from
-  /// several threads. At first, when no box is known, all parts are shown. The pieces of a part
+  /// several threads. The first call shows all parts, as no box is known yet. The pieces of a part
   /// come in order.
   void show(const Wants& wants, const Show& show);
   /// Shows all pieces of these parts, one part after the other. Throws DataError if there are no

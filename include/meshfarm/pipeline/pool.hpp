@@ -10,13 +10,13 @@
 
 namespace meshfarm {
 
-/// A run of one of a pool's stages whose ventilator may live.
+/// A run of one of a pool's stages whose ventilator may be alive.
 struct PoolRun {
   std::filesystem::path stage;
   std::uint64_t run = 0;
   std::uint32_t epoch = 0;
-  std::uint64_t workers = 0;    // that it has
-  std::uint64_t triangles = 0;  // that are left to do, about
+  std::uint64_t workers = 0;    // that work on it
+  std::uint64_t triangles = 0;  // left to do, about
   bool operator==(const PoolRun&) const = default;
 };
 
@@ -24,7 +24,7 @@ struct PoolRun {
 /// Stages that cannot be read are left out.
 std::vector<PoolRun> runs_of_pool(const std::filesystem::path& folder);
 
-/// The one with the fewest workers for its work.
+/// The run with the fewest workers for its work.
 std::optional<PoolRun> neediest(std::span<const PoolRun> runs);
 
 }  // namespace meshfarm

@@ -11,18 +11,18 @@
 
 namespace meshfarm {
 
-/// Keeps up with the newest run of a stage, whoever starts one: reads only what its trace got since
-/// the last look. One thread.
+/// Follows the newest run of a stage, whoever starts it: reads only what was added to its trace
+/// since the last look. For one thread.
 class RunFollower {
  public:
   explicit RunFollower(Stage stage) : stage_(std::move(stage)) {}
 
-  /// Brings the trace up to date; call it with the same one each time. It stays empty until a run
-  /// begins. Throws IoError or DataError; a look after that starts anew.
+  /// Brings the trace up to date; pass the same one each time. It stays empty until a run begins.
+  /// Throws IoError or DataError; the next look then starts from the beginning.
   void look(std::optional<Trace>& trace);
 
  private:
-  /// Of one run's trace.
+  /// Reads one run's trace.
   struct Reader {
     std::uint32_t number = 0;
     TraceFeed feed;

@@ -17,16 +17,16 @@
 
 namespace meshfarm {
 
-/// Writes what happens in a run to the stage's log folder (see report/trace.hpp). Whatever becomes
-/// of that, the run goes on.
+/// Writes the events of a run to the stage's log folder (see report/trace.hpp). Its failures do not
+/// affect the run.
 class RunTrace {
  public:
-  /// `head`: what is known before the run; the rest of it is filled in.
+  /// `head`: what is known before the run; the rest is filled in.
   RunTrace(const Stage& stage, TraceHead head) : stage_(stage), head_(std::move(head)) {}
 
-  /// From now on the ventilator tells this trace. It must outlive the ventilator.
+  /// From now on the ventilator reports to this trace, which must outlive the ventilator.
   void follow(VentilatorOptions& options);
-  /// The run's last word; empty: all was done.
+  /// Writes the end of the run; empty: all was done.
   void end(const std::string& failure);
 
  private:
@@ -37,24 +37,22 @@ class RunTrace {
   const Stage& stage_;
   TraceHead head_;
   double last_s_ = 0;
-  std::chrono::steady_clock::time_point begin_;  // of the run, by its first event
+  std::chrono::steady_clock::time_point begin_;  // of the run: its first event
   std::unique_ptr<LineLog> log_;
 };
 
 /// Publishes a run's summary in the stage's log folder. A failure is only logged.
 void publish_summary(const Stage& stage, const RunSummary& summary);
 
-/// The newest trace of a stage; the one of `epoch` if that is given. Throws DataError if there is
-/// none.
+/// The newest trace of a stage, or that of `epoch` if given. Throws DataError if there is none.
 Trace read_newest_trace(const Stage& stage, std::optional<std::uint32_t> epoch = std::nullopt);
 /// The same with the jobs of all epochs of its run: a ventilator that was killed leaves a trace of
-/// its own. Workers are numbered on from epoch to epoch.
+/// its own. The numbering of workers continues from epoch to epoch.
 Trace read_traced_run(const Stage& stage);
-/// The times of the newest summary of a run; nothing if there is none.
+/// The times in the newest summary of a run; nothing if there is none.
 std::optional<RunTimes> read_run_times(const Stage& stage, std::uint64_t run);
-/// Whether a sink has made the run's output, and no ventilator has said since that this was the end
-/// of the run: the one that the sink served was killed. An output made in a run that is over is
-/// another's.
+/// Whether a sink has written the run's output, but no ventilator has since ended the run, because
+/// the one that the sink served was killed. An output made in a run that is over does not count.
 bool output_was_made(const Stage& stage, std::uint64_t run);
 
 }  // namespace meshfarm

@@ -23,8 +23,7 @@ struct SortParameters {
 std::string encode_parameters(const SortParameters& parameters);
 SortParameters decode_sort_parameters(std::string_view bytes);
 
-/// What is to be known of a stream, or of a sample, without reading it: travels with the result
-/// message.
+/// What must be known of a stream or a sample without reading it: sent with the result message.
 struct SortSummary {
   std::uint64_t vertices = 0;
   std::uint64_t triangles = 0;
@@ -37,11 +36,11 @@ struct SortSummary {
 std::string encode_summary(const SortSummary& summary);
 SortSummary decode_sort_summary(std::string_view bytes, std::string_view what);
 
-/// Sorts a slab (the job's input) to a stream (Xiong et al. 2008, 4.1): the same bytes that the cut
-/// publishes when it sorts by itself.
+/// Sorts a slab (the job's input) to a stream (Xiong et al. 2008, 4.1), to the same bytes that the
+/// cut publishes when it sorts itself.
 JobOutput sort_to_stream(const Job& job, const JobContext& context);
 
-/// Takes a sample of a long stream (the job's input): a part, the same bytes that the cut
+/// Takes a sample of a long stream (the job's input): a part, with the same bytes that the cut
 /// publishes.
 JobOutput sample_stream(const Job& job, const JobContext& context);
 
