@@ -16,7 +16,7 @@
 namespace meshfarm {
 namespace {
 
-/// Puts together what the bundles hold of a part.
+/// Assembles what the bundles hold of a part.
 class ShareOfBlocks {
  public:
   ShareOfBlocks(const Stage& stage, const BundlesOfMesh& bundles, std::uint32_t part)
@@ -37,7 +37,7 @@ class ShareOfBlocks {
     }
   }
 
-  /// Before anything is welded.
+  /// Call this before anything is welded.
   void keep_sheets_apart() {
     share_.apart =
         find_apart(share_, part_, outer_, [&](SharePlace vertex) { return position_of(vertex); });
@@ -45,7 +45,7 @@ class ShareOfBlocks {
 
   MeshShare take() { return std::move(share_); }
   std::uint64_t points_left_out() const { return points_left_out_; }
-  /// Vertices of a crowd, and the first of it.
+  /// Maps vertices of a crowd to its first vertex.
   const std::map<std::uint32_t, std::uint32_t>& same() const { return same_; }
 
  private:
@@ -88,7 +88,7 @@ class ShareOfBlocks {
     check_corners();
   }
 
-  /// What is one vertex was that within its block alone.
+  /// Joins the vertices of a crowd across blocks: each block has joined only its own.
   void join_crowds() {
     const auto joined = [&](std::uint32_t place) {
       const auto found = same_.find(place);
@@ -112,7 +112,7 @@ class ShareOfBlocks {
     if (!is_there) throw DataError("a bundle has a triangle of a vertex that is not there");
   }
 
-  /// Of another part's vertex: asked for where surfaces touch at a seam.
+  /// The position of another part's vertex: needed where surfaces touch at a seam.
   Vec3 position_of(SharePlace vertex) {
     BlockPlaces& places = places_of_all();
     if (vertex.share >= places.parts()) throw DataError("a boundary triangle of no part");
@@ -128,7 +128,7 @@ class ShareOfBlocks {
     throw DataError("a bundle has a triangle of a vertex that is not there");
   }
 
-  /// Those that were told of are enough for this part only.
+  /// The places of all parts: places_ may only be complete for this part.
   BlockPlaces& places_of_all() {
     if (!places_of_all_) {
       const TriangleBundleRef& any = bundles_.triangles.at(0);
@@ -151,7 +151,7 @@ class ShareOfBlocks {
   std::map<std::pair<std::size_t, std::uint32_t>, std::vector<Vec3>> others_;
 };
 
-/// Those of a crowd are known by all of their places.
+/// Adds all places of a crowd under the crowd's number.
 void add_same(const std::map<std::uint32_t, std::uint32_t>& same, BoundaryNumbers& numbers) {
   const std::vector<std::uint32_t> places = numbers.places;
   const std::size_t known = places.size();

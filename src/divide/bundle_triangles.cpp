@@ -11,10 +11,10 @@
 namespace meshfarm {
 namespace {
 
-/// A slice has at least so many triangles.
+/// Minimum number of triangles in a slice.
 constexpr std::uint64_t k_least_slice = std::uint64_t{1} << 16;
 
-/// Finds where the corners of triangles lie. They are asked for first, and answered together, so
+/// Finds the places of triangle corners. They are first asked for, and then answered together, so
 /// that each block of vertices that they touch is read once.
 class CornerJoin {
  public:
@@ -25,14 +25,15 @@ class CornerJoin {
         places_(stage, bundles, parts),
         touched_(bundles.size(), false) {}
 
-  /// Stands for the corner until it is answered.
+  /// Returns a placeholder for the corner until it is answered.
   SharePlace ask(std::uint64_t vertex) {
     if (vertex - asked_.first >= asked_.count) touch(vertex);
     return {k_unanswered | asked_block_, static_cast<std::uint32_t>(vertex - asked_.first)};
   }
 
-  /// To find the places of the vertices of all blocks that were touched costs less than to look up
-  /// so many triangles. Few are enough where the file has locality, none are where it has not.
+  /// From this many triangles on, finding the places of the vertices of all touched blocks costs
+  /// less than looking up the triangles. Few suffice if the file has locality, none do if it has
+  /// not.
   std::uint64_t worth_answering() const { return std::max(k_least_slice, touched_vertices_ / 2); }
 
   void answer(std::span<SeamTriangle> triangles) {
@@ -90,15 +91,15 @@ class CornerJoin {
   std::span<const VertexBundleRef> bundles_;
   std::uint64_t vertices_;
   BlockPlaces places_;
-  std::vector<bool> touched_;  // blocks, by what was asked
+  std::vector<bool> touched_;  // blocks, by the corners asked for
   std::uint64_t touched_vertices_ = 0;
-  BlockRange asked_{};  // the vertices of the block that was asked for last
+  BlockRange asked_{};  // the vertices of the block asked for last
   std::uint32_t asked_block_ = 0;
   std::vector<SharePlace> known_;  // of the vertices of a block
   std::uint32_t known_block_ = UINT32_MAX;
 };
 
-/// As MeshShares::add_triangles() has it.
+/// Scatters like MeshShares::add_triangles().
 class TriangleScatter {
  public:
   explicit TriangleScatter(std::uint32_t parts)
@@ -156,7 +157,7 @@ class TriangleScatter {
     return {reinterpret_cast<const char*>(values.data()), values.size() * sizeof(T)};
   }
 
-  /// To each of its parts, once.
+  /// Adds the triangle to each of its parts, once.
   void add_seam(const SeamTriangle& t) {
     ++bundle_.seam_triangles;
     seams_[groups_.of(t[0].share, t[1].share, t[2].share)].push_back(t);

@@ -19,7 +19,8 @@
 
 namespace {
 
-/// What rand() would give if no other thread called it: glibc's own numbers, of each thread.
+/// The numbers that rand() would give if no other thread called it: glibc's own, separately per
+/// thread.
 class OwnRandom {
  public:
   OwnRandom() { ::initstate_r(1, state_, sizeof state_, &data_); }
@@ -31,7 +32,7 @@ class OwnRandom {
   }
 
  private:
-  char state_[128] = {};  // as rand() has
+  char state_[128] = {};  // the size that rand() uses
   random_data data_ = {};
 };
 
@@ -39,9 +40,9 @@ thread_local OwnRandom own_random;
 
 }  // namespace
 
-// METIS draws from rand(), which belongs to the whole process, and so does the thread of ZeroMQ
-// that connects again to a ventilator or a sink that is gone: a partition made meanwhile would be
-// another one. These come before those of the C library, for shared libraries, too.
+// METIS draws from rand(), which belongs to the whole process. So does ZeroMQ's thread that
+// reconnects to a lost ventilator or sink: a partition made meanwhile would differ. These functions
+// take precedence over those of the C library, also for shared libraries.
 extern "C" __attribute__((visibility("default"))) int rand() noexcept {
   return own_random.next();
 }
@@ -55,7 +56,7 @@ extern "C" __attribute__((visibility("default"))) void srand(unsigned number) no
 namespace meshfarm {
 namespace {
 
-/// Where a cell is in its grid.
+/// The place of a cell in its grid.
 std::uint64_t place_of(const Cell& cell, std::span<const unsigned> grid_bits) {
   const std::uint64_t grid = cell.key >> CellTree::k_index_bits;
   if (grid >= grid_bits.size()) return cell.key;
@@ -63,7 +64,7 @@ std::uint64_t place_of(const Cell& cell, std::span<const unsigned> grid_bits) {
   return grid << CellTree::k_index_bits | z << 24 | y << 12 | x;
 }
 
-/// METIS adds all weights up in 32 bits: large ones are scaled down together.
+/// METIS sums up all weights in 32 bits: large ones are scaled down together.
 std::vector<std::int32_t> scaled_weights(std::span<const Cell> cells) {
   std::uint64_t total = 0;
   for (const Cell& cell : cells) total += cell.vertices;
@@ -78,13 +79,13 @@ std::vector<std::int32_t> scaled_weights(std::span<const Cell> cells) {
   return weights;
 }
 
-/// Joins each cell to its neighbours, both ways, each pair once.
+/// Joins each cell to its neighbours, in both directions, each pair once.
 WeightedGraph graph_of(std::span<const Cell> cells, const CellGraphOptions& options) {
   const std::size_t k = std::min<std::size_t>(options.neighbours, cells.size());
   const std::vector<std::uint32_t> neighbours =
       cell_neighbours(cells, options.grid_bits, k, options.threads);
   const auto of = [&](std::size_t cell) { return std::span(neighbours).subspan(cell * k, k); };
-  // Those that are neighbours of each other are joined by the first of both.
+  // Mutual neighbours are joined by the first of both.
   std::vector<std::uint8_t> joins(neighbours.size(), 0);
   const auto for_pairs = [&](const auto& take) {
     for (std::size_t i = 0; i < neighbours.size(); ++i) {
@@ -116,7 +117,8 @@ WeightedGraph graph_of(std::span<const Cell> cells, const CellGraphOptions& opti
 
 enum class Metis : std::uint8_t { recursive, k_way };
 
-/// METIS numbers the parts along a recursive bisection, k-way too: that is what it begins with.
+/// METIS numbers the parts along a recursive bisection, even in its k-way scheme, which starts with
+/// one.
 std::vector<std::int32_t> run_metis(WeightedGraph& graph, idx_t parts, Metis scheme) {
   static_assert(std::is_same_v<idx_t, std::int32_t>);
   idx_t options[METIS_NOPTIONS];
@@ -139,13 +141,13 @@ std::vector<std::int32_t> run_metis(WeightedGraph& graph, idx_t parts, Metis sch
 }
 
 /// METIS divides a coarser graph, and the borders of its parts are refined on each finer one. Its
-/// own k-way scheme is the same, but divides the coarsest graph four times over, which is most of
-/// its time; parts have as much boundary (-4 to +5 % at 96 parts).
+/// own k-way scheme does the same, but divides the coarsest graph four times, which takes most of
+/// its time; the parts have about the same boundary (-4 to +5 % at 96 parts).
 std::vector<std::int32_t> divide_multilevel(WeightedGraph cells, std::int32_t parts) {
   constexpr std::size_t k_of_part = 60;       // nodes of the coarsest graph...
   constexpr std::size_t k_of_many = 30;       // ...if these are more than the next
-  constexpr std::size_t k_coarsest = 14'400;  // METIS divides so many in 20 ms
-  constexpr std::int64_t k_of_heaviest = 12;  // a part has at least so many nodes
+  constexpr std::size_t k_coarsest = 14'400;  // METIS divides this many in 20 ms
+  constexpr std::int64_t k_of_heaviest = 12;  // a part has at least this many nodes
   const std::int64_t all =
       std::accumulate(cells.weights.begin(), cells.weights.end(), std::int64_t{0});
   const RefineOptions refine{.parts = parts, .heaviest = all * 103 / (std::int64_t{100} * parts)};
@@ -153,7 +155,7 @@ std::vector<std::int32_t> divide_multilevel(WeightedGraph cells, std::int32_t pa
   const auto many = static_cast<std::size_t>(parts);
   const std::size_t coarsest = std::max(k_of_many * many, std::min(k_of_part * many, k_coarsest));
 
-  std::vector<Coarsening> levels;  // each with the graph that the next is made of
+  std::vector<Coarsening> levels;  // each with the graph that the next one is made from
   levels.push_back({std::move(cells), {}});
   while (levels.back().graph.nodes() > coarsest) {
     Coarsening next = coarsened(levels.back().graph, all / (k_of_heaviest * parts));
@@ -172,8 +174,8 @@ std::vector<std::int32_t> divide_multilevel(WeightedGraph cells, std::int32_t pa
   }
 }
 
-/// Few parts come out better balanced by recursive bisection; the more there are, the more time do
-/// fewer nodes save.
+/// Few parts are better balanced by recursive bisection; the more parts, the more time a coarser
+/// graph saves.
 std::vector<std::int32_t> divided(WeightedGraph cells, std::int32_t parts) {
   if (parts <= 8) return run_metis(cells, parts, Metis::recursive);
   if (parts <= 32) return run_metis(cells, parts, Metis::k_way);
@@ -192,7 +194,7 @@ class Bisection {
   std::vector<std::int32_t> take() { return std::move(part_); }
 
  private:
-  /// `some` has at least as many cells as there are to be parts of it.
+  /// `some` has at least as many cells as parts are to be made of it.
   void divide(std::span<std::uint32_t> some, std::int32_t parts) {
     if (parts == 1) {
       for (const std::uint32_t cell : some) part_[cell] = next_;
@@ -219,7 +221,7 @@ class Bisection {
     });
   }
 
-  /// How many of the cells weigh about `share` of all.
+  /// How many of the cells, from the first on, weigh about `share` of all.
   std::size_t split_of(std::span<const std::uint32_t> some, double share) const {
     double all = 0;
     for (const std::uint32_t cell : some) all += static_cast<double>(cells_[cell].vertices);
@@ -245,7 +247,7 @@ std::uint64_t heaviest(std::span<const Cell> cells, const std::vector<std::int32
   return *std::max_element(weights.begin(), weights.end());
 }
 
-/// METIS aims at even parts but promises none.
+/// METIS aims at even parts but does not guarantee them.
 std::vector<std::int32_t> balanced(std::vector<std::int32_t> part, std::span<const Cell> cells,
                                    std::int32_t parts) {
   constexpr double k_most = 1.1;  // times the mean
@@ -257,7 +259,7 @@ std::vector<std::int32_t> balanced(std::vector<std::int32_t> part, std::span<con
   return heaviest(cells, other, parts) < found ? other : part;
 }
 
-/// Without gaps, the order kept.
+/// Renumbers the parts without gaps, in the same order.
 std::vector<std::uint32_t> without_gaps(const std::vector<std::int32_t>& part, std::int32_t parts) {
   std::vector<std::uint32_t> number(static_cast<std::size_t>(parts), 0);
   for (const std::int32_t p : part) number[p] = 1;

@@ -11,9 +11,10 @@
 namespace meshfarm {
 namespace {
 
-/// Parts of 200 to 1000 cells each: fine enough for even sizes and smooth seams. Many parts have
-/// about 40 to 160, as one process divides the cells of all: the Moon in 480 or 1,440 parts has 1 %
-/// more boundary than with four times as many cells, which take four times as long.
+/// Parts have 200 to 1000 cells each: fine enough for even sizes and smooth seams. If there are
+/// many parts, they have about 40 to 160, as one process divides all cells: with these, the Moon in
+/// 480 or 1,440 parts has 1 % more boundary than with four times as many cells, which take four
+/// times as long.
 unsigned grid_bits(std::uint32_t parts) {
   if (parts == 1) return 0;
   constexpr std::uint64_t k_of_few = 512;

@@ -15,19 +15,20 @@ namespace meshfarm {
 struct CellMapOptions {
   std::uint32_t parts = 1;
   Weld weld = Weld::exact;
-  unsigned threads = 0;  // 0: one a core. The parts do not depend on it.
+  unsigned threads = 0;  // 0: one per core. The parts do not depend on it.
 };
 
-/// Compact parts: cells that follow the vertices' density, divided by a partition of their graph.
+/// Compact parts: cells that follow the density of the vertices, grouped by partitioning their
+/// graph.
 class CellMap : public ShareMap {
  public:
   CellMap(const Box& box, const CellMapOptions& options);
-  /// What is known so far, for another process: while vertices are counted, for decode(); once they
-  /// are divided the places, for CellPlaces.
+  /// The current state, for another process: while vertices are counted, for decode(); once the
+  /// cells are divided, the places, for CellPlaces.
   std::string encode(CellTree::Which which) const;
-  /// Throws DataError for what encode() did not make of cells that are counted.
+  /// Throws DataError for anything but the encoding of cells being counted.
   static CellMap decode(std::string_view bytes, unsigned threads = 1);
-  /// Adds what a copy has counted.
+  /// Adds the counts of a copy.
   void join(CellMap other) { cells_.join(std::move(other.cells_)); }
   std::string_view name() const override { return "cells"; }
   void count(std::span<const Vec3> batch) override;

@@ -15,8 +15,8 @@ namespace {
 
 constexpr std::size_t k_chunk = 2048;  // cells that a thread takes at once
 
-/// Finds the cells beside a cell in the row of keys. To be asked about cells in ascending order:
-/// it goes along each of the nine rows once.
+/// Finds the cells beside a cell in the sorted keys. Call it for cells in ascending order: it goes
+/// along each of the nine rows once.
 class CellsBeside {
  public:
   CellsBeside(std::span<const std::uint64_t> keys, std::span<const unsigned> grid_bits,
@@ -26,7 +26,7 @@ class CellsBeside {
     if (first == 0) at_.fill(0);
   }
 
-  /// Shows each, but not the cell itself.
+  /// Shows each of them, without the cell itself.
   template <typename Show>
   void show(std::size_t cell, const Show& show) {
     const std::uint64_t key = keys_[cell];

@@ -13,7 +13,7 @@ namespace meshfarm {
 KeyTable::KeyTable(std::span<const std::uint64_t> keys, std::size_t grids)
     : keys_(keys), grids_(grids) {
   const auto grid_of = [&](std::size_t i) { return keys[i] >> CellTree::k_index_bits; };
-  starts_.reserve(2 * keys.size() + grids);  // at most two rows a key, and an end
+  starts_.reserve(2 * keys.size() + grids);  // at most two rows per key, and an end
   std::size_t begin = 0;
   while (begin < keys.size()) {
     std::size_t end = begin + 1;
@@ -23,7 +23,7 @@ KeyTable::KeyTable(std::span<const std::uint64_t> keys, std::size_t grids)
     while (last_index >> grid.shift >= 2 * (end - begin)) ++grid.shift;
     grid.first = starts_.size();
     grid.rows = static_cast<std::size_t>(last_index >> grid.shift) + 1;
-    std::size_t i = begin;  // where the row begins; an empty one, too, at the next key
+    std::size_t i = begin;  // where the row begins; an empty row begins at the next key, too
     for (std::size_t row = 0; row <= grid.rows; ++row) {
       while (i < end && (keys[i] & CellTree::k_index_mask) >> grid.shift < row) ++i;
       starts_.push_back(static_cast<std::uint32_t>(i));

@@ -14,23 +14,23 @@
 
 namespace meshfarm {
 
-/// Finds a key in an increasing list of keys of cells. For each grid, a table tells where the keys
-/// with the same highest bits of the index begin. It is filled in order; a hash table would miss
-/// the cache once a key.
+/// Finds a key in an ascending list of cell keys. For each grid, a table tells where the keys with
+/// the same highest bits of the index begin. It is filled in order; a hash table would have a cache
+/// miss per key.
 class KeyTable {
  public:
   static constexpr std::uint32_t k_none = std::numeric_limits<std::uint32_t>::max();
 
-  /// `keys`: of cells, increasing; must outlive the table.
+  /// `keys`: of cells, ascending; must outlive the table.
   KeyTable(std::span<const std::uint64_t> keys, std::size_t grids);
-  /// Where the key stands in the list, or k_none.
+  /// The position of the key in the list, or k_none.
   std::uint32_t find(std::uint64_t key) const;
 
  private:
   struct Grid {
     std::size_t first = 0;  // in starts_
     std::size_t rows = 0;
-    unsigned shift = 0;  // of an index, to its row
+    unsigned shift = 0;  // from an index to its row
   };
 
   std::span<const std::uint64_t> keys_;
@@ -38,15 +38,15 @@ class KeyTable {
   std::vector<std::uint32_t> starts_;
 };
 
-/// The cells of a CellMap once they are divided, as encode() tells their places: only what finds
-/// the part of a vertex. About 30 bytes a cell, beside the file's 17.
+/// The cells of a CellMap after dividing them, from the places in encode(): only what is needed to
+/// find the part of a vertex. About 30 bytes per cell, besides the file's 17.
 class CellPlaces {
  public:
-  /// Throws DataError for what CellMap::encode() did not make of places.
+  /// Throws DataError for anything but places encoded by CellMap::encode().
   static CellPlaces decode(std::string_view bytes);
-  CellPlaces(const CellPlaces&) = delete;  // the tables look into the keys
+  CellPlaces(const CellPlaces&) = delete;  // the tables refer to the keys
   CellPlaces& operator=(const CellPlaces&) = delete;
-  /// As CellMap::find_targets(). Throws DataError for a vertex that was not counted.
+  /// Like CellMap::find_targets(). Throws DataError for a vertex that was not counted.
   void find_targets(std::span<const Vec3> batch, ShareTargets& targets) const;
 
  private:

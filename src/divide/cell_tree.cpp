@@ -12,9 +12,9 @@ namespace {
 
 constexpr std::size_t k_first_slots = 1024;
 constexpr unsigned k_most_bits = 12;
-constexpr std::uint64_t k_cells_a_part = 32;      // at least so many, so that sizes come out even
-constexpr std::uint64_t k_cells_of_a_heavy = 16;  // that one is divided into, of a surface
-constexpr unsigned k_most_scans = 32;             // numbers so far apart are no mesh
+constexpr std::uint64_t k_cells_a_part = 32;      // at least, so that sizes come out even
+constexpr std::uint64_t k_cells_of_a_heavy = 16;  // into which a heavy cell of a surface is divided
+constexpr unsigned k_most_scans = 32;             // no mesh has numbers that need more
 constexpr std::size_t k_no_limit = std::numeric_limits<std::size_t>::max();
 
 /// The finaliser of splitmix64: spreads neighbouring indices over the table.
@@ -52,7 +52,7 @@ std::size_t CellTree::slot_of(std::uint64_t key) const {
   return slot;
 }
 
-/// The leaf that holds `p`, which lies in the cell `key`.
+/// The leaf that contains `p`, which lies in the cell `key`.
 CellTree::Leaf CellTree::descend(std::uint64_t key, Vec3 p) const {
   while (true) {
     const std::uint32_t entry = slots_[slot_of(key)];
@@ -104,8 +104,8 @@ void CellTree::hash_all(std::size_t slots) {
   }
 }
 
-/// Makes all grids of this scan coarser by the same factor. So the grids do not depend on which
-/// vertex made the cells too many.
+/// Coarsens all grids of this scan by the same factor, so that they do not depend on which vertex
+/// exceeded the limit of cells.
 void CellTree::coarsen() {
   ++coarsened_;
   bool can_again = false;
@@ -145,7 +145,7 @@ bool CellTree::refine() {
     heavy_ = std::max<std::uint64_t>(1, all / (k_cells_a_part * std::max(1U, options_.parts)));
     if (options_.parts <= 1) heavy_ = all;
   }
-  // By key, so that grids are numbered alike whatever the order of the vertices.
+  // By key, so that the numbering of grids does not depend on the order of the vertices.
   std::sort(cells_.begin(), cells_.end(),
             [](const Cell& a, const Cell& b) { return a.key < b.key; });
   const auto grids = static_cast<std::uint32_t>(grids_.size());
@@ -173,8 +173,8 @@ void CellTree::divide(Cell& cell) {
   grids_.emplace_back(cell.box, bits);
 }
 
-/// Deals the vertices of a heavy point out to cells of its own, in addition to the one it has.
-/// Their keys are past those of all grids: nobody looks for them, and they come last of the leaves.
+/// Deals the vertices of a heavy point out to its cell and additional ones. The keys of these are
+/// past those of all grids: nobody looks them up, and they are the last of the leaves.
 void CellTree::divide_points() {
   std::vector<Cell> more;
   for (Cell& cell : cells_) {

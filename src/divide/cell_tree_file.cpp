@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
 //
-// A tree of cells as it stands in files of jobs, version 2:
+// Encoding of a tree of cells in files of jobs, version 2:
 //   which u8 | first grid's bits u32 | parts u32 | weld u8 | most cells u64 | first new grid u32 |
 //   limit u64 | leaves u64 | heavy u64 | scans u32 | coarsened u32 | grids u32 x (corner 3 x f64 |
 //   cells a unit f64 | steps a unit f64 | bits u32) | cells u64 x (key u64 | vertices u64 | steps 3
@@ -45,7 +45,7 @@ Cell get_cell(ByteReader& in) {
   return cell;
 }
 
-/// A grid stands after that of the cell that it divides: so a search ends.
+/// A grid has a higher number than that of the cell that it divides, so a search ends.
 bool is_divided_by_later(std::uint64_t key, std::uint32_t grid) {
   return grid > key >> CellTree::k_index_bits;
 }
@@ -77,7 +77,7 @@ void CellTree::put(ByteWriter& out, Which which) const {
   }
 }
 
-/// All that stands between `which` and the cells.
+/// Everything between `which` and the cells.
 CellTree CellTree::get_head(ByteReader& in) {
   CellTreeOptions options;
   options.bits = in.get<std::uint32_t>();

@@ -1,15 +1,15 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
 //
-// How a mesh is divided, in whatever scheme, by scans of the input, each in order and through
-// bounded buffers:
-//   vertices    bounding box, and what a scheme wants to know of their order
-//   vertices    how many lie where -> shares of about equal size; once more, or a few times, where
-//               they are not spread as a surface is
+// How a mesh is divided, in any scheme: by scans of the input, each in order and through bounded
+// buffers:
+//   vertices    bounding box, and what a scheme needs to know of their order
+//   vertices    counts -> shares of about equal size; repeated once or a few times if vertices
+//               are not spread like those of a surface
 //   vertices    vertex map: share and place in it; positions to the share's bucket
-//   triangles   to the share's bucket, or, when two or three shares meet in one, to the boundary
-// Then each share is finished from its buckets by itself, on all cores, and the boundary region by
-// region.
+//   triangles   to the share's bucket, or, if corners are in two or three shares, to the boundary
+// Then each share is finished independently from its buckets, on all cores, and the boundary region
+// by region.
 #include <algorithm>
 #include <chrono>
 #include <filesystem>
@@ -169,7 +169,7 @@ class Cutter {
     manifest_.boundary = {boundary.publish(stage_)};
   }
 
-  /// What the input has beside its surface.
+  /// Everything in the input besides its surface.
   void stage_rest() {
     manifest_.labels = source_.info().labels;
     manifest_.uvs = source_.info().uvs;

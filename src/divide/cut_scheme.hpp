@@ -19,44 +19,44 @@
 
 namespace meshfarm {
 
-/// What a share has become in the stage.
+/// A share after staging.
 struct StagedShare : WeldCounts {
   PartEntry entry;
-  std::optional<PartEntry> sample;  // of a stream: without a name if it needs none
+  std::optional<PartEntry> sample;  // of a stream; without a name if it needs none
   BoundaryNumbers numbers;
   UvFacts uv_facts;
   std::uint64_t label_corners = 0;
 };
 
-/// What one way of dividing has of its own; all else is the cut's (cut.cpp).
+/// The scheme-specific steps of a cut; everything else is common (cut.cpp).
 class CutScheme {
  public:
-  /// For people.
+  /// For messages.
   struct Words {
     std::string_view work;    // "the cut"
-    std::string_view phases;  // what the names of phases begin with: "cut"
+    std::string_view phases;  // prefix of the names of phases: "cut"
     std::string_view shares;  // the phase that makes the shares: "parts"
   };
 
   virtual ~CutScheme() = default;
   virtual Words words() const = 0;
-  /// What has to look at all vertices in the order they come in, if anything.
+  /// Looks at all vertices in the order they come in; null if not needed.
   virtual OrderProbe* probe() { return nullptr; }
-  /// Which vertices go together, of a box and an input that the manifest tells of, which now tells
-  /// of the scheme too. Not settled.
+  /// The map from vertices to shares, for the box and the input in the manifest, to which the
+  /// scheme is added. The map is not settled yet.
   virtual std::unique_ptr<ShareMap> choose_map(Manifest& manifest) = 0;
-  /// What of so much memory that would hold the whole input may be used.
+  /// The memory to use for shares, given the memory that would hold the whole input.
   virtual std::uint64_t memory_for_shares(std::uint64_t all_bytes) const = 0;
-  /// That make shares; 0: one a core. `taken_bytes` are in use beside them.
+  /// Threads that make shares; 0: one per core. `taken_bytes` are in use besides them.
   virtual unsigned threads(std::uint64_t triangles, std::uint32_t shares,
                            std::uint64_t taken_bytes) const = 0;
-  /// From several threads: makes of a share what the stage holds, and publishes it.
+  /// Called from several threads: converts a share to its staged form, and publishes it.
   virtual StagedShare stage_share(MeshShare share, std::uint32_t number) const = 0;
-  /// Puts the boundary triangles of a region in the order in which they are staged.
+  /// Puts the boundary triangles of a region in the order for the stage.
   virtual void order_boundary(SharedTriangles& triangles) const = 0;
 };
 
-/// These refer to what they are given.
+/// These keep references to their arguments.
 std::unique_ptr<CutScheme> make_part_scheme(const MeshSource& source, const Stage& stage,
                                             const CutOptions& options);
 std::unique_ptr<CutScheme> make_stream_scheme(const MeshSource& source, const Stage& stage,

@@ -11,9 +11,9 @@
 namespace meshfarm {
 namespace {
 
-/// Of the surface that is measured to: they tell where to look first.
+/// Points of the surface that is measured to: they tell where to look first.
 constexpr std::uint64_t k_hints = 100'000;
-/// The first pass looks so many times as far as vertices lie apart.
+/// The first pass looks this many times the vertex spacing far.
 constexpr double k_near_in_spacings = 4;
 
 SurfaceSamples sampled(const DividedSurface& surface, std::uint64_t samples) {

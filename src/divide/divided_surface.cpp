@@ -22,15 +22,15 @@
 namespace meshfarm {
 namespace {
 
-/// Of the triangles between slabs so many are shown at a time.
+/// Number of triangles between slabs that are shown at a time.
 constexpr std::size_t k_between_at_once = 100'000;
 
-/// Smaller slabs would have more between them, which is read twice and more.
+/// Smaller slabs would have more triangles between them, which are read at least twice.
 constexpr std::uint64_t k_usual_slab = 2'000'000;
 
 struct Divided {
   std::uint32_t slabs = 0;
-  /// Whether many vertices at one point were made one, so that they do not make a slab too large.
+  /// Whether vertices at crowded points were merged, so that they do not make a slab too large.
   bool merges = false;
   std::unique_ptr<MeshShares> shares;
 };
@@ -169,7 +169,7 @@ class DividedSurface::Impl {
   VertexSurvey survey_;
   Sorting sorting_;
   Divided welded_;
-  std::optional<Divided> as_it_is_;  // where it is not welded_
+  std::optional<Divided> as_it_is_;  // null if the same as welded_
   std::uint64_t triangles_ = 0;
 };
 

@@ -19,7 +19,7 @@ UniformGrid::UniformGrid(const Box& box, unsigned bits) : lo_(box.lo), bits_(bit
 }
 
 std::uint64_t UniformGrid::cell_of(Vec3 p) const {
-  // Converted through a signed number: the CPU has an instruction for that.
+  // Converted through a signed number, as the CPU has an instruction for that.
   const auto last = static_cast<double>((std::int64_t{1} << bits_) - 1);
   const auto along = [&](double x, double lo) {
     double cell = (x - lo) * cells_per_unit_;

@@ -17,16 +17,16 @@ class UniformGrid {
   static constexpr unsigned k_max_bits = 20;
 
   UniformGrid(const Box& box, unsigned bits);
-  /// The linear index of the cell that holds `p`; points outside belong to the nearest cell.
+  /// The linear index of the cell that contains `p`; points outside belong to the nearest cell.
   std::uint64_t cell_of(Vec3 p) const;
   unsigned bits() const { return bits_; }
-  /// Joins eight cells to one. `bits` was above 0.
+  /// Joins each eight cells to one. `bits` must be above 0.
   void coarsen();
-  /// Of the cell `finer` of the grid before it was coarsened, the cell that holds it now.
+  /// The cell that now contains the cell `finer` of the grid before it was coarsened.
   std::uint64_t coarser_cell(std::uint64_t finer) const;
 
-  /// Where `p` lies, in whole steps from the lowest corner: 2^31 steps are the longest side,
-  /// however coarse the cells are. Sums of these do not depend on the order of the points.
+  /// The position of `p` in whole steps from the lowest corner: the longest side is 2^31 steps,
+  /// however coarse the cells are. Sums of steps do not depend on the order of the points.
   std::array<std::uint64_t, 3> steps_to(Vec3 p) const {
     constexpr double k_most = 4'294'967'295.0;
     const auto along = [this](double x, double lo) {
@@ -36,7 +36,7 @@ class UniformGrid {
     };
     return {along(p.x, lo_.x), along(p.y, lo_.y), along(p.z, lo_.z)};
   }
-  /// The point that so many steps lead to, on the average of `points`.
+  /// The average of `points` points whose steps sum up to `steps`.
   Vec3 mean_of(const std::array<std::uint64_t, 3>& steps, std::uint64_t points) const;
 
   void put(ByteWriter& out) const;

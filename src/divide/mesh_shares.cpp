@@ -14,7 +14,7 @@
 namespace meshfarm {
 namespace {
 
-constexpr std::uint64_t k_packed_bytes = 8;  // of a triangle, some of them escaped
+constexpr std::uint64_t k_packed_bytes = 8;  // per triangle; some are escaped
 constexpr const char* k_changed = "the input has other vertices than before: it was changed";
 
 }  // namespace
@@ -104,12 +104,12 @@ void MeshShares::add_vertices(const VertexView& batch, std::span<const std::uint
   }
   forget_pages(batch.size());
   if (added_ < map.size()) return;
-  vertices_.finish();  // its buffers are of no more use
+  vertices_.finish();  // its buffers are no longer needed
   appearances_.finish();
 }
 
-/// Unmaps the pages of the scratch file from time to time. What they hold stays in the page cache
-/// as long as there is room for it, which counts for nobody's memory.
+/// Unmaps the pages of the scratch file from time to time. Their contents stay in the page cache as
+/// long as there is room, which is not counted as anybody's memory.
 void MeshShares::forget_pages(std::size_t added) {
   constexpr std::size_t k_seldom = std::size_t{8} << 20;
   since_forgotten_ += added;
@@ -132,7 +132,7 @@ void MeshShares::add_triangles(const TriangleView& triangles) {
   const std::span<const WideTriangle> batch = triangles.corners;
   if (added_ < map_.as_span<const SharePlace>().size()) throw DataError(k_changed);
   const std::span<const SharePlace> map = map_.as_span<const SharePlace>();
-  // Where the input has no locality each look-up misses the caches: several are kept under way.
+  // If the input has no locality, each look-up misses the caches: several are kept in flight.
   constexpr std::size_t k_ahead = 16;
   for (std::size_t i = 0; i < batch.size(); ++i) {
     if (i + k_ahead < batch.size()) {
@@ -157,7 +157,7 @@ void MeshShares::add_triangles(const TriangleView& triangles) {
   forget_pages(batch.size());
 }
 
-/// To each of its shares, once.
+/// Adds the triangle to each of its shares, once.
 void MeshShares::put_seam_triangle(const SeamTriangle& t, const TriangleColumnsView& columns,
                                    std::size_t place) {
   if (regions_) {

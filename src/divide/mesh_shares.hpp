@@ -21,7 +21,7 @@
 
 namespace meshfarm {
 
-/// A vertex by its share and its place there.
+/// A vertex, given by its share and its place in it.
 struct SharePlace {
   std::uint32_t share = 0;
   std::uint32_t place = 0;
@@ -35,66 +35,69 @@ struct Seams {
   TriangleColumns columns;
 };
 
-/// Divides a mesh while it is scanned, in bounded memory. The caller assigns each vertex to a
-/// share. A triangle goes to the share of its vertices, or to the boundary if they are in several.
+/// Divides a mesh in bounded memory while it is scanned. The caller assigns each vertex to a share.
+/// A triangle goes to the share of its vertices, or to the boundary if they are in several shares.
 /// The map from a vertex to its share and place is a mapped scratch file, of which few pages stay
-/// mapped where the input has locality, or memory too.
+/// mapped if the input has locality, or memory as well.
 class MeshShares {
  public:
-  /// What will be asked for of the boundary triangles: seam() alone, or region() too.
+  /// Which of the boundary triangles will be asked for: seam() only, or region() too.
   enum class SeamsFor : std::uint8_t { shares, shares_and_regions };
   struct Options {
     std::filesystem::path folder;  // for scratch files
     std::uint32_t shares = 0;
-    std::uint64_t vertices = 0;  // exactly as many are added
+    std::uint64_t vertices = 0;  // exactly this many are added
     PositionType positions = PositionType::float32;
-    std::uint64_t memory_bytes = 0;  // of what is shared out; the rest goes to scratch files
+    std::uint64_t memory_bytes = 0;  // for the shares; the rest goes to scratch files
     SeamsFor seams = SeamsFor::shares_and_regions;
     bool appearances = false;     // whether vertices have any
     ColumnSet columns = {};       // of the triangles
-    std::uint64_t triangles = 0;  // about how many there are
+    std::uint64_t triangles = 0;  // approximate number
   };
   explicit MeshShares(const Options& options);
 
-  /// The share of vertices that are left out, and with them the triangles that use one.
+  /// The share of vertices that are left out, together with all triangles that use them.
   static constexpr std::uint32_t k_no_share = UINT32_MAX;
   static constexpr std::uint32_t k_no_point = UINT32_MAX;
-  /// The next vertices, and the share of each. Where `points` are given, those of one number lie at
-  /// one point, in one share, and become one vertex here already: so a share stays small whatever
-  /// many there are. Throws DataError if a share gets 2^32 vertices.
+  /// Adds the next vertices, with the share of each. If `points` are given, those with the same
+  /// number lie at one point, in one share, and are merged immediately, so a share stays small
+  /// however many there are. Throws DataError if a share gets 2^32 vertices.
   void add_vertices(const VertexView& batch, std::span<const std::uint32_t> shares,
                     std::span<const std::uint32_t> points = {});
-  /// After all vertices. Triangles whose corners are all one vertex are left out: there may be any
-  /// number of them at one point, as in a file with a hole of zeros.
+  /// Call this after all vertices. Triangles whose corners are all one vertex are left out: there
+  /// may be any number of them at one point, as in a file with a hole of zeros.
   void add_triangles(const TriangleView& triangles);
-  /// After all triangles; read() is then safe from several threads.
+  /// Call this after all triangles; read() is then safe from several threads.
   void finish();
-  /// For exact welding with what stays apart at the seams, where a share alone does not have all
-  /// triangles of a vertex: decided by all of them, so the same in whatever shares.
+  /// For exact welding the share includes what stays apart at the seams, where a share alone does
+  /// not have all triangles of a vertex: this is decided from all of them, so it is the same for
+  /// any shares.
   MeshShare read(std::uint32_t share, Weld weld) const;
 
-  /// The boundary triangles that have a corner in this share, in file order; as safe as read().
+  /// The boundary triangles that have a corner in this share, in file order; thread-safe like
+  /// read().
   std::vector<SeamTriangle> seam(std::uint32_t share) const;
-  /// The boundary triangles of a region of the shares (regions.hpp); as safe as read(). Not for
-  /// SeamsFor::shares.
+  /// The boundary triangles of a region of the shares (regions.hpp); thread-safe like read(). Not
+  /// for SeamsFor::shares.
   Seams region(std::uint32_t region) const;
 
-  /// What buffers took until finish(): the process may keep it in pieces that are of little use.
+  /// The size of the buffers before finish(): the process may keep that memory in fragments of
+  /// little use.
   std::uint64_t buffer_bytes() const {
     const std::uint64_t files = 3U + (columns_.labels ? 1U : 0U) + (columns_.uvs ? 1U : 0U);
     return files * BucketFile::k_all_buffers_bytes;
   }
-  /// Vertices that became one with an earlier one.
+  /// Vertices that were merged into an earlier one.
   std::uint64_t merged() const { return merged_; }
   /// Triangles that used a vertex that was left out.
   std::uint64_t dropped() const { return dropped_; }
   /// Triangles whose corners were all one vertex.
   std::uint64_t points_left_out() const { return points_left_out_; }
-  /// The memory that holds all of a usual mesh, whatever options.memory_bytes says.
+  /// The memory for a typical mesh as a whole, regardless of options.memory_bytes.
   static std::uint64_t memory_for(const Options& options);
 
  private:
-  /// How the memory is divided; nothing for the map where it does not fit as a whole.
+  /// How the memory is divided; 0 for the map if it does not fit as a whole.
   struct Memory {
     explicit Memory(const Options& options);
     std::uint64_t map = 0;
@@ -104,7 +107,7 @@ class MeshShares {
     std::uint64_t uvs = 0;
     std::uint64_t triangles = 0;
   };
-  /// What the vertices of a point became, and the least of their appearances.
+  /// The vertex that a point's vertices became, and the least of their appearances.
   struct PointVertex {
     SharePlace place;
     Appearance least{};
@@ -136,7 +139,7 @@ class MeshShares {
   BucketFile region_seams_;
   BucketFile region_labels_;
   BucketFile region_uvs_;
-  std::vector<std::uint64_t> next_;  // place in each share
+  std::vector<std::uint64_t> next_;  // next place in each share
   std::unordered_map<std::uint32_t, PointVertex> points_;
   std::uint64_t added_ = 0;
   std::uint64_t merged_ = 0;

@@ -13,7 +13,7 @@
 namespace meshfarm {
 namespace {
 
-/// Replaces each corner by its representative; drops triangles that lose a corner by it.
+/// Replaces each corner by its representative; drops triangles that become degenerate.
 std::uint64_t merge_corners(Mesh& mesh, const std::vector<std::uint32_t>& representative) {
   bool any_lost = false;
   for (Triangle& t : mesh.triangles) {
@@ -27,8 +27,8 @@ std::uint64_t merge_corners(Mesh& mesh, const std::vector<std::uint32_t>& repres
   });
 }
 
-/// Numbers the representatives that are used: boundary first, each group in raw order.
-/// Returns the number of boundary vertices.
+/// Numbers the used representatives: boundary first, each group in raw order. Returns the number of
+/// boundary vertices.
 std::uint32_t number_vertices(const std::vector<Triangle>& triangles,
                               const std::vector<std::uint32_t>& boundary_raw,
                               const std::vector<std::uint32_t>& representative,
@@ -54,7 +54,7 @@ std::uint32_t number_vertices(const std::vector<Triangle>& triangles,
 BuiltPart build_part(MeshShare raw, Weld weld_mode) {
   BuiltPart built;
   std::vector<std::uint32_t> representative;
-  std::vector<std::uint32_t> point;  // as it, before any were taken apart
+  std::vector<std::uint32_t> point;  // like representative, before any were taken apart
   if (weld_mode == Weld::exact) {
     WeldResult welded = weld(raw.positions);
     if (!raw.apart.empty()) point = welded.first;
@@ -68,7 +68,7 @@ BuiltPart build_part(MeshShare raw, Weld weld_mode) {
   mesh.triangles = std::move(raw.triangles);
   mesh.columns = std::move(raw.columns);
   built.dropped_degenerate = merge_corners(mesh, representative);
-  // Where nothing was welded only these are known.
+  // If nothing was welded, only the dropped triangles are known.
   built.coincident_corners = std::max(built.coincident_corners, built.dropped_degenerate);
 
   built.boundary.places = boundary_places(std::move(raw.boundary));
@@ -80,7 +80,7 @@ BuiltPart build_part(MeshShare raw, Weld weld_mode) {
       number_vertices(mesh.triangles, built.boundary.places, representative, number);
   const auto used = number.size() -
                     static_cast<std::size_t>(std::count(number.begin(), number.end(), k_left_out));
-  // Of vertices that become one the least appearance counts, whatever their order.
+  // Of merged vertices the least appearance counts, whatever their order.
   for (std::size_t i = 0; i < raw.appearances.size(); ++i) {
     Appearance& of_one = raw.appearances[representative[i]];
     of_one = std::min(of_one, raw.appearances[i]);

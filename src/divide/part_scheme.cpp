@@ -72,7 +72,7 @@ class PartScheme : public CutScheme {
     return staged;
   }
 
-  /// That of the input.
+  /// The order of the input.
   void order_boundary(SharedTriangles&) const override {}
 
  private:

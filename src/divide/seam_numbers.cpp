@@ -56,7 +56,7 @@ SeamNumbers::Loaded& SeamNumbers::of(std::uint32_t share) {
   return *loaded;
 }
 
-/// Neighbours in the file mostly have the same vertices, or the next.
+/// Neighbours in the file mostly have the same vertices, or the next ones.
 std::size_t SeamNumbers::Loaded::find(std::uint32_t place) {
   constexpr std::size_t k_looked_at = 4;
   const std::vector<std::uint32_t>& places = numbers.places;

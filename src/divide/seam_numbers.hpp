@@ -15,30 +15,30 @@
 
 namespace meshfarm {
 
-/// Triangles between shares by final numbers; those that have lost a corner are left out.
+/// Triangles between shares with final vertex numbers; those that lost a corner are left out.
 struct SharedTriangles {
   std::vector<BoundaryTriangle> triangles;
   TriangleColumns columns;       // of these
-  std::uint64_t degenerate = 0;  // that were left out
+  std::uint64_t degenerate = 0;  // left out
   std::uint64_t coincident = 0;  // with two corners at one point, left out or not
 };
 
-/// Gives triangles between shares their final numbers. Those of a share are loaded when they are
-/// first needed.
+/// Gives triangles between shares their final numbers. The numbers of a share are loaded when they
+/// are first needed.
 class SeamNumbers {
  public:
   using Load = std::function<BoundaryNumbers(std::uint32_t share)>;
   SeamNumbers(std::uint32_t shares, Load load);
 
-  /// The order kept. Throws DataError for a corner that has no number.
+  /// Keeps the order. Throws DataError for a corner that has no number.
   SharedTriangles number(const Seams& seams);
-  /// Those that were not needed since the last call.
+  /// Unloads the shares not needed since the last call.
   void forget_unused();
 
  private:
   struct Loaded {
     BoundaryNumbers numbers;
-    std::size_t last = 0;  // found
+    std::size_t last = 0;  // last index found
     bool used = false;
     std::size_t find(std::uint32_t place);
   };
@@ -46,7 +46,7 @@ class SeamNumbers {
 
   Load load_;
   std::vector<std::unique_ptr<Loaded>> loaded_;  // by share
-  std::vector<std::uint32_t> shares_;            // that are loaded
+  std::vector<std::uint32_t> shares_;            // the loaded ones
 };
 
 }  // namespace meshfarm

@@ -15,13 +15,13 @@ namespace {
 
 constexpr std::uint32_t k_no_vertex = UINT32_MAX;
 
-/// A cheap hash for what is only to leave most vertices out; its high bits are the better ones.
+/// A cheap hash for filtering out most vertices; its high bits are the better ones.
 std::uint64_t quick_hash_of(Vec3 position) {
   const PlaceKey key(position);
   return key.x * 0x9e3779b97f4a7c15U + key.y * 0xd6e8feb86659fd93U + key.z * 0xa0761d6478bd642fU;
 }
 
-/// The boundary vertices and all others at their points, ascending, and a few more.
+/// The boundary vertices and all others at their points, ascending, with a few false positives.
 std::vector<std::uint32_t> near_boundary(const MeshShare& share) {
   const int shift = 64 - static_cast<int>(std::bit_width(share.boundary.size() * 16));
   std::vector<bool> hashes(std::size_t{1} << (64 - shift), false);
@@ -34,7 +34,7 @@ std::vector<std::uint32_t> near_boundary(const MeshShare& share) {
   return near;
 }
 
-/// Vertices of the share with the same point as others, some of them boundary vertices.
+/// Vertices at points that several vertices share, among them a boundary vertex.
 class Twins {
  public:
   explicit Twins(const MeshShare& share) : share_(share) { find(); }
@@ -42,7 +42,7 @@ class Twins {
   bool empty() const { return vertices_.empty(); }
   bool has(std::uint32_t place) const { return index_[place] != k_no_vertex; }
 
-  /// Keeps those of the points where each vertex has the triangles that a closed fan takes.
+  /// Keeps points whose vertices all have enough triangles for a closed fan.
   void keep_fans(std::uint32_t number, std::span<const SeamTriangle> outer) {
     constexpr std::uint32_t k_least = 3;
     std::vector<std::uint32_t> triangles(vertices_.size(), 0);
@@ -57,7 +57,7 @@ class Twins {
         if (corner.share == number) count(corner.place);
       }
     }
-    std::vector<std::uint8_t> is_poor(vertices_.size(), 0);  // by a point's first vertex
+    std::vector<std::uint8_t> is_poor(vertices_.size(), 0);  // at a point's first vertex
     for (std::size_t i = 0; i < vertices_.size(); ++i) {
       if (triangles[i] < k_least) is_poor[first_[i]] = 1;
     }
@@ -79,7 +79,7 @@ class Twins {
       return;
     }
     number_them();
-    std::vector<std::uint8_t> wanted(vertices_.size(), 0);  // by a point's first vertex
+    std::vector<std::uint8_t> wanted(vertices_.size(), 0);  // at a point's first vertex
     constexpr std::uint8_t k_twins = 1;
     constexpr std::uint8_t k_boundary = 2;
     for (std::size_t i = 0; i < first_.size(); ++i) {
@@ -95,7 +95,7 @@ class Twins {
     }
   }
 
-  /// All vertices of a point or none: the first of each becomes the first again.
+  /// Keeps all vertices of a point or none, so the first of each point remains the first.
   template <class Wanted>
   void keep(const Wanted& wanted) {
     std::vector<std::uint32_t> now(vertices_.size(), k_no_vertex);
@@ -114,11 +114,11 @@ class Twins {
 
   const MeshShare& share_;
   std::vector<std::uint32_t> vertices_;  // ascending
-  std::vector<std::uint32_t> first_;     // for each the first of its point, both by index
-  std::vector<std::uint32_t> index_;     // of a vertex of the share
+  std::vector<std::uint32_t> first_;     // for each vertex the first at its point, both by index
+  std::vector<std::uint32_t> index_;     // by vertex of the share
 };
 
-/// The triangles at the twins, as a mesh by itself: in it each twin has all of its triangles.
+/// The triangles at the twins, as a separate mesh in which each twin has all of its triangles.
 class TwinStars {
  public:
   TwinStars(const MeshShare& share, std::uint32_t number, const Twins& twins)
@@ -174,7 +174,7 @@ class TwinStars {
                                       vertices_.begin());
   }
 
-  /// A corner's triangle, as the positions of the other two corners.
+  /// A triangle at a corner, given by the positions of its other two corners.
   using Wedge = std::array<double, 6>;
   struct Sheet {
     std::uint32_t point = 0;
@@ -182,7 +182,8 @@ class TwinStars {
     std::vector<Wedge> star;
   };
 
-  /// For the first vertex of each sheet its number: those of a point by their stars.
+  /// For the first vertex of each sheet its number: the sheets of a point are ordered by their
+  /// stars.
   std::vector<std::uint32_t> number_sheets(const std::vector<std::uint32_t>& first,
                                            const std::vector<std::uint32_t>& point,
                                            const std::vector<std::uint8_t>& is_parted) const {

@@ -11,16 +11,16 @@
 
 namespace meshfarm {
 
-/// Where a batch of vertices goes: as MeshShares::add_vertices() takes it.
+/// The targets of a batch of vertices, in the form for MeshShares::add_vertices().
 struct ShareTargets {
   struct One {
     std::uint32_t share = MeshShares::k_no_share;
-    std::uint32_t point = MeshShares::k_no_point;  // vertices of one such number are to be one
+    std::uint32_t point = MeshShares::k_no_point;  // vertices with the same number are merged
   };
   std::vector<std::uint32_t> shares;
-  std::vector<std::uint32_t> points;  // or none
+  std::vector<std::uint32_t> points;  // empty if there are none
 
-  /// Asks for each vertex in order; those without a position go nowhere.
+  /// Calls `target_of` for each vertex in order; those without a position get no share.
   template <class TargetOf>
   void fill(std::span<const Vec3> batch, bool with_points, const TargetOf& target_of) {
     shares.clear();
@@ -33,22 +33,22 @@ struct ShareTargets {
   }
 };
 
-/// Divides the vertices of a mesh into shares of about equal size. It is shown all of them as often
-/// as it asks for that, and then once more to tell where each goes.
+/// Divides the vertices of a mesh into shares of about equal size. All vertices are shown to it as
+/// often as it asks for that, and then once more to get their shares.
 class ShareMap {
  public:
   virtual ~ShareMap() = default;
-  /// What it counts vertices by, for people.
+  /// What vertices are counted by, for messages.
   virtual std::string_view name() const = 0;
   /// The next vertices of a scan.
   virtual void count(std::span<const Vec3> batch) = 0;
-  /// Ends a scan of all vertices. True if all are to be counted once more.
+  /// Ends a scan of all vertices. Returns true if all must be counted again.
   virtual bool refine() = 0;
-  /// After the last scan: the number of shares.
+  /// Call this after the last scan. Returns the number of shares.
   virtual std::uint32_t divide() = 0;
-  /// Whether there are vertices that are to be one.
+  /// Whether some vertices are to be merged.
   virtual bool merges() const = 0;
-  /// To be asked once for each vertex, in order.
+  /// Call this once for each vertex, in order.
   virtual void find_targets(std::span<const Vec3> batch, ShareTargets& targets) = 0;
 };
 

@@ -27,7 +27,7 @@ VertexSurvey survey_vertices(MeshSource& source, OrderProbe* probe, const ScanPr
 }
 
 std::uint64_t likely_triangles(const MeshFileInfo& info) {
-  // Polygons and strips hold more triangles than the header tells: vertices are a second hint.
+  // Polygons and strips hold more triangles than the header says: vertices are a second hint.
   return std::max(info.faces, info.vertices);
 }
 

@@ -16,24 +16,24 @@
 
 namespace meshfarm {
 
-/// What is known of a boundary vertex of a slab.
+/// Facts about a boundary vertex of a slab.
 struct SharedVertex {
   std::uint32_t place = 0;   // in the share
-  std::uint32_t number = 0;  // the same for those that were welded
+  std::uint32_t number = 0;  // the same for welded vertices
   std::uint32_t piece = 0;   // of the slab's surface
   Vec3 position;
 };
 
-/// The boundary vertices of all slabs, in a scratch file. Whoever goes through the triangles
-/// between slabs in the order of their lowest slab needs those of few slabs at a time.
+/// The boundary vertices of all slabs, in a scratch file. Visiting the triangles between slabs in
+/// the order of their lowest slab needs those of few slabs at a time.
 class SharedVertices {
  public:
   SharedVertices(const std::filesystem::path& folder, std::size_t slabs);
-  /// All of a slab, ascending by place. Safe from several threads.
+  /// Adds all of a slab, ascending by place. Safe from several threads.
   void add(std::uint32_t slab, std::span<const SharedVertex> vertices);
   void finish();
 
-  /// After finish(), from one thread. Loads the slab's unless they are there.
+  /// Call this after finish(), from one thread. Loads the slab's vertices unless they are loaded.
   const SharedVertex& at(SharePlace vertex);
   /// Nothing below this slab will be asked for.
   void forget_below(std::uint32_t slab);

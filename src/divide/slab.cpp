@@ -36,7 +36,7 @@ class SlabSorter {
   }
 
  private:
-  /// The rank of each raw vertex; welded ones share it. Positions go by rank from now on.
+  /// The rank of each raw vertex; welded ones share it. Positions are by rank from now on.
   void rank_vertices() {
     std::vector<std::uint32_t> sorted = sorted_vertices(raw_.positions, sorting_.order, raw_.type);
     const std::vector<std::uint32_t> first = weld_sorted(sorted);
@@ -83,14 +83,14 @@ class SlabSorter {
     return std::move(welded.first);
   }
 
-  /// The least of a vertex's triangles, as the positions of its other two corners.
+  /// The least of a vertex's triangles, given by the positions of its other two corners.
   struct Star {
     Vec3 next = k_no_position;
     Vec3 prev = k_no_position;
   };
 
-  /// Vertices at one place that were not welded, as surfaces touch there, are put in an order that
-  /// tells nothing of the input's: by their sheets, or by their least triangles, which differ.
+  /// Coincident vertices that were not welded because surfaces touch there are put in an order that
+  /// does not depend on the input's: by their sheets, or by their least triangles, which differ.
   void order_touching(std::vector<std::uint32_t>& sorted, std::span<const std::uint32_t> first) {
     const std::vector<Vec3>& positions = raw_.positions;
     const auto at = [&](std::size_t i) {
@@ -145,14 +145,14 @@ class SlabSorter {
     return stars;
   }
 
-  /// No triangle at all comes last.
+  /// No triangle at all is greatest.
   bool is_less(const Star& a, const Star& b) const {
     if (!has_position(a.next) || !has_position(b.next)) return has_position(a.next);
     if (!(a.next == b.next)) return sorting_.order.before(a.next, b.next);
     return sorting_.order.before(a.prev, b.prev);
   }
 
-  /// Triangles by rank, the smallest corner first, without those that are degenerate.
+  /// Triangles by rank, the smallest corner first, without degenerate ones.
   void rank_triangles() {
     slab_.dropped_degenerate = keep_triangles(raw_.triangles, raw_.columns, [&](std::size_t i) {
       Triangle& t = raw_.triangles[i];
@@ -166,11 +166,12 @@ class SlabSorter {
       }
       return t[0] != t[1] && t[1] != t[2] && t[2] != t[0];
     });
-    // Where nothing was welded only these are known, and only these are at one place.
+    // If nothing was welded, only the dropped triangles are known, and only these have coincident
+    // corners.
     slab_.coincident_corners = std::max(slab_.coincident_corners, slab_.dropped_degenerate);
   }
 
-  /// After the triangle's first corner has become that which was so many on.
+  /// Turns the columns after the corner at index `corners` has become the triangle's first.
   void turn_columns(std::size_t triangle, int corners) {
     if (raw_.columns.uvs.empty()) return;
     CornerUvs& uvs = raw_.columns.uvs[triangle];
@@ -202,7 +203,7 @@ class SlabSorter {
     renumber_corners(raw_.triangles, number);
   }
 
-  /// Counts them by their smallest vertex; the few of each are sorted by themselves.
+  /// Counting sort by the smallest vertex; the few triangles of each are sorted separately.
   void sort_triangles() {
     std::vector<Triangle>& from = raw_.triangles;
     std::vector<Triangle>& to = slab_.stream.mesh.triangles;
@@ -233,12 +234,12 @@ class SlabSorter {
   const Sorting& sorting_;
   SortedSlab slab_;
   std::vector<std::uint32_t> rank_;
-  std::vector<std::uint32_t> star_;  // number of a vertex's star, where surfaces touch
+  std::vector<std::uint32_t> star_;  // number of a vertex's star where surfaces touch
   std::vector<std::uint8_t> flags_;  // by rank
 };
 
-/// The range of the second coordinate that holds `share` of the vertices, from a place that
-/// `number` decides: multiples of the golden ratio are spread evenly.
+/// The range of the second coordinate that holds `share` of the vertices, at a place that depends
+/// on `number`: multiples of the golden ratio are spread evenly.
 std::pair<double, double> sample_range(const std::vector<Vec3>& positions, int axis, double share,
                                        std::uint32_t number) {
   constexpr std::size_t k_looked_at = 8192;
@@ -263,7 +264,7 @@ SortedSlab sort_slab(MeshShare raw, const Sorting& sorting) {
 
 std::uint64_t sample_size(std::uint64_t stream_triangles) {
   constexpr std::uint64_t k_sample_part = 20;       // of a stream
-  constexpr std::uint64_t k_least_sample = 60'000;  // tells something
+  constexpr std::uint64_t k_least_sample = 60'000;  // the minimum to be meaningful
   return std::max(k_least_sample, stream_triangles / k_sample_part);
 }
 

@@ -7,7 +7,7 @@
 namespace meshfarm {
 namespace {
 
-/// Axes that differ by less than this are equally good to sweep along.
+/// Axes whose lengths differ by less than this are equally good to sweep along.
 constexpr double k_as_long = 0.99;
 
 }  // namespace
@@ -77,8 +77,8 @@ void SlabMap::count(std::span<const Vec3> batch) {
 }
 
 bool SlabMap::refine() {
-  constexpr std::uint64_t k_bins_a_slab = 16;  // at least so many, so that sizes come out even
-  constexpr unsigned k_most_scans = 32;        // numbers so far apart are no mesh
+  constexpr std::uint64_t k_bins_a_slab = 16;  // at least, so that sizes come out even
+  constexpr unsigned k_most_scans = 32;        // no mesh has numbers that need more
   if (scans_++ == 0) {
     for (const Bin& bin : bins_) all_ += bin.count;
     heavy_ = std::max<std::uint64_t>(1, all_ / (k_bins_a_slab * wanted_));
@@ -97,7 +97,7 @@ bool SlabMap::refine() {
 }
 
 void SlabMap::divide_bin(std::uint32_t bin, int rank) {
-  constexpr std::uint64_t k_bins_of_a_heavy = 4;  // that one is divided into, at least
+  constexpr std::uint64_t k_bins_of_a_heavy = 4;  // at least, into which a heavy bin is divided
   std::uint32_t bins = 16;
   const std::uint64_t wanted = k_bins_of_a_heavy * (bins_[bin].count / heavy_);
   while (bins < k_first_bins && bins < wanted) bins *= 2;
@@ -140,7 +140,7 @@ ShareTargets::One SlabMap::target_of(std::uint32_t point) {
 std::uint32_t SlabMap::divide() {
   std::uint64_t sum = 0;
   std::uint32_t slabs = 0;
-  std::uint64_t last = 0;  // as if none were empty
+  std::uint64_t last = 0;  // numbered as if none were empty
   const auto go_to = [&](std::uint64_t slab) {
     if (slabs == 0 || slab > last) ++slabs;
     last = slab;
@@ -160,13 +160,13 @@ std::uint32_t SlabMap::divide() {
       return assign_point(points_[targets_[bin] & ~k_point], count);
     }
     if (count > 0) {
-      // A bin belongs where its middle vertex does.
+      // A bin belongs to the slab of its middle vertex.
       go_to(even_slab(static_cast<double>(sum) + 0.5 * static_cast<double>(count)));
       sum += count;
     }
     targets_[bin] = slabs == 0 ? 0 : slabs - 1;
   };
-  // In the order of the sweep: what a bin is divided into comes in its place.
+  // In the order of the sweep: the bins that divide a bin come in its place.
   std::vector<std::uint32_t> ahead;  // bins, the next one last
   const auto look_into = [&](const Division& d) {
     for (std::uint32_t i = d.bins; i-- > 0;) ahead.push_back(d.first + i);

@@ -21,8 +21,8 @@ namespace meshfarm {
 class OrderProbe {
  public:
   void look_at(std::span<const Vec3> batch);
-  /// Along the longest axis of the vertices' box. Of axes as good as equal in length, the one along
-  /// which the file is in order already, if there is one; else the first.
+  /// Along the longest axis of the vertices' box. Of axes that are almost equally long, the one
+  /// along which the file is already in order, if there is one; else the first.
   SweepOrder choose(const Box& box) const;
 
  private:
@@ -32,24 +32,24 @@ class OrderProbe {
   std::array<bool, 3> falls_ = {true, true, true};
 };
 
-/// What becomes of so many vertices at one point that they make a slab too large.
+/// What to do with vertices at one point that are so many that they make a slab too large.
 enum class AtOnePoint : std::uint8_t {
-  stay,   // they stay together all the same
-  merge,  // they are one vertex
-  deal,   // they are dealt out, in their order, to slabs one after the other
+  stay,   // they stay together anyway
+  merge,  // they become one vertex
+  deal,   // they are dealt out, in their order, to consecutive slabs
 };
 
 /// Divides the vertices, in the order of the sweep, into slabs of about equal numbers. They are
 /// counted into bins along the axis. A bin with too many for even slabs is divided into finer ones
-/// between its ends, or, where all are at one coordinate, along the next axis: vertices far out, or
-/// many in one plane, make no slab larger. Memory: 7 MB, and 3 KB for each slab wanted.
+/// between its ends, or, if all are at one coordinate, along the next axis: outliers, or many
+/// vertices in one plane, make no slab larger. Memory: 7 MB, and 3 KB for each slab wanted.
 class SlabMap : public ShareMap {
  public:
   SlabMap(const Box& box, const SweepOrder& order, std::uint32_t wanted, AtOnePoint at_one_point);
   std::string_view name() const override { return "slabs"; }
   void count(std::span<const Vec3> batch) override;
   bool refine() override;
-  /// No slab is empty, so that there may be fewer than wanted.
+  /// No slab is empty, so there may be fewer than wanted.
   std::uint32_t divide() override;
   bool merges() const override { return at_one_point_ == AtOnePoint::merge && !points_.empty(); }
   void find_targets(std::span<const Vec3> batch, ShareTargets& targets) override;
@@ -63,7 +63,7 @@ class SlabMap : public ShareMap {
     std::uint32_t first = 0;  // of its bins
     std::uint32_t bins = 0;
   };
-  /// The vertices counted, and their least and greatest coordinate.
+  /// The number of vertices, and their smallest and greatest coordinate.
   struct Bin {
     std::uint64_t count = 0;
     double low = HUGE_VAL;
@@ -77,12 +77,12 @@ class SlabMap : public ShareMap {
   struct Point {
     std::uint64_t before = 0;  // vertices that come before it
     std::uint64_t seen = 0;
-    std::uint32_t slab = 0;     // its first
-    std::uint64_t as_even = 0;  // the same, as if no slab were empty
+    std::uint32_t slab = 0;     // its first slab
+    std::uint64_t as_even = 0;  // the same, numbered as if no slab were empty
   };
   static constexpr std::uint32_t k_first_bins = 1 << 18;
-  static constexpr std::uint32_t k_point = std::uint32_t{1} << 30;    // a point, or else a slab
-  static constexpr std::uint32_t k_divided = std::uint32_t{1} << 31;  // or else a slab
+  static constexpr std::uint32_t k_point = std::uint32_t{1} << 30;    // a point, otherwise a slab
+  static constexpr std::uint32_t k_divided = std::uint32_t{1} << 31;  // divided, otherwise a slab
 
   double coordinate(int rank, Vec3 p) const {
     return rank == 0 ? order_.along(p) : p[order_.axes[static_cast<std::size_t>(rank)]];
@@ -92,7 +92,7 @@ class SlabMap : public ShareMap {
     if (!(bin > 0)) return d.first;
     return d.first + (bin >= d.bins - 1 ? d.bins - 1 : static_cast<std::uint32_t>(bin));
   }
-  /// The bin of a vertex that is not divided.
+  /// The undivided bin of a vertex.
   Place find(Vec3 p) const {
     Place at{0, bin_of(divisions_[0], p)};
     while ((targets_[at.bin] & k_divided) != 0) {
@@ -104,7 +104,7 @@ class SlabMap : public ShareMap {
   void add_division(int rank, double low, double high, std::uint32_t bins);
   void divide_bin(std::uint32_t bin, int rank);
   void add_point(std::uint32_t bin);
-  /// The slab of the vertex before which there are so many, as if none were empty.
+  /// The slab of the vertex that has `vertices` before it, numbered as if none were empty.
   std::uint64_t even_slab(double vertices) const {
     return std::min(wanted_ - 1, static_cast<std::uint64_t>(vertices / static_cast<double>(all_) *
                                                             static_cast<double>(wanted_)));
@@ -116,9 +116,9 @@ class SlabMap : public ShareMap {
   std::uint64_t wanted_;
   AtOnePoint at_one_point_;
   std::vector<Division> divisions_;
-  std::uint32_t first_new_ = 0;  // divisions from here on are counted into
+  std::uint32_t first_new_ = 0;  // divisions from here on are being counted into
   std::vector<Bin> bins_;
-  std::vector<std::uint32_t> targets_;  // of each bin its slab, or by what it is divided
+  std::vector<std::uint32_t> targets_;  // per bin: its slab, or what divides it
   std::vector<Point> points_;
   std::uint64_t all_ = 0;
   std::uint64_t heavy_ = 0;

@@ -11,8 +11,8 @@
 
 namespace meshfarm {
 
-/// Sorts triangles, and their columns with them: equal triangles by these, so that the order they
-/// came in does not count.
+/// Sorts triangles together with their columns: equal triangles by their columns, so that the
+/// original order does not matter.
 template <typename T>
 void sort_with_columns(std::vector<T>& triangles, TriangleColumns& columns) {
   if (columns.empty()) return std::sort(triangles.begin(), triangles.end());

@@ -2,9 +2,9 @@
 // SPDX-License-Identifier: MIT
 //
 // Streams: Xiong, Jiang, Zhang, Shi, "Parallel Simplification of Large Meshes on PC Clusters",
-// EGPGV 2008, 4.1. Each slab is sorted by itself, on all cores, or staged as it is and sorted by a
-// job of the farm (pipeline/sort_job.hpp). It is sorted by distribution rather than by merging
-// runs: that, too, moves everything to disk and back once, but leaves nothing to merge.
+// EGPGV 2008, 4.1. Each slab is sorted independently, on all cores, or staged unsorted and sorted
+// by a job of the farm (pipeline/sort_job.hpp). Sorting uses distribution rather than merging runs:
+// that, too, moves everything to disk and back once, but leaves nothing to merge.
 #include <algorithm>
 #include <utility>
 
@@ -48,7 +48,7 @@ class StreamScheme : public CutScheme {
         options_.weld == Weld::exact ? AtOnePoint::merge : AtOnePoint::deal);
   }
 
-  /// The memory is for sorting.
+  /// The memory is used for sorting.
   std::uint64_t memory_for_shares(std::uint64_t) const override { return 0; }
 
   unsigned threads(std::uint64_t triangles, std::uint32_t shares,
@@ -67,7 +67,7 @@ class StreamScheme : public CutScheme {
     return staged;
   }
 
-  /// As the streams, these are not to tell of the order of the input.
+  /// Like the streams, the boundary must not depend on the order of the input.
   void order_boundary(SharedTriangles& shared) const override {
     for (std::size_t i = 0; i < shared.triangles.size(); ++i) {
       BoundaryTriangle& t = shared.triangles[i];
@@ -98,7 +98,7 @@ class StreamScheme : public CutScheme {
     staged.entry.file = stage_.publish(StreamName{number}, bytes);
   }
 
-  /// Nothing for a short stream: it can be tried as a whole.
+  /// No sample for a short stream: it can be simplified as a whole.
   PartEntry stage_sample(const StreamMesh& stream, std::uint32_t number) const {
     if (stream.mesh.triangles.size() <= options_.window_triangles) return {};
     const Part part = sample_slab(stream, sorting_.order, number);
@@ -110,13 +110,13 @@ class StreamScheme : public CutScheme {
     slab.boundary = staged.numbers.places;
     staged.entry = {stage_.publish(SlabName{number}, encode_slab(slab)), slab.positions.size(),
                     slab.triangles.size(), staged.numbers.count()};
-    // These must be known before the work, so the slab is sorted for them after all.
+    // Texture facts must be known before the work, so the slab is sorted here anyway.
     if (!slab.columns.uvs.empty()) {
       staged.uv_facts = facts_of(encode_stream(sort_slab(std::move(slab), sorting_).stream));
     }
   }
 
-  /// Of the stream as it will be read.
+  /// The facts of the stream as it will be read.
   static UvFacts facts_of(const std::string& stream) {
     StreamReader reader(fill_from(stream, "stream"), "stream");
     const Part part = read_stream(reader);

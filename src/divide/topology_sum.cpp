@@ -16,7 +16,7 @@ std::uint32_t number_of(const BoundaryNumbers& numbers, std::uint32_t place) {
   return numbers.numbers[static_cast<std::size_t>(at - numbers.places.begin())];
 }
 
-/// The sides that triangles between slabs have within one, by the vertices of its mesh.
+/// The sides of triangles between slabs that lie within one slab, in vertices of its mesh.
 std::vector<std::array<std::uint32_t, 2>> sides_within(std::uint32_t slab,
                                                        std::span<const SeamTriangle> seam,
                                                        std::span<const std::uint32_t> shared,
@@ -96,7 +96,7 @@ void TopologySum::add_seam(std::uint32_t slab) {
   sum_.duplicate += drop_duplicates(between_);
 }
 
-/// A triangle that belongs to the slab in turn.
+/// Adds a triangle that belongs to the current slab.
 void TopologySum::add_between(const SeamTriangle& t) {
   ++sum_.triangles;
   const BoundaryTriangle corners = {corner(t[0]), corner(t[1]), corner(t[2])};
@@ -112,7 +112,7 @@ void TopologySum::add_between(const SeamTriangle& t) {
   between_.push_back(corners);
 }
 
-/// Those sides that belong to this slab, also of triangles that belong to one below.
+/// Adds the sides that belong to this slab, also of triangles that belong to a lower one.
 void TopologySum::add_sides(std::uint32_t slab, const SeamTriangle& t) {
   std::array<bool, 3> is_ours{};
   for (std::size_t k = 0; k < 3; ++k) {
@@ -120,8 +120,8 @@ void TopologySum::add_sides(std::uint32_t slab, const SeamTriangle& t) {
     const std::uint32_t b = t[(k + 1) % 3].share;
     is_ours[k] = a != b && std::min(a, b) == slab;
   }
-  // Of two corners in one slab the sides to the third both belong to the same slab: only then may
-  // the two be one, which makes the triangle none.
+  // If two corners are in one slab, their sides to the third corner belong to the same slab. Only
+  // then can the two corners be one vertex, which makes the triangle degenerate.
   if (std::count(is_ours.begin(), is_ours.end(), true) == 2) {
     for (std::size_t k = 0; k < 3; ++k) {
       const SharePlace a = t[k];
@@ -156,7 +156,7 @@ void TopologySum::count_sides() {
   }
 }
 
-/// The pieces at the triangle's corners are one.
+/// Joins the pieces at the triangle's corners.
 void TopologySum::join(const SeamTriangle& t) {
   for (std::size_t k = 1; k < 3; ++k) {
     const std::uint64_t a = piece_of(t[0]);

@@ -18,27 +18,27 @@
 
 namespace meshfarm {
 
-/// A slab as it is measured: what its boundary vertices are, in the order of their numbers.
+/// A slab to measure, with its boundary vertices in the order of their numbers.
 struct MeasuredSlab {
   Mesh mesh;
   std::vector<std::uint32_t> shared;
 };
 
-/// Adds up what the slabs tell and what lies between them. The triangles between slabs are gone
-/// through slab by slab: each belongs to the lowest slab that it touches, and so does each of its
-/// sides that goes from one slab to another.
+/// Sums up the topology of the slabs and of what lies between them. The triangles between slabs are
+/// visited slab by slab: each belongs to the lowest slab that it touches, and so does each of its
+/// sides between two slabs.
 class TopologySum {
  public:
   TopologySum(const MeshShares& shares, const std::filesystem::path& folder, std::uint32_t slabs)
       : shares_(shares), vertices_(folder, slabs), pieces_(slabs) {}
 
-  /// From several threads, each slab once.
+  /// Call this from several threads, for each slab once.
   void add(std::uint32_t slab, const MeasuredSlab& measured, const BoundaryNumbers& numbers);
-  /// Once, after all slabs.
+  /// Call this once, after all slabs.
   Topology finish();
 
  private:
-  /// A side from one slab to another: vertices by their slabs and their numbers there.
+  /// A side between two slabs: vertices by their slabs and their numbers there.
   using SideEnds = std::array<BoundaryCorner, 2>;
 
   void add(const Topology& piece);
@@ -52,10 +52,10 @@ class TopologySum {
 
   const MeshShares& shares_;
   SharedVertices vertices_;
-  std::vector<std::uint64_t> pieces_;      // of each slab, at its boundary; then of those before it
+  std::vector<std::uint64_t> pieces_;      // at each slab's boundary; then the sum before it
   std::vector<std::uint64_t> parent_;      // of pieces that triangles between slabs join
-  std::vector<BoundaryTriangle> between_;  // of the slab in turn
-  std::vector<SideEnds> crossing_;         // as well
+  std::vector<BoundaryTriangle> between_;  // of the current slab
+  std::vector<SideEnds> crossing_;         // of the current slab
   Topology sum_;
   std::mutex mutex_;
 };

@@ -15,7 +15,7 @@ struct Key {
   std::uint32_t index;
 };
 
-/// The bits of a number as an integer that is ordered like the numbers; -0 is 0.
+/// The bits of a number as an integer with the same order; -0 equals 0.
 std::uint32_t ordered_bits(float x) {
   const auto bits = std::bit_cast<std::uint32_t>(x + 0.0F);
   return (bits >> 31) != 0 ? ~bits : bits | 0x80000000U;
@@ -25,14 +25,15 @@ std::uint64_t ordered_bits(double x) {
   return (bits >> 63) != 0 ? ~bits : bits | (std::uint64_t{1} << 63);
 }
 
-/// Ordered like the positions as far as it goes: two coordinates of floats, one of doubles.
+/// A key with the order of the positions, as far as it goes: two coordinates of floats, one of
+/// doubles.
 std::uint64_t key_of(Vec3 p, const SweepOrder& order, PositionType type) {
   if (type == PositionType::float64) return ordered_bits(order.along(p));
   return std::uint64_t{ordered_bits(static_cast<float>(order.along(p)))} << 32 |
          ordered_bits(static_cast<float>(p[order.axes[1]]));
 }
 
-/// Sorts by one digit after the other, the last first; digits that all keys share are left out.
+/// Sorts digit by digit, from the last one; skips digits that all keys share.
 void radix_sort(std::vector<Key>& keys) {
   constexpr unsigned k_digit_bits = 11;
   constexpr std::size_t k_values = std::size_t{1} << k_digit_bits;
@@ -67,7 +68,7 @@ std::vector<std::uint32_t> sorted_vertices(std::span<const Vec3> positions, cons
   std::vector<std::uint32_t> sorted;
   sorted.reserve(keys.size());
   for (const Key& k : keys) sorted.push_back(k.index);
-  // What the keys could not tell apart; by index already.
+  // Sorts positions that the keys could not distinguish; they are already ordered by index.
   for (std::size_t first = 0, last = 0; first < keys.size(); first = last) {
     while (last < keys.size() && keys[last].key == keys[first].key) ++last;
     if (last - first == 1) continue;

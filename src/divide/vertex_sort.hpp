@@ -11,8 +11,8 @@
 
 namespace meshfarm {
 
-/// The vertices in sweep order, by their indices; coincident ones by index. Empty if that is the
-/// order they are in. `type` is what all positions fit: float32 is sorted faster.
+/// The indices of the vertices in sweep order; coincident ones by index. Empty if they are in that
+/// order already. `type` is a type that fits all positions: float32 is sorted faster.
 std::vector<std::uint32_t> sorted_vertices(std::span<const Vec3> positions, const SweepOrder& order,
                                            PositionType type);
 

@@ -13,10 +13,10 @@ namespace {
 using Node = std::int32_t;
 constexpr Node k_none = -1;
 
-/// The place in a grid of cells twice as long.
+/// The place in a grid of cells twice as large.
 std::uint64_t halved(std::uint64_t place) {
   constexpr std::uint64_t k_index = (std::uint64_t{1} << 36) - 1;
-  // Without the bits that came from the next number.
+  // Removes the bits that came from the next coordinate.
   constexpr std::uint64_t k_halves = 0x7ff7ff7ff;
   return (place & ~k_index) | (((place & k_index) >> 1) & k_halves);
 }
@@ -30,7 +30,7 @@ void for_edges(const WeightedGraph& graph, Node node, const Take& take) {
 
 struct Pair {
   Node one = k_none;
-  Node other = k_none;  // or none
+  Node other = k_none;  // k_none if the node is not paired
 };
 
 class Matching {
@@ -189,9 +189,9 @@ class Refinement {
   std::span<std::int32_t> part_;
   const RefineOptions& options_;
   std::vector<std::int64_t> weights_;  // of the parts
-  std::vector<std::int64_t> ties_;     // of the node at hand to each part
-  std::vector<std::int32_t> beside_;   // parts with such ties
-  std::vector<std::uint8_t> waits_;    // whether a node is looked at again
+  std::vector<std::int64_t> ties_;     // of the current node to each part
+  std::vector<std::int32_t> beside_;   // parts that these ties lead to
+  std::vector<std::uint8_t> waits_;    // whether a node is queued to be looked at again
   std::vector<Node> waiting_;
 };
 

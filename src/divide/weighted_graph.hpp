@@ -11,8 +11,7 @@ namespace meshfarm {
 
 /// An undirected graph whose nodes have places in grids.
 struct WeightedGraph {
-  /// The edges of node i stand from first[i] on: each edge is there twice, once at each of its
-  /// ends.
+  /// The edges of node i begin at first[i]; each edge is stored twice, once at each end.
   std::vector<std::int32_t> first = {0};
   std::vector<std::int32_t> targets;
   std::vector<std::int32_t> edge_weights;
@@ -28,21 +27,21 @@ struct Coarsening {
   std::vector<std::int32_t> node_of;  // for each node of the finer graph
 };
 
-/// A graph of about half as many nodes: each is two that were joined by an edge, or one. Each node
-/// in turn takes the heaviest edge that leads to a free one (heavy edge matching, Karypis & Kumar
-/// 1998); of several, one to the same 2 x 2 x 2 cells, so that nodes become compact. No pair is
-/// heavier than `heaviest`.
+/// A graph of about half as many nodes: each is either two nodes that were joined by an edge, or
+/// one. Each node in turn takes the heaviest edge to an unpaired node (heavy edge matching, Karypis
+/// & Kumar 1998); among equal ones, an edge within the same 2 x 2 x 2 cells, so that nodes become
+/// compact. No pair is heavier than `heaviest`.
 Coarsening coarsened(const WeightedGraph& fine, std::int64_t heaviest);
 
 struct RefineOptions {
   std::int32_t parts = 1;
-  std::int64_t heaviest = 0;  // that a part may become
+  std::int64_t heaviest = 0;  // the maximum weight of a part
   int passes = 10;
 };
 
-/// Moves nodes at the borders of parts to a part beside them, as long as that makes the edges
+/// Moves nodes at the borders of parts to neighbouring parts, as long as that makes the edges
 /// between parts lighter or, at the same weight, parts more even (greedy k-way refinement, Karypis
-/// & Kumar 1998). What is above the limit gives nodes away at any price.
+/// & Kumar 1998). Parts above the limit give away nodes at any price.
 void refine_parts(const WeightedGraph& graph, std::span<std::int32_t> part,
                   const RefineOptions& options);
 

@@ -8,8 +8,8 @@
 
 namespace meshfarm {
 
-/// Undoes merges of a share's vertices where surfaces touch: inside the share, and at its seams as
-/// the share tells. Counts what coincides; dropped triangles are not known yet.
+/// Undoes merges of a share's vertices where surfaces touch: inside the share, and at its seams
+/// where the share says so. Counts coincidences; dropped triangles are not known yet.
 WeldCounts keep_apart(const MeshShare& share, WeldResult& welded);
 
 }  // namespace meshfarm

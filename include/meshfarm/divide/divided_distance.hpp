@@ -7,9 +7,9 @@
 
 namespace meshfarm {
 
-/// As measure_error of two meshes does, but distances only, of surfaces of any size: from 2/3 to
-/// 4/3 as many points as are asked for, in about 100 bytes a point beside what is shown at a time.
-/// Throws DataError if either has no triangle of positive area.
+/// Like measure_error of two meshes, but distances only, for surfaces of any size: uses 2/3 to 4/3
+/// of the number of points asked for. Memory: about 100 bytes per point, besides the piece shown at
+/// a time. Throws DataError if either surface has no triangle of positive area.
 SurfaceError measure_error(const DividedSurface& from, const DividedSurface& to,
                            const DistanceOptions& options);
 

@@ -12,10 +12,10 @@
 
 namespace meshfarm {
 
-/// What sorting a slab and encoding its stream need at most, for each triangle.
+/// The maximum memory to sort a slab and encode its stream, per triangle.
 inline constexpr std::uint64_t k_slab_bytes_per_triangle = 72;
-/// The same where vertices may have appearances, two copies and the encoded ones, and where
-/// triangles have columns, which are sorted with them.
+/// The same if vertices may have appearances (two copies and the encoded ones), and if triangles
+/// have columns, which are sorted with them.
 constexpr std::uint64_t slab_bytes_per_triangle(bool has_appearances, const ColumnSet& columns) {
   return k_slab_bytes_per_triangle + (has_appearances ? 2 * sizeof(Appearance) : 0) +
          (columns.any() ? sizeof(Triangle) + 3 * columns.bytes() : 0);
@@ -25,19 +25,19 @@ constexpr std::uint64_t slab_bytes_per_triangle(bool has_appearances, const Colu
 struct SortedSlab : WeldCounts {
   StreamMesh stream;
   std::uint32_t boundary_vertices = 0;
-  std::uint64_t merged_vertices = 0;  // of the coincident ones, those that became one
+  std::uint64_t merged_vertices = 0;  // coincident vertices that were merged
 };
 
-/// Sorts vertices, welds those that coincide (they are neighbours then), drops degenerate triangles
-/// and unused vertices, and sorts triangles by their smallest vertex, then by the others. With
-/// exact welding the result does not depend on the order of the slab.
+/// Sorts vertices, welds coincident ones (they are neighbours then), drops degenerate triangles and
+/// unused vertices, and sorts triangles by their smallest vertex, then by the others. With exact
+/// welding the result does not depend on the order of the slab.
 SortedSlab sort_slab(MeshShare raw, const Sorting& sorting);
 
-/// About how many triangles a sample of a stream has.
+/// The approximate number of triangles in a sample of a stream.
 std::uint64_t sample_size(std::uint64_t stream_triangles);
 
 /// A piece of a stream, across its whole slab, as a part whose outer vertices are locked. It has
-/// about sample_size() triangles; `number` decides where along the second axis it is taken.
+/// about sample_size() triangles; `number` decides its position along the second axis.
 Part sample_slab(const StreamMesh& stream, const SweepOrder& order, std::uint32_t number);
 
 }  // namespace meshfarm

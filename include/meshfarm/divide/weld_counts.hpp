@@ -6,7 +6,7 @@
 
 namespace meshfarm {
 
-/// What was found where vertices of one share coincide.
+/// Counts of coincidences among the vertices of one share.
 struct WeldCounts {
   std::uint64_t coincident_vertices = 0;  // at the place of an earlier one, merged or not
   std::uint64_t dropped_degenerate = 0;   // triangles
