@@ -12,9 +12,9 @@
 namespace meshfarm {
 namespace {
 
-/// A corner of a part that is not among those that were added.
+/// A corner of a part that was not added.
 constexpr std::uint32_t k_elsewhere = std::numeric_limits<std::uint32_t>::max();
-/// No part has so many boundary vertices.
+/// No part has this many boundary vertices.
 constexpr std::uint32_t k_most_locals = std::uint32_t{1} << 30;
 
 [[noreturn]] void fail_at(const BoundaryCorner& corner) {
@@ -58,7 +58,7 @@ std::uint32_t Stitcher::piece_of(const BoundaryCorner& corner) const {
 }
 
 void Stitcher::make_room(std::span<const BoundaryTriangle> boundary) {
-  std::vector<std::uint32_t> locals(piece_of_part_.size(), 0);  // by part: beyond the last
+  std::vector<std::uint32_t> locals(piece_of_part_.size(), 0);  // by part: its end
   for (const BoundaryTriangle& t : boundary) {
     for (const BoundaryCorner& corner : t) {
       if (piece_of(corner) == k_elsewhere) continue;
@@ -71,7 +71,8 @@ void Stitcher::make_room(std::span<const BoundaryTriangle> boundary) {
   for (const std::uint32_t end : locals) first_corner_.push_back(first_corner_.back() + end);
 }
 
-/// A boundary vertex of a piece is a corner of a triangle that does not lie within the piece.
+/// A boundary vertex of a composed piece is a corner of a triangle that does not lie within the
+/// piece.
 void Stitcher::find_corners(std::span<const BoundaryTriangle> boundary) {
   const auto is_composed = [](const Piece& piece) { return piece.parts > 1; };
   if (std::none_of(pieces_.begin(), pieces_.end(), is_composed)) return;
@@ -113,7 +114,7 @@ StitchedMesh Stitcher::finish(std::span<const BoundaryTriangle> boundary,
                               const TriangleColumnsView& columns) {
   make_room(boundary);
   find_corners(boundary);
-  std::vector<std::uint32_t> open;  // the vertices, by place
+  std::vector<std::uint32_t> open;  // the open vertices, by place
   for (std::size_t i = 0; i < boundary.size(); ++i) {
     const BoundaryTriangle& t = boundary[i];
     const std::array<std::uint32_t, 3> pieces = {piece_of(t[0]), piece_of(t[1]), piece_of(t[2])};

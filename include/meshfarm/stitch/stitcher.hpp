@@ -13,8 +13,8 @@
 namespace meshfarm {
 
 struct StitchedMesh {
-  Mesh mesh;  // the boundary triangles that were added are its last
-  /// A flag a vertex: it was a boundary vertex, locked in its part.
+  Mesh mesh;  // the boundary triangles that were added come last
+  /// Per vertex: whether it was a boundary vertex, locked in its part.
   std::vector<std::uint8_t> seam;
   std::uint64_t boundary_triangles = 0;  // how many were added
   /// The vertices that boundary triangles share with parts that were not added, ordered by part and
@@ -23,11 +23,12 @@ struct StitchedMesh {
 };
 
 /// Joins simplified parts (Xiong et al. 2008, 3.3). Vertex lists are appended in the order of the
-/// parts. Boundary vertices come first in each list and never move, so part and local index find
-/// the corners of the boundary triangles.
+/// parts. Boundary vertices come first in each list and never move, so the corners of the boundary
+/// triangles are found by part and local index.
 ///
-/// A piece may also be several neighbours that were composed before (Xiong et al. 2008, 4.3). Its
-/// boundary vertices are those that it shares with other pieces; the boundary triangles tell which.
+/// A piece may also consist of several neighbours that were composed before (Xiong et al. 2008,
+/// 4.3). Its boundary vertices are those that it shares with other pieces, as the boundary
+/// triangles show.
 class Stitcher {
  public:
   /// There are `all_parts` parts; those from `first` on will be added.
@@ -36,16 +37,16 @@ class Stitcher {
   /// Adds the next part, or a piece composed of the next `parts` parts. Throws DataError if the
   /// whole has too many vertices for 32-bit indices.
   void add(const ResultMesh& result, std::uint32_t parts = 1);
-  /// Leaves out the next `parts` parts: they are as those that were not added.
+  /// Skips the next `parts` parts: they count as not added.
   void skip(std::uint32_t parts);
-  /// Adds the boundary triangles between the pieces. `boundary` must also have those between a
-  /// piece and parts that were not added. Throws DataError if a corner is no boundary vertex.
-  /// Labels: one a boundary triangle, or none.
+  /// Adds the boundary triangles between the pieces. `boundary` must also include those between a
+  /// piece and parts that were not added. Throws DataError if a corner is not a boundary vertex.
+  /// Labels: one per boundary triangle, or none.
   StitchedMesh finish(std::span<const BoundaryTriangle> boundary,
                       const TriangleColumnsView& columns = {});
 
  private:
-  /// What was added by one call.
+  /// What one call has added.
   struct Piece {
     std::uint32_t parts = 1;
     std::uint32_t first_vertex = 0;
@@ -53,7 +54,7 @@ class Stitcher {
   };
 
   std::uint32_t piece_of(const BoundaryCorner& corner) const;
-  /// Gives a place to each corner that may be, in the order of parts and local indices.
+  /// Assigns a place to each possible corner, in the order of parts and local indices.
   void make_room(std::span<const BoundaryTriangle> boundary);
   std::size_t place_of(const BoundaryCorner& corner) const {
     return first_corner_[corner.part - first_part_] + corner.local;
@@ -65,9 +66,9 @@ class Stitcher {
   std::uint32_t first_part_;
   std::vector<Piece> pieces_;
   std::vector<std::uint32_t> piece_of_part_;  // from first_part_ on
-  std::vector<std::size_t> first_corner_;     // by part, from first_part_ on: its first place
-  /// By place, of a piece of several parts: the number of the boundary vertex in the piece. Of a
-  /// single part the local index tells.
+  std::vector<std::size_t> first_corner_;     // by part, from first_part_ on
+  /// By place, for pieces of several parts: the number of the boundary vertex in the piece. For a
+  /// single part it is the local index.
   std::vector<std::uint32_t> number_;
   StitchedMesh stitched_;
 };
