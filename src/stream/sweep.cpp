@@ -19,16 +19,16 @@ namespace {
 
 constexpr std::uint32_t k_none = std::numeric_limits<std::uint32_t>::max();
 
-/// Triangles so many rings behind the front are done. Nearer ones are distorted by the locked
+/// Triangles this many rings behind the front are final. Nearer ones are distorted by the locked
 /// vertices of the front, and are simplified again with the next window.
 constexpr std::uint32_t k_kept_rings = 6;
 
 /// The role of a vertex in the buffer. All but free ones are locked.
 enum class Role : std::uint8_t {
   free,
-  open,      // on the front: more triangles of it may come
+  open,      // on the front: more of its triangles may follow
   boundary,  // of the stream
-  sent,      // on the edge of what has been sent on
+  sent,      // at the edge of what was sent on
 };
 
 class Sweep {
@@ -63,7 +63,7 @@ class Sweep {
   }
 
  private:
-  /// So that a front that fills the buffer is not simplified again for every block.
+  /// Prevents simplifying again after every block when the front fills the buffer.
   std::uint64_t least_fresh() const { return options_.window_triangles / 4; }
 
   void append(const StreamBlock& block) {
@@ -133,13 +133,13 @@ class Sweep {
     return !stopped_;
   }
 
-  /// With a ratio: what is old was reduced before, the rest is reduced by it.
+  /// With a ratio: old triangles were reduced before, the others are reduced by it.
   std::uint64_t quota(std::uint64_t triangles) const {
     return triangles - fresh_ +
            static_cast<std::uint64_t>(options_.ratio * static_cast<double>(fresh_));
   }
 
-  /// The stream's vertices before the first that is still to be used are never looked up again.
+  /// Vertices of the stream before the first unfinished one are never looked up again.
   void forget_finished() {
     const auto first = std::find_if(local_.begin(), local_.end(),
                                     [](std::uint32_t vertex) { return vertex != k_none; });
@@ -147,7 +147,7 @@ class Sweep {
     local_.erase(local_.begin(), first);
   }
 
-  /// Renumbers the buffer, its order kept otherwise. Returns the number of locked vertices.
+  /// Moves locked vertices to the front, keeping the order otherwise. Returns their number.
   std::uint32_t put_locked_first() {
     std::vector<std::uint32_t> order;
     order.reserve(buffer_.positions.size());
@@ -162,7 +162,7 @@ class Sweep {
     return static_cast<std::uint32_t>(roles_.size()) - free;
   }
 
-  /// Keeps the vertices that `order` names, in that order, and the triangles as they are.
+  /// Keeps only the vertices in `order`, in that order, and all triangles.
   void renumber(const std::vector<std::uint32_t>& order) {
     std::vector<std::uint32_t> number(buffer_.positions.size(), k_none);
     Mesh ordered;
@@ -201,10 +201,10 @@ class Sweep {
     return is_settled;
   }
 
-  /// Sends the flagged triangles on to the output. Their vertices that others need stay, locked.
+  /// Sends the flagged triangles to the output. Vertices that other triangles need stay, locked.
   void send(const std::vector<std::uint8_t>& flags) {
     if (options_.measure) measure(flags);
-    Mesh piece;  // in the numbers of the result
+    Mesh piece;  // in the numbering of the result
     std::size_t kept = 0;
     for (std::size_t i = 0; i < flags.size(); ++i) {
       Triangle& t = buffer_.triangles[i];
@@ -225,8 +225,8 @@ class Sweep {
     drop_unused();
   }
 
-  /// The distance of a point to the result is the least to any piece that is sent. Pieces far from
-  /// a point that has met its own already do not matter.
+  /// The distance of a point to the result is the smallest to any piece sent. Pieces far from a
+  /// point that has met its own piece before do not matter.
   void measure(const std::vector<std::uint8_t>& flags) {
     Mesh piece;
     for (std::size_t i = 0; i < flags.size(); ++i) {
@@ -241,7 +241,7 @@ class Sweep {
     }
   }
 
-  /// The vertex's number in the result, in which it is from now on.
+  /// The vertex's number in the result; adds the vertex if it is not there yet.
   std::uint32_t sent(std::uint32_t vertex, Mesh& fresh) {
     if (roles_[vertex] == Role::free) {
       roles_[vertex] = Role::sent;
@@ -270,17 +270,17 @@ class Sweep {
   const SweepOptions& options_;
   const SweepOutput& output_;
   SweptStream result_;
-  std::uint32_t next_sent_;  // number in the result
+  std::uint32_t next_sent_;  // next number in the result
   Mesh buffer_;
   std::vector<Role> roles_;         // of the buffer's vertices
-  std::vector<std::uint32_t> ids_;  // of boundary vertices and sent ones: number in the result
-  /// Where in the buffer the stream's vertices from first_local_ on are, as long as more triangles
-  /// are to use them.
+  std::vector<std::uint32_t> ids_;  // of boundary and sent vertices: number in the result
+  /// Places in the buffer of the stream's vertices from first_local_ on; k_none once no more
+  /// triangles use the vertex.
   std::vector<std::uint32_t> local_;
   std::uint32_t first_local_ = 0;
   std::uint64_t read_ = 0;   // triangles
-  std::uint64_t fresh_ = 0;  // triangles that came after the last window
-  SurfaceSampler sampler_;   // its distances: to what has been sent so far
+  std::uint64_t fresh_ = 0;  // triangles read since the last window
+  SurfaceSampler sampler_;   // its distances are to what was sent so far
   bool stopped_ = false;
 };
 

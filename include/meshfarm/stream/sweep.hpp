@@ -16,34 +16,34 @@
 namespace meshfarm {
 
 struct SweepOptions {
-  /// Collapse no edge that costs more (SimplifyGoal::max_cost): one threshold, no quota a window.
+  /// Collapse no edge that costs more (SimplifyGoal::max_cost): one threshold, no quota per window.
   double max_cost = std::numeric_limits<double>::infinity();
-  /// Where above 0: this share of the triangles is kept, of each window the same (Xiong et al.
+  /// Where above 0: the share of the triangles that is kept, the same for each window (Xiong et al.
   /// 2008).
   double ratio = 0;
   LineOptions lines;
   /// The size of the buffer, in triangles. Exceeded only if the front alone is larger.
   std::uint64_t window_triangles = 0;
-  /// Points of the stream's surface to take, by which an error can be measured.
+  /// Number of points to sample from the stream's surface, to measure an error by.
   std::uint64_t samples = 0;
   /// Whether to measure the error: the greatest distance from those points to the result.
   bool measure = false;
-  /// Told the triangles read so far; stops the work by returning false.
+  /// Told the number of triangles read so far; stops the work by returning false.
   std::function<bool(std::uint64_t triangles)> progress;
 };
 
-/// Takes what a sweep has passed: the result's next vertices, counted on from its boundary
-/// vertices, and triangles of any vertices so far and of boundary vertices, with their columns.
+/// Takes the output of a sweep: the next vertices of the result, numbered after its boundary
+/// vertices, and triangles with their columns, of any vertices so far and of boundary vertices.
 using SweepOutput =
     std::function<void(const VertexView& vertices, std::span<const Triangle> triangles,
                        const TriangleColumnsView& columns)>;
 
-/// What is known of a simplified stream at its end.
+/// Facts about a simplified stream at its end.
 struct SweptStream {
-  Mesh boundary;                     // its first vertices, unmoved, in the stream's order
+  Mesh boundary;                     // the result's first vertices, unmoved, in stream order
   std::uint64_t free_triangles = 0;  // those without a boundary vertex
   SurfaceSamples samples;
-  double error = 0;  // where it was to be measured
+  double error = 0;  // if it was to be measured
   std::uint64_t dropped_degenerate = 0;
   std::uint64_t dropped_duplicate = 0;
   std::uint64_t turned = 0;
@@ -51,8 +51,8 @@ struct SweptStream {
 
 /// Simplifies a stream in one pass through a bounded buffer (Wu & Kobbelt 2003; Xiong et al. 2008,
 /// 4.2): reads a window, collapses every edge that is cheap enough and whose ends are finalised and
-/// no boundary vertices, sends on what lies some rings behind the front, reads on. Quadrics are
-/// made from the buffer's current mesh, so that nothing is carried along; only the boundary
+/// not boundary vertices, sends on what lies some rings behind the front, and reads on. Quadrics
+/// are computed from the buffer's current mesh, so nothing is carried along; only the boundary
 /// vertices and the samples are kept to the end. Throws DataError; IncompleteError if stopped.
 SweptStream sweep(StreamReader& reader, const SweepOptions& options, const SweepOutput& output);
 
