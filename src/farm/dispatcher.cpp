@@ -9,11 +9,11 @@
 namespace meshfarm {
 namespace {
 
-/// Whoever is silent for this many heartbeats is lost.
+/// A peer that is silent for this many heartbeats is lost.
 constexpr int k_silent_heartbeats = 3;
-/// Storage may take so many times as long as a computation before others are given the job.
+/// Storage may take this many times as long as a computation before the job goes to others.
 constexpr int k_storage_patience = 4;
-/// A job hangs that has not moved for so many times as long as it should take.
+/// A job hangs if it makes no progress for this multiple of its estimated time.
 constexpr int k_hanging_estimates = 3;
 
 }  // namespace
@@ -90,13 +90,13 @@ void Dispatcher::worker_joins(const PeerId& peer, const Hello& hello) {
       before != by_incarnation_.end()) {
     Worker& worker = workers_.at(before->second);
     if (worker.knows_of_lane()) {
-      lose(before->second, "joined again", {});  // what is on its way to it may be lost
+      lose(before->second, "joined again", {});  // messages on their way to it may be lost
     } else {
       return move_to(peer, before->second, worker);
     }
   }
   if (const auto charge = charges_.find(hello.incarnation); charge != charges_.end()) {
-    plan_.forgive(charge->second.key, charge->second.reason);  // it lives: no job has killed it
+    plan_.forgive(charge->second.key, charge->second.reason);  // it is alive, so no job killed it
     charges_.erase(charge);
   }
   const WorkerId id{next_worker_++};
@@ -115,8 +115,8 @@ void Dispatcher::worker_joins(const PeerId& peer, const Hello& hello) {
   out_.push_back(OpenLane{id});
 }
 
-/// A worker that greets for long without an answer does so by another connection. It has not been
-/// given anything, so there is nothing to lose.
+/// A worker that keeps greeting without an answer greets over a new connection. It has not been
+/// given any jobs, so there is nothing to lose.
 void Dispatcher::move_to(const PeerId& peer, WorkerId id, Worker& worker) {
   by_peer_.erase(worker.peer);
   by_peer_[peer] = id;
@@ -185,7 +185,7 @@ void Dispatcher::on(const PeerId& peer, const Heartbeat& beat) {
   if (worker == nullptr) {
     return send(peer, Refused{Refusal::stranger, "not known here (any more); say hello"});
   }
-  // This process may have stood still since it pushed, and reads what was said before.
+  // This process may have stalled after pushing, and may be reading older messages now.
   worker->unreceived_beats = beat.received < worker->sent ? worker->unreceived_beats + 1 : 0;
   if (worker->unreceived_beats > k_silent_heartbeats &&
       worker->pushed + k_silent_heartbeats * options_.heartbeat < now_) {
@@ -232,7 +232,7 @@ void Dispatcher::hear(WorkerId id, Worker& worker) {
   by_heard_.insert(by_heard_.end(), std::move(node));
 }
 
-/// Whether a job in work here stands still for too long.
+/// Whether a job in work at this worker has stood still for too long.
 bool Dispatcher::hangs(WorkerId id, const Worker& worker) const {
   const Heartbeat& beat = worker.beat;
   if (FarmTime(beat.still_ms) < options_.hang) return false;
@@ -246,8 +246,8 @@ bool Dispatcher::hangs(WorkerId id, const Worker& worker) const {
   return beat.still_ms > k_hanging_estimates * 1000 * seconds;
 }
 
-/// Whether most of those who work wait for the stage: then it is the storage that is away, and no
-/// other worker could do better.
+/// Whether most of the busy workers wait for the stage: then the storage is stalled, and no other
+/// worker could do better.
 bool Dispatcher::storage_stalls() const {
   std::size_t working = 0;
   std::size_t waiting = 0;
@@ -263,8 +263,8 @@ void Dispatcher::lose_hanging(WorkerId id) {
   const Heartbeat beat = worker.beat;
   const std::string seconds = std::to_string(beat.still_ms / 1000) + " s";
   if (beat.in_storage) {
-    // Nobody is to blame for slow storage. Others get the jobs; the worker joins again, and what it
-    // waits for still counts if it comes first.
+    // Nobody is to blame for slow storage. Others get the jobs; the worker joins again, and its
+    // result still counts if it comes first.
     send(worker.peer, Refused{Refusal::stranger, "it waits for the stage; say hello again"});
     return lose(id, "has waited for the stage for " + seconds, {});
   }
@@ -281,9 +281,9 @@ std::vector<JobKey> Dispatcher::in_work(WorkerId id) const {
   return keys;
 }
 
-/// `suspects` are the jobs that may have cost the worker its life. A single one is held to have, or
-/// the one that was a suspect before; else each is given to a worker without other suspects the
-/// next time, so that another loss is its own.
+/// `suspects` are the jobs that may have killed the worker. A single suspect, or the one that was a
+/// suspect before, is blamed; otherwise each of them next goes to a worker without other suspects,
+/// so that another loss can be attributed.
 void Dispatcher::lose(WorkerId id, const std::string& reason, const std::vector<JobKey>& suspects) {
   const Worker worker = std::move(workers_.at(id));
   workers_.erase(id);
@@ -323,8 +323,8 @@ std::optional<JobKey> Dispatcher::the_one_to_blame(const std::vector<JobKey>& su
   return before.size() == 1 ? std::optional(before.front()) : std::nullopt;
 }
 
-/// A sink that lost results is not as far as the run was: it takes no results of the jobs that come
-/// later. Whoever holds those would be thought to be late, and be given nothing else.
+/// A sink that lost results is not as far as the run was, and takes no results of later jobs.
+/// Whoever holds those would seem late, and be given nothing else.
 void Dispatcher::restart_plan() {
   plan_.restart(std::exchange(sink_->told, {}));
   scheduler_.deal_again();

@@ -11,20 +11,20 @@
 namespace meshfarm {
 namespace {
 
-/// Attempt numbers go on from epoch to epoch, so that a worker which outlives a ventilator never
+/// Attempt numbers continue from epoch to epoch, so that a worker that outlives a ventilator never
 /// publishes two results under one name.
 constexpr std::uint32_t k_attempts_per_epoch = 1000;
-/// A full stage is probed so often at first, and then twice as seldom each time.
+/// Pause between probes of a full stage; it doubles each time.
 constexpr FarmTime k_first_probe{1000};
 constexpr FarmTime k_longest_pause{5000};
-/// Where it is full again and again, the pauses grow up to this.
+/// If the stage is full again and again, the pauses grow up to this.
 constexpr FarmTime k_longest_relapse{60'000};
 constexpr std::uint64_t k_least_probe = std::uint64_t{64} << 10;
 constexpr std::uint64_t k_greatest_probe = std::uint64_t{64} << 20;
-/// How long a second reader may take, and how long the sink goes on trying what others can read.
+/// How long a second reader may take, and how long the sink keeps trying what others can read.
 constexpr FarmTime k_second_reading{120'000};
 constexpr FarmTime k_sinks_patience{90'000};
-/// Whoever took so long to read had trouble, too.
+/// A reader that took this long had trouble, too.
 constexpr FarmTime k_troubled_reading{10'000};
 constexpr FarmTime k_about_the_same_time{30'000};
 
@@ -74,7 +74,7 @@ void Dispatcher::on(const PeerId& peer, const Reject& reject) {
       settle(reject.key, reject.worker);
       break;
     case FailureKind::no_space:
-      // A worker may have kept it from a run before: room may have been made since.
+      // A worker may have kept it from an earlier run: there may be room by now.
       if (!holds(reject.worker, reject.key, reject.attempt)) {
         reject_attempt(reject, Blame::nobody);
         break;
@@ -109,7 +109,7 @@ bool Dispatcher::holds(WorkerId id, JobKey key, std::uint32_t attempt) const {
   });
 }
 
-/// Only the attempt that the worker makes now counts.
+/// Only the worker's current attempt counts.
 void Dispatcher::reject_attempt(const Reject& reject, Blame blame) {
   const auto reporter = workers_.find(reject.worker);
   if (reporter == workers_.end()) return;
@@ -128,12 +128,12 @@ void Dispatcher::reject_attempt(const Reject& reject, Blame blame) {
 // --- who can read what
 
 /// Asks another worker to read what the sink cannot. False if there is nobody to ask, or nothing to
-/// read: then what the sink says is all there is to know.
+/// read: then the sink's word is final.
 bool Dispatcher::doubt(const Reject& reject) {
   if (reject.file.name.empty() || !holds(reject.worker, reject.key, reject.attempt)) return false;
   const auto known = doubts_.find({reject.key, reject.attempt});
   if (known != doubts_.end()) {
-    // The worker tells of its result again and again, and the sink tries again.
+    // The worker repeats its result, and the sink tries again.
     Doubt& doubt = known->second;
     const bool tried_long =
         reject.failure.kind == FailureKind::unread || now_ - doubt.since >= k_sinks_patience;
@@ -155,7 +155,7 @@ bool Dispatcher::doubt(const Reject& reject) {
   return true;
 }
 
-/// Of a host that has neither written the file nor failed to read it.
+/// A worker of a host that neither wrote the file nor failed to read it.
 std::optional<WorkerId> Dispatcher::second_reader(const Worker& reporter) const {
   for (const auto& [id, worker] : workers_) {
     const bool other = worker.host != reporter.host && worker.host != sink_->host;
@@ -170,7 +170,7 @@ void Dispatcher::on(const PeerId& peer, const TriedRead& tried) {
   if (found == doubts_.end() || found->second.reader != tried.worker) return;
   Doubt& doubt = found->second;
   doubt.whole = tried.whole;
-  // The sink may have seen it too early: it is told of it again, and tries again for a while.
+  // The sink may have looked too early: it gets the result again, and keeps trying for a while.
   if (tried.whole && doubt.reject.failure.kind != FailureKind::unread) return;
   const Reject reject = doubt.reject;
   doubts_.erase(found);
@@ -179,7 +179,7 @@ void Dispatcher::on(const PeerId& peer, const TriedRead& tried) {
   look_for_end();
 }
 
-/// What no second reader says anything of is done again, and nobody is to blame.
+/// Without an answer from the second reader the job is done again, and nobody is to blame.
 void Dispatcher::look_at_doubts() {
   std::vector<Reject> unsettled;
   std::erase_if(doubts_, [&](const auto& each) {
@@ -198,8 +198,8 @@ void Dispatcher::look_at_doubts() {
   if (!unsettled.empty()) look_for_end();
 }
 
-/// The job was done: who could not read what it needs has itself to blame, if it was no trouble for
-/// another at about the same time.
+/// The job was done: a worker that could not read its input is to blame itself, unless another had
+/// trouble at about the same time.
 void Dispatcher::blame_who_could_not_read(const Accept& accept) {
   const auto found = unread_on_.find(accept.key);
   const auto worker = workers_.find(accept.worker);
@@ -247,8 +247,7 @@ std::uint32_t Dispatcher::attempt_number(std::uint32_t attempt) const {
   return k_attempts_per_epoch * (options_.epoch - 1) + attempt;
 }
 
-/// Nobody needs the attempts made so far any more: who reported one and who holds one may forget
-/// it.
+/// The attempts made so far are no longer needed: their reporter and their holders may forget them.
 void Dispatcher::settle(JobKey key, WorkerId reporter) {
   const Done done{key, attempt_number(plan_.attempts(key))};
   const auto told = workers_.find(reporter);
@@ -256,7 +255,7 @@ void Dispatcher::settle(JobKey key, WorkerId reporter) {
   for (const WorkerId holder : scheduler_.holders(key)) {
     if (holder != reporter) send(workers_.at(holder).peer, done);
     drop(holder, key);
-    plan_.give_back(key);  // where the plan does not call it done or failed: nobody runs it now
+    plan_.give_back(key);  // if the plan has it neither done nor failed: nobody runs it now
   }
   const auto state = plan_.state(key);
   if (state != JobState::done && state != JobState::failed) return;
@@ -282,7 +281,7 @@ void Dispatcher::set_room(WorkerId id) {
   scheduler_.set_room(id, may ? worker.credit - worker.sent : 0);
 }
 
-/// The job is ready again, and nobody is to blame.
+/// The job becomes ready again, and nobody is to blame.
 void Dispatcher::stage_is_full(const Reject& reject) {
   send(workers_.at(reject.worker).peer, Done{reject.key, reject.attempt});
   drop(reject.worker, reject.key);
@@ -295,8 +294,8 @@ void Dispatcher::stage_is_full(const Reject& reject) {
   ++relapses_;
 }
 
-/// What is left of a result's worth of room would let all workers compute in vain: the more often
-/// it was full again, the more room is asked for.
+/// With room for only one result all workers would compute in vain: the more often the stage was
+/// full again, the more room is required.
 void Dispatcher::look_for_room() {
   if (finished_ || !full_ || full_->probing || now_ < full_->next_probe) return;
   full_->probing = true;
@@ -342,7 +341,7 @@ void Dispatcher::push(Scheduler::Pick pick) {
 void Dispatcher::look_for_end() {
   if (finished_ || over_) return;
   if (plan_.complete()) {
-    // What the sink takes back is made again, and needs workers.
+    // Results that the sink takes back are made again, and need workers.
     if (!sink_ || !sink_->ready || sink_->unverified > 0) return;
     over_ = true;
     to_workers(Stop{StopReason::run_over});
@@ -354,11 +353,11 @@ void Dispatcher::look_for_end() {
   }
 }
 
-/// A run of which nothing is left but jobs that fit no worker would wait for ever.
+/// A run with nothing left but jobs that fit no worker would wait for ever.
 void Dispatcher::look_for_memory() {
   const PlanCounts& counts = plan_.counts();
   const bool is_at_rest = counts.ready > 0 && counts.running == 0;
-  // Asked only then: it looks through all workers.
+  // Computed only then: it looks at all workers.
   const auto greatest = is_at_rest ? scheduler_.greatest_memory() : std::nullopt;
   const bool too_large = greatest && plan_.ready_above(*greatest) == counts.ready;
   if (!too_large) return too_large_since_.reset();
@@ -387,7 +386,7 @@ std::vector<std::string> Dispatcher::reasons_of_lost() const {
 void Dispatcher::finish(const std::string& failure, bool resumable) {
   over_ = true;
   to_workers(Stop{StopReason::run_over});
-  // The sink has heard of jobs that failed; this is for what ends the run otherwise.
+  // The sink was told of failed jobs already; this is for runs that end for other reasons.
   if (sink_ && !plan_.complete() && !plan_.stuck()) {
     send(sink_->peer, JobFailed{k_whole_run, clipped(failure), resumable});
   }

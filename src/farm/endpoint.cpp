@@ -59,7 +59,7 @@ Endpoint publish_endpoint(const Stage& stage, Endpoint endpoint, std::string_vie
     const EndpointName name{endpoint.epoch};
     const std::string bytes = encode_endpoint(endpoint);
     if (!stage.publish_new(name, bytes, unique)) continue;
-    // Where there are no hard links two may be told that it is theirs: the file says whose it is.
+    // Without hard links two writers may both be told that they own it: the content decides.
     if (stage.read(name) == bytes) return endpoint;
   }
 }

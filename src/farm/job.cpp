@@ -9,7 +9,7 @@
 namespace meshfarm {
 namespace {
 
-/// Straight to the stage.
+/// Writes directly to the stage.
 class StagedJobFile : public JobFile {
  public:
   StagedJobFile(const Stage& stage, const StagedName& name, std::string_view unique)
@@ -24,8 +24,8 @@ class StagedJobFile : public JobFile {
 }  // namespace
 
 JobKey key_of(const Job& job) {
-  // An input counts by its content, not its name: a result that was made again under another name
-  // leads to the same jobs after it. Version 2 of the key's recipe comes first.
+  // Inputs count by content, not by name: a result made again under another name leads to the same
+  // jobs after it. The key's recipe is version 2; its number comes first.
   ByteWriter out;
   out.reserve(64 + 16 * job.inputs.size() + job.kind.size() + job.parameters.size());
   out.put(std::uint32_t{2});

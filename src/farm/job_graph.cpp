@@ -10,7 +10,7 @@
 namespace meshfarm {
 namespace {
 
-/// Both, sorted, neighbours joined.
+/// The union, sorted, with adjacent ranges joined.
 JobNeeds joined(const JobNeeds& some, const JobNeeds& others) {
   JobNeeds all = some;
   all.insert(all.end(), others.begin(), others.end());
@@ -105,7 +105,7 @@ std::vector<WantedJob> JobGraph::go_on() {
   return fresh;
 }
 
-/// Its needs are accepted.
+/// Call once its needs are accepted.
 void JobGraph::make(JobName name, std::vector<WantedJob>& fresh) {
   const Make make = std::exchange(node(name).make, {});
   inherited_ = node(name).needs;
@@ -135,7 +135,7 @@ std::vector<WantedJob> JobGraph::accept(JobKey key, const JobOutput& output) {
   return go_on();
 }
 
-/// What needs this need not wait for it any more.
+/// Its dependents need not wait for it any more.
 void JobGraph::pass(JobName name) {
   Node& passed = node(name);
   assert(passed.state == State::waiting || passed.state == State::wanted);

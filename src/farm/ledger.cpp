@@ -100,7 +100,7 @@ JournalWriter open_journal(const Stage& stage) {
     try {
       return JournalWriter(stage.path(name));
     } catch (const IoError& error) {
-      if (error.error_number() != EEXIST) throw;  // else another sink took the number just now
+      if (error.error_number() != EEXIST) throw;  // otherwise another sink just took the number
     }
   }
 }

@@ -11,13 +11,13 @@ namespace meshfarm {
 namespace {
 
 constexpr int k_silent_until_lost = 3;
-// The pause between looks begins short, as a run's processes start together, and doubles. An
-// endpoint that is there gets some time to answer.
+// The pause between looks starts short, since a run's processes start together, and doubles. An
+// existing endpoint gets some time to answer.
 constexpr FarmTime k_first_look{5};
 constexpr FarmTime k_first_answer{50};
 constexpr FarmTime k_look_every{500};
-/// After so many greetings without an answer the connection is made anew: its routing id may be
-/// held by a dead connection that the ventilator has not noticed yet.
+/// After this many unanswered greetings a new connection is made: the routing id may be held by a
+/// dead connection that the ventilator has not noticed yet.
 constexpr int k_greetings_per_dial = 10;
 constexpr std::uint32_t k_shortest_heartbeat_ms = 10;
 constexpr std::uint32_t k_longest_heartbeat_ms = 60'000;
@@ -82,7 +82,7 @@ Membership::Event Membership::on_refused(const Refused& refused, FarmTime now) {
     case Refusal::stranger:
       return joined_ ? lose(now) : Event::none;
     case Refusal::full:
-      return Event::none;  // greeted again in a while
+      return Event::none;  // greets again after a while
     case Refusal::other_run:
     case Refusal::replaced:
     case Refusal::other_build:
@@ -94,7 +94,7 @@ Membership::Event Membership::on_refused(const Refused& refused, FarmTime now) {
 
 Membership::Event Membership::found(std::span<const Endpoint> endpoints, FarmTime now) {
   if (joined_) return Event::none;
-  std::map<std::uint64_t, const Endpoint*> newest;  // of each run that we may serve
+  std::map<std::uint64_t, const Endpoint*> newest;  // per run that we may serve
   for (const Endpoint& endpoint : endpoints) {
     const bool ours = options_.run == 0 || endpoint.run == options_.run;
     if (ours) newest[endpoint.run] = &endpoint;
@@ -110,7 +110,7 @@ Membership::Event Membership::found(std::span<const Endpoint> endpoints, FarmTim
     seen_over_ = true;
     was_there = was_there || (dialled_ && dialled_->run == run);
   }
-  // Whoever came after the end, or was never let in, looks for another run instead.
+  // A member that came after the end, or was never let in, looks for another run instead.
   if (was_there && (live.empty() || welcome_.run == dialled_->run)) return Event::run_over;
   if (live.empty()) return Event::none;
   std::sort(live.begin(), live.end(),
@@ -119,8 +119,8 @@ Membership::Event Membership::found(std::span<const Endpoint> endpoints, FarmTim
   return Event::none;
 }
 
-/// The newest, which is the likeliest to be there; the next one where it does not answer. Whoever
-/// lost a ventilator stays with its run as long as that may come back.
+/// The newest endpoint, which is the likeliest to answer; the next one if it does not. A member
+/// that lost its ventilator stays with the run as long as the ventilator may come back.
 const Endpoint* Membership::choose(std::span<const Endpoint* const> live, FarmTime now) {
   const bool is_new = live.front()->epoch > newest_seen_;
   if (is_new) alone_since_ = now;
@@ -170,8 +170,8 @@ std::optional<Hello> Membership::hello() {
                options_.host, options_.results, options_.capacity,    options_.algorithm};
 }
 
-/// A share of a heartbeat, which each member has by its incarnation: a crew that joined at the same
-/// time, as after the ventilator came again, does not speak at the same time ever after.
+/// A fraction of a heartbeat, given by the member's incarnation, so that members that joined
+/// together (for example after a ventilator restart) do not keep sending at the same time.
 FarmTime Membership::second_beat_after() const {
   constexpr std::uint64_t k_shares = 1023;
   const std::uint64_t share = options_.incarnation % k_shares;
@@ -189,7 +189,7 @@ Membership::Event Membership::lose(FarmTime now) {
   alone_since_ = now;
   next_look_.reset();
   look_pause_ = k_first_look;
-  // The same endpoint is dialled again, as it may have lost us and not we it.
+  // The same endpoint is dialled again: it may have lost us, not we it.
   greetings_ = k_greetings_per_dial;
   lost_ = true;
   return Event::lost;

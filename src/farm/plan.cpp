@@ -8,15 +8,16 @@
 namespace meshfarm {
 namespace {
 
-/// So many jobs that will not do are looked at in a row before another order is tried.
+/// After this many ineligible jobs in a row another order is tried.
 constexpr int k_tries = 256;
-/// And so many where it is only about which are at home.
+/// The same limit when looking for jobs at home.
 constexpr int k_tries_at_home = 32;
-/// It is preferred if its way is shorter than another's by no more than this part of its cost.
+/// A job at home is preferred if its path is shorter by at most this fraction (1/4) of the other's
+/// cost.
 constexpr std::uint64_t k_home_share = 4;
 constexpr std::uint64_t k_last = std::numeric_limits<std::uint64_t>::max();
 
-/// Of a job that is to be done.
+/// The first state of a wanted job.
 JobState first_state(const Job& job) {
   return job.by_sink ? JobState::running : JobState::ready;
 }
@@ -24,7 +25,7 @@ JobState first_state(const Job& job) {
 }  // namespace
 
 bool Plan::ReadyJob::operator<(const ReadyJob& other) const {
-  // The longest way first, so that the last jobs are short; then as asked for.
+  // The longest path first, so that the last jobs are short; then in the order of requests.
   if (path != other.path) return path > other.path;
   return order < other.order;
 }
@@ -95,7 +96,7 @@ const Plan::ReadyJob* Plan::choose(const JobChoice& choice) const {
   return anybodys != nullptr ? anybodys : best;
 }
 
-/// Of those whose way is not much shorter than the best's.
+/// Among the jobs whose path is not much shorter than the best one's.
 const Plan::ReadyJob* Plan::at_home(HostNumber host, const ReadyJob& best,
                                     const JobChoice& choice) const {
   const auto jobs = by_home_.find(host);
@@ -109,7 +110,7 @@ const Plan::ReadyJob* Plan::at_home(HostNumber host, const ReadyJob& best,
 }
 
 const Plan::ReadyJob* Plan::longest_way(const JobChoice& choice) const {
-  // From the longest way on; then from where no cost is too great any more; then by memory.
+  // By longest path; then from where the path no longer exceeds the maximum cost; then by memory.
   const auto short_ways = ready_.lower_bound({choice.max_cost, 0});
   for (auto from = ready_.begin();; from = short_ways) {
     int tries = 0;
@@ -228,7 +229,7 @@ std::vector<LostJob> Plan::lost() const {
 
 LostJob Plan::lost(JobKey key) const {
   const Entry& entry = entries_.at(key);
-  // Attempts mostly fail for the same reason: it is told once.
+  // Attempts mostly fail for the same reason: it is reported once.
   std::string reasons;
   for (auto at = entry.failures.begin(); at != entry.failures.end(); ++at) {
     if (std::find(entry.failures.begin(), at, *at) != at) continue;
@@ -251,8 +252,7 @@ std::string failed_for_good(std::span<const std::string> reasons) {
 }
 
 void Plan::move_to(JobKey key, Entry& entry, JobState state) {
-  // A job that is not wanted as far as the run has come since the restart is remembered, but
-  // neither counted nor issued.
+  // A job that the restarted run has not reached yet is remembered, but neither counted nor issued.
   if (entry.wanted) {
     count_no_more(entry);
     count(entry, state);

@@ -18,7 +18,7 @@ constexpr std::array<char, 4> k_magic = {'M', 'F', 'M', 'S'};
 template <class M, class T>
 concept Is = std::same_as<std::remove_const_t<M>, T>;
 
-// The fields of each struct, once for both directions.
+// The fields of each struct, used for both directions.
 template <Is<JobKey> M>
 auto fields(M& m) {
   return std::tie(m.value);
@@ -208,7 +208,7 @@ class Decoder {
   template <class T>
   void field(std::vector<T>& list) {
     const auto count = in_.get<std::uint32_t>();
-    // Every element has at least eight bytes, so a forged count cannot make us allocate.
+    // Every element has at least eight bytes, so a forged count cannot cause a large allocation.
     if (count > k_max_list || count > in_.remaining() / 8) in_.fail("a list too long");
     list.resize(count);
     for (T& element : list) field(element);

@@ -11,21 +11,21 @@ namespace meshfarm {
 namespace {
 
 constexpr std::uint32_t k_failures_of_a_bad_host = 3;
-/// What fails on a host within so long has one cause.
+/// Failures on a host within this time count as one incident.
 constexpr FarmTime k_incident = std::chrono::seconds(10);
-/// Then a bad host is given another chance; one more incident, and it is bad again.
+/// After this a bad host gets another chance; after one more incident it is bad again.
 constexpr FarmTime k_ban = std::chrono::minutes(5);
-/// Of a worker that does not say.
+/// For workers that do not report a speed.
 constexpr double k_usual_speed = 1e6;
-/// A buffer is never made smaller than this, in seconds: it has to outlast the way of a message.
+/// A buffer never gets smaller than this, in seconds: it must outlast a message's travel time.
 constexpr double k_least_buffer = 0.01;
-/// Added to the load of those who hold enough to read ahead: more seconds than anyone holds.
+/// Added to the load of workers that hold enough to read ahead: more seconds than any load.
 constexpr double k_second_rank = 1e6;
-/// For a job's home no worker is chosen that is slower than this share of another.
+/// A job goes to its home only if the worker there has at least this fraction of the other's speed.
 constexpr double k_about_as_fast = 0.75;
 constexpr std::uint64_t k_no_limit = std::numeric_limits<std::uint64_t>::max();
 
-/// Of a worker that tells of so much memory.
+/// The limit for a worker that reports this memory.
 std::uint64_t limit_of(std::uint64_t memory) {
   return memory == 0 ? k_no_limit : memory;
 }
@@ -136,7 +136,7 @@ void Scheduler::end_bans(FarmTime now) {
   bans_changed();
 }
 
-/// Others than before may be sent jobs.
+/// The set of workers that may be sent jobs has changed.
 void Scheduler::bans_changed() {
   undealt_.clear();
   rank_all();
@@ -151,7 +151,7 @@ bool Scheduler::good(const Host& host) const {
   return host.failures < k_failures_of_a_bad_host;
 }
 
-/// Whether there are workers with so much memory on a good host that is not one of these.
+/// Whether a good host that is not in the list has workers with this much memory.
 bool Scheduler::elsewhere(const std::vector<std::string>& hosts, std::uint64_t memory) const {
   return std::any_of(hosts_.begin(), hosts_.end(), [&](const auto& each) {
     const Host& host = each.second;
@@ -186,7 +186,7 @@ bool Scheduler::serves(const Member& member) const {
   return good(*member.host) || !elsewhere({member.host->name});
 }
 
-/// Whether it may be sent anything at all.
+/// Whether the worker may be sent anything at all.
 bool Scheduler::open(const Member& member) const {
   if (member.room == 0 || !serves(member)) return false;
   const Pool* pool = member.pool;
@@ -226,7 +226,7 @@ std::uint64_t Scheduler::memory_share(WorkerId id) const {
   return all ? member.memory : share(member);
 }
 
-/// Up to how much memory a job may need to be given to this worker now.
+/// The largest memory need of a job that this worker may be given now.
 std::uint64_t Scheduler::memory_now(const Member& member) const {
   if (member.memory == 0) return k_no_limit;
   const std::uint32_t itself = member.held.empty() ? 0 : 1;
@@ -266,7 +266,7 @@ void Scheduler::leave_pool(Member& member) {
   rank_all();
 }
 
-/// Where a job failed it is tried again only if no other host could do it.
+/// A job is retried on a host where it failed only if no other host could do it.
 bool Scheduler::may_on_host(const Member& member, JobKey key, std::uint64_t memory) const {
   const auto failed = failed_on_.find(key);
   if (failed == failed_on_.end()) return true;
@@ -290,7 +290,7 @@ void Scheduler::begin_turns(Member& member, FarmTime now) {
   }
 }
 
-/// The first host that reads it is its home as long as it has workers.
+/// The first host that reads an extent is its home, as long as the host has workers.
 void Scheduler::find_home(Plan& plan, std::uint64_t extent, const Host& host) const {
   if (extent == 0) return;
   const HostNumber before = plan.home(extent);
@@ -298,8 +298,8 @@ void Scheduler::find_home(Plan& plan, std::uint64_t extent, const Host& host) co
   plan.set_home(extent, host.number);
 }
 
-/// Whom a job is handed to that this worker could do: another that has no more to do before it, is
-/// about as fast, and whose host is the job's home.
+/// The worker to give a job to that this worker could do: one on the job's home host that is about
+/// as fast and has no more to do before it.
 WorkerId Scheduler::at_home(WorkerId id, const IssuedJob& job, const Plan& plan,
                             FarmTime now) const {
   const Member& first = crew_.at(id);
@@ -331,7 +331,7 @@ Scheduler::Pick Scheduler::hand(Plan& plan, WorkerId id, IssuedJob job, FarmTime
   return {id, std::move(job)};
 }
 
-/// Which jobs it may be given. Where all are on one host, none is preferred.
+/// Which jobs the worker may be given. If all workers are on one host, none is preferred.
 JobChoice Scheduler::choice_for(const Member& member, const Plan& plan, FarmTime now) const {
   JobChoice choice;
   choice.max_cost = greatest_cost(member, now);
@@ -358,7 +358,7 @@ std::optional<Scheduler::Pick> Scheduler::next(Plan& plan, FarmTime now) {
     if (auto job = plan.issue(choice)) {
       return hand(plan, at_home(id, *job, plan, now), std::move(*job), now);
     }
-    willing_.erase(willing_.begin());  // there is nothing for it before the next outlook
+    willing_.erase(willing_.begin());  // nothing for it before the next outlook
     member.rank.reset();
   }
   return std::nullopt;

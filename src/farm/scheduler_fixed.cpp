@@ -1,15 +1,15 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
 //
-// The scheduler's fixed schedule: the work is dealt out in sets, one a worker.
+// The scheduler's fixed schedule: the work is dealt out in sets, one per worker.
 #include <algorithm>
 
 #include <meshfarm/farm/scheduler.hpp>
 
 namespace meshfarm {
 
-/// Deals out what nobody was dealt yet: the largest job first, each to whoever would then be
-/// through the earliest.
+/// Deals out all jobs not dealt yet: the largest first, each to the worker that would finish it
+/// earliest.
 void Scheduler::deal(const Plan& plan) {
   std::map<WorkerId, double> load;
   for (const auto& [id, member] : crew_) {
@@ -45,7 +45,7 @@ void Scheduler::deal_again() {
   undealt_.clear();
 }
 
-/// What was dealt to those who may not be given it any more is to be dealt again.
+/// Jobs dealt to workers that may no longer be given them are dealt again.
 void Scheduler::take_back(const Plan& plan) {
   const bool any_bad = next_ban_end_ != FarmTime::max();
   for (auto at = sets_.begin(); any_bad && at != sets_.end(); ++at) {
@@ -62,7 +62,7 @@ void Scheduler::take_back(const Plan& plan) {
   }
 }
 
-/// Takes from its set what the worker may be given now.
+/// Takes a job from the worker's set that it may be given now.
 std::optional<JobKey> Scheduler::next_of_set(WorkerId id, const Plan& plan) {
   const Member& member = crew_.at(id);
   std::deque<JobKey>& set = sets_[id];
@@ -84,7 +84,7 @@ std::optional<JobKey> Scheduler::next_of_set(WorkerId id, const Plan& plan) {
 std::optional<Scheduler::Pick> Scheduler::next_fixed(Plan& plan, FarmTime now) {
   if (crew_.size() < options_.expect_workers && sets_.empty()) return std::nullopt;
   take_back(plan);
-  // Another run may have done what fits nobody here.
+  // Another run may have done jobs that fit no worker here.
   std::erase_if(undealt_, [&](JobKey key) { return plan.state(key) != JobState::ready; });
   if (plan.counts().ready > dealt_.size() + undealt_.size()) deal(plan);
   for (const auto& [load, id] : willing_) {

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
 //
-// The scheduler's estimates of how fast workers are and of what is left, and what follows from them
+// The scheduler's estimates of worker speeds and remaining work, and the decisions based on them
 // near the end of a run.
 #include <algorithm>
 #include <cmath>
@@ -13,28 +13,29 @@
 namespace meshfarm {
 namespace {
 
-/// An estimate of the rest holds for this share of the rest.
+/// An outlook is valid for this fraction of the remaining time...
 constexpr double k_outlook_share = 1.0 / 16;
-/// And at least for so long that a large crew is not looked through all the time.
+/// ...and long enough that a large crew is not scanned all the time.
 constexpr std::size_t k_members_per_ms = 400;
-/// How often second attempts are thought of. One must be through so much earlier than the first, in
-/// seconds and as a share.
+/// How often second attempts are considered. One must finish earlier than the first by at least
+/// this many seconds, and by this fraction of the first's remaining time.
 constexpr FarmTime k_second_attempts_every{100};
 constexpr double k_least_gain = 0.1;
 constexpr double k_least_gain_share = 0.1;
-/// An attempt that takes longer than estimated is held to take on as long as it is late, times
-/// this: at one and a half times its estimate a second attempt pays.
+/// A late attempt is expected to go on for this multiple of its lateness: at one and a half times
+/// its estimate a second attempt pays.
 constexpr double k_lateness = 2;
-/// Workers of one host are equally fast, and a second attempt there takes from what the first one
-/// has: of those that have begun, only one that is late by so many seconds may be stuck.
+/// Workers of one host are equally fast, and a second attempt there slows down the first: of the
+/// jobs that have begun, only one that is late by this many seconds may be stuck.
 constexpr double k_late_on_host = 10;
-/// So many jobs of a kind that are in work tell how long they take before one is done. But no
-/// longer than so many seconds more than was thought: what holds all of them up may be their hosts.
+/// This many jobs of a kind in work show how long they take before one is done, up to this many
+/// seconds beyond the estimate: what holds all of them up may be their hosts.
 constexpr std::size_t k_enough_in_work = 3;
 constexpr double k_patience = 10;
-/// What takes so many times as long as usual tells nothing of how long jobs take.
+/// A job that takes more than this many times as long as usual says nothing about how long jobs
+/// take.
 constexpr double k_outlier = 10;
-/// No job is left to a worker that is faster by less than this.
+/// An idle worker with at least this fraction of the fastest speed leaves no job to a faster one.
 constexpr double k_about_the_fastest = 0.75;
 
 }  // namespace
@@ -70,10 +71,10 @@ void Scheduler::did(WorkerId id, JobKey key, std::uint32_t compute_ms, FarmTime 
   member.speed = estimated_speed(member);
 }
 
-/// How much faster it was than others at jobs of the same kinds: what a kind costs is only thought,
-/// and whoever did those that go quicker than thought is no faster for that. The benchmark,
-/// corrected by what all hosts make of theirs, weighs as much as a job of those in which the time
-/// is spent.
+/// The worker's speed relative to others at jobs of the same kinds: costs are only estimates, and a
+/// worker is not faster because its jobs were of a kind that takes less than estimated. The
+/// benchmark, corrected by the average of all hosts' actual to benchmark speed, weighs as much as
+/// one typical job (mean weighted by time).
 double Scheduler::estimated_speed(const Member& member) const {
   if (seconds_done_ == 0) return member.benchmark;
   Pace all;
@@ -130,10 +131,10 @@ const Scheduler::Outlook& Scheduler::outlook(const Plan& plan, FarmTime now) {
   return outlook_;
 }
 
-/// The cost up to which a job is better done by this worker, after what it holds, than left to the
-/// others: it is through by the time when all is done, give or take half the job on the fastest
-/// worker; or while another is busy anyway. So a job is left to a faster worker only as long as
-/// that is expected to come free in time, and the fastest idle worker takes any.
+/// The maximum cost of a job that this worker, after what it holds, should do rather than leave to
+/// others: it finishes when everything is done, give or take half the job's time on the fastest
+/// worker; or while another worker is busy anyway. So a job is left to a faster worker only if that
+/// one is expected to be free in time, and the fastest idle worker takes any job.
 std::uint64_t Scheduler::greatest_cost(const Member& member, FarmTime now) const {
   constexpr double k_any = std::numeric_limits<double>::max();
   const double gone = seconds(now - outlook_.now);
@@ -143,14 +144,14 @@ std::uint64_t Scheduler::greatest_cost(const Member& member, FarmTime now) const
   double cost = std::max(0.0, left / slower);
   cost = std::max(cost, (outlook_.last_free - gone - held) * member.speed);
   const bool fast = member.speed >= k_about_the_fastest * outlook_.fastest;
-  // Whatever the estimates are worth: where nobody holds anything, somebody must begin.
+  // Whatever the estimates say: if nobody holds anything, somebody must start.
   if ((member.held.empty() && fast) || holders_.empty()) cost = k_any;
   return cost >= 0x1p63 ? std::numeric_limits<std::uint64_t>::max()
                         : static_cast<std::uint64_t>(cost);
 }
 
-/// By kind, how many times longer its jobs take than was thought; at least 1. As long as none is
-/// done, half of those in work take at least as long as they have by now.
+/// By kind, how many times longer jobs take than estimated; at least 1. Before any is done: the
+/// median of what those in work have taken so far.
 std::map<std::string, double> Scheduler::times_longer(FarmTime now) const {
   std::map<std::string, std::vector<double>> in_work;
   for (const auto& [id, member] : crew_) {
@@ -175,7 +176,7 @@ std::map<std::string, double> Scheduler::times_longer(FarmTime now) const {
   return times;
 }
 
-/// Jobs with a single attempt, those first that will be done last.
+/// Jobs with a single attempt, latest expected completion first.
 std::vector<Scheduler::Late> Scheduler::late_jobs(const Plan& plan, FarmTime now) const {
   const std::map<std::string, double> times_of = times_longer(now);
   std::vector<Late> late;
@@ -205,7 +206,7 @@ std::vector<Scheduler::Pick> Scheduler::second_attempts(Plan& plan, FarmTime now
   if (options_.schedule == Schedule::fixed) return picks;
   if (now < next_second_attempts_) return picks;
   next_second_attempts_ = now + k_second_attempts_every;
-  std::vector<std::pair<double, WorkerId>> idle;  // the fastest first
+  std::vector<std::pair<double, WorkerId>> idle;  // fastest first
   for (const auto& [id, member] : crew_) {
     if (member.held.empty() && open(member)) idle.emplace_back(-member.speed, id);
   }
@@ -230,7 +231,7 @@ std::vector<Scheduler::Pick> Scheduler::second_attempts(Plan& plan, FarmTime now
       picks.push_back(hand(plan, id, plan.issue(taken->held->key), now));
       late.erase(taken);
     } else if (!any_gains) {
-      break;  // nor does a slower worker
+      break;  // nor does it for a slower worker
     }
   }
   return picks;

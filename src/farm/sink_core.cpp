@@ -12,15 +12,15 @@
 namespace meshfarm {
 namespace {
 
-/// What there is no room for is tried again after so long, and then twice as long each time.
+/// What there is no room for is retried after this pause, which doubles each time.
 constexpr FarmTime k_first_pause{1000};
 constexpr FarmTime k_longest_sink_pause{5000};
 /// The output takes longer to try.
 constexpr FarmTime k_longest_output_pause{60'000};
-/// To read less takes hardly longer than to look at it.
+/// Up to this size, reading a result takes hardly longer than checking its size.
 constexpr std::uint64_t k_large_bytes = std::uint64_t{256} << 10;
 
-/// Of a sink that does not wait for room: they tell how to go on.
+/// For a sink that does not wait for room: adds how to continue.
 SinkProblem as_last_words(SinkProblem problem) {
   if (problem.no_room) problem.text += k_after_making_room;
   return problem;
@@ -32,7 +32,7 @@ SinkActions SinkCore::tick(FarmTime now) {
   if (phase_ == Phase::left) return take();
   if (!std::exchange(begun_, true)) want(graph_.begin());
   const Membership::Event event = member_.tick(now);
-  // While the output is being made nobody needs the ventilator; it may come back meanwhile.
+  // While the output is being made nobody needs the ventilator, which may come back meanwhile.
   const bool busy = phase_ == Phase::making_output;
   if (event != Membership::Event::expired || !busy) on(event, now);
   if (member_.look_due(now)) act(Look{});
@@ -74,7 +74,7 @@ void SinkCore::on(Membership::Event event, FarmTime now) {
       return;
     case Membership::Event::joined:
       told_all_ = false;
-      failed_.clear();  // this ventilator says anew what it gave up
+      failed_.clear();  // the new ventilator repeats what it gave up
       if (phase_ == Phase::saying_complete) say_until_ = now + member_.options().patience;
       return tell_all();
     case Membership::Event::lost:
@@ -121,7 +121,7 @@ void SinkCore::take_result(const Result& result) {
   if (graph_.accepted(result.key) != nullptr) return tell(result.key, result.worker);
   if (const auto* said = std::get_if<JobFailure>(&result.outcome)) {
     const auto failure = failure_to_tell(result, *said);
-    if (!failure) return;  // the worker says it again
+    if (!failure) return;  // the worker repeats its result
     return say(Reject{member_.epoch(), result.worker, result.attempt, result.key, *failure, {}});
   }
   const auto& output = std::get<JobOutput>(result.outcome);
@@ -154,8 +154,8 @@ SinkActions SinkCore::checked(const Check& check, const JobFailure& problem, Far
     return take();
   }
   checking_.erase(check.key);
-  // What was tried again may be damaged by now: then nothing is left to wait for. Records are
-  // short: where there is room for one, a job of the sink may still find too little.
+  // A retried result may be damaged by now: then nothing is left to wait for. Records are short:
+  // when there is room for one, there may still be too little for a job of the sink.
   if ((fine || checking_.empty()) && !again_at_ && lack_room_.empty()) again_pause_ = FarmTime(0);
   const bool known = check.what == Check::What::known;
   if (known) --looking_;
@@ -176,7 +176,7 @@ SinkActions SinkCore::checked(const Check& check, const JobFailure& problem, Far
   return take();
 }
 
-/// Jobs that are possible now; what a journal knows of them is looked at at once.
+/// Jobs that are possible now; those known from a journal are checked at once.
 void SinkCore::want(std::vector<WantedJob> jobs) {
   for (std::size_t i = 0; i < jobs.size(); ++i) {
     const auto [key, job, name] = std::move(jobs[i]);
@@ -198,7 +198,7 @@ void SinkCore::want(std::vector<WantedJob> jobs) {
   look_for_end();
 }
 
-/// The jobs that are possible then.
+/// Returns the jobs that become possible.
 std::vector<WantedJob> SinkCore::accept(const Check& check) {
   accepted_.push_back(check.key);
   std::vector<WantedJob> possible = graph_.accept(check.key, check.output);
@@ -207,7 +207,7 @@ std::vector<WantedJob> SinkCore::accept(const Check& check) {
   return possible;
 }
 
-/// A job of the sink reads what was accepted.
+/// A job of the sink reads accepted results, so all must be verified.
 void SinkCore::do_here(const DoHere& what) {
   if (unverified() > 0) return waiting_.push_back(what);
   if (doing_.insert(what.key).second) act(what);
@@ -228,7 +228,7 @@ void SinkCore::tell_all() {
   say_where_it_stands();
 }
 
-/// What nobody would ask for if it got lost: a worker tells of its result until it is answered.
+/// Repeats what nobody would ask for if it got lost: workers repeat their results until answered.
 void SinkCore::say_again() {
   for (const auto& [key, job] : own_) {
     if (graph_.accepted(key) != nullptr) tell(key, WorkerId{});

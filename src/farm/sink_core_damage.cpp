@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
 //
-// What the sink trusts, and what it does when something turns out to be damaged.
+// What the sink trusts, and how it handles damage.
 #include <utility>
 
 #include <meshfarm/farm/sink_core.hpp>
@@ -16,11 +16,11 @@ void SinkCore::take_in(const Check& check) {
     left ? void(left_.insert_or_assign(check.key, std::move(read))) : act(std::move(read));
   }
   if (graph_.waits_for(check.key)) return want(accept(check));
-  // The graph was begun again meanwhile, and has not come as far as this job.
+  // The graph was restarted meanwhile, and has not reached this job yet.
   known_.add(check.key, check.output);
 }
 
-/// Something may be damaged.
+/// Called when something may be damaged.
 void SinkCore::read_what_was_left() {
   for (auto& [key, check] : std::exchange(left_, {})) {
     known_.looked_at(key, check.output, false);
@@ -28,7 +28,7 @@ void SinkCore::read_what_was_left() {
   }
 }
 
-/// What was accepted by a look at its size has been read.
+/// A result that was accepted by its size has been read.
 void SinkCore::verified(const Check& check, const JobFailure& problem) {
   if (problem.reason.empty()) {
     known_.verified(check.key);
@@ -44,9 +44,9 @@ void SinkCore::verified(const Check& check, const JobFailure& problem) {
   look_for_end();
 }
 
-/// Nothing as long as it is not known whose fault it is. A worker may be the first to see that a
-/// result is damaged: then no host is to blame, and to try again before that is made again is in
-/// vain.
+/// Reports nothing until it is known whose fault it is. A worker may be the first to notice a
+/// damaged result: then no host is to blame, and retrying is useless before that result is made
+/// again.
 std::optional<JobFailure> SinkCore::failure_to_tell(const Result& result,
                                                     const JobFailure& failure) {
   if (!told_all_) return std::nullopt;
@@ -62,7 +62,7 @@ std::optional<JobFailure> SinkCore::failure_to_tell(const Result& result,
   return JobFailure{failure.reason, FailureKind::unread};
 }
 
-/// As a new sink would that knows all but what is damaged.
+/// Like a new sink that knows everything except the damaged results.
 void SinkCore::begin_again(FarmTime now) {
   for (const JobKey key : accepted_) {
     if (!damaged_.contains(key)) known_.add(key, *graph_.accepted(key));

@@ -9,7 +9,7 @@
 namespace meshfarm {
 namespace {
 
-/// A result that nobody acknowledged is sent again after so many heartbeats.
+/// A result that nobody acknowledged is sent again after this many heartbeats.
 constexpr int k_resend_heartbeats = 5;
 
 }  // namespace
@@ -57,7 +57,7 @@ void WorkerCore::beat(const WorkerPulse& pulse, FarmTime now) {
   beat.progress = pulse.progress();
   beat.rss_bytes = pulse.rss_bytes;
   for (const auto& slot : slots_) {
-    // A job that was taken back may wait for storage as long as it likes.
+    // A job that was taken back may wait for storage indefinitely.
     const bool waits = slot && slot->pulse.phase == JobPhase::storage && !slot->on_this_lane;
     const bool counts = slot && !waits && !pulse.slots.empty();
     const FarmTime still = counts ? slot->still(now) : FarmTime(0);
@@ -70,7 +70,7 @@ void WorkerCore::beat(const WorkerPulse& pulse, FarmTime now) {
   if (credit_ > 0) act(Say{Credit{joined.epoch, joined.worker, credit_}});
 }
 
-/// Takes the slots' pulses. Whoever waits for its turn does not stand still.
+/// Takes the slots' pulses. A job that waits for its turn does not stand still.
 void WorkerCore::feel(const WorkerPulse& pulse, FarmTime now) {
   for (std::size_t i = 0; i < std::min(slots_.size(), pulse.slots.size()); ++i) {
     if (!slots_[i]) continue;
@@ -86,7 +86,7 @@ void WorkerCore::feel(const WorkerPulse& pulse, FarmTime now) {
 }
 
 FarmTime WorkerCore::InWork::still(FarmTime now) const {
-  // What gets less than this of the time does not compute, but waits for something.
+  // A thread with less than this fraction (1/1000) of the time is not computing, but waiting.
   constexpr FarmTime::rep k_least_share = 1000;
   const FarmTime all = now - moved;
   const FarmTime computed(static_cast<FarmTime::rep>(pulse.cpu_ms - moved_cpu_ms));
@@ -135,7 +135,7 @@ WorkerActions WorkerCore::on_lane(const Message& message, FarmTime now) {
     return take();
   }
   if (assignment->lane_seq != received_ + 1) {
-    // The lane lost a job: only a fresh membership makes both sides agree again on who holds what.
+    // The lane lost a job: only a new membership makes both sides agree on who holds what.
     on(member_.on_message(Stop{StopReason::leaving}, now), now);
     return take();
   }
@@ -287,7 +287,7 @@ void WorkerCore::begin_next() {
   }
 }
 
-/// A slot for a job that takes so much memory; the first job always gets one.
+/// A slot for a job that needs this much memory; the first job always gets one.
 std::optional<std::uint32_t> WorkerCore::free_slot(std::uint64_t memory) const {
   std::optional<std::uint32_t> found;
   std::uint64_t taken = 0;
@@ -301,8 +301,8 @@ std::optional<std::uint32_t> WorkerCore::free_slot(std::uint64_t memory) const {
 
 void WorkerCore::raise_credit() {
   if (!member_.joined()) return;
-  // Where every slot waits for storage with what another lane brought, nothing is asked for: it
-  // would wait here, maybe for long, while others could do it.
+  // If every slot waits for storage with jobs from an earlier lane, request nothing: new jobs would
+  // wait here, maybe for long, while others could do them.
   const bool stuck = std::all_of(slots_.begin(), slots_.end(), [](const auto& slot) {
     return slot && !slot->on_this_lane && slot->pulse.phase != JobPhase::computing;
   });
@@ -311,7 +311,7 @@ void WorkerCore::raise_credit() {
   for (const auto& slot : slots_) on_lane += slot && slot->on_this_lane ? 1 : 0;
   const std::uint64_t busy = in_work();
   const bool idle = waiting_.empty() && busy < slots_.size();
-  // The paper, 3.2: a batch is applied for when the input buffer is less than 0.8 full.
+  // The paper, 3.2: a batch is requested when the input buffer is less than 0.8 full.
   if (!idle && waiting_.size() * 10 >= std::uint64_t{limits_.buffer} * 8) return;
   const std::uint64_t begun_or_gone = received_ - waiting_.size() - on_lane;
   const std::uint64_t room = limits_.buffer + slots_.size() - (busy - on_lane);

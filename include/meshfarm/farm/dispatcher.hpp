@@ -25,22 +25,22 @@ struct DispatcherOptions {
   std::uint64_t run = 0;
   std::uint32_t epoch = 0;
   FarmTime heartbeat{1000};
-  /// A job that makes no progress for so long, and for three times its estimate, hangs.
+  /// A job hangs if it makes no progress for this long, and for three times its estimate.
   FarmTime hang{30'000};
   SchedulerOptions schedule = {};
   /// How long jobs that are larger than any worker's memory wait for a larger worker, once nothing
   /// else is left to do.
   FarmTime wait_for_memory{60'000};
-  /// Where the stage has no room: wait until it has, or end the run.
+  /// When the stage has no room: wait until it has, or end the run.
   WhenFull when_full = WhenFull::wait;
-  bool tell = false;  // what happens, by Tell
+  bool tell = false;  // emit Tell actions for what happens
   std::uint32_t algorithm = 0;
 };
 
-/// The ventilator's mind: who is there, and who holds what; the Scheduler says who gets what. Pure:
-/// fed with messages and the time, it answers with what to do, in order; the simulator runs the
-/// same class. Holds: a worker is never sent a job beyond its credit or its memory, and no job is
-/// held by more than two.
+/// The ventilator's decisions: it tracks who is there and who holds what; the Scheduler decides who
+/// gets what. Pure: it takes messages and the time and returns the actions to take, in order; the
+/// simulator runs the same class. Invariants: a worker is never sent a job beyond its credit or its
+/// memory, and at most two workers hold a job.
 class Dispatcher {
  public:
   Dispatcher(Plan plan, DispatcherOptions options)
@@ -49,22 +49,23 @@ class Dispatcher {
   Actions on_message(const PeerId& peer, const Message& message, FarmTime now);
   Actions lane_opened(WorkerId id, const std::string& address);
   Actions lane_failed(WorkerId id, const std::string& reason);
-  /// Whether all messages that are there have been given.
+  /// Whether all available messages have been delivered.
   enum class Inbox { empty, unread };
-  /// To be called about twice a heartbeat. Nobody is held to be silent whose words may be unread.
+  /// Call about twice per heartbeat. With unread messages in the inbox, nobody is treated as
+  /// silent.
   Actions tick(FarmTime now, Inbox inbox = Inbox::empty);
-  /// The answer to ProbeStage: `problem` is empty if the bytes could be written.
+  /// Answers ProbeStage; `problem` is empty if the bytes could be written.
   Actions probed(const std::string& problem, FarmTime now);
-  /// Tells everybody that this ventilator leaves before the end.
+  /// Tells everybody that this ventilator leaves before the run is over.
   Actions leave();
-  /// Ends a run that turned out to be complete already.
+  /// Ends a run that turned out to be already complete.
   Actions end_complete();
 
   const Plan& plan() const { return plan_; }
   const Scheduler& scheduler() const { return scheduler_; }
   FarmProgress progress() const;
   std::vector<WorkerStatus> workers() const;
-  /// Jobs that a worker holds.
+  /// Number of jobs that workers hold.
   std::uint64_t holding() const { return scheduler_.jobs_held(); }
   std::uint64_t dropped() const { return dropped_; }
 
@@ -75,15 +76,15 @@ class Dispatcher {
     std::uint32_t pid = 0;
     std::string host;
     Capacity capacity;
-    std::string lane;  // empty until it is open
+    std::string lane;  // empty until the lane is open
     FarmTime heard{0};
     FarmTime pushed{0};
     std::uint64_t credit = 0;
     std::uint64_t sent = 0;
-    int unreceived_beats = 0;  // in a row, of jobs sent but not received
-    Heartbeat beat;            // the last
+    int unreceived_beats = 0;  // consecutive heartbeats that report jobs sent but not received
+    Heartbeat beat;            // the latest
 
-    /// Whether it has said anything that only a worker says that was welcomed.
+    /// Whether it has sent a message that only a welcomed worker sends.
     bool knows_of_lane() const { return credit > 0 || beat.epoch != 0; }
   };
   struct Sink {
@@ -94,30 +95,29 @@ class Dispatcher {
     FarmTime heard{0};
     bool ready = false;
     std::map<JobKey, JobOutput> told;
-    std::uint64_t unverified = 0;  // of what it accepted
-    bool no_room = false;          // for what it writes
+    std::uint64_t unverified = 0;  // of the results it accepted
+    bool no_room = false;          // for its own writes
   };
-  /// The stage is full: nobody is to blame, and nothing is given out until a probe could be
-  /// written.
+  /// The stage is full: nobody is blamed, and no jobs are issued until a probe has been written.
   struct FullStage {
     FarmTime next_probe{0};
     FarmTime pause{0};  // between probes
     bool probing = false;
   };
-  /// A result that the sink cannot read, or reads damaged. Before its host is blamed for that, a
-  /// worker of another host tries.
+  /// A result that the sink cannot read, or reads damaged. Before the worker's host is blamed, a
+  /// worker on another host tries to read it.
   struct Doubt {
     Reject reject;
     WorkerId reader;
     FarmTime since{0};
-    bool whole = false;  // as the reader says
+    bool whole = false;  // as the reader reports
   };
-  /// A host that could not read what a job needs, and when.
+  /// A host that could not read a job's inputs, and when.
   struct Unread {
     std::string host;
     FarmTime at{0};
   };
-  /// A job held to have cost a worker its life.
+  /// A job that is blamed for the loss of a worker.
   struct Charge {
     JobKey key;
     std::string reason;
@@ -193,8 +193,8 @@ class Dispatcher {
   std::unordered_map<PeerId, WorkerId> by_peer_;
   std::unordered_map<std::uint64_t, WorkerId> by_incarnation_;
   std::set<std::pair<FarmTime, WorkerId>> by_heard_;
-  std::unordered_map<std::uint64_t, Charge> charges_;         // by the lost one's incarnation
-  std::map<std::pair<JobKey, std::uint32_t>, Doubt> doubts_;  // by the attempt
+  std::unordered_map<std::uint64_t, Charge> charges_;         // by incarnation of the lost worker
+  std::map<std::pair<JobKey, std::uint32_t>, Doubt> doubts_;  // by attempt
   std::map<JobKey, std::vector<Unread>> unread_on_;
   std::optional<Sink> sink_;
   std::uint64_t last_sink_ = 0;  // incarnation
@@ -202,12 +202,12 @@ class Dispatcher {
   std::optional<FarmTime> too_large_since_;
   std::optional<FullStage> full_;
   std::uint32_t relapses_ = 0;         // full again, with no result accepted since there was room
-  std::uint64_t greatest_output_ = 0;  // bytes of a result
+  std::uint64_t greatest_output_ = 0;  // of any result, in bytes
   bool over_ = false;
   bool finished_ = false;
   std::uint64_t dropped_ = 0;
   std::uint32_t lost_workers_ = 0;
-  std::string other_build_;  // that was refused last
+  std::string other_build_;  // refused last
 };
 
 }  // namespace meshfarm

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
 //
-// What the ventilator's mind (dispatcher.hpp) asks the process round it to do.
+// The actions that Dispatcher (dispatcher.hpp) asks its surrounding process to take.
 #pragma once
 
 #include <string>
@@ -13,7 +13,7 @@
 
 namespace meshfarm {
 
-/// A peer on the control channel, as its transport names it.
+/// A peer on the control channel, as the transport names it.
 using PeerId = std::string;
 
 struct SendTo {
@@ -32,17 +32,17 @@ struct PushJob {
   JobKey key;
   Assignment assignment;
 };
-/// The ventilator's work is over; `failure` says why the run could not be completed, and
-/// `resumable` that the same run may be, later.
+/// The ventilator is finished. `failure` says why the run could not be completed; `resumable` says
+/// that the same run may still be completed later.
 struct Finish {
   std::string failure;
   bool resumable = false;
 };
-/// Try whether so many bytes can be written to the stage; answered by probed().
+/// Try to write this many bytes to the stage; answered by probed().
 struct ProbeStage {
   std::uint64_t bytes = 0;
 };
-/// Nothing to do: for those who watch.
+/// Requires no action: for observers only.
 struct Tell {
   FarmEvent event;
 };

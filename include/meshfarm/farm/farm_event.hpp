@@ -11,7 +11,7 @@
 
 namespace meshfarm {
 
-// What happens in a run, for those who only watch it.
+// Events of a run, for observers only.
 
 struct RunBegan {
   std::uint32_t epoch = 0;

@@ -11,25 +11,25 @@
 
 namespace meshfarm {
 
-/// What the farm is doing, for progress lines.
+/// The state of the farm, for progress lines.
 struct FarmProgress {
   std::uint64_t jobs_done = 0;
   std::uint64_t jobs_known = 0;
-  std::uint64_t cost_done = 0;  // triangles of the jobs accepted
+  std::uint64_t cost_done = 0;  // triangles of the accepted jobs
   std::uint64_t cost_known = 0;
   std::vector<StageProgress> stages;
   std::uint64_t jobs_running = 0;
   std::uint64_t jobs_failed = 0;
-  std::uint64_t jobs_too_big = 0;  // ready, but they need more memory than any worker has
+  std::uint64_t jobs_too_big = 0;  // ready, but need more memory than any worker has
   std::uint32_t workers = 0;
   std::uint32_t workers_lost = 0;
   std::uint32_t retries = 0;
   bool sink_present = false;
-  std::uint64_t refused = 0;           // connections that did not prove to belong to the run
-  std::string other_build;             // who was refused for that last, and why
+  std::uint64_t refused = 0;           // connections that failed to authenticate
+  std::string other_build;             // who was last refused for its build, and why
   bool storage_stalls = false;         // most workers wait for the stage
-  bool no_room = false;                // the stage is full, and all wait until it is not
-  std::vector<std::string> bad_hosts;  // get no more jobs: too many failed there in a row
+  bool no_room = false;                // the stage is full, and everyone waits for room
+  std::vector<std::string> bad_hosts;  // get no more jobs after too many failures in a row
 };
 
 /// One worker as the ventilator sees it.
@@ -38,11 +38,11 @@ struct WorkerStatus {
   std::string host;
   std::uint32_t pid = 0;
   Capacity capacity;
-  double speed = 0;  // triangles a second and thread, by the jobs it did
+  double speed = 0;  // triangles per second and thread, from completed jobs
   std::uint32_t held = 0;
   std::uint64_t rss_bytes = 0;
-  FarmTime silent{0};      // since it was last heard
-  std::uint64_t room = 0;  // jobs that it may be sent besides
+  FarmTime silent{0};      // since its last message
+  std::uint64_t room = 0;  // additional jobs that it may be sent
 };
 
 }  // namespace meshfarm

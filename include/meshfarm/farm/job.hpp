@@ -14,9 +14,9 @@
 
 namespace meshfarm {
 
-/// Names a job by its content: checksum of kind, inputs, parameters and version of the algorithm.
-/// The same work has the same key in every run, so an accepted result is found again by a restarted
-/// or a repeated run.
+/// Names a job by its content: a checksum of kind, inputs, parameters and algorithm version. The
+/// same work has the same key in every run, so a restarted or repeated run finds accepted results
+/// again.
 struct JobKey {
   std::uint64_t value = 0;
   friend auto operator<=>(const JobKey&, const JobKey&) = default;
@@ -28,7 +28,7 @@ struct Extent {
   std::uint64_t name = 0;  // 0: none
   std::uint64_t bytes = 0;
 };
-/// By what it is and its number.
+/// From what it is (`what`) and its number.
 Extent extent_named(std::string_view what, std::uint64_t number, std::uint64_t bytes);
 
 /// A part of one of a job's inputs.
@@ -39,54 +39,55 @@ struct InputSection {
   friend bool operator==(const InputSection&, const InputSection&) = default;
 };
 
-/// A unit of work. To the farm `kind` and `parameters` are opaque.
+/// A unit of work. `kind` and `parameters` are opaque to the farm.
 struct Job {
   std::string kind;             // "simplify"
   std::vector<FileRef> inputs;  // in the stage
-  std::string parameters;       // bytes that the job's function decodes
+  std::string parameters;       // bytes decoded by the job's function
   std::uint64_t cost = 0;       // estimated work, in triangles
-  std::uint64_t memory = 0;     // estimated need in bytes, inputs included; 0: fits everywhere
-  /// Of what does the job: another version may make other bytes of the same inputs.
+  std::uint64_t memory = 0;     // estimated bytes, inputs included; 0: fits everywhere
+  /// Version of the code that does the job: another version may make other bytes from the same
+  /// inputs.
   std::uint32_t algorithm = 0;
-  /// The sink does it, not a worker: what needs much that was accepted before in one place.
+  /// Done by the sink, not by a worker: for jobs that need many accepted results in one place.
   bool by_sink = false;
-  /// What it makes is for workers alone, who check all that they read of it: the sink does not read
-  /// it while nothing is found damaged. No part of what the job is.
+  /// Only workers read the output, and they check everything they read, so the sink does not read
+  /// it unless damage is found. Not part of the job's key.
   bool left_to_readers = false;
-  /// Estimated work of the longest chain of jobs that can only follow this one, in triangles: what
-  /// leads to much is begun first. No part of what the job is.
+  /// Estimated work of the longest chain of jobs that can only follow this one, in triangles: jobs
+  /// that long chains depend on start first. Not part of the job's key.
   std::uint64_t after = 0;
-  /// What is read of the inputs, in an order that the kind tells; none: each as a whole. No part of
-  /// what the job is.
+  /// The sections of the inputs that are read, in an order defined by the kind; empty: every input
+  /// as a whole. Not part of the job's key.
   std::vector<InputSection> sections = {};
-  /// About so many bytes are read that are no inputs: sections of files, or of the mesh itself. No
-  /// part of what the job is.
+  /// Approximate number of bytes read that are not inputs: sections of files, or of the mesh
+  /// itself. Not part of the job's key.
   std::uint64_t reads = 0;
-  /// What of all that it reads others read, too. No part of what the job is.
+  /// The part of everything it reads that other jobs read, too. Not part of the job's key.
   Extent extent = {};
 };
 
 JobKey key_of(const Job& job);
-/// What is read of the inputs.
+/// The number of bytes read from the inputs.
 std::uint64_t input_bytes(const Job& job);
 
-/// What a job made: one staged file, and a few bytes about it that travel with the message.
+/// What a job produced: one staged file, and a few bytes about it that travel in the message.
 struct JobOutput {
   FileRef file;
   std::string summary;  // <= 16 KiB, opaque to the farm
 };
 
-/// An output that is written as it is computed. Without commit() nobody ever sees it.
+/// An output that is written as it is computed. Nobody ever sees it without commit().
 class JobFile {
  public:
   virtual ~JobFile() = default;
   virtual void write(std::string_view bytes) = 0;
-  /// To be called when all is computed and written: from here on the worker may begin to compute
-  /// the next job.
+  /// Call when everything is computed and written: the worker may then start computing the next
+  /// job.
   virtual FileRef commit() = 0;
 };
 
-/// How a job reaches the stage.
+/// A job's access to the stage.
 class JobStorage {
  public:
   virtual ~JobStorage() = default;
@@ -97,28 +98,28 @@ class JobStorage {
                           std::string_view unique) = 0;
 };
 
-/// What a job's function is given beside the job.
+/// Passed to a job's function along with the job.
 struct JobContext {
   const Stage& stage;
   std::uint32_t attempt = 1;
-  std::uint64_t incarnation = 0;  // of the worker: result names carry it
-  /// Counts work done, in triangles; returns false when the job is to be given up.
+  std::uint64_t incarnation = 0;  // of the worker: result names contain it
+  /// Counts work done, in triangles; returns false when the job should be given up.
   std::function<bool(std::uint64_t done)> progress;
-  JobStorage* storage = nullptr;  // none: straight to the stage
+  JobStorage* storage = nullptr;  // null: directly to the stage
 
-  /// An input, as Stage::read; a worker may have read it ahead.
+  /// Reads an input, like Stage::read; a worker may have read it ahead.
   std::string read(const FileRef& file) const;
-  /// One of Job::sections. Throws DataError if there are not so many.
+  /// Reads one of Job::sections. Throws DataError if the index is out of range.
   std::string read_section(const Job& job, std::size_t section) const;
-  /// The output, as Stage::publish. To be called when all is computed: from here on the worker may
-  /// begin to compute the next job.
+  /// Publishes the output, like Stage::publish. Call when everything is computed: the worker may
+  /// then start computing the next job.
   FileRef publish(const StagedName& name, std::string_view bytes) const;
-  /// The output, for a job that cannot hold it.
+  /// The output of a job that cannot hold it in memory.
   std::unique_ptr<JobFile> create(const StagedName& name) const;
 };
 
-/// Thrown by a job's function when the job's input can never be done, whoever tries: the job is
-/// given up at once. Any other exception fails this attempt only.
+/// Thrown by a job's function when no worker can ever do the job's input: the job is given up at
+/// once. Any other exception fails only this attempt.
 class BadInputError : public DataError {
  public:
   using DataError::DataError;

@@ -9,13 +9,13 @@
 
 namespace meshfarm {
 
-/// Where the time of a job in work goes: each step begins where the one before it ended.
+/// Measures where a running job's time goes: each step begins where the previous one ended.
 class JobClock {
  public:
   explicit JobClock(FarmTime now = FarmTime(0)) : lap_(now) {}
 
   void read(FarmTime now) { times_.read_ms = lap_ms(now); }
-  /// It has its turn.
+  /// Its turn to compute has come.
   void computes(FarmTime now) {
     times_.wait_ms = lap_ms(now);
     computing_ = true;

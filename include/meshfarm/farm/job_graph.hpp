@@ -19,14 +19,14 @@ struct JobKeyHash {
   std::size_t operator()(JobKey key) const { return static_cast<std::size_t>(key.value); }
 };
 
-/// Where a job stands in its run.
+/// The place of a job in its run.
 struct JobName {
   std::uint32_t stage = 0;
   std::uint32_t index = 0;
   friend auto operator<=>(const JobName&, const JobName&) = default;
 };
 
-/// Neighbours of one stage.
+/// Consecutive jobs of one stage.
 struct JobRange {
   std::uint32_t stage = 0;
   std::uint32_t first = 0;
@@ -34,10 +34,10 @@ struct JobRange {
   friend auto operator<=>(const JobRange&, const JobRange&) = default;
 };
 
-/// What is to be accepted before something is possible: sorted, without overlaps.
+/// The jobs that must be accepted before something is possible: sorted, without overlaps.
 using JobNeeds = std::vector<JobRange>;
 
-/// The same in words, for those who watch.
+/// The same in words, for observers.
 struct JobPlace {
   struct Need {
     std::string stage;
@@ -49,7 +49,7 @@ struct JobPlace {
   std::vector<Need> needs = {};
 };
 
-/// How far a stage is, of the jobs that are known of.
+/// The progress of a stage, out of the jobs known so far.
 struct StageProgress {
   std::string stage;
   std::uint64_t jobs = 0;
@@ -63,55 +63,58 @@ struct WantedJob {
   JobName name;
 };
 
-/// The jobs of a run and what each needs. Grows as the run goes on: what is to be done may depend
-/// on outputs. Ventilator and sink each keep one, are told of outputs in different orders, and come
-/// to the same jobs: a function that makes a job is called once all that it needs is accepted, and
-/// is to depend on the outputs of that alone.
+/// The jobs of a run and what each one needs. It grows as the run goes on, since later jobs may
+/// depend on outputs. Ventilator and sink each keep a graph; they learn of outputs in different
+/// orders and still arrive at the same jobs: a function that makes a job is called once everything
+/// it needs is accepted, and must depend only on the outputs of its needs.
 ///
-/// A job asked for under two names is the same job: it is done once and its output is given twice.
+/// A job requested under two names is the same job: it is done once and its output is given twice.
 class JobGraph {
  public:
-  /// Makes a job whose needs are accepted; nothing if there is none to do: what needs it goes on.
+  /// Makes a job whose needs are accepted. Returns nothing if there is no work: its dependents go
+  /// on.
   using Make = std::function<std::optional<Job>(JobGraph&)>;
   using Step = std::function<void(JobGraph&)>;
 
-  /// The stages by name, each job after the stages before. All jobs are of this algorithm.
+  /// The stages by name, in order: jobs come after those of earlier stages. All jobs are of this
+  /// algorithm version.
   explicit JobGraph(std::vector<std::string> stages, std::uint32_t algorithm = 0);
   JobGraph(JobGraph&&) = default;
   JobGraph& operator=(JobGraph&&) = default;
   JobGraph(const JobGraph&) = delete;  // its functions may hold a state
   JobGraph& operator=(const JobGraph&) = delete;
 
-  // --- to be told what a run is
+  // --- describing a run
 
-  /// Names are given once. What is added by a step or a job's function needs all that this did.
+  /// A name can be given only once. Jobs added by a step or a job's function inherit all of its
+  /// needs.
   void add(JobName name, Job job);
   void add(JobName name, const JobNeeds& needs, Make make);
-  /// A step of the run that is no job: it may add what depends on outputs. Of what becomes possible
-  /// at once, what was added first is called first.
+  /// A step of the run that is no job: it may add jobs that depend on outputs. Steps that become
+  /// possible at the same time are called in the order in which they were added.
   void then(const JobNeeds& needs, Step step);
-  /// Keeps what the functions refer to.
+  /// Keeps alive the state that the functions refer to.
   void keep(std::shared_ptr<const void> state) { state_ = std::move(state); }
-  /// Called with each job that is wanted; may throw.
+  /// Called with each wanted job; may throw.
   void inspect(std::function<void(const Job&)> inspect) { inspect_ = std::move(inspect); }
-  /// Of a job that is accepted.
+  /// The output of an accepted job.
   const JobOutput& output(JobName name) const;
 
-  // --- to be told what is done
+  // --- reporting what is done
 
-  /// The jobs that are possible at once.
+  /// The jobs that are possible at the start.
   std::vector<WantedJob> begin() { return go_on(); }
-  /// The jobs that become possible as this one is accepted. None if it does not wait for that.
+  /// The jobs that become possible when this one is accepted; none if it is not waited for.
   std::vector<WantedJob> accept(JobKey key, const JobOutput& output);
 
   bool wanted(JobKey key) const { return jobs_.contains(key); }
-  /// Whether the job is wanted and not accepted yet.
+  /// Whether the job is wanted and not yet accepted.
   bool waits_for(JobKey key) const { return wanted(key) && accepted(key) == nullptr; }
-  /// The accepted output; null if there is none.
+  /// The accepted output, or null.
   const JobOutput* accepted(JobKey key) const;
-  /// True once there is nothing more to do.
+  /// True once nothing is left to do.
   bool complete() const { return open_ == 0; }
-  /// Of all names whose jobs are accepted, in the order of the names.
+  /// The outputs of all names whose jobs are accepted, in the order of the names.
   std::vector<AcceptedJob> outputs() const;
   std::uint64_t jobs_wanted() const { return jobs_.size(); }
   std::uint64_t jobs_accepted() const { return jobs_accepted_; }
@@ -119,7 +122,7 @@ class JobGraph {
   /// Of the stages that have jobs, in order.
   std::vector<StageProgress> progress() const;
 
-  /// What was accepted before this was possible.
+  /// What had to be accepted before this job was possible.
   const JobNeeds& needs(JobName name) const;
   JobPlace place(JobName name) const;
 
@@ -127,8 +130,8 @@ class JobGraph {
   enum class State : std::uint8_t { unknown, waiting, wanted, accepted };
   struct Node {
     State state = State::unknown;
-    std::uint32_t missing = 0;  // of its needs
-    std::optional<JobKey> key;  // once wanted; none: no job
+    std::uint32_t missing = 0;  // unmet needs
+    std::optional<JobKey> key;  // set once wanted; none: no job
     JobNeeds needs;
     Make make;
     std::vector<JobName> needed_by;
@@ -136,7 +139,7 @@ class JobGraph {
   struct Stage {
     std::string name;
     std::vector<Node> nodes;        // by index
-    std::uint32_t accepted_to = 0;  // all before are accepted
+    std::uint32_t accepted_to = 0;  // all jobs before this index are accepted
     std::uint64_t jobs = 0;
     std::uint64_t jobs_accepted = 0;
   };
@@ -152,21 +155,21 @@ class JobGraph {
   void make(JobName name, std::vector<WantedJob>& fresh);
   void pass(JobName name);
 
-  std::vector<Stage> stages_;  // the last is that of the steps
+  std::vector<Stage> stages_;  // the last one holds the steps
   std::uint32_t algorithm_;
   std::unordered_map<JobKey, Entry, JobKeyHash> jobs_;  // for look-up, never iterated
   std::deque<JobName> possible_;
-  JobNeeds inherited_;  // of what is being made
+  JobNeeds inherited_;  // by the jobs being made
   std::uint64_t open_ = 0;
   std::uint64_t jobs_accepted_ = 0;
   std::function<void(const Job&)> inspect_;
   std::shared_ptr<const void> state_;
 };
 
-/// Begins a run's graph. Each call makes another one, which does the same.
+/// Starts a run's graph. Each call makes a new graph that behaves the same.
 using JobSource = std::function<JobGraph()>;
 
-/// All names of one stage up to a count.
+/// All names of a stage with indices below `count`.
 inline JobRange all_of(std::uint32_t stage, std::size_t count) {
   return {stage, 0, static_cast<std::uint32_t>(count)};
 }

@@ -10,20 +10,19 @@
 
 namespace meshfarm {
 
-/// The results that a sink need not wait for, and how far it trusts each. Those of journals were
-/// verified once, by the sink that wrote the record, or were large; but their files may have
-/// suffered since. A look at their sizes is cheap, and enough to go on with; to read them all takes
-/// long.
+/// The results that a sink need not wait for, and how far it trusts each. Results in journals were
+/// verified by the sink that wrote the record, or were large; their files may have been damaged
+/// since. Checking their sizes is cheap and enough to go on; reading them all takes long.
 class KnownResults {
  public:
-  /// left: looked at, and to be checked by those who read it.
+  /// left: checked by size only, and verified by its readers.
   enum class Trust : std::uint8_t { journal, looked_at, left, verified };
 
   explicit KnownResults(std::map<JobKey, JobOutput>&& journal) {
     for (auto& [key, output] : journal) results_[key] = {std::move(output), Trust::journal};
   }
 
-  /// Null if there is none.
+  /// The output, or null.
   const JobOutput* find(JobKey key) const {
     const auto found = results_.find(key);
     return found == results_.end() ? nullptr : &found->second.output;
@@ -33,17 +32,18 @@ class KnownResults {
     const auto found = results_.find(key);
     return found != results_.end() && found->second.trust != Trust::journal;
   }
-  /// How many are trusted by a look alone, and are to be verified.
+  /// Number of results accepted by a size check alone that are still to be verified.
   std::uint64_t unverified() const { return unverified_; }
 
-  /// One of a journal, or that came just now; it is left, or to be verified.
+  /// A result from a journal, or a new one, that passed a size check; `left` to its readers, or to
+  /// be verified.
   void looked_at(JobKey key, const JobOutput& output, bool left) {
     Known& known = results_[key];
     known.output = output;
     set(known, left ? Trust::left : Trust::looked_at);
   }
   void verified(JobKey key) { set(results_.at(key), Trust::verified); }
-  /// One that this sink verified. What is known of the job already stays.
+  /// A result that this sink verified. Does not replace what is already known of the job.
   void add(JobKey key, const JobOutput& output) {
     results_.try_emplace(key, Known{output, Trust::verified});
   }

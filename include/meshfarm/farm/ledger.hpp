@@ -15,9 +15,9 @@
 
 namespace meshfarm {
 
-/// A journal record of the sink: one job that a run accepted.
+/// A journal record of the sink: one job accepted by a run.
 struct JournalRecord {
-  std::uint64_t run = 0;  // 0: not told, by an older version
+  std::uint64_t run = 0;  // 0: unknown, from an older version
   AcceptedJob accepted;
 };
 
@@ -25,24 +25,24 @@ std::string encode_record(const JournalRecord& record);
 /// Throws DataError naming `what`.
 JournalRecord decode_record(std::string_view bytes, std::string_view what);
 
-/// Whether the name is that of a result of the job.
+/// Whether the name is that of a result of this job.
 bool names_result_of(JobKey key, std::string_view name);
 
-/// The records of one journal that can be read. Throws IoError, DataError.
+/// The readable records of one journal. Throws IoError, DataError.
 std::vector<JournalRecord> read_journal(const Stage& stage, JournalName name,
                                         const ReadPatience& patience = {.attempts = 1});
 
-/// What all journals of a stage say.
+/// The content of all journals of a stage.
 struct Ledger {
   std::map<JobKey, JobOutput> accepted;  // the last record of a key wins
-  std::set<JobKey> by_run;               // what the run in question has accepted itself
+  std::set<JobKey> by_run;               // accepted by the given run itself
 };
-/// A storage that fails is waited for, once for all journals. Torn tails, and journals that still
+/// The patience for failing storage is shared by all journals. Torn tails, and journals that still
 /// cannot be read, are logged and left out. Throws IoError if the folder cannot be listed.
 Ledger read_journals(const Stage& stage, std::uint64_t run,
                      const ReadPatience& patience = {.attempts = 1});
 
-/// A new journal under the first number that nobody has taken.
+/// A new journal under the first free number.
 JournalWriter open_journal(const Stage& stage);
 
 }  // namespace meshfarm

@@ -14,7 +14,7 @@ namespace meshfarm {
 
 struct MemberOptions {
   Role role = Role::worker;
-  std::uint64_t run = 0;  // 0: whichever
+  std::uint64_t run = 0;  // 0: any
   std::uint64_t incarnation = 0;
   std::uint32_t pid = 0;
   std::string host;
@@ -26,55 +26,55 @@ struct MemberOptions {
 
 /// Look at the stage's endpoints and answer with found().
 struct Look {};
-/// Connect to a ventilator anew, under a fresh routing id.
+/// Open a new connection to a ventilator, under a fresh routing id.
 struct Dial {
   std::string address;
 };
-/// Close what leads to the ventilator.
+/// Close the connection to the ventilator.
 struct HangUp {};
-/// Say to the ventilator.
+/// Send this to the ventilator.
 struct Say {
   Message message;
 };
 
-/// How long to wait for messages before the clock is looked at.
+/// How long to wait for messages before checking the clock.
 FarmTime poll_interval(FarmTime heartbeat);
 
 /// How a worker or a sink finds a ventilator, stays with it, and notices that it is gone. Pure:
-/// each call says what happened, the answer says what to do.
+/// each call reports an event and returns what to do.
 class Membership {
  public:
   enum class Event {
     none,
     joined,    // welcome() is new
-    lost,      // forget the ventilator: hang up, look for another
-    refused,   // for ever; reason() says why
-    run_over,  // the ventilator is gone, all is done or given up
-    expired    // looked long enough; reason() says for what
+    lost,      // forget the ventilator: hang up and look for another
+    refused,   // permanently; reason() says why
+    run_over,  // the ventilator is gone; everything is done or given up
+    expired    // looked long enough; reason() says what for
   };
 
   explicit Membership(MemberOptions options) : options_(std::move(options)) {}
 
   Event tick(FarmTime now);
   Event on_message(const Message& message, FarmTime now);
-  /// What the stage shows. Afterwards dial() and hello() may want something.
+  /// The endpoints in the stage. Check dial() and hello() afterwards.
   Event found(std::span<const Endpoint> endpoints, FarmTime now);
 
-  /// Whether to look at the stage's endpoints now; asking resets it.
+  /// Whether it is time to look at the stage's endpoints; asking resets it.
   bool look_due(FarmTime now);
-  /// How long to wait for messages before the clock is to be looked at again, at most.
+  /// The longest wait for messages before the clock must be checked again.
   FarmTime pause(FarmTime now) const;
-  /// An address to connect to anew, if any; asking resets it.
+  /// The address for a new connection, if any; asking resets it.
   std::optional<std::string> dial();
-  /// A greeting to say, if any; asking resets it.
+  /// The greeting to send, if any; asking resets it.
   std::optional<Hello> hello();
-  /// Whether a heartbeat is to be said now; asking resets it.
+  /// Whether a heartbeat is due; asking resets it.
   bool beat_due(FarmTime now);
 
   bool joined() const { return joined_; }
   const Welcome& welcome() const { return welcome_; }
   FarmTime heartbeat() const { return heartbeat_; }
-  /// The epoch of the ventilator joined now or last.
+  /// The epoch of the current or last ventilator.
   std::uint32_t epoch() const { return welcome_.epoch; }
   const MemberOptions& options() const { return options_; }
   const std::string& reason() const { return reason_; }
@@ -96,12 +96,12 @@ class Membership {
   FarmTime look_pause_{5};
   FarmTime heard_{0};
   FarmTime next_beat_{0};
-  bool first_beat_ = false;  // the next one is the first since it joined
+  bool first_beat_ = false;  // the next beat is the first one since joining
   std::optional<Endpoint> dialled_;
   bool seen_over_ = false;
   bool seen_other_run_ = false;
-  std::uint32_t newest_seen_ = 0;  // epoch
-  bool lost_ = false;              // the ventilator dialled last, and not dialled again yet
+  std::uint32_t newest_seen_ = 0;  // the epoch
+  bool lost_ = false;              // the ventilator dialled last, and not dialled again since
   int greetings_ = 0;
   bool dial_ = false;
   bool greet_ = false;

@@ -20,7 +20,7 @@ namespace meshfarm {
 
 enum class JobState : std::uint8_t { ready, running, done, failed };
 
-/// A job as it is given out.
+/// A job as issued.
 struct IssuedJob {
   JobKey key;
   std::uint32_t attempt = 0;
@@ -32,35 +32,35 @@ struct LostJob {
   JobKey key;
   std::string kind;
   std::string reasons;
-  bool resumable = false;  // only because workers were lost over it, or results not read
+  bool resumable = false;  // given up only because workers were lost or results were unreadable
 };
 
 /// A host of the farm; 0: none.
 using HostNumber = std::uint32_t;
 
-/// Which of the ready jobs will do.
+/// Which of the ready jobs are eligible.
 struct JobChoice {
   std::uint64_t max_cost = std::numeric_limits<std::uint64_t>::max();
   std::uint64_t max_memory = std::numeric_limits<std::uint64_t>::max();
   std::function<bool(JobKey)> may = {};  // empty: any
-  HostNumber host = 0;                   // jobs at home there are preferred; 0: none are
+  HostNumber host = 0;  // jobs at home on this host are preferred; 0: no preference
 
   bool takes(JobKey key, std::uint64_t cost, std::uint64_t memory) const {
     return cost <= max_cost && memory <= max_memory && (!may || may(key));
   }
 };
 
-/// What an attempt that failed says of its job. worker_lost: the worker was, and the job in work.
-/// unread: nothing, its result could not be read by the sink.
+/// What a failed attempt says about its job. worker_lost: the job was in work when its worker was
+/// lost. unread: nothing, since the sink could not read the result.
 enum class Failing { attempt, for_good, worker_lost, unread };
 
-/// One line that tells of jobs given up: how many, and the reasons of the first few.
+/// One line about jobs given up: how many, and the first few reasons.
 std::string failed_for_good(std::span<const std::string> reasons);
 
 struct PlanCounts {
   std::uint64_t ready = 0;
   std::uint64_t running = 0;
-  std::uint64_t at_sink = 0;  // of those that run: the sink does them
+  std::uint64_t at_sink = 0;  // of the running jobs: done by the sink
   std::uint64_t done = 0;
   std::uint64_t failed = 0;
   std::uint64_t cost_done = 0;
@@ -69,56 +69,56 @@ struct PlanCounts {
   std::uint32_t retries = 0;
 };
 
-/// Which jobs there are and how far each is. Knows neither workers nor time.
-/// A job is in exactly one state; only accept() makes it done. A job of the sink runs as soon as it
-/// is asked for, and is never issued.
+/// The jobs of a run and the state of each. Knows neither workers nor time. A job is in exactly one
+/// state; only accept() makes it done. A job of the sink runs as soon as it is wanted, and is never
+/// issued.
 class Plan {
  public:
   /// A job that failed `max_attempts` times is given up.
   Plan(JobSource source, std::uint32_t max_attempts)
       : source_(std::move(source)), graph_(source_()), max_attempts_(max_attempts) {}
 
-  /// Begins (again) from what the sink has: the jobs accepted are exactly these, whatever was
-  /// accepted before. Jobs that run go on running; attempts and failures are remembered.
+  /// Starts (again) from the sink's state: exactly these jobs are accepted, whatever was accepted
+  /// before. Running jobs go on running; attempts and failures are remembered.
   void restart(const std::map<JobKey, JobOutput>& accepted);
   bool started() const { return started_; }
 
-  /// The ready job with the longest way to the end, its own cost and what follows, among those that
-  /// will do becomes running, under an attempt number of its own. (Where very many do not, the
-  /// first whose way is no longer than the greatest cost, or one of the most memory that does.)
-  /// If it is at home on another host than the one that is asked for, a job of about the same
-  /// length that is at home there goes before it, or else one that is at home nowhere.
+  /// Among the eligible ready jobs, issues the one with the longest path to the end (its own cost
+  /// plus what follows); it becomes running under a new attempt number. (If very many are not
+  /// eligible: the first eligible one whose path is no longer than the maximum cost, or one with
+  /// the most memory.) If that job is not at home on `choice.host`, a job of about the same path
+  /// length that is at home there is preferred, or else one that has no home.
   std::optional<IssuedJob> issue(const JobChoice& choice = {});
-  /// This job, which is ready; or one more attempt at it if it is running.
+  /// Issues this job, which is ready; or one more attempt at it if it is running.
   IssuedJob issue(JobKey key);
-  /// From now on jobs that read the extent are at home on this host, which has read it.
+  /// Jobs that read the extent are now at home on this host, which has read it.
   void set_home(std::uint64_t extent, HostNumber host);
-  /// Which host has read an extent, as far as is known.
+  /// The host that has read an extent, as far as is known.
   HostNumber home(std::uint64_t extent) const;
   /// An attempt that nobody makes any more (its worker left before it began). A running job is
-  /// ready again after the last.
+  /// ready again after its last attempt is given back.
   void give_back(JobKey key);
-  /// An attempt at a running job failed: after the last it is ready again, or given up. for_good
-  /// gives it up whatever its state, unless it is done.
+  /// An attempt at a running job failed. Once no attempt is live the job is ready again; after
+  /// `max_attempts` failures it is given up. for_good gives it up in any state except done.
   void fail_attempt(JobKey key, const std::string& reason, Failing failing);
-  /// Takes a failure back that turned out to be none; a job given up for it is ready again.
+  /// Takes back a failure that turned out to be none; a job given up because of it is ready again.
   void forgive(JobKey key, const std::string& reason);
-  /// Whether it is a job of the run as far as that has come since the last restart.
+  /// Whether it is a job of the run, as far as the run has come since the last restart.
   bool wants(JobKey key) const { return entries_.contains(key) && entries_.at(key).wanted; }
-  /// False if the job is not wanted or done already.
+  /// False if the job is not wanted or already done.
   bool accept(JobKey key, const JobOutput& output);
 
-  /// Nothing; if the job was never wanted.
+  /// Nothing if the job was never wanted.
   std::optional<JobState> state(JobKey key) const;
-  /// A job that is known.
+  /// A known job.
   const Job& job(JobKey key) const { return entries_.at(key).job; }
-  /// Where a job that is known stands in the run.
+  /// The place of a known job in the run.
   JobPlace place(JobKey key) const { return graph_.place(entries_.at(key).name); }
-  /// The longest way to the end first.
+  /// Ordered by longest path to the end.
   std::vector<JobKey> ready_jobs() const;
-  /// How many ready jobs need more memory than this.
+  /// How many ready jobs need more than this much memory.
   std::uint64_t ready_above(std::uint64_t memory) const;
-  /// The most that any ready job needs.
+  /// The largest memory need of any ready job.
   std::uint64_t greatest_memory_ready() const {
     return by_memory_.empty() ? 0 : by_memory_.rbegin()->first;
   }
@@ -126,14 +126,14 @@ class Plan {
   std::uint32_t attempts(JobKey key) const;
   /// All jobs of the run are done.
   bool complete() const { return started_ && graph_.complete(); }
-  /// Nothing is left to do although some jobs were given up: the run cannot be completed.
+  /// Nothing is left to do, but some jobs were given up: the run cannot be completed.
   bool stuck() const;
-  /// The jobs given up, in the order in which they were asked for.
+  /// The jobs given up, in the order in which they became wanted.
   std::vector<LostJob> lost() const;
-  /// One that was given up.
+  /// A job that was given up.
   LostJob lost(JobKey key) const;
   const PlanCounts& counts() const { return counts_; }
-  /// How far each stage of the run is.
+  /// The progress of each stage of the run.
   std::vector<StageProgress> stages() const { return graph_.progress(); }
 
  private:
@@ -144,12 +144,12 @@ class Plan {
     JobState state = JobState::ready;
     bool wanted = false;  // as far as the run has come since the last restart
     std::uint32_t attempts = 0;
-    std::uint32_t live = 0;  // attempts that somebody makes
+    std::uint32_t live = 0;  // attempts that are being made
     std::vector<std::string> failures;
     bool resumable = false;
   };
   struct ReadyJob {
-    std::uint64_t path = 0;  // the job's cost and what follows it
+    std::uint64_t path = 0;  // the job's cost plus what follows it
     std::uint64_t order = 0;
     JobKey key = {};
     std::uint64_t cost = 0;
@@ -176,12 +176,12 @@ class Plan {
   bool started_ = false;
   std::uint64_t next_order_ = 0;
   std::unordered_map<JobKey, Entry, JobKeyHash> entries_;  // for look-up, never iterated
-  std::vector<JobKey> wanted_;                             // in the order asked for
+  std::vector<JobKey> wanted_;  // in the order in which they became wanted
   std::set<ReadyJob> ready_;
-  std::set<std::pair<std::uint64_t, ReadyJob>> by_memory_;  // the ready jobs that say their need
-  std::unordered_map<HostNumber, std::set<ReadyJob>> by_home_;  // the ready jobs
-  std::set<std::pair<std::uint64_t, JobKey>> by_extent_;        // the ready jobs that have one
-  std::unordered_map<std::uint64_t, HostNumber> homes_;         // of extents
+  std::set<std::pair<std::uint64_t, ReadyJob>> by_memory_;  // ready jobs with a known memory need
+  std::unordered_map<HostNumber, std::set<ReadyJob>> by_home_;  // ready jobs
+  std::set<std::pair<std::uint64_t, JobKey>> by_extent_;        // ready jobs that have an extent
+  std::unordered_map<std::uint64_t, HostNumber> homes_;         // by extent
   PlanCounts counts_;
 };
 

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
 //
-// All that ventilator (V), workers (W) and sink (S) say to each other. Version 6.
+// All messages between ventilator (V), workers (W) and sink (S). Version 6.
 //
 //   frame   = "MFMS" | version u16 | type u16 | body      one message a frame, one frame a message
 //   body    = the fields of the struct in the order of their declaration, little endian
@@ -41,20 +41,20 @@ inline constexpr std::size_t k_max_summary_bytes = 16'384;      // JobOutput::su
 inline constexpr std::size_t k_max_parameters_bytes = 262'144;  // Job::parameters
 inline constexpr std::size_t k_max_list = 4096;                 // Job::inputs, Job::sections
 
-/// Time as the farm's state machines see it: since any fixed moment, never going back.
+/// The farm's state-machine clock: time since any fixed moment, never going back.
 using FarmTime = std::chrono::milliseconds;
 inline double seconds(FarmTime time) {
   return std::chrono::duration<double>(time).count();
 }
 
-/// Names a worker's membership in one epoch; one that joins again gets another.
+/// Names a worker's membership in one epoch; a worker that joins again gets a new id.
 struct WorkerId {
   std::uint32_t value = 0;
   friend auto operator<=>(const WorkerId&, const WorkerId&) = default;
 };
 
 enum class Role : std::uint8_t { worker = 1, sink = 2 };
-/// stranger: say Hello again. full: try again later. The others are final.
+/// stranger: send Hello again. full: try again later. The others are final.
 enum class Refusal : std::uint8_t {
   stranger = 1,
   full = 2,
@@ -62,38 +62,38 @@ enum class Refusal : std::uint8_t {
   replaced = 4,
   other_build = 5
 };
-/// run_over: all is done (or given up). leaving: the ventilator was stopped; another may come.
-/// hung: a job of this worker stands still; it has lost its jobs and must end its process.
+/// run_over: everything is done (or given up). leaving: the ventilator was stopped; another may
+/// come. hung: a job of this worker makes no progress; it has lost its jobs and must end its
+/// process.
 enum class StopReason : std::uint8_t { run_over = 1, leaving = 2, hung = 3 };
 
-/// What a worker can do; 0: not known.
+/// A worker's capacity; 0: unknown.
 struct Capacity {
-  std::uint64_t speed = 0;    // triangles a second of each of its threads, by benchmark
+  std::uint64_t speed = 0;    // triangles per second and thread, by benchmark
   std::uint64_t memory = 0;   // bytes for all jobs in work together
-  std::uint32_t threads = 1;  // jobs computed at once
-  /// Where `memory` is not the worker's alone: those of its host that tell the same number share
-  /// it. 0: its own.
+  std::uint32_t threads = 1;  // jobs computed concurrently
+  /// Workers of a host that report the same number share `memory`. 0: not shared.
   std::uint64_t memory_pool = 0;
 };
 
 struct Hello {
   Role role = Role::worker;
-  std::uint64_t run = 0;  // 0: a worker takes whichever there is
+  std::uint64_t run = 0;  // 0: any run (workers)
   std::uint64_t incarnation = 0;
   std::uint32_t pid = 0;
   std::string host;
   std::string results;          // the sink's address
   Capacity capacity;            // a worker's
-  std::uint32_t algorithm = 0;  // its version: results of two must not mix
+  std::uint32_t algorithm = 0;  // version; results of two versions must not mix
 };
 struct Welcome {
-  WorkerId worker;  // 0 to the sink
+  WorkerId worker;  // 0: sent to the sink
   std::uint32_t epoch = 0;
   std::uint64_t run = 0;
   std::string lane;
-  std::string sink;  // empty as long as there is none
+  std::string sink;  // empty while there is none
   std::uint32_t heartbeat_ms = 0;
-  std::uint64_t memory = 0;  // the worker's share of what it told; 0: no limit
+  std::uint64_t memory = 0;  // the worker's share of its reported memory; 0: no limit
 };
 struct Refused {
   Refusal why = Refusal::stranger;
@@ -104,26 +104,26 @@ struct Heartbeat {
   WorkerId worker;
   std::uint32_t held = 0;      // jobs not yet finished
   std::uint64_t received = 0;  // the last lane number seen
-  std::uint64_t progress = 0;  // of all jobs in work: triangles done, bytes read and written
-  JobKey still;                // of the jobs in work, the one that stands still the longest...
-  std::uint32_t still_ms = 0;  // ...for so long
-  bool in_storage = false;     // ...in reading or writing the stage, not in computing
+  std::uint64_t progress = 0;  // over all jobs in work: triangles done, bytes read and written
+  JobKey still;                // the job in work without progress for the longest...
+  std::uint32_t still_ms = 0;  // ...time, in milliseconds
+  bool in_storage = false;     // ...while reading or writing the stage, not computing
   std::uint64_t rss_bytes = 0;
-  bool no_room = false;  // a sink's: there is no room for what it writes, and it waits
+  bool no_room = false;  // sink only: no room for its writes; it waits
 };
 struct Alive {
   std::uint32_t epoch = 0;
-  std::string sink;          // as SinkAt, for whom that did not reach
-  std::uint64_t memory = 0;  // as in Welcome: the share changes as others come and go
+  std::string sink;          // as in SinkAt, in case that was lost
+  std::uint64_t memory = 0;  // as in Welcome: the share changes as others join and leave
 };
-/// "I can hold what the lane brings up to this number": absolute, so loss and repetition do no
-/// harm.
+/// "I can hold what the lane brings up to this number": absolute, so loss and repetition are
+/// harmless.
 struct Credit {
   std::uint32_t epoch = 0;
   WorkerId worker;
   std::uint64_t up_to = 0;
 };
-/// The worker leaves and gives back all it holds.
+/// The worker leaves and gives back everything it holds.
 struct Release {
   std::uint32_t epoch = 0;
   WorkerId worker;
@@ -135,9 +135,9 @@ struct Assignment {
   std::uint32_t attempt = 0;
   Job job;
 };
-/// attempt: another attempt may do better. for_good: none can. no_space: the stage is full.
-/// unread: the sink cannot read the result, which says nothing of its worker. no_input,
-/// damaged_input: the worker cannot read what the job needs, or reads it damaged; others may.
+/// attempt: another attempt may succeed. for_good: none can. no_space: the stage is full. unread:
+/// the sink cannot read the result, which says nothing about its worker. no_input, damaged_input:
+/// the worker cannot read the job's inputs, or reads them damaged; others may succeed.
 enum class FailureKind : std::uint8_t {
   attempt = 1,
   for_good = 2,
@@ -150,13 +150,13 @@ struct JobFailure {
   std::string reason;
   FailureKind kind = FailureKind::attempt;
 };
-/// Where the time of an attempt went.
+/// Where an attempt's time went.
 struct JobTimes {
   std::uint32_t read_ms = 0;
   std::uint32_t wait_ms = 0;  // read, but all compute threads were busy
   std::uint32_t compute_ms = 0;
   std::uint32_t write_ms = 0;
-  std::uint64_t cpu_us = 0;  // of the compute thread: what it would take on a host of its own
+  std::uint64_t cpu_us = 0;  // of the compute thread: the time on an otherwise idle host
 };
 struct Result {
   std::uint64_t run = 0;
@@ -170,12 +170,12 @@ struct Result {
 };
 struct Accept {
   std::uint32_t epoch = 0;
-  WorkerId worker;  // whose Result this answers, 0: none
+  WorkerId worker;  // whose Result this answers; 0: none
   JobKey key;
   JobOutput output;
   JobTimes times;  // as in the Result
-  /// Of all that it has accepted: whose files an earlier sink verified, and this one did not yet.
-  /// The run is not over before, as one that turns out to be damaged is made again.
+  /// Accepted results whose files an earlier sink verified, but this one has not yet. The run is
+  /// not over before they are verified, since a damaged one is made again.
   std::uint64_t unverified = 0;
 };
 struct Reject {
@@ -184,29 +184,29 @@ struct Reject {
   std::uint32_t attempt = 0;
   JobKey key;
   JobFailure failure;
-  FileRef file;  // the result that the sink cannot read, or reads damaged; no name: it is not that
+  FileRef file;  // the result that the sink cannot read, or reads damaged; empty name: neither
 };
-/// The sink has told all that it had accepted before; repeated with each of its heartbeats.
+/// The sink has reported everything it had accepted before; repeated with each of its heartbeats.
 struct Ready {
   std::uint32_t epoch = 0;
-  std::uint64_t accepted = 0;    // as many jobs, so that a lost Accept is noticed
-  std::uint64_t unverified = 0;  // as in an Accept
+  std::uint64_t accepted = 0;    // number of jobs, so that a lost Accept is noticed
+  std::uint64_t unverified = 0;  // as in Accept
 };
-/// Attempts at the job up to this one are settled: drop them and their results. A later one, which
-/// may have come down the lane already, is not meant.
+/// Attempts at the job up to this one are settled: drop them and their results. Does not apply to
+/// later attempts, which may already have come down the lane.
 struct Done {
   JobKey key;
   std::uint32_t attempt = 0;
 };
 struct SinkAt {
-  std::string results;  // empty: there is none for now
+  std::string results;  // empty: no sink for now
 };
-/// In a JobFailed: no job failed, but the run cannot go on.
+/// In JobFailed: no job failed, but the run cannot go on.
 inline constexpr JobKey k_whole_run{0};
 struct JobFailed {
   JobKey key;
   std::string reason;
-  bool resumable = false;  // it cost workers their lives, or room ran out: a new run may do it
+  bool resumable = false;  // cost workers their lives, or room ran out: a new run may succeed
 };
 struct Complete {
   std::uint32_t epoch = 0;
@@ -219,7 +219,7 @@ struct Failed {
 struct Stop {
   StopReason why = StopReason::run_over;
 };
-/// Can you read this file, which the sink cannot?
+/// Asks whether the worker can read this file, which the sink cannot.
 struct TryRead {
   JobKey key;
   std::uint32_t attempt = 0;
@@ -240,14 +240,16 @@ using Message = std::variant<Hello, Welcome, Refused, Heartbeat, Alive, Credit, 
 
 /// Throws DataError if a field is longer than the protocol allows.
 std::string encode(const Message& message);
-/// The version of the protocol that a frame of another one claims; nothing if it is of ours, or not
-/// of this protocol at all.
+/// The protocol version of a frame of another version; nothing if it is ours, or not of this
+/// protocol at all.
 std::optional<std::uint16_t> other_version_of(std::string_view frame);
-/// A Refused for who speaks another version: its layout, and the choice made here, are in all.
+/// A Refused for a peer of another version: its layout, and the reason used here, exist in all
+/// versions.
 std::string encode_refusal(std::uint16_t version, std::string_view reason);
-/// The message that is the whole frame. Throws DataError otherwise; nothing else can escape.
+/// Decodes the whole frame as one message. Throws DataError otherwise; no other exception can
+/// escape.
 Message decode(std::string_view frame);
-/// Text cut to what a message can carry.
+/// Text truncated to what a message can carry.
 std::string clipped(std::string_view text);
 
 }  // namespace meshfarm

@@ -8,14 +8,14 @@
 
 namespace meshfarm {
 
-/// dynamic: jobs go to whoever will have done them first. fixed: all jobs are dealt out at the
-/// start in sets of equal estimated time (Xiong et al. 2008, 3.2.1: the baseline of the paper).
+/// dynamic: jobs go to whoever is estimated to finish them first. fixed: all jobs are dealt out at
+/// the start in sets of equal estimated time (Xiong et al. 2008, 3.2.1: the paper's baseline).
 enum class Schedule : std::uint8_t { dynamic, fixed };
 
 struct SchedulerOptions {
   Schedule schedule = Schedule::dynamic;
-  std::uint32_t expect_workers = 1;  // a fixed schedule is dealt out once so many are there
-  FarmTime horizon{2000};            // a full input buffer is worth so much time on every worker
+  std::uint32_t expect_workers = 1;  // a fixed schedule is dealt out once this many have joined
+  FarmTime horizon{2000};            // time's worth of jobs in a full buffer, on any worker
 };
 
 }  // namespace meshfarm

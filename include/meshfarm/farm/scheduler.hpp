@@ -19,18 +19,19 @@
 
 namespace meshfarm {
 
-/// Who gets which job. Knows what each worker can do, what it holds, and how fast it has been: the
-/// benchmark at first, then more and more the jobs it did. Pure.
+/// Decides who gets which job. Knows each worker's capacity, the jobs it holds, and its speed: from
+/// the benchmark at first, then increasingly from the jobs it did. Pure.
 ///
 /// Buffers are filled so that all would drain at the same time (the paper, 3.2.2), and shrink with
-/// the work that is left. Near the end a worker is given a job only if it will have done it about
-/// when all is done; and whoever has nothing to do makes a second attempt at what would take
-/// another longer. Where all jobs of a kind take longer than was thought, as the storage is busy,
-/// that would only make it busier: a second attempt is thought to take as long as the others do.
+/// the remaining work. Near the end a worker gets a job only if it will finish it about when
+/// everything is done; idle workers make second attempts at jobs that would take their holder
+/// longer. When all jobs of a kind take longer than estimated because the storage is busy, second
+/// attempts would only make it busier: a second attempt is assumed to take as long as the others
+/// do.
 ///
-/// Among jobs of about the same length a worker is given those that read what its host has read,
-/// then those that read what no host has. Of workers that are equally idle and about as fast the
-/// one gets a job whose host has read what it reads.
+/// Among jobs of about the same length, a worker gets those that read what its host has read, then
+/// those that read what no host has. Among workers that are equally idle and about as fast, a job
+/// goes to one whose host has read what the job reads.
 class Scheduler {
  public:
   struct Held {
@@ -39,7 +40,7 @@ class Scheduler {
     std::uint64_t cost = 0;
     std::uint64_t memory = 0;
     std::string kind;
-    std::optional<FarmTime> since;  // when it was its turn, as far as we know
+    std::optional<FarmTime> since;  // when its turn came, as far as is known
   };
   struct Pick {
     WorkerId worker;
@@ -49,48 +50,49 @@ class Scheduler {
   explicit Scheduler(const SchedulerOptions& options) : options_(options) {}
 
   void join(WorkerId id, const std::string& host, const Capacity& capacity);
-  /// Returns what it held, as it was sent. The first jobs, as many as in_work(), may have begun.
+  /// Returns the jobs it held, in the order sent. The first in_work() of them may have begun.
   std::vector<Held> leave(WorkerId id);
   /// How many more jobs the worker may be sent.
   void set_room(WorkerId id, std::uint64_t jobs);
-  /// It does not hold the job any more. False if it did not.
+  /// The worker no longer holds the job. False if it did not hold it.
   bool drop(WorkerId id, JobKey key, FarmTime now);
-  /// It did the job that it holds in so much time (0: not known).
+  /// The worker did a job that it holds in this time (0: unknown).
   void did(WorkerId id, JobKey key, std::uint32_t compute_ms, FarmTime now);
 
-  /// Something failed on the worker's host. After three incidents in a row it gets no more jobs for
-  /// some minutes, as long as there are other hosts. What fails within seconds is one incident.
+  /// Something failed on the worker's host. After three incidents in a row the host gets no more
+  /// jobs for some minutes, as long as there are other hosts. Failures within seconds of each other
+  /// are one incident.
   void failed(WorkerId id, FarmTime now);
   void host_failed(const std::string& name, FarmTime now);
-  /// The job is not to be tried again on the worker's host, as long as there are others.
+  /// Do not retry the job on the worker's host, as long as there are others.
   void avoid(WorkerId id, JobKey key);
-  /// A job in work when a worker was lost. From now on no other suspect is given to a worker beside
-  /// it, so that the next loss tells whether it is to blame.
+  /// A job that was in work when a worker was lost. From now on no worker gets another suspect
+  /// beside it, so that the next loss shows whether it is to blame.
   void suspect(JobKey key) { suspects_.insert(key); }
   bool is_suspect(JobKey key) const { return suspects_.contains(key); }
   void settled(JobKey key);
-  /// The plan was restarted: by the fixed schedule all that is ready is dealt out anew.
+  /// The plan was restarted: a fixed schedule deals out all ready jobs again.
   void deal_again();
 
-  /// What to send to whom now, if anything: the plan has issued it, and the worker holds it.
+  /// The next job to send, and to whom, if any: the plan has issued it, and the worker holds it.
   std::optional<Pick> next(Plan& plan, FarmTime now);
-  /// Second attempts that are worth making, issued and held as with next(). May be asked at any
-  /// time, and answers now and then.
+  /// Second attempts that are worth making, issued and held as with next(). May be called at any
+  /// time; returns some only now and then.
   std::vector<Pick> second_attempts(Plan& plan, FarmTime now);
 
   const std::vector<Held>& held(WorkerId id) const { return crew_.at(id).held; }
-  /// How many of the jobs it holds may be in work: one is read ahead or written beside those
-  /// computed.
+  /// How many of its held jobs may be in work: one is read ahead or written in addition to those
+  /// being computed.
   std::uint32_t in_work(WorkerId id) const { return crew_.at(id).threads + 1; }
-  /// Triangles a second of one of its threads, as estimated now.
+  /// Current estimate of triangles per second of one of its threads.
   double speed(WorkerId id) const { return crew_.at(id).speed; }
-  /// Who makes an attempt at the job: two at most.
+  /// The workers that make an attempt at the job: at most two.
   std::vector<WorkerId> holders(JobKey key) const;
   std::uint64_t jobs_held() const { return holders_.size(); }
-  /// What the worker's jobs may take together: what it has, or its even share where others of its
-  /// host have the same. 0: no limit.
+  /// The memory that the worker's jobs may take together: its own, or its even share where others
+  /// of its host report the same pool. 0: no limit.
   std::uint64_t memory_share(WorkerId id) const;
-  /// The greatest memory that any worker has; none: no limit. Nothing if there is no worker.
+  /// The largest memory of any worker; 0: no limit. Nothing if there is no worker.
   std::optional<std::uint64_t> greatest_memory() const;
   /// Hosts that get no more jobs.
   std::vector<std::string> bad_hosts() const;
@@ -99,28 +101,28 @@ class Scheduler {
  private:
   struct Host {
     std::string name;
-    HostNumber number = 0;  // from 1 on
+    HostNumber number = 0;  // from 1
     std::set<WorkerId> workers;
     std::multiset<std::uint64_t> memories;  // of its workers
-    std::uint32_t failures = 0;             // incidents in a row
-    FarmTime incident{0};                   // when the last one began
+    std::uint32_t failures = 0;             // consecutive incidents
+    FarmTime incident{0};                   // start of the last one
   };
   struct Member;
-  /// Memory that several workers of a host have together. A job that is too large for an even share
-  /// is done while the others have nothing to do.
+  /// Memory shared by several workers of a host. A job that is too large for an even share is done
+  /// while the other workers are idle.
   struct Pool {
     std::uint32_t workers = 0;
-    std::uint32_t at_work = 0;          // those that hold jobs
+    std::uint32_t at_work = 0;          // workers that hold jobs
     const Member* by_itself = nullptr;  // holds such a job: the others get nothing
   };
   struct Member {
     Host* host = nullptr;
-    Pool* pool = nullptr;  // none: the memory is its own
+    Pool* pool = nullptr;  // null: the memory is its own
     std::uint32_t threads = 1;
     std::uint64_t memory = 0;  // 0: no limit
-    double benchmark = 0;      // triangles a second and thread
+    double benchmark = 0;      // triangles per second and thread
     double speed = 0;
-    double expected_done = 0;  // seconds that any worker, at its benchmark, takes for what it did
+    double expected_done = 0;  // seconds that any worker, at its benchmark, takes for the same jobs
     double seconds_done = 0;
     std::uint64_t room = 0;
     std::vector<Held> held;
@@ -130,22 +132,22 @@ class Scheduler {
   struct Late {
     double left = 0;  // seconds
     const Held* held = nullptr;
-    double times = 1;            // so much longer do jobs of its kind take than was thought
-    const Host* host = nullptr;  // of its holder
-    double beyond = 0;           // seconds that it has taken longer than that
+    double times = 1;            // how many times longer jobs of its kind take than estimated
+    const Host* host = nullptr;  // the holder's
+    double beyond = 0;           // seconds beyond that
   };
-  /// What the jobs of a kind took that are done, and what was thought.
+  /// Actual and estimated time of the completed jobs of a kind.
   struct Pace {
     double took = 0;
     double thought = 0;
   };
-  /// How the rest of the run looks from `now`: times in seconds from then on.
+  /// The outlook for the rest of the run: times in seconds from `now`.
   struct Outlook {
     FarmTime valid_until{-1};
     FarmTime now{0};
     std::uint64_t cost_ready = 0;
-    double all_done = 0;   // if the work could be shared out evenly
-    double last_free = 0;  // when the worker that has the most is through
+    double all_done = 0;   // if the work could be shared evenly
+    double last_free = 0;  // when the busiest worker is done
     double fastest = 0;
   };
 
@@ -185,8 +187,8 @@ class Scheduler {
 
   SchedulerOptions options_;
   std::map<WorkerId, Member> crew_;
-  std::map<std::string, Host> hosts_;                            // entries stay
-  std::vector<const Host*> host_of_number_;                      // from 1 on
+  std::map<std::string, Host> hosts_;                            // entries are never removed
+  std::vector<const Host*> host_of_number_;                      // from 1
   std::map<std::pair<std::string, std::uint64_t>, Pool> pools_;  // by host and number; they stay
   std::set<std::pair<double, WorkerId>> willing_;  // those who read nothing ahead, then the others;
                                                    // the least laden first
@@ -196,17 +198,17 @@ class Scheduler {
   Outlook outlook_;
   FarmTime next_second_attempts_{0};
   FarmTime next_ban_end_ = FarmTime::max();
-  // What all workers took, what took far too long cut short.
+  // Time taken by all workers; outliers are capped.
   double seconds_done_ = 0;
-  double squares_done_ = 0;  // of the seconds of each job
-  // By kind: in seconds, as thought by the workers' speeds; and in what a worker could have done by
-  // its benchmark, beside what the jobs cost.
+  double squares_done_ = 0;  // of each job's seconds
+  // By kind: seconds, estimated from the workers' speeds; and what a worker could have done at its
+  // benchmark speed, against what the jobs cost.
   std::map<std::string, Pace> paces_;
   std::map<std::string, Pace> benchmark_paces_;
-  // A fixed schedule: who shall get what.
+  // Fixed schedule: the jobs of each worker.
   std::map<WorkerId, std::deque<JobKey>> sets_;
-  std::unordered_map<JobKey, WorkerId, JobKeyHash> dealt_;  // what the sets hold
-  std::vector<JobKey> undealt_;                             // ready jobs that fit nobody
+  std::unordered_map<JobKey, WorkerId, JobKeyHash> dealt_;  // all jobs in the sets
+  std::vector<JobKey> undealt_;                             // ready jobs that no worker can take
 };
 
 }  // namespace meshfarm

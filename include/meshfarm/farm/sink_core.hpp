@@ -22,37 +22,36 @@ namespace meshfarm {
 
 /// A result whose file is to be checked.
 struct Check {
-  /// result: it came just now; verify its file and journal it.
-  /// large: it came just now; see whether a file of its name and size is there, and journal it.
-  /// known: a journal knows it; see whether a file of its name and size is there.
-  /// accepted: of the last two, one that was accepted by that look; verify it when nothing else
-  /// waits.
+  /// result: new; verify its file and journal it.
+  /// large: new; check that a file of its name and size exists, and journal it.
+  /// known: in a journal; check that a file of its name and size exists.
+  /// accepted: a large or known one, accepted by that check; verify it when nothing else waits.
   enum class What : std::uint8_t { result, large, known, accepted };
 
   JobKey key;
   JobOutput output;
   What what = What::result;
-  WorkerId worker = {};       // of a result; 0: the sink made it
-  std::uint32_t attempt = 0;  // of a worker's result
+  WorkerId worker = {};       // for a result; 0: made by the sink
+  std::uint32_t attempt = 0;  // for a worker's result
   JobTimes times = {};
-  std::string kind = {};         // of the job
-  bool left_to_readers = false;  // as the job has it
+  std::string kind = {};         // the job's
+  bool left_to_readers = false;  // see Job
 };
-/// Do a job that the sink does itself; answered by did().
+/// Do a job of the sink; answered by did().
 struct DoHere {
   JobKey key;
   Job job;
-  JobTimes times = {};  // once it is done
+  JobTimes times = {};  // set once it is done
 };
-/// Make the run's output of JobGraph::outputs(); answered by completed().
+/// Make the run's output from JobGraph::outputs(); answered by completed().
 struct MakeOutput {};
-/// The end of the sink.
+/// The sink leaves.
 struct SinkLeaves {
   enum class Why { complete, incomplete, jobs_failed, output_failed };
   Why why = Why::complete;
   std::string message;
 };
-/// Why the output, the journal or a job of the sink could not be written; nothing: it was.
+/// Why the output, the journal or a job of the sink could not be written; empty: it was written.
 struct SinkProblem {
   std::string text;
   bool no_room = false;  // the disk was full: the same run may be completed later
@@ -60,15 +59,16 @@ struct SinkProblem {
 using SinkAction = std::variant<Look, Dial, HangUp, Say, Check, DoHere, MakeOutput, SinkLeaves>;
 using SinkActions = std::vector<SinkAction>;
 
-/// The sink's mind: what is wanted, what is accepted, what the ventilator has been told. Pure.
-/// Holds: a job is accepted, and told, only after checked() said that its result is verified and
-/// on disk, or looked at if a journal knows it, or if it is large: all results go through the
-/// sink's link, and jobs would wait for that. Those are verified while the farm works: neither
-/// the output nor a job of the sink is made before, and what is damaged is taken back. For that the
-/// sink begins its graph again, without it, and greets the ventilator as a new sink would that has
-/// the others: the job is made again, and what was made from it before stays. From then on all
-/// that comes is verified first, so that who damages results is found out. What is left to its
-/// readers (Job::left_to_readers) is read only once one of them, or the sink, found damage.
+/// The sink's decisions: which jobs are wanted, which are accepted, and what the ventilator has
+/// been told. Pure. Invariant: a job is accepted, and reported, only after checked() said that its
+/// result is verified and on disk or, if it is large or in a journal, that a file of its name and
+/// size exists: all results go through the sink's link, and jobs would wait for the reads. Such
+/// results are verified while the farm works; the output and the sink's own jobs are not made
+/// before that, and damaged results are taken back. To take one back, the sink restarts its graph
+/// without it and greets the ventilator like a new sink that has all other results: the job is made
+/// again, and results already made from it stay. From then on every new result is verified first,
+/// to find out who damages results. Results left to their readers (Job::left_to_readers) are read
+/// only once a reader, or the sink, has found damage.
 class SinkCore {
  public:
   /// `journal`: what earlier sinks accepted.
@@ -84,28 +84,28 @@ class SinkCore {
   SinkActions found(std::span<const Endpoint> endpoints, FarmTime now);
   SinkActions on_control(const Message& message, FarmTime now);
   SinkActions on_result(const Message& message);
-  /// The answer to a Check: `problem` has no reason if the file is as it should be, and the record
-  /// of what is not accepted yet is on the disk. no_space: there is no room for the record.
+  /// Answers a Check. `problem` has no reason if the file is good and, if it was not accepted yet,
+  /// its record is on disk. no_space: there is no room for the record.
   SinkActions checked(const Check& check, const JobFailure& problem, FarmTime now);
-  /// The answer to DoHere: what was made, if there is no problem.
+  /// Answers DoHere: the output, unless there is a problem.
   SinkActions did(const DoHere& what, const JobOutput& output, const SinkProblem& problem,
                   FarmTime now);
-  /// The answer to MakeOutput.
+  /// Answers MakeOutput.
   SinkActions completed(const SinkProblem& problem, FarmTime now);
-  /// Whether it waits for room on the disk, to try again then what it could not write.
+  /// Whether it waits for room on the disk before it retries what could not be written.
   bool waits_for_room() const { return again_pause_.count() > 0; }
   /// Tells the ventilator that this sink cannot go on (its journal cannot be written).
   SinkActions fail(const SinkProblem& problem);
   SinkActions stop();
 
   const JobGraph& graph() const { return graph_; }
-  /// How many of the accepted are to be verified yet, or to be taken back.
+  /// Number of accepted results still to be verified or taken back.
   std::uint64_t unverified() const { return known_.unverified() + damaged_.size(); }
-  /// Whether it is accepted by a look, and nobody but its readers will tell if it is damaged.
+  /// Whether it was accepted by a size check and only its readers will notice damage.
   bool leaves_to_readers(JobKey key) const { return left_.contains(key); }
-  /// How long to wait for messages before tick() is called again, at most.
+  /// The longest wait for messages before tick() must be called again.
   FarmTime pause(FarmTime now) const { return member_.pause(now); }
-  /// Of the ventilator that was joined last.
+  /// The epoch of the ventilator joined last.
   std::uint32_t epoch() const { return member_.epoch(); }
   std::uint64_t dropped() const { return dropped_; }
 
@@ -150,30 +150,30 @@ class SinkCore {
   JobSource source_;
   JobGraph graph_;
   KnownResults known_;
-  std::map<JobKey, Wanted> wanted_;  // the jobs that are, since the graph was begun
-  std::map<JobKey, Job> own_;        // of these, those that the sink does
-  std::vector<DoHere> waiting_;      // of these, those that wait until all is verified
-  std::set<JobKey> doing_;           // jobs of the sink that DoHere was said of
+  std::map<JobKey, Wanted> wanted_;  // since the graph was started
+  std::map<JobKey, Job> own_;        // of these, those done by the sink
+  std::vector<DoHere> waiting_;      // of these, those that wait until everything is verified
+  std::set<JobKey> doing_;           // jobs of the sink for which DoHere was issued
   std::vector<DoHere> not_done_;     // of these, those that there was no room for
-  std::set<JobKey> lack_room_;       // those, also while they are tried again
+  std::set<JobKey> lack_room_;       // those, also while they are retried
   SinkActions out_;
   Phase phase_ = Phase::collecting;
   bool begun_ = false;
-  bool told_all_ = false;  // to the ventilator joined now
+  bool told_all_ = false;  // to the current ventilator
   std::map<JobKey, Check> checking_;
-  std::uint64_t looking_ = 0;     // how many of those a journal knows
+  std::uint64_t looking_ = 0;     // number of known results being checked
   std::vector<JobKey> accepted_;  // in the order of acceptance
-  std::map<JobKey, Check> left_;  // of these, what is read only if something is damaged
-  std::set<JobKey> damaged_;      // of these, what is to be taken back
+  std::map<JobKey, Check> left_;  // of these, results left to their readers
+  std::set<JobKey> damaged_;      // of these, results to be taken back
   bool found_damage_ = false;
-  /// Attempts that read a damaged input while not all was verified.
+  /// Attempts that read a damaged input before everything was verified.
   std::set<std::pair<JobKey, std::uint32_t>> held_;
   std::map<JobKey, JobFailed> failed_;
   SinkProblem problem_;
   WhenFull when_full_;
-  std::optional<FarmTime> again_at_;  // when what there was no room for is tried again
+  std::optional<FarmTime> again_at_;  // when to retry what there was no room for
   FarmTime again_pause_{0};           // 0: there is room
-  std::vector<Check> unwritten_;      // whose records there was no room for
+  std::vector<Check> unwritten_;      // checks whose records there was no room for
   FarmTime say_until_{0};
   std::uint64_t dropped_ = 0;
 };

@@ -6,8 +6,8 @@
 
 namespace meshfarm {
 
-/// What a run does when the disk, or its owner's share of it, is full: it waits until there is
-/// room, or ends, to be taken up again.
+/// What a run does when the disk, or its owner's quota, is full: it waits until there is room, or
+/// ends and can be resumed.
 enum class WhenFull : std::uint8_t { wait, end };
 
 }  // namespace meshfarm

@@ -20,38 +20,38 @@
 namespace meshfarm {
 
 struct WorkerLimits {
-  std::uint32_t buffer = 16;  // jobs that may wait beside those in work
-  std::uint32_t slots = 1;    // jobs in work at once: computed, read ahead, or written
-  /// Bytes for all jobs in work together, 0: no limit. Others of the host may share it: the
+  std::uint32_t buffer = 16;  // jobs that may wait, in addition to those in work
+  std::uint32_t slots = 1;    // jobs in work concurrently: computed, read ahead, or written
+  /// Bytes for all jobs in work together, 0: no limit. Other workers of the host may share it: the
   /// ventilator says how much of it is ours.
   std::uint64_t memory = 0;
-  FarmTime grace{5000};  // how long jobs in work may take to give up when the worker leaves
+  FarmTime grace{5000};  // for jobs in work to give up when the worker leaves
 };
-/// Those of a worker that can do so much. One job more is in work than is computed: its inputs are
-/// read ahead meanwhile, or its output is written.
+/// Limits of a worker with this capacity. One more job is in work than is computed: meanwhile its
+/// inputs are read ahead, or its output is written.
 WorkerLimits limits_of(const Capacity& capacity, std::uint32_t buffer);
 
-/// Of jobs with so many bytes of input no more are read at once than are computed: a worker that
-/// waits for storage begins to compute as soon as it can, and only then reads the next.
+/// Threshold of input bytes: of jobs with more, no more are read concurrently than are computed. A
+/// worker that waits for storage then starts computing as soon as it can, before it reads the next.
 inline constexpr std::uint64_t k_much_input = std::uint64_t{1} << 20;
 
-/// What the job in a slot is at.
+/// What the job in a slot is doing.
 enum class JobPhase : std::uint8_t { storage, waiting, computing };
 struct SlotPulse {
-  std::uint64_t progress = 0;  // any count that grows as long as the job goes on
+  std::uint64_t progress = 0;  // any count that grows while the job makes progress
   JobPhase phase = JobPhase::computing;
-  std::uint64_t cpu_ms = 0;  // processor time of the slot's thread; 0: not known
+  std::uint64_t cpu_ms = 0;  // processor time of the slot's thread; 0: unknown
 };
-/// Signs of life of the slots, those that have no job included.
+/// Signs of life of all slots, including empty ones.
 struct WorkerPulse {
-  std::vector<SlotPulse> slots;  // empty: not known, and nothing is held to stand still
+  std::vector<SlotPulse> slots;  // empty: unknown, and no slot is treated as stalled
   std::uint64_t rss_bytes = 0;
-  std::uint64_t progress() const;  // of all slots together
+  std::uint64_t progress() const;  // sum over all slots
 };
 
-/// The worker's mind: its input buffer, its credit, the results that nobody acknowledged yet. Pure.
-/// Holds: as many jobs as there are slots and places in the buffer, at most (more wait than these
-/// where memory keeps slots empty); a result is kept until Done.
+/// The worker's decisions: its input buffer, its credit, and the results that nobody has
+/// acknowledged yet. Pure. Invariants: it holds at most as many jobs as there are slots and buffer
+/// places (more wait in the buffer when memory keeps slots empty); a result is kept until Done.
 class WorkerCore {
  public:
   WorkerCore(MemberOptions member, const WorkerLimits& limits)
@@ -63,15 +63,15 @@ class WorkerCore {
   WorkerActions on_lane(const Message& message, FarmTime now);
   WorkerActions finished(std::uint32_t slot, std::variant<JobOutput, JobFailure> outcome,
                          FarmTime now, const JobTimes& times = {});
-  /// The answer to ReadForSink.
+  /// Answers ReadForSink.
   WorkerActions tried(const TryRead& what, bool whole);
-  /// Gives back all that is held and leaves: at once, or when the jobs in work have ended.
+  /// Gives back everything held and leaves: at once, or when the jobs in work have ended.
   WorkerActions stop();
 
   const WorkerReport& report() const { return report_; }
   std::size_t waiting() const { return waiting_.size(); }
   std::size_t unacknowledged() const { return unacknowledged_.size(); }
-  /// How long to wait for messages before tick() is called again, at most.
+  /// The longest wait for messages before tick() must be called again.
   FarmTime pause(FarmTime now) const { return member_.pause(now); }
   std::uint64_t dropped() const { return dropped_; }
 
@@ -80,14 +80,14 @@ class WorkerCore {
     JobKey key;
     std::uint32_t attempt = 0;
     std::uint64_t memory = 0;
-    bool on_this_lane = true;  // it counts against the lane's credit
+    bool on_this_lane = true;  // counts against the lane's credit
     bool wanted = true;
     SlotPulse pulse = {};
-    FarmTime moved{0};               // when the pulse was last seen to change
-    std::uint64_t moved_cpu_ms = 0;  // ...and the processor time then
+    FarmTime moved{0};               // when the pulse last changed
+    std::uint64_t moved_cpu_ms = 0;  // ...and the processor time at that moment
 
-    /// For how long it has stood still. A job that computes, on a host that is busy with something
-    /// else, is judged by the time that it got.
+    /// How long it has made no progress. A job that computes on a busy host is judged by the
+    /// processor time it got.
     FarmTime still(FarmTime now) const;
   };
   struct Waiting {
@@ -129,8 +129,8 @@ class WorkerCore {
   std::vector<std::optional<InWork>> slots_;
   std::map<JobKey, Kept> unacknowledged_;
   std::string sink_;
-  std::uint64_t run_ = 0;       // that what is kept belongs to
-  std::uint64_t received_ = 0;  // the lane's last number
+  std::uint64_t run_ = 0;       // the run of the kept results and jobs
+  std::uint64_t received_ = 0;  // last lane number received
   std::uint64_t credit_ = 0;
   bool leaving_ = false;
   std::optional<FarmTime> leaving_since_;

@@ -10,8 +10,8 @@ namespace meshfarm {
 struct WorkerReport {
   std::uint64_t jobs_done = 0;
   std::uint64_t jobs_failed = 0;
-  double span_seconds = 0;     // from the first job's begin to the last one's end
-  double compute_seconds = 0;  // of all threads together within that
+  double span_seconds = 0;     // from the start of the first job to the end of the last
+  double compute_seconds = 0;  // of all threads within that span
 };
 
 }  // namespace meshfarm
