@@ -16,7 +16,7 @@ namespace {
 
 using Interfaces = std::unique_ptr<ifaddrs, decltype(&::freeifaddrs)>;
 
-/// The first of this host's interfaces, which leads to the others; null if they cannot be listed.
+/// The first of this host's interfaces (a linked list); null if they cannot be listed.
 Interfaces list_interfaces() {
   ifaddrs* list = nullptr;
   if (::getifaddrs(&list) != 0) list = nullptr;

@@ -20,13 +20,13 @@
 
 namespace meshfarm {
 
-/// A worker's or sink's end of the control channel: does what Membership asks for.
+/// A worker's or sink's end of the control channel: executes what Membership requests.
 class ControlLink {
  public:
   ControlLink(zmq::context_t& context, const Stage& stage, const SecurityOptions& security)
       : context_(context), stage_(stage), security_(security) {}
 
-  /// The endpoints that the stage shows now; as before if it cannot be listed (NFS away).
+  /// The endpoints now in the stage; unchanged if it cannot be listed (NFS not reachable).
   const std::vector<Endpoint>& look() {
     try {
       endpoints_ = list_.look(stage_);
@@ -37,7 +37,7 @@ class ControlLink {
   }
   void dial(const std::string& address) {
     socket_.reset();
-    if (!find_keys(address)) return;  // dialled again in a while
+    if (!find_keys(address)) return;  // dialled again after a while
     socket_.emplace(make_control_client(context_, keys_, random_id()));
     try {
       socket_->connect(address);
@@ -50,10 +50,10 @@ class ControlLink {
     socket_.reset();
   }
   void say(const Message& message) {
-    if (socket_) send(*socket_, message);  // what gets lost is said again
+    if (socket_) send(*socket_, message);  // lost messages are repeated
   }
   zmq::socket_t* socket() { return socket_ ? &*socket_ : nullptr; }
-  /// Those of the run dialled last.
+  /// The keys of the run dialled last.
   const Keys& keys() const { return keys_; }
 
  private:

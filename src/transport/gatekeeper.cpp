@@ -21,7 +21,7 @@ namespace {
 constexpr std::size_t k_key_bytes = 32;
 constexpr int k_told = ZMQ_EVENT_HANDSHAKE_FAILED_PROTOCOL | ZMQ_EVENT_HANDSHAKE_FAILED_AUTH;
 constexpr int k_refusals = k_told | ZMQ_EVENT_HANDSHAKE_FAILED_NO_DETAIL;
-/// Members that end while they connect, as at the end of a short run, leave off as well.
+/// Members that end while they connect, as at the end of a short run, also count as left_off.
 constexpr std::uint64_t k_usually_left_off = 16;
 constexpr std::chrono::milliseconds k_for_ever{-1};
 
@@ -31,7 +31,7 @@ std::string raw_key(const std::string& z85) {
   return {bytes.begin(), bytes.end()};
 }
 
-/// All frames of a message; none if there is no message.
+/// All frames of a message; empty if there is no message.
 std::vector<std::string> receive_frames(zmq::socket_t& socket) {
   std::vector<std::string> frames;
   zmq::message_t frame;
@@ -110,7 +110,7 @@ void Gatekeeper::take_new_monitors() {
   new_monitors_.clear();
 }
 
-/// A request: version, its id, domain, address, routing id, mechanism, credentials.
+/// Answers a request: version, its id, domain, address, routing id, mechanism, credentials.
 void Gatekeeper::answer() {
   const std::vector<std::string> request = receive_frames(door_);
   if (request.empty()) return;
@@ -130,7 +130,7 @@ void Gatekeeper::answer() {
   }
 }
 
-/// Counts; false once the socket is closed.
+/// Counts events; false once the socket is closed.
 bool Gatekeeper::read_events(zmq::socket_t& monitor) {
   for (;;) {
     const std::vector<std::string> frames = receive_frames(monitor);

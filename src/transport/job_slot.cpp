@@ -14,7 +14,7 @@
 #include "transport/sockets.hpp"
 
 namespace meshfarm {
-/// What is written while the job computes: storage that stalls is told apart from a job that hangs.
+/// An output written while the job computes: stalled storage is told apart from a hanging job.
 class JobSlot::OutputFile : public JobFile {
  public:
   OutputFile(JobSlot& slot, const StagedName& name, std::string_view unique)
@@ -58,8 +58,8 @@ SlotPulse JobSlot::pulse() const {
           clock == k_no_clock ? 0 : thread_cpu_us(clock) / 1000};
 }
 
-/// On the slot's thread, as is all below. Whatever the job's function throws is the job's failure,
-/// not ours.
+/// Runs on the slot's thread, as does everything below. Any exception from the job's function is
+/// the job's failure, not ours.
 JobOutcome JobSlot::attempt(const Begin& begin) {
   clock_ = JobClock(farm_clock());
   wait_and_read_ahead(begin.job);
@@ -119,7 +119,7 @@ JobOutcome JobSlot::checked(const Begin& begin, JobOutput output) const {
 
 void JobSlot::wait_and_read_ahead(const Job& job) {
   const std::uint64_t bytes = input_bytes(job);
-  if (bytes > job.memory) return;  // the job means to read it bit by bit
+  if (bytes > job.memory) return;  // the job will read it piece by piece
   if (bytes < k_much_input) return read_ahead(job);
   phase_ = JobPhase::waiting;
   if (!gates_.reading.enter(give_up_)) return;
@@ -128,7 +128,7 @@ void JobSlot::wait_and_read_ahead(const Job& job) {
   gates_.reading.leave();
 }
 
-/// What cannot be read now is read again by the job itself, which says why it cannot be.
+/// Errors are ignored: the job itself reads the input again, and reports why it cannot.
 void JobSlot::read_ahead(const Job& job) {
   try {
     for (const InputSection& each : job.sections) {
@@ -170,7 +170,7 @@ FileRef JobSlot::publish(const StagedName& name, std::string_view bytes, std::st
   return written;
 }
 
-/// So that slow storage is seen to move.
+/// In pieces, so that progress on slow storage is visible.
 void JobSlot::write_in_pieces(StagedWriter& file, std::string_view bytes) {
   constexpr std::size_t k_piece = std::size_t{1} << 20;
   for (; !bytes.empty(); bytes.remove_prefix(std::min(k_piece, bytes.size()))) {

@@ -25,21 +25,21 @@ namespace meshfarm {
 
 using JobOutcome = std::variant<JobOutput, JobFailure>;
 
-/// One of a worker's places for a job in work, with its thread: waits for its turn to read where
-/// the inputs are large, reads them ahead, waits for its turn to compute, lets the next compute
-/// while the output is written.
+/// One of a worker's slots for jobs in work, with its thread. It waits for its turn to read if the
+/// inputs are large, reads them ahead, waits for its turn to compute, and lets the next slot
+/// compute while it writes the output.
 class JobSlot : private JobStorage {
  public:
   JobSlot(const Stage& stage, const JobFunction& work, WorkerGates& gates,
           std::uint64_t incarnation)
       : stage_(stage), work_(work), gates_(gates), incarnation_(incarnation) {}
 
-  /// Only when the last job was taken.
+  /// Call only after the last job's result was taken.
   void begin(const Begin& begin);
-  /// The job is asked to give up; it still ends.
+  /// Asks the job to give up; it still ends with a result.
   void give_up();
   int fd() const { return thread_.fd(); }
-  /// True once for each job that ended; then outcome() and times() are its own.
+  /// True once for each job that ended; outcome() and times() then belong to it.
   bool take_finished() { return thread_.take_finished(); }
   JobOutcome& outcome() { return outcome_; }
   const JobTimes& times() const { return clock_.times(); }
@@ -47,7 +47,7 @@ class JobSlot : private JobStorage {
 
  private:
   class OutputFile;
-  static constexpr clockid_t k_no_clock = CLOCK_REALTIME;  // of no thread
+  static constexpr clockid_t k_no_clock = CLOCK_REALTIME;  // not any thread's clock
 
   JobOutcome attempt(const Begin& begin);
   JobOutcome compute(const Begin& begin);
@@ -57,7 +57,7 @@ class JobSlot : private JobStorage {
   void end_computing();
   void write_in_pieces(StagedWriter& file, std::string_view bytes);
   void moved(std::uint64_t bytes) { moved_.fetch_add(bytes, std::memory_order_relaxed); }
-  /// Waiting for a file is a sign of life, too: it ends.
+  /// Waiting for a file is also a sign of life: the wait is bounded.
   std::function<void(std::uint64_t)> on_moved() {
     return [this](std::uint64_t bytes) { moved(bytes + 1); };
   }
@@ -71,15 +71,15 @@ class JobSlot : private JobStorage {
   WorkerGates& gates_;
   std::uint64_t incarnation_;
   std::atomic<std::uint64_t> progress_{0};
-  std::atomic<std::uint64_t> moved_{0};  // bytes to and from the stage
+  std::atomic<std::uint64_t> moved_{0};  // bytes read from and written to the stage
   std::atomic<JobPhase> phase_{JobPhase::storage};
   std::atomic<bool> give_up_{false};
-  std::atomic<clockid_t> cpu_clock_{k_no_clock};  // of the thread, once it has computed
-  // The thread's own while it works:
+  std::atomic<clockid_t> cpu_clock_{k_no_clock};  // the thread's, once it has computed
+  // Owned by the thread while it works:
   struct Place {
     std::string file;
     std::uint64_t offset = 0;
-    std::uint64_t size = 0;  // a section may be empty, and the next begins where it does
+    std::uint64_t size = 0;  // an empty section starts where the next one does
 
     friend auto operator<=>(const Place&, const Place&) = default;
   };

@@ -11,7 +11,7 @@
 namespace meshfarm {
 namespace {
 
-/// The module's function. The module stays loaded to the end of the process.
+/// The module's function. The module stays loaded until the process ends.
 ListenFunction* load() {
   void* const module = ::dlopen(k_page_module, RTLD_NOW | RTLD_LOCAL);
   void* const function = module == nullptr ? nullptr : ::dlsym(module, k_page_function);

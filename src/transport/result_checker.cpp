@@ -26,7 +26,7 @@ void ResultChecker::check_all(std::vector<CheckedResult>& batch, ReadPatience& f
   });
 }
 
-/// On one of several threads, which share their patience.
+/// Runs on several threads, which share one patience.
 void ResultChecker::check(CheckedResult& each, ReadPatience& shared, std::mutex& mutex) const {
   const Check& check = each.check;
   const bool known = check.what == Check::What::known;

@@ -12,22 +12,22 @@
 
 namespace meshfarm {
 
-/// A Check, and what came of it.
+/// A Check and its result.
 struct CheckedResult {
   Check check;
   JobFailure problem = {};
   bool to_record = false;  // in the journal
 };
 
-/// Looks at the files of results for the sink.
+/// Checks the files of results for the sink.
 class ResultChecker {
  public:
-  /// `recorded`: the jobs that the run's journals say it accepted itself.
+  /// `recorded`: the jobs that the run itself accepted, according to the journals.
   ResultChecker(const Stage& stage, const SinkOptions& options, const std::set<JobKey>& recorded)
       : stage_(stage), options_(options), recorded_(recorded) {}
 
-  /// On so many threads. The patience with storage is that of all together: nobody hears of one
-  /// result before all have been looked at.
+  /// Checks on this many threads. They share the patience with storage: no result is reported
+  /// before all have been checked.
   void check_all(std::vector<CheckedResult>& batch, ReadPatience& fresh, ReadPatience& known,
                  unsigned threads) const;
 

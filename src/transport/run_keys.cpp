@@ -47,7 +47,7 @@ std::filesystem::path key_path(const Stage& stage, std::uint64_t run,
   return security.key_file.empty() ? stage.path(KeysName{run}) : security.key_file;
 }
 
-/// Lists the folder, so that an NFS client asks the server whether the file is there.
+/// Lists the folder, which makes an NFS client ask the server whether the file exists.
 bool is_listed(const std::filesystem::path& path) {
   const std::filesystem::path parent = path.parent_path();
   const std::filesystem::path folder = parent.empty() ? std::filesystem::path(".") : parent;
@@ -77,7 +77,7 @@ RunKeys read_keys(const std::filesystem::path& path) {
   return decode_keys(read_file(fd.get(), path), path.string());
 }
 
-/// The file was there before we were told of it; what an NFS client remembers may say otherwise.
+/// The file existed before we were told of it, but an NFS client's cache may say otherwise.
 RunKeys read_keys_patiently(const std::filesystem::path& path) {
   std::chrono::milliseconds wait(20);
   for (int attempt = 1;; ++attempt, wait *= 2) {
@@ -136,7 +136,7 @@ Keys keys_to_serve(const Stage& stage, std::uint64_t run, const SecurityOptions&
   if (!is_listed(path)) {
     AtomicFile file(path, to_hex(random_id()), AtomicFile::Readers::owner);
     file.write(encode_keys(make_run_keys()));
-    file.commit_new();  // whether it is ours or another's that was quicker: the file says
+    file.commit_new();  // whether ours or another process's won: the file says
   }
   return read_keys_patiently(path);
 }

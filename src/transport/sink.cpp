@@ -27,16 +27,15 @@ namespace meshfarm {
 namespace {
 
 constexpr int k_messages_per_turn = 1000;
-/// As many results share one sync of the journal at most.
+/// At most this many results share one sync of the journal.
 constexpr std::size_t k_checks_per_batch = 256;
-/// Results are verified on so many threads: storage on a network answers one slowly, and many at
-/// once.
+/// Threads that verify results: network storage answers each request slowly, but many at once.
 constexpr unsigned k_checkers = 4;
-/// What was accepted before is verified beside that, and beside workers of this host.
+/// Earlier results are verified in addition, and beside workers on this host.
 constexpr unsigned k_verifiers = 2;
 constexpr std::size_t k_verified_per_batch = 64;
 
-/// Who asks the sink to stop does not wait for storage, nor does a sink that leaves.
+/// A sink that leaves or was asked to stop does not wait for storage.
 ReadPatience patience_until(const std::atomic<bool>* stop, const std::atomic<bool>& leaves) {
   ReadPatience patience;
   patience.moved = [stop, &leaves](std::uint64_t) {
@@ -45,8 +44,8 @@ ReadPatience patience_until(const std::atomic<bool>* stop, const std::atomic<boo
   return patience;
 }
 
-/// What a journal knows was there long ago: if it is gone, it is made again. But storage that fails
-/// says nothing of it.
+/// A file in a journal existed long ago: if it is gone, it is made again. But failing storage says
+/// nothing about it.
 ReadPatience journal_patience(ReadPatience patience) {
   patience.missing = std::chrono::seconds(2);
   return patience;
@@ -54,7 +53,7 @@ ReadPatience journal_patience(ReadPatience patience) {
 
 using WhenComplete = std::function<void(std::span<const AcceptedJob>)>;
 
-/// The sockets and the threads round a SinkCore, which decides everything.
+/// The sockets and threads around a SinkCore, which makes all decisions.
 class SinkLoop {
  public:
   SinkLoop(const Stage& stage, const JobSource& source, const SinkOptions& options,
@@ -129,7 +128,7 @@ class SinkLoop {
     const bool disk_finished = disk_.take_finished();
     const bool verifier_finished = verifier_.take_finished();
     const bool own_job_finished = own_jobs_.take_finished();
-    // What a stop ended early says nothing about the results that were looked at.
+    // Checks that a stop ended early say nothing about their results.
     if (stopped()) return;
     if (disk_finished) disk_answers(now);
     if (verifier_finished) verifier_answers(now);
@@ -171,7 +170,7 @@ class SinkLoop {
   void act(const MakeOutput&) { make_output_ = true; }
   void act(const SinkLeaves& each) { left_ = each; }
 
-  /// Gives the disk thread what waits for it: checks go before the output.
+  /// Gives the disk thread its next work: checks go before the output.
   void use_disk() {
     if (!disk_.idle() || left_) return;
     if (!to_check_.empty()) {
@@ -184,7 +183,7 @@ class SinkLoop {
     }
   }
 
-  /// What was accepted before is verified while fresh results come.
+  /// Earlier results are verified while new ones come in.
   void use_verifier() {
     if (!verifier_.idle() || left_ || to_verify_.empty()) return;
     verified_ = next_of(to_verify_, k_verified_per_batch);
@@ -193,7 +192,7 @@ class SinkLoop {
     });
   }
 
-  /// While results of others are checked.
+  /// Runs while the workers' results are checked.
   void use_own_jobs() {
     if (!own_jobs_.idle() || left_ || to_do_.empty()) return;
     doing_ = std::move(to_do_.front());
@@ -247,16 +246,16 @@ class SinkLoop {
     tell_of_room(problem.text);
   }
 
-  /// Once when the waiting begins, and once when it ends.
+  /// Logs once when the waiting starts, and once when it ends.
   void tell_of_room(const std::string& reason) {
     const bool waits = core_.waits_for_room();
     if (waits == std::exchange(told_of_waiting_, waits)) return;
     log_warning(waits ? "no room, waiting: " + reason : "there is room again");
   }
 
-  /// On the disk thread.
+  /// Runs on the disk thread.
   void check_batch() {
-    // They are waited for together.
+    // All results share one patience.
     ReadPatience patience = patience_;
     checker_.check_all(batch_, patience, journal_patience_, k_checkers);
     std::vector<std::string> records;
@@ -284,8 +283,8 @@ class SinkLoop {
     }
   }
 
-  /// A journal that could not be written may be torn: what comes behind would not be read. So
-  /// another one is begun, at once and then as long as storage that fails is waited for.
+  /// A journal that failed to write may be torn, and records after the tear would not be read. So
+  /// another one is started, at once and then for as long as failing storage is waited for.
   void journal_append(const std::vector<std::string>& records) {
     Waiting waiting(patience_);
     for (bool again = false;; again = true) {
@@ -300,7 +299,7 @@ class SinkLoop {
     }
   }
 
-  /// On the thread of own jobs.
+  /// Runs on the thread of own jobs.
   void do_here() {
     try {
       const auto goes_on = [this](std::uint64_t) {
@@ -318,7 +317,7 @@ class SinkLoop {
     }
   }
 
-  /// On the disk thread, once there are no own jobs left.
+  /// Runs on the disk thread, once no own jobs are left.
   void make_output() {
     try {
       complete_(core_.graph().outputs());
@@ -337,7 +336,7 @@ class SinkLoop {
   ControlLink link_;
   std::atomic<bool> leaves_{false};
   const ReadPatience patience_;
-  ReadPatience journal_patience_;    // the disk thread's once there is one
+  ReadPatience journal_patience_;    // the disk thread's once it runs
   ReadPatience verifying_patience_;  // the verifier's
   Ledger ledger_;
   const ResultChecker checker_;
@@ -351,18 +350,18 @@ class SinkLoop {
   bool make_output_ = false;
   bool making_output_ = false;
   std::optional<SinkLeaves> left_;
-  std::exception_ptr told_problem_;  // as the disk thread left it when it was last idle
+  std::exception_ptr told_problem_;  // of the disk thread when it was last idle
   std::exception_ptr told_problem_of_job_;
-  // The disk thread's while it works:
+  // Owned by the disk thread while it works:
   std::vector<CheckedResult> batch_;
   std::optional<JournalWriter> journal_;
   std::exception_ptr problem_;
-  // The thread of own jobs':
+  // Owned by the thread of own jobs:
   std::optional<DoHere> doing_;
-  std::vector<AcceptedJob> accepted_;  // before it
+  std::vector<AcceptedJob> accepted_;  // before this job
   JobOutput made_;
   std::exception_ptr problem_of_job_;
-  // The verifier's while it works:
+  // Owned by the verifier while it works:
   std::vector<CheckedResult> verified_;
   // The last members, so that their threads end first.
   TaskThread disk_;

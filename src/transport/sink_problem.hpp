@@ -8,11 +8,11 @@
 
 namespace meshfarm {
 
-/// What was thrown, none if it is null. Whether there was no room is told beside it: what a sink
-/// does then is its own choice.
+/// Describes an exception; empty for null. Whether the disk was full is reported separately: the
+/// sink decides how to handle that.
 SinkProblem problem_of(const std::exception_ptr& thrown);
 
-/// Of a journal that cannot be written.
+/// For a journal that cannot be written.
 SinkProblem problem_of_journal(const std::exception_ptr& thrown);
 
 }  // namespace meshfarm

@@ -19,19 +19,19 @@ namespace meshfarm {
 namespace {
 
 constexpr int k_max_sockets = 60'000;
-/// How long what was said last may take to get out once a process leaves.
+/// How long the last messages may take to be sent when a process leaves.
 constexpr int k_linger_ms = 1000;
 
-/// What all sockets have in common: they notice a dead peer within seconds, never wait for one at
-/// the end, and take no frame longer than the protocol's.
+/// Common settings of all sockets: they notice a dead peer within seconds, never wait for one at
+/// the end, and take no frame longer than the protocol's limit.
 zmq::socket_t make(zmq::context_t& context, zmq::socket_type type, int linger_ms) {
   zmq::socket_t socket(context, type);
   socket.set(zmq::sockopt::linger, linger_ms);
   socket.set(zmq::sockopt::maxmsgsize, static_cast<std::int64_t>(k_max_frame_bytes));
   socket.set(zmq::sockopt::backlog, 4096);
-  // The kernel tells of a dead host: whoever acknowledges neither data nor a probe for 3 s. Not
-  // libzmq's heartbeats: up to 4.3.5 one that is due on a connection that broke while its messages
-  // had not all been taken ends the process (`!_io_error` in stream_engine_base.cpp).
+  // The kernel detects a dead host: one that acknowledges neither data nor a probe for 3 s. We do
+  // not use libzmq's heartbeats: up to 4.3.5, one that is due on a connection that broke with
+  // unread messages aborts the process (`!_io_error` in stream_engine_base.cpp).
   socket.set(zmq::sockopt::tcp_maxrt, 3000);
   socket.set(zmq::sockopt::tcp_keepalive, 1);
   socket.set(zmq::sockopt::tcp_keepalive_idle, 1);
@@ -41,8 +41,8 @@ zmq::socket_t make(zmq::context_t& context, zmq::socket_type type, int linger_ms
   socket.set(zmq::sockopt::connect_timeout, 3000);
   socket.set(zmq::sockopt::reconnect_ivl, 100);
   socket.set(zmq::sockopt::reconnect_ivl_max, 5000);
-  // The protocol bounds what is outstanding; a limit here would only lose messages. What comes in
-  // keeps its default limit, so that a flood waits at its sender.
+  // The protocol bounds outstanding messages; a send limit here would only lose messages. The
+  // receive limit keeps its default, so that a flood waits at its sender.
   socket.set(zmq::sockopt::sndhwm, 0);
   return socket;
 }
@@ -69,7 +69,7 @@ zmq::socket_t make_client(zmq::context_t& context, const Keys& keys, zmq::socket
   return socket;
 }
 
-/// What a socket is bound to, as others can connect to it.
+/// A bound address as others can connect to it.
 std::string advertised(const std::string& bound) {
   for (const std::string_view any : {"tcp://0.0.0.0:", "tcp://[::]:"}) {
     if (bound.compare(0, any.size(), any) == 0) {
@@ -93,7 +93,7 @@ bool receive_frame(zmq::socket_t& socket, zmq::message_t& frame) {
   try {
     return socket.recv(frame, zmq::recv_flags::dontwait).has_value();
   } catch (const zmq::error_t& error) {
-    if (error.num() == EINTR) return false;  // a signal; the loop comes again
+    if (error.num() == EINTR) return false;  // a signal; the loop retries
     throw;
   }
 }

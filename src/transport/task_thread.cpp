@@ -41,7 +41,7 @@ bool TaskThread::take_finished() {
   const std::lock_guard lock(mutex_);
   if (!std::exchange(finished_, false)) return false;
   std::uint64_t count = 0;
-  // Only resets the event; finished_ is what counts.
+  // Only resets the event; finished_ is the state that counts.
   [[maybe_unused]] const auto ignored = ::read(event_.get(), &count, sizeof count);
   idle_ = true;
   return true;

@@ -11,19 +11,20 @@
 
 namespace meshfarm {
 
-/// One thread that does one task at a time beside an I/O loop, which polls fd() to hear of the end.
-/// What a task wrote may be read once take_finished() has said so. A task must not throw.
+/// A thread that runs one task at a time beside an I/O loop; the loop polls fd() to learn when a
+/// task ends. A task's results may be read once take_finished() returned true. A task must not
+/// throw.
 class TaskThread {
  public:
   TaskThread();
-  /// Waits for the task in work.
+  /// Waits for the current task.
   ~TaskThread();
   TaskThread(const TaskThread&) = delete;
   TaskThread& operator=(const TaskThread&) = delete;
 
-  /// Only when idle().
+  /// Call only when idle().
   void start(std::function<void()> task);
-  /// No task is in work, nor ended but not yet taken.
+  /// No task is running, or has ended without being taken.
   bool idle() const { return idle_; }
   int fd() const { return event_.get(); }
   /// True once for each task that ended.
@@ -33,7 +34,7 @@ class TaskThread {
   void run();
 
   Fd event_;
-  bool idle_ = true;  // the I/O loop's own
+  bool idle_ = true;  // owned by the I/O loop
   std::mutex mutex_;
   std::condition_variable changed_;
   std::function<void()> task_;

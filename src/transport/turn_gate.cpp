@@ -8,7 +8,7 @@ bool TurnGate::enter(const std::atomic<bool>& given_up) {
   std::unique_lock lock(mutex_);
   const std::uint64_t ticket = next_ticket_++;
   changed_.wait(lock, [&] { return served_ == ticket && (free_ > 0 || given_up); });
-  ++served_;  // whoever gave up has had its turn, too
+  ++served_;  // a thread that gave up has had its turn, too
   const bool entered = !given_up;
   if (entered) --free_;
   lock.unlock();

@@ -9,17 +9,17 @@
 
 namespace meshfarm {
 
-/// Lets so many threads read, or compute, at once, in the order in which they came.
+/// Lets this many threads read, or compute, concurrently, in order of arrival.
 class TurnGate {
  public:
   explicit TurnGate(std::uint32_t places) : free_(places) {}
   TurnGate(const TurnGate&) = delete;
   TurnGate& operator=(const TurnGate&) = delete;
 
-  /// Waits for a place. False, and none is taken, once `given_up` is set (see look_up()).
+  /// Waits for a place. False, taking none, once `given_up` is set (see look_up()).
   bool enter(const std::atomic<bool>& given_up);
   void leave();
-  /// Makes those who wait look at their `given_up`.
+  /// Makes waiting threads check their `given_up`.
   void look_up();
 
  private:
@@ -30,10 +30,10 @@ class TurnGate {
   std::uint64_t served_ = 0;
 };
 
-/// The two that all slots of a worker go through.
+/// The two gates shared by all slots of a worker.
 struct WorkerGates {
   explicit WorkerGates(std::uint32_t threads) : reading(threads), computing(threads) {}
-  TurnGate reading;  // by jobs that read much; see k_much_input
+  TurnGate reading;  // for jobs that read much; see k_much_input
   TurnGate computing;
 };
 

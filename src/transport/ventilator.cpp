@@ -32,8 +32,8 @@ constexpr FarmTime k_state_every{1000};
 constexpr FarmTime k_look_every{1000};
 constexpr FarmTime k_state_every_per_worker{5};
 
-/// A job that no message can carry is our caller's mistake: it is found before anything is sent.
-/// The sink makes its own jobs by itself.
+/// A job that no message can carry is the caller's mistake, and is found before anything is sent.
+/// The sink creates its own jobs itself.
 JobSource checked_source(const JobSource& source) {
   return [source] {
     JobGraph graph = source();
@@ -44,7 +44,7 @@ JobSource checked_source(const JobSource& source) {
   };
 }
 
-/// The sockets round a Dispatcher, which decides everything.
+/// The sockets around a Dispatcher, which makes all decisions.
 class VentilatorLoop {
  public:
   VentilatorLoop(const Stage& stage, const JobSource& source, const VentilatorOptions& options)
@@ -89,13 +89,13 @@ class VentilatorLoop {
     std::deque<Message> waiting;  // until the worker has connected
   };
 
-  /// Workers that were just about to join, or missed the word, see here that the run is over.
+  /// Workers that were about to join, or missed the message, see here that the run is over.
   void say_over() {
     try {
       Endpoint last_word{0, options_.run, {}, endpoint_.host, endpoint_.pid, {}};
       last_word.done = end_->failure.empty();
       last_word = publish_endpoint(stage_, last_word, unique_);
-      // What came before says nothing any more; workers to come need not read it.
+      // Earlier endpoints are obsolete; new workers need not read them.
       EndpointList endpoints;
       for (const Endpoint& each : endpoints.look(stage_)) {
         if (each.run == options_.run && each.epoch < last_word.epoch) {
@@ -148,7 +148,7 @@ class VentilatorLoop {
     tell_state(now);
   }
 
-  /// Whoever speaks another version is told so in its own, and named here once.
+  /// A peer of another protocol version is refused in its own version, and logged here once.
   void refuse_other(const Received& received) {
     const std::string versions = "protocol version " + std::to_string(*received.other_version) +
                                  ", this ventilator " + std::to_string(k_protocol_version);
@@ -271,7 +271,7 @@ class VentilatorLoop {
   Endpoint endpoint_;
   Dispatcher dispatcher_;
   std::map<WorkerId, Lane> lanes_;
-  std::vector<WorkerId> unsent_;  // lanes with something waiting
+  std::vector<WorkerId> unsent_;  // lanes with waiting messages
   FarmTime start_ = farm_clock();
   FarmTime next_report_{0};
   FarmTime next_state_{0};
@@ -280,7 +280,7 @@ class VentilatorLoop {
   std::uint64_t garbage_ = 0;
   bool told_of_others_ = false;
   std::optional<Finish> end_;
-  std::string probe_problem_;         // the prober's while it works
+  std::string probe_problem_;         // owned by the prober while it works
   std::optional<TaskThread> prober_;  // once the stage was full; the last member, as it ends first
 };
 

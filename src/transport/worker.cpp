@@ -25,7 +25,7 @@
 namespace meshfarm {
 namespace {
 
-/// So that a flood cannot keep the clock from being looked at.
+/// Limits messages per turn, so that a flood cannot keep the loop from checking the clock.
 constexpr int k_worker_messages_per_turn = 1000;
 constexpr FarmTime k_memory_every{500};
 const ReadPatience k_second_readers_patience = {.missing = k_second_reader_waits,
@@ -37,7 +37,7 @@ WorkerLimits limits_of(const WorkerOptions& options) {
   return limits;
 }
 
-/// The sockets and the job slots round a WorkerCore, which decides everything.
+/// The sockets and job slots around a WorkerCore, which makes all decisions.
 class WorkerLoop {
  public:
   WorkerLoop(const Stage& stage, const JobFunction& work, const WorkerOptions& options)
@@ -148,7 +148,7 @@ class WorkerLoop {
     connect(*results_, each.address);
   }
   void act(const SendResult& each) {
-    if (results_) send(*results_, each.result);  // what gets lost is sent again
+    if (results_) send(*results_, each.result);  // lost results are sent again
   }
   void act(const Begin& each) {
     if (!first_begin_) first_begin_ = farm_clock();
@@ -157,7 +157,7 @@ class WorkerLoop {
   void act(const GiveUp& each) { slots_[each.slot]->give_up(); }
   void act(const ReadForSink& each) {
     constexpr std::size_t k_most = 64;
-    if (to_read_.size() >= k_most) return;  // who asked waits for us no longer than it likes
+    if (to_read_.size() >= k_most) return;  // the asker has a timeout of its own
     to_read_.push_back(each.what);
     if (!reader_) reader_.emplace();
     if (reader_->idle()) read_next();
@@ -201,11 +201,11 @@ class WorkerLoop {
   FarmTime next_look_at_memory_{0};
   std::uint64_t rss_bytes_ = 0;
   WorkerGates gates_;
-  std::deque<TryRead> to_read_;  // the first is in work
-  bool readable_ = false;        // the reader's while it works
+  std::deque<TryRead> to_read_;  // the first is being read
+  bool readable_ = false;        // owned by the reader while it works
   // The last members, so that their threads end first.
   std::vector<std::unique_ptr<JobSlot>> slots_;
-  std::optional<TaskThread> reader_;  // once the sink could not read something
+  std::optional<TaskThread> reader_;  // started once the sink could not read something
 };
 
 }  // namespace

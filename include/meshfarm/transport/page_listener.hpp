@@ -17,14 +17,15 @@ struct ServedPage {
 /// The page of a path ("/", "/status.json"), or nothing. Called by several threads.
 using PageAnswer = std::function<std::optional<ServedPage>(const std::string& path)>;
 
-/// What a PageServer loads: its HTTP library takes longer to load than all else of the program.
+/// Loaded by PageServer as a module: its HTTP library takes longer to load than the whole rest of
+/// the program.
 class PageListener {
  public:
   virtual ~PageListener() = default;
   virtual std::uint16_t port() const = 0;
 };
 
-/// The module, and its function: listens by threads of its own until the listener is destroyed.
+/// The module and its function. It listens on threads of its own until the listener is destroyed.
 /// Throws std::system_error if the port is not free.
 inline constexpr const char* k_page_module = "libmeshfarm_web.so";
 inline constexpr const char* k_page_function = "meshfarm_listen";

@@ -9,12 +9,13 @@
 
 namespace meshfarm {
 
-/// Serves pages to browsers of this host: it listens on 127.0.0.1 only, and answers only who asked
-/// for this host, so that no page of another site can read what it says through a name of its own.
+/// Serves pages to browsers on this host. It listens on 127.0.0.1 only, and answers only requests
+/// whose Host header names this host, so that a page of another site cannot read the answers
+/// through a domain name of its own.
 class PageServer {
  public:
-  /// Serves by threads of its own until it is destroyed. Port 0: any that is free. Throws IoError
-  /// if the port is not, Error if the module that serves is not installed.
+  /// Serves on threads of its own until it is destroyed. Port 0: any free port. Throws IoError if
+  /// the port is not free, Error if the serving module is not installed.
   PageServer(std::uint16_t port, PageAnswer answer);
 
   std::uint16_t port() const { return listener_->port(); }
