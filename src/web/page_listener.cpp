@@ -15,10 +15,10 @@ namespace meshfarm {
 namespace {
 
 constexpr const char* k_host = "127.0.0.1";
-constexpr std::size_t k_threads = 8;        // a browser holds some connections that it does not use
-constexpr std::size_t k_most_bytes = 4096;  // of what is sent along: nothing is expected
+constexpr std::size_t k_threads = 8;        // a browser keeps some connections that it does not use
+constexpr std::size_t k_most_bytes = 4096;  // of a request's body: none is expected
 
-/// Names of this host, whatever the port: a tunnel has another.
+/// Names of this host, with any port: a tunnel uses another one.
 bool names_this_host(const std::string& host) {
   const std::string name =
       host.substr(0, host.rfind(':') == std::string::npos || host.back() == ']' ? host.size()
@@ -42,7 +42,7 @@ class HttpListener : public PageListener {
     });
   }
   ~HttpListener() override {
-    // Before it runs it would not hear of the end.
+    // A server that is not running yet would miss the stop.
     while (!server_.is_running() && !ended_) std::this_thread::yield();
     server_.stop();
     thread_.join();
@@ -54,13 +54,14 @@ class HttpListener : public PageListener {
 
  private:
   void set_up() {
-    // By itself the library lets two servers share a port, and each would get some requests.
+    // By default the library lets two servers share a port, and each would get some of the
+    // requests.
     server_.set_socket_options([](socket_t socket) {
       const int yes = 1;
       ::setsockopt(socket, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes);
     });
     server_.new_task_queue = [] { return new httplib::ThreadPool(k_threads); };
-    // A connection that is kept is polled a hundred times a second.
+    // The library polls each kept-alive connection a hundred times per second.
     server_.set_keep_alive_max_count(1);
     server_.set_read_timeout(std::chrono::seconds(2));
     server_.set_write_timeout(std::chrono::seconds(2));
