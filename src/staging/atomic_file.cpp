@@ -16,7 +16,7 @@ namespace {
 
 constexpr std::size_t k_buffer_bytes = std::size_t{1} << 20;
 
-/// Processes of two containers may have one number, and one host name.
+/// Processes in two containers may have the same number and the same host name.
 const std::string& process_token() {
   static const std::string token = [] {
     std::random_device device;
@@ -39,7 +39,7 @@ std::filesystem::path temporary_name(const std::filesystem::path& final_path,
   return final_path.parent_path() / name.append(k_ending);
 }
 
-/// As process_token() makes them: a number, and 16 hexadecimal digits.
+/// As made by process_token(): a number, and 16 hexadecimal digits.
 bool is_token(std::string_view token) {
   constexpr std::string_view k_digits = "0123456789";
   const std::size_t dash = token.find_first_not_of(k_digits);
@@ -84,7 +84,7 @@ AtomicFile::AtomicFile(std::filesystem::path final_path, std::string_view unique
   constexpr int k_flags = O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC;
   const mode_t mode = readers == Readers::owner ? 0600 : 0644;
   fd_ = Fd(::open(temporary_path_.c_str(), k_flags, mode));
-  if (!fd_ && errno == EEXIST) {  // left behind by a dead process that had our name
+  if (!fd_ && errno == EEXIST) {  // left behind by a dead process with our name
     ::unlink(temporary_path_.c_str());
     fd_ = Fd(::open(temporary_path_.c_str(), k_flags, mode));
   }
@@ -130,7 +130,7 @@ void AtomicFile::sync() {
 
 void AtomicFile::sync_and_close() {
   sync();
-  // From here on the destructor has nothing to close, so a failure must clean up by itself.
+  // The destructor no longer has anything to close, so a failure must be cleaned up here.
   const int close_error = fd_.close();
   if (close_error == 0) return;
   ::unlink(temporary_path_.c_str());
@@ -166,7 +166,7 @@ bool AtomicFile::link_final() const {
   struct stat ours {};
   struct stat theirs {};
   if (error == EEXIST) {
-    // An answer that a restarting NFS server lost may have been ours.
+    // A restarting NFS server may have lost the answer to a link that succeeded: ours.
     return ::stat(temporary_path_.c_str(), &ours) == 0 &&
            ::stat(final_path_.c_str(), &theirs) == 0 && ours.st_ino == theirs.st_ino;
   }

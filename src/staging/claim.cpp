@@ -24,13 +24,13 @@ namespace fs = std::filesystem;
 struct Owner {
   std::string host;
   std::uint64_t boot = 0;
-  std::string pids;  // the namespace that `pid` is a number of: containers have their own
+  std::string pids;  // the namespace of `pid`: containers have their own
   std::int64_t pid = 0;
-  std::uint64_t started = 0;  // by the kernel's clock: another process of the number has another
+  std::uint64_t started = 0;  // by the kernel's clock: differs if the pid was reused
   std::int64_t at_s = 0;
 };
 
-/// The 22nd field of /proc/PID/stat, counted from behind the name, which may hold anything; 0 if
+/// The 22nd field of /proc/PID/stat, counted from after the name, which may contain anything; 0 if
 /// there is no such process.
 std::uint64_t start_of(std::int64_t pid) {
   std::ifstream file("/proc/" + std::to_string(pid) + "/stat");
@@ -69,7 +69,7 @@ std::string line_of(const Owner& owner) {
   return line.str();
 }
 
-/// Of a file that cannot be read: nobody knows who.
+/// Fields stay empty for a file that cannot be read: the owner is unknown.
 Owner read_owner(const fs::path& path) {
   Owner owner;
   std::ifstream file(path);
@@ -77,7 +77,7 @@ Owner read_owner(const fs::path& path) {
   return owner;
 }
 
-/// Only what is certain: that the process is gone here, or the host was started again since.
+/// Only if it is certain: the process is gone on this host, or the host was rebooted since.
 bool is_dead(const Owner& owner) {
   const HostCard here = this_host();
   if (owner.boot == here.boot) {
@@ -109,7 +109,7 @@ Claim::Claim(fs::path file, std::string_view work) : file_(std::move(file)) {
                   file_.string() + ")");
 }
 
-/// Another's may lie there by now, where a folder was removed with its claim and made anew.
+/// If the folder was removed with its claim and made again, another owner's claim may be there.
 Claim::~Claim() {
   const Owner owner = read_owner(file_);
   const Owner self = this_process();

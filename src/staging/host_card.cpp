@@ -25,7 +25,7 @@ namespace {
 constexpr FileKind k_kind = {'H', 'O', 'S', 'T'};
 constexpr std::uint32_t k_card_version = 1;
 constexpr std::size_t k_max_host_bytes = 256;
-/// Clocks of two hosts differ; a reboot takes longer than this.
+/// Tolerance for clock differences between hosts; a reboot takes longer than this.
 constexpr std::int64_t k_clock_tolerance_s = 5;
 
 std::string boot_text() {
@@ -60,7 +60,7 @@ HostCard this_host() {
   HostCard card;
   std::array<char, k_max_host_bytes> name{};
   if (::gethostname(name.data(), name.size() - 1) == 0) card.host = name.data();
-  // The name is part of it: containers of one host, one boot, may each have their own.
+  // Includes the name: containers of one host (and boot) may each have their own.
   card.boot = checksum(boot_text() + card.host);
   card.seen_s = static_cast<std::int64_t>(std::time(nullptr));
   timespec up{};
@@ -70,7 +70,7 @@ HostCard this_host() {
 }
 
 void publish_host_card(const Stage& stage, const HostCard& card) {
-  // Renamed over an older one of this host: who reads that at this moment leaves it out, no more.
+  // Replaces an older card of this host; a reader that reads it at this moment just skips it.
   stage.publish(HostName{card.boot}, encode_host_card(card), std::to_string(::getpid()));
 }
 
@@ -97,7 +97,8 @@ std::vector<std::string> names_in_double_use(std::span<const HostCard> cards) {
       const HostCard& a = cards[i];
       const HostCard& b = cards[k];
       if (a.host != b.host || a.boot == b.boot) continue;
-      // One host before and after a reboot: the later boot is after all that the earlier was seen.
+      // The same host before and after a reboot: the later boot is after the earlier card's last
+      // time.
       const bool at_once = a.booted_s + k_clock_tolerance_s < b.seen_s &&
                            b.booted_s + k_clock_tolerance_s < a.seen_s;
       if (at_once && (names.empty() || names.back() != a.host)) names.push_back(a.host);

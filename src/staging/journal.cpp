@@ -33,7 +33,7 @@ JournalWriter::JournalWriter(std::filesystem::path path) : path_(std::move(path)
     write_all(fd_.get(), head.bytes(), path_);
     if (::fsync(fd_.get()) != 0) throw_errno("cannot sync the journal", path_);
   } catch (const IoError&) {
-    ::unlink(path_.c_str());  // who tries again and again would leave one behind each time
+    ::unlink(path_.c_str());  // repeated attempts would each leave one behind
     throw;
   }
 }

@@ -27,9 +27,9 @@ struct LineLog::Shared : SideThread::Signals {
   std::string waiting;
   std::size_t in_work = 0;  // bytes that could not be written yet
 
-  // The thread's own:
+  // Owned by the thread:
   Fd file;
-  off_t written = 0;  // bytes that are known to be on the disk
+  off_t written = 0;  // bytes known to be on disk
   bool told = false;
 
   void run();
@@ -37,7 +37,7 @@ struct LineLog::Shared : SideThread::Signals {
   bool try_to_write(const std::string& bytes);
 };
 
-/// What was half written before is written over by the same bytes.
+/// Bytes from an incomplete write are overwritten with the same bytes.
 void LineLog::Shared::write(const std::string& bytes) {
   if (!file) {
     std::error_code ignored;

@@ -26,7 +26,7 @@ void add_options(Mount& mount, const std::string& list) {
   }
 }
 
-/// Without the octal escapes that mountinfo has for blanks.
+/// Decodes mountinfo's octal escapes for blanks.
 std::string unescaped(const std::string& text) {
   std::string plain;
   for (std::size_t i = 0; i < text.size(); ++i) {
@@ -72,7 +72,7 @@ std::optional<Mount> find_mount(std::string_view mountinfo, const std::filesyste
     Mount mount;
     words >> id >> parent >> device >> root >> mount.point >> options;
     mount.point = unescaped(mount.point);
-    // Of mounts at one point the last hides the others.
+    // Of several mounts at one point, the last one hides the others.
     if (!is_within(path.string(), mount.point)) continue;
     if (found && mount.point.size() < found->point.size()) continue;
     while (words >> optional_field && optional_field != "-") {
@@ -89,7 +89,7 @@ Mount mount_of(const std::filesystem::path& path) {
   std::error_code error;
   const std::filesystem::path canonical = std::filesystem::canonical(path, error);
   if (error) throw IoError("cannot look at", path, error.value());
-  std::ifstream table("/proc/self/mountinfo");  // a file that has no size
+  std::ifstream table("/proc/self/mountinfo");  // a file without a size
   const std::string text{std::istreambuf_iterator<char>(table), {}};
   return find_mount(text, canonical).value_or(Mount{});
 }
@@ -102,7 +102,7 @@ std::uint64_t free_bytes(const std::filesystem::path& path) {
 
 namespace {
 
-/// Why so many bytes do not go there; empty: they do.
+/// Why this many bytes do not fit there; empty: they fit.
 std::string problem_with(const std::filesystem::path& folder, std::uint64_t bytes) {
   if (::access(folder.c_str(), W_OK | X_OK) != 0) {
     return folder.string() + ": " + std::generic_category().message(errno);

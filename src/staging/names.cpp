@@ -41,8 +41,8 @@ struct Printer {
   std::string operator()(KeysName n) const { return "control/" + to_hex(n.run) + ".keys"; }
 };
 
-/// Eats text from its front. Lenient on digits' form: parse_staged_name compares with the printed
-/// name.
+/// Consumes text from the front. Lenient about the form of digits: parse_staged_name compares with
+/// the printed name.
 class Scanner {
  public:
   explicit Scanner(std::string_view text) : text_(text) {}

@@ -26,7 +26,7 @@ double wall_clock_s() {
   return std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
 }
 
-/// Files of a probe, removed whatever happens.
+/// A file of a probe, removed whatever happens.
 class ProbeFile {
  public:
   explicit ProbeFile(std::filesystem::path path) : path_(std::move(path)) {}
@@ -77,7 +77,7 @@ RoundTrip make_round_trip(const std::filesystem::path& folder, const std::string
   return trip;
 }
 
-/// The server's clock by the time that it gives a new file.
+/// The server's clock minus ours, from the time that the server gives a new file.
 double clock_ahead(const std::filesystem::path& folder, const std::string& name) {
   const ProbeFile file(folder / ("." + name));
   const double before = wall_clock_s();
@@ -97,7 +97,7 @@ double clock_ahead(const std::filesystem::path& folder, const std::string& name)
 void probe_room(const std::filesystem::path& folder, std::uint64_t bytes) {
   constexpr std::uint64_t k_piece = std::uint64_t{1} << 20;
   const ProbeFile file(folder / (".room." + std::to_string(::getpid()) + ".tmp"));
-  ::unlink(file.path().c_str());  // left behind by a dead process of our number
+  ::unlink(file.path().c_str());  // left behind by a dead process with our pid
   Fd fd = make_file(file.path(), 0600);
   const std::string piece(std::min(bytes, k_piece), 'r');
   for (; bytes > 0; bytes -= std::min(bytes, k_piece)) {
@@ -109,7 +109,7 @@ void probe_room(const std::filesystem::path& folder, std::uint64_t bytes) {
 
 std::optional<std::filesystem::file_time_type> server_clock(const std::filesystem::path& folder) {
   const ProbeFile file(folder / (".clock." + std::to_string(::getpid()) + ".tmp"));
-  ::unlink(file.path().c_str());  // left behind by a dead process of our number
+  ::unlink(file.path().c_str());  // left behind by a dead process with our pid
   constexpr int k_new = O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC;
   if (!Fd(::open(file.path().c_str(), k_new, 0600))) return std::nullopt;
   std::error_code error;

@@ -16,8 +16,8 @@
 namespace meshfarm {
 namespace {
 
-/// Opens `name` beneath `root`: no symbolic link and no ".." leads out. Where the kernel has no
-/// openat2 the name's grammar alone, which has neither, must do.
+/// Opens `name` beneath `root`: no symbolic link and no ".." can lead outside. On kernels without
+/// openat2, only the grammar of names, which allows neither, protects.
 Fd open_beneath(const std::filesystem::path& root, const std::string& name) {
   const Fd folder(::open(root.c_str(), O_PATH | O_DIRECTORY | O_CLOEXEC));
   if (!folder) throw_errno("cannot open", root);
@@ -32,7 +32,7 @@ Fd open_beneath(const std::filesystem::path& root, const std::string& name) {
   return fd;
 }
 
-/// Lists a folder: an NFS client that remembers that a name was not there asks the server again.
+/// Lists a folder: an NFS client with a cached "not found" then asks the server again.
 void refresh(const std::filesystem::path& folder) {
   std::error_code ignored;
   for (auto entry = std::filesystem::directory_iterator(folder, ignored);
@@ -88,7 +88,7 @@ void verify_once(const std::filesystem::path& root, const FileRef& file,
   std::string piece(std::min<std::uint64_t>(k_piece, file.size), '\0');
   for (std::uint64_t left = file.size; left > 0; left -= piece.size()) {
     piece.resize(std::min<std::uint64_t>(piece.size(), left));
-    if (read_up_to(fd.get(), piece, path) < piece.size()) break;  // the sum tells
+    if (read_up_to(fd.get(), piece, path) < piece.size()) break;  // the checksum shows it
     tell_moved(patience, piece.size());
     sum.add(piece);
   }
@@ -97,14 +97,14 @@ void verify_once(const std::filesystem::path& root, const FileRef& file,
   }
 }
 
-/// Tries again what NFS may have answered too early.
+/// Retries what NFS may have answered too early.
 template <class Try>
 auto patiently(const Stage& stage, const FileRef& file, const ReadPatience& patience,
                const Try& try_once) {
   const auto name = parse_staged_name(file.name);
   if (!name) throw DataError("'" + file.name + "' is not a staged name");
   Waiting waiting(patience);
-  for (int wrong = 0;;) {  // attempts at a file that was there
+  for (int wrong = 0;;) {  // attempts at an existing file
     try {
       return try_once();
     } catch (const IoError& error) {
@@ -131,7 +131,7 @@ auto numbers_in(const std::filesystem::path& root, std::string_view folder, Numb
   return found;
 }
 
-/// What stands there. Not to know is not the same as that nothing does.
+/// The type of the file there. An error is not the same as "nothing there".
 std::filesystem::file_type type_of(const std::filesystem::path& path) {
   std::error_code error;
   const auto type = std::filesystem::status(path, error).type();
@@ -244,7 +244,7 @@ void Stage::remove(const StagedName& name) const noexcept {
 
 namespace {
 
-/// A file of a stage, or what is left of the writing of one.
+/// A file of a stage, or a leftover temporary file of one.
 bool is_staged(const std::string& folder, const std::string& name) {
   const bool is_temporary =
       name.starts_with(".") && (name.ends_with(".tmp") || name.ends_with(".claim"));

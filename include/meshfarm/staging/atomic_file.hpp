@@ -13,13 +13,13 @@ namespace meshfarm {
 
 /// A file that others see only whole: a temporary name in the same folder -> write -> fsync ->
 /// close -> rename, each step checked (a full NFS disk shows only at fsync or close). Only commit()
-/// publishes; the destructor removes what was not published.
+/// publishes; the destructor removes a file that was not published.
 class AtomicFile {
  public:
   enum class Readers { everyone, owner };
 
-  /// Makes the temporary file. `unique` (process or incarnation) keeps two writers of one name
-  /// apart.
+  /// Creates the temporary file. `unique` (process or incarnation) keeps two writers of the same
+  /// name apart.
   explicit AtomicFile(std::filesystem::path final_path, std::string_view unique = {},
                       Readers readers = Readers::everyone);
   ~AtomicFile();
@@ -28,14 +28,15 @@ class AtomicFile {
 
   /// Buffered; throws IoError.
   void write(std::string_view bytes);
-  /// Replaces bytes that were written before; throws IoError.
+  /// Replaces bytes that were already written; throws IoError.
   void overwrite(std::uint64_t offset, std::string_view bytes);
-  /// What was written is on the disk, or could not be: throws IoError. Nothing is published.
+  /// Ensures that everything written is on disk. Publishes nothing. Throws IoError.
   void sync();
   std::uint64_t size() const { return flushed_ + buffer_.size(); }
   void commit();
-  /// The same if nobody has the name yet; else false, and what is there stays. Of two writers one
-  /// is told true (where a file system has no hard links that is not certain: look who has it).
+  /// Commits if nobody has the name yet; otherwise returns false, and the existing file stays. Of
+  /// two writers only one gets true (on file systems without hard links that is not certain: check
+  /// whose file it is).
   bool commit_new();
 
  private:
@@ -50,12 +51,12 @@ class AtomicFile {
   std::uint64_t flushed_ = 0;
 };
 
-/// Removes the temporary files of writers without a `unique` name that were killed while they wrote
-/// this file. Nobody may be writing it. Errors are of no account.
+/// Removes the temporary files of writers without a `unique` name that were killed while writing
+/// this file. Nobody may be writing it. Errors are ignored.
 void remove_unfinished(const std::filesystem::path& final_path);
 
-/// Renames; where the answer is ENOENT although it was done (NFS server restart), looks at the
-/// target before calling it a failure. Throws IoError.
+/// Renames; if the answer is ENOENT although the rename was done (NFS server restart), checks the
+/// target before treating it as a failure. Throws IoError.
 void rename_checked(const std::filesystem::path& from, const std::filesystem::path& to,
                     std::uint64_t size_bytes);
 

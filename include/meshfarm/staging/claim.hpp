@@ -9,15 +9,15 @@
 
 namespace meshfarm {
 
-/// Tells others, by a file that is there as long as the object is, that this process works on
-/// something that two must not work on at once. It keeps honest people apart and is no lock: what
-/// must be safe does not lean on it.
+/// Tells others, by a file that exists as long as this object, that this process works on something
+/// that only one process may work on. It prevents accidents and is not a lock: safety must not
+/// depend on it.
 class Claim {
  public:
-  /// Throws DataError that names who has it: `work` on which host, by which process. A claim whose
-  /// owner is known to be dead (its process, or its host since) is taken over.
+  /// Throws DataError naming the owner: `work` on which host, by which process. The claim of an
+  /// owner that is known to be dead (its process ended, or its host rebooted) is taken over.
   Claim(std::filesystem::path file, std::string_view work);
-  /// Gives it back.
+  /// Releases the claim.
   ~Claim();
   Claim(const Claim&) = delete;
   Claim& operator=(const Claim&) = delete;
@@ -26,11 +26,11 @@ class Claim {
   std::filesystem::path file_;
 };
 
-/// "host H, process P" of who has the claim, as far as is known; nothing if there is none, or its
-/// owner is known to be dead.
+/// "host H, process P" of the owner, as far as known; nothing if there is no claim, or its owner is
+/// known to be dead.
 std::optional<std::string> holder_of(const std::filesystem::path& file);
 
-/// Where work on an output file is claimed: a hidden file beside it.
+/// The file that claims work on an output file: a hidden file beside it.
 std::filesystem::path claim_of(const std::filesystem::path& output);
 
 }  // namespace meshfarm

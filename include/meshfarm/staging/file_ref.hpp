@@ -7,7 +7,7 @@
 
 namespace meshfarm {
 
-/// As it stands in files and messages: name | size u64 | hash u64.
+/// The encoding in files and messages: name | size u64 | hash u64.
 void put_file(ByteWriter& out, const FileRef& file);
 FileRef get_file(ByteReader& in);
 

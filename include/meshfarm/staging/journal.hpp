@@ -13,14 +13,14 @@
 
 namespace meshfarm {
 
-/// An append-only log with one writer, made anew by each incarnation of it.
+/// An append-only log with one writer; each incarnation of the writer starts a new one.
 class JournalWriter {
  public:
-  /// Makes the file; it must not exist. Throws IoError.
+  /// Creates the file; it must not exist. Throws IoError.
   explicit JournalWriter(std::filesystem::path path);
   /// Returns once the record is on the disk.
   void append(std::string_view record);
-  /// The same for many at the price of one: they are written and synced together.
+  /// Appends many records at the cost of one: they are written and synced together.
   void append_all(std::span<const std::string> records);
 
  private:
@@ -33,7 +33,7 @@ struct JournalContent {
   std::uint64_t torn_bytes = 0;  // at the end, after the last whole record
 };
 
-/// The whole records in order; a torn or damaged tail is dropped and counted.
+/// The whole records, in order; a torn or damaged tail is dropped and counted.
 /// Throws DataError if the file is no journal at all.
 JournalContent parse_journal(std::string_view bytes, std::string_view what);
 

@@ -12,20 +12,20 @@
 
 namespace meshfarm {
 
-/// A text file of a run that others read while it grows: one writer, whole lines, only appended to.
-/// Written by a thread of its own, so that storage that stalls or is full never holds up the
-/// writer: what cannot be written is kept, and tried again now and then. Lines are dropped only
-/// where too many wait.
+/// A text file of a run that others read while it grows: one writer, whole lines, append-only. A
+/// thread of its own writes it, so that stalled or full storage never blocks the caller: lines that
+/// cannot be written are kept, and retried from time to time. Lines are dropped only if too many
+/// wait.
 class LineLog {
  public:
-  /// Makes the file, and its folder where that is missing.
+  /// Creates the file, and its folder if missing.
   explicit LineLog(std::filesystem::path path);
-  /// Waits for a few seconds at most until what is there is written.
+  /// Waits at most a few seconds until everything is written.
   ~LineLog();
   LineLog(const LineLog&) = delete;
   LineLog& operator=(const LineLog&) = delete;
 
-  /// The line gets its end here. Others see it within about a second.
+  /// Adds a line, without its newline. Others see it within about a second.
   void add(std::string_view line);
 
  private:

@@ -73,10 +73,10 @@ using StagedName = std::variant<ManifestName, BoundaryName, PartName, StreamName
                                 HostName, SlabName, CutName, ChannelsName, PictureName>;
 
 std::string to_string(const StagedName& name);
-/// The name that to_string made; nothing for any other text.
+/// The name that to_string would turn into this text; nothing for any other text.
 std::optional<StagedName> parse_staged_name(std::string_view text);
 
-/// The folders of a stage, all made before a run starts: workers make none.
+/// The folders of a stage, all created before a run starts: workers create none.
 inline constexpr std::array<std::string_view, 6> k_stage_folders = {"parts",   "streams", "results",
                                                                     "journal", "control", "log"};
 

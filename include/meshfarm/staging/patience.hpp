@@ -12,29 +12,29 @@ namespace meshfarm {
 
 /// How patient a reader is with a file that it was told of but does not see whole (NFS).
 struct ReadPatience {
-  int attempts = 5;        // at a file that is there, but not as promised; 1: no waiting at all
+  int attempts = 5;        // at an existing file that does not match; 1: no waiting at all
   int first_wait_ms = 50;  // doubles each time, up to five seconds
-  /// How long a file may be missing: NFS was seen to take 30 to 60 s.
+  /// How long a file may be missing: 30 to 60 s were observed on NFS.
   std::chrono::milliseconds missing{90'000};
-  /// How long its storage may fail.
+  /// How long storage may fail.
   std::chrono::milliseconds failing{90'000};
-  /// Called with the bytes that came, and with none as long as there is still patience.
+  /// Called with the number of bytes read, and with 0 while there is still patience.
   std::function<void(std::uint64_t bytes)> moved = {};
 };
 
-/// For who knows that a file is there: only its storage's failures are waited for.
+/// For files that are known to exist: waits only for failing storage.
 ReadPatience patience_with_storage();
-/// What was waited for in vain, as the error says, is not waited for again: by the clock, the next
-/// file has had its time, too.
+/// Ends the patience with the kind of failure that the error reports, which was waited for in vain:
+/// by the clock, the next file has had its time, too.
 void spend(ReadPatience& patience, const Error& error);
 
-/// One reader's waiting, by the clock, from when it was made.
+/// One reader's waiting, by the clock, from construction on.
 class Waiting {
  public:
   explicit Waiting(const ReadPatience& patience);
-  /// Whether the error may pass and there is still patience with it. If so, a while has gone by.
+  /// Whether the error may pass and patience remains. If so, waits before it returns.
   bool again(const IoError& error);
-  /// Lets a while go by, longer each time.
+  /// Waits, longer each time.
   void pause();
   std::chrono::milliseconds waited() const;
 
@@ -44,7 +44,7 @@ class Waiting {
   int wait_ms_;
 };
 
-/// Does `work` again as long as it throws what may pass.
+/// Repeats `work` as long as it throws errors that may pass.
 template <class Work>
 auto outlast(const ReadPatience& patience, const Work& work) {
   for (Waiting waiting(patience);;) {

@@ -13,8 +13,8 @@
 
 namespace meshfarm {
 
-/// Writes sections one behind the other. Who reads them must be told where they are: the file does
-/// not say it.
+/// Writes sections one after another. Readers must be told where the sections are: the file does
+/// not contain it.
 class SectionWriter {
  public:
   explicit SectionWriter(std::function<void(std::string_view)> write) : write_(std::move(write)) {}
@@ -25,10 +25,10 @@ class SectionWriter {
   std::uint64_t written_ = 0;
 };
 
-/// Reads sections of a staged file that a message told of. May be asked by several threads.
+/// Reads sections of a staged file that a message named. Safe from several threads.
 class SectionedFile {
  public:
-  /// Opens it as Stage::read does; only its size is checked.
+  /// Opens the file like Stage::read; only its size is checked.
   SectionedFile(const Stage& stage, const FileRef& file);
   /// Throws UnreadDataError for a section that is damaged or beyond the file's end, UnreadIoError.
   std::string read(const FileSection& section) const;

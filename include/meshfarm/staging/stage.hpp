@@ -16,7 +16,7 @@
 
 namespace meshfarm {
 
-/// A staged file as others are told of it: the reader checks size and checksum.
+/// A staged file as named to others: the reader checks size and checksum.
 struct FileRef {
   std::string name;  // relative to the stage, as made by staging/names.hpp
   std::uint64_t size = 0;
@@ -37,10 +37,10 @@ static_assert(std::is_trivially_copyable_v<FileSection> && sizeof(FileSection) =
 /// The shared folder of one dataset.
 class Stage {
  public:
-  /// Makes the folder and its sub-folders where they are missing. Throws IoError.
+  /// Creates the folder and its sub-folders if missing. Throws IoError.
   static Stage create(const std::filesystem::path& root);
   /// An existing stage. Throws DataError if the folder holds no manifest, IoError if the storage
-  /// does not say, in spite of all patience.
+  /// gives no answer within the patience.
   static Stage open(const std::filesystem::path& root,
                     const ReadPatience& patience = {.attempts = 1});
 
@@ -48,37 +48,37 @@ class Stage {
   std::filesystem::path path(const StagedName& name) const { return root_ / to_string(name); }
   bool has_manifest() const;
 
-  /// Publishes the bytes under a name never used before, whole and synced.
-  /// `unique` (an incarnation) keeps the temporary names of two writers apart.
+  /// Publishes the bytes under a name never used before, whole and synced. `unique` (an
+  /// incarnation) keeps the temporary names of two writers apart.
   FileRef publish(const StagedName& name, std::string_view bytes,
                   std::string_view unique = {}) const;
 
-  /// The same if nobody has published the name; else false, and what is there stays.
+  /// Publishes if nobody has published the name; otherwise returns false, and the existing file
+  /// stays.
   bool publish_new(const StagedName& name, std::string_view bytes,
                    std::string_view unique = {}) const;
 
-  /// Reads a file that a message told of: its name must parse, it is opened beneath the stage only,
-  /// and size and checksum must match; stale NFS answers are tried again. Throws DataError,
-  /// IoError.
+  /// Reads a file that a message named: its name must parse, it is opened beneath the stage only,
+  /// and size and checksum must match; stale NFS answers are retried. Throws DataError, IoError.
   std::string read(const FileRef& file, const ReadPatience& patience = {}) const;
-  /// The same of one section, by its own checksum.
+  /// Reads one section, checked by its own checksum.
   std::string read(const FileRef& file, const FileSection& section,
                    const ReadPatience& patience = {}) const;
-  /// The whole file in bounded memory, for who wants to know only that the file is whole.
+  /// Checks the whole file in bounded memory, without returning its content.
   void verify(const FileRef& file, const ReadPatience& patience = {}) const;
-  /// Opens such a file for a reader that checks its bytes as they come; the size is checked here.
+  /// Opens such a file for a reader that checks its bytes while reading; checks the size here.
   Fd open_told(const FileRef& file, const ReadPatience& patience = {}) const;
   /// Reads a file known by name only; its seal is the check. Throws IoError.
   std::string read(const StagedName& name, const ReadPatience& patience = {.attempts = 1}) const;
 
-  /// The numbers of the journals or endpoints there are, ascending. Lists the folder, which also
+  /// The numbers of the existing journals or endpoints, ascending. Lists the folder, which also
   /// makes an NFS client look again.
   std::vector<std::uint32_t> journals() const;
   std::vector<std::uint32_t> epochs() const;
-  /// The same of traces and summaries; none in a stage that is older than they are.
+  /// The numbers of traces and summaries; empty for a stage from before they existed.
   std::vector<std::uint32_t> traces() const;
   std::vector<std::uint32_t> summaries() const;
-  /// The boots of the hosts that left their cards, ascending.
+  /// The boots of the hosts that published their cards, ascending.
   std::vector<std::uint64_t> hosts() const;
 
   void remove(const StagedName& name) const noexcept;
@@ -88,7 +88,7 @@ class Stage {
   std::filesystem::path root_;
 };
 
-/// Removes what a stage holds, and its folder if nothing else is in it.
+/// Removes a stage's files, and its folder if nothing else is in it.
 void remove_stage(const std::filesystem::path& root);
 
 }  // namespace meshfarm

@@ -12,15 +12,15 @@
 
 namespace meshfarm {
 
-/// Reads a staged file that a message told of front to back, in pieces, when it is too big to be
-/// held. What it reads is known to be the file that was meant only after expect_end().
+/// Reads a staged file that a message named, front to back, in pieces, when it does not fit into
+/// memory. Only expect_end() confirms that the content is that of the intended file.
 class StagedReader {
  public:
-  /// Opens it as Stage::read does.
+  /// Opens the file like Stage::read.
   StagedReader(const Stage& stage, const FileRef& file);
-  /// Fills the buffer with the next bytes. Throws DataError if the file ends before, IoError.
+  /// Fills the buffer with the next bytes. Throws DataError if the file is too short, IoError.
   void fill(std::span<char> buffer);
-  /// Throws DataError unless everything was read and its checksum is the promised one.
+  /// Throws DataError unless everything was read and its checksum is the expected one.
   void expect_end() const;
 
  private:

@@ -12,8 +12,8 @@
 
 namespace meshfarm {
 
-/// Writes a staged file front to back, in pieces, when it is too big to be held. Others see it from
-/// commit() on, whole and synced; without that it is gone.
+/// Writes a staged file front to back, in pieces, when it does not fit into memory. Others see it
+/// after commit(), whole and synced; without commit() it is removed.
 class StagedWriter {
  public:
   /// `unique` (an incarnation) keeps the temporary names of two writers apart.
@@ -24,13 +24,13 @@ class StagedWriter {
     file_.write(bytes);
     sum_.add(bytes);
   }
-  /// Of what was written so far.
+  /// Of the bytes written so far.
   std::uint64_t hash() const { return sum_.value(); }
   FileRef commit() {
     file_.commit();
     return {name_, file_.size(), sum_.value()};
   }
-  /// The same if nobody has the name yet; else false (AtomicFile::commit_new).
+  /// Commits if nobody has the name yet; else returns false (AtomicFile::commit_new).
   bool commit_new() { return file_.commit_new(); }
 
  private:
