@@ -7,8 +7,8 @@
 
 namespace meshfarm {
 
-/// Splitmix64 (Steele, Lea, Flood 2014): a simulation starts one for each of ten thousand seeds,
-/// and the standard library's distributions differ from one library to the next.
+/// Splitmix64 (Steele, Lea, Flood 2014): cheap to start for each of ten thousand seeds, and unlike
+/// the standard library's distributions the same with every library.
 class Dice {
  public:
   explicit Dice(std::uint64_t seed) : state_(seed) {}
@@ -19,7 +19,7 @@ class Dice {
     z = (z ^ (z >> 27)) * 0x94d049bb133111eb;
     return z ^ (z >> 31);
   }
-  /// 0 .. below - 1; 0 if below is 0.
+  /// 0 .. below - 1; 0 if `below` is 0.
   std::uint64_t pick(std::uint64_t below) { return below == 0 ? 0 : next() % below; }
   /// [0, 1)
   double fraction() { return static_cast<double>(next() >> 11) * 0x1p-53; }

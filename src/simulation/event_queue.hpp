@@ -16,8 +16,8 @@
 
 namespace meshfarm {
 
-/// A place for what will happen: a callable, kept where it lies until it is forgotten. There are
-/// millions of them, so those of usual size take no memory of their own.
+/// Holds a future event: a callable that stays in place until it is discarded. There are millions
+/// of them, so those of usual size need no allocation.
 class PlannedEvent {
  public:
   PlannedEvent() = default;
@@ -25,7 +25,7 @@ class PlannedEvent {
   PlannedEvent& operator=(const PlannedEvent&) = delete;
   ~PlannedEvent() { forget(); }
 
-  /// Into an empty place.
+  /// Stores an event in an empty place.
   template <class Event>
   void keep(Event event) {
     if constexpr (sizeof(Event) > k_room || alignof(Event) > alignof(std::max_align_t)) {
@@ -42,21 +42,21 @@ class PlannedEvent {
   }
 
  private:
-  static constexpr std::size_t k_room = 112;  // of a message's way to the ventilator: 88
+  static constexpr std::size_t k_room = 112;  // a message's way to the ventilator takes 88
 
   alignas(std::max_align_t) std::byte room_[k_room];
   void (*happen_)(void*) = nullptr;
   void (*forget_)(void*) = nullptr;
 };
 
-/// Events of a simulation, in the order of their time and, at one time, of their planning.
+/// Events of a simulation, ordered by time and, at the same time, by when they were planned.
 class EventQueue {
  public:
   SimulatedTime now() const { return now_; }
   bool empty() const { return heap_.empty(); }
   std::uint64_t count() const { return count_; }
 
-  /// Plans an event; a time that has passed means now.
+  /// Plans an event; a time in the past means now.
   template <class Event>
   void at(SimulatedTime time, Event event) {
     PlannedEvent* place = nullptr;
@@ -75,7 +75,7 @@ class EventQueue {
     at(now_ + delay, std::move(event));
   }
 
-  /// Moves the clock to the next event and lets it happen.
+  /// Advances the clock to the next event and executes it.
   void step() {
     std::pop_heap(heap_.begin(), heap_.end(), Later{});
     const Entry next = heap_.back();
@@ -103,7 +103,7 @@ class EventQueue {
   std::uint64_t planned_ = 0;
   std::uint64_t count_ = 0;
   std::vector<Entry> heap_;
-  std::deque<PlannedEvent> places_;  // they stay where they are: an event may plan others
+  std::deque<PlannedEvent> places_;  // never move: an event may plan others
   std::vector<PlannedEvent*> free_;
 };
 

@@ -7,7 +7,7 @@
 namespace meshfarm {
 
 SimulatedFaults faults_of_seed(std::uint64_t seed) {
-  // Not the numbers that the simulation itself draws from the same seed.
+  // Different numbers from those that the simulation itself draws from the same seed.
   Dice dice(seed ^ 0x5eed'0f'fa'0175);
   const auto draw = [&](double rare, double frequent) {
     const std::uint64_t level = dice.pick(4);

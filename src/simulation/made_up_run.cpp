@@ -12,7 +12,7 @@
 namespace meshfarm {
 namespace {
 
-/// Whether a run needs the job of these parameters; `summaries` are what it makes.
+/// Whether a run needs the job with these parameters; `summaries` are the run's outputs.
 bool needs(std::span<const std::string> summaries, const std::string& parameters) {
   Job job;
   job.parameters = parameters;
@@ -20,7 +20,7 @@ bool needs(std::span<const std::string> summaries, const std::string& parameters
          std::find(summaries.begin(), summaries.end(), simulated_summary(job)) != summaries.end();
 }
 
-/// Of one run that came to its end.
+/// The problem of one run that ended.
 std::string problem_of_end(const std::string& failure, std::span<const AcceptedJob> outputs,
                            const SimulatedFaults& faults, std::span<const std::string> expected) {
   const bool hopeless = needs(expected, faults.poison) || needs(expected, faults.bad);
@@ -57,7 +57,7 @@ JobSource simulated_jobs(std::uint64_t count, const std::string& target) {
     }
     return jobs;
   };
-  // Shared by the copies of the source, of which each simulated process has one.
+  // Shared by all copies of the source: each simulated process has one.
   const auto shared = [](std::vector<Job> jobs) {
     return std::make_shared<const std::vector<Job>>(std::move(jobs));
   };

@@ -8,7 +8,7 @@
 namespace meshfarm {
 namespace {
 
-/// So often the plan is looked through job by job: the more there are, the more seldom.
+/// Events between checks of the plan job by job: the more jobs, the fewer checks.
 constexpr std::uint64_t k_events_per_look = 4096;
 
 std::uint32_t hosts_of(const SimulationOptions& options) {
@@ -102,7 +102,7 @@ bool SimulatedFarm::is_over(const Run& run) {
 }
 
 bool SimulatedFarm::stays_behind(const Worker& worker) {
-  constexpr std::chrono::seconds k_long{60};  // longer than all that faults hold back
+  constexpr std::chrono::seconds k_long{60};  // longer than any delay by faults
   const Run* run = worker.lane.empty() ? nullptr : run_at(worker.dialled);
   return worker.alive && run != nullptr && is_over(*run) &&
          run->finished_at + k_long < queue_.now();

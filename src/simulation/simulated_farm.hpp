@@ -27,18 +27,18 @@
 
 namespace meshfarm {
 
-/// The simulated processes, each a state machine of the farm and what stands round it in its real
-/// process. The parts of this class have a source file each: ventilator, workers, sink, faults.
+/// The simulated processes, each a state machine of the farm and what surrounds it in its real
+/// process. Each part of this class has its own source file: ventilator, workers, sink, faults.
 class SimulatedFarm {
  public:
   SimulatedFarm(const JobSource& source, const SimulationOptions& options);
   SimulationResult run();
 
  private:
-  /// A process can be killed, started again, stopped and continued.
+  /// A process can be killed, restarted, stopped and continued.
   struct Process {
     std::uint32_t host = 0;
-    std::uint64_t life = 0;  // counts starts and ends: what was meant for another one is lost
+    std::uint64_t life = 0;  // counts starts and ends: events for another life are dropped
     bool alive = false;
     SimulatedTime asleep_until{0};
   };
@@ -46,38 +46,38 @@ class SimulatedFarm {
     std::optional<Dispatcher> core;
     std::uint32_t epoch = 0;
   };
-  /// What a worker and a sink have in common: their end of the control channel.
+  /// The common part of workers and sinks: their end of the control channel.
   struct Member : Process {
-    std::string peer;           // the name of its connection; empty: hung up
-    std::uint32_t dialled = 0;  // the epoch that it leads to
+    std::string peer;           // name of its connection; empty: not connected
+    std::uint32_t dialled = 0;  // the epoch of that connection
     SimulatedChannel to_ventilator, from_ventilator;
   };
   /// A job in one of a worker's slots.
   struct InWork {
-    std::uint64_t token = 0;  // tells it from the slot's jobs before and after
+    std::uint64_t token = 0;  // distinguishes it from earlier and later jobs of the slot
     JobKey key;
     std::uint32_t attempt = 0;
     Job job;
     SimulatedWork work;
     JobPhase phase = JobPhase::storage;
-    bool reads_much = false;  // at the moment
+    bool reads_much = false;  // currently
     bool hangs = false;
-    bool looks_for_file = false;  // its reader waits for a file that is not to be seen yet
+    bool looks_for_file = false;  // its reader waits for a file that is not visible yet
     SimulatedTime begin{0};       // of computing
     JobClock clock;
   };
   struct Worker : Member {
     std::unique_ptr<WorkerCore> core;
     std::uint64_t incarnation = 0;
-    std::uint64_t serves = 0;  // the run that it was told; 0: any
+    std::uint64_t serves = 0;  // the run that it was told to serve; 0: any
     bool leaves = false;       // it was asked to
     std::string lane;
     std::string sink;
     std::vector<std::optional<InWork>> slots;
-    std::deque<std::uint32_t> to_read;     // slots that wait to read much
-    std::uint32_t reading = 0;             // ...that do
+    std::deque<std::uint32_t> to_read;     // slots that wait to read much input
+    std::uint32_t reading = 0;             // number of slots that do
     std::deque<std::uint32_t> to_compute;  // slots that wait to compute
-    std::uint32_t computing = 0;           // threads that do
+    std::uint32_t computing = 0;           // number of threads that do
     WorkerPulse pulse;
     SimulatedChannel lane_channel, to_sink;
   };
@@ -86,7 +86,7 @@ class SimulatedFarm {
     std::string here;
   };
 
-  /// A ventilator and a sink of the stage, and what is between them.
+  /// A ventilator and a sink of the stage, and the state between them.
   struct Run {
     std::uint64_t key = 0;
     const JobSource* source = nullptr;
@@ -94,16 +94,16 @@ class SimulatedFarm {
     Sink sink;
     SimulationChecks checks;
     std::map<JobKey, JobOutput> journal;
-    std::deque<Check> to_verify;                // what its sink accepted by a look
-    unsigned verifying = 0;                     // how many of those it reads
+    std::deque<Check> to_verify;                // accepted by the sink by their size
+    unsigned verifying = 0;                     // number of those being read
     std::map<WorkerId, std::uint32_t> members;  // of the ventilator's epoch: whose lane it is
     SimulatedTime centre_free{0};
     SimulatedTime sink_free{0};
     SimulatedTime started{0};
     SimulatedTime sink_started{0};
-    bool made_output = false;  // its sink left with that
+    bool made_output = false;  // its sink left after making the output
     std::uint32_t starts = 0;
-    bool finished = false;  // its ventilator said its last word
+    bool finished = false;  // its ventilator has ended the run
     SimulatedTime finished_at{0};
     bool restarting = false;
     std::string failure;
@@ -116,11 +116,11 @@ class SimulatedFarm {
   bool faulty() const { return queue_.now() < options_.faults.end; }
   bool chance(double p) { return faulty() && dice_.chance(p); }
   void note(std::uint64_t what);
-  /// A message on its way: as it comes out of the wire.
+  /// A message in transit, as it was decoded from the wire.
   using Letter = std::shared_ptr<const Message>;
   Letter in_envelope(Message message) const;
   SimulatedTime up_to(std::chrono::milliseconds longest);
-  /// Lets it happen once the process is awake, if it still lives by then.
+  /// Executes the event once the process is awake, if it is still alive by then.
   template <class Event>
   void when_awake(Process& process, std::uint64_t life, const Event& event) {
     if (!process.alive || process.life != life) return;
@@ -129,7 +129,7 @@ class SimulatedFarm {
               [this, &process, life, event] { when_awake(process, life, event); });
   }
   void kill(Process& process);
-  /// Lets it happen when whoever does one thing after another has had so much time for it.
+  /// Executes the event after a sequential process has spent this much time on it.
   template <class Event>
   void in_its_turn(SimulatedTime& free, SimulatedTime takes, const Event& event) {
     if (takes.count() == 0) return event();
@@ -154,11 +154,11 @@ class SimulatedFarm {
   void end_member(Member& member);
   void dial(Member& member, const std::string& name, const Dial& each);
   void say(Member& member, Message message);
-  /// The run of that epoch's ventilator; null if that is gone, or never was.
+  /// The run of that epoch's ventilator; null if it is gone, or never existed.
   Run* run_at(std::uint32_t epoch);
   void ventilator_gets(Run& run, const std::string& peer, const Letter& letter);
   void ventilator_hears(Run& run, const std::string& peer, const Message& message);
-  /// Lets `hear` have it when it arrives, if the member still has that connection by then.
+  /// Passes the message to `hear` when it arrives, if the member still has that connection then.
   template <class Hear>
   void to_member(Run& run, Member& member, Message message, const Hear& hear) {
     member.from_ventilator.from = run.ventilator.host;
@@ -203,7 +203,7 @@ class SimulatedFarm {
   void act(std::uint32_t index, ReadForSink& each);
   void act(std::uint32_t index, Leave& each);
   void feel_pulse(Worker& worker);
-  /// Lets it happen at that time, if the slot's job of now is still there.
+  /// Executes the event at that time, if the slot still has its current job.
   template <class Event>
   void while_in_work(Worker& worker, std::uint32_t slot, SimulatedTime time, const Event& event) {
     const std::uint64_t token = worker.slots[slot]->token;
@@ -243,7 +243,7 @@ class SimulatedFarm {
   void sink_act(Run& run, SinkLeaves& each);
   void journal(Run& run, const Check& check);
 
-  /// What a host's processes see of the stage's endpoints.
+  /// The stage's endpoints as a host's processes see them.
   std::vector<Endpoint> endpoints_seen(std::uint32_t host);
   void announce(std::uint64_t run, const std::string& address);
   void change_other_run();
@@ -252,7 +252,7 @@ class SimulatedFarm {
   SimulatedTime some_minutes();
   SimulatedTime lost_part(JobKey key);
   void look_at_bans(const Run& run);
-  /// Lets a fault happen again and again, so often a minute, until the faults end.
+  /// Repeats a fault at this rate per minute, until the faults end.
   void repeat(double rate_per_minute, const std::function<void()>& fault);
 
   const SimulationOptions& options_;

@@ -24,7 +24,7 @@ void SimulatedFarm::repeat(double rate_per_minute, const std::function<void()>& 
   });
 }
 
-/// Longer than a reader's patience, mostly.
+/// Mostly longer than a reader's patience.
 SimulatedTime SimulatedFarm::some_minutes() {
   return std::chrono::seconds(60) + up_to(std::chrono::minutes(3));
 }

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
 //
-// A job in a simulated worker, as in src/transport/job_slot.cpp: it waits until it may read its
-// inputs, reads them, waits for a compute thread, is computed, and its output is written and
+// A job in a simulated worker, as in src/transport/job_slot.cpp: it waits for its turn to read,
+// reads its inputs, waits for a compute thread, is computed, and its output is written and
 // published.
 #include <utility>
 
@@ -73,7 +73,7 @@ void SimulatedFarm::end_reading(Worker& worker, InWork& in_work) {
   if (std::exchange(in_work.reads_much, false)) --worker.reading;
 }
 
-/// From when on the job's input can be read: the same for all who try.
+/// When the job's input becomes readable: the same time for all workers.
 SimulatedTime SimulatedFarm::lost_part(JobKey key) {
   if (options_.faults.lost_parts <= 0) return SimulatedTime(0);
   const auto [lost, first] = lost_parts_.try_emplace(key);
@@ -81,7 +81,7 @@ SimulatedTime SimulatedFarm::lost_part(JobKey key) {
   return lost->second;
 }
 
-/// The signs of life that a real worker sees of its slots: a job that goes on counts up.
+/// The signs of life that a real worker gets from its slots: the count of a running job grows.
 void SimulatedFarm::feel_pulse(Worker& worker) {
   for (std::size_t i = 0; i < worker.slots.size(); ++i) {
     const auto& in_work = worker.slots[i];
@@ -196,7 +196,7 @@ void SimulatedFarm::finish_job(Worker& worker, std::uint32_t slot,
 }
 
 void SimulatedFarm::act(std::uint32_t index, GiveUp& each) {
-  // A job looks now and then whether it is still wanted; some look away and end all the same.
+  // A job checks now and then whether it is still wanted; some do not, and end anyway.
   Worker& worker = workers_[index];
   if (!worker.slots[each.slot] || worker.slots[each.slot]->hangs || chance(0.5)) return;
   while_in_work(worker, each.slot, queue_.now() + SimulatedTime(20'000),

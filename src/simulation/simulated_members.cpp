@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
 //
-// What workers and sinks do alike, as in src/transport/control_link.hpp.
+// What workers and sinks have in common, as in src/transport/control_link.hpp.
 #include <utility>
 
 #include "simulation/simulated_farm.hpp"
@@ -20,7 +20,7 @@ void SimulatedFarm::end_member(Member& member) {
   member.peer.clear();
 }
 
-/// Under a new name each time, as the real one has a new routing id. Addresses are "v" and the
+/// Uses a new name each time, as the real process uses a new routing id. Addresses are "v" and the
 /// epoch.
 void SimulatedFarm::dial(Member& member, const std::string& name, const Dial& each) {
   member.peer = name + std::to_string(++dials_);
@@ -29,7 +29,7 @@ void SimulatedFarm::dial(Member& member, const std::string& name, const Dial& ea
 
 void SimulatedFarm::say(Member& member, Message message) {
   if (member.peer.empty()) return;
-  // What a killed process had not yet given to the network is lost with it.
+  // Messages that a killed process had not passed to the network are lost with it.
   const bool buffered = chance(0.5);
   const Run* known = run_at(member.dialled);
   member.to_ventilator.to = (known != nullptr ? *known : runs_.front()).ventilator.host;

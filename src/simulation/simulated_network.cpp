@@ -11,7 +11,7 @@ constexpr std::uint64_t k_late_us = 8'000'000;
 
 }  // namespace
 
-/// When a message arrives that is sent now.
+/// When a message sent now arrives.
 SimulatedWires::Arrivals SimulatedWires::route(SimulatedChannel& channel, Order order) {
   const auto jitter = static_cast<std::uint64_t>(network_.jitter.count());
   SimulatedTime arrival = queue_.now() + network_.delay + SimulatedTime(dice_.pick(jitter));

@@ -14,14 +14,14 @@
 
 namespace meshfarm {
 
-/// One connection in one direction: what is sent arrives in order, as over TCP.
+/// One direction of a connection: messages arrive in order, as with TCP.
 struct SimulatedChannel {
   std::uint32_t from = 0;  // hosts
   std::uint32_t to = 0;
-  SimulatedTime last{0};  // arrival of what was sent last
+  SimulatedTime last{0};  // arrival of the last message
 };
 
-/// Delivers messages late, twice or never, and hosts can be cut off from it.
+/// Delivers messages late, twice or never; hosts can be cut off.
 class SimulatedWires {
  public:
   SimulatedWires(const SimulationOptions& options, std::uint32_t hosts, Dice& dice,
@@ -39,7 +39,7 @@ class SimulatedWires {
     if (arrivals.again) queue_.at(*arrivals.again, deliver);
     if (arrivals.first) queue_.at(*arrivals.first, std::move(deliver));
   }
-  /// What the host sends or is sent is held back until then, or lost.
+  /// Messages from and to the host are held back until then, or lost.
   void cut(std::uint32_t host, SimulatedTime until);
 
  private:

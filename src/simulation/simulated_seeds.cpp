@@ -15,15 +15,15 @@
 namespace meshfarm {
 namespace {
 
-/// One seed in so many takes its messages through the wire's format: the others need the time for
+/// One in this many seeds encodes its messages in the wire format; the others save the time for
 /// more histories.
 constexpr std::uint64_t k_wire_every = 32;
 constexpr std::uint64_t k_enough_for_any_job = std::uint64_t{1} << 30;
 constexpr std::uint64_t k_ends_when_full_every = 5;
-/// In some of the histories another run of the stage has as many of the jobs.
+/// In this share of the histories another run of the stage shares one in k_of_the_jobs of the jobs.
 constexpr double k_two_runs = 0.2;
 constexpr std::uint64_t k_of_the_jobs = 4;
-/// A ventilator of many workers would be busy with heartbeats alone.
+/// Otherwise a ventilator with many workers would be busy with heartbeats alone.
 constexpr std::uint32_t k_workers_per_heartbeat_ms = 2;
 
 struct SeedResult {
@@ -33,14 +33,14 @@ struct SeedResult {
   std::string problem;
 };
 
-/// The jobs of a run, and what must come of them.
+/// The jobs of a run, and their expected results.
 struct Task {
   explicit Task(JobSource jobs) : source(std::move(jobs)), expected(expected_summaries(source)) {}
   JobSource source;
   std::vector<std::string> expected;
 };
 
-/// Another run begins somewhen; workers are told which to serve, or not, or look for themselves.
+/// Another run begins at some time; workers are told which run to serve, or none, or choose one.
 void add_other_run(SimulationOptions& options, const JobSource& other, Dice& dice) {
   using Serves = SimulatedWorker::Serves;
   constexpr std::array k_kinds = {Serves::any, Serves::first, Serves::other, Serves::pool};
@@ -50,10 +50,11 @@ void add_other_run(SimulationOptions& options, const JobSource& other, Dice& dic
   for (SimulatedWorker& worker : options.workers) {
     worker.serves = k_kinds[dice.pick(k_kinds.size())];
   }
-  // Whoever is told nothing may all serve one run; the user of the other has one for it.
+  // Workers that are told nothing may all serve one run; each run's user has one worker for it.
   options.workers.front().serves = Serves::first;
   options.workers.back().serves = Serves::other;
-  // A static schedule waits for as many workers as it was told: for those who can only come to it.
+  // A static schedule waits for its expected number of workers: count those that can only come to
+  // it.
   const auto count = [&](Serves kind) {
     return static_cast<std::uint32_t>(
         std::count_if(options.workers.begin(), options.workers.end(),
@@ -67,7 +68,7 @@ SimulationOptions farm_of(const SeedsOptions& seeds, std::uint64_t seed, const J
   SimulationOptions options;
   options.seed = seed;
   options.faults = faults_of_seed(seed);
-  // Most runs wait where the disk is full; the others are started again by their user.
+  // Most runs wait when the disk is full; the others are restarted by their user.
   if (seed % k_ends_when_full_every == 0) options.when_full = WhenFull::end;
   options.through_wire = seed % k_wire_every == 0;
   options.heartbeat =
@@ -79,12 +80,13 @@ SimulationOptions farm_of(const SeedsOptions& seeds, std::uint64_t seed, const J
     worker.start = SimulatedTime(std::uint64_t{i} * 7919 % 3000 * 1000);
     options.workers.push_back(worker);
   }
-  // Mixed in by other bits of the seed than the faults are.
+  // Uses other bits of the seed than the faults do.
   Dice dice(seed * 0x9e37'79b9 + 1);
   const bool fixed = dice.chance(0.15);
   if (fixed) {
     options.schedule.schedule = Schedule::fixed;
-    // A few would be dealt more than they can do within the limit, while the others rest.
+    // If only a few were expected, they would be dealt more than they can do within the limit,
+    // while the others rest.
     options.schedule.expect_workers =
         seeds.workers - static_cast<std::uint32_t>(dice.pick(seeds.workers / 2 + 1));
   }

@@ -10,7 +10,7 @@ namespace meshfarm {
 namespace {
 
 constexpr std::chrono::milliseconds k_sink_down{8000};
-/// Longer than any fault: one that comes after its run's end leaves by itself.
+/// Longer than any fault: a sink that starts after its run's end leaves by itself.
 constexpr FarmTime k_patience = std::chrono::minutes(10);
 /// As in src/transport/sink.cpp.
 constexpr unsigned k_verifiers = 2;
@@ -37,7 +37,7 @@ void SimulatedFarm::start_sink(Run& run) {
   tick_sink(run, life);
 }
 
-/// Accepted results are damaged while no sink is there: in a way that a look shows, or not.
+/// Damages accepted results while there is no sink: in a way that a size check shows, or not.
 void SimulatedFarm::suffer(Run& run) {
   if (options_.faults.decay <= 0) return;
   for (const auto& [key, output] : run.journal) {
@@ -111,7 +111,7 @@ void SimulatedFarm::sink_act(Run& run, const Check& each) {
         return sink_does(run, run.sink.core->fail({"cannot sync the journal", false}));
       }
       if (whole) journal(run, each);
-      // Killed between the journal's sync and the word to the ventilator.
+      // Killed between the journal's sync and the message to the ventilator.
       if (whole && chance(options_.faults.crash_at_job / 4)) return kill_sink(run);
       sink_does(run,
                 run.sink.core->checked(each, {whole ? "" : "the file is damaged"}, farm_now()));
@@ -119,7 +119,7 @@ void SimulatedFarm::sink_act(Run& run, const Check& each) {
   });
 }
 
-/// A look at a file that a journal knows.
+/// Checks the size of a file that is in a journal.
 void SimulatedFarm::check_known(Run& run, const Check& each) {
   const SimulatedTime there = folder_.transfer(run.sink.host, 0) + folder_.visibility_delay();
   const SimulatedTime later = up_to(std::chrono::milliseconds(1));
@@ -133,7 +133,7 @@ void SimulatedFarm::check_known(Run& run, const Check& each) {
   });
 }
 
-/// When nothing else waits: files that were looked at.
+/// Verifies files accepted by their size when nothing else waits.
 void SimulatedFarm::verify_next(Run& run) {
   if (run.to_verify.empty() || run.verifying == k_verifiers) return;
   ++run.verifying;
@@ -155,7 +155,7 @@ void SimulatedFarm::verify_next(Run& run) {
   });
 }
 
-/// Either its reader waits, maybe in vain, or it soon sees what is not there.
+/// Either the reader waits, maybe in vain, or it soon sees wrong content.
 void SimulatedFarm::check_by_sick_mount(Run& run, const Check& each, SimulatedTime readable) {
   const SimulatedTime gives_up = queue_.now() + SimulatedFolder::k_patience;
   const bool damaged = dice_.chance(0.5);
@@ -226,7 +226,7 @@ void SimulatedFarm::sink_act(Run& run, SinkLeaves& each) {
   end_member(run.sink);
   run.sink.core.reset();
   run.made_output = each.why == SinkLeaves::Why::complete;
-  // Turned away by the late word of a run that was over: whoever started it starts it again.
+  // Turned away by a late message of a run that was over: the user starts it again.
   if (!run.made_output) queue_.in(k_sink_down, [this, &run] { start_sink(run); });
 }
 

@@ -7,7 +7,7 @@
 namespace meshfarm {
 namespace {
 
-/// A link is used by one transfer after another: returns when this one ends.
+/// A link carries one transfer after another: returns when this one ends.
 SimulatedTime through(SimulatedTime& free, SimulatedTime now, std::uint64_t bytes,
                       double bytes_per_s) {
   if (bytes_per_s <= 0) return now;
@@ -74,7 +74,7 @@ bool SimulatedFolder::seems_whole(const std::string& name) const {
 
 SimulatedTime SimulatedFolder::visibility_delay() {
   if (!faulty()) return SimulatedTime(0);
-  // Measured on NFS v3 and v4.2: a name that was looked up too early is invisible for 30 to 60 s.
+  // Measured on NFS v3 and v4.2: a name looked up too early stays invisible for 30 to 60 s.
   if (dice_.chance(faults_.unseen)) return SimulatedTime(30'000'000 + dice_.pick(30'000'000));
   if (dice_.chance(faults_.stale)) return SimulatedTime(dice_.pick(10'000'000));
   return SimulatedTime(0);

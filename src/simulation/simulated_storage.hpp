@@ -17,21 +17,21 @@
 
 namespace meshfarm {
 
-/// What a host has in memory of extents: the last bytes that it read and wrote, up to a limit.
+/// A host's cached bytes of extents: the last bytes that it read and wrote, up to a limit.
 class HostCache {
  public:
-  /// How many bytes of the extent it has.
+  /// The number of cached bytes of the extent.
   std::uint64_t has(std::uint64_t extent) const;
-  /// So many bytes pass, of an extent or of none.
+  /// This many bytes were read or written, of an extent or of none.
   void keep(const Extent& bytes, std::uint64_t limit);
 
  private:
-  std::deque<Extent> kept_;  // the oldest first
+  std::deque<Extent> kept_;  // oldest first
   std::uint64_t bytes_ = 0;
   std::unordered_map<std::uint64_t, std::uint64_t> by_name_;
 };
 
-/// The shared folder: how long files take, and what its readers see.
+/// The shared folder: how long transfers take, and what readers see.
 class SimulatedFolder {
  public:
   SimulatedFolder(const SimulationOptions& options, std::uint32_t hosts, Dice& dice,
@@ -44,28 +44,28 @@ class SimulatedFolder {
         caches_(hosts),
         sick_until_(hosts) {}
 
-  /// When so many bytes, asked for now by that host, are there.
+  /// When this many bytes, requested now by that host, have arrived.
   SimulatedTime transfer(std::uint32_t host, std::uint64_t bytes);
-  /// The same of what a job reads, some of which the host may have; and of what it makes.
+  /// The same for a job's reads, some of which the host may have cached; and for its writes.
   SimulatedTime read(std::uint32_t host, std::uint64_t bytes, const Extent& extent);
   SimulatedTime write(std::uint32_t host, std::uint64_t bytes);
 
-  /// A finished file gets its name. False if that name was taken: two writers shared it.
+  /// Gives a finished file its name. False if the name was taken: two writers shared it.
   enum class Content : std::uint8_t { whole, damaged, cut_short };
   bool publish(const std::string& name, Content content);
-  /// A finished file that was whole suffers.
+  /// Damages a finished file that was whole.
   void damage(const std::string& name, Content content) { files_.at(name) = content; }
   bool has_whole(const std::string& name) const;
-  /// As far as a look at its size tells.
+  /// As far as its size shows.
   bool seems_whole(const std::string& name) const;
 
-  /// What opening and reading a told name takes longer than it should: a name looked up too early
-  /// stays invisible, an old state stays visible.
+  /// The extra time to open and read a reported name: a name looked up too early stays invisible,
+  /// an old state stays visible.
   SimulatedTime visibility_delay();
 
-  /// How long a reader tries again what it cannot read.
+  /// How long a reader retries what it cannot read.
   static inline const SimulatedTime k_patience = ReadPatience{}.missing;
-  /// From when on that host can read the files that it is told of. Or a file that is named.
+  /// When that host, or the named file, becomes readable.
   SimulatedTime readable(std::uint32_t host) const {
     return std::max(sick_until_[host], queue_.now());
   }

@@ -41,7 +41,8 @@ void SimulatedFarm::start_ventilator(Run& run) {
   tick_ventilator(run, life);
 }
 
-/// The next epoch, of a ventilator, or by an empty address the word that its run is over.
+/// Publishes the next epoch: of a ventilator, or, with an empty address, the notice that its run is
+/// over.
 void SimulatedFarm::announce(std::uint64_t run, const std::string& address) {
   const std::uint32_t epoch = ++epochs_;
   const std::string name = address.empty() ? address : address + std::to_string(epoch);
@@ -64,7 +65,7 @@ std::vector<Endpoint> SimulatedFarm::endpoints_seen(std::uint32_t host) {
   return seen;
 }
 
-/// Another run of the stage, whose ventilator never answers: it was killed, or is cut off.
+/// Another run of the stage whose ventilator never answers: it was killed, or is cut off.
 void SimulatedFarm::change_other_run() {
   constexpr std::uint64_t k_runs = 3;
   const std::uint64_t other = k_first_run + 1 + dice_.pick(k_runs);
@@ -74,7 +75,7 @@ void SimulatedFarm::change_other_run() {
 void SimulatedFarm::tick_ventilator(Run& run, std::uint64_t life) {
   if (!run.ventilator.alive || run.ventilator.life != life) return;
   if (run.ventilator.asleep_until > queue_.now()) {
-    // Behind the messages that came meanwhile: nobody is silent whose words are still to be read.
+    // After the messages that arrived meanwhile: a peer with unread messages is not silent.
     queue_.at(run.ventilator.asleep_until + SimulatedTime(1000),
               [this, &run, life] { tick_ventilator(run, life); });
     return;
@@ -86,7 +87,7 @@ void SimulatedFarm::tick_ventilator(Run& run, std::uint64_t life) {
             [this, &run, life] { tick_ventilator(run, life); });
 }
 
-/// As the real one, which finds in the stage why no sink comes.
+/// Like the real one, which learns from the stage why no sink comes.
 void SimulatedFarm::look_for_output(Run& run) {
   const bool waits = run.made_output && !run.sink.alive && run.ventilator.core;
   if (!waits || queue_.now() - run.started < k_without_sink) return;
@@ -142,7 +143,7 @@ void SimulatedFarm::ventilator_does(Run& run, Actions actions) {
   }
 }
 
-/// Peers are named "w3.17" and "s18": whose, and the number of the connection.
+/// Peers are named "w3.17" and "s18": the owner, and the number of the connection.
 SimulatedFarm::Worker* SimulatedFarm::worker_at(const std::string& peer) {
   if (peer.empty() || peer[0] != 'w') return nullptr;
   std::uint32_t index = 0;
@@ -218,14 +219,14 @@ void SimulatedFarm::act(Run& run, Finish& each) {
   run.ventilator.core.reset();
   announce(run.key, {});
   note(each.failure.size());
-  // Whoever started the run reads why it failed, and starts it again.
+  // The user who started the run reads why it failed, and starts it again.
   // A sink may tell a later ventilator of what failed while there were faults.
   const SimulatedTime begun = std::min(run.started, run.sink_started);
   run.restarting = !run.failure.empty() && begun < failing_ends();
   if (run.restarting) queue_.in(k_pause_between_runs, [this, &run] { run_again(run); });
 }
 
-/// Until when a run may begin that fails for faults: files that cannot be read are so for minutes.
+/// Until when a run that starts may fail because of faults: unreadable files stay so for minutes.
 SimulatedTime SimulatedFarm::failing_ends() const {
   const SimulatedFaults& faults = options_.faults;
   const bool sick = faults.sick_mounts > 0 || faults.sick_sink > 0 || faults.lost_parts > 0;

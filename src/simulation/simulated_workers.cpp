@@ -9,7 +9,7 @@ namespace meshfarm {
 namespace {
 
 constexpr std::chrono::milliseconds k_worker_down{6000};
-/// Nobody's patience ends while there are faults.
+/// Longer than all faults, so that nobody's patience ends.
 constexpr FarmTime k_worker_patience = std::chrono::hours(2);
 
 }  // namespace
@@ -46,7 +46,7 @@ void SimulatedFarm::start_worker(std::uint32_t index) {
   tick_worker(index, worker.life);
 }
 
-/// What a worker is told that starts now: a run, or 0 for any; nothing if there is none for it.
+/// The run that a worker starting now is told to serve, 0 for any; nothing if there is none for it.
 std::optional<std::uint64_t> SimulatedFarm::run_for(SimulatedWorker::Serves serves) {
   std::vector<std::uint64_t> unfinished;
   for (const Run& run : runs_) {
@@ -88,7 +88,7 @@ void SimulatedFarm::kill_worker(std::uint32_t index) {
   queue_.in(up_to(k_worker_down), [this, index] { start_worker(index); });
 }
 
-/// As at SIGTERM: it gives back what it holds, ends what is in work, and another comes.
+/// Like SIGTERM: it gives back its jobs, ends those in work, and another worker comes.
 void SimulatedFarm::ask_to_leave(std::uint32_t index) {
   Worker& worker = workers_[index];
   if (!worker.alive || worker.asleep_until > queue_.now()) return;
@@ -180,7 +180,7 @@ void SimulatedFarm::act(std::uint32_t index, Leave& each) {
   end_member(worker);
   worker.core.reset();
   worker.lane.clear();
-  // By the late word of a run that was over, maybe, after another one has begun.
+  // Maybe by a late message of a run that was over, after another one has begun.
   const bool begun_again =
       std::any_of(runs_.begin(), runs_.end(), [](const Run& run) { return run.starts > 1; });
   // Or a sink was killed while it made the output, and the next one found a damaged result.

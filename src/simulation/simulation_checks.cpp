@@ -56,7 +56,7 @@ void SimulationChecks::ended(JobKey key) {
 }
 
 void SimulationChecks::plan(const Dispatcher& dispatcher) {
-  // More are held than run only while a restarted plan does not want the held ones yet.
+  // More are held than running only while a restarted plan does not want some of the held ones yet.
   const PlanCounts& counts = dispatcher.plan().counts();
   that(dispatcher.holding() + counts.at_sink >= counts.running, "a job runs that nobody holds");
   that(counts.cost_done <= counts.cost_known, "more is done than is known");

@@ -13,10 +13,10 @@
 
 namespace meshfarm {
 
-/// Watches what a farm does, and keeps the first thing that must never happen.
+/// Checks a farm's invariants, and keeps the first violation.
 class SimulationChecks {
  public:
-  // What the ventilator of one epoch does and hears.
+  // Actions and messages of one epoch's ventilator.
   void epoch_begins();
   void credit(WorkerId worker, std::uint64_t up_to);
   void pushed(WorkerId worker, JobKey key, const Assignment& assignment);
@@ -24,11 +24,11 @@ class SimulationChecks {
   void told_done(const PeerId& peer, JobKey key);
   void lane_closed(WorkerId worker);
   void plan(const Dispatcher& dispatcher);
-  /// The same, job by job: slow.
+  /// The same checks, job by job: slow.
   void whole_plan(const Plan& plan);
 
   void journalled(JobKey key, bool file_is_whole);
-  /// What the sink could not find whole any more: it may be accepted again.
+  /// A result that the sink no longer finds whole: it may be accepted again.
   void taken_back(JobKey key) { journalled_.erase(key); }
   void that(bool holds, const char* what) {
     if (!holds && broken_.empty()) broken_ = what;

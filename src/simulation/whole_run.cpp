@@ -35,7 +35,7 @@ constexpr std::uint32_t k_turns_of_split = 2;
 constexpr std::uint64_t k_jobs_a_block = 16;
 constexpr std::uint64_t k_jobs_a_part = 10;
 
-/// A decision that depends on what was made.
+/// A decision that depends on an output.
 bool asks_again(const JobOutput& output) {
   return output.summary.back() % 2 == 0;
 }
@@ -58,7 +58,7 @@ class WholeRun {
   }
 
  private:
-  /// All that is made from now on depends on it.
+  /// All jobs made from now on depend on these outputs.
   void know(const JobGraph& graph, const JobRange& range) {
     std::string all = known_;
     for (std::uint32_t i = 0; i < range.count; ++i) {
@@ -103,7 +103,7 @@ class WholeRun {
     });
   }
 
-  /// These have names by which one is told to be poison.
+  /// One of these can be poison, by its name.
   void scatter_vertices(JobGraph& graph) {
     for (std::uint32_t b = 0; b < blocks_; ++b) {
       Job each = made_up_job("job " + std::to_string(b));
@@ -130,7 +130,7 @@ class WholeRun {
     });
   }
 
-  /// A part whose ladder does not reach is climbed again.
+  /// A part whose ladder does not reach far enough is climbed again.
   void climb(JobGraph& graph) {
     climbed_.resize(parts_);
     for (std::uint32_t p = 0; p < parts_; ++p) {
@@ -224,7 +224,7 @@ class WholeRun {
   const std::uint32_t blocks_;
   const std::uint32_t parts_;
   std::string known_;
-  std::vector<std::uint32_t> climbed_;  // by part: the number of its last climb
+  std::vector<std::uint32_t> climbed_;  // by part: number of its last climb
   std::vector<std::uint32_t> reduced_;  // by piece
 };
 

@@ -8,18 +8,18 @@
 
 namespace meshfarm {
 
-/// What the jobs of a history are: some stages that are enough to go wrong in every way, or all
-/// those of a run that cuts its input and finishes its result by jobs.
+/// The jobs of a history: a few stages that suffice to go wrong in every way, or all stages of a
+/// run that cuts its input and finishes its result by jobs.
 enum class SimulatedGraph { few_stages, whole_run };
 
-/// Histories to simulate for the sake of correctness: every seed with its own mix of faults.
+/// Histories simulated to test correctness: each seed has its own mix of faults.
 struct SeedsOptions {
   std::uint64_t first = 1;
   std::uint64_t count = 0;
-  std::uint32_t workers = 24;  // every third is slower, two are on a host
-  std::uint64_t jobs = 1024;   // about so many in a whole run
+  std::uint32_t workers = 24;  // every third is slower; two per host
+  std::uint64_t jobs = 1024;   // approximate number in a whole run
   SimulatedGraph graph = SimulatedGraph::few_stages;
-  unsigned threads = 0;  // 0: one a core
+  unsigned threads = 0;  // 0: one per core
 };
 
 struct SeedProblem {
@@ -34,7 +34,7 @@ struct SeedsResult {
   std::vector<SeedProblem> problems;  // ascending by seed
 };
 
-/// Does not depend on the number of threads.
+/// The result does not depend on the number of threads.
 SeedsResult simulate_seeds(const SeedsOptions& options);
 
 }  // namespace meshfarm

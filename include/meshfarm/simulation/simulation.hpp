@@ -1,10 +1,10 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
 //
-// The farm on virtual time: the very Dispatcher, WorkerCores and SinkCore that the processes run,
-// in one thread, over a simulated network, storage and hosts. One seed gives one history.
+// The farm on virtual time: the same Dispatcher, WorkerCores and SinkCore that the processes run,
+// in one thread, over a simulated network, storage and hosts. Each seed gives one history.
 //
-// Not simulated, so only tests of the processes tell of it:
+// Not simulated, so only tests of the processes cover:
 // - sockets: connecting, keys, strangers, garbage, other versions of the protocol; a message is one
 //   event, and the ventilator's inbox is never left unread;
 // - files: a result is a name, whole or damaged; the journal is never torn, a new one never begun;
@@ -34,7 +34,7 @@
 
 namespace meshfarm {
 
-/// What a job costs.
+/// The cost of a job.
 struct SimulatedWork {
   double compute_s = 0;  // on a worker of speed 1
   std::uint64_t read_bytes = 0;
@@ -43,42 +43,42 @@ struct SimulatedWork {
 };
 
 struct SimulatedWorker {
-  /// Which run it is told to serve: whichever it finds, this or that one, or as a worker of a pool
-  /// one that has work, chosen anew each time it starts.
+  /// Which run it is told to serve: any, the first or the other one, or, as a worker of a pool, one
+  /// that has work, chosen anew at each start.
   enum class Serves : std::uint8_t { any, first, other, pool };
 
   double speed = 1;
-  std::uint32_t host = 0;  // workers of one host are cut off together
+  std::uint32_t host = 0;  // workers of a host are cut off together
   SimulatedTime start{0};
   std::uint32_t threads = 1;
   std::uint64_t memory = 0;       // bytes; 0: no limit
-  double told_speed = 0;          // what it says of itself; 0: the truth
+  double told_speed = 0;          // the speed it reports; 0: the true one
   std::uint64_t memory_pool = 0;  // shared with those of its host that tell the same; 0: its own
   Serves serves = Serves::any;
 };
 
-/// A message takes delay, and up to jitter more.
+/// A message takes `delay`, plus up to `jitter`.
 struct SimulatedNetwork {
   SimulatedTime delay{1000};
   SimulatedTime jitter{20'000};
 };
 
-/// A file takes delay, then its bytes one after another over the server's link, which all hosts
-/// share, and over the host's own. 0: no limit. What a host has read of an extent it reads again
-/// without that, as long as it is among the last so many bytes that it read and wrote. (Real NFS
-/// clients keep what was read, but not what was written and renamed.)
+/// A file takes `delay`, then its bytes pass one after another over the server's link, which all
+/// hosts share, and over the host's own. 0: no limit. A host reads bytes of an extent again without
+/// that cost if they are among the last cache_bytes that it read and wrote. (Real NFS clients cache
+/// what was read, but not what was written and renamed.)
 struct SimulatedStorage {
   SimulatedTime delay{2000};
   double server_bytes_per_s = 0;
   double host_bytes_per_s = 0;
-  std::uint64_t cache_bytes = 0;  // of each host
+  std::uint64_t cache_bytes = 0;  // per host
 };
 
-/// What the central processes take for each message and each result: the limit of a large farm.
+/// Time of the central processes per message and per result: the limit of a large farm.
 struct SimulatedCentre {
   SimulatedTime per_message{0};  // the ventilator
-  SimulatedTime per_result{0};   // the sink: look at the file, and its share of a journal sync
-  bool eager = false;            // the ventilator ticks after each message, as the real one does
+  SimulatedTime per_result{0};   // the sink: check the file, and its share of a journal sync
+  bool eager = false;            // the ventilator ticks after each message, like the real one
 };
 
 struct SimulationOptions {
@@ -92,47 +92,47 @@ struct SimulationOptions {
   std::uint32_t max_attempts = 3;
   WhenFull when_full = WhenFull::wait;
   SchedulerOptions schedule = {};
-  std::uint32_t buffer = 16;      // of a worker
-  double triangles_per_s = 1000;  // what a worker of speed 1 says of itself
-  /// The world must come to its end by then.
+  std::uint32_t buffer = 16;      // of each worker
+  double triangles_per_s = 1000;  // speed reported by a worker of speed 1
+  /// The simulation must end by then.
   SimulatedTime limit{std::chrono::minutes(20)};
   std::function<SimulatedWork(const Job&)> work;  // empty: the job's cost in milliseconds
   bool through_wire = false;                      // encode and decode each message
-  JobSource other;               // of another run of the same stage at the same time; empty: none
-  SimulatedTime other_start{0};  // when its ventilator comes
+  JobSource other;               // another run of the same stage at the same time; empty: none
+  SimulatedTime other_start{0};  // when its ventilator starts
 };
 
-/// One attempt that was accepted.
+/// An accepted attempt.
 struct SimulatedJob {
   JobKey key;
   std::uint32_t worker = 0;  // index of SimulationOptions::workers
-  SimulatedTime begin{0};    // it had been read, and was computed from then on
-  SimulatedTime end{0};      // its file was published
+  SimulatedTime begin{0};    // computing starts, after reading
+  SimulatedTime end{0};      // the file is published
   SimulatedTime accepted{0};
   JobTimes times;
 };
 
 struct SimulationResult {
-  bool ended = false;   // the world came to its end in time
-  std::string broken;   // the first invariant that was, if any
-  std::string failure;  // the last run's, empty: all was done
+  bool ended = false;   // the simulation ended in time
+  std::string broken;   // the first broken invariant, if any
+  std::string failure;  // of the last run; empty: everything was done
   std::vector<AcceptedJob> outputs;
-  std::string other_failure;  // of the other run
+  std::string other_failure;  // the same for the other run
   std::vector<AcceptedJob> other_outputs;
-  std::vector<SimulatedJob> jobs;  // in the order in which they were accepted
-  SimulatedTime first_push{0};     // the first job went out
-  SimulatedTime last_accept{0};    // the last result was accepted
-  SimulatedTime last_verified{0};  // the last of those that were accepted by a look; 0: none was
-  SimulatedTime time{0};           // the end of the world
+  std::vector<SimulatedJob> jobs;  // in order of acceptance
+  SimulatedTime first_push{0};     // when the first job was sent
+  SimulatedTime last_accept{0};    // when the last result was accepted
+  SimulatedTime last_verified{0};  // the last result accepted by its size; 0: none
+  SimulatedTime time{0};           // end of the simulation
   std::uint64_t events = 0;
-  std::uint64_t pushes = 0;  // jobs given out
-  double server_busy_s = 0;  // of the storage's link
+  std::uint64_t pushes = 0;  // jobs issued
+  double server_busy_s = 0;  // the storage server's link
   std::uint64_t trace_hash = 0;
-  std::set<std::string> banned_hosts;  // "host3": got no more jobs at some time
-  std::uint32_t runs = 0;  // after a failed one the user starts again, while there are faults
+  std::set<std::string> banned_hosts;  // "host3": hosts that got no more jobs at some time
+  std::uint32_t runs = 0;  // after a failed run the user starts again, while there are faults
 };
 
-/// Simulates the farm from its start until all processes have left.
+/// Simulates the farm from its start until all processes have ended.
 SimulationResult simulate_farm(const JobSource& source, const SimulationOptions& options);
 
 }  // namespace meshfarm
