@@ -25,7 +25,7 @@ constexpr const char* k_pipe = "a pipe";
 
 enum class Kind : std::uint64_t { bytes = 1, error, no_memory, done };
 
-/// What goes through the pipe before so many bytes.
+/// Precedes `size` bytes in the pipe.
 struct Head {
   Kind kind{};
   std::uint64_t size = 0;
@@ -51,7 +51,7 @@ void limit_memory(std::uint64_t more) {
   limit(RLIMIT_AS, pages * static_cast<std::uint64_t>(::sysconf(_SC_PAGESIZE)) + more);
 }
 
-/// What a crash would leave behind or print is of no use to who has only the damaged bytes.
+/// Core dumps and crash messages are of no use to someone who has only the damaged bytes.
 void die_quietly() {
   limit(RLIMIT_CORE, 0);
   for (const int number : {SIGSEGV, SIGBUS, SIGABRT, SIGFPE, SIGILL}) std::signal(number, SIG_DFL);
@@ -74,12 +74,12 @@ void die_quietly() {
       send(pipe, Kind::no_memory, {});
     }
   } catch (...) {
-    // The other side sees that nothing more comes.
+    // The other side sees that the pipe is closed.
   }
   ::_exit(0);
 }
 
-/// A process that is ended and waited for.
+/// A process that is killed and waited for.
 class Copy {
  public:
   explicit Copy(pid_t pid) : pid_(pid) {}
@@ -103,7 +103,7 @@ std::optional<Head> receive_head(int pipe) {
   return head;
 }
 
-/// Memory is taken as the bytes come: a copy that goes wrong may promise any number.
+/// Allocates memory as bytes arrive: a copy that goes wrong may announce any size.
 std::optional<std::string> receive_bytes(int pipe, std::uint64_t size) {
   constexpr std::uint64_t k_block = 1 << 20;
   std::string bytes;

@@ -18,18 +18,18 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Version 1 says "no limit" by a number near the greatest.
+/// Version 1 expresses "no limit" by a number near the maximum.
 constexpr std::uint64_t k_no_limit = std::uint64_t{1} << 62;
 
 enum class Version { one, two };
 
-/// A folder of a controller's tree, and whose files it has.
+/// A folder in a controller's tree, and the version of its files.
 struct Group {
   fs::path folder;
   Version version = Version::two;
 };
 
-/// The number that the file begins with; nothing for "max", a negative one and what cannot be read.
+/// The number at the start of the file; nothing for "max", a negative number or an unreadable file.
 std::optional<std::uint64_t> number_in(const fs::path& path) {
   std::ifstream file(path);
   std::int64_t number = 0;
@@ -37,7 +37,7 @@ std::optional<std::uint64_t> number_in(const fs::path& path) {
   return static_cast<std::uint64_t>(number);
 }
 
-/// Of a file of lines "name number".
+/// The number in a line "name number" of the file.
 std::optional<std::uint64_t> named_number(const fs::path& path, const std::string& wanted) {
   std::ifstream file(path);
   std::string name;
@@ -65,7 +65,7 @@ std::optional<std::string> group_path(const GroupView& view, const std::string& 
   return std::nullopt;
 }
 
-/// What of `path` lies below `top`; nothing if it does not.
+/// The part of `path` below `top`; nothing if it is not below.
 std::optional<std::string> below(const std::string& path, const std::string& top) {
   if (top == "/") return path;
   if (path.compare(0, top.size(), top) != 0) return std::nullopt;
@@ -74,7 +74,7 @@ std::optional<std::string> below(const std::string& path, const std::string& top
 }
 
 /// This process's group and those above it, as far as they are mounted here: a container may see
-/// its own as the top, or not even that.
+/// its own group as the top, or not even that.
 std::vector<Group> groups_of(const GroupView& view, const std::string& controller) {
   const auto path = group_path(view, controller);
   if (!path) return {};
@@ -109,7 +109,7 @@ std::vector<Group> groups_of(const GroupView& view, const std::string& controlle
   return {};
 }
 
-/// The groups of version 1 and 2: a host may have both.
+/// Visits the groups of version 1 and 2: a host may have both.
 void for_each_group(const GroupView& view, const std::string& controller,
                     const std::function<void(const Group&)>& look) {
   for (const std::string& tree : {controller, std::string()}) {
@@ -122,7 +122,7 @@ std::uint64_t memory_limit(const Group& group) {
     return number_in(group.folder / file).value_or(k_no_limit);
   };
   if (group.version == Version::two) return std::min(limit("memory.max"), limit("memory.high"));
-  // The second knows of groups above that a container does not see.
+  // The second includes groups above that a container does not see.
   return std::min(
       limit("memory.limit_in_bytes"),
       named_number(group.folder / "memory.stat", "hierarchical_memory_limit").value_or(k_no_limit));
@@ -162,7 +162,7 @@ std::optional<double> core_limit(const Group& group) {
   return quota / period;
 }
 
-/// The folder's inode: groups have one each, whatever name a container sees them under.
+/// The folder's inode: unique per group, whatever name a container sees it under.
 std::uint64_t name_of(const Group& group) {
   struct stat status {};
   const bool known = ::stat(group.folder.c_str(), &status) == 0 && status.st_ino != 0;
@@ -177,9 +177,9 @@ std::optional<GroupMemory> group_memory(const GroupView& view) {
   for_each_group(view, "memory", [&](const Group& group) {
     const auto of = memory_room(group);
     if (!of) return;
-    // Slurm gives a job, its steps and its tasks the same limit. The job fills up first, as it
-    // holds all that is in them, but the counts are read one after the other and may say otherwise
-    // for a moment. Yet its workers must name the same group.
+    // Slurm gives a job, its steps and its tasks the same limit. The job fills up first, since it
+    // contains all the others, but the counts are read one after another and may disagree for a
+    // moment. Yet the job's workers must name the same group.
     const bool holds_the_least = least && of->limit <= limit;
     if (least && !holds_the_least && of->room >= least->room) return;
     least = GroupMemory{least ? std::min(of->room, least->room) : of->room, name_of(group)};
@@ -200,7 +200,7 @@ std::optional<double> group_cores(const GroupView& view) {
 unsigned processors() {
   const unsigned host = std::max(1U, std::thread::hardware_concurrency());
   const auto cores = group_cores();
-  // A part of a core still wants a thread.
+  // A fraction of a core still needs a thread.
   return cores && *cores < host ? static_cast<unsigned>(std::max(1.0, std::ceil(*cores))) : host;
 }
 

@@ -104,8 +104,8 @@ bool reports_late(int fd) {
 
 namespace {
 
-/// Blocks are reserved now: a full disk is an error here, not a SIGBUS later. Where the file system
-/// cannot reserve (NFS 3) they are written, and the server is asked whether it has them.
+/// Reserves blocks now: a full disk is then an error here, not a SIGBUS later. If the file system
+/// cannot reserve (NFS 3), the blocks are written, and fsync asks the server whether it has them.
 void reserve(int fd, std::uint64_t size_bytes, const std::filesystem::path& folder) {
   if (::fallocate(fd, 0, 0, static_cast<off_t>(size_bytes)) == 0) return;
   if (errno != EOPNOTSUPP && errno != ENOSYS && errno != EINVAL) {

@@ -28,8 +28,8 @@ std::optional<std::uint64_t> host_room() {
   return std::nullopt;
 }
 
-/// Lets the heap grow at once, and asks for large pages for it: with small ones its first use costs
-/// more than what is done there (12 us a page on a virtual machine, a tenth of a short job).
+/// Grows the heap at once, and requests large pages for it: with small pages its first use costs
+/// more than the work done there (12 us per page on a virtual machine, a tenth of a short job).
 void grow_heap_by_large_pages() {
 #if defined(__GLIBC__) && defined(MADV_HUGEPAGE)
   constexpr int k_growth = 256 << 20;  // addresses, not memory
@@ -40,11 +40,11 @@ void grow_heap_by_large_pages() {
   ::mallopt(M_TOP_PAD, k_usual_growth);
   const auto first = reinterpret_cast<std::uintptr_t>(begin);
   const auto end = reinterpret_cast<std::uintptr_t>(::sbrk(0));
-  // Else it is another malloc than the C library's, or there are not so many addresses.
+  // Otherwise malloc is not the C library's, or there is not enough address space.
   if (begin != nullptr && first < end && end - first >= k_growth && end - first < 2ULL * k_growth) {
     const auto page = static_cast<std::uintptr_t>(::sysconf(_SC_PAGESIZE));
     const std::uintptr_t skipped = (page - first % page) % page;
-    // Where there are no large pages, nothing changes.
+    // Without large pages nothing changes.
     static_cast<void>(::madvise(begin + skipped, end - first - skipped, MADV_HUGEPAGE));
   }
   std::free(begin);
@@ -58,7 +58,7 @@ void keep_freed_memory() {
   constexpr int k_never = 1 << 30;
   ::mallopt(M_MMAP_THRESHOLD, k_never);
   ::mallopt(M_TRIM_THRESHOLD, k_never);
-  ::mallopt(M_ARENA_MAX, 1);  // what one thread freed is there for the others, too
+  ::mallopt(M_ARENA_MAX, 1);  // memory freed by one thread is available to the others, too
   grow_heap_by_large_pages();
 #endif
 }

@@ -13,12 +13,12 @@
 namespace meshfarm {
 
 /// Many growing byte strings in one scratch file, through buffers of bounded size: a full buffer
-/// goes to the end of the file, and its bucket remembers where. The file has no name and is gone
-/// when its owner ends. Full buffers stay in memory instead as long as `memory_bytes` allow:
-/// writing and reading them back would cost more than the work itself.
+/// goes to the end of the file, and its bucket remembers where. The file has no name and is removed
+/// when its owner ends. Full buffers stay in memory instead while `memory_bytes` allows it: writing
+/// and reading them back would cost more than the work itself.
 class BucketFile {
  public:
-  /// All buffers of a file together, about.
+  /// Approximate size of all buffers of a file together.
   static constexpr std::uint64_t k_all_buffers_bytes = std::uint64_t{32} << 20;
 
   BucketFile(const std::filesystem::path& folder, std::size_t buckets,
@@ -28,17 +28,17 @@ class BucketFile {
   void put(std::size_t bucket, const T& value) {
     append(bucket, {reinterpret_cast<const char*>(&value), sizeof(T)});
   }
-  /// Writes out what is still buffered and frees the buffers; nothing is appended after. Throws
-  /// IoError if not all of it is there.
+  /// Writes out the remaining buffered data and frees the buffers; nothing may be appended
+  /// afterwards. Throws IoError if not everything could be stored.
   void finish();
-  /// The whole bucket, as values of T. Safe from several threads after finish().
+  /// The whole bucket, as values of T. Thread-safe after finish().
   template <class T>
   std::vector<T> read(std::size_t bucket) const {
     std::vector<T> values(size(bucket) / sizeof(T));
     read_into(bucket, 0, size(bucket), reinterpret_cast<char*>(values.data()));
     return values;
   }
-  /// The value at this index of a bucket of values of T. As safe as read(), and slow.
+  /// The value at this index of a bucket of values of T. As thread-safe as read(), and slow.
   template <class T>
   T read_one(std::size_t bucket, std::uint64_t index) const {
     T value;
@@ -49,7 +49,7 @@ class BucketFile {
 
  private:
   struct Extent {
-    std::uint64_t offset = 0;  // in the memory, or beyond its size: in the file
+    std::uint64_t offset = 0;  // in the memory; at or beyond its size: in the file
     std::uint64_t size = 0;
   };
   struct Bucket {
@@ -66,7 +66,7 @@ class BucketFile {
   std::uint64_t end_ = 0;  // of the file
   std::size_t buffer_bytes_;
   MappedFile memory_;
-  std::uint64_t kept_ = 0;  // bytes of the memory in use
+  std::uint64_t kept_ = 0;  // bytes of memory in use
   std::vector<Bucket> buckets_;
 };
 

@@ -12,7 +12,7 @@
 
 namespace meshfarm {
 
-/// A count (u32), then the elements as they lie in memory.
+/// A count (u32), then the elements as in memory.
 template <class T>
 void put_list(ByteWriter& out, const std::vector<T>& values) {
   out.put(static_cast<std::uint32_t>(values.size()));
@@ -24,7 +24,7 @@ std::vector<T> get_list(ByteReader& in) {
   return in.get_array<T>(in.get<std::uint32_t>());
 }
 
-/// A file or section that is one list.
+/// A file or section that consists of one list.
 template <class T>
 std::string encode_list(const std::vector<T>& values) {
   ByteWriter out;
@@ -32,7 +32,7 @@ std::string encode_list(const std::vector<T>& values) {
   return out.take();
 }
 
-/// Throws an error that names `what` where more or less than a list is there.
+/// Throws an error naming `what` if the bytes are more or less than one list.
 template <class T>
 std::vector<T> decode_list(std::string_view bytes, std::string_view what) {
   ByteReader in(bytes, what);

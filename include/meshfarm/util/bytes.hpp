@@ -20,14 +20,14 @@ static_assert(std::endian::native == std::endian::little,
 /// Appends plain values, little endian, to a byte string.
 class ByteWriter {
  public:
-  /// Takes room for so many bytes at once.
+  /// Reserves memory for this many bytes.
   void reserve(std::size_t bytes) { bytes_.reserve(bytes); }
   template <class T>
   requires std::is_trivially_copyable_v<T>
   void put(const T& value) { bytes_.append(reinterpret_cast<const char*>(&value), sizeof(T)); }
   /// A length (u32), then the characters.
   void put_string(std::string_view text);
-  /// The elements as they lie in memory, without a count.
+  /// The elements as in memory, without a count.
   template <class T>
   requires std::is_trivially_copyable_v<T>
   void put_array(std::span<const T> values) {

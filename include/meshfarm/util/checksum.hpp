@@ -12,7 +12,7 @@ namespace meshfarm {
 /// XXH3-64 of the bytes. Guards against damage and names content; it is no defence against forgery.
 std::uint64_t checksum(std::string_view bytes);
 
-/// The same for bytes that come piece by piece.
+/// The same for bytes that arrive in pieces.
 class Checksum {
  public:
   Checksum();

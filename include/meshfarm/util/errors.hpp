@@ -9,8 +9,8 @@
 
 namespace meshfarm {
 
-/// Every error of ours. The subclass says who must act; the message says what failed, where, why
-/// and, where it helps, what to do next. Caught in main, in the worker's job loop, and where a
+/// Base of all our errors. The subclass says who must act; the message says what failed, where, why
+/// and, where it helps, what to do next. Caught in main, in the worker's job loop, and wherever a
 /// failure is known to be soft.
 class Error : public std::runtime_error {
  public:
@@ -29,7 +29,7 @@ class DataError : public Error {
   using Error::Error;
 };
 
-/// The system refused: keeps errno and the path (exit 1).
+/// A system call failed: keeps errno and the path (exit 1).
 class IoError : public Error {
  public:
   IoError(std::string_view action, const std::filesystem::path& path, int error_number);
@@ -39,8 +39,8 @@ class IoError : public Error {
   int error_number_;
 };
 
-/// What is thrown by who reads a staged file that cannot be read, or is not what was promised, is
-/// this, too: another host may read it.
+/// Errors from reading a staged file that cannot be read, or does not match, are also of this type:
+/// another host may be able to read it.
 class UnreadError {
  public:
   virtual ~UnreadError() = default;
@@ -54,14 +54,14 @@ class UnreadDataError : public DataError, public UnreadError {
   explicit UnreadDataError(const std::string& what) : DataError(what) {}
 };
 
-/// Whether the error is that the disk, or the user's share of it, is full.
+/// Whether the error says that the disk, or the user's quota, is full.
 bool is_no_space(const IoError& error);
 
 /// Ends the message of a run that a full disk stopped.
 inline constexpr std::string_view k_after_making_room =
     "; what is done is kept: make room, then run the same command again";
 
-/// The run stopped before its end; what is staged is kept and can be taken up again (exit 3).
+/// The run stopped before its end; what is staged is kept and can be resumed (exit 3).
 class IncompleteError : public Error {
  public:
   using Error::Error;

@@ -23,8 +23,7 @@ class Fd {
   Fd& operator=(Fd&& other) noexcept;
   int get() const { return fd_; }
   explicit operator bool() const { return fd_ >= 0; }
-  /// Closes and reports the error that close() may carry (a full NFS disk shows here).
-  /// Returns 0 or an errno.
+  /// Closes the file. Returns 0, or the errno of close() (a full NFS disk shows here).
   int close();
 
  private:
@@ -33,11 +32,11 @@ class Fd {
 
 /// Opens for reading. Throws IoError.
 Fd open_for_read(const std::filesystem::path& path);
-/// Writes all of it, through short writes and EINTR. Throws IoError.
+/// Writes everything, handling short writes and EINTR. Throws IoError.
 void write_all(int fd, std::string_view bytes, const std::filesystem::path& path);
-/// Reads until the buffer is full or the file ends; returns how much. Throws IoError.
+/// Reads until the buffer is full or the file ends; returns the number of bytes. Throws IoError.
 std::size_t read_up_to(int fd, std::span<char> buffer, const std::filesystem::path& path);
-/// Reads from `offset` until the buffer is full or the file ends; returns how much. Throws IoError.
+/// Like read_up_to(), from `offset`. Throws IoError.
 std::size_t read_at(int fd, std::uint64_t offset, std::span<char> buffer,
                     const std::filesystem::path& path);
 /// Reads the whole file by read(). Throws IoError.
@@ -45,12 +44,12 @@ std::string read_file(const std::filesystem::path& path);
 std::string read_file(int fd, const std::filesystem::path& path);
 std::uint64_t file_size(int fd, const std::filesystem::path& path);
 
-/// Whether errors of writing this file may show only at fsync, as on NFS.
+/// Whether write errors of this file may show only at fsync, as on NFS.
 bool reports_late(int fd);
 
-/// Mapped memory. scratch() maps a file that is unlinked as soon as it is made, so that it never
-/// outlives its owner. memory() is anonymous memory, zero at first; only pages that are touched are
-/// taken. Do not map a file that another process may shorten: a missing page is a SIGBUS.
+/// Mapped memory. scratch() maps a file that is unlinked as soon as it is created, so that it never
+/// outlives its owner. memory() is anonymous memory, initially zero; only touched pages are
+/// allocated. Do not map a file that another process may shorten: a missing page is a SIGBUS.
 class MappedFile {
  public:
   MappedFile() = default;

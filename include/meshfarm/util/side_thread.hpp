@@ -11,22 +11,22 @@
 
 namespace meshfarm {
 
-/// A thread that its owner does not wait for long: where storage stalls, a call may take minutes.
-/// It is left behind then, with all that it uses.
+/// A thread that its owner never waits for long: with stalled storage a call may take minutes. The
+/// thread is then left behind, with everything that it uses.
 class SideThread {
  public:
-  /// What the thread and its owner wait by.
+  /// Synchronises the thread and its owner.
   struct Signals {
     std::mutex mutex;
     std::condition_variable changed;
-    bool end = false;    // it is to end
-    bool ended = false;  // it did: set here
+    bool end = false;    // asks the thread to end
+    bool ended = false;  // it has ended: set here
   };
 
-  /// `work` keeps what it uses, and returns soon after signals->end is set if nothing holds it up.
+  /// `work` must own what it uses, and return soon after signals->end is set unless it is blocked.
   SideThread(std::shared_ptr<Signals> signals, std::function<void()> work,
              std::chrono::milliseconds last_wait);
-  /// Waits for the thread's end, but no longer than that.
+  /// Waits for the thread to end, for at most `last_wait`.
   ~SideThread();
   SideThread(const SideThread&) = delete;
   SideThread& operator=(const SideThread&) = delete;

@@ -6,10 +6,10 @@
 
 namespace meshfarm {
 
-/// Tells wall time.
+/// Measures wall time.
 class Stopwatch {
  public:
-  /// Seconds since the last lap, or since it was made.
+  /// Seconds since the last lap, or since construction.
   double lap() {
     const auto now = std::chrono::steady_clock::now();
     const double seconds = std::chrono::duration<double>(now - last_).count();
