@@ -9,14 +9,14 @@
 namespace meshfarm {
 namespace {
 
-constexpr double k_half_angle = 15 * std::numbers::pi / 180;  // of what is seen, the shorter way
+constexpr double k_half_angle = 15 * std::numbers::pi / 180;  // half field of view, shorter side
 constexpr double k_filled = 0.94;                             // of the frame; the rest is margin
 
 double radians(double degrees) {
   return degrees * std::numbers::pi / 180;
 }
 
-/// Where the viewer of the front stands.
+/// The front viewer's direction.
 Vec3 front_of(Vec3 up) {
   return up.z != 0 ? Vec3{0, -1, 0} : Vec3{0, 0, 1};
 }
@@ -49,7 +49,7 @@ Framing::Framing(const View& view, const Frame& frame)
 void Framing::add(std::span<const Vec3> vertices) {
   std::array<double, 6> reach = reach_;
   const auto count = [](double value, double& greatest) {
-    greatest = value > greatest ? value : greatest;  // a NaN is not
+    greatest = value > greatest ? value : greatest;  // false for NaN
   };
   for (const Vec3& vertex : vertices) {
     const Vec3 p = axes_.seen(vertex);
@@ -66,7 +66,7 @@ void Framing::add(std::span<const Vec3> vertices) {
 Camera Framing::camera() const {
   Camera camera = projection_ == Projection::perspective ? perspective() : orthographic();
   camera.projection_ = projection_;
-  camera.centre_x_ = frame_.left + frame_.width / 2 - 0.5;  // a sample's middle is its number
+  camera.centre_x_ = frame_.left + frame_.width / 2 - 0.5;  // sample centres are at integers
   camera.centre_y_ = frame_.top + frame_.height / 2 - 0.5;
   return camera;
 }
@@ -74,7 +74,7 @@ Camera Framing::camera() const {
 Camera Framing::perspective() const {
   Camera camera(axes_);
   const double depth = reach_[0] + reach_[1];
-  // The sides meet where the eye is, or before it. It never comes too near.
+  // The sides of the view meet at or in front of the eye. A minimum distance is kept.
   const double by_width = (reach_[2] + reach_[3]) / (2 * slope_x_);
   const double by_height = (reach_[4] + reach_[5]) / (2 * slope_y_);
   const double least = reach_[0] + 0.05 * depth;

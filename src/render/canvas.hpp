@@ -10,9 +10,9 @@
 
 namespace meshfarm {
 
-/// The samples of a picture, each with the depth and the colour of what is nearest there. Several
-/// threads may draw: of two colours at one depth the greater stays, so that the order does not
-/// count.
+/// The samples of a picture, each with the depth and colour of the nearest surface. Several threads
+/// may draw: of two colours at equal depth the greater one stays, so that the order does not
+/// matter.
 class Canvas {
  public:
   struct Size {
@@ -31,7 +31,7 @@ class Canvas {
   explicit Canvas(const Size& size) : size_(size), samples_(size.samples()) {}
   const Size& size() const { return size_; }
 
-  /// A sample's bits: depth (40), colour (24). All zero: nothing is there.
+  /// Bits of a sample: depth (40), colour (24). All zero: empty.
   class Sample {
    public:
     Sample() = default;
@@ -54,7 +54,7 @@ class Canvas {
   }
   Sample at(std::uint64_t place) const { return Sample(samples_[place]); }
 
-  /// Whether something at this depth would be seen, but for what is drawn meanwhile.
+  /// Whether something at this depth would be visible, ignoring concurrent drawing.
   bool shows(std::uint64_t place, double depth) const {
     return load(place) <= Sample(depth, {255, 255, 255}).bits();
   }
@@ -68,7 +68,7 @@ class Canvas {
 
  private:
   std::uint64_t load(std::uint64_t place) const {
-    auto& bits = const_cast<std::uint64_t&>(samples_[place]);  // atomic_ref takes no const
+    auto& bits = const_cast<std::uint64_t&>(samples_[place]);  // atomic_ref does not take const
     return std::atomic_ref<std::uint64_t>(bits).load(std::memory_order_relaxed);
   }
 

@@ -9,9 +9,9 @@
 namespace meshfarm {
 namespace {
 
-constexpr std::size_t k_levels = 4096;  // of light, that are told apart: by their square roots
+constexpr std::size_t k_levels = 4096;  // of light, spaced by square roots
 
-/// Between sRGB and light, both ways (IEC 61966-2-1).
+/// Conversion between sRGB and light in both directions (IEC 61966-2-1).
 struct Tables {
   std::array<float, 256> light{};
   std::array<float, 256> root{};  // of light
@@ -37,7 +37,7 @@ const Tables& tables() {
   return k_tables;
 }
 
-/// Of the square root of light, from 0 to 1.
+/// The sRGB level for the square root of light, from 0 to 1.
 std::uint8_t level_of(const Tables& table, float root) {
   return table.srgb[static_cast<std::size_t>(std::lrint(root * k_levels))];
 }

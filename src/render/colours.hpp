@@ -9,7 +9,7 @@
 
 namespace meshfarm {
 
-/// A colour by its amounts of light, 0 to 1.
+/// A colour in linear light, 0 to 1.
 struct Light {
   float red = 0;
   float green = 0;
@@ -22,12 +22,12 @@ struct Light {
 };
 
 Light light_of(const Srgb& colour);
-/// Light above 1 is cut off.
+/// Light above 1 is clamped.
 Srgb srgb_of(Light light);
-/// A colour in less light, from 0 to 1: by its square root.
+/// A colour in less light, given as the square root of a factor from 0 to 1.
 Srgb dimmed(const Srgb& colour, float root_of_light);
 
-/// In 24 bits.
+/// The colour in 24 bits.
 constexpr std::uint32_t packed(const Srgb& colour) {
   return std::uint32_t{colour[0]} << 16 | std::uint32_t{colour[1]} << 8 | colour[2];
 }
@@ -36,18 +36,18 @@ constexpr Srgb unpacked(std::uint32_t colour) {
           static_cast<std::uint8_t>(colour)};
 }
 
-/// What surfaces without colours have.
+/// The colour of surfaces without colours.
 inline constexpr Srgb k_clay = {214, 209, 202};
 
-/// Colours that can be told apart, over and over again.
+/// Distinguishable colours, repeating.
 Srgb colour_of_number(std::uint64_t number);
 
-/// Of a direction of length 1: each axis is a component, from -1 (dark) to 1.
+/// The colour of a unit direction: each axis is a component, from -1 (dark) to 1.
 Srgb colour_of_direction(Vec3 direction);
 
-/// How much of the light a surface gives back that faces this way, as the viewer sees it: x to the
-/// right, y up, z toward the viewer. A soft light from the upper left, less from the other side,
-/// from the viewer, and from the sky.
+/// The fraction of light reflected by a surface with this normal in view coordinates: x to the
+/// right, y up, z toward the viewer. A soft light comes from the upper left, less from the other
+/// side, from the viewer, and from the sky.
 float light_on(Vec3 normal);
 
 }  // namespace meshfarm

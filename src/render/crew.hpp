@@ -13,11 +13,11 @@
 
 namespace meshfarm {
 
-/// Threads that do what one thread hands out. That one lends a hand where too much is waiting, so
-/// that no more than a few pieces of work are in memory.
+/// Threads that do the work that one thread hands out. That thread helps when too much work is
+/// waiting, so that only a few pieces of work are in memory.
 class Crew {
  public:
-  /// So many threads, with the one that hands out (0: one a core).
+  /// The number of threads includes the one that hands out (0: one per core).
   explicit Crew(unsigned threads);
   ~Crew();
   Crew(const Crew&) = delete;
@@ -25,11 +25,11 @@ class Crew {
 
   unsigned size() const { return static_cast<unsigned>(helpers_.size()) + 1; }
   void give(std::function<void()> work);
-  /// Until all is done. Throws what the first piece of work that failed has thrown.
+  /// Waits until everything is done. Rethrows the exception of the first failed piece of work.
   void wait();
 
-  /// Sees to it that nobody works any more when this goes, be it by an exception. To be made after
-  /// all that the work refers to.
+  /// On destruction, also by an exception, waits until no thread works any more. Must be declared
+  /// after everything that the work refers to.
   class Shift {
    public:
     explicit Shift(Crew& crew) : crew_(crew) {}

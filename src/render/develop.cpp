@@ -10,7 +10,7 @@
 namespace meshfarm {
 namespace {
 
-/// The samples of a pixel.
+/// The sum of a pixel's samples.
 struct Sum {
   std::uint32_t covered = 0;
   std::array<std::uint32_t, 3> levels{};

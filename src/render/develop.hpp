@@ -11,8 +11,8 @@
 
 namespace meshfarm {
 
-/// Makes pixels of samples: their mean, over the background. `open_sky` has one number a pixel, the
-/// share of the light that comes to it, or none at all.
+/// Makes pixels from samples: their mean, over the background. `open_sky` has one number per pixel,
+/// the fraction of light that reaches it, or is empty.
 Texels develop(const Canvas& canvas, const std::vector<float>& open_sky,
                const RenderOptions& options);
 

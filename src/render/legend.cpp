@@ -17,7 +17,7 @@ double text_height(std::uint32_t picture_height) {
   return std::clamp(picture_height / 60.0, 7.0, 48.0);
 }
 
-/// 1, 2 or 5 times a power of ten, so that there are about five of them.
+/// 1, 2 or 5 times a power of ten, giving about five steps.
 double round_step(double range) {
   const double rough = range / 5;
   const double power = std::pow(10, std::floor(std::log10(rough)));

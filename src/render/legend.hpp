@@ -11,15 +11,14 @@
 
 namespace meshfarm {
 
-/// How many pixels on the right of a picture a legend takes.
+/// Width in pixels of a legend on the right of a picture.
 std::uint32_t legend_width(std::uint32_t picture_height);
 
-/// Draws the scale of colours there, with the range and round numbers between, and what they are
-/// of above it.
+/// Draws the colour scale there, with the range and round numbers in between, and the title above.
 void draw_legend(Texels& picture, const std::string& title, const ValueRange& range,
                  const Srgb& ink);
 
-/// A number in as few digits as tell it from another that is so much greater.
+/// A number with just enough digits to distinguish it from one that differs by `step`.
 std::string number_text(double value, double step);
 
 }  // namespace meshfarm

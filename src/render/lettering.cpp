@@ -11,11 +11,11 @@
 namespace meshfarm {
 namespace {
 
-constexpr double k_rows = 6;  // of the grid that letters stand on, from the top
+constexpr double k_rows = 6;  // of the letters' grid, from the top
 constexpr double k_advance = 5.8;
 constexpr double k_thickness = 0.62;
 
-/// A letter's lines: places of the grid, column and row, with blanks between lines.
+/// A letter's lines: grid points as column and row, with blanks between lines.
 struct Letter {
   char name;
   std::string_view lines;
@@ -115,7 +115,7 @@ double distance(Place p, const Stroke& stroke) {
   return std::hypot(p.x - stroke.from.x - share * dx, p.y - stroke.from.y - share * dy);
 }
 
-/// So much of the colour over what is there.
+/// Blends this share of the colour over the existing texel.
 void blend(std::uint8_t* texel, std::size_t step, const Srgb& colour, double share) {
   const double under = step == 4 ? texel[3] / 255.0 : 1.0;
   const double alpha = share + under * (1 - share);

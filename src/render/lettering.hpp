@@ -18,11 +18,11 @@ struct Lettering {
   Srgb colour{};
 };
 
-/// How wide a line is, in pixels.
+/// The width of a line, in pixels.
 double width_of(std::string_view text, double height);
 
-/// Draws digits, letters (small ones as capitals) and . , - + _ / ( ) %; other characters are
-/// boxes. What is beyond the picture's sides is cut off.
+/// Draws digits, letters (lower case as capitals) and . , - + _ / ( ) %; other characters are drawn
+/// as boxes. Text beyond the picture's sides is clipped.
 void draw_text(Texels& picture, const Lettering& lettering, std::string_view text);
 
 }  // namespace meshfarm

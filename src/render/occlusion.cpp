@@ -12,14 +12,14 @@
 namespace meshfarm {
 namespace {
 
-constexpr std::size_t k_looks = 16;  // from each pixel
-constexpr int k_turns = 4;           // of a square of pixels, this wide, each looks differently
+constexpr std::size_t k_looks = 16;  // directions per pixel
+constexpr int k_turns = 4;           // width of a square of pixels with different rotations
 constexpr std::size_t k_square = std::size_t{k_turns} * k_turns;
-constexpr double k_radius = 0.06;  // how far, of the picture's shorter side
-constexpr double k_reach = 2.25;   // times its square: farther ones do not count
+constexpr double k_radius = 0.06;  // of a look, as a fraction of the picture's shorter side
+constexpr double k_reach = 2.25;   // times its square: points farther away are ignored
 constexpr double k_strength = 1.5;
 
-/// Steps to look at, in pixels: a spiral, turned differently for each pixel of a square.
+/// Offsets of the looks, in pixels: a spiral, rotated differently for each pixel of a square.
 using Looks = std::array<std::array<int, 2>, k_looks>;
 std::array<Looks, k_square> spirals(double radius) {
   const double golden = std::numbers::pi * (3 - std::sqrt(5.0));
@@ -41,7 +41,7 @@ constexpr float k_not_known = -1;
 
 class Sky {
  public:
-  /// `step`: how far pixels are apart that are looked from; those between get their mean.
+  /// `step`: spacing of the pixels that are computed; those in between get their mean.
   Sky(const Canvas& canvas, const Camera& camera, int step)
       : canvas_(canvas),
         camera_(camera),
@@ -83,7 +83,7 @@ class Sky {
            static_cast<std::size_t>(x);
   }
   bool is_inside(int x, int y) const { return x >= 0 && y >= 0 && x < width_ && y < height_; }
-  /// Of the nearest sample of each pixel, or -1.
+  /// Finds the depth of each pixel's nearest sample, or -1.
   void find_depths(int y) {
     const std::uint32_t side = canvas_.size().side;
     for (int x = 0; x < width_; ++x) {
@@ -99,13 +99,14 @@ class Sky {
   }
 
   Vec3 point(int x, int y) const { return at_depth_of(x, y, x); }
-  /// The place of another column as far away as this one.
+  /// The point of this pixel's depth in another column.
   Vec3 at_depth_of(int x, int y, int column) const {
     return camera_.unproject(across_[static_cast<std::size_t>(column)],
                              along_[static_cast<std::size_t>(y)], depths_[place(x, y)]);
   }
 
-  /// The step to a neighbour along the surface: of both sides the one with less of a step in depth.
+  /// The step to a neighbour along the surface: of the two sides, the one with less change of
+  /// depth.
   Vec3 slope(Vec3 here, int x, int y, int dx, int dy) const {
     Vec3 best;
     double least = HUGE_VAL;
@@ -127,7 +128,7 @@ class Sky {
     const double size = length(normal);
     if (!(size > 0)) return 1;
     normal = normal * (1 / size);
-    // The same length on the surface as the radius on the picture.
+    // The length on the surface that corresponds to the radius on the picture.
     const int beside = x + 1 < width_ ? x + 1 : x - 1;
     const double unit = length(at_depth_of(x, y, beside) - here);
     const double reach = radius_ * unit;
@@ -141,14 +142,14 @@ class Sky {
       const Vec3 step = point(lx, ly) - here;
       const double above = dot(step, normal);
       const double squared = dot(step, step);
-      if (!(above > 0) || !(squared < farthest)) continue;  // most hide nothing
+      if (!(above > 0) || !(squared < farthest)) continue;  // most looks hide nothing
       const double rise = std::max(0.0, above / std::sqrt(squared) - 0.08);
       hidden += rise * (1 - squared / farthest);
     }
     return static_cast<float>(std::clamp(1 - k_strength * hidden / k_looks, 0.0, 1.0));
   }
 
-  /// The mean of a square in which all directions are looked in once, of the same surface.
+  /// The mean over a square that contains each rotation once, on the same surface.
   float smoothed_at(const std::vector<float>& rough, int x, int y) const {
     const float depth = depths_[place(x, y)];
     float sum = 0;
@@ -175,7 +176,7 @@ class Sky {
   double radius_;  // in pixels
   std::array<Looks, k_square> looks_;
   std::vector<float> depths_;
-  std::vector<double> across_;  // of the columns' middles, as Camera has it
+  std::vector<double> across_;  // of the columns' centres, see Camera
   std::vector<double> along_;   // of the rows'
 };
 

@@ -11,9 +11,9 @@
 
 namespace meshfarm {
 
-/// How much of the sky each pixel's surface sees, from 0 to 1, of which what stands near it hides a
-/// part: hollows are darker. By the depths on the canvas alone. Takes 16 bytes a pixel. Of the
-/// options quick and threads count.
+/// The fraction of the sky that each pixel's surface sees, from 0 to 1; nearby surfaces hide part
+/// of it, so hollows are darker. Uses only the depths on the canvas. Takes 16 bytes per pixel. Of
+/// the options only quick and threads matter.
 std::vector<float> find_open_sky(const Canvas& canvas, const Camera& camera,
                                  const RenderOptions& options);
 

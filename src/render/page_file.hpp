@@ -10,13 +10,13 @@
 
 namespace meshfarm {
 
-/// A scratch file without a name that several threads read and write by place. It is not mapped:
-/// how much the kernel maps at a time is not ours to decide, and mapped pages count as memory.
+/// A scratch file without a name that several threads read and write at given offsets. It is not
+/// mapped: we cannot control how much the kernel maps at a time, and mapped pages count as memory.
 class PageFile {
  public:
-  /// Throws IoError, and so do the others, for a full disk, say.
+  /// Throws IoError, as do the other functions, for example if the disk is full.
   explicit PageFile(const std::filesystem::path& folder);
-  /// What was not written is zero.
+  /// Bytes that were never written are zero.
   void read(std::uint64_t offset, std::span<char> out) const;
   void write(std::uint64_t offset, std::span<const char> bytes) const;
 

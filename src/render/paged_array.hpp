@@ -16,13 +16,13 @@
 
 namespace meshfarm {
 
-/// Where arrays of any size lie.
+/// Where to store arrays of any size.
 struct ArrayRoom {
   std::filesystem::path folder;    // for scratch files
-  std::uint64_t memory_bytes = 0;  // what one may take; larger ones lie in scratch files
+  std::uint64_t memory_bytes = 0;  // per array; larger ones go to scratch files
 };
 
-/// Items, zero at first, in memory or in a scratch file: then they are read and written by views.
+/// Items, initially zero, in memory or in a scratch file, which is then accessed through views.
 template <class T>
 class PagedArray {
  public:
@@ -56,7 +56,7 @@ class PagedArray {
   std::optional<PageFile> file_;
 };
 
-/// One thread's view of an array: pages that were used last. Others may read the array meanwhile.
+/// One thread's view of an array: caches recently used pages. Others may read the array meanwhile.
 template <class T>
 class PagedArray<T>::View {
  public:
@@ -77,13 +77,13 @@ class PagedArray<T>::View {
     page_of(i)[i % k_items] = item;
     slots_[slot_of(i / k_items)].is_changed = true;
   }
-  /// Writes what was set, which no other view sees before.
+  /// Writes what was set; other views do not see it before.
   void flush() {
     for (std::size_t slot = 0; slot < slots_.size(); ++slot) write_back(slot);
   }
 
  private:
-  static constexpr std::uint64_t k_items = 512;  // a page
+  static constexpr std::uint64_t k_items = 512;  // per page
   static constexpr std::uint64_t k_least_pages = 16;
   struct Slot {
     std::uint64_t page = UINT64_MAX;
@@ -96,7 +96,7 @@ class PagedArray<T>::View {
     const std::size_t slot = slot_of(page);
     if (slots_[slot].page != page) {
       write_back(slot);
-      slots_[slot].page = UINT64_MAX;  // should the read fail
+      slots_[slot].page = UINT64_MAX;  // in case the read fails
       const std::span<T> items = items_of(slot);
       array_.file_->read(page * k_items * sizeof(T),
                          {reinterpret_cast<char*>(items.data()), items.size_bytes()});

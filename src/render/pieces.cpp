@@ -14,7 +14,7 @@
 namespace meshfarm {
 namespace {
 
-/// Of a place; so that one and the same has one only, zeros have no sign.
+/// Hash of a position; signs of zeros are removed, so that equal positions have equal hashes.
 std::uint64_t hash_of(const ScreenPoint& p) {
   std::uint64_t hash = 0;
   for (const float x : {p.x, p.y, p.depth}) {
@@ -36,7 +36,7 @@ Pieces::Pieces(PagedArray<ScreenPoint>& vertices, const ArrayRoom& room,
   join_at_one_place(vertices, {room.folder, memory_for_places});
 }
 
-/// Vertices at one place come into one bucket, and few enough are in it for a cache.
+/// Vertices at the same position are in the same bucket, and a bucket is small enough for a cache.
 void Pieces::join_at_one_place(PagedArray<ScreenPoint>& array, const ArrayRoom& room) {
   constexpr std::uint64_t k_in_a_bucket = std::uint64_t{1} << 15;
   constexpr std::uint64_t k_most_buckets = std::uint64_t{1} << 13;
@@ -60,7 +60,7 @@ void Pieces::join_at_one_place(PagedArray<ScreenPoint>& array, const ArrayRoom& 
 void Pieces::join_at_one_place(const std::vector<PlacedVertex>& vertices,
                                std::vector<std::uint32_t>& table) {
   const std::uint64_t mask = std::bit_ceil(2 * vertices.size() + 1) - 1;
-  table.assign(mask + 1, 0);  // one more than an index, or 0
+  table.assign(mask + 1, 0);  // an index plus one, or 0
   for (std::uint32_t i = 0; i < vertices.size(); ++i) {
     std::uint64_t at = (hash_of(vertices[i].place) >> 32) & mask;
     while (table[at] != 0 && !at_one_place(vertices[table[at] - 1].place, vertices[i].place)) {
@@ -86,7 +86,7 @@ std::uint64_t Pieces::colour(PagedArray<std::uint32_t>& array) {
   std::uint64_t pieces = 0;
   for (std::uint64_t v = 0; v < array_.size(); ++v) {
     const std::uint64_t first = first_of(v);
-    if (first == v) continue;  // without others it is of no triangle
+    if (first == v) continue;  // if it is alone, it is in no triangle
     std::uint32_t colour = colours.get(first);
     if (colour == 0) {
       colour = packed(colour_of_number(pieces++));
@@ -102,7 +102,7 @@ std::uint64_t Pieces::first_of(std::uint64_t vertex) {
   std::uint64_t at = vertex;
   while (const std::uint32_t step = before_.get(at)) {
     const std::uint32_t next = before_.get(at - step);
-    if (next != 0) before_.set(at, step + next);  // halves the way for those that come after
+    if (next != 0) before_.set(at, step + next);  // path halving for later look-ups
     at -= step;
   }
   return at;
@@ -112,7 +112,7 @@ void Pieces::join(std::uint64_t a, std::uint64_t b) {
   join_firsts(first_of(a), first_of(b));
 }
 
-/// Returns the first of both.
+/// Joins both pieces and returns the first vertex.
 std::uint64_t Pieces::join_firsts(std::uint64_t a, std::uint64_t b) {
   if (a == b) return a;
   const auto [first, second] = std::minmax(a, b);

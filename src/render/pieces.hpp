@@ -13,17 +13,17 @@
 
 namespace meshfarm {
 
-/// Which vertices are connected by triangles, or by lying at the same place.
+/// Finds vertices that are connected by triangles, or lie at the same position.
 class Pieces {
  public:
   static constexpr std::uint64_t k_most_vertices = UINT32_MAX - 1;
 
-  /// Takes 4 bytes a vertex, by `room`. While places are compared, 16 more in `memory_for_places`
-  /// or, beyond that, in a scratch file, and some 34 MB. Throws IoError.
+  /// Takes 4 bytes per vertex, by `room`. While positions are compared, another 16 in
+  /// `memory_for_places` or, beyond that, in a scratch file, and some 34 MB. Throws IoError.
   Pieces(PagedArray<ScreenPoint>& vertices, const ArrayRoom& room, std::uint64_t memory_for_places);
   void join(std::span<const WideTriangle> triangles);
-  /// Gives each vertex the colour of its piece, and returns how many pieces there are. Their order
-  /// is that of their vertices, so that nothing but the file decides on a colour.
+  /// Assigns each vertex the colour of its piece, and returns the number of pieces. Pieces are
+  /// ordered by their vertices, so that colours depend on the file alone.
   std::uint64_t colour(PagedArray<std::uint32_t>& array);
 
  private:

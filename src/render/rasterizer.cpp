@@ -11,7 +11,7 @@ namespace {
 const Light k_wire_colour = light_of({28, 34, 46});
 const Light k_back_tint = {0.93F, 0.80F, 0.72F};
 
-/// The first whole number that is not below, and the last that is not above; of numbers >= -1.
+/// Smallest integer >= x, and largest integer <= x; for x >= -1.
 int first_not_below(float x) {
   const int whole = static_cast<int>(x);
   return whole + (x > static_cast<float>(whole) ? 1 : 0);
@@ -20,8 +20,8 @@ int last_not_above(float x) {
   return x < 0 ? -1 : static_cast<int>(x);
 }
 
-/// Twice the area to the left of the line from a to b, seen from p. Exact, as floats of a picture's
-/// size are in doubles: triangles on both sides of an edge agree.
+/// Twice the signed area of the triangle a, b, (x, y). Exact in doubles, since a picture's
+/// coordinates are floats: the triangles on both sides of an edge agree.
 double side_of(const ScreenPoint& a, const ScreenPoint& b, double x, double y) {
   const double ax = static_cast<double>(a.x);
   const double ay = static_cast<double>(a.y);
@@ -47,10 +47,10 @@ struct Rasterizer::Covered {
   const std::array<ScreenPoint, 3>& corners;
   const CornerColours& colours;
   Facing facing;
-  Light all;                         // its colour, with light on it, if it has one
-  Srgb flat{};                       // the same as it is drawn, if nothing changes it
+  Light all;                         // its lit colour, if it has a single one
+  Srgb flat{};                       // the same as drawn, if nothing changes it
   std::array<double, 3> nearness{};  // of the corners
-  std::array<double, 3> heights{};   // over the sides that face the corners, in samples
+  std::array<double, 3> heights{};   // above the sides opposite the corners, in samples
 };
 
 Rasterizer::Rasterizer(const Camera& camera, Canvas& canvas, Wire wire)
@@ -87,7 +87,7 @@ Light Rasterizer::colour_at(const Covered& triangle, const std::array<double, 3>
   using Kind = CornerColours::Kind;
   const CornerColours& colours = triangle.colours;
   if (colours.kind == Kind::one || colours.kind == Kind::normal) return triangle.all;
-  // As the surface has them, not the picture.
+  // Shares on the surface, not on the picture (perspective correction).
   std::array<double, 3> on_surface{};
   double sum = 0;
   for (std::size_t i = 0; i < 3; ++i) {
@@ -104,7 +104,8 @@ Light Rasterizer::colour_at(const Covered& triangle, const std::array<double, 3>
   return light_of(colour_on_scale(colours.range.place(value))) * light;
 }
 
-/// How much of a sample is an edge: lines are a pixel wide, and fade where they would touch.
+/// The fraction of a sample covered by an edge: lines are a pixel wide, and fade where they would
+/// touch.
 float Rasterizer::wire_at(const Covered& triangle, const std::array<double, 3>& shares) const {
   const double side = canvas_.size().side;
   const double least = std::min({triangle.heights[0], triangle.heights[1], triangle.heights[2]});
@@ -140,10 +141,10 @@ void Rasterizer::draw(const std::array<ScreenPoint, 3>& corners, const CornerCol
   }
 }
 
-/// Only for triangles that are seen.
+/// Call only for visible triangles.
 void Rasterizer::prepare(Covered& triangle, double area) const {
   const auto& [a, b, c] = triangle.corners;
-  // The picture's y goes down: what turns to the left in the world turns to the right in it.
+  // The picture's y axis points down: counter-clockwise in the world is clockwise in the picture.
   triangle.facing = facing(triangle.corners, area > 0);
   for (std::size_t i = 0; i < 3; ++i) {
     triangle.nearness[i] = camera_.nearness(static_cast<double>(triangle.corners[i].depth));
@@ -160,14 +161,14 @@ void Rasterizer::prepare(Covered& triangle, double area) const {
   if (is_flat(triangle)) triangle.flat = srgb_of(tinted(triangle, triangle.all));
 }
 
-/// Whether all its samples have one colour.
+/// Whether all samples of the triangle have the same colour.
 bool Rasterizer::is_flat(const Covered& triangle) const {
   using Kind = CornerColours::Kind;
   const Kind kind = triangle.colours.kind;
   return wire_ == Wire::no && (kind == Kind::one || kind == Kind::normal);
 }
 
-/// What is seen from behind looks so.
+/// Back faces are tinted.
 Light Rasterizer::tinted(const Covered& triangle, Light light) {
   if (!triangle.facing.is_back || triangle.colours.kind == CornerColours::Kind::normal) {
     return light;

@@ -13,7 +13,7 @@
 
 namespace meshfarm {
 
-/// What lowest and highest value a scale has.
+/// The lowest and highest value of a scale.
 struct ValueRange {
   double low = 0;
   double high = 0;
@@ -23,13 +23,13 @@ struct ValueRange {
   }
 };
 
-/// The colours of a triangle's corners, before light falls on them.
+/// The colours of a triangle's corners, before lighting.
 struct CornerColours {
   enum class Kind : std::uint8_t {
-    one,     // lights[0] is that of all of it
-    each,    // blended from the three lights
-    values,  // by the blended value
-    normal   // by the side that it faces
+    one,     // lights[0] for the whole triangle
+    each,    // interpolated from the three lights
+    values,  // by the interpolated value
+    normal   // by the triangle's facing
   };
   Kind kind = Kind::one;
   std::array<Light, 3> lights{};
@@ -39,21 +39,21 @@ struct CornerColours {
 
 enum class Wire : std::uint8_t { no, yes };
 
-/// Draws triangles on a canvas: each sample whose middle one covers, edges included.
+/// Draws triangles on a canvas: each sample whose centre a triangle covers, edges included.
 class Rasterizer {
  public:
   Rasterizer(const Camera& camera, Canvas& canvas, Wire wire);
 
-  /// Whether a sample's middle lies in the box round the corners. Most triangles of a large mesh
-  /// have none.
+  /// Whether a sample's centre lies in the corners' bounding box. For most triangles of a large
+  /// mesh none does.
   bool may_cover(const std::array<ScreenPoint, 3>& corners) const;
-  /// Of corners that may_cover() is true for.
+  /// Requires that may_cover() is true for the corners.
   void draw(const std::array<ScreenPoint, 3>& corners, const CornerColours& colours);
 
  private:
   struct Covered;
   struct Facing {
-    Vec3 normal;  // as seen, toward the viewer
+    Vec3 normal;  // in view coordinates, toward the viewer
     bool is_back = false;
     float light = 0;
   };

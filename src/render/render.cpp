@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
 //
-// Scans of the input: all vertices, to find the camera; all vertices, to project and keep them;
+// Scans of the input: all vertices, to find the camera; all vertices, to project and store them;
 // with ColourBy::piece all triangles, to connect them; and all triangles, to draw them.
 #include <algorithm>
 #include <atomic>
@@ -44,7 +44,7 @@ Canvas::Size size_of(const RenderOptions& options) {
   return {options.width, options.height, options.samples};
 }
 
-/// All vertices, as long as triangles are drawn.
+/// All vertices, kept while triangles are drawn.
 struct Kept {
   Kept(std::uint64_t vertices, bool have_paints, const ArrayRoom& array_room)
       : room(array_room),
@@ -55,14 +55,14 @@ struct Kept {
   PagedArray<std::uint32_t> paints;
 };
 
-/// One thread's view of them.
+/// One thread's view of the kept vertices.
 struct View {
   View(Kept& kept, unsigned views) : points(kept.points, views), paints(kept.paints, views) {}
   PagedArray<ScreenPoint>::View points;
   PagedArray<std::uint32_t>::View paints;
 };
 
-/// Views go from one block to the next: what one has read, the next may need.
+/// Views are reused by later blocks: pages that one has read, the next may need.
 class Views {
  public:
   Views(Kept& kept, unsigned threads) : kept_(kept), threads_(threads) {}
@@ -105,7 +105,7 @@ class Renderer {
   }
 
  private:
-  /// Without the legend, if there is one.
+  /// The frame without the legend, if any.
   Frame frame() const {
     const std::uint32_t legend =
         paints_.have_scale() ? std::min(legend_width(options_.height), options_.width / 2) : 0;
@@ -117,7 +117,7 @@ class Renderer {
     made_.vertices = source_.info().vertices;
     PositionType positions{};
     Framing framing(options_.view, frame());
-    do {  // again where they turn out to be finer than they seemed
+    do {  // repeated if they turn out to be finer than estimated
       positions = source_.info().positions;
       framing = Framing(options_.view, frame());
       std::uint64_t seen = 0;
@@ -137,7 +137,7 @@ class Renderer {
     return framing.camera();
   }
 
-  /// What is left beside the canvas.
+  /// The memory left besides the canvas.
   std::uint64_t memory_for_arrays() const {
     const std::uint64_t memory = options_.memory_bytes;
     const std::uint64_t others = Canvas::memory_for(canvas_.size()) + memory / 8;
@@ -297,7 +297,7 @@ class Renderer {
   Canvas canvas_;
   std::atomic<std::uint64_t> not_finite_{0};
   Rendering made_;
-  Crew crew_;  // last: its threads end before all else
+  Crew crew_;  // last, so that its threads end first
 };
 
 }  // namespace

@@ -13,15 +13,16 @@ namespace {
 using Floats = float __attribute__((vector_size(16)));
 using Ints = std::int32_t __attribute__((vector_size(16)));
 
-constexpr std::size_t k_from_first = 512;  // vertices that are measured from the first of them
-constexpr double k_unit = 0x1p-24;         // what a float is rounded by, relatively
+constexpr std::size_t k_from_first = 512;  // vertices measured relative to the first of them
+constexpr double k_unit = 0x1p-24;         // relative rounding error of a float
 constexpr std::int32_t k_no_cell = 0xffff;
 
-/// Camera::Rows of all cameras, one a lane. Lanes without a camera see all at one place.
+/// Camera::Rows of all cameras, one per lane. Lanes without a camera project everything to one
+/// point.
 struct LaneRows {
   std::array<Floats, 3> x{}, y{}, z{};
   Floats middle_x{}, middle_y{};
-  Floats scale{};  // for errors: samples a unit at distance 1
+  Floats scale{};  // for errors: samples per unit at distance 1
   Floats end_x{}, end_y{};
 };
 
@@ -46,8 +47,8 @@ LaneRows rows_of(std::span<const Camera* const> cameras) {
   return rows;
 }
 
-/// What is projected of a block's first vertex, exactly but for the last rounding, and by how much
-/// its other vertices may be off.
+/// The projection of a block's first vertex, exact except for the last rounding, and error bounds
+/// for the block's other vertices.
 struct BlockStart {
   Floats x{}, y{}, z{};
   Floats off_by_nearness{}, off{};
@@ -61,8 +62,8 @@ struct BlockStart {
       x[lane] = static_cast<float>(to_x);
       y[lane] = static_cast<float>(to_y);
       z[lane] = static_cast<float>(to_z);
-      // Eight roundings of what is summed up, and as many through the distance that it is divided
-      // by, twice to be safe.
+      // Eight roundings in the sum, and as many in the distance it is divided by, doubled to be
+      // safe.
       const double far = std::max(std::abs(to_x), std::abs(to_y)) + std::abs(to_z) * row.scale;
       off_by_nearness[lane] = static_cast<float>(32 * k_unit * (3 * reach * row.scale + far));
       off[lane] = static_cast<float>(32 * k_unit * (row.middle_x + row.middle_y + 2));
@@ -74,9 +75,9 @@ Floats chosen(Ints mask, Floats values) {
   return reinterpret_cast<Floats>(mask & reinterpret_cast<Ints>(values));
 }
 
-/// The whole numbers below, or k_no_cell where that is in doubt.
+/// Rounds down, or returns k_no_cell if the result is in doubt.
 Ints cells_below(Floats at, Floats end, Floats off) {
-  const Floats near = chosen((at > 0) & (at < end), at);  // 0 for what is not a number
+  const Floats near = chosen((at > 0) & (at < end), at);  // 0 for NaN
   const Ints whole = __builtin_convertvector(near, Ints);
   const Floats beyond = near - __builtin_convertvector(whole, Floats);
   const Ints is_sure = (beyond > off) & (beyond < 1 - off);
@@ -93,7 +94,7 @@ SampleCells::SampleCells(std::span<const Camera* const> cameras, std::span<const
   for (std::size_t begin = 0; begin < positions.size(); begin += k_from_first) {
     const std::size_t count = std::min(k_from_first, positions.size() - begin);
     const Vec3 first = positions[begin];
-    double reach = 0;  // not a number stays without a cell by itself
+    double reach = 0;  // a NaN has no cell anyway
     for (std::size_t i = 0; i < count; ++i) {
       const Vec3 p = positions[begin + i] - first;
       reach = std::max({reach, std::abs(p.x), std::abs(p.y), std::abs(p.z)});

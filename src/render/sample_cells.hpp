@@ -12,17 +12,17 @@
 
 namespace meshfarm {
 
-/// Tells of most triangles that cover no sample that they don't, for up to four pictures at once:
-/// those of a large mesh lie between the same columns or rows of middles of samples. One lane a
-/// camera, in single precision; what that leaves in doubt may cover one.
+/// Identifies most triangles that cover no sample, for up to four pictures at once: most triangles
+/// of a large mesh lie between two adjacent columns or rows of sample centres. One lane per camera,
+/// in single precision; triangles in doubt may cover a sample.
 class SampleCells {
  public:
   static constexpr std::size_t k_most_cameras = 4;
 
-  /// Of vertices. The cameras must outlive it.
+  /// Takes the vertices' positions. The cameras must outlive the object.
   SampleCells(std::span<const Camera* const> cameras, std::span<const Vec3> positions);
 
-  /// A bit a camera: whether the triangle may cover a sample there.
+  /// One bit per camera: whether the triangle may cover a sample there.
   unsigned may_cover(const Triangle& t) const {
     const Lanes a = cells_[t[0]];
     const Lanes differs = (a ^ cells_[t[1]]) | (a ^ cells_[t[2]]);
@@ -37,7 +37,7 @@ class SampleCells {
   using Lanes = std::uint32_t __attribute__((vector_size(16)));
   static constexpr std::uint32_t k_anywhere = 0xffff;  // near a middle, or off the picture
 
-  std::unique_ptr<Lanes[]> cells_;  // of a vertex: its column (the upper half) and row in each
+  std::unique_ptr<Lanes[]> cells_;  // per vertex: column (upper half) and row in each picture
 };
 
 }  // namespace meshfarm

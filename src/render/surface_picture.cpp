@@ -143,7 +143,7 @@ void SurfacePicture::draw_in_all(std::span<SurfacePicture* const> pictures,
     cameras.push_back(&each->impl_->camera());
     painters.push_back(each->impl_->painters(paint));
   }
-  // Of many vertices, as a sweep holds them, only those that are used.
+  // If there are many vertices, as in a sweep, project only those that are used.
   if (positions.size() > triangles.size()) {
     for (std::size_t i = 0; i < pictures.size(); ++i) {
       for (const Triangle& t : triangles) pictures[i]->impl_->draw(positions, t, painters[i]);

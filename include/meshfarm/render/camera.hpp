@@ -13,29 +13,29 @@ namespace meshfarm {
 
 enum class Projection : std::uint8_t { perspective, orthographic };
 
-/// From where a mesh is looked at. Azimuth goes round the axis that is up, counter-clockwise seen
-/// from above, from the front (0) to the right (90). In degrees.
+/// The direction from which a mesh is viewed, in degrees. Azimuth turns around the up axis,
+/// counter-clockwise seen from above, from the front (0) to the right (90).
 struct View {
   Projection projection = Projection::perspective;
   double azimuth = 45;
-  double elevation = 35.264;  // of an isometric view
+  double elevation = 35.264;  // isometric
   Vec3 up{0, 1, 0};           // an axis, or its opposite
 };
 
-/// The directions of a view, each of length 1 and at right angles to the others.
+/// The directions of a view, orthonormal.
 struct ViewAxes {
   Vec3 right;
   Vec3 up;
-  Vec3 toward;  // the viewer
+  Vec3 toward;  // toward the viewer
 
   explicit ViewAxes(const View& view);
-  /// A direction of the world as the viewer sees it: x to the right, y up, z toward the viewer.
+  /// World to view coordinates: x to the right, y up, z toward the viewer.
   Vec3 seen(Vec3 p) const { return {dot(right, p), dot(up, p), dot(toward, p)}; }
-  /// The opposite of seen().
+  /// Inverse of seen().
   Vec3 in_world(Vec3 p) const { return right * p.x + up * p.y + toward * p.z; }
 };
 
-/// The rectangle that the mesh is to fill, in samples from the picture's upper left corner.
+/// The rectangle that the mesh should fill, in samples from the picture's upper left corner.
 struct Frame {
   double left = 0;
   double top = 0;
@@ -50,7 +50,7 @@ struct ScreenPoint {
   float depth = 0;
 };
 
-/// Projects the world onto the picture. Straight lines stay straight, in depth, too.
+/// Projects the world onto the picture. Straight lines stay straight, also in depth.
 class Camera {
  public:
   ScreenPoint project(Vec3 world) const {
@@ -62,35 +62,34 @@ class Camera {
             static_cast<float>(centre_y_ - scale_ * p.y * by_distance),
             static_cast<float>(depth / (near_ - far_))};
   }
-  /// The point as the viewer sees it: x to the right, y up, z toward the viewer.
+  /// The point in view coordinates: x to the right, y up, z toward the viewer.
   Vec3 unproject(const ScreenPoint& p) const {
     return unproject(across(static_cast<double>(p.x)), along(static_cast<double>(p.y)), p.depth);
   }
-  /// The same where across() of its column and along() of its row are known.
+  /// The same if across() of its column and along() of its row are already known.
   Vec3 unproject(double across_x, double along_y, float depth) const {
     const double place = far_ + static_cast<double>(depth) * (near_ - far_);
     const bool is_flat = projection_ == Projection::orthographic;
     const double distance = is_flat ? 1 : 1 / place;
     return {across_x * distance, along_y * distance, is_flat ? place : -distance};
   }
-  /// Where a column or a row of samples lies, at distance 1.
+  /// Position of a column or a row of samples at distance 1.
   double across(double x) const { return (x - centre_x_) / scale_; }
   double along(double y) const { return (centre_y_ - y) / scale_; }
-  /// One by the distance, without perspective 1. Values can be blended linearly over the picture if
-  /// they are multiplied by it.
+  /// 1 / distance; 1 without perspective. Values multiplied by it can be interpolated linearly on
+  /// the picture.
   double nearness(double depth) const {
     return projection_ == Projection::orthographic ? 1 : far_ + depth * (near_ - far_);
   }
   const ViewAxes& axes() const { return axes_; }
 
-  /// What project() does, by rows of a matrix: a point p is at
-  /// x = middle_x + (dot(x, p) + x0) / d, y = middle_y + (dot(y, p) + y0) / d, where
-  /// d = dot(z, p) + z0 is above 0 before the viewer.
+  /// project() as rows of a matrix: a point p projects to x = middle_x + (dot(x, p) + x0) / d, y =
+  /// middle_y + (dot(y, p) + y0) / d, where d = dot(z, p) + z0 is positive in front of the viewer.
   struct Rows {
     Vec3 x, y, z;
     double x0 = 0, y0 = 0, z0 = 1;
     double middle_x = 0, middle_y = 0;
-    double scale = 1;  // the length of x, and of y
+    double scale = 1;  // length of x and of y
   };
   Rows rows() const {
     Rows rows{axes_.right * scale_,
@@ -115,20 +114,20 @@ class Camera {
 
   ViewAxes axes_;
   Projection projection_ = Projection::perspective;
-  Vec3 eye_;          // as seen; without projection its z is that of depth 0
-  double scale_ = 1;  // samples a unit, with perspective at distance 1
+  Vec3 eye_;          // in view coordinates; without perspective its z is that of depth 0
+  double scale_ = 1;  // samples per unit; with perspective at distance 1
   double centre_x_ = 0;
   double centre_y_ = 0;
-  double far_ = 0;   // depth 0: one by the distance, without perspective the z
-  double near_ = 1;  // depth 1
+  double far_ = 0;   // at depth 0: 1 / distance, without perspective z
+  double near_ = 1;  // at depth 1
 };
 
-/// Finds the camera that is as near as all vertices allow. One scan of these is enough: how far
-/// they reach toward each side of the picture is all that counts.
+/// Finds the closest camera that sees all vertices. One scan of the vertices is enough: only their
+/// extent toward each side of the picture matters.
 class Framing {
  public:
   Framing(const View& view, const Frame& frame);
-  /// Vertices without a position count for nothing.
+  /// Vertices without a position are ignored.
   void add(std::span<const Vec3> vertices);
   bool empty() const { return !(reach_[0] >= -reach_[1]); }
   Camera camera() const;
@@ -140,9 +139,9 @@ class Framing {
   ViewAxes axes_;
   Projection projection_;
   Frame frame_;
-  double slope_x_ = 0;  // of the sides of what is seen; 0 without perspective
+  double slope_x_ = 0;  // of the view's sides; 0 without perspective
   double slope_y_ = 0;
-  // Greatest z, -z, and distance beyond the right, left, upper and lower side.
+  // Maximum z, -z, and distance beyond the right, left, upper and lower side.
   std::array<double, 6> reach_;
 };
 

@@ -7,10 +7,10 @@
 
 namespace meshfarm {
 
-/// A colour as files have it: sRGB.
+/// A colour as stored in files: sRGB.
 using Srgb = std::array<std::uint8_t, 3>;
 
-/// From dark blue (0) to yellow (1), evenly lighter; grey for what is not a number.
+/// From dark blue (0) to yellow (1), with evenly increasing lightness; grey for NaN.
 Srgb colour_on_scale(double place);
 
 }  // namespace meshfarm

@@ -14,32 +14,32 @@
 
 namespace meshfarm {
 
-/// What colours a piece of a surface; else it is of clay, or coloured by ColourBy::normal.
+/// The colours of a piece of a surface; else it is clay, or coloured by ColourBy::normal.
 struct PiecePaint {
-  static constexpr std::uint32_t k_between = UINT32_MAX;  // the part of what is between parts
+  static constexpr std::uint32_t k_between = UINT32_MAX;  // the part of what lies between parts
 
   std::uint32_t part = k_between;      // with ColourBy::part
-  std::span<const float> values = {};  // of the vertices, with ColourBy::quality
+  std::span<const float> values = {};  // per vertex, with ColourBy::quality
 };
 
-/// A picture of a surface that comes in pieces, each with its own vertices, by a camera that is
-/// known. Nothing is kept but the canvas: several views can be drawn as pieces come. The picture
-/// does not depend on the order of pieces. options.colour_by is none, normal, part or quality; the
-/// last with a range.
+/// A picture of a surface that arrives in pieces, each with its own vertices, with a given camera.
+/// Only the canvas is kept: several views can be drawn as pieces arrive. The picture does not
+/// depend on the order of the pieces. options.colour_by is none, normal, part or quality; the last
+/// needs a range.
 class SurfacePicture {
  public:
-  /// The camera must be made for the frame of frame_of().
+  /// The camera must be made for the frame from frame_of().
   SurfacePicture(const RenderOptions& options, const Camera& camera);
   ~SurfacePicture();
   SurfacePicture(SurfacePicture&&) noexcept;
 
   static Frame frame_of(const RenderOptions& options);
-  /// Draws the same view in other colours, too. Call this first; returns the number of that look.
+  /// Adds another colouring of the same view. Call before drawing; returns the number of the look.
   std::size_t add_look(ColourBy colour_by);
-  /// From any number of threads at once.
+  /// Thread-safe.
   void draw(std::span<const Vec3> positions, std::span<const Triangle> triangles,
             const PiecePaint& paint = {});
-  /// The same in several pictures, which takes less time than one after the other.
+  /// Draws in several pictures, which is faster than one after another.
   static void draw_in_all(std::span<SurfacePicture* const> pictures,
                           std::span<const Vec3> positions, std::span<const Triangle> triangles,
                           const PiecePaint& paint = {});
