@@ -11,13 +11,13 @@
 namespace meshfarm {
 namespace {
 
-/// Values that are equal may differ once they are blended at a point, by rounding.
+/// Equal values may differ by rounding after interpolation at a point.
 bool are_equal(const ValueError& colours) {
-  constexpr double k_rounding = 1e-9;  // less than floats tell apart
+  constexpr double k_rounding = 1e-9;  // less than the precision of floats
   return colours.max < k_rounding;
 }
 
-/// The peak signal-to-noise ratio, of shares of the full range.
+/// The peak signal-to-noise ratio, for errors as fractions of the full range.
 double psnr_of(const ValueError& error) {
   return -20 * std::log10(error.rms);
 }
@@ -66,7 +66,7 @@ Json to_json(const SurfaceError& error, double diagonal) {
   return json;
 }
 
-/// From A to B, in percent of A; nothing where that has none.
+/// The change from A to B, in percent of A; nothing if A is 0.
 std::optional<double> change(double a, double b) {
   if (a == 0) return std::nullopt;
   return 100 * (b - a) / std::abs(a);
@@ -96,7 +96,7 @@ Json to_json(const DistanceBounds& bounds, double diagonal) {
   return {{"at_least", bounds.lower / diagonal}, {"at_most", bounds.upper / diagonal}};
 }
 
-/// The greater of both directions: the Hausdorff distance.
+/// The larger of both directions: the Hausdorff distance.
 Json certified_json(const Comparison& c) {
   if (!c.certified) return nullptr;
   const auto& [there, back] = *c.certified;

@@ -15,7 +15,7 @@
 namespace meshfarm {
 namespace {
 
-/// Bytes of results against those of the parts, measured: at 1 % of the triangles, and at 50 %.
+/// Bytes of results relative to the parts, measured: at 1 % of the triangles, and at 50 %.
 constexpr double k_results_of_small_run = 0.5;
 constexpr double k_results_of_large_run = 5;
 constexpr double k_much_skew_s = 2;

@@ -4,7 +4,7 @@
 
 namespace meshfarm {
 
-/// JSON whose members stay in the order in which they were written.
+/// JSON whose members keep the order in which they were written.
 using Json = nlohmann::ordered_json;
 
 }  // namespace meshfarm

@@ -15,7 +15,7 @@ inline std::string grouped(std::uint64_t value) {
   return digits;
 }
 
-/// A number by a printf format.
+/// A number in a printf format.
 inline std::string number(double value, const char* format) {
   char text[64];
   std::snprintf(text, sizeof text, format, value);

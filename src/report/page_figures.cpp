@@ -18,7 +18,7 @@ std::string shown(const std::optional<double>& value, const char* format = "%.6g
   return value && std::isfinite(*value) ? number(*value, format) : k_none;
 }
 
-/// Input, result, and the change where that is more than a word.
+/// A table of input, result, and change.
 class Table {
  public:
   explicit Table(const std::vector<std::string>& head)
@@ -33,7 +33,7 @@ class Table {
     }
     add({name, shown(input), shown(result), change});
   }
-  /// Of a mesh: what is left of it.
+  /// Sizes of a mesh, with the percentage left.
   void add_sizes(const std::string& name, std::uint64_t input,
                  const std::optional<std::uint64_t>& result) {
     if (!result) return add({name, grouped(input), k_none, ""});
@@ -79,7 +79,7 @@ void add_shapes(Table& table, const SurfaceFigures& input, const SurfaceFigures&
 }
 
 bool is_closed(const Json& topology) {
-  // Summaries of earlier versions have the counts alone.
+  // Summaries of earlier versions have only the counts.
   const bool by_counts =
       count_of(topology, "border_edges") == 0U && count_of(topology, "nonmanifold_edges") == 0U;
   return topology.is_object() && topology.value("closed", by_counts);
@@ -105,7 +105,7 @@ std::string share_of(const Json& error, const char* direction, const char* figur
   return number(error.at(direction).value(figure, 0.0), "%.3g");
 }
 
-/// The run's own figures, and what was measured for the page.
+/// The run's own figures, and those measured for the page.
 std::string error_table(const Json& summary, const PageFigures* figures, double diagonal) {
   const Json error = summary.value("error", Json(nullptr));
   if (!error.is_object() && figures == nullptr) return {};

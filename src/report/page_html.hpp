@@ -13,24 +13,24 @@
 
 namespace meshfarm {
 
-// What pages are made of.
+// Building blocks of pages.
 
 std::string base64(std::string_view bytes);
-/// An <img> that holds its file.
+/// An <img> with the file embedded.
 std::string html_of(const PagePicture& picture, std::string_view what);
-/// With a caption; nothing where there is no picture.
+/// A figure with a caption; empty if there is no picture.
 std::string figure_of(const PagePicture& picture, std::string_view what, std::string_view caption);
-/// A row of a table; of the cells markup is escaped.
+/// A table row; markup in cells is escaped.
 std::string row_of(const std::vector<std::string>& cells, const char* tag = "td");
 /// "#2a6fb8"
 std::string css_of(const std::array<std::uint8_t, 3>& colour);
 
-/// The tables of all figures. `summary`: of the run; an empty object if it has not ended.
+/// The tables of all figures. `summary`: the run's; an empty object if the run has not ended.
 std::string figure_tables(const RunPage& page, const Json& summary);
-/// A count of a summary's, if it is known.
+/// A count in a summary, if known.
 std::optional<std::uint64_t> count_of(const Json& of, const char* name);
-/// What no point of either surface is farther from the other than, as a share of the diagonal;
-/// nothing if that was not proven.
+/// The proven upper bound of the distance between the surfaces, as a fraction of the diagonal;
+/// nothing if none was proven.
 std::optional<double> proven_bound(const Json& summary);
 
 }  // namespace meshfarm

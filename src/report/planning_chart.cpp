@@ -21,7 +21,7 @@ constexpr double k_bottom = 50;
 
 using Value = std::function<double(const ScheduleLine&)>;
 
-/// Time over ideal upwards, the number of jobs by powers of two to the right.
+/// Vertical: time relative to ideal; horizontal: the number of jobs by powers of two.
 class Chart {
  public:
   explicit Chart(const ScheduleComparison& comparison)

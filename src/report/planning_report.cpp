@@ -11,7 +11,7 @@
 namespace meshfarm {
 namespace {
 
-/// What a stage takes beyond what it waits for at least.
+/// Above this multiple of its lower bounds, a stage's time is due to something else.
 constexpr double k_far_more = 2;
 
 std::string padded(std::string text, std::size_t width) {
@@ -45,7 +45,7 @@ Json as_json(const std::vector<PlanStage>& stages) {
   return list;
 }
 
-/// The greatest of what a stage waits for: it takes no less than any of them.
+/// The limiting factor of a stage: the greatest of the lower bounds of its time.
 std::string limit_of(const PlanStage& stage) {
   const double most = std::max({stage.ideal_s, stage.longest_s, stage.storage_s});
   if (stage.takes_s > k_far_more * most) return "files and messages";
@@ -53,7 +53,7 @@ std::string limit_of(const PlanStage& stage) {
   return most == stage.longest_s ? "longest job" : "storage";
 }
 
-/// What takes how long on a farm, and what each stage waits for.
+/// The time of each stage on a farm, and its limiting factor.
 std::string stages_of(const PlanLine& line) {
   if (line.stages.empty()) return {};
   std::string text = "\n" + labelled("stages with " + line.farm, 22) +

@@ -28,7 +28,7 @@ std::string paragraph(const std::string& text) {
   return "<p class=\"dim\">" + escaped(text) + "</p>\n";
 }
 
-/// A length of time for a heading.
+/// A duration for a heading.
 std::string time_text(double seconds) {
   if (seconds < 120) return number(seconds, "%.3g s");
   if (seconds < 7200) return number(seconds / 60, "%.3g min");
@@ -121,7 +121,7 @@ class Page {
     return text + "</div>\n";
   }
 
-  /// Proven, or of the points that were looked at.
+  /// The proven bound, or the maximum over the sampled points.
   std::string greatest(double of_points) const {
     const auto proven = proven_bound(summary_);
     return proven ? "proven to be within " + number(*proven, "%.3g") + " everywhere"
@@ -236,7 +236,7 @@ class Page {
     return "<pre>" + escaped(page_.command) + "</pre>\n";
   }
 
-  /// Last, as it is long and not looked at.
+  /// Comes last, since it is long and not for reading.
   std::string model() const {
     if (!page_.scene || page_.scene->model.empty()) return {};
     Json axes = page_.scene->axes;

@@ -10,12 +10,12 @@
 namespace meshfarm {
 namespace {
 
-/// A ventilator writes at least every second, and no later than its disk: one that wrote nothing
-/// for so long is gone or cut off.
+/// A ventilator writes at least every second, or as soon as its disk lets it: after this long
+/// without a line it is dead or cut off.
 constexpr double k_silent_s = 15;
-/// Then it may be worth finding out why.
+/// After this long it may be worth finding out why.
 constexpr double k_quiet_s = 3;
-/// The rate is that of the last jobs: as many seconds, if there are jobs in them.
+/// The rate is measured over this many recent seconds, if they contain jobs.
 constexpr double k_rate_window_s = 60;
 
 double last_time(const Trace& trace) {
@@ -25,14 +25,14 @@ double last_time(const Trace& trace) {
   return t;
 }
 
-/// Since the trace's last word; 0 where that cannot be told, or was the end.
+/// Seconds since the trace's last line; 0 if unknown, or if that was the end.
 double age_of(const StageStatus& status) {
   const Trace& trace = *status.trace;
   if (trace.end || !status.now_unix_s) return 0;
   return std::max(0.0, *status.now_unix_s - trace.head.unix_s - last_time(trace));
 }
 
-/// How a run is called that goes on, and whether it works and whether it needs somebody.
+/// The description of a running run, whether it makes progress, and whether somebody must act.
 struct LivePhase {
   std::string words;
   bool works = false;
@@ -47,7 +47,7 @@ LivePhase phase_while_full(double age_s) {
   return {words, false, true};
 }
 
-/// While the ventilator writes.
+/// The phase while the ventilator writes.
 LivePhase phase_heard(const TraceState& state) {
   if (!state.sink) return {"waiting for the sink"};
   const bool farmed = state.jobs_known > 0 && state.jobs_done == state.jobs_known;
@@ -92,7 +92,7 @@ void name_phase(const StageStatus& status, StatusFacts& facts) {
   facts.warns = phase.warns;
 }
 
-/// Triangles a second, by the jobs that ended lately.
+/// Triangles per second, from recently completed jobs.
 double rate_of(const Trace& trace, double now) {
   double triangles = 0;
   double since = now;

@@ -14,12 +14,12 @@ namespace {
 
 using Look = ScreenLine::Look;
 
-constexpr std::size_t k_widest = 110;  // columns that are of use
+constexpr std::size_t k_widest = 110;  // maximum useful width in columns
 constexpr std::size_t k_stage_name = 14;
 constexpr std::size_t k_host_name = 24;
 
 bool goes_on(char c) {
-  return (static_cast<unsigned char>(c) & 0xC0) == 0x80;  // in UTF-8
+  return (static_cast<unsigned char>(c) & 0xC0) == 0x80;  // a UTF-8 continuation byte
 }
 
 std::size_t width_of(const std::string& text) {
@@ -27,8 +27,8 @@ std::size_t width_of(const std::string& text) {
       std::count_if(text.begin(), text.end(), [](char c) { return !goes_on(c); }));
 }
 
-/// Names come from files: a terminal would obey what is in them. Also that of C1 (0x80 to 0x9f,
-/// which UTF-8 writes with a 0xc2 before), so nothing but ASCII of what we did not write.
+/// Names come from files, and a terminal would execute control codes in them. That includes C1
+/// codes (0x80 to 0x9f, preceded by 0xc2 in UTF-8), so only ASCII is kept in text that is not ours.
 std::string tame(const std::string& name) {
   std::string made = name;
   for (char& c : made) {
@@ -37,7 +37,7 @@ std::string tame(const std::string& name) {
   return made;
 }
 
-/// The first columns of it.
+/// The text cut to this many columns.
 std::string fitted(const std::string& text, std::size_t columns) {
   std::size_t width = 0;
   for (std::size_t i = 0; i < text.size(); ++i) {
@@ -57,11 +57,11 @@ std::string right_in(std::string text, std::size_t columns) {
 }
 
 struct BarParts {
-  double done = 0;  // of the bar's length, from 0 to 1
+  double done = 0;  // fraction of the bar's length, from 0 to 1
   double held = 0;
 };
 
-/// What is done, and what is held: full only when all is done.
+/// A bar of done and held work: full only when everything is done.
 std::string bar_of(const BarParts& parts, std::size_t columns, Letters letters) {
   const auto all = static_cast<double>(columns);
   const auto cells = [&](double share) {
@@ -134,7 +134,7 @@ class ScreenWriter {
 
   void add_progress() {
     const TraceState& s = facts_.state;
-    if (s.jobs_known == 0) return;  // what there is to do, and what of it was done, is not told yet
+    if (s.jobs_known == 0) return;  // the amount of work, and how much is done, is not known yet
     const double share = part_of(s.triangles_done, s.triangles_known);
     const std::string about = " " + right_in(percent(share), 5);
     add(bar_of({share, 0}, columns_ > about.size() ? columns_ - about.size() : 0, letters_) +
@@ -165,7 +165,7 @@ class ScreenWriter {
     }
   }
 
-  /// Bars are as long as what the busiest worker did and holds.
+  /// Bars are scaled to what the busiest worker did and holds.
   void add_workers() {
     add("");
     add("workers " + grouped(facts_.workers.size()) + ", " + grouped(facts_.workers_left) +
@@ -207,8 +207,8 @@ class ScreenWriter {
 
   const StatusFacts& facts_;
   std::size_t rows_;
-  std::size_t all_columns_;  // but for the last: a terminal may wrap there, or erase it
-  std::size_t columns_;      // that bars take
+  std::size_t all_columns_;  // except the last: a terminal may wrap there, or erase it
+  std::size_t columns_;      // width of bars
   std::size_t bar_columns_ = 0;
   Letters letters_;
   std::vector<ScreenLine> lines_;
@@ -240,7 +240,7 @@ std::string frame_of(const std::vector<ScreenLine>& lines) {
   for (const ScreenLine& each : lines) {
     if (!is_first) frame += "\r\n";
     is_first = false;
-    // Erased from where the text ends: what stands there already is written over by itself.
+    // Erase from the end of the text: the text itself overwrites the previous frame.
     const bool is_plain = each.look == Look::plain;
     frame += code_of(each.look) + each.text + (is_plain ? "\x1b[K" : "\x1b[0m\x1b[K");
   }

@@ -52,7 +52,7 @@ Json finish_json(const RunSummary& s) {
           {"pieces", std::move(pieces)}};
 }
 
-/// It may have been given up, and yet nothing went.
+/// The mode may allow changes although nothing changed.
 bool is_kept(const RunSummary& s) {
   if (!s.topology) return !s.topology_simplified;
   const auto& [before, after, gone] = *s.topology;
@@ -70,8 +70,9 @@ Json topology_json(const Topology& t) {
           {"nonmanifold_edges", t.nonmanifold_edges}};
 }
 
-/// Of the input once parts have simplified it: that keeps whether there are borders, but not how
-/// many edges these have, and cuts edges of more than two triangles apart where that is possible.
+/// The topology of the input after the parts have simplified it: whether there are borders is
+/// preserved, but not their number of edges, and edges of more than two triangles are split where
+/// possible.
 Json input_topology_json(const Topology& cleaned) {
   Json json = topology_json(cleaned);
   if (cleaned.border_edges > 0) json["border_edges"] = nullptr;
@@ -155,7 +156,7 @@ std::string bound_text(const RunSummary& s) {
   return "sampled, not certified: " + number(s.max_error / diagonal, "%.6g") + " of the diagonal";
 }
 
-/// Of the greatest distance: proven, or only what samples tell.
+/// The maximum distance: proven, or only from samples.
 Json bound_json(const RunSummary& s) {
   const double diagonal = s.manifest.box.diagonal();
   if (s.certified_error > 0) {
@@ -178,7 +179,7 @@ void add_error(Lines& lines, const MeasuredError& error, double diagonal) {
   }
 }
 
-/// Kinds of pictures that the textures of the result have no more.
+/// Kinds of pictures that the result's textures no longer have.
 std::vector<std::string> maps_lost(const RunSummary& s) {
   using Way = TexturesMade::Way;
   if (!s.manifest.labels) return {};
@@ -374,7 +375,7 @@ std::string warning_of(const RunSummary& s) {
                number(bound / diagonal, "%.3g") +
                " is not kept everywhere: " + number(greatest / diagonal, "%.6g") +
                " at a sampled point";
-    // Not with --drop-components.
+    // Not possible with --drop-components.
     const bool may_certify = !(s.certified_error > 0) && s.dropped_components.components == 0;
     if (may_certify) warning += "; --certify would keep it";
   }

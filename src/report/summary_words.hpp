@@ -20,7 +20,7 @@
 
 namespace meshfarm {
 
-// What the summaries of runs and of meshes share.
+// Shared by the summaries of runs and of meshes.
 
 /// A table of "label  value" lines.
 class Lines {
@@ -38,40 +38,40 @@ class Lines {
 
 std::vector<std::string> names_of(const std::vector<Channel>& channels);
 
-/// "material: 3 (stone, glass, steel)"; of many the first.
+/// "material: 3 (stone, glass, steel)"; only the first names if there are many.
 std::string text_of(const LabelMeaning& labels);
-/// Null where there are none.
+/// Null if there are none.
 Json to_json(const std::optional<LabelMeaning>& labels);
-/// The input must have some.
+/// Requires that the input has textures.
 std::string text_of(const TexturesMade& textures);
-/// Null where the input has none.
+/// Null if the input has none.
 Json to_json(const TexturesMade& textures);
 Json to_json(const Box& box);
 Json to_json(const Topology& topology);
 /// As fractions of the diagonal.
 Json to_json(const Distance& distance, double diagonal);
-/// Null where they were not measured.
+/// Null if not measured.
 Json to_json(const std::optional<NormalDeviation>& normals);
-/// The greater of both directions, and both.
+/// Both directions, and the larger values of the two.
 Json to_json(const MeasuredError& error, double diagonal);
-/// As fractions of the diagonal; null where they were not measured.
+/// As fractions of the diagonal; null if not measured.
 void add_quantiles(const std::optional<DistanceQuantiles>& quantiles, double diagonal, Json& json);
 std::string text_of(const NormalDeviation& normals);
 std::string text_of(const Topology& topology);
 /// "1 component", "2,000 components".
 std::string counted(std::uint64_t count, std::string_view thing);
-/// Genus, of all pieces together. Nothing where borders or edges that are not manifold make the
-/// Euler characteristic tell more than handles.
+/// The genus of all components together. Nothing if borders or non-manifold edges make the Euler
+/// characteristic count more than handles.
 std::optional<std::int64_t> handles_of(const Topology& topology);
 Json to_json(const SurfaceFigures& figures);
 void add_figures(Lines& lines, const std::string& label, const SurfaceFigures& figures);
-/// As the file has it only where that is something else than the welded.
+/// Adds the file's own topology only if it differs from the welded one.
 void add_topology(Lines& lines, const std::string& label, const Topology& welded,
                   const Topology& as_it_is);
 std::string text_of(const Distance& distance, double diagonal);
 /// Throws DataError naming `what`.
 RunTimes run_times_of(const Json& summary, std::string_view what);
-/// What is written to a file or a terminal; text that is no UTF-8 is replaced.
+/// The text for a file or a terminal; invalid UTF-8 is replaced.
 std::string dumped(const Json& json);
 
 }  // namespace meshfarm

@@ -18,7 +18,7 @@ std::string attribute(std::string_view name, std::string_view value) {
   return value.empty() ? "" : " " + std::string(name) + "=\"" + escaped(value) + "\"";
 }
 
-/// What a browser shows under the pointer.
+/// The title is the tooltip in browsers.
 std::string end_with(std::string_view tag, std::string_view title) {
   if (title.empty()) return "/>\n";
   return "><title>" + escaped(title) + "</title></" + std::string(tag) + ">\n";

@@ -7,7 +7,7 @@
 
 namespace meshfarm {
 
-/// Text for a page: what HTML would take for markup is escaped.
+/// Text for a page: HTML markup is escaped.
 std::string escaped(std::string_view text);
 
 struct SvgPoint {
@@ -31,14 +31,14 @@ class Svg {
   void circle(SvgPoint at, double radius, std::string_view fill, std::string_view title = {});
   void text(SvgPoint at, std::string_view words, SvgAnchor anchor = SvgAnchor::start);
 
-  /// The element as it stands in a page, or as a file of its own.
+  /// The element for a page, or for a file of its own.
   std::string str() const { return text_ + "</svg>\n"; }
 
  private:
   std::string text_;
 };
 
-/// The least of 1, 2, 5 times a power of ten that cuts `range` into at most `pieces`.
+/// The smallest of 1, 2, 5 times a power of ten that divides `range` into at most `pieces`.
 double round_step(double range, int pieces);
 
 }  // namespace meshfarm

@@ -19,16 +19,16 @@ constexpr double k_lanes_left = 170;
 constexpr double k_timeline_width = 1100;
 constexpr double k_lanes_right = 20;
 constexpr double k_axis = 24;
-/// Jobs that would be drawn narrower than this are drawn as one with their neighbours.
+/// Jobs that would be narrower than this are drawn as one with their neighbours.
 constexpr double k_least_width = 1.5;
 constexpr const char* k_stage_colours[] = {"#4878a8", "#d08030", "#58a058", "#a05898",
                                            "#a87848", "#48a0a0", "#808080", "#c05060"};
 
-/// When a worker computed, and at what.
+/// When a worker computed, and which stage.
 struct Span {
   double begin = 0;
   double end = 0;
-  std::uint32_t stage = 0;  // of Frame::stages
+  std::uint32_t stage = 0;  // index into Frame::stages
   std::uint64_t jobs = 1;
   std::uint64_t triangles = 0;
 };
@@ -45,7 +45,7 @@ struct Row {
 
 struct Frame {
   std::map<std::uint32_t, Row> rows;
-  std::vector<std::string> stages;  // as they first came
+  std::vector<std::string> stages;  // in order of first appearance
   double begin = 0;                 // of the farmed phase
   double end = 1;
   double length() const { return std::max(1e-3, end - begin); }
@@ -55,7 +55,7 @@ struct Frame {
   }
 };
 
-/// Of old traces, too.
+/// Also works for old traces.
 std::string stage_of(const TraceDone& job) {
   return job.stage.empty() ? "round " + std::to_string(job.round + 1) : job.stage;
 }
@@ -68,7 +68,7 @@ std::uint32_t number_of(std::vector<std::string>& stages, const std::string& sta
 }
 
 Span span_of(const TraceDone& job, std::uint32_t stage) {
-  // The trace has when the result was accepted: the job was written before, and computed before
+  // The trace contains the time of acceptance: the job was written before, and computed before
   // that.
   const double computed = job.t - job.write_ms / 1000.0;
   return {computed - job.compute_ms / 1000.0, computed, stage, 1, job.triangles};
@@ -93,7 +93,7 @@ Frame frame_of(const Trace& trace) {
   return frame;
 }
 
-/// Neighbours that cannot be told apart become one.
+/// Merges adjacent spans that cannot be told apart.
 std::vector<Span> drawable(std::vector<Span> spans, const Frame& frame) {
   std::sort(spans.begin(), spans.end(),
             [](const Span& a, const Span& b) { return a.begin < b.begin; });
@@ -170,7 +170,7 @@ std::string timeline(const Frame& frame) {
   return svg.str();
 }
 
-/// How many triangles were done by when.
+/// The number of triangles done over time.
 std::string progress_chart(const Frame& frame, const Trace& trace) {
   constexpr double k_height = 160;
   double all = 1;

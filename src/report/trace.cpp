@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
 //
-// A trace is a text of JSON objects, one a line, the first of kind "run":
+// A trace is a text of JSON objects, one per line, the first of kind "run":
 //
 //   {"kind": "run", "version": 1, ...}    TraceHead
 //   {"kind": "joined" | "left" | "done" | "failed" | "state" | "end", "t": seconds, ...}
@@ -113,7 +113,7 @@ Json to_json(const TraceEnd& l) {
   return {{"kind", "end"}, {"t", l.t}, {"failure", l.failure}};
 }
 
-// --- reading: each field must be of its kind and fit, as other numbers would wrap round
+// --- reading: each field must be of its kind and in range, since other numbers would wrap around
 
 template <class T>
 void get(const Json& json, const char* name, T& value) {

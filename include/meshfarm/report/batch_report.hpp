@@ -10,7 +10,7 @@
 
 namespace meshfarm {
 
-/// What became of each file of a batch.
+/// The result for each file of a batch.
 struct BatchReport {
   enum class State : std::uint8_t { done, done_before, failed, stopped };
   struct File {
@@ -18,7 +18,7 @@ struct BatchReport {
     std::string output;
     State state = State::stopped;
     std::string reason;   // why it failed
-    std::string summary;  // of its run, as JSON; empty if there is none
+    std::string summary;  // of its run, as JSON; may be empty
     double seconds = 0;
   };
   std::vector<File> files;

@@ -10,7 +10,7 @@
 
 namespace meshfarm {
 
-/// What `clean` removed from a stage, and what it left for whom.
+/// What `clean` removed from a stage, and what it kept for whom.
 struct CleanReport {
   struct Removed {
     std::string what;
@@ -18,7 +18,7 @@ struct CleanReport {
     std::uint64_t bytes = 0;
   };
   std::string stage;
-  bool dry_run = false;          // nothing was removed, only told
+  bool dry_run = false;          // nothing was removed, only listed
   std::vector<Removed> removed;  // each kind once
   std::vector<std::string> kept;
 };

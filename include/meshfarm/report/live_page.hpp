@@ -6,8 +6,8 @@
 
 namespace meshfarm {
 
-/// A page that shows what "status.json" beside it tells, render(StatusFacts, Format::json), and
-/// asks for it again every second. It loads nothing else.
+/// A page that shows "status.json" beside it, the output of render(StatusFacts, Format::json), and
+/// reloads it every second. It loads nothing else.
 std::string render_live_page();
 
 }  // namespace meshfarm

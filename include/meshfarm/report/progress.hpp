@@ -18,7 +18,7 @@ enum class ProgressStyle {
 /// terminal if stderr is one, else plain.
 ProgressStyle progress_style_of_stderr();
 
-/// One thing that is being done: how far it is, its rate, and when it will end.
+/// A running activity: how far it is, its rate, and its estimated end.
 struct ProgressState {
   std::string_view phase;       // "cut: triangles", "farm: 12 of 28 jobs"
   double done = 0;              // 0 .. 1
@@ -42,14 +42,14 @@ class ProgressPrinter {
   ProgressPrinter& operator=(const ProgressPrinter&) = delete;
 
   void show(const ProgressState& state, Clock::time_point now = Clock::now());
-  /// Leaves the terminal's line free for what comes next.
+  /// Frees the terminal's line for further output.
   void end();
 
   std::string line(const ProgressState& state, Clock::time_point now) const;
 
  private:
   ProgressStyle style_;
-  std::string phase_kind_;  // the phase up to its colon: rate and ETA start anew with it
+  std::string phase_kind_;  // the phase up to its colon: rate and ETA restart when it changes
   Clock::time_point phase_start_{};
   Clock::time_point last_shown_{};
   bool line_open_ = false;

@@ -18,37 +18,38 @@
 namespace meshfarm {
 
 struct PagePicture {
-  std::string png;  // the file
+  std::string png;  // the file's content
   std::uint32_t width = 0;
   std::uint32_t height = 0;
 };
 
-/// The input and the result, seen alike.
+/// The input and the result in the same view.
 struct PicturePair {
   std::string caption;
   PagePicture input;
   PagePicture result;
 };
 
-/// How far the input is from the result, by shares of its area. Distances are in the mesh's unit.
+/// How far the input is from the result, by fractions of its area. Distances are in the mesh's
+/// unit.
 struct ErrorHistogram {
-  double end = 0;              // of the last bin, which is that of the map's scale
-  std::vector<double> shares;  // of the bins, evenly from 0 on
-  double beyond = 0;           // the share that is farther
+  double end = 0;              // of the last bin; also the end of the map's colour scale
+  std::vector<double> shares;  // of the bins, evenly spaced from 0
+  double beyond = 0;           // the fraction that is farther
 };
 
-/// What is seen of both meshes.
+/// Pictures of both meshes.
 struct PageScene {
   std::vector<PicturePair> views;
   PicturePair zoom;              // with the edges of triangles
   PagePicture parts;             // of the input
-  PagePicture map;               // of the result, by `histogram`
-  std::string model;             // of encode_model(); empty: the result is too large for a page
-  std::array<double, 9> axes{};  // from where it is seen at first: right, up, toward the viewer
+  PagePicture map;               // of the result, coloured by `histogram`
+  std::string model;             // from encode_model(); empty: the result is too large for a page
+  std::array<double, 9> axes{};  // the initial view: right, up, toward the viewer
   std::vector<std::array<std::uint8_t, 3>> scale;  // colours from 0 to histogram.end
 };
 
-/// What was measured of both meshes for the page.
+/// Measurements of both meshes for the page.
 struct PageFigures {
   SurfaceError to_result;  // from points of the input
   std::uint64_t samples = 0;
@@ -57,21 +58,21 @@ struct PageFigures {
   SurfaceFigures result;
 };
 
-/// A run as people look at it. What is not there is left out of the page.
+/// The page of a run. What is missing here is left out of the page.
 struct RunPage {
   Manifest manifest;
   Trace trace;
   std::string summary;             // as JSON; empty: the run has not ended
-  std::string command;             // that makes it again
+  std::string command;             // that repeats the run
   std::vector<std::string> notes;  // what the page lacks, and why
   std::optional<PageScene> scene;
   std::optional<PageFigures> figures;
 };
 
-/// One HTML page that loads nothing. The same run gives the same page, but for times.
+/// One HTML page that loads nothing. The same run gives the same page, except for times.
 std::string render_run_page(const RunPage& page);
 
-/// Where a run's result went, and what is known of it: of its summary as JSON.
+/// Where a run's result was written, and its size, from the run's summary as JSON.
 struct RunResult {
   std::string path;
   std::uint64_t triangles = 0;
@@ -80,8 +81,8 @@ struct RunResult {
 /// Throws DataError naming `what`.
 RunResult parse_run_result(std::string_view text, std::string_view what);
 
-/// Makes the mesh small: 16 bits a coordinate, 8 for a value from 0 to 1 of each vertex, and about
-/// 12 a triangle. src/report/page.js reads it.
+/// A compact mesh: 16 bits per coordinate, 8 for a value from 0 to 1 per vertex, and about 12 per
+/// triangle. src/report/page.js reads it.
 std::string encode_model(const Mesh& mesh, std::span<const float> values);
 
 }  // namespace meshfarm

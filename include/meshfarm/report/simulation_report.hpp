@@ -10,7 +10,7 @@
 
 namespace meshfarm {
 
-/// What `simulate --seeds` tells of the histories that it simulated.
+/// The output of `simulate --seeds`: the simulated histories.
 struct SeedsSummary {
   struct Problem {
     std::uint64_t seed = 0;
@@ -19,7 +19,7 @@ struct SeedsSummary {
   std::uint64_t seeds = 0;
   std::uint32_t workers = 0;
   std::uint64_t jobs = 0;
-  std::string graph = "run";  // the words of --graph
+  std::string graph = "run";  // the words for --graph
   std::uint64_t events = 0;
   double virtual_s = 0;
   double wall_s = 0;

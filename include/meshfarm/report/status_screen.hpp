@@ -11,7 +11,7 @@
 
 namespace meshfarm {
 
-/// What bars are made of.
+/// The characters of bars.
 enum class Letters : std::uint8_t { ascii, unicode };
 
 struct ScreenSize {
@@ -25,13 +25,13 @@ struct ScreenLine {
   Look look = Look::plain;
 };
 
-/// The status as lines that fill at most the screen: how far the run is, its stages, and what each
-/// worker did and holds.
+/// The status as lines that fit the screen: how far the run is, its stages, and what each worker
+/// did and holds.
 std::vector<ScreenLine> status_screen(const StatusFacts& facts, const ScreenSize& size,
                                       Letters letters);
 
-/// What a terminal takes to show the lines in place of the last frame, with no moment between in
-/// which they are gone (ECMA-48: cursor home, erase to the end of line, of page).
+/// The terminal codes that replace the last frame by these lines without flicker (ECMA-48: cursor
+/// home, erase to the end of line, of page).
 std::string frame_of(const std::vector<ScreenLine>& lines);
 
 /// The status as one line, for a log.

@@ -25,62 +25,62 @@ namespace meshfarm {
 
 enum class Format { text, json };
 
-/// How far the result of a run is from its input, in the mesh's unit: from points of the input to
-/// the result, and from points of the result to the input.
+/// The distance between the result of a run and its input, in the mesh's unit: from points of the
+/// input to the result, and from points of the result to the input.
 struct MeasuredError {
   Distance to_output;
   Distance to_input;
-  /// Nothing where the result was measured in pieces, each of which has its own.
+  /// Nothing if the result was measured in pieces, each of which has its own.
   std::optional<DistanceQuantiles> to_output_quantiles = {};
   std::optional<DistanceQuantiles> to_input_quantiles = {};
-  /// At points of the input; nothing where the result was measured in pieces.
+  /// At points of the input; nothing if the result was measured in pieces.
   std::optional<NormalDeviation> to_output_normals = {};
   std::uint64_t normal_samples = 0;
-  std::uint64_t input_samples = 0;  // by area; 0: there is nothing to measure
+  std::uint64_t input_samples = 0;  // by area; 0: nothing to measure
   std::uint64_t output_samples = 0;
 
-  /// Of both directions.
+  /// The larger of both directions.
   Distance greater() const {
     return {std::max(to_output.rms, to_input.rms), std::max(to_output.mean, to_input.mean),
             std::max(to_output.max, to_input.max)};
   }
 };
 
-/// What would have been better to ask for.
+/// A better number of triangles to ask for.
 struct BetterCount {
   std::uint64_t triangles = 0;
   MeasuredError error;
 };
 
-/// What became of the topology. Of the input as it was welded and cleaned.
+/// The change of topology, relative to the welded and cleaned input.
 struct TopologyChange {
   Topology before;
   Topology after;
   GoneComponents gone;
 };
 
-/// A channel of the result, and by how much it misses the input's: the root mean square, in the
+/// A channel of the result and its error relative to the input: the root mean square, in the
 /// channel's own unit.
 struct ChannelError {
   std::string name;
   double rms = 0;
 };
 
-/// What became of the input's texture coordinates and pictures.
+/// What happened to the input's texture coordinates and pictures.
 struct TexturesMade {
   enum class Way : std::uint8_t { none, kept, baked, dropped };
   Way way = Way::none;
   std::size_t pictures = 0;  // that were kept
-  std::uint64_t floor = 0;   // about how few triangles a result has that keeps the charts
-  std::uint32_t size = 0;    // pixels of a side of the picture that was baked
-  std::uint64_t charts = 0;  // of this
-  double charts_share = 0;   // of it
+  std::uint64_t floor = 0;   // approximate minimum of triangles of a result that keeps the charts
+  std::uint32_t size = 0;    // side of the baked picture, in pixels
+  std::uint64_t charts = 0;  // in the baked picture
+  double charts_share = 0;   // fraction of the picture
 };
 
-/// How far a piece of the result is from the input.
+/// The distance of a piece of the result from the input.
 struct ErrorOfPiece {
   std::uint32_t first_part = 0;
-  std::uint32_t parts = 0;      // of the input, that it is made of; 0: what lies round the seams
+  std::uint32_t parts = 0;      // of the input, in this piece; 0: the surroundings of the seams
   std::uint64_t triangles = 0;  // without those between it and the surroundings of the seams
   Distance to_output;           // from its share of the input
   Distance to_input;
@@ -88,53 +88,53 @@ struct ErrorOfPiece {
   DistanceQuantiles to_input_quantiles;
 };
 
-/// The shape of a mesh by itself.
+/// The shape of a mesh on its own.
 struct SurfaceFigures {
   ShapeMeasures shape;
-  bool is_closed = false;  // so that the volume means something
+  bool is_closed = false;  // so that the volume is meaningful
   std::optional<EdgeLengths> edges;
   std::optional<std::uint64_t> crossing_triangles;
-  std::string crossings_skipped;  // why these were not counted though the mesh is in memory
+  std::string crossings_skipped;  // why they were not counted although the mesh is in memory
 };
 
-/// For crossings_skipped.
+/// A value for crossings_skipped.
 inline constexpr const char* k_too_many_at_one_place = "too many lie at one place";
 
-/// What a run made, for people and for programs.
+/// The results of a run, for people and for programs.
 struct RunSummary {
   Manifest manifest;
   std::uint64_t run = 0;     // its key
   std::uint32_t epoch = 0;   // of the ventilator that its sink served
   std::string output;        // path of the result
   std::uint64_t target = 0;  // triangles asked for, 0: as few as max_error allows
-  double max_error = 0;      // the greatest distance allowed, in the mesh's unit; 0: any
-  /// No point of the result is farther from the input, and none of the input from the result; 0:
-  /// that is not proven.
+  double max_error = 0;      // maximum distance allowed, in the mesh's unit; 0: any
+  /// Upper bound of the distance of every point of the result from the input, and of the input from
+  /// the result; 0: not proven.
   double certified_error = 0;
   std::uint64_t triangles = 0;  // triangles made
   std::uint64_t vertices = 0;
   std::string why_not_exact;         // empty when triangles == target
   bool topology_simplified = false;  // handles, holes or pieces might go
-  /// Nothing where it is not known what the input had.
+  /// Nothing if the input's topology is unknown.
   std::optional<TopologyChange> topology;
-  std::uint64_t turned = 0;  // triangles that faced another way than most of their piece's area
+  std::uint64_t turned = 0;  // triangles that faced opposite to most of their component's area
   DroppedComponents dropped_components;  // and their triangles before the finish
   MeasuredError error;
-  std::optional<SurfaceFigures> result;  // its own figures; nothing where it is in pieces
-  std::optional<FacingMended> facing;    // where that was looked at
+  std::optional<SurfaceFigures> result;  // its own figures; nothing if it is in pieces
+  std::optional<FacingMended> facing;    // if it was checked
   std::vector<ChannelError> channels;    // that were written
   std::optional<LabelMeaning> labels;    // that were written
   bool labels_too_fine = false;          // so they were dropped
   TexturesMade textures;
-  std::vector<std::string> channels_not_wanted;  // of the stage's and its labels, their names
-  /// Where the result went to ruin and a few triangles more would not have.
+  std::vector<std::string> channels_not_wanted;  // names of channels and labels of the stage
+  /// Set if the result is ruined and slightly more triangles would have avoided that.
   std::optional<BetterCount> better;
   std::uint64_t stitched = 0;            // triangles of the stitched mesh, before the finish
-  std::uint64_t fitted_vertices = 0;     // that moved after the sink's finish
+  std::uint64_t fitted_vertices = 0;     // moved after the sink's finish
   std::uint64_t dropped_degenerate = 0;  // cut, parts and finish together
   std::uint64_t dropped_duplicate = 0;
   std::uint64_t finished_in_pieces = 0;  // 0: the sink finished it
-  std::string why_finished_here;         // where the farm was to finish it
+  std::string why_finished_here;         // if the farm should have finished it
   std::vector<ErrorOfPiece> pieces;
   double farm_seconds = 0;
   double stitch_seconds = 0;
@@ -143,38 +143,38 @@ struct RunSummary {
   double write_seconds = 0;
 };
 
-/// What `info` tells of a mesh file.
+/// The output of `info` for a mesh file.
 struct FileSummary {
   std::string path;
   MeshFileInfo file;
   Box box;
   std::uint64_t triangles = 0;
   std::uint64_t short_faces = 0;         // faces with fewer than three corners, left out
-  std::uint64_t not_finite = 0;          // vertices with a coordinate that is not
-  std::uint64_t dropped_not_finite = 0;  // triangles of theirs, left out
-  /// About as few triangles as a result has that keeps the textures; 0 where that is not known.
+  std::uint64_t not_finite = 0;          // vertices with a coordinate that is not finite
+  std::uint64_t dropped_not_finite = 0;  // their triangles, left out
+  /// Approximate minimum of triangles of a result that keeps the textures; 0 if unknown.
   std::uint64_t texture_floor = 0;
-  /// With coincident vertices welded as a run does, and as the file has them.
+  /// With coincident vertices welded as in a run, and as in the file.
   std::optional<Topology> welded;
   std::optional<Topology> as_it_is;
   std::optional<SurfaceFigures> figures;
-  std::string not_measured;  // why lengths of edges and crossings were not
+  std::string not_measured;  // why edge lengths and crossings were not measured
 };
 
-/// What `info` tells of a stream.
+/// The output of `info` for a stream.
 struct StreamSummary {
   std::string path;
   StreamInfo stream;
   Box box;
   std::uint64_t blocks = 0;
-  std::uint64_t widest_front = 0;  // vertices that are there and not finalised, at most
+  std::uint64_t widest_front = 0;  // maximum number of vertices that are present and not finalised
 };
 
-/// By how much channels of two meshes differ, at the points where distances are measured.
+/// The differences between channels of two meshes, at the points where distances are measured.
 struct ChannelDifference {
   std::string name;  // "colours" and "normals" of three channels, else the channel's
   ChannelRole role = ChannelRole::quality;
-  /// Colours as shares of their full range, normals in degrees, others in their own unit.
+  /// Colours as fractions of their full range, normals in degrees, others in their own unit.
   ValueError a_to_b;
   ValueError b_to_a;
 };
@@ -183,18 +183,18 @@ struct ChannelDifference {
 struct LabelDifference {
   std::string name_a;  // LabelMeaning::name
   std::string name_b;
-  double a_to_b = 0;  // the share of A's area with another label at the nearest place of B
+  double a_to_b = 0;  // fraction of A's area with another label at the nearest place of B
   double b_to_a = 0;
 };
 
-/// What `compare` tells of two meshes.
+/// The output of `compare` for two meshes.
 struct Comparison {
   std::string path_a;
   std::string path_b;
   double diagonal = 0;  // of A's bounding box; distances are fractions of it
   SurfaceError a_to_b;
   SurfaceError b_to_a;
-  /// Of the greatest distances over all points, where that was asked for.
+  /// Bounds of the maximum distances over all points, if requested.
   struct Certified {
     DistanceBounds a_to_b;
     DistanceBounds b_to_a;
@@ -202,42 +202,42 @@ struct Comparison {
   std::optional<Certified> certified;
   SurfaceFigures figures_a;
   SurfaceFigures figures_b;
-  std::string not_measured;  // why normals, edges and crossings were not
+  std::string not_measured;  // why normals, edges and crossings were not measured
   Topology welded_a;
   Topology welded_b;
   Topology as_it_is_a;
   Topology as_it_is_b;
   std::vector<ChannelDifference> channels;  // that both have
-  std::string channels_skipped;             // why both have channels that were not compared
+  std::string channels_skipped;             // why channels that both have were not compared
   std::vector<std::string> channels_only_a;
   std::vector<std::string> channels_only_b;
-  std::optional<LabelDifference> labels;  // if both have some
+  std::optional<LabelDifference> labels;  // if both have labels
   std::string labels_skipped;             // why labels that both have were not compared
   struct Map {
     std::string path;
-    double most = 0;  // the greatest distance of a vertex of B
+    double most = 0;  // maximum distance of a vertex of B
   };
-  std::optional<Map> map;  // that was written
+  std::optional<Map> map;  // if written
 };
 
-/// What `benchmark` tells of this host.
+/// The output of `benchmark` for this host.
 struct HostSummary {
-  std::uint64_t speed = 0;   // triangles a second, one thread
-  std::uint64_t memory = 0;  // bytes that are free
+  std::uint64_t speed = 0;   // triangles per second, one thread
+  std::uint64_t memory = 0;  // free bytes
   std::uint32_t cores = 1;
 };
 
-/// What of a run is to be warned of, on one line; empty if nothing is.
+/// The warnings about a run, on one line; may be empty.
 std::string warning_of(const RunSummary& summary);
 
 std::string render(const HostSummary& host, Format format);
 std::string render(const Manifest& manifest, const std::string& stage, Format format);
 std::string render(const RunSummary& summary, Format format);
 
-/// Where a run's time went: of its summary as JSON. Seconds.
+/// Where a run's time went, from its summary as JSON. Seconds.
 struct RunTimes {
   std::uint64_t run = 0;
-  std::uint32_t epoch = 0;  // 0: not told, by an older version
+  std::uint32_t epoch = 0;  // 0: unknown, from an older version
   std::uint64_t triangles_out = 0;
   double cut = 0;
   double farm = 0;

@@ -11,8 +11,8 @@
 
 namespace meshfarm {
 
-/// When a run's work was done, as a part of an HTML page: a summary, who computed when, how the
-/// work went down, and a table of the workers.
+/// When a run's work was done, as a part of an HTML page: a summary, who computed when, the
+/// progress of the work, and a table of the workers.
 std::string render_timeline(const Manifest& manifest, const Trace& trace,
                             const std::optional<RunTimes>& times);
 

@@ -12,8 +12,8 @@
 
 namespace meshfarm {
 
-// What a trace tells, a line each; see src/report/trace.cpp for the format. Times `t` are in
-// seconds since the ventilator's start, worker numbers are those of its epoch.
+// The content of a trace, one struct per line; see src/report/trace.cpp for the format. Times `t`
+// are in seconds since the ventilator's start, worker numbers are those of its epoch.
 
 struct TraceHead {
   std::uint32_t epoch = 0;
@@ -30,9 +30,9 @@ struct TraceJoined {
   std::uint32_t worker = 0;
   std::string host;
   std::uint32_t pid = 0;
-  std::uint64_t speed = 0;   // triangles a second and thread, by benchmark
+  std::uint64_t speed = 0;   // triangles per second and thread, by benchmark
   std::uint64_t memory = 0;  // bytes
-  std::uint64_t pool = 0;  // its memory is also that of workers of its host with the same; 0: none
+  std::uint64_t pool = 0;    // workers of its host with the same number share memory; 0: none
   std::uint32_t threads = 1;
 };
 struct TraceLeft {
@@ -40,12 +40,12 @@ struct TraceLeft {
   std::uint32_t worker = 0;
   std::string why;
 };
-/// In place of a worker's number.
+/// Used instead of a worker's number.
 inline constexpr std::uint32_t k_sink_of_trace = 0;
 
 /// A job whose result was accepted.
 struct TraceDone {
-  /// Neighbours of one stage.
+  /// Consecutive jobs of one stage.
   struct Needs {
     std::string stage;
     std::uint32_t first = 0;
@@ -57,19 +57,19 @@ struct TraceDone {
   std::string kind;
   std::string stage;            // of the run's jobs; empty in old traces
   std::uint32_t index = 0;      // in the stage
-  std::vector<Needs> needs;     // was accepted before this was possible
-  std::uint32_t round = 0;      // of old traces: all of the rounds before were accepted before
+  std::vector<Needs> needs;     // accepted before this job was possible
+  std::uint32_t round = 0;      // old traces: all earlier rounds were accepted before
   std::uint64_t triangles = 0;  // estimated work
   std::uint64_t memory = 0;
   std::uint64_t read_bytes = 0;
-  std::uint64_t extent = 0;        // the name of what others read, too; 0: none
-  std::uint64_t extent_bytes = 0;  // so many of those read
+  std::uint64_t extent = 0;        // name of bytes that others read, too; 0: none
+  std::uint64_t extent_bytes = 0;  // number of those that were read
   std::uint64_t written_bytes = 0;
   std::uint32_t read_ms = 0;
   std::uint32_t wait_ms = 0;
   std::uint32_t compute_ms = 0;
   std::uint32_t write_ms = 0;
-  std::uint64_t cpu_us = 0;  // of computing: what it would have taken on a host of its own
+  std::uint64_t cpu_us = 0;  // of computing: the time on an otherwise idle host
 };
 struct TraceFailed {
   double t = 0;
@@ -77,17 +77,17 @@ struct TraceFailed {
   std::uint64_t job = 0;
   std::string why;
 };
-/// How the farm stands.
+/// The state of the farm.
 struct TraceState {
   struct Worker {
     std::uint32_t worker = 0;
     std::uint32_t held = 0;    // jobs sent and not done
-    std::uint32_t buffer = 0;  // jobs it would hold besides
-    double speed = 0;          // triangles a second and thread, by the jobs it did
+    std::uint32_t buffer = 0;  // additional jobs that it would hold
+    double speed = 0;          // triangles per second and thread, from completed jobs
     std::uint64_t rss_bytes = 0;
     double silent_s = 0;
   };
-  /// Of the jobs that are known of.
+  /// Of the jobs known so far.
   struct Stage {
     std::string stage;
     std::uint64_t jobs = 0;
@@ -104,11 +104,11 @@ struct TraceState {
   std::uint64_t triangles_known = 0;
   bool sink = false;
   bool storage_stalls = false;
-  bool no_room = false;  // the stage, or where the result goes, is full
+  bool no_room = false;  // the stage, or the result's disk, is full
   std::vector<std::string> bad_hosts;
   std::vector<Worker> workers;
 };
-/// The ventilator's last word. `failure` is empty if all was done.
+/// The end of a run, as written by the ventilator. `failure` is empty if everything was done.
 struct TraceEnd {
   double t = 0;
   std::string failure;
@@ -116,7 +116,7 @@ struct TraceEnd {
 using TraceLine =
     std::variant<TraceHead, TraceJoined, TraceLeft, TraceDone, TraceFailed, TraceState, TraceEnd>;
 
-/// One line, without its end.
+/// One line, without its newline.
 std::string to_line(const TraceLine& line);
 
 struct Trace {
@@ -125,22 +125,22 @@ struct Trace {
   std::vector<TraceLeft> left;
   std::vector<TraceDone> done;
   std::vector<TraceFailed> failed;
-  std::optional<TraceState> state;  // the last
+  std::optional<TraceState> state;  // the latest
   std::optional<TraceEnd> end;
 };
 
-/// A last line that is not whole yet is left out. Throws DataError naming `what`.
+/// An incomplete last line is ignored. Throws DataError naming `what`.
 Trace parse_trace(std::string_view text, std::string_view what);
 
-/// Reads a trace piece by piece, as it grows.
+/// Reads a trace piece by piece while it grows.
 class TraceFeed {
  public:
   /// `what`: its name, for messages.
   explicit TraceFeed(std::string what) : what_(std::move(what)) {}
-  /// Adds what the next piece has; a last line that is not whole waits for its rest. Throws
-  /// DataError; the trace is of no use then.
+  /// Adds the content of the next piece; an incomplete last line waits for its rest. Throws
+  /// DataError; the trace must not be used after that.
   void add(std::string_view piece, Trace& trace);
-  /// Lines so far. The first has the head.
+  /// Lines so far. The first one is the head.
   std::uint64_t lines() const { return lines_; }
 
  private:
