@@ -16,7 +16,7 @@ namespace meshfarm {
 namespace {
 
 constexpr int k_max_starts = 100;
-/// A run's own processes take up to ten seconds to end theirs.
+/// A run may take up to ten seconds to end its own processes.
 constexpr std::chrono::seconds k_grace{25};
 
 /// Whether all have ended in time.

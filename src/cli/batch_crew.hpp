@@ -10,17 +10,17 @@
 
 namespace meshfarm {
 
-/// Workers that are there as long as this is; one that ends is started again.
+/// Workers that run as long as this object exists; one that ends is started again.
 class BatchCrew {
  public:
-  /// `words`: of the command, its name first.
+  /// `words`: the command line, starting with the command's name.
   BatchCrew(std::vector<std::string> words, std::uint32_t workers);
-  /// Asks them to leave, and waits.
+  /// Asks the workers to leave, and waits for them.
   ~BatchCrew();
   BatchCrew(const BatchCrew&) = delete;
   BatchCrew& operator=(const BatchCrew&) = delete;
 
-  /// To be called now and then. False once none is left that could be started again.
+  /// Call regularly. False once none is left that can be started again.
   bool look_after();
 
  private:
@@ -34,7 +34,7 @@ class BatchCrew {
   std::vector<Worker> workers_;
 };
 
-/// Asks these processes to end, and after some seconds makes them.
+/// Asks these processes to end, and kills them after some seconds.
 void end_children(std::vector<pid_t> pids);
 
 }  // namespace meshfarm

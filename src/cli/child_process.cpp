@@ -30,7 +30,7 @@ void write_to(const std::filesystem::path& path, int fd) {
 
 [[noreturn]] void become(const std::vector<std::string>& words, pid_t parent,
                          const ChildOutput& output) {
-  // A process group of its own: Ctrl-C reaches the parent only, which ends its children in order.
+  // A process group of its own: Ctrl-C reaches only the parent, which ends its children in order.
   ::setpgid(0, 0);
   ::prctl(PR_SET_PDEATHSIG, SIGTERM);
   if (::getppid() != parent) ::_exit(1);

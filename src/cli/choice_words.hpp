@@ -16,7 +16,7 @@ struct ChoiceWord {
   Value value;
 };
 
-/// What the word stands for. Throws UsageError, with all choices, if it is none of them.
+/// The value of the word. Throws UsageError, listing all choices, if it is none of them.
 template <typename Value>
 Value chosen(std::string_view option, std::string_view word,
              std::initializer_list<ChoiceWord<Value>> choices) {

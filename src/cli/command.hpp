@@ -14,29 +14,29 @@ namespace meshfarm {
 
 namespace po = boost::program_options;
 
-/// The long names of the options that stand on the command line. What a config file says is not
-/// among them: it may be meant for other commands.
+/// The long names of the options given on the command line. Options from a config file are not
+/// included: they may be meant for other commands.
 using GivenOptions = std::set<std::string, std::less<>>;
 
-/// One command of the program. The members that options are bound to hold the defaults.
+/// A command of the program. The members that options are bound to hold the defaults.
 class Command {
  public:
   virtual ~Command() = default;
   virtual std::string_view name() const = 0;
-  virtual std::string_view synopsis() const = 0;  // what follows the name: "INPUT -o OUTPUT"
+  virtual std::string_view synopsis() const = 0;  // after the name: "INPUT -o OUTPUT"
   virtual std::string_view summary() const = 0;   // one line for the list of commands
   /// Declares the options; no work.
   virtual void setup(po::options_description& options,
                      po::positional_options_description& positional) = 0;
-  /// Checks what was parsed; throws UsageError; no work.
+  /// Checks the parsed options; throws UsageError; no work.
   virtual void check() {}
-  /// Warns of options that were given and do nothing; throws UsageError where they ask for what
-  /// this command cannot do. Comes after check().
+  /// Warns of given options that have no effect; throws UsageError if they request what this
+  /// command cannot do. Called after check().
   virtual void check_given(const GivenOptions& /*given*/) const {}
-  /// Whether freed memory is kept for all threads (keep_freed_memory()). Not where each thread
-  /// allocates often and shares nothing: they would wait for each other.
+  /// Whether freed memory is kept for all threads (keep_freed_memory()). False if each thread
+  /// allocates often and shares nothing: the threads would wait for each other.
   virtual bool keeps_freed_memory() const { return true; }
-  /// Does it and returns the exit code.
+  /// Executes the command and returns the exit code.
   virtual int run() = 0;
 };
 

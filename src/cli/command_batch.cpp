@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
 //
-// What a batch keeps is in OUTPUT/.batch: the files' stages, which are the crew's pool, what each
-// run said, and NAME.done, by which the same command knows what it has done.
+// A batch keeps its files in OUTPUT/.batch: the files' stages, which form the crew's pool, the
+// output of each run, and NAME.done, by which a repeated command knows what is done.
 #include <algorithm>
 #include <chrono>
 #include <filesystem>
@@ -35,10 +35,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// While one file is stitched and finished the next is cut and its parts keep the crew busy.
+/// While one file is stitched and finished, the next one is cut and its parts keep the crew busy.
 constexpr std::size_t k_at_once = 2;
 
-/// "folder/scan.obj.gz" becomes "scan.obj"; what cannot be written becomes PLY.
+/// "folder/scan.obj.gz" becomes "scan.obj"; formats that cannot be written become PLY.
 std::string output_name(const std::string& input) {
   fs::path name = fs::path(input).filename();
   for (const char* packed : {".gz", ".zst"}) {
@@ -56,7 +56,7 @@ std::string text_of(const fs::path& path) {
   }
 }
 
-/// The last line that says what went wrong, without who said so.
+/// The last error message, without the name of the process.
 std::string reason_in(const std::string& err) {
   constexpr std::string_view k_error = ": error: ";
   const std::size_t at = err.rfind(k_error);
@@ -107,7 +107,7 @@ class BatchCommand : public Command {
   }
   void check_given(const GivenOptions& given) const override {
     cut_.check_given(given, false);
-    // One word for all files: it need not be for each.
+    // The option applies to all files: it need not apply to each.
     const auto of_packing = [](const std::string& input) {
       return has_packing(output_name(input));
     };
@@ -131,8 +131,8 @@ class BatchCommand : public Command {
  private:
   using State = BatchReport::State;
   struct Task {
-    std::size_t file = 0;  // in the report
-    std::string record;    // by which it is known again
+    std::size_t file = 0;  // index in the report
+    std::string record;    // identifies it in later commands
     std::string stage;
     pid_t pid = -1;
     std::chrono::steady_clock::time_point began = {};
@@ -184,7 +184,7 @@ class BatchCommand : public Command {
     return task.record + "\n" + std::to_string(fs::file_size(file.output, ignored)) + "\n";
   }
 
-  /// Of a file that has changed since, or of other options.
+  /// Removes the stage of a file that has changed since, or of other options.
   static void forget_other_cut(const std::string& folder, const CutRecord& wanted) {
     if (!fs::exists(folder)) return;
     const Stage stage = Stage::create(folder);
@@ -192,8 +192,7 @@ class BatchCommand : public Command {
     if (!staged || !difference(*staged, wanted).empty()) remove_stage(folder);
   }
 
-  /// Where the file system cannot keep the keys of runs private they are in a folder of this
-  /// host's.
+  /// If the file system cannot keep the runs' keys private, they are in a folder on this host.
   std::vector<std::string> key_words() {
     if (keeps_private(pool_)) return {};
     std::string folder = (fs::temp_directory_path() / "meshfarm-XXXXXX").string();

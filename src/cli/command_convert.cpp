@@ -93,7 +93,7 @@ class ConvertCommand : public Command {
     }
   }
 
-  /// Kinds of pictures that materials have and the output has no place for.
+  /// Adds kinds of pictures that materials have but the output cannot store.
   void add_maps_left_out(const MeshFileInfo& input, std::vector<std::string>& names) const {
     if (!input.uvs || !input.labels) return;
     const std::vector<std::string> maps =

@@ -52,7 +52,7 @@ class DoctorCommand : public Command {
     rlimit files{};
     if (::getrlimit(RLIMIT_NOFILE, &files) == 0) facts.file_limit = files.rlim_max;
     facts.host = this_host().host;
-    // Results are published in a folder of the stage; before there is one, in the folder itself.
+    // Results are published in a folder of the stage; before it exists, in the stage itself.
     const std::filesystem::path results = std::filesystem::path(stage_) / "results";
     const bool staged = std::filesystem::exists(results, error);
     facts.probe =
@@ -69,12 +69,12 @@ class DoctorCommand : public Command {
     const Manifest manifest =
         decode_manifest(stage.read(ManifestName{}), stage.path(ManifestName{}).string());
     for (const PartEntry& part : manifest.parts) facts.part_bytes += part.file.size;
-    if (manifest.cutting) facts.part_bytes = 2 * manifest.cutting->bytes;  // bundles, and ladders
-    if (manifest.sorting) facts.part_bytes *= 2;  // the streams take as much as the slabs
+    if (manifest.cutting) facts.part_bytes = 2 * manifest.cutting->bytes;  // bundles and ladders
+    if (manifest.sorting) facts.part_bytes *= 2;  // the streams are as large as the slabs
     try {
       publish_host_card(stage, this_host());
     } catch (const IoError& error) {
-      log_debug(error.what());  // the probe has said why
+      log_debug(error.what());  // the probe reports why
     }
     const std::vector<HostCard> cards = read_host_cards(stage);
     std::set<std::string> names;

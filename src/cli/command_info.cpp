@@ -73,7 +73,7 @@ class InfoCommand : public Command {
     return is_stream({start.data(), start.size()});
   }
 
-  /// Read, not mapped: a staged file's host may go away meanwhile.
+  /// Reads instead of mapping: the host of a staged file may go away meanwhile.
   Fill fill_from_file() const {
     const auto fd = std::make_shared<Fd>(open_for_read(file_));
     return [fd, path = file_, done = std::uint64_t{0}](std::span<char> buffer) mutable {
@@ -85,7 +85,7 @@ class InfoCommand : public Command {
     };
   }
 
-  /// Checks all of the stream on the way.
+  /// Also checks the whole stream.
   StreamSummary read_through() const {
     StreamReader reader(fill_from_file(), file_);
     StreamSummary summary{.path = file_, .stream = reader.info(), .box = {}};
@@ -157,9 +157,9 @@ class InfoCommand : public Command {
     if (!figures.crossing_triangles) figures.crossings_skipped = k_too_many_at_one_place;
   }
 
-  /// 0 if --memory does not hold the mesh.
+  /// 0 if the mesh does not fit into --memory.
   std::uint64_t texture_floor(const DividedSurface& surface) const {
-    constexpr std::uint64_t k_bytes = 160;  // of a triangle, all in all
+    constexpr std::uint64_t k_bytes = 160;  // per triangle, in total
     if (k_bytes * surface.triangles() > measure_.divide.memory_bytes) return 0;
     const auto source = open_mesh(file_, {.textures = Textures::keep});
     Mesh mesh = read_mesh(*source);

@@ -77,7 +77,7 @@ GivenOptions given_options(const po::basic_parsed_options<char>& parsed) {
   return given;
 }
 
-/// Names what --help shows: an option, or a place in the synopsis, which is its option in capitals.
+/// Uses the name in --help: an option, or a place in the synopsis, which is its option in capitals.
 UsageError missing(const po::required_option& error, const DescribedCommand& described) {
   std::string name = error.get_option_name();
   const std::string plain = name.substr(name.find_first_not_of('-'));
@@ -127,7 +127,7 @@ int run_command(std::unique_ptr<Command> named, const std::vector<std::string>& 
   try {
     return command.run();
   } catch (const UsageError& error) {
-    // Else the option that it names may be what it advises.
+    // Only if the message starts with it: an option named elsewhere may be the one to use instead.
     const bool is_of_option = std::string_view(error.what()).starts_with("--");
     throw UsageError(is_of_option ? config.placed(error.what(), given) : error.what());
   }

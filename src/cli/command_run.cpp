@@ -23,7 +23,7 @@
 namespace meshfarm {
 namespace {
 
-/// `run` serves workers of any host; `replay` brings its own. The rest is the same.
+/// `run` serves workers of any host; `replay` starts its own. Otherwise they are the same.
 enum class Workers { of_any_host, own };
 
 class RunCommand : public Command {
@@ -74,7 +74,7 @@ class RunCommand : public Command {
     schedule_.check();
   }
   void check_given(const GivenOptions& given) const override {
-    if (worker_words_) return;  // the run itself tells it
+    if (worker_words_) return;  // the run itself reports it
     target_.check_given(given);
     schedule_.check_given(given);
     output_words_.check_given(given, output_);

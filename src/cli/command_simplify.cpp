@@ -72,7 +72,7 @@ class SimplifyCommand : public Command {
     network_.check();
   }
   void check_given(const GivenOptions& given) const override {
-    if (in_batch_) return;  // the batch did, of its own
+    if (in_batch_) return;  // the batch checked it already
     target_.check_given(given);
     cut_.check_given(given, true);
     output_words_.check_given(given, output_);
@@ -112,16 +112,16 @@ class SimplifyCommand : public Command {
   }
 
  private:
-  /// Before there is a stage that a later command would find in its way.
+  /// Runs before a stage exists that would get in the way of a later command.
   void check_farmed_cut() const {
     constexpr std::string_view k_not_kept =
         "the parts of the input, which --cut farm does not keep: use --cut here";
     if (!report_.empty()) throw UsageError("--report shows " + std::string(k_not_kept));
   }
 
-  /// Measured: from about five million triangles on, the jobs of a cut take no more of the
-  /// processors' time as a cut here, which takes all processors. What looks at parts later needs a
-  /// cut that keeps them, as does a result so large that it may be finished in pieces.
+  /// Measured: from about five million triangles on, a cut by jobs takes no more processor time
+  /// than a cut here, which uses all processors. Commands that look at parts later need a cut that
+  /// keeps them, as does a result so large that it may be finished in pieces.
   bool farm_pays(std::uint64_t triangles) const {
     constexpr std::uint64_t k_worth_jobs = 5'000'000;
     constexpr double k_large_result = 5e6;

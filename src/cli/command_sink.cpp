@@ -53,7 +53,7 @@ class SinkCommand : public FarmCommand {
     network_.check();
   }
   void check_given(const GivenOptions& given) const override {
-    if (supervised()) return;  // who started it did
+    if (supervised()) return;  // the parent checked it
     target_.check_given(given);
     output_words_.check_given(given, output_);
   }
@@ -114,18 +114,18 @@ class SinkCommand : public FarmCommand {
   }
 
  private:
-  /// What this run leaves behind that no run can need.
+  /// Removes leftovers in the stage that no run can need.
   static void tidy_up(const Stage& stage) {
     CleanOptions leftovers;
     leftovers.what = CleanWhat::leftovers;
     try {
       clean_stage(stage, leftovers);
     } catch (const Error& error) {
-      log_debug(error.what());  // another does it
+      log_debug(error.what());  // another process cleans up
     }
   }
 
-  /// Before hours of farming, not after.
+  /// Checks before hours of farming, not after.
   void check_need(const Manifest& manifest) const {
     const auto room = available_memory();
     const std::string advice =

@@ -22,7 +22,7 @@ namespace {
 
 constexpr std::chrono::milliseconds k_refresh_every{1000};
 constexpr std::chrono::milliseconds k_look_for_keys_every{200};
-/// A log gets no more lines than this, and one for each change of the phase.
+/// A log gets at most one line per this many looks, and one for each change of the phase.
 constexpr int k_looks_a_line = 5;
 
 class StatusCommand : public Command {
@@ -64,7 +64,7 @@ class StatusCommand : public Command {
  private:
   Format format() const { return json_ ? Format::json : Format::text; }
 
-  /// Waits a second. Whether to go on.
+  /// Waits a second. Returns whether to go on.
   static bool goes_on(const SignalWait& signals) {
     const auto end = std::chrono::steady_clock::now() + k_refresh_every;
     for (;;) {
@@ -132,7 +132,7 @@ class StatusCommand : public Command {
     return 0;
   }
 
-  /// Waits until it is time for the next frame. Whether there is to be one.
+  /// Waits until it is time for the next frame. Returns whether to show one.
   static bool stays(TerminalScreen& screen, const SignalWait& signals) {
     const auto end = std::chrono::steady_clock::now() + k_refresh_every;
     while (std::chrono::steady_clock::now() < end) {
@@ -145,7 +145,7 @@ class StatusCommand : public Command {
         signals.stop();
       }
       screen.enter();  // if it was left
-      return true;     // another size, or another screen
+      return true;     // the size or the screen has changed
     }
     return true;
   }

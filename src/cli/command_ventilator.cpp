@@ -49,7 +49,7 @@ class VentilatorCommand : public FarmCommand {
     }
   }
   void check_given(const GivenOptions& given) const override {
-    if (supervised()) return;  // who started it did
+    if (supervised()) return;  // the parent checked it
     target_.check_given(given);
     schedule_.check_given(given);
   }
@@ -101,7 +101,7 @@ class VentilatorCommand : public FarmCommand {
     return true;
   }
 
-  /// The first that is not done.
+  /// The first stage that is not done.
   static StageProgress stage_of(const FarmProgress& p) {
     for (const StageProgress& each : p.stages) {
       if (each.accepted < each.jobs) return each;

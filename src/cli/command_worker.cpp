@@ -83,7 +83,7 @@ class WorkerCommand : public FarmCommand {
   }
 
  private:
-  /// There may be others who answer.
+  /// Other runs may answer instead.
   static constexpr std::chrono::seconds k_patience_in_pool{10};
 
   void serve_run(const Stage& stage, std::uint64_t run, std::chrono::seconds patience,
@@ -97,7 +97,8 @@ class WorkerCommand : public FarmCommand {
     options.algorithm = k_algorithm_version;
     options.abort = [](const std::string& incomplete) { end_process(incomplete); };
     options.capacity.threads = threads_;
-    // Workers of one run on one machine are equally fast, and a short run need not wait.
+    // Workers of one run on one machine are equally fast, so a short run need not wait for the
+    // benchmark.
     const Haste haste = supervised() ? Haste::great : Haste::none;
     options.capacity.speed = speed_ != 0 ? speed_ : speed_of_this_host(k_version, haste);
     options.capacity.memory = memory_bytes_;
@@ -110,7 +111,7 @@ class WorkerCommand : public FarmCommand {
     }
   }
 
-  /// By these 'meshfarm doctor' finds hosts of one name.
+  /// 'meshfarm doctor' uses the cards to find hosts of the same name.
   static void leave_host_card(const Stage& stage) {
     try {
       publish_host_card(stage, this_host());
@@ -129,7 +130,7 @@ class WorkerCommand : public FarmCommand {
     return key;
   }
 
-  /// Shared with the other workers of this host, or of its control group.
+  /// Memory shared with the other workers of this host, or of its control group.
   static void take_free_memory(Capacity& capacity) {
     const auto room = available_memory();
     if (!room) return;
@@ -147,7 +148,7 @@ class WorkerCommand : public FarmCommand {
     return text;
   }
 
-  /// Threads that do not listen cannot be ended but with the process.
+  /// Threads that do not respond can only be ended with the process.
   [[noreturn]] static void end_process(const std::string& incomplete) {
     log_error("left with a job that does not end; " +
               (incomplete.empty() ? std::string("the run is over") : incomplete));
@@ -155,7 +156,7 @@ class WorkerCommand : public FarmCommand {
   }
 
   std::string pool_;
-  std::int64_t wait_s_ = -1;  // below 0: not said
+  std::int64_t wait_s_ = -1;  // below 0: not given
   std::uint32_t threads_ = 1;
   std::uint64_t speed_ = 0;
   std::string run_;

@@ -14,7 +14,7 @@ bool has_textures(const MeshFileInfo& info) {
   return info.uvs && info.labels && !info.pictures.names.empty();
 }
 
-/// Those of the vertices that count.
+/// The channels of the vertices that are compared.
 std::vector<std::size_t> own_columns(const MeshFileInfo& info) {
   std::vector<std::size_t> columns;
   for (std::size_t i = 0; i < info.channels.size(); ++i) {

@@ -19,19 +19,19 @@
 
 namespace meshfarm {
 
-/// The channels that a mesh has for a comparison: where it has textures, theirs are its colours.
+/// The channels of a mesh for a comparison: textures, if any, provide its colours.
 std::vector<Channel> compared_channels(const MeshFileInfo& info);
 
 /// A mesh in memory, with some of its compared_channels().
 class ComparedMesh {
  public:
-  /// `columns`: which channels; `vertices`: how many there are.
+  /// `columns`: the channels to use; `vertices`: the number of vertices.
   ComparedMesh(MeshSource& source, const std::string& path, std::span<const std::size_t> columns,
                std::uint64_t vertices);
-  /// Makes both tell where their labels differ. `a` and `b` say what these mean.
+  /// Makes both report where their labels differ, given the meanings of the labels.
   static void pair_labels(ComparedMesh& a, const LabelMeaning& meaning_a, ComparedMesh& b,
                           const LabelMeaning& meaning_b);
-  /// Stands as long as this does.
+  /// Valid as long as this object exists.
   ValuedMesh valued() const;
 
  private:
@@ -41,10 +41,10 @@ class ComparedMesh {
                                   const std::array<double, 3>& shares) const;
 
   Mesh mesh_;
-  std::vector<Label> labels_;  // where these are compared: as pair_labels() numbers them
+  std::vector<Label> labels_;  // if compared: as numbered by pair_labels()
   std::vector<float> values_;  // of the vertices' own channels
-  std::size_t own_ = 0;        // how many these are
-  /// Of each column: which of these it is, or with k_textures added which level of the texture.
+  std::size_t own_ = 0;        // the number of these channels
+  /// Per column: the index of such a channel or, with k_textures added, of the texture's channel.
   std::vector<std::size_t> places_;
   static constexpr std::size_t k_textures = std::size_t{1} << 32;
   std::optional<MaterialColours> colours_;

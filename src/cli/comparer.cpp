@@ -25,14 +25,14 @@
 namespace meshfarm {
 namespace {
 
-/// Of a triangle, with the numbers that both meshes share.
+/// Per triangle, with the label numbers shared by both meshes.
 constexpr std::uint64_t k_bytes_of_labels = 2 * sizeof(Label);
 
-/// Bounds of a distance are so near to each other: as a share of the diagonal, or of the distance.
+/// Maximum gap between the bounds of a distance: as a fraction of the diagonal, or of the distance.
 constexpr double k_certified_gap = 1e-5;
 constexpr double k_certified_relative_gap = 0.01;
 
-/// What it takes to hold both, and the hierarchy of one at a time.
+/// Memory to hold both meshes, and the hierarchy of one at a time.
 std::uint64_t memory_for(const DividedSurface& a, const DividedSurface& b) {
   const bool a_is_larger = a.triangles() > b.triangles();
   const DividedSurface& larger = a_is_larger ? a : b;
@@ -41,7 +41,7 @@ std::uint64_t memory_for(const DividedSurface& a, const DividedSurface& b) {
          sizeof(Triangle) * other.triangles();
 }
 
-/// What it takes to bound distances beside that: both again, without what is no surface.
+/// Additional memory to bound distances: both meshes again, without what is not surface.
 std::uint64_t memory_for_bounds(const DividedSurface& a, const DividedSurface& b) {
   return (sizeof(Vec3) + sizeof(std::uint32_t)) * (a.vertices() + b.vertices()) +
          sizeof(Triangle) * (a.triangles() + b.triangles());
@@ -160,7 +160,7 @@ class MeshComparer {
   }
 
   void write_map(const TriangleIndex& a, const Mesh& b) {
-    constexpr double k_brightest = 0.99;  // of the vertices are below: few are far off
+    constexpr double k_brightest = 0.99;  // this share of the vertices is darker: few are far off
     const std::vector<float> distances = distances_to(a, b.positions, options_.divide.threads);
     const float most =
         distances.empty() ? 0 : *std::max_element(distances.begin(), distances.end());

@@ -13,17 +13,17 @@
 namespace meshfarm {
 
 struct CompareOptions {
-  DivideOptions divide;      // its memory is for both meshes, its threads for all
+  DivideOptions divide;      // its memory is for both meshes, its threads for everything
   DistanceOptions distance;  // but for its threads
-  bool certify = false;      // bound the greatest distances over all points
-  std::string map;           // B with its vertices' distances from A is written there; may be empty
+  bool certify = false;      // bound the maximum distances over all points
+  std::string map;           // where to write B with its vertices' distances from A; may be empty
 };
 
-/// What a map has beside its positions.
+/// The channels of a map besides its positions.
 std::vector<Channel> distance_channels();
 
-/// Measures two mesh files of any size. What takes both in memory is left out where they do not
-/// fit, and the comparison says so; but a map or bounds that were asked for are a UsageError then.
+/// Measures two mesh files of any size. Measures that need both meshes in memory are left out if
+/// they do not fit, and the comparison says so; requested maps or bounds are then a UsageError.
 Comparison compare_meshes(const std::string& path_a, const std::string& path_b,
                           const CompareOptions& options);
 

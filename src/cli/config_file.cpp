@@ -24,7 +24,7 @@ bool begins_section(const std::string& line) {
 
 }  // namespace
 
-/// A line at a time, as the parser does not tell where it stopped.
+/// Parses line by line, since the parser does not report where it stopped.
 ConfigFile::ConfigFile(const std::string& path, const po::options_description& options)
     : path_(path), parsed_(&options) {
   std::error_code ignored;

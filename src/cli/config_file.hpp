@@ -11,8 +11,8 @@
 
 namespace meshfarm {
 
-/// The file of --config: one NAME = VALUE a line, by the names of the command line. The default one
-/// says nothing.
+/// The file given by --config: one NAME = VALUE per line, with the command line's option names. The
+/// default-constructed file is empty.
 class ConfigFile {
  public:
   ConfigFile() : parsed_(nullptr) {}
@@ -20,10 +20,10 @@ class ConfigFile {
   ConfigFile(const std::string& path, const po::options_description& options);
 
   const po::parsed_options& parsed() const { return parsed_; }
-  /// Fills what the command line left open. Throws as above.
+  /// Sets options that the command line did not set. Throws as above.
   void store(po::variables_map& values) const;
-  /// The error, after the file and the line if it names an option that stands there and was not
-  /// given on the command line.
+  /// The error, preceded by the file and line if it names an option that is set there and not on
+  /// the command line.
   std::string placed(const std::string& error, const GivenOptions& given) const;
 
  private:
@@ -31,7 +31,7 @@ class ConfigFile {
 
   std::string path_;
   po::parsed_options parsed_;
-  std::map<std::string, std::size_t, std::less<>> lines_;  // of the options, from 1
+  std::map<std::string, std::size_t, std::less<>> lines_;  // per option, from 1
 };
 
 }  // namespace meshfarm

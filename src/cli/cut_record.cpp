@@ -29,13 +29,13 @@ constexpr FileKind k_kind = {'C', 'U', 'T', 'R'};
 constexpr std::uint32_t k_cut_record_version = 1;
 constexpr std::uint64_t k_end_bytes = std::uint64_t{1} << 20;
 
-/// What of the textures the stage has, whatever a run makes of it.
+/// What the stage contains of the textures, whatever a run makes of it.
 const char* word_of(Textures textures) {
   if (textures == Textures::bake) return "colours";
   return textures == Textures::keep ? "keep" : "drop";
 }
 
-/// Threads are left out: they change no byte.
+/// Threads are left out: they do not change the output.
 std::string options_of(const CutWords& words, bool farmed) {
   std::string text = "--scheme " + words.scheme_word + " --weld " + words.weld + " --parts " +
                      std::to_string(words.cut.parts);
@@ -49,7 +49,7 @@ std::string options_of(const CutWords& words, bool farmed) {
   return text + ", algorithm " + std::to_string(k_algorithm_version);
 }
 
-/// Without options.
+/// The record without options.
 CutRecord record_of(const std::string& input) {
   const Fd fd = open_for_read(input);
   struct stat status {};

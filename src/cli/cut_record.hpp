@@ -13,25 +13,25 @@
 
 namespace meshfarm {
 
-/// What a stage was cut from, and how: by this the same command knows its own stage again.
+/// What a stage was cut from, and how: a repeated command recognises its own stage by this.
 struct CutRecord {
-  std::uint64_t size = 0;       // of the input, in bytes
+  std::uint64_t size = 0;       // the input's modification time
   std::int64_t changed_ns = 0;  // when the input was written last
-  std::uint64_t sum = 0;        // of its head and tail
-  std::string options;          // of the cut, as far as they matter to what is cut
+  std::uint64_t sum = 0;        // of the input's head and tail
+  std::string options;          // of the cut, those that affect its output
 };
 
 /// `farmed`: whether the farm is to cut. Throws IoError if the input cannot be read.
 CutRecord record_of(const std::string& input, const CutWords& words, bool farmed = false);
-/// In what they differ, for a message; empty if they are the same.
+/// The differences, for a message; empty if there are none.
 std::string difference(const CutRecord& staged, const CutRecord& wanted);
 
 void publish_record(const Stage& stage, const CutRecord& record);
 /// Whether the stage holds a finished cut.
 bool holds_cut(const std::filesystem::path& stage);
-/// Whether the file is the one that the stage was cut from, as it was then.
+/// Whether the file is the unchanged input of the stage's cut.
 bool is_of_input(const Stage& stage, const std::string& file);
-/// Nothing if the stage has none: it was made by an older version.
+/// Nothing if the stage has none, from an older version.
 std::optional<CutRecord> read_record(const Stage& stage);
 
 }  // namespace meshfarm

@@ -27,7 +27,7 @@ namespace meshfarm {
 
 namespace {
 
-/// The cut that the stage holds, if it is the one that is wanted.
+/// The cut in the stage, if it is the wanted one.
 Manifest taken_up(const Stage& stage, const CutStep& step) {
   const std::string root = stage.root().string();
   const auto staged = read_record(stage);
@@ -46,7 +46,7 @@ Manifest taken_up(const Stage& stage, const CutStep& step) {
 }
 
 std::unique_ptr<MeshSource> open_input(const CutStep& step) {
-  // Readers of compressed and ascii files keep scratch of their own, which goes by this.
+  // Readers of compressed and ascii files have scratch files of their own, which go to TMPDIR.
   if (!step.words.scratch.empty()) ::setenv("TMPDIR", step.words.scratch.c_str(), 1);
   auto opened = open_mesh(
       step.input,
@@ -68,7 +68,7 @@ std::string why_not_by_farm(const MeshFileInfo& info, const std::optional<Cuttin
   return {};
 }
 
-/// What the farm is to cut; nothing if this process is.
+/// What the farm should cut; nothing if this process cuts.
 std::optional<Cutting> cutting_for(const CutStep& step, const MeshSource& source) {
   const CutWords& words = step.words;
   const bool is_asked = words.where == "farm";
@@ -84,7 +84,7 @@ std::optional<Cutting> cutting_for(const CutStep& step, const MeshSource& source
   return std::nullopt;
 }
 
-/// Leaves to the first jobs of a run to cut.
+/// Leaves the cut to the first jobs of a run.
 Manifest plan_cut(const CutStep& step, const MeshFileInfo& info, const Cutting& cutting,
                   const Stage& stage) {
   Manifest manifest;
@@ -101,7 +101,7 @@ Manifest plan_cut(const CutStep& step, const MeshFileInfo& info, const Cutting& 
   return manifest;
 }
 
-/// By this host, or by the first jobs of a run.
+/// Cuts on this host, or leaves it to the first jobs of a run.
 Manifest cut(MeshSource& source, const Stage& stage, const CutStep& step) {
   if (const auto cutting = cutting_for(step, source)) {
     return plan_cut(step, source.info(), *cutting, stage);
@@ -125,7 +125,7 @@ Manifest cut(MeshSource& source, const Stage& stage, const CutStep& step) {
 }  // namespace
 
 Manifest cut_to_stage(const CutStep& step) {
-  // An input that cannot be read, or has not what is asked for, leaves no stage behind.
+  // An input that cannot be read, or lacks what is requested, leaves no stage behind.
   std::unique_ptr<MeshSource> source = holds_cut(step.stage) ? nullptr : open_input(step);
   std::error_code unknown;
   const bool is_new = !std::filesystem::exists(step.stage, unknown) && !unknown;

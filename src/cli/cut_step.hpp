@@ -19,16 +19,15 @@ struct CutStep {
   const CutWords& words;
   const TalkOptions& talk;
   const std::atomic<bool>& stop;
-  /// What --cut auto comes to for a mesh of so many triangles, if the farm can cut it; may be
-  /// empty.
+  /// Whether --cut auto uses the farm for a mesh of this many triangles, if the farm can cut it;
+  /// may be empty.
   std::function<bool(std::uint64_t triangles)> farm_pays = {};
 };
 
-/// Cuts a file, or makes streams of it, in a stage that holds no manifest yet, with progress on
-/// stderr.
+/// Cuts a file, or makes streams from it, in a stage without a manifest, with progress on stderr.
 Manifest cut_to_stage(const CutStep& step);
 
-/// Tells, in a line, which textures have become colours, if any.
+/// Reports, in one line, the textures that were turned into colours, if any.
 void tell_textures(const std::string& input, const MeshFileInfo& info);
 
 }  // namespace meshfarm

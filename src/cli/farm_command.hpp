@@ -12,7 +12,7 @@
 
 namespace meshfarm {
 
-/// What the three farm processes share. Under a supervisor, a stop is the supervisor's to report.
+/// Shared by the three farm processes. Under a supervisor, the supervisor reports a stop.
 class FarmCommand : public Command {
  public:
   int run() final;
@@ -21,14 +21,14 @@ class FarmCommand : public Command {
   enum class StageIs { required, optional };
   void add_stage(po::options_description& options, po::positional_options_description& positional,
                  StageIs stage_is = StageIs::required);
-  /// What the process is there for: to serve the stage.
+  /// The work of the process: to serve the stage.
   virtual void work(const std::atomic<bool>& stop);
   virtual void serve(const Stage& stage, const std::atomic<bool>& stop) = 0;
-  /// What the command was told about authentication and mounts.
+  /// The command's options for authentication and mounts.
   virtual const SecurityWords& security() const = 0;
-  /// Whether jobs that failed for good are another process's to report, too.
+  /// Whether another process also reports jobs that failed for good.
   virtual bool sink_reports_failures() const { return false; }
-  /// Whether a parent of this program's own started this process and speaks for it.
+  /// Whether a parent running this program started this process and reports for it.
   bool supervised() const { return supervised_; }
   static Manifest read_manifest(const Stage& stage);
 

@@ -11,7 +11,7 @@
 
 namespace meshfarm {
 
-/// Adds all vertices of a stage's input to framings. `seen` is told how many triangles were shown,
+/// Adds all vertices of a stage's input to framings. `seen` receives the number of triangles shown,
 /// from several threads; may be empty.
 void add_input(InputSurface& input, std::span<Framing> framings,
                const std::function<void(std::uint64_t)>& seen = {});

@@ -31,8 +31,8 @@ std::vector<std::string> joined(std::vector<std::string> words,
   return words;
 }
 
-/// The processes share this machine's free memory evenly. So many are started that the largest job
-/// fits into a share; a single one tries it whatever it needs.
+/// The processes share this machine's free memory evenly. The number of workers is such that the
+/// largest job fits into a share; a single worker tries it whatever it needs.
 struct Crew {
   std::uint32_t workers = 0;
   std::uint64_t memory = 0;  // of each; 0: no limit
@@ -54,9 +54,9 @@ Crew crew_for(const LocalFarm& farm, const Manifest& manifest) {
   return crew;
 }
 
-/// The words for a key file in a folder of this host's own, which goes with its owner. Only where
-/// the stage's file system cannot keep one for its owner alone (FAT, some network shares) and no
-/// process of another host takes part; elsewhere none, and the keys are in the stage.
+/// Options for a key file in a folder of this host, removed with this object. Used only if the
+/// stage's file system cannot keep a file private (FAT, some network shares) and no process on
+/// another host takes part; otherwise empty, and the keys are in the stage.
 class KeysAside {
  public:
   KeysAside(const LocalFarm& farm, const Stage& stage) {
@@ -83,7 +83,7 @@ class KeysAside {
   std::filesystem::path folder_;
 };
 
-/// Before ventilator and sink say the same, each for itself.
+/// Checks once what ventilator and sink would otherwise both report.
 void check_network(const NetworkOptions& network) {
   if (!network.this_host_only) check_bind(network.bind);
   const std::filesystem::path keys = network.security.key_file;
@@ -98,14 +98,14 @@ std::uint32_t default_workers() {
 }
 
 int run_local_farm(const LocalFarm& farm, const std::atomic<bool>& stop) {
-  // Looked at here once, so that a missing or damaged stage is one line and not one a process.
+  // Opened here once, so that a missing or damaged stage gives one error, not one per process.
   const Stage stage = Stage::open(farm.stage);
   farm.network.security.check_mount(farm.stage);
   check_network(farm.network);
   const Manifest manifest =
       decode_manifest(stage.read(ManifestName{}), stage.path(ManifestName{}).string());
   check_output_fits(farm.output, manifest, farm.target.run);
-  check_sink_need(manifest, farm.target.run, std::nullopt);  // what it advises the sink says
+  check_sink_need(manifest, farm.target.run, std::nullopt);  // the sink reports its advice
   tell_textures(manifest, farm.target.run);
   const Crew crew = crew_for(farm, manifest);
   std::vector<std::string> shared = {"--supervised"};

@@ -11,7 +11,7 @@
 
 namespace meshfarm {
 
-/// What the processes of one run on this machine need.
+/// Parameters for the processes of one run on this machine.
 struct LocalFarm {
   std::string stage;
   std::string output;
@@ -24,11 +24,11 @@ struct LocalFarm {
   std::uint32_t workers = 0;
 };
 
-/// Starts ventilator, sink and workers on this machine and sees them through.
-/// Returns the exit code of the run.
+/// Runs ventilator, sink and workers on this machine until they end. Returns the exit code of the
+/// run.
 int run_local_farm(const LocalFarm& farm, const std::atomic<bool>& stop);
 
-/// One worker a core.
+/// One worker per core.
 std::uint32_t default_workers();
 
 }  // namespace meshfarm

@@ -14,7 +14,7 @@
 namespace meshfarm {
 namespace {
 
-/// Text as man roff: a hyphen that can be copied, and no line that begins with a request.
+/// Text as man roff: hyphens stay copyable, and no line starts with a request.
 std::string roff(std::string_view text) {
   std::string out;
   for (const char c : text) {
@@ -56,13 +56,13 @@ std::string page_foot(std::string_view see_also) {
   return out.str();
 }
 
-/// What an option takes, as "FILE" or "cut|stream", without the default; empty for a switch.
+/// The value of an option, such as "FILE" or "cut|stream", without the default; empty for a switch.
 std::string value_name(const po::option_description& option) {
   const std::string text = option.format_parameter();
   return text.substr(0, text.find(" (="));
 }
 
-/// The default, unless there is none or the description tells it.
+/// The default, unless there is none or the description states it.
 std::string default_of(const po::option_description& option) {
   const std::string text = option.format_parameter();
   const std::size_t at = text.find(" (=");
@@ -105,7 +105,7 @@ bool is_path(std::string_view value) {
   return value == "FILE" || value == "FOLDER" || value == "STAGE";
 }
 
-/// The cases of one command in the completion script: words after an option, and all options.
+/// A command's cases in the completion script: words after an option, and all options.
 void put_cases(std::ostringstream& values, std::ostringstream& options,
                const DescribedCommand& described) {
   const std::string_view name = described.command->name();
@@ -124,7 +124,7 @@ void put_cases(std::ostringstream& values, std::ostringstream& options,
     if (is_path(value)) {
       values << ") compopt -o default; return ;;\n";
     } else if (words == value) {
-      values << ") return ;;\n";  // a number or a text: nothing to offer
+      values << ") return ;;\n";  // a number or text: nothing to offer
     } else {
       values << ") words='" << words << "' ;;\n";
     }

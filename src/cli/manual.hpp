@@ -11,8 +11,8 @@
 
 namespace meshfarm {
 
-/// A command and what setup() declared, with --config and --help. The options are bound to the
-/// command's members.
+/// A command and the options declared by setup(), with --config and --help. The options are bound
+/// to the command's members.
 struct DescribedCommand {
   explicit DescribedCommand(std::unique_ptr<Command> named);
   std::unique_ptr<Command> command;
@@ -23,7 +23,7 @@ struct DescribedCommand {
 /// Option descriptions cannot be moved.
 using DescribedCommands = std::vector<std::unique_ptr<DescribedCommand>>;
 
-/// The options without positional arguments, which have no description: the synopsis shows them.
+/// The options except positional arguments, which have no description: the synopsis shows them.
 po::options_description described_only(const po::options_description& all);
 
 /// The program's exit codes, for help and manual.
@@ -37,8 +37,8 @@ const std::vector<ExitCode>& exit_codes();
 std::string man_page(const DescribedCommands& commands);
 std::string man_page(const DescribedCommand& described);
 
-/// A completion script for bash. A value name like "cut|stream" lists the words that an option
-/// takes; FILE, FOLDER and STAGE are completed as paths.
+/// A completion script for bash. For a value name like "cut|stream" it offers the option's words;
+/// FILE, FOLDER and STAGE are completed as paths.
 std::string bash_completion(const DescribedCommands& commands);
 
 /// Writes FOLDER/man1/meshfarm*.1 and FOLDER/completions/meshfarm. Throws IoError.

@@ -11,7 +11,7 @@
 namespace meshfarm {
 namespace {
 
-/// As --memory takes it; rounded up, so that it is enough.
+/// In the format of --memory; rounded up, so that it is enough.
 std::string size_text(std::uint64_t bytes) {
   const bool is_large = bytes >= std::uint64_t{10} << 20;
   const unsigned shift = is_large ? 20 : 10;
@@ -36,7 +36,7 @@ void MeasureWords::check() {
 }
 
 std::uint64_t memory_to_hold(std::uint64_t vertices, std::uint64_t triangles) {
-  // While it is built, with what the allocator keeps: measured.
+  // Peak while building, including the allocator's overhead: measured.
   constexpr std::uint64_t k_hierarchy_bytes = 72;
   return sizeof(Vec3) * vertices + (sizeof(Triangle) + k_hierarchy_bytes) * triangles;
 }

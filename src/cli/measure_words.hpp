@@ -10,7 +10,7 @@
 
 namespace meshfarm {
 
-/// Options of commands that look at meshes of any size: --memory, --scratch, --threads.
+/// Options of commands that read meshes of any size: --memory, --scratch, --threads.
 struct MeasureWords {
   DivideOptions divide;
 
@@ -22,9 +22,9 @@ struct MeasureWords {
   std::string scratch_;
 };
 
-/// What it takes to hold a mesh and a hierarchy of its triangles.
+/// Memory to hold a mesh and a hierarchy of its triangles.
 std::uint64_t memory_to_hold(std::uint64_t vertices, std::uint64_t triangles);
-/// Why what takes so much is not done, and what --memory would be enough.
+/// Why something that needs this much memory is not done, and which --memory would be enough.
 std::string why_too_little(std::uint64_t needed, std::uint64_t memory);
 
 }  // namespace meshfarm

@@ -25,10 +25,10 @@ namespace meshfarm {
 
 namespace po = boost::program_options;
 
-// The option groups that commands share: add() declares, the other functions turn the texts into
-// values and throw UsageError. Defaults stand in the members.
+// Option groups shared by commands: add() declares, the other functions convert the texts to values
+// and throw UsageError. Defaults are in the members.
 
-/// A warning for each of the options that was given, which do nothing without what is needed.
+/// Warns about each given option, which has no effect without `needed`.
 void warn_of_unused(const GivenOptions& given, std::initializer_list<std::string_view> options,
                     std::string_view needed);
 
@@ -65,13 +65,13 @@ struct TargetOptions {
   void add(po::options_description& options);
   /// --texture-size.
   void add_texture_size(po::options_description& options);
-  /// --attributes, --uv and the above, for commands that take a stage: those that cut leave out
-  /// what is not wanted.
+  /// --attributes, --uv and the above, for commands that take a stage: commands that cut leave out
+  /// unwanted attributes.
   void add_attributes(po::options_description& options);
   void check();
   /// As Command::check_given().
   void check_given(const GivenOptions& given) const;
-  /// The same as words for a command line.
+  /// The options as words for a command line.
   std::vector<std::string> words() const;
 
  private:
@@ -84,8 +84,8 @@ struct CutWords {
   CutOptions cut;
   std::string scheme_word = "cut";
   std::string sort = "here";
-  std::string where = "auto";  // the cut is done
-  std::uint32_t blocks = 0;    // that the farm cuts by
+  std::string where = "auto";  // where the cut is done
+  std::uint32_t blocks = 0;    // number of blocks if the farm cuts
   std::string weld = "exact";
   std::string attributes = "auto";
   std::string uv = "auto";
@@ -95,11 +95,11 @@ struct CutWords {
 
   void add(po::options_description& options);
   void check();
-  /// As Command::check_given(). `auto_farms`: whether --cut auto may be that of the farm.
+  /// See Command::check_given(). `auto_farms`: whether --cut auto may use the farm.
   void check_given(const GivenOptions& given, bool auto_farms) const;
   /// Whether the first jobs of a run may cut.
   bool may_be_farmed() const { return where != "here" && cut.scheme != Scheme::stream; }
-  /// The same as words for a command line: those that count.
+  /// The effective options as words for a command line.
   std::vector<std::string> words() const;
 };
 
@@ -118,14 +118,14 @@ struct SecurityWords {
   std::vector<std::string> words() const;
 };
 
-/// --bind, --ports, and what SecurityWords has.
+/// --bind, --ports, and the options of SecurityWords.
 struct NetworkOptions {
   std::string bind;
   std::string ports;
   std::uint16_t first_port = 0;
   std::uint16_t last_port = 0;
   SecurityWords security;
-  bool this_host_only = false;  // all processes are started here, by one that sees them through
+  bool this_host_only = false;  // all processes are started here, by one that supervises them
 
   void add(po::options_description& options);
   void check();

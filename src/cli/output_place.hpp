@@ -7,16 +7,16 @@
 
 namespace meshfarm {
 
-/// Throws IoError now rather than after an hour's work if the mesh `output` cannot be made.
+/// Throws IoError now rather than after an hour's work if the mesh `output` cannot be created.
 void check_writable(const std::string& output);
-/// The same of what is no mesh.
+/// The same check for an output that is not a mesh.
 void check_place(const std::string& output);
-/// Throws UsageError if `output`, which is given by `option`, is the file `other`, which is, in
-/// words, `what`. Neither has to be there.
+/// Throws UsageError if `output`, given by `option`, is the file `other`, described by `what`.
+/// Neither file has to exist.
 void check_not_over(std::string_view option, const std::string& output, std::string_view what,
                     const std::string& other);
 /// The same if `output` is one of the stage's own files, or the input that the stage was cut from.
-/// A stage that is not there is no error.
+/// A stage that does not exist is no error.
 void check_not_of_stage(std::string_view option, const std::string& output,
                         const std::string& stage);
 

@@ -23,14 +23,14 @@ struct OutputWords {
 
   void add(po::options_description& options);
   Packing packing() const { return plain ? Packing::plain : Packing::compressed; }
-  /// As Command::check_given(), of who writes `output`.
+  /// See Command::check_given(); for a command that writes `output`.
   void check_given(const GivenOptions& given, const std::string& output) const;
-  /// The same as words for a command line.
+  /// The options as words for a command line.
   std::vector<std::string> words() const;
 };
 
-/// Throws UsageError before the farm's work if its result will be more than the output's format can
-/// count. A result has half as many vertices as triangles, more or less.
+/// Throws UsageError, before the farm's work, if its result will exceed the limits of the output's
+/// format. A result has about half as many vertices as triangles.
 void check_output_fits(const std::string& output, const Manifest& manifest, const RunOptions& run);
 
 }  // namespace meshfarm

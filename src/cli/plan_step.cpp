@@ -23,7 +23,7 @@ namespace {
 
 constexpr std::uint64_t k_most_workers = 100'000;
 
-/// The paper's clusters: 24 PCs, and 16 of them with 8 that are a third as fast.
+/// The paper's clusters: 24 PCs, and 16 of them with 8 at a third of their speed.
 const std::vector<WorkerGroup> k_equal_pcs = {{24, 1}};
 const std::vector<WorkerGroup> k_mixed_pcs = {{16, 1}, {8, 1.0 / 3}};
 constexpr std::uint64_t k_fewest_jobs = 128;

@@ -13,7 +13,7 @@
 
 namespace meshfarm {
 
-/// `simulate STAGE...`: what a traced run says of farms that are not there.
+/// `simulate STAGE...`: predictions for other farms from a traced run.
 struct PlanWords {
   std::vector<std::string> stages;  // or trace files
   std::string workers = "24,240,10000";
@@ -25,14 +25,14 @@ struct PlanWords {
   double off = 0.2;
   std::uint64_t parts = 0;
   bool paper = false;
-  bool limits = false;  // of each stage
+  bool limits = false;  // show the limiting factor of each stage
   std::string output;
 
   void add(po::options_description& options);
   void check();
   /// As Command::check_given().
   void check_given(const GivenOptions& given) const;
-  /// Prints; the picture goes to `output`. Throws Error.
+  /// Prints the prediction; the picture goes to `output`. Throws Error.
   void run(Format format) const;
 
  private:

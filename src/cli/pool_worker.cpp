@@ -18,11 +18,11 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 constexpr std::chrono::milliseconds k_choose_every{300};
-/// A run that is served shows so in its trace within this.
+/// Within this time a run's trace shows that the run is served.
 constexpr std::chrono::milliseconds k_until_seen{2000};
-/// A run that is over for workers is not joined again before its trace says so...
+/// A run that is over for workers is not joined again until its trace says so...
 constexpr std::chrono::seconds k_after_the_end{3};
-/// ...and one whose ventilator does not answer is given time to come back.
+/// ...and one whose ventilator does not answer gets time to come back.
 constexpr std::chrono::seconds k_after_silence{30};
 
 class PoolWorker {
@@ -52,8 +52,8 @@ class PoolWorker {
     return runs;
   }
 
-  /// Workers that come together would all take the same: each waits for a while of its own, and
-  /// looks at what the others took.
+  /// Workers that arrive together would all choose the same run: each waits for a random time, and
+  /// sees what the others chose.
   std::optional<PoolRun> choose() {
     const std::vector<PoolRun> runs = candidates();
     if (runs.size() < 2) return neediest(runs);

@@ -15,13 +15,13 @@ namespace meshfarm {
 
 struct PoolWork {
   std::filesystem::path folder;
-  /// How long to look on while there is no run with work; none: for ever.
+  /// How long to keep looking while no run has work; none: for ever.
   std::optional<std::chrono::seconds> wait;
-  /// Serves a run to its end. Throws IncompleteError where that cannot be.
+  /// Serves a run to its end. Throws IncompleteError if that is not possible.
   std::function<void(const Stage&, std::uint64_t run)> serve;
 };
 
-/// Serves one run of the pool after another, the one that needs it most first, until it is stopped.
+/// Serves runs of the pool, one after another and the neediest first, until it is stopped.
 void serve_pool(const PoolWork& work, const std::atomic<bool>& stop);
 
 }  // namespace meshfarm

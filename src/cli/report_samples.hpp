@@ -16,23 +16,23 @@
 
 namespace meshfarm {
 
-/// Where a sample of the input is, and how far from the result.
+/// The position of a sample of the input, and its distance from the result.
 struct MeasuredPlace {
   FacingPoint point;
   NearPlace near;
-  double area = 0;  // that it stands for
+  double area = 0;  // represented by the sample
 };
 
-/// Points of an input that comes in pieces, and figures of its shape. What it takes does not depend
-/// on the input's size.
+/// Samples of an input that arrives in pieces, and its shape figures. Memory use does not depend on
+/// the input's size.
 class InputSamples {
  public:
   explicit InputSamples(const Manifest& manifest);
-  /// From several threads; the pieces of a part in order.
+  /// Safe from several threads; the pieces of each part must come in order.
   void add(const SurfacePiece& piece);
-  /// Of angles those of some of the triangles, where there are many.
+  /// If there are many triangles, angles are those of a subset.
   ShapeMeasures shape() const;
-  /// All points, by parts. Call this last.
+  /// All samples, by part. Call last.
   std::vector<MeasuredPlace> measure(const TriangleIndex& result, unsigned threads);
 
  private:
@@ -47,20 +47,20 @@ class InputSamples {
   };
 
   double triangles_;    // of the input
-  std::uint64_t step_;  // of the triangles whose angles are measured
+  std::uint64_t step_;  // between triangles whose angles are measured
   Vec3 origin_;
-  std::vector<OfPart> parts_;  // and what is between them
+  std::vector<OfPart> parts_;  // and one for what is between parts
   std::mutex mutex_;
   ShapeMeter angles_{1};
 };
 
 struct ErrorFigures {
-  SurfaceError error;        // as compare has it, each place by its area
-  ErrorHistogram histogram;  // up to what 95 % of the area are within
+  SurfaceError error;        // as in compare, each sample weighted by its area
+  ErrorHistogram histogram;  // up to the distance that 95 % of the area are within
 };
 ErrorFigures error_figures_of(std::span<const MeasuredPlace> places);
-/// Of each vertex the mean distance of the places that are nearest to its triangles; where there
-/// are none, that of its neighbours.
+/// Per vertex, the mean distance of the samples nearest to its triangles; without any, the
+/// neighbours' mean.
 std::vector<float> errors_at_vertices(const Mesh& result, std::span<const MeasuredPlace> places);
 
 }  // namespace meshfarm

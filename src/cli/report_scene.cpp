@@ -23,10 +23,10 @@
 namespace meshfarm {
 namespace {
 
-/// A larger result is not put into the page, nor are its triangles looked through for crossings.
+/// A larger result is not embedded in the page, and its crossings are not counted.
 constexpr std::uint64_t k_most_in_model = 200'000;
 constexpr std::uint64_t k_most_for_crossings = 1'000'000;
-/// A smaller input is measured as a whole, too.
+/// An input up to this size is also measured as a whole.
 constexpr std::uint64_t k_small_input = 1'500'000;
 
 /// Widths of pictures, in pixels.
@@ -39,14 +39,14 @@ struct NamedAngle {
   double azimuth;
   double elevation;
 };
-constexpr double k_above = 48;  // of what lies
+constexpr double k_above = 48;  // elevation for flat-lying shapes
 constexpr std::array<NamedAngle, 3> k_views = {
     {{"from the front", 25, 18}, {"from the right", 145, 18}, {"from the left", 265, 18}}};
 
 struct Zoom {
   Vec3 at;
   double radius = 0;
-  double depth = 0;  // what is so much nearer to the viewer would hide it
+  double depth = 0;  // surfaces nearer to the viewer by more than this would hide it
   View view;
   ViewAxes axes;
 
@@ -66,7 +66,7 @@ struct Zoom {
   }
 };
 
-/// Terrains and floors lie, all else stands: whether the side that is up is the least by far.
+/// Terrains and floors lie, everything else stands: whether the up axis is the shortest by far.
 bool lies(const Box& box, Vec3 up) {
   const Vec3 sides = box.hi - box.lo;
   const double high = std::abs(dot(sides, up));
@@ -80,7 +80,7 @@ Vec3 up_of(const Box& box) {
   return lies(box, k_z) ? k_z : Vec3{0, 1, 0};
 }
 
-/// From where a side that faces this way is seen best.
+/// The best view of a side with this normal.
 View facing(Vec3 normal, Vec3 up) {
   constexpr double k_degrees = 180 / 3.14159265358979323846;
   const ViewAxes front({.azimuth = 0, .elevation = 0, .up = up});
@@ -121,14 +121,14 @@ class SceneMaker {
   }
 
  private:
-  /// Where a picture goes once it is drawn, and where its other look, if it has one.
+  /// Where to store a finished picture, and its other look if it has one.
   struct Drawn {
     PagePicture* to;
     SurfacePicture picture;
     PagePicture* by_part = nullptr;
   };
 
-  /// `width`: as wide as it is on a page for desks.
+  /// `width`: the width on a desktop page.
   static RenderOptions options_for(const View& view, std::uint32_t width = k_wide) {
     RenderOptions options;
     options.width = width;
@@ -141,7 +141,7 @@ class SceneMaker {
     return options;
   }
 
-  /// By the result, which is where the input is; by both if parts of that are gone.
+  /// By the result, which covers the input; by both if parts of the input are gone.
   void set_cameras() {
     Box box;
     for (const Vec3& p : result_.positions) box.add(p);
@@ -165,9 +165,9 @@ class SceneMaker {
     return drawn_.back().picture;
   }
 
-  /// All that needs the whole input, in one go.
+  /// Everything that needs the whole input, in one pass.
   void draw_input() {
-    drawn_.reserve(16);  // none moves
+    drawn_.reserve(16);  // nothing may move
     scene_.views.resize(pictures_.size());
     std::vector<SurfacePicture*> of_input;
     for (std::size_t i = 0; i < pictures_.size(); ++i) {
@@ -239,7 +239,7 @@ class SceneMaker {
     }
   }
 
-  /// Where a sample is farthest off; so near that triangles of the result are large.
+  /// At the sample with the largest distance; close enough that triangles of the result are large.
   std::optional<Zoom> find_zoom() const {
     const auto worst = std::max_element(places_.begin(), places_.end(),
                                         [](const MeasuredPlace& a, const MeasuredPlace& b) {
@@ -336,7 +336,7 @@ class SceneMaker {
   std::vector<RenderOptions> pictures_;  // the views
   std::vector<Camera> cameras_;
   std::vector<MeasuredPlace> places_;
-  std::vector<float> errors_;  // of the result's vertices
+  std::vector<float> errors_;  // at the result's vertices
   PageScene scene_;
   PageFigures figures_;
   std::vector<Drawn> drawn_;

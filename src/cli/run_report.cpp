@@ -19,7 +19,7 @@
 namespace meshfarm {
 namespace {
 
-/// As a shell takes it.
+/// Quoted for a shell.
 std::string quoted(const std::string& word) {
   const auto is_plain = [](char c) {
     return std::isalnum(static_cast<unsigned char>(c)) != 0 ||
@@ -31,7 +31,7 @@ std::string quoted(const std::string& word) {
   return made + "'";
 }
 
-/// Those that this process was started with, without the program's name.
+/// The command line of this process, without the program's name.
 std::vector<std::string> own_words() {
   std::ifstream file("/proc/self/cmdline", std::ios::binary);
   std::vector<std::string> words;
@@ -46,7 +46,7 @@ std::string command_of(const std::vector<std::string>& words) {
   return command;
 }
 
-/// The newest summary of a run, as JSON; empty if there is none.
+/// The newest summary of a run, as JSON; may be empty.
 std::string summary_of(const Stage& stage, std::uint64_t run) {
   const std::vector<std::uint32_t> numbers = stage.summaries();
   for (auto number = numbers.rbegin(); number != numbers.rend(); ++number) {
@@ -57,7 +57,7 @@ std::string summary_of(const Stage& stage, std::uint64_t run) {
   return {};
 }
 
-/// Nothing where the file is not what the run made; `notes` then says why.
+/// Nothing if the file is not what the run made; `notes` then says why.
 std::optional<Mesh> read_result(const RunResult& made, std::vector<std::string>& notes) {
   try {
     const auto source = open_mesh(made.path, {.channels = false, .labels = false});

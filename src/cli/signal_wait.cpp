@@ -37,7 +37,7 @@ void SignalWait::stop() const {
   ::sigemptyset(&stopping);
   ::sigaddset(&stopping, SIGTSTP);
   ::raise(SIGTSTP);
-  ::pthread_sigmask(SIG_UNBLOCK, &stopping, nullptr);  // it is stopped here
+  ::pthread_sigmask(SIG_UNBLOCK, &stopping, nullptr);  // the process stops here
   ::pthread_sigmask(SIG_BLOCK, &stopping, nullptr);
 }
 

@@ -8,8 +8,8 @@
 
 namespace meshfarm {
 
-/// Keeps signals that end or stop a process, or tell of its terminal, until they are asked for.
-/// Threads that start while this stands do not get them either.
+/// Blocks signals that end or stop a process, or report changes of its terminal, until they are
+/// queried. Threads started while this exists do not get them either.
 class SignalWait {
  public:
   SignalWait();
@@ -17,9 +17,9 @@ class SignalWait {
   SignalWait(const SignalWait&) = delete;
   SignalWait& operator=(const SignalWait&) = delete;
 
-  /// The next one; nothing if none comes in time.
+  /// The next signal; nothing if none arrives in time.
   std::optional<int> next(std::chrono::milliseconds within) const;
-  /// Stops this process as SIGTSTP does; returns when it is to go on.
+  /// Stops this process like SIGTSTP; returns when it is continued.
   void stop() const;
 
   static bool ends(int signal);

@@ -7,7 +7,7 @@
 namespace meshfarm {
 namespace {
 
-// A signal handler can reach nothing but a global.
+// A signal handler can only access globals.
 std::atomic<bool> g_stop{false};
 
 extern "C" void on_signal(int) {

@@ -13,9 +13,9 @@ namespace meshfarm {
 namespace {
 
 constexpr std::chrono::milliseconds k_look_every{1000};
-/// To ask the server for the time makes a file.
+/// Asking for the server's time creates a file.
 constexpr std::chrono::seconds k_ask_time_every{20};
-/// A summary comes a moment after the end of its run.
+/// A summary appears a moment after the end of its run.
 constexpr std::chrono::seconds k_look_for_summary_every{2};
 constexpr std::chrono::seconds k_probe_every{5};
 /// For the thread to end, unless its storage stalls.
@@ -51,7 +51,7 @@ void StageLook::find_times() {
   status_.times = read_run_times(stage_, head.run);
 }
 
-/// Whether it was done so long ago, or never; then it is done now.
+/// Whether this much time has passed since `last`, or it is unset; if so, sets it to now.
 bool StageLook::is_time_for(std::optional<Clock::time_point>& last, Clock::duration every) {
   const auto now = Clock::now();
   if (last && now - *last < every) return false;
@@ -59,7 +59,7 @@ bool StageLook::is_time_for(std::optional<Clock::time_point>& last, Clock::durat
   return true;
 }
 
-/// As far ahead of our clock as it was a moment ago.
+/// Assumes the same offset from our clock as at the last query.
 void StageLook::tell_time() {
   if (is_time_for(clock_read_, k_ask_time_every)) {
     const std::optional<double> server = server_unix_s(stage_.path(TraceName{1}).parent_path());
@@ -88,7 +88,7 @@ struct StageWatch::Shared : SideThread::Signals {
 
   Shared(Stage stage, std::string name) : look(std::move(stage), std::move(name)) {}
 
-  StageLook look;  // the thread's own
+  StageLook look;  // owned by the thread
   StatusFacts facts;
   Clock::time_point seen = Clock::now();
   std::string problem;
@@ -106,7 +106,7 @@ void StageWatch::Shared::run() {
     try {
       next = look.look();
     } catch (const std::exception& error) {
-      why = error.what();  // it may be over soon: the next look tells
+      why = error.what();  // may be temporary: the next look shows it
     }
     lock.lock();
     if (next) {

@@ -14,12 +14,12 @@
 
 namespace meshfarm {
 
-/// Looks at a stage as often as it is asked to, and reads only what is new.
+/// Looks at a stage on request, and reads only what is new.
 class StageLook {
  public:
-  /// `name`: the stage as the user named it.
+  /// `name`: the stage as named by the user.
   StageLook(Stage stage, std::string name);
-  /// Throws IoError or DataError; it can be asked again.
+  /// Throws IoError or DataError; may be called again.
   StatusFacts look();
 
  private:
@@ -36,21 +36,20 @@ class StageLook {
   std::optional<Clock::time_point> clock_read_;
   std::optional<Clock::time_point> times_read_;
   std::optional<Clock::time_point> room_probed_;
-  std::optional<double> server_ahead_s_;  // of our clock
+  std::optional<double> server_ahead_s_;  // the server's clock minus ours
   bool was_full_ = false;
 };
 
-/// Looks at a stage every second by a thread of its own, as storage that stalls would keep others
-/// waiting.
+/// Looks at a stage every second on a thread of its own, since stalled storage would block others.
 class StageWatch {
  public:
   StageWatch(Stage stage, std::string name);
-  /// Does not wait for storage that stalls.
+  /// Does not wait for stalled storage.
   ~StageWatch();
   StageWatch(const StageWatch&) = delete;
   StageWatch& operator=(const StageWatch&) = delete;
 
-  /// What is known now: as it was seen last, and how long ago that was.
+  /// The last known facts, and how long ago they were seen.
   StatusFacts facts() const;
 
  private:

@@ -16,7 +16,7 @@
 namespace meshfarm {
 namespace {
 
-/// How much of the input was shown.
+/// Tracks how much of the input was shown.
 class Shown {
  public:
   Shown(const RenderOptions& options, std::uint64_t triangles)

@@ -8,8 +8,8 @@
 
 namespace meshfarm {
 
-/// Draws the input of a stage as it lies there, by part unless normals or nothing are asked for.
-/// In memory are some parts, and none of the whole. Throws UsageError for other colours.
+/// Draws the input of a stage from its parts, coloured by part unless normals or no colours are
+/// requested. Only some parts are in memory, never the whole. Throws UsageError for other colours.
 Rendering render_stage(const std::string& folder, RenderOptions options);
 
 }  // namespace meshfarm

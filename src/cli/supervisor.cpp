@@ -42,7 +42,7 @@ int Supervisor::run() {
     wait_for_child(200);
   }
   const bool done = essentials_done();
-  // Ventilator and sink end together; the other may be about to say why.
+  // Ventilator and sink end together; the other one may be about to report why.
   if (failure_ != 0) wait_all(Which::essentials, k_last_words_ms);
   end_all();
   if (failure_ != 0) return failure_;
@@ -66,10 +66,10 @@ void Supervisor::ended(Child& child, int status) {
     return;
   }
   if (child.words.front() == "ventilator" && sink_done()) {
-    child.done = true;  // the output is there: nobody needs it any more
+    child.done = true;  // the output exists: the ventilator is no longer needed
     return;
   }
-  // A worker that left before the end had a job that hung, or lost its ventilator.
+  // A worker that left before the end had a hanging job, or lost its ventilator.
   const bool left = child.worker() && WIFEXITED(status) && WEXITSTATUS(status) == k_left_incomplete;
   if ((WIFSIGNALED(status) || left) && child.restarts < k_max_restarts && !stop_) {
     ++child.restarts;
@@ -87,7 +87,7 @@ void Supervisor::ended(Child& child, int status) {
   }
 }
 
-/// They left as all was done: a sink that comes anew may find that something is to be made again.
+/// They left because everything was done, but a restarted sink may need results made again.
 void Supervisor::call_workers_back() {
   for (Child& child : children_) {
     if (!child.worker() || !child.done) continue;
@@ -108,7 +108,7 @@ bool Supervisor::sink_done() const {
   });
 }
 
-/// A ventilator that was killed at the very end, and started again, waits for a sink in vain.
+/// A ventilator that was killed at the very end, and restarted, waits for a sink in vain.
 bool Supervisor::essentials_done() const {
   const auto now = std::chrono::steady_clock::now();
   if (sink_done() && now - sink_done_at_ > std::chrono::milliseconds(k_last_words_ms)) return true;

@@ -11,8 +11,8 @@
 
 namespace meshfarm {
 
-/// Runs this program's own commands as child processes and sees them through: a ventilator, a sink
-/// and any number of workers. Children that a signal ends are started again; the run goes on from
+/// Runs this program's own commands as child processes and supervises them: a ventilator, a sink
+/// and any number of workers. Children ended by a signal are started again; the run continues from
 /// the stage. Children end when their parent does.
 class Supervisor {
  public:
@@ -21,7 +21,7 @@ class Supervisor {
   Supervisor(const Supervisor&) = delete;
   Supervisor& operator=(const Supervisor&) = delete;
 
-  /// The command to run, its name first.
+  /// The words of a command, starting with its name.
   void start(std::vector<std::string> words);
   /// Waits until sink and ventilator are done. Returns the exit code of the run.
   int run();

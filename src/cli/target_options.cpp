@@ -18,13 +18,13 @@ namespace {
 constexpr std::string_view k_here = "here";
 constexpr std::string_view k_boundary = "boundary";
 
-/// Of a whole, as in "0.5%", or as it is.
+/// A percentage, as in "0.5%", or a plain number.
 struct Number {
   double value = 0;
   bool is_percent = false;
 };
 
-/// Nothing if the text is no number, or one below 0.
+/// Nothing if the text is no number, or negative.
 std::optional<Number> parse_number(const std::string& text) {
   Number number;
   number.is_percent = text.ends_with('%');
@@ -55,7 +55,7 @@ double parse_ratio(const std::string& text) {
   return number->value;
 }
 
-/// Pieces that are left out are far from all that stays.
+/// Omitted components are far from the remaining surface, so no bound can be proven.
 void check_certify(const RunOptions& run) {
   if (!run.certify) return;
   if (!(run.error.value > 0)) throw UsageError("--certify proves a bound: it needs --error");
@@ -148,7 +148,7 @@ void TargetOptions::check() {
   check_certify(run);
 }
 
-/// How parts become one mesh.
+/// Options for how parts become one mesh.
 void TargetOptions::check_joining() {
   run.allocation =
       chosen<Allocation>("--allocation", allocation,
@@ -175,7 +175,7 @@ void TargetOptions::check_joining() {
   }
 }
 
-/// What the result is to be like.
+/// Options for the result's surface.
 void TargetOptions::check_surface() {
   run.lines.topology = chosen<TopologyMode>("--topology", topology,
                                             {{"auto", TopologyMode::automatic},

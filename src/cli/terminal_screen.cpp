@@ -13,7 +13,8 @@
 namespace meshfarm {
 namespace {
 
-/// Another screen, and no cursor; and back (xterm's, as others have them).
+/// Switches to the alternate screen and hides the cursor; and back (xterm's codes, widely
+/// supported).
 constexpr std::string_view k_enter = "\x1b[?1049h\x1b[?25l\x1b[H\x1b[2J";
 constexpr std::string_view k_leave = "\x1b[?25h\x1b[?1049l";
 
@@ -25,12 +26,12 @@ std::string_view word_of(const char* name) {
 void write_out(std::string_view bytes) {
   while (!bytes.empty()) {
     const ssize_t written = ::write(STDOUT_FILENO, bytes.data(), bytes.size());
-    if (written <= 0) return;  // the terminal is gone; a signal says so
+    if (written <= 0) return;  // the terminal is gone; a signal reports it
     bytes.remove_prefix(static_cast<std::size_t>(written));
   }
 }
 
-/// A process in the background that touches the terminal is stopped.
+/// A background process that accesses the terminal is stopped.
 bool is_in_front(int fd) {
   return ::tcgetpgrp(fd) == ::getpgrp();
 }
@@ -48,7 +49,7 @@ void TerminalScreen::enter() {
   write_out(k_enter);
   has_keys_ = is_in_front(STDIN_FILENO) && ::tcgetattr(STDIN_FILENO, &before_) == 0;
   if (!has_keys_) return;
-  termios quiet = before_;  // keys are neither shown nor kept until a line ends
+  termios quiet = before_;  // no echo, and keys are available at once
   quiet.c_lflag &= ~static_cast<tcflag_t>(ECHO | ICANON);
   quiet.c_cc[VMIN] = 0;
   quiet.c_cc[VTIME] = 0;

@@ -10,10 +10,10 @@
 
 namespace meshfarm {
 
-/// The terminal of stdout as a screen of its own, that leaves what was there before as it was.
+/// The terminal of stdout as a separate screen that preserves the previous content.
 class TerminalScreen {
  public:
-  /// Whether stdout is a terminal that can be one.
+  /// Whether stdout is a suitable terminal.
   static bool is_there();
 
   TerminalScreen() { enter(); }
@@ -21,17 +21,17 @@ class TerminalScreen {
   TerminalScreen(const TerminalScreen&) = delete;
   TerminalScreen& operator=(const TerminalScreen&) = delete;
 
-  /// Begins, or begins again after leave().
+  /// Starts, or starts again after leave().
   void enter();
-  /// Gives the terminal back.
+  /// Restores the terminal.
   void leave();
-  /// In one write. Nothing happens while another has the terminal.
+  /// Writes the frame at once. Does nothing while another process has the terminal.
   void show(const std::string& frame) const;
-  /// Whether somebody pressed q since the last time.
+  /// Whether q was pressed since the last call.
   bool quit_was_pressed() const;
 
   ScreenSize size() const;
-  /// What the locale says that the terminal can show.
+  /// What the terminal can show according to the locale.
   static Letters letters();
 
  private:

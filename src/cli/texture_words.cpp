@@ -45,7 +45,7 @@ TextureWords texture_words_for(const std::string& output, const std::string& uv)
     throw UsageError("--uv keep: " + output +
                      " has no place for textures; --uv colours, or another format");
   }
-  // What the output has no place for need not be made.
+  // What the output cannot store need not be made.
   return {keeps_colours(output) ? "colours" : "drop", "drop"};
 }
 

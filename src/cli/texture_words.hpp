@@ -15,24 +15,24 @@ inline constexpr const char* k_uv_help =
     "become those of the vertices; drop: they are left out; auto: keep if the number of triangles "
     "can be met so, else bake, or colours where the output has no place for textures";
 
-/// --uv of commands that read a mesh: what they make of its textures. Throws UsageError.
+/// --uv of commands that read a mesh: how to use its textures. Throws UsageError.
 Textures parse_uv(const std::string& text);
 
 /// --uv of commands that take a stage. Throws UsageError.
 TextureMode parse_texture_mode(const std::string& text);
 
-/// --uv where a mesh is cut and the result written at once.
+/// --uv when a mesh is cut and the result written by one command.
 struct TextureWords {
-  std::string cut;  // as parse_uv() takes it
+  std::string cut;  // for parse_texture_mode()
   std::string run;  // as parse_texture_mode() does
 };
-/// What has a place in the output decides. Throws UsageError for textures that have none.
+/// Depends on what the output can store. Throws UsageError for textures that it cannot store.
 TextureWords texture_words_for(const std::string& output, const std::string& uv);
-/// The same for a run of a stage that was cut before.
+/// The same for a run of an existing stage.
 std::string stage_uv_for(const std::string& output, const std::string& uv);
 
-/// Tells, before the work, what becomes of the stage's textures, where that is not as asked, or was
-/// not asked for.
+/// Reports, before the work, what happens to the stage's textures, if that differs from the request
+/// or was not requested.
 void tell_textures(const Manifest& manifest, const RunOptions& run);
 
 }  // namespace meshfarm

@@ -20,7 +20,7 @@ std::string shortest(double value);
 
 /// Throws UsageError.
 void parse_weights(const std::string& text, RunOptions& run);
-/// What parse_weights() takes; empty where all weights are the default.
+/// The text for parse_weights(); empty if all weights are the default.
 std::string weight_words(const RunOptions& run);
 
 }  // namespace meshfarm
